@@ -1,0 +1,172 @@
+# Makefile: every command a person needs; `make help` lists them.
+#
+# What is built from what stands in one .mk per folder; what must be installed in packages.mk. A
+# bare Debian 12 with make can read this file: nothing here runs a compiler or pkg-config before the
+# recipes do, and the targets that install packages (demo, check) go on in a second make.
+
+.DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
+.SECONDARY:
+.SUFFIXES:
+MAKEFLAGS += --no-builtin-rules
+
+# ---- Settings: make NAME=value -------------------------------------------------------------------
+
+V      ?= @
+config ?= release
+WERROR ?=
+ifeq ($(config),release)
+BUILD  ?= build
+else
+BUILD  ?= build/$(config)
+endif
+CC     := $(if $(filter default,$(origin CC)),gcc,$(CC))
+CXX    := $(if $(filter default,$(origin CXX)),g++,$(CXX))
+PREFIX ?= /usr/local
+DESTDIR ?=
+WORLD  ?= engine
+SIZE   ?= 1920x1080
+DRIVERS ?= system
+FULL   ?=
+
+# ---- Flags ---------------------------------------------------------------------------------------
+
+CONFIG_release  := -O2 -g -DNDEBUG
+CONFIG_debug    := -O0 -g3
+CONFIG_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined
+CONFIG_sanitize += -fno-sanitize-recover=all
+CONFIG_coverage := -O0 -g --coverage
+CONFIG_fuzz     := $(CONFIG_sanitize) -fsanitize=fuzzer-no-link
+ifndef CONFIG_$(config)
+$(error config=$(config) is not known: release, debug, sanitize, coverage or fuzz)
+endif
+
+# -ffp-contract=off and no -ffast-math: the CPU references are compared with the GPU bit for bit
+# where that is possible, so a*b+c has to mean the same with every compiler.
+WARNINGS   := -Wall -Wextra -Wpedantic -Wvla -Wdouble-promotion
+WARNINGS   += $(if $(filter-out 0,$(WERROR)),-Werror)
+INCLUDES   := -Iinclude -Isrc -Iplatform -Itools -Ishaders -Itests -I$(BUILD)/gen
+ALL_FLAGS   = -std=c11 $(WARNINGS) $(CONFIG_$(config)) -ffp-contract=off $(INCLUDES) $(CFLAGS)
+LINK_FLAGS  = $(filter -fsanitize=% --coverage,$(CONFIG_$(config))) $(LDFLAGS)
+
+# src/ is strict C11 and hides what is not MASU_API; the rest is POSIX. Tests keep their assert().
+$(BUILD)/obj/src/%.o: FOLDER_FLAGS := -fPIC -fvisibility=hidden
+$(BUILD)/obj/platform/%.o $(BUILD)/obj/tools/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L
+$(BUILD)/obj/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG
+
+# ---- Rules ---------------------------------------------------------------------------------------
+
+objects = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
+
+# For programs that load Vulkan drivers: lets the leak checker tell the drivers' leaks from ours.
+KEEP_LOADED := $(if $(filter sanitize,$(config)),$(BUILD)/obj/tests/keep_loaded.o)
+
+include packages.mk shaders/shaders.mk src/src.mk platform/platform.mk tools/tools.mk tests/tests.mk
+
+# Changes when the compiler or its flags do: then everything is compiled again.
+$(BUILD)/flags: force
+	@mkdir -p $(@D)
+	@echo '$(CC) $(ALL_FLAGS)' | cmp -s - $@ || echo '$(CC) $(ALL_FLAGS)' > $@
+
+$(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(GENERATED)
+	@mkdir -p $(@D)
+	@echo "  CC      $<"
+	$(V)$(CC) $(ALL_FLAGS) $(FOLDER_FLAGS) -MMD -MP -c $< -o $@
+
+$(BUILD)/lib/%.a:
+	@mkdir -p $(@D)
+	@echo "  AR      $@"
+	$(V)rm -f $@ && $(AR) rcs $@ $^
+
+# Programs list their objects and archives as prerequisites, and what else they need in LIBS.
+define link
+@mkdir -p $(@D)
+@echo "  LD      $@"
+$(V)$(CC) $(LINK_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(LIBS) -o $@
+endef
+
+-include $(wildcard $(BUILD)/obj/*/*.d $(BUILD)/obj/*/*/*.d $(BUILD)/gen/*.d)
+
+.PHONY: force
+force:
+
+# ---- Commands ------------------------------------------------------------------------------------
+
+# As many jobs as there are processors, unless the one who called make has said how many.
+more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$$(nproc))
+
+.PHONY: all lib tools scenes shaders
+all: lib tools ## build the library and the programs (the default)
+lib: $(BUILD)/lib/libmasu.a ## build build/lib/libmasu.a alone
+tools: $(BUILD)/bin/masu $(BUILD)/bin/masu-bake ## build build/bin/masu and build/bin/masu-bake
+shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders
+scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
+
+.PHONY: demo demo-picture
+demo: deps-demo ## install what is missing, build, bake, render: WORLD=engine SIZE=1920x1080
+	+$(V)$(more) demo-picture
+
+demo-picture: $(BUILD)/bin/masu $(BUILD)/scenes/$(WORLD).masu
+	$(V)$(BUILD)/bin/masu render $(BUILD)/scenes/$(WORLD).masu -o $(BUILD)/demo.png --size $(SIZE)
+	@echo "The picture is $(abspath $(BUILD)/demo.png)"
+
+.PHONY: check check-built unit gpu fuzz coverage
+check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=
+	+$(V)$(more) check-built
+
+check-built: all scenes $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
+	$(V)$(RUN_TESTS) $(RUN_UNIT) $(RUN_GPU)
+
+unit: all scenes $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
+	$(V)$(RUN_TESTS) $(RUN_UNIT)
+
+gpu: | $(filter unit,$(MAKECMDGOALS)) # they use one folder for results
+gpu: all scenes $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need one: DRIVERS=all TESTS=name
+	$(V)$(RUN_TESTS) $(RUN_GPU)
+
+fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
+	+$(V)$(more) config=fuzz CC=clang fuzz-$(FUZZ)
+
+coverage: ## run the tests with gcov and print the lines executed of each file of src/
+	+$(V)$(more) config=coverage check-built
+	$(V)cd build/coverage && gcov -n -r -s $(CURDIR) obj/src/*.gcda | awk -F "'" \
+	    '/^File/ { f = $$2 } /^Lines/ && f { printf "%-24s %s\n", f, $$0; f = "" }'
+
+.PHONY: sizes format format-check compdb
+sizes: lib ## print the size of each object of the library
+	$(V)size -t $(BUILD)/lib/libmasu.a
+
+FORMATTED = $(wildcard $(addsuffix /*.[ch],include src platform tools examples tests tests/*))
+format: ## clang-format every C file in place
+	$(V)clang-format -i $(FORMATTED)
+format-check: ## fail if clang-format would change a file
+	$(V)bad=$$(for f in $(FORMATTED); do clang-format $$f | cmp -s - $$f || echo "  $$f"; done); \
+	    [ -z "$$bad" ] || { echo "make format would change:"; echo "$$bad"; exit 1; }
+
+compdb: ## write compile_commands.json (with bear)
+	$(V)command -v bear > /dev/null || { echo "masu: compdb needs bear" >&2; exit 1; }
+	+$(V)bear -- $(MAKE) --no-print-directory -B all $(UNIT_TESTS) $(GPU_TESTS)
+
+.PHONY: install install-lib install-tools uninstall
+root = $(DESTDIR)$(PREFIX)
+install: install-lib install-tools ## install to DESTDIR/PREFIX, by default /usr/local
+install-lib: lib ## install header, library and masu.pc
+	$(V)install -d "$(root)/include" "$(root)/lib/pkgconfig"
+	$(V)install -m 644 include/masu.h "$(root)/include/masu.h"
+	$(V)install -m 644 $(BUILD)/lib/libmasu.a "$(root)/lib/libmasu.a"
+	$(V)sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' masu.pc.in \
+	    > "$(root)/lib/pkgconfig/masu.pc"
+install-tools: tools ## install masu and masu-bake
+	$(V)install -d "$(root)/bin"
+	$(V)install -m 755 $(BUILD)/bin/masu $(BUILD)/bin/masu-bake "$(root)/bin"
+uninstall: ## remove what install has put there
+	$(V)cd "$(root)" && rm -f include/masu.h lib/libmasu.a lib/pkgconfig/masu.pc
+	$(V)cd "$(root)" && rm -f bin/masu bin/masu-bake
+
+.PHONY: clean help
+clean: ## remove what was built, of all configurations; keeps build/drivers
+	$(V)[ ! -d build ] || find build -mindepth 1 -maxdepth 1 ! -name drivers -exec rm -rf {} +
+help: ## print this
+	@echo "make [TARGET] [config=release|debug|sanitize|coverage] [CC=gcc|clang] [WERROR=1] [V=]"
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1 \2/p' $(filter Makefile %.mk,$(MAKEFILE_LIST)) | \
+	    while read -r target text; do printf '  %-14s %s\n' "$$target" "$$text"; done

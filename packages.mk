@@ -1,0 +1,52 @@
+# packages.mk: the one list of Debian packages that Masu uses, by role, and how they get here. Names
+# are those of Debian 12.
+#
+# `make demo` installs build + demo, `make check` build + demo + test, `make check FULL=1` also
+# full: each only what is missing. make itself is not listed: it is what reads this.
+
+# to build the library and the programs
+PACKAGES_build := gcc libc6-dev libvulkan-dev
+PACKAGES_build += glslang-tools spirv-tools
+PACKAGES_build += libassimp-dev libjansson-dev libstb-dev
+
+# to bake and render the demo: a Vulkan driver for any processor, and the models that scenes/ places
+PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
+
+# to run the tests; g++ and pkgconf look at what is installed as a C++ or a C user would
+PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ pkgconf
+
+# to build everything a second time with the other compiler (make check FULL=1), and for `make fuzz`
+PACKAGES_full := clang
+
+# for who works on Masu: `make format`, `make compdb`. Never installed by itself
+PACKAGES_dev := clang-format bear
+
+# Installs those of $(1) that dpkg does not call installed. None missing: nothing done, no network.
+define install-packages
+@command -v dpkg-query > /dev/null || { \
+    echo "masu: no dpkg here; these Debian packages or their like are needed: $(1)"; exit 0; }; \
+have=$$(dpkg-query -W -f='$${Package} $${db:Status-Status}\n' $(1) 2> /dev/null | \
+    sed -n 's/ installed$$//p'); \
+missing=; for p in $(1); do echo "$$have" | grep -qx -e "$$p" || missing="$$missing $$p"; done; \
+[ "$$missing" ] || exit 0; \
+sudo=; [ "$$(id -u)" = 0 ] || sudo=sudo; \
+if [ "$$sudo" ] && ! command -v sudo > /dev/null; then \
+    echo "masu: packages are missing; as root: apt-get install$$missing" >&2; exit 1; \
+fi; \
+echo "masu: installing$$missing"; \
+apt="$$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300"; \
+apt="$$apt -o Dpkg::Use-Pty=0 --no-install-recommends"; \
+$$apt update && $$apt install -y $$missing > /dev/null || { \
+    echo "masu: apt-get could not install:$$missing" >&2; exit 1; }
+endef
+
+.PHONY: packages deps-build deps-demo deps-test
+packages: ## print the Debian packages by role
+	@$(foreach role,build demo test full dev,echo "$(role): $(PACKAGES_$(role))";)
+deps-build: ## install the packages that building needs
+	$(call install-packages,$(PACKAGES_build))
+deps-demo: ## install the packages that the demo needs
+	$(call install-packages,$(PACKAGES_build) $(PACKAGES_demo))
+deps-test: ## install the packages that the tests need
+	$(call install-packages,$(PACKAGES_build) $(PACKAGES_demo) $(PACKAGES_test) \
+	    $(if $(FULL),$(PACKAGES_full)))

@@ -1,0 +1,503 @@
+/*
+ * image.c: see image.h. Order: files, then PNG, then PFM.
+ *
+ * stb does the PNG coding. It trusts chunk lengths more than a stranger's file deserves and ignores
+ * checksums, so a file is first walked chunk by chunk here; only one that is whole, and within the
+ * limits by its own header, reaches the decoder.
+ */
+#ifndef _XOPEN_SOURCE
+#define _XOPEN_SOURCE 700 /* realpath, fsync */
+#endif
+
+#include "image.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A few kilobytes of PNG can unfold without end. 16-bit RGBA of the largest size is half this. */
+#define DECODER_BYTES_MAX ((size_t)1 << 30)
+
+static void *bounded_realloc(void *block, size_t bytes)
+{
+    return bytes > DECODER_BYTES_MAX ? NULL : realloc(block, bytes);
+}
+
+/* Hidden: a shared library of the process may carry its own stb, built with other options, and must
+ * not be given this one. */
+#if defined(__GNUC__)
+#define STBIDEF extern __attribute__((visibility("hidden")))
+#else
+#define STBIDEF extern
+#endif
+#define STBIWDEF STBIDEF
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#define STBI_MAX_DIMENSIONS (1 << 14)
+#define STBI_MALLOC(bytes) bounded_realloc(NULL, bytes)
+#define STBI_REALLOC(block, bytes) bounded_realloc(block, bytes)
+#define STBI_FREE(block) free(block)
+#include <stb/stb_image.h>
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
+
+_Static_assert(MASU_IMAGE_SIDE_MAX == STBI_MAX_DIMENSIONS, "one limit, stated twice");
+
+/* Always false, so that a failing branch is one statement. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+static bool fail(char *error, size_t error_size, const char *format, ...)
+{
+    if (error && error_size) {
+        va_list arguments;
+        va_start(arguments, format);
+        (void)vsnprintf(error, error_size, format, arguments);
+        va_end(arguments);
+    }
+    return false;
+}
+
+void masu_image_free(struct masu_image *image)
+{
+    free(image->rgba);
+    free(image->values);
+    *image = (struct masu_image){ 0 };
+}
+
+static bool size_is_allowed(const char *path, uint32_t width, uint32_t height, char *error,
+                            size_t error_size)
+{
+    if (width == 0 || height == 0) {
+        return fail(error, error_size, "%s: the picture is empty (%ux%u)", path, width, height);
+    }
+    if (width > MASU_IMAGE_SIDE_MAX || height > MASU_IMAGE_SIDE_MAX) {
+        return fail(error, error_size, "%s: %ux%u is larger than %u pixels a side", path, width,
+                    height, MASU_IMAGE_SIDE_MAX);
+    }
+    if ((uint64_t)width * height > MASU_IMAGE_PIXELS_MAX) {
+        return fail(error, error_size, "%s: %ux%u is more than %u pixels", path, width, height,
+                    MASU_IMAGE_PIXELS_MAX);
+    }
+    return true;
+}
+
+/* ---- files ---- */
+
+/* Until `count` bytes or the end of the file; returns how many, or -1 with errno set. */
+static ssize_t read_up_to(int file, uint8_t *bytes, size_t count)
+{
+    size_t done = 0;
+    while (done < count) {
+        ssize_t n = read(file, bytes + done, count - done);
+        if (n < 0 && errno == EINTR) {
+            continue;
+        }
+        if (n < 0) {
+            return -1;
+        }
+        if (n == 0) {
+            break;
+        }
+        done += (size_t)n;
+    }
+    return (ssize_t)done;
+}
+
+bool masu_file_read(const char *path, size_t limit, uint8_t **bytes, size_t *count, char *error,
+                    size_t error_size)
+{
+    *bytes = NULL;
+    *count = 0;
+    int file = open(path, O_RDONLY);
+    if (file < 0) {
+        return fail(error, error_size, "%s: cannot open: %s", path, strerror(errno));
+    }
+    struct stat info;
+    if (fstat(file, &info) != 0 || !S_ISREG(info.st_mode)) {
+        (void)close(file);
+        return fail(error, error_size, "%s: is not a regular file", path);
+    }
+    if (info.st_size < 0 || (uintmax_t)info.st_size > limit) {
+        (void)close(file);
+        return fail(error, error_size, "%s: %jd bytes, more than the limit of %zu", path,
+                    (intmax_t)info.st_size, limit);
+    }
+    size_t size = (size_t)info.st_size;
+    uint8_t *block = malloc(size ? size : 1);
+    ssize_t got = block ? read_up_to(file, block, size) : -1;
+    int why = block ? errno : ENOMEM;
+    (void)close(file);
+    if (got < 0) {
+        free(block);
+        return fail(error, error_size, "%s: cannot read: %s", path, strerror(why));
+    }
+    *bytes = block;
+    *count = (size_t)got; /* fewer than size if the file shrank meanwhile */
+    return true;
+}
+
+static bool write_all(int file, const uint8_t *bytes, size_t count)
+{
+    size_t done = 0;
+    while (done < count) {
+        ssize_t n = write(file, bytes + done, count - done);
+        if (n < 0 && errno == EINTR) {
+            continue;
+        }
+        if (n <= 0) {
+            return false;
+        }
+        done += (size_t)n;
+    }
+    return true;
+}
+
+static bool write_straight(const char *path, const void *bytes, size_t count, char *error,
+                           size_t error_size)
+{
+    int file = open(path, O_WRONLY);
+    if (file < 0) {
+        return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
+    }
+    bool good = write_all(file, bytes, count);
+    int why = errno;
+    if (close(file) != 0 && good) {
+        good = false;
+        why = errno;
+    }
+    return good || fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
+}
+
+/* A new file beside the target, named after it and this process; its permissions follow the umask,
+ * which mkstemp's would not. Returns -1 with errno set. */
+static int create_beside(const char *target, char *name, size_t name_size)
+{
+    for (unsigned attempt = 0; attempt < 100; attempt++) {
+        int n = snprintf(name, name_size, "%s.%ld-%u.tmp", target, (long)getpid(), attempt);
+        if (n < 0 || (size_t)n >= name_size) {
+            errno = ENAMETOOLONG;
+            return -1;
+        }
+        int file = open(name, O_WRONLY | O_CREAT | O_EXCL, 0666);
+        if (file >= 0 || errno != EEXIST) {
+            return file;
+        }
+    }
+    return -1;
+}
+
+static bool write_beside_and_rename(const char *path, const char *target, const void *bytes,
+                                    size_t count, char *error, size_t error_size)
+{
+    size_t name_size = strlen(target) + 48;
+    char *name = malloc(name_size);
+    int file = name ? create_beside(target, name, name_size) : -1;
+    if (file < 0) {
+        int why = name ? errno : ENOMEM;
+        free(name);
+        return fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
+    }
+    /* Without the sync, a power cut after the rename could still leave an empty file. */
+    bool good = write_all(file, bytes, count) && fsync(file) == 0;
+    int why = errno;
+    if (close(file) != 0 && good) {
+        good = false;
+        why = errno;
+    }
+    if (good && rename(name, target) != 0) {
+        good = false;
+        why = errno;
+    }
+    if (!good) {
+        (void)unlink(name);
+        (void)fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
+    }
+    free(name);
+    return good;
+}
+
+bool masu_file_write(const char *path, const void *bytes, size_t count, char *error,
+                     size_t error_size)
+{
+    struct stat info;
+    bool exists = stat(path, &info) == 0;
+    if (exists && S_ISDIR(info.st_mode)) {
+        return fail(error, error_size, "%s: cannot write: it is a directory", path);
+    }
+    if (exists && !S_ISREG(info.st_mode)) {
+        return write_straight(path, bytes, count, error, error_size);
+    }
+    /* Renaming over a read-only file would succeed; its owner meant it to stay. */
+    if (exists && access(path, W_OK) != 0) {
+        return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
+    }
+    char *resolved = exists ? realpath(path, NULL) : NULL;
+    bool good = write_beside_and_rename(path, resolved ? resolved : path, bytes, count, error,
+                                        error_size);
+    free(resolved);
+    return good;
+}
+
+/* ---- PNG ---- */
+
+static uint32_t big_endian(const uint8_t *p)
+{
+    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
+}
+
+/* CRC-32 of ISO 3309, four bits at a time: a table that fits in one line of sight. */
+static uint32_t crc32_of(const uint8_t *bytes, size_t count)
+{
+    static const uint32_t nibble[16] = {
+        0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
+        0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
+        0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu,
+    };
+    uint32_t crc = 0xFFFFFFFFu;
+    for (size_t i = 0; i < count; i++) {
+        crc ^= bytes[i];
+        crc = crc >> 4 ^ nibble[crc & 15u];
+        crc = crc >> 4 ^ nibble[crc & 15u];
+    }
+    return ~crc;
+}
+
+/* A chunk is length, name, data, checksum of name and data. */
+static bool chunk_is_whole(const char *path, const uint8_t *chunk, size_t left, char *error,
+                           size_t error_size)
+{
+    if (left < 12 || big_endian(chunk) > left - 12) {
+        return fail(error, error_size, "%s: the PNG file is truncated", path);
+    }
+    size_t data = big_endian(chunk);
+    if (crc32_of(chunk + 4, data + 4) != big_endian(chunk + 8 + data)) {
+        return fail(error, error_size, "%s: the PNG file is damaged (wrong checksum)", path);
+    }
+    return true;
+}
+
+/* The IHDR chunk: its size, first place and the limits on the picture. */
+static bool header_is_allowed(const char *path, const uint8_t *chunk, char *error,
+                              size_t error_size)
+{
+    if (memcmp(chunk + 4, "IHDR", 4) != 0 || big_endian(chunk) != 13) {
+        return fail(error, error_size, "%s: the PNG file does not begin with its header", path);
+    }
+    return size_is_allowed(path, big_endian(chunk + 8), big_endian(chunk + 12), error, error_size);
+}
+
+static bool png_is_whole(const char *path, const uint8_t *bytes, size_t count, char *error,
+                         size_t error_size)
+{
+    static const uint8_t signature[8] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n' };
+    if (count < 8 || memcmp(bytes, signature, 8) != 0) {
+        return fail(error, error_size, "%s: is not a PNG file", path);
+    }
+    for (size_t at = 8;;) {
+        const uint8_t *chunk = bytes + at;
+        if (!chunk_is_whole(path, chunk, count - at, error, error_size)) {
+            return false;
+        }
+        if (at == 8 && !header_is_allowed(path, chunk, error, error_size)) {
+            return false;
+        }
+        if (memcmp(chunk + 4, "IEND", 4) == 0) {
+            return true;
+        }
+        at += (size_t)big_endian(chunk) + 12;
+    }
+}
+
+bool masu_image_load_png(const char *path, struct masu_image *image, char *error,
+                         size_t error_size)
+{
+    *image = (struct masu_image){ 0 };
+    uint8_t *bytes;
+    size_t count;
+    if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size)) {
+        return false;
+    }
+    if (!png_is_whole(path, bytes, count, error, error_size)) {
+        free(bytes);
+        return false;
+    }
+    int width = 0;
+    int height = 0;
+    uint8_t *rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, NULL, 4);
+    free(bytes);
+    if (!rgba) {
+        return fail(error, error_size, "%s: cannot decode the PNG file: %s", path,
+                    stbi_failure_reason());
+    }
+    image->width = (uint32_t)width;
+    image->height = (uint32_t)height;
+    image->channels = 4;
+    image->rgba = rgba; /* stb allocates with malloc */
+    return true;
+}
+
+bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,
+                         size_t row_bytes, char *error, size_t error_size)
+{
+    if (!size_is_allowed(path, width, height, error, error_size)) {
+        return false;
+    }
+    size_t row = row_bytes ? row_bytes : (size_t)width * 4;
+    if (row < (size_t)width * 4 || row > 0x7FFFFFFFu) {
+        return fail(error, error_size, "%s: rows of %zu bytes do not hold %u pixels", path, row,
+                    width);
+    }
+    int count = 0;
+    unsigned char *bytes = stbi_write_png_to_mem(rgba, (int)row, (int)width, (int)height, 4,
+                                                 &count);
+    if (!bytes) {
+        return fail(error, error_size, "%s: out of memory for the PNG file", path);
+    }
+    bool good = masu_file_write(path, bytes, (size_t)count, error, error_size);
+    free(bytes);
+    return good;
+}
+
+/* ---- PFM ---- */
+
+#define PFM_HEADER_MAX 64 /* "PF\n16384 16384\n-1.0\n" needs 22 */
+
+struct pfm_header {
+    uint32_t width, height, channels;
+    bool big;      /* byte order of the samples */
+    size_t length; /* of the header, bytes */
+};
+
+/* The header is text: kind, width, height, scale, each ended by white space, then the samples. */
+static bool parse_pfm(const uint8_t *bytes, size_t count, struct pfm_header *header)
+{
+    char text[PFM_HEADER_MAX + 1];
+    size_t kept = count < PFM_HEADER_MAX ? count : PFM_HEADER_MAX;
+    memcpy(text, bytes, kept);
+    text[kept] = '\0';
+
+    char kind;
+    unsigned long width, height;
+    float scale;
+    int used = 0;
+    if (sscanf(text, "P%c %9lu %9lu %15f%n", &kind, &width, &height, &scale, &used) != 4) {
+        return false;
+    }
+    char ended_by = text[used];
+    bool ended = ended_by == '\n' || ended_by == ' ' || ended_by == '\t' || ended_by == '\r';
+    bool signless = !(scale < 0.0f || scale > 0.0f); /* its sign is the byte order */
+    if ((kind != 'F' && kind != 'f') || !ended || signless) {
+        return false;
+    }
+    header->width = (uint32_t)width;
+    header->height = (uint32_t)height;
+    header->channels = kind == 'F' ? 3 : 1;
+    header->big = scale > 0.0f;
+    header->length = (size_t)used + 1;
+    return true;
+}
+
+static uint32_t sample_bits(const uint8_t *p, bool big)
+{
+    if (big) {
+        return big_endian(p);
+    }
+    return (uint32_t)p[3] << 24 | (uint32_t)p[2] << 16 | (uint32_t)p[1] << 8 | p[0];
+}
+
+static bool decode_pfm(const char *path, const uint8_t *bytes, size_t count,
+                       struct masu_image *image, char *error, size_t error_size)
+{
+    struct pfm_header header;
+    if (!parse_pfm(bytes, count, &header)) {
+        return fail(error, error_size, "%s: is not a PFM file", path);
+    }
+    if (!size_is_allowed(path, header.width, header.height, error, error_size)) {
+        return false;
+    }
+    size_t row = (size_t)header.width * header.channels;
+    size_t needed = row * header.height * 4;
+    size_t given = count - header.length;
+    if (given != needed) {
+        return fail(error, error_size, "%s: a %ux%u PFM file needs %zu bytes of samples, has %zu",
+                    path, header.width, header.height, needed, given);
+    }
+    float *values = malloc(needed);
+    if (!values) {
+        return fail(error, error_size, "%s: out of memory for %zu bytes", path, needed);
+    }
+    const uint8_t *sample = bytes + header.length;
+    for (uint32_t y = 0; y < header.height; y++) {
+        float *out = values + row * (header.height - 1 - y); /* the file starts at the bottom */
+        for (size_t i = 0; i < row; i++, sample += 4) {
+            uint32_t bits = sample_bits(sample, header.big);
+            memcpy(&out[i], &bits, 4);
+        }
+    }
+    image->width = header.width;
+    image->height = header.height;
+    image->channels = header.channels;
+    image->values = values;
+    return true;
+}
+
+bool masu_image_load_pfm(const char *path, struct masu_image *image, char *error,
+                         size_t error_size)
+{
+    *image = (struct masu_image){ 0 };
+    uint8_t *bytes;
+    size_t count;
+    if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size)) {
+        return false;
+    }
+    bool good = decode_pfm(path, bytes, count, image, error, error_size);
+    free(bytes);
+    return good;
+}
+
+bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, uint32_t height,
+                         uint32_t channels, char *error, size_t error_size)
+{
+    if (!size_is_allowed(path, width, height, error, error_size)) {
+        return false;
+    }
+    if (channels != 1 && channels != 3) {
+        return fail(error, error_size, "%s: a PFM file has 1 or 3 channels, not %u", path,
+                    channels);
+    }
+    char header[PFM_HEADER_MAX];
+    int length = snprintf(header, sizeof header, "%s\n%u %u\n-1.0\n", channels == 3 ? "PF" : "Pf",
+                          width, height);
+    size_t row = (size_t)width * channels;
+    size_t count = (size_t)length + row * height * 4;
+    uint8_t *bytes = malloc(count);
+    if (!bytes) {
+        return fail(error, error_size, "%s: out of memory for %zu bytes", path, count);
+    }
+    memcpy(bytes, header, (size_t)length);
+    uint8_t *sample = bytes + length;
+    for (uint32_t y = height; y-- > 0;) {
+        for (size_t i = 0; i < row; i++, sample += 4) {
+            uint32_t bits;
+            memcpy(&bits, &values[row * y + i], 4);
+            for (int b = 0; b < 4; b++) {
+                sample[b] = (uint8_t)(bits >> (8 * b));
+            }
+        }
+    }
+    bool good = masu_file_write(path, bytes, count, error, error_size);
+    free(bytes);
+    return good;
+}

@@ -1,0 +1,38 @@
+/*
+ * gbuffer.frag: the material of a polygon into the G-buffer. index.x is the draw's material.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/pack.glsl"
+
+layout(push_constant) uniform Push
+{
+    masu_push pc;
+};
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly buffer Materials
+{
+    masu_material_data materials[];
+};
+
+layout(location = 0) in vec3 in_normal;
+layout(location = 1) in vec3 in_rel;
+
+layout(location = 0) out vec4 out_albedo;
+layout(location = 1) out uint out_normal;
+
+void main()
+{
+    masu_material_data m = materials[pc.index.x];
+    masu_surface s;
+    s.albedo = m.base_color.rgb;
+    s.roughness = m.base_color.w;
+    s.emissive = m.emissive.rgb;
+    s.metallic = m.emissive.w;
+    /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */
+    vec3 n = masu_normalize(in_normal, masu_normalize(-in_rel, vec3(0.0, 1.0, 0.0)));
+    n = dot(n, in_rel) > 0.0 ? -n : n;
+    out_albedo = masu_pack_albedo(s);
+    out_normal = masu_pack_normal(n, s);
+}

@@ -1,0 +1,67 @@
+# shaders.mk: GLSL to SPIR-V to C.
+#
+#   shaders/NAME.STAGE -> gen/NAME_STAGE.spv      with debug names: tests read struct offsets there
+#                      -> gen/NAME_STAGE.opt.spv  optimised and stripped
+#                      -> gen/NAME_STAGE.spv.h    that, as `const uint32_t masu_spv_NAME_STAGE[]`
+#
+# Both SPIR-V files pass spirv-val. Shaders of tests/gpu are compiled the same way. A scene shader
+# is not complete without the GLSL of a scene: masu-bake compiles it, so it and all that it may
+# include are embedded as text instead.
+
+SCENE_SHADERS := march.comp
+
+SPIRV_TARGET := --target-env vulkan1.1
+STAGES       := comp vert frag
+
+SHADERS := $(filter-out $(SCENE_SHADERS:%=shaders/%),$(wildcard $(STAGES:%=shaders/*.%)))
+SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
+
+# dir/NAME.STAGE is NAME_STAGE
+SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
+GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h
+
+# glslang's dependency file has no empty rules for what is included; without them, the next make
+# would fail after a file is removed.
+define shader_rule
+$(BUILD)/gen/%_$(2).spv: $(1)/%.$(2)
+	@mkdir -p $$(@D)
+	@echo "  GLSL    $$<"
+	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) -Ishaders --depfile $$(@:.spv=.d) -o $$@ $$<
+	$$(V)sed -n 's/^[^:]*: *//p' $$(@:.spv=.d) | tr -s ' ' '\n' | \
+	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
+	$$(V)spirv-val $(SPIRV_TARGET) $$@
+endef
+$(foreach d,shaders tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,$(d),$(s)))))
+
+$(BUILD)/gen/%.opt.spv: $(BUILD)/gen/%.spv
+	$(V)spirv-opt --target-env=vulkan1.1 -O --strip-debug $< -o $@
+	$(V)spirv-val $(SPIRV_TARGET) $@
+
+$(BUILD)/gen/%.spv.h: $(BUILD)/gen/%.opt.spv
+	$(V){ echo '/* Made from $*. */'; echo 'static const uint32_t masu_spv_$*[] = {'; \
+	    od -An -v -tx4 -w32 $< | sed 's/ \([0-9a-f]*\)/0x\1,/g'; echo '};'; } > $@
+
+# The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
+# of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;
+# hence the pragmas.
+SCENE_TEXTS := $(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h shaders/*/*.glsl)
+
+$(BUILD)/gen/scene_sources.h: $(SCENE_TEXTS) $(BUILD)/gen/scene_texts.list
+	$(V){ echo '/* Made from $(SCENE_TEXTS). */'; \
+	    echo '#pragma GCC diagnostic push'; \
+	    echo '#pragma GCC diagnostic ignored "-Woverlength-strings"'; \
+	    echo 'static const struct {'; \
+	    echo '    const char *name;'; \
+	    echo '    const char *text;'; \
+	    echo '} masu_scene_sources[] = {'; \
+	    for f in $(SCENE_TEXTS); do \
+	        echo "    {\"$${f#shaders/}\","; \
+	        sed -e 's/[\\"?]/\\&/g' -e 's/.*/     "&\\n"/' "$$f"; echo '     ""},'; \
+	    done; \
+	    echo '};'; \
+	    echo '#pragma GCC diagnostic pop'; } > $@
+
+# Changes when a text comes or goes.
+$(BUILD)/gen/scene_texts.list: force
+	@mkdir -p $(@D)
+	@echo '$(SCENE_TEXTS)' | cmp -s - $@ || echo '$(SCENE_TEXTS)' > $@

@@ -1,0 +1,157 @@
+/* blob.h: the bytes of a baked scene (.masu), shared by the runtime that reads them and masu-bake that writes them.
+ *
+ *   +--------+---------------+---------+---------+-----
+ *   | header | section table | payload | payload | ...      little-endian, offsets from the first byte, no pointers
+ *   +--------+---------------+---------+---------+-----
+ *   0        64              16-byte aligned, in table order, gaps are zero
+ *
+ * Rules a reader may rely on after masu_scene_bind has passed a blob (src/scene.c checks each):
+ *  - header.bytes is the exact length; hash is FNV-1a 64 over everything behind the header;
+ *  - each section kind appears at most once; stride is the sizeof of its struct here;
+ *  - every float is finite; every index is in range; instances are sorted by mesh;
+ *  - SPIR-V is code: a blob is as trusted as the executable and comes from the port's own build. The hash finds damage,
+ *    not malice.
+ * World space: right-handed, +Y up, metres, linear colour. docs/blob.md is the prose form of this file. */
+#ifndef MASU_BLOB_H
+#define MASU_BLOB_H
+
+#include <stdint.h>
+
+#define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
+#define MASU_BLOB_VERSION 1u
+#define MASU_BLOB_ALIGN 16u
+#define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
+
+enum masu_blob_kind {
+    MASU_BLOB_VERTICES = 1,
+    MASU_BLOB_INDICES = 2, /* uint32, relative to the primitive's first vertex */
+    MASU_BLOB_PRIMITIVES = 3,
+    MASU_BLOB_MESHES = 4,
+    MASU_BLOB_INSTANCES = 5,
+    MASU_BLOB_MATERIALS = 6,
+    MASU_BLOB_CAMERA_KEYS = 7,
+    MASU_BLOB_ENVIRONMENT = 8, /* exactly one, always present */
+    MASU_BLOB_SDF = 9,         /* at most one; then MARCH_SPIRV is present too */
+    MASU_BLOB_SDF_PARAMS = 10,
+    MASU_BLOB_MARCH_SPIRV = 11, /* uint32 words: the march pass specialised to this scene */
+    MASU_BLOB_NAMES = 12,       /* NUL-terminated UTF-8 strings, last byte is NUL */
+    MASU_BLOB_KIND_COUNT = 13
+};
+
+typedef struct masu_blob_header {
+    uint32_t magic;
+    uint32_t version;
+    uint64_t bytes; /* of the whole blob */
+    uint64_t hash;  /* FNV-1a 64 of bytes [64, bytes) */
+    uint32_t section_count;
+    uint32_t reserved0;
+    uint64_t reserved[4]; /* zero */
+} masu_blob_header;
+
+typedef struct masu_blob_section {
+    uint32_t kind;
+    uint32_t stride; /* bytes of one element */
+    uint64_t offset; /* from the first byte of the blob, a multiple of 16 */
+    uint64_t count;  /* elements */
+} masu_blob_section;
+
+typedef struct masu_blob_vertex {
+    float position[3];
+    int16_t normal[2]; /* octahedral, signed normalised (c / 32767) */
+} masu_blob_vertex;
+
+typedef struct masu_blob_primitive {
+    uint32_t first_index;
+    uint32_t index_count; /* a multiple of 3 */
+    uint32_t first_vertex;
+    uint32_t vertex_count; /* 1 .. 16,777,215: indices stay exact on devices without fullDrawIndexUint32 */
+    uint32_t material;
+    float aabb_min[3]; /* object space */
+    float aabb_max[3];
+    uint32_t reserved;
+} masu_blob_primitive;
+
+typedef struct masu_blob_mesh {
+    uint32_t first_primitive;
+    uint32_t primitive_count;
+    float aabb_min[3];
+    float aabb_max[3];
+    uint32_t name; /* byte offset into NAMES, or MASU_BLOB_NONE */
+    uint32_t reserved;
+} masu_blob_mesh;
+
+typedef struct masu_blob_instance {
+    float transform[12]; /* rows of the 3x4 matrix, object to world */
+    uint32_t mesh;
+    uint32_t name;
+    uint32_t parent; /* instance index or MASU_BLOB_NONE; transforms are already composed */
+    uint32_t reserved;
+} masu_blob_instance;
+
+typedef struct masu_blob_material {
+    float base_color[3]; /* linear, 0..1 */
+    float roughness;     /* perceptual, 0..1 */
+    float emissive[3];   /* linear radiance, >= 0 */
+    float metallic;      /* 0..1 */
+    uint32_t name;
+    uint32_t reserved[3];
+} masu_blob_material;
+
+/* Camera path: keys in rising time, linear in between (position and target), held at both ends. Up is +Y. */
+typedef struct masu_blob_camera_key {
+    float time; /* seconds */
+    float position[3];
+    float target[3]; /* differs from position */
+    float fov_y;     /* radians, (0, pi) */
+} masu_blob_camera_key;
+
+typedef struct masu_blob_environment {
+    float sun_direction[3]; /* towards the sun, unit length */
+    float exposure;         /* linear factor before the tone curve, > 0 */
+    float sun_color[3];     /* irradiance on a facing surface / pi */
+    float near_distance;    /* metres, > 0; there is no far plane */
+    float ambient[3];
+    float reserved0;
+    float sky_zenith[3];
+    float reserved1;
+    float sky_horizon[3];
+    float reserved2;
+} masu_blob_environment;
+
+typedef struct masu_blob_sdf {
+    float bounds_min[3]; /* nothing of the SDF is drawn outside; world space */
+    float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
+    float bounds_max[3];
+    float max_distance;  /* longest ray, > 0 */
+    uint32_t has_raster; /* 1: MARCH_SPIRV was compiled to read a raster depth (the blob has instances) */
+    uint32_t reserved[3];
+} masu_blob_sdf;
+
+typedef struct masu_blob_sdf_param {
+    float value; /* default */
+    float minimum;
+    float maximum;
+    uint32_t name;
+} masu_blob_sdf_param;
+
+/* FNV-1a, 64 bit (Fowler, Noll, Vo): offset basis and prime of the reference. */
+static inline uint64_t masu_fnv1a64(const void *data, uint64_t bytes) {
+    const unsigned char *p = (const unsigned char *)data;
+    uint64_t h = 0xCBF29CE484222325u;
+    for (uint64_t i = 0; i < bytes; i++) h = (h ^ p[i]) * 0x100000001B3u;
+    return h;
+}
+
+_Static_assert(sizeof(masu_blob_header) == 64, "blob header");
+_Static_assert(sizeof(masu_blob_section) == 24, "blob section");
+_Static_assert(sizeof(masu_blob_vertex) == 16, "blob vertex");
+_Static_assert(sizeof(masu_blob_primitive) == 48, "blob primitive");
+_Static_assert(sizeof(masu_blob_mesh) == 40, "blob mesh");
+_Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
+_Static_assert(sizeof(masu_blob_material) == 48, "blob material");
+_Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
+_Static_assert(sizeof(masu_blob_environment) == 80, "blob environment");
+_Static_assert(sizeof(masu_blob_sdf) == 48, "blob sdf");
+_Static_assert(sizeof(masu_blob_sdf_param) == 16, "blob sdf parameter");
+
+#endif

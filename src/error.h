@@ -1,0 +1,21 @@
+/* error.h: filling a masu_detail and telling the host's log. No state, no allocation; text is cut at the detail's size. */
+#ifndef MASU_ERROR_H
+#define MASU_ERROR_H
+
+#include "masu.h"
+
+/* Fills `detail` (may be NULL), returns `result`: `return masu_fail(...)`. `what` must be a string constant. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 6, 7)))
+#endif
+masu_result
+masu_fail(masu_detail *detail, masu_result result, const char *what, uint64_t needed, uint64_t given,
+          const char *format, ...);
+
+/* A Vulkan call that returned `vk` < 0: MASU_ERROR_DEVICE_LOST or MASU_ERROR_VULKAN, naming the call. */
+masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call);
+
+/* One line to the host's log, if it has one. */
+void masu_log(const masu_desc *desc, masu_log_level level, const char *text);
+
+#endif

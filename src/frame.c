@@ -1,0 +1,115 @@
+/* frame.c: THE TABLE. The frame, in order: what each pass reads, what it writes, and when it is needed.
+ *
+ * Adding a pass is adding a row here, its id in frame.h and a shader of the same name in shaders/. */
+#include "frame.h"
+
+#include <math.h>
+
+const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
+    [MASU_IMAGE_ALBEDO] = {"albedo", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
+                           MASU_READBACK_ALBEDO},
+    [MASU_IMAGE_NORMAL] = {"normal", VK_FORMAT_R32_UINT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
+                           MASU_READBACK_NORMAL},
+    [MASU_IMAGE_DEPTH] = {"depth", VK_FORMAT_D32_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_DEPTH,
+                          MASU_READBACK_DEPTH},
+    [MASU_IMAGE_SCENE_DEPTH] = {"scene_depth", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_RENDER,
+                                MASU_CLASS_DEPTH, MASU_READBACK_DEPTH},
+    [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
+                        MASU_READBACK_HDR},
+    [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
+    [MASU_IMAGE_UPSCALED] = {"upscaled", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT,
+                             MASU_CLASS_COLOR, 0},
+    [MASU_IMAGE_FINAL] = {"final", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR, 0},
+    [MASU_IMAGE_SOURCE] = {"source", VK_FORMAT_UNDEFINED, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
+    [MASU_IMAGE_TARGET] = {"target", VK_FORMAT_UNDEFINED, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR, 0},
+};
+
+static int needs_gbuffer(const masu_needs *n, const char **why) {
+    if (!n->scene) return *why = "no scene: a source image is upscaled", 0;
+    if (n->raster) return *why = "the scene has instances", 1;
+    if (n->sdf) return *why = "no instances; the march writes every pixel", 0;
+    return *why = "clears: the scene is empty but for its sky", 1;
+}
+
+static int needs_march(const masu_needs *n, const char **why) {
+    return *why = n->sdf ? "the scene has an SDF" : "the scene has no SDF", n->sdf;
+}
+
+static int needs_shading(const masu_needs *n, const char **why) {
+    return *why = n->scene ? "a scene is lit" : "no scene: a source image is upscaled", n->scene;
+}
+
+static int needs_readback(const masu_needs *n, const char **why) {
+    int wanted = n->scene && n->readback;
+    return *why = wanted ? "desc.readback asks for images" : "desc.readback asks for no image", wanted;
+}
+
+static int needs_easu(const masu_needs *n, const char **why) {
+    return *why = n->upscale ? "render size differs from output size, or rung.upscale is on"
+                             : "render size is output size",
+           n->upscale;
+}
+
+static int needs_rcas(const masu_needs *n, const char **why) {
+    return *why = n->sharpen ? "sharpens what EASU made, or rung.sharpen is on"
+                             : "nothing was upscaled, or rung.sharpen is off",
+           n->sharpen;
+}
+
+static int needs_present(const masu_needs *n, const char **why) {
+    return *why = n->blit ? "targets are no storage images" : "the last pass writes the target itself",
+           n->blit;
+}
+
+/* index.x: most SDF steps per ray. */
+static void march_params(const masu_rung *rung, struct masu_push *push) {
+    push->index[0] = rung->march_steps;
+}
+
+/* param.x: RCAS lobe scale. One stop halves the strength (AMD: con = exp2(-sharpness)). */
+static void rcas_params(const masu_rung *rung, struct masu_push *push) {
+    push->param[0] = exp2f(-rung->sharpness);
+}
+
+const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
+    /* clang-format off */
+    [MASU_PASS_GBUFFER] = {
+        "gbuffer", "polygons: albedo, normal, roughness, metallic, depth",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_gbuffer, NULL,
+        {{MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR}, {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR},
+         {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}},
+    [MASU_PASS_MARCH] = {
+        "march", "SDF: sphere tracing up to the raster depth; hits become G-buffer texels",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_march, march_params,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_ALBEDO, MASU_UPDATE},
+         {MASU_IMAGE_NORMAL, MASU_UPDATE}, {MASU_IMAGE_SCENE_DEPTH, MASU_WRITE}}},
+    [MASU_PASS_LIGHT] = {
+        "light", "sun, constant ambient, sky",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
+        {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
+         {MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}},
+    [MASU_PASS_READBACK] = {
+        "readback", "copies the images the host asked for",
+        MASU_PASS_TRANSFER, MASU_EXTENT_RENDER, needs_readback, NULL,
+        {{MASU_IMAGE_ALBEDO, MASU_READ_COPY}, {MASU_IMAGE_NORMAL, MASU_READ_COPY},
+         {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY}}},
+    [MASU_PASS_TONEMAP] = {
+        "tonemap", "exposure, tone curve, sRGB encoding",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
+        {{MASU_IMAGE_HDR, MASU_READ}, {MASU_IMAGE_LDR, MASU_WRITE}}},
+    [MASU_PASS_EASU] = {
+        "easu", "FSR1 edge-adaptive spatial upsampling",
+        MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_easu, NULL,
+        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_UPSCALED, MASU_WRITE}}},
+    [MASU_PASS_RCAS] = {
+        "rcas", "FSR1 robust contrast-adaptive sharpening",
+        MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_rcas, rcas_params,
+        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_FINAL, MASU_WRITE}}},
+    [MASU_PASS_PRESENT] = {
+        "present", "blit to a target that is no storage image",
+        MASU_PASS_TRANSFER, MASU_EXTENT_OUTPUT, needs_present, NULL,
+        {{MASU_LATEST_COLOR, MASU_READ_COPY}, {MASU_IMAGE_TARGET, MASU_WRITE_COPY}}},
+    /* clang-format on */
+};
+
+int masu_usage_writes(masu_usage usage) { return usage >= MASU_WRITE; }

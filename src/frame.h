@@ -1,0 +1,101 @@
+/* frame.h: what a row of the frame table is. The table itself is in frame.c.
+ *
+ * A row names its images in order; barriers, layouts, descriptor bindings, image usage flags, lifetimes, memory aliasing,
+ * labels, timestamps and the printed plan are all derived from it (plan.c, record.c). The reads of a compute row become
+ * combined image samplers at bindings 0..R-1 of set 1, its writes storage images at R..R+W-1, in the row's order. */
+#ifndef MASU_FRAME_H
+#define MASU_FRAME_H
+
+#include "masu.h"
+#include "shared/masu_shared.h"
+
+typedef enum masu_image_id {
+    MASU_IMAGE_NONE = 0,
+    MASU_IMAGE_ALBEDO,      /* sqrt of linear albedo; roughness */
+    MASU_IMAGE_NORMAL,      /* packed octahedral normal, metallic, flags */
+    MASU_IMAGE_DEPTH,       /* raster depth, reverse-Z */
+    MASU_IMAGE_SCENE_DEPTH, /* the nearer of raster and SDF, same encoding */
+    MASU_IMAGE_HDR,         /* linear radiance */
+    MASU_IMAGE_LDR,         /* display-encoded colour, render size */
+    MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
+    MASU_IMAGE_FINAL,       /* what a blit takes to a target that is no storage image */
+    MASU_IMAGE_SOURCE,      /* the host's input, upscaling only */
+    MASU_IMAGE_TARGET,      /* the host's output */
+    MASU_IMAGE_COUNT,
+    /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row has written. */
+    MASU_LATEST_DEPTH = 32,
+    MASU_LATEST_COLOR
+} masu_image_id;
+
+typedef enum masu_image_class { MASU_CLASS_OTHER, MASU_CLASS_DEPTH, MASU_CLASS_COLOR } masu_image_class;
+typedef enum masu_image_extent { MASU_EXTENT_RENDER, MASU_EXTENT_OUTPUT } masu_image_extent;
+
+typedef struct masu_image_row {
+    const char *name;
+    VkFormat format;
+    masu_image_extent extent;
+    masu_image_class class_of;
+    uint32_t readback; /* masu_readback_bits that asks for it */
+} masu_image_row;
+
+typedef enum masu_usage {
+    MASU_USE_NONE = 0,
+    MASU_READ,         /* sampled */
+    MASU_READ_COPY,    /* transfer source */
+    MASU_WRITE,        /* storage, whole sub-rectangle, earlier content is lost */
+    MASU_UPDATE,       /* storage, some texels, the rest is kept */
+    MASU_WRITE_COLOR,  /* colour attachment, cleared first */
+    MASU_WRITE_DEPTH,  /* depth attachment, cleared to 0 (far) first */
+    MASU_WRITE_COPY    /* transfer destination */
+} masu_usage;
+
+typedef enum masu_pass_kind { MASU_PASS_GRAPHICS, MASU_PASS_COMPUTE, MASU_PASS_TRANSFER } masu_pass_kind;
+
+#define MASU_PASS_ACCESSES 8u
+
+typedef struct masu_access {
+    uint8_t image; /* masu_image_id or a stand-in */
+    uint8_t usage; /* masu_usage */
+} masu_access;
+
+/* What the scene and the description need, computed once; the `decide` of each row looks at nothing else. */
+typedef struct masu_needs {
+    int scene;          /* a scene is drawn (else: upscaling of a source image) */
+    int raster;         /* it has instances */
+    int sdf;            /* it has an SDF */
+    uint32_t readback;  /* masu_readback_bits */
+    int blit;           /* targets are filled by a blit */
+    /* of one rung: */
+    int upscale, sharpen;
+} masu_needs;
+
+typedef struct masu_pass_row {
+    const char *name; /* also the shader's file name */
+    const char *purpose;
+    masu_pass_kind kind;
+    masu_image_extent extent; /* size of the dispatch */
+    /* Returns whether the pass runs, and why, in a few words. */
+    int (*decide)(const masu_needs *needs, const char **why);
+    /* Pass-specific push constants of a rung; NULL: none. */
+    void (*params)(const masu_rung *rung, struct masu_push *push);
+    masu_access access[MASU_PASS_ACCESSES];
+} masu_pass_row;
+
+typedef enum masu_pass_id {
+    MASU_PASS_GBUFFER,
+    MASU_PASS_MARCH,
+    MASU_PASS_LIGHT,
+    MASU_PASS_READBACK,
+    MASU_PASS_TONEMAP,
+    MASU_PASS_EASU,
+    MASU_PASS_RCAS,
+    MASU_PASS_PRESENT,
+    MASU_PASS_COUNT
+} masu_pass_id;
+
+extern const masu_image_row masu_images[MASU_IMAGE_COUNT];
+extern const masu_pass_row masu_passes[MASU_PASS_COUNT];
+
+int masu_usage_writes(masu_usage usage);
+
+#endif

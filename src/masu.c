@@ -1,0 +1,359 @@
+/* masu.c: the public functions: the layout walk of the host block, the steps of masu_init and their unwinding, frames. */
+#include "renderer.h"
+
+#include "error.h"
+#include "shared/masu_shared.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- The walk ---------------------------------------------------------------------------------- */
+
+/* The one walk that sizes and lays out the host block. m is NULL when only counting. */
+static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_renderer **m) {
+    const masu_desc *d = &plan->desc;
+    const masu_scene *s = &plan->scene;
+    uint64_t frames = (uint64_t)d->frames_in_flight * d->rung_count * d->targets.count;
+    masu_renderer *r = masu_arena_take(arena, "renderer", 1, sizeof *r, MASU_ARENA_ALIGNMENT);
+    masu_renderer scrap; /* takes the NULLs of a counting walk */
+    masu_renderer *to = r ? r : &scrap;
+    to->frames = masu_arena_take(arena, "command buffers", frames, sizeof *to->frames, 8);
+    to->loads = masu_arena_take(arena, "load command buffers", masu_load_chunks(plan), sizeof *to->loads, 8);
+    to->pass_sets = masu_arena_take(arena, "descriptor sets", plan->pass_sets, sizeof *to->pass_sets, 8);
+    to->instances = masu_arena_take(arena, "instance transforms", s->instances, sizeof *to->instances, 16);
+    to->instance_names = masu_arena_take(arena, "instance names", s->instances, sizeof *to->instance_names, 8);
+    to->instance_dirty = masu_arena_take(arena, "instance flags", s->instances, sizeof *to->instance_dirty, 1);
+    to->camera_keys = masu_arena_take(arena, "camera keys", s->camera_keys, sizeof *to->camera_keys, 4);
+    to->sdf_params = masu_arena_take(arena, "SDF parameters", s->sdf_params, sizeof *to->sdf_params, 4);
+    if (m) *m = r;
+}
+
+static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu_detail *detail) {
+    uint64_t budget = plan->desc.host_budget;
+    if (!budget || needed <= budget) return MASU_OK;
+    return masu_fail(detail, MASU_ERROR_LIMIT, "host_budget", needed, budget,
+                     "host_budget: the plan needs %llu bytes, the budget is %llu", (unsigned long long)needed,
+                     (unsigned long long)budget);
+}
+
+/* ---- Plan and query ---------------------------------------------------------------------------- */
+
+/* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys them. */
+static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
+                             masu_detail *detail) {
+    memset(objects, 0, sizeof *objects);
+    if (!desc) return masu_fail(detail, MASU_ERROR_ARGUMENT, "desc", 1, 0, "desc is NULL");
+    if (desc->scene && !desc->scene->blob) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0, "scene was not filled by masu_scene_bind");
+    }
+    masu_result result = masu_compile(desc, 1, 1, plan, detail); /* pure checks come before the first Vulkan call */
+    if (!result) result = masu_vk_load(desc, vk, detail);
+    if (result) return result;
+    const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
+    result = masu_compile(desc, limits->minUniformBufferOffsetAlignment ? limits->minUniformBufferOffsetAlignment : 1,
+                          limits->minStorageBufferOffsetAlignment ? limits->minStorageBufferOffsetAlignment : 1, plan,
+                          detail);
+    if (result) return result;
+    if (plan->buffers[MASU_BUFFER_INSTANCES].stride > limits->maxStorageBufferRange) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxStorageBufferRange",
+                         plan->buffers[MASU_BUFFER_INSTANCES].stride, limits->maxStorageBufferRange,
+                         "instances need a storage buffer of %llu bytes, the device has %u",
+                         (unsigned long long)plan->buffers[MASU_BUFFER_INSTANCES].stride,
+                         limits->maxStorageBufferRange);
+    }
+    result = masu_objects_create(vk, plan, objects, detail);
+    if (result) masu_objects_destroy(vk, objects);
+    return result;
+}
+
+static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan, uint64_t *host_bytes,
+                                   masu_detail *detail) {
+    masu_vk vk;
+    masu_objects objects;
+    masu_result result = make_plan(desc, &vk, plan, &objects, detail);
+    if (result) return result;
+    masu_objects_destroy(&vk, &objects);
+    masu_arena arena;
+    masu_arena_begin(&arena, NULL, 0);
+    layout_host(&arena, plan, NULL);
+    *host_bytes = arena.used;
+    return check_host(plan, arena.used, detail);
+}
+
+masu_result masu_memory_query(const masu_desc *desc, masu_memory *out, masu_detail *detail) {
+    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
+    masu_frame_plan plan;
+    uint64_t host_bytes = 0;
+    masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
+    if (!result) masu_memory_export(&plan, host_bytes, out);
+    return result;
+}
+
+masu_result masu_plan(const masu_desc *desc, masu_plan_info *out, masu_detail *detail) {
+    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
+    masu_frame_plan plan;
+    uint64_t host_bytes = 0;
+    masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
+    if (result) return result;
+    masu_plan_export(&plan, NULL, out);
+    masu_memory_export(&plan, host_bytes, &out->memory);
+    return MASU_OK;
+}
+
+void masu_plan_of(const masu_renderer *m, masu_plan_info *out) {
+    masu_plan_export(&m->plan, m->pipeline_ns, out);
+    masu_memory_export(&m->plan, m->arena.used, &out->memory);
+}
+
+/* ---- Init and destroy -------------------------------------------------------------------------- */
+
+static masu_result build(masu_renderer *m, masu_detail *detail) {
+    masu_result result = masu_bind_memory(m, detail);
+    if (!result) result = masu_make_views(m, detail);
+    if (!result) result = masu_make_pipelines(m, detail);
+    if (!result) result = masu_record(m, detail);
+    return result;
+}
+
+masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
+                      masu_detail *detail) {
+    masu_vk vk;
+    masu_frame_plan plan;
+    masu_objects objects;
+    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
+    *out = NULL;
+    if (!block || (uintptr_t)block % MASU_ARENA_ALIGNMENT) {
+        return masu_fail(detail, MASU_ERROR_MEMORY, "host block", MASU_ARENA_ALIGNMENT, (uintptr_t)block,
+                         "host block is NULL or not %u-byte aligned", MASU_ARENA_ALIGNMENT);
+    }
+    masu_result result = make_plan(desc, &vk, &plan, &objects, detail);
+    if (result) return result;
+    masu_arena arena;
+    masu_renderer *m = NULL;
+    masu_arena_begin(&arena, NULL, 0);
+    layout_host(&arena, &plan, NULL);
+    result = check_host(&plan, arena.used, detail);
+    if (!result && arena.used > block_bytes) {
+        result = masu_fail(detail, MASU_ERROR_MEMORY, "host block", arena.used, block_bytes,
+                           "host block: %llu bytes are needed, %llu are given", (unsigned long long)arena.used,
+                           (unsigned long long)block_bytes);
+    }
+    if (result) {
+        masu_objects_destroy(&vk, &objects);
+        return result;
+    }
+    masu_arena_begin(&arena, block, block_bytes);
+    layout_host(&arena, &plan, &m);
+    m->cookie = MASU_RENDERER_COOKIE;
+    m->vk = vk;
+    m->plan = plan;
+    m->plan.desc.scene = plan.desc.scene ? &m->plan.scene : NULL;
+    m->arena = arena;
+    m->objects = objects;
+    m->load_count = masu_load_chunks(&m->plan);
+    for (uint32_t f = 0; f < MASU_MAX_FLIGHT; f++) m->slot_frame[f] = UINT64_MAX;
+    masu_keep_scene(m);
+    result = build(m, detail);
+    if (result) {
+        masu_destroy(m);
+        return result;
+    }
+    *out = m;
+    return MASU_OK;
+}
+
+void masu_destroy(masu_renderer *m) {
+    if (!m || m->cookie != MASU_RENDERER_COOKIE) return;
+    const masu_vk *vk = &m->vk;
+    VkDevice device = vk->device;
+    vk->DestroyQueryPool(device, m->queries, vk->allocator);
+    vk->DestroyCommandPool(device, m->command_pool, vk->allocator);
+    vk->DestroyDescriptorPool(device, m->descriptor_pool, vk->allocator);
+    vk->DestroyFramebuffer(device, m->framebuffer, vk->allocator);
+    vk->DestroyRenderPass(device, m->render_pass, vk->allocator);
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        vk->DestroyPipeline(device, m->pipelines[p], vk->allocator);
+        vk->DestroyPipelineLayout(device, m->layouts[p], vk->allocator);
+        vk->DestroyDescriptorSetLayout(device, m->pass_layouts[p], vk->allocator);
+    }
+    vk->DestroyDescriptorSetLayout(device, m->global_layout, vk->allocator);
+    vk->DestroySampler(device, m->sampler, vk->allocator);
+    for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++) vk->DestroyImageView(device, m->views[i], vk->allocator);
+    masu_objects_destroy(vk, &m->objects);
+    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
+        if (m->memory_owned[role]) vk->FreeMemory(device, m->memory[role], vk->allocator); /* also unmaps */
+    }
+    m->cookie = 0;
+}
+
+/* ---- Frames ------------------------------------------------------------------------------------ */
+
+masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
+    if (!m || !frame || !commands) return MASU_ERROR_ARGUMENT;
+    const masu_desc *d = &m->plan.desc;
+    if (!m->loaded) {
+        return masu_fail(&m->error, MASU_ERROR_STATE, "masu_load", 1, 0,
+                         "masu_frame was called before masu_load had returned MASU_OK");
+    }
+    if (frame->rung >= d->rung_count) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
+                         "rung %u does not exist, the last one is %u", frame->rung, d->rung_count - 1);
+    }
+    if (frame->target >= d->targets.count) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "target", d->targets.count - 1, frame->target,
+                         "target %u does not exist, the last one is %u", frame->target, d->targets.count - 1);
+    }
+    uint32_t slot = (uint32_t)(m->frame % d->frames_in_flight);
+    if (d->scene) {
+        masu_result result = masu_write_frame(m, frame, slot, &m->error);
+        if (result) return result;
+        masu_write_instances(m, slot);
+    }
+    m->slot_frame[slot] = m->frame;
+    m->slot_rung[slot] = frame->rung;
+    *commands = (masu_commands){m->frames[(slot * d->rung_count + frame->rung) * d->targets.count + frame->target],
+                                slot, frame->rung, m->frame};
+    m->frame++;
+    return MASU_OK;
+}
+
+const masu_detail *masu_last_error(const masu_renderer *m) { return &m->error; }
+
+/* ---- Looking ----------------------------------------------------------------------------------- */
+
+static uint64_t counter(const masu_renderer *m, uint32_t slot, uint32_t index) {
+    const uint32_t *c = (const uint32_t *)(const void *)masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot);
+    return c[2 * index] | (uint64_t)c[2 * index + 1] << 32;
+}
+
+static masu_result read_times(masu_renderer *m, uint32_t slot, masu_stats_info *out) {
+    uint64_t stamps[MASU_PASS_COUNT + 1];
+    VkResult r = m->vk.GetQueryPoolResults(m->vk.device, m->queries, slot * (MASU_PASS_COUNT + 1),
+                                           MASU_PASS_COUNT + 1, sizeof stamps, stamps, sizeof *stamps,
+                                           VK_QUERY_RESULT_64_BIT);
+    if (r) return r == VK_NOT_READY ? MASU_INCOMPLETE : masu_fail_vulkan(&m->error, r, "vkGetQueryPoolResults");
+    uint32_t bits = m->vk.queue_family.timestampValidBits;
+    uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
+    double period = (double)m->vk.properties.limits.timestampPeriod;
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        if (!(m->plan.rungs[out->rung].active & 1u << p)) continue;
+        /* The counter may wrap between two stamps: the difference under the mask is right all the same. */
+        out->pass_ns[p] = (uint64_t)((double)((stamps[p + 1] - stamps[p]) & mask) * period);
+    }
+    out->gpu_ns = (uint64_t)((double)((stamps[MASU_PASS_COUNT] - stamps[0]) & mask) * period);
+    out->timed = 1;
+    return MASU_OK;
+}
+
+masu_result masu_stats(masu_renderer *m, uint32_t slot, masu_stats_info *out) {
+    if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    out->frame = m->slot_frame[slot];
+    out->pass_count = MASU_PASS_COUNT;
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) out->pass_names[p] = masu_passes[p].name;
+    if (out->frame == UINT64_MAX) return MASU_INCOMPLETE;
+    out->rung = m->slot_rung[slot];
+    out->draws = m->plan.scene.draws;
+    out->triangles = m->plan.scene.triangles;
+    if (m->plan.desc.debug.counters && m->plan.needs.scene) {
+        out->sdf_evals = counter(m, slot, MASU_COUNTER_SDF_EVALS);
+        out->sdf_hits = counter(m, slot, MASU_COUNTER_SDF_HITS);
+        out->sdf_unconverged = counter(m, slot, MASU_COUNTER_SDF_UNCONVERGED);
+        out->replaced = counter(m, slot, MASU_COUNTER_REPLACED);
+    }
+    return m->queries ? read_times(m, slot, out) : MASU_OK;
+}
+
+void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
+    const masu_scene *s = &m->plan.scene;
+    *out = (masu_peak_info){.vertices = s->vertices,
+                            .indices = s->indices,
+                            .materials = s->materials,
+                            .instances = s->instances,
+                            .sdf_params = s->sdf_params,
+                            .host_bytes = m->arena.used};
+    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) out->device_bytes += m->plan.blocks[role].bytes;
+}
+
+masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_bits which, masu_readback_image *out) {
+    if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
+    uint32_t bit = 0;
+    while (bit < MASU_READBACK_IMAGES && which != 1u << bit) bit++;
+    if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit)) return MASU_ERROR_ARGUMENT;
+    if (m->slot_frame[slot] == UINT64_MAX) return MASU_INCOMPLETE;
+    const masu_rung_plan *rp = &m->plan.rungs[m->slot_rung[slot]];
+    uint32_t id = 1;
+    while (masu_images[id].readback != (uint32_t)which) id++;
+    VkFormat format = masu_images[id].format;
+    if (format == VK_FORMAT_D32_SFLOAT) format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
+    *out = (masu_readback_image){masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) + m->plan.readback_offset[bit],
+                        rp->render_width, rp->render_height, (uint64_t)rp->render_width * masu_format_bytes(format),
+                        format};
+    return MASU_OK;
+}
+
+static masu_memory_row device_row(const masu_frame_plan *plan, const char *kind, const char *name, masu_role role,
+                                  uint64_t count, uint64_t bytes, uint64_t alignment, uint64_t offset) {
+    return (masu_memory_row){.name = name,
+                             .kind = kind,
+                             .role = plan->unified ? MASU_ROLE_DEVICE : role,
+                             .count = count,
+                             .bytes = bytes,
+                             .alignment = alignment,
+                             .offset = offset};
+}
+
+uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint32_t capacity) {
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < m->arena.row_count; i++, n++) {
+        const masu_arena_row *a = &m->arena.rows[i];
+        masu_memory_row row = {.name = a->name,
+                               .kind = "host",
+                               .count = a->count,
+                               .bytes = a->count * a->element_bytes,
+                               .alignment = a->alignment,
+                               .offset = a->offset};
+        if (n < capacity) rows[n] = row;
+    }
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        const masu_buffer_plan *p = &m->plan.buffers[b];
+        if (!p->bytes || b == MASU_BUFFER_POISON) continue;
+        if (n < capacity) {
+            rows[n] = device_row(&m->plan, "buffer", p->name, p->role, p->count, p->memory_bytes, p->alignment,
+                                 p->offset);
+        }
+        n++;
+    }
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        const masu_image_plan *p = &m->plan.images[i];
+        if (!p->used) continue;
+        if (n < capacity) {
+            rows[n] = device_row(&m->plan, "image", masu_images[i].name, MASU_ROLE_DEVICE,
+                                 (uint64_t)p->width * p->height, p->bytes, p->alignment, p->offset);
+            rows[n].transient = 1;
+            rows[n].first_pass = p->first;
+            rows[n].last_pass = p->last;
+        }
+        n++;
+    }
+    return n;
+}
+
+/* Octahedral decoding (Cigolle et al., JCGT 3-2, 2014, section 3.2), 13 bits per axis; the twin of
+ * shaders/shared/pack.glsl. */
+void masu_unpack_normal(uint32_t texel, float out[3]) {
+    float x = (float)(texel & 0x1FFFu) / 4095.0f - 1.0f;
+    float y = (float)(texel >> 13 & 0x1FFFu) / 4095.0f - 1.0f;
+    x = x > 1.0f ? 1.0f : x;
+    y = y > 1.0f ? 1.0f : y;
+    float z = 1.0f - fabsf(x) - fabsf(y);
+    if (z < 0.0f) {
+        float t = x;
+        x = (1.0f - fabsf(y)) * (x < 0.0f ? -1.0f : 1.0f);
+        y = (1.0f - fabsf(t)) * (y < 0.0f ? -1.0f : 1.0f);
+    }
+    float length = sqrtf(x * x + y * y + z * z); /* at least 1/sqrt(3) on the octahedron */
+    out[0] = x / length;
+    out[1] = y / length;
+    out[2] = z / length;
+}

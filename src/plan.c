@@ -1,0 +1,426 @@
+/* plan.c: see plan.h. */
+#include "plan.h"
+
+#include "blob.h"
+#include "error.h"
+
+#include <math.h>
+#include <string.h>
+
+static uint64_t align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
+
+uint32_t masu_format_bytes(VkFormat format) { return format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4; }
+
+/* ---- Defaults ---------------------------------------------------------------------------------- */
+
+masu_desc masu_desc_resolved(const masu_desc *desc) {
+    masu_desc d;
+    memset(&d, 0, sizeof d);
+    if (desc) d = *desc;
+    if (d.frames_in_flight == 0) d.frames_in_flight = 2;
+    if (d.rung_count == 0) {
+        d.rung_count = 3;
+        d.rungs[0] = (masu_rung){.scale = 1.0f};
+        d.rungs[1] = (masu_rung){.scale = 0.8f, .sharpness = 0.2f};
+        d.rungs[2] = (masu_rung){.scale = 0.4f, .sharpness = 0.2f};
+    }
+    for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
+        if (d.rungs[r].scale == 0.0f) d.rungs[r].scale = 1.0f;
+        if (d.rungs[r].march_steps == 0) d.rungs[r].march_steps = MASU_MARCH_STEPS_MAX;
+    }
+    if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
+    if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
+        d.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    }
+    return d;
+}
+
+/* ---- Checks ------------------------------------------------------------------------------------ */
+
+static masu_result bad_range(masu_detail *detail, const char *what, uint64_t given, uint64_t low,
+                             uint64_t high) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, given < low ? low : high, given,
+                     "%s is %llu, allowed are %llu to %llu", what, (unsigned long long)given,
+                     (unsigned long long)low, (unsigned long long)high);
+}
+
+static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detail) {
+    const masu_rung *rung = &d->rungs[r];
+    if (!(rung->scale > 0.0f && rung->scale <= 1.0f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].scale", 1, 0,
+                         "rungs[%u].scale is %g, allowed are 0 < scale <= 1", r,
+                         (double)rung->scale);
+    }
+    if (!(rung->sharpness >= 0.0f && rung->sharpness <= 64.0f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].sharpness", 0, 0,
+                         "rungs[%u].sharpness is %g stops, allowed are 0 to 64", r,
+                         (double)rung->sharpness);
+    }
+    if (rung->march_steps > MASU_MARCH_STEPS_MAX) {
+        return bad_range(detail, "rungs[].march_steps", rung->march_steps, 1, MASU_MARCH_STEPS_MAX);
+    }
+    if ((unsigned)rung->upscale > MASU_ON || (unsigned)rung->sharpen > MASU_ON) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].upscale", MASU_ON, 0,
+                         "rungs[%u].upscale and .sharpen are MASU_AUTO, MASU_OFF or MASU_ON", r);
+    }
+    return MASU_OK;
+}
+
+static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
+    const masu_targets *t = &d->targets;
+    if (d->rung_count > MASU_MAX_RUNGS) {
+        return bad_range(detail, "rung_count", d->rung_count, 1, MASU_MAX_RUNGS);
+    }
+    if (d->frames_in_flight > MASU_MAX_FLIGHT) {
+        return bad_range(detail, "frames_in_flight", d->frames_in_flight, 1, MASU_MAX_FLIGHT);
+    }
+    if (d->output.width < 1 || d->output.width > 16384) {
+        return bad_range(detail, "output.width", d->output.width, 1, 16384);
+    }
+    if (d->output.height < 1 || d->output.height > 16384) {
+        return bad_range(detail, "output.height", d->output.height, 1, 16384);
+    }
+    if (t->count < 1 || t->count > MASU_MAX_TARGETS) {
+        return bad_range(detail, "targets.count", t->count, 1, MASU_MAX_TARGETS);
+    }
+    for (uint32_t i = 0; i < t->count; i++) {
+        if (!t->images || !t->images[i] || (t->storage && (!t->views || !t->views[i]))) {
+            const char *what = t->images && t->images[i] ? "targets.views" : "targets.images";
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, what, t->count, i, "%s[%u] is NULL", what, i);
+        }
+    }
+    if (t->storage && t->format != VK_FORMAT_R8G8B8A8_UNORM) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.format", VK_FORMAT_R8G8B8A8_UNORM,
+                         (uint64_t)t->format,
+                         "storage targets must be VK_FORMAT_R8G8B8A8_UNORM (37), given is %d; set "
+                         "targets.storage to 0 to have it blitted",
+                         (int)t->format);
+    }
+    if (!d->scene && !d->source.view) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
+                         "neither scene nor source.view is given: nothing to draw");
+    }
+    if (d->scene && d->source.view) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "source.view", 0, 1,
+                         "scene and source.view exclude each other");
+    }
+    if (d->source.view) {
+        if (d->source.width < 1 || d->source.width > 16384) {
+            return bad_range(detail, "source.width", d->source.width, 1, 16384);
+        }
+        if (d->source.height < 1 || d->source.height > 16384) {
+            return bad_range(detail, "source.height", d->source.height, 1, 16384);
+        }
+    }
+    if (d->readback & ~(uint32_t)MASU_READBACK_ALL) {
+        return bad_range(detail, "readback", d->readback, 0, MASU_READBACK_ALL);
+    }
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        masu_result result = check_rung(d, r, detail);
+        if (result) return result;
+    }
+    return MASU_OK;
+}
+
+static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
+    const masu_scene *s = d->scene;
+    if (!s) return MASU_OK;
+    const struct {
+        const char *name;
+        uint64_t limit, needed;
+    } rows[] = {{"limits.vertices", d->limits.vertices, s->vertices},
+                {"limits.indices", d->limits.indices, s->indices},
+                {"limits.materials", d->limits.materials, s->materials},
+                {"limits.instances", d->limits.instances, s->instances},
+                {"limits.sdf_params", d->limits.sdf_params, s->sdf_params}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].limit && rows[i].needed > rows[i].limit) {
+            return masu_fail(detail, MASU_ERROR_LIMIT, rows[i].name, rows[i].needed, rows[i].limit,
+                             "%s: the scene needs %llu, the limit is %llu", rows[i].name,
+                             (unsigned long long)rows[i].needed, (unsigned long long)rows[i].limit);
+        }
+    }
+    return MASU_OK;
+}
+
+/* ---- One rung ---------------------------------------------------------------------------------- */
+
+/* Render size of a scale: at least one pixel, rounded to nearest. 1080 lines give 864 at 0.8 and 432 at 0.4. */
+static uint32_t scaled(uint32_t size, float scale) {
+    double v = floor((double)size * (double)scale + 0.5);
+    return v < 1.0 ? 1u : v > (double)size ? size : (uint32_t)v;
+}
+
+static void resolve_switches(const masu_desc *d, masu_rung_plan *rp, const masu_rung *rung,
+                             masu_needs *needs) {
+    int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
+    needs->upscale = rung->upscale == MASU_ON || !same;
+    needs->sharpen = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && needs->upscale);
+    /* Upscaling only, at ratio 1, with everything off: something has to write the target. */
+    if (!needs->scene && !needs->upscale && !needs->sharpen) needs->upscale = 1;
+}
+
+/* Which concrete image an access of the table means in this rung, or NONE if there is no such image in this plan. */
+static masu_image_id resolve(uint8_t image, masu_image_id latest_depth, masu_image_id latest_color) {
+    if (image == MASU_LATEST_DEPTH) return latest_depth;
+    if (image == MASU_LATEST_COLOR) return latest_color;
+    return (masu_image_id)image;
+}
+
+static int keeps_access(const masu_frame_plan *plan, masu_pass_id pass, masu_image_id image) {
+    if (image == MASU_IMAGE_NONE) return 0;
+    if (pass == MASU_PASS_READBACK) {
+        return (masu_images[image].readback & plan->desc.readback) != 0;
+    }
+    return 1;
+}
+
+static void compile_rung(masu_frame_plan *plan, uint32_t r) {
+    masu_rung_plan *rp = &plan->rungs[r];
+    masu_image_id depth = MASU_IMAGE_NONE;
+    masu_image_id color = plan->needs.scene ? MASU_IMAGE_NONE : MASU_IMAGE_SOURCE;
+    int last_color_pass = -1, last_color_access = 0;
+    for (int p = 0; p < MASU_PASS_COUNT; p++) {
+        const masu_pass_row *row = &masu_passes[p];
+        const char *why = "";
+        int runs = row->decide(&plan->needs, &why);
+        if (r == 0 || (runs && !(plan->rungs[0].active & 1u << p))) plan->why[p] = why;
+        if (!runs) continue;
+        rp->active |= 1u << p;
+        for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
+            masu_image_id image = resolve(row->access[a].image, depth, color);
+            if (!keeps_access(plan, (masu_pass_id)p, image)) continue;
+            rp->access[p][rp->access_count[p]++] =
+                (masu_access){(uint8_t)image, row->access[a].usage};
+            if (!masu_usage_writes((masu_usage)row->access[a].usage)) continue;
+            if (masu_images[image].class_of == MASU_CLASS_DEPTH) depth = image;
+            if (masu_images[image].class_of == MASU_CLASS_COLOR) {
+                color = image;
+                last_color_pass = p;
+                last_color_access = (int)rp->access_count[p] - 1;
+            }
+        }
+    }
+    /* The last colour pass writes the target itself, unless a blit does. */
+    if (!plan->needs.blit && last_color_pass >= 0) {
+        rp->access[last_color_pass][last_color_access].image = MASU_IMAGE_TARGET;
+    }
+}
+
+/* ---- All rungs --------------------------------------------------------------------------------- */
+
+static VkImageUsageFlags usage_flag(masu_usage usage) {
+    switch (usage) {
+    case MASU_READ: return VK_IMAGE_USAGE_SAMPLED_BIT;
+    case MASU_READ_COPY: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    case MASU_WRITE:
+    case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
+    case MASU_WRITE_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    case MASU_WRITE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    case MASU_USE_NONE: break;
+    }
+    return 0;
+}
+
+static void gather_images(masu_frame_plan *plan) {
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &plan->rungs[r];
+        for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+            int writes_target = 0;
+            for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+                masu_image_id id = (masu_image_id)rp->access[p][a].image;
+                writes_target |= id == MASU_IMAGE_TARGET;
+                if (id == MASU_IMAGE_TARGET || id == MASU_IMAGE_SOURCE) continue;
+                masu_image_plan *image = &plan->images[id];
+                uint32_t w = masu_images[id].extent == MASU_EXTENT_RENDER ? rp->render_width
+                                                                          : plan->desc.output.width;
+                uint32_t h = masu_images[id].extent == MASU_EXTENT_RENDER ? rp->render_height
+                                                                          : plan->desc.output.height;
+                if (!image->used) image->first = p;
+                if (image->first > p) image->first = p;
+                if (image->last < p) image->last = p;
+                image->used = 1;
+                if (image->width < w) image->width = w;
+                if (image->height < h) image->height = h;
+                image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
+            }
+            if (!(rp->active & 1u << p) || masu_passes[p].kind != MASU_PASS_COMPUTE) continue;
+            plan->pass_sets += writes_target ? plan->desc.targets.count : 1;
+        }
+    }
+}
+
+static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment, uint64_t storage_alignment) {
+    masu_buffer_plan *b = plan->buffers;
+    const masu_scene *s = plan->desc.scene;
+    uint64_t flights = plan->desc.frames_in_flight;
+    VkBufferUsageFlags dst = VK_BUFFER_USAGE_TRANSFER_DST_BIT, storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    b[MASU_BUFFER_VERTICES] = (masu_buffer_plan){
+        .name = "vertices", .usage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | dst, .count = s ? s->vertices : 0};
+    b[MASU_BUFFER_VERTICES].bytes = b[MASU_BUFFER_VERTICES].count * sizeof(masu_blob_vertex);
+    b[MASU_BUFFER_INDICES] = (masu_buffer_plan){
+        .name = "indices", .usage = VK_BUFFER_USAGE_INDEX_BUFFER_BIT | dst, .count = s ? s->indices : 0};
+    b[MASU_BUFFER_INDICES].bytes = b[MASU_BUFFER_INDICES].count * sizeof(uint32_t);
+    b[MASU_BUFFER_MATERIALS] =
+        (masu_buffer_plan){.name = "materials", .usage = storage | dst, .count = s ? s->materials : 0};
+    b[MASU_BUFFER_MATERIALS].bytes =
+        b[MASU_BUFFER_MATERIALS].count * sizeof(struct masu_material_data);
+    b[MASU_BUFFER_COUNTERS] =
+        (masu_buffer_plan){.name = "counters", .usage = storage | dst | VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
+    b[MASU_BUFFER_FRAME] = (masu_buffer_plan){
+        .name = "frame uniforms", .role = MASU_ROLE_UPLOAD, .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+    b[MASU_BUFFER_INSTANCES] = (masu_buffer_plan){
+        .name = "instances", .role = MASU_ROLE_UPLOAD, .usage = storage, .count = s ? s->instances : 0};
+    b[MASU_BUFFER_STAGING] = (masu_buffer_plan){
+        .name = "staging", .role = MASU_ROLE_UPLOAD, .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
+    b[MASU_BUFFER_READBACK] =
+        (masu_buffer_plan){.name = "readback", .role = MASU_ROLE_READBACK, .usage = dst};
+    b[MASU_BUFFER_POISON] = (masu_buffer_plan){.name = "poison", .usage = dst};
+    if (!s) return;
+    b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
+    b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
+    b[MASU_BUFFER_FRAME].count = flights;
+    b[MASU_BUFFER_FRAME].stride = align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
+    b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
+    if (s->instances) {
+        b[MASU_BUFFER_INSTANCES].stride =
+            align_up((uint64_t)s->instances * sizeof(struct masu_instance_data), storage_alignment);
+        b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
+    }
+    /* One readback slot: counters, then images, each 16-byte aligned for vkCmdCopyImageToBuffer. */
+    uint64_t slot = plan->desc.debug.counters ? align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
+    for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
+        if (!(plan->desc.readback & 1u << i)) continue;
+        plan->readback_offset[i] = slot;
+        uint64_t bytes = 0; /* the depth may live in either of two images: the larger counts */
+        for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
+            if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
+            uint64_t v = (uint64_t)plan->images[id].width * plan->images[id].height *
+                         masu_format_bytes(masu_images[id].format);
+            if (v > bytes) bytes = v;
+        }
+        slot = align_up(slot + bytes, 16);
+    }
+    b[MASU_BUFFER_READBACK].stride = slot;
+    b[MASU_BUFFER_READBACK].bytes = flights * slot;
+    b[MASU_BUFFER_READBACK].count = flights;
+}
+
+masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment, uint64_t storage_alignment,
+                         masu_frame_plan *plan, masu_detail *detail) {
+    memset(plan, 0, sizeof *plan);
+    plan->desc = masu_desc_resolved(desc);
+    masu_desc *d = &plan->desc;
+    masu_result result = check_desc(d, detail);
+    if (!result) result = check_limits(d, detail);
+    if (result) return result;
+    if (d->scene) {
+        plan->scene = *d->scene;
+        d->scene = &plan->scene;
+    } else {
+        d->readback = 0; /* the images that could be asked for are the scene's */
+    }
+    plan->needs = (masu_needs){.scene = d->scene != NULL,
+                               .raster = d->scene && d->scene->instances,
+                               .sdf = d->scene && d->scene->sdf,
+                               .readback = d->readback,
+                               .blit = !d->targets.storage};
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        masu_rung_plan *rp = &plan->rungs[r];
+        rp->render_width = d->scene ? scaled(d->output.width, d->rungs[r].scale) : d->source.width;
+        rp->render_height = d->scene ? scaled(d->output.height, d->rungs[r].scale) : d->source.height;
+        int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
+        if (d->rungs[r].upscale == MASU_OFF && !same) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].upscale", 0, 0,
+                             "rungs[%u].upscale is MASU_OFF, but it renders %ux%u for an output of "
+                             "%ux%u",
+                             r, rp->render_width, rp->render_height, d->output.width,
+                             d->output.height);
+        }
+        resolve_switches(d, rp, &d->rungs[r], &plan->needs);
+        compile_rung(plan, r);
+    }
+    gather_images(plan);
+    size_buffers(plan, uniform_alignment, storage_alignment);
+    return MASU_OK;
+}
+
+/* ---- Export ------------------------------------------------------------------------------------ */
+
+static const char *image_name(uint8_t image) { return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL; }
+
+void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out) {
+    memset(out, 0, sizeof *out);
+    out->host_bytes = host_bytes;
+    out->host_alignment = 64;
+    out->unified = (uint32_t)plan->unified;
+    for (uint32_t r = 0; r < MASU_ROLE_COUNT; r++) {
+        const masu_block_plan *b = &plan->blocks[r];
+        if (!b->bytes) continue;
+        out->roles[r] = (masu_role_need){b->bytes, b->alignment, b->type_bits, b->type,
+                                         (uint32_t)b->host_visible};
+        out->device_bytes += b->bytes;
+    }
+    out->transient_unaliased = plan->transient_unaliased;
+    out->transient_aliased = plan->transient_aliased;
+    out->transient_lower_bound = plan->transient_lower_bound;
+}
+
+/* Bytes of the table's images that this plan does not have, at their size in this plan. */
+static uint64_t left_out_bytes(const masu_frame_plan *plan) {
+    uint64_t render = 0, output = (uint64_t)plan->desc.output.width * plan->desc.output.height;
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        uint64_t v = (uint64_t)plan->rungs[r].render_width * plan->rungs[r].render_height;
+        if (v > render) render = v;
+    }
+    uint64_t bytes = 0;
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (plan->images[i].used) continue;
+        bytes += masu_format_bytes(masu_images[i].format) *
+                 (masu_images[i].extent == MASU_EXTENT_RENDER ? render : output);
+    }
+    return bytes;
+}
+
+void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns, masu_plan_info *out) {
+    memset(out, 0, sizeof *out);
+    out->pass_count = MASU_PASS_COUNT;
+    out->rung_count = plan->desc.rung_count;
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        masu_plan_pass *pass = &out->passes[p];
+        pass->name = masu_passes[p].name;
+        pass->why = plan->why[p];
+        if (pipeline_ns) pass->pipeline_ns = pipeline_ns[p];
+        int named = 0;
+        for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+            const masu_rung_plan *rp = &plan->rungs[r];
+            if (!(rp->active & 1u << p)) continue;
+            pass->active |= 1u << r;
+            out->rungs[r].dispatches++;
+            if (named) continue;
+            named = 1;
+            uint32_t reads = 0, writes = 0;
+            for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+                const char *name = image_name(rp->access[p][a].image);
+                if (masu_usage_writes((masu_usage)rp->access[p][a].usage)) {
+                    if (writes < 4) pass->writes[writes++] = name;
+                } else if (reads < 6) {
+                    pass->reads[reads++] = name;
+                }
+            }
+        }
+    }
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        out->rungs[r].render_width = plan->rungs[r].render_width;
+        out->rungs[r].render_height = plan->rungs[r].render_height;
+        out->rungs[r].barriers = plan->rungs[r].barriers;
+    }
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        const masu_image_plan *image = &plan->images[i];
+        out->images[out->image_count++] = (masu_plan_image){
+            masu_images[i].name, masu_images[i].format, image->width, image->height,
+            (uint32_t)image->used, image->bytes, image->offset, image->first, image->last};
+    }
+    out->left_out_bytes = left_out_bytes(plan);
+}

@@ -1,0 +1,89 @@
+/* plan.h: the compiled frame: the table of frame.c applied to one description. Pure data, no Vulkan calls, no allocation.
+ *
+ * masu_compile turns zeros into defaults, checks the description, decides for each rung which passes run, resolves the
+ * stand-ins ("latest depth", "latest colour"), and derives each image's size, usage flags and lifetime. What is known only
+ * to the driver (sizes, memory types) is added by device_memory.c. */
+#ifndef MASU_PLAN_H
+#define MASU_PLAN_H
+
+#include "frame.h"
+#include "masu.h"
+
+typedef struct masu_image_plan {
+    int used;
+    uint32_t width, height; /* as allocated: the largest rung */
+    VkImageUsageFlags usage;
+    uint32_t first, last; /* rows of the table between which its content is alive, over all rungs */
+    uint64_t bytes, alignment, offset; /* in the device role's block */
+    uint32_t type_bits;
+} masu_image_plan;
+
+typedef struct masu_rung_plan {
+    uint32_t render_width, render_height;
+    uint32_t active; /* bit per pass */
+    uint32_t access_count[MASU_PASS_COUNT];
+    masu_access access[MASU_PASS_COUNT][MASU_PASS_ACCESSES]; /* stand-ins resolved */
+    uint32_t barriers; /* counted while recording */
+} masu_rung_plan;
+
+typedef enum masu_buffer_id {
+    MASU_BUFFER_VERTICES,
+    MASU_BUFFER_INDICES,
+    MASU_BUFFER_MATERIALS,
+    MASU_BUFFER_COUNTERS,
+    MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
+    MASU_BUFFER_INSTANCES, /* one array per frame in flight */
+    MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
+    MASU_BUFFER_READBACK,  /* per frame in flight: counters, then the images asked for */
+    MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
+    MASU_BUFFER_COUNT
+} masu_buffer_id;
+
+typedef struct masu_buffer_plan {
+    const char *name;
+    masu_role role;
+    VkBufferUsageFlags usage;
+    uint64_t bytes;  /* 0: not used */
+    uint64_t stride; /* bytes from one frame in flight to the next, 0: shared by all */
+    uint64_t count;  /* elements, for the report */
+    uint64_t memory_bytes, alignment, offset; /* in its role's block */
+    uint32_t type_bits;
+} masu_buffer_plan;
+
+typedef struct masu_block_plan {
+    uint64_t bytes, alignment;
+    uint32_t type_bits, type;
+    int host_visible; /* mapped for the renderer's whole life */
+} masu_block_plan;
+
+#define MASU_READBACK_IMAGES 4u
+
+typedef struct masu_frame_plan {
+    masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
+    masu_scene scene;
+    masu_needs needs; /* of the scene; upscale and sharpen are of the last rung looked at */
+    masu_rung_plan rungs[MASU_MAX_RUNGS];
+    const char *why[MASU_PASS_COUNT]; /* of the first rung that runs the pass, else of rung 0 */
+    masu_image_plan images[MASU_IMAGE_COUNT];
+    masu_buffer_plan buffers[MASU_BUFFER_COUNT];
+    masu_block_plan blocks[MASU_ROLE_COUNT];
+    int unified;
+    uint64_t transient_offset; /* of the transient region in the device role's block */
+    uint64_t transient_unaliased, transient_aliased, transient_lower_bound;
+    uint64_t readback_offset[MASU_READBACK_IMAGES]; /* within one slot; bit order of masu_readback_bits */
+    uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
+} masu_frame_plan;
+
+/* Fills plan from desc. Device limits that shape the buffers come in as alignments. */
+masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment, uint64_t storage_alignment,
+                         masu_frame_plan *plan, masu_detail *detail);
+
+/* Texel bytes of the formats of the table. */
+uint32_t masu_format_bytes(VkFormat format);
+
+/* The plan as the public struct. pipeline_ns may be NULL. */
+void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns, masu_plan_info *out);
+/* Its memory part. */
+void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out);
+
+#endif

@@ -1,0 +1,526 @@
+/* record.c: the table becomes descriptor sets and command buffers. One recording per (frame in flight, rung, target), made
+ * once in masu_init and submitted again and again.
+ *
+ * Barriers are derived by walking the rung's accesses with, per image, the stage, access and layout of its last use:
+ *  - a read after a write, a write after anything, or another layout needs a barrier;
+ *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image that shares bytes with
+ *    it and was used before;
+ *  - a full barrier at the top of the frame orders it behind the frame before, so no state crosses frames.
+ * Each pass gets at most one vkCmdPipelineBarrier. */
+#include "renderer.h"
+
+#include "error.h"
+#include "shared/masu_shared.h"
+
+#include <string.h>
+
+/* ---- Use of an image --------------------------------------------------------------------------- */
+
+typedef struct image_state {
+    int used; /* in this frame */
+    VkPipelineStageFlags stages;
+    VkAccessFlags access; /* what the last use did; writes are what must be made available */
+    VkImageLayout layout;
+    int writes;
+} image_state;
+
+static image_state state_of(masu_usage usage, masu_pass_kind kind) {
+    VkPipelineStageFlags shader = kind == MASU_PASS_GRAPHICS ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
+                                                             : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+    switch (usage) {
+    case MASU_READ:
+        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
+    case MASU_READ_COPY:
+        return (image_state){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
+                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0};
+    case MASU_WRITE:
+    case MASU_UPDATE:
+        return (image_state){1, shader, VK_ACCESS_SHADER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL, 1};
+    case MASU_WRITE_COLOR:
+        return (image_state){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                             VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
+    case MASU_WRITE_DEPTH:
+        return (image_state){1,
+                             VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+                             VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+                                 VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, 1};
+    case MASU_WRITE_COPY:
+        return (image_state){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1};
+    case MASU_USE_NONE: break;
+    }
+    return (image_state){0, 0, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0};
+}
+
+typedef struct recorder {
+    masu_renderer *m;
+    VkCommandBuffer cmd;
+    uint32_t flight, rung, target;
+    masu_rung_plan *rp;
+    image_state states[MASU_IMAGE_COUNT];
+    uint32_t barriers;
+} recorder;
+
+static VkImage image_handle(const recorder *rec, masu_image_id id) {
+    return id == MASU_IMAGE_TARGET ? rec->m->plan.desc.targets.images[rec->target] : rec->m->objects.images[id];
+}
+
+static int share_bytes(const masu_image_plan *a, const masu_image_plan *b) {
+    return a->offset < b->offset + b->bytes && b->offset < a->offset + a->bytes;
+}
+
+/* What the first use of `id` has to wait for: the earlier tenants of its bytes. Without any, the caller's own stage links it
+ * to the barrier at the top of the frame; TOP_OF_PIPE would not (it chains with nothing before it). */
+static void add_tenants(const recorder *rec, masu_image_id id, VkPipelineStageFlags *stages, VkAccessFlags *access) {
+    const masu_image_plan *images = rec->m->plan.images;
+    for (uint32_t j = 1; j < MASU_IMAGE_SOURCE; j++) {
+        if (j == (uint32_t)id || !rec->states[j].used || !images[id].used || !share_bytes(&images[id], &images[j])) {
+            continue;
+        }
+        *stages |= rec->states[j].stages;
+        if (rec->states[j].writes) *access |= rec->states[j].access;
+    }
+}
+
+static VkImageMemoryBarrier image_barrier(const recorder *rec, masu_image_id id, VkAccessFlags from,
+                                          const image_state *to, VkImageLayout old_layout) {
+    int depth = id < MASU_IMAGE_SOURCE && masu_images[id].format == VK_FORMAT_D32_SFLOAT;
+    return (VkImageMemoryBarrier){
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+        .srcAccessMask = from,
+        .dstAccessMask = to->access,
+        .oldLayout = old_layout,
+        .newLayout = to->layout,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = image_handle(rec, id),
+        .subresourceRange = {.aspectMask = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
+                             .levelCount = 1,
+                             .layerCount = 1}};
+}
+
+static void barrier_before(recorder *rec, uint32_t pass) {
+    VkImageMemoryBarrier barriers[MASU_PASS_ACCESSES];
+    uint32_t n = 0;
+    VkPipelineStageFlags from = 0, to = 0;
+    for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
+        masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
+        masu_usage usage = (masu_usage)rec->rp->access[pass][a].usage;
+        if (id == MASU_IMAGE_SOURCE) continue; /* the host's contract: readable already */
+        image_state next = state_of(usage, masu_passes[pass].kind), *now = &rec->states[id];
+        if (!now->used) {
+            VkAccessFlags access = 0;
+            from |= next.stages;
+            add_tenants(rec, id, &from, &access);
+            barriers[n++] = image_barrier(rec, id, access, &next, VK_IMAGE_LAYOUT_UNDEFINED);
+            to |= next.stages;
+        } else if (now->layout != next.layout || now->writes || next.writes) {
+            from |= now->stages;
+            barriers[n++] = image_barrier(rec, id, now->writes ? now->access : 0, &next, now->layout);
+            to |= next.stages;
+        } else {
+            next.stages |= now->stages; /* one more reader: a later writer waits for all of them */
+        }
+        *now = next;
+    }
+    if (!n) return;
+    rec->m->vk.CmdPipelineBarrier(rec->cmd, from, to, 0, 0, NULL, 0, NULL, n, barriers);
+    rec->barriers++;
+}
+
+static void memory_barrier(recorder *rec, VkPipelineStageFlags from, VkAccessFlags from_access,
+                           VkPipelineStageFlags to, VkAccessFlags to_access) {
+    VkMemoryBarrier b = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                         .srcAccessMask = from_access,
+                         .dstAccessMask = to_access};
+    rec->m->vk.CmdPipelineBarrier(rec->cmd, from, to, 0, 1, &b, 0, NULL, 0, NULL);
+    rec->barriers++;
+}
+
+/* ---- Passes ------------------------------------------------------------------------------------ */
+
+static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
+    const masu_desc *d = &rec->m->plan.desc;
+    int render = masu_passes[pass].extent == MASU_EXTENT_RENDER;
+    struct masu_push push;
+    memset(&push, 0, sizeof push);
+    push.output_width = render ? rec->rp->render_width : d->output.width;
+    push.output_height = render ? rec->rp->render_height : d->output.height;
+    /* Input size: that of the first image read. */
+    push.render_width = rec->rp->render_width;
+    push.render_height = rec->rp->render_height;
+    for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
+        masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
+        if (rec->rp->access[pass][a].usage != MASU_READ) continue;
+        if (masu_images[id].extent == MASU_EXTENT_OUTPUT) {
+            push.render_width = d->output.width;
+            push.render_height = d->output.height;
+        }
+        break;
+    }
+    if (masu_passes[pass].params) masu_passes[pass].params(&d->rungs[rec->rung], &push);
+    return push;
+}
+
+static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
+    const masu_vk *vk = &rec->m->vk;
+    struct masu_push push = push_constants(rec, pass);
+    VkPipelineLayout layout = rec->m->layouts[pass];
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
+    if (rec->m->plan.needs.scene) {
+        vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL, 1,
+                                  &rec->m->global_sets[rec->flight], 0, NULL);
+    }
+    vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1, &set, 0, NULL);
+    vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
+    vk->CmdDispatch(rec->cmd, (push.output_width + MASU_GROUP - 1) / MASU_GROUP,
+                    (push.output_height + MASU_GROUP - 1) / MASU_GROUP, 1);
+}
+
+/* One draw per primitive of each placed mesh; instances of one mesh are neighbours, so one draw serves them all. */
+static void record_draws(recorder *rec) {
+    const masu_vk *vk = &rec->m->vk;
+    masu_scene_view v = masu_scene_look(rec->m->plan.desc.scene);
+    VkPipelineLayout layout = rec->m->layouts[MASU_PASS_GBUFFER];
+    VkDeviceSize zero = 0;
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[MASU_PASS_GBUFFER]);
+    vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
+                              &rec->m->global_sets[rec->flight], 0, NULL);
+    vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &rec->m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
+    vk->CmdBindIndexBuffer(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_INDICES], 0, VK_INDEX_TYPE_UINT32);
+    struct masu_push push;
+    memset(&push, 0, sizeof push);
+    push.output_width = push.render_width = rec->rp->render_width;
+    push.output_height = push.render_height = rec->rp->render_height;
+    uint32_t from = 0;
+    for (uint32_t mesh = 0; mesh < rec->m->plan.scene.meshes; mesh++) {
+        uint32_t first, end = masu_scene_mesh_instances(&v, rec->m->plan.scene.instances, mesh, from, &first);
+        from = end;
+        for (uint32_t p = 0; p < v.meshes[mesh].primitive_count && end > first; p++) {
+            const masu_blob_primitive *primitive = &v.primitives[v.meshes[mesh].first_primitive + p];
+            push.index[0] = primitive->material;
+            vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
+            vk->CmdDrawIndexed(rec->cmd, primitive->index_count, end - first, primitive->first_index,
+                               (int32_t)primitive->first_vertex, first);
+        }
+    }
+}
+
+static void record_gbuffer(recorder *rec) {
+    const masu_vk *vk = &rec->m->vk;
+    VkClearValue clear[3];
+    memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
+    VkRect2D area = {{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
+    VkViewport viewport = {0.0f, 0.0f, (float)area.extent.width, (float)area.extent.height, 0.0f, 1.0f};
+    VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
+                                   .renderPass = rec->m->render_pass,
+                                   .framebuffer = rec->m->framebuffer,
+                                   .renderArea = area,
+                                   .clearValueCount = 3,
+                                   .pClearValues = clear};
+    vk->CmdBeginRenderPass(rec->cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    if (rec->m->plan.needs.raster) {
+        vk->CmdSetViewport(rec->cmd, 0, 1, &viewport);
+        vk->CmdSetScissor(rec->cmd, 0, 1, &area);
+        record_draws(rec);
+    }
+    vk->CmdEndRenderPass(rec->cmd);
+}
+
+static void record_readback(recorder *rec, uint32_t pass) {
+    const masu_buffer_plan *buffer = &rec->m->plan.buffers[MASU_BUFFER_READBACK];
+    for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
+        masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
+        uint32_t bit = 0;
+        while (masu_images[id].readback >> bit != 1u) bit++;
+        VkBufferImageCopy copy = {
+            .bufferOffset = rec->flight * buffer->stride + rec->m->plan.readback_offset[bit],
+            .imageSubresource = {.aspectMask = masu_images[id].format == VK_FORMAT_D32_SFLOAT
+                                                   ? VK_IMAGE_ASPECT_DEPTH_BIT
+                                                   : VK_IMAGE_ASPECT_COLOR_BIT,
+                                 .layerCount = 1},
+            .imageExtent = {rec->rp->render_width, rec->rp->render_height, 1}};
+        rec->m->vk.CmdCopyImageToBuffer(rec->cmd, rec->m->objects.images[id], VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                        rec->m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
+    }
+}
+
+static void record_present(recorder *rec, uint32_t pass) {
+    const VkExtent2D size = rec->m->plan.desc.output;
+    masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
+    VkImageBlit blit = {.srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+                        .srcOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}},
+                        .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+                        .dstOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}}};
+    rec->m->vk.CmdBlitImage(rec->cmd, image_handle(rec, from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                            image_handle(rec, MASU_IMAGE_TARGET), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
+                            VK_FILTER_NEAREST);
+}
+
+/* ---- A frame ----------------------------------------------------------------------------------- */
+
+static void begin_label(const recorder *rec, const char *name) {
+    if (!rec->m->vk.CmdBeginDebugUtilsLabelEXT || !rec->m->vk.CmdEndDebugUtilsLabelEXT) return;
+    VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name};
+    rec->m->vk.CmdBeginDebugUtilsLabelEXT(rec->cmd, &label);
+}
+
+static void end_label(const recorder *rec) {
+    if (!rec->m->vk.CmdBeginDebugUtilsLabelEXT || !rec->m->vk.CmdEndDebugUtilsLabelEXT) return;
+    rec->m->vk.CmdEndDebugUtilsLabelEXT(rec->cmd);
+}
+
+/* Query `index` of this flight. The full barrier keeps later work from starting before the stamp is written, and earlier
+ * work from ending after it: without it a driver may overlap passes and each time would mean little. */
+static void timestamp(recorder *rec, uint32_t index) {
+    if (!rec->m->queries) return;
+    memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+    rec->m->vk.CmdWriteTimestamp(rec->cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, rec->m->queries,
+                                 rec->flight * (MASU_PASS_COUNT + 1) + index);
+}
+
+/* NaN or infinity, read as fp32, fp16 or unorm alike. */
+static uint32_t poison_word(uint32_t kind) { return kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
+
+static void record_prologue(recorder *rec) {
+    const masu_renderer *m = rec->m;
+    int counters = m->plan.desc.debug.counters && m->plan.needs.scene;
+    memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+    if (counters) {
+        m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS], 0, VK_WHOLE_SIZE, 0);
+    }
+    if (m->plan.buffers[MASU_BUFFER_POISON].bytes) {
+        m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_POISON], 0, VK_WHOLE_SIZE,
+                            poison_word(m->plan.desc.debug.poison));
+    }
+    if (counters || m->plan.buffers[MASU_BUFFER_POISON].bytes) {
+        memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+    }
+    if (m->queries) {
+        m->vk.CmdResetQueryPool(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), MASU_PASS_COUNT + 1);
+    }
+}
+
+static void record_epilogue(recorder *rec) {
+    const masu_renderer *m = rec->m;
+    const masu_buffer_plan *readback = &m->plan.buffers[MASU_BUFFER_READBACK];
+    if (m->plan.desc.debug.counters && m->plan.needs.scene) {
+        memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+        VkBufferCopy copy = {0, rec->flight * readback->stride, m->plan.buffers[MASU_BUFFER_COUNTERS].bytes};
+        m->vk.CmdCopyBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS],
+                            m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
+    }
+    if (readback->bytes) {
+        memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                       VK_ACCESS_HOST_READ_BIT);
+    }
+    /* The target to where the host wants it, visible to whatever comes next. */
+    const image_state *target = &rec->states[MASU_IMAGE_TARGET];
+    image_state last = {1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
+                        m->plan.desc.targets.final_layout, 0};
+    VkImageMemoryBarrier b = image_barrier(rec, MASU_IMAGE_TARGET, target->access, &last, target->layout);
+    m->vk.CmdPipelineBarrier(rec->cmd, target->stages, last.stages, 0, 0, NULL, 0, NULL, 1, &b);
+    rec->barriers++;
+}
+
+/* sets: the rung's, of this target; see make_pass_sets for the order. */
+static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu_detail *detail) {
+    const masu_renderer *m = rec->m;
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    VkResult r = m->vk.BeginCommandBuffer(rec->cmd, &begin);
+    if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
+    record_prologue(rec);
+    timestamp(rec, 0);
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        if (rec->rp->active & 1u << p) {
+            begin_label(rec, masu_passes[p].name);
+            barrier_before(rec, p);
+            if (p == MASU_PASS_GBUFFER) record_gbuffer(rec);
+            if (p == MASU_PASS_READBACK) record_readback(rec, p);
+            if (p == MASU_PASS_PRESENT) record_present(rec, p);
+            if (masu_passes[p].kind == MASU_PASS_COMPUTE) record_compute(rec, p, sets[p]);
+            end_label(rec);
+        }
+        timestamp(rec, p + 1);
+    }
+    record_epilogue(rec);
+    r = m->vk.EndCommandBuffer(rec->cmd);
+    return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
+}
+
+/* ---- Descriptor sets --------------------------------------------------------------------------- */
+
+static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
+    uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
+    VkDescriptorPoolSize sizes[] = {
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 * flights},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MASU_PASS_ACCESSES * sets},
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
+    VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                       .maxSets = flights + sets,
+                                       .poolSizeCount = sizeof sizes / sizeof *sizes,
+                                       .pPoolSizes = sizes};
+    VkResult r = m->vk.CreateDescriptorPool(m->vk.device, &info, m->vk.allocator, &m->descriptor_pool);
+    return r ? masu_fail_vulkan(detail, r, "vkCreateDescriptorPool") : MASU_OK;
+}
+
+static masu_result allocate_set(masu_renderer *m, VkDescriptorSetLayout layout, VkDescriptorSet *set,
+                                masu_detail *detail) {
+    VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                        .descriptorPool = m->descriptor_pool,
+                                        .descriptorSetCount = 1,
+                                        .pSetLayouts = &layout};
+    VkResult r = m->vk.AllocateDescriptorSets(m->vk.device, &info, set);
+    return r ? masu_fail_vulkan(detail, r, "vkAllocateDescriptorSets") : MASU_OK;
+}
+
+static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
+    static const struct {
+        uint32_t binding;
+        masu_buffer_id buffer;
+        VkDescriptorType type;
+    } rows[] = {{MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
+                {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+    for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
+        masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
+        if (result) return result;
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            const masu_buffer_plan *b = &m->plan.buffers[rows[i].buffer];
+            if (!b->bytes) continue; /* no pass of this plan looks at it */
+            VkDescriptorBufferInfo buffer = {m->objects.buffers[rows[i].buffer], f * b->stride,
+                                             b->stride ? b->stride : b->bytes};
+            if (rows[i].buffer == MASU_BUFFER_FRAME) buffer.range = sizeof(struct masu_frame_uniforms);
+            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                          .dstSet = m->global_sets[f],
+                                          .dstBinding = rows[i].binding,
+                                          .descriptorCount = 1,
+                                          .descriptorType = rows[i].type,
+                                          .pBufferInfo = &buffer};
+            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+        }
+    }
+    return MASU_OK;
+}
+
+static int writes_target(const masu_rung_plan *rp, uint32_t pass) {
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+        if (rp->access[pass][a].image == MASU_IMAGE_TARGET) return 1;
+    }
+    return 0;
+}
+
+static void write_pass_set(masu_renderer *m, const masu_rung_plan *rp, uint32_t pass, uint32_t target,
+                           VkDescriptorSet set) {
+    uint32_t binding = 0;
+    for (int writes = 0; writes < 2; writes++) {
+        for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+            if (masu_usage_writes((masu_usage)rp->access[pass][a].usage) != writes) continue;
+            uint32_t id = rp->access[pass][a].image;
+            VkDescriptorImageInfo image = {
+                .imageView = id == MASU_IMAGE_TARGET ? m->plan.desc.targets.views[target] : m->views[id],
+                .imageLayout = writes ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                          .dstSet = set,
+                                          .dstBinding = binding++,
+                                          .descriptorCount = 1,
+                                          .descriptorType = writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                                                                   : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                          .pImageInfo = &image};
+            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+        }
+    }
+}
+
+/* Sets of all rungs, in the order (rung, pass, target); a pass that does not write the target has one for all targets.
+ * `next` walks the renderer's array in that order. Fills sets[target][pass] of one rung. */
+static masu_result make_pass_sets(masu_renderer *m, const masu_rung_plan *rp, uint32_t *next,
+                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT], masu_detail *detail) {
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        if (!(rp->active & 1u << p) || masu_passes[p].kind != MASU_PASS_COMPUTE) continue;
+        uint32_t targets = m->plan.desc.targets.count, own = writes_target(rp, p) ? targets : 1;
+        for (uint32_t t = 0; t < own; t++) {
+            VkDescriptorSet *set = &m->pass_sets[(*next)++];
+            masu_result result = allocate_set(m, m->pass_layouts[p], set, detail);
+            if (result) return result;
+            write_pass_set(m, rp, p, t, *set);
+            sets[t][p] = *set;
+        }
+        for (uint32_t t = own; t < targets; t++) sets[t][p] = sets[0][p];
+    }
+    return MASU_OK;
+}
+
+/* ---- All recordings ---------------------------------------------------------------------------- */
+
+static masu_result record_load(masu_renderer *m, uint32_t index, masu_detail *detail) {
+    masu_chunk chunk = masu_load_chunk(&m->plan, index);
+    VkCommandBuffer cmd = m->loads[index];
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
+    if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
+    VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
+    m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING], m->objects.buffers[chunk.buffer], 1, &copy);
+    r = m->vk.EndCommandBuffer(cmd);
+    return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
+}
+
+static masu_result make_command_buffers(masu_renderer *m, uint32_t frames, masu_detail *detail) {
+    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .queueFamilyIndex = m->plan.desc.vulkan.queue_family};
+    VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
+    if (r) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
+    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                        .commandPool = m->command_pool,
+                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                        .commandBufferCount = frames};
+    r = m->vk.AllocateCommandBuffers(m->vk.device, &info, m->frames);
+    info.commandBufferCount = m->load_count;
+    if (!r && m->load_count) r = m->vk.AllocateCommandBuffers(m->vk.device, &info, m->loads);
+    return r ? masu_fail_vulkan(detail, r, "vkAllocateCommandBuffers") : MASU_OK;
+}
+
+static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
+    if (!m->plan.desc.debug.timestamps) return MASU_OK;
+    VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                  .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                  .queryCount = m->plan.desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
+    VkResult r = m->vk.CreateQueryPool(m->vk.device, &info, m->vk.allocator, &m->queries);
+    return r ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
+}
+
+masu_result masu_record(masu_renderer *m, masu_detail *detail) {
+    const masu_desc *d = &m->plan.desc;
+    uint32_t rungs = d->rung_count, targets = d->targets.count;
+    masu_result result = make_pool(m, detail);
+    if (!result) result = make_global_sets(m, detail);
+    if (!result) result = make_queries(m, detail);
+    if (!result) result = make_command_buffers(m, d->frames_in_flight * rungs * targets, detail);
+    uint32_t next = 0;
+    for (uint32_t r = 0; r < rungs && !result; r++) {
+        VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
+        memset(sets, 0, sizeof sets);
+        result = make_pass_sets(m, &m->plan.rungs[r], &next, sets, detail);
+        for (uint32_t f = 0; f < d->frames_in_flight && !result; f++) {
+            for (uint32_t t = 0; t < targets && !result; t++) {
+                recorder rec = {.m = m,
+                                .cmd = m->frames[(f * rungs + r) * targets + t],
+                                .flight = f,
+                                .rung = r,
+                                .target = t,
+                                .rp = &m->plan.rungs[r]};
+                result = record_frame(&rec, sets[t], detail);
+                m->plan.rungs[r].barriers = rec.barriers;
+            }
+        }
+    }
+    for (uint32_t i = 0; i < m->load_count && !result; i++) result = record_load(m, i, detail);
+    return result;
+}

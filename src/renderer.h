@@ -1,0 +1,104 @@
+/* renderer.h: the private struct behind masu_renderer, and the steps of masu_init in order.
+ *
+ *   masu.c      public functions; walks the layout, calls the steps, unwinds on failure
+ *   plan.c      description -> which passes, which images           (pure)
+ *   device_memory.c  images and buffers -> offsets, memory types
+ *   bind.c      memory allocated or taken, objects bound, views made
+ *   pipelines.c layouts, shader modules, pipelines, render pass
+ *   record.c    descriptor sets and command buffers: barriers derived from the table
+ *   upload.c    scene -> device, frame uniforms, instance transforms
+ *
+ * Everything of fixed size is a member; what depends on the scene are pointers into the same host block. All handles are
+ * zero before they are created, so masu_renderer_destroy may run after any failed step. */
+#ifndef MASU_RENDERER_H
+#define MASU_RENDERER_H
+
+#include "arena.h"
+#include "blob.h"
+#include "device_memory.h"
+#include "plan.h"
+#include "scene.h"
+#include "vk.h"
+
+#define MASU_RENDERER_COOKIE 0x4D415355u
+
+struct masu_renderer {
+    uint32_t cookie;
+    masu_vk vk;
+    masu_frame_plan plan;
+    masu_arena arena; /* rows for the report; its base is this struct */
+    masu_detail error;
+
+    /* bind.c */
+    masu_objects objects;
+    VkImageView views[MASU_IMAGE_COUNT]; /* whole images; source and target views are the host's */
+    VkDeviceMemory memory[MASU_ROLE_COUNT];
+    int memory_owned[MASU_ROLE_COUNT];
+    unsigned char *mapped[MASU_ROLE_COUNT]; /* NULL where the block is not host-visible */
+
+    /* pipelines.c */
+    VkSampler sampler; /* nearest, clamp to edge */
+    VkDescriptorSetLayout global_layout;
+    VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
+    VkPipelineLayout layouts[MASU_PASS_COUNT];
+    VkPipeline pipelines[MASU_PASS_COUNT];
+    VkRenderPass render_pass;
+    VkFramebuffer framebuffer;
+    uint64_t pipeline_ns[MASU_PASS_COUNT];
+
+    /* record.c */
+    VkDescriptorPool descriptor_pool;
+    VkDescriptorSet global_sets[MASU_MAX_FLIGHT];
+    VkDescriptorSet *pass_sets; /* plan.pass_sets of them, in the order record.c walks */
+    VkCommandPool command_pool;
+    VkCommandBuffer *frames; /* [flight][rung][target] */
+    VkCommandBuffer *loads;  /* one per staging chunk */
+    VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
+
+    /* upload.c */
+    uint32_t load_count, load_next; /* chunks in all, chunks handed out */
+    int loaded;
+    struct masu_instance_data *instances; /* the host's truth, copied to a slot when dirty */
+    uint64_t *instance_names;             /* FNV-1a 64 of the name, 0: none */
+    uint8_t *instance_dirty;              /* slots that have not seen the newest transform yet */
+    uint32_t dirty_count;
+    masu_blob_camera_key *camera_keys;
+    masu_blob_sdf_param *sdf_params;
+    masu_blob_environment environment;
+    float sdf_bounds[2][4]; /* min and 1/Lipschitz, max and longest ray */
+
+    /* frames */
+    uint64_t frame;
+    uint64_t slot_frame[MASU_MAX_FLIGHT]; /* UINT64_MAX: not used yet */
+    uint32_t slot_rung[MASU_MAX_FLIGHT];
+};
+
+masu_result masu_bind_memory(masu_renderer *m, masu_detail *detail);
+masu_result masu_make_views(masu_renderer *m, masu_detail *detail);
+masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail);
+masu_result masu_record(masu_renderer *m, masu_detail *detail);
+
+/* How many staging chunks the scene needs; 0 where resident memory is host-visible. */
+uint32_t masu_load_chunks(const masu_frame_plan *plan);
+/* One chunk: `bytes` of `buffer` from `offset`. */
+typedef struct masu_chunk {
+    masu_buffer_id buffer;
+    uint64_t offset, bytes;
+} masu_chunk;
+masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index);
+/* Copies what a frame needs later from the blob into the host block. */
+void masu_keep_scene(masu_renderer *m);
+/* Writes camera, light, time and parameters to a slot. Checks first, writes after. */
+masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
+                             masu_detail *detail);
+void masu_write_instances(masu_renderer *m, uint32_t slot);
+
+/* Host pointer to a buffer's first byte, of a slot where it has slots. NULL where it is not host-visible. */
+unsigned char *masu_buffer_pointer(const masu_renderer *m, masu_buffer_id buffer, uint32_t slot);
+
+/* Gives a Vulkan object the name of its row, where labels are on. */
+void masu_name(const masu_renderer *m, VkObjectType type, uint64_t handle, const char *name);
+/* Handles are pointers on 64-bit targets and integers on 32-bit ones; both convert through this. */
+#define MASU_HANDLE(h) ((uint64_t)(h))
+
+#endif

@@ -1,0 +1,343 @@
+/* scene.c: see scene.h. Every number of a blob is hostile until it has been checked here; sums are done so that they
+ * cannot wrap. Counts fit 32 bits (each section is checked), products are taken in 64. */
+#include "scene.h"
+
+#include "error.h"
+#include "shared/masu_shared.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct section_rule {
+    const char *name;
+    uint32_t stride;
+    uint64_t most; /* elements */
+} section_rule;
+
+#define MANY 0x7FFFFFFFu
+
+static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
+    [MASU_BLOB_VERTICES] = {"vertices", sizeof(masu_blob_vertex), MANY},
+    [MASU_BLOB_INDICES] = {"indices", sizeof(uint32_t), MANY},
+    [MASU_BLOB_PRIMITIVES] = {"primitives", sizeof(masu_blob_primitive), MANY},
+    [MASU_BLOB_MESHES] = {"meshes", sizeof(masu_blob_mesh), MANY},
+    [MASU_BLOB_INSTANCES] = {"instances", sizeof(masu_blob_instance), MANY},
+    [MASU_BLOB_MATERIALS] = {"materials", sizeof(masu_blob_material), MANY},
+    [MASU_BLOB_CAMERA_KEYS] = {"camera keys", sizeof(masu_blob_camera_key), MANY},
+    [MASU_BLOB_ENVIRONMENT] = {"environment", sizeof(masu_blob_environment), 1},
+    [MASU_BLOB_SDF] = {"sdf", sizeof(masu_blob_sdf), 1},
+    [MASU_BLOB_SDF_PARAMS] = {"sdf parameters", sizeof(masu_blob_sdf_param), MASU_MAX_SDF_PARAMS},
+    [MASU_BLOB_MARCH_SPIRV] = {"march SPIR-V", sizeof(uint32_t), (uint64_t)16 << 20},
+    [MASU_BLOB_NAMES] = {"names", 1, MANY},
+};
+
+typedef struct reader {
+    const unsigned char *bytes;
+    masu_scene_view view;
+    uint64_t counts[MASU_BLOB_KIND_COUNT];
+    masu_detail *detail;
+} reader;
+
+static masu_result bad(reader *r, const char *what, uint64_t element, const char *problem) {
+    return masu_fail(r->detail, MASU_ERROR_SCENE, what, 0, element, "scene blob: %s[%llu]: %s", what,
+                     (unsigned long long)element, problem);
+}
+
+static int finite_all(const float *v, uint32_t n) {
+    for (uint32_t i = 0; i < n; i++) {
+        if (!isfinite(v[i])) return 0;
+    }
+    return 1;
+}
+
+static int within(const float *v, uint32_t n, float low, float high) {
+    for (uint32_t i = 0; i < n; i++) {
+        if (!(v[i] >= low && v[i] <= high)) return 0;
+    }
+    return 1;
+}
+
+/* ---- Header and sections ----------------------------------------------------------------------- */
+
+static masu_result check_header(reader *r, uint64_t given) {
+    masu_blob_header h;
+    if (given < sizeof h) {
+        return masu_fail(r->detail, MASU_ERROR_SCENE, "header", sizeof h, given,
+                         "scene blob: %llu bytes are too few for the header (%u)",
+                         (unsigned long long)given, (unsigned)sizeof h);
+    }
+    memcpy(&h, r->bytes, sizeof h);
+    if (h.magic != MASU_BLOB_MAGIC) {
+        return masu_fail(r->detail, MASU_ERROR_SCENE, "magic", MASU_BLOB_MAGIC, h.magic,
+                         "not a Masu scene blob (it starts with 0x%08x, not 'MASU')", h.magic);
+    }
+    if (h.version != MASU_BLOB_VERSION) {
+        return masu_fail(r->detail, MASU_ERROR_VERSION, "version", MASU_BLOB_VERSION, h.version,
+                         "scene blob: version %u, this library reads version %u; bake it again",
+                         h.version, MASU_BLOB_VERSION);
+    }
+    if (h.bytes != given) {
+        return masu_fail(r->detail, MASU_ERROR_SCENE, "bytes", h.bytes, given,
+                         "scene blob: %llu bytes are given, its header says %llu: truncated or joined",
+                         (unsigned long long)given, (unsigned long long)h.bytes);
+    }
+    uint64_t hash = masu_fnv1a64(r->bytes + sizeof h, given - sizeof h);
+    if (hash != h.hash) {
+        return masu_fail(r->detail, MASU_ERROR_SCENE, "hash", h.hash, hash,
+                         "scene blob: damaged (hash %016llx, its header says %016llx)",
+                         (unsigned long long)hash, (unsigned long long)h.hash);
+    }
+    if (h.section_count > MASU_BLOB_KIND_COUNT ||
+        sizeof h + h.section_count * sizeof(masu_blob_section) > given) {
+        return masu_fail(r->detail, MASU_ERROR_SCENE, "section_count", MASU_BLOB_KIND_COUNT,
+                         h.section_count, "scene blob: %u sections do not fit", h.section_count);
+    }
+    return MASU_OK;
+}
+
+static masu_result read_sections(reader *r, uint64_t given) {
+    masu_blob_header h;
+    memcpy(&h, r->bytes, sizeof h);
+    const void *start[MASU_BLOB_KIND_COUNT] = {0};
+    uint64_t behind_table = sizeof h + h.section_count * sizeof(masu_blob_section);
+    for (uint32_t i = 0; i < h.section_count; i++) {
+        masu_blob_section s;
+        memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
+        if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT) return bad(r, "section", i, "unknown kind");
+        if (start[s.kind]) return bad(r, "section", i, "appears twice");
+        if (s.stride != rules[s.kind].stride) return bad(r, "section", i, "element size is wrong");
+        if (s.count == 0 || s.count > rules[s.kind].most) {
+            return bad(r, "section", i, "element count is out of range");
+        }
+        if (s.offset % MASU_BLOB_ALIGN || s.offset < behind_table || s.offset > given ||
+            s.count * s.stride > given - s.offset) {
+            return bad(r, "section", i, "lies outside the blob or is misaligned");
+        }
+        start[s.kind] = r->bytes + s.offset;
+        r->counts[s.kind] = s.count;
+    }
+    r->view = (masu_scene_view){.vertices = start[MASU_BLOB_VERTICES],
+                                .indices = start[MASU_BLOB_INDICES],
+                                .primitives = start[MASU_BLOB_PRIMITIVES],
+                                .meshes = start[MASU_BLOB_MESHES],
+                                .instances = start[MASU_BLOB_INSTANCES],
+                                .materials = start[MASU_BLOB_MATERIALS],
+                                .camera_keys = start[MASU_BLOB_CAMERA_KEYS],
+                                .environment = start[MASU_BLOB_ENVIRONMENT],
+                                .sdf = start[MASU_BLOB_SDF],
+                                .sdf_params = start[MASU_BLOB_SDF_PARAMS],
+                                .march_spirv = start[MASU_BLOB_MARCH_SPIRV],
+                                .march_words = r->counts[MASU_BLOB_MARCH_SPIRV],
+                                .names = start[MASU_BLOB_NAMES],
+                                .name_bytes = r->counts[MASU_BLOB_NAMES]};
+    return MASU_OK;
+}
+
+/* ---- Contents ---------------------------------------------------------------------------------- */
+
+static int name_ok(const reader *r, uint32_t name) {
+    return name == MASU_BLOB_NONE || name < r->view.name_bytes;
+}
+
+static masu_result check_primitive(reader *r, uint64_t i) {
+    const masu_blob_primitive *p = &r->view.primitives[i];
+    if (p->index_count % 3) return bad(r, "primitives", i, "index count is no multiple of 3");
+    if ((uint64_t)p->first_index + p->index_count > r->counts[MASU_BLOB_INDICES]) {
+        return bad(r, "primitives", i, "indices lie outside the index section");
+    }
+    if (p->vertex_count < 1 || p->vertex_count > 0xFFFFFF) {
+        return bad(r, "primitives", i, "vertex count is not 1 to 16,777,215");
+    }
+    if ((uint64_t)p->first_vertex + p->vertex_count > r->counts[MASU_BLOB_VERTICES]) {
+        return bad(r, "primitives", i, "vertices lie outside the vertex section");
+    }
+    if (p->material >= r->counts[MASU_BLOB_MATERIALS]) {
+        return bad(r, "primitives", i, "no such material");
+    }
+    if (!finite_all(p->aabb_min, 3) || !finite_all(p->aabb_max, 3)) {
+        return bad(r, "primitives", i, "bounds are not finite");
+    }
+    for (uint32_t k = 0; k < p->index_count; k++) {
+        if (r->view.indices[p->first_index + k] >= p->vertex_count) {
+            return bad(r, "indices", (uint64_t)p->first_index + k, "points outside its primitive");
+        }
+    }
+    return MASU_OK;
+}
+
+static masu_result check_geometry(reader *r) {
+    const masu_scene_view *v = &r->view;
+    /* Ranges may not be shared: else a small blob could ask for quadratic work, here and in every frame. */
+    uint64_t indices = 0, primitives = 0;
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_VERTICES]; i++) {
+        if (!finite_all(v->vertices[i].position, 3)) return bad(r, "vertices", i, "is not finite");
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_PRIMITIVES]; i++) {
+        indices += v->primitives[i].index_count;
+        if (indices > r->counts[MASU_BLOB_INDICES]) return bad(r, "primitives", i, "shares indices");
+        masu_result result = check_primitive(r, i);
+        if (result) return result;
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_MESHES]; i++) {
+        const masu_blob_mesh *m = &v->meshes[i];
+        if ((uint64_t)m->first_primitive + m->primitive_count > r->counts[MASU_BLOB_PRIMITIVES]) {
+            return bad(r, "meshes", i, "primitives lie outside their section");
+        }
+        primitives += m->primitive_count;
+        if (primitives > r->counts[MASU_BLOB_PRIMITIVES]) return bad(r, "meshes", i, "shares primitives");
+        if (!finite_all(m->aabb_min, 3) || !finite_all(m->aabb_max, 3)) {
+            return bad(r, "meshes", i, "bounds are not finite");
+        }
+        if (!name_ok(r, m->name)) return bad(r, "meshes", i, "name lies outside the names");
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_INSTANCES]; i++) {
+        const masu_blob_instance *n = &v->instances[i];
+        if (!finite_all(n->transform, 12)) return bad(r, "instances", i, "transform is not finite");
+        if (n->mesh >= r->counts[MASU_BLOB_MESHES]) return bad(r, "instances", i, "no such mesh");
+        if (i && n->mesh < v->instances[i - 1].mesh) return bad(r, "instances", i, "not sorted by mesh");
+        if (!name_ok(r, n->name)) return bad(r, "instances", i, "name lies outside the names");
+        if (n->parent != MASU_BLOB_NONE && n->parent >= r->counts[MASU_BLOB_INSTANCES]) {
+            return bad(r, "instances", i, "no such parent");
+        }
+    }
+    return MASU_OK;
+}
+
+static masu_result check_looks(reader *r) {
+    const masu_scene_view *v = &r->view;
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_MATERIALS]; i++) {
+        const masu_blob_material *m = &v->materials[i];
+        if (!within(m->base_color, 3, 0.0f, 1.0f) || !within(&m->roughness, 1, 0.0f, 1.0f) ||
+            !within(&m->metallic, 1, 0.0f, 1.0f) || !within(m->emissive, 3, 0.0f, 1e9f)) {
+            return bad(r, "materials", i, "a value is out of range");
+        }
+        if (!name_ok(r, m->name)) return bad(r, "materials", i, "name lies outside the names");
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_CAMERA_KEYS]; i++) {
+        const masu_blob_camera_key *k = &v->camera_keys[i];
+        if (!finite_all(&k->time, 1) || !finite_all(k->position, 3) || !finite_all(k->target, 3)) {
+            return bad(r, "camera keys", i, "is not finite");
+        }
+        if (!(k->fov_y >= 0.001f && k->fov_y <= 3.1f)) {
+            return bad(r, "camera keys", i, "field of view is not 0.001 to 3.1 radians");
+        }
+        if (!memcmp(k->position, k->target, sizeof k->position)) {
+            return bad(r, "camera keys", i, "position and target are the same");
+        }
+        if (i && !(k->time > v->camera_keys[i - 1].time)) {
+            return bad(r, "camera keys", i, "time does not rise");
+        }
+    }
+    const masu_blob_environment *e = v->environment;
+    if (!e) return bad(r, "environment", 0, "is missing");
+    float sun = e->sun_direction[0] * e->sun_direction[0] + e->sun_direction[1] * e->sun_direction[1] +
+                e->sun_direction[2] * e->sun_direction[2];
+    if (!(sun > 0.98f && sun < 1.02f)) return bad(r, "environment", 0, "sun direction is no unit vector");
+    if (!within(e->sun_color, 3, 0.0f, 1e9f) || !within(e->ambient, 3, 0.0f, 1e9f) ||
+        !within(e->sky_zenith, 3, 0.0f, 1e9f) || !within(e->sky_horizon, 3, 0.0f, 1e9f) ||
+        !within(&e->exposure, 1, 1e-9f, 1e9f) || !within(&e->near_distance, 1, 1e-9f, 1e9f)) {
+        return bad(r, "environment", 0, "a value is out of range");
+    }
+    return MASU_OK;
+}
+
+static masu_result check_sdf(reader *r) {
+    const masu_scene_view *v = &r->view;
+    if (!v->sdf) {
+        if (v->sdf_params || v->march_spirv) {
+            return bad(r, "sdf", 0, "is missing, but its parameters or code are there");
+        }
+        return MASU_OK;
+    }
+    const masu_blob_sdf *s = v->sdf;
+    for (uint32_t k = 0; k < 3; k++) {
+        if (!(s->bounds_min[k] <= s->bounds_max[k]) || !(s->bounds_min[k] >= -1e30f) ||
+            !(s->bounds_max[k] <= 1e30f)) {
+            return bad(r, "sdf", 0, "bounds are inverted or out of range");
+        }
+    }
+    if (!within(&s->lipschitz, 1, 1e-3f, 1e6f)) return bad(r, "sdf", 0, "Lipschitz constant is out of range");
+    if (!within(&s->max_distance, 1, 1e-6f, 1e30f)) return bad(r, "sdf", 0, "longest ray is out of range");
+    if (s->has_raster != (r->counts[MASU_BLOB_INSTANCES] ? 1u : 0u)) {
+        return bad(r, "sdf", 0, "code was compiled for other instances");
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_SDF_PARAMS]; i++) {
+        const masu_blob_sdf_param *p = &v->sdf_params[i];
+        if (!finite_all(&p->value, 1) || !finite_all(&p->minimum, 1) || !finite_all(&p->maximum, 1) ||
+            !(p->minimum <= p->value && p->value <= p->maximum)) {
+            return bad(r, "sdf parameters", i, "value is outside its range");
+        }
+        if (!name_ok(r, p->name)) return bad(r, "sdf parameters", i, "name lies outside the names");
+    }
+    if (!v->march_spirv || v->march_words < 5 || v->march_spirv[0] != 0x07230203u) {
+        return bad(r, "march SPIR-V", 0, "is missing or is no SPIR-V");
+    }
+    return MASU_OK;
+}
+
+masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out, masu_detail *detail) {
+    if (!blob || !out || (uintptr_t)blob % MASU_BLOB_ALIGN) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "blob", MASU_BLOB_ALIGN, 0,
+                         "masu_scene_bind: blob or out is NULL, or blob is not 16-byte aligned");
+    }
+    reader r = {.bytes = blob, .detail = detail};
+    masu_result result = check_header(&r, blob_bytes);
+    if (!result) result = read_sections(&r, blob_bytes);
+    if (!result && r.view.names && r.view.names[r.view.name_bytes - 1]) {
+        result = bad(&r, "names", r.view.name_bytes - 1, "does not end with NUL");
+    }
+    if (!result) result = check_geometry(&r);
+    if (!result) result = check_looks(&r);
+    if (!result) result = check_sdf(&r);
+    if (result) return result;
+    *out = (masu_scene){.blob = blob,
+                        .blob_bytes = blob_bytes,
+                        .vertices = (uint32_t)r.counts[MASU_BLOB_VERTICES],
+                        .indices = (uint32_t)r.counts[MASU_BLOB_INDICES],
+                        .primitives = (uint32_t)r.counts[MASU_BLOB_PRIMITIVES],
+                        .meshes = (uint32_t)r.counts[MASU_BLOB_MESHES],
+                        .instances = (uint32_t)r.counts[MASU_BLOB_INSTANCES],
+                        .materials = (uint32_t)r.counts[MASU_BLOB_MATERIALS],
+                        .camera_keys = (uint32_t)r.counts[MASU_BLOB_CAMERA_KEYS],
+                        .sdf = r.view.sdf != NULL,
+                        .sdf_params = (uint32_t)r.counts[MASU_BLOB_SDF_PARAMS]};
+    uint32_t from = 0;
+    for (uint32_t m = 0; m < out->meshes; m++) {
+        uint32_t first, end = masu_scene_mesh_instances(&r.view, out->instances, m, from, &first);
+        const masu_blob_mesh *mesh = &r.view.meshes[m];
+        for (uint32_t p = 0; p < mesh->primitive_count && end > first; p++) {
+            out->draws++;
+            out->triangles += (uint64_t)(end - first) *
+                              (r.view.primitives[mesh->first_primitive + p].index_count / 3);
+        }
+        from = end;
+    }
+    return MASU_OK;
+}
+
+/* ---- Accessors --------------------------------------------------------------------------------- */
+
+masu_scene_view masu_scene_look(const masu_scene *scene) {
+    reader r = {.bytes = scene->blob};
+    (void)read_sections(&r, scene->blob_bytes); /* has passed once on these bytes */
+    return r.view;
+}
+
+uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count, uint32_t mesh,
+                                   uint32_t from, uint32_t *first) {
+    while (from < instance_count && view->instances[from].mesh < mesh) from++;
+    *first = from;
+    while (from < instance_count && view->instances[from].mesh == mesh) from++;
+    return from;
+}
+
+int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name) {
+    if (!scene || !name) return -1;
+    masu_scene_view v = masu_scene_look(scene);
+    for (uint32_t i = 0; i < scene->sdf_params; i++) {
+        if (v.sdf_params[i].name != MASU_BLOB_NONE && !strcmp(v.names + v.sdf_params[i].name, name)) {
+            return (int32_t)i;
+        }
+    }
+    return -1;
+}

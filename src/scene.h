@@ -1,0 +1,37 @@
+/* scene.h: reading a baked blob. The layout of the bytes is in blob.h; nothing here allocates or keeps anything.
+ *
+ * masu_scene_bind (public) checks a blob once, completely. After that the accessors below may be used on the same bytes
+ * without further checks. */
+#ifndef MASU_SCENE_H
+#define MASU_SCENE_H
+
+#include "blob.h"
+#include "masu.h"
+
+/* Sections of a validated blob; absent ones are NULL with count 0. */
+typedef struct masu_scene_view {
+    const masu_blob_vertex *vertices;
+    const uint32_t *indices;
+    const masu_blob_primitive *primitives;
+    const masu_blob_mesh *meshes;
+    const masu_blob_instance *instances;
+    const masu_blob_material *materials;
+    const masu_blob_camera_key *camera_keys;
+    const masu_blob_environment *environment;
+    const masu_blob_sdf *sdf; /* NULL: none */
+    const masu_blob_sdf_param *sdf_params;
+    const uint32_t *march_spirv;
+    uint64_t march_words;
+    const char *names;
+    uint64_t name_bytes;
+} masu_scene_view;
+
+/* Sections of the blob behind a masu_scene that masu_scene_bind has filled. */
+masu_scene_view masu_scene_look(const masu_scene *scene);
+
+/* Range of instances [first, first + count) that place mesh `mesh`: instances are sorted by mesh. `from` is where the
+ * search starts; returns the end. */
+uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count, uint32_t mesh,
+                                   uint32_t from, uint32_t *first);
+
+#endif

@@ -1,0 +1,325 @@
+/* upload.c: what the host writes for the GPU: the scene once, instance transforms when they move, one block of uniforms per
+ * frame. Everything from outside is checked before the first byte is written. */
+#include "renderer.h"
+
+#include "error.h"
+#include "shared/masu_shared.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Scene ------------------------------------------------------------------------------------- */
+
+static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDICES, MASU_BUFFER_MATERIALS};
+
+#define RESIDENT_COUNT (sizeof resident / sizeof *resident)
+
+uint32_t masu_load_chunks(const masu_frame_plan *plan) {
+    uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
+    uint32_t chunks = 0;
+    for (size_t i = 0; i < RESIDENT_COUNT && step; i++) {
+        chunks += (uint32_t)((plan->buffers[resident[i]].bytes + step - 1) / step);
+    }
+    return chunks;
+}
+
+masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
+    uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
+    for (size_t i = 0; i < RESIDENT_COUNT; i++) {
+        uint64_t bytes = plan->buffers[resident[i]].bytes;
+        uint32_t chunks = (uint32_t)((bytes + step - 1) / step);
+        if (index < chunks) {
+            uint64_t offset = index * step, left = bytes - offset;
+            return (masu_chunk){resident[i], offset, left < step ? left : step};
+        }
+        index -= chunks;
+    }
+    return (masu_chunk){MASU_BUFFER_COUNT, 0, 0};
+}
+
+static struct masu_material_data device_material(const masu_blob_material *m) {
+    struct masu_material_data d = {
+        {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
+        {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic}};
+    return d;
+}
+
+static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
+    if (chunk.buffer == MASU_BUFFER_VERTICES) {
+        memcpy(to, (const unsigned char *)v->vertices + chunk.offset, (size_t)chunk.bytes);
+    } else if (chunk.buffer == MASU_BUFFER_INDICES) {
+        memcpy(to, (const unsigned char *)v->indices + chunk.offset, (size_t)chunk.bytes);
+    } else if (chunk.buffer == MASU_BUFFER_MATERIALS) {
+        /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy the part. */
+        uint64_t size = sizeof(struct masu_material_data), at = chunk.offset, end = at + chunk.bytes;
+        while (at < end) {
+            struct masu_material_data d = device_material(&v->materials[at / size]);
+            uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
+            memcpy(to + (at - chunk.offset), (const unsigned char *)&d + skip, (size_t)part);
+            at += part;
+        }
+    }
+}
+
+masu_result masu_load(masu_renderer *m, masu_commands *commands) {
+    if (!m || !commands) return MASU_ERROR_ARGUMENT;
+    memset(commands, 0, sizeof *commands);
+    if (m->loaded) return MASU_OK;
+    if (m->load_next < m->load_count) {
+        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+        masu_chunk chunk = masu_load_chunk(&m->plan, m->load_next);
+        write_resident(&v, chunk, masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0));
+        commands->buffer = m->loads[m->load_next++];
+        return MASU_INCOMPLETE;
+    }
+    if (!m->load_count && m->plan.desc.scene) {
+        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+        for (size_t i = 0; i < RESIDENT_COUNT; i++) {
+            masu_chunk all = {resident[i], 0, m->plan.buffers[resident[i]].bytes};
+            if (all.bytes) write_resident(&v, all, masu_buffer_pointer(m, resident[i], 0));
+        }
+    }
+    m->loaded = 1;
+    m->plan.scene.blob = NULL; /* from here on the host may free it */
+    return MASU_OK;
+}
+
+void masu_keep_scene(masu_renderer *m) {
+    const masu_scene *scene = m->plan.desc.scene;
+    if (!scene) return;
+    masu_scene_view v = masu_scene_look(scene);
+    m->environment = *v.environment;
+    for (uint32_t i = 0; i < scene->instances; i++) {
+        memcpy(&m->instances[i], v.instances[i].transform, sizeof m->instances[i]);
+        uint32_t name = v.instances[i].name;
+        m->instance_names[i] =
+            name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v.names + name, strlen(v.names + name));
+        m->instance_dirty[i] = (uint8_t)m->plan.desc.frames_in_flight;
+    }
+    m->dirty_count = scene->instances;
+    if (scene->camera_keys) memcpy(m->camera_keys, v.camera_keys, scene->camera_keys * sizeof *v.camera_keys);
+    if (scene->sdf_params) memcpy(m->sdf_params, v.sdf_params, scene->sdf_params * sizeof *v.sdf_params);
+    if (!v.sdf) return;
+    for (uint32_t k = 0; k < 3; k++) {
+        m->sdf_bounds[0][k] = v.sdf->bounds_min[k];
+        m->sdf_bounds[1][k] = v.sdf->bounds_max[k];
+    }
+    m->sdf_bounds[0][3] = 1.0f / v.sdf->lipschitz;
+    m->sdf_bounds[1][3] = v.sdf->max_distance;
+}
+
+/* ---- Instances --------------------------------------------------------------------------------- */
+
+/* The same transform must reach every slot, each when it is free. */
+void masu_write_instances(masu_renderer *m, uint32_t slot) {
+    if (!m->dirty_count) return;
+    struct masu_instance_data *to =
+        (struct masu_instance_data *)(void *)masu_buffer_pointer(m, MASU_BUFFER_INSTANCES, slot);
+    for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
+        if (!m->instance_dirty[i]) continue;
+        to[i] = m->instances[i];
+        if (--m->instance_dirty[i] == 0) m->dirty_count--;
+    }
+}
+
+masu_instance masu_instance_find(const masu_renderer *m, const char *name) {
+    if (!m || !name || !*name) return (masu_instance){0};
+    uint64_t hash = masu_fnv1a64(name, strlen(name));
+    for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
+        if (m->instance_names[i] == hash) return (masu_instance){i + 1};
+    }
+    return (masu_instance){0};
+}
+
+masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance, const float rows[12]) {
+    if (!m || !rows) return MASU_ERROR_ARGUMENT;
+    if (instance.id == 0 || instance.id > m->plan.scene.instances) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "instance", m->plan.scene.instances, instance.id,
+                         "instance handle %u: the scene has handles 1 to %u", instance.id,
+                         m->plan.scene.instances);
+    }
+    for (uint32_t k = 0; k < 12; k++) {
+        if (!isfinite(rows[k])) {
+            return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rows", 12, k,
+                             "instance %u: transform[%u] is not finite", instance.id, k);
+        }
+    }
+    uint32_t i = instance.id - 1;
+    memcpy(&m->instances[i], rows, sizeof m->instances[i]);
+    if (!m->instance_dirty[i]) m->dirty_count++;
+    m->instance_dirty[i] = (uint8_t)m->plan.desc.frames_in_flight;
+    return MASU_OK;
+}
+
+/* ---- Camera and light -------------------------------------------------------------------------- */
+
+/* Unit vector of v, or 0 if it has none. The scale keeps 1e-30 and 1e+30 out of under- and overflow. */
+static int unit(const float v[3], float out[3]) {
+    double x = (double)v[0], y = (double)v[1], z = (double)v[2];
+    double length = sqrt(x * x + y * y + z * z);
+    if (!(length > 0.0) || !isfinite(length)) return 0;
+    out[0] = (float)(x / length);
+    out[1] = (float)(y / length);
+    out[2] = (float)(z / length);
+    return 1;
+}
+
+static void cross(const float a[3], const float b[3], float out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+masu_result masu_camera_at(const masu_renderer *m, double time, masu_camera *out) {
+    uint32_t n = m ? m->plan.scene.camera_keys : 0;
+    if (!m || !out || !isfinite(time)) return MASU_ERROR_ARGUMENT;
+    if (!n) return MASU_ERROR_STATE;
+    uint32_t k = 0;
+    while (k + 2 < n && time >= (double)m->camera_keys[k + 1].time) k++;
+    const masu_blob_camera_key *a = &m->camera_keys[k], *b = &m->camera_keys[n > 1 ? k + 1 : k];
+    double span = (double)b->time - (double)a->time;
+    double u = span > 0.0 ? (time - (double)a->time) / span : 0.0;
+    u = u < 0.0 ? 0.0 : u > 1.0 ? 1.0 : u;
+    memset(out, 0, sizeof *out);
+    for (uint32_t i = 0; i < 3; i++) {
+        out->position[i] = (double)a->position[i] + ((double)b->position[i] - (double)a->position[i]) * u;
+        double target = (double)a->target[i] + ((double)b->target[i] - (double)a->target[i]) * u;
+        out->forward[i] = (float)(target - out->position[i]);
+    }
+    out->fov_y = (float)((double)a->fov_y + ((double)b->fov_y - (double)a->fov_y) * u);
+    /* Two keys whose positions and targets cross over meet in a point half-way: look along the first key's. */
+    float ignored[3];
+    if (!unit(out->forward, ignored)) {
+        for (uint32_t i = 0; i < 3; i++) out->forward[i] = a->target[i] - a->position[i];
+    }
+    return MASU_OK;
+}
+
+static masu_result bad_camera(masu_detail *detail, const char *what, const char *problem) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s %s", what, problem);
+}
+
+static masu_result write_camera(masu_renderer *m, const masu_camera *c, struct masu_frame_uniforms *u,
+                                masu_detail *detail) {
+    float forward[3], right[3], up[3], wish[3] = {0.0f, 1.0f, 0.0f};
+    for (uint32_t i = 0; i < 3; i++) {
+        if (!(fabs(c->position[i]) <= 1e15)) {
+            return bad_camera(detail, "camera.position", "is not finite or beyond 1e15 m");
+        }
+    }
+    if (!unit(c->forward, forward)) return bad_camera(detail, "camera.forward", "is zero or not finite");
+    int own_up = c->up[0] != 0.0f || c->up[1] != 0.0f || c->up[2] != 0.0f;
+    if (own_up && !unit(c->up, wish)) return bad_camera(detail, "camera.up", "is not finite");
+    cross(forward, wish, right);
+    if (!unit(right, right)) {
+        if (own_up) return bad_camera(detail, "camera.up", "is parallel to camera.forward");
+        /* Looking straight up or down without an up of one's own: any right-hand side will do. */
+        right[0] = 1.0f, right[1] = right[2] = 0.0f;
+    }
+    cross(right, forward, up);
+    float near_distance = c->near_distance != 0.0f ? c->near_distance : m->environment.near_distance;
+    if (!(near_distance >= 1e-9f && near_distance <= 1e9f)) {
+        return bad_camera(detail, "camera.near_distance", "is not 1e-9 to 1e9 m");
+    }
+    if (!(c->fov_y >= 0.001f && c->fov_y <= 3.1f)) {
+        return bad_camera(detail, "camera.fov_y", "is not 0.001 to 3.1 radians");
+    }
+    double tan_y = tan((double)c->fov_y * 0.5);
+    double tan_x = tan_y * (double)m->plan.desc.output.width / (double)m->plan.desc.output.height;
+    memset(u->clip_from_rel, 0, sizeof u->clip_from_rel);
+    for (uint32_t i = 0; i < 3; i++) {
+        float high = (float)c->position[i];
+        u->eye_hi[i] = high;
+        u->eye_lo[i] = (float)(c->position[i] - (double)high);
+        u->right[i] = (float)((double)right[i] * tan_x);
+        u->up[i] = (float)((double)up[i] * tan_y);
+        u->forward[i] = forward[i];
+        /* Reverse-Z with an infinite far plane: depth = near / view z, so that fp32 resolution is relative at any
+         * distance (view z comes back as near / depth). Vulkan's clip y points down. */
+        u->clip_from_rel[i * 4 + 0] = (float)((double)right[i] / tan_x);
+        u->clip_from_rel[i * 4 + 1] = (float)(-(double)up[i] / tan_y);
+        u->clip_from_rel[i * 4 + 3] = forward[i];
+    }
+    u->clip_from_rel[14] = near_distance;
+    u->right[3] = (float)tan_x;
+    u->up[3] = (float)tan_y;
+    u->forward[3] = near_distance;
+    return MASU_OK;
+}
+
+static int light_ok(const float *v) {
+    for (uint32_t i = 0; i < 3; i++) {
+        if (!(v[i] >= 0.0f && v[i] <= 1e9f)) return 0;
+    }
+    return 1;
+}
+
+static masu_result write_light(const masu_renderer *m, const masu_light *given,
+                               struct masu_frame_uniforms *u, masu_detail *detail) {
+    const masu_blob_environment *e = &m->environment;
+    masu_light light;
+    if (given) {
+        light = *given;
+    } else {
+        light = (masu_light){.exposure = e->exposure};
+        memcpy(light.sun_direction, e->sun_direction, sizeof light.sun_direction);
+        memcpy(light.sun_color, e->sun_color, sizeof light.sun_color);
+        memcpy(light.ambient, e->ambient, sizeof light.ambient);
+        memcpy(light.sky_zenith, e->sky_zenith, sizeof light.sky_zenith);
+        memcpy(light.sky_horizon, e->sky_horizon, sizeof light.sky_horizon);
+    }
+    if (light.exposure == 0.0f) light.exposure = 1.0f;
+    if (!(light.exposure >= 1e-9f && light.exposure <= 1e9f)) {
+        return bad_camera(detail, "light.exposure", "is not 1e-9 to 1e9");
+    }
+    if (!unit(light.sun_direction, u->sun_direction)) {
+        return bad_camera(detail, "light.sun_direction", "is zero or not finite");
+    }
+    if (!light_ok(light.sun_color) || !light_ok(light.ambient) || !light_ok(light.sky_zenith) ||
+        !light_ok(light.sky_horizon)) {
+        return bad_camera(detail, "light", "has a colour that is not 0 to 1e9");
+    }
+    u->sun_direction[3] = light.exposure;
+    memcpy(u->sun_color, light.sun_color, sizeof light.sun_color);
+    memcpy(u->ambient, light.ambient, sizeof light.ambient);
+    memcpy(u->sky_zenith, light.sky_zenith, sizeof light.sky_zenith);
+    memcpy(u->sky_horizon, light.sky_horizon, sizeof light.sky_horizon);
+    return MASU_OK;
+}
+
+masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_t slot, masu_detail *detail) {
+    struct masu_frame_uniforms u;
+    memset(&u, 0, sizeof u);
+    masu_camera camera;
+    if (!isfinite(f->time) || !isfinite(f->time_step)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "time", 0, 0, "time or time_step is not finite");
+    }
+    if (f->camera) {
+        camera = *f->camera;
+    } else if (masu_camera_at(m, f->time, &camera) != MASU_OK) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "camera", 1, 0,
+                         "camera is NULL and the scene has no camera path");
+    }
+    masu_result result = write_camera(m, &camera, &u, detail);
+    if (!result) result = write_light(m, f->light, &u, detail);
+    if (result) return result;
+    uint32_t params = m->plan.scene.sdf_params, given = f->sdf_params ? f->sdf_param_count : 0;
+    if (given > params) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "sdf_param_count", params, given,
+                         "sdf_param_count is %u, the scene has %u", given, params);
+    }
+    for (uint32_t i = 0; i < params; i++) {
+        const masu_blob_sdf_param *p = &m->sdf_params[i];
+        float v = i < given ? f->sdf_params[i] : p->value;
+        if (!isfinite(v)) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "sdf_params", 0, i, "sdf_params[%u] is not finite", i);
+        }
+        u.sdf_params[i / 4][i % 4] = v < p->minimum ? p->minimum : v > p->maximum ? p->maximum : v;
+    }
+    memcpy(u.sdf_min, m->sdf_bounds[0], sizeof u.sdf_min);
+    memcpy(u.sdf_max, m->sdf_bounds[1], sizeof u.sdf_max);
+    u.eye_hi[3] = (float)f->time;
+    u.eye_lo[3] = f->time_step;
+    memcpy(masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot), &u, sizeof u);
+    return MASU_OK;
+}

@@ -1,0 +1,251 @@
+#!/bin/bash
+# run.sh --unit PROGRAM... --script FILE... --fuzz PROGRAM... --gpu PROGRAM...: runs tests, counts
+# them, says what failed.
+#
+# Unit and GPU programs are cmocka groups: each of their tests counts. A script or a fuzzer counts
+# as one. A program that dies, times out, ends before its last test or fails after it is a failure
+# of its own. GPU programs run once for each driver of $DRIVERS (see drivers.sh; "all" is the three
+# that CI uses).
+#
+# The last line is `N passed, N failed`; exit 0 only if none failed and some passed. Skips and known
+# faults of drivers (tests/expect/README.md) are counted on the line before. Logs and JUnit XML go
+# to $BUILD/test-results/.
+#
+# MASU_REQUIRE_DRIVERS=1   a driver that is not there, and a test that is skipped, is a failure
+# MASU_TEST_TIMEOUT=600    seconds for each program
+#
+# A test runs in the root of the tree and sees BUILD, MASU_EXPECT_DIR and, with a driver,
+# MASU_TEST_DRIVER, MASU_DRIVER_INFO (one line: name and version), VK_DRIVER_FILES.
+set -uo pipefail
+cd "$(dirname "$0")/.." || exit 1
+export LC_ALL=C
+
+build=${BUILD:-build}
+results=$build/test-results
+timeout=${MASU_TEST_TIMEOUT:-600}
+require=${MASU_REQUIRE_DRIVERS:-}
+[ "$require" != 0 ] || require=
+drivers=${DRIVERS:-system}
+[ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
+passed=0 failed=0 skipped=0 known=0
+
+export BUILD=$build MASU_EXPECT_DIR=tests/expect
+export CMOCKA_MESSAGE_OUTPUT=stdout
+# Scripts that call make again start from a clean slate, not inside the make that runs this.
+unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
+
+declare -A programs=([unit]="" [script]="" [fuzz]="" [gpu]="")
+kind=
+for argument; do
+    case $argument in
+        --unit | --script | --fuzz | --gpu) kind=${argument#--} ;;
+        *) programs[${kind:?}]+=" $argument" ;;
+    esac
+done
+
+# Reads the log of a cmocka program; prints `pass|fail|skip|crash NAME` per test, then `end` if the
+# group came to its end. The marks may stand anywhere in a line: what a test prints without a
+# newline stands before them.
+# shellcheck disable=SC2016
+read_cmocka='
+/\[ RUN      \] / { sub(/.*\[ RUN      \] /, ""); running = $0; next }
+/\[       OK \] / { print "pass", running; running = ""; next }
+/\[  SKIPPED \] / { if (running != "") print "skip", running; running = ""; next }
+/\[  FAILED  \] / { print "fail", running != "" ? running : "(group)"; running = ""; next }
+/\[  ERROR   \] / && $NF == running { print "fail", running; running = ""; next }
+/\[==========\] [0-9]+ test\(s\) run/ { print "end"; exit }
+END { if (running != "") print "crash", running }'
+
+# The part of the log that belongs to one test.
+# shellcheck disable=SC2016
+cut_cmocka='
+index($0, "[ RUN      ] ") { on = substr($0, index($0, "] ") + 2) == name }
+/^\[==========\] [0-9]+ test\(s\) run/ { exit }
+on'
+
+indented() {
+    tail -n 60 | cut -c 1-400 | sed 's/^/      | /'
+}
+
+# known_fault DRIVER PROGRAM TEST: whether tests/expect/DRIVER-fails.txt lists it for this version
+known_fault() {
+    local file=tests/expect/$1-fails.txt version test
+    [ -e "$file" ] || return 1
+    while IFS=$'\t' read -r version test _; do
+        [[ -z $version || $version == '#'* ]] && continue
+        [[ ${MASU_DRIVER_INFO:-} == *"$version"* && $2/$3 == "$test" ]] && return 0
+    done < "$file"
+    return 1
+}
+
+escaped() {
+    sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g; s/"/\&quot;/g' | tr -d '\000-\010\013\014\016-\037'
+}
+
+# testcase CLASS TEST FAULT: one element of JUnit XML
+testcase() {
+    printf '<testcase classname="%s" name="%s">' "$1" "$(escaped <<< "$2")"
+    [ -z "$3" ] || printf '<failure message="%s"/>' "$(escaped <<< "$3")"
+    printf '</testcase>\n'
+}
+
+# run KIND DRIVER PROGRAM: runs it, prints its line and what went wrong, adds to the counts
+run() {
+    local kind=$1 driver=$2 program=$3
+    local name log rc start seconds word test verdict=ok trouble='' ended='' died='' fault
+    local p=0 f=0 s=0 k=0 tests=() notes=() arguments=()
+    name=$(basename "$program" .sh)
+    log=$results/$driver/$name.log
+    mkdir -p "$results/$driver"
+    local seeds=SEEDS_$name
+    # shellcheck disable=SC2206
+    [ "$kind" != fuzz ] || arguments=(${!seeds:-})
+
+    start=${EPOCHREALTIME/./}
+    # What bash says of a program that dies is said better below.
+    { timeout -k 10 "$timeout" "$program" "${arguments[@]}" &> "$log" < /dev/null; } 2> /dev/null
+    rc=$?
+    seconds=$(((${EPOCHREALTIME/./} - start) / 10000))
+    seconds=$((seconds / 100)).$(printf %02d $((seconds % 100)))
+
+    if [ "$kind" = unit ] || [ "$kind" = gpu ]; then
+        mapfile -t tests < <(awk "$read_cmocka" "$log")
+    elif [ $rc = 0 ]; then
+        tests=("pass $name" end)
+    elif [ $rc = 77 ]; then
+        tests=("skip $name" end)
+    else
+        tests=("fail $name" end)
+    fi
+
+    for test in "${tests[@]}"; do
+        word=${test%% *}
+        test=${test#* }
+        [ "$word" != end ] || { ended=1 && continue; }
+        [ "$word" != crash ] || died=1
+        fault=
+        if [ "$word" = pass ]; then
+            p=$((p + 1))
+            if [ "$kind" = gpu ] && known_fault "$driver" "$name" "$test"; then
+                p=$((p - 1)) fault="passed, though $driver-fails.txt lists it"
+            fi
+        elif [ "$word" = skip ]; then
+            fault=skipped
+            [ "$require" ] || { s=$((s + 1)) && fault='' && notes+=("skipped: $test"); }
+        elif [ "$kind$word" = gpufail ] && known_fault "$driver" "$name" "$test"; then
+            k=$((k + 1)) && notes+=("known fault of this driver: $test")
+        else
+            fault=failed
+            [ "$word" != crash ] || fault="died in it"
+        fi
+        [ -z "$fault" ] || { f=$((f + 1)) && notes+=("$fault: $test"); }
+        testcase "$driver.$name" "$test" "$fault"
+    done > "$results/$driver/$name.cases"
+
+    # Programs fail in more ways than their tests do.
+    if [ $rc = 124 ] || [ $rc = 137 ]; then
+        trouble="timed out after $timeout s"
+    elif [ -z "$ended" ]; then
+        trouble="ended early with exit code $rc"
+    elif [ ${#tests[@]} = 1 ]; then
+        trouble="ran no test"
+    elif [ $rc != 0 ] && [ $((f + k + s)) = 0 ]; then
+        trouble="every test passed, but the exit code is $rc"
+    fi
+    if [ "$trouble" ]; then
+        [ "$died" ] || f=$((f + 1))
+        testcase "$driver.$name" program "$trouble" >> "$results/$driver/$name.cases"
+    fi
+
+    [ $p != 0 ] || verdict=skip
+    [ $f = 0 ] || verdict=FAIL
+    printf '  %-4s  %-28s %-12s %4d passed, %d failed  %8s s\n' \
+        "$verdict" "$name" "$driver" $p $f "$seconds"
+    for test in "${notes[@]}"; do
+        echo "    $test"
+        [ "$kind" = script ] || [ "$kind" = fuzz ] ||
+            awk -v name="${test#*: }" "$cut_cmocka" "$log" | indented
+    done
+    [ -z "$trouble" ] || echo "    $trouble"
+    case $trouble$kind in
+        unit | gpu) ;;
+        script | fuzz) [ $((f + s)) = 0 ] || indented < "$log" ;;
+        *) indented < "$log" ;;
+    esac
+    {
+        printf '<testsuite name="%s.%s" time="%s" ' "$driver" "$name" "$seconds"
+        printf 'tests="%d" failures="%d" skipped="%d">\n' $((p + f + s + k)) $f $((s + k))
+        cat "$results/$driver/$name.cases"
+        printf '<system-out>%s</system-out>\n</testsuite>\n' "$(tail -n 200 "$log" | escaped)"
+    } > "$results/$driver/$name.xml"
+    rm "$results/$driver/$name.cases"
+    passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s)) known=$((known + k))
+}
+
+# use DRIVER: sets the environment for it. 1: it is not there, and $reason says why. A name that is
+# no driver's is a mistake, not a missing driver.
+use() {
+    local icd
+    icd=$(tests/drivers.sh "$1" 2> "$results/$1.fetch") || {
+        [ $? != 2 ] || require=1
+        reason=$(tail -n 1 "$results/$1.fetch")
+        return 1
+    }
+    [ -z "$icd" ] || export VK_ICD_FILENAMES=$icd VK_DRIVER_FILES=$icd
+    # One driver is visible: there is nothing to select, and Mesa's layer for that opens displays.
+    export MASU_TEST_DRIVER=$1 NODEVICE_SELECT=1
+    # Compiled shaders stay with the build, not in the home of the user.
+    export MESA_SHADER_CACHE_DIR=$PWD/$build/cache/$1
+    mkdir -p "$MESA_SHADER_CACHE_DIR"
+    # shellcheck disable=SC1090
+    [ ! -e "build/drivers/$1/env" ] || . "build/drivers/$1/env"
+    if ! MASU_DRIVER_INFO=$("$build/tests/driver_info" 2>&1); then
+        reason="it does not start: $MASU_DRIVER_INFO"
+        return 1
+    fi
+    [ ! -e "build/drivers/$1/version" ] || MASU_DRIVER_INFO+=", $(< "build/drivers/$1/version")"
+    export MASU_DRIVER_INFO
+}
+
+rm -rf "$results"
+mkdir -p "$results"
+
+for kind in unit script fuzz; do
+    for program in ${programs[$kind]}; do
+        run $kind "$kind" "$program"
+    done
+done
+
+if [ "${programs[gpu]}" ]; then
+    for driver in $drivers; do
+        # A shell for each driver: what one sets, the next does not see. The counts come back by a
+        # file.
+        (
+            if use "$driver"; then
+                echo "  driver $driver: $MASU_DRIVER_INFO"
+                for program in ${programs[gpu]}; do
+                    run gpu "$driver" "$program"
+                done
+            elif [ "$require" ]; then
+                echo "  FAIL  driver $driver: $reason"
+                failed=$((failed + 1))
+            else
+                echo "  skip  driver $driver: $reason"
+                skipped=$((skipped + $(wc -w <<< "${programs[gpu]}")))
+            fi
+            echo "$passed $failed $skipped $known" > "$results/counts"
+        )
+        read -r passed failed skipped known < "$results/counts"
+    done
+fi
+
+# One file for readers of JUnit, too.
+{
+    printf '<?xml version="1.0" encoding="UTF-8"?>\n<testsuites>\n'
+    cat "$results"/*/*.xml 2> /dev/null
+    echo '</testsuites>'
+} > "$results/junit.xml"
+
+[ $((skipped + known)) = 0 ] || echo "$skipped skipped, $known known faults of drivers"
+echo "$passed passed, $failed failed" | tee "$results/summary"
+[ "$failed" = 0 ] && [ "$passed" -gt 0 ]

@@ -1,0 +1,64 @@
+# tests.mk: what is tested by what. A new file in its folder is found by itself.
+#
+#   tests/unit/test_NAME.c    one cmocka group, no GPU
+#   tests/gpu/test_NAME.c     one cmocka group, run on each driver of DRIVERS
+#   tests/unit/NAME.sh        exit 0: passed, 77: skipped
+#   tests/full/NAME.sh        the same, with FULL=1 only
+#   tests/fuzz/fuzz_NAME.c    LLVMFuzzerTestOneInput; its seeds are the files of FUZZ_SEEDS_NAME
+#   tests/unit/support*.c     linked to every program of the folder, as is tests/gpu/support*.c
+#   tests/reference/*.c       linked to everything
+
+# TESTS="arena frame" leaves only those.
+TESTS ?=
+wanted := $(foreach t,$(TESTS),%/$(t) %/test_$(t) %/fuzz_$(t) %/$(t).sh)
+only = $(if $(wanted),$(filter $(wanted),$(1)),$(1))
+
+test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1))))
+UNIT_TESTS   := $(call test_programs,tests/unit/test_*.c)
+GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
+FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
+SCRIPT_TESTS := $(call only,$(wildcard tests/unit/*.sh $(if $(FULL),tests/full/*.sh)))
+DRIVER_INFO  := $(BUILD)/tests/driver_info
+
+REFERENCE    := $(BUILD)/lib/libmasu-reference.a
+TEST_LIBS    := $(REFERENCE) $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+UNIT_SUPPORT := $(call objects,$(wildcard tests/unit/support*.c))
+GPU_SUPPORT  := $(call objects,$(wildcard tests/gpu/support*.c)) $(KEEP_LOADED)
+FUZZ_MAIN    := $(BUILD)/obj/tests/fuzz/standalone_main.o
+
+$(REFERENCE): $(call objects,$(wildcard tests/reference/*.c))
+
+$(BUILD)/tests/%: LIBS = -lcmocka -lvulkan -lm
+
+$(BUILD)/tests/unit/%: $(BUILD)/obj/tests/unit/%.o $(UNIT_SUPPORT) $(TEST_LIBS)
+	$(link)
+$(BUILD)/tests/gpu/%: $(BUILD)/obj/tests/gpu/%.o $(GPU_SUPPORT) $(TEST_LIBS)
+	$(link)
+$(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_LIBS)
+	$(link)
+$(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
+	$(link)
+
+# ---- Fuzzing. Seeds are whole files; without any, a fuzzer starts from nothing. ------------------
+
+FUZZ_SEEDS_scene := $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
+
+FUZZ      ?= scene
+FUZZ_TIME ?= 60
+fuzz-%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(TEST_LIBS) $(FUZZ_SEEDS_$(FUZZ))
+	$(V)mkdir -p $(BUILD)/corpus/$*
+	$(V)$(CC) -fsanitize=fuzzer $(LINK_FLAGS) $(filter %.o %.a,$^) -lm -o $(BUILD)/fuzz_$*
+	$(V)cp $(FUZZ_SEEDS_$*) $(BUILD)/corpus/$*/
+	$(V)$(BUILD)/fuzz_$* -max_total_time=$(FUZZ_TIME) -artifact_prefix=$(BUILD)/ $(BUILD)/corpus/$*
+
+# ---- Running -------------------------------------------------------------------------------------
+
+# Leaks inside drivers and Assimp are theirs.
+SANITIZER_ENV := LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp:print_suppressions=0
+
+fuzz_seeds = SEEDS_$(notdir $(1))='$(FUZZ_SEEDS_$(patsubst fuzz_%,%,$(notdir $(1))))'
+RUN_TESTS  = $(SANITIZER_ENV) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' config='$(config)' \
+    WERROR='$(WERROR)' DRIVERS='$(DRIVERS)' $(foreach t,$(FUZZ_TESTS),$(call fuzz_seeds,$(t))) \
+    tests/run.sh
+RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(FUZZ_TESTS)
+RUN_GPU    = --gpu $(GPU_TESTS)

@@ -1,0 +1,187 @@
+/* bake.c: masu-bake turns a model or a scene description into one .masu blob.
+ *
+ *   bake_scene.c, bake_place.c, bake_look.c   what the scene says          (bake_json.c reads it)
+ *   bake_import.c, bake_model.c               a model, read in a child     (bake_process.c)
+ *   bake_mesh.c, bake_shape.c                 triangles, given or made
+ *   bake_content.c, bake_check.c              the scene being put together and its rules
+ *   bake_sdf.c                                the scene's march shader, by the shader tools
+ *   bake_blob.c, bake_file.c                  bytes, and files that are written whole
+ *
+ * The runtime trusts nothing and reads no other format; all parsing of foreign files is here. */
+#include "bake_blob.h"
+#include "bake_file.h"
+#include "bake_process.h"
+#include "bake_scene.h"
+#include "cli.h"
+#include "masu.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TEXT(x) #x
+#define NUMBER(x) TEXT(x)
+#define VERSION                                                                                    \
+    NUMBER(MASU_VERSION_MAJOR) "." NUMBER(MASU_VERSION_MINOR) "." NUMBER(MASU_VERSION_PATCH)
+
+#define ASSIMP_MODELS "/usr/share/assimp/models"
+
+enum { OPTION_OUTPUT = 1, OPTION_STATS, OPTION_MODELS };
+
+typedef struct totals {
+    uint64_t triangles;       /* stored */
+    uint64_t drawn_triangles; /* over all instances */
+} totals;
+
+static totals sum_triangles(const masu_bake_content *content) {
+    totals t = {0};
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_PRIMITIVES); i++) {
+        t.triangles += MASU_BAKE_PRIMITIVES(content)[i].index_count / 3;
+    }
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
+        const masu_blob_mesh *mesh =
+            &MASU_BAKE_MESHES(content)[MASU_BAKE_INSTANCES(content)[i].mesh];
+        for (uint32_t j = 0; j < mesh->primitive_count; j++) {
+            t.drawn_triangles +=
+                MASU_BAKE_PRIMITIVES(content)[mesh->first_primitive + j].index_count / 3;
+        }
+    }
+    return t;
+}
+
+static bool write_stats(const char *path, const char *input, const masu_bake_content *content,
+                        const masu_bake_buffer *blob) {
+    masu_blob_header header;
+    memcpy(&header, blob->data, sizeof header);
+    totals t = sum_triangles(content);
+    char hash[20];
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)header.hash);
+    json_t *sections = json_object();
+    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        json_object_set_new(sections, masu_bake_kind_name(kind),
+                            json_pack("{s:I, s:I}", "count",
+                                      (json_int_t)masu_bake_count(content, kind), "bytes",
+                                      (json_int_t)content->section[kind].bytes));
+    }
+    masu_bake_affine identity = masu_bake_identity();
+    masu_bake_box b = masu_bake_bounds(content, &identity);
+    json_t *bounds = json_null();
+    if (!masu_bake_box_is_empty(&b)) {
+        bounds = json_pack("[[f,f,f],[f,f,f]]", b.low.x, b.low.y, b.low.z, b.high.x, b.high.y,
+                           b.high.z);
+    }
+    json_t *root = json_pack("{s:s, s:I, s:I, s:s, s:I, s:I, s:I, s:o, s:o}", "input", input,
+                             "version", (json_int_t)header.version, "bytes",
+                             (json_int_t)header.bytes, "hash", hash, "triangles",
+                             (json_int_t)t.triangles, "drawn_triangles",
+                             (json_int_t)t.drawn_triangles, "warnings",
+                             (json_int_t)masu_cli_warnings(), "bounds", bounds, "sections",
+                             sections);
+    char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
+    json_decref(root);
+    if (!text) { /* the input's name is not UTF-8 */
+        masu_cli_error("cannot write %s: a name is not UTF-8", path);
+        return false;
+    }
+    masu_bake_buffer out = {0};
+    masu_bake_append_text(&out, text);
+    masu_bake_append_text(&out, "\n");
+    bool good = masu_bake_write_file(path, out.data, out.bytes);
+    masu_bake_release(&out);
+    free(text);
+    return good;
+}
+
+static void print_summary(const char *path, const masu_bake_content *content, size_t bytes) {
+    totals t = sum_triangles(content);
+    printf("%s: %zu bytes, %llu vertices, %llu triangles (%llu drawn), %llu meshes, "
+           "%llu instances, %llu materials",
+           path, bytes, (unsigned long long)masu_bake_count(content, MASU_BLOB_VERTICES),
+           (unsigned long long)t.triangles, (unsigned long long)t.drawn_triangles,
+           (unsigned long long)masu_bake_count(content, MASU_BLOB_MESHES),
+           (unsigned long long)masu_bake_count(content, MASU_BLOB_INSTANCES),
+           (unsigned long long)masu_bake_count(content, MASU_BLOB_MATERIALS));
+    size_t spirv = content->section[MASU_BLOB_MARCH_SPIRV].bytes;
+    if (spirv) printf(", %zu bytes of SPIR-V", spirv);
+    putchar('\n');
+}
+
+static bool is_scene(const char *path) {
+    size_t length = strlen(path);
+    return length > 5 && strcmp(path + length - 5, ".json") == 0;
+}
+
+static bool bake(const masu_bake_request *request, const char *output, const char *stats,
+                 masu_bake_content *content) {
+    bool good = is_scene(request->input) ? masu_bake_read_scene(request, content)
+                                         : masu_bake_bare_model(request, content);
+    if (!good) return false;
+    masu_bake_sort_instances(content);
+    const char *problem = masu_bake_check(content, false);
+    if (problem) {
+        masu_cli_error("%s: gives %s", request->input, problem);
+        return false;
+    }
+    masu_cli_progress("writing %s", output);
+    masu_bake_buffer blob = {0};
+    masu_bake_make_blob(content, &blob);
+    good = masu_bake_write_file(output, blob.data, blob.bytes) &&
+           (!stats || write_stats(stats, request->input, content, &blob));
+    masu_cli_progress_clear();
+    if (good && !masu_cli_quiet()) print_summary(output, content, blob.bytes);
+    masu_bake_release(&blob);
+    return good;
+}
+
+static int run(masu_cli *cli) {
+    masu_bake_request request = {.models_directory = ASSIMP_MODELS};
+    const char *output = NULL, *stats = NULL;
+    for (;;) {
+        switch (masu_cli_next(cli)) {
+        case OPTION_OUTPUT: output = cli->value; break;
+        case OPTION_STATS: stats = cli->value; break;
+        case OPTION_MODELS: request.models_directory = cli->value; break;
+        case MASU_CLI_ARGUMENT:
+            if (request.input) return masu_cli_usage_error("more than one input: %s", cli->value);
+            request.input = cli->value;
+            break;
+        case MASU_CLI_EXIT: return cli->exit_code;
+        case MASU_CLI_END: {
+            if (!request.input) return masu_cli_usage_error("no MODEL or SCENE.json given");
+            if (!output) return masu_cli_usage_error("no output given; add -o X.masu");
+            masu_bake_content content = {0};
+            bool good = bake(&request, output, stats, &content);
+            masu_bake_content_release(&content);
+            return good ? MASU_CLI_OK : MASU_CLI_FAILURE;
+        }
+        }
+    }
+}
+
+int main(int argc, char **argv) {
+    static const masu_cli_option options[] = {
+        {"output", "FILE", "where the blob goes; replaced only by a complete one", OPTION_OUTPUT,
+         'o'},
+        {"stats", "FILE", "write counts, bytes and bounds as JSON", OPTION_STATS, 0},
+        {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
+         OPTION_MODELS, 0},
+        {NULL, NULL, NULL, 0, 0},
+    };
+    static const masu_cli_command command = {
+        .arguments = "MODEL|SCENE.json -o X.masu [options]",
+        .summary = "turns a model or a scene description into a .masu blob",
+        .options = options,
+        .details =
+            "A MODEL is any file that Assimp reads (.glb, .gltf, .obj, .ac, ...); it gets a camera\n"
+            "that frames it, a sun and a sky. A SCENE.json places models, a camera path, light and\n"
+            "an SDF; docs/scene.md describes it. An SDF needs glslangValidator, spirv-val and\n"
+            "spirv-opt. The same input gives the same bytes.\n\n"
+            "Exit code: 0 done, 1 failed (one line says why), 2 wrong usage.\n",
+        .run = run,
+    };
+    static const masu_cli_command *const commands[] = {&command, NULL};
+    static const masu_cli_program program = {
+        .name = "masu-bake", .version = VERSION, .commands = commands};
+    masu_bake_catch_signals();
+    return masu_cli_main(&program, argc, argv);
+}

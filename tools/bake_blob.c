@@ -1,0 +1,51 @@
+/* bake_blob.c: content to blob; see bake_blob.h. The machine that bakes is little-endian, as is the
+ * format: structs are copied as they are. */
+#include "bake_blob.h"
+
+#include <string.h>
+
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "masu-bake copies structs into a little-endian format"
+#endif
+
+static size_t aligned(size_t bytes) {
+    return (bytes + MASU_BLOB_ALIGN - 1) / MASU_BLOB_ALIGN * MASU_BLOB_ALIGN;
+}
+
+void masu_bake_make_blob(const masu_bake_content *content, masu_bake_buffer *out) {
+    masu_blob_header header = {.magic = MASU_BLOB_MAGIC, .version = MASU_BLOB_VERSION};
+    masu_blob_section table[MASU_BLOB_KIND_COUNT];
+    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        if (content->section[kind].bytes == 0) continue; /* an empty section is left out */
+        table[header.section_count++] =
+            (masu_blob_section){.kind = kind,
+                                .stride = masu_bake_stride(kind),
+                                .count = masu_bake_count(content, kind)};
+    }
+    size_t offset = aligned(sizeof header + header.section_count * sizeof table[0]);
+    for (uint32_t i = 0; i < header.section_count; i++) {
+        table[i].offset = offset;
+        offset = aligned(offset + content->section[table[i].kind].bytes);
+    }
+    header.bytes = offset;
+    unsigned char *bytes = masu_bake_append(out, NULL, offset);
+    memcpy(bytes + sizeof header, table, header.section_count * sizeof table[0]);
+    for (uint32_t i = 0; i < header.section_count; i++) {
+        const masu_bake_buffer *payload = &content->section[table[i].kind];
+        memcpy(bytes + table[i].offset, payload->data, payload->bytes);
+    }
+    header.hash = masu_fnv1a64(bytes + sizeof header, header.bytes - sizeof header);
+    memcpy(bytes, &header, sizeof header);
+}
+
+const char *masu_bake_kind_name(uint32_t kind) {
+    static const char *const names[MASU_BLOB_KIND_COUNT] = {
+        [MASU_BLOB_VERTICES] = "vertices",       [MASU_BLOB_INDICES] = "indices",
+        [MASU_BLOB_PRIMITIVES] = "primitives",   [MASU_BLOB_MESHES] = "meshes",
+        [MASU_BLOB_INSTANCES] = "instances",     [MASU_BLOB_MATERIALS] = "materials",
+        [MASU_BLOB_CAMERA_KEYS] = "camera_keys", [MASU_BLOB_ENVIRONMENT] = "environment",
+        [MASU_BLOB_SDF] = "sdf",                 [MASU_BLOB_SDF_PARAMS] = "sdf_params",
+        [MASU_BLOB_MARCH_SPIRV] = "march_spirv", [MASU_BLOB_NAMES] = "names",
+    };
+    return names[kind];
+}

@@ -1,0 +1,119 @@
+/* bake_content.h: a scene while it is being baked: one growing array per section of the blob.
+ *
+ * The same structure holds a whole scene, one imported model and one procedural shape. Pieces are
+ * built apart (a model even in another process, see bake_import.c), checked, and appended to the
+ * scene with a placement. Elements are the blob's own structs, so writing is copying.
+ *
+ *   bake_content.c   the arrays, names, materials, appending a piece, order of instances
+ *   bake_mesh.c      triangles of unknown quality -> welded vertices, normals, primitives
+ *   bake_check.c     every rule of blob.h, before a piece is trusted and before a blob is written
+ *
+ * Running out of memory ends the program with a message; nothing else here can fail unless it says
+ * so. */
+#ifndef MASU_BAKE_CONTENT_H
+#define MASU_BAKE_CONTENT_H
+
+#include "bake_math.h"
+#include "blob.h"
+
+#include <stddef.h>
+
+typedef struct masu_bake_buffer {
+    unsigned char *data;
+    size_t bytes, capacity;
+} masu_bake_buffer;
+
+/* Appends (data NULL: zeros) and returns the new bytes, which stay put until the next append. */
+void *masu_bake_append(masu_bake_buffer *buffer, const void *data, size_t bytes);
+void masu_bake_append_text(masu_bake_buffer *buffer, const char *text); /* without its NUL */
+void masu_bake_release(masu_bake_buffer *buffer);
+void *masu_bake_allocate(size_t bytes); /* never NULL; free() it */
+
+typedef struct masu_bake_content {
+    masu_bake_buffer section[MASU_BLOB_KIND_COUNT]; /* by masu_blob_kind */
+} masu_bake_content;
+
+uint32_t masu_bake_stride(uint32_t kind); /* sizeof the section's element; 1 for NAMES */
+uint64_t masu_bake_count(const masu_bake_content *content, uint32_t kind);
+void masu_bake_content_release(masu_bake_content *content);
+
+/* Typed views of a section. */
+#define MASU_BAKE_ARRAY(content, kind, type) ((type *)(void *)(content)->section[kind].data)
+#define MASU_BAKE_VERTICES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_VERTICES, masu_blob_vertex)
+#define MASU_BAKE_INDICES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_INDICES, uint32_t)
+#define MASU_BAKE_PRIMITIVES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_PRIMITIVES, masu_blob_primitive)
+#define MASU_BAKE_MESHES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_MESHES, masu_blob_mesh)
+#define MASU_BAKE_INSTANCES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_INSTANCES, masu_blob_instance)
+#define MASU_BAKE_MATERIALS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_MATERIALS, masu_blob_material)
+
+/* A name's offset. Control characters and broken UTF-8 become '?'; an empty name is NONE. */
+uint32_t masu_bake_name(masu_bake_content *content, const char *name, size_t length);
+const char *masu_bake_name_text(const masu_bake_content *content, uint32_t name); /* "" for NONE */
+
+/* The index of a material with these values and this name, added if there is none yet. */
+uint32_t masu_bake_material(masu_bake_content *content, const masu_blob_material *material,
+                            const char *name);
+masu_blob_material masu_bake_default_material(void);
+
+/* Adds a mesh over primitives that are already there; its box is theirs. Returns its index. */
+uint32_t masu_bake_mesh(masu_bake_content *content, uint32_t first_primitive, uint32_t count,
+                        uint32_t name);
+
+/* Adds an instance. Returns its index, or MASU_BLOB_NONE for a transform that is not finite. */
+uint32_t masu_bake_instance(masu_bake_content *content, const masu_bake_affine *transform,
+                            uint32_t mesh, uint32_t parent, uint32_t name);
+
+/* Replaces the fields that a scene gives; zero: none. */
+typedef struct masu_bake_override {
+    masu_blob_material value;
+    bool base_color, roughness, metallic, emissive;
+} masu_bake_override;
+
+/* Where a piece's geometry already lies in the scene, for the second and later placements. Zero at
+ * first. */
+typedef struct masu_bake_residence {
+    uint32_t first_vertex, first_index, first_mesh;
+    bool has_geometry, has_meshes;
+} masu_bake_residence;
+
+/* Appends `piece` to `scene`: geometry once, meshes once per material override, instances every
+ * time. `prefix` goes before the instances' names; may be NULL. Returns NULL or what is wrong. */
+const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
+                            masu_bake_residence *residence, const masu_bake_affine *placement,
+                            const masu_bake_override *override, const char *prefix);
+
+/* Box of everything the instances show under `placement`, from the vertices themselves. */
+masu_bake_box masu_bake_bounds(const masu_bake_content *content, const masu_bake_affine *placement);
+
+/* Orders instances by mesh (stable) and rewrites parents. */
+void masu_bake_sort_instances(masu_bake_content *content);
+
+/* Triangles of unknown quality become one or more primitives at the end of `content`. */
+typedef struct masu_bake_triangles {
+    const float *positions; /* 3 per vertex */
+    const float *normals;   /* 3 per vertex, or NULL */
+    uint32_t vertex_count;
+    const uint32_t *indices;
+    uint64_t index_count; /* a rest behind the last full triangle is ignored */
+    uint32_t material;
+} masu_bake_triangles;
+
+typedef struct masu_bake_losses {
+    uint64_t triangles;     /* looked at */
+    uint64_t bad_index;     /* dropped: an index beyond the vertices */
+    uint64_t bad_position;  /* dropped: NaN, infinite or absurdly far */
+    uint64_t degenerate;    /* dropped: no area */
+    uint64_t bad_normals;   /* vertices whose normal had to be made from the triangles */
+} masu_bake_losses;
+
+/* False: over 2^31 - 1 vertices or indices in all. */
+bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangles *triangles,
+                             masu_bake_losses *losses);
+
+/* Unit vector to two signed normalised components; blob.md gives the mapping. */
+void masu_bake_encode_normal(masu_bake_vec3 normal, int16_t out[2]);
+
+/* NULL, or the first rule of blob.h that the content breaks. A piece needs no environment. */
+const char *masu_bake_check(const masu_bake_content *content, bool piece);
+
+#endif

@@ -1,0 +1,200 @@
+/* bake_look.c: camera path, sun and sky of a scene, and what they are when the scene says nothing:
+ * a three-quarter view of the whole scene under a high sun. */
+#include "bake_scene.h"
+
+#include <string.h>
+
+#define FOV_Y_DEFAULT 40.0 /* degrees */
+#define RADIANCE_MAX 1e6
+
+static float radians(double degrees) { return (float)(degrees * (MASU_BAKE_PI / 180.0)); }
+
+static void to_floats(masu_bake_vec3 v, float out[3]) {
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+/* ---- camera ---- */
+
+static double box_radius(const masu_bake_box *box) {
+    if (masu_bake_box_is_empty(box)) return 1.0;
+    masu_bake_vec3 extent = masu_bake_sub(box->high, box->low);
+    double most = fmax(fabs(box->low.x), fabs(box->high.x));
+    most = fmax(most, fmax(fabs(box->low.y), fabs(box->high.y)));
+    most = fmax(most, fmax(fabs(box->low.z), fabs(box->high.z)));
+    /* A scene of one point far away still needs a distance that its floats can express. */
+    return fmax(masu_bake_length(extent) / 2, fmax(most * 1e-5, 1e-3));
+}
+
+/* The sphere around the box fills the height of the picture. */
+static masu_blob_camera_key framing_key(const masu_bake_box *box, double fov_y) {
+    masu_bake_vec3 center = {0, 0, 0}, direction = {0.62, 0.42, 1.0};
+    if (!masu_bake_box_is_empty(box)) {
+        center = masu_bake_mad(box->low, masu_bake_sub(box->high, box->low), 0.5);
+    }
+    masu_bake_normalize(&direction);
+    double distance = box_radius(box) / sin(fov_y * (MASU_BAKE_PI / 360.0));
+    masu_blob_camera_key key = {.time = 0, .fov_y = radians(fov_y)};
+    to_floats(masu_bake_mad(center, direction, distance), key.position);
+    to_floats(center, key.target);
+    return key;
+}
+
+static double default_near(const masu_bake_box *box) {
+    return fmin(fmax(box_radius(box) * 0.02, 1e-6), 1e6);
+}
+
+static bool read_key(const masu_bake_json *at, double fov_y, masu_blob_camera_key *key) {
+    static const char *const members[] = {"time", "position", "target", "fov_y", NULL};
+    const double most = MASU_BAKE_COORDINATE_MAX;
+    masu_bake_vec3 position = {0, 0, 0}, target = {0, 0, 0};
+    double time = 0;
+    if (!masu_bake_json_object(at, members) ||
+        !masu_bake_json_number(at, "time", -1e6, 1e6, &time) ||
+        !masu_bake_json_vec3(at, "position", -most, most, &position) ||
+        !masu_bake_json_vec3(at, "target", -most, most, &target) ||
+        !masu_bake_json_number(at, "fov_y", 0.1, 170, &fov_y)) {
+        return false;
+    }
+    if (!masu_bake_json_has(at, "position") || !masu_bake_json_has(at, "target")) {
+        return masu_bake_json_wrong(at, "needs \"position\" and \"target\"");
+    }
+    *key = (masu_blob_camera_key){.time = (float)time, .fov_y = radians(fov_y)};
+    to_floats(position, key->position);
+    to_floats(target, key->target);
+    if (memcmp(key->position, key->target, sizeof key->position) == 0) {
+        return masu_bake_json_wrong(at, "position and target are the same point");
+    }
+    return true;
+}
+
+static bool read_keys(const masu_bake_json *keys, double fov_y, masu_bake_content *content) {
+    if (!masu_bake_json_array(keys, 1)) return false;
+    float last = 0;
+    for (size_t i = 0; i < json_array_size(keys->value); i++) {
+        masu_bake_json at = masu_bake_json_element(keys, i);
+        masu_blob_camera_key key;
+        if (!read_key(&at, fov_y, &key)) return false;
+        if (i > 0 && !(key.time > last)) {
+            return masu_bake_json_wrong(&at, "time must be later than that of the key before");
+        }
+        last = key.time;
+        masu_bake_append(&content->section[MASU_BLOB_CAMERA_KEYS], &key, sizeof key);
+    }
+    return true;
+}
+
+static bool read_camera(const masu_bake_json *scene, const masu_bake_box *bounds,
+                        masu_bake_content *content, double *near) {
+    static const char *const members[] = {"fov_y", "near", "keys", NULL};
+    masu_bake_json camera = masu_bake_json_member(scene, "camera");
+    double fov_y = FOV_Y_DEFAULT;
+    if (camera.value) {
+        if (!masu_bake_json_object(&camera, members) ||
+            !masu_bake_json_number(&camera, "fov_y", 0.1, 170, &fov_y) ||
+            !masu_bake_json_number(&camera, "near", 1e-6, 1e6, near)) {
+            return false;
+        }
+        masu_bake_json keys = masu_bake_json_member(&camera, "keys");
+        if (keys.value) return read_keys(&keys, fov_y, content);
+    }
+    masu_blob_camera_key key = framing_key(bounds, fov_y);
+    masu_bake_append(&content->section[MASU_BLOB_CAMERA_KEYS], &key, sizeof key);
+    return true;
+}
+
+/* ---- light ---- */
+
+typedef struct look {
+    masu_bake_vec3 sun_direction, sun_color, ambient, zenith, horizon;
+    double sun_intensity, exposure, near;
+} look;
+
+static masu_bake_vec3 direction_of(double azimuth, double elevation) {
+    double a = azimuth * (MASU_BAKE_PI / 180.0), e = elevation * (MASU_BAKE_PI / 180.0);
+    return masu_bake_v3(cos(e) * sin(a), sin(e), cos(e) * cos(a));
+}
+
+static look default_look(const masu_bake_box *bounds) {
+    return (look){.sun_direction = direction_of(60, 50),
+                  .sun_color = {1, 0.96, 0.9},
+                  .sun_intensity = 1.6,
+                  .ambient = {0.22, 0.25, 0.3},
+                  .zenith = {0.16, 0.32, 0.62},
+                  .horizon = {0.72, 0.8, 0.88},
+                  .exposure = 1,
+                  .near = default_near(bounds)};
+}
+
+static bool read_sun(const masu_bake_json *scene, look *l) {
+    static const char *const members[] = {"direction", "azimuth", "elevation",
+                                          "color",     "intensity", NULL};
+    masu_bake_json sun = masu_bake_json_member(scene, "sun");
+    if (!sun.value) return true;
+    double azimuth = 60, elevation = 50;
+    masu_bake_vec3 direction = l->sun_direction;
+    if (!masu_bake_json_object(&sun, members) ||
+        !masu_bake_json_number(&sun, "azimuth", -360, 360, &azimuth) ||
+        !masu_bake_json_number(&sun, "elevation", -90, 90, &elevation) ||
+        !masu_bake_json_vec3(&sun, "direction", -1e6, 1e6, &direction) ||
+        !masu_bake_json_vec3(&sun, "color", 0, RADIANCE_MAX, &l->sun_color) ||
+        !masu_bake_json_number(&sun, "intensity", 0, 1000, &l->sun_intensity)) {
+        return false;
+    }
+    bool angles = masu_bake_json_has(&sun, "azimuth") || masu_bake_json_has(&sun, "elevation");
+    if (masu_bake_json_has(&sun, "direction")) {
+        if (angles) {
+            return masu_bake_json_wrong(&sun, "give either \"direction\" or the two angles");
+        }
+        if (!masu_bake_normalize(&direction)) {
+            masu_bake_json at = masu_bake_json_member(&sun, "direction");
+            return masu_bake_json_wrong(&at, "has no length");
+        }
+        l->sun_direction = direction;
+    } else if (angles) {
+        l->sun_direction = direction_of(azimuth, elevation);
+    }
+    return true;
+}
+
+static bool read_sky(const masu_bake_json *scene, look *l) {
+    static const char *const members[] = {"zenith", "horizon", NULL};
+    masu_bake_json sky = masu_bake_json_member(scene, "sky");
+    return !sky.value ||
+           (masu_bake_json_object(&sky, members) &&
+            masu_bake_json_vec3(&sky, "zenith", 0, RADIANCE_MAX, &l->zenith) &&
+            masu_bake_json_vec3(&sky, "horizon", 0, RADIANCE_MAX, &l->horizon));
+}
+
+static void add_environment(const look *l, masu_bake_content *content) {
+    masu_blob_environment e = {.exposure = (float)l->exposure, .near_distance = (float)l->near};
+    to_floats(l->sun_direction, e.sun_direction);
+    to_floats(masu_bake_v3(l->sun_color.x * l->sun_intensity, l->sun_color.y * l->sun_intensity,
+                           l->sun_color.z * l->sun_intensity),
+              e.sun_color);
+    to_floats(l->ambient, e.ambient);
+    to_floats(l->zenith, e.sky_zenith);
+    to_floats(l->horizon, e.sky_horizon);
+    masu_bake_append(&content->section[MASU_BLOB_ENVIRONMENT], &e, sizeof e);
+}
+
+bool masu_bake_read_look(const masu_bake_json *scene, const masu_bake_box *bounds,
+                         masu_bake_content *content) {
+    look l = default_look(bounds);
+    if (!read_camera(scene, bounds, content, &l.near) || !read_sun(scene, &l) ||
+        !read_sky(scene, &l) ||
+        !masu_bake_json_vec3(scene, "ambient", 0, RADIANCE_MAX, &l.ambient) ||
+        !masu_bake_json_number(scene, "exposure", 1e-6, 1e6, &l.exposure)) {
+        return false;
+    }
+    add_environment(&l, content);
+    return true;
+}
+
+void masu_bake_default_look(const masu_bake_box *bounds, masu_bake_content *content) {
+    look l = default_look(bounds);
+    masu_blob_camera_key key = framing_key(bounds, FOV_Y_DEFAULT);
+    masu_bake_append(&content->section[MASU_BLOB_CAMERA_KEYS], &key, sizeof key);
+    add_environment(&l, content);
+}

@@ -1,0 +1,484 @@
+/* bake_model.c: Assimp's picture of a model becomes ours. Runs in a child process.
+ *
+ *   aiMesh      -> one or more primitives (bake_mesh.c filters and welds)
+ *   aiNode with meshes -> an instance; nodes that show the same set of meshes share one masu mesh
+ *   aiMaterial  -> factors only. glTF factors are linear; the colours of older formats (OBJ, AC3D)
+ *                  were chosen on a screen and are decoded from sRGB. A specular exponent n becomes
+ *                  the roughness (2 / (n + 2))^(1/4), at which GGX has the same lobe width.
+ *
+ * Nothing that Assimp returns is believed: indices, counts of faces, strings and transforms are
+ * checked here, and what cannot be shown is counted and named in a warning. */
+#define _POSIX_C_SOURCE 200809L
+#include "bake_import.h"
+
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Edges sharper than this stay sharp where normals have to be made. */
+#define CREASE_DEGREES 60.0f
+/* More nodes than any model has; a cycle among nodes ends here too. */
+#define NODES_MAX 4000000u
+#define NAMES_MAX 4 /* in one warning; the rest is counted */
+
+typedef struct range {
+    uint32_t first, count;
+} range;
+
+/* A set of aiMeshes that some node shows, and the masu mesh made for it. */
+typedef struct group {
+    const unsigned *meshes;
+    unsigned count;
+    uint32_t mesh;
+    struct group *next; /* another set with the same first mesh */
+} group;
+
+/* What bake_mesh.c could not use, over all meshes. */
+enum { LOST_INDEX, LOST_POSITION, LOST_AREA, LOST_NORMAL, LOSSES };
+
+typedef struct loss {
+    uint64_t count;
+    uint32_t meshes;
+    masu_bake_buffer names; /* of the first few */
+} loss;
+
+typedef struct model {
+    const struct aiScene *source;
+    masu_bake_content *piece;
+    masu_bake_buffer *warnings;
+    masu_blob_primitive *parts; /* primitives as converted, before meshes group them */
+    range *mesh_parts;          /* by aiMesh: its range of parts */
+    bool *mesh_done;
+    group **groups;     /* by aiMesh: sets that begin with it */
+    uint32_t *material; /* by aiMaterial: index + 1, 0: not converted */
+    masu_bake_buffer textures;
+    loss losses[LOSSES];
+    uint64_t triangles;
+    uint32_t texture_count, transparent, bad_nodes, skins;
+    bool full;
+} model;
+
+static void append_format(masu_bake_buffer *buffer, const char *format, ...) {
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (length > 0) masu_bake_append_text(buffer, text);
+}
+
+static int string_length(const struct aiString *s) {
+    size_t most = s->length < sizeof s->data ? s->length : sizeof s->data;
+    return (int)strnlen(s->data, most);
+}
+
+/* Names end up in lines of text: a line break in one must not start another. */
+static void append_name(masu_bake_buffer *buffer, const char *text, int length) {
+    size_t from = buffer->bytes;
+    masu_bake_append(buffer, text, (size_t)length);
+    for (size_t i = from; i < buffer->bytes; i++) {
+        if (buffer->data[i] < 0x20) buffer->data[i] = '?';
+    }
+}
+
+/* ---- materials ---- */
+
+static float clamped(double value, double low, double high) {
+    if (!(value >= low)) value = low; /* NaN too */
+    return (float)(value > high ? high : value) + 0.0f;
+}
+
+static double decode_srgb(double c) {
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+static bool get_color(const struct aiMaterial *m, const char *key, double out[4]) {
+    struct aiColor4D c = {0, 0, 0, 1};
+    if (aiGetMaterialColor(m, key, 0, 0, &c) != aiReturn_SUCCESS) return false;
+    const ai_real values[4] = {c.r, c.g, c.b, c.a};
+    for (int i = 0; i < 4; i++) out[i] = (double)values[i];
+    return true;
+}
+
+static bool get_factor(const struct aiMaterial *m, const char *key, double *out) {
+    ai_real value = 0;
+    unsigned count = 1;
+    if (aiGetMaterialFloatArray(m, key, 0, 0, &value, &count) != aiReturn_SUCCESS || count < 1) {
+        return false;
+    }
+    *out = (double)value;
+    return true;
+}
+
+#define KEY(name) KEY_OF(name)       /* Assimp's macros are "key", type, index */
+#define KEY_OF(key, type, index) key /* and type and index are 0 for all of these */
+
+static void note_textures(model *m, const struct aiMaterial *material) {
+    for (int type = 1; type <= AI_TEXTURE_TYPE_MAX; type++) {
+        unsigned count = aiGetMaterialTextureCount(material, (enum aiTextureType)type);
+        for (unsigned i = 0; i < count && i < 16; i++) {
+            struct aiString path = {0};
+            if (aiGetMaterialTexture(material, (enum aiTextureType)type, i, &path, NULL, NULL, NULL,
+                                     NULL, NULL, NULL) != aiReturn_SUCCESS) {
+                continue;
+            }
+            int length = string_length(&path);
+            int skip = length > 60 ? length - 60 : 0; /* the end of a path says most */
+            masu_bake_buffer name = {0};
+            masu_bake_append_text(&name, skip ? "..." : "");
+            append_name(&name, path.data + skip, length - skip);
+            masu_bake_append(&name, ", ", 3);
+            masu_bake_append(&m->textures, "", 1);
+            m->textures.bytes--;
+            if (!strstr((const char *)m->textures.data, (const char *)name.data) &&
+                m->texture_count++ < NAMES_MAX) {
+                masu_bake_append_text(&m->textures, (const char *)name.data);
+            }
+            masu_bake_release(&name);
+        }
+    }
+}
+
+static void convert_color(const struct aiMaterial *from, masu_blob_material *to, double *alpha) {
+    double c[4], gloss;
+    bool linear = get_color(from, KEY(AI_MATKEY_BASE_COLOR), c);
+    if (get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &gloss) &&
+        get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c)) {
+        linear = true; /* glTF's specular-glossiness extension keeps its colour there */
+    }
+    bool found = linear || get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c);
+    for (int i = 0; found && i < 3; i++) {
+        double value = (double)clamped(c[i], 0, 1);
+        to->base_color[i] = clamped(linear ? value : decode_srgb(value), 0, 1);
+    }
+    if (found) *alpha = c[3];
+    double intensity = 1;
+    get_factor(from, KEY(AI_MATKEY_EMISSIVE_INTENSITY), &intensity);
+    if (get_color(from, KEY(AI_MATKEY_COLOR_EMISSIVE), c)) {
+        for (int i = 0; i < 3; i++) {
+            double value = linear ? c[i] : decode_srgb((double)clamped(c[i], 0, 1));
+            to->emissive[i] = clamped(value * intensity, 0, 65504);
+        }
+    }
+}
+
+static void convert_shine(const struct aiMaterial *from, masu_blob_material *to) {
+    double value;
+    to->roughness = 1;
+    if (get_factor(from, KEY(AI_MATKEY_ROUGHNESS_FACTOR), &value)) {
+        to->roughness = clamped(value, 0, 1);
+    } else if (get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &value)) {
+        to->roughness = clamped(1 - value, 0, 1);
+    } else if (get_factor(from, KEY(AI_MATKEY_SHININESS), &value)) {
+        double exponent = (double)clamped(value, 0, 1e9);
+        to->roughness = clamped(pow(2 / (exponent + 2), 0.25), 0, 1);
+    }
+    to->metallic = 0;
+    if (get_factor(from, KEY(AI_MATKEY_METALLIC_FACTOR), &value)) {
+        to->metallic = clamped(value, 0, 1);
+    }
+}
+
+static uint32_t material_of(model *m, unsigned index) {
+    masu_blob_material to = masu_bake_default_material();
+    const struct aiScene *s = m->source;
+    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) {
+        return masu_bake_material(m->piece, &to, "");
+    }
+    if (m->material[index]) return m->material[index] - 1;
+    const struct aiMaterial *from = s->mMaterials[index];
+    double alpha = 1, opacity = 1;
+    convert_color(from, &to, &alpha);
+    convert_shine(from, &to);
+    get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
+    if (alpha * opacity < 0.999) m->transparent++;
+    note_textures(m, from);
+    struct aiString name = {0};
+    aiGetMaterialString(from, AI_MATKEY_NAME, &name);
+    name.data[string_length(&name) < (int)sizeof name.data ? string_length(&name)
+                                                           : (int)sizeof name.data - 1] = '\0';
+    uint32_t result = masu_bake_material(m->piece, &to, name.data);
+    m->material[index] = result + 1;
+    return result;
+}
+
+/* ---- meshes ---- */
+
+static void note_loss(model *m, int kind, uint64_t count, const struct aiMesh *mesh) {
+    loss *l = &m->losses[kind];
+    if (count == 0) return;
+    l->count += count;
+    if (l->meshes++ >= NAMES_MAX) return;
+    masu_bake_append_text(&l->names, l->meshes > 1 ? ", \"" : "\"");
+    append_name(&l->names, mesh->mName.data, string_length(&mesh->mName));
+    masu_bake_append_text(&l->names, "\"");
+}
+
+static void note_losses(model *m, const struct aiMesh *mesh, const masu_bake_losses *lost) {
+    m->triangles += lost->triangles;
+    note_loss(m, LOST_INDEX, lost->bad_index, mesh);
+    note_loss(m, LOST_POSITION, lost->bad_position, mesh);
+    note_loss(m, LOST_AREA, lost->degenerate, mesh);
+    note_loss(m, LOST_NORMAL, lost->bad_normals, mesh);
+}
+
+static void report_losses(model *m) {
+    static const char *const what[LOSSES] = {
+        [LOST_INDEX] = "triangles left out, an index is out of range",
+        [LOST_POSITION] = "triangles left out, a vertex is not finite",
+        [LOST_AREA] = "triangles left out, they have no area",
+        [LOST_NORMAL] = "normals made new, they were not usable",
+    };
+    for (int kind = 0; kind < LOSSES; kind++) {
+        loss *l = &m->losses[kind];
+        if (l->count == 0) continue;
+        masu_bake_append(&l->names, "", 1);
+        append_format(m->warnings, "%llu ", (unsigned long long)l->count);
+        if (kind != LOST_NORMAL) {
+            append_format(m->warnings, "of %llu ", (unsigned long long)m->triangles);
+        }
+        append_format(m->warnings, "%s (in %u meshes: ", what[kind], l->meshes);
+        masu_bake_append_text(m->warnings, (const char *)l->names.data);
+        masu_bake_append_text(m->warnings, l->meshes > NAMES_MAX ? ", ...)\n" : ")\n");
+        masu_bake_release(&l->names);
+    }
+}
+
+static void convert_mesh(model *m, unsigned index) {
+    const struct aiMesh *mesh = m->source->mMeshes[index];
+    if (m->mesh_done[index] || !mesh) return;
+    m->mesh_done[index] = true;
+    m->mesh_parts[index].first = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
+    if (!mesh->mVertices || !mesh->mFaces || mesh->mNumVertices == 0 || m->full) return;
+    masu_bake_buffer indices = {0};
+    for (unsigned i = 0; i < mesh->mNumFaces; i++) {
+        const struct aiFace *face = &mesh->mFaces[i];
+        if (face->mNumIndices != 3 || !face->mIndices) continue; /* points and lines */
+        for (int k = 0; k < 3; k++) {
+            uint32_t corner = face->mIndices[k];
+            masu_bake_append(&indices, &corner, sizeof corner);
+        }
+    }
+    _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float), "Assimp built for double");
+    masu_bake_triangles triangles = {
+        .positions = &mesh->mVertices->x,
+        .normals = mesh->mNormals ? &mesh->mNormals->x : NULL,
+        .vertex_count = mesh->mNumVertices,
+        .indices = (const uint32_t *)(const void *)indices.data,
+        .index_count = indices.bytes / sizeof(uint32_t),
+        .material = material_of(m, mesh->mMaterialIndex),
+    };
+    masu_bake_losses lost = {0};
+    if (!masu_bake_add_triangles(m->piece, &triangles, &lost)) m->full = true;
+    masu_bake_release(&indices);
+    note_losses(m, mesh, &lost);
+    if (mesh->mNumBones) m->skins++;
+    m->mesh_parts[index].count =
+        (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES) - m->mesh_parts[index].first;
+}
+
+/* ---- nodes ---- */
+
+static bool same_set(const group *g, const unsigned *meshes, unsigned count) {
+    return g->count == count && memcmp(g->meshes, meshes, count * sizeof *meshes) == 0;
+}
+
+/* The masu mesh of a set of aiMeshes, or NONE if nothing of it can be drawn. */
+static uint32_t mesh_of(model *m, const unsigned *meshes, unsigned count) {
+    unsigned total = m->source->mNumMeshes, first = total;
+    for (unsigned i = 0; i < count; i++) {
+        if (meshes[i] < total && m->mesh_parts[meshes[i]].count && first == total) {
+            first = meshes[i];
+        }
+    }
+    if (first == total) return MASU_BLOB_NONE;
+    for (const group *g = m->groups[first]; g; g = g->next) {
+        if (same_set(g, meshes, count)) return g->mesh;
+    }
+    uint32_t from = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
+    for (unsigned i = 0; i < count; i++) {
+        if (meshes[i] >= total) continue;
+        range parts = m->mesh_parts[meshes[i]];
+        masu_bake_append(&m->piece->section[MASU_BLOB_PRIMITIVES], m->parts + parts.first,
+                         parts.count * sizeof *m->parts);
+    }
+    const struct aiString *name = &m->source->mMeshes[first]->mName;
+    group *g = masu_bake_allocate(sizeof *g);
+    uint32_t to = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
+    *g = (group){meshes, count, 0, m->groups[first]};
+    g->mesh = masu_bake_mesh(m->piece, from, to - from,
+                             masu_bake_name(m->piece, name->data, (size_t)string_length(name)));
+    m->groups[first] = g;
+    return g->mesh;
+}
+
+typedef struct visit {
+    const struct aiNode *node;
+    masu_bake_affine parent; /* to world */
+    uint32_t parent_instance;
+} visit;
+
+static masu_bake_affine node_transform(const struct aiNode *node) {
+    const struct aiMatrix4x4 *t = &node->mTransformation;
+    const ai_real rows[12] = {t->a1, t->a2, t->a3, t->a4, t->b1, t->b2,
+                              t->b3, t->b4, t->c1, t->c2, t->c3, t->c4};
+    masu_bake_affine a;
+    for (int i = 0; i < 12; i++) a.m[i] = (double)rows[i];
+    return a;
+}
+
+/* Depth first with a stack of our own: a deep chain of nodes must not use up the machine's. With
+ * `convert`, the meshes of every node are converted; without, instances are made. */
+static bool walk(model *m, bool convert) {
+    masu_bake_buffer stack = {0};
+    visit start = {m->source->mRootNode, masu_bake_identity(), MASU_BLOB_NONE};
+    masu_bake_append(&stack, &start, sizeof start);
+    uint32_t visited = 0;
+    while (stack.bytes && visited++ < NODES_MAX) {
+        visit v;
+        stack.bytes -= sizeof v;
+        memcpy(&v, stack.data + stack.bytes, sizeof v);
+        if (!v.node) continue;
+        masu_bake_affine own = node_transform(v.node);
+        masu_bake_affine world = masu_bake_multiply(&v.parent, &own);
+        uint32_t instance = v.parent_instance;
+        const unsigned *meshes = v.node->mMeshes;
+        unsigned count = meshes ? v.node->mNumMeshes : 0;
+        if (convert) {
+            for (unsigned i = 0; i < count; i++) {
+                if (meshes[i] < m->source->mNumMeshes) convert_mesh(m, meshes[i]);
+            }
+        } else {
+            uint32_t mesh = count ? mesh_of(m, meshes, count) : MASU_BLOB_NONE;
+            if (mesh != MASU_BLOB_NONE) {
+                const struct aiString *name = &v.node->mName;
+                uint32_t text = masu_bake_name(m->piece, name->data, (size_t)string_length(name));
+                uint32_t made =
+                    masu_bake_instance(m->piece, &world, mesh, v.parent_instance, text);
+                if (made == MASU_BLOB_NONE) m->bad_nodes++;
+                else instance = made;
+            }
+        }
+        unsigned children = v.node->mChildren ? v.node->mNumChildren : 0;
+        if (children > NODES_MAX) break;
+        for (unsigned i = children; i > 0; i--) { /* reversed: the first child is popped first */
+            visit child = {v.node->mChildren[i - 1], world, instance};
+            masu_bake_append(&stack, &child, sizeof child);
+        }
+    }
+    bool finished = stack.bytes == 0;
+    masu_bake_release(&stack);
+    return finished;
+}
+
+/* A file may hold meshes and no nodes: each is then shown once, where it is. */
+static void show_all(model *m) {
+    masu_bake_append_text(m->warnings, "no nodes; every mesh is shown once\n");
+    unsigned *order = masu_bake_allocate(m->source->mNumMeshes * sizeof *order);
+    masu_bake_affine identity = masu_bake_identity();
+    for (unsigned i = 0; i < m->source->mNumMeshes; i++) {
+        order[i] = i;
+        uint32_t mesh = mesh_of(m, &order[i], 1);
+        if (mesh != MASU_BLOB_NONE) {
+            masu_bake_instance(m->piece, &identity, mesh, MASU_BLOB_NONE, MASU_BLOB_NONE);
+        }
+    }
+    for (unsigned i = 0; i < m->source->mNumMeshes; i++) { /* they point into `order` */
+        while (m->groups[i]) {
+            group *g = m->groups[i];
+            m->groups[i] = g->next;
+            free(g);
+        }
+    }
+    free(order);
+}
+
+static void report(model *m) {
+    masu_bake_buffer *w = m->warnings;
+    report_losses(m);
+    if (m->bad_nodes) {
+        append_format(w, "%u nodes dropped: their transform is not finite\n", m->bad_nodes);
+    }
+    if (m->texture_count) {
+        m->textures.bytes -= 2; /* the last ", " */
+        masu_bake_append(&m->textures, "", 1);
+        append_format(w, "textures are not supported, the materials' factors are used: %s%s\n",
+                      (const char *)m->textures.data,
+                      m->texture_count > NAMES_MAX ? ", ..." : "");
+    }
+    if (m->transparent) {
+        append_format(w, "%u transparent materials are drawn opaque\n", m->transparent);
+    }
+    if (m->skins || m->source->mNumAnimations) {
+        masu_bake_append_text(w, "animation is not supported, the rest pose is used\n");
+    }
+}
+
+static void *allocate_zeroed(size_t count, size_t size) {
+    void *memory = masu_bake_allocate(count * size);
+    memset(memory, 0, count * size);
+    return memory;
+}
+
+static void convert(model *m, masu_bake_buffer *error) {
+    const struct aiScene *s = m->source;
+    unsigned meshes = s->mMeshes ? s->mNumMeshes : 0;
+    m->mesh_parts = allocate_zeroed(meshes, sizeof *m->mesh_parts);
+    m->mesh_done = allocate_zeroed(meshes, sizeof *m->mesh_done);
+    m->groups = allocate_zeroed(meshes, sizeof *m->groups);
+    m->material = allocate_zeroed(s->mNumMaterials, sizeof *m->material);
+    bool finished = true;
+    if (s->mRootNode) finished = walk(m, true);
+    else for (unsigned i = 0; i < meshes; i++) convert_mesh(m, i);
+    masu_bake_buffer parts = m->piece->section[MASU_BLOB_PRIMITIVES];
+    m->piece->section[MASU_BLOB_PRIMITIVES] = (masu_bake_buffer){0};
+    m->parts = (masu_blob_primitive *)(void *)parts.data;
+    if (!finished) {
+        masu_bake_append_text(error, "its nodes form a cycle, or are more than 4 million");
+    } else if (m->full) {
+        masu_bake_append_text(error, "more than 2^31 - 1 vertices or indices");
+    } else if (parts.bytes == 0) {
+        masu_bake_append_text(error, "it holds no triangles that could be drawn");
+        report_losses(m);
+        if (m->warnings->bytes) { /* one line says why */
+            masu_bake_append_text(error, "; ");
+            const char *end = memchr(m->warnings->data, '\n', m->warnings->bytes);
+            size_t length = end ? (size_t)(end - (const char *)m->warnings->data) : 0;
+            masu_bake_append(error, m->warnings->data, length);
+        }
+    } else {
+        if (s->mRootNode) walk(m, false);
+        else show_all(m);
+        report(m);
+        if (masu_bake_count(m->piece, MASU_BLOB_INSTANCES) == 0) {
+            masu_bake_append_text(error, "no node shows its meshes with a finite transform");
+        }
+    }
+    masu_bake_release(&parts);
+}
+
+void masu_bake_read_model(const char *path, masu_bake_content *piece, masu_bake_buffer *warnings,
+                          masu_bake_buffer *error) {
+    struct aiPropertyStore *properties = aiCreatePropertyStore();
+    if (properties) {
+        aiSetImportPropertyFloat(properties, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, CREASE_DEGREES);
+        aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+    }
+    /* Welding, dropping bad triangles and the like are done here, where every index is checked:
+     * each step of the library is one more that hostile data can break. */
+    unsigned flags = aiProcess_Triangulate | aiProcess_GenSmoothNormals;
+    const struct aiScene *scene = aiImportFileExWithProperties(path, flags, NULL, properties);
+    if (!scene) {
+        const char *why = aiGetErrorString();
+        masu_bake_append_text(error, why && *why ? why : "the importer gives no reason");
+        return; /* this process ends now: nothing is worth releasing */
+    }
+    model m = {.source = scene, .piece = piece, .warnings = warnings};
+    convert(&m, error);
+}

@@ -1,0 +1,297 @@
+/* bake_place.c: the "models" of a scene. A file is imported once however often it is placed; each
+ * placement is   translate * fit * rotate * scale   of the model as its file has it. */
+#include "bake_file.h"
+#include "bake_import.h"
+#include "bake_scene.h"
+#include "bake_shape.h"
+#include "cli.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ASSIMP_PREFIX "@assimp/"
+
+/* Imported files, by resolved path. */
+typedef struct shelf {
+    struct shelf *next;
+    char *path;
+    masu_bake_content piece;
+    masu_bake_residence residence;
+} shelf;
+
+static char *resolve(const char *name, const char *directory, const char *models_directory) {
+    size_t prefix = strlen(ASSIMP_PREFIX);
+    if (strncmp(name, ASSIMP_PREFIX, prefix) == 0) {
+        return masu_bake_join(models_directory, name + prefix);
+    }
+    if (name[0] == '/' || strcmp(directory, ".") == 0) directory = NULL;
+    if (directory) return masu_bake_join(directory, name);
+    char *copy = masu_bake_allocate(strlen(name) + 1);
+    strcpy(copy, name);
+    return copy;
+}
+
+static shelf *fetch(shelf **shelves, char *path) {
+    for (shelf *s = *shelves; s; s = s->next) {
+        if (strcmp(s->path, path) == 0) {
+            free(path);
+            return s;
+        }
+    }
+    shelf *s = masu_bake_allocate(sizeof *s);
+    *s = (shelf){.next = *shelves, .path = path};
+    *shelves = s;
+    masu_cli_progress("importing %s", path);
+    return masu_bake_import(path, &s->piece) ? s : NULL;
+}
+
+/* ---- procedural meshes ---- */
+
+static bool read_sphere(const masu_bake_json *at, masu_bake_content *piece) {
+    static const char *const members[] = {"radius", "subdivisions", NULL};
+    double radius = 1, subdivisions = 5;
+    if (!masu_bake_json_object(at, members) ||
+        !masu_bake_json_number(at, "radius", 1e-6, 1e6, &radius) ||
+        !masu_bake_json_number(at, "subdivisions", 0, MASU_BAKE_SUBDIVISIONS_MAX, &subdivisions)) {
+        return false;
+    }
+    if (subdivisions != floor(subdivisions)) {
+        return masu_bake_json_wrong(at, "subdivisions must be a whole number");
+    }
+    masu_bake_sphere(piece, radius, (uint32_t)subdivisions);
+    return true;
+}
+
+static bool read_box(const masu_bake_json *at, masu_bake_content *piece) {
+    static const char *const members[] = {"size", NULL};
+    masu_bake_vec3 size = {1, 1, 1};
+    if (!masu_bake_json_object(at, members) ||
+        !masu_bake_json_vec3(at, "size", 1e-6, 1e6, &size)) {
+        return false;
+    }
+    masu_bake_cuboid(piece, size);
+    return true;
+}
+
+static bool read_plane(const masu_bake_json *at, masu_bake_content *piece) {
+    static const char *const members[] = {"size_x", "size_z", NULL};
+    double x = 1, z = 1;
+    if (!masu_bake_json_object(at, members) ||
+        !masu_bake_json_number(at, "size_x", 1e-6, 1e6, &x) ||
+        !masu_bake_json_number(at, "size_z", 1e-6, 1e6, &z)) {
+        return false;
+    }
+    masu_bake_plane(piece, x, z);
+    return true;
+}
+
+static bool read_shape(const masu_bake_json *mesh, masu_bake_content *piece) {
+    static const char *const members[] = {"sphere", "box", "plane", NULL};
+    if (!masu_bake_json_object(mesh, members)) return false;
+    if (json_object_size(mesh->value) != 1) {
+        return masu_bake_json_wrong(mesh, "needs one of \"sphere\", \"box\", \"plane\"");
+    }
+    masu_bake_json sphere = masu_bake_json_member(mesh, "sphere");
+    masu_bake_json box = masu_bake_json_member(mesh, "box");
+    masu_bake_json plane = masu_bake_json_member(mesh, "plane");
+    if (sphere.value) return read_sphere(&sphere, piece);
+    return box.value ? read_box(&box, piece) : read_plane(&plane, piece);
+}
+
+/* ---- placement ---- */
+
+static bool read_scale(const masu_bake_json *model, masu_bake_affine *out) {
+    masu_bake_json at = masu_bake_json_member(model, "scale");
+    masu_bake_vec3 scale = {1, 1, 1};
+    if (json_is_number(at.value)) {
+        if (!masu_bake_json_number(model, "scale", -1e9, 1e9, &scale.x)) return false;
+        scale.y = scale.z = scale.x;
+    } else if (!masu_bake_json_vec3(model, "scale", -1e9, 1e9, &scale)) {
+        return false;
+    }
+    if (scale.x == 0 || scale.y == 0 || scale.z == 0) {
+        return masu_bake_json_wrong(&at, "must not be zero");
+    }
+    *out = masu_bake_scaling(scale);
+    return true;
+}
+
+static bool read_rotation(const masu_bake_json *model, masu_bake_affine *out) {
+    masu_bake_vec3 angles = {0, 0, 0};
+    if (masu_bake_json_has(model, "rotate") && masu_bake_json_has(model, "rotate_y")) {
+        return masu_bake_json_wrong(model, "give either \"rotate\" or \"rotate_y\"");
+    }
+    if (!masu_bake_json_vec3(model, "rotate", -3600, 3600, &angles) ||
+        !masu_bake_json_number(model, "rotate_y", -3600, 3600, &angles.y)) {
+        return false;
+    }
+    masu_bake_affine x = masu_bake_rotation(0, angles.x), y = masu_bake_rotation(1, angles.y);
+    masu_bake_affine z = masu_bake_rotation(2, angles.z), yx = masu_bake_multiply(&y, &x);
+    *out = masu_bake_multiply(&z, &yx);
+    return true;
+}
+
+/* Scales the longest side of the box of what is shown to "size", and moves the box by its centre
+ * or the middle of its lower face. */
+static bool read_fit(const masu_bake_json *fit, const masu_bake_content *piece,
+                     masu_bake_affine *placement) {
+    static const char *const members[] = {"size", "center", "base", NULL};
+    double size = 0;
+    masu_bake_vec3 at = {0, 0, 0};
+    const double most = MASU_BAKE_COORDINATE_MAX;
+    if (!masu_bake_json_object(fit, members) ||
+        !masu_bake_json_number(fit, "size", 1e-6, 1e9, &size) ||
+        !masu_bake_json_vec3(fit, "center", -most, most, &at) ||
+        !masu_bake_json_vec3(fit, "base", -most, most, &at)) {
+        return false;
+    }
+    bool center = masu_bake_json_has(fit, "center"), base = masu_bake_json_has(fit, "base");
+    if (center && base) return masu_bake_json_wrong(fit, "give either \"center\" or \"base\"");
+    masu_bake_box box = masu_bake_bounds(piece, placement);
+    masu_bake_vec3 extent = masu_bake_sub(box.high, box.low);
+    double longest = fmax(extent.x, fmax(extent.y, extent.z));
+    double factor = 1;
+    if (masu_bake_json_has(fit, "size")) {
+        factor = size / longest;
+        if (!(longest > 0) || !(factor <= MASU_BAKE_COORDINATE_MAX)) {
+            return masu_bake_json_wrong(fit, "the model has no extent to scale");
+        }
+    }
+    masu_bake_affine scale = masu_bake_scaling(masu_bake_v3(factor, factor, factor));
+    *placement = masu_bake_multiply(&scale, placement);
+    if (center || base) {
+        masu_bake_vec3 from = masu_bake_mad(box.low, extent, 0.5);
+        if (base) from.y = box.low.y;
+        masu_bake_affine move = masu_bake_translation(masu_bake_mad(at, from, -factor));
+        *placement = masu_bake_multiply(&move, placement);
+    }
+    return true;
+}
+
+static bool read_placement(const masu_bake_json *model, const masu_bake_content *piece,
+                           masu_bake_affine *out) {
+    masu_bake_affine scale, rotation;
+    masu_bake_vec3 translation = {0, 0, 0};
+    const double most = MASU_BAKE_COORDINATE_MAX;
+    if (!read_scale(model, &scale) || !read_rotation(model, &rotation) ||
+        !masu_bake_json_vec3(model, "translate", -most, most, &translation)) {
+        return false;
+    }
+    *out = masu_bake_multiply(&rotation, &scale);
+    masu_bake_json fit = masu_bake_json_member(model, "fit");
+    if (fit.value && !read_fit(&fit, piece, out)) return false;
+    masu_bake_affine move = masu_bake_translation(translation);
+    *out = masu_bake_multiply(&move, out);
+    return true;
+}
+
+static void store_color(masu_bake_vec3 v, float out[3]) {
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+static bool read_override(const masu_bake_json *model, masu_bake_override *out) {
+    static const char *const members[] = {"base_color", "roughness", "metallic", "emissive", NULL};
+    *out = (masu_bake_override){.value = masu_bake_default_material()};
+    masu_bake_json at = masu_bake_json_member(model, "material");
+    if (!at.value) return true;
+    masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
+    double roughness = 0, metallic = 0;
+    if (!masu_bake_json_object(&at, members) ||
+        !masu_bake_json_vec3(&at, "base_color", 0, 1, &color) ||
+        !masu_bake_json_number(&at, "roughness", 0, 1, &roughness) ||
+        !masu_bake_json_number(&at, "metallic", 0, 1, &metallic) ||
+        !masu_bake_json_vec3(&at, "emissive", 0, 65504, &emissive)) {
+        return false;
+    }
+    out->base_color = masu_bake_json_has(&at, "base_color");
+    out->roughness = masu_bake_json_has(&at, "roughness");
+    out->metallic = masu_bake_json_has(&at, "metallic");
+    out->emissive = masu_bake_json_has(&at, "emissive");
+    store_color(color, out->value.base_color);
+    store_color(emissive, out->value.emissive);
+    out->value.roughness = (float)roughness;
+    out->value.metallic = (float)metallic;
+    return true;
+}
+
+static bool place(const masu_bake_json *model, const masu_bake_content *piece,
+                  masu_bake_residence *residence, masu_bake_content *content) {
+    masu_bake_affine placement;
+    masu_bake_override override;
+    const char *name = NULL;
+    if (!read_placement(model, piece, &placement) || !read_override(model, &override) ||
+        !masu_bake_json_string(model, "name", &name)) {
+        return false;
+    }
+    const char *problem = masu_bake_place(content, piece, residence, &placement, &override, name);
+    return !problem || masu_bake_json_wrong(model, "gives %s", problem);
+}
+
+static bool read_model(const masu_bake_json *model, const char *directory,
+                       const masu_bake_request *request, shelf **shelves,
+                       masu_bake_content *content) {
+    static const char *const members[] = {"file", "mesh", "name", "translate", "rotate", "rotate_y",
+                                          "scale", "fit", "material", NULL};
+    const char *file = NULL;
+    if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file)) {
+        return false;
+    }
+    masu_bake_json mesh = masu_bake_json_member(model, "mesh");
+    if (!file == !mesh.value) {
+        return masu_bake_json_wrong(model, "needs either \"file\" or \"mesh\"");
+    }
+    if (file) {
+        shelf *s = fetch(shelves, resolve(file, directory, request->models_directory));
+        return s && place(model, &s->piece, &s->residence, content);
+    }
+    masu_bake_content piece = {0};
+    masu_bake_residence residence = {0};
+    bool good = read_shape(&mesh, &piece) && place(model, &piece, &residence, content);
+    masu_bake_content_release(&piece);
+    return good;
+}
+
+bool masu_bake_read_models(const masu_bake_json *scene, const char *directory,
+                           const masu_bake_request *request, masu_bake_content *content) {
+    masu_bake_json models = masu_bake_json_member(scene, "models");
+    if (!models.value) return true;
+    if (!masu_bake_json_array(&models, 0)) return false;
+    shelf *shelves = NULL;
+    bool good = true;
+    for (size_t i = 0; good && i < json_array_size(models.value); i++) {
+        masu_bake_json model = masu_bake_json_element(&models, i);
+        good = read_model(&model, directory, request, &shelves, content);
+    }
+    while (shelves) {
+        shelf *s = shelves;
+        shelves = s->next;
+        masu_bake_content_release(&s->piece);
+        free(s->path);
+        free(s);
+    }
+    return good;
+}
+
+bool masu_bake_bare_model(const masu_bake_request *request, masu_bake_content *content) {
+    masu_bake_content piece = {0};
+    masu_bake_residence residence = {0};
+    masu_bake_affine identity = masu_bake_identity();
+    masu_bake_override none = {.base_color = false};
+    masu_cli_progress("importing %s", request->input);
+    bool good = masu_bake_import(request->input, &piece);
+    if (good) {
+        const char *problem =
+            masu_bake_place(content, &piece, &residence, &identity, &none, NULL);
+        if (problem) masu_cli_error("%s: gives %s", request->input, problem);
+        good = !problem;
+    }
+    if (good) {
+        masu_bake_box bounds = masu_bake_bounds(content, &identity);
+        masu_bake_default_look(&bounds, content);
+    }
+    masu_bake_content_release(&piece);
+    return good;
+}

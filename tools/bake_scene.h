@@ -1,0 +1,31 @@
+/* bake_scene.h: what masu-bake is asked to bake, a scene description or a bare model, read into
+ * content that only lacks the order of its instances and the check.
+ *
+ *   bake_scene.c    the scene's JSON (docs/scene.md)
+ *   bake_place.c    models and procedural meshes: import, fit, placement, material override
+ *   bake_look.c     camera, sun, sky, and their defaults */
+#ifndef MASU_BAKE_SCENE_H
+#define MASU_BAKE_SCENE_H
+
+#include "bake_content.h"
+#include "bake_json.h"
+
+typedef struct masu_bake_request {
+    const char *input;
+    const char *models_directory; /* what "@assimp/" stands for */
+} masu_bake_request;
+
+/* Every function here reports its own errors and returns false after one. */
+bool masu_bake_read_scene(const masu_bake_request *request, masu_bake_content *content);
+bool masu_bake_bare_model(const masu_bake_request *request, masu_bake_content *content);
+
+/* The scene's "models" array. `directory`: of the scene file, for relative names. */
+bool masu_bake_read_models(const masu_bake_json *scene, const char *directory,
+                           const masu_bake_request *request, masu_bake_content *content);
+
+/* Camera keys and environment; defaults frame `bounds`, which may be empty. */
+bool masu_bake_read_look(const masu_bake_json *scene, const masu_bake_box *bounds,
+                         masu_bake_content *content);
+void masu_bake_default_look(const masu_bake_box *bounds, masu_bake_content *content);
+
+#endif

@@ -1,0 +1,208 @@
+/* bake_sdf.c: compiling the scene's march shader; see bake_sdf.h. */
+#define _POSIX_C_SOURCE 200809L
+#include "bake_sdf.h"
+#include "bake_file.h"
+#include "bake_process.h"
+#include "cli.h"
+#include "scene_sources.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define GLSL_MAX ((size_t)4 << 20)
+#define SPIRV_MAX ((size_t)64 << 20)
+#define SPIRV_MAGIC 0x07230203u
+#define ERRORS_SHOWN 8
+
+/* ---- laying out the sources ---- */
+
+void masu_bake_param_macro(const char *name, char *out, size_t room) {
+    snprintf(out, room, "MASU_PARAM_%s", name);
+    for (char *c = out; *c; c++) {
+        if (*c >= 'a' && *c <= 'z') *c = (char)(*c - 'a' + 'A');
+    }
+}
+
+static bool write_text(const char *directory, const char *name, const void *text, size_t bytes) {
+    char *path = masu_bake_join(directory, name);
+    char *slash = path + strlen(directory); /* make the directories in between */
+    while ((slash = strchr(slash + 1, '/'))) {
+        *slash = '\0';
+        mkdir(path, 0700);
+        *slash = '/';
+    }
+    FILE *file = fopen(path, "wb");
+    bool good = file && fwrite(text, 1, bytes, file) == bytes;
+    int cause = errno;
+    if (file && fclose(file) != 0) good = false;
+    if (!good) masu_cli_error("cannot write %s: %s", path, strerror(cause));
+    free(path);
+    return good;
+}
+
+static void append_scene_header(masu_bake_buffer *text, const masu_bake_content *content,
+                                const char *glsl_path) {
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
+        const masu_blob_sdf_param *p =
+            &MASU_BAKE_ARRAY(content, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];
+        char macro[128], line[160];
+        masu_bake_param_macro(masu_bake_name_text(content, p->name), macro, sizeof macro);
+        snprintf(line, sizeof line, "#define %s %llu\n", macro, (unsigned long long)i);
+        masu_bake_append_text(text, line);
+    }
+    masu_bake_append_text(text, "#line 1 \"");
+    for (const char *c = glsl_path; *c; c++) {
+        bool plain = *c != '"' && *c != '\\' && (unsigned char)*c >= 0x20;
+        masu_bake_append(text, plain ? c : "?", 1);
+    }
+    masu_bake_append_text(text, "\"\n");
+}
+
+static bool lay_out(const char *directory, const masu_bake_content *content,
+                    const char *glsl_path) {
+    for (size_t i = 0; i < sizeof masu_scene_sources / sizeof masu_scene_sources[0]; i++) {
+        const char *name = masu_scene_sources[i].name, *text = masu_scene_sources[i].text;
+        if (name && !write_text(directory, name, text, strlen(text))) return false;
+    }
+    masu_bake_buffer text = {0}, own = {0};
+    bool good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
+    if (good) {
+        append_scene_header(&text, content, glsl_path);
+        masu_bake_append(&text, own.data, own.bytes);
+        masu_bake_append_text(&text, "\n");
+        good = write_text(directory, "sdf_scene.glsl", text.data, text.bytes);
+    }
+    masu_bake_release(&own);
+    masu_bake_release(&text);
+    return good;
+}
+
+/* ---- running the tools ---- */
+
+/* Without the directory that exists only now: "/tmp/masu-bake-x/march.comp" -> "march.comp". */
+static void hide_directory(char *line, const char *directory) {
+    size_t length = strlen(directory);
+    for (char *at = line; (at = strstr(at, directory));) {
+        size_t skip = at[length] == '/' ? length + 1 : length;
+        memmove(at, at + skip, strlen(at + skip) + 1);
+    }
+}
+
+/* glslang says "ERROR: FILE:LINE: message" and a count at the end. */
+static void report_compiler(char *text, const char *directory) {
+    bool about_contract = false;
+    int shown = 0;
+    char *save = NULL;
+    for (char *line = strtok_r(text, "\n", &save); line; line = strtok_r(NULL, "\n", &save)) {
+        hide_directory(line, directory);
+        bool error = strncmp(line, "ERROR: ", 7) == 0, warning = strncmp(line, "WARNING: ", 9) == 0;
+        if (warning) masu_cli_warn("%s", line + 9);
+        if (!error || strstr(line, "compilation errors.  No code") || shown >= ERRORS_SHOWN) {
+            continue;
+        }
+        masu_cli_error("%s", line + 7);
+        about_contract = about_contract || strstr(line, "'masu_sdf");
+        shown++;
+    }
+    if (about_contract) {
+        masu_cli_error("the scene's GLSL must define float masu_sdf(vec3) and "
+                       "void masu_sdf_surface(vec3, inout masu_surface)");
+    }
+}
+
+static bool run_tool(const char *const *arguments, const char *package, const char *directory,
+                     const char *glsl_path) {
+    masu_bake_buffer output = {0};
+    masu_bake_result result = masu_bake_run(arguments, MASU_BAKE_TOOL_SECONDS, &output);
+    masu_bake_append(&output, "", 1);
+    char *text = (char *)output.data;
+    bool good = result.end == MASU_BAKE_EXITED && result.code == 0;
+    bool compiler = strcmp(arguments[0], "glslangValidator") == 0;
+    if (good && compiler) {
+        report_compiler(text, directory);
+    } else if (result.end == MASU_BAKE_EXITED && result.code == MASU_BAKE_CANNOT_START) {
+        masu_cli_error("cannot run %s; is it installed? (package %s)", arguments[0], package);
+    } else if (result.end == MASU_BAKE_SIGNALED) {
+        masu_cli_error("%s: %s crashed (signal %d)", glsl_path, arguments[0], result.code);
+    } else if (result.end == MASU_BAKE_TIMEOUT) {
+        masu_cli_error("%s: %s took more than %d seconds", glsl_path, arguments[0], result.code);
+    } else if (result.end == MASU_BAKE_NO_CHILD) {
+        masu_cli_error("cannot start %s: %s", arguments[0], strerror(result.code));
+    } else if (!good && compiler && strstr(text, "ERROR: ")) {
+        report_compiler(text, directory);
+    } else if (!good) {
+        hide_directory(text, directory);
+        text[strcspn(text, "\n")] = '\0';
+        masu_cli_error("%s: %s failed (status %d): %s", glsl_path, arguments[0], result.code, text);
+    }
+    masu_bake_release(&output);
+    return good;
+}
+
+typedef struct paths {
+    char *source, *raw, *optimised, *include_here, *include_scene;
+} paths;
+
+static bool run_tools(const paths *p, bool has_raster, const char *directory,
+                      const char *glsl_path) {
+    const char *const compile[] = {"glslangValidator", "-V", "--target-env", "vulkan1.1",
+                                   p->include_here, p->include_scene,
+                                   has_raster ? "-DMASU_HAS_RASTER=1" : "-DMASU_HAS_RASTER=0",
+                                   "-S", "comp", "-o", p->raw, p->source, NULL};
+    const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
+    const char *const optimise[] = {"spirv-opt", "--target-env=vulkan1.1", "-O", "--strip-debug",
+                                    p->raw, "-o", p->optimised, NULL};
+    const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.1", p->optimised, NULL};
+    const struct {
+        const char *const *arguments;
+        const char *package;
+    } steps[] = {{compile, "glslang-tools"},
+                 {check, "spirv-tools"},
+                 {optimise, "spirv-tools"},
+                 {recheck, "spirv-tools"}};
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        masu_cli_progress("%s %s", steps[i].arguments[0], glsl_path);
+        if (!run_tool(steps[i].arguments, steps[i].package, directory, glsl_path)) return false;
+    }
+    return true;
+}
+
+static bool take_spirv(masu_bake_content *content, const char *path, const char *glsl_path) {
+    masu_bake_buffer *spirv = &content->section[MASU_BLOB_MARCH_SPIRV];
+    if (!masu_bake_read_file(path, SPIRV_MAX, spirv)) return false;
+    uint32_t magic = 0;
+    if (spirv->bytes >= 20) memcpy(&magic, spirv->data, sizeof magic);
+    if (magic == SPIRV_MAGIC && spirv->bytes % 4 == 0) return true;
+    masu_cli_error("%s: spirv-opt wrote no SPIR-V", glsl_path);
+    return false;
+}
+
+static char *include_option(const char *directory) {
+    size_t bytes = strlen(directory) + 3;
+    char *option = masu_bake_allocate(bytes);
+    snprintf(option, bytes, "-I%s", directory);
+    return option;
+}
+
+bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path) {
+    const char *directory = masu_bake_temporary_directory();
+    if (!directory) return false;
+    char *scene_directory = masu_bake_directory_of(glsl_path);
+    paths p = {masu_bake_join(directory, "march.comp"), masu_bake_join(directory, "march.raw.spv"),
+               masu_bake_join(directory, "march.spv"), include_option(directory),
+               include_option(scene_directory)};
+    bool has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0;
+    bool good = lay_out(directory, content, glsl_path) &&
+                run_tools(&p, has_raster, directory, glsl_path) &&
+                take_spirv(content, p.optimised, glsl_path);
+    free(p.source);
+    free(p.raw);
+    free(p.optimised);
+    free(p.include_here);
+    free(p.include_scene);
+    free(scene_directory);
+    return good;
+}

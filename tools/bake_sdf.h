@@ -1,0 +1,23 @@
+/* bake_sdf.h: the scene's GLSL becomes the march shader that travels in the blob.
+ *
+ * The march shader and its headers are part of masu-bake (scene_sources.h, made by the build). They
+ * are laid out in a temporary directory together with sdf_scene.glsl, which holds one #define per
+ * parameter and the scene's own text, and go through glslangValidator, spirv-val, spirv-opt and
+ * spirv-val again: the optimiser is a program like any other. docs/scene.md states what the
+ * scene's GLSL must define. */
+#ifndef MASU_BAKE_SDF_H
+#define MASU_BAKE_SDF_H
+
+#include "bake_content.h"
+
+#define MASU_BAKE_TOOL_SECONDS 120
+
+/* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances and SDF parameters are
+ * complete: they decide how the shader is compiled. Reports errors under the GLSL's own name and
+ * lines. */
+bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path);
+
+/* "MASU_PARAM_" and the name in upper case, cut at `room`. */
+void masu_bake_param_macro(const char *name, char *out, size_t room);
+
+#endif

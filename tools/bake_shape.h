@@ -1,0 +1,16 @@
+/* bake_shape.h: meshes made by formula, for test scenes. Each becomes a piece with one mesh, one
+ * instance and the default material, centred at the origin. */
+#ifndef MASU_BAKE_SHAPE_H
+#define MASU_BAKE_SHAPE_H
+
+#include "bake_content.h"
+
+#define MASU_BAKE_SUBDIVISIONS_MAX 8 /* 20 * 4^8 = 1,310,720 triangles */
+
+/* An icosahedron whose triangles are split in four `subdivisions` times; vertices on the sphere. */
+void masu_bake_sphere(masu_bake_content *piece, double radius, uint32_t subdivisions);
+void masu_bake_cuboid(masu_bake_content *piece, masu_bake_vec3 size);
+/* Two triangles in y = 0, facing +Y. */
+void masu_bake_plane(masu_bake_content *piece, double size_x, double size_z);
+
+#endif

@@ -1,0 +1,122 @@
+/* cli.h: the command line of every Masu program, so that all of them read and speak alike.
+ *
+ *   --name VALUE, --name=VALUE, -n VALUE, -nVALUE
+ *                before or after the arguments; `--` ends the options
+ *   -h, --help, --version, --quiet
+ *                in every program and subcommand, handled here
+ *   exit code    0 done, 1 failed, 2 the command line is wrong
+ *   stderr       one line per error or warning, "masu-bake: cannot read x.glb: ...", and a progress
+ *                line, only on a terminal and without --quiet
+ *
+ * A program is a masu_cli_program whose main is one call of masu_cli_main. A program without
+ * subcommands has one command whose name is NULL; `masu` has one per subcommand, and its messages
+ * then begin with "masu render: ". A command's run function pulls its options in the order in which
+ * they were written:
+ *
+ *   static int run(masu_cli *cli) {
+ *       const char *scene = NULL;
+ *       uint32_t frames = 1;
+ *       for (;;) {
+ *           switch (masu_cli_next(cli)) {
+ *           case OPTION_FRAMES:
+ *               if (!masu_cli_uint(cli, 1, 100000, &frames)) return MASU_CLI_USAGE;
+ *               break;
+ *           case MASU_CLI_ARGUMENT: scene = cli->value; break;
+ *           case MASU_CLI_EXIT: return cli->exit_code;    --help, --version, or a reported mistake
+ *           case MASU_CLI_END: return render(scene, frames);
+ *           }
+ *       }
+ *   }
+ *
+ * Nothing here allocates; strings handed out point into argv. The program's name, --quiet and the
+ * progress line are the file's own state: a process is one command line. */
+#ifndef MASU_CLI_H
+#define MASU_CLI_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { MASU_CLI_OK = 0, MASU_CLI_FAILURE = 1, MASU_CLI_USAGE = 2 }; /* exit codes */
+
+enum {
+    MASU_CLI_ARGUMENT = 0, /* cli->value is an argument that is no option */
+    MASU_CLI_END = -1,     /* the command line is read to its end */
+    MASU_CLI_EXIT = -2     /* leave with cli->exit_code */
+};
+
+#if defined(__GNUC__)
+#define MASU_CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define MASU_CLI_PRINTF(text, first)
+#endif
+
+typedef struct masu_cli masu_cli;
+
+typedef struct masu_cli_option {
+    const char *name;  /* long name without dashes; NULL ends the list */
+    const char *value; /* what the help calls the value, "FILE"; NULL: a switch, which takes none */
+    const char *help;  /* may hold '\n': the following lines are indented */
+    int id;            /* > 0; what masu_cli_next returns */
+    char letter;       /* -o as a short form of --output; 0: none */
+} masu_cli_option;
+
+typedef struct masu_cli_command {
+    const char *name;               /* "render"; NULL in a program without subcommands */
+    const char *arguments;          /* of the usage line: "SCENE.masu -o OUT.png [options]" */
+    const char *summary;            /* what it does, one line */
+    const masu_cli_option *options; /* its own; the common three are added. NULL: none */
+    const char *details;            /* text below the options, ending in '\n'; NULL: none */
+    int (*run)(masu_cli *cli);      /* returns an exit code */
+} masu_cli_command;
+
+typedef struct masu_cli_program {
+    const char *name;                        /* "masu-bake" */
+    const char *version;                     /* "1.2.3" */
+    const char *summary;                     /* of the whole program; unused without subcommands */
+    const masu_cli_command *const *commands; /* NULL at the end */
+} masu_cli_program;
+
+struct masu_cli {
+    const masu_cli_program *program;
+    const masu_cli_command *command;
+    const char *value;  /* of the option or argument that masu_cli_next returned */
+    const char *option; /* that option as written, "--size"; for messages */
+    int exit_code;      /* after MASU_CLI_EXIT */
+    int argc, next;     /* what is left of the command line */
+    char **argv;
+    char spelling[64];
+    bool arguments_only; /* after "--" */
+};
+
+/* The body of main: finds the command, runs it, clears the progress line, and makes a failed write
+ * to stdout (a full disk) exit code 1. */
+int masu_cli_main(const masu_cli_program *program, int argc, char **argv);
+
+/* The next option's id, or MASU_CLI_ARGUMENT, _END or _EXIT. */
+int masu_cli_next(masu_cli *cli);
+
+/* Read cli->value. On false the mistake has been reported: return MASU_CLI_USAGE. */
+bool masu_cli_uint(const masu_cli *cli, uint32_t minimum, uint32_t maximum, uint32_t *out);
+bool masu_cli_double(const masu_cli *cli, double minimum, double maximum, double *out);
+/* "1920x1080", each from 1 to maximum */
+bool masu_cli_extent(const masu_cli *cli, uint32_t maximum, uint32_t *width, uint32_t *height);
+/* one of the names; NULL ends the list */
+bool masu_cli_choice(const masu_cli *cli, const char *const *names, uint32_t *index);
+
+/* One line on stderr behind the program's name; control characters become '?', so that a name out
+ * of a file cannot forge lines. Each returns its exit code, for `return masu_cli_error(...)`; the
+ * usage form adds "(see NAME --help)". */
+int masu_cli_error(const char *format, ...) MASU_CLI_PRINTF(1, 2);
+int masu_cli_usage_error(const char *format, ...) MASU_CLI_PRINTF(1, 2);
+
+/* "NAME: warning: ...", with --quiet too. */
+void masu_cli_warn(const char *format, ...) MASU_CLI_PRINTF(1, 2);
+uint32_t masu_cli_warnings(void); /* how many so far */
+
+/* What is going on now: replaced by the next one, wiped by any message and at the end. */
+void masu_cli_progress(const char *format, ...) MASU_CLI_PRINTF(1, 2);
+void masu_cli_progress_clear(void);
+
+bool masu_cli_quiet(void); /* --quiet has been read */
+
+#endif

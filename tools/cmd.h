@@ -1,0 +1,39 @@
+/* cmd.h: the commands of `masu`, and what they share: the options about the device, and JSON. */
+#ifndef MASU_CMD_H
+#define MASU_CMD_H
+
+#include "cli.h"
+#include "session.h"
+
+#include <jansson.h>
+
+extern const masu_cli_command masu_cmd_render;
+extern const masu_cli_command masu_cmd_upscale;
+extern const masu_cli_command masu_cmd_plan;
+
+/* Options of every command that opens a device; ids from 900 on. */
+enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };
+#define MASU_DEVICE_OPTIONS                                                                                            \
+    {"device", "NAME|INDEX", "GPU by index or part of its name (default: the first that suits)", MASU_OPTION_DEVICE, 0}, \
+        {"validate", NULL, "run under the Khronos validation layer, with synchronisation checks;\n"                    \
+                           "any message makes the exit code 1",                                                        \
+         MASU_OPTION_VALIDATE, 0},                                                                                     \
+    {                                                                                                                  \
+        "gpu-av", NULL, "run under the layer's GPU-assisted shader checks instead (slow)", MASU_OPTION_GPU_AV, 0       \
+    }
+
+/* Handles one of them; false if the id is another's. */
+bool masu_device_option(masu_cli *cli, int id, masu_headless_desc *host);
+
+/* Validation messages go to stderr as warnings; at the end they are a failure. */
+void masu_print_message(void *user, const char *text);
+int masu_finish_validation(const masu_headless *host, int code);
+
+/* Driver, versions and memory of a session, as JSON objects (new references). */
+json_t *masu_json_device(const masu_headless *host);
+json_t *masu_json_memory(const masu_memory *memory);
+
+/* Prints to a file atomically, or to stdout for "-". Returns an exit code, having reported a failure. Takes the reference. */
+int masu_json_write(json_t *json, const char *path);
+
+#endif
