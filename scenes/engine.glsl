@@ -12,17 +12,19 @@
  */
 
 /* As in engine.json: the far end of the world is painted with the light of the sky. */
-const vec3 horizon = vec3(0.80, 0.58, 0.44);
+const vec3 horizon = vec3(1.05, 0.62, 0.34);
 const vec3 sun_direction = vec3(-0.7660, 0.3420, 0.5443);
-const vec3 sun_color = vec3(2.30, 1.58, 0.94);
-const vec3 ambient = vec3(0.17, 0.21, 0.30);
+const vec3 sun_color = vec3(2.10, 1.38, 0.78);
+const vec3 ambient = vec3(0.19, 0.21, 0.32);
 
 const float furrow_depth = 0.011;
 const float furrow_number = 34.0; /* radians per metre */
 const float clearing = 10.5;      /* no pillar stands on this circle: none is cut by it */
 const float pillar_spacing = 6.0;
-const vec3 ring_center = vec3(0.9, 2.05, -5.6);
-const vec3 cube_center = vec3(8.2, 1.3, -9.5);
+const vec3 ring_center = vec3(-1.75, 1.48, -5.6);
+const float ring_radius = 2.15;
+const vec3 cube_center = vec3(-8.5, 1.25, -6.3);
+const float cube_half = 1.7;
 
 float smooth_min(float a, float b, float k)
 {
@@ -57,7 +59,7 @@ float stones(vec3 p)
 {
     float d = column(p, vec2(0.0, 0.0), 0.52, 0.56);
     d = smooth_min(d, column(p, vec2(-0.93, 0.50), 0.48, 0.30), 0.05);
-    d = smooth_min(d, column(p, vec2(0.90, -0.52), 0.46, 0.42), 0.05);
+    d = smooth_min(d, column(p, vec2(0.86, -0.30), 0.46, 0.62), 0.05);
     d = smooth_min(d, column(p, vec2(0.06, 0.98), 0.40, 0.16), 0.05);
     d = smooth_min(d, length(p - vec3(-2.9, -0.15, -1.1)) - 0.62, 0.25);
     d = smooth_min(d, length(p - vec3(-3.5, -0.12, -0.7)) - 0.40, 0.25);
@@ -86,31 +88,45 @@ float sand(vec3 p)
 
 /* ---- ring, cube, pillars ---- */
 
-float ring(vec3 p)
+vec3 to_ring(vec3 p)
 {
     vec3 q = p - ring_center;
-    q.xz = turned(q.xz, 0.9553, 0.2955);
-    float d = length(vec2(length(q.xy) - 2.3, q.z)) - 0.16;
-    /* 24 beads: the plane folded by reflections into one sector of 15 degrees. */
-    vec2 b = abs(q.xy);
-    b = b.y > b.x ? b.yx : b;                                               /* 8 sectors of 45 */
-    b -= 2.0 * min(dot(b, vec2(0.2588190, -0.9659258)), 0.0) * vec2(0.2588190, -0.9659258);
-    float bead = length(vec3(b - vec2(2.3 * 0.9914449, 2.3 * 0.1305262), q.z)) - 0.27;
-    return smooth_min(d, bead, 0.22);
+    q.xz = turned(q.xz, 0.99, 0.1411);
+    return q;
 }
 
-float box(vec3 p, float h)
+float hoop(vec3 q)
+{
+    return length(vec2(length(q.xy) - ring_radius, q.z)) - 0.15;
+}
+
+/* 24 beads: reflections fold the plane into one sector of 15 degrees with a bead in its middle. */
+float beads(vec3 q)
+{
+    const vec2 fold = vec2(0.2588190, -0.9659258);
+    vec2 b = abs(q.xy);
+    b = b.y > b.x ? b.yx : b;
+    b -= 2.0 * min(dot(b, fold), 0.0) * fold;
+    b.y = abs(b.y);
+    return length(vec3(b - ring_radius * vec2(0.9914449, 0.1305262), q.z)) - 0.215;
+}
+
+float ring(vec3 q)
+{
+    return smooth_min(hoop(q), beads(q), 0.15);
+}
+
+float box(vec3 p, vec3 h)
 {
     vec3 q = abs(p) - h;
     return length(max(q, vec3(0.0))) + min(max(q.x, max(q.y, q.z)), 0.0);
 }
 
-/* Three levels. Each cuts square tunnels, repeated in cells that are mirror images of each other. */
+/* Three levels. Each cuts square tunnels, repeated in cells that mirror each other. */
 float menger(vec3 p)
 {
-    const float h = 1.8;
-    float d = box(p, h);
-    float cell = 2.0 * h;
+    float d = box(p, vec3(cube_half));
+    float cell = 2.0 * cube_half;
     for (int i = 0; i < 3; i++) {
         vec3 q = abs(p - cell * round(p / cell));
         q = i == 0 ? abs(p) : q;
@@ -130,13 +146,15 @@ vec3 to_cube(vec3 p)
     return q;
 }
 
+/* A stone lantern; the cell's own, since all are alike and symmetric in their cells. */
 float pillars(vec3 p)
 {
     vec2 q = p.xz - pillar_spacing * round(p.xz / pillar_spacing);
-    float r = length(q);
-    vec2 shaft = vec2(r - 0.30, p.y - 2.3);
-    float d = min(max(shaft.x, shaft.y), 0.0) + length(max(shaft, vec2(0.0))) - 0.06;
-    d = smooth_min(d, length(vec2(r, p.y - 2.95)) - 0.52, 0.10);
+    vec3 local = vec3(q.x, p.y, q.y);
+    vec2 shaft = vec2(length(q) - 0.17, p.y - 1.9);
+    float d = min(max(shaft.x, shaft.y), 0.0) + length(max(shaft, vec2(0.0))) - 0.05;
+    d = smooth_min(d, box(local - vec3(0.0, 2.25, 0.0), vec3(0.26)) - 0.08, 0.20);
+    d = smooth_min(d, box(local - vec3(0.0, 2.72, 0.0), vec3(0.56, 0.02, 0.56)) - 0.06, 0.12);
     return max(d, clearing - length(p.xz));
 }
 
@@ -145,10 +163,10 @@ float masu_sdf(vec3 p)
     float d = sand(p);
     d = smooth_min(d, stones(p), 0.06);
     d = min(d, pillars(p));
-    d = min(d, ring(p));
+    d = min(d, ring(to_ring(p)));
     vec3 q = to_cube(p);
     /* The cube's tunnels only count where its box is nearer than all the rest. */
-    if (box(q, 1.8) < d) {
+    if (box(q, vec3(cube_half)) < d) {
         d = min(d, menger(q));
     }
     return d;
@@ -156,10 +174,79 @@ float masu_sdf(vec3 p)
 
 /* ---- surfaces ---- */
 
+/* A share of the lanterns is lit, evenly spread: a two-dimensional golden-ratio sequence. */
+bool lantern_is_lit(vec2 cell)
+{
+    float order = fract(0.7548777 * cell.x + 0.5698403 * cell.y + 0.17);
+    return order < masu_param(MASU_PARAM_LANTERNS);
+}
+
+/* What the lighting pass would make of a rough surface; for the mist, which it does not know. */
+vec3 rough_light(vec3 albedo, vec3 normal)
+{
+    return albedo * (sun_color * max(dot(normal, sun_direction), 0.0) + ambient);
+}
+
+vec3 pillar_normal(vec3 p)
+{
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; i++) {
+        vec3 corner = vec3(i == 1 || i == 3 ? 1.0 : -1.0, i >= 2 ? 1.0 : -1.0,
+                           i == 0 || i == 3 ? 1.0 : -1.0);
+        sum += corner * pillars(p + 0.02 * corner);
+    }
+    return masu_normalize(sum, vec3(0.0, 1.0, 0.0));
+}
+
+void pillar_surface(vec3 p, inout masu_surface s)
+{
+    s.albedo = vec3(0.42, 0.38, 0.34);
+    s.roughness = 0.9;
+    float mist = smoothstep(16.0, 100.0, length(p.xz));
+    vec2 cell = round(p.xz / pillar_spacing);
+    if (abs(p.y - 2.27) < 0.24 && lantern_is_lit(cell)) {
+        vec3 flame = mix(vec3(3.2, 1.25, 0.28), vec3(1.5, 0.36, 0.06), 2.0 * abs(p.y - 2.25));
+        float flicker = 0.9 + 0.1 * sin(9.0 * masu_time() + 2.4 * cell.x + 5.1 * cell.y);
+        s.emissive = mix(flame * flicker, horizon, mist);
+    } else if (mist > 0.0) {
+        s.emissive = mix(rough_light(s.albedo, pillar_normal(p)), horizon, mist);
+    }
+}
+
 void masu_sdf_surface(vec3 p, inout masu_surface s)
 {
     s.roughness = 1.0;
     s.metallic = 0.0;
     s.emissive = vec3(0.0);
-    s.albedo = vec3(0.5);
+    float d_sand = sand(p);
+    float d_stones = stones(p);
+    vec3 in_ring = to_ring(p);
+    float d_ring = ring(in_ring);
+    float d_pillars = pillars(p);
+    float d_cube = box(to_cube(p), vec3(cube_half));
+    float nearest = min(min(d_sand, d_stones), min(d_ring, d_pillars));
+    if (d_cube < nearest + 0.001) {
+        s.albedo = vec3(0.10, 0.27, 0.25) * mix(0.25, 1.0, exp2(min(d_cube, 0.0) * 4.0));
+        s.roughness = 0.7;
+    } else if (d_pillars <= nearest) {
+        pillar_surface(p, s);
+    } else if (d_ring <= nearest) {
+        float gold = smoothstep(-0.02, 0.06, hoop(in_ring) - beads(in_ring));
+        s.albedo = mix(vec3(0.52, 0.07, 0.025), vec3(0.95, 0.62, 0.26), gold);
+        s.metallic = gold;
+        s.roughness = mix(0.55, 0.32, gold);
+    } else {
+        /* Sand runs out into the colour of the sky; stone comes up through it. */
+        vec3 near_sand = vec3(0.60, 0.52, 0.43);
+        vec3 far_sand = 0.95 * horizon / (sun_color * sun_direction.y + ambient);
+        vec3 grains = mix(near_sand, far_sand, smoothstep(8.0, 100.0, length(p.xz)));
+        vec3 moss = mix(vec3(0.095, 0.10, 0.115), vec3(0.13, 0.17, 0.05),
+                        smoothstep(0.05, 0.45, p.y) * step(p.x, -1.9));
+        float stone = smoothstep(-0.02, 0.02, d_sand - d_stones);
+        s.albedo = mix(grains, moss, stone);
+        s.roughness = mix(1.0, 0.72, stone);
+        /* Oil and shade under the engine. */
+        vec2 under = max(abs(p.xz) - vec2(0.95, 0.2), vec2(0.0));
+        s.albedo *= mix(1.0, mix(0.35, 1.0, smoothstep(0.0, 0.4, length(under))), stone);
+    }
 }

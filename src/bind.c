@@ -130,7 +130,7 @@ masu_result masu_make_views(masu_renderer *m, masu_detail *detail) {
                                                           VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         if (!(m->plan.images[i].usage & viewable)) continue;
         VkResult r = m->vk.CreateImageView(m->vk.device, &info, m->vk.allocator, &m->views[i]);
-        if (r) return masu_fail_vulkan(detail, r, "vkCreateImageView");
+        if (MASU_FAILED(r, m->views[i])) return masu_fail_vulkan(detail, r, "vkCreateImageView");
         masu_name(m, VK_OBJECT_TYPE_IMAGE_VIEW, MASU_HANDLE(m->views[i]), masu_images[i].name);
     }
     m->views[MASU_IMAGE_SOURCE] = m->plan.desc.source.view;

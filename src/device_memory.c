@@ -160,7 +160,7 @@ static masu_result create_buffer(const masu_vk *vk, masu_frame_plan *plan, uint3
                                .size = buffer->bytes,
                                .usage = buffer->usage};
     VkResult r = vk->CreateBuffer(vk->device, &info, vk->allocator, &objects->buffers[b]);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreateBuffer");
+    if (MASU_FAILED(r, objects->buffers[b])) return masu_fail_vulkan(detail, r, "vkCreateBuffer");
     VkMemoryRequirements need;
     vk->GetBufferMemoryRequirements(vk->device, objects->buffers[b], &need);
     buffer->memory_bytes = need.size;
@@ -184,7 +184,7 @@ static masu_result create_image(const masu_vk *vk, masu_frame_plan *plan, uint32
                               .usage = image->usage,
                               .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
     VkResult r = vk->CreateImage(vk->device, &info, vk->allocator, &objects->images[i]);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreateImage");
+    if (MASU_FAILED(r, objects->images[i])) return masu_fail_vulkan(detail, r, "vkCreateImage");
     VkMemoryRequirements need;
     vk->GetImageMemoryRequirements(vk->device, objects->images[i], &need);
     image->bytes = need.size;

@@ -15,6 +15,10 @@ masu_fail(masu_detail *detail, masu_result result, const char *what, uint64_t ne
 /* A Vulkan call that returned `vk` < 0: MASU_ERROR_DEVICE_LOST or MASU_ERROR_VULKAN, naming the call. */
 masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call);
 
+/* True if creation failed; the handle is then null. A driver may leave anything in the output of a call that fails
+ * (specification, "Return Codes"), and unwinding must not destroy that. */
+#define MASU_FAILED(r, handle) ((r) != VK_SUCCESS && ((handle) = VK_NULL_HANDLE, 1))
+
 /* One line to the host's log, if it has one. */
 void masu_log(const masu_desc *desc, masu_log_level level, const char *text);
 

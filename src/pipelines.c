@@ -39,7 +39,7 @@ static masu_result make_module(masu_renderer *m, spirv code, VkShaderModule *mod
                                      .codeSize = (size_t)code.bytes,
                                      .pCode = code.words};
     VkResult r = m->vk.CreateShaderModule(m->vk.device, &info, m->vk.allocator, module);
-    return r ? masu_fail_vulkan(detail, r, "vkCreateShaderModule") : MASU_OK;
+    return MASU_FAILED(r, *module) ? masu_fail_vulkan(detail, r, "vkCreateShaderModule") : MASU_OK;
 }
 
 static uint64_t now(const masu_renderer *m) {
@@ -62,7 +62,8 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
         .pBindings = bindings};
     VkResult r =
         m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, &m->global_layout);
-    return r ? masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout") : MASU_OK;
+    if (MASU_FAILED(r, m->global_layout)) return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
+    return MASU_OK;
 }
 
 /* Set 1: reads first, then writes, in the order of the row. Which images stand behind the bindings may differ from rung to
@@ -91,7 +92,7 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
         .pBindings = bindings};
     VkResult r = m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator,
                                                  &m->pass_layouts[pass]);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
+    if (MASU_FAILED(r, m->pass_layouts[pass])) return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
     VkDescriptorSetLayout sets[] = {m->global_layout, m->pass_layouts[pass]};
     VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(struct masu_push)};
     if (!compute) push.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
@@ -101,7 +102,7 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
     r = m->vk.CreatePipelineLayout(m->vk.device, &layout, m->vk.allocator, &m->layouts[pass]);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreatePipelineLayout");
+    if (MASU_FAILED(r, m->layouts[pass])) return masu_fail_vulkan(detail, r, "vkCreatePipelineLayout");
     masu_name(m, VK_OBJECT_TYPE_PIPELINE_LAYOUT, MASU_HANDLE(m->layouts[pass]), masu_passes[pass].name);
     return MASU_OK;
 }
@@ -129,7 +130,7 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
                                               m->vk.allocator, &m->pipelines[pass]);
     m->pipeline_ns[pass] = now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
+    if (MASU_FAILED(r, m->pipelines[pass])) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
     return MASU_OK;
 }
 
@@ -170,7 +171,7 @@ static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
                                    .subpassCount = 1,
                                    .pSubpasses = &subpass};
     VkResult r = m->vk.CreateRenderPass(m->vk.device, &info, m->vk.allocator, &m->render_pass);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreateRenderPass");
+    if (MASU_FAILED(r, m->render_pass)) return masu_fail_vulkan(detail, r, "vkCreateRenderPass");
     VkFramebufferCreateInfo frame = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
                                      .renderPass = m->render_pass,
                                      .attachmentCount = 3,
@@ -179,7 +180,7 @@ static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
                                      .height = height,
                                      .layers = 1};
     r = m->vk.CreateFramebuffer(m->vk.device, &frame, m->vk.allocator, &m->framebuffer);
-    return r ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer") : MASU_OK;
+    return MASU_FAILED(r, m->framebuffer) ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer") : MASU_OK;
 }
 
 static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule modules[2]) {
@@ -267,7 +268,9 @@ static masu_result make_gbuffer(masu_renderer *m, masu_detail *detail) {
         uint64_t start = now(m);
         VkResult r = create_gbuffer_pipeline(m, modules);
         m->pipeline_ns[MASU_PASS_GBUFFER] = now(m) - start;
-        if (r) result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
+        if (MASU_FAILED(r, m->pipelines[MASU_PASS_GBUFFER])) {
+            result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
+        }
     }
     for (uint32_t i = 0; i < 2; i++) m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);
     return result;
@@ -281,7 +284,7 @@ masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
     VkResult r = m->vk.CreateSampler(m->vk.device, &nearest, m->vk.allocator, &m->sampler);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreateSampler");
+    if (MASU_FAILED(r, m->sampler)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
     masu_result result = make_global_layout(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
         if (masu_passes[p].kind == MASU_PASS_TRANSFER) continue;

@@ -367,7 +367,7 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
                                        .poolSizeCount = sizeof sizes / sizeof *sizes,
                                        .pPoolSizes = sizes};
     VkResult r = m->vk.CreateDescriptorPool(m->vk.device, &info, m->vk.allocator, &m->descriptor_pool);
-    return r ? masu_fail_vulkan(detail, r, "vkCreateDescriptorPool") : MASU_OK;
+    return MASU_FAILED(r, m->descriptor_pool) ? masu_fail_vulkan(detail, r, "vkCreateDescriptorPool") : MASU_OK;
 }
 
 static masu_result allocate_set(masu_renderer *m, VkDescriptorSetLayout layout, VkDescriptorSet *set,
@@ -476,7 +476,7 @@ static masu_result make_command_buffers(masu_renderer *m, uint32_t frames, masu_
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .queueFamilyIndex = m->plan.desc.vulkan.queue_family};
     VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
-    if (r) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
+    if (MASU_FAILED(r, m->command_pool)) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
     VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                         .commandPool = m->command_pool,
                                         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
@@ -493,7 +493,7 @@ static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                   .queryCount = m->plan.desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
     VkResult r = m->vk.CreateQueryPool(m->vk.device, &info, m->vk.allocator, &m->queries);
-    return r ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
+    return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
 masu_result masu_record(masu_renderer *m, masu_detail *detail) {

@@ -3,7 +3,7 @@
  *   bake_scene.c, bake_place.c, bake_look.c   what the scene says          (bake_json.c reads it)
  *   bake_import.c, bake_model.c               a model, read in a child     (bake_process.c)
  *   bake_mesh.c, bake_shape.c                 triangles, given or made
- *   bake_content.c, bake_check.c              the scene being put together and its rules
+ *   bake_content.c, bake_check.c              the scene being put together
  *   bake_sdf.c                                the scene's march shader, by the shader tools
  *   bake_blob.c, bake_file.c                  bytes, and files that are written whole
  *
@@ -67,16 +67,14 @@ static bool write_stats(const char *path, const char *input, const masu_bake_con
     masu_bake_box b = masu_bake_bounds(content, &identity);
     json_t *bounds = json_null();
     if (!masu_bake_box_is_empty(&b)) {
-        bounds = json_pack("[[f,f,f],[f,f,f]]", b.low.x, b.low.y, b.low.z, b.high.x, b.high.y,
-                           b.high.z);
+        bounds =
+            json_pack("[[f,f,f],[f,f,f]]", b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z);
     }
-    json_t *root = json_pack("{s:s, s:I, s:I, s:s, s:I, s:I, s:I, s:o, s:o}", "input", input,
-                             "version", (json_int_t)header.version, "bytes",
-                             (json_int_t)header.bytes, "hash", hash, "triangles",
-                             (json_int_t)t.triangles, "drawn_triangles",
-                             (json_int_t)t.drawn_triangles, "warnings",
-                             (json_int_t)masu_cli_warnings(), "bounds", bounds, "sections",
-                             sections);
+    json_t *root = json_pack(
+        "{s:s, s:I, s:I, s:s, s:I, s:I, s:I, s:o, s:o}", "input", input, "version",
+        (json_int_t)header.version, "bytes", (json_int_t)header.bytes, "hash", hash, "triangles",
+        (json_int_t)t.triangles, "drawn_triangles", (json_int_t)t.drawn_triangles, "warnings",
+        (json_int_t)masu_cli_warnings(), "bounds", bounds, "sections", sections);
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
     json_decref(root);
     if (!text) { /* the input's name is not UTF-8 */
@@ -111,21 +109,25 @@ static bool is_scene(const char *path) {
     return length > 5 && strcmp(path + length - 5, ".json") == 0;
 }
 
+/* The reader that will meet the blob is its judge: nothing is written that it would refuse. */
+static bool accepted(const char *input, const masu_bake_buffer *blob) {
+    masu_scene scene;
+    masu_detail detail = {0};
+    if (masu_scene_bind(blob->data, blob->bytes, &scene, &detail) == MASU_OK) return true;
+    masu_cli_error("%s: %s", input, detail.text);
+    return false;
+}
+
 static bool bake(const masu_bake_request *request, const char *output, const char *stats,
                  masu_bake_content *content) {
     bool good = is_scene(request->input) ? masu_bake_read_scene(request, content)
                                          : masu_bake_bare_model(request, content);
     if (!good) return false;
     masu_bake_sort_instances(content);
-    const char *problem = masu_bake_check(content, false);
-    if (problem) {
-        masu_cli_error("%s: gives %s", request->input, problem);
-        return false;
-    }
-    masu_cli_progress("writing %s", output);
     masu_bake_buffer blob = {0};
     masu_bake_make_blob(content, &blob);
-    good = masu_bake_write_file(output, blob.data, blob.bytes) &&
+    masu_cli_progress("writing %s", output);
+    good = accepted(request->input, &blob) && masu_bake_write_file(output, blob.data, blob.bytes) &&
            (!stats || write_stats(stats, request->input, content, &blob));
     masu_cli_progress_clear();
     if (good && !masu_cli_quiet()) print_summary(output, content, blob.bytes);
@@ -172,8 +174,10 @@ int main(int argc, char **argv) {
         .summary = "turns a model or a scene description into a .masu blob",
         .options = options,
         .details =
-            "A MODEL is any file that Assimp reads (.glb, .gltf, .obj, .ac, ...); it gets a camera\n"
-            "that frames it, a sun and a sky. A SCENE.json places models, a camera path, light and\n"
+            "A MODEL is any file that Assimp reads (.glb, .gltf, .obj, .ac, ...); it gets a "
+            "camera\n"
+            "that frames it, a sun and a sky. A SCENE.json places models, a camera path, light "
+            "and\n"
             "an SDF; docs/scene.md describes it. An SDF needs glslangValidator, spirv-val and\n"
             "spirv-opt. The same input gives the same bytes.\n\n"
             "Exit code: 0 done, 1 failed (one line says why), 2 wrong usage.\n",

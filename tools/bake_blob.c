@@ -40,12 +40,18 @@ void masu_bake_make_blob(const masu_bake_content *content, masu_bake_buffer *out
 
 const char *masu_bake_kind_name(uint32_t kind) {
     static const char *const names[MASU_BLOB_KIND_COUNT] = {
-        [MASU_BLOB_VERTICES] = "vertices",       [MASU_BLOB_INDICES] = "indices",
-        [MASU_BLOB_PRIMITIVES] = "primitives",   [MASU_BLOB_MESHES] = "meshes",
-        [MASU_BLOB_INSTANCES] = "instances",     [MASU_BLOB_MATERIALS] = "materials",
-        [MASU_BLOB_CAMERA_KEYS] = "camera_keys", [MASU_BLOB_ENVIRONMENT] = "environment",
-        [MASU_BLOB_SDF] = "sdf",                 [MASU_BLOB_SDF_PARAMS] = "sdf_params",
-        [MASU_BLOB_MARCH_SPIRV] = "march_spirv", [MASU_BLOB_NAMES] = "names",
+        [MASU_BLOB_VERTICES] = "vertices",
+        [MASU_BLOB_INDICES] = "indices",
+        [MASU_BLOB_PRIMITIVES] = "primitives",
+        [MASU_BLOB_MESHES] = "meshes",
+        [MASU_BLOB_INSTANCES] = "instances",
+        [MASU_BLOB_MATERIALS] = "materials",
+        [MASU_BLOB_CAMERA_KEYS] = "camera_keys",
+        [MASU_BLOB_ENVIRONMENT] = "environment",
+        [MASU_BLOB_SDF] = "sdf",
+        [MASU_BLOB_SDF_PARAMS] = "sdf_params",
+        [MASU_BLOB_MARCH_SPIRV] = "march_spirv",
+        [MASU_BLOB_NAMES] = "names",
     };
     return names[kind];
 }

@@ -1,10 +1,7 @@
-/* bake_check.c: every rule that blob.h promises to a reader, checked on the arrays being baked.
- *
- * Two uses: on a piece that another process handed over, before any of its indices is followed; and
- * on the finished scene, so that masu-bake cannot write a blob that the runtime refuses. */
+/* bake_check.c: what another process has handed over, checked before any of its indices is
+ * followed. The rules are those of blob.h for geometry, instances and materials; the finished scene
+ * is judged by the runtime's own reader, masu_scene_bind. */
 #include "bake_content.h"
-
-#include <string.h>
 
 static bool finite_all(const float *values, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -31,7 +28,8 @@ static bool range_ok(uint32_t first, uint32_t count, uint64_t total) {
 
 static const char *check_sections(const masu_bake_content *c) {
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
-        if (c->section[kind].bytes % masu_bake_stride(kind)) return "a section with half an element";
+        if (c->section[kind].bytes % masu_bake_stride(kind))
+            return "a section with half an element";
         if (masu_bake_count(c, kind) > INT32_MAX) return "a section of 2^31 elements or more";
     }
     const masu_bake_buffer *names = &c->section[MASU_BLOB_NAMES];
@@ -95,7 +93,7 @@ static const char *check_geometry(const masu_bake_content *c) {
     return NULL;
 }
 
-static const char *check_instances(const masu_bake_content *c, bool sorted) {
+static const char *check_instances(const masu_bake_content *c) {
     uint64_t count = masu_bake_count(c, MASU_BLOB_INSTANCES);
     for (uint64_t i = 0; i < count; i++) {
         const masu_blob_instance *n = &MASU_BAKE_INSTANCES(c)[i];
@@ -103,7 +101,6 @@ static const char *check_instances(const masu_bake_content *c, bool sorted) {
         if (n->mesh >= masu_bake_count(c, MASU_BLOB_MESHES)) return "an instance of no mesh";
         if (n->parent != MASU_BLOB_NONE && n->parent >= count) return "a parent out of range";
         if (!name_ok(c, n->name)) return "a name out of range";
-        if (sorted && i > 0 && n->mesh < n[-1].mesh) return "instances that are not in order";
     }
     return NULL;
 }
@@ -120,76 +117,10 @@ static const char *check_materials(const masu_bake_content *c) {
     return NULL;
 }
 
-static const char *check_camera(const masu_bake_content *c) {
-    const masu_blob_camera_key *keys =
-        MASU_BAKE_ARRAY(c, MASU_BLOB_CAMERA_KEYS, const masu_blob_camera_key);
-    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_CAMERA_KEYS); i++) {
-        const masu_blob_camera_key *k = &keys[i];
-        if (!isfinite(k->time) || !finite_all(k->position, 3) || !finite_all(k->target, 3)) {
-            return "a camera key that is not finite";
-        }
-        if (memcmp(k->position, k->target, sizeof k->position) == 0) {
-            return "a camera that looks at itself";
-        }
-        if (!in_range(&k->fov_y, 1, 0.001f, 3.1f)) return "a field of view out of range";
-        if (i > 0 && !(k->time > k[-1].time)) return "camera keys out of order";
-    }
-    return NULL;
-}
-
-static const char *check_environment(const masu_bake_content *c) {
-    if (masu_bake_count(c, MASU_BLOB_ENVIRONMENT) != 1) return "no environment";
-    const masu_blob_environment *e =
-        MASU_BAKE_ARRAY(c, MASU_BLOB_ENVIRONMENT, const masu_blob_environment);
-    double length = masu_bake_length(masu_bake_v3f(e->sun_direction));
-    if (!(fabs(length - 1.0) < 1e-5)) return "a sun direction that is not of unit length";
-    if (!in_range(&e->exposure, 1, 1e-9f, 1e9f) || !in_range(&e->near_distance, 1, 1e-9f, 1e9f) ||
-        !in_range(e->sun_color, 3, 0, 1e9f) || !in_range(e->ambient, 3, 0, 1e9f) ||
-        !in_range(e->sky_zenith, 3, 0, 1e9f) || !in_range(e->sky_horizon, 3, 0, 1e9f)) {
-        return "an environment out of range";
-    }
-    return NULL;
-}
-
-static const char *check_sdf(const masu_bake_content *c) {
-    uint64_t sdfs = masu_bake_count(c, MASU_BLOB_SDF);
-    uint64_t params = masu_bake_count(c, MASU_BLOB_SDF_PARAMS);
-    uint64_t words = masu_bake_count(c, MASU_BLOB_MARCH_SPIRV);
-    if (sdfs > 1 || (sdfs == 1) != (words > 0) || (params > 0 && sdfs == 0) || params > 256) {
-        return "an incomplete SDF";
-    }
-    if (sdfs == 0) return NULL;
-    const masu_blob_sdf *s = MASU_BAKE_ARRAY(c, MASU_BLOB_SDF, const masu_blob_sdf);
-    for (int k = 0; k < 3; k++) {
-        if (!(s->bounds_min[k] < s->bounds_max[k]) || !in_range(&s->bounds_min[k], 1, -1e30f, 1e30f) ||
-            !in_range(&s->bounds_max[k], 1, -1e30f, 1e30f)) {
-            return "SDF bounds that are empty or out of range";
-        }
-    }
-    if (!in_range(&s->lipschitz, 1, 1e-3f, 1e6f) || !in_range(&s->max_distance, 1, 1e-6f, 1e30f)) {
-        return "an SDF constant out of range";
-    }
-    if (s->has_raster != (masu_bake_count(c, MASU_BLOB_INSTANCES) > 0)) {
-        return "an SDF shader for another kind of scene";
-    }
-    for (uint64_t i = 0; i < params; i++) {
-        const masu_blob_sdf_param *p =
-            &MASU_BAKE_ARRAY(c, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];
-        if (!finite_all(&p->value, 3) || !(p->minimum <= p->value && p->value <= p->maximum)) {
-            return "an SDF parameter outside its range";
-        }
-        if (!name_ok(c, p->name)) return "a name out of range";
-    }
-    return NULL;
-}
-
-const char *masu_bake_check(const masu_bake_content *content, bool piece) {
-    const char *problem = check_sections(content);
-    if (!problem) problem = check_materials(content);
-    if (!problem) problem = check_geometry(content);
-    if (!problem) problem = check_instances(content, !piece);
-    if (!problem) problem = check_camera(content);
-    if (!problem && !piece) problem = check_environment(content);
-    if (!problem) problem = check_sdf(content);
+const char *masu_bake_check(const masu_bake_content *piece) {
+    const char *problem = check_sections(piece);
+    if (!problem) problem = check_materials(piece);
+    if (!problem) problem = check_geometry(piece);
+    if (!problem) problem = check_instances(piece);
     return problem;
 }

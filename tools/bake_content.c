@@ -48,8 +48,10 @@ void *masu_bake_append(masu_bake_buffer *buffer, const void *data, size_t bytes)
         buffer->capacity = capacity;
     }
     unsigned char *at = buffer->data + buffer->bytes;
-    if (data) memcpy(at, data, bytes);
-    else memset(at, 0, bytes);
+    if (data)
+        memcpy(at, data, bytes);
+    else
+        memset(at, 0, bytes);
     buffer->bytes = needed;
     return at;
 }
@@ -124,8 +126,8 @@ const char *masu_bake_name_text(const masu_bake_content *content, uint32_t name)
 /* ---- materials, meshes, instances ---- */
 
 masu_blob_material masu_bake_default_material(void) {
-    return (masu_blob_material){.base_color = {0.6f, 0.6f, 0.6f}, .roughness = 0.6f,
-                                .name = MASU_BLOB_NONE};
+    return (masu_blob_material){
+        .base_color = {0.6f, 0.6f, 0.6f}, .roughness = 0.6f, .name = MASU_BLOB_NONE};
 }
 
 uint32_t masu_bake_material(masu_bake_content *content, const masu_blob_material *material,
@@ -147,8 +149,8 @@ uint32_t masu_bake_material(masu_bake_content *content, const masu_blob_material
 
 uint32_t masu_bake_mesh(masu_bake_content *content, uint32_t first_primitive, uint32_t count,
                         uint32_t name) {
-    masu_blob_mesh mesh = {.first_primitive = first_primitive, .primitive_count = count,
-                           .name = name};
+    masu_blob_mesh mesh = {
+        .first_primitive = first_primitive, .primitive_count = count, .name = name};
     for (uint32_t i = 0; i < count; i++) {
         const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(content)[first_primitive + i];
         for (int k = 0; k < 3; k++) {
@@ -268,8 +270,8 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
             masu_bake_append(&scene->section[geometry[i]], from->data, from->bytes);
         }
     }
-    bool changed = override->base_color || override->roughness || override->metallic ||
-                   override->emissive;
+    bool changed =
+        override->base_color || override->roughness || override->metallic || override->emissive;
     uint32_t first_mesh = residence->first_mesh;
     if (changed || !residence->has_meshes) {
         first_mesh = place_meshes(scene, piece, residence, override);

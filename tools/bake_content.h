@@ -6,7 +6,7 @@
  *
  *   bake_content.c   the arrays, names, materials, appending a piece, order of instances
  *   bake_mesh.c      triangles of unknown quality -> welded vertices, normals, primitives
- *   bake_check.c     every rule of blob.h, before a piece is trusted and before a blob is written
+ *   bake_check.c     the rules of blob.h, before a piece from another process is trusted
  *
  * Running out of memory ends the program with a message; nothing else here can fail unless it says
  * so. */
@@ -99,11 +99,11 @@ typedef struct masu_bake_triangles {
 } masu_bake_triangles;
 
 typedef struct masu_bake_losses {
-    uint64_t triangles;     /* looked at */
-    uint64_t bad_index;     /* dropped: an index beyond the vertices */
-    uint64_t bad_position;  /* dropped: NaN, infinite or absurdly far */
-    uint64_t degenerate;    /* dropped: no area */
-    uint64_t bad_normals;   /* vertices whose normal had to be made from the triangles */
+    uint64_t triangles;    /* looked at */
+    uint64_t bad_index;    /* dropped: an index beyond the vertices */
+    uint64_t bad_position; /* dropped: NaN, infinite or absurdly far */
+    uint64_t degenerate;   /* dropped: no area */
+    uint64_t bad_normals;  /* vertices whose normal had to be made from the triangles */
 } masu_bake_losses;
 
 /* False: over 2^31 - 1 vertices or indices in all. */
@@ -113,7 +113,7 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
 /* Unit vector to two signed normalised components; blob.md gives the mapping. */
 void masu_bake_encode_normal(masu_bake_vec3 normal, int16_t out[2]);
 
-/* NULL, or the first rule of blob.h that the content breaks. A piece needs no environment. */
-const char *masu_bake_check(const masu_bake_content *content, bool piece);
+/* NULL, or the first rule of blob.h that the piece breaks. */
+const char *masu_bake_check(const masu_bake_content *piece);
 
 #endif

@@ -98,8 +98,10 @@ static bool report_end(const char *path, masu_bake_result result) {
 static bool readable(const char *path) {
     struct stat about;
     int cause = 0;
-    if (stat(path, &about) != 0 || access(path, R_OK) != 0) cause = errno;
-    else if (S_ISDIR(about.st_mode)) cause = EISDIR;
+    if (stat(path, &about) != 0 || access(path, R_OK) != 0)
+        cause = errno;
+    else if (S_ISDIR(about.st_mode))
+        cause = EISDIR;
     if (cause) {
         masu_cli_error("cannot read %s: %s", path, strerror(cause));
         return false;
@@ -125,7 +127,7 @@ static bool receive(const char *path, masu_bake_content *piece, masu_bake_buffer
         return false;
     }
     report_lines(path, warnings);
-    const char *problem = masu_bake_check(piece, true);
+    const char *problem = masu_bake_check(piece);
     if (problem) masu_cli_error("cannot read %s: the importer returned %s", path, problem);
     return !problem;
 }

@@ -29,8 +29,10 @@ bool masu_bake_json_wrong(const masu_bake_json *at, const char *format, ...) {
     va_start(arguments, format);
     if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
     va_end(arguments);
-    if (at->where[0]) masu_cli_error("%s: %s: %s", at->file, at->where, text);
-    else masu_cli_error("%s: %s", at->file, text);
+    if (at->where[0])
+        masu_cli_error("%s: %s: %s", at->file, at->where, text);
+    else
+        masu_cli_error("%s: %s", at->file, text);
     return false;
 }
 

@@ -119,8 +119,8 @@ static masu_bake_vec3 direction_of(double azimuth, double elevation) {
 static look default_look(const masu_bake_box *bounds) {
     return (look){.sun_direction = direction_of(60, 50),
                   .sun_color = {1, 0.96, 0.9},
-                  .sun_intensity = 1.6,
-                  .ambient = {0.22, 0.25, 0.3},
+                  .sun_intensity = 1,
+                  .ambient = {0.18, 0.2, 0.25},
                   .zenith = {0.16, 0.32, 0.62},
                   .horizon = {0.72, 0.8, 0.88},
                   .exposure = 1,
@@ -128,7 +128,7 @@ static look default_look(const masu_bake_box *bounds) {
 }
 
 static bool read_sun(const masu_bake_json *scene, look *l) {
-    static const char *const members[] = {"direction", "azimuth", "elevation",
+    static const char *const members[] = {"direction", "azimuth",   "elevation",
                                           "color",     "intensity", NULL};
     masu_bake_json sun = masu_bake_json_member(scene, "sun");
     if (!sun.value) return true;
@@ -161,10 +161,9 @@ static bool read_sun(const masu_bake_json *scene, look *l) {
 static bool read_sky(const masu_bake_json *scene, look *l) {
     static const char *const members[] = {"zenith", "horizon", NULL};
     masu_bake_json sky = masu_bake_json_member(scene, "sky");
-    return !sky.value ||
-           (masu_bake_json_object(&sky, members) &&
-            masu_bake_json_vec3(&sky, "zenith", 0, RADIANCE_MAX, &l->zenith) &&
-            masu_bake_json_vec3(&sky, "horizon", 0, RADIANCE_MAX, &l->horizon));
+    return !sky.value || (masu_bake_json_object(&sky, members) &&
+                          masu_bake_json_vec3(&sky, "zenith", 0, RADIANCE_MAX, &l->zenith) &&
+                          masu_bake_json_vec3(&sky, "horizon", 0, RADIANCE_MAX, &l->horizon));
 }
 
 static void add_environment(const look *l, masu_bake_content *content) {

@@ -117,7 +117,9 @@ static inline bool masu_bake_affine_sane(const masu_bake_affine *a) {
 static inline masu_bake_box masu_bake_box_empty(void) {
     return (masu_bake_box){{DBL_MAX, DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX, -DBL_MAX}};
 }
-static inline bool masu_bake_box_is_empty(const masu_bake_box *b) { return !(b->low.x <= b->high.x); }
+static inline bool masu_bake_box_is_empty(const masu_bake_box *b) {
+    return !(b->low.x <= b->high.x);
+}
 
 static inline void masu_bake_box_grow(masu_bake_box *b, masu_bake_vec3 p) {
     b->low = masu_bake_v3(fmin(b->low.x, p.x), fmin(b->low.y, p.y), fmin(b->low.z, p.z));

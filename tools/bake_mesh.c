@@ -180,7 +180,7 @@ static uint32_t weld(welder *w, const masu_blob_vertex *vertex) {
     return p->vertex_count++;
 }
 
-/* A table twice as large as the vertices it can come to hold, so that a free slot is always near. */
+/* Twice as many as the vertices that can come: a free slot is always near. */
 static size_t slots_for(uint64_t index_count, uint32_t vertex_count) {
     uint64_t most = index_count < vertex_count ? index_count : vertex_count;
     if (most > MASU_BAKE_PRIMITIVE_VERTICES) most = MASU_BAKE_PRIMITIVE_VERTICES;

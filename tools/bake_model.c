@@ -359,10 +359,11 @@ static bool walk(model *m, bool convert) {
             if (mesh != MASU_BLOB_NONE) {
                 const struct aiString *name = &v.node->mName;
                 uint32_t text = masu_bake_name(m->piece, name->data, (size_t)string_length(name));
-                uint32_t made =
-                    masu_bake_instance(m->piece, &world, mesh, v.parent_instance, text);
-                if (made == MASU_BLOB_NONE) m->bad_nodes++;
-                else instance = made;
+                uint32_t made = masu_bake_instance(m->piece, &world, mesh, v.parent_instance, text);
+                if (made == MASU_BLOB_NONE)
+                    m->bad_nodes++;
+                else
+                    instance = made;
             }
         }
         unsigned children = v.node->mChildren ? v.node->mNumChildren : 0;
@@ -409,8 +410,7 @@ static void report(model *m) {
         m->textures.bytes -= 2; /* the last ", " */
         masu_bake_append(&m->textures, "", 1);
         append_format(w, "textures are not supported, the materials' factors are used: %s%s\n",
-                      (const char *)m->textures.data,
-                      m->texture_count > NAMES_MAX ? ", ..." : "");
+                      (const char *)m->textures.data, m->texture_count > NAMES_MAX ? ", ..." : "");
     }
     if (m->transparent) {
         append_format(w, "%u transparent materials are drawn opaque\n", m->transparent);
@@ -434,8 +434,10 @@ static void convert(model *m, masu_bake_buffer *error) {
     m->groups = allocate_zeroed(meshes, sizeof *m->groups);
     m->material = allocate_zeroed(s->mNumMaterials, sizeof *m->material);
     bool finished = true;
-    if (s->mRootNode) finished = walk(m, true);
-    else for (unsigned i = 0; i < meshes; i++) convert_mesh(m, i);
+    if (s->mRootNode)
+        finished = walk(m, true);
+    else
+        for (unsigned i = 0; i < meshes; i++) convert_mesh(m, i);
     masu_bake_buffer parts = m->piece->section[MASU_BLOB_PRIMITIVES];
     m->piece->section[MASU_BLOB_PRIMITIVES] = (masu_bake_buffer){0};
     m->parts = (masu_blob_primitive *)(void *)parts.data;
@@ -453,8 +455,10 @@ static void convert(model *m, masu_bake_buffer *error) {
             masu_bake_append(error, m->warnings->data, length);
         }
     } else {
-        if (s->mRootNode) walk(m, false);
-        else show_all(m);
+        if (s->mRootNode)
+            walk(m, false);
+        else
+            show_all(m);
         report(m);
         if (masu_bake_count(m->piece, MASU_BLOB_INSTANCES) == 0) {
             masu_bake_append_text(error, "no node shows its meshes with a finite transform");

@@ -66,8 +66,7 @@ static bool read_sphere(const masu_bake_json *at, masu_bake_content *piece) {
 static bool read_box(const masu_bake_json *at, masu_bake_content *piece) {
     static const char *const members[] = {"size", NULL};
     masu_bake_vec3 size = {1, 1, 1};
-    if (!masu_bake_json_object(at, members) ||
-        !masu_bake_json_vec3(at, "size", 1e-6, 1e6, &size)) {
+    if (!masu_bake_json_object(at, members) || !masu_bake_json_vec3(at, "size", 1e-6, 1e6, &size)) {
         return false;
     }
     masu_bake_cuboid(piece, size);
@@ -233,8 +232,8 @@ static bool place(const masu_bake_json *model, const masu_bake_content *piece,
 static bool read_model(const masu_bake_json *model, const char *directory,
                        const masu_bake_request *request, shelf **shelves,
                        masu_bake_content *content) {
-    static const char *const members[] = {"file", "mesh", "name", "translate", "rotate", "rotate_y",
-                                          "scale", "fit", "material", NULL};
+    static const char *const members[] = {"file",     "mesh",  "name", "translate", "rotate",
+                                          "rotate_y", "scale", "fit",  "material",  NULL};
     const char *file = NULL;
     if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file)) {
         return false;
@@ -283,8 +282,7 @@ bool masu_bake_bare_model(const masu_bake_request *request, masu_bake_content *c
     masu_cli_progress("importing %s", request->input);
     bool good = masu_bake_import(request->input, &piece);
     if (good) {
-        const char *problem =
-            masu_bake_place(content, &piece, &residence, &identity, &none, NULL);
+        const char *problem = masu_bake_place(content, &piece, &residence, &identity, &none, NULL);
         if (problem) masu_cli_error("%s: gives %s", request->input, problem);
         good = !problem;
     }

@@ -16,7 +16,8 @@ static bool identifier(const char *name) {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
     size_t length = strlen(name);
     return length > 0 && length <= PARAM_NAME_MAX && strchr(letters, name[0]) &&
-           strspn(name, "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_") == length;
+           strspn(name, "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_") ==
+               length;
 }
 
 static bool macro_is_taken(const masu_bake_content *content, const char *macro) {
@@ -102,8 +103,8 @@ static bool read_bounds(const masu_bake_json *sdf, masu_bake_box *out) {
 /* All of the SDF but its shader. `source` is left NULL without an SDF. */
 static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, masu_bake_box *bounds,
                      const char **source) {
-    static const char *const members[] = {"source", "bounds", "lipschitz", "max_distance", "params",
-                                          NULL};
+    static const char *const members[] = {"source",       "bounds", "lipschitz",
+                                          "max_distance", "params", NULL};
     masu_bake_json sdf = masu_bake_json_member(scene, "sdf");
     if (!sdf.value) return true;
     masu_bake_box box = masu_bake_box_empty();

@@ -148,13 +148,23 @@ typedef struct paths {
 
 static bool run_tools(const paths *p, bool has_raster, const char *directory,
                       const char *glsl_path) {
-    const char *const compile[] = {"glslangValidator", "-V", "--target-env", "vulkan1.1",
-                                   p->include_here, p->include_scene,
+    const char *const compile[] = {"glslangValidator",
+                                   "-V",
+                                   "--target-env",
+                                   "vulkan1.1",
+                                   p->include_here,
+                                   p->include_scene,
                                    has_raster ? "-DMASU_HAS_RASTER=1" : "-DMASU_HAS_RASTER=0",
-                                   "-S", "comp", "-o", p->raw, p->source, NULL};
+                                   "-S",
+                                   "comp",
+                                   "-o",
+                                   p->raw,
+                                   p->source,
+                                   NULL};
     const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
-    const char *const optimise[] = {"spirv-opt", "--target-env=vulkan1.1", "-O", "--strip-debug",
-                                    p->raw, "-o", p->optimised, NULL};
+    const char *const optimise[] = {
+        "spirv-opt", "--target-env=vulkan1.1", "-O", "--strip-debug", p->raw, "-o", p->optimised,
+        NULL};
     const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.1", p->optimised, NULL};
     const struct {
         const char *const *arguments;

@@ -65,9 +65,9 @@ static void split(soup *s, double radius, masu_bake_vec3 a, masu_bake_vec3 b, ma
 
 void masu_bake_sphere(masu_bake_content *piece, double radius, uint32_t subdivisions) {
     static const unsigned char faces[20][3] = {
-        {0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-        {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     const double g = 0.5 + sqrt(1.25); /* the golden ratio: three crossed rectangles 2 by 2 g */
     masu_bake_vec3 corners[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
                                   {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
@@ -85,8 +85,7 @@ void masu_bake_sphere(masu_bake_content *piece, double radius, uint32_t subdivis
 static void add_face(soup *s, masu_bake_vec3 center, masu_bake_vec3 u, masu_bake_vec3 v) {
     masu_bake_vec3 normal = masu_bake_cross(u, v);
     masu_bake_normalize(&normal);
-    static const signed char corners[6][2] = {{-1, -1}, {1, -1}, {1, 1},
-                                              {-1, -1}, {1, 1},  {-1, 1}};
+    static const signed char corners[6][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}};
     for (int i = 0; i < 6; i++) {
         masu_bake_vec3 p = masu_bake_mad(center, u, corners[i][0]);
         add_corner(s, masu_bake_mad(p, v, corners[i][1]), normal);

@@ -121,14 +121,15 @@ float masu_acos(float x)
 }
 
 /* atan(y, x); 0 at the origin and where an operand is not finite. Both are first divided by the
- * larger one, since a quotient of huge or of tiny operands could overflow inside the function. */
+ * larger one, since a quotient of huge or of tiny operands could overflow inside the function; and
+ * y loses its sign, since a driver returns pi for atan(-0.0, 1.0). A y of -0 counts as 0. */
 float masu_atan2(float y, float x)
 {
     float largest = max(abs(x), abs(y));
     bool usable = masu_finite(x) && masu_finite(y) && largest > masu_tiny && largest < masu_huge;
     float scale = 1.0 / (usable ? largest : 1.0);
-    float r = atan(usable ? y * scale : 0.0, usable ? x * scale : 1.0);
-    return usable ? r : 0.0;
+    float r = atan(usable ? abs(y) * scale : 0.0, usable ? x * scale : 1.0);
+    return usable ? (y < 0.0 ? -r : r) : 0.0;
 }
 
 /* v at unit length; fallback where v is not finite or its largest component is not within

@@ -194,7 +194,7 @@ static void easu_of_a_mirrored_picture_is_the_mirrored_result(void **state)
 static void a_pixel_on_a_texel_centre_takes_the_side_that_amd_rounds_to(void **state)
 {
     (void)state;
-    const uint32_t above = 1; /* output row 4 of 8 lies at 4.5*5/8 - .5 = 2.3125: centre rows 2 and 3 */
+    const uint32_t above = 1; /* output row 4 of 8 is at 4.5*5/8 - .5 = 2.3125: centre 2 and 3 */
     struct masu_ref_image in = pattern_picture(MASU_PATTERN_WHITE_NOISE, 14, 5, 5);
     float before[3], after[3];
     masu_ref_easu_pixel(&in, 25, 8, 12, 4, MASU_REF_BIT_TRICK, before);
@@ -216,8 +216,8 @@ static float effect_of_the_bit_tricks(const struct masu_ref_image *in, uint32_t 
     return 255.0f * masu_ref_max_difference(result, other, (size_t)out_w * out_h * 3);
 }
 
-/* Measured elsewhere against AMD's shader: up to 74 (binary noise), 37 (white noise), 16 to 41 (hard
- * edges, by picture), 17 (dots). Both ends matter: 0 would mean that the tricks are not in use. */
+/* Up to 74 on binary noise, 37 on white noise, 16 to 41 on hard edges (by picture), 17 on dots.
+ * Both ends matter: 0 would mean that the tricks are not in use. */
 static void bit_tricks_change_each_kind_of_picture_by_the_documented_amount(void **state)
 {
     (void)state;

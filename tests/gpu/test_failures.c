@@ -1,0 +1,237 @@
+/* test_failures.c: when things go wrong: the n-th Vulkan call fails, the device lacks something, the host asks for
+ * nonsense. Each gives a named error, leaves nothing behind, and a second try succeeds. */
+#include "support.h"
+#include "support_wrap.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 32, H = 24 };
+
+static masu_session s;
+static void *block;
+
+static int open_without_renderer(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_both", W, H);
+    wrap_reset();
+    d.no_renderer = true;
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    d.desc.debug.timestamps = 1;
+    d.desc.readback = MASU_READBACK_ALL;
+    open_session(&s, &d);
+    assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
+    block = aligned_alloc(64, (s.need.host_bytes + 63) / 64 * 64 + 4096);
+    return 0;
+}
+
+static int close_again(void **state) {
+    (void)state;
+    wrap_reset();
+    free(block);
+    close_session(&s);
+    return 0;
+}
+
+static masu_result try_init(masu_renderer **m, masu_detail *detail) {
+    memset(detail, 0, sizeof *detail);
+    *m = (masu_renderer *)block; /* must be overwritten */
+    return masu_init(&s.desc, block, s.need.host_bytes + 4096, m, detail);
+}
+
+static void fail_every_call_of_init(VkResult with, bool persistent, uint32_t split) {
+    masu_detail detail;
+    masu_renderer *m;
+    s.desc.deny.unified_memory = split;
+    wrap_reset();
+    assert_int_equal(try_init(&m, &detail), MASU_OK);
+    uint64_t calls = wrap.setup_calls;
+    masu_destroy(m);
+    assert_int_equal(wrap.live, 0);
+    assert_true(calls > 50);
+    for (uint64_t k = 1; k <= calls; k++) {
+        wrap_reset();
+        wrap.fail_at = k;
+        wrap.fail_with = with;
+        wrap.persistent = persistent;
+        masu_result result = try_init(&m, &detail);
+        assert_int_equal(result, with == VK_ERROR_DEVICE_LOST ? MASU_ERROR_DEVICE_LOST : MASU_ERROR_VULKAN);
+        assert_null(m);
+        assert_int_equal(detail.result, result);
+        assert_int_equal(detail.vulkan, with);
+        assert_string_equal(detail.what, wrap.failed_call);
+        if (wrap.live) fail_msg("call %llu (%s) leaks %lld objects", (unsigned long long)k, wrap.failed_call,
+                                (long long)wrap.live);
+        assert_int_equal(wrap.calls_after_loss, 0);
+    }
+    wrap_reset();
+    assert_int_equal(try_init(&m, &detail), MASU_OK); /* the block is as good as new */
+    masu_destroy(m);
+    assert_int_equal(wrap.live, 0);
+    s.desc.deny.unified_memory = 0;
+}
+
+static void any_call_of_init_may_run_out_of_memory_once(void **state) {
+    (void)state;
+    fail_every_call_of_init(VK_ERROR_OUT_OF_DEVICE_MEMORY, false, 0);
+}
+
+static void any_call_of_init_may_fail_for_good(void **state) {
+    (void)state;
+    fail_every_call_of_init(VK_ERROR_OUT_OF_HOST_MEMORY, true, 1);
+}
+
+static void the_device_may_be_lost_at_any_call_of_init(void **state) {
+    (void)state;
+    fail_every_call_of_init(VK_ERROR_DEVICE_LOST, true, 0);
+}
+
+static void expect_device_error(const char *what) {
+    masu_detail detail;
+    masu_memory need;
+    memset(&detail, 0, sizeof detail);
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
+    if (!strstr(detail.what, what)) fail_msg("'%s' names '%s', not '%s'", detail.text, detail.what, what);
+    assert_true(strlen(detail.text) > 10);
+    assert_null(strchr(detail.text, '\n'));
+    assert_int_equal(wrap.live, 0);
+}
+
+static void what_the_device_lacks_is_named(void **state) {
+    (void)state;
+    wrap_reset();
+    wrap.api_version = VK_API_VERSION_1_0;
+    expect_device_error("Vulkan 1.1");
+    wrap_reset();
+    wrap.lacking_format = VK_FORMAT_D32_SFLOAT;
+    expect_device_error("VK_FORMAT_D32_SFLOAT");
+    wrap.lacking_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+    expect_device_error("VK_FORMAT_R16G16B16A16_SFLOAT");
+    wrap_reset();
+    wrap.no_compute = true;
+    expect_device_error("queue family");
+    wrap_reset();
+    wrap.no_timestamps = true;
+    expect_device_error("debug.timestamps");
+    wrap_reset();
+    wrap.max_image = 16;
+    expect_device_error("output");
+    wrap_reset();
+    wrap.unknown_function = "vkCmdDispatch";
+    expect_device_error("vkCmdDispatch");
+    wrap.unknown_function = "vkGetPhysicalDeviceMemoryProperties";
+    expect_device_error("vkGetPhysicalDeviceMemoryProperties");
+    wrap_reset();
+}
+
+static void expect_frame_error(masu_renderer *m, const masu_frame_desc *frame, const char *what) {
+    masu_commands commands;
+    memset(&commands, 0, sizeof commands);
+    assert_int_equal(masu_frame(m, frame, &commands), MASU_ERROR_ARGUMENT);
+    const masu_detail *detail = masu_last_error(m);
+    if (!strstr(detail->what, what)) fail_msg("'%s' names '%s', not '%s'", detail->text, detail->what, what);
+    assert_null(commands.buffer);
+}
+
+static void nonsense_in_a_frame_is_refused_by_name(void **state) {
+    (void)state;
+    masu_detail detail;
+    masu_renderer *m;
+    masu_commands commands;
+    wrap_reset();
+    assert_int_equal(try_init(&m, &detail), MASU_OK);
+    assert_int_equal(masu_load(m, &commands), MASU_OK);
+    const masu_camera good = {.position = {0, 0, 5}, .forward = {0, 0, -1}, .fov_y = 1.0f};
+    masu_camera c;
+    masu_frame_desc f = {.camera = &c};
+    masu_light l = {.sun_direction = {0, 1, 0}}, bad_light;
+    float params[300] = {0};
+    c = good;
+    f.rung = 3, expect_frame_error(m, &f, "rung"), f.rung = 0;
+    f.target = 1, expect_frame_error(m, &f, "target"), f.target = 0;
+    f.time = (double)NAN, expect_frame_error(m, &f, "time"), f.time = 0;
+    f.time_step = INFINITY, expect_frame_error(m, &f, "time"), f.time_step = 0;
+    c.position[1] = (double)NAN, expect_frame_error(m, &f, "camera.position"), c = good;
+    c.position[2] = (double)INFINITY, expect_frame_error(m, &f, "camera.position"), c = good;
+    c.forward[2] = 0, expect_frame_error(m, &f, "camera.forward"), c = good;
+    c.forward[0] = NAN, expect_frame_error(m, &f, "camera.forward"), c = good;
+    c.up[2] = -2, expect_frame_error(m, &f, "camera.up"), c = good;
+    c.up[0] = INFINITY, expect_frame_error(m, &f, "camera.up"), c = good;
+    c.fov_y = 0, expect_frame_error(m, &f, "camera.fov_y"), c = good;
+    c.fov_y = 3.2f, expect_frame_error(m, &f, "camera.fov_y"), c = good;
+    c.fov_y = NAN, expect_frame_error(m, &f, "camera.fov_y"), c = good;
+    c.near_distance = -1, expect_frame_error(m, &f, "camera.near_distance"), c = good;
+    bad_light = l, bad_light.sun_direction[1] = 0, f.light = &bad_light, expect_frame_error(m, &f, "sun_direction");
+    bad_light = l, bad_light.ambient[1] = NAN, expect_frame_error(m, &f, "light");
+    bad_light = l, bad_light.exposure = -1, expect_frame_error(m, &f, "exposure");
+    f.light = &l;
+    f.sdf_params = params, f.sdf_param_count = 300, expect_frame_error(m, &f, "sdf_param_count"), f.sdf_params = NULL;
+    /* None of these has moved the frame number, and extreme but sane values work. */
+    c.fov_y = 3.1f, c.position[0] = 1e12, c.forward[0] = 1e-30f, c.forward[2] = -1e-30f, c.near_distance = 1e-6f;
+    assert_int_equal(masu_frame(m, &f, &commands), MASU_OK);
+    assert_int_equal(commands.frame, 0);
+    char error[ERROR_SIZE];
+    assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+    masu_stats_info stats;
+    assert_int_equal(masu_stats(m, commands.slot, &stats), MASU_OK);
+    assert_int_equal(stats.replaced, 0);
+    float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    assert_int_equal(masu_instance_set_transform(m, (masu_instance){0}, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(m, (masu_instance){99}, rows), MASU_ERROR_ARGUMENT);
+    rows[5] = NAN;
+    assert_int_equal(masu_instance_set_transform(m, (masu_instance){1}, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_find(m, "no such name").id, 0);
+    masu_readback_image image;
+    assert_int_equal(masu_readback(m, 0, (masu_readback_bits)3, &image), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_readback(m, 9, MASU_READBACK_DEPTH, &image), MASU_ERROR_ARGUMENT);
+    masu_destroy(m);
+    assert_int_equal(wrap.live, 0);
+}
+
+/* Singular, mirrored, huge and tiny transforms: a defined picture without a single replaced value. */
+static void extreme_transforms_stay_finite(void **state) {
+    (void)state;
+    static const float diagonals[][3] = {{0, 0, 0}, {1, 0, 1}, {-1, 1, 1}, {1e18f, 1e18f, 1e18f},
+                                         {1e-18f, 1e-18f, 1e-18f}, {3e38f, 1, 1e-38f}, {1, 1e-30f, 1}};
+    masu_detail detail;
+    masu_renderer *m;
+    masu_commands commands;
+    char error[ERROR_SIZE];
+    wrap_reset();
+    assert_int_equal(try_init(&m, &detail), MASU_OK);
+    assert_int_equal(masu_load(m, &commands), MASU_OK);
+    for (size_t i = 0; i < sizeof diagonals / sizeof *diagonals; i++) {
+        const float *d = diagonals[i];
+        float rows[12] = {d[0], 0, 0, 0, 0, d[1], 0, 0, 0, 0, d[2], 0};
+        masu_frame_desc f = {0};
+        masu_stats_info stats;
+        masu_readback_image depth, hdr;
+        assert_int_equal(masu_instance_set_transform(m, (masu_instance){1}, rows), MASU_OK);
+        assert_int_equal(masu_frame(m, &f, &commands), MASU_OK);
+        assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+        assert_int_equal(masu_stats(m, commands.slot, &stats), MASU_OK);
+        assert_int_equal(stats.replaced, 0);
+        assert_int_equal(masu_readback(m, commands.slot, MASU_READBACK_DEPTH, &depth), MASU_OK);
+        assert_int_equal(masu_readback(m, commands.slot, MASU_READBACK_HDR, &hdr), MASU_OK);
+        for (uint32_t k = 0; k < W * H; k++) {
+            float v = ((const float *)depth.pixels)[k];
+            assert_true(v >= 0.0f && v <= 1.0f);
+            const uint16_t *half = (const uint16_t *)hdr.pixels + 4 * k;
+            for (uint32_t ch = 0; ch < 4; ch++) assert_true((half[ch] & 0x7C00) != 0x7C00); /* no Inf, no NaN */
+        }
+    }
+    masu_destroy(m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_call_of_init_may_run_out_of_memory_once),
+        cmocka_unit_test(any_call_of_init_may_fail_for_good),
+        cmocka_unit_test(the_device_may_be_lost_at_any_call_of_init),
+        cmocka_unit_test(what_the_device_lacks_is_named),
+        cmocka_unit_test(nonsense_in_a_frame_is_refused_by_name),
+        cmocka_unit_test(extreme_transforms_stay_finite),
+    };
+    return cmocka_run_group_tests_name("failures", tests, open_without_renderer, close_again);
+}
