@@ -443,8 +443,9 @@ typedef struct masu_stats_info {
 } masu_stats_info;
 
 /* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for, before the slot is used
- * again. MASU_ERROR_ARGUMENT: no such slot. MASU_INCOMPLETE: the slot has not been used yet, or its times are not there. */
-MASU_API masu_result masu_stats(masu_renderer *renderer, uint32_t slot, masu_stats_info *out);
+ * again. Reads memory, calls no driver. MASU_ERROR_ARGUMENT: no such slot. MASU_INCOMPLETE: the slot has not been used
+ * yet. */
+MASU_API masu_result masu_stats(const masu_renderer *renderer, uint32_t slot, masu_stats_info *out);
 
 /* The most of each thing that the renderer has held. Paste it into masu_limits. */
 MASU_API void masu_peaks(const masu_renderer *renderer, masu_peak_info *out);

@@ -91,7 +91,7 @@ float sand(vec3 p)
 vec3 to_ring(vec3 p)
 {
     vec3 q = p - ring_center;
-    q.xz = turned(q.xz, 0.99, 0.1411);
+    q.xz = turned(q.xz, 0.9902160, 0.1395431);
     return q;
 }
 
@@ -140,9 +140,9 @@ float menger(vec3 p)
 vec3 to_cube(vec3 p)
 {
     vec3 q = p - cube_center;
-    q.xz = turned(q.xz, 0.8253, 0.5646);
-    q.xy = turned(q.xy, 0.9211, -0.3894);
-    q.yz = turned(q.yz, 0.9553, 0.2955);
+    q.xz = turned(q.xz, 0.8253356, 0.5646425);
+    q.xy = turned(q.xy, 0.9210610, -0.3894183);
+    q.yz = turned(q.yz, 0.9553365, 0.2955202);
     return q;
 }
 

@@ -226,12 +226,9 @@ static uint64_t counter(const masu_renderer *m, uint32_t slot, uint32_t index) {
     return c[2 * index] | (uint64_t)c[2 * index + 1] << 32;
 }
 
-static masu_result read_times(masu_renderer *m, uint32_t slot, masu_stats_info *out) {
-    uint64_t stamps[MASU_PASS_COUNT + 1];
-    VkResult r = m->vk.GetQueryPoolResults(m->vk.device, m->queries, slot * (MASU_PASS_COUNT + 1),
-                                           MASU_PASS_COUNT + 1, sizeof stamps, stamps, sizeof *stamps,
-                                           VK_QUERY_RESULT_64_BIT);
-    if (r) return r == VK_NOT_READY ? MASU_INCOMPLETE : masu_fail_vulkan(&m->error, r, "vkGetQueryPoolResults");
+static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
+    const uint64_t *stamps = (const uint64_t *)(const void *)(masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
+                                                              m->plan.readback_times);
     uint32_t bits = m->vk.queue_family.timestampValidBits;
     uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
     double period = (double)m->vk.properties.limits.timestampPeriod;
@@ -242,10 +239,9 @@ static masu_result read_times(masu_renderer *m, uint32_t slot, masu_stats_info *
     }
     out->gpu_ns = (uint64_t)((double)((stamps[MASU_PASS_COUNT] - stamps[0]) & mask) * period);
     out->timed = 1;
-    return MASU_OK;
 }
 
-masu_result masu_stats(masu_renderer *m, uint32_t slot, masu_stats_info *out) {
+masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
     if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->frame = m->slot_frame[slot];
@@ -261,7 +257,8 @@ masu_result masu_stats(masu_renderer *m, uint32_t slot, masu_stats_info *out) {
         out->sdf_unconverged = counter(m, slot, MASU_COUNTER_SDF_UNCONVERGED);
         out->replaced = counter(m, slot, MASU_COUNTER_REPLACED);
     }
-    return m->queries ? read_times(m, slot, out) : MASU_OK;
+    if (m->queries) read_times(m, slot, out);
+    return MASU_OK;
 }
 
 void masu_peaks(const masu_renderer *m, masu_peak_info *out) {

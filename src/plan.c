@@ -251,6 +251,41 @@ static void gather_images(masu_frame_plan *plan) {
     }
 }
 
+/* What only a scene needs. Returns the bytes of one readback slot that its counters take. */
+static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_alignment, uint64_t storage_alignment) {
+    masu_buffer_plan *b = plan->buffers;
+    const masu_scene *s = plan->desc.scene;
+    uint64_t flights = plan->desc.frames_in_flight;
+    b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
+    b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
+    b[MASU_BUFFER_FRAME].count = flights;
+    b[MASU_BUFFER_FRAME].stride = align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
+    b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
+    if (s->instances) {
+        b[MASU_BUFFER_INSTANCES].stride =
+            align_up((uint64_t)s->instances * sizeof(struct masu_instance_data), storage_alignment);
+        b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
+    }
+    return plan->desc.debug.counters ? align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
+}
+
+/* Images of a readback slot from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer. Returns the end. */
+static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
+    for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
+        if (!(plan->desc.readback & 1u << i)) continue;
+        plan->readback_offset[i] = slot;
+        uint64_t bytes = 0; /* the depth may live in either of two images: the larger counts */
+        for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
+            if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
+            uint64_t v = (uint64_t)plan->images[id].width * plan->images[id].height *
+                         masu_format_bytes(masu_images[id].format);
+            if (v > bytes) bytes = v;
+        }
+        slot = align_up(slot + bytes, 16);
+    }
+    return slot;
+}
+
 static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment, uint64_t storage_alignment) {
     masu_buffer_plan *b = plan->buffers;
     const masu_scene *s = plan->desc.scene;
@@ -277,31 +312,13 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment, uint
     b[MASU_BUFFER_READBACK] =
         (masu_buffer_plan){.name = "readback", .role = MASU_ROLE_READBACK, .usage = dst};
     b[MASU_BUFFER_POISON] = (masu_buffer_plan){.name = "poison", .usage = dst};
-    if (!s) return;
-    b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
-    b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
-    b[MASU_BUFFER_FRAME].count = flights;
-    b[MASU_BUFFER_FRAME].stride = align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
-    b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
-    if (s->instances) {
-        b[MASU_BUFFER_INSTANCES].stride =
-            align_up((uint64_t)s->instances * sizeof(struct masu_instance_data), storage_alignment);
-        b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
+    uint64_t slot = 0;
+    if (s) slot = size_scene_buffers(plan, uniform_alignment, storage_alignment);
+    if (plan->desc.debug.timestamps) {
+        plan->readback_times = slot;
+        slot = align_up(slot + (MASU_PASS_COUNT + 1) * sizeof(uint64_t), 16);
     }
-    /* One readback slot: counters, then images, each 16-byte aligned for vkCmdCopyImageToBuffer. */
-    uint64_t slot = plan->desc.debug.counters ? align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
-    for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
-        if (!(plan->desc.readback & 1u << i)) continue;
-        plan->readback_offset[i] = slot;
-        uint64_t bytes = 0; /* the depth may live in either of two images: the larger counts */
-        for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
-            if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
-            uint64_t v = (uint64_t)plan->images[id].width * plan->images[id].height *
-                         masu_format_bytes(masu_images[id].format);
-            if (v > bytes) bytes = v;
-        }
-        slot = align_up(slot + bytes, 16);
-    }
+    slot = lay_readback_images(plan, slot);
     b[MASU_BUFFER_READBACK].stride = slot;
     b[MASU_BUFFER_READBACK].bytes = flights * slot;
     b[MASU_BUFFER_READBACK].count = flights;

@@ -34,7 +34,7 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
     MASU_BUFFER_INSTANCES, /* one array per frame in flight */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
-    MASU_BUFFER_READBACK,  /* per frame in flight: counters, then the images asked for */
+    MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
     MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
     MASU_BUFFER_COUNT
 } masu_buffer_id;
@@ -70,7 +70,8 @@ typedef struct masu_frame_plan {
     int unified;
     uint64_t transient_offset; /* of the transient region in the device role's block */
     uint64_t transient_unaliased, transient_aliased, transient_lower_bound;
-    uint64_t readback_offset[MASU_READBACK_IMAGES]; /* within one slot; bit order of masu_readback_bits */
+    /* Within one readback slot: counters first, then timestamps, then images in the bit order of masu_readback_bits. */
+    uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
 } masu_frame_plan;
 

@@ -315,6 +315,13 @@ static void record_epilogue(recorder *rec) {
         m->vk.CmdCopyBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS],
                             m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
     }
+    if (m->queries) {
+        /* Copied by the GPU, so that masu_stats is a read of memory and no call into the driver. */
+        m->vk.CmdCopyQueryPoolResults(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), MASU_PASS_COUNT + 1,
+                                      m->objects.buffers[MASU_BUFFER_READBACK],
+                                      rec->flight * readback->stride + m->plan.readback_times, sizeof(uint64_t),
+                                      VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    }
     if (readback->bytes) {
         memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
                        VK_ACCESS_HOST_READ_BIT);

@@ -29,6 +29,7 @@
     X(CmdBlitImage)                                                                                \
     X(CmdCopyBuffer)                                                                               \
     X(CmdCopyImageToBuffer)                                                                        \
+    X(CmdCopyQueryPoolResults)                                                                     \
     X(CmdDispatch)                                                                                 \
     X(CmdDrawIndexed)                                                                              \
     X(CmdEndRenderPass)                                                                            \
@@ -70,7 +71,6 @@
     X(FreeMemory)                                                                                  \
     X(GetBufferMemoryRequirements)                                                                 \
     X(GetImageMemoryRequirements)                                                                  \
-    X(GetQueryPoolResults)                                                                         \
     X(MapMemory)                                                                                   \
     X(UpdateDescriptorSets)
 

@@ -14,7 +14,7 @@ const char *scene_path(const char *name) {
     return path;
 }
 
-static void print_message(void *user, const char *text) {
+static void show_message(void *user, const char *text) {
     (void)user;
     print_error("validation: %s\n", text);
 }
@@ -27,7 +27,7 @@ masu_session_desc test_desc(const char *scene, uint32_t width, uint32_t height) 
     d.desc.targets.storage = 1;
     d.desc.debug.counters = 1;
     d.host.validate = true;
-    d.host.message = print_message;
+    d.host.message = show_message;
     return d;
 }
 
