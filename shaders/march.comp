@@ -8,8 +8,9 @@
  * and sets MASU_HAS_RASTER (the scene has polygons). Parameters and time come through masu_param(i) and masu_time().
  *
  * Stop: f < 0.1 pixel cones, but never below what fp32 can resolve there: 8 ulp of the largest coordinate involved (the
- * field's own rounding is up to 6.1 ulp; below it a march never converges). Then two more steps, without which a tenth of a
- * per cent of the pixels at grazing angles would be off by over 1 % in depth.
+ * field's own rounding is up to 6.1 ulp; below it a march never converges). Then two refining steps by the secant of the
+ * last two samples: at grazing angles f falls slowly along the ray, and a step of f alone leaves depth 1.5e-3 off at the rim
+ * of a sphere 150 pixels across, the secant 1.5e-6.
  * Steps used up: the sample of least f/t stands for the surface if it came within 2 pixels (Keinert et al., "Enhanced
  * Sphere Tracing", STAG 2014, section 3.3), else the ray misses. Never "hit" by default: that draws holes into the sky.
  */
@@ -93,6 +94,9 @@ float march(ray r, out uint evals)
 {
     evals = 0u;
     float t = r.start;
+    float before_t = t; /* the sample before, and its field */
+    float before_f = 0.0;
+    float now_f = 0.0;
     float best_t = -1.0;
     float best_ratio = 2.0 * r.pixel;
     bool hit = false;
@@ -107,7 +111,10 @@ float march(ray r, out uint evals)
         evals++;
         left = !usable;
         hit = usable && f < tolerance(r, t);
+        now_f = f;
         if (!hit && usable) {
+            before_t = t;
+            before_f = f;
             float ratio = f / max(t, 1e-20);
             best_t = ratio < best_ratio ? t : best_t;
             best_ratio = min(best_ratio, ratio);
@@ -123,21 +130,33 @@ float march(ray r, out uint evals)
         return best_t;
     }
     for (int i = 0; i < 2; i++) {
+        /* The secant, at most 16 tolerances ahead and never less than a plain step. A step that leads further from the
+         * surface (past a thin part, out of a crease) is not taken. */
+        float fall = before_f - now_f;
+        float slope = fall > 1e-30 ? (t - before_t) / fall : 1.0;
+        float next_t = t + clamp(now_f * max(slope, 1.0), -16.0 * tolerance(r, t), 16.0 * tolerance(r, t));
         bool usable;
-        t += step_at(r, t, usable);
+        float next_f = step_at(r, next_t, usable);
         evals++;
+        if (usable && abs(next_f) < abs(now_f)) {
+            before_t = t;
+            before_f = now_f;
+            t = next_t;
+            now_f = next_f;
+        }
     }
     return t >= r.start && t < r.limit ? t : -1.0;
 }
 
-/* Gradient from four samples at the corners of a tetrahedron (iq, "normals for an SDF"). The step grows with distance (half
- * a pixel) and with the coordinates (64 ulp: the least total of truncation and rounding error). One loop, so that the field
+/* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The step grows with distance
+ * (a quarter of a pixel: with half of one, a sphere 60 pixels across is off by 0.5 degrees) and with the coordinates (64
+ * ulp: the least total of truncation and rounding error). One loop, so that the field
  * is compiled once here and not four times. */
 vec3 normal_at(ray r, float t)
 {
     vec3 p = world_at(r.direction, t);
     vec3 a = abs(p);
-    float h = max(0.5 * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
+    float h = max(0.25 * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
         vec3 corner = vec3(i == 1 || i == 3 ? 1.0 : -1.0, i >= 2 ? 1.0 : -1.0, i == 0 || i == 3 ? 1.0 : -1.0);

@@ -209,7 +209,7 @@ static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *p
 
 /* Primitives and meshes of the piece, with its materials as overridden. Returns the first mesh. */
 static uint32_t place_meshes(masu_bake_content *scene, const masu_bake_content *piece,
-                             const masu_bake_residence *residence,
+                             uint32_t first_vertex, uint32_t first_index,
                              const masu_bake_override *override) {
     uint32_t first_primitive = (uint32_t)masu_bake_count(scene, MASU_BLOB_PRIMITIVES);
     uint32_t first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
@@ -220,8 +220,8 @@ static uint32_t place_meshes(masu_bake_content *scene, const masu_bake_content *
     }
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_PRIMITIVES); i++) {
         masu_blob_primitive p = MASU_BAKE_PRIMITIVES(piece)[i];
-        p.first_index += residence->first_index;
-        p.first_vertex += residence->first_vertex;
+        p.first_index += first_index;
+        p.first_vertex += first_vertex;
         p.material = material_map[p.material];
         masu_bake_append(&scene->section[MASU_BLOB_PRIMITIVES], &p, sizeof p);
     }
@@ -255,26 +255,29 @@ static const char *room_for(const masu_bake_content *scene, const masu_bake_cont
     return NULL;
 }
 
+static uint32_t copy_section(masu_bake_content *scene, const masu_bake_content *piece,
+                             uint32_t kind) {
+    uint32_t first = (uint32_t)masu_bake_count(scene, kind);
+    masu_bake_append(&scene->section[kind], piece->section[kind].data, piece->section[kind].bytes);
+    return first;
+}
+
 const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
                             masu_bake_residence *residence, const masu_bake_affine *placement,
                             const masu_bake_override *override, const char *prefix) {
     const char *problem = room_for(scene, piece);
     if (problem) return problem;
-    if (!residence->has_geometry) {
-        static const uint32_t geometry[] = {MASU_BLOB_VERTICES, MASU_BLOB_INDICES};
-        residence->first_vertex = (uint32_t)masu_bake_count(scene, MASU_BLOB_VERTICES);
-        residence->first_index = (uint32_t)masu_bake_count(scene, MASU_BLOB_INDICES);
-        residence->has_geometry = true;
-        for (int i = 0; i < 2; i++) {
-            const masu_bake_buffer *from = &piece->section[geometry[i]];
-            masu_bake_append(&scene->section[geometry[i]], from->data, from->bytes);
-        }
+    if (!residence->has_vertices) {
+        residence->first_vertex = copy_section(scene, piece, MASU_BLOB_VERTICES);
+        residence->has_vertices = true;
     }
     bool changed =
         override->base_color || override->roughness || override->metallic || override->emissive;
     uint32_t first_mesh = residence->first_mesh;
     if (changed || !residence->has_meshes) {
-        first_mesh = place_meshes(scene, piece, residence, override);
+        /* Two primitives share no indices (src/scene.c): other materials, other indices. */
+        uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
+        first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, override);
         if (!changed) {
             residence->first_mesh = first_mesh;
             residence->has_meshes = true;

@@ -69,15 +69,14 @@ typedef struct masu_bake_override {
     bool base_color, roughness, metallic, emissive;
 } masu_bake_override;
 
-/* Where a piece's geometry already lies in the scene, for the second and later placements. Zero at
- * first. */
+/* Where a piece already lies in the scene, for the second and later placements. Zero at first. */
 typedef struct masu_bake_residence {
-    uint32_t first_vertex, first_index, first_mesh;
-    bool has_geometry, has_meshes;
+    uint32_t first_vertex, first_mesh;
+    bool has_vertices, has_meshes;
 } masu_bake_residence;
 
-/* Appends `piece` to `scene`: geometry once, meshes once per material override, instances every
- * time. `prefix` goes before the instances' names; may be NULL. Returns NULL or what is wrong. */
+/* Appends `piece` to `scene`: vertices once, meshes once and again for every material override,
+ * instances every time. `prefix` goes before the instances' names; may be NULL. Returns NULL or what is wrong. */
 const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
                             masu_bake_residence *residence, const masu_bake_affine *placement,
                             const masu_bake_override *override, const char *prefix);

@@ -54,7 +54,7 @@ typedef struct model {
     masu_bake_buffer *warnings;
     masu_blob_primitive *parts; /* primitives as converted, before meshes group them */
     range *mesh_parts;          /* by aiMesh: its range of parts */
-    bool *mesh_done;
+    bool *mesh_done, *mesh_used;
     group **groups;     /* by aiMesh: sets that begin with it */
     uint32_t *material; /* by aiMaterial: index + 1, 0: not converted */
     masu_bake_buffer textures;
@@ -289,6 +289,24 @@ static bool same_set(const group *g, const unsigned *meshes, unsigned count) {
     return g->count == count && memcmp(g->meshes, meshes, count * sizeof *meshes) == 0;
 }
 
+/* The primitives of an aiMesh, once more. Two primitives share no indices (src/scene.c): when a mesh
+ * is part of a second set, its indices are copied. */
+static void add_parts(model *m, unsigned mesh) {
+    masu_bake_buffer *indices = &m->piece->section[MASU_BLOB_INDICES];
+    for (uint32_t i = 0; i < m->mesh_parts[mesh].count; i++) {
+        masu_blob_primitive part = m->parts[m->mesh_parts[mesh].first + i];
+        if (m->mesh_used[mesh]) {
+            size_t from = part.first_index * sizeof(uint32_t);
+            size_t bytes = part.index_count * sizeof(uint32_t);
+            part.first_index = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_INDICES);
+            masu_bake_append(indices, NULL, bytes);
+            memcpy(indices->data + indices->bytes - bytes, indices->data + from, bytes);
+        }
+        masu_bake_append(&m->piece->section[MASU_BLOB_PRIMITIVES], &part, sizeof part);
+    }
+    m->mesh_used[mesh] = true;
+}
+
 /* The masu mesh of a set of aiMeshes, or NONE if nothing of it can be drawn. */
 static uint32_t mesh_of(model *m, const unsigned *meshes, unsigned count) {
     unsigned total = m->source->mNumMeshes, first = total;
@@ -303,10 +321,7 @@ static uint32_t mesh_of(model *m, const unsigned *meshes, unsigned count) {
     }
     uint32_t from = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
     for (unsigned i = 0; i < count; i++) {
-        if (meshes[i] >= total) continue;
-        range parts = m->mesh_parts[meshes[i]];
-        masu_bake_append(&m->piece->section[MASU_BLOB_PRIMITIVES], m->parts + parts.first,
-                         parts.count * sizeof *m->parts);
+        if (meshes[i] < total) add_parts(m, meshes[i]);
     }
     const struct aiString *name = &m->source->mMeshes[first]->mName;
     group *g = masu_bake_allocate(sizeof *g);
@@ -431,6 +446,7 @@ static void convert(model *m, masu_bake_buffer *error) {
     unsigned meshes = s->mMeshes ? s->mNumMeshes : 0;
     m->mesh_parts = allocate_zeroed(meshes, sizeof *m->mesh_parts);
     m->mesh_done = allocate_zeroed(meshes, sizeof *m->mesh_done);
+    m->mesh_used = allocate_zeroed(meshes, sizeof *m->mesh_used);
     m->groups = allocate_zeroed(meshes, sizeof *m->groups);
     m->material = allocate_zeroed(s->mNumMaterials, sizeof *m->material);
     bool finished = true;

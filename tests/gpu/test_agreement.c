@@ -1,0 +1,296 @@
+/* test_agreement.c: polygons and SDF see the same world: a sphere given once as fine mesh and once as SDF, and a box that
+ * cuts through an SDF sphere, both against rays intersected in double precision. */
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 256, H = 192 };
+
+typedef struct vec {
+    double x, y, z;
+} vec;
+
+static vec add(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static vec scale(vec a, double s) { return (vec){a.x * s, a.y * s, a.z * s}; }
+static double dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static vec cross(vec a, vec b) {
+    return (vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static vec unit(vec a) { return scale(a, 1.0 / sqrt(dot(a, a))); }
+
+/* ---- Rays in double precision ------------------------------------------------------------------ */
+
+typedef struct eye {
+    vec position, forward, right, up; /* right and up carry the tangents */
+    double pixel;                     /* pixel size at view depth 1 */
+} eye;
+
+static eye make_eye(const masu_camera *c, uint32_t width, uint32_t height) {
+    double tangent = tan((double)c->fov_y / 2);
+    eye e = {.position = {c->position[0], c->position[1], c->position[2]},
+             .forward = unit((vec){(double)c->forward[0], (double)c->forward[1], (double)c->forward[2]})};
+    vec right = unit(cross(e.forward, (vec){0, 1, 0}));
+    e.up = scale(cross(right, e.forward), tangent);
+    e.right = scale(right, tangent * width / height);
+    e.pixel = 2 * tangent / height;
+    return e;
+}
+
+/* Through pixel coordinates (x, y), the centre of the first pixel being (0.5, 0.5); length 1 in view depth. */
+static vec ray_through(const eye *e, double x, double y) {
+    return add(e->forward, add(scale(e->right, 2 * x / W - 1), scale(e->up, 1 - 2 * y / H)));
+}
+
+/* View depth of the first hit with a sphere around the origin, or -1. */
+static double hit_sphere(const eye *e, vec d, double radius) {
+    double a = dot(d, d), b = dot(e->position, d), c = dot(e->position, e->position) - radius * radius;
+    double root = b * b - a * c;
+    return root < 0 ? -1 : (-b - sqrt(root)) / a;
+}
+
+/* The same with a box around the origin whose axes are the rows of an orthonormal matrix. */
+static double hit_box(const eye *e, vec d, const vec axes[3], double half) {
+    double enter = 0, leave = 1e30;
+    for (int i = 0; i < 3; i++) {
+        double o = dot(e->position, axes[i]), v = dot(d, axes[i]);
+        double a = (-half - o) / v, b = (half - o) / v;
+        enter = fmax(enter, fmin(a, b));
+        leave = fmin(leave, fmax(a, b));
+    }
+    return enter < leave ? enter : -1;
+}
+
+/* Signed distance of the ray from the sphere's silhouette, in pixels: positive outside. */
+static double silhouette_pixels(const eye *e, vec d, double radius) {
+    double along = -dot(e->position, d) / dot(d, d);
+    vec nearest = add(e->position, scale(d, along));
+    return (sqrt(dot(nearest, nearest)) - radius) / (e->pixel * along);
+}
+
+/* ---- Pictures ---------------------------------------------------------------------------------- */
+
+typedef struct picture {
+    float depth[W * H]; /* view depth, 0: nothing */
+    uint32_t normal[W * H];
+    uint8_t albedo[W * H * 4];
+} picture;
+
+static void take_picture(masu_session *s, const masu_frame_desc *frame, picture *p) {
+    masu_commands commands;
+    masu_readback_image image;
+    draw(s, frame, &commands, NULL);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    assert_int_equal(image.width, W);
+    assert_int_equal(image.height, H);
+    assert_int_equal(image.format, VK_FORMAT_R32_SFLOAT);
+    float near_distance = frame->camera->near_distance;
+    for (uint32_t i = 0; i < W * H; i++) {
+        float d = ((const float *)image.pixels)[i];
+        p->depth[i] = d > 0.0f ? near_distance / d : 0.0f;
+    }
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_NORMAL, &image), MASU_OK);
+    memcpy(p->normal, image.pixels, sizeof p->normal);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_ALBEDO, &image), MASU_OK);
+    memcpy(p->albedo, image.pixels, sizeof p->albedo);
+}
+
+static void open_for_pictures(masu_session *s, const char *scene) {
+    masu_session_desc d = test_desc(scene, W, H);
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_NORMAL | MASU_READBACK_ALBEDO;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0].scale = 1.0f;
+    open_session(s, &d);
+}
+
+static const masu_camera cameras[] = {
+    {.position = {1.2, 0.9, 3.2}, .forward = {-1.2f, -0.9f, -3.2f}, .fov_y = 0.7f, .near_distance = 0.1f},
+    {.position = {0, 0, 1.05}, .forward = {0.2f, 0.1f, -1}, .fov_y = 1.5f, .near_distance = 0.001f},
+    {.position = {8, 5, -12}, .forward = {-8, -5, 12}, .fov_y = 0.15f, .near_distance = 1},
+    {.position = {1.6, 0.02, 1.1}, .forward = {-0.5f, 0.1f, -1}, .fov_y = 1.7f, .near_distance = 0.01f},
+};
+
+#define CAMERAS (sizeof cameras / sizeof *cameras)
+
+/* ---- Tests ------------------------------------------------------------------------------------- */
+
+/* How far (relative) the depth of a pixel moves when the surface moves by `grid` pixels across the screen: a rasteriser
+ * snaps vertices to a grid (16 steps a pixel on one driver, 256 on another), which at grazing angles is more than 1e-3. */
+static double grid_slack(const eye *e, double x, double y, double truth, double radius, double grid) {
+    double most = 0;
+    for (int n = 0; n < 4; n++) {
+        double z = hit_sphere(e, ray_through(e, x + (n & 1 ? grid : -grid), y + (n & 2 ? grid : -grid)), radius);
+        if (z > 0) most = fmax(most, fabs(z / truth - 1));
+    }
+    return most;
+}
+
+/* grid: of the rasteriser, pixels; 0 for a march, which gets no slack. */
+static void compare_with_truth(const picture *p, const eye *e, double radius, double grid, const char *what) {
+    double worst_pixels = 0, worst_depth = 0, worst_beyond = 0, worst_angle = 0;
+    uint32_t hits = 0;
+    for (uint32_t y = 0; y < H; y++) {
+        for (uint32_t x = 0; x < W; x++) {
+            vec d = ray_through(e, x + 0.5, y + 0.5);
+            double truth = hit_sphere(e, d, radius), got = (double)p->depth[y * W + x];
+            double off = fabs(silhouette_pixels(e, d, radius));
+            if ((truth > 0) != (got > 0)) {
+                worst_pixels = fmax(worst_pixels, off);
+                continue;
+            }
+            if (!(got > 0) || off < 1) continue; /* at the rim depth changes without bound per pixel */
+            hits++;
+            worst_depth = fmax(worst_depth, fabs(got / truth - 1));
+            double slack = grid > 0 ? grid_slack(e, x + 0.5, y + 0.5, truth, radius, grid) : 0;
+            worst_beyond = fmax(worst_beyond, fabs(got / truth - 1) - slack);
+            float n[3];
+            masu_unpack_normal(p->normal[y * W + x], n);
+            vec true_normal = unit(add(e->position, scale(d, truth)));
+            double cosine = dot(true_normal, (vec){(double)n[0], (double)n[1], (double)n[2]});
+            worst_angle = fmax(worst_angle, acos(fmin(1, cosine)) * 57.29578);
+        }
+    }
+    print_message("  %s: %u pixels, silhouette off by %.3f px, depth by %.2e, normal by %.3f degrees\n", what, hits,
+                  worst_pixels, worst_depth, worst_angle);
+    assert_true(hits > 2000);
+    assert_true(worst_pixels < 1.0);
+    assert_true(worst_beyond < 1e-3);
+    assert_true(worst_angle < 0.5);
+}
+
+static void a_sphere_is_the_same_as_mesh_as_sdf_and_in_double_precision(void **state) {
+    (void)state;
+    static picture mesh, sdf;
+    masu_session a, b;
+    open_for_pictures(&a, "test_sphere_mesh");
+    open_for_pictures(&b, "test_sphere_sdf");
+    double grid = exp2(-(double)a.host.properties.limits.subPixelPrecisionBits);
+    for (size_t c = 0; c < CAMERAS; c++) {
+        eye e = make_eye(&cameras[c], W, H);
+        masu_frame_desc frame = {.camera = &cameras[c]};
+        take_picture(&a, &frame, &mesh);
+        take_picture(&b, &frame, &sdf);
+        compare_with_truth(&mesh, &e, 1.0, grid, "mesh");
+        compare_with_truth(&sdf, &e, 1.0, 0, "sdf ");
+        uint32_t differ = 0;
+        double worst = 0;
+        for (uint32_t i = 0; i < W * H; i++) {
+            double off = fabs(silhouette_pixels(&e, ray_through(&e, i % W + 0.5, i / W + 0.5), 1.0));
+            if ((mesh.depth[i] > 0) != (sdf.depth[i] > 0)) {
+                differ++;
+                assert_true(off < 1.0);
+            } else if (mesh.depth[i] > 0 && off > 1) {
+                double x = i % W + 0.5, y = i / W + 0.5, z = (double)sdf.depth[i];
+                worst = fmax(worst, fabs((double)mesh.depth[i] / z - 1) - grid_slack(&e, x, y, z, 1.0, grid));
+            }
+        }
+        print_message("  mesh against sdf: %u pixels of the silhouette differ, depth by %.2e\n", differ, worst);
+        assert_true(worst < 1e-3);
+    }
+    close_session(&a);
+    close_session(&b);
+}
+
+static void a_parameter_sets_the_radius_and_is_clamped_to_its_range(void **state) {
+    (void)state;
+    static picture p;
+    masu_session s;
+    open_for_pictures(&s, "test_sphere_sdf");
+    eye e = make_eye(&cameras[0], W, H);
+    static const float radii[] = {0.5f, 0.75f, 99.0f};
+    for (size_t i = 0; i < 3; i++) {
+        masu_frame_desc frame = {.camera = &cameras[0], .sdf_params = &radii[i], .sdf_param_count = 1};
+        take_picture(&s, &frame, &p);
+        compare_with_truth(&p, &e, i == 2 ? (double)1.4f : (double)radii[i], 0, "sdf ");
+    }
+    close_session(&s);
+}
+
+enum { NOTHING, BOX, SPHERE };
+
+static int nearest(const eye *e, double x, double y, const vec axes[3]) {
+    vec d = ray_through(e, x, y);
+    double box = hit_box(e, d, axes, 0.65), sphere = hit_sphere(e, d, 0.8);
+    if (box <= 0 && sphere <= 0) return NOTHING;
+    return sphere > 0 && (box <= 0 || sphere < box) ? SPHERE : BOX;
+}
+
+static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
+    (void)state;
+    static picture p;
+    masu_session s;
+    open_for_pictures(&s, "test_both");
+    /* A rotation of our own, so that the test knows it: about (1, 2, 3) by 0.8. */
+    vec k = unit((vec){1, 2, 3});
+    double cosine = cos(0.8), sine = sin(0.8);
+    vec columns[3], unit_axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int i = 0; i < 3; i++) {
+        vec v = unit_axes[i];
+        columns[i] = add(add(scale(v, cosine), scale(cross(k, v), sine)), scale(k, dot(k, v) * (1 - cosine)));
+    }
+    float rows[12] = {(float)columns[0].x, (float)columns[1].x, (float)columns[2].x, 0,
+                      (float)columns[0].y, (float)columns[1].y, (float)columns[2].y, 0,
+                      (float)columns[0].z, (float)columns[1].z, (float)columns[2].z, 0};
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "box"), rows), MASU_OK);
+    eye e = make_eye(&cameras[0], W, H);
+    masu_frame_desc frame = {.camera = &cameras[0]};
+    take_picture(&s, &frame, &p);
+    take_picture(&s, &frame, &p); /* the other slot has the new transform too */
+    uint32_t counts[3] = {0}, border = 0;
+    for (uint32_t y = 0; y < H; y++) {
+        for (uint32_t x = 0; x < W; x++) {
+            /* Pixels within one pixel of a border may go either way. */
+            int want = nearest(&e, x + 0.5, y + 0.5, columns), same = 1;
+            for (int n = 0; n < 9; n++) same &= nearest(&e, x + n % 3 - 0.5, y + n / 3 - 0.5, columns) == want;
+            if (!same) {
+                border++;
+                continue;
+            }
+            const uint8_t *albedo = &p.albedo[4 * (y * W + x)];
+            int got = p.depth[y * W + x] <= 0 ? NOTHING : albedo[2] > albedo[0] ? BOX : SPHERE;
+            if (got != want) fail_msg("pixel %u,%u shows %d, the truth is %d", x, y, got, want);
+            counts[want]++;
+        }
+    }
+    print_message("  box %u, sphere %u, sky %u, borders %u pixels\n", counts[BOX], counts[SPHERE], counts[NOTHING],
+                  border);
+    assert_true(counts[BOX] > 1000 && counts[SPHERE] > 1000 && counts[NOTHING] > 1000);
+    close_session(&s);
+}
+
+static void a_million_metres_from_the_origin_polygons_look_the_same(void **state) {
+    (void)state;
+    static picture here, there;
+    masu_session s;
+    open_for_pictures(&s, "test_sphere_mesh");
+    masu_camera c = cameras[0];
+    masu_frame_desc frame = {.camera = &c};
+    take_picture(&s, &frame, &here);
+    float rows[12] = {1, 0, 0, 1048576, 0, 1, 0, -2097152, 0, 0, 1, 524288};
+    assert_int_equal(masu_instance_set_transform(s.m, (masu_instance){1}, rows), MASU_OK);
+    c.position[0] += 1048576, c.position[1] -= 2097152, c.position[2] += 524288;
+    take_picture(&s, &frame, &there);
+    double worst = 0;
+    uint32_t differ = 0;
+    for (uint32_t i = 0; i < W * H; i++) {
+        differ += (here.depth[i] > 0) != (there.depth[i] > 0);
+        if (here.depth[i] > 0 && there.depth[i] > 0) {
+            worst = fmax(worst, fabs((double)here.depth[i] / (double)there.depth[i] - 1));
+        }
+    }
+    print_message("  %u pixels differ in coverage, depth by %.2e\n", differ, worst);
+    assert_true(differ <= 4);
+    assert_true(worst < 1e-4);
+    close_session(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sphere_is_the_same_as_mesh_as_sdf_and_in_double_precision),
+        cmocka_unit_test(a_parameter_sets_the_radius_and_is_clamped_to_its_range),
+        cmocka_unit_test(the_nearer_of_polygon_and_sdf_wins_at_every_pixel),
+        cmocka_unit_test(a_million_metres_from_the_origin_polygons_look_the_same),
+    };
+    return cmocka_run_group_tests_name("agreement", tests, NULL, NULL);
+}

@@ -1,0 +1,162 @@
+/* support_blob.c: see support_blob.h. Also linked to the writer of the fuzzer's seed: libc only. */
+#include "support_blob.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* Offsets into `names`: */
+enum {
+    NAME_PLATE = 0,
+    NAME_LID = 6,
+    NAME_STEEL = 10,
+    NAME_GLOW = 16,
+    NAME_RADIUS = 21,
+    NAME_BEND = 28
+};
+static const char names[] = "plate\0lid\0steel\0glow\0radius\0bend";
+
+static const masu_blob_vertex vertices[] = {
+    {{-1.0f, 0.0f, -1.0f}, {0, 32767}}, {{1.0f, 0.0f, -1.0f}, {0, 32767}},
+    {{1.0f, 0.0f, 1.0f}, {0, 32767}},   {{-1.0f, 0.0f, 1.0f}, {0, 32767}},
+    {{0.0f, 1.0f, 0.0f}, {32767, 0}},   {{0.0f, 2.0f, 0.0f}, {32767, 0}},
+    {{0.0f, 1.0f, 1.0f}, {32767, 0}},   {{-2.0f, -2.0f, 0.0f}, {0, 0}},
+    {{2.0f, -2.0f, 0.0f}, {0, 0}},      {{2.0f, 2.0f, 0.0f}, {0, 0}},
+    {{-2.0f, 2.0f, 0.0f}, {0, 0}},
+};
+
+static const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 1, 2, 0, 2, 3};
+
+static const masu_blob_primitive primitives[] = {
+    {0, 6, 0, 4, 0, {-1.0f, 0.0f, -1.0f}, {1.0f, 0.0f, 1.0f}, 0},
+    {6, 3, 4, 3, 1, {0.0f, 1.0f, 0.0f}, {0.0f, 2.0f, 1.0f}, 0},
+    {9, 6, 7, 4, 0, {-2.0f, -2.0f, 0.0f}, {2.0f, 2.0f, 0.0f}, 0},
+};
+
+static const masu_blob_mesh meshes[] = {
+    {0, 2, {-1.0f, 0.0f, -1.0f}, {1.0f, 2.0f, 1.0f}, NAME_PLATE, 0},
+    {2, 1, {-2.0f, -2.0f, 0.0f}, {2.0f, 2.0f, 0.0f}, NAME_LID, 0},
+};
+
+static const masu_blob_instance instances[] = {
+    {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, NAME_PLATE, MASU_BLOB_NONE, 0},
+    {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, -4}, 0, MASU_BLOB_NONE, 0, 0},
+    {{0, 0, 1, 0, 0, 1, 0, 5, -1, 0, 0, 0}, 1, NAME_LID, 0, 0},
+};
+
+static const masu_blob_material materials[] = {
+    {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, {0}},
+    {{0.0f, 0.0f, 0.0f}, 1.0f, {4.0f, 2.0f, 1.0f}, 0.0f, NAME_GLOW, {0}},
+};
+
+static const masu_blob_camera_key camera_keys[] = {
+    {0.0f, {0.0f, 1.0f, 5.0f}, {0.0f, 0.0f, 0.0f}, 0.8f},
+    {1.5f, {5.0f, 1.0f, 0.0f}, {0.0f, 0.5f, 0.0f}, 0.9f},
+    {4.0f, {0.0f, 1.0f, -5.0f}, {0.0f, 0.0f, 1.0f}, 1.0f},
+};
+
+static const masu_blob_environment environment[] = {{
+    .sun_direction = {0.6f, 0.8f, 0.0f},
+    .exposure = 1.5f,
+    .sun_color = {2.0f, 1.5f, 1.0f},
+    .near_distance = 0.05f,
+    .ambient = {0.1f, 0.2f, 0.3f},
+    .sky_zenith = {0.1f, 0.2f, 0.8f},
+    .sky_horizon = {1.0f, 0.7f, 0.4f},
+}};
+
+static const masu_blob_sdf_param sdf_params[] = {
+    {0.5f, 0.0f, 2.0f, NAME_RADIUS},
+    {-1.0f, -1.0f, 1.0f, NAME_BEND},
+};
+
+/* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
+static const uint32_t march_spirv[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
+
+static void add(support_blob *blob, enum masu_blob_kind kind, const void *data, size_t stride,
+                size_t count) {
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    masu_blob_section *row = (masu_blob_section *)(void *)(blob->bytes + sizeof *header);
+    size_t at = (blob->size + MASU_BLOB_ALIGN - 1) & ~(size_t)(MASU_BLOB_ALIGN - 1);
+    row[header->section_count++] = (masu_blob_section){(uint32_t)kind, (uint32_t)stride, at, count};
+    if (at + stride * count > sizeof blob->bytes) {
+        fputs("support_blob: SUPPORT_BLOB_ROOM is too small\n", stderr);
+        abort();
+    }
+    memcpy(blob->bytes + at, data, stride * count);
+    blob->size = at + stride * count;
+}
+
+#define ADD(kind, array) add(blob, kind, array, sizeof *(array), COUNT(array))
+
+void support_blob_write(support_blob *blob, uint32_t parts) {
+    memset(blob, 0, sizeof *blob);
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    header->magic = MASU_BLOB_MAGIC;
+    header->version = MASU_BLOB_VERSION;
+    size_t sections = 1 + (parts & SUPPORT_RASTER ? 6u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
+                      (parts & SUPPORT_SDF ? 3u : 0u) + 1;
+    blob->size = sizeof *header + sections * sizeof(masu_blob_section);
+    if (parts & SUPPORT_RASTER) {
+        ADD(MASU_BLOB_VERTICES, vertices);
+        ADD(MASU_BLOB_INDICES, indices);
+        ADD(MASU_BLOB_PRIMITIVES, primitives);
+        ADD(MASU_BLOB_MESHES, meshes);
+        ADD(MASU_BLOB_INSTANCES, instances);
+        ADD(MASU_BLOB_MATERIALS, materials);
+    }
+    if (parts & SUPPORT_CAMERA) ADD(MASU_BLOB_CAMERA_KEYS, camera_keys);
+    ADD(MASU_BLOB_ENVIRONMENT, environment);
+    if (parts & SUPPORT_SDF) {
+        masu_blob_sdf sdf[] = {{{-10.0f, -1.0f, -10.0f},
+                                1.0f,
+                                {10.0f, 4.0f, 10.0f},
+                                100.0f,
+                                parts & SUPPORT_RASTER ? 1u : 0u,
+                                {0}}};
+        ADD(MASU_BLOB_SDF, sdf);
+        ADD(MASU_BLOB_SDF_PARAMS, sdf_params);
+        ADD(MASU_BLOB_MARCH_SPIRV, march_spirv);
+    }
+    ADD(MASU_BLOB_NAMES, names);
+    support_blob_seal(blob->bytes, blob->size);
+}
+
+masu_blob_section *support_blob_row(support_blob *blob, enum masu_blob_kind kind) {
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    masu_blob_section *rows = (masu_blob_section *)(void *)(blob->bytes + sizeof *header);
+    for (uint32_t i = 0; i < header->section_count; i++) {
+        if (rows[i].kind == (uint32_t)kind) return &rows[i];
+    }
+    return NULL;
+}
+
+void *support_blob_find(support_blob *blob, enum masu_blob_kind kind) {
+    masu_blob_section *row = support_blob_row(blob, kind);
+    if (!row) {
+        fprintf(stderr, "support_blob: no section of kind %d\n", (int)kind);
+        abort();
+    }
+    return blob->bytes + row->offset;
+}
+
+void support_blob_drop(support_blob *blob, enum masu_blob_kind kind) {
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    masu_blob_section *rows = (masu_blob_section *)(void *)(blob->bytes + sizeof *header);
+    masu_blob_section *row = support_blob_row(blob, kind);
+    if (!row) return;
+    size_t behind = header->section_count - 1u - (size_t)(row - rows);
+    memmove(row, row + 1, behind * sizeof *row);
+    memset(&rows[--header->section_count], 0, sizeof *rows);
+}
+
+void support_blob_seal(unsigned char *bytes, size_t size) {
+    masu_blob_header header;
+    if (size < sizeof header) return;
+    memcpy(&header, bytes, sizeof header);
+    header.bytes = size;
+    header.hash = masu_fnv1a64(bytes + sizeof header, size - sizeof header);
+    memcpy(bytes, &header, sizeof header);
+}

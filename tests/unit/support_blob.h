@@ -1,0 +1,50 @@
+/* support_blob.h: small valid scene blobs in memory, for tests that damage them.
+ *
+ * A blob is written with every field in range; a test finds a section, changes what it likes in
+ * place, seals the blob again (length and hash) and hands it to the reader. The blobs are laid out
+ * as blob.h says: sections in rising kind, 16-byte aligned, gaps zero.
+ *
+ * Full content (SUPPORT_RASTER | SUPPORT_SDF):
+ *
+ *   vertices   0-3 square   4-6 triangle   7-10 square          materials    0 "steel"  1 "glow"
+ *   primitives 0: square, 2 triangles  1: triangle  2: square   camera keys  at 0 s, 1.5 s, 4 s
+ *   meshes     0 "plate": primitives 0-1   1 "lid": primitive 2 sdf params   0 "radius"  1 "bend"
+ *   instances  0, 1 of mesh 0, 2 of mesh 1 */
+#ifndef SUPPORT_BLOB_H
+#define SUPPORT_BLOB_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "blob.h"
+
+enum {
+    SUPPORT_RASTER = 1, /* geometry, instances, materials */
+    SUPPORT_SDF = 2,    /* field, parameters, code */
+    SUPPORT_CAMERA = 4,
+    SUPPORT_ALL = 7
+};
+
+#define SUPPORT_BLOB_ROOM 4096u
+
+typedef struct support_blob {
+    _Alignas(64) unsigned char bytes[SUPPORT_BLOB_ROOM];
+    size_t size;
+} support_blob;
+
+/* Writes a valid blob of those parts; the environment is always there. */
+void support_blob_write(support_blob *blob, uint32_t parts);
+
+/* Row of the section table, or NULL. */
+masu_blob_section *support_blob_row(support_blob *blob, enum masu_blob_kind kind);
+
+/* First element of a section; there must be one. */
+void *support_blob_find(support_blob *blob, enum masu_blob_kind kind);
+
+/* Takes a section out of the table; its bytes stay where they are. Does not seal. */
+void support_blob_drop(support_blob *blob, enum masu_blob_kind kind);
+
+/* Header.bytes and header.hash made to fit `size` bytes. */
+void support_blob_seal(unsigned char *bytes, size_t size);
+
+#endif
