@@ -134,7 +134,9 @@ float march(ray r, out uint evals)
          * surface (past a thin part, out of a crease) is not taken. */
         float fall = before_f - now_f;
         float slope = fall > 1e-30 ? (t - before_t) / fall : 1.0;
-        float next_t = t + clamp(now_f * max(slope, 1.0), -16.0 * tolerance(r, t), 16.0 * tolerance(r, t));
+        float reach = 16.0 * tolerance(r, t);
+        /* Not before the start: a camera inside a solid sees it at the near plane, as a clipped polygon's inside would. */
+        float next_t = max(t + clamp(now_f * max(slope, 1.0), -reach, reach), r.start);
         bool usable;
         float next_f = step_at(r, next_t, usable);
         evals++;
@@ -145,7 +147,7 @@ float march(ray r, out uint evals)
             now_f = next_f;
         }
     }
-    return t >= r.start && t < r.limit ? t : -1.0;
+    return t < r.limit ? t : -1.0;
 }
 
 /* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The step grows with distance
