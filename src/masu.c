@@ -5,6 +5,7 @@
 #include "shared/masu_shared.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* ---- The walk ---------------------------------------------------------------------------------- */
@@ -115,13 +116,11 @@ static masu_result build(masu_renderer *m, masu_detail *detail) {
     return result;
 }
 
-masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
-                      masu_detail *detail) {
+static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
+                        masu_detail *detail) {
     masu_vk vk;
     masu_frame_plan plan;
     masu_objects objects;
-    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
-    *out = NULL;
     if (!block || (uintptr_t)block % MASU_ARENA_ALIGNMENT) {
         return masu_fail(detail, MASU_ERROR_MEMORY, "host block", MASU_ARENA_ALIGNMENT, (uintptr_t)block,
                          "host block is NULL or not %u-byte aligned", MASU_ARENA_ALIGNMENT);
@@ -162,6 +161,35 @@ masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, 
     return MASU_OK;
 }
 
+static void log_box(const masu_renderer *m) {
+    char text[200];
+    masu_peak_info peaks;
+    masu_peaks(m, &peaks);
+    snprintf(text, sizeof text, "renderer made: %llu bytes host, %llu bytes device%s, %u rungs",
+             (unsigned long long)peaks.host_bytes, (unsigned long long)peaks.device_bytes,
+             m->plan.unified ? " in one unified block" : "", m->plan.desc.rung_count);
+    masu_log(&m->plan.desc, MASU_LOG_INFO, text);
+    if (m->plan.desc.debug.labels && !m->vk.SetDebugUtilsObjectNameEXT) {
+        masu_log(&m->plan.desc, MASU_LOG_WARNING,
+                 "debug.labels: VK_EXT_debug_utils is not enabled on the instance, there are no labels");
+    }
+}
+
+masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
+                      masu_detail *detail) {
+    masu_detail own;
+    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
+    *out = NULL;
+    masu_result result = init(desc, block, block_bytes, out, &own);
+    if (!result) {
+        log_box(*out);
+        return MASU_OK;
+    }
+    if (detail) *detail = own;
+    if (desc) masu_log(desc, MASU_LOG_ERROR, own.text);
+    return result;
+}
+
 void masu_destroy(masu_renderer *m) {
     if (!m || m->cookie != MASU_RENDERER_COOKIE) return;
     const masu_vk *vk = &m->vk;
@@ -188,8 +216,7 @@ void masu_destroy(masu_renderer *m) {
 
 /* ---- Frames ------------------------------------------------------------------------------------ */
 
-masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
-    if (!m || !frame || !commands) return MASU_ERROR_ARGUMENT;
+static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     const masu_desc *d = &m->plan.desc;
     if (!m->loaded) {
         return masu_fail(&m->error, MASU_ERROR_STATE, "masu_load", 1, 0,
@@ -203,12 +230,20 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "target", d->targets.count - 1, frame->target,
                          "target %u does not exist, the last one is %u", frame->target, d->targets.count - 1);
     }
+    return MASU_OK;
+}
+
+masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
+    if (!m || !frame || !commands) return MASU_ERROR_ARGUMENT;
+    const masu_desc *d = &m->plan.desc;
     uint32_t slot = (uint32_t)(m->frame % d->frames_in_flight);
-    if (d->scene) {
-        masu_result result = masu_write_frame(m, frame, slot, &m->error);
-        if (result) return result;
-        masu_write_instances(m, slot);
+    masu_result result = check_frame(m, frame);
+    if (!result && d->scene) result = masu_write_frame(m, frame, slot, &m->error);
+    if (result) {
+        masu_log(d, MASU_LOG_ERROR, m->error.text);
+        return result;
     }
+    if (d->scene) masu_write_instances(m, slot);
     m->slot_frame[slot] = m->frame;
     m->slot_rung[slot] = frame->rung;
     *commands = (masu_commands){m->frames[(slot * d->rung_count + frame->rung) * d->targets.count + frame->target],

@@ -1,0 +1,266 @@
+/* test_cli.c: the program `masu` as a stranger runs it: what it makes, and what it says when it cannot. */
+#include "support.h"
+
+#include "image.h"
+#include "reference/fsr1.h"
+#include "reference/patterns.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char dir[] = "/tmp/masu-test-XXXXXX";
+static char out_text[1 << 16], err_text[1 << 16];
+
+static void read_text(const char *name, char *text, size_t size) {
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    size_t n = fread(text, 1, size - 1, f);
+    text[n] = 0;
+    fclose(f);
+}
+
+/* Runs `masu ARGUMENTS` in a shell; %s in them is the scratch folder. Returns the exit code, fills out_text and err_text. */
+static int masu(const char *format, ...) {
+    char arguments[2048], command[4096];
+    const char *build = getenv("BUILD");
+    va_list args;
+    va_start(args, format);
+    vsnprintf(arguments, sizeof arguments, format, args);
+    va_end(args);
+    snprintf(command, sizeof command, "%s/bin/masu %s >%s/out 2>%s/err </dev/null", build ? build : "build", arguments,
+             dir, dir);
+    int status = system(command);
+    assert_true(WIFEXITED(status));
+    read_text("out", out_text, sizeof out_text);
+    read_text("err", err_text, sizeof err_text);
+    return WEXITSTATUS(status);
+}
+
+/* The last run must have failed with one line on stderr, beginning "masu ", that holds `part`. */
+static void said(const char *part) {
+    size_t n = strlen(err_text);
+    if (!n || strchr(err_text, '\n') != err_text + n - 1) fail_msg("not one line: '%s'", err_text);
+    if (strncmp(err_text, "masu", 4)) fail_msg("does not begin with the program's name: %s", err_text);
+    if (!strstr(err_text, part)) fail_msg("'%s' is not in: %s", part, err_text);
+    assert_string_equal(out_text, "");
+}
+
+static void write_bytes(const char *name, const void *bytes, size_t n) {
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(bytes, 1, n, f), n);
+    fclose(f);
+}
+
+static bool exists(const char *name) {
+    char path[256];
+    struct stat st;
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    return stat(path, &st) == 0;
+}
+
+static int make_dir(void **state) {
+    (void)state;
+    return mkdtemp(dir) ? 0 : 1;
+}
+
+static int remove_dir(void **state) {
+    (void)state;
+    char command[300];
+    snprintf(command, sizeof command, "rm -rf %s", dir);
+    return system(command);
+}
+
+/* ---- Tests ------------------------------------------------------------------------------------- */
+
+static void help_and_version_are_there_for_every_command(void **state) {
+    (void)state;
+    static const char *const commands[] = {"", "render", "upscale", "plan"};
+    for (size_t i = 0; i < 4; i++) {
+        assert_int_equal(masu("%s --help", commands[i]), 0);
+        assert_true(strlen(out_text) > 200);
+        assert_string_equal(err_text, "");
+    }
+    assert_int_equal(masu("--version"), 0);
+    assert_non_null(strstr(out_text, "0.1.0"));
+}
+
+static void wrong_command_lines_are_exit_code_2(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    assert_int_equal(masu("render"), 2);
+    said("no scene");
+    assert_int_equal(masu("render %s", scene), 2);
+    said("--output");
+    assert_int_equal(masu("render %s -o %s/x.png --rung 3", scene, dir), 2);
+    said("rung 3");
+    assert_int_equal(masu("render %s -o %s/x.png --size 0x9", scene, dir), 2);
+    said("size");
+    assert_int_equal(masu("render %s -o %s/x.png --size 99999x9", scene, dir), 2);
+    said("size");
+    assert_int_equal(masu("render %s -o %s/x.png --bogus", scene, dir), 2);
+    said("--bogus");
+    assert_int_equal(masu("render %s -o %s/x.png --frames 0", scene, dir), 2);
+    said("frames");
+    assert_int_equal(masu("upscale a.png b.png"), 2);
+    said("--size");
+    assert_int_equal(masu("upscale a.png --size 4x4"), 2);
+    said("output");
+    assert_int_equal(masu("paint"), 2);
+    said("paint");
+    assert_false(exists("x.png"));
+}
+
+static void bad_scene_files_are_named_with_their_fault(void **state) {
+    (void)state;
+    FILE *f = fopen(scene_path("test_both"), "rb");
+    assert_non_null(f);
+    static uint8_t blob[1 << 20];
+    size_t n = fread(blob, 1, sizeof blob, f);
+    fclose(f);
+    assert_true(n > 1000 && n < sizeof blob);
+    assert_int_equal(masu("render %s/none.masu -o %s/x.png", dir, dir), 1);
+    said("none.masu");
+    assert_int_equal(masu("render %s -o %s/x.png", dir, dir), 1);
+    said(dir);
+    write_bytes("empty.masu", blob, 0);
+    assert_int_equal(masu("render %s/empty.masu -o %s/x.png", dir, dir), 1);
+    said("empty.masu");
+    write_bytes("cut.masu", blob, n - 100);
+    assert_int_equal(masu("render %s/cut.masu -o %s/x.png", dir, dir), 1);
+    said("truncated");
+    blob[4] ^= 0x40; /* version */
+    write_bytes("version.masu", blob, n);
+    assert_int_equal(masu("plan %s/version.masu", dir), 1);
+    said("version");
+    blob[4] ^= 0x40;
+    blob[n / 2] ^= 1;
+    write_bytes("damaged.masu", blob, n);
+    assert_int_equal(masu("render %s/damaged.masu -o %s/x.png", dir, dir), 1);
+    said("damaged");
+    write_bytes("text.masu", "not a scene, but long enough to hold the header of one, and a bit more", 70);
+    assert_int_equal(masu("render %s/text.masu -o %s/x.png", dir, dir), 1);
+    said("not a Masu scene");
+    assert_false(exists("x.png"));
+}
+
+static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    assert_int_equal(masu("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, dir), 1);
+    said("folder.png");
+    write_bytes("old.png", "old", 3);
+    assert_int_equal(masu("upscale %s/none.png %s/old.png --size 8x8", dir, dir), 1);
+    said("none.png");
+    char text[16];
+    read_text("old.png", text, sizeof text);
+    assert_string_equal(text, "old");
+    assert_int_equal(masu("render %s -o /dev/full --size 16x16 --quiet", scene), 1);
+    said("/dev/full");
+    assert_int_equal(masu("render %s --stats /dev/full --size 16x16 --quiet", scene), 1);
+    said("/dev/full");
+}
+
+static void an_unknown_device_lists_those_that_are_there(void **state) {
+    (void)state;
+    assert_int_equal(masu("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), dir), 1);
+    said("nonesuch");
+    assert_non_null(strstr(err_text, "0 '"));
+    assert_int_equal(masu("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), dir), 0);
+}
+
+static void render_writes_the_picture_and_its_numbers_under_validation(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    assert_int_equal(masu("render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet", scene, dir,
+                          dir),
+                     0);
+    assert_string_equal(err_text, "");
+    struct masu_image image;
+    char path[256], error[ERROR_SIZE];
+    snprintf(path, sizeof path, "%s/a.png", dir);
+    assert_ok(masu_image_load_png(path, &image, error, sizeof error));
+    assert_int_equal(image.width, 64);
+    assert_int_equal(image.height, 48);
+    masu_image_free(&image);
+    static const char *const keys[] = {"\"driver\"", "\"wall_ms\"", "\"passes\"", "\"march\"", "\"transient_lower_bound\"",
+                                       "\"sdf_evals\"", "\"timestamps_plausible\"", "\"median\""};
+    read_text("a.json", out_text, sizeof out_text);
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        if (!strstr(out_text, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
+    }
+    assert_int_equal(masu("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, dir), 0);
+    assert_true(exists("f-000.png") && exists("f-001.png") && !exists("f-002.png"));
+}
+
+static void plan_says_what_is_in_and_what_was_left_out(void **state) {
+    (void)state;
+    assert_int_equal(masu("plan %s --size 64x64", scene_path("test_sphere_mesh")), 0);
+    assert_non_null(strstr(out_text, "the scene has no SDF"));
+    assert_non_null(strstr(out_text, "lower bound"));
+    assert_int_equal(masu("plan %s --size 64x64 --json", scene_path("test_sphere_sdf")), 0);
+    assert_non_null(strstr(out_text, "no instances; the march writes every pixel"));
+    assert_non_null(strstr(out_text, "\"left_out_bytes\""));
+}
+
+static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void **state) {
+    (void)state;
+    enum { IW = 40, IH = 28, OW = 70, OH = 49 };
+    static uint8_t in[IW * IH * 4], want[OW * OH * 4];
+    static float rgb[IW * IH * 3], easu[OW * OH * 3], alpha[IW * IH * 3], alpha_out[OW * OH * 3];
+    char from[256], error[ERROR_SIZE];
+    struct masu_image image;
+    masu_pattern_fill(MASU_PATTERN_PHOTO, 1, IW, IH, in);
+    for (uint32_t i = 0; i < IW * IH; i++) in[4 * i + 3] = (uint8_t)(i % IW * 6);
+    snprintf(from, sizeof from, "%s/in.png", dir);
+    assert_ok(masu_image_save_png(from, in, IW, IH, 0, error, sizeof error));
+    assert_int_equal(masu("upscale %s %s/up.png --size %ux%u --no-rcas", from, dir, (unsigned)OW, (unsigned)OH), 0);
+    snprintf(from, sizeof from, "%s/up.png", dir);
+    assert_ok(masu_image_load_png(from, &image, error, sizeof error));
+    masu_ref_from_rgba8(in, IW, IH, 0, rgb);
+    for (uint32_t i = 0; i < IW * IH * 3; i++) alpha[i] = (float)in[i / 3 * 4 + 3] / 255.0f;
+    struct masu_ref_image color = {rgb, IW, IH, 0}, grey = {alpha, IW, IH, 0};
+    masu_ref_easu(&color, OW, OH, MASU_REF_BIT_TRICK, easu);
+    masu_ref_easu(&grey, OW, OH, MASU_REF_BIT_TRICK, alpha_out);
+    masu_ref_to_rgba8(easu, OW, OH, want);
+    for (uint32_t i = 0; i < OW * OH; i++) want[4 * i + 3] = (uint8_t)lrintf(alpha_out[3 * i] * 255.0f);
+    assert_true(max_difference(image.rgba, want, sizeof want) <= 1);
+    masu_image_free(&image);
+    /* Sharpness is in stops: 0 differs from no sharpening more than 2 does. */
+    static uint8_t sharp[2][OW * OH * 4];
+    static const char *const stops[] = {"0", "2"};
+    for (size_t i = 0; i < 2; i++) {
+        assert_int_equal(masu("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", dir, dir, stops[i]), 0);
+        assert_ok(masu_image_load_png(from, &image, error, sizeof error));
+        memcpy(sharp[i], image.rgba, sizeof sharp[i]);
+        masu_image_free(&image);
+    }
+    uint64_t sums[2] = {0, 0};
+    for (size_t i = 0; i < 2; i++) {
+        for (size_t k = 0; k < sizeof want; k++) sums[i] += (uint64_t)abs(sharp[i][k] - want[k]);
+    }
+    assert_true(sums[0] > 2 * sums[1] && sums[1] > 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(help_and_version_are_there_for_every_command),
+        cmocka_unit_test(wrong_command_lines_are_exit_code_2),
+        cmocka_unit_test(bad_scene_files_are_named_with_their_fault),
+        cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing),
+        cmocka_unit_test(an_unknown_device_lists_those_that_are_there),
+        cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
+        cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
+        cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
+    };
+    return cmocka_run_group_tests_name("cli", tests, make_dir, remove_dir);
+}

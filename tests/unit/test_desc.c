@@ -1,0 +1,416 @@
+/*
+ * test_desc.c: descriptions. What a zero becomes, what is refused and by which name, and what the
+ * public functions refuse before they would need a device.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "plan.h"
+#include "support_desc.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static void compile(const masu_desc *d, masu_frame_plan *plan) {
+    masu_detail detail, before;
+    memset(&detail, 0x5A, sizeof detail);
+    before = detail;
+    masu_result result = masu_compile(d, 256, 64, plan, &detail);
+    if (result) fail_msg("refused: %s", detail.text);
+    assert_memory_equal(&detail, &before, sizeof detail); /* untouched by success */
+}
+
+static void assert_refused(const masu_desc *d, masu_result expected, const char *what) {
+    static masu_frame_plan plan;
+    masu_detail detail;
+    memset(&detail, 0x5A, sizeof detail);
+    masu_result result = masu_compile(d, 256, 64, &plan, &detail);
+    if (result != expected) fail_msg("%s: the result is %d, not %d", what, result, expected);
+    assert_int_equal(detail.result, expected);
+    assert_int_equal(detail.vulkan, VK_SUCCESS);
+    assert_string_equal(detail.what, what);
+    assert_non_null(memchr(detail.text, '\0', sizeof detail.text));
+    assert_true(strlen(detail.text) > 10 && !strchr(detail.text, '\n'));
+    assert_int_equal(masu_compile(d, 256, 64, &plan, NULL), expected);
+}
+
+/* ---- Defaults -------------------------------------------------------------------------------- */
+
+#define SAME(field) assert_true(a->field == b->field)
+
+static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
+    SAME(vulkan.get_instance_proc_addr);
+    SAME(vulkan.instance);
+    SAME(vulkan.physical_device);
+    SAME(vulkan.device);
+    SAME(vulkan.queue_family);
+    SAME(vulkan.allocator);
+    SAME(vulkan.pipeline_cache);
+    SAME(scene);
+    SAME(source.view);
+    SAME(source.width);
+    SAME(source.height);
+    SAME(output.width);
+    SAME(output.height);
+    SAME(targets.images);
+    SAME(targets.views);
+    SAME(targets.count);
+    SAME(targets.format);
+    SAME(targets.storage);
+    SAME(targets.final_layout);
+    SAME(frames_in_flight);
+    SAME(rung_count);
+    for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
+        SAME(rungs[r].scale);
+        SAME(rungs[r].upscale);
+        SAME(rungs[r].sharpen);
+        SAME(rungs[r].sharpness);
+        SAME(rungs[r].march_steps);
+    }
+    SAME(limits.vertices);
+    SAME(limits.indices);
+    SAME(limits.materials);
+    SAME(limits.instances);
+    SAME(limits.sdf_params);
+    SAME(host_budget);
+    SAME(device_budget);
+    for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
+        SAME(device_blocks[k].memory);
+        SAME(device_blocks[k].offset);
+        SAME(device_blocks[k].bytes);
+        SAME(device_blocks[k].mapped);
+        SAME(device_blocks[k].memory_type);
+    }
+    SAME(readback);
+    SAME(debug.timestamps);
+    SAME(debug.counters);
+    SAME(debug.labels);
+    SAME(debug.poison);
+    SAME(deny.unified_memory);
+    SAME(log);
+    SAME(log_user);
+    SAME(clock_ns);
+    SAME(clock_user);
+}
+
+static void every_zero_becomes_its_documented_default(void **state) {
+    (void)state;
+    masu_desc zero, expected;
+    memset(&zero, 0, sizeof zero);
+    memset(&expected, 0, sizeof expected);
+    expected.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
+    expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    expected.frames_in_flight = 2;
+    expected.rung_count = 3;
+    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, 256};
+    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, 256};
+    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, 256};
+    masu_desc resolved = masu_desc_resolved(&zero);
+    assert_same_desc(&resolved, &expected);
+    resolved = masu_desc_resolved(NULL);
+    assert_same_desc(&resolved, &expected);
+}
+
+static void zeros_inside_given_rungs_become_defaults_too(void **state) {
+    (void)state;
+    masu_desc given;
+    memset(&given, 0, sizeof given);
+    given.rung_count = 2;
+    given.rungs[1] = (masu_rung){.sharpness = 1.5f};
+    masu_desc expected = masu_desc_resolved(&given);
+    given.frames_in_flight = 2;
+    given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
+    given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, 256};
+    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, 256};
+    assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
+}
+
+static PFN_vkVoidFunction VKAPI_CALL no_function(VkInstance instance, const char *name) {
+    (void)instance, (void)name;
+    return NULL;
+}
+
+static void no_log(void *user, masu_log_level level, const char *text) {
+    (void)user, (void)level, (void)text;
+}
+
+static uint64_t no_clock(void *user) {
+    (void)user;
+    return 0;
+}
+
+static masu_desc full_desc(void) {
+    static VkAllocationCallbacks allocator;
+    masu_desc d = scene_desc(RASTER, 320, 200);
+    d.vulkan = (masu_vulkan){
+        no_function, FAKE(VkInstance, 1), FAKE(VkPhysicalDevice, 2), FAKE(VkDevice, 3),
+        1,           &allocator,          FAKE(VkPipelineCache, 4)};
+    d.source = (masu_source){FAKE(VkImageView, 5), 6, 7};
+    d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
+    d.targets.storage = 8;
+    d.targets.final_layout = VK_IMAGE_LAYOUT_GENERAL;
+    d.frames_in_flight = 3;
+    d.rung_count = MASU_MAX_RUNGS;
+    for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
+        d.rungs[r] = (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, r + 1};
+    }
+    d.limits = (masu_limits){9, 10, 11, 12, 13};
+    d.host_budget = 14;
+    d.device_budget = 15;
+    for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
+        d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
+    }
+    d.readback = 3;
+    d.debug = (masu_debug){1, 2, 3, 4};
+    d.deny.unified_memory = 1;
+    d.log = no_log;
+    d.log_user = &allocator;
+    d.clock_ns = no_clock;
+    d.clock_user = &allocator;
+    return d;
+}
+
+static void what_is_given_stays_as_it_is(void **state) {
+    (void)state;
+    masu_desc given = full_desc(), resolved = masu_desc_resolved(&given);
+    assert_same_desc(&resolved, &given);
+}
+
+/* More rungs than there are is an error for later, not a reason to write behind the array. */
+static void an_absurd_number_of_rungs_is_resolved_without_harm(void **state) {
+    (void)state;
+    masu_desc given = full_desc();
+    given.rung_count = UINT32_MAX;
+    masu_desc resolved = masu_desc_resolved(&given);
+    assert_same_desc(&resolved, &given);
+}
+
+/* ---- Refusals -------------------------------------------------------------------------------- */
+
+/* A good description with one thing wrong: refused, and that thing is named. */
+#define BAD(what, ...)                                                                             \
+    do {                                                                                           \
+        masu_desc d = scene_desc(RASTER | SDF, 640, 480);                                          \
+        d.rung_count = 2;                                                                          \
+        __VA_ARGS__;                                                                               \
+        assert_refused(&d, MASU_ERROR_ARGUMENT, what);                                             \
+    } while (0)
+
+static void a_bad_size_is_named(void **state) {
+    (void)state;
+    BAD("output.width", d.output.width = 0);
+    BAD("output.width", d.output.width = 16385);
+    BAD("output.width", d.output.width = UINT32_MAX);
+    BAD("output.height", d.output.height = 0);
+    BAD("output.height", d.output.height = 16385);
+    masu_desc d = scene_desc(RASTER, 16384, 16384);
+    static masu_frame_plan plan;
+    compile(&d, &plan);
+}
+
+static void a_bad_count_is_named(void **state) {
+    (void)state;
+    BAD("rung_count", d.rung_count = MASU_MAX_RUNGS + 1);
+    BAD("rung_count", d.rung_count = UINT32_MAX);
+    BAD("frames_in_flight", d.frames_in_flight = MASU_MAX_FLIGHT + 1);
+    BAD("targets.count", d.targets.count = 0);
+    BAD("targets.count", d.targets.count = MASU_MAX_TARGETS + 1);
+    BAD("readback", d.readback = 16);
+    BAD("readback", d.readback = UINT32_MAX);
+}
+
+static void a_missing_target_is_named(void **state) {
+    (void)state;
+    BAD("targets.images", d.targets.images = NULL);
+    BAD("targets.images", support_images[1] = VK_NULL_HANDLE);
+    BAD("targets.views", d.targets.views = NULL);
+    BAD("targets.views", support_views[1] = VK_NULL_HANDLE);
+    masu_desc d = scene_desc(RASTER, 64, 64);
+    static masu_frame_plan plan;
+    support_images[2] = VK_NULL_HANDLE, support_views[2] = VK_NULL_HANDLE; /* behind the count */
+    compile(&d, &plan);
+}
+
+static void a_storage_target_of_another_format_is_named(void **state) {
+    (void)state;
+    BAD("targets.format", d.targets.format = VK_FORMAT_B8G8R8A8_UNORM);
+    BAD("targets.format", d.targets.format = VK_FORMAT_R8G8B8A8_SRGB);
+}
+
+static void scene_and_source_exclude_each_other(void **state) {
+    (void)state;
+    BAD("scene", d.scene = NULL);
+    BAD("source.view", d.source = (masu_source){FAKE(VkImageView, 1), 64, 64});
+}
+
+static void a_bad_source_is_named(void **state) {
+    (void)state;
+    BAD("source.width", d = source_desc(0, 10));
+    BAD("source.width", d = source_desc(16385, 10));
+    BAD("source.height", d = source_desc(10, 0));
+    BAD("source.height", d = source_desc(10, 16385));
+}
+
+static void a_bad_rung_is_named(void **state) {
+    (void)state;
+    const float nan = (float)NAN, infinity = (float)INFINITY;
+    BAD("rungs[].scale", d.rungs[0].scale = -0.5f);
+    BAD("rungs[].scale", d.rungs[1].scale = 1.0001f);
+    BAD("rungs[].scale", d.rungs[1].scale = nan);
+    BAD("rungs[].scale", d.rungs[1].scale = infinity);
+    BAD("rungs[].scale", d.rungs[1].scale = -infinity);
+    BAD("rungs[].sharpness", d.rungs[1].sharpness = -0.1f);
+    BAD("rungs[].sharpness", d.rungs[0].sharpness = nan);
+    BAD("rungs[].sharpness", d.rungs[0].sharpness = infinity);
+    BAD("rungs[].march_steps", d.rungs[1].march_steps = 257);
+    BAD("rungs[].march_steps", d.rungs[1].march_steps = UINT32_MAX);
+    BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)3);
+    BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
+    BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
+    masu_desc d = scene_desc(RASTER, 64, 64);
+    static masu_frame_plan plan;
+    d.rung_count = 1;
+    d.rungs[1].scale = nan; /* behind the count */
+    compile(&d, &plan);
+}
+
+static void a_rung_that_needs_upscaling_cannot_switch_it_off(void **state) {
+    (void)state;
+    BAD("rungs[].upscale", d.rungs[1].scale = 0.5f, d.rungs[1].upscale = MASU_OFF);
+    BAD("rungs[].upscale", d = source_desc(10, 10), d.rungs[0].upscale = MASU_OFF);
+}
+
+static void refusals_say_what_was_given_and_what_is_allowed(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_detail detail;
+    masu_desc d = scene_desc(RASTER, 20000, 480);
+    assert_int_equal(masu_compile(&d, 1, 1, &plan, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(detail.given, 20000);
+    assert_int_equal(detail.needed, 16384);
+    assert_string_equal(detail.text, "output.width is 20000, allowed are 1 to 16384");
+}
+
+static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
+    (void)state;
+    static const struct {
+        const char *what;
+        size_t offset;
+        uint64_t needed;
+    } rows[] = {
+        {"limits.vertices", offsetof(masu_limits, vertices), 11},
+        {"limits.indices", offsetof(masu_limits, indices), 15},
+        {"limits.materials", offsetof(masu_limits, materials), 2},
+        {"limits.instances", offsetof(masu_limits, instances), 3},
+        {"limits.sdf_params", offsetof(masu_limits, sdf_params), 2},
+    };
+    static masu_frame_plan plan;
+    assert_int_equal(sizeof(masu_limits), COUNT(rows) * sizeof(uint64_t));
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        masu_desc d = scene_desc(RASTER | SDF, 640, 480);
+        masu_detail detail;
+        uint64_t limit = rows[i].needed;
+        memcpy((char *)&d.limits + rows[i].offset, &limit, sizeof limit);
+        compile(&d, &plan); /* exactly enough */
+        limit--;
+        memcpy((char *)&d.limits + rows[i].offset, &limit, sizeof limit);
+        assert_refused(&d, MASU_ERROR_LIMIT, rows[i].what);
+        assert_int_equal(masu_compile(&d, 1, 1, &plan, &detail), MASU_ERROR_LIMIT);
+        assert_int_equal(detail.needed, rows[i].needed);
+        assert_int_equal(detail.given, limit);
+    }
+}
+
+/* What the public functions refuse before they would need a device. */
+static void what_no_device_is_needed_for_is_refused_without_one(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER, 640, 480);
+    masu_memory memory;
+    masu_plan_info info;
+    masu_renderer *renderer = (masu_renderer *)&info;
+    masu_detail detail;
+    static _Alignas(64) unsigned char block[128];
+    assert_int_equal(masu_memory_query(NULL, &memory, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "desc");
+    assert_int_equal(masu_memory_query(&d, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "out");
+    assert_int_equal(masu_plan(&d, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_plan(NULL, &info, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_init(&d, block, sizeof block, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_init(&d, NULL, 0, &renderer, &detail), MASU_ERROR_MEMORY);
+    assert_string_equal(detail.what, "host block");
+    assert_null(renderer);
+    assert_int_equal(masu_init(&d, block + 8, 64, &renderer, &detail), MASU_ERROR_MEMORY);
+    support_scene.blob = NULL;
+    assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "scene");
+    masu_destroy(NULL);
+}
+
+static void a_missing_vulkan_handle_is_named(void **state) {
+    (void)state;
+    static const char *const names[] = {"vulkan.get_instance_proc_addr", "vulkan.instance",
+                                        "vulkan.physical_device", "vulkan.device"};
+    for (int missing = 0; missing < 4; missing++) {
+        masu_desc d = scene_desc(RASTER, 640, 480);
+        masu_memory memory;
+        masu_detail detail;
+        d.vulkan = full_desc().vulkan;
+        if (missing == 0) d.vulkan.get_instance_proc_addr = NULL;
+        if (missing == 1) d.vulkan.instance = NULL;
+        if (missing == 2) d.vulkan.physical_device = NULL;
+        if (missing == 3) d.vulkan.device = NULL;
+        d.scene = NULL;
+        d.source = (masu_source){FAKE(VkImageView, 1), 64, 64};
+        assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_ARGUMENT);
+        assert_string_equal(detail.what, names[missing]);
+    }
+    masu_desc d = source_desc(64, 64);
+    masu_memory memory;
+    masu_detail detail;
+    d.vulkan = full_desc().vulkan;
+    assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_DEVICE);
+    assert_string_equal(detail.what, "vkGetDeviceProcAddr"); /* no_function knows none */
+}
+
+static void every_result_has_its_text(void **state) {
+    (void)state;
+    const char *const unknown = "unknown result";
+#define CHECK(name, value, text)                                                                   \
+    assert_int_equal(name, value);                                                                 \
+    assert_string_equal(masu_result_string(name), text);
+    MASU_RESULTS(CHECK)
+#undef CHECK
+    assert_string_equal(masu_result_string((masu_result)-1000), unknown);
+    assert_string_equal(masu_result_string((masu_result)2), unknown);
+    assert_string_equal(masu_result_string(MASU_RESULT_FORCE_32), unknown);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_zero_becomes_its_documented_default),
+        cmocka_unit_test(zeros_inside_given_rungs_become_defaults_too),
+        cmocka_unit_test(what_is_given_stays_as_it_is),
+        cmocka_unit_test(an_absurd_number_of_rungs_is_resolved_without_harm),
+        cmocka_unit_test(a_bad_size_is_named),
+        cmocka_unit_test(a_bad_count_is_named),
+        cmocka_unit_test(a_missing_target_is_named),
+        cmocka_unit_test(a_storage_target_of_another_format_is_named),
+        cmocka_unit_test(scene_and_source_exclude_each_other),
+        cmocka_unit_test(a_bad_source_is_named),
+        cmocka_unit_test(a_bad_rung_is_named),
+        cmocka_unit_test(a_rung_that_needs_upscaling_cannot_switch_it_off),
+        cmocka_unit_test(refusals_say_what_was_given_and_what_is_allowed),
+        cmocka_unit_test(a_scene_beyond_a_limit_is_refused_with_both_numbers),
+        cmocka_unit_test(what_no_device_is_needed_for_is_refused_without_one),
+        cmocka_unit_test(a_missing_vulkan_handle_is_named),
+        cmocka_unit_test(every_result_has_its_text),
+    };
+    return cmocka_run_group_tests_name("desc", tests, NULL, NULL);
+}

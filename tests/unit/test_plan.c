@@ -1,0 +1,640 @@
+/*
+ * test_plan.c: from a description to a compiled frame, without a device: which passes run and why,
+ * what each reads and writes, how large and how long-lived each image is. (What is refused:
+ * test_desc.c.)
+ *
+ * Frames are compared as text, one word per pass: march(r:depth u:albedo u:normal w:scene_depth).
+ * r sampled, w written, u updated, c colour and d depth attachment, from and to of a copy.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "blob.h"
+#include "plan.h"
+#include "support_desc.h"
+#include "support_random.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static void compile(const masu_desc *d, masu_frame_plan *plan) {
+    masu_detail detail, before;
+    memset(&detail, 0x5A, sizeof detail);
+    before = detail;
+    masu_result result = masu_compile(d, 256, 64, plan, &detail);
+    if (result) fail_msg("refused: %s", detail.text);
+    assert_memory_equal(&detail, &before, sizeof detail); /* untouched by success */
+}
+
+/* ---- Frames as text -------------------------------------------------------------------------- */
+
+static const char *usage_text(uint8_t usage) {
+    static const char *const texts[] = {
+        [MASU_USE_NONE] = "?",    [MASU_READ] = "r",        [MASU_READ_COPY] = "from",
+        [MASU_WRITE] = "w",       [MASU_UPDATE] = "u",      [MASU_WRITE_COLOR] = "c",
+        [MASU_WRITE_DEPTH] = "d", [MASU_WRITE_COPY] = "to",
+    };
+    return texts[usage];
+}
+
+static const char *frame_text(const masu_frame_plan *plan, uint32_t rung) {
+    static char text[1024];
+    size_t at = 0;
+    const masu_rung_plan *rp = &plan->rungs[rung];
+    text[0] = '\0';
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        if (!(rp->active & 1u << p)) {
+            assert_int_equal(rp->access_count[p], 0);
+            continue;
+        }
+        at += (size_t)snprintf(text + at, sizeof text - at, "%s%s(", at ? " " : "",
+                               masu_passes[p].name);
+        for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+            const masu_access *access = &rp->access[p][a];
+            assert_in_range(access->image, 1, MASU_IMAGE_COUNT - 1);
+            at += (size_t)snprintf(text + at, sizeof text - at, "%s%s:%s", a ? " " : "",
+                                   usage_text(access->usage), masu_images[access->image].name);
+        }
+        at += (size_t)snprintf(text + at, sizeof text - at, ")");
+        assert_true(at < sizeof text);
+    }
+    return text;
+}
+
+static void assert_frame(const masu_desc *d, uint32_t rung, const char *expected) {
+    static masu_frame_plan plan;
+    compile(d, &plan);
+    assert_string_equal(frame_text(&plan, rung), expected);
+}
+
+static const char *why_of(const masu_desc *d, masu_pass_id pass) {
+    static masu_frame_plan plan;
+    compile(d, &plan);
+    return plan.why[pass];
+}
+
+/* ---- The table itself ------------------------------------------------------------------------ */
+
+/* The export has room for six reads and four writes; set 1 takes reads first, then writes. */
+static void every_row_of_the_table_fits_what_is_derived_from_it(void **state) {
+    (void)state;
+    assert_true(MASU_PASS_COUNT <= MASU_MAX_PASSES);
+    assert_true(MASU_IMAGE_COUNT <= MASU_MAX_RESOURCES);
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        const masu_pass_row *row = &masu_passes[p];
+        uint32_t reads = 0, writes = 0;
+        assert_true(row->name && *row->name && row->purpose && row->decide);
+        for (uint32_t q = 0; q < p; q++) assert_string_not_equal(row->name, masu_passes[q].name);
+        for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
+            if (masu_usage_writes((masu_usage)row->access[a].usage)) {
+                writes++;
+            } else {
+                assert_int_equal(writes, 0);
+                reads++;
+            }
+        }
+        assert_true(reads <= 6 && writes <= 4 && reads + writes > 0);
+    }
+    for (uint32_t i = 1; i < MASU_IMAGE_COUNT; i++) {
+        assert_non_null(masu_images[i].name);
+        for (uint32_t j = 1; j < i; j++) {
+            assert_string_not_equal(masu_images[i].name, masu_images[j].name);
+        }
+    }
+}
+
+/* ---- Sizes of rungs -------------------------------------------------------------------------- */
+
+static void assert_rung_sizes(uint32_t width, uint32_t height, const uint32_t sizes[3][2]) {
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER | SDF, width, height);
+    compile(&d, &plan);
+    assert_int_equal(plan.desc.rung_count, 3);
+    for (uint32_t r = 0; r < 3; r++) {
+        assert_int_equal(plan.rungs[r].render_width, sizes[r][0]);
+        assert_int_equal(plan.rungs[r].render_height, sizes[r][1]);
+    }
+}
+
+static void the_default_rungs_of_full_hd_are_these(void **state) {
+    (void)state;
+    const uint32_t sizes[3][2] = {{1920, 1080}, {1536, 864}, {768, 432}};
+    assert_rung_sizes(1920, 1080, sizes);
+}
+
+static void odd_sizes_round_to_nearest_and_never_to_nothing(void **state) {
+    (void)state;
+    const uint32_t one[3][2] = {{1, 1}, {1, 1}, {1, 1}};
+    const uint32_t small[3][2] = {{7, 5}, {6, 4}, {3, 2}};
+    const uint32_t tall[3][2] = {{3, 16384}, {2, 13107}, {1, 6554}};
+    assert_rung_sizes(1, 1, one);
+    assert_rung_sizes(7, 5, small);
+    assert_rung_sizes(3, 16384, tall);
+}
+
+static void any_scale_of_any_size_gives_a_size_within_half_a_pixel(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    uint64_t random = 1;
+    for (int i = 0; i < 2000; i++) {
+        masu_desc d = scene_desc(RASTER, (uint32_t)support_random_in(&random, 1, 16384),
+                                 (uint32_t)support_random_in(&random, 1, 16384));
+        float scale = (float)support_random_in(&random, 1, 1 << 20) / (float)(1 << 20);
+        d.rung_count = 1;
+        d.rungs[0].scale = scale;
+        compile(&d, &plan);
+        const uint32_t got[] = {plan.rungs[0].render_width, plan.rungs[0].render_height};
+        const uint32_t of[] = {d.output.width, d.output.height};
+        for (int k = 0; k < 2; k++) {
+            double exact = (double)of[k] * (double)scale;
+            assert_in_range(got[k], 1, of[k]);
+            assert_true(fabs((double)got[k] - exact) <= 0.5 || (got[k] == 1 && exact < 0.5));
+        }
+    }
+}
+
+/* An upscale of a picture onto itself would cost a pass for nothing. */
+static void a_rung_that_rounds_to_the_output_size_is_not_upscaled(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(SDF, 1, 1);
+    assert_frame(&d, 2,
+                 "march(u:albedo u:normal w:scene_depth) "
+                 "light(r:albedo r:normal r:scene_depth w:hdr) tonemap(r:hdr w:target)");
+}
+
+static void a_source_image_ignores_the_scales_of_the_rungs(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = source_desc(1000, 333);
+    d.rung_count = 0;
+    compile(&d, &plan);
+    for (uint32_t r = 0; r < 3; r++) {
+        assert_int_equal(plan.rungs[r].render_width, 1000);
+        assert_int_equal(plan.rungs[r].render_height, 333);
+    }
+}
+
+/* ---- Frames ---------------------------------------------------------------------------------- */
+
+#define GBUFFER "gbuffer(c:albedo c:normal d:depth) "
+#define MARCH_ON_RASTER "march(r:depth u:albedo u:normal w:scene_depth) "
+#define MARCH_ALONE "march(u:albedo u:normal w:scene_depth) "
+#define LIGHT_RASTER "light(r:albedo r:normal r:depth w:hdr) "
+#define LIGHT_SDF "light(r:albedo r:normal r:scene_depth w:hdr) "
+
+static void polygons_and_sdf_make_the_whole_frame(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
+    assert_frame(&d, 0, GBUFFER MARCH_ON_RASTER LIGHT_SDF "tonemap(r:hdr w:target)");
+    for (uint32_t r = 1; r < 3; r++) {
+        assert_frame(&d, r,
+                     GBUFFER MARCH_ON_RASTER LIGHT_SDF
+                     "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)");
+    }
+}
+
+static void without_an_sdf_nothing_is_marched(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER, 1920, 1080);
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_MARCH), "the scene has no SDF");
+    assert_string_equal(why_of(&d, MASU_PASS_GBUFFER), "the scene has instances");
+}
+
+static void without_instances_nothing_is_rasterised(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(SDF, 1920, 1080);
+    assert_frame(&d, 0, MARCH_ALONE LIGHT_SDF "tonemap(r:hdr w:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_GBUFFER),
+                        "no instances; the march writes every pixel");
+    assert_string_equal(why_of(&d, MASU_PASS_MARCH), "the scene has an SDF");
+}
+
+static void an_empty_scene_is_cleared_and_lit(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(0, 1920, 1080);
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_GBUFFER),
+                        "clears: the scene is empty but for its sky");
+}
+
+static void a_source_image_alone_is_upscaled_and_sharpened(void **state) {
+    (void)state;
+    masu_desc d = source_desc(1280, 720);
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+    const masu_pass_id out[] = {MASU_PASS_GBUFFER, MASU_PASS_LIGHT, MASU_PASS_TONEMAP};
+    for (size_t i = 0; i < COUNT(out); i++) {
+        assert_string_equal(why_of(&d, out[i]), "no scene: a source image is upscaled");
+    }
+    d.rungs[0].sharpen = MASU_OFF;
+    assert_frame(&d, 0, "easu(r:source w:target)");
+}
+
+static void a_source_image_of_the_output_size_is_written_all_the_same(void **state) {
+    (void)state;
+    masu_desc d = source_desc(1920, 1080);
+    const masu_switch upscale[] = {MASU_AUTO, MASU_OFF};
+    for (size_t i = 0; i < COUNT(upscale); i++) {
+        d.rungs[0].upscale = upscale[i];
+        d.rungs[0].sharpen = MASU_OFF;
+        assert_frame(&d, 0, "easu(r:source w:target)");
+        d.rungs[0].sharpen = MASU_ON;
+        assert_frame(&d, 0, "rcas(r:source w:target)");
+    }
+}
+
+static void switches_force_upscaling_and_sharpening_on_and_off(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(SDF, 1920, 1080);
+    d.rung_count = 6;
+    d.rungs[0] = (masu_rung){.upscale = MASU_ON};
+    d.rungs[1] = (masu_rung){.upscale = MASU_ON, .sharpen = MASU_OFF};
+    d.rungs[2] = (masu_rung){.sharpen = MASU_ON};
+    d.rungs[3] = (masu_rung){.upscale = MASU_OFF, .sharpen = MASU_OFF};
+    d.rungs[4] = (masu_rung){.scale = 0.5f, .sharpen = MASU_OFF};
+    d.rungs[5] = (masu_rung){.scale = 0.5f};
+    static const char *const ends[] = {
+        "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:ldr) easu(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) rcas(r:ldr w:target)",
+        "tonemap(r:hdr w:target)",
+        "tonemap(r:hdr w:ldr) easu(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+    };
+    for (uint32_t r = 0; r < 6; r++) {
+        char expected[512];
+        (void)snprintf(expected, sizeof expected, MARCH_ALONE LIGHT_SDF "%s", ends[r]);
+        assert_frame(&d, r, expected);
+    }
+}
+
+static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER, 1920, 1080);
+    d.targets.storage = 0;
+    d.targets.views = NULL; /* not needed then */
+    d.targets.format = VK_FORMAT_B8G8R8A8_SRGB;
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) present(from:ldr to:target)");
+    assert_frame(&d, 1,
+                 GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) "
+                                      "rcas(r:upscaled w:final) present(from:final to:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_PRESENT), "targets are no storage images");
+    d.rungs[0] = (masu_rung){.scale = 0.5f, .sharpen = MASU_OFF};
+    d.rung_count = 1;
+    assert_frame(&d, 0,
+                 GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) "
+                                      "present(from:upscaled to:target)");
+    d.targets.storage = 1;
+    d.targets.views = support_views;
+    d.targets.format = VK_FORMAT_UNDEFINED;
+    assert_string_equal(why_of(&d, MASU_PASS_PRESENT), "the last pass writes the target itself");
+}
+
+static void the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER, 1920, 1080);
+    assert_string_equal(why_of(&d, MASU_PASS_EASU),
+                        "render size differs from output size, or rung.upscale is on");
+    assert_string_equal(why_of(&d, MASU_PASS_RCAS),
+                        "sharpens what EASU made, or rung.sharpen is on");
+    d.rung_count = 1; /* full size only */
+    assert_string_equal(why_of(&d, MASU_PASS_EASU), "render size is output size");
+    assert_string_equal(why_of(&d, MASU_PASS_RCAS), "nothing was upscaled, or rung.sharpen is off");
+    assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback asks for no image");
+    assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "a scene is lit");
+}
+
+static void readback_copies_what_is_asked_for(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t parts, bits;
+        const char *pass;
+    } cases[] = {
+        {RASTER | SDF, MASU_READBACK_ALL,
+         "readback(from:albedo from:normal from:scene_depth from:hdr) "},
+        {RASTER, MASU_READBACK_DEPTH, "readback(from:depth) "},
+        {SDF, MASU_READBACK_DEPTH | MASU_READBACK_HDR, "readback(from:scene_depth from:hdr) "},
+        {RASTER, MASU_READBACK_NORMAL, "readback(from:normal) "},
+        {RASTER, MASU_READBACK_ALBEDO, "readback(from:albedo) "},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        masu_desc d = scene_desc(cases[i].parts, 64, 64);
+        d.readback = cases[i].bits;
+        char expected[512];
+        (void)snprintf(expected, sizeof expected, "%s%s%s%stonemap(r:hdr w:target)",
+                       cases[i].parts & RASTER ? GBUFFER : "",
+                       !(cases[i].parts & SDF)   ? ""
+                       : cases[i].parts & RASTER ? MARCH_ON_RASTER
+                                                 : MARCH_ALONE,
+                       cases[i].parts & SDF ? LIGHT_SDF : LIGHT_RASTER, cases[i].pass);
+        assert_frame(&d, 0, expected);
+        assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback asks for images");
+    }
+    masu_desc d = source_desc(64, 64); /* has none of these images */
+    d.readback = MASU_READBACK_ALL;
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+}
+
+/* Over everything that shapes a frame: the properties that no frame may lack. */
+static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    for (uint32_t c = 0; c < 2 * 4 * 3 * 3 * 3 * 2; c++) {
+        uint32_t n = c, storage = n % 2, parts = (n /= 2) % 4;
+        masu_desc d = scene_desc(parts, 640, 480);
+        d.rung_count = 1;
+        d.rungs[0].upscale = (masu_switch)((n /= 4) % 3);
+        d.rungs[0].sharpen = (masu_switch)((n /= 3) % 3);
+        uint32_t size = (n /= 3) % 3, source = n / 3;
+        d.rungs[0].scale = size ? 0.5f : 1.0f;
+        if (d.rungs[0].upscale == MASU_OFF && size) continue; /* refused */
+        if (source) {
+            d.scene = NULL;
+            d.source = (masu_source){FAKE(VkImageView, 1), size ? 320 : 640, size ? 240 : 480};
+        }
+        d.targets.storage = storage;
+        compile(&d, &plan);
+        const masu_rung_plan *rp = &plan.rungs[0];
+        uint32_t writers = 0, written = 1u << MASU_IMAGE_SOURCE;
+        int last_pass = -1;
+        for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+            if (rp->active & 1u << p) last_pass = (int)p;
+            for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+                uint32_t image = rp->access[p][a].image, writes;
+                writes = (uint32_t)masu_usage_writes((masu_usage)rp->access[p][a].usage);
+                if (!writes && !(written & 1u << image)) {
+                    fail_msg("case %u: %s reads %s, which nothing has written", c,
+                             masu_passes[p].name, masu_images[image].name);
+                }
+                if (writes) written |= 1u << image;
+                if (image != MASU_IMAGE_TARGET) continue;
+                writers++;
+                assert_true(writes);
+                assert_int_equal(rp->access[p][a].usage, storage ? MASU_WRITE : MASU_WRITE_COPY);
+            }
+        }
+        assert_int_equal(writers, 1);
+        assert_true(last_pass >= 0);
+        assert_int_equal(rp->access[last_pass][rp->access_count[last_pass] - 1].image,
+                         MASU_IMAGE_TARGET);
+        assert_true(source || (written & 1u << MASU_IMAGE_HDR));
+    }
+}
+
+/* ---- Images and buffers ---------------------------------------------------------------------- */
+
+static void assert_image(const masu_frame_plan *plan, masu_image_id id, uint32_t first,
+                         uint32_t last, uint32_t width, uint32_t height, VkImageUsageFlags usage) {
+    const masu_image_plan *image = &plan->images[id];
+    if (!image->used) fail_msg("%s is not used", masu_images[id].name);
+    assert_int_equal(image->first, first);
+    assert_int_equal(image->last, last);
+    assert_int_equal(image->width, width);
+    assert_int_equal(image->height, height);
+    assert_int_equal(image->usage, usage);
+}
+
+#define SAMPLED VK_IMAGE_USAGE_SAMPLED_BIT
+#define STORAGE VK_IMAGE_USAGE_STORAGE_BIT
+#define COLOR VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT
+#define DEPTH VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+#define SOURCE VK_IMAGE_USAGE_TRANSFER_SRC_BIT
+
+static void images_live_from_their_first_to_their_last_pass(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
+    compile(&d, &plan);
+    assert_image(&plan, MASU_IMAGE_ALBEDO, MASU_PASS_GBUFFER, MASU_PASS_LIGHT, 1920, 1080,
+                 COLOR | STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_NORMAL, MASU_PASS_GBUFFER, MASU_PASS_LIGHT, 1920, 1080,
+                 COLOR | STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_DEPTH, MASU_PASS_GBUFFER, MASU_PASS_MARCH, 1920, 1080,
+                 DEPTH | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_SCENE_DEPTH, MASU_PASS_MARCH, MASU_PASS_LIGHT, 1920, 1080,
+                 STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_LIGHT, MASU_PASS_TONEMAP, 1920, 1080,
+                 STORAGE | SAMPLED);
+    /* The first rung has none of these: they are as large as the largest rung that has. */
+    assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_EASU, 1536, 864,
+                 STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1920, 1080,
+                 STORAGE | SAMPLED);
+    assert_false(plan.images[MASU_IMAGE_FINAL].used);
+    assert_false(plan.images[MASU_IMAGE_SOURCE].used); /* the host's */
+    assert_false(plan.images[MASU_IMAGE_TARGET].used);
+}
+
+static void readback_and_blits_lengthen_lives(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER, 100, 50);
+    d.readback = MASU_READBACK_DEPTH | MASU_READBACK_ALBEDO;
+    d.targets.storage = 0;
+    compile(&d, &plan);
+    assert_image(&plan, MASU_IMAGE_ALBEDO, MASU_PASS_GBUFFER, MASU_PASS_READBACK, 100, 50,
+                 COLOR | SAMPLED | SOURCE);
+    assert_image(&plan, MASU_IMAGE_NORMAL, MASU_PASS_GBUFFER, MASU_PASS_LIGHT, 100, 50,
+                 COLOR | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_DEPTH, MASU_PASS_GBUFFER, MASU_PASS_READBACK, 100, 50,
+                 DEPTH | SAMPLED | SOURCE);
+    assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_PRESENT, 100, 50,
+                 STORAGE | SAMPLED | SOURCE);
+    assert_image(&plan, MASU_IMAGE_FINAL, MASU_PASS_RCAS, MASU_PASS_PRESENT, 100, 50,
+                 STORAGE | SOURCE);
+    assert_false(plan.images[MASU_IMAGE_SCENE_DEPTH].used);
+}
+
+static void images_are_as_large_as_the_largest_rung_in_any_order(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(SDF, 1000, 10);
+    d.rung_count = 3;
+    d.rungs[0].scale = 0.3f;
+    d.rungs[1].scale = 0.9f;
+    d.rungs[2].scale = 0.5f;
+    compile(&d, &plan);
+    assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_LIGHT, MASU_PASS_TONEMAP, 900, 9,
+                 STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1000, 10,
+                 STORAGE | SAMPLED);
+}
+
+static void a_pass_that_writes_the_target_has_a_set_for_each_target(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
+    d.targets.count = 3;
+    compile(&d, &plan);
+    /* march, light, tonemap x 3; then twice: march, light, tonemap, easu, rcas x 3 */
+    assert_int_equal(plan.pass_sets, (2 + 3) + 2 * (4 + 3));
+    d.targets.storage = 0; /* the blit needs none */
+    compile(&d, &plan);
+    assert_int_equal(plan.pass_sets, 3 + 2 * 5);
+}
+
+static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
+    d.frames_in_flight = 3;
+    compile(&d, &plan);
+    const masu_buffer_plan *b = plan.buffers;
+    uint64_t frame = (sizeof(struct masu_frame_uniforms) + 255) / 256 * 256;
+    assert_int_equal(b[MASU_BUFFER_VERTICES].bytes, 11 * sizeof(masu_blob_vertex));
+    assert_int_equal(b[MASU_BUFFER_INDICES].bytes, 15 * 4);
+    assert_int_equal(b[MASU_BUFFER_MATERIALS].bytes, 2 * 32);
+    assert_int_equal(b[MASU_BUFFER_COUNTERS].bytes, 2 * 4 * MASU_COUNTER_COUNT);
+    assert_int_equal(b[MASU_BUFFER_FRAME].stride, frame);
+    assert_int_equal(b[MASU_BUFFER_FRAME].bytes, 3 * frame);
+    assert_int_equal(b[MASU_BUFFER_INSTANCES].stride, 192); /* 3 * 48 up to a multiple of 64 */
+    assert_int_equal(b[MASU_BUFFER_INSTANCES].bytes, 3 * 192);
+    assert_int_equal(b[MASU_BUFFER_READBACK].bytes, 0);
+    assert_int_equal(b[MASU_BUFFER_STAGING].bytes, 0); /* known only with a device */
+    assert_int_equal(b[MASU_BUFFER_FRAME].role, MASU_ROLE_UPLOAD);
+    assert_int_equal(b[MASU_BUFFER_INSTANCES].role, MASU_ROLE_UPLOAD);
+    assert_int_equal(b[MASU_BUFFER_READBACK].role, MASU_ROLE_READBACK);
+    assert_int_equal(b[MASU_BUFFER_VERTICES].role, MASU_ROLE_DEVICE);
+
+    d = source_desc(100, 100);
+    compile(&d, &plan);
+    for (uint32_t i = 0; i < MASU_BUFFER_COUNT; i++) {
+        assert_non_null(b[i].name);
+        assert_int_equal(b[i].bytes, 0);
+    }
+}
+
+static void readback_slots_hold_the_counters_and_then_the_images(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER | SDF, 7, 5); /* 35 texels: 140 bytes, 280 for hdr */
+    d.debug.counters = 1;
+    d.readback = MASU_READBACK_ALL;
+    compile(&d, &plan);
+    const masu_buffer_plan *b = &plan.buffers[MASU_BUFFER_READBACK];
+    static const uint64_t offsets[MASU_READBACK_IMAGES] = {32, 32 + 144, 32 + 288, 32 + 432};
+    for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
+        assert_int_equal(plan.readback_offset[i], offsets[i]);
+    }
+    assert_int_equal(b->stride, 32 + 432 + 288);
+    assert_int_equal(b->bytes, 2 * b->stride);
+    d.debug.counters = 0;
+    d.readback = MASU_READBACK_HDR;
+    compile(&d, &plan);
+    assert_int_equal(plan.readback_offset[3], 0);
+    assert_int_equal(b->stride, 288);
+}
+
+/* ---- Export ---------------------------------------------------------------------------------- */
+
+static void the_public_plan_tells_what_was_compiled(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static masu_plan_info info;
+    masu_desc d = scene_desc(RASTER, 1920, 1080);
+    uint64_t times[MASU_PASS_COUNT];
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) times[p] = 100 + p;
+    compile(&d, &plan);
+    plan.rungs[1].barriers = 7;
+    masu_plan_export(&plan, times, &info);
+    assert_int_equal(info.pass_count, MASU_PASS_COUNT);
+    assert_int_equal(info.rung_count, 3);
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        uint32_t active = 0;
+        for (uint32_t r = 0; r < 3; r++) active |= (plan.rungs[r].active >> p & 1u) << r;
+        assert_string_equal(info.passes[p].name, masu_passes[p].name);
+        assert_string_equal(info.passes[p].why, plan.why[p]);
+        assert_int_equal(info.passes[p].active, active);
+        assert_int_equal(info.passes[p].pipeline_ns, 100 + p);
+    }
+    const masu_plan_pass *light = &info.passes[MASU_PASS_LIGHT];
+    assert_string_equal(light->reads[0], "albedo");
+    assert_string_equal(light->reads[1], "normal");
+    assert_string_equal(light->reads[2], "depth");
+    assert_null(light->reads[3]);
+    assert_string_equal(light->writes[0], "hdr");
+    assert_null(light->writes[1]);
+    assert_null(info.passes[MASU_PASS_MARCH].reads[0]);
+    assert_int_equal(info.rungs[0].dispatches, 3);
+    assert_int_equal(info.rungs[1].dispatches, 5);
+    assert_int_equal(info.rungs[1].barriers, 7);
+    assert_int_equal(info.rungs[2].render_width, 768);
+    assert_int_equal(info.rungs[2].render_height, 432);
+    assert_int_equal(info.image_count, MASU_IMAGE_SOURCE - 1);
+    for (uint32_t i = 0; i < info.image_count; i++) {
+        const masu_image_plan *image = &plan.images[i + 1];
+        assert_string_equal(info.images[i].name, masu_images[i + 1].name);
+        assert_int_equal(info.images[i].format, masu_images[i + 1].format);
+        assert_int_equal(info.images[i].used, image->used);
+        assert_int_equal(info.images[i].width, image->width);
+        assert_int_equal(info.images[i].height, image->height);
+        assert_int_equal(info.images[i].first_pass, image->first);
+        assert_int_equal(info.images[i].last_pass, image->last);
+    }
+    /* scene_depth and final: 4 bytes each per texel */
+    assert_int_equal(info.left_out_bytes, 2 * 4 * 1920 * 1080);
+    masu_plan_export(&plan, NULL, &info);
+    assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
+}
+
+static void the_public_memory_sums_the_blocks(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_memory memory;
+    memset(&plan, 0, sizeof plan);
+    plan.blocks[MASU_ROLE_DEVICE] = (masu_block_plan){1000, 256, 6, 1, 0};
+    plan.blocks[MASU_ROLE_READBACK] = (masu_block_plan){24, 16, 4, 2, 1};
+    plan.transient_unaliased = 900, plan.transient_aliased = 600, plan.transient_lower_bound = 500;
+    masu_memory_export(&plan, 777, &memory);
+    assert_int_equal(memory.host_bytes, 777);
+    assert_int_equal(memory.host_alignment, 64);
+    assert_int_equal(memory.device_bytes, 1024);
+    assert_int_equal(memory.unified, 0);
+    assert_int_equal(memory.roles[MASU_ROLE_DEVICE].alignment, 256);
+    assert_int_equal(memory.roles[MASU_ROLE_DEVICE].type_bits, 6);
+    assert_int_equal(memory.roles[MASU_ROLE_DEVICE].type, 1);
+    assert_int_equal(memory.roles[MASU_ROLE_DEVICE].host_visible, 0);
+    assert_int_equal(memory.roles[MASU_ROLE_UPLOAD].bytes, 0);
+    assert_int_equal(memory.roles[MASU_ROLE_READBACK].bytes, 24);
+    assert_int_equal(memory.roles[MASU_ROLE_READBACK].host_visible, 1);
+    assert_int_equal(memory.transient_unaliased, 900);
+    assert_int_equal(memory.transient_aliased, 600);
+    assert_int_equal(memory.transient_lower_bound, 500);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_row_of_the_table_fits_what_is_derived_from_it),
+        cmocka_unit_test(the_default_rungs_of_full_hd_are_these),
+        cmocka_unit_test(odd_sizes_round_to_nearest_and_never_to_nothing),
+        cmocka_unit_test(any_scale_of_any_size_gives_a_size_within_half_a_pixel),
+        cmocka_unit_test(a_rung_that_rounds_to_the_output_size_is_not_upscaled),
+        cmocka_unit_test(a_source_image_ignores_the_scales_of_the_rungs),
+        cmocka_unit_test(polygons_and_sdf_make_the_whole_frame),
+        cmocka_unit_test(without_an_sdf_nothing_is_marched),
+        cmocka_unit_test(without_instances_nothing_is_rasterised),
+        cmocka_unit_test(an_empty_scene_is_cleared_and_lit),
+        cmocka_unit_test(a_source_image_alone_is_upscaled_and_sharpened),
+        cmocka_unit_test(a_source_image_of_the_output_size_is_written_all_the_same),
+        cmocka_unit_test(switches_force_upscaling_and_sharpening_on_and_off),
+        cmocka_unit_test(a_target_that_is_no_storage_image_is_blitted_to),
+        cmocka_unit_test(the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it),
+        cmocka_unit_test(readback_copies_what_is_asked_for),
+        cmocka_unit_test(in_every_frame_the_last_colour_writer_alone_writes_the_target),
+        cmocka_unit_test(images_live_from_their_first_to_their_last_pass),
+        cmocka_unit_test(readback_and_blits_lengthen_lives),
+        cmocka_unit_test(images_are_as_large_as_the_largest_rung_in_any_order),
+        cmocka_unit_test(a_pass_that_writes_the_target_has_a_set_for_each_target),
+        cmocka_unit_test(buffers_are_sized_by_the_scene_and_the_frames_in_flight),
+        cmocka_unit_test(readback_slots_hold_the_counters_and_then_the_images),
+        cmocka_unit_test(the_public_plan_tells_what_was_compiled),
+        cmocka_unit_test(the_public_memory_sums_the_blocks),
+    };
+    return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
+}
