@@ -51,7 +51,7 @@ LINK_FLAGS  = $(filter -fsanitize=% --coverage,$(CONFIG_$(config))) $(LDFLAGS)
 
 # src/ is strict C11 and hides what is not MASU_API; the rest is POSIX. Tests keep their assert().
 $(BUILD)/obj/src/%.o: FOLDER_FLAGS := -fPIC -fvisibility=hidden
-$(BUILD)/obj/platform/%.o $(BUILD)/obj/tools/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L
+$(BUILD)/obj/platform/%.o $(BUILD)/obj/tools/%.o $(BUILD)/obj/examples/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L
 $(BUILD)/obj/tests/%.o: FOLDER_FLAGS := -D_POSIX_C_SOURCE=200809L -UNDEBUG
 
 # ---- Rules ---------------------------------------------------------------------------------------
@@ -96,7 +96,7 @@ force:
 more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$$(nproc))
 
 .PHONY: all lib tools scenes shaders
-all: lib tools ## build the library and the programs (the default)
+all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
 lib: $(BUILD)/lib/libmasu.a ## build build/lib/libmasu.a alone
 tools: $(BUILD)/bin/masu $(BUILD)/bin/masu-bake ## build build/bin/masu and build/bin/masu-bake
 shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders

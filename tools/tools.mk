@@ -21,3 +21,9 @@ $(BUILD)/scenes/%.masu: scenes/%.json $(BUILD)/bin/masu-bake $(wildcard scenes/*
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
 	$(V)$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $< -o $@
+
+# The example of the README.
+$(BUILD)/examples/%: LIBS = -lvulkan -lm
+$(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(KEEP_LOADED) $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+	$(link)
+EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))

@@ -251,6 +251,22 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     assert_true(sums[0] > 2 * sums[1] && sums[1] > 0);
 }
 
+static void the_example_of_the_readme_draws(void **state) {
+    (void)state;
+    char command[1024], error[ERROR_SIZE];
+    const char *build = getenv("BUILD");
+    struct masu_image image;
+    snprintf(command, sizeof command, "%s/examples/minimal %s %s/example.png >%s/out", build ? build : "build",
+             scene_path("test_both"), dir, dir);
+    assert_int_equal(system(command), 0);
+    read_text("out", out_text, sizeof out_text);
+    assert_non_null(strstr(out_text, "bytes host"));
+    snprintf(command, sizeof command, "%s/example.png", dir);
+    assert_ok(masu_image_load_png(command, &image, error, sizeof error));
+    assert_int_equal(image.width, 1280);
+    masu_image_free(&image);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_and_version_are_there_for_every_command),
@@ -260,6 +276,7 @@ int main(void) {
         cmocka_unit_test(an_unknown_device_lists_those_that_are_there),
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
+        cmocka_unit_test(the_example_of_the_readme_draws),
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
     };
     return cmocka_run_group_tests_name("cli", tests, make_dir, remove_dir);

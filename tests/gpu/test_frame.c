@@ -55,6 +55,18 @@ static void a_second_run_gives_the_same_bits(void **state) {
     compare_all_rungs(&d);
 }
 
+/* Software drivers split work over threads: no result may depend on how. (Other drivers ignore the variable.) */
+static void the_number_of_worker_threads_changes_nothing(void **state) {
+    (void)state;
+    static const char *const counts[] = {"0", "1", "2"};
+    for (size_t i = 0; i < 3; i++) {
+        setenv("LP_NUM_THREADS", counts[i], 1);
+        masu_session_desc d = test_desc("test_both", W, H);
+        compare_all_rungs(&d);
+    }
+    unsetenv("LP_NUM_THREADS");
+}
+
 static void nan_poison_in_all_transient_memory_changes_nothing(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_both", W, H);
@@ -229,6 +241,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_picture_shows_both_worlds),
         cmocka_unit_test(a_second_run_gives_the_same_bits),
+        cmocka_unit_test(the_number_of_worker_threads_changes_nothing),
         cmocka_unit_test(nan_poison_in_all_transient_memory_changes_nothing),
         cmocka_unit_test(infinity_poison_changes_nothing),
         cmocka_unit_test(separate_memory_per_role_changes_nothing),

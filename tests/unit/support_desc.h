@@ -1,5 +1,5 @@
-/* support_desc.h: descriptions for tests that have no device: handles that are nothing but not null,
- * and a scene that is nothing but its numbers. */
+/* support_desc.h: descriptions for tests that have no device: handles that are nothing but not
+ * null, and a scene that is nothing but its numbers. */
 #ifndef SUPPORT_DESC_H
 #define SUPPORT_DESC_H
 

@@ -1,0 +1,209 @@
+/* scene_walk.c: see scene_walk.h. */
+#include "reference/scene_walk.h"
+
+#include "scene.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct walker {
+    const masu_scene *scene;
+    masu_scene_view view;
+    const char *fault;
+} walker;
+
+static void expect(walker *w, int good, const char *fault) {
+    if (!good && !w->fault) w->fault = fault;
+}
+
+static int all_within(const float *v, uint32_t n, double low, double high) {
+    for (uint32_t i = 0; i < n; i++) {
+        if (!((double)v[i] >= low && (double)v[i] <= high)) return 0;
+    }
+    return 1;
+}
+
+#define ANY_FLOAT 3.5e38 /* finite */
+
+/* A section lies in the blob; each of its bytes is read, which a sanitizer or a guard page sees. */
+static void read_section(walker *w, const void *start, uint64_t count, uint64_t stride,
+                         const char *fault) {
+    const unsigned char *blob = w->scene->blob, *p = start;
+    volatile unsigned char sink = 0;
+    expect(w, (p != NULL) == (count > 0), fault);
+    if (!p || w->fault) return;
+    uint64_t offset = (uint64_t)(p - blob);
+    expect(w, p >= blob && offset <= w->scene->blob_bytes, fault);
+    expect(w, !w->fault && count <= (w->scene->blob_bytes - offset) / stride, fault);
+    for (uint64_t i = 0; i < count * stride && !w->fault; i++) sink = (unsigned char)(sink ^ p[i]);
+}
+
+static void read_name(walker *w, uint32_t name) {
+    if (name == MASU_BLOB_NONE) return;
+    expect(w, w->view.names && name < w->view.name_bytes, "a name lies outside the names");
+    if (w->fault) return;
+    expect(w, memchr(w->view.names + name, '\0', (size_t)(w->view.name_bytes - name)) != NULL,
+           "a name does not end");
+}
+
+static void read_sections(walker *w) {
+    const masu_scene *s = w->scene;
+    const masu_scene_view *v = &w->view;
+    read_section(w, v->vertices, s->vertices, sizeof *v->vertices, "vertices");
+    read_section(w, v->indices, s->indices, sizeof *v->indices, "indices");
+    read_section(w, v->primitives, s->primitives, sizeof *v->primitives, "primitives");
+    read_section(w, v->meshes, s->meshes, sizeof *v->meshes, "meshes");
+    read_section(w, v->instances, s->instances, sizeof *v->instances, "instances");
+    read_section(w, v->materials, s->materials, sizeof *v->materials, "materials");
+    read_section(w, v->camera_keys, s->camera_keys, sizeof *v->camera_keys, "camera keys");
+    read_section(w, v->environment, 1, sizeof *v->environment, "environment");
+    read_section(w, v->sdf, s->sdf, sizeof *v->sdf, "sdf");
+    read_section(w, v->sdf_params, s->sdf_params, sizeof *v->sdf_params, "sdf parameters");
+    read_section(w, v->march_spirv, v->march_words, sizeof *v->march_spirv, "march SPIR-V");
+    read_section(w, v->names, v->name_bytes, 1, "names");
+}
+
+static void read_primitive(walker *w, const masu_blob_primitive *p) {
+    expect(w, p->index_count % 3 == 0, "a primitive has a part of a triangle");
+    expect(w, (uint64_t)p->first_index + p->index_count <= w->scene->indices,
+           "a primitive's indices lie outside");
+    expect(w, p->vertex_count > 0 && p->vertex_count <= 0xFFFFFF, "a primitive's vertex count");
+    expect(w, (uint64_t)p->first_vertex + p->vertex_count <= w->scene->vertices,
+           "a primitive's vertices lie outside");
+    expect(w, p->first_vertex <= INT32_MAX, "a first vertex is no int32");
+    expect(w, p->material < w->scene->materials, "a primitive has no material");
+    expect(w, all_within(p->aabb_min, 3, -ANY_FLOAT, ANY_FLOAT), "a primitive's lower bound");
+    expect(w, all_within(p->aabb_max, 3, -ANY_FLOAT, ANY_FLOAT), "a primitive's upper bound");
+    for (uint32_t k = 0; k < p->index_count && !w->fault; k++) {
+        uint32_t index = w->view.indices[p->first_index + k];
+        expect(w, index < p->vertex_count, "an index points outside its primitive");
+        expect(w,
+               !w->fault && all_within(w->view.vertices[p->first_vertex + index].position, 3,
+                                       -ANY_FLOAT, ANY_FLOAT),
+               "a drawn vertex is not finite");
+    }
+}
+
+/* The draws of one G-buffer pass, by counting instances for each mesh from the start. */
+static void count_draws(walker *w) {
+    uint64_t draws = 0, triangles = 0;
+    for (uint32_t m = 0; m < w->scene->meshes && !w->fault; m++) {
+        const masu_blob_mesh *mesh = &w->view.meshes[m];
+        uint32_t first = w->scene->instances, placed = 0, from = 0, found_first;
+        for (uint32_t i = 0; i < w->scene->instances; i++) {
+            if (w->view.instances[i].mesh != m) continue;
+            if (!placed) first = i;
+            expect(w, i == first + placed, "instances of a mesh are apart");
+            placed++;
+        }
+        uint32_t end =
+            masu_scene_mesh_instances(&w->view, w->scene->instances, m, from, &found_first);
+        expect(w, end - found_first == placed && (!placed || found_first == first),
+               "masu_scene_mesh_instances disagrees");
+        for (uint32_t p = 0; p < mesh->primitive_count && placed && !w->fault; p++) {
+            draws++;
+            triangles +=
+                (uint64_t)placed * (w->view.primitives[mesh->first_primitive + p].index_count / 3);
+        }
+    }
+    expect(w, draws == w->scene->draws, "draws were counted wrongly");
+    expect(w, triangles == w->scene->triangles, "triangles were counted wrongly");
+}
+
+static void read_geometry(walker *w) {
+    const masu_scene_view *v = &w->view;
+    for (uint32_t i = 0; i < w->scene->primitives && !w->fault; i++) {
+        read_primitive(w, &v->primitives[i]);
+    }
+    for (uint32_t i = 0; i < w->scene->meshes && !w->fault; i++) {
+        const masu_blob_mesh *m = &v->meshes[i];
+        expect(w, (uint64_t)m->first_primitive + m->primitive_count <= w->scene->primitives,
+               "a mesh's primitives lie outside");
+        expect(w, all_within(m->aabb_min, 3, -ANY_FLOAT, ANY_FLOAT), "a mesh's lower bound");
+        expect(w, all_within(m->aabb_max, 3, -ANY_FLOAT, ANY_FLOAT), "a mesh's upper bound");
+        read_name(w, m->name);
+    }
+    for (uint32_t i = 0; i < w->scene->instances && !w->fault; i++) {
+        const masu_blob_instance *n = &v->instances[i];
+        expect(w, all_within(n->transform, 12, -ANY_FLOAT, ANY_FLOAT), "a transform is not finite");
+        expect(w, n->mesh < w->scene->meshes, "an instance has no mesh");
+        expect(w, n->parent == MASU_BLOB_NONE || n->parent < w->scene->instances,
+               "an instance has no such parent");
+        read_name(w, n->name);
+    }
+    if (!w->fault) count_draws(w);
+}
+
+static void read_looks(walker *w) {
+    const masu_scene_view *v = &w->view;
+    for (uint32_t i = 0; i < w->scene->materials && !w->fault; i++) {
+        const masu_blob_material *m = &v->materials[i];
+        expect(w, all_within(m->base_color, 3, 0.0, 1.0), "a base colour is out of range");
+        expect(w, all_within(&m->roughness, 1, 0.0, 1.0), "a roughness is out of range");
+        expect(w, all_within(&m->metallic, 1, 0.0, 1.0), "a metallic is out of range");
+        expect(w, all_within(m->emissive, 3, 0.0, ANY_FLOAT), "an emissive is out of range");
+        read_name(w, m->name);
+    }
+    for (uint32_t i = 0; i < w->scene->camera_keys && !w->fault; i++) {
+        const masu_blob_camera_key *k = &v->camera_keys[i];
+        expect(w, all_within(&k->time, 1, -ANY_FLOAT, ANY_FLOAT), "a key's time is not finite");
+        expect(w, all_within(k->position, 3, -ANY_FLOAT, ANY_FLOAT), "a key's position");
+        expect(w, all_within(k->target, 3, -ANY_FLOAT, ANY_FLOAT), "a key's target");
+        expect(w, all_within(&k->fov_y, 1, 0.0009, 3.1001), "a key's field of view");
+        expect(w, !i || k->time > v->camera_keys[i - 1].time, "time does not rise");
+    }
+    const masu_blob_environment *e = v->environment;
+    const float *d = e->sun_direction;
+    double length = sqrt((double)d[0] * (double)d[0] + (double)d[1] * (double)d[1] +
+                         (double)d[2] * (double)d[2]);
+    expect(w, fabs(length - 1.0) < 0.011, "the sun's direction is no unit vector");
+    expect(w, all_within(e->sun_color, 3, 0.0, ANY_FLOAT), "the sun's colour");
+    expect(w, all_within(e->ambient, 3, 0.0, ANY_FLOAT), "the ambient light");
+    expect(w, all_within(e->sky_zenith, 3, 0.0, ANY_FLOAT), "the zenith");
+    expect(w, all_within(e->sky_horizon, 3, 0.0, ANY_FLOAT), "the horizon");
+    expect(w, all_within(&e->exposure, 1, 1e-10, ANY_FLOAT), "the exposure");
+    expect(w, all_within(&e->near_distance, 1, 1e-10, ANY_FLOAT), "the near distance");
+}
+
+static void read_sdf(walker *w) {
+    const masu_blob_sdf *s = w->view.sdf;
+    if (!s) {
+        expect(w, !w->view.sdf_params && !w->view.march_spirv, "an SDF has parts but is missing");
+        return;
+    }
+    for (uint32_t k = 0; k < 3; k++) {
+        expect(w,
+               isfinite(s->bounds_min[k]) && isfinite(s->bounds_max[k]) &&
+                   s->bounds_min[k] <= s->bounds_max[k],
+               "the SDF's bounds");
+    }
+    expect(w, all_within(&s->lipschitz, 1, 0.00099, ANY_FLOAT), "the Lipschitz constant");
+    expect(w, all_within(&s->max_distance, 1, 1e-10, ANY_FLOAT), "the longest ray");
+    expect(w, s->has_raster == (w->scene->instances > 0), "has_raster");
+    expect(w, w->view.march_words >= 5 && w->view.march_spirv[0] == 0x07230203u, "the SPIR-V");
+    expect(w, w->scene->sdf_params <= MASU_MAX_SDF_PARAMS, "too many SDF parameters");
+    for (uint32_t i = 0; i < w->scene->sdf_params && !w->fault; i++) {
+        const masu_blob_sdf_param *p = &w->view.sdf_params[i];
+        expect(w,
+               isfinite(p->minimum) && isfinite(p->maximum) && p->minimum <= p->value &&
+                   p->value <= p->maximum,
+               "an SDF parameter is outside its range");
+        read_name(w, p->name);
+        if (w->fault || p->name == MASU_BLOB_NONE) continue;
+        const char *name = w->view.names + p->name;
+        int32_t found = masu_scene_sdf_param(w->scene, name); /* this one, or an earlier namesake */
+        expect(w, found >= 0 && found <= (int32_t)i, "an SDF parameter is not found by its name");
+        if (w->fault) return;
+        expect(w, !strcmp(w->view.names + w->view.sdf_params[found].name, name),
+               "another SDF parameter is found by its name");
+    }
+}
+
+const char *masu_ref_walk_scene(const masu_scene *scene) {
+    walker w = {.scene = scene, .view = masu_scene_look(scene)};
+    read_sections(&w);
+    if (!w.fault) read_geometry(&w);
+    if (!w.fault) read_looks(&w);
+    if (!w.fault) read_sdf(&w);
+    return w.fault;
+}
