@@ -1,49 +1,56 @@
 /* masu.h: the whole public interface of Masu, and its manual.
  *
- * Masu renders baked scenes of polygons and signed distance fields (SDF) inside a box of memory whose size is known before
- * the first frame. It is a library for a host that owns the Vulkan device, the queue, the window and the loop.
+ * Masu renders baked scenes of polygons and signed distance fields (SDF) inside a box of memory
+ * whose size is known before the first frame. It is a library for a host that owns the Vulkan
+ * device, the queue, the window and the loop.
  *
  * THE LIFE OF A RENDERER
  *
- *     masu_scene scene;                                   // 1. look at a baked scene (or none: upscaling only)
- *     masu_scene_bind(blob, blob_bytes, &scene, &detail);
- *     masu_desc desc = { .vulkan = {...}, .scene = &scene, .output = {1920, 1080}, .targets = views, ... };
+ *     masu_scene scene;                                   // 1. look at a baked scene
+ *     masu_scene_bind(blob, blob_bytes, &scene, &detail); //    (none: upscaling only)
+ *     masu_desc desc = { .vulkan = {...}, .scene = &scene, .output = {1920, 1080}, ... };
  *     masu_memory need;                                   // 2. ask how large the box is
  *     masu_memory_query(&desc, &need, &detail);
- *     masu_renderer *m;                                   // 3. give the block; everything is created here
+ *     masu_renderer *m;                                   // 3. give the block; all is created here
  *     masu_init(&desc, block, need.host_bytes, &m, &detail);
- *     while (masu_load(m, &commands) == MASU_INCOMPLETE)  // 4. copy the scene in: submit, wait, repeat
+ *     while (masu_load(m, &commands) == MASU_INCOMPLETE)  // 4. copy the scene in
  *         submit_and_wait(commands);
  *     for (;;) {                                          // 5. frames
- *         wait for the fence of the frame that used this slot: frames_in_flight frames ago
- *         masu_frame(m, &frame, &commands);               //    writes one block of uniforms, picks a recording
+ *         wait for the fence of the frame frames_in_flight frames ago
+ *         masu_frame(m, &frame, &commands);               //    writes uniforms, picks a recording
  *         submit(commands.buffer, fence);
  *     }
  *     wait until the device is idle; masu_destroy(m);     // 6. the blocks are the host's again
  *
  * WHAT IS PROMISED
- *  - After masu_init: no heap allocation, no vkAllocate*, vkCreate*, vkBegin/EndCommandBuffer by the library. What the
- *    driver does inside vkQueueSubmit is the driver's; `masu render --stats` counts it.
- *  - The library submits nothing, starts no thread, opens no file, prints nothing and has no global state. One renderer is
- *    used by one thread at a time; different renderers are independent.
+ *  - After masu_init: no heap allocation, no vkAllocate*, vkCreate*, vkBegin/EndCommandBuffer by
+ *    the library. What the driver does inside vkQueueSubmit is the driver's; `masu render --stats`
+ *    counts it.
+ *  - The library submits nothing, starts no thread, opens no file, prints nothing and has no global
+ *    state. One renderer is used by one thread at a time; different renderers are independent.
  *  - Failures leave nothing behind: masu_init that fails has destroyed what it created.
  *
  * THE VULKAN CONTRACT
- *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment and sampled image.
- *    No optional feature is needed. What is missing is named in the detail.
- *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is to be submitted once,
- *    to any queue of that family; submit frames in order. It starts with a full barrier against the frame before.
- *  - Target images: an array of views of host images, all `output` large. Storage targets (targets.storage != 0) must be
- *    VK_FORMAT_R8G8B8A8_UNORM with VK_IMAGE_USAGE_STORAGE_BIT; Masu writes them directly. Other targets (a swapchain's
- *    BGRA images, say) must have VK_IMAGE_USAGE_TRANSFER_DST_BIT and are filled by a blit, which costs one more image.
- *    Layout on entry: anything (contents are discarded). Layout on exit: targets.final_layout. The submit must wait for
- *    the image to be available (swapchain semaphore) at VK_PIPELINE_STAGE_ALL_COMMANDS_BIT; writes are made available
- *    to all later commands and, with readback, to the host.
+ *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
+ *    and sampled image. No optional feature is needed. What is missing is named in the detail.
+ *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
+ *    to be submitted once, to any queue of that family; submit frames in order. It starts with a
+ *    full barrier against the frame before.
+ *  - Target images: an array of views of host images, all `output` large. Storage targets
+ *    (targets.storage != 0) must be VK_FORMAT_R8G8B8A8_UNORM with VK_IMAGE_USAGE_STORAGE_BIT; Masu
+ *    writes them directly. Other targets (a swapchain's BGRA images, say) must have
+ *    VK_IMAGE_USAGE_TRANSFER_DST_BIT and are filled by a blit, which costs one more image. Layout
+ *    on entry: anything (contents are discarded). Layout on exit: targets.final_layout. The submit
+ *    must wait for the image to be available (swapchain semaphore) at
+ *    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT; writes are made available to all later commands and, with
+ *    readback, to the host.
  *
  * CONVENTIONS
- *  - World: right-handed, +Y up, metres. Colour: linear, unless said otherwise. Angles: radians. Time: seconds.
+ *  - World: right-handed, +Y up, metres. Colour: linear, unless said otherwise. Angles: radians.
+ *    Time: seconds.
  *  - Every struct may be zero-initialised; a zero field means the default stated next to it.
- *  - Functions return MASU_OK (0), MASU_INCOMPLETE (> 0) or a negative masu_result. `detail` may be NULL.
+ *  - Functions return MASU_OK (0), MASU_INCOMPLETE (> 0) or a negative masu_result. `detail` may be
+ *    NULL.
  *
  * Compiles as C11 (pedantic) and C++17. */
 #ifndef MASU_H
@@ -69,20 +76,20 @@ extern "C" {
 #define MASU_VERSION_MINOR 1
 #define MASU_VERSION_PATCH 0
 
-/* ---- Results ------------------------------------------------------------------------------------------------------- */
+/* ---- Results --------------------------------------------------------------------------------- */
 
 /* One line per code: name, value, what it means. Values never change once released. */
-#define MASU_RESULTS(X)                                                                                                \
-    X(MASU_OK, 0, "success")                                                                                           \
-    X(MASU_INCOMPLETE, 1, "not finished: call again")                                                                  \
-    X(MASU_ERROR_ARGUMENT, -1, "an argument is missing, out of range or not finite")                                   \
-    X(MASU_ERROR_MEMORY, -2, "a memory block is missing, misaligned or too small")                                     \
-    X(MASU_ERROR_LIMIT, -3, "a limit or budget of the description is exceeded")                                        \
-    X(MASU_ERROR_DEVICE, -4, "the device lacks something that is needed")                                              \
-    X(MASU_ERROR_SCENE, -5, "the scene blob is damaged or inconsistent")                                               \
-    X(MASU_ERROR_VERSION, -6, "the scene blob is of another version")                                                  \
-    X(MASU_ERROR_VULKAN, -7, "a Vulkan call failed")                                                                   \
-    X(MASU_ERROR_DEVICE_LOST, -8, "the Vulkan device was lost")                                                        \
+#define MASU_RESULTS(X)                                                                            \
+    X(MASU_OK, 0, "success")                                                                       \
+    X(MASU_INCOMPLETE, 1, "not finished: call again")                                              \
+    X(MASU_ERROR_ARGUMENT, -1, "an argument is missing, out of range or not finite")               \
+    X(MASU_ERROR_MEMORY, -2, "a memory block is missing, misaligned or too small")                 \
+    X(MASU_ERROR_LIMIT, -3, "a limit or budget of the description is exceeded")                    \
+    X(MASU_ERROR_DEVICE, -4, "the device lacks something that is needed")                          \
+    X(MASU_ERROR_SCENE, -5, "the scene blob is damaged or inconsistent")                           \
+    X(MASU_ERROR_VERSION, -6, "the scene blob is of another version")                              \
+    X(MASU_ERROR_VULKAN, -7, "a Vulkan call failed")                                               \
+    X(MASU_ERROR_DEVICE_LOST, -8, "the Vulkan device was lost")                                    \
     X(MASU_ERROR_STATE, -9, "called out of order")
 
 typedef enum masu_result {
@@ -92,12 +99,14 @@ typedef enum masu_result {
         MASU_RESULT_FORCE_32 = 0x7FFFFFFF
 } masu_result;
 
-/* What a code means, in English, without a newline. Never NULL; unknown codes give "unknown result". */
+/* What a code means, in English, without a newline. Never NULL; unknown codes give "unknown
+ * result". */
 MASU_API const char *masu_result_string(masu_result result);
 
-/* Filled when a call fails, untouched when it succeeds. `what` names the thing (a field of the description, a section of
- * the blob, a Vulkan function) and is a string constant; needed and given are 0 where they say nothing. `text` is the
- * whole message on one line: thing, limit, needed, given. */
+/* Filled when a call fails, untouched when it succeeds. `what` names the thing (a field of the
+ * description, a section of the blob, a Vulkan function) and is a string constant; needed and given
+ * are 0 where they say nothing. `text` is the whole message on one line: thing, limit, needed,
+ * given. */
 typedef struct masu_detail {
     masu_result result;
     VkResult vulkan; /* of the call that failed, else VK_SUCCESS */
@@ -107,14 +116,20 @@ typedef struct masu_detail {
     char text[200];
 } masu_detail;
 
-typedef enum masu_log_level { MASU_LOG_ERROR = 0, MASU_LOG_WARNING = 1, MASU_LOG_INFO = 2 } masu_log_level;
+typedef enum masu_log_level {
+    MASU_LOG_ERROR = 0,
+    MASU_LOG_WARNING = 1,
+    MASU_LOG_INFO = 2
+} masu_log_level;
 
-/* Called from inside masu_* calls, on the caller's thread. `text` is one line without newline, valid during the call. */
+/* Called from inside masu_* calls, on the caller's thread. `text` is one line without newline,
+ * valid during the call. */
 typedef void (*masu_log_fn)(void *user, masu_log_level level, const char *text);
 
-/* ---- Scenes -------------------------------------------------------------------------------------------------------- */
+/* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* A validated look at a baked blob (docs/blob.md): plain numbers and the pointer. Filled by masu_scene_bind alone. */
+/* A validated look at a baked blob (docs/blob.md): plain numbers and the pointer. Filled by
+ * masu_scene_bind alone. */
 typedef struct masu_scene {
     const void *blob; /* the caller's; see masu_scene_bind */
     uint64_t blob_bytes;
@@ -125,18 +140,18 @@ typedef struct masu_scene {
     uint64_t triangles;  /* of one frame: every instance counted */
 } masu_scene;
 
-/* Checks every offset, count, index, float and the hash of `blob` and fills `*out`. Allocates nothing, keeps nothing.
- * `blob` must be 16-byte aligned. It must stay readable and unchanged until masu_load has returned MASU_OK for the last
- * renderer made from it; afterwards it may be freed.
- * MASU_ERROR_ARGUMENT: a NULL or misaligned pointer. MASU_ERROR_VERSION: a blob of another format version.
- * MASU_ERROR_SCENE: anything else; the detail names the section and the element. */
-MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out,
-                                                   masu_detail *detail);
+/* Checks every offset, count, index, float and the hash of `blob` and fills `*out`. Allocates
+ * nothing, keeps nothing. `blob` must be 16-byte aligned. It must stay readable and unchanged until
+ * masu_load has returned MASU_OK for the last renderer made from it; afterwards it may be freed.
+ * MASU_ERROR_ARGUMENT: a NULL or misaligned pointer. MASU_ERROR_VERSION: a blob of another format
+ * version. MASU_ERROR_SCENE: anything else; the detail names the section and the element. */
+MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes,
+                                                   masu_scene *out, masu_detail *detail);
 
 /* Number of the SDF parameter `name`, or -1. Looks at the blob, which must still be readable. */
 MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name);
 
-/* ---- Description --------------------------------------------------------------------------------------------------- */
+/* ---- Description ----------------------------------------------------------------------------- */
 
 #define MASU_MAX_RUNGS 8u
 #define MASU_MAX_TARGETS 8u
@@ -147,17 +162,21 @@ MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name)
 
 typedef enum masu_switch { MASU_AUTO = 0, MASU_OFF = 1, MASU_ON = 2 } masu_switch;
 
-/* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen freshly every frame. */
+/* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen
+ * freshly every frame. */
 typedef struct masu_rung {
-    float scale;          /* render size / output size per axis, 0 < scale <= 1; 0: 1.0. Ignored with a source image */
+    float scale; /* render size / output size per axis, 0 < scale <= 1; 0: 1.0. Ignored with a
+                    source image */
     masu_switch upscale;  /* EASU. AUTO: when the render size differs from the output size */
     masu_switch sharpen;  /* RCAS. AUTO: when EASU runs */
-    float sharpness;      /* RCAS strength in stops, >= 0: 0 is sharpest, each stop halves it (AMD's definition) */
+    float sharpness;      /* RCAS strength in stops, >= 0: 0 is sharpest, each stop halves it (AMD's
+                             definition) */
     uint32_t march_steps; /* most SDF steps per ray, 1..256; 0: 256 */
 } masu_rung;
 
-/* Most of each thing that the memory is sized for. 0: exactly what the scene has. A scene that has more is refused with
- * MASU_ERROR_LIMIT naming the field; masu_peaks() returns what was used under the same names. */
+/* Most of each thing that the memory is sized for. 0: exactly what the scene has. A scene that has
+ * more is refused with MASU_ERROR_LIMIT naming the field; masu_peaks() returns what was used under
+ * the same names. */
 typedef struct masu_limits {
     uint64_t vertices;   /* 16 bytes each, device */
     uint64_t indices;    /* 4 bytes each, device */
@@ -180,33 +199,37 @@ typedef enum masu_role {
     MASU_ROLE_COUNT = 3
 } masu_role;
 
-/* A device block of the host's own, one per role that masu_memory_query asks for. memory == VK_NULL_HANDLE: masu_init
- * makes the one allocation of that role itself. */
+/* A device block of the host's own, one per role that masu_memory_query asks for. memory ==
+ * VK_NULL_HANDLE: masu_init makes the one allocation of that role itself. */
 typedef struct masu_device_block {
     VkDeviceMemory memory;
     VkDeviceSize offset; /* a multiple of masu_memory.roles[].alignment */
     VkDeviceSize bytes;
-    void *mapped;         /* host pointer to `offset`; required for roles with host_visible set in the query */
+    void *mapped; /* host pointer to `offset`; required for roles with host_visible set in the query
+                   */
     uint32_t memory_type; /* one of masu_memory.roles[].type_bits */
 } masu_device_block;
 
-/* Images the host wants to read after a frame. Each costs its full size per frame in flight in the readback role. */
+/* Images the host wants to read after a frame. Each costs its full size per frame in flight in the
+ * readback role. */
 typedef enum masu_readback_bits {
     MASU_READBACK_DEPTH = 1,  /* float: near / view z of the nearest surface, 0: none */
     MASU_READBACK_ALBEDO = 2, /* 4 x uint8: sqrt of linear albedo, roughness */
-    MASU_READBACK_NORMAL = 4, /* uint32: octahedral 13+13 bits, metallic 4 bits, flags 2 bits (masu_unpack_normal) */
-    MASU_READBACK_HDR = 8,    /* 4 x half: linear radiance before exposure */
+    MASU_READBACK_NORMAL =
+        4, /* uint32: octahedral 13+13 bits, metallic 4 bits, flags 2 bits (masu_unpack_normal) */
+    MASU_READBACK_HDR = 8, /* 4 x half: linear radiance before exposure */
     MASU_READBACK_ALL = 15
 } masu_readback_bits;
 
 typedef struct masu_vulkan {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* required */
-    VkInstance instance;                              /* required, created with API version >= 1.1 */
-    VkPhysicalDevice physical_device;                 /* required */
-    VkDevice device;                                  /* required */
-    uint32_t queue_family;                            /* graphics + compute */
-    const VkAllocationCallbacks *allocator;           /* passed to every create and allocate; NULL: the driver's own */
-    VkPipelineCache pipeline_cache;                   /* used in masu_init; VK_NULL_HANDLE: none */
+    VkInstance instance;              /* required, created with API version >= 1.1 */
+    VkPhysicalDevice physical_device; /* required */
+    VkDevice device;                  /* required */
+    uint32_t queue_family;            /* graphics + compute */
+    const VkAllocationCallbacks
+        *allocator; /* passed to every create and allocate; NULL: the driver's own */
+    VkPipelineCache pipeline_cache; /* used in masu_init; VK_NULL_HANDLE: none */
 } masu_vulkan;
 
 typedef struct masu_targets {
@@ -215,36 +238,45 @@ typedef struct masu_targets {
     uint32_t count;           /* 1..8 */
     VkFormat format;          /* 0: VK_FORMAT_R8G8B8A8_UNORM */
     uint32_t storage;         /* not 0: written directly as storage images; 0: filled by a blit */
-    VkImageLayout final_layout; /* VK_IMAGE_LAYOUT_UNDEFINED (0): VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL */
+    VkImageLayout
+        final_layout; /* VK_IMAGE_LAYOUT_UNDEFINED (0): VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL */
 } masu_targets;
 
 /* Upscaling only, without a scene: the host's image is the input of EASU and RCAS. */
 typedef struct masu_source {
-    VkImageView view; /* VK_NULL_HANDLE: none. Sampled, layout VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL on entry and exit */
-    uint32_t width, height; /* valid texels from (0,0); a larger image is fine: nothing outside is read */
+    VkImageView view; /* VK_NULL_HANDLE: none. Sampled, layout
+                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL on entry and exit */
+    uint32_t width,
+        height; /* valid texels from (0,0); a larger image is fine: nothing outside is read */
 } masu_source;
 
 typedef struct masu_debug {
-    uint32_t timestamps; /* not 0: GPU time of each pass in masu_stats, with a full barrier around each pass */
+    uint32_t timestamps; /* not 0: GPU time of each pass in masu_stats, with a full barrier around
+                            each pass */
     uint32_t counters;   /* not 0: SDF evaluations and the like in masu_stats; costs atomics */
-    uint32_t labels;     /* not 0: object names and pass labels, where VK_EXT_debug_utils is enabled on the instance */
-    uint32_t poison; /* not 0: fills all transient image memory with NaN patterns before each frame; the picture must not
-                        change. A value of 2 uses infinities */
+    uint32_t labels; /* not 0: object names and pass labels, where VK_EXT_debug_utils is enabled on
+                        the instance */
+    uint32_t poison; /* not 0: fills all transient image memory with NaN patterns before each frame;
+                        the picture must not change. A value of 2 uses infinities */
 } masu_debug;
 
-/* Switches off what would be used where the device offers it: to test the other path, or around a driver's fault. */
+/* Switches off what would be used where the device offers it: to test the other path, or around a
+ * driver's fault. */
 typedef struct masu_deny {
-    uint32_t unified_memory; /* not 0: separate blocks per role even where one type could serve all */
+    uint32_t
+        unified_memory; /* not 0: separate blocks per role even where one type could serve all */
 } masu_deny;
 
 typedef struct masu_desc {
     masu_vulkan vulkan;
-    const masu_scene *scene; /* NULL: no scene; then source must be given. Read during the call only */
+    const masu_scene
+        *scene; /* NULL: no scene; then source must be given. Read during the call only */
     masu_source source;
     VkExtent2D output; /* pixels, 1..16384 and within the device's maxImageDimension2D */
     masu_targets targets;
     uint32_t frames_in_flight; /* 1..3; 0: 2 */
-    uint32_t rung_count;       /* 0: three rungs: scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS at sharpness 0.2) */
+    uint32_t rung_count; /* 0: three rungs: scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS at
+                            sharpness 0.2) */
     masu_rung rungs[MASU_MAX_RUNGS]; /* in falling quality by convention; any order works */
     masu_limits limits;
     uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
@@ -255,11 +287,12 @@ typedef struct masu_desc {
     masu_deny deny;
     masu_log_fn log; /* NULL: silent */
     void *log_user;
-    uint64_t (*clock_ns)(void *user); /* monotonic nanoseconds; NULL: build times of pipelines are not measured */
+    uint64_t (*clock_ns)(
+        void *user); /* monotonic nanoseconds; NULL: build times of pipelines are not measured */
     void *clock_user;
 } masu_desc;
 
-/* ---- Memory -------------------------------------------------------------------------------------------------------- */
+/* ---- Memory ---------------------------------------------------------------------------------- */
 
 typedef struct masu_role_need {
     uint64_t bytes; /* 0: this role is not used */
@@ -280,23 +313,27 @@ typedef struct masu_memory {
     uint64_t transient_lower_bound; /* largest set alive at once: no plan can be smaller */
 } masu_memory;
 
-/* Runs the layout walk of masu_init without a block. Creates no lasting object. Errors as masu_init, except MEMORY. */
-MASU_API MASU_MUST_USE masu_result masu_memory_query(const masu_desc *desc, masu_memory *out, masu_detail *detail);
+/* Runs the layout walk of masu_init without a block. Creates no lasting object. Errors as
+ * masu_init, except MEMORY. */
+MASU_API MASU_MUST_USE masu_result masu_memory_query(const masu_desc *desc, masu_memory *out,
+                                                     masu_detail *detail);
 
 typedef struct masu_renderer masu_renderer; /* lives inside the caller's block */
 
-/* Creates everything: plans memory, makes the device allocations that the host did not bring, all images, buffers,
- * pipelines, descriptor sets and one command buffer per (frame in flight, rung, target).
- * `block` is `block_bytes` of any content, aligned to masu_memory.host_alignment; it belongs to the renderer until
- * masu_destroy. Nothing is written outside it. On failure *out is NULL and every object is destroyed again.
- * MASU_ERROR_ARGUMENT: a bad field, named. MASU_ERROR_MEMORY: block NULL, misaligned or too small (needed, given); the
- * same for device blocks. MASU_ERROR_LIMIT: a limit or budget. MASU_ERROR_DEVICE: something is missing, named.
+/* Creates everything: plans memory, makes the device allocations that the host did not bring, all
+ * images, buffers, pipelines, descriptor sets and one command buffer per (frame in flight, rung,
+ * target). `block` is `block_bytes` of any content, aligned to masu_memory.host_alignment; it
+ * belongs to the renderer until masu_destroy. Nothing is written outside it. On failure *out is
+ * NULL and every object is destroyed again. MASU_ERROR_ARGUMENT: a bad field, named.
+ * MASU_ERROR_MEMORY: block NULL, misaligned or too small (needed, given); the same for device
+ * blocks. MASU_ERROR_LIMIT: a limit or budget. MASU_ERROR_DEVICE: something is missing, named.
  * MASU_ERROR_VULKAN / _DEVICE_LOST: the call is named, its VkResult is in the detail. */
-MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes,
-                                             masu_renderer **out, masu_detail *detail);
+MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
+                                             uint64_t block_bytes, masu_renderer **out,
+                                             masu_detail *detail);
 
-/* Destroys every Vulkan object of the renderer and frees device memory that masu_init allocated. The device must be idle.
- * NULL is fine. */
+/* Destroys every Vulkan object of the renderer and frees device memory that masu_init allocated.
+ * The device must be idle. NULL is fine. */
 MASU_API void masu_destroy(masu_renderer *renderer);
 
 /* The description with every default filled in, as masu_init uses it. Needs no device. */
@@ -310,23 +347,27 @@ typedef struct masu_memory_row {
     uint64_t count;   /* elements, or texels of an image */
     uint64_t bytes;   /* total */
     uint64_t alignment;
-    uint64_t offset;                /* in its block */
-    uint32_t transient;             /* 1: lives from first_pass to last_pass only, may share its bytes with others */
+    uint64_t offset; /* in its block */
+    uint32_t
+        transient; /* 1: lives from first_pass to last_pass only, may share its bytes with others */
     uint32_t first_pass, last_pass; /* rows of masu_plan.passes */
 } masu_memory_row;
 
-/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, returns how many there are. */
-MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows, uint32_t capacity);
+/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, returns how many
+ * there are. */
+MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows,
+                                     uint32_t capacity);
 
-/* ---- Plan ---------------------------------------------------------------------------------------------------------- */
+/* ---- Plan ------------------------------------------------------------------------------------ */
 
 typedef struct masu_plan_pass {
-    const char *name;    /* also the shader's file name, the debug label and the timestamp's name */
-    uint32_t active;     /* bit r: runs in rung r; 0: left out */
-    const char *why;     /* why it is in or was left out */
+    const char *name; /* also the shader's file name, the debug label and the timestamp's name */
+    uint32_t active;  /* bit r: runs in rung r; 0: left out */
+    const char *why;  /* why it is in or was left out */
     const char *reads[6];
     const char *writes[4];
-    uint64_t pipeline_ns; /* time to build its pipeline in masu_init; 0 without a clock or before masu_init */
+    uint64_t pipeline_ns; /* time to build its pipeline in masu_init; 0 without a clock or before
+                             masu_init */
 } masu_plan_pass;
 
 typedef struct masu_plan_image {
@@ -353,29 +394,31 @@ typedef struct masu_plan_info {
 } masu_plan_info;
 
 /* The compiled frame of a description, without creating a renderer. Errors as masu_memory_query. */
-MASU_API MASU_MUST_USE masu_result masu_plan(const masu_desc *desc, masu_plan_info *out, masu_detail *detail);
+MASU_API MASU_MUST_USE masu_result masu_plan(const masu_desc *desc, masu_plan_info *out,
+                                             masu_detail *detail);
 
 /* The same of a live renderer, with pipeline build times. */
 MASU_API void masu_plan_of(const masu_renderer *renderer, masu_plan_info *out);
 
-/* ---- Frames -------------------------------------------------------------------------------------------------------- */
+/* ---- Frames ---------------------------------------------------------------------------------- */
 
 typedef struct masu_commands {
     VkCommandBuffer buffer;
-    uint32_t slot; /* frame-in-flight slot: its fence must be waited for before the slot comes round again */
+    uint32_t slot; /* frame-in-flight slot: its fence must be waited for before the slot comes round
+                      again */
     uint32_t rung;
     uint64_t frame; /* number of this frame, from 0 */
 } masu_commands;
 
-/* Copies the scene to the device. MASU_INCOMPLETE: submit commands->buffer, wait for it, call again. MASU_OK: done;
- * nothing to submit. On unified memory the first call returns MASU_OK. */
+/* Copies the scene to the device. MASU_INCOMPLETE: submit commands->buffer, wait for it, call
+ * again. MASU_OK: done; nothing to submit. On unified memory the first call returns MASU_OK. */
 MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_commands *commands);
 
 typedef struct masu_camera {
     double position[3];
-    float forward[3]; /* need not be unit length */
-    float up[3];      /* not parallel to forward; all zero: +Y */
-    float fov_y;      /* vertical field of view, radians, 0.001 .. 3.1 */
+    float forward[3];    /* need not be unit length */
+    float up[3];         /* not parallel to forward; all zero: +Y */
+    float fov_y;         /* vertical field of view, radians, 0.001 .. 3.1 */
     float near_distance; /* metres, > 0; 0: the scene's. There is no far plane */
 } masu_camera;
 
@@ -390,19 +433,21 @@ typedef struct masu_light {
 typedef struct masu_frame_desc {
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
-    double time;               /* seconds since the start: animation of the SDF and the camera path */
-    float time_step;           /* seconds since the frame before; 0 is fine */
-    uint32_t rung;             /* 0 .. rung_count-1 */
-    uint32_t target;           /* 0 .. targets.count-1 */
-    const float *sdf_params;   /* `sdf_param_count` values, NULL: the scene's defaults */
-    uint32_t sdf_param_count;  /* at most the scene's count; the rest keep their defaults. Values are clamped to their
-                                  declared range; one that is not finite is an error */
+    double time;             /* seconds since the start: animation of the SDF and the camera path */
+    float time_step;         /* seconds since the frame before; 0 is fine */
+    uint32_t rung;           /* 0 .. rung_count-1 */
+    uint32_t target;         /* 0 .. targets.count-1 */
+    const float *sdf_params; /* `sdf_param_count` values, NULL: the scene's defaults */
+    uint32_t
+        sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
+                            clamped to their declared range; one that is not finite is an error */
 } masu_frame_desc;
 
-/* Writes this frame's uniforms and hands out the command buffer to submit. Call when the slot is free: the frame that
- * came frames_in_flight frames before has finished on the GPU. Costs no allocation and no recording.
- * MASU_ERROR_ARGUMENT: a rung, target, camera, light or parameter that is out of range or not finite; nothing has been
- * written and the frame number has not moved. MASU_ERROR_STATE: masu_load has not finished. */
+/* Writes this frame's uniforms and hands out the command buffer to submit. Call when the slot is
+ * free: the frame that came frames_in_flight frames before has finished on the GPU. Costs no
+ * allocation and no recording. MASU_ERROR_ARGUMENT: a rung, target, camera, light or parameter that
+ * is out of range or not finite; nothing has been written and the frame number has not moved.
+ * MASU_ERROR_STATE: masu_load has not finished. */
 MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
                                               masu_commands *commands);
 
@@ -410,7 +455,8 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 
 /* The scene's camera path at a time. MASU_ERROR_STATE: the scene has no camera. */
-MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer, double time, masu_camera *out);
+MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer, double time,
+                                                  masu_camera *out);
 
 /* Handle of one placed mesh. id 0 is none. A handle belongs to the renderer that gave it. */
 typedef struct masu_instance {
@@ -420,12 +466,14 @@ typedef struct masu_instance {
 /* The first instance of that name in the scene; id 0 if there is none. */
 MASU_API masu_instance masu_instance_find(const masu_renderer *renderer, const char *name);
 
-/* Moves an instance from the next masu_frame on. `rows` is the 3x4 matrix from object to world space, row by row.
- * MASU_ERROR_ARGUMENT: a handle that is not of this renderer, or a value that is not finite. */
-MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *renderer, masu_instance instance,
+/* Moves an instance from the next masu_frame on. `rows` is the 3x4 matrix from object to world
+ * space, row by row. MASU_ERROR_ARGUMENT: a handle that is not of this renderer, or a value that is
+ * not finite. */
+MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *renderer,
+                                                               masu_instance instance,
                                                                const float rows[12]);
 
-/* ---- Looking at frames --------------------------------------------------------------------------------------------- */
+/* ---- Looking at frames ----------------------------------------------------------------------- */
 
 typedef struct masu_stats_info {
     uint64_t frame; /* the newest finished frame that is known; UINT64_MAX: none yet */
@@ -435,16 +483,16 @@ typedef struct masu_stats_info {
     uint64_t pass_ns[MASU_MAX_PASSES]; /* with debug.timestamps; passes that did not run have 0 */
     uint64_t gpu_ns;                   /* first to last timestamp */
     uint32_t timed;                    /* 1: the times above were read */
-    uint64_t sdf_evals;                /* evaluations of the field; with debug.counters, as the next three */
-    uint64_t sdf_hits;                 /* pixels whose nearest surface is the SDF */
-    uint64_t sdf_unconverged;          /* rays that used up their steps */
-    uint64_t replaced;                 /* pixel components that were not finite and were replaced; should be 0 */
-    uint64_t draws, triangles;         /* submitted to the G-buffer */
+    uint64_t sdf_evals;       /* evaluations of the field; with debug.counters, as the next three */
+    uint64_t sdf_hits;        /* pixels whose nearest surface is the SDF */
+    uint64_t sdf_unconverged; /* rays that used up their steps */
+    uint64_t replaced; /* pixel components that were not finite and were replaced; should be 0 */
+    uint64_t draws, triangles; /* submitted to the G-buffer */
 } masu_stats_info;
 
-/* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for, before the slot is used
- * again. Reads memory, calls no driver. MASU_ERROR_ARGUMENT: no such slot. MASU_INCOMPLETE: the slot has not been used
- * yet. */
+/* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for,
+ * before the slot is used again. Reads memory, calls no driver. MASU_ERROR_ARGUMENT: no such slot.
+ * MASU_INCOMPLETE: the slot has not been used yet. */
 MASU_API masu_result masu_stats(const masu_renderer *renderer, uint32_t slot, masu_stats_info *out);
 
 /* The most of each thing that the renderer has held. Paste it into masu_limits. */
@@ -458,9 +506,10 @@ typedef struct masu_readback_image {
 } masu_readback_image;
 
 /* One image of the slot's last frame, asked for by desc.readback. Call as masu_stats.
- * MASU_ERROR_ARGUMENT: not asked for, or no such slot. MASU_INCOMPLETE: the slot has not been used yet. */
-MASU_API masu_result masu_readback(const masu_renderer *renderer, uint32_t slot, masu_readback_bits which,
-                                   masu_readback_image *out);
+ * MASU_ERROR_ARGUMENT: not asked for, or no such slot. MASU_INCOMPLETE: the slot has not been used
+ * yet. */
+MASU_API masu_result masu_readback(const masu_renderer *renderer, uint32_t slot,
+                                   masu_readback_bits which, masu_readback_image *out);
 
 /* Unpacks one texel of MASU_READBACK_NORMAL to a unit vector in world space. */
 MASU_API void masu_unpack_normal(uint32_t texel, float out[3]);

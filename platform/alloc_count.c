@@ -74,7 +74,7 @@ int posix_memalign(void **out, size_t alignment, size_t bytes) {
 
 #endif
 
-/* ---- Vulkan callbacks -------------------------------------------------------------------------- */
+/* ---- Vulkan callbacks ------------------------------------------------------------------------ */
 
 /* Each block carries its base and size in front, so that it can be grown and freed. */
 typedef struct block_head {
@@ -82,13 +82,15 @@ typedef struct block_head {
     size_t bytes;
 } block_head;
 
-static void *VKAPI_CALL vk_allocate(void *user, size_t bytes, size_t alignment, VkSystemAllocationScope scope) {
+static void *VKAPI_CALL vk_allocate(void *user, size_t bytes, size_t alignment,
+                                    VkSystemAllocationScope scope) {
     masu_vk_alloc_counts *counts = user;
     (void)scope;
     if (alignment < sizeof(block_head)) alignment = sizeof(block_head);
     unsigned char *base = malloc(bytes + alignment + sizeof(block_head));
     if (!base) return NULL;
-    uintptr_t start = ((uintptr_t)base + sizeof(block_head) + alignment - 1) / alignment * alignment;
+    uintptr_t start =
+        ((uintptr_t)base + sizeof(block_head) + alignment - 1) / alignment * alignment;
     block_head head = {base, bytes};
     memcpy((void *)(start - sizeof head), &head, sizeof head);
     counts->allocations++;

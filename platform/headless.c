@@ -1,4 +1,5 @@
-/* headless.c: instance, device, queue and submits of the headless host; images are in headless_image.c. */
+/* headless.c: instance, device, queue and submits of the headless host; images are in
+ * headless_image.c. */
 #define _POSIX_C_SOURCE 200809L
 #include "headless.h"
 
@@ -11,27 +12,29 @@
 
 static bool fail(char *error, size_t size, const char *what, VkResult r) {
     snprintf(error, size, "%s failed with VkResult %d%s", what, (int)r,
-             r == VK_ERROR_DEVICE_LOST                ? " (device lost)"
-             : r == VK_ERROR_OUT_OF_DEVICE_MEMORY     ? " (out of device memory)"
-             : r == VK_ERROR_OUT_OF_HOST_MEMORY       ? " (out of host memory)"
-             : r == VK_ERROR_INCOMPATIBLE_DRIVER      ? " (no Vulkan driver found)"
-             : r == VK_ERROR_INITIALIZATION_FAILED    ? " (initialisation failed)"
-                                                      : "");
+             r == VK_ERROR_DEVICE_LOST             ? " (device lost)"
+             : r == VK_ERROR_OUT_OF_DEVICE_MEMORY  ? " (out of device memory)"
+             : r == VK_ERROR_OUT_OF_HOST_MEMORY    ? " (out of host memory)"
+             : r == VK_ERROR_INCOMPATIBLE_DRIVER   ? " (no Vulkan driver found)"
+             : r == VK_ERROR_INITIALIZATION_FAILED ? " (initialisation failed)"
+                                                   : "");
     return false;
 }
 
-/* ---- Instance ---------------------------------------------------------------------------------- */
+/* ---- Instance -------------------------------------------------------------------------------- */
 
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                  VkDebugUtilsMessageTypeFlagsEXT types,
-                                                 const VkDebugUtilsMessengerCallbackDataEXT *data, void *user) {
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data,
+                                                 void *user) {
     masu_headless *host = user;
     (void)severity;
-    /* The loader reports its own search for drivers as "general": what a missing file or a second driver means is not
-     * ours to judge. The layers' findings are validation or performance. */
+    /* The loader reports its own search for drivers as "general": what a missing file or a second
+     * driver means is not ours to judge. The layers' findings are validation or performance. */
     if (!(types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT)) return VK_FALSE;
     const char *text = data->pMessage ? data->pMessage : "";
-    if (host->messages++ == 0) snprintf(host->first_message, sizeof host->first_message, "%s", text);
+    if (host->messages++ == 0)
+        snprintf(host->first_message, sizeof host->first_message, "%s", text);
     if (host->desc.message) host->desc.message(host->desc.message_user, text);
     return VK_FALSE;
 }
@@ -65,13 +68,16 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
     bool wants = host->desc.validate || host->desc.gpu_av;
     host->validating = wants && has_layer(layer);
     if (wants && !host->validating && host->desc.message) {
-        host->desc.message(host->desc.message_user, "the Khronos validation layer is not installed: not validating");
+        host->desc.message(host->desc.message_user,
+                           "the Khronos validation layer is not installed: not validating");
     }
-    host->labels = (host->validating || host->desc.labels) &&
-                   (has_instance_extension(NULL, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
-                    (host->validating && has_instance_extension(layer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME)));
+    host->labels =
+        (host->validating || host->desc.labels) &&
+        (has_instance_extension(NULL, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
+         (host->validating && has_instance_extension(layer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME)));
     if (host->labels) extensions[extension_count++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-    if (host->validating && has_instance_extension(layer, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME)) {
+    if (host->validating &&
+        has_instance_extension(layer, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME)) {
         extensions[extension_count++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
     }
     VkValidationFeatureEnableEXT enables[2];
@@ -88,7 +94,8 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                            VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                       VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = host};
     VkApplicationInfo app = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
@@ -103,8 +110,9 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
                                  .ppEnabledExtensionNames = extensions};
     VkResult r = vkCreateInstance(&info, host->desc.allocator, &host->instance);
     if (r) return fail(error, size, "vkCreateInstance", r);
-    PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-        host->instance, "vkCreateDebugUtilsMessengerEXT");
+    PFN_vkCreateDebugUtilsMessengerEXT create =
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(host->instance,
+                                                                  "vkCreateDebugUtilsMessengerEXT");
     if (host->validating && create) {
         r = create(host->instance, &messenger, host->desc.allocator, &host->messenger);
         if (r) return fail(error, size, "vkCreateDebugUtilsMessengerEXT", r);
@@ -112,13 +120,15 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
     return true;
 }
 
-/* ---- Device ------------------------------------------------------------------------------------ */
+/* ---- Device ---------------------------------------------------------------------------------- */
 
 static bool contains(const char *text, const char *part) {
     size_t n = strlen(part);
     for (; *text; text++) {
         size_t i = 0;
-        while (i < n && text[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i])) i++;
+        while (i < n && text[i] &&
+               tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
         if (i == n) return true;
     }
     return n == 0;
@@ -153,12 +163,13 @@ static bool choose_device(masu_headless *host, char *error, size_t size) {
     bool by_index = wanted && is_index(wanted, &wanted_index);
     VkResult r = vkEnumeratePhysicalDevices(host->instance, &n, devices);
     if (r && r != VK_INCOMPLETE) return fail(error, size, "vkEnumeratePhysicalDevices", r);
-    size_t used = (size_t)snprintf(error, size, "no Vulkan device%s%s; there are:", wanted ? " matches " : " suits",
-                                   wanted ? wanted : "");
+    size_t used = (size_t)snprintf(error, size, "no Vulkan device%s%s; there are:",
+                                   wanted ? " matches " : " suits", wanted ? wanted : "");
     for (uint32_t i = 0; i < n; i++) {
         VkPhysicalDeviceProperties p;
         vkGetPhysicalDeviceProperties(devices[i], &p);
-        if (used < size) used += (size_t)snprintf(error + used, size - used, " %u '%s'", i, p.deviceName);
+        if (used < size)
+            used += (size_t)snprintf(error + used, size - used, " %u '%s'", i, p.deviceName);
         if (by_index ? i != wanted_index : wanted && !contains(p.deviceName, wanted)) continue;
         if (p.apiVersion < VK_API_VERSION_1_1 || !find_family(devices[i], &host->family)) continue;
         host->physical = devices[i];
@@ -194,20 +205,27 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
 }
 
 static void describe_driver(masu_headless *host) {
-    VkPhysicalDeviceDriverProperties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-    VkPhysicalDeviceProperties2 p = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
-    if (host->properties.apiVersion < VK_API_VERSION_1_2) p.pNext = NULL; /* the struct is core from 1.2 on */
+    VkPhysicalDeviceDriverProperties driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 p = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                     .pNext = &driver};
+    if (host->properties.apiVersion < VK_API_VERSION_1_2)
+        p.pNext = NULL; /* the struct is core from 1.2 on */
     vkGetPhysicalDeviceProperties2(host->physical, &p);
-    snprintf(host->driver, sizeof host->driver, "%s, %s, %s, Vulkan %u.%u.%u", host->properties.deviceName,
-             p.pNext ? driver.driverName : "unnamed driver", p.pNext ? driver.driverInfo : "unknown version",
-             VK_VERSION_MAJOR(host->properties.apiVersion), VK_VERSION_MINOR(host->properties.apiVersion),
+    snprintf(host->driver, sizeof host->driver, "%s, %s, %s, Vulkan %u.%u.%u",
+             host->properties.deviceName, p.pNext ? driver.driverName : "unnamed driver",
+             p.pNext ? driver.driverInfo : "unknown version",
+             VK_VERSION_MAJOR(host->properties.apiVersion),
+             VK_VERSION_MINOR(host->properties.apiVersion),
              VK_VERSION_PATCH(host->properties.apiVersion));
 }
 
-bool masu_headless_open(const masu_headless_desc *desc, masu_headless *host, char *error, size_t error_size) {
+bool masu_headless_open(const masu_headless_desc *desc, masu_headless *host, char *error,
+                        size_t error_size) {
     memset(host, 0, sizeof *host);
     host->desc = *desc;
-    if (!host->desc.get_instance_proc_addr) host->desc.get_instance_proc_addr = vkGetInstanceProcAddr;
+    if (!host->desc.get_instance_proc_addr)
+        host->desc.get_instance_proc_addr = vkGetInstanceProcAddr;
     if (!create_instance(host, error, error_size) || !choose_device(host, error, error_size) ||
         !create_device(host, error, error_size)) {
         masu_headless_close(host);
@@ -228,20 +246,23 @@ void masu_headless_close(masu_headless *host) {
         vkDestroyDevice(host->device, host->desc.allocator);
     }
     if (host->instance) {
-        PFN_vkDestroyDebugUtilsMessengerEXT destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-            host->instance, "vkDestroyDebugUtilsMessengerEXT");
-        if (host->messenger && destroy) destroy(host->instance, host->messenger, host->desc.allocator);
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy =
+            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+                host->instance, "vkDestroyDebugUtilsMessengerEXT");
+        if (host->messenger && destroy)
+            destroy(host->instance, host->messenger, host->desc.allocator);
         vkDestroyInstance(host->instance, host->desc.allocator);
     }
     host->device = VK_NULL_HANDLE;
     host->instance = VK_NULL_HANDLE;
 }
 
-/* ---- Submits ----------------------------------------------------------------------------------- */
+/* ---- Submits --------------------------------------------------------------------------------- */
 
 bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t error_size) {
     if (!host->pending[slot]) return true;
-    VkResult r = vkWaitForFences(host->device, 1, &host->fences[slot], VK_TRUE, MASU_HEADLESS_TIMEOUT_NS);
+    VkResult r =
+        vkWaitForFences(host->device, 1, &host->fences[slot], VK_TRUE, MASU_HEADLESS_TIMEOUT_NS);
     if (r == VK_TIMEOUT) {
         snprintf(error, error_size, "the GPU has not finished within %u s",
                  (unsigned)(MASU_HEADLESS_TIMEOUT_NS / 1000000000u));
@@ -264,7 +285,8 @@ bool masu_headless_submit(masu_headless *host, VkCommandBuffer commands, uint32_
     return true;
 }
 
-bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *error, size_t error_size) {
+bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *error,
+                       size_t error_size) {
     return masu_headless_wait(host, 0, error, error_size) &&
            masu_headless_submit(host, commands, 0, error, error_size) &&
            masu_headless_wait(host, 0, error, error_size);

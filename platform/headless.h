@@ -1,8 +1,9 @@
-/* headless.h: a Vulkan host without a window: instance, device, one queue, target and source images, submits that wait.
+/* headless.h: a Vulkan host without a window: instance, device, one queue, target and source
+ * images, submits that wait.
  *
- * It is what a port's own host does, kept small: it enables no optional feature and no extension but the validation layer's
- * own and, for labels, VK_EXT_debug_utils. Every wait has a timeout. Functions that can fail return false and write one
- * line without a newline to `error`. */
+ * It is what a port's own host does, kept small: it enables no optional feature and no extension
+ * but the validation layer's own and, for labels, VK_EXT_debug_utils. Every wait has a timeout.
+ * Functions that can fail return false and write one line without a newline to `error`. */
 #ifndef MASU_HEADLESS_H
 #define MASU_HEADLESS_H
 
@@ -12,18 +13,23 @@
 #include <vulkan/vulkan.h>
 
 #define MASU_HEADLESS_SLOTS 3u
-/* Longest wait for one submit. A software rasteriser under the GPU-assisted layer may take a minute for a large frame. */
+/* Longest wait for one submit. A software rasteriser under the GPU-assisted layer may take a minute
+ * for a large frame. */
 #define MASU_HEADLESS_TIMEOUT_NS ((uint64_t)120 * 1000000000u)
 
 typedef struct masu_headless_desc {
-    const char *device; /* index, or part of the name in any case; NULL: $MASU_DEVICE, else the first that suits */
+    const char *device; /* index, or part of the name in any case; NULL: $MASU_DEVICE, else the
+                           first that suits */
     bool validate;      /* Khronos validation with synchronisation validation */
     bool gpu_av;        /* Khronos validation with GPU-assisted shader checks instead */
     bool labels;        /* VK_EXT_debug_utils for names and labels; validation turns it on too */
-    void (*message)(void *user, const char *text); /* each validation warning or error; NULL: counted only */
+    void (*message)(void *user,
+                    const char *text); /* each validation warning or error; NULL: counted only */
     void *message_user;
-    const VkAllocationCallbacks *allocator;           /* for all objects of the host; NULL: the driver's own */
-    PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* what the renderer is to use; NULL: the loader's */
+    const VkAllocationCallbacks
+        *allocator; /* for all objects of the host; NULL: the driver's own */
+    PFN_vkGetInstanceProcAddr
+        get_instance_proc_addr; /* what the renderer is to use; NULL: the loader's */
 } masu_headless_desc;
 
 typedef struct masu_headless {
@@ -43,11 +49,12 @@ typedef struct masu_headless {
     bool validating;         /* the layer is really there */
     bool labels;             /* VK_EXT_debug_utils is enabled */
     char first_message[512]; /* of the validation layer */
-    char driver[1024];       /* "llvmpipe (...), lavapipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230" */
+    char driver[1024]; /* "llvmpipe (...), lavapipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230" */
 } masu_headless;
 
 /* Opens what the description asks for. On false everything is closed again. */
-bool masu_headless_open(const masu_headless_desc *desc, masu_headless *host, char *error, size_t error_size);
+bool masu_headless_open(const masu_headless_desc *desc, masu_headless *host, char *error,
+                        size_t error_size);
 /* Waits for the device and destroys everything; harmless on a zeroed struct. */
 void masu_headless_close(masu_headless *host);
 
@@ -57,7 +64,8 @@ bool masu_headless_submit(masu_headless *host, VkCommandBuffer commands, uint32_
 /* Waits until the slot is free; at once if nothing is pending. */
 bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t error_size);
 /* Submit on slot 0 and wait. */
-bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *error, size_t error_size);
+bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *error,
+                       size_t error_size);
 
 /* An image the renderer draws into, and the way back to the host. */
 typedef struct masu_headless_target {
@@ -71,25 +79,29 @@ typedef struct masu_headless_target {
     uint32_t width, height;
 } masu_headless_target;
 
-/* format is a 4-byte colour format. storage: VK_IMAGE_USAGE_STORAGE_BIT, else VK_IMAGE_USAGE_TRANSFER_DST_BIT. */
-bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height, VkFormat format, bool storage,
-                                 masu_headless_target *target, char *error, size_t error_size);
-/* Copies a finished frame out of the image, which is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL. The pixels lie at
- * target->mapped, width * 4 bytes a row, until the next call. */
-bool masu_headless_target_read(masu_headless *host, masu_headless_target *target, char *error, size_t error_size);
+/* format is a 4-byte colour format. storage: VK_IMAGE_USAGE_STORAGE_BIT, else
+ * VK_IMAGE_USAGE_TRANSFER_DST_BIT. */
+bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height,
+                                 VkFormat format, bool storage, masu_headless_target *target,
+                                 char *error, size_t error_size);
+/* Copies a finished frame out of the image, which is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL. The
+ * pixels lie at target->mapped, width * 4 bytes a row, until the next call. */
+bool masu_headless_target_read(masu_headless *host, masu_headless_target *target, char *error,
+                               size_t error_size);
 void masu_headless_target_destroy(masu_headless *host, masu_headless_target *target);
 
-/* An RGBA8 image to sample from, in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. It may be larger than the pixels given: what
- * lies beyond them is filled with `beyond`. */
+/* An RGBA8 image to sample from, in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. It may be larger than
+ * the pixels given: what lies beyond them is filled with `beyond`. */
 typedef struct masu_headless_source {
     VkImage image;
     VkImageView view;
     VkDeviceMemory memory;
 } masu_headless_source;
 
-bool masu_headless_source_create(masu_headless *host, const uint8_t *rgba, uint32_t width, uint32_t height,
-                                 uint32_t image_width, uint32_t image_height, uint32_t beyond,
-                                 masu_headless_source *source, char *error, size_t error_size);
+bool masu_headless_source_create(masu_headless *host, const uint8_t *rgba, uint32_t width,
+                                 uint32_t height, uint32_t image_width, uint32_t image_height,
+                                 uint32_t beyond, masu_headless_source *source, char *error,
+                                 size_t error_size);
 void masu_headless_source_destroy(masu_headless *host, masu_headless_source *source);
 
 #endif

@@ -1,5 +1,5 @@
-/* headless_image.c: target and source images of the headless host. Each has memory of its own: this is the host's side,
- * outside the renderer's box. */
+/* headless_image.c: target and source images of the headless host. Each has memory of its own: this
+ * is the host's side, outside the renderer's box. */
 #include "headless.h"
 
 #include <stdio.h>
@@ -29,9 +29,11 @@ static bool allocate(masu_headless *host, VkMemoryRequirements need, VkMemoryPro
     return r ? fail(error, size, "vkAllocateMemory", r) : true;
 }
 
-static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags usage, VkBuffer *buffer,
-                        VkDeviceMemory *memory, void **mapped, char *error, size_t size) {
-    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
+static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags usage,
+                        VkBuffer *buffer, VkDeviceMemory *memory, void **mapped, char *error,
+                        size_t size) {
+    VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
     VkResult r = vkCreateBuffer(host->device, &info, host->desc.allocator, buffer);
     if (r) return fail(error, size, "vkCreateBuffer", r);
     VkMemoryRequirements need;
@@ -40,7 +42,8 @@ static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags 
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     /* Reading write-combined memory is slow: cached if there is such a type. */
     char ignored[128];
-    if (!allocate(host, need, visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, memory, ignored, sizeof ignored) &&
+    if (!allocate(host, need, visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, memory, ignored,
+                  sizeof ignored) &&
         !allocate(host, need, visible, memory, error, size)) {
         return false;
     }
@@ -49,8 +52,9 @@ static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags 
     return r ? fail(error, size, "vkMapMemory", r) : true;
 }
 
-static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage,
-                       VkImage *image, VkImageView *view, VkDeviceMemory *memory, char *error, size_t size) {
+static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkFormat format,
+                       VkImageUsageFlags usage, VkImage *image, VkImageView *view,
+                       VkDeviceMemory *memory, char *error, size_t size) {
     VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                               .imageType = VK_IMAGE_TYPE_2D,
                               .format = format,
@@ -65,7 +69,8 @@ static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkF
     VkMemoryRequirements need;
     vkGetImageMemoryRequirements(host->device, *image, &need);
     char ignored[128];
-    if (!allocate(host, need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, memory, ignored, sizeof ignored) &&
+    if (!allocate(host, need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, memory, ignored,
+                  sizeof ignored) &&
         !allocate(host, need, 0, memory, error, size)) {
         return false;
     }
@@ -99,7 +104,7 @@ static VkBufferImageCopy whole(uint32_t width, uint32_t height) {
                                .imageExtent = {width, height, 1}};
 }
 
-/* ---- Target ------------------------------------------------------------------------------------ */
+/* ---- Target ---------------------------------------------------------------------------------- */
 
 /* Recorded once, so that reading a frame allocates and records nothing. */
 static bool record_copy(masu_headless *host, masu_headless_target *t, char *error, size_t size) {
@@ -107,30 +112,34 @@ static bool record_copy(masu_headless *host, masu_headless_target *t, char *erro
     VkMemoryBarrier before = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                               .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
                               .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT};
-    vkCmdPipelineBarrier(t->copy, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &before, 0,
-                         NULL, 0, NULL);
+    vkCmdPipelineBarrier(t->copy, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &before, 0, NULL, 0, NULL);
     VkBufferImageCopy copy = whole(t->width, t->height);
-    vkCmdCopyImageToBuffer(t->copy, t->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, t->buffer, 1, &copy);
+    vkCmdCopyImageToBuffer(t->copy, t->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, t->buffer, 1,
+                           &copy);
     VkMemoryBarrier after = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                              .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
                              .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
-    vkCmdPipelineBarrier(t->copy, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &after, 0, NULL, 0,
-                         NULL);
+    vkCmdPipelineBarrier(t->copy, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &after, 0, NULL, 0, NULL);
     VkResult r = vkEndCommandBuffer(t->copy);
     return r ? fail(error, size, "vkEndCommandBuffer", r) : true;
 }
 
-bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height, VkFormat format, bool storage,
-                                 masu_headless_target *t, char *error, size_t error_size) {
+bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height,
+                                 VkFormat format, bool storage, masu_headless_target *t,
+                                 char *error, size_t error_size) {
     memset(t, 0, sizeof *t);
     t->width = width;
     t->height = height;
-    VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                              (storage ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    VkImageUsageFlags usage =
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+        (storage ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     void *mapped = NULL;
-    if (!make_image(host, width, height, format, usage, &t->image, &t->view, &t->memory, error, error_size) ||
-        !make_buffer(host, (uint64_t)width * height * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &t->buffer,
-                     &t->buffer_memory, &mapped, error, error_size) ||
+    if (!make_image(host, width, height, format, usage, &t->image, &t->view, &t->memory, error,
+                    error_size) ||
+        !make_buffer(host, (uint64_t)width * height * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                     &t->buffer, &t->buffer_memory, &mapped, error, error_size) ||
         !record_copy(host, t, error, error_size)) {
         masu_headless_target_destroy(host, t);
         return false;
@@ -139,7 +148,8 @@ bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t h
     return true;
 }
 
-bool masu_headless_target_read(masu_headless *host, masu_headless_target *t, char *error, size_t error_size) {
+bool masu_headless_target_read(masu_headless *host, masu_headless_target *t, char *error,
+                               size_t error_size) {
     return masu_headless_run(host, t->copy, error, error_size);
 }
 
@@ -154,10 +164,10 @@ void masu_headless_target_destroy(masu_headless *host, masu_headless_target *t) 
     memset(t, 0, sizeof *t);
 }
 
-/* ---- Source ------------------------------------------------------------------------------------ */
+/* ---- Source ---------------------------------------------------------------------------------- */
 
-static bool upload(masu_headless *host, VkImage image, VkBuffer buffer, uint32_t width, uint32_t height, char *error,
-                   size_t size) {
+static bool upload(masu_headless *host, VkImage image, VkBuffer buffer, uint32_t width,
+                   uint32_t height, char *error, size_t size) {
     VkCommandBuffer cmd = VK_NULL_HANDLE;
     if (!begin_commands(host, &cmd, error, size)) return false;
     VkImageMemoryBarrier b = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
@@ -167,39 +177,44 @@ static bool upload(masu_headless *host, VkImage image, VkBuffer buffer, uint32_t
                               .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                               .image = image,
                               .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0, NULL, 1,
-                         &b);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0,
+                         0, NULL, 0, NULL, 1, &b);
     VkBufferImageCopy copy = whole(width, height);
     vkCmdCopyBufferToImage(cmd, buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
     b.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     b.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
     b.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     b.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1,
-                         &b);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
+                         0, NULL, 0, NULL, 1, &b);
     VkResult r = vkEndCommandBuffer(cmd);
-    bool done = r ? fail(error, size, "vkEndCommandBuffer", r) : masu_headless_run(host, cmd, error, size);
+    bool done =
+        r ? fail(error, size, "vkEndCommandBuffer", r) : masu_headless_run(host, cmd, error, size);
     vkFreeCommandBuffers(host->device, host->pool, 1, &cmd);
     return done;
 }
 
-bool masu_headless_source_create(masu_headless *host, const uint8_t *rgba, uint32_t width, uint32_t height,
-                                 uint32_t image_width, uint32_t image_height, uint32_t beyond,
-                                 masu_headless_source *source, char *error, size_t error_size) {
+bool masu_headless_source_create(masu_headless *host, const uint8_t *rgba, uint32_t width,
+                                 uint32_t height, uint32_t image_width, uint32_t image_height,
+                                 uint32_t beyond, masu_headless_source *source, char *error,
+                                 size_t error_size) {
     memset(source, 0, sizeof *source);
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     void *mapped = NULL;
-    bool made = make_image(host, image_width, image_height, VK_FORMAT_R8G8B8A8_UNORM,
-                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, &source->image, &source->view,
-                           &source->memory, error, error_size) &&
-                make_buffer(host, (uint64_t)image_width * image_height * 4, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &buffer,
-                            &memory, &mapped, error, error_size);
+    bool made =
+        make_image(host, image_width, image_height, VK_FORMAT_R8G8B8A8_UNORM,
+                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, &source->image,
+                   &source->view, &source->memory, error, error_size) &&
+        make_buffer(host, (uint64_t)image_width * image_height * 4,
+                    VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &buffer, &memory, &mapped, error, error_size);
     if (made) {
         uint8_t *to = mapped;
-        for (uint64_t i = 0; i < (uint64_t)image_width * image_height; i++) memcpy(to + 4 * i, &beyond, 4);
+        for (uint64_t i = 0; i < (uint64_t)image_width * image_height; i++)
+            memcpy(to + 4 * i, &beyond, 4);
         for (uint32_t y = 0; y < height; y++) {
-            memcpy(to + (size_t)4 * image_width * y, rgba + (size_t)4 * width * y, (size_t)4 * width);
+            memcpy(to + (size_t)4 * image_width * y, rgba + (size_t)4 * width * y,
+                   (size_t)4 * width);
         }
         made = upload(host, source->image, buffer, image_width, image_height, error, error_size);
     }

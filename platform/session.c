@@ -25,7 +25,8 @@ static bool open_scene(const masu_session_desc *d, masu_session *s, char *error,
     size_t count = 0;
     if (!masu_file_read(d->scene_path, SCENE_BYTES_MAX, &bytes, &count, error, size)) return false;
     s->blob = bytes; /* malloc aligns to 16 */
-    if (masu_scene_bind(s->blob, count, &s->scene, &s->detail)) return failed(s, d->scene_path, error, size);
+    if (masu_scene_bind(s->blob, count, &s->scene, &s->detail))
+        return failed(s, d->scene_path, error, size);
     s->desc.scene = &s->scene;
     return true;
 }
@@ -35,13 +36,14 @@ static bool open_targets(const masu_session_desc *d, masu_session *s, char *erro
     uint32_t count = d->target_count ? d->target_count : 1;
     uint32_t most = s->host.properties.limits.maxImageDimension2D;
     if (s->desc.output.width > most || s->desc.output.height > most) {
-        snprintf(error, size, "size %ux%u is larger than the device's images may be (%u)", s->desc.output.width,
-                 s->desc.output.height, most);
+        snprintf(error, size, "size %ux%u is larger than the device's images may be (%u)",
+                 s->desc.output.width, s->desc.output.height, most);
         return false;
     }
     for (uint32_t i = 0; i < count; i++) {
-        if (!masu_headless_target_create(&s->host, s->desc.output.width, s->desc.output.height, format,
-                                         d->desc.targets.storage != 0, &s->targets[i], error, size)) {
+        if (!masu_headless_target_create(&s->host, s->desc.output.width, s->desc.output.height,
+                                         format, d->desc.targets.storage != 0, &s->targets[i],
+                                         error, size)) {
             return false;
         }
         s->images[i] = s->targets[i].image;
@@ -66,23 +68,26 @@ static bool load(masu_session *s, char *error, size_t size) {
 
 bool masu_session_start(masu_session *s, char *error, size_t size) {
     if (masu_memory_query(&s->desc, &s->need, &s->detail)) return failed(s, NULL, error, size);
-    size_t bytes = (size_t)((s->need.host_bytes + s->need.host_alignment - 1) / s->need.host_alignment *
-                            s->need.host_alignment);
+    size_t bytes = (size_t)((s->need.host_bytes + s->need.host_alignment - 1) /
+                            s->need.host_alignment * s->need.host_alignment);
     s->block = aligned_alloc((size_t)s->need.host_alignment, bytes);
     if (!s->block) {
         snprintf(error, size, "no memory for a host block of %zu bytes", bytes);
         return false;
     }
-    if (masu_init(&s->desc, s->block, s->need.host_bytes, &s->m, &s->detail)) return failed(s, NULL, error, size);
+    if (masu_init(&s->desc, s->block, s->need.host_bytes, &s->m, &s->detail))
+        return failed(s, NULL, error, size);
     return load(s, error, size);
 }
 
-bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error, size_t error_size) {
+bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
+                       size_t error_size) {
     memset(s, 0, sizeof *s);
     s->desc = d->desc;
     masu_headless_desc host = d->host;
     host.labels = host.labels || d->desc.debug.labels;
-    if (!open_scene(d, s, error, error_size) || !masu_headless_open(&host, &s->host, error, error_size)) {
+    if (!open_scene(d, s, error, error_size) ||
+        !masu_headless_open(&host, &s->host, error, error_size)) {
         masu_session_close(s);
         return false;
     }
@@ -95,7 +100,8 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
                                    VK_NULL_HANDLE};
     s->desc.debug.labels = s->host.labels;
     if (!s->desc.clock_ns) s->desc.clock_ns = masu_clock_ns;
-    if (!open_targets(d, s, error, error_size) || (!d->no_renderer && !masu_session_start(s, error, error_size))) {
+    if (!open_targets(d, s, error, error_size) ||
+        (!d->no_renderer && !masu_session_start(s, error, error_size))) {
         masu_session_close(s);
         return false;
     }
@@ -106,15 +112,16 @@ void masu_session_close(masu_session *s) {
     if (s->host.device) vkDeviceWaitIdle(s->host.device);
     masu_destroy(s->m);
     s->m = NULL;
-    for (uint32_t i = 0; i < MASU_MAX_TARGETS; i++) masu_headless_target_destroy(&s->host, &s->targets[i]);
+    for (uint32_t i = 0; i < MASU_MAX_TARGETS; i++)
+        masu_headless_target_destroy(&s->host, &s->targets[i]);
     masu_headless_close(&s->host);
     free(s->block);
     free(s->blob);
     s->block = s->blob = NULL;
 }
 
-bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait, masu_commands *commands, char *error,
-                        size_t error_size) {
+bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait,
+                        masu_commands *commands, char *error, size_t error_size) {
     /* The slot that comes round next must be free before masu_frame writes to it. */
     if (!masu_headless_wait(&s->host, s->next_slot, error, error_size)) return false;
     if (masu_frame(s->m, frame, commands)) {
@@ -122,6 +129,7 @@ bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait
         return false;
     }
     s->next_slot = (commands->slot + 1) % masu_desc_resolved(&s->desc).frames_in_flight;
-    if (!masu_headless_submit(&s->host, commands->buffer, commands->slot, error, error_size)) return false;
+    if (!masu_headless_submit(&s->host, commands->buffer, commands->slot, error, error_size))
+        return false;
     return !wait || masu_headless_wait(&s->host, commands->slot, error, error_size);
 }

@@ -1,5 +1,6 @@
-/* session.h: a scene file (or none), a headless host, targets and a renderer in one block: what each tool and most tests
- * need before the first frame. Where a port has its own device and memory, a session has the plain ones. */
+/* session.h: a scene file (or none), a headless host, targets and a renderer in one block: what
+ * each tool and most tests need before the first frame. Where a port has its own device and memory,
+ * a session has the plain ones. */
 #ifndef MASU_SESSION_H
 #define MASU_SESSION_H
 
@@ -8,7 +9,8 @@
 
 typedef struct masu_session_desc {
     const char *scene_path; /* NULL: none */
-    masu_desc desc;         /* vulkan, scene, targets.images and .views are filled in; the rest is as given */
+    masu_desc
+        desc; /* vulkan, scene, targets.images and .views are filled in; the rest is as given */
     masu_headless_desc host;
     uint32_t target_count; /* 0: 1 */
     bool no_renderer;      /* stop before masu_init; masu_session_start goes on */
@@ -29,16 +31,18 @@ typedef struct masu_session {
     VkImageView views[MASU_MAX_TARGETS];
 } masu_session;
 
-/* On false `error` says why in one line and everything is closed again. The session must not be moved afterwards. */
-bool masu_session_open(const masu_session_desc *desc, masu_session *s, char *error, size_t error_size);
+/* On false `error` says why in one line and everything is closed again. The session must not be
+ * moved afterwards. */
+bool masu_session_open(const masu_session_desc *desc, masu_session *s, char *error,
+                       size_t error_size);
 void masu_session_close(masu_session *s);
 
-/* After no_renderer: asks for the memory, makes the renderer from s->desc and loads the scene. The session stays open on
- * failure. */
+/* After no_renderer: asks for the memory, makes the renderer from s->desc and loads the scene. The
+ * session stays open on failure. */
 bool masu_session_start(masu_session *s, char *error, size_t error_size);
 
 /* One frame: waits for its slot, writes it, submits it. With `wait` it has finished on return. */
-bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait, masu_commands *commands, char *error,
-                        size_t error_size);
+bool masu_session_frame(masu_session *s, const masu_frame_desc *frame, bool wait,
+                        masu_commands *commands, char *error, size_t error_size);
 
 #endif

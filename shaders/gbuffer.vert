@@ -1,8 +1,8 @@
 /*
  * gbuffer.vert: object space to clip space, by way of camera-relative space.
  *
- * The eye is subtracted from the instance's translation in two steps (high part, then low part), so that a world a million
- * metres from the origin is as steady as one at the origin.
+ * The eye is subtracted from the instance's translation in two steps (high part, then low part), so
+ * that a world a million metres from the origin is as steady as one at the origin.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -28,12 +28,14 @@ layout(location = 1) out vec3 out_rel;
 void main()
 {
     masu_instance_data m = instances[gl_InstanceIndex];
-    vec3 moved = vec3(dot(m.row0.xyz, position), dot(m.row1.xyz, position), dot(m.row2.xyz, position));
-    precise vec3 origin = (vec3(m.row0.w, m.row1.w, m.row2.w) - frame.eye_hi.xyz) - frame.eye_lo.xyz;
+    vec3 moved =
+        vec3(dot(m.row0.xyz, position), dot(m.row1.xyz, position), dot(m.row2.xyz, position));
+    vec3 placed = vec3(m.row0.w, m.row1.w, m.row2.w);
+    precise vec3 origin = (placed - frame.eye_hi.xyz) - frame.eye_lo.xyz;
     vec3 rel = moved + origin;
 
-    /* Normals go by the cofactor matrix: the inverse transpose times the determinant, which needs no division and so
-     * stays finite for flattened objects. A mirrored object turns its sign. */
+    /* Normals go by the cofactor matrix: the inverse transpose times the determinant, which needs
+     * no division and so stays finite for flattened objects. A mirrored object turns its sign. */
     vec3 c0 = cross(m.row1.xyz, m.row2.xyz);
     vec3 c1 = cross(m.row2.xyz, m.row0.xyz);
     vec3 c2 = cross(m.row0.xyz, m.row1.xyz);

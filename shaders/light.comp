@@ -1,9 +1,11 @@
 /*
- * light.comp: one path for polygons and SDF hits: sun, constant ambient, sky where there is nothing.
+ * light.comp: one path for polygons and SDF hits: sun, constant ambient, sky where there is
+ * nothing.
  *
  *   radiance = sun * (diffuse + specular) * N.L + ambient
- *   specular: GGX with height-correlated Smith visibility (Heitz, JCGT 3-2, 2014) and Schlick's Fresnel
- *   ambient:  constant radiance on the diffuse part; on the specular part the sky in the mirror direction, which
+ *   specular: GGX with height-correlated Smith visibility (Heitz, JCGT 3-2, 2014) and Schlick's
+ *   Fresnel ambient:  constant radiance on the diffuse part; on the specular part the sky in the
+ *   mirror direction, which
  *             fades into the constant with roughness
  */
 #version 450
@@ -28,16 +30,16 @@ vec3 sky(vec3 direction)
     return mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, sqrt(height));
 }
 
-/* A disc of the sun's size (radius 0.27 degrees) would be two pixels wide and bright enough to swamp the tone curve; a
- * soft glow around it says where the light comes from. */
+/* A disc of the sun's size (radius 0.27 degrees) would be two pixels wide and bright enough to
+ * swamp the tone curve; a soft glow around it says where the light comes from. */
 vec3 sun_glow(vec3 direction)
 {
     float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
     return frame.sun_color.rgb * (0.25 * masu_pow(towards, 350.0) + 0.05 * masu_pow(towards, 12.0));
 }
 
-/* D * G2 / (4 NoL NoV), times pi because the sun's colour is irradiance / pi. The sine form of D keeps its precision for
- * smooth surfaces, where 1 - NoH^2 cancels (Filament, section 4.4.1). */
+/* D * G2 / (4 NoL NoV), times pi because the sun's colour is irradiance / pi. The sine form of D
+ * keeps its precision for smooth surfaces, where 1 - NoH^2 cancels (Filament, section 4.4.1). */
 float specular_lobe(vec3 n, vec3 h, float alpha, float n_l, float n_v)
 {
     float n_h = clamp(dot(n, h), 0.0, 1.0);
@@ -70,7 +72,8 @@ vec3 shade(vec3 albedo, float roughness, float metallic, vec3 n, vec3 v)
     if (n_l > 0.0) {
         vec3 h = masu_normalize(l + v, n);
         vec3 f = fresnel(f0, clamp(dot(v, h), 0.0, 1.0));
-        lit = frame.sun_color.rgb * n_l * (diffuse * (1.0 - f) + f * specular_lobe(n, h, alpha, n_l, n_v));
+        vec3 brdf = diffuse * (1.0 - f) + f * specular_lobe(n, h, alpha, n_l, n_v);
+        lit = frame.sun_color.rgb * n_l * brdf;
     }
     vec3 grazing = max(vec3(1.0 - roughness), f0);
     float edge = 1.0 - n_v;
@@ -97,7 +100,8 @@ void main()
             if ((masu_unpack_flags(normal) & MASU_SURFACE_EMISSIVE) != 0u) {
                 color = linear * masu_emissive_range;
             } else {
-                color = shade(linear, albedo.a, masu_unpack_metallic(normal), masu_unpack_normal(normal), -direction);
+                color = shade(linear, albedo.a, masu_unpack_metallic(normal),
+                              masu_unpack_normal(normal), -direction);
             }
         }
         MASU_STORE_HALF(hdr_image, at, vec4(color, 1.0));

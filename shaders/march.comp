@@ -1,18 +1,21 @@
 /*
- * march.comp: sphere tracing of the scene's SDF, limited by the raster depth; the nearer surface wins. A hit becomes texels
- * of the G-buffer, so that every later pass has one path.
+ * march.comp: sphere tracing of the scene's SDF, limited by the raster depth; the nearer surface
+ * wins. A hit becomes texels of the G-buffer, so that every later pass has one path.
  *
- * Not a shader by itself: masu-bake compiles it together with the scene's field (sdf_scene.glsl), which defines
- *     float masu_sdf(vec3 p);                              a bound of the distance at world position p
- *     void masu_sdf_surface(vec3 p, inout masu_surface s);  the surface there
- * and sets MASU_HAS_RASTER (the scene has polygons). Parameters and time come through masu_param(i) and masu_time().
+ * Not a shader by itself: masu-bake compiles it together with the scene's field (sdf_scene.glsl),
+ * which defines
+ *     float masu_sdf(vec3 p);                              a bound of the distance at world
+ *     position p void masu_sdf_surface(vec3 p, inout masu_surface s);  the surface there
+ * and sets MASU_HAS_RASTER (the scene has polygons). Parameters and time come through masu_param(i)
+ * and masu_time().
  *
- * Stop: f < 0.1 pixel cones, but never below what fp32 can resolve there: 8 ulp of the largest coordinate involved (the
- * field's own rounding is up to 6.1 ulp; below it a march never converges). Then two refining steps by the secant of the
- * last two samples: at grazing angles f falls slowly along the ray, and a step of f alone leaves depth 1.5e-3 off at the rim
- * of a sphere 150 pixels across, the secant 1.5e-6.
- * Steps used up: the sample of least f/t stands for the surface if it came within 2 pixels (Keinert et al., "Enhanced
- * Sphere Tracing", STAG 2014, section 3.3), else the ray misses. Never "hit" by default: that draws holes into the sky.
+ * Stop: f < 0.1 pixel cones, but never below what fp32 can resolve there: 8 ulp of the largest
+ * coordinate involved (the field's own rounding is up to 6.1 ulp; below it a march never
+ * converges). Then two refining steps by the secant of the last two samples: at grazing angles f
+ * falls slowly along the ray, and a step of f alone leaves depth 1.5e-3 off at the rim of a sphere
+ * 150 pixels across, the secant 1.5e-6. Steps used up: the sample of least f/t stands for the
+ * surface if it came within 2 pixels (Keinert et al., "Enhanced Sphere Tracing", STAG 2014, section
+ * 3.3), else the ray misses. Never "hit" by default: that draws holes into the sky.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -30,9 +33,12 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D raster_depth;
 #else
 #define MASU_FIRST_WRITE 0
 #endif
-layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, rgba8) uniform writeonly image2D albedo_image;
-layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 1, r32ui) uniform writeonly uimage2D normal_image;
-layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 2, r32f) uniform writeonly image2D depth_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, rgba8)
+    uniform writeonly image2D albedo_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 1, r32ui)
+    uniform writeonly uimage2D normal_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE + 2, r32f)
+    uniform writeonly image2D depth_image;
 
 float masu_param(int i)
 {
@@ -59,7 +65,8 @@ vec3 world_at(vec3 direction, float t)
     return frame.eye_hi.xyz + (frame.eye_lo.xyz + direction * t);
 }
 
-/* The field as a step that cannot pass through a surface, or a negative number where it is not finite (a miss). */
+/* The field as a step that cannot pass through a surface, or a negative number where it is not
+ * finite (a miss). */
 float step_at(ray r, float t, out bool usable)
 {
     float f = masu_sdf(world_at(r.direction, t)) * frame.sdf_min.w;
@@ -74,12 +81,11 @@ float tolerance(ray r, float t)
     return max(0.1 * r.pixel * t, 8.0 * ulp * extent);
 }
 
-/* Entry and exit of the SDF's bounds. A component of the direction that is zero is replaced by a tiny one: the slab is then
- * left at +-1e30 or never entered, and 0 * Inf cannot arise. */
+/* Entry and exit of the SDF's bounds. A component of the direction that is zero is replaced by a
+ * tiny one: the slab is then left at +-1e30 or never entered, and 0 * Inf cannot arise. */
 void clip_to_bounds(inout ray r)
 {
-    vec3 d = r.direction;
-    d = vec3(abs(d.x) < 1e-12 ? 1e-12 : d.x, abs(d.y) < 1e-12 ? 1e-12 : d.y, abs(d.z) < 1e-12 ? 1e-12 : d.z);
+    vec3 d = mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
     vec3 inverse = 1.0 / d;
     vec3 a = (frame.sdf_min.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz) * inverse;
     vec3 b = (frame.sdf_max.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz) * inverse;
@@ -130,12 +136,13 @@ float march(ray r, out uint evals)
         return best_t;
     }
     for (int i = 0; i < 2; i++) {
-        /* The secant, at most 16 tolerances ahead and never less than a plain step. A step that leads further from the
-         * surface (past a thin part, out of a crease) is not taken. */
+        /* The secant, at most 16 tolerances ahead and never less than a plain step. A step that
+         * leads further from the surface (past a thin part, out of a crease) is not taken. */
         float fall = before_f - now_f;
         float slope = fall > 1e-30 ? (t - before_t) / fall : 1.0;
         float reach = 16.0 * tolerance(r, t);
-        /* Not before the start: a camera inside a solid sees it at the near plane, as a clipped polygon's inside would. */
+        /* Not before the start: a camera inside a solid sees it at the near plane, as a clipped
+         * polygon's inside would. */
         float next_t = max(t + clamp(now_f * max(slope, 1.0), -reach, reach), r.start);
         bool usable;
         float next_f = step_at(r, next_t, usable);
@@ -150,10 +157,10 @@ float march(ray r, out uint evals)
     return t < r.limit ? t : -1.0;
 }
 
-/* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The step grows with distance
- * (a quarter of a pixel: with half of one, a sphere 60 pixels across is off by 0.5 degrees) and with the coordinates (64
- * ulp: the least total of truncation and rounding error). One loop, so that the field
- * is compiled once here and not four times. */
+/* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The
+ * step grows with distance (a quarter of a pixel: with half of one, a sphere 60 pixels across is
+ * off by 0.5 degrees) and with the coordinates (64 ulp: the least total of truncation and rounding
+ * error). One loop, so that the field is compiled once here and not four times. */
 vec3 normal_at(ray r, float t)
 {
     vec3 p = world_at(r.direction, t);
@@ -161,7 +168,8 @@ vec3 normal_at(ray r, float t)
     float h = max(0.25 * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
-        vec3 corner = vec3(i == 1 || i == 3 ? 1.0 : -1.0, i >= 2 ? 1.0 : -1.0, i == 0 || i == 3 ? 1.0 : -1.0);
+        bvec3 plus = bvec3(i == 1 || i == 3, i >= 2, i == 0 || i == 3);
+        vec3 corner = mix(vec3(-1.0), vec3(1.0), plus);
         sum += corner * masu_sdf(p + corner * h);
     }
     return masu_normalize(sum, -r.direction);

@@ -1,8 +1,9 @@
 /*
- * tonemap.comp: exposure, a filmic curve, sRGB encoding. FSR1 wants what comes out here: display-encoded, 0..1.
+ * tonemap.comp: exposure, a filmic curve, sRGB encoding. FSR1 wants what comes out here:
+ * display-encoded, 0..1.
  *
- * Curve: K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic Tone Mapping Curve", 2016).
- * It reaches 1 near x = 8.1 and would run past it: the store clamps.
+ * Curve: K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic Tone
+ * Mapping Curve", 2016). It reaches 1 near x = 8.1 and would run past it: the store clamps.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,6 @@
-/* bind.c: device memory is allocated (one vkAllocateMemory per block) or taken from the host, mapped once for the
- * renderer's whole life, and the planned images and buffers are bound at their offsets. */
+/* bind.c: device memory is allocated (one vkAllocateMemory per block) or taken from the host,
+ * mapped once for the renderer's whole life, and the planned images and buffers are bound at their
+ * offsets. */
 #include "renderer.h"
 
 #include "error.h"
@@ -21,7 +22,8 @@ unsigned char *masu_buffer_pointer(const masu_renderer *m, masu_buffer_id buffer
 
 void masu_name(const masu_renderer *m, VkObjectType type, uint64_t handle, const char *name) {
     if (!m->vk.SetDebugUtilsObjectNameEXT || !handle) return;
-    VkDebugUtilsObjectNameInfoEXT info = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+    VkDebugUtilsObjectNameInfoEXT info = {.sType =
+                                              VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
                                           .objectType = type,
                                           .objectHandle = handle,
                                           .pObjectName = name};
@@ -99,14 +101,13 @@ masu_result masu_bind_memory(masu_renderer *m, masu_detail *detail) {
         if (r) return masu_fail_vulkan(detail, r, "vkBindBufferMemory");
         masu_name(m, VK_OBJECT_TYPE_BUFFER, MASU_HANDLE(m->objects.buffers[b]), buffer->name);
     }
-    uint64_t base = m->memory_owned[MASU_ROLE_DEVICE]
-                        ? 0
-                        : m->plan.desc.device_blocks[MASU_ROLE_DEVICE].offset;
+    uint64_t base =
+        m->memory_owned[MASU_ROLE_DEVICE] ? 0 : m->plan.desc.device_blocks[MASU_ROLE_DEVICE].offset;
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         if (!m->objects.images[i]) continue;
-        VkResult r = m->vk.BindImageMemory(m->vk.device, m->objects.images[i],
-                                           m->memory[MASU_ROLE_DEVICE],
-                                           base + m->plan.images[i].offset);
+        VkResult r =
+            m->vk.BindImageMemory(m->vk.device, m->objects.images[i], m->memory[MASU_ROLE_DEVICE],
+                                  base + m->plan.images[i].offset);
         if (r) return masu_fail_vulkan(detail, r, "vkBindImageMemory");
         masu_name(m, VK_OBJECT_TYPE_IMAGE, MASU_HANDLE(m->objects.images[i]), masu_images[i].name);
     }
@@ -122,12 +123,13 @@ masu_result masu_make_views(masu_renderer *m, masu_detail *detail) {
             .image = m->objects.images[i],
             .viewType = VK_IMAGE_VIEW_TYPE_2D,
             .format = masu_images[i].format,
-            .subresourceRange = {.aspectMask = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
+            .subresourceRange = {.aspectMask =
+                                     depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                                  .levelCount = 1,
                                  .layerCount = 1}};
         /* An image that is only copied may not have a view (valid usage 04441). */
-        VkImageUsageFlags viewable = ~(VkImageUsageFlags)(VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                                                          VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        VkImageUsageFlags viewable =
+            ~(VkImageUsageFlags)(VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         if (!(m->plan.images[i].usage & viewable)) continue;
         VkResult r = m->vk.CreateImageView(m->vk.device, &info, m->vk.allocator, &m->views[i]);
         if (MASU_FAILED(r, m->views[i])) return masu_fail_vulkan(detail, r, "vkCreateImageView");

@@ -1,17 +1,19 @@
-/* blob.h: the bytes of a baked scene (.masu), shared by the runtime that reads them and masu-bake that writes them.
+/* blob.h: the bytes of a baked scene (.masu), shared by the runtime that reads them and masu-bake
+ * that writes them.
  *
  *   +--------+---------------+---------+---------+-----
- *   | header | section table | payload | payload | ...      little-endian, offsets from the first byte, no pointers
- *   +--------+---------------+---------+---------+-----
+ *   | header | section table | payload | payload | ...      little-endian, offsets from the first
+ *   byte, no pointers +--------+---------------+---------+---------+-----
  *   0        64              16-byte aligned, in table order, gaps are zero
  *
  * Rules a reader may rely on after masu_scene_bind has passed a blob (src/scene.c checks each):
  *  - header.bytes is the exact length; hash is FNV-1a 64 over everything behind the header;
  *  - each section kind appears at most once; stride is the sizeof of its struct here;
  *  - every float is finite; every index is in range; instances are sorted by mesh;
- *  - SPIR-V is code: a blob is as trusted as the executable and comes from the port's own build. The hash finds damage,
- *    not malice.
- * World space: right-handed, +Y up, metres, linear colour. docs/blob.md is the prose form of this file. */
+ *  - SPIR-V is code: a blob is as trusted as the executable and comes from the port's own build.
+ *    The hash finds damage, not malice.
+ * World space: right-handed, +Y up, metres, linear colour. docs/blob.md is the prose form of this
+ * file. */
 #ifndef MASU_BLOB_H
 #define MASU_BLOB_H
 
@@ -64,7 +66,8 @@ typedef struct masu_blob_primitive {
     uint32_t first_index;
     uint32_t index_count; /* a multiple of 3 */
     uint32_t first_vertex;
-    uint32_t vertex_count; /* 1 .. 16,777,215: indices stay exact on devices without fullDrawIndexUint32 */
+    uint32_t vertex_count; /* 1 .. 16,777,215: indices stay exact on devices without
+                              fullDrawIndexUint32 */
     uint32_t material;
     float aabb_min[3]; /* object space */
     float aabb_max[3];
@@ -97,7 +100,8 @@ typedef struct masu_blob_material {
     uint32_t reserved[3];
 } masu_blob_material;
 
-/* Camera path: keys in rising time, linear in between (position and target), held at both ends. Up is +Y. */
+/* Camera path: keys in rising time, linear in between (position and target), held at both ends. Up
+ * is +Y. */
 typedef struct masu_blob_camera_key {
     float time; /* seconds */
     float position[3];
@@ -123,7 +127,8 @@ typedef struct masu_blob_sdf {
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
     float bounds_max[3];
     float max_distance;  /* longest ray, > 0 */
-    uint32_t has_raster; /* 1: MARCH_SPIRV was compiled to read a raster depth (the blob has instances) */
+    uint32_t has_raster; /* 1: MARCH_SPIRV was compiled to read a raster depth (the blob has
+                            instances) */
     uint32_t reserved[3];
 } masu_blob_sdf;
 

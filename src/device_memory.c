@@ -9,7 +9,7 @@
 
 static uint64_t align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
 
-/* ---- Placement --------------------------------------------------------------------------------- */
+/* ---- Placement ------------------------------------------------------------------------------- */
 
 static int alive_together(const masu_placement *a, const masu_placement *b) {
     return a->first <= b->last && b->first <= a->last;
@@ -19,8 +19,9 @@ static int overlaps(const masu_placement *a, const masu_placement *b) {
     return a->offset < b->offset + b->bytes && b->offset < a->offset + a->bytes;
 }
 
-/* First fit: the lowest offset at which item `k` of `order` meets none of those placed before it. Candidates are the start
- * and the end of each placed item: a lowest free offset is always one of these, rounded up. */
+/* First fit: the lowest offset at which item `k` of `order` meets none of those placed before it.
+ * Candidates are the start and the end of each placed item: a lowest free offset is always one of
+ * these, rounded up. */
 static void place_one(masu_placement *items, const uint32_t *order, uint32_t k) {
     masu_placement *item = &items[order[k]];
     uint64_t best = UINT64_MAX;
@@ -102,7 +103,7 @@ uint64_t masu_place_lower_bound(const masu_placement *items, uint32_t n) {
     return most;
 }
 
-/* ---- Memory types ------------------------------------------------------------------------------ */
+/* ---- Memory types ---------------------------------------------------------------------------- */
 
 #define LOCAL VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
 #define VISIBLE (VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)
@@ -116,7 +117,8 @@ static int find_type(const masu_vk *vk, uint32_t bits, VkMemoryPropertyFlags wan
     for (uint32_t i = 0; i < vk->memory.memoryTypeCount; i++) {
         const VkMemoryType *t = &vk->memory.memoryTypes[i];
         if (!(bits & 1u << i) || (t->propertyFlags & wanted) != wanted) continue;
-        if ((t->propertyFlags & UNFIT) || vk->memory.memoryHeaps[t->heapIndex].size < bytes) continue;
+        if ((t->propertyFlags & UNFIT) || vk->memory.memoryHeaps[t->heapIndex].size < bytes)
+            continue;
         *type = i;
         return 1;
     }
@@ -136,7 +138,8 @@ static masu_result choose_type(const masu_vk *vk, masu_frame_plan *plan, uint32_
     masu_block_plan *block = &plan->blocks[role];
     if (!block->bytes) return MASU_OK;
     for (uint32_t i = 0; i < 3; i++) {
-        if (!find_type(vk, block->type_bits, preferences[role][i], block->bytes, &block->type)) continue;
+        if (!find_type(vk, block->type_bits, preferences[role][i], block->bytes, &block->type))
+            continue;
         if (plan->desc.device_blocks[role].memory) {
             block->type = plan->desc.device_blocks[role].memory_type; /* checked when it is bound */
         }
@@ -150,7 +153,7 @@ static masu_result choose_type(const masu_vk *vk, masu_frame_plan *plan, uint32_
                      block->type_bits);
 }
 
-/* ---- Objects ----------------------------------------------------------------------------------- */
+/* ---- Objects --------------------------------------------------------------------------------- */
 
 static masu_result create_buffer(const masu_vk *vk, masu_frame_plan *plan, uint32_t b,
                                  masu_objects *objects, masu_detail *detail) {
@@ -204,14 +207,15 @@ void masu_objects_destroy(const masu_vk *vk, masu_objects *objects) {
     }
 }
 
-/* ---- Layout ------------------------------------------------------------------------------------ */
+/* ---- Layout ---------------------------------------------------------------------------------- */
 
 static void add_to_block(masu_block_plan *block, uint64_t alignment, uint32_t type_bits) {
     if (block->alignment < alignment) block->alignment = alignment;
     block->type_bits = block->type_bits ? block->type_bits & type_bits : type_bits;
 }
 
-/* Lays the buffers of one role at the end of a block. Staging and poison are created later and laid then. */
+/* Lays the buffers of one role at the end of a block. Staging and poison are created later and laid
+ * then. */
 static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *block) {
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
@@ -244,7 +248,8 @@ static void lay_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan
     for (uint32_t k = 0; k < n; k++) {
         plan->images[ids[k]].offset = plan->transient_offset + items[k].offset;
     }
-    /* What follows (buffers of other roles on unified memory) must not share a granule with an image. */
+    /* What follows (buffers of other roles on unified memory) must not share a granule with an
+     * image. */
     block->bytes = align_up(plan->transient_offset + plan->transient_aliased, start_alignment);
 }
 
@@ -295,8 +300,9 @@ static masu_result create_poison(const masu_vk *vk, masu_frame_plan *plan, masu_
     uint64_t end = poison->offset + poison->memory_bytes;
     if (poison->offset % poison->alignment || !(poison->type_bits & block->type_bits)) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "debug.poison", poison->alignment,
-                         poison->offset, "this device cannot lay a buffer over its images; leave "
-                                         "debug.poison at 0");
+                         poison->offset,
+                         "this device cannot lay a buffer over its images; leave "
+                         "debug.poison at 0");
     }
     block->type_bits &= poison->type_bits;
     if (block->bytes < end) block->bytes = end;

@@ -1,22 +1,25 @@
-/* error.h: filling a masu_detail and telling the host's log. No state, no allocation; text is cut at the detail's size. */
+/* error.h: filling a masu_detail and telling the host's log. No state, no allocation; text is cut
+ * at the detail's size. */
 #ifndef MASU_ERROR_H
 #define MASU_ERROR_H
 
 #include "masu.h"
 
-/* Fills `detail` (may be NULL), returns `result`: `return masu_fail(...)`. `what` must be a string constant. */
+/* Fills `detail` (may be NULL), returns `result`: `return masu_fail(...)`. `what` must be a string
+ * constant. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 6, 7)))
 #endif
 masu_result
-masu_fail(masu_detail *detail, masu_result result, const char *what, uint64_t needed, uint64_t given,
-          const char *format, ...);
+masu_fail(masu_detail *detail, masu_result result, const char *what, uint64_t needed,
+          uint64_t given, const char *format, ...);
 
-/* A Vulkan call that returned `vk` < 0: MASU_ERROR_DEVICE_LOST or MASU_ERROR_VULKAN, naming the call. */
+/* A Vulkan call that returned `vk` < 0: MASU_ERROR_DEVICE_LOST or MASU_ERROR_VULKAN, naming the
+ * call. */
 masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call);
 
-/* True if creation failed; the handle is then null. A driver may leave anything in the output of a call that fails
- * (specification, "Return Codes"), and unwinding must not destroy that. */
+/* True if creation failed; the handle is then null. A driver may leave anything in the output of a
+ * call that fails (specification, "Return Codes"), and unwinding must not destroy that. */
 #define MASU_FAILED(r, handle) ((r) != VK_SUCCESS && ((handle) = VK_NULL_HANDLE, 1))
 
 /* One line to the host's log, if it has one. */

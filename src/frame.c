@@ -1,6 +1,8 @@
-/* frame.c: THE TABLE. The frame, in order: what each pass reads, what it writes, and when it is needed.
+/* frame.c: THE TABLE. The frame, in order: what each pass reads, what it writes, and when it is
+ * needed.
  *
- * Adding a pass is adding a row here, its id in frame.h and a shader of the same name in shaders/. */
+ * Adding a pass is adding a row here, its id in frame.h and a shader of the same name in shaders/.
+ * */
 #include "frame.h"
 
 #include <math.h>
@@ -19,46 +21,50 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
     [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
     [MASU_IMAGE_UPSCALED] = {"upscaled", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT,
                              MASU_CLASS_COLOR, 0},
-    [MASU_IMAGE_FINAL] = {"final", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR, 0},
+    [MASU_IMAGE_FINAL] = {"final", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR,
+                          0},
     [MASU_IMAGE_SOURCE] = {"source", VK_FORMAT_UNDEFINED, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
     [MASU_IMAGE_TARGET] = {"target", VK_FORMAT_UNDEFINED, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR, 0},
 };
 
+static int decided(int runs, const char *yes, const char *no, const char **why) {
+    *why = runs ? yes : no;
+    return runs;
+}
+
 static int needs_gbuffer(const masu_needs *n, const char **why) {
-    if (!n->scene) return *why = "no scene: a source image is upscaled", 0;
-    if (n->raster) return *why = "the scene has instances", 1;
-    if (n->sdf) return *why = "no instances; the march writes every pixel", 0;
-    return *why = "clears: the scene is empty but for its sky", 1;
+    if (n->raster) return decided(1, "the scene has instances", NULL, why);
+    if (n->sdf) return decided(0, NULL, "no instances; the march writes every pixel", why);
+    return decided(n->scene, "clears: the scene is empty but for its sky",
+                   "no scene: a source image is upscaled", why);
 }
 
 static int needs_march(const masu_needs *n, const char **why) {
-    return *why = n->sdf ? "the scene has an SDF" : "the scene has no SDF", n->sdf;
+    return decided(n->sdf, "the scene has an SDF", "the scene has no SDF", why);
 }
 
 static int needs_shading(const masu_needs *n, const char **why) {
-    return *why = n->scene ? "a scene is lit" : "no scene: a source image is upscaled", n->scene;
+    return decided(n->scene, "a scene is lit", "no scene: a source image is upscaled", why);
 }
 
 static int needs_readback(const masu_needs *n, const char **why) {
-    int wanted = n->scene && n->readback;
-    return *why = wanted ? "desc.readback asks for images" : "desc.readback asks for no image", wanted;
+    return decided(n->scene && n->readback, "desc.readback asks for images",
+                   "desc.readback asks for no image", why);
 }
 
 static int needs_easu(const masu_needs *n, const char **why) {
-    return *why = n->upscale ? "render size differs from output size, or rung.upscale is on"
-                             : "render size is output size",
-           n->upscale;
+    return decided(n->upscale, "render size differs from output size, or rung.upscale is on",
+                   "render size is output size", why);
 }
 
 static int needs_rcas(const masu_needs *n, const char **why) {
-    return *why = n->sharpen ? "sharpens what EASU made, or rung.sharpen is on"
-                             : "nothing was upscaled, or rung.sharpen is off",
-           n->sharpen;
+    return decided(n->sharpen, "sharpens what EASU made, or rung.sharpen is on",
+                   "nothing was upscaled, or rung.sharpen is off", why);
 }
 
 static int needs_present(const masu_needs *n, const char **why) {
-    return *why = n->blit ? "targets are no storage images" : "the last pass writes the target itself",
-           n->blit;
+    return decided(n->blit, "targets are no storage images",
+                   "the last pass writes the target itself", why);
 }
 
 /* index.x: most SDF steps per ray. */

@@ -1,8 +1,9 @@
 /* frame.h: what a row of the frame table is. The table itself is in frame.c.
  *
- * A row names its images in order; barriers, layouts, descriptor bindings, image usage flags, lifetimes, memory aliasing,
- * labels, timestamps and the printed plan are all derived from it (plan.c, record.c). The reads of a compute row become
- * combined image samplers at bindings 0..R-1 of set 1, its writes storage images at R..R+W-1, in the row's order. */
+ * A row names its images in order; barriers, layouts, descriptor bindings, image usage flags,
+ * lifetimes, memory aliasing, labels, timestamps and the printed plan are all derived from it
+ * (plan.c, record.c). The reads of a compute row become combined image samplers at bindings 0..R-1
+ * of set 1, its writes storage images at R..R+W-1, in the row's order. */
 #ifndef MASU_FRAME_H
 #define MASU_FRAME_H
 
@@ -22,12 +23,17 @@ typedef enum masu_image_id {
     MASU_IMAGE_SOURCE,      /* the host's input, upscaling only */
     MASU_IMAGE_TARGET,      /* the host's output */
     MASU_IMAGE_COUNT,
-    /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row has written. */
+    /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row
+     * has written. */
     MASU_LATEST_DEPTH = 32,
     MASU_LATEST_COLOR
 } masu_image_id;
 
-typedef enum masu_image_class { MASU_CLASS_OTHER, MASU_CLASS_DEPTH, MASU_CLASS_COLOR } masu_image_class;
+typedef enum masu_image_class {
+    MASU_CLASS_OTHER,
+    MASU_CLASS_DEPTH,
+    MASU_CLASS_COLOR
+} masu_image_class;
 typedef enum masu_image_extent { MASU_EXTENT_RENDER, MASU_EXTENT_OUTPUT } masu_image_extent;
 
 typedef struct masu_image_row {
@@ -40,16 +46,20 @@ typedef struct masu_image_row {
 
 typedef enum masu_usage {
     MASU_USE_NONE = 0,
-    MASU_READ,         /* sampled */
-    MASU_READ_COPY,    /* transfer source */
-    MASU_WRITE,        /* storage, whole sub-rectangle, earlier content is lost */
-    MASU_UPDATE,       /* storage, some texels, the rest is kept */
-    MASU_WRITE_COLOR,  /* colour attachment, cleared first */
-    MASU_WRITE_DEPTH,  /* depth attachment, cleared to 0 (far) first */
-    MASU_WRITE_COPY    /* transfer destination */
+    MASU_READ,        /* sampled */
+    MASU_READ_COPY,   /* transfer source */
+    MASU_WRITE,       /* storage, whole sub-rectangle, earlier content is lost */
+    MASU_UPDATE,      /* storage, some texels, the rest is kept */
+    MASU_WRITE_COLOR, /* colour attachment, cleared first */
+    MASU_WRITE_DEPTH, /* depth attachment, cleared to 0 (far) first */
+    MASU_WRITE_COPY   /* transfer destination */
 } masu_usage;
 
-typedef enum masu_pass_kind { MASU_PASS_GRAPHICS, MASU_PASS_COMPUTE, MASU_PASS_TRANSFER } masu_pass_kind;
+typedef enum masu_pass_kind {
+    MASU_PASS_GRAPHICS,
+    MASU_PASS_COMPUTE,
+    MASU_PASS_TRANSFER
+} masu_pass_kind;
 
 #define MASU_PASS_ACCESSES 8u
 
@@ -58,13 +68,14 @@ typedef struct masu_access {
     uint8_t usage; /* masu_usage */
 } masu_access;
 
-/* What the scene and the description need, computed once; the `decide` of each row looks at nothing else. */
+/* What the scene and the description need, computed once; the `decide` of each row looks at nothing
+ * else. */
 typedef struct masu_needs {
-    int scene;          /* a scene is drawn (else: upscaling of a source image) */
-    int raster;         /* it has instances */
-    int sdf;            /* it has an SDF */
-    uint32_t readback;  /* masu_readback_bits */
-    int blit;           /* targets are filled by a blit */
+    int scene;         /* a scene is drawn (else: upscaling of a source image) */
+    int raster;        /* it has instances */
+    int sdf;           /* it has an SDF */
+    uint32_t readback; /* masu_readback_bits */
+    int blit;          /* targets are filled by a blit */
     /* of one rung: */
     int upscale, sharpen;
 } masu_needs;

@@ -1,4 +1,5 @@
-/* masu.c: the public functions: the layout walk of the host block, the steps of masu_init and their unwinding, frames. */
+/* masu.c: the public functions: the layout walk of the host block, the steps of masu_init and their
+ * unwinding, frames. */
 #include "renderer.h"
 
 #include "error.h"
@@ -8,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- The walk ---------------------------------------------------------------------------------- */
+/* ---- The walk -------------------------------------------------------------------------------- */
 
 /* The one walk that sizes and lays out the host block. m is NULL when only counting. */
 static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_renderer **m) {
@@ -19,13 +20,20 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
     masu_renderer scrap; /* takes the NULLs of a counting walk */
     masu_renderer *to = r ? r : &scrap;
     to->frames = masu_arena_take(arena, "command buffers", frames, sizeof *to->frames, 8);
-    to->loads = masu_arena_take(arena, "load command buffers", masu_load_chunks(plan), sizeof *to->loads, 8);
-    to->pass_sets = masu_arena_take(arena, "descriptor sets", plan->pass_sets, sizeof *to->pass_sets, 8);
-    to->instances = masu_arena_take(arena, "instance transforms", s->instances, sizeof *to->instances, 16);
-    to->instance_names = masu_arena_take(arena, "instance names", s->instances, sizeof *to->instance_names, 8);
-    to->instance_dirty = masu_arena_take(arena, "instance flags", s->instances, sizeof *to->instance_dirty, 1);
-    to->camera_keys = masu_arena_take(arena, "camera keys", s->camera_keys, sizeof *to->camera_keys, 4);
-    to->sdf_params = masu_arena_take(arena, "SDF parameters", s->sdf_params, sizeof *to->sdf_params, 4);
+    to->loads = masu_arena_take(arena, "load command buffers", masu_load_chunks(plan),
+                                sizeof *to->loads, 8);
+    to->pass_sets =
+        masu_arena_take(arena, "descriptor sets", plan->pass_sets, sizeof *to->pass_sets, 8);
+    to->instances =
+        masu_arena_take(arena, "instance transforms", s->instances, sizeof *to->instances, 16);
+    to->instance_names =
+        masu_arena_take(arena, "instance names", s->instances, sizeof *to->instance_names, 8);
+    to->instance_dirty =
+        masu_arena_take(arena, "instance flags", s->instances, sizeof *to->instance_dirty, 1);
+    to->camera_keys =
+        masu_arena_take(arena, "camera keys", s->camera_keys, sizeof *to->camera_keys, 4);
+    to->sdf_params =
+        masu_arena_take(arena, "SDF parameters", s->sdf_params, sizeof *to->sdf_params, 4);
     if (m) *m = r;
 }
 
@@ -33,27 +41,31 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
     uint64_t budget = plan->desc.host_budget;
     if (!budget || needed <= budget) return MASU_OK;
     return masu_fail(detail, MASU_ERROR_LIMIT, "host_budget", needed, budget,
-                     "host_budget: the plan needs %llu bytes, the budget is %llu", (unsigned long long)needed,
-                     (unsigned long long)budget);
+                     "host_budget: the plan needs %llu bytes, the budget is %llu",
+                     (unsigned long long)needed, (unsigned long long)budget);
 }
 
-/* ---- Plan and query ---------------------------------------------------------------------------- */
+/* ---- Plan and query -------------------------------------------------------------------------- */
 
-/* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys them. */
-static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
-                             masu_detail *detail) {
+/* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys
+ * them. */
+static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
+                             masu_objects *objects, masu_detail *detail) {
     memset(objects, 0, sizeof *objects);
     if (!desc) return masu_fail(detail, MASU_ERROR_ARGUMENT, "desc", 1, 0, "desc is NULL");
     if (desc->scene && !desc->scene->blob) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0, "scene was not filled by masu_scene_bind");
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
+                         "scene was not filled by masu_scene_bind");
     }
-    masu_result result = masu_compile(desc, 1, 1, plan, detail); /* pure checks come before the first Vulkan call */
+    masu_result result =
+        masu_compile(desc, 1, 1, plan, detail); /* pure checks come before the first Vulkan call */
     if (!result) result = masu_vk_load(desc, vk, detail);
     if (result) return result;
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
-    result = masu_compile(desc, limits->minUniformBufferOffsetAlignment ? limits->minUniformBufferOffsetAlignment : 1,
-                          limits->minStorageBufferOffsetAlignment ? limits->minStorageBufferOffsetAlignment : 1, plan,
-                          detail);
+    result = masu_compile(
+        desc, limits->minUniformBufferOffsetAlignment ? limits->minUniformBufferOffsetAlignment : 1,
+        limits->minStorageBufferOffsetAlignment ? limits->minStorageBufferOffsetAlignment : 1, plan,
+        detail);
     if (result) return result;
     if (plan->buffers[MASU_BUFFER_INSTANCES].stride > limits->maxStorageBufferRange) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxStorageBufferRange",
@@ -67,8 +79,8 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     return result;
 }
 
-static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan, uint64_t *host_bytes,
-                                   masu_detail *detail) {
+static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,
+                                   uint64_t *host_bytes, masu_detail *detail) {
     masu_vk vk;
     masu_objects objects;
     masu_result result = make_plan(desc, &vk, plan, &objects, detail);
@@ -106,7 +118,7 @@ void masu_plan_of(const masu_renderer *m, masu_plan_info *out) {
     masu_memory_export(&m->plan, m->arena.used, &out->memory);
 }
 
-/* ---- Init and destroy -------------------------------------------------------------------------- */
+/* ---- Init and destroy ------------------------------------------------------------------------ */
 
 static masu_result build(masu_renderer *m, masu_detail *detail) {
     masu_result result = masu_bind_memory(m, detail);
@@ -116,14 +128,15 @@ static masu_result build(masu_renderer *m, masu_detail *detail) {
     return result;
 }
 
-static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
-                        masu_detail *detail) {
+static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes,
+                        masu_renderer **out, masu_detail *detail) {
     masu_vk vk;
     masu_frame_plan plan;
     masu_objects objects;
     if (!block || (uintptr_t)block % MASU_ARENA_ALIGNMENT) {
-        return masu_fail(detail, MASU_ERROR_MEMORY, "host block", MASU_ARENA_ALIGNMENT, (uintptr_t)block,
-                         "host block is NULL or not %u-byte aligned", MASU_ARENA_ALIGNMENT);
+        return masu_fail(detail, MASU_ERROR_MEMORY, "host block", MASU_ARENA_ALIGNMENT,
+                         (uintptr_t)block, "host block is NULL or not %u-byte aligned",
+                         MASU_ARENA_ALIGNMENT);
     }
     masu_result result = make_plan(desc, &vk, &plan, &objects, detail);
     if (result) return result;
@@ -134,8 +147,8 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     result = check_host(&plan, arena.used, detail);
     if (!result && arena.used > block_bytes) {
         result = masu_fail(detail, MASU_ERROR_MEMORY, "host block", arena.used, block_bytes,
-                           "host block: %llu bytes are needed, %llu are given", (unsigned long long)arena.used,
-                           (unsigned long long)block_bytes);
+                           "host block: %llu bytes are needed, %llu are given",
+                           (unsigned long long)arena.used, (unsigned long long)block_bytes);
     }
     if (result) {
         masu_objects_destroy(&vk, &objects);
@@ -170,8 +183,9 @@ static void log_box(const masu_renderer *m) {
              m->plan.unified ? " in one unified block" : "", m->plan.desc.rung_count);
     masu_log(&m->plan.desc, MASU_LOG_INFO, text);
     if (m->plan.desc.debug.labels && !m->vk.SetDebugUtilsObjectNameEXT) {
-        masu_log(&m->plan.desc, MASU_LOG_WARNING,
-                 "debug.labels: VK_EXT_debug_utils is not enabled on the instance, there are no labels");
+        masu_log(
+            &m->plan.desc, MASU_LOG_WARNING,
+            "debug.labels: VK_EXT_debug_utils is not enabled on the instance, there are no labels");
     }
 }
 
@@ -206,15 +220,17 @@ void masu_destroy(masu_renderer *m) {
     }
     vk->DestroyDescriptorSetLayout(device, m->global_layout, vk->allocator);
     vk->DestroySampler(device, m->sampler, vk->allocator);
-    for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++) vk->DestroyImageView(device, m->views[i], vk->allocator);
+    for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++)
+        vk->DestroyImageView(device, m->views[i], vk->allocator);
     masu_objects_destroy(vk, &m->objects);
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
-        if (m->memory_owned[role]) vk->FreeMemory(device, m->memory[role], vk->allocator); /* also unmaps */
+        if (m->memory_owned[role])
+            vk->FreeMemory(device, m->memory[role], vk->allocator); /* also unmaps */
     }
     m->cookie = 0;
 }
 
-/* ---- Frames ------------------------------------------------------------------------------------ */
+/* ---- Frames ---------------------------------------------------------------------------------- */
 
 static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     const masu_desc *d = &m->plan.desc;
@@ -224,11 +240,13 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     }
     if (frame->rung >= d->rung_count) {
         return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
-                         "rung %u does not exist, the last one is %u", frame->rung, d->rung_count - 1);
+                         "rung %u does not exist, the last one is %u", frame->rung,
+                         d->rung_count - 1);
     }
     if (frame->target >= d->targets.count) {
-        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "target", d->targets.count - 1, frame->target,
-                         "target %u does not exist, the last one is %u", frame->target, d->targets.count - 1);
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "target", d->targets.count - 1,
+                         frame->target, "target %u does not exist, the last one is %u",
+                         frame->target, d->targets.count - 1);
     }
     return MASU_OK;
 }
@@ -246,30 +264,34 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (d->scene) masu_write_instances(m, slot);
     m->slot_frame[slot] = m->frame;
     m->slot_rung[slot] = frame->rung;
-    *commands = (masu_commands){m->frames[(slot * d->rung_count + frame->rung) * d->targets.count + frame->target],
-                                slot, frame->rung, m->frame};
+    *commands = (masu_commands){
+        m->frames[(slot * d->rung_count + frame->rung) * d->targets.count + frame->target], slot,
+        frame->rung, m->frame};
     m->frame++;
     return MASU_OK;
 }
 
 const masu_detail *masu_last_error(const masu_renderer *m) { return &m->error; }
 
-/* ---- Looking ----------------------------------------------------------------------------------- */
+/* ---- Looking --------------------------------------------------------------------------------- */
 
 static uint64_t counter(const masu_renderer *m, uint32_t slot, uint32_t index) {
-    const uint32_t *c = (const uint32_t *)(const void *)masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot);
+    const uint32_t *c =
+        (const uint32_t *)(const void *)masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot);
     return c[2 * index] | (uint64_t)c[2 * index + 1] << 32;
 }
 
 static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
-    const uint64_t *stamps = (const uint64_t *)(const void *)(masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
-                                                              m->plan.readback_times);
+    const uint64_t *stamps =
+        (const uint64_t *)(const void *)(masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
+                                         m->plan.readback_times);
     uint32_t bits = m->vk.queue_family.timestampValidBits;
     uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
     double period = (double)m->vk.properties.limits.timestampPeriod;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         if (!(m->plan.rungs[out->rung].active & 1u << p)) continue;
-        /* The counter may wrap between two stamps: the difference under the mask is right all the same. */
+        /* The counter may wrap between two stamps: the difference under the mask is right all the
+         * same. */
         out->pass_ns[p] = (uint64_t)((double)((stamps[p + 1] - stamps[p]) & mask) * period);
     }
     out->gpu_ns = (uint64_t)((double)((stamps[MASU_PASS_COUNT] - stamps[0]) & mask) * period);
@@ -304,28 +326,34 @@ void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
                             .instances = s->instances,
                             .sdf_params = s->sdf_params,
                             .host_bytes = m->arena.used};
-    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) out->device_bytes += m->plan.blocks[role].bytes;
+    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++)
+        out->device_bytes += m->plan.blocks[role].bytes;
 }
 
-masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_bits which, masu_readback_image *out) {
+masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_bits which,
+                          masu_readback_image *out) {
     if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
     uint32_t bit = 0;
     while (bit < MASU_READBACK_IMAGES && which != 1u << bit) bit++;
-    if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit)) return MASU_ERROR_ARGUMENT;
+    if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit))
+        return MASU_ERROR_ARGUMENT;
     if (m->slot_frame[slot] == UINT64_MAX) return MASU_INCOMPLETE;
     const masu_rung_plan *rp = &m->plan.rungs[m->slot_rung[slot]];
     uint32_t id = 1;
     while (masu_images[id].readback != (uint32_t)which) id++;
     VkFormat format = masu_images[id].format;
-    if (format == VK_FORMAT_D32_SFLOAT) format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
-    *out = (masu_readback_image){masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) + m->plan.readback_offset[bit],
-                        rp->render_width, rp->render_height, (uint64_t)rp->render_width * masu_format_bytes(format),
-                        format};
+    if (format == VK_FORMAT_D32_SFLOAT)
+        format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
+    *out = (masu_readback_image){masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
+                                     m->plan.readback_offset[bit],
+                                 rp->render_width, rp->render_height,
+                                 (uint64_t)rp->render_width * masu_format_bytes(format), format};
     return MASU_OK;
 }
 
-static masu_memory_row device_row(const masu_frame_plan *plan, const char *kind, const char *name, masu_role role,
-                                  uint64_t count, uint64_t bytes, uint64_t alignment, uint64_t offset) {
+static masu_memory_row device_row(const masu_frame_plan *plan, const char *kind, const char *name,
+                                  masu_role role, uint64_t count, uint64_t bytes,
+                                  uint64_t alignment, uint64_t offset) {
     return (masu_memory_row){.name = name,
                              .kind = kind,
                              .role = plan->unified ? MASU_ROLE_DEVICE : role,
@@ -351,8 +379,8 @@ uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint3
         const masu_buffer_plan *p = &m->plan.buffers[b];
         if (!p->bytes || b == MASU_BUFFER_POISON) continue;
         if (n < capacity) {
-            rows[n] = device_row(&m->plan, "buffer", p->name, p->role, p->count, p->memory_bytes, p->alignment,
-                                 p->offset);
+            rows[n] = device_row(&m->plan, "buffer", p->name, p->role, p->count, p->memory_bytes,
+                                 p->alignment, p->offset);
         }
         n++;
     }

@@ -1,5 +1,6 @@
-/* pipelines.c: descriptor set layouts derived from the rows of the frame table, shader modules, pipelines, and the render
- * pass of the G-buffer. Modules live only while their pipeline is built. */
+/* pipelines.c: descriptor set layouts derived from the rows of the frame table, shader modules,
+ * pipelines, and the render pass of the G-buffer. Modules live only while their pipeline is built.
+ * */
 #include "renderer.h"
 
 #include "error.h"
@@ -34,7 +35,8 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     }
 }
 
-static masu_result make_module(masu_renderer *m, spirv code, VkShaderModule *module, masu_detail *detail) {
+static masu_result make_module(masu_renderer *m, spirv code, VkShaderModule *module,
+                               masu_detail *detail) {
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                      .codeSize = (size_t)code.bytes,
                                      .pCode = code.words};
@@ -46,28 +48,33 @@ static uint64_t now(const masu_renderer *m) {
     return m->plan.desc.clock_ns ? m->plan.desc.clock_ns(m->plan.desc.clock_user) : 0;
 }
 
-/* ---- Layouts ----------------------------------------------------------------------------------- */
+/* ---- Layouts --------------------------------------------------------------------------------- */
 
 static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
-    VkShaderStageFlags all = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT |
-                             VK_SHADER_STAGE_FRAGMENT_BIT;
+    VkShaderStageFlags all =
+        VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkDescriptorSetLayoutBinding bindings[] = {
         {MASU_BIND_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
-        {MASU_BIND_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, NULL},
-        {MASU_BIND_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, NULL},
-        {MASU_BIND_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL}};
-    VkDescriptorSetLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = sizeof bindings / sizeof *bindings,
-        .pBindings = bindings};
+        {MASU_BIND_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT,
+         NULL},
+        {MASU_BIND_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
+         NULL},
+        {MASU_BIND_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
+         NULL}};
+    VkDescriptorSetLayoutCreateInfo info = {.sType =
+                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                            .bindingCount = sizeof bindings / sizeof *bindings,
+                                            .pBindings = bindings};
     VkResult r =
         m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, &m->global_layout);
-    if (MASU_FAILED(r, m->global_layout)) return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
+    if (MASU_FAILED(r, m->global_layout))
+        return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
     return MASU_OK;
 }
 
-/* Set 1: reads first, then writes, in the order of the row. Which images stand behind the bindings may differ from rung to
- * rung, their number and kind do not: the first rung that runs the pass speaks for all. */
+/* Set 1: reads first, then writes, in the order of the row. Which images stand behind the bindings
+ * may differ from rung to rung, their number and kind do not: the first rung that runs the pass
+ * speaks for all. */
 static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail *detail) {
     const masu_rung_plan *rp = NULL;
     for (uint32_t r = 0; r < m->plan.desc.rung_count && !rp; r++) {
@@ -81,18 +88,21 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
             if (masu_usage_writes((masu_usage)rp->access[pass][a].usage) != writes) continue;
             bindings[n] = (VkDescriptorSetLayoutBinding){
-                n, writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                n,
+                writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                       : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                 1, VK_SHADER_STAGE_COMPUTE_BIT, writes ? NULL : &m->sampler};
             n++;
         }
     }
-    VkDescriptorSetLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = n,
-        .pBindings = bindings};
+    VkDescriptorSetLayoutCreateInfo info = {.sType =
+                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                            .bindingCount = n,
+                                            .pBindings = bindings};
     VkResult r = m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator,
                                                  &m->pass_layouts[pass]);
-    if (MASU_FAILED(r, m->pass_layouts[pass])) return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
+    if (MASU_FAILED(r, m->pass_layouts[pass]))
+        return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
     VkDescriptorSetLayout sets[] = {m->global_layout, m->pass_layouts[pass]};
     VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(struct masu_push)};
     if (!compute) push.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
@@ -102,12 +112,14 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
     r = m->vk.CreatePipelineLayout(m->vk.device, &layout, m->vk.allocator, &m->layouts[pass]);
-    if (MASU_FAILED(r, m->layouts[pass])) return masu_fail_vulkan(detail, r, "vkCreatePipelineLayout");
-    masu_name(m, VK_OBJECT_TYPE_PIPELINE_LAYOUT, MASU_HANDLE(m->layouts[pass]), masu_passes[pass].name);
+    if (MASU_FAILED(r, m->layouts[pass]))
+        return masu_fail_vulkan(detail, r, "vkCreatePipelineLayout");
+    masu_name(m, VK_OBJECT_TYPE_PIPELINE_LAYOUT, MASU_HANDLE(m->layouts[pass]),
+              masu_passes[pass].name);
     return MASU_OK;
 }
 
-/* ---- Compute ----------------------------------------------------------------------------------- */
+/* ---- Compute --------------------------------------------------------------------------------- */
 
 static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
@@ -126,18 +138,20 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
                   .pSpecializationInfo = &special},
         .layout = m->layouts[pass]};
     uint64_t start = now(m);
-    VkResult r = m->vk.CreateComputePipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1, &info,
-                                              m->vk.allocator, &m->pipelines[pass]);
+    VkResult r = m->vk.CreateComputePipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1,
+                                              &info, m->vk.allocator, &m->pipelines[pass]);
     m->pipeline_ns[pass] = now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
-    if (MASU_FAILED(r, m->pipelines[pass])) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
+    if (MASU_FAILED(r, m->pipelines[pass]))
+        return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
     return MASU_OK;
 }
 
-/* ---- G-buffer ---------------------------------------------------------------------------------- */
+/* ---- G-buffer -------------------------------------------------------------------------------- */
 
-/* Attachments come in the layouts that the row's barriers put them in, and stay there: the render pass itself does no
- * transition, so that record.c remains the only place that thinks about them. */
+/* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
+ * pass itself does no transition, so that record.c remains the only place that thinks about them.
+ * */
 static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
     const masu_image_id ids[3] = {MASU_IMAGE_ALBEDO, MASU_IMAGE_NORMAL, MASU_IMAGE_DEPTH};
     VkAttachmentDescription attachments[3];
@@ -147,15 +161,15 @@ static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
     for (uint32_t i = 0; i < 3; i++) {
         VkImageLayout layout = i == 2 ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
                                       : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        attachments[i] = (VkAttachmentDescription){
-            .format = masu_images[ids[i]].format,
-            .samples = VK_SAMPLE_COUNT_1_BIT,
-            .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-            .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-            .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-            .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
-            .initialLayout = layout,
-            .finalLayout = layout};
+        attachments[i] =
+            (VkAttachmentDescription){.format = masu_images[ids[i]].format,
+                                      .samples = VK_SAMPLE_COUNT_1_BIT,
+                                      .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                      .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                      .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                      .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
+                                      .initialLayout = layout,
+                                      .finalLayout = layout};
         views[i] = m->views[ids[i]];
     }
     VkAttachmentReference colors[2] = {{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
@@ -180,7 +194,8 @@ static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
                                      .height = height,
                                      .layers = 1};
     r = m->vk.CreateFramebuffer(m->vk.device, &frame, m->vk.allocator, &m->framebuffer);
-    return MASU_FAILED(r, m->framebuffer) ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer") : MASU_OK;
+    return MASU_FAILED(r, m->framebuffer) ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer")
+                                          : MASU_OK;
 }
 
 static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule modules[2]) {
@@ -192,7 +207,8 @@ static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule m
             .module = modules[i],
             .pName = "main"};
     }
-    VkVertexInputBindingDescription binding = {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+    VkVertexInputBindingDescription binding = {0, sizeof(masu_blob_vertex),
+                                               VK_VERTEX_INPUT_RATE_VERTEX};
     VkVertexInputAttributeDescription attributes[] = {
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(masu_blob_vertex, position)},
         {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(masu_blob_vertex, normal)}};
@@ -209,7 +225,8 @@ static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule m
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
         .viewportCount = 1,
         .scissorCount = 1};
-    /* No back-face culling: CAD data is not consistently wound, and the normal is turned towards the viewer. */
+    /* No back-face culling: CAD data is not consistently wound, and the normal is turned towards
+     * the viewer. */
     VkPipelineRasterizationStateCreateInfo raster = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
         .polygonMode = VK_POLYGON_MODE_FILL,
@@ -258,8 +275,8 @@ static masu_result make_gbuffer(masu_renderer *m, masu_detail *detail) {
     masu_result result = make_render_pass(m, detail);
     if (result || !m->plan.needs.raster) return result; /* an empty scene only clears */
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    result = make_module(m, (spirv){masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert}, &modules[0],
-                         detail);
+    result = make_module(m, (spirv){masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert},
+                         &modules[0], detail);
     if (!result) {
         result = make_module(m, (spirv){masu_spv_gbuffer_frag, sizeof masu_spv_gbuffer_frag},
                              &modules[1], detail);
@@ -272,7 +289,8 @@ static masu_result make_gbuffer(masu_renderer *m, masu_detail *detail) {
             result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
         }
     }
-    for (uint32_t i = 0; i < 2; i++) m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);
+    for (uint32_t i = 0; i < 2; i++)
+        m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);
     return result;
 }
 
@@ -291,7 +309,9 @@ masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
         result = make_pass_layout(m, p, detail);
         if (result || !m->layouts[p]) continue;
         result = p == MASU_PASS_GBUFFER ? make_gbuffer(m, detail) : make_compute(m, p, detail);
-        if (!result) masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->pipelines[p]), masu_passes[p].name);
+        if (!result)
+            masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->pipelines[p]),
+                      masu_passes[p].name);
     }
     return result;
 }

@@ -9,9 +9,11 @@
 
 static uint64_t align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
 
-uint32_t masu_format_bytes(VkFormat format) { return format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4; }
+uint32_t masu_format_bytes(VkFormat format) {
+    return format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
+}
 
-/* ---- Defaults ---------------------------------------------------------------------------------- */
+/* ---- Defaults -------------------------------------------------------------------------------- */
 
 masu_desc masu_desc_resolved(const masu_desc *desc) {
     masu_desc d;
@@ -35,7 +37,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     return d;
 }
 
-/* ---- Checks ------------------------------------------------------------------------------------ */
+/* ---- Checks ---------------------------------------------------------------------------------- */
 
 static masu_result bad_range(masu_detail *detail, const char *what, uint64_t given, uint64_t low,
                              uint64_t high) {
@@ -86,7 +88,8 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
     for (uint32_t i = 0; i < t->count; i++) {
         if (!t->images || !t->images[i] || (t->storage && (!t->views || !t->views[i]))) {
             const char *what = t->images && t->images[i] ? "targets.views" : "targets.images";
-            return masu_fail(detail, MASU_ERROR_ARGUMENT, what, t->count, i, "%s[%u] is NULL", what, i);
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, what, t->count, i, "%s[%u] is NULL", what,
+                             i);
         }
     }
     if (t->storage && t->format != VK_FORMAT_R8G8B8A8_UNORM) {
@@ -143,9 +146,10 @@ static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
-/* ---- One rung ---------------------------------------------------------------------------------- */
+/* ---- One rung -------------------------------------------------------------------------------- */
 
-/* Render size of a scale: at least one pixel, rounded to nearest. 1080 lines give 864 at 0.8 and 432 at 0.4. */
+/* Render size of a scale: at least one pixel, rounded to nearest. 1080 lines give 864 at 0.8 and
+ * 432 at 0.4. */
 static uint32_t scaled(uint32_t size, float scale) {
     double v = floor((double)size * (double)scale + 0.5);
     return v < 1.0 ? 1u : v > (double)size ? size : (uint32_t)v;
@@ -160,8 +164,10 @@ static void resolve_switches(const masu_desc *d, masu_rung_plan *rp, const masu_
     if (!needs->scene && !needs->upscale && !needs->sharpen) needs->upscale = 1;
 }
 
-/* Which concrete image an access of the table means in this rung, or NONE if there is no such image in this plan. */
-static masu_image_id resolve(uint8_t image, masu_image_id latest_depth, masu_image_id latest_color) {
+/* Which concrete image an access of the table means in this rung, or NONE if there is no such image
+ * in this plan. */
+static masu_image_id resolve(uint8_t image, masu_image_id latest_depth,
+                             masu_image_id latest_color) {
     if (image == MASU_LATEST_DEPTH) return latest_depth;
     if (image == MASU_LATEST_COLOR) return latest_color;
     return (masu_image_id)image;
@@ -207,7 +213,7 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
     }
 }
 
-/* ---- All rungs --------------------------------------------------------------------------------- */
+/* ---- All rungs ------------------------------------------------------------------------------- */
 
 static VkImageUsageFlags usage_flag(masu_usage usage) {
     switch (usage) {
@@ -235,8 +241,9 @@ static void gather_images(masu_frame_plan *plan) {
                 masu_image_plan *image = &plan->images[id];
                 uint32_t w = masu_images[id].extent == MASU_EXTENT_RENDER ? rp->render_width
                                                                           : plan->desc.output.width;
-                uint32_t h = masu_images[id].extent == MASU_EXTENT_RENDER ? rp->render_height
-                                                                          : plan->desc.output.height;
+                uint32_t h = masu_images[id].extent == MASU_EXTENT_RENDER
+                                 ? rp->render_height
+                                 : plan->desc.output.height;
                 if (!image->used) image->first = p;
                 if (image->first > p) image->first = p;
                 if (image->last < p) image->last = p;
@@ -252,7 +259,8 @@ static void gather_images(masu_frame_plan *plan) {
 }
 
 /* What only a scene needs. Returns the bytes of one readback slot that its counters take. */
-static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_alignment, uint64_t storage_alignment) {
+static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
+                                   uint64_t storage_alignment) {
     masu_buffer_plan *b = plan->buffers;
     const masu_scene *s = plan->desc.scene;
     uint64_t flights = plan->desc.frames_in_flight;
@@ -269,7 +277,8 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     return plan->desc.debug.counters ? align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
 }
 
-/* Images of a readback slot from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer. Returns the end. */
+/* Images of a readback slot from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer.
+ * Returns the end. */
 static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
     for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
         if (!(plan->desc.readback & 1u << i)) continue;
@@ -286,27 +295,34 @@ static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
     return slot;
 }
 
-static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment, uint64_t storage_alignment) {
+static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
+                         uint64_t storage_alignment) {
     masu_buffer_plan *b = plan->buffers;
     const masu_scene *s = plan->desc.scene;
     uint64_t flights = plan->desc.frames_in_flight;
-    VkBufferUsageFlags dst = VK_BUFFER_USAGE_TRANSFER_DST_BIT, storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    b[MASU_BUFFER_VERTICES] = (masu_buffer_plan){
-        .name = "vertices", .usage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | dst, .count = s ? s->vertices : 0};
+    VkBufferUsageFlags dst = VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                       storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    b[MASU_BUFFER_VERTICES] = (masu_buffer_plan){.name = "vertices",
+                                                 .usage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | dst,
+                                                 .count = s ? s->vertices : 0};
     b[MASU_BUFFER_VERTICES].bytes = b[MASU_BUFFER_VERTICES].count * sizeof(masu_blob_vertex);
-    b[MASU_BUFFER_INDICES] = (masu_buffer_plan){
-        .name = "indices", .usage = VK_BUFFER_USAGE_INDEX_BUFFER_BIT | dst, .count = s ? s->indices : 0};
+    b[MASU_BUFFER_INDICES] = (masu_buffer_plan){.name = "indices",
+                                                .usage = VK_BUFFER_USAGE_INDEX_BUFFER_BIT | dst,
+                                                .count = s ? s->indices : 0};
     b[MASU_BUFFER_INDICES].bytes = b[MASU_BUFFER_INDICES].count * sizeof(uint32_t);
-    b[MASU_BUFFER_MATERIALS] =
-        (masu_buffer_plan){.name = "materials", .usage = storage | dst, .count = s ? s->materials : 0};
+    b[MASU_BUFFER_MATERIALS] = (masu_buffer_plan){
+        .name = "materials", .usage = storage | dst, .count = s ? s->materials : 0};
     b[MASU_BUFFER_MATERIALS].bytes =
         b[MASU_BUFFER_MATERIALS].count * sizeof(struct masu_material_data);
-    b[MASU_BUFFER_COUNTERS] =
-        (masu_buffer_plan){.name = "counters", .usage = storage | dst | VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
-    b[MASU_BUFFER_FRAME] = (masu_buffer_plan){
-        .name = "frame uniforms", .role = MASU_ROLE_UPLOAD, .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
-    b[MASU_BUFFER_INSTANCES] = (masu_buffer_plan){
-        .name = "instances", .role = MASU_ROLE_UPLOAD, .usage = storage, .count = s ? s->instances : 0};
+    b[MASU_BUFFER_COUNTERS] = (masu_buffer_plan){
+        .name = "counters", .usage = storage | dst | VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
+    b[MASU_BUFFER_FRAME] = (masu_buffer_plan){.name = "frame uniforms",
+                                              .role = MASU_ROLE_UPLOAD,
+                                              .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+    b[MASU_BUFFER_INSTANCES] = (masu_buffer_plan){.name = "instances",
+                                                  .role = MASU_ROLE_UPLOAD,
+                                                  .usage = storage,
+                                                  .count = s ? s->instances : 0};
     b[MASU_BUFFER_STAGING] = (masu_buffer_plan){
         .name = "staging", .role = MASU_ROLE_UPLOAD, .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
     b[MASU_BUFFER_READBACK] =
@@ -324,8 +340,8 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment, uint
     b[MASU_BUFFER_READBACK].count = flights;
 }
 
-masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment, uint64_t storage_alignment,
-                         masu_frame_plan *plan, masu_detail *detail) {
+masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
+                         uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail) {
     memset(plan, 0, sizeof *plan);
     plan->desc = masu_desc_resolved(desc);
     masu_desc *d = &plan->desc;
@@ -346,7 +362,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment, uint
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];
         rp->render_width = d->scene ? scaled(d->output.width, d->rungs[r].scale) : d->source.width;
-        rp->render_height = d->scene ? scaled(d->output.height, d->rungs[r].scale) : d->source.height;
+        rp->render_height =
+            d->scene ? scaled(d->output.height, d->rungs[r].scale) : d->source.height;
         int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
         if (d->rungs[r].upscale == MASU_OFF && !same) {
             return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].upscale", 0, 0,
@@ -363,9 +380,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment, uint
     return MASU_OK;
 }
 
-/* ---- Export ------------------------------------------------------------------------------------ */
+/* ---- Export ---------------------------------------------------------------------------------- */
 
-static const char *image_name(uint8_t image) { return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL; }
+static const char *image_name(uint8_t image) {
+    return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL;
+}
 
 void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out) {
     memset(out, 0, sizeof *out);
@@ -400,7 +419,8 @@ static uint64_t left_out_bytes(const masu_frame_plan *plan) {
     return bytes;
 }
 
-void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns, masu_plan_info *out) {
+void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
+                      masu_plan_info *out) {
     memset(out, 0, sizeof *out);
     out->pass_count = MASU_PASS_COUNT;
     out->rung_count = plan->desc.rung_count;
@@ -435,9 +455,10 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns, 
     }
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         const masu_image_plan *image = &plan->images[i];
-        out->images[out->image_count++] = (masu_plan_image){
-            masu_images[i].name, masu_images[i].format, image->width, image->height,
-            (uint32_t)image->used, image->bytes, image->offset, image->first, image->last};
+        out->images[out->image_count++] =
+            (masu_plan_image){masu_images[i].name, masu_images[i].format, image->width,
+                              image->height,       (uint32_t)image->used, image->bytes,
+                              image->offset,       image->first,          image->last};
     }
     out->left_out_bytes = left_out_bytes(plan);
 }

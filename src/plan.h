@@ -1,8 +1,10 @@
-/* plan.h: the compiled frame: the table of frame.c applied to one description. Pure data, no Vulkan calls, no allocation.
+/* plan.h: the compiled frame: the table of frame.c applied to one description. Pure data, no Vulkan
+ * calls, no allocation.
  *
- * masu_compile turns zeros into defaults, checks the description, decides for each rung which passes run, resolves the
- * stand-ins ("latest depth", "latest colour"), and derives each image's size, usage flags and lifetime. What is known only
- * to the driver (sizes, memory types) is added by device_memory.c. */
+ * masu_compile turns zeros into defaults, checks the description, decides for each rung which
+ * passes run, resolves the stand-ins ("latest depth", "latest colour"), and derives each image's
+ * size, usage flags and lifetime. What is known only to the driver (sizes, memory types) is added
+ * by device_memory.c. */
 #ifndef MASU_PLAN_H
 #define MASU_PLAN_H
 
@@ -23,7 +25,7 @@ typedef struct masu_rung_plan {
     uint32_t active; /* bit per pass */
     uint32_t access_count[MASU_PASS_COUNT];
     masu_access access[MASU_PASS_COUNT][MASU_PASS_ACCESSES]; /* stand-ins resolved */
-    uint32_t barriers; /* counted while recording */
+    uint32_t barriers;                                       /* counted while recording */
 } masu_rung_plan;
 
 typedef enum masu_buffer_id {
@@ -70,20 +72,22 @@ typedef struct masu_frame_plan {
     int unified;
     uint64_t transient_offset; /* of the transient region in the device role's block */
     uint64_t transient_unaliased, transient_aliased, transient_lower_bound;
-    /* Within one readback slot: counters first, then timestamps, then images in the bit order of masu_readback_bits. */
+    /* Within one readback slot: counters first, then timestamps, then images in the bit order of
+     * masu_readback_bits. */
     uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
 } masu_frame_plan;
 
 /* Fills plan from desc. Device limits that shape the buffers come in as alignments. */
-masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment, uint64_t storage_alignment,
-                         masu_frame_plan *plan, masu_detail *detail);
+masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
+                         uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail);
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);
 
 /* The plan as the public struct. pipeline_ns may be NULL. */
-void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns, masu_plan_info *out);
+void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
+                      masu_plan_info *out);
 /* Its memory part. */
 void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out);
 

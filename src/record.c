@@ -1,11 +1,13 @@
-/* record.c: the table becomes descriptor sets and command buffers. One recording per (frame in flight, rung, target), made
- * once in masu_init and submitted again and again.
+/* record.c: the table becomes descriptor sets and command buffers. One recording per (frame in
+ * flight, rung, target), made once in masu_init and submitted again and again.
  *
- * Barriers are derived by walking the rung's accesses with, per image, the stage, access and layout of its last use:
+ * Barriers are derived by walking the rung's accesses with, per image, the stage, access and layout
+ * of its last use:
  *  - a read after a write, a write after anything, or another layout needs a barrier;
- *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image that shares bytes with
- *    it and was used before;
- *  - a full barrier at the top of the frame orders it behind the frame before, so no state crosses frames.
+ *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image
+ *    that shares bytes with it and was used before;
+ *  - a full barrier at the top of the frame orders it behind the frame before, so no state crosses
+ *    frames.
  * Each pass gets at most one vkCmdPipelineBarrier. */
 #include "renderer.h"
 
@@ -14,7 +16,7 @@
 
 #include <string.h>
 
-/* ---- Use of an image --------------------------------------------------------------------------- */
+/* ---- Use of an image ------------------------------------------------------------------------- */
 
 typedef struct image_state {
     int used; /* in this frame */
@@ -29,7 +31,8 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
                                                              : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
     switch (usage) {
     case MASU_READ:
-        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
+        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT,
+                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     case MASU_READ_COPY:
         return (image_state){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0};
@@ -38,10 +41,12 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
         return (image_state){1, shader, VK_ACCESS_SHADER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL, 1};
     case MASU_WRITE_COLOR:
         return (image_state){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                             VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
+                             VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
     case MASU_WRITE_DEPTH:
         return (image_state){1,
-                             VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+                             VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
+                                 VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
                              VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
                                  VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                              VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, 1};
@@ -63,19 +68,23 @@ typedef struct recorder {
 } recorder;
 
 static VkImage image_handle(const recorder *rec, masu_image_id id) {
-    return id == MASU_IMAGE_TARGET ? rec->m->plan.desc.targets.images[rec->target] : rec->m->objects.images[id];
+    return id == MASU_IMAGE_TARGET ? rec->m->plan.desc.targets.images[rec->target]
+                                   : rec->m->objects.images[id];
 }
 
 static int share_bytes(const masu_image_plan *a, const masu_image_plan *b) {
     return a->offset < b->offset + b->bytes && b->offset < a->offset + a->bytes;
 }
 
-/* What the first use of `id` has to wait for: the earlier tenants of its bytes. Without any, the caller's own stage links it
- * to the barrier at the top of the frame; TOP_OF_PIPE would not (it chains with nothing before it). */
-static void add_tenants(const recorder *rec, masu_image_id id, VkPipelineStageFlags *stages, VkAccessFlags *access) {
+/* What the first use of `id` has to wait for: the earlier tenants of its bytes. Without any, the
+ * caller's own stage links it to the barrier at the top of the frame; TOP_OF_PIPE would not (it
+ * chains with nothing before it). */
+static void add_tenants(const recorder *rec, masu_image_id id, VkPipelineStageFlags *stages,
+                        VkAccessFlags *access) {
     const masu_image_plan *images = rec->m->plan.images;
     for (uint32_t j = 1; j < MASU_IMAGE_SOURCE; j++) {
-        if (j == (uint32_t)id || !rec->states[j].used || !images[id].used || !share_bytes(&images[id], &images[j])) {
+        if (j == (uint32_t)id || !rec->states[j].used || !images[id].used ||
+            !share_bytes(&images[id], &images[j])) {
             continue;
         }
         *stages |= rec->states[j].stages;
@@ -95,7 +104,8 @@ static VkImageMemoryBarrier image_barrier(const recorder *rec, masu_image_id id,
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image_handle(rec, id),
-        .subresourceRange = {.aspectMask = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
+        .subresourceRange = {.aspectMask =
+                                 depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                              .levelCount = 1,
                              .layerCount = 1}};
 }
@@ -117,7 +127,8 @@ static void barrier_before(recorder *rec, uint32_t pass) {
             to |= next.stages;
         } else if (now->layout != next.layout || now->writes || next.writes) {
             from |= now->stages;
-            barriers[n++] = image_barrier(rec, id, now->writes ? now->access : 0, &next, now->layout);
+            barriers[n++] =
+                image_barrier(rec, id, now->writes ? now->access : 0, &next, now->layout);
             to |= next.stages;
         } else {
             next.stages |= now->stages; /* one more reader: a later writer waits for all of them */
@@ -138,7 +149,7 @@ static void memory_barrier(recorder *rec, VkPipelineStageFlags from, VkAccessFla
     rec->barriers++;
 }
 
-/* ---- Passes ------------------------------------------------------------------------------------ */
+/* ---- Passes ---------------------------------------------------------------------------------- */
 
 static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
     const masu_desc *d = &rec->m->plan.desc;
@@ -169,40 +180,47 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     VkPipelineLayout layout = rec->m->layouts[pass];
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
     if (rec->m->plan.needs.scene) {
-        vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL, 1,
-                                  &rec->m->global_sets[rec->flight], 0, NULL);
+        vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
+                                  1, &rec->m->global_sets[rec->flight], 0, NULL);
     }
-    vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1, &set, 0, NULL);
+    vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1,
+                              &set, 0, NULL);
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
     vk->CmdDispatch(rec->cmd, (push.output_width + MASU_GROUP - 1) / MASU_GROUP,
                     (push.output_height + MASU_GROUP - 1) / MASU_GROUP, 1);
 }
 
-/* One draw per primitive of each placed mesh; instances of one mesh are neighbours, so one draw serves them all. */
+/* One draw per primitive of each placed mesh; instances of one mesh are neighbours, so one draw
+ * serves them all. */
 static void record_draws(recorder *rec) {
     const masu_vk *vk = &rec->m->vk;
     masu_scene_view v = masu_scene_look(rec->m->plan.desc.scene);
     VkPipelineLayout layout = rec->m->layouts[MASU_PASS_GBUFFER];
     VkDeviceSize zero = 0;
-    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[MASU_PASS_GBUFFER]);
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                        rec->m->pipelines[MASU_PASS_GBUFFER]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
                               &rec->m->global_sets[rec->flight], 0, NULL);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &rec->m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
-    vk->CmdBindIndexBuffer(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_INDICES], 0, VK_INDEX_TYPE_UINT32);
+    vk->CmdBindIndexBuffer(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_INDICES], 0,
+                           VK_INDEX_TYPE_UINT32);
     struct masu_push push;
     memset(&push, 0, sizeof push);
     push.output_width = push.render_width = rec->rp->render_width;
     push.output_height = push.render_height = rec->rp->render_height;
     uint32_t from = 0;
     for (uint32_t mesh = 0; mesh < rec->m->plan.scene.meshes; mesh++) {
-        uint32_t first, end = masu_scene_mesh_instances(&v, rec->m->plan.scene.instances, mesh, from, &first);
+        uint32_t first,
+            end = masu_scene_mesh_instances(&v, rec->m->plan.scene.instances, mesh, from, &first);
         from = end;
         for (uint32_t p = 0; p < v.meshes[mesh].primitive_count && end > first; p++) {
-            const masu_blob_primitive *primitive = &v.primitives[v.meshes[mesh].first_primitive + p];
+            const masu_blob_primitive *primitive =
+                &v.primitives[v.meshes[mesh].first_primitive + p];
             push.index[0] = primitive->material;
-            vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
-            vk->CmdDrawIndexed(rec->cmd, primitive->index_count, end - first, primitive->first_index,
-                               (int32_t)primitive->first_vertex, first);
+            vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
+                                 &push);
+            vk->CmdDrawIndexed(rec->cmd, primitive->index_count, end - first,
+                               primitive->first_index, (int32_t)primitive->first_vertex, first);
         }
     }
 }
@@ -212,7 +230,8 @@ static void record_gbuffer(recorder *rec) {
     VkClearValue clear[3];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
     VkRect2D area = {{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
-    VkViewport viewport = {0.0f, 0.0f, (float)area.extent.width, (float)area.extent.height, 0.0f, 1.0f};
+    VkViewport viewport = {0.0f, 0.0f, (float)area.extent.width, (float)area.extent.height,
+                           0.0f, 1.0f};
     VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                    .renderPass = rec->m->render_pass,
                                    .framebuffer = rec->m->framebuffer,
@@ -241,7 +260,8 @@ static void record_readback(recorder *rec, uint32_t pass) {
                                                    : VK_IMAGE_ASPECT_COLOR_BIT,
                                  .layerCount = 1},
             .imageExtent = {rec->rp->render_width, rec->rp->render_height, 1}};
-        rec->m->vk.CmdCopyImageToBuffer(rec->cmd, rec->m->objects.images[id], VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+        rec->m->vk.CmdCopyImageToBuffer(rec->cmd, rec->m->objects.images[id],
+                                        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                         rec->m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
     }
 }
@@ -249,20 +269,22 @@ static void record_readback(recorder *rec, uint32_t pass) {
 static void record_present(recorder *rec, uint32_t pass) {
     const VkExtent2D size = rec->m->plan.desc.output;
     masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
-    VkImageBlit blit = {.srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
-                        .srcOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}},
-                        .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
-                        .dstOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}}};
+    VkImageBlit blit = {
+        .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+        .srcOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}},
+        .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+        .dstOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}}};
     rec->m->vk.CmdBlitImage(rec->cmd, image_handle(rec, from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                            image_handle(rec, MASU_IMAGE_TARGET), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
-                            VK_FILTER_NEAREST);
+                            image_handle(rec, MASU_IMAGE_TARGET),
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_NEAREST);
 }
 
-/* ---- A frame ----------------------------------------------------------------------------------- */
+/* ---- A frame --------------------------------------------------------------------------------- */
 
 static void begin_label(const recorder *rec, const char *name) {
     if (!rec->m->vk.CmdBeginDebugUtilsLabelEXT || !rec->m->vk.CmdEndDebugUtilsLabelEXT) return;
-    VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name};
+    VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                  .pLabelName = name};
     rec->m->vk.CmdBeginDebugUtilsLabelEXT(rec->cmd, &label);
 }
 
@@ -271,12 +293,14 @@ static void end_label(const recorder *rec) {
     rec->m->vk.CmdEndDebugUtilsLabelEXT(rec->cmd);
 }
 
-/* Query `index` of this flight. The full barrier keeps later work from starting before the stamp is written, and earlier
- * work from ending after it: without it a driver may overlap passes and each time would mean little. */
+/* Query `index` of this flight. The full barrier keeps later work from starting before the stamp is
+ * written, and earlier work from ending after it: without it a driver may overlap passes and each
+ * time would mean little. */
 static void timestamp(recorder *rec, uint32_t index) {
     if (!rec->m->queries) return;
     memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
-                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                   VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     rec->m->vk.CmdWriteTimestamp(rec->cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, rec->m->queries,
                                  rec->flight * (MASU_PASS_COUNT + 1) + index);
 }
@@ -288,9 +312,11 @@ static void record_prologue(recorder *rec) {
     const masu_renderer *m = rec->m;
     int counters = m->plan.desc.debug.counters && m->plan.needs.scene;
     memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
-                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                   VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     if (counters) {
-        m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS], 0, VK_WHOLE_SIZE, 0);
+        m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS], 0, VK_WHOLE_SIZE,
+                            0);
     }
     if (m->plan.buffers[MASU_BUFFER_POISON].bytes) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_POISON], 0, VK_WHOLE_SIZE,
@@ -298,10 +324,12 @@ static void record_prologue(recorder *rec) {
     }
     if (counters || m->plan.buffers[MASU_BUFFER_POISON].bytes) {
         memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                       VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+                       VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                       VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     }
     if (m->queries) {
-        m->vk.CmdResetQueryPool(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), MASU_PASS_COUNT + 1);
+        m->vk.CmdResetQueryPool(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1),
+                                MASU_PASS_COUNT + 1);
     }
 }
 
@@ -311,26 +339,29 @@ static void record_epilogue(recorder *rec) {
     if (m->plan.desc.debug.counters && m->plan.needs.scene) {
         memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                        VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
-        VkBufferCopy copy = {0, rec->flight * readback->stride, m->plan.buffers[MASU_BUFFER_COUNTERS].bytes};
+        VkBufferCopy copy = {0, rec->flight * readback->stride,
+                             m->plan.buffers[MASU_BUFFER_COUNTERS].bytes};
         m->vk.CmdCopyBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS],
                             m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
     }
     if (m->queries) {
         /* Copied by the GPU, so that masu_stats is a read of memory and no call into the driver. */
-        m->vk.CmdCopyQueryPoolResults(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), MASU_PASS_COUNT + 1,
-                                      m->objects.buffers[MASU_BUFFER_READBACK],
-                                      rec->flight * readback->stride + m->plan.readback_times, sizeof(uint64_t),
+        m->vk.CmdCopyQueryPoolResults(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1),
+                                      MASU_PASS_COUNT + 1, m->objects.buffers[MASU_BUFFER_READBACK],
+                                      rec->flight * readback->stride + m->plan.readback_times,
+                                      sizeof(uint64_t),
                                       VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
     }
     if (readback->bytes) {
-        memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
-                       VK_ACCESS_HOST_READ_BIT);
+        memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
     }
     /* The target to where the host wants it, visible to whatever comes next. */
     const image_state *target = &rec->states[MASU_IMAGE_TARGET];
     image_state last = {1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
                         m->plan.desc.targets.final_layout, 0};
-    VkImageMemoryBarrier b = image_barrier(rec, MASU_IMAGE_TARGET, target->access, &last, target->layout);
+    VkImageMemoryBarrier b =
+        image_barrier(rec, MASU_IMAGE_TARGET, target->access, &last, target->layout);
     m->vk.CmdPipelineBarrier(rec->cmd, target->stages, last.stages, 0, 0, NULL, 0, NULL, 1, &b);
     rec->barriers++;
 }
@@ -360,7 +391,7 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
     return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
 }
 
-/* ---- Descriptor sets --------------------------------------------------------------------------- */
+/* ---- Descriptor sets ------------------------------------------------------------------------- */
 
 static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
@@ -373,12 +404,15 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
                                        .maxSets = flights + sets,
                                        .poolSizeCount = sizeof sizes / sizeof *sizes,
                                        .pPoolSizes = sizes};
-    VkResult r = m->vk.CreateDescriptorPool(m->vk.device, &info, m->vk.allocator, &m->descriptor_pool);
-    return MASU_FAILED(r, m->descriptor_pool) ? masu_fail_vulkan(detail, r, "vkCreateDescriptorPool") : MASU_OK;
+    VkResult r =
+        m->vk.CreateDescriptorPool(m->vk.device, &info, m->vk.allocator, &m->descriptor_pool);
+    return MASU_FAILED(r, m->descriptor_pool)
+               ? masu_fail_vulkan(detail, r, "vkCreateDescriptorPool")
+               : MASU_OK;
 }
 
-static masu_result allocate_set(masu_renderer *m, VkDescriptorSetLayout layout, VkDescriptorSet *set,
-                                masu_detail *detail) {
+static masu_result allocate_set(masu_renderer *m, VkDescriptorSetLayout layout,
+                                VkDescriptorSet *set, masu_detail *detail) {
     VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                         .descriptorPool = m->descriptor_pool,
                                         .descriptorSetCount = 1,
@@ -404,7 +438,8 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
             if (!b->bytes) continue; /* no pass of this plan looks at it */
             VkDescriptorBufferInfo buffer = {m->objects.buffers[rows[i].buffer], f * b->stride,
                                              b->stride ? b->stride : b->bytes};
-            if (rows[i].buffer == MASU_BUFFER_FRAME) buffer.range = sizeof(struct masu_frame_uniforms);
+            if (rows[i].buffer == MASU_BUFFER_FRAME)
+                buffer.range = sizeof(struct masu_frame_uniforms);
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                           .dstSet = m->global_sets[f],
                                           .dstBinding = rows[i].binding,
@@ -424,32 +459,37 @@ static int writes_target(const masu_rung_plan *rp, uint32_t pass) {
     return 0;
 }
 
-static void write_pass_set(masu_renderer *m, const masu_rung_plan *rp, uint32_t pass, uint32_t target,
-                           VkDescriptorSet set) {
+static void write_pass_set(masu_renderer *m, const masu_rung_plan *rp, uint32_t pass,
+                           uint32_t target, VkDescriptorSet set) {
     uint32_t binding = 0;
     for (int writes = 0; writes < 2; writes++) {
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
             if (masu_usage_writes((masu_usage)rp->access[pass][a].usage) != writes) continue;
             uint32_t id = rp->access[pass][a].image;
             VkDescriptorImageInfo image = {
-                .imageView = id == MASU_IMAGE_TARGET ? m->plan.desc.targets.views[target] : m->views[id],
-                .imageLayout = writes ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+                .imageView =
+                    id == MASU_IMAGE_TARGET ? m->plan.desc.targets.views[target] : m->views[id],
+                .imageLayout =
+                    writes ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                           .dstSet = set,
                                           .dstBinding = binding++,
                                           .descriptorCount = 1,
-                                          .descriptorType = writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-                                                                   : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                          .descriptorType =
+                                              writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                                                     : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                           .pImageInfo = &image};
             m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
         }
     }
 }
 
-/* Sets of all rungs, in the order (rung, pass, target); a pass that does not write the target has one for all targets.
- * `next` walks the renderer's array in that order. Fills sets[target][pass] of one rung. */
+/* Sets of all rungs, in the order (rung, pass, target); a pass that does not write the target has
+ * one for all targets. `next` walks the renderer's array in that order. Fills sets[target][pass] of
+ * one rung. */
 static masu_result make_pass_sets(masu_renderer *m, const masu_rung_plan *rp, uint32_t *next,
-                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT], masu_detail *detail) {
+                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
+                                  masu_detail *detail) {
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         if (!(rp->active & 1u << p) || masu_passes[p].kind != MASU_PASS_COMPUTE) continue;
         uint32_t targets = m->plan.desc.targets.count, own = writes_target(rp, p) ? targets : 1;
@@ -465,7 +505,7 @@ static masu_result make_pass_sets(masu_renderer *m, const masu_rung_plan *rp, ui
     return MASU_OK;
 }
 
-/* ---- All recordings ---------------------------------------------------------------------------- */
+/* ---- All recordings -------------------------------------------------------------------------- */
 
 static masu_result record_load(masu_renderer *m, uint32_t index, masu_detail *detail) {
     masu_chunk chunk = masu_load_chunk(&m->plan, index);
@@ -474,7 +514,8 @@ static masu_result record_load(masu_renderer *m, uint32_t index, masu_detail *de
     VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
     VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
-    m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING], m->objects.buffers[chunk.buffer], 1, &copy);
+    m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING],
+                        m->objects.buffers[chunk.buffer], 1, &copy);
     r = m->vk.EndCommandBuffer(cmd);
     return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
 }
@@ -498,7 +539,8 @@ static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
     if (!m->plan.desc.debug.timestamps) return MASU_OK;
     VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                  .queryCount = m->plan.desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
+                                  .queryCount =
+                                      m->plan.desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
     VkResult r = m->vk.CreateQueryPool(m->vk.device, &info, m->vk.allocator, &m->queries);
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }

@@ -8,8 +8,9 @@
  *   record.c    descriptor sets and command buffers: barriers derived from the table
  *   upload.c    scene -> device, frame uniforms, instance transforms
  *
- * Everything of fixed size is a member; what depends on the scene are pointers into the same host block. All handles are
- * zero before they are created, so masu_renderer_destroy may run after any failed step. */
+ * Everything of fixed size is a member; what depends on the scene are pointers into the same host
+ * block. All handles are zero before they are created, so masu_renderer_destroy may run after any
+ * failed step. */
 #ifndef MASU_RENDERER_H
 #define MASU_RENDERER_H
 
@@ -93,7 +94,8 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *frame, uin
                              masu_detail *detail);
 void masu_write_instances(masu_renderer *m, uint32_t slot);
 
-/* Host pointer to a buffer's first byte, of a slot where it has slots. NULL where it is not host-visible. */
+/* Host pointer to a buffer's first byte, of a slot where it has slots. NULL where it is not
+ * host-visible. */
 unsigned char *masu_buffer_pointer(const masu_renderer *m, masu_buffer_id buffer, uint32_t slot);
 
 /* Gives a Vulkan object the name of its row, where labels are on. */

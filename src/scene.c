@@ -1,5 +1,6 @@
-/* scene.c: see scene.h. Every number of a blob is hostile until it has been checked here; sums are done so that they
- * cannot wrap. Counts fit 32 bits (each section is checked), products are taken in 64. */
+/* scene.c: see scene.h. Every number of a blob is hostile until it has been checked here; sums are
+ * done so that they cannot wrap. Counts fit 32 bits (each section is checked), products are taken
+ * in 64. */
 #include "scene.h"
 
 #include "error.h"
@@ -39,8 +40,8 @@ typedef struct reader {
 } reader;
 
 static masu_result bad(reader *r, const char *what, uint64_t element, const char *problem) {
-    return masu_fail(r->detail, MASU_ERROR_SCENE, what, 0, element, "scene blob: %s[%llu]: %s", what,
-                     (unsigned long long)element, problem);
+    return masu_fail(r->detail, MASU_ERROR_SCENE, what, 0, element, "scene blob: %s[%llu]: %s",
+                     what, (unsigned long long)element, problem);
 }
 
 static int finite_all(const float *v, uint32_t n) {
@@ -57,7 +58,7 @@ static int within(const float *v, uint32_t n, float low, float high) {
     return 1;
 }
 
-/* ---- Header and sections ----------------------------------------------------------------------- */
+/* ---- Header and sections --------------------------------------------------------------------- */
 
 static masu_result check_header(reader *r, uint64_t given) {
     masu_blob_header h;
@@ -77,9 +78,10 @@ static masu_result check_header(reader *r, uint64_t given) {
                          h.version, MASU_BLOB_VERSION);
     }
     if (h.bytes != given) {
-        return masu_fail(r->detail, MASU_ERROR_SCENE, "bytes", h.bytes, given,
-                         "scene blob: %llu bytes are given, its header says %llu: truncated or joined",
-                         (unsigned long long)given, (unsigned long long)h.bytes);
+        return masu_fail(
+            r->detail, MASU_ERROR_SCENE, "bytes", h.bytes, given,
+            "scene blob: %llu bytes are given, its header says %llu: truncated or joined",
+            (unsigned long long)given, (unsigned long long)h.bytes);
     }
     uint64_t hash = masu_fnv1a64(r->bytes + sizeof h, given - sizeof h);
     if (hash != h.hash) {
@@ -103,7 +105,8 @@ static masu_result read_sections(reader *r, uint64_t given) {
     for (uint32_t i = 0; i < h.section_count; i++) {
         masu_blob_section s;
         memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
-        if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT) return bad(r, "section", i, "unknown kind");
+        if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT)
+            return bad(r, "section", i, "unknown kind");
         if (start[s.kind]) return bad(r, "section", i, "appears twice");
         if (s.stride != rules[s.kind].stride) return bad(r, "section", i, "element size is wrong");
         if (s.count == 0 || s.count > rules[s.kind].most) {
@@ -133,7 +136,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
     return MASU_OK;
 }
 
-/* ---- Contents ---------------------------------------------------------------------------------- */
+/* ---- Contents -------------------------------------------------------------------------------- */
 
 static int name_ok(const reader *r, uint32_t name) {
     return name == MASU_BLOB_NONE || name < r->view.name_bytes;
@@ -167,14 +170,16 @@ static masu_result check_primitive(reader *r, uint64_t i) {
 
 static masu_result check_geometry(reader *r) {
     const masu_scene_view *v = &r->view;
-    /* Ranges may not be shared: else a small blob could ask for quadratic work, here and in every frame. */
+    /* Ranges may not be shared: else a small blob could ask for quadratic work, here and in every
+     * frame. */
     uint64_t indices = 0, primitives = 0;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_VERTICES]; i++) {
         if (!finite_all(v->vertices[i].position, 3)) return bad(r, "vertices", i, "is not finite");
     }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_PRIMITIVES]; i++) {
         indices += v->primitives[i].index_count;
-        if (indices > r->counts[MASU_BLOB_INDICES]) return bad(r, "primitives", i, "shares indices");
+        if (indices > r->counts[MASU_BLOB_INDICES])
+            return bad(r, "primitives", i, "shares indices");
         masu_result result = check_primitive(r, i);
         if (result) return result;
     }
@@ -184,7 +189,8 @@ static masu_result check_geometry(reader *r) {
             return bad(r, "meshes", i, "primitives lie outside their section");
         }
         primitives += m->primitive_count;
-        if (primitives > r->counts[MASU_BLOB_PRIMITIVES]) return bad(r, "meshes", i, "shares primitives");
+        if (primitives > r->counts[MASU_BLOB_PRIMITIVES])
+            return bad(r, "meshes", i, "shares primitives");
         if (!finite_all(m->aabb_min, 3) || !finite_all(m->aabb_max, 3)) {
             return bad(r, "meshes", i, "bounds are not finite");
         }
@@ -194,7 +200,8 @@ static masu_result check_geometry(reader *r) {
         const masu_blob_instance *n = &v->instances[i];
         if (!finite_all(n->transform, 12)) return bad(r, "instances", i, "transform is not finite");
         if (n->mesh >= r->counts[MASU_BLOB_MESHES]) return bad(r, "instances", i, "no such mesh");
-        if (i && n->mesh < v->instances[i - 1].mesh) return bad(r, "instances", i, "not sorted by mesh");
+        if (i && n->mesh < v->instances[i - 1].mesh)
+            return bad(r, "instances", i, "not sorted by mesh");
         if (!name_ok(r, n->name)) return bad(r, "instances", i, "name lies outside the names");
         if (n->parent != MASU_BLOB_NONE && n->parent >= r->counts[MASU_BLOB_INSTANCES]) {
             return bad(r, "instances", i, "no such parent");
@@ -230,9 +237,11 @@ static masu_result check_looks(reader *r) {
     }
     const masu_blob_environment *e = v->environment;
     if (!e) return bad(r, "environment", 0, "is missing");
-    float sun = e->sun_direction[0] * e->sun_direction[0] + e->sun_direction[1] * e->sun_direction[1] +
+    float sun = e->sun_direction[0] * e->sun_direction[0] +
+                e->sun_direction[1] * e->sun_direction[1] +
                 e->sun_direction[2] * e->sun_direction[2];
-    if (!(sun > 0.98f && sun < 1.02f)) return bad(r, "environment", 0, "sun direction is no unit vector");
+    if (!(sun > 0.98f && sun < 1.02f))
+        return bad(r, "environment", 0, "sun direction is no unit vector");
     if (!within(e->sun_color, 3, 0.0f, 1e9f) || !within(e->ambient, 3, 0.0f, 1e9f) ||
         !within(e->sky_zenith, 3, 0.0f, 1e9f) || !within(e->sky_horizon, 3, 0.0f, 1e9f) ||
         !within(&e->exposure, 1, 1e-9f, 1e9f) || !within(&e->near_distance, 1, 1e-9f, 1e9f)) {
@@ -256,15 +265,17 @@ static masu_result check_sdf(reader *r) {
             return bad(r, "sdf", 0, "bounds are inverted or out of range");
         }
     }
-    if (!within(&s->lipschitz, 1, 1e-3f, 1e6f)) return bad(r, "sdf", 0, "Lipschitz constant is out of range");
-    if (!within(&s->max_distance, 1, 1e-6f, 1e30f)) return bad(r, "sdf", 0, "longest ray is out of range");
+    if (!within(&s->lipschitz, 1, 1e-3f, 1e6f))
+        return bad(r, "sdf", 0, "Lipschitz constant is out of range");
+    if (!within(&s->max_distance, 1, 1e-6f, 1e30f))
+        return bad(r, "sdf", 0, "longest ray is out of range");
     if (s->has_raster != (r->counts[MASU_BLOB_INSTANCES] ? 1u : 0u)) {
         return bad(r, "sdf", 0, "code was compiled for other instances");
     }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_SDF_PARAMS]; i++) {
         const masu_blob_sdf_param *p = &v->sdf_params[i];
-        if (!finite_all(&p->value, 1) || !finite_all(&p->minimum, 1) || !finite_all(&p->maximum, 1) ||
-            !(p->minimum <= p->value && p->value <= p->maximum)) {
+        if (!finite_all(&p->value, 1) || !finite_all(&p->minimum, 1) ||
+            !finite_all(&p->maximum, 1) || !(p->minimum <= p->value && p->value <= p->maximum)) {
             return bad(r, "sdf parameters", i, "value is outside its range");
         }
         if (!name_ok(r, p->name)) return bad(r, "sdf parameters", i, "name lies outside the names");
@@ -275,7 +286,8 @@ static masu_result check_sdf(reader *r) {
     return MASU_OK;
 }
 
-masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out, masu_detail *detail) {
+masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out,
+                            masu_detail *detail) {
     if (!blob || !out || (uintptr_t)blob % MASU_BLOB_ALIGN) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "blob", MASU_BLOB_ALIGN, 0,
                          "masu_scene_bind: blob or out is NULL, or blob is not 16-byte aligned");
@@ -315,7 +327,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     return MASU_OK;
 }
 
-/* ---- Accessors --------------------------------------------------------------------------------- */
+/* ---- Accessors ------------------------------------------------------------------------------- */
 
 masu_scene_view masu_scene_look(const masu_scene *scene) {
     reader r = {.bytes = scene->blob};
@@ -323,8 +335,8 @@ masu_scene_view masu_scene_look(const masu_scene *scene) {
     return r.view;
 }
 
-uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count, uint32_t mesh,
-                                   uint32_t from, uint32_t *first) {
+uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count,
+                                   uint32_t mesh, uint32_t from, uint32_t *first) {
     while (from < instance_count && view->instances[from].mesh < mesh) from++;
     *first = from;
     while (from < instance_count && view->instances[from].mesh == mesh) from++;
@@ -335,7 +347,8 @@ int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name) {
     if (!scene || !name) return -1;
     masu_scene_view v = masu_scene_look(scene);
     for (uint32_t i = 0; i < scene->sdf_params; i++) {
-        if (v.sdf_params[i].name != MASU_BLOB_NONE && !strcmp(v.names + v.sdf_params[i].name, name)) {
+        if (v.sdf_params[i].name != MASU_BLOB_NONE &&
+            !strcmp(v.names + v.sdf_params[i].name, name)) {
             return (int32_t)i;
         }
     }

@@ -1,7 +1,8 @@
-/* scene.h: reading a baked blob. The layout of the bytes is in blob.h; nothing here allocates or keeps anything.
+/* scene.h: reading a baked blob. The layout of the bytes is in blob.h; nothing here allocates or
+ * keeps anything.
  *
- * masu_scene_bind (public) checks a blob once, completely. After that the accessors below may be used on the same bytes
- * without further checks. */
+ * masu_scene_bind (public) checks a blob once, completely. After that the accessors below may be
+ * used on the same bytes without further checks. */
 #ifndef MASU_SCENE_H
 #define MASU_SCENE_H
 
@@ -29,9 +30,9 @@ typedef struct masu_scene_view {
 /* Sections of the blob behind a masu_scene that masu_scene_bind has filled. */
 masu_scene_view masu_scene_look(const masu_scene *scene);
 
-/* Range of instances [first, first + count) that place mesh `mesh`: instances are sorted by mesh. `from` is where the
- * search starts; returns the end. */
-uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count, uint32_t mesh,
-                                   uint32_t from, uint32_t *first);
+/* Range of instances [first, first + count) that place mesh `mesh`: instances are sorted by mesh.
+ * `from` is where the search starts; returns the end. */
+uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count,
+                                   uint32_t mesh, uint32_t from, uint32_t *first);
 
 #endif

@@ -1,5 +1,6 @@
-/* upload.c: what the host writes for the GPU: the scene once, instance transforms when they move, one block of uniforms per
- * frame. Everything from outside is checked before the first byte is written. */
+/* upload.c: what the host writes for the GPU: the scene once, instance transforms when they move,
+ * one block of uniforms per frame. Everything from outside is checked before the first byte is
+ * written. */
 #include "renderer.h"
 
 #include "error.h"
@@ -8,9 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Scene ------------------------------------------------------------------------------------- */
+/* ---- Scene ----------------------------------------------------------------------------------- */
 
-static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDICES, MASU_BUFFER_MATERIALS};
+static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDICES,
+                                          MASU_BUFFER_MATERIALS};
 
 #define RESIDENT_COUNT (sizeof resident / sizeof *resident)
 
@@ -50,8 +52,10 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
     } else if (chunk.buffer == MASU_BUFFER_INDICES) {
         memcpy(to, (const unsigned char *)v->indices + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_MATERIALS) {
-        /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy the part. */
-        uint64_t size = sizeof(struct masu_material_data), at = chunk.offset, end = at + chunk.bytes;
+        /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy
+         * the part. */
+        uint64_t size = sizeof(struct masu_material_data), at = chunk.offset,
+                 end = at + chunk.bytes;
         while (at < end) {
             struct masu_material_data d = device_material(&v->materials[at / size]);
             uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
@@ -97,8 +101,10 @@ void masu_keep_scene(masu_renderer *m) {
         m->instance_dirty[i] = (uint8_t)m->plan.desc.frames_in_flight;
     }
     m->dirty_count = scene->instances;
-    if (scene->camera_keys) memcpy(m->camera_keys, v.camera_keys, scene->camera_keys * sizeof *v.camera_keys);
-    if (scene->sdf_params) memcpy(m->sdf_params, v.sdf_params, scene->sdf_params * sizeof *v.sdf_params);
+    if (scene->camera_keys)
+        memcpy(m->camera_keys, v.camera_keys, scene->camera_keys * sizeof *v.camera_keys);
+    if (scene->sdf_params)
+        memcpy(m->sdf_params, v.sdf_params, scene->sdf_params * sizeof *v.sdf_params);
     if (!v.sdf) return;
     for (uint32_t k = 0; k < 3; k++) {
         m->sdf_bounds[0][k] = v.sdf->bounds_min[k];
@@ -108,7 +114,7 @@ void masu_keep_scene(masu_renderer *m) {
     m->sdf_bounds[1][3] = v.sdf->max_distance;
 }
 
-/* ---- Instances --------------------------------------------------------------------------------- */
+/* ---- Instances ------------------------------------------------------------------------------- */
 
 /* The same transform must reach every slot, each when it is free. */
 void masu_write_instances(masu_renderer *m, uint32_t slot) {
@@ -131,12 +137,13 @@ masu_instance masu_instance_find(const masu_renderer *m, const char *name) {
     return (masu_instance){0};
 }
 
-masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance, const float rows[12]) {
+masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance,
+                                        const float rows[12]) {
     if (!m || !rows) return MASU_ERROR_ARGUMENT;
     if (instance.id == 0 || instance.id > m->plan.scene.instances) {
-        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "instance", m->plan.scene.instances, instance.id,
-                         "instance handle %u: the scene has handles 1 to %u", instance.id,
-                         m->plan.scene.instances);
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "instance", m->plan.scene.instances,
+                         instance.id, "instance handle %u: the scene has handles 1 to %u",
+                         instance.id, m->plan.scene.instances);
     }
     for (uint32_t k = 0; k < 12; k++) {
         if (!isfinite(rows[k])) {
@@ -151,9 +158,10 @@ masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance
     return MASU_OK;
 }
 
-/* ---- Camera and light -------------------------------------------------------------------------- */
+/* ---- Camera and light ------------------------------------------------------------------------ */
 
-/* Unit vector of v, or 0 if it has none. The scale keeps 1e-30 and 1e+30 out of under- and overflow. */
+/* Unit vector of v, or 0 if it has none. The scale keeps 1e-30 and 1e+30 out of under- and
+ * overflow. */
 static int unit(const float v[3], float out[3]) {
     double x = (double)v[0], y = (double)v[1], z = (double)v[2];
     double length = sqrt(x * x + y * y + z * z);
@@ -182,12 +190,14 @@ masu_result masu_camera_at(const masu_renderer *m, double time, masu_camera *out
     u = u < 0.0 ? 0.0 : u > 1.0 ? 1.0 : u;
     memset(out, 0, sizeof *out);
     for (uint32_t i = 0; i < 3; i++) {
-        out->position[i] = (double)a->position[i] + ((double)b->position[i] - (double)a->position[i]) * u;
+        out->position[i] =
+            (double)a->position[i] + ((double)b->position[i] - (double)a->position[i]) * u;
         double target = (double)a->target[i] + ((double)b->target[i] - (double)a->target[i]) * u;
         out->forward[i] = (float)(target - out->position[i]);
     }
     out->fov_y = (float)((double)a->fov_y + ((double)b->fov_y - (double)a->fov_y) * u);
-    /* Two keys whose positions and targets cross over meet in a point half-way: look along the first key's. */
+    /* Two keys whose positions and targets cross over meet in a point half-way: look along the
+     * first key's. */
     float ignored[3];
     if (!unit(out->forward, ignored)) {
         for (uint32_t i = 0; i < 3; i++) out->forward[i] = a->target[i] - a->position[i];
@@ -199,15 +209,16 @@ static masu_result bad_camera(masu_detail *detail, const char *what, const char 
     return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s %s", what, problem);
 }
 
-static masu_result write_camera(masu_renderer *m, const masu_camera *c, struct masu_frame_uniforms *u,
-                                masu_detail *detail) {
+static masu_result write_camera(masu_renderer *m, const masu_camera *c,
+                                struct masu_frame_uniforms *u, masu_detail *detail) {
     float forward[3], right[3], up[3], wish[3] = {0.0f, 1.0f, 0.0f};
     for (uint32_t i = 0; i < 3; i++) {
         if (!(fabs(c->position[i]) <= 1e15)) {
             return bad_camera(detail, "camera.position", "is not finite or beyond 1e15 m");
         }
     }
-    if (!unit(c->forward, forward)) return bad_camera(detail, "camera.forward", "is zero or not finite");
+    if (!unit(c->forward, forward))
+        return bad_camera(detail, "camera.forward", "is zero or not finite");
     int own_up = c->up[0] != 0.0f || c->up[1] != 0.0f || c->up[2] != 0.0f;
     if (own_up && !unit(c->up, wish)) return bad_camera(detail, "camera.up", "is not finite");
     cross(forward, wish, right);
@@ -217,7 +228,8 @@ static masu_result write_camera(masu_renderer *m, const masu_camera *c, struct m
         right[0] = 1.0f, right[1] = right[2] = 0.0f;
     }
     cross(right, forward, up);
-    float near_distance = c->near_distance != 0.0f ? c->near_distance : m->environment.near_distance;
+    float near_distance =
+        c->near_distance != 0.0f ? c->near_distance : m->environment.near_distance;
     if (!(near_distance >= 1e-9f && near_distance <= 1e9f)) {
         return bad_camera(detail, "camera.near_distance", "is not 1e-9 to 1e9 m");
     }
@@ -234,8 +246,9 @@ static masu_result write_camera(masu_renderer *m, const masu_camera *c, struct m
         u->right[i] = (float)((double)right[i] * tan_x);
         u->up[i] = (float)((double)up[i] * tan_y);
         u->forward[i] = forward[i];
-        /* Reverse-Z with an infinite far plane: depth = near / view z, so that fp32 resolution is relative at any
-         * distance (view z comes back as near / depth). Vulkan's clip y points down. */
+        /* Reverse-Z with an infinite far plane: depth = near / view z, so that fp32 resolution is
+         * relative at any distance (view z comes back as near / depth). Vulkan's clip y points
+         * down. */
         u->clip_from_rel[i * 4 + 0] = (float)((double)right[i] / tan_x);
         u->clip_from_rel[i * 4 + 1] = (float)(-(double)up[i] / tan_y);
         u->clip_from_rel[i * 4 + 3] = forward[i];
@@ -287,12 +300,14 @@ static masu_result write_light(const masu_renderer *m, const masu_light *given,
     return MASU_OK;
 }
 
-masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_t slot, masu_detail *detail) {
+masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_t slot,
+                             masu_detail *detail) {
     struct masu_frame_uniforms u;
     memset(&u, 0, sizeof u);
     masu_camera camera;
     if (!isfinite(f->time) || !isfinite(f->time_step)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "time", 0, 0, "time or time_step is not finite");
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "time", 0, 0,
+                         "time or time_step is not finite");
     }
     if (f->camera) {
         camera = *f->camera;
@@ -312,7 +327,8 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
         const masu_blob_sdf_param *p = &m->sdf_params[i];
         float v = i < given ? f->sdf_params[i] : p->value;
         if (!isfinite(v)) {
-            return masu_fail(detail, MASU_ERROR_ARGUMENT, "sdf_params", 0, i, "sdf_params[%u] is not finite", i);
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "sdf_params", 0, i,
+                             "sdf_params[%u] is not finite", i);
         }
         u.sdf_params[i / 4][i % 4] = v < p->minimum ? p->minimum : v > p->maximum ? p->maximum : v;
     }

@@ -1,4 +1,5 @@
-/* vk.c: loading the function table and checking the device against the floor that include/masu.h states. */
+/* vk.c: loading the function table and checking the device against the floor that include/masu.h
+ * states. */
 #include "vk.h"
 
 #include "error.h"
@@ -12,8 +13,8 @@ typedef struct format_floor {
     VkFormatFeatureFlags features; /* optimal tiling */
 } format_floor;
 
-/* All but the first are mandatory in Vulkan 1.1 (specification, "Required Format Support"). They are checked all the same:
- * a driver that lies here fails in a much darker place later. */
+/* All but the first are mandatory in Vulkan 1.1 (specification, "Required Format Support"). They
+ * are checked all the same: a driver that lies here fails in a much darker place later. */
 static const format_floor format_floors[] = {
     {VK_FORMAT_D32_SFLOAT, "VK_FORMAT_D32_SFLOAT",
      VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT},
@@ -33,14 +34,15 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     if (vk->properties.apiVersion < VK_API_VERSION_1_1) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "Vulkan 1.1", VK_API_VERSION_1_1,
-                         vk->properties.apiVersion, "device '%s' offers Vulkan %u.%u, needed is 1.1",
+                         vk->properties.apiVersion,
+                         "device '%s' offers Vulkan %u.%u, needed is 1.1",
                          vk->properties.deviceName, VK_VERSION_MAJOR(vk->properties.apiVersion),
                          VK_VERSION_MINOR(vk->properties.apiVersion));
     }
     VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     if ((vk->queue_family.queueFlags & wanted) != wanted) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "queue family with graphics and compute", wanted,
-                         vk->queue_family.queueFlags,
+        return masu_fail(detail, MASU_ERROR_DEVICE, "queue family with graphics and compute",
+                         wanted, vk->queue_family.queueFlags,
                          "queue family %u of '%s' lacks graphics or compute (flags 0x%x)",
                          desc->vulkan.queue_family, vk->properties.deviceName,
                          vk->queue_family.queueFlags);
@@ -62,7 +64,8 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
                          "queue family %u of '%s' has no timestamps; leave debug.timestamps at 0",
                          desc->vulkan.queue_family, vk->properties.deviceName);
     }
-    uint32_t widest = desc->output.width > desc->output.height ? desc->output.width : desc->output.height;
+    uint32_t widest =
+        desc->output.width > desc->output.height ? desc->output.width : desc->output.height;
     if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
         widest > limits->maxFramebufferHeight) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "output", widest, limits->maxImageDimension2D,
@@ -70,7 +73,8 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
                          desc->output.width, desc->output.height, limits->maxImageDimension2D);
     }
     uint32_t groups = (widest + MASU_GROUP - 1) / MASU_GROUP;
-    if (groups > limits->maxComputeWorkGroupCount[0] || groups > limits->maxComputeWorkGroupCount[1]) {
+    if (groups > limits->maxComputeWorkGroupCount[0] ||
+        groups > limits->maxComputeWorkGroupCount[1]) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", groups,
                          limits->maxComputeWorkGroupCount[0],
                          "output %ux%u needs %u workgroups per axis, the device has %u",
@@ -83,7 +87,8 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
 masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
     const masu_vulkan *host = &desc->vulkan;
     memset(vk, 0, sizeof *vk);
-    if (!host->get_instance_proc_addr || !host->instance || !host->physical_device || !host->device) {
+    if (!host->get_instance_proc_addr || !host->instance || !host->physical_device ||
+        !host->device) {
         const char *what = !host->get_instance_proc_addr ? "vulkan.get_instance_proc_addr"
                            : !host->instance             ? "vulkan.instance"
                            : !host->physical_device      ? "vulkan.physical_device"

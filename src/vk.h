@@ -1,7 +1,8 @@
 /* vk.h: the Vulkan functions the library calls, loaded through the host's vkGetInstanceProcAddr.
  *
- * One table per renderer: no global loader that could collide with the host's, and a test can put its own wrappers in
- * between. Every function is Vulkan 1.0 core but the debug labels, which are NULL where the extension is off. */
+ * One table per renderer: no global loader that could collide with the host's, and a test can put
+ * its own wrappers in between. Every function is Vulkan 1.0 core but the debug labels, which are
+ * NULL where the extension is off. */
 #ifndef MASU_VK_H
 #define MASU_VK_H
 

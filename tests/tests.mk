@@ -4,7 +4,8 @@
 #   tests/gpu/test_NAME.c     one cmocka group, run on each driver of DRIVERS
 #   tests/unit/NAME.sh        exit 0: passed, 77: skipped
 #   tests/full/NAME.sh        the same, with FULL=1 only
-#   tests/fuzz/fuzz_NAME.c    LLVMFuzzerTestOneInput; its seeds are the files of FUZZ_SEEDS_NAME
+#   tests/fuzz/fuzz_NAME.c    LLVMFuzzerTestOneInput; its seeds are the files of FUZZ_SEEDS_NAME,
+#                             which tests/fuzz/seed_NAME.c writes where no file will do
 #   tests/unit/support*.c     linked to every program of the folder, as is tests/gpu/support*.c
 #   tests/reference/*.c       linked to everything
 
@@ -41,7 +42,16 @@ $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 
 # ---- Fuzzing. Seeds are whole files; without any, a fuzzer starts from nothing. ------------------
 
-FUZZ_SEEDS_scene := $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
+# A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
+# one.
+FUZZ_SEEDS_scene := $(BUILD)/tests/fuzz/scene.masu
+FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
+
+$(BUILD)/tests/fuzz/seed_scene: $(call objects,tests/fuzz/seed_scene.c tests/unit/support_blob.c)
+	$(link)
+$(BUILD)/tests/fuzz/scene.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 7
+$(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 
 FUZZ      ?= scene
 FUZZ_TIME ?= 60

@@ -13,13 +13,16 @@ extern const masu_cli_command masu_cmd_plan;
 
 /* Options of every command that opens a device; ids from 900 on. */
 enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };
-#define MASU_DEVICE_OPTIONS                                                                                            \
-    {"device", "NAME|INDEX", "GPU by index or part of its name (default: the first that suits)", MASU_OPTION_DEVICE, 0}, \
-        {"validate", NULL, "run under the Khronos validation layer, with synchronisation checks;\n"                    \
-                           "any message makes the exit code 1",                                                        \
-         MASU_OPTION_VALIDATE, 0},                                                                                     \
-    {                                                                                                                  \
-        "gpu-av", NULL, "run under the layer's GPU-assisted shader checks instead (slow)", MASU_OPTION_GPU_AV, 0       \
+#define MASU_DEVICE_OPTIONS                                                                        \
+    {"device", "NAME|INDEX", "GPU by index or part of its name (default: the first that suits)",   \
+     MASU_OPTION_DEVICE, 0},                                                                       \
+        {"validate", NULL,                                                                         \
+         "run under the Khronos validation layer, with synchronisation checks;\n"                  \
+         "any message makes the exit code 1",                                                      \
+         MASU_OPTION_VALIDATE, 0},                                                                 \
+    {                                                                                              \
+        "gpu-av", NULL, "run under the layer's GPU-assisted shader checks instead (slow)",         \
+            MASU_OPTION_GPU_AV, 0                                                                  \
     }
 
 /* Handles one of them; false if the id is another's. */
@@ -33,7 +36,8 @@ int masu_finish_validation(const masu_headless *host, int code);
 json_t *masu_json_device(const masu_headless *host);
 json_t *masu_json_memory(const masu_memory *memory);
 
-/* Prints to a file atomically, or to stdout for "-". Returns an exit code, having reported a failure. Takes the reference. */
+/* Prints to a file atomically, or to stdout for "-". Returns an exit code, having reported a
+ * failure. Takes the reference. */
 int masu_json_write(json_t *json, const char *path);
 
 #endif

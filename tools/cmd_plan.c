@@ -1,5 +1,5 @@
-/* cmd_plan.c: `masu plan`: the compiled frame of a scene: passes, resources, bytes, aliasing, and what was left out and
- * why. */
+/* cmd_plan.c: `masu plan`: the compiled frame of a scene: passes, resources, bytes, aliasing, and
+ * what was left out and why. */
 #include "cmd.h"
 
 #include <stdio.h>
@@ -36,15 +36,19 @@ static void print_passes(const masu_plan_info *p) {
         char reads[128], writes[128], both[300], rungs[16] = "";
         join(reads, sizeof reads, pass->reads, 6);
         join(writes, sizeof writes, pass->writes, 4);
-        snprintf(both, sizeof both, "%s%s%s%s", reads, *reads ? " " : "", *writes ? "-> " : "", writes);
-        for (uint32_t r = 0; r < p->rung_count; r++) rungs[r] = pass->active & 1u << r ? (char)('0' + r) : '-';
-        printf("  %-9s %-6s %-44s %s\n", pass->name, rungs, pass->active ? both : "left out", pass->why);
+        snprintf(both, sizeof both, "%s%s%s%s", reads, *reads ? " " : "", *writes ? "-> " : "",
+                 writes);
+        for (uint32_t r = 0; r < p->rung_count; r++)
+            rungs[r] = pass->active & 1u << r ? (char)('0' + r) : '-';
+        printf("  %-9s %-6s %-44s %s\n", pass->name, rungs, pass->active ? both : "left out",
+               pass->why);
     }
 }
 
 static void print_images(const masu_plan_info *p) {
-    printf("\nimages, alive from pass to pass; equal bytes are shared\n  %-12s %-20s %-11s %10s  %-22s %s\n", "", "format",
-           "extent", "bytes", "at", "alive");
+    printf("\nimages, alive from pass to pass; equal bytes are shared\n  %-12s %-20s %-11s %10s  "
+           "%-22s %s\n",
+           "", "format", "extent", "bytes", "at", "alive");
     for (uint32_t i = 0; i < p->image_count; i++) {
         const masu_plan_image *image = &p->images[i];
         if (!image->used) {
@@ -55,8 +59,9 @@ static void print_images(const masu_plan_info *p) {
         snprintf(extent, sizeof extent, "%ux%u", image->width, image->height);
         snprintf(at, sizeof at, "%llu-%llu", (unsigned long long)image->offset,
                  (unsigned long long)(image->offset + image->bytes));
-        printf("  %-12s %-20s %-11s %10llu  %-22s %s..%s\n", image->name, format_name(image->format), extent,
-               (unsigned long long)image->bytes, at, p->passes[image->first_pass].name, p->passes[image->last_pass].name);
+        printf("  %-12s %-20s %-11s %10llu  %-22s %s..%s\n", image->name,
+               format_name(image->format), extent, (unsigned long long)image->bytes, at,
+               p->passes[image->first_pass].name, p->passes[image->last_pass].name);
     }
 }
 
@@ -73,10 +78,12 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
     static const char *const names[MASU_ROLE_COUNT] = {"device", "upload", "readback"};
     const masu_memory *m = &p->memory;
     printf("\nmemory\n  host block          %12llu bytes\n", (unsigned long long)m->host_bytes);
-    printf("  device, all roles   %12llu bytes  (%.1f MiB)%s\n", (unsigned long long)m->device_bytes,
-           mib(m->device_bytes), m->unified ? "  one block, unified memory" : "");
+    printf("  device, all roles   %12llu bytes  (%.1f MiB)%s\n",
+           (unsigned long long)m->device_bytes, mib(m->device_bytes),
+           m->unified ? "  one block, unified memory" : "");
     for (uint32_t r = 0; r < MASU_ROLE_COUNT && !m->unified; r++) {
-        if (m->roles[r].bytes) printf("    %-17s %12llu bytes\n", names[r], (unsigned long long)m->roles[r].bytes);
+        if (m->roles[r].bytes)
+            printf("    %-17s %12llu bytes\n", names[r], (unsigned long long)m->roles[r].bytes);
     }
     printf("  transient images: unaliased %llu, aliased %llu, lower bound %llu bytes\n",
            (unsigned long long)m->transient_unaliased, (unsigned long long)m->transient_aliased,
@@ -86,20 +93,22 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
     uint32_t n = masu_memory_report(s->m, rows, 64);
     printf("\n  %-22s %-7s %10s %12s %12s\n", "row", "kind", "count", "bytes", "offset");
     for (uint32_t i = 0; i < n && i < 64; i++) {
-        printf("  %-22s %-7s %10llu %12llu %12llu\n", rows[i].name, rows[i].kind, (unsigned long long)rows[i].count,
-               (unsigned long long)rows[i].bytes, (unsigned long long)rows[i].offset);
+        printf("  %-22s %-7s %10llu %12llu %12llu\n", rows[i].name, rows[i].kind,
+               (unsigned long long)rows[i].count, (unsigned long long)rows[i].bytes,
+               (unsigned long long)rows[i].offset);
     }
 }
 
 static int print_text(const masu_session *s, const masu_plan_info *p, const char *scene) {
     printf("%s on %s\n", scene, s->host.driver);
-    printf("scene: %u instances of %u meshes, %u draws, %llu triangles, %s\n", s->scene.instances, s->scene.meshes,
-           s->scene.draws, (unsigned long long)s->scene.triangles, s->scene.sdf ? "an SDF" : "no SDF");
+    printf("scene: %u instances of %u meshes, %u draws, %llu triangles, %s\n", s->scene.instances,
+           s->scene.meshes, s->scene.draws, (unsigned long long)s->scene.triangles,
+           s->scene.sdf ? "an SDF" : "no SDF");
     printf("output %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
     for (uint32_t r = 0; r < p->rung_count; r++) {
         const masu_plan_rung *rung = &p->rungs[r];
-        printf("  %u  renders %ux%u, %u passes, %u barriers\n", r, rung->render_width, rung->render_height,
-               rung->dispatches, rung->barriers);
+        printf("  %u  renders %ux%u, %u passes, %u barriers\n", r, rung->render_width,
+               rung->render_height, rung->dispatches, rung->barriers);
     }
     print_passes(p);
     print_images(p);
@@ -119,10 +128,11 @@ static json_t *rows_json(const masu_session *s) {
     uint32_t n = masu_memory_report(s->m, rows, 64);
     json_t *list = json_array();
     for (uint32_t i = 0; i < n && i < 64; i++) {
-        json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:I, s:I, s:I, s:b}", "name", rows[i].name, "kind",
-                                              rows[i].kind, "role", (int)rows[i].role, "count",
-                                              (json_int_t)rows[i].count, "bytes", (json_int_t)rows[i].bytes, "offset",
-                                              (json_int_t)rows[i].offset, "transient", rows[i].transient != 0));
+        json_array_append_new(
+            list, json_pack("{s:s, s:s, s:i, s:I, s:I, s:I, s:b}", "name", rows[i].name, "kind",
+                            rows[i].kind, "role", (int)rows[i].role, "count",
+                            (json_int_t)rows[i].count, "bytes", (json_int_t)rows[i].bytes, "offset",
+                            (json_int_t)rows[i].offset, "transient", rows[i].transient != 0));
     }
     return list;
 }
@@ -135,34 +145,37 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
         for (uint32_t r = 0; r < p->rung_count; r++) {
             if (pass->active & 1u << r) json_array_append_new(active, json_integer((json_int_t)r));
         }
-        json_array_append_new(passes,
-                              json_pack("{s:s, s:o, s:s, s:o, s:o, s:f}", "name", pass->name, "rungs", active, "why",
-                                        pass->why, "reads", names_json(pass->reads, 6), "writes",
-                                        names_json(pass->writes, 4), "pipeline_ms", (double)pass->pipeline_ns / 1e6));
+        json_array_append_new(passes, json_pack("{s:s, s:o, s:s, s:o, s:o, s:f}", "name",
+                                                pass->name, "rungs", active, "why", pass->why,
+                                                "reads", names_json(pass->reads, 6), "writes",
+                                                names_json(pass->writes, 4), "pipeline_ms",
+                                                (double)pass->pipeline_ns / 1e6));
     }
     for (uint32_t i = 0; i < p->image_count; i++) {
         const masu_plan_image *image = &p->images[i];
-        json_t *o = json_pack("{s:s, s:s, s:b}", "name", image->name, "format", format_name(image->format), "used",
-                              image->used != 0);
+        json_t *o = json_pack("{s:s, s:s, s:b}", "name", image->name, "format",
+                              format_name(image->format), "used", image->used != 0);
         if (image->used) {
-            json_t *more = json_pack("{s:i, s:i, s:I, s:I, s:s, s:s}", "width", (int)image->width, "height",
-                                     (int)image->height, "bytes", (json_int_t)image->bytes, "offset",
-                                     (json_int_t)image->offset, "first_pass", p->passes[image->first_pass].name,
-                                     "last_pass", p->passes[image->last_pass].name);
+            json_t *more = json_pack("{s:i, s:i, s:I, s:I, s:s, s:s}", "width", (int)image->width,
+                                     "height", (int)image->height, "bytes",
+                                     (json_int_t)image->bytes, "offset", (json_int_t)image->offset,
+                                     "first_pass", p->passes[image->first_pass].name, "last_pass",
+                                     p->passes[image->last_pass].name);
             json_object_update(o, more);
             json_decref(more);
         }
         json_array_append_new(images, o);
     }
     for (uint32_t r = 0; r < p->rung_count; r++) {
-        json_array_append_new(rungs, json_pack("{s:i, s:i, s:i, s:i}", "render_width", (int)p->rungs[r].render_width,
-                                               "render_height", (int)p->rungs[r].render_height, "passes",
-                                               (int)p->rungs[r].dispatches, "barriers", (int)p->rungs[r].barriers));
+        json_array_append_new(
+            rungs, json_pack("{s:i, s:i, s:i, s:i}", "render_width", (int)p->rungs[r].render_width,
+                             "render_height", (int)p->rungs[r].render_height, "passes",
+                             (int)p->rungs[r].dispatches, "barriers", (int)p->rungs[r].barriers));
     }
     json_t *root = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:o}", "scene", scene, "device",
-                             masu_json_device(&s->host), "rungs", rungs, "passes", passes, "images", images, "memory",
-                             masu_json_memory(&p->memory), "left_out_bytes", (json_int_t)p->left_out_bytes, "rows",
-                             rows_json(s));
+                             masu_json_device(&s->host), "rungs", rungs, "passes", passes, "images",
+                             images, "memory", masu_json_memory(&p->memory), "left_out_bytes",
+                             (json_int_t)p->left_out_bytes, "rows", rows_json(s));
     return masu_json_write(root, "-");
 }
 
@@ -174,10 +187,12 @@ static int run(masu_cli *cli) {
         if (masu_device_option(cli, id, &d.host)) continue;
         switch (id) {
         case OPTION_SIZE:
-            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height)) return MASU_CLI_USAGE;
+            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height))
+                return MASU_CLI_USAGE;
             continue;
         case OPTION_FLIGHT:
-            if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight)) return MASU_CLI_USAGE;
+            if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight))
+                return MASU_CLI_USAGE;
             continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case OPTION_JSON: json = true; continue;
@@ -211,8 +226,9 @@ static const masu_cli_option options[] = {
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
 
-const masu_cli_command masu_cmd_plan = {.name = "plan",
-                                        .arguments = "SCENE.masu [options]",
-                                        .summary = "print a scene's passes, images, memory, and what was left out",
-                                        .options = options,
-                                        .run = run};
+const masu_cli_command masu_cmd_plan = {
+    .name = "plan",
+    .arguments = "SCENE.masu [options]",
+    .summary = "print a scene's passes, images, memory, and what was left out",
+    .options = options,
+    .run = run};

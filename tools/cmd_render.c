@@ -1,4 +1,5 @@
-/* cmd_render.c: `masu render`: frames of a baked scene to PNG, headless, with measured times, counts and memory. */
+/* cmd_render.c: `masu render`: frames of a baked scene to PNG, headless, with measured times,
+ * counts and memory. */
 #include "cmd.h"
 
 #include "alloc_count.h"
@@ -39,7 +40,7 @@ typedef struct sample {
     uint64_t library_allocs, driver_allocs, driver_callbacks;
 } sample;
 
-/* ---- Numbers ----------------------------------------------------------------------------------- */
+/* ---- Numbers --------------------------------------------------------------------------------- */
 
 static int compare(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
@@ -47,31 +48,34 @@ static int compare(const void *a, const void *b) {
 }
 
 /* Nearest-rank percentile of one field over the samples. */
-static double percentile(const sample *samples, uint32_t n, size_t field, double p, double *scratch) {
-    for (uint32_t i = 0; i < n; i++) memcpy(&scratch[i], (const char *)&samples[i] + field, sizeof(double));
+static double percentile(const sample *samples, uint32_t n, size_t field, double p,
+                         double *scratch) {
+    for (uint32_t i = 0; i < n; i++)
+        memcpy(&scratch[i], (const char *)&samples[i] + field, sizeof(double));
     qsort(scratch, n, sizeof *scratch, compare);
     uint32_t rank = (uint32_t)(p * (double)(n - 1) + 0.5);
     return scratch[rank];
 }
 
 static json_t *times_json(const sample *samples, uint32_t n, size_t field, double *scratch) {
-    return json_pack("{s:f, s:f, s:f}", "min", percentile(samples, n, field, 0.0, scratch), "median",
-                     percentile(samples, n, field, 0.5, scratch), "p95",
+    return json_pack("{s:f, s:f, s:f}", "min", percentile(samples, n, field, 0.0, scratch),
+                     "median", percentile(samples, n, field, 0.5, scratch), "p95",
                      percentile(samples, n, field, 0.95, scratch));
 }
 
-/* Mesa 22.3's lavapipe reports 0.1 ms for what takes 100 ms once graphics work has run in the process. Times are quoted
- * only where they fit the wall clock. */
+/* Mesa 22.3's lavapipe reports 0.1 ms for what takes 100 ms once graphics work has run in the
+ * process. Times are quoted only where they fit the wall clock. */
 static bool plausible(const sample *samples, uint32_t n) {
     uint32_t good = 0;
     for (uint32_t i = 0; i < n; i++) {
-        good += samples[i].gpu_ms >= 0.5 * samples[i].wall_ms && samples[i].gpu_ms <= 1.05 * samples[i].wall_ms;
+        good += samples[i].gpu_ms >= 0.5 * samples[i].wall_ms &&
+                samples[i].gpu_ms <= 1.05 * samples[i].wall_ms;
     }
     return 2 * good > n;
 }
 
-static int write_stats(const masu_session *s, const render_options *o, const char *scene, const sample *samples,
-                       uint32_t n, const masu_stats_info *last, bool timed) {
+static int write_stats(const masu_session *s, const render_options *o, const char *scene,
+                       const sample *samples, uint32_t n, const masu_stats_info *last, bool timed) {
     double *scratch = malloc(n * sizeof *scratch);
     if (!scratch) return masu_cli_error("no memory for %u samples", n);
     masu_plan_info plan;
@@ -93,42 +97,49 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
         driver += samples[i].driver_allocs;
         callbacks += samples[i].driver_callbacks;
     }
-    json_t *root = json_pack(
-        "{s:s, s:o, s:{s:i, s:i}, s:{s:i, s:i}, s:i, s:i, s:o}", "scene", scene, "device", masu_json_device(&s->host),
-        "output", "width", (int)s->desc.output.width, "height", (int)s->desc.output.height, "render", "width",
-        (int)plan.rungs[o->rung].render_width, "height", (int)plan.rungs[o->rung].render_height, "rung", (int)o->rung,
-        "frames_measured", (int)n, "memory", masu_json_memory(&plan.memory));
-    json_object_set_new(root, "wall_ms", times_json(samples, n, offsetof(sample, wall_ms), scratch));
+    json_t *root = json_pack("{s:s, s:o, s:{s:i, s:i}, s:{s:i, s:i}, s:i, s:i, s:o}", "scene",
+                             scene, "device", masu_json_device(&s->host), "output", "width",
+                             (int)s->desc.output.width, "height", (int)s->desc.output.height,
+                             "render", "width", (int)plan.rungs[o->rung].render_width, "height",
+                             (int)plan.rungs[o->rung].render_height, "rung", (int)o->rung,
+                             "frames_measured", (int)n, "memory", masu_json_memory(&plan.memory));
+    json_object_set_new(root, "wall_ms",
+                        times_json(samples, n, offsetof(sample, wall_ms), scratch));
     if (timed) {
-        json_object_set_new(root, "gpu_ms", times_json(samples, n, offsetof(sample, gpu_ms), scratch));
+        json_object_set_new(root, "gpu_ms",
+                            times_json(samples, n, offsetof(sample, gpu_ms), scratch));
         json_object_set_new(root, "timestamps_plausible", json_boolean(plausible(samples, n)));
     }
     json_object_set_new(root, "passes", passes);
-    double pixels = (double)plan.rungs[o->rung].render_width * (double)plan.rungs[o->rung].render_height;
+    double pixels =
+        (double)plan.rungs[o->rung].render_width * (double)plan.rungs[o->rung].render_height;
     json_object_set_new(
         root, "counts",
-        json_pack("{s:I, s:I, s:I, s:I, s:f, s:I, s:I}", "draws", (json_int_t)last->draws, "triangles",
-                  (json_int_t)last->triangles, "sdf_evals", (json_int_t)last->sdf_evals, "sdf_hits",
-                  (json_int_t)last->sdf_hits, "sdf_evals_per_pixel", (double)last->sdf_evals / pixels,
-                  "sdf_unconverged", (json_int_t)last->sdf_unconverged, "replaced", (json_int_t)last->replaced));
+        json_pack("{s:I, s:I, s:I, s:I, s:f, s:I, s:I}", "draws", (json_int_t)last->draws,
+                  "triangles", (json_int_t)last->triangles, "sdf_evals",
+                  (json_int_t)last->sdf_evals, "sdf_hits", (json_int_t)last->sdf_hits,
+                  "sdf_evals_per_pixel", (double)last->sdf_evals / pixels, "sdf_unconverged",
+                  (json_int_t)last->sdf_unconverged, "replaced", (json_int_t)last->replaced));
     if (masu_alloc_counting()) {
         json_object_set_new(root, "allocations_per_frame",
-                            json_pack("{s:f, s:f, s:f}", "library", (double)library / (double)n, "driver_heap",
-                                      (double)driver / (double)n, "driver_vulkan_callbacks",
-                                      (double)callbacks / (double)n));
+                            json_pack("{s:f, s:f, s:f}", "library", (double)library / (double)n,
+                                      "driver_heap", (double)driver / (double)n,
+                                      "driver_vulkan_callbacks", (double)callbacks / (double)n));
     }
     free(scratch);
     return masu_json_write(root, o->stats);
 }
 
-/* ---- Frames ------------------------------------------------------------------------------------ */
+/* ---- Frames ---------------------------------------------------------------------------------- */
 
-/* "frame_####.png" names one file per frame; a name without '#' gets the last frame. Returns false if it is too long. */
+/* "frame_####.png" names one file per frame; a name without '#' gets the last frame. Returns false
+ * if it is too long. */
 static bool output_name(const char *pattern, uint32_t frame, char *out, size_t size) {
     const char *first = strchr(pattern, '#');
     if (!first) return (size_t)snprintf(out, size, "%s", pattern) < size;
     size_t digits = strspn(first, "#");
-    int n = snprintf(out, size, "%.*s%0*u%s", (int)(first - pattern), pattern, (int)digits, frame, first + digits);
+    int n = snprintf(out, size, "%.*s%0*u%s", (int)(first - pattern), pattern, (int)digits, frame,
+                     first + digits);
     return n > 0 && (size_t)n < size;
 }
 
@@ -136,17 +147,20 @@ static int save(masu_session *s, const render_options *o, uint32_t frame) {
     char error[1024], name[4096];
     bool each = strchr(o->output, '#') != NULL;
     if (!each && frame + 1 < o->frames) return MASU_CLI_OK;
-    if (!output_name(o->output, frame, name, sizeof name)) return masu_cli_error("output name is too long");
-    if (!masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error)) return masu_cli_error("%s", error);
-    if (!masu_image_save_png(name, s->targets[0].mapped, s->targets[0].width, s->targets[0].height, 0, error,
-                             sizeof error)) {
+    if (!output_name(o->output, frame, name, sizeof name))
+        return masu_cli_error("output name is too long");
+    if (!masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error))
+        return masu_cli_error("%s", error);
+    if (!masu_image_save_png(name, s->targets[0].mapped, s->targets[0].width, s->targets[0].height,
+                             0, error, sizeof error)) {
         return masu_cli_error("%s", error);
     }
     return MASU_CLI_OK;
 }
 
-static bool measure(masu_session *s, const render_options *o, uint32_t frame, masu_vk_alloc_counts *counts, sample *out,
-                    masu_stats_info *stats, char *error, size_t size) {
+static bool measure(masu_session *s, const render_options *o, uint32_t frame,
+                    masu_vk_alloc_counts *counts, sample *out, masu_stats_info *stats, char *error,
+                    size_t size) {
     masu_frame_desc f = {.time = o->time + (double)frame * o->time_step,
                          .time_step = (float)o->time_step,
                          .rung = o->rung};
@@ -169,12 +183,15 @@ static bool measure(masu_session *s, const render_options *o, uint32_t frame, ma
     out->driver_callbacks = counts->allocations + counts->reallocations - callbacks;
     (void)masu_stats(s->m, commands.slot, stats);
     out->gpu_ms = (double)stats->gpu_ns / 1e6;
-    for (uint32_t p = 0; p < stats->pass_count; p++) out->pass_ms[p] = (double)stats->pass_ns[p] / 1e6;
+    for (uint32_t p = 0; p < stats->pass_count; p++)
+        out->pass_ms[p] = (double)stats->pass_ns[p] / 1e6;
     return true;
 }
 
-/* With statistics a first frame is drawn and not counted: drivers compile at the first use of a pipeline. */
-static int render_frames(masu_session *s, const render_options *o, const char *scene, masu_vk_alloc_counts *counts) {
+/* With statistics a first frame is drawn and not counted: drivers compile at the first use of a
+ * pipeline. */
+static int render_frames(masu_session *s, const render_options *o, const char *scene,
+                         masu_vk_alloc_counts *counts) {
     sample *samples = calloc(o->frames, sizeof *samples);
     masu_stats_info stats;
     char error[1024];
@@ -192,16 +209,20 @@ static int render_frames(masu_session *s, const render_options *o, const char *s
             code = save(s, o, i);
         }
     }
-    if (!code && o->stats) code = write_stats(s, o, scene, samples, o->frames, &stats, stats.timed != 0);
+    if (!code && o->stats)
+        code = write_stats(s, o, scene, samples, o->frames, &stats, stats.timed != 0);
     free(samples);
     return code;
 }
 
 static int check(const masu_session_desc *d, const render_options *o) {
     if (!d->scene_path) return masu_cli_usage_error("no scene is given");
-    if (!o->output && !o->stats) return masu_cli_usage_error("neither --output nor --stats is given");
+    if (!o->output && !o->stats)
+        return masu_cli_usage_error("neither --output nor --stats is given");
     uint32_t rungs = masu_desc_resolved(&d->desc).rung_count;
-    if (o->rung >= rungs) return masu_cli_usage_error("--rung %u does not exist, there are 0 to %u", o->rung, rungs - 1);
+    if (o->rung >= rungs)
+        return masu_cli_usage_error("--rung %u does not exist, there are 0 to %u", o->rung,
+                                    rungs - 1);
     return MASU_CLI_OK;
 }
 
@@ -216,7 +237,8 @@ static int run(masu_cli *cli) {
         case OPTION_OUTPUT: o.output = cli->value; continue;
         case OPTION_STATS: o.stats = cli->value; continue;
         case OPTION_SIZE:
-            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height)) return MASU_CLI_USAGE;
+            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height))
+                return MASU_CLI_USAGE;
             continue;
         case OPTION_FRAMES:
             if (!masu_cli_uint(cli, 1, FRAMES_MAX, &o.frames)) return MASU_CLI_USAGE;
@@ -231,7 +253,8 @@ static int run(masu_cli *cli) {
             if (!masu_cli_double(cli, 0.0, 1e6, &o.time_step)) return MASU_CLI_USAGE;
             continue;
         case OPTION_FLIGHT:
-            if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight)) return MASU_CLI_USAGE;
+            if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight))
+                return MASU_CLI_USAGE;
             continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
@@ -248,7 +271,8 @@ static int run(masu_cli *cli) {
     if (code) return code;
     masu_vk_alloc_counts counts;
     VkAllocationCallbacks allocator = masu_vk_alloc_callbacks(&counts);
-    d.desc.debug = (masu_debug){.timestamps = o.stats != NULL, .counters = o.stats != NULL, .poison = poison};
+    d.desc.debug =
+        (masu_debug){.timestamps = o.stats != NULL, .counters = o.stats != NULL, .poison = poison};
     d.host.allocator = o.stats ? &allocator : NULL;
     d.host.message = masu_print_message;
     static masu_session s;
@@ -266,16 +290,20 @@ static int run(masu_cli *cli) {
 }
 
 static const masu_cli_option options[] = {
-    {"output", "FILE.png", "the last frame; with '####' in the name every frame, numbered", OPTION_OUTPUT, 'o'},
+    {"output", "FILE.png", "the last frame; with '####' in the name every frame, numbered",
+     OPTION_OUTPUT, 'o'},
     {"size", "WxH", "output size in pixels (default 1920x1080)", OPTION_SIZE, 0},
     {"frames", "N", "frames to draw along the scene's camera path (default 1)", OPTION_FRAMES, 0},
-    {"rung", "R", "quality: 0 native, 1 at 0.8, 2 at 0.4 of the size and upscaled (default 0)", OPTION_RUNG, 0},
+    {"rung", "R", "quality: 0 native, 1 at 0.8, 2 at 0.4 of the size and upscaled (default 0)",
+     OPTION_RUNG, 0},
     {"time", "SECONDS", "time of the first frame (default 0)", OPTION_TIME, 0},
     {"time-step", "SECONDS", "between frames (default 1/60)", OPTION_TIME_STEP, 0},
-    {"stats", "FILE.json", "times, counts, memory, allocations of the frames; - for stdout", OPTION_STATS, 0},
+    {"stats", "FILE.json", "times, counts, memory, allocations of the frames; - for stdout",
+     OPTION_STATS, 0},
     {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
-    {"poison", NULL, "fill all transient images with NaN before each frame (the picture must not change)", OPTION_POISON,
-     0},
+    {"poison", NULL,
+     "fill all transient images with NaN before each frame (the picture must not change)",
+     OPTION_POISON, 0},
     {"split-memory", NULL, "one block per memory role, even on unified memory", OPTION_SPLIT, 0},
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
@@ -285,7 +313,10 @@ const masu_cli_command masu_cmd_render = {
     .arguments = "SCENE.masu -o OUT.png [options]",
     .summary = "render a baked scene to PNG",
     .options = options,
-    .details = "Scenes are made by masu-bake. Frames are drawn one after another; with --stats a first one is\n"
-               "drawn and not counted. Wall time is from masu_frame to the fence. GPU times come from timestamps with\n"
-               "a full barrier around each pass; \"timestamps_plausible\" says whether they fit the wall clock.\n",
+    .details = "Scenes are made by masu-bake. Frames are drawn one after another; with --stats a "
+               "first one is\n"
+               "drawn and not counted. Wall time is from masu_frame to the fence. GPU times come "
+               "from timestamps with\n"
+               "a full barrier around each pass; \"timestamps_plausible\" says whether they fit "
+               "the wall clock.\n",
     .run = run};

@@ -10,10 +10,10 @@
 enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SHARPNESS, OPTION_NO_RCAS };
 
 /* Runs the passes over `rgba` and leaves the result in the session's target. */
-static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_t width, uint32_t height,
-                    uint8_t *out, char *error, size_t size) {
-    /* The source image needs the device and the renderer needs the source image: so the session stops before
-     * masu_init and goes on when the source is there. */
+static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_t width,
+                    uint32_t height, uint8_t *out, char *error, size_t size) {
+    /* The source image needs the device and the renderer needs the source image: so the session
+     * stops before masu_init and goes on when the source is there. */
     static masu_session s;
     masu_session_desc d = *given;
     masu_headless_source source;
@@ -23,14 +23,19 @@ static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_
     if (!masu_session_open(&d, &s, error, size)) return false;
     uint32_t most = s.host.properties.limits.maxImageDimension2D;
     if (width > most || height > most) {
-        snprintf(error, size, "input %ux%u is larger than the device's images may be (%u)", width, height, most);
-    } else if (masu_headless_source_create(&s.host, rgba, width, height, width, height, 0, &source, error, size)) {
+        snprintf(error, size, "input %ux%u is larger than the device's images may be (%u)", width,
+                 height, most);
+    } else if (masu_headless_source_create(&s.host, rgba, width, height, width, height, 0, &source,
+                                           error, size)) {
         s.desc.source = (masu_source){source.view, width, height};
         masu_frame_desc frame = {0};
         masu_commands commands;
-        done = masu_session_start(&s, error, size) && masu_session_frame(&s, &frame, true, &commands, error, size) &&
+        done = masu_session_start(&s, error, size) &&
+               masu_session_frame(&s, &frame, true, &commands, error, size) &&
                masu_headless_target_read(&s.host, &s.targets[0], error, size);
-        if (done) memcpy(out, s.targets[0].mapped, (size_t)s.desc.output.width * s.desc.output.height * 4);
+        if (done)
+            memcpy(out, s.targets[0].mapped,
+                   (size_t)s.desc.output.width * s.desc.output.height * 4);
         if (done && s.host.messages) {
             snprintf(error, size, "the validation layer has reported %u messages", s.host.messages);
             done = false;
@@ -51,8 +56,8 @@ static bool has_alpha(const struct masu_image *image) {
 }
 
 /* FSR1 knows three channels. Alpha goes through the same passes as a grey picture of its own. */
-static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *image, uint8_t *out, char *error,
-                          size_t size) {
+static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *image, uint8_t *out,
+                          char *error, size_t size) {
     size_t in_pixels = (size_t)image->width * image->height;
     size_t out_pixels = (size_t)d->desc.output.width * d->desc.output.height;
     uint8_t *grey = malloc(in_pixels * 4), *grey_out = malloc(out_pixels * 4);
@@ -83,8 +88,8 @@ static int upscale_file(const masu_session_desc *d, const char *from, const char
                !masu_image_save_png(to, out, width, height, 0, error, sizeof error)) {
         code = masu_cli_error("%s", error);
     } else if (width > 2 * image.width || height > 2 * image.height) {
-        masu_cli_warn("%ux%u to %ux%u: FSR1 is made for at most twice the size per axis", image.width, image.height,
-                      width, height);
+        masu_cli_warn("%ux%u to %ux%u: FSR1 is made for at most twice the size per axis",
+                      image.width, image.height, width, height);
     }
     free(out);
     masu_image_free(&image);
@@ -92,7 +97,8 @@ static int upscale_file(const masu_session_desc *d, const char *from, const char
 }
 
 static int run(masu_cli *cli) {
-    masu_session_desc d = {.desc = {.targets = {.storage = 1}, .rung_count = 1, .rungs = {{.sharpness = 0.2f}}}};
+    masu_session_desc d = {
+        .desc = {.targets = {.storage = 1}, .rung_count = 1, .rungs = {{.sharpness = 0.2f}}}};
     masu_rung *rung = &d.desc.rungs[0];
     const char *files[2] = {NULL, NULL};
     double stops = 0.2;
@@ -104,14 +110,16 @@ static int run(masu_cli *cli) {
         switch (id) {
         case OPTION_OUTPUT: files[1] = cli->value; continue;
         case OPTION_SIZE:
-            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height)) return MASU_CLI_USAGE;
+            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height))
+                return MASU_CLI_USAGE;
             continue;
         case OPTION_SHARPNESS:
             if (!masu_cli_double(cli, 0.0, 64.0, &stops)) return MASU_CLI_USAGE;
             continue;
         case OPTION_NO_RCAS: rung->sharpen = MASU_OFF; continue;
         case MASU_CLI_ARGUMENT:
-            if (files[0] && files[1]) return masu_cli_usage_error("one input and one output: '%s'", cli->value);
+            if (files[0] && files[1])
+                return masu_cli_usage_error("one input and one output: '%s'", cli->value);
             files[files[0] ? 1 : 0] = cli->value;
             continue;
         case MASU_CLI_EXIT: return cli->exit_code;
@@ -119,7 +127,8 @@ static int run(masu_cli *cli) {
         }
         break;
     }
-    if (!files[0] || !files[1]) return masu_cli_usage_error("an input and an output file are needed");
+    if (!files[0] || !files[1])
+        return masu_cli_usage_error("an input and an output file are needed");
     if (!d.desc.output.width) return masu_cli_usage_error("--size WxH is needed");
     rung->sharpness = (float)stops;
     d.host.message = masu_print_message;
@@ -128,7 +137,8 @@ static int run(masu_cli *cli) {
 
 static const masu_cli_option options[] = {
     {"size", "WxH", "output size in pixels", OPTION_SIZE, 0},
-    {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)", OPTION_SHARPNESS, 0},
+    {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)",
+     OPTION_SHARPNESS, 0},
     {"no-rcas", NULL, "EASU alone", OPTION_NO_RCAS, 0},
     {"output", "FILE.png", "the output, instead of the second argument", OPTION_OUTPUT, 'o'},
     MASU_DEVICE_OPTIONS,
@@ -139,6 +149,7 @@ const masu_cli_command masu_cmd_upscale = {
     .arguments = "IN.png OUT.png --size WxH [options]",
     .summary = "upscale a picture by FSR1 (EASU, RCAS)",
     .options = options,
-    .details = "The picture is taken as it is: already display-encoded (sRGB), as FSR1 wants it. Alpha goes through the\n"
+    .details = "The picture is taken as it is: already display-encoded (sRGB), as FSR1 wants it. "
+               "Alpha goes through the\n"
                "same passes as a picture of its own.\n",
     .run = run};

@@ -8,7 +8,8 @@
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
 int main(int argc, char **argv) {
-    static const masu_cli_command *const commands[] = {&masu_cmd_render, &masu_cmd_upscale, &masu_cmd_plan, NULL};
+    static const masu_cli_command *const commands[] = {&masu_cmd_render, &masu_cmd_upscale,
+                                                       &masu_cmd_plan, NULL};
     static const masu_cli_program program = {
         .name = "masu",
         .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),

@@ -1,8 +1,10 @@
 /*
- * counters.glsl: 64-bit counts of a frame, for masu_stats. Compute only. Each invocation adds to shared memory, one
- * invocation of the group adds the sums to the buffer: one atomic per group instead of one per pixel.
+ * counters.glsl: 64-bit counts of a frame, for masu_stats. Compute only. Each invocation adds to
+ * shared memory, one invocation of the group adds the sums to the buffer: one atomic per group
+ * instead of one per pixel.
  *
- * masu_count_begin and masu_count_end hold a barrier each: every invocation of the group must reach both.
+ * masu_count_begin and masu_count_end hold a barrier each: every invocation of the group must reach
+ * both.
  */
 #ifndef MASU_COUNTERS_GLSL
 #define MASU_COUNTERS_GLSL

@@ -1,6 +1,7 @@
 /*
- * globals.glsl: descriptor set 0, and what every pass of a scene derives from it: the camera ray of a pixel and the
- * counters. A shader that counts says so by the constant below; with counters off the atomics are compiled away.
+ * globals.glsl: descriptor set 0, and what every pass of a scene derives from it: the camera ray of
+ * a pixel and the counters. A shader that counts says so by the constant below; with counters off
+ * the atomics are compiled away.
  */
 #ifndef MASU_GLOBALS_GLSL
 #define MASU_GLOBALS_GLSL
@@ -15,8 +16,9 @@ layout(push_constant) uniform Push
     masu_push pc;
 };
 
-/* Vector from the eye through the centre of a pixel, as long as makes its view z 1: eye + ray * z is the point at view
- * depth z. The half texel matters: without it the march and the raster look at different places. */
+/* Vector from the eye through the centre of a pixel, as long as makes its view z 1: eye + ray * z
+ * is the point at view depth z. The half texel matters: without it the march and the raster look at
+ * different places. */
 vec3 masu_pixel_ray(uvec2 at, uvec2 size)
 {
     vec2 ndc = (vec2(at) + 0.5) / vec2(size) * 2.0 - 1.0;

@@ -1,11 +1,13 @@
 /* masu_shared.h: every struct and constant that C and GLSL both see.
  *
- * Included by the shaders (glslang defines VULKAN) and by src/. All members are vec4/uvec4/mat4 sized, so that std140,
- * std430 and C agree without scalarBlockLayout, which is not in the Vulkan 1.1 core; tests/unit/test_shared_layout.c
- * checks the offsets against the compiled SPIR-V all the same.
+ * Included by the shaders (glslang defines VULKAN) and by src/. All members are vec4/uvec4/mat4
+ * sized, so that std140, std430 and C agree without scalarBlockLayout, which is not in the Vulkan
+ * 1.1 core; tests/unit/test_shared_layout.c checks the offsets against the compiled SPIR-V all the
+ * same.
  *
- * World space: right-handed, +Y up, metres. "rel" means camera-relative: world position minus the eye, computed from the
- * eye split in two floats, so that a scene a million units from the origin keeps its precision near the camera. */
+ * World space: right-handed, +Y up, metres. "rel" means camera-relative: world position minus the
+ * eye, computed from the eye split in two floats, so that a scene a million units from the origin
+ * keeps its precision near the camera. */
 #ifndef MASU_SHARED_H
 #define MASU_SHARED_H
 
@@ -22,7 +24,8 @@ typedef uint32_t masu_uint;
 typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #endif
 
-/* Workgroup edge. 8x8 = 64 invocations: half of the guaranteed maxComputeWorkGroupInvocations (128). */
+/* Workgroup edge. 8x8 = 64 invocations: half of the guaranteed maxComputeWorkGroupInvocations
+ * (128). */
 #define MASU_GROUP 8
 
 /* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/frame.c. */
@@ -37,7 +40,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_SDF_PARAM_VEC4S 64
 #define MASU_SDF_PARAMS_MAX 256
 
-/* Most sphere-tracing steps of one ray: the constant bound of the loop. A rung may ask for fewer. */
+/* Most sphere-tracing steps of one ray: the constant bound of the loop. A rung may ask for fewer.
+ * */
 #define MASU_MARCH_STEPS_MAX 256
 
 /* Counters, uint32 pairs (low, high). Reset by each frame, read back by masu_stats. */
@@ -51,18 +55,18 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_SURFACE_EMISSIVE 1u
 
 struct masu_frame_uniforms {
-    masu_mat4 clip_from_rel; /* rel position -> clip; reverse-Z, infinite far plane, depth = near / view z */
+    masu_mat4 clip_from_rel; /* rel position -> clip; reverse-Z, no far plane, depth = near / view z */
     masu_vec4 eye_hi;        /* xyz eye rounded to float; w time, seconds */
     masu_vec4 eye_lo;        /* xyz eye minus eye_hi; w time step, seconds */
     masu_vec4 right;         /* xyz camera right times tan(fov_x / 2); w tan(fov_x / 2) */
     masu_vec4 up;            /* xyz camera up times tan(fov_y / 2); w tan(fov_y / 2) */
     masu_vec4 forward;       /* xyz unit view direction; w near distance */
     masu_vec4 sun_direction; /* xyz unit vector towards the sun; w exposure (linear factor) */
-    masu_vec4 sun_color;     /* rgb irradiance of the sun on a facing surface, divided by pi; w unused */
+    masu_vec4 sun_color;     /* rgb irradiance of the sun on a facing surface / pi; w unused */
     masu_vec4 ambient;       /* rgb radiance of the constant ambient; w unused */
     masu_vec4 sky_zenith;    /* rgb radiance straight up */
     masu_vec4 sky_horizon;   /* rgb radiance at the horizon and below */
-    masu_vec4 sdf_min;       /* xyz lower corner of the SDF's bounds, world; w 1 / Lipschitz constant */
+    masu_vec4 sdf_min;       /* xyz lower corner of the SDF's bounds; w 1 / Lipschitz constant */
     masu_vec4 sdf_max;       /* xyz upper corner; w longest ray, world units */
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
 };

@@ -3,12 +3,14 @@
  *
  *   albedo, rgba8:  rgb  sqrt of linear albedo, or of radiance / 16 where the surface is emissive
  *                   a    perceptual roughness
- *   normal, r32ui:  bits 0-12, 13-25  octahedral normal (Cigolle et al., JCGT 3-2, 2014, section 3.2); 4095 is 0
+ *   normal, r32ui:  bits 0-12, 13-25  octahedral normal (Cigolle et al., JCGT 3-2, 2014, section
+ *   3.2); 4095 is 0
  *                   bits 26-29        metallic, 0..15
  *                   bits 30-31        MASU_SURFACE_* flags
  *   depth, float:   near / view z; 0: nothing there
  *
- * 13 bits per axis leave a normal within 0.02 degrees. src/masu.c, masu_unpack_normal is the twin in C.
+ * 13 bits per axis leave a normal within 0.02 degrees. src/masu.c, masu_unpack_normal is the twin
+ * in C.
  */
 #ifndef MASU_PACK_GLSL
 #define MASU_PACK_GLSL
@@ -35,7 +37,8 @@ vec2 masu_oct_encode(vec3 n)
     return p;
 }
 
-/* Any pair in -1..1 gives a unit vector: the octahedron comes no nearer to the origin than 1/sqrt(3). */
+/* Any pair in -1..1 gives a unit vector: the octahedron comes no nearer to the origin than
+ * 1/sqrt(3). */
 vec3 masu_oct_decode(vec2 p)
 {
     vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
@@ -53,8 +56,8 @@ bool masu_is_emissive(masu_surface s)
 
 vec4 masu_pack_albedo(masu_surface s)
 {
-    vec3 color = masu_is_emissive(s) ? masu_sane(s.emissive, 0.0, masu_emissive_range) / masu_emissive_range
-                                     : masu_sane(s.albedo, 0.0, 1.0);
+    vec3 radiance = masu_sane(s.emissive, 0.0, masu_emissive_range) / masu_emissive_range;
+    vec3 color = masu_is_emissive(s) ? radiance : masu_sane(s.albedo, 0.0, 1.0);
     return vec4(sqrt(color), masu_sane(s.roughness, 0.0, 1.0));
 }
 

@@ -40,7 +40,8 @@ void open_session(masu_session *s, const masu_session_desc *d) {
 void close_session(masu_session *s) {
     /* Destruction is validated too: count after it. */
     masu_session_close(s);
-    if (s->host.messages) fail_msg("%u validation messages, first: %s", s->host.messages, s->host.first_message);
+    if (s->host.messages)
+        fail_msg("%u validation messages, first: %s", s->host.messages, s->host.first_message);
 }
 
 void draw(masu_session *s, const masu_frame_desc *frame, masu_commands *commands, uint8_t *pixels) {

@@ -1,7 +1,7 @@
 /* support.h: what the GPU tests share: sessions under the validation layer, and pictures compared.
  *
- * Every session validates (core and synchronisation); a message fails the test that closes it. The driver is the one that
- * the environment names: tests/run.sh runs each program once per driver. */
+ * Every session validates (core and synchronisation); a message fails the test that closes it. The
+ * driver is the one that the environment names: tests/run.sh runs each program once per driver. */
 #ifndef MASU_TEST_SUPPORT_H
 #define MASU_TEST_SUPPORT_H
 
@@ -34,9 +34,9 @@ void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels);
 /* Largest difference of any byte. */
 uint32_t max_difference(const uint8_t *a, const uint8_t *b, size_t bytes);
 
-#define assert_ok(call)                                                                                                \
-    do {                                                                                                               \
-        if (!(call)) fail_msg("%s: %s", #call, error);                                                                 \
+#define assert_ok(call)                                                                            \
+    do {                                                                                           \
+        if (!(call)) fail_msg("%s: %s", #call, error);                                             \
     } while (0)
 
 #endif

@@ -1,5 +1,5 @@
-/* support_wrap.c: see support_wrap.h. Outputs of a call that is made to fail are filled with garbage: the specification
- * allows a driver that. */
+/* support_wrap.c: see support_wrap.h. Outputs of a call that is made to fail are filled with
+ * garbage: the specification allows a driver that. */
 #include "support_wrap.h"
 
 #include <string.h>
@@ -12,7 +12,8 @@ void wrap_reset(void) { memset(&wrap, 0, sizeof wrap); }
 static bool fails(const char *name) {
     wrap.setup_calls++;
     if (wrap.lost) wrap.calls_after_loss++;
-    bool now = wrap.fail_at && (wrap.persistent ? wrap.setup_calls >= wrap.fail_at : wrap.setup_calls == wrap.fail_at);
+    bool now = wrap.fail_at && (wrap.persistent ? wrap.setup_calls >= wrap.fail_at
+                                                : wrap.setup_calls == wrap.fail_at);
     if (!now) return false;
     if (!wrap.failed_call) wrap.failed_call = name;
     if (wrap.fail_with == VK_ERROR_DEVICE_LOST) wrap.lost = true;
@@ -31,50 +32,52 @@ static void unmade(uint64_t n) {
     wrap.live -= (int64_t)n;
 }
 
-#define WRAP_CREATE(Name, Info, Handle)                                                                                \
-    static VKAPI_ATTR VkResult VKAPI_CALL create_##Name(VkDevice device, const Info *info,                             \
-                                                        const VkAllocationCallbacks *allocator, Handle *out) {         \
-        if (fails("vkCreate" #Name)) {                                                                                 \
-            memset(out, 0xA5, sizeof *out);                                                                            \
-            return wrap.fail_with;                                                                                     \
-        }                                                                                                              \
-        VkResult r = REAL(Create##Name)(device, info, allocator, out);                                                 \
-        if (!r) made(1);                                                                                               \
-        return r;                                                                                                      \
-    }                                                                                                                  \
-    static VKAPI_ATTR void VKAPI_CALL destroy_##Name(VkDevice device, Handle handle,                                   \
-                                                     const VkAllocationCallbacks *allocator) {                         \
-        if (handle) unmade(1);                                                                                         \
-        REAL(Destroy##Name)(device, handle, allocator);                                                                \
+#define WRAP_CREATE(Name, Info, Handle)                                                            \
+    static VKAPI_ATTR VkResult VKAPI_CALL create_##Name(                                           \
+        VkDevice device, const Info *info, const VkAllocationCallbacks *allocator, Handle *out) {  \
+        if (fails("vkCreate" #Name)) {                                                             \
+            memset(out, 0xA5, sizeof *out);                                                        \
+            return wrap.fail_with;                                                                 \
+        }                                                                                          \
+        VkResult r = REAL(Create##Name)(device, info, allocator, out);                             \
+        if (!r) made(1);                                                                           \
+        return r;                                                                                  \
+    }                                                                                              \
+    static VKAPI_ATTR void VKAPI_CALL destroy_##Name(VkDevice device, Handle handle,               \
+                                                     const VkAllocationCallbacks *allocator) {     \
+        if (handle) unmade(1);                                                                     \
+        REAL(Destroy##Name)(device, handle, allocator);                                            \
     }
 
-#define CREATES(X)                                                                                                     \
-    X(Buffer, VkBufferCreateInfo, VkBuffer)                                                                            \
-    X(CommandPool, VkCommandPoolCreateInfo, VkCommandPool)                                                             \
-    X(DescriptorPool, VkDescriptorPoolCreateInfo, VkDescriptorPool)                                                    \
-    X(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo, VkDescriptorSetLayout)                                     \
-    X(Framebuffer, VkFramebufferCreateInfo, VkFramebuffer)                                                             \
-    X(Image, VkImageCreateInfo, VkImage)                                                                               \
-    X(ImageView, VkImageViewCreateInfo, VkImageView)                                                                   \
-    X(PipelineLayout, VkPipelineLayoutCreateInfo, VkPipelineLayout)                                                    \
-    X(QueryPool, VkQueryPoolCreateInfo, VkQueryPool)                                                                   \
-    X(RenderPass, VkRenderPassCreateInfo, VkRenderPass)                                                                \
-    X(Sampler, VkSamplerCreateInfo, VkSampler)                                                                         \
+#define CREATES(X)                                                                                 \
+    X(Buffer, VkBufferCreateInfo, VkBuffer)                                                        \
+    X(CommandPool, VkCommandPoolCreateInfo, VkCommandPool)                                         \
+    X(DescriptorPool, VkDescriptorPoolCreateInfo, VkDescriptorPool)                                \
+    X(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo, VkDescriptorSetLayout)                 \
+    X(Framebuffer, VkFramebufferCreateInfo, VkFramebuffer)                                         \
+    X(Image, VkImageCreateInfo, VkImage)                                                           \
+    X(ImageView, VkImageViewCreateInfo, VkImageView)                                               \
+    X(PipelineLayout, VkPipelineLayoutCreateInfo, VkPipelineLayout)                                \
+    X(QueryPool, VkQueryPoolCreateInfo, VkQueryPool)                                               \
+    X(RenderPass, VkRenderPassCreateInfo, VkRenderPass)                                            \
+    X(Sampler, VkSamplerCreateInfo, VkSampler)                                                     \
     X(ShaderModule, VkShaderModuleCreateInfo, VkShaderModule)
 
 CREATES(WRAP_CREATE)
 
-#define WRAP_PIPELINES(Kind)                                                                                           \
-    static VKAPI_ATTR VkResult VKAPI_CALL create_##Kind##Pipelines(                                                    \
-        VkDevice device, VkPipelineCache cache, uint32_t n, const Vk##Kind##PipelineCreateInfo *info,                  \
-        const VkAllocationCallbacks *allocator, VkPipeline *out) {                                                     \
-        if (fails("vkCreate" #Kind "Pipelines")) {                                                                     \
-            memset(out, 0, n * sizeof *out); /* pipelines are the exception: null where they failed */                 \
-            return wrap.fail_with;                                                                                     \
-        }                                                                                                              \
-        VkResult r = REAL(Create##Kind##Pipelines)(device, cache, n, info, allocator, out);                            \
-        if (!r) made(n);                                                                                               \
-        return r;                                                                                                      \
+#define WRAP_PIPELINES(Kind)                                                                       \
+    static VKAPI_ATTR VkResult VKAPI_CALL create_##Kind##Pipelines(                                \
+        VkDevice device, VkPipelineCache cache, uint32_t n,                                        \
+        const Vk##Kind##PipelineCreateInfo *info, const VkAllocationCallbacks *allocator,          \
+        VkPipeline *out) {                                                                         \
+        if (fails("vkCreate" #Kind "Pipelines")) {                                                 \
+            memset(out, 0,                                                                         \
+                   n * sizeof *out); /* pipelines are the exception: null where they failed */     \
+            return wrap.fail_with;                                                                 \
+        }                                                                                          \
+        VkResult r = REAL(Create##Kind##Pipelines)(device, cache, n, info, allocator, out);        \
+        if (!r) made(n);                                                                           \
+        return r;                                                                                  \
     }
 
 WRAP_PIPELINES(Compute)
@@ -86,8 +89,10 @@ static VKAPI_ATTR void VKAPI_CALL destroy_Pipeline(VkDevice device, VkPipeline h
     REAL(DestroyPipeline)(device, handle, allocator);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL allocate_Memory(VkDevice device, const VkMemoryAllocateInfo *info,
-                                                      const VkAllocationCallbacks *allocator, VkDeviceMemory *out) {
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_Memory(VkDevice device,
+                                                      const VkMemoryAllocateInfo *info,
+                                                      const VkAllocationCallbacks *allocator,
+                                                      VkDeviceMemory *out) {
     if (fails("vkAllocateMemory")) {
         memset(out, 0xA5, sizeof *out);
         return wrap.fail_with;
@@ -104,8 +109,8 @@ static VKAPI_ATTR void VKAPI_CALL free_Memory(VkDevice device, VkDeviceMemory me
 }
 
 /* Command buffers and descriptor sets go with their pools. */
-static VKAPI_ATTR VkResult VKAPI_CALL allocate_CommandBuffers(VkDevice device, const VkCommandBufferAllocateInfo *info,
-                                                              VkCommandBuffer *out) {
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_CommandBuffers(
+    VkDevice device, const VkCommandBufferAllocateInfo *info, VkCommandBuffer *out) {
     if (fails("vkAllocateCommandBuffers")) {
         memset(out, 0, info->commandBufferCount * sizeof *out);
         return wrap.fail_with;
@@ -113,8 +118,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_CommandBuffers(VkDevice device, c
     return REAL(AllocateCommandBuffers)(device, info, out);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL allocate_DescriptorSets(VkDevice device, const VkDescriptorSetAllocateInfo *info,
-                                                              VkDescriptorSet *out) {
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_DescriptorSets(
+    VkDevice device, const VkDescriptorSetAllocateInfo *info, VkDescriptorSet *out) {
     if (fails("vkAllocateDescriptorSets")) {
         memset(out, 0, info->descriptorSetCount * sizeof *out);
         return wrap.fail_with;
@@ -122,20 +127,22 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_DescriptorSets(VkDevice device, c
     return REAL(AllocateDescriptorSets)(device, info, out);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL bind_BufferMemory(VkDevice device, VkBuffer buffer, VkDeviceMemory memory,
+static VKAPI_ATTR VkResult VKAPI_CALL bind_BufferMemory(VkDevice device, VkBuffer buffer,
+                                                        VkDeviceMemory memory,
                                                         VkDeviceSize offset) {
     if (fails("vkBindBufferMemory")) return wrap.fail_with;
     return REAL(BindBufferMemory)(device, buffer, memory, offset);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL bind_ImageMemory(VkDevice device, VkImage image, VkDeviceMemory memory,
-                                                       VkDeviceSize offset) {
+static VKAPI_ATTR VkResult VKAPI_CALL bind_ImageMemory(VkDevice device, VkImage image,
+                                                       VkDeviceMemory memory, VkDeviceSize offset) {
     if (fails("vkBindImageMemory")) return wrap.fail_with;
     return REAL(BindImageMemory)(device, image, memory, offset);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL map_Memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset,
-                                                 VkDeviceSize size, VkMemoryMapFlags flags, void **out) {
+static VKAPI_ATTR VkResult VKAPI_CALL map_Memory(VkDevice device, VkDeviceMemory memory,
+                                                 VkDeviceSize offset, VkDeviceSize size,
+                                                 VkMemoryMapFlags flags, void **out) {
     if (fails("vkMapMemory")) {
         memset(out, 0xA5, sizeof *out);
         return wrap.fail_with;
@@ -147,7 +154,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL map_Memory(VkDevice device, VkDeviceMemory
 static PFN_vkBeginCommandBuffer real_begin;
 static PFN_vkEndCommandBuffer real_end;
 
-static VKAPI_ATTR VkResult VKAPI_CALL begin_CommandBuffer(VkCommandBuffer cmd, const VkCommandBufferBeginInfo *info) {
+static VKAPI_ATTR VkResult VKAPI_CALL begin_CommandBuffer(VkCommandBuffer cmd,
+                                                          const VkCommandBufferBeginInfo *info) {
     return fails("vkBeginCommandBuffer") ? wrap.fail_with : real_begin(cmd, info);
 }
 
@@ -155,10 +163,11 @@ static VKAPI_ATTR VkResult VKAPI_CALL end_CommandBuffer(VkCommandBuffer cmd) {
     return fails("vkEndCommandBuffer") ? wrap.fail_with : real_end(cmd);
 }
 
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device, const char *name) {
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device,
+                                                                     const char *name) {
     if (wrap.unknown_function && !strcmp(name, wrap.unknown_function)) return NULL;
-#define RETURN_CREATE(Name, Info, Handle)                                                                              \
-    if (!strcmp(name, "vkCreate" #Name)) return (PFN_vkVoidFunction)create_##Name;                                     \
+#define RETURN_CREATE(Name, Info, Handle)                                                          \
+    if (!strcmp(name, "vkCreate" #Name)) return (PFN_vkVoidFunction)create_##Name;                 \
     if (!strcmp(name, "vkDestroy" #Name)) return (PFN_vkVoidFunction)destroy_##Name;
     CREATES(RETURN_CREATE)
     static const struct {
@@ -184,20 +193,23 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
     return vkGetDeviceProcAddr(device, name);
 }
 
-/* ---- Pretences --------------------------------------------------------------------------------- */
+/* ---- Pretences ------------------------------------------------------------------------------- */
 
-static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device, VkPhysicalDeviceProperties *out) {
+static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
+                                                 VkPhysicalDeviceProperties *out) {
     vkGetPhysicalDeviceProperties(device, out);
     if (wrap.api_version) out->apiVersion = wrap.api_version;
     if (wrap.max_image) out->limits.maxImageDimension2D = wrap.max_image;
 }
 
-static VKAPI_ATTR void VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format, VkFormatProperties *out) {
+static VKAPI_ATTR void VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format,
+                                             VkFormatProperties *out) {
     vkGetPhysicalDeviceFormatProperties(device, format, out);
     if (format == wrap.lacking_format) memset(out, 0, sizeof *out);
 }
 
-static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *n, VkQueueFamilyProperties *out) {
+static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *n,
+                                               VkQueueFamilyProperties *out) {
     vkGetPhysicalDeviceQueueFamilyProperties(device, n, out);
     for (uint32_t i = 0; out && i < *n; i++) {
         if (wrap.no_compute) out[i].queueFlags &= ~(VkQueueFlags)VK_QUEUE_COMPUTE_BIT;
@@ -205,11 +217,13 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
     }
 }
 
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL wrap_get_instance_proc_addr(VkInstance instance, const char *name) {
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL wrap_get_instance_proc_addr(VkInstance instance,
+                                                                     const char *name) {
     if (wrap.unknown_function && !strcmp(name, wrap.unknown_function)) return NULL;
     if (!strcmp(name, "vkGetDeviceProcAddr")) return (PFN_vkVoidFunction)get_device_proc_addr;
     if (!strcmp(name, "vkGetPhysicalDeviceProperties")) return (PFN_vkVoidFunction)get_properties;
     if (!strcmp(name, "vkGetPhysicalDeviceFormatProperties")) return (PFN_vkVoidFunction)get_format;
-    if (!strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties")) return (PFN_vkVoidFunction)get_families;
+    if (!strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties"))
+        return (PFN_vkVoidFunction)get_families;
     return vkGetInstanceProcAddr(instance, name);
 }

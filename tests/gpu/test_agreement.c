@@ -1,5 +1,6 @@
-/* test_agreement.c: polygons and SDF see the same world: a sphere given once as fine mesh and once as SDF, and a box that
- * cuts through an SDF sphere, both against rays intersected in double precision. */
+/* test_agreement.c: polygons and SDF see the same world: a sphere given once as fine mesh and once
+ * as SDF, and a box that cuts through an SDF sphere, both against rays intersected in double
+ * precision. */
 #include "support.h"
 
 #include <math.h>
@@ -20,7 +21,7 @@ static vec cross(vec a, vec b) {
 }
 static vec unit(vec a) { return scale(a, 1.0 / sqrt(dot(a, a))); }
 
-/* ---- Rays in double precision ------------------------------------------------------------------ */
+/* ---- Rays in double precision ---------------------------------------------------------------- */
 
 typedef struct eye {
     vec position, forward, right, up; /* right and up carry the tangents */
@@ -30,7 +31,8 @@ typedef struct eye {
 static eye make_eye(const masu_camera *c, uint32_t width, uint32_t height) {
     double tangent = tan((double)c->fov_y / 2);
     eye e = {.position = {c->position[0], c->position[1], c->position[2]},
-             .forward = unit((vec){(double)c->forward[0], (double)c->forward[1], (double)c->forward[2]})};
+             .forward =
+                 unit((vec){(double)c->forward[0], (double)c->forward[1], (double)c->forward[2]})};
     vec right = unit(cross(e.forward, (vec){0, 1, 0}));
     e.up = scale(cross(right, e.forward), tangent);
     e.right = scale(right, tangent * width / height);
@@ -38,14 +40,16 @@ static eye make_eye(const masu_camera *c, uint32_t width, uint32_t height) {
     return e;
 }
 
-/* Through pixel coordinates (x, y), the centre of the first pixel being (0.5, 0.5); length 1 in view depth. */
+/* Through pixel coordinates (x, y), the centre of the first pixel being (0.5, 0.5); length 1 in
+ * view depth. */
 static vec ray_through(const eye *e, double x, double y) {
     return add(e->forward, add(scale(e->right, 2 * x / W - 1), scale(e->up, 1 - 2 * y / H)));
 }
 
 /* View depth of the first hit with a sphere around the origin, or -1. */
 static double hit_sphere(const eye *e, vec d, double radius) {
-    double a = dot(d, d), b = dot(e->position, d), c = dot(e->position, e->position) - radius * radius;
+    double a = dot(d, d), b = dot(e->position, d),
+           c = dot(e->position, e->position) - radius * radius;
     double root = b * b - a * c;
     return root < 0 ? -1 : (-b - sqrt(root)) / a;
 }
@@ -69,7 +73,7 @@ static double silhouette_pixels(const eye *e, vec d, double radius) {
     return (sqrt(dot(nearest, nearest)) - radius) / (e->pixel * along);
 }
 
-/* ---- Pictures ---------------------------------------------------------------------------------- */
+/* ---- Pictures -------------------------------------------------------------------------------- */
 
 typedef struct picture {
     float depth[W * H]; /* view depth, 0: nothing */
@@ -105,29 +109,39 @@ static void open_for_pictures(masu_session *s, const char *scene) {
 }
 
 static const masu_camera cameras[] = {
-    {.position = {1.2, 0.9, 3.2}, .forward = {-1.2f, -0.9f, -3.2f}, .fov_y = 0.7f, .near_distance = 0.1f},
+    {.position = {1.2, 0.9, 3.2},
+     .forward = {-1.2f, -0.9f, -3.2f},
+     .fov_y = 0.7f,
+     .near_distance = 0.1f},
     {.position = {0, 0, 1.05}, .forward = {0.2f, 0.1f, -1}, .fov_y = 1.5f, .near_distance = 0.001f},
     {.position = {8, 5, -12}, .forward = {-8, -5, 12}, .fov_y = 0.15f, .near_distance = 1},
-    {.position = {1.6, 0.02, 1.1}, .forward = {-0.5f, 0.1f, -1}, .fov_y = 1.7f, .near_distance = 0.01f},
+    {.position = {1.6, 0.02, 1.1},
+     .forward = {-0.5f, 0.1f, -1},
+     .fov_y = 1.7f,
+     .near_distance = 0.01f},
 };
 
 #define CAMERAS (sizeof cameras / sizeof *cameras)
 
-/* ---- Tests ------------------------------------------------------------------------------------- */
+/* ---- Tests ----------------------------------------------------------------------------------- */
 
-/* How far (relative) the depth of a pixel moves when the surface moves by `grid` pixels across the screen: a rasteriser
- * snaps vertices to a grid (16 steps a pixel on one driver, 256 on another), which at grazing angles is more than 1e-3. */
-static double grid_slack(const eye *e, double x, double y, double truth, double radius, double grid) {
+/* How far (relative) the depth of a pixel moves when the surface moves by `grid` pixels across the
+ * screen: a rasteriser snaps vertices to a grid (16 steps a pixel on one driver, 256 on another),
+ * which at grazing angles is more than 1e-3. */
+static double grid_slack(const eye *e, double x, double y, double truth, double radius,
+                         double grid) {
     double most = 0;
     for (int n = 0; n < 4; n++) {
-        double z = hit_sphere(e, ray_through(e, x + (n & 1 ? grid : -grid), y + (n & 2 ? grid : -grid)), radius);
+        double z = hit_sphere(
+            e, ray_through(e, x + (n & 1 ? grid : -grid), y + (n & 2 ? grid : -grid)), radius);
         if (z > 0) most = fmax(most, fabs(z / truth - 1));
     }
     return most;
 }
 
 /* grid: of the rasteriser, pixels; 0 for a march, which gets no slack. */
-static void compare_with_truth(const picture *p, const eye *e, double radius, double grid, const char *what) {
+static void compare_with_truth(const picture *p, const eye *e, double radius, double grid,
+                               const char *what) {
     double worst_pixels = 0, worst_depth = 0, worst_beyond = 0, worst_angle = 0;
     uint32_t hits = 0;
     for (uint32_t y = 0; y < H; y++) {
@@ -139,7 +153,8 @@ static void compare_with_truth(const picture *p, const eye *e, double radius, do
                 worst_pixels = fmax(worst_pixels, off);
                 continue;
             }
-            if (!(got > 0) || off < 1) continue; /* at the rim depth changes without bound per pixel */
+            if (!(got > 0) || off < 1)
+                continue; /* at the rim depth changes without bound per pixel */
             hits++;
             worst_depth = fmax(worst_depth, fabs(got / truth - 1));
             double slack = grid > 0 ? grid_slack(e, x + 0.5, y + 0.5, truth, radius, grid) : 0;
@@ -151,8 +166,9 @@ static void compare_with_truth(const picture *p, const eye *e, double radius, do
             worst_angle = fmax(worst_angle, acos(fmin(1, cosine)) * 57.29578);
         }
     }
-    print_message("  %s: %u pixels, silhouette off by %.3f px, depth by %.2e, normal by %.3f degrees\n", what, hits,
-                  worst_pixels, worst_depth, worst_angle);
+    print_message(
+        "  %s: %u pixels, silhouette off by %.3f px, depth by %.2e, normal by %.3f degrees\n", what,
+        hits, worst_pixels, worst_depth, worst_angle);
     assert_true(hits > 2000);
     assert_true(worst_pixels < 1.0);
     assert_true(worst_beyond < 1e-3);
@@ -176,16 +192,19 @@ static void a_sphere_is_the_same_as_mesh_as_sdf_and_in_double_precision(void **s
         uint32_t differ = 0;
         double worst = 0;
         for (uint32_t i = 0; i < W * H; i++) {
-            double off = fabs(silhouette_pixels(&e, ray_through(&e, i % W + 0.5, i / W + 0.5), 1.0));
+            double off =
+                fabs(silhouette_pixels(&e, ray_through(&e, i % W + 0.5, i / W + 0.5), 1.0));
             if ((mesh.depth[i] > 0) != (sdf.depth[i] > 0)) {
                 differ++;
                 assert_true(off < 1.0);
             } else if (mesh.depth[i] > 0 && off > 1) {
                 double x = i % W + 0.5, y = i / W + 0.5, z = (double)sdf.depth[i];
-                worst = fmax(worst, fabs((double)mesh.depth[i] / z - 1) - grid_slack(&e, x, y, z, 1.0, grid));
+                worst = fmax(worst, fabs((double)mesh.depth[i] / z - 1) -
+                                        grid_slack(&e, x, y, z, 1.0, grid));
             }
         }
-        print_message("  mesh against sdf: %u pixels of the silhouette differ, depth by %.2e\n", differ, worst);
+        print_message("  mesh against sdf: %u pixels of the silhouette differ, depth by %.2e\n",
+                      differ, worst);
         assert_true(worst < 1e-3);
     }
     close_session(&a);
@@ -200,7 +219,8 @@ static void a_parameter_sets_the_radius_and_is_clamped_to_its_range(void **state
     eye e = make_eye(&cameras[0], W, H);
     static const float radii[] = {0.5f, 0.75f, 99.0f};
     for (size_t i = 0; i < 3; i++) {
-        masu_frame_desc frame = {.camera = &cameras[0], .sdf_params = &radii[i], .sdf_param_count = 1};
+        masu_frame_desc frame = {
+            .camera = &cameras[0], .sdf_params = &radii[i], .sdf_param_count = 1};
         take_picture(&s, &frame, &p);
         compare_with_truth(&p, &e, i == 2 ? (double)1.4f : (double)radii[i], 0, "sdf ");
     }
@@ -227,12 +247,14 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
     vec columns[3], unit_axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int i = 0; i < 3; i++) {
         vec v = unit_axes[i];
-        columns[i] = add(add(scale(v, cosine), scale(cross(k, v), sine)), scale(k, dot(k, v) * (1 - cosine)));
+        columns[i] = add(add(scale(v, cosine), scale(cross(k, v), sine)),
+                         scale(k, dot(k, v) * (1 - cosine)));
     }
     float rows[12] = {(float)columns[0].x, (float)columns[1].x, (float)columns[2].x, 0,
                       (float)columns[0].y, (float)columns[1].y, (float)columns[2].y, 0,
                       (float)columns[0].z, (float)columns[1].z, (float)columns[2].z, 0};
-    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "box"), rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "box"), rows),
+                     MASU_OK);
     eye e = make_eye(&cameras[0], W, H);
     masu_frame_desc frame = {.camera = &cameras[0]};
     take_picture(&s, &frame, &p);
@@ -242,7 +264,8 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
         for (uint32_t x = 0; x < W; x++) {
             /* Pixels within one pixel of a border may go either way. */
             int want = nearest(&e, x + 0.5, y + 0.5, columns), same = 1;
-            for (int n = 0; n < 9; n++) same &= nearest(&e, x + n % 3 - 0.5, y + n / 3 - 0.5, columns) == want;
+            for (int n = 0; n < 9; n++)
+                same &= nearest(&e, x + n % 3 - 0.5, y + n / 3 - 0.5, columns) == want;
             if (!same) {
                 border++;
                 continue;
@@ -253,8 +276,8 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
             counts[want]++;
         }
     }
-    print_message("  box %u, sphere %u, sky %u, borders %u pixels\n", counts[BOX], counts[SPHERE], counts[NOTHING],
-                  border);
+    print_message("  box %u, sphere %u, sky %u, borders %u pixels\n", counts[BOX], counts[SPHERE],
+                  counts[NOTHING], border);
     assert_true(counts[BOX] > 1000 && counts[SPHERE] > 1000 && counts[NOTHING] > 1000);
     close_session(&s);
 }

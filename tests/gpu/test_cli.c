@@ -1,4 +1,5 @@
-/* test_cli.c: the program `masu` as a stranger runs it: what it makes, and what it says when it cannot. */
+/* test_cli.c: the program `masu` as a stranger runs it: what it makes, and what it says when it
+ * cannot. */
 #include "support.h"
 
 #include "image.h"
@@ -26,7 +27,8 @@ static void read_text(const char *name, char *text, size_t size) {
     fclose(f);
 }
 
-/* Runs `masu ARGUMENTS` in a shell; %s in them is the scratch folder. Returns the exit code, fills out_text and err_text. */
+/* Runs `masu ARGUMENTS` in a shell; %s in them is the scratch folder. Returns the exit code, fills
+ * out_text and err_text. */
 static int masu(const char *format, ...) {
     char arguments[2048], command[4096];
     const char *build = getenv("BUILD");
@@ -34,8 +36,8 @@ static int masu(const char *format, ...) {
     va_start(args, format);
     vsnprintf(arguments, sizeof arguments, format, args);
     va_end(args);
-    snprintf(command, sizeof command, "%s/bin/masu %s >%s/out 2>%s/err </dev/null", build ? build : "build", arguments,
-             dir, dir);
+    snprintf(command, sizeof command, "%s/bin/masu %s >%s/out 2>%s/err </dev/null",
+             build ? build : "build", arguments, dir, dir);
     int status = system(command);
     assert_true(WIFEXITED(status));
     read_text("out", out_text, sizeof out_text);
@@ -47,7 +49,8 @@ static int masu(const char *format, ...) {
 static void said(const char *part) {
     size_t n = strlen(err_text);
     if (!n || strchr(err_text, '\n') != err_text + n - 1) fail_msg("not one line: '%s'", err_text);
-    if (strncmp(err_text, "masu", 4)) fail_msg("does not begin with the program's name: %s", err_text);
+    if (strncmp(err_text, "masu", 4))
+        fail_msg("does not begin with the program's name: %s", err_text);
     if (!strstr(err_text, part)) fail_msg("'%s' is not in: %s", part, err_text);
     assert_string_equal(out_text, "");
 }
@@ -80,7 +83,7 @@ static int remove_dir(void **state) {
     return system(command);
 }
 
-/* ---- Tests ------------------------------------------------------------------------------------- */
+/* ---- Tests ----------------------------------------------------------------------------------- */
 
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
@@ -147,7 +150,8 @@ static void bad_scene_files_are_named_with_their_fault(void **state) {
     write_bytes("damaged.masu", blob, n);
     assert_int_equal(masu("render %s/damaged.masu -o %s/x.png", dir, dir), 1);
     said("damaged");
-    write_bytes("text.masu", "not a scene, but long enough to hold the header of one, and a bit more", 70);
+    write_bytes("text.masu",
+                "not a scene, but long enough to hold the header of one, and a bit more", 70);
     assert_int_equal(masu("render %s/text.masu -o %s/x.png", dir, dir), 1);
     said("not a Masu scene");
     assert_false(exists("x.png"));
@@ -156,7 +160,8 @@ static void bad_scene_files_are_named_with_their_fault(void **state) {
 static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    assert_int_equal(masu("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, dir), 1);
+    assert_int_equal(masu("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, dir),
+                     1);
     said("folder.png");
     write_bytes("old.png", "old", 3);
     assert_int_equal(masu("upscale %s/none.png %s/old.png --size 8x8", dir, dir), 1);
@@ -172,18 +177,22 @@ static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(vo
 
 static void an_unknown_device_lists_those_that_are_there(void **state) {
     (void)state;
-    assert_int_equal(masu("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), dir), 1);
+    assert_int_equal(masu("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), dir),
+                     1);
     said("nonesuch");
     assert_non_null(strstr(err_text, "0 '"));
-    assert_int_equal(masu("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), dir), 0);
+    assert_int_equal(
+        masu("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), dir),
+        0);
 }
 
 static void render_writes_the_picture_and_its_numbers_under_validation(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    assert_int_equal(masu("render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet", scene, dir,
-                          dir),
-                     0);
+    assert_int_equal(
+        masu("render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet",
+             scene, dir, dir),
+        0);
     assert_string_equal(err_text, "");
     struct masu_image image;
     char path[256], error[ERROR_SIZE];
@@ -192,13 +201,20 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     assert_int_equal(image.width, 64);
     assert_int_equal(image.height, 48);
     masu_image_free(&image);
-    static const char *const keys[] = {"\"driver\"", "\"wall_ms\"", "\"passes\"", "\"march\"", "\"transient_lower_bound\"",
-                                       "\"sdf_evals\"", "\"timestamps_plausible\"", "\"median\""};
+    static const char *const keys[] = {"\"driver\"",
+                                       "\"wall_ms\"",
+                                       "\"passes\"",
+                                       "\"march\"",
+                                       "\"transient_lower_bound\"",
+                                       "\"sdf_evals\"",
+                                       "\"timestamps_plausible\"",
+                                       "\"median\""};
     read_text("a.json", out_text, sizeof out_text);
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (!strstr(out_text, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
     }
-    assert_int_equal(masu("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, dir), 0);
+    assert_int_equal(masu("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, dir),
+                     0);
     assert_true(exists("f-000.png") && exists("f-001.png") && !exists("f-002.png"));
 }
 
@@ -223,7 +239,9 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     for (uint32_t i = 0; i < IW * IH; i++) in[4 * i + 3] = (uint8_t)(i % IW * 6);
     snprintf(from, sizeof from, "%s/in.png", dir);
     assert_ok(masu_image_save_png(from, in, IW, IH, 0, error, sizeof error));
-    assert_int_equal(masu("upscale %s %s/up.png --size %ux%u --no-rcas", from, dir, (unsigned)OW, (unsigned)OH), 0);
+    assert_int_equal(
+        masu("upscale %s %s/up.png --size %ux%u --no-rcas", from, dir, (unsigned)OW, (unsigned)OH),
+        0);
     snprintf(from, sizeof from, "%s/up.png", dir);
     assert_ok(masu_image_load_png(from, &image, error, sizeof error));
     masu_ref_from_rgba8(in, IW, IH, 0, rgb);
@@ -232,14 +250,16 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     masu_ref_easu(&color, OW, OH, MASU_REF_BIT_TRICK, easu);
     masu_ref_easu(&grey, OW, OH, MASU_REF_BIT_TRICK, alpha_out);
     masu_ref_to_rgba8(easu, OW, OH, want);
-    for (uint32_t i = 0; i < OW * OH; i++) want[4 * i + 3] = (uint8_t)lrintf(alpha_out[3 * i] * 255.0f);
+    for (uint32_t i = 0; i < OW * OH; i++)
+        want[4 * i + 3] = (uint8_t)lrintf(alpha_out[3 * i] * 255.0f);
     assert_true(max_difference(image.rgba, want, sizeof want) <= 1);
     masu_image_free(&image);
     /* Sharpness is in stops: 0 differs from no sharpening more than 2 does. */
     static uint8_t sharp[2][OW * OH * 4];
     static const char *const stops[] = {"0", "2"};
     for (size_t i = 0; i < 2; i++) {
-        assert_int_equal(masu("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", dir, dir, stops[i]), 0);
+        assert_int_equal(
+            masu("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", dir, dir, stops[i]), 0);
         assert_ok(masu_image_load_png(from, &image, error, sizeof error));
         memcpy(sharp[i], image.rgba, sizeof sharp[i]);
         masu_image_free(&image);
@@ -256,8 +276,8 @@ static void the_example_of_the_readme_draws(void **state) {
     char command[1024], error[ERROR_SIZE];
     const char *build = getenv("BUILD");
     struct masu_image image;
-    snprintf(command, sizeof command, "%s/examples/minimal %s %s/example.png >%s/out", build ? build : "build",
-             scene_path("test_both"), dir, dir);
+    snprintf(command, sizeof command, "%s/examples/minimal %s %s/example.png >%s/out",
+             build ? build : "build", scene_path("test_both"), dir, dir);
     assert_int_equal(system(command), 0);
     read_text("out", out_text, sizeof out_text);
     assert_non_null(strstr(out_text, "bytes host"));

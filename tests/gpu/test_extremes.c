@@ -16,7 +16,8 @@ static void open_for_depth(masu_session *s, const char *scene, uint32_t steps) {
 }
 
 /* Draws, checks that everything is finite, returns the depth image. */
-static const float *draw_finite(masu_session *s, const masu_frame_desc *frame, masu_stats_info *stats) {
+static const float *draw_finite(masu_session *s, const masu_frame_desc *frame,
+                                masu_stats_info *stats) {
     masu_commands commands;
     masu_readback_image depth, hdr;
     draw(s, frame, &commands, NULL);
@@ -54,7 +55,10 @@ static void a_camera_inside_a_solid_sees_it_at_the_near_plane(void **state) {
     (void)state;
     masu_session s;
     masu_stats_info stats;
-    const masu_camera c = {.position = {0.1, 0.2, 0.1}, .forward = {0.3f, 0.1f, -1}, .fov_y = 1, .near_distance = 0.1f};
+    const masu_camera c = {.position = {0.1, 0.2, 0.1},
+                           .forward = {0.3f, 0.1f, -1},
+                           .fov_y = 1,
+                           .near_distance = 0.1f};
     masu_frame_desc frame = {.camera = &c};
     open_for_depth(&s, "test_sphere_sdf", 0);
     const float *depth = draw_finite(&s, &frame, &stats);
@@ -67,7 +71,8 @@ static void a_camera_on_the_surface_looking_out_sees_the_sky(void **state) {
     (void)state;
     masu_session s;
     masu_stats_info stats;
-    const masu_camera c = {.position = {0, 0, 1.0001}, .forward = {0, 0, 1}, .fov_y = 1, .near_distance = 0.01f};
+    const masu_camera c = {
+        .position = {0, 0, 1.0001}, .forward = {0, 0, 1}, .fov_y = 1, .near_distance = 0.01f};
     masu_frame_desc frame = {.camera = &c};
     open_for_depth(&s, "test_sphere_sdf", 0);
     draw_finite(&s, &frame, &stats);
@@ -98,7 +103,10 @@ static void views_beside_behind_and_far_from_the_bounds_draw_only_sky(void **sta
         {.position = {0, 0, 5}, .forward = {0, 0, 1}, .fov_y = 1, .near_distance = 0.1f},
         {.position = {0, 50, 5}, .forward = {0, 0, -1}, .fov_y = 0.5f, .near_distance = 0.1f},
         {.position = {1e7, 0, 0}, .forward = {-1, 0, 0}, .fov_y = 0.01f, .near_distance = 0.1f},
-        {.position = {1e14, -1e14, 1e14}, .forward = {-1, 1, -1}, .fov_y = 3.1f, .near_distance = 1e9f},
+        {.position = {1e14, -1e14, 1e14},
+         .forward = {-1, 1, -1},
+         .fov_y = 3.1f,
+         .near_distance = 1e9f},
     };
     masu_session s;
     masu_stats_info stats;
@@ -107,7 +115,8 @@ static void views_beside_behind_and_far_from_the_bounds_draw_only_sky(void **sta
         masu_frame_desc frame = {.camera = &cameras[i], .time = i ? 1e9 : -1e9};
         draw_finite(&s, &frame, &stats);
         assert_int_equal(stats.sdf_hits, 0);
-        assert_int_equal(stats.sdf_evals, 0); /* the bounds keep the field from being asked at all */
+        assert_int_equal(stats.sdf_evals,
+                         0); /* the bounds keep the field from being asked at all */
     }
     close_session(&s);
 }
@@ -137,8 +146,11 @@ static void light_beyond_what_halves_hold_is_clamped_and_not_infinite(void **sta
     (void)state;
     masu_session s;
     masu_stats_info stats;
-    const masu_light light = {.sun_direction = {0.5f, 1, 0.3f}, .sun_color = {1e9f, 1e9f, 1e9f}, .ambient = {1e9f, 0, 1e9f},
-                              .sky_zenith = {1e9f, 1e9f, 1e9f}, .exposure = 1e9f};
+    const masu_light light = {.sun_direction = {0.5f, 1, 0.3f},
+                              .sun_color = {1e9f, 1e9f, 1e9f},
+                              .ambient = {1e9f, 0, 1e9f},
+                              .sky_zenith = {1e9f, 1e9f, 1e9f},
+                              .exposure = 1e9f};
     masu_frame_desc frame = {.light = &light};
     open_for_depth(&s, "test_sphere_sdf", 0);
     draw_finite(&s, &frame, &stats);

@@ -1,5 +1,6 @@
-/* test_failures.c: when things go wrong: the n-th Vulkan call fails, the device lacks something, the host asks for
- * nonsense. Each gives a named error, leaves nothing behind, and a second try succeeds. */
+/* test_failures.c: when things go wrong: the n-th Vulkan call fails, the device lacks something,
+ * the host asks for nonsense. Each gives a named error, leaves nothing behind, and a second try
+ * succeeds. */
 #include "support.h"
 #include "support_wrap.h"
 
@@ -56,13 +57,15 @@ static void fail_every_call_of_init(VkResult with, bool persistent, uint32_t spl
         wrap.fail_with = with;
         wrap.persistent = persistent;
         masu_result result = try_init(&m, &detail);
-        assert_int_equal(result, with == VK_ERROR_DEVICE_LOST ? MASU_ERROR_DEVICE_LOST : MASU_ERROR_VULKAN);
+        assert_int_equal(result,
+                         with == VK_ERROR_DEVICE_LOST ? MASU_ERROR_DEVICE_LOST : MASU_ERROR_VULKAN);
         assert_null(m);
         assert_int_equal(detail.result, result);
         assert_int_equal(detail.vulkan, with);
         assert_string_equal(detail.what, wrap.failed_call);
-        if (wrap.live) fail_msg("call %llu (%s) leaks %lld objects", (unsigned long long)k, wrap.failed_call,
-                                (long long)wrap.live);
+        if (wrap.live)
+            fail_msg("call %llu (%s) leaks %lld objects", (unsigned long long)k, wrap.failed_call,
+                     (long long)wrap.live);
         assert_int_equal(wrap.calls_after_loss, 0);
     }
     wrap_reset();
@@ -92,7 +95,8 @@ static void expect_device_error(const char *what) {
     masu_memory need;
     memset(&detail, 0, sizeof detail);
     assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
-    if (!strstr(detail.what, what)) fail_msg("'%s' names '%s', not '%s'", detail.text, detail.what, what);
+    if (!strstr(detail.what, what))
+        fail_msg("'%s' names '%s', not '%s'", detail.text, detail.what, what);
     assert_true(strlen(detail.text) > 10);
     assert_null(strchr(detail.text, '\n'));
     assert_int_equal(wrap.live, 0);
@@ -130,7 +134,8 @@ static void expect_frame_error(masu_renderer *m, const masu_frame_desc *frame, c
     memset(&commands, 0, sizeof commands);
     assert_int_equal(masu_frame(m, frame, &commands), MASU_ERROR_ARGUMENT);
     const masu_detail *detail = masu_last_error(m);
-    if (!strstr(detail->what, what)) fail_msg("'%s' names '%s', not '%s'", detail->text, detail->what, what);
+    if (!strstr(detail->what, what))
+        fail_msg("'%s' names '%s', not '%s'", detail->text, detail->what, what);
     assert_null(commands.buffer);
 }
 
@@ -162,13 +167,16 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     c.fov_y = 3.2f, expect_frame_error(m, &f, "camera.fov_y"), c = good;
     c.fov_y = NAN, expect_frame_error(m, &f, "camera.fov_y"), c = good;
     c.near_distance = -1, expect_frame_error(m, &f, "camera.near_distance"), c = good;
-    bad_light = l, bad_light.sun_direction[1] = 0, f.light = &bad_light, expect_frame_error(m, &f, "sun_direction");
+    bad_light = l, bad_light.sun_direction[1] = 0, f.light = &bad_light,
+    expect_frame_error(m, &f, "sun_direction");
     bad_light = l, bad_light.ambient[1] = NAN, expect_frame_error(m, &f, "light");
     bad_light = l, bad_light.exposure = -1, expect_frame_error(m, &f, "exposure");
     f.light = &l;
-    f.sdf_params = params, f.sdf_param_count = 300, expect_frame_error(m, &f, "sdf_param_count"), f.sdf_params = NULL;
+    f.sdf_params = params, f.sdf_param_count = 300, expect_frame_error(m, &f, "sdf_param_count"),
+    f.sdf_params = NULL;
     /* None of these has moved the frame number, and extreme but sane values work. */
-    c.fov_y = 3.1f, c.position[0] = 1e12, c.forward[0] = 1e-30f, c.forward[2] = -1e-30f, c.near_distance = 1e-6f;
+    c.fov_y = 3.1f, c.position[0] = 1e12, c.forward[0] = 1e-30f, c.forward[2] = -1e-30f,
+    c.near_distance = 1e-6f;
     assert_int_equal(masu_frame(m, &f, &commands), MASU_OK);
     assert_int_equal(commands.frame, 0);
     char error[ERROR_SIZE];
@@ -178,7 +186,8 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     assert_int_equal(stats.replaced, 0);
     float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     assert_int_equal(masu_instance_set_transform(m, (masu_instance){0}, rows), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_instance_set_transform(m, (masu_instance){99}, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(m, (masu_instance){99}, rows),
+                     MASU_ERROR_ARGUMENT);
     rows[5] = NAN;
     assert_int_equal(masu_instance_set_transform(m, (masu_instance){1}, rows), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_instance_find(m, "no such name").id, 0);
@@ -189,11 +198,17 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     assert_int_equal(wrap.live, 0);
 }
 
-/* Singular, mirrored, huge and tiny transforms: a defined picture without a single replaced value. */
+/* Singular, mirrored, huge and tiny transforms: a defined picture without a single replaced value.
+ * */
 static void extreme_transforms_stay_finite(void **state) {
     (void)state;
-    static const float diagonals[][3] = {{0, 0, 0}, {1, 0, 1}, {-1, 1, 1}, {1e18f, 1e18f, 1e18f},
-                                         {1e-18f, 1e-18f, 1e-18f}, {3e38f, 1, 1e-38f}, {1, 1e-30f, 1}};
+    static const float diagonals[][3] = {{0, 0, 0},
+                                         {1, 0, 1},
+                                         {-1, 1, 1},
+                                         {1e18f, 1e18f, 1e18f},
+                                         {1e-18f, 1e-18f, 1e-18f},
+                                         {3e38f, 1, 1e-38f},
+                                         {1, 1e-30f, 1}};
     masu_detail detail;
     masu_renderer *m;
     masu_commands commands;
@@ -218,7 +233,8 @@ static void extreme_transforms_stay_finite(void **state) {
             float v = ((const float *)depth.pixels)[k];
             assert_true(v >= 0.0f && v <= 1.0f);
             const uint16_t *half = (const uint16_t *)hdr.pixels + 4 * k;
-            for (uint32_t ch = 0; ch < 4; ch++) assert_true((half[ch] & 0x7C00) != 0x7C00); /* no Inf, no NaN */
+            for (uint32_t ch = 0; ch < 4; ch++)
+                assert_true((half[ch] & 0x7C00) != 0x7C00); /* no Inf, no NaN */
         }
     }
     masu_destroy(m);

@@ -9,7 +9,8 @@
 
 enum { W = 64, H = 48 };
 
-/* Heap calls of the library's own are counted without the validation layer, which allocates inside the calls it wraps. */
+/* Heap calls of the library's own are counted without the validation layer, which allocates inside
+ * the calls it wraps. */
 static void three_hundred_frames(bool validate) {
     masu_session_desc d = test_desc("test_both", W, H);
     masu_session s;
@@ -43,7 +44,8 @@ static void three_hundred_frames(bool validate) {
         assert_int_equal(masu_instance_set_transform(s.m, box, rows), MASU_OK);
         assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_OK);
         heap += masu_allocs_of_thread() - before;
-        assert_ok(masu_headless_submit(&s.host, commands.buffer, commands.slot, error, sizeof error));
+        assert_ok(
+            masu_headless_submit(&s.host, commands.buffer, commands.slot, error, sizeof error));
     }
     for (uint32_t i = 0; i < 2; i++) assert_ok(masu_headless_wait(&s.host, i, error, sizeof error));
     assert_int_equal(wrap.setup_calls, setup);
@@ -72,7 +74,8 @@ static void the_counter_counts(void **state) {
     free(p);
 }
 
-/* A noisy block between canaries: the renderer assumes nothing about it and writes nothing beside it. */
+/* A noisy block between canaries: the renderer assumes nothing about it and writes nothing beside
+ * it. */
 static void the_block_is_used_to_the_byte(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_both", W, H);
@@ -153,7 +156,8 @@ static void the_query_equals_the_use_for_many_descriptions(void **state) {
         masu_peaks(m, &peaks);
         assert_int_equal(peaks.host_bytes, need.host_bytes);
         assert_int_equal(peaks.device_bytes, need.device_bytes);
-        /* The report's host rows fill the block to its last byte; device rows stay inside theirs. */
+        /* The report's host rows fill the block to its last byte; device rows stay inside theirs.
+         * */
         masu_memory_row rows[64];
         uint32_t n = masu_memory_report(m, rows, 64);
         assert_true(n <= 64);

@@ -1,5 +1,6 @@
-/* test_frame.c: frames are the same whatever should not matter: poison, memory split by role, who owns the memory, how many
- * frames are in flight, which rung came before, how the target is reached. */
+/* test_frame.c: frames are the same whatever should not matter: poison, memory split by role, who
+ * owns the memory, how many frames are in flight, which rung came before, how the target is
+ * reached. */
 #include "support.h"
 
 #include <stdlib.h>
@@ -55,7 +56,8 @@ static void a_second_run_gives_the_same_bits(void **state) {
     compare_all_rungs(&d);
 }
 
-/* Software drivers split work over threads: no result may depend on how. (Other drivers ignore the variable.) */
+/* Software drivers split work over threads: no result may depend on how. (Other drivers ignore the
+ * variable.) */
 static void the_number_of_worker_threads_changes_nothing(void **state) {
     (void)state;
     static const char *const counts[] = {"0", "1", "2"};
@@ -118,7 +120,8 @@ static void timestamps_change_nothing_and_name_the_passes_that_ran(void **state)
     close_session(&s);
 }
 
-/* Smaller rungs draw into a corner of larger images: what an earlier frame left beyond it must not show. */
+/* Smaller rungs draw into a corner of larger images: what an earlier frame left beyond it must not
+ * show. */
 static void a_rung_does_not_see_what_larger_rungs_left(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_both", W, H);
@@ -191,7 +194,8 @@ static void memory_of_the_host_works(void **state) {
             unsigned char *mapped = NULL;
             if (need->host_visible) {
                 void *p = NULL;
-                assert_int_equal(vkMapMemory(s.host.device, memory[r], 0, VK_WHOLE_SIZE, 0, &p), VK_SUCCESS);
+                assert_int_equal(vkMapMemory(s.host.device, memory[r], 0, VK_WHOLE_SIZE, 0, &p),
+                                 VK_SUCCESS);
                 mapped = (unsigned char *)p + offset;
             }
             s.desc.device_blocks[r] =
@@ -202,7 +206,8 @@ static void memory_of_the_host_works(void **state) {
         masu_renderer *none = NULL;
         s.desc.device_blocks[MASU_ROLE_DEVICE].bytes--;
         void *block = aligned_alloc(64, (s.need.host_bytes + 63) / 64 * 64);
-        assert_int_equal(masu_init(&s.desc, block, s.need.host_bytes, &none, &detail), MASU_ERROR_MEMORY);
+        assert_int_equal(masu_init(&s.desc, block, s.need.host_bytes, &none, &detail),
+                         MASU_ERROR_MEMORY);
         assert_null(none);
         assert_int_equal(detail.needed, detail.given + 1);
         assert_non_null(strstr(detail.text, "device_blocks[MASU_ROLE_DEVICE]"));

@@ -1,5 +1,6 @@
-/* test_upscale.c: EASU and RCAS on the GPU against the scalar transcription in tests/reference/fsr1.c, through the library's
- * own frame: six kinds of picture (nine patterns), ratios from 1 to 2.5, garbage around the valid rectangle. */
+/* test_upscale.c: EASU and RCAS on the GPU against the scalar transcription in
+ * tests/reference/fsr1.c, through the library's own frame: six kinds of picture (nine patterns),
+ * ratios from 1 to 2.5, garbage around the valid rectangle. */
 #include "support.h"
 
 #include "reference/fsr1.h"
@@ -36,10 +37,10 @@ static void run_gpu(const job *j, const uint8_t *rgba, uint32_t beyond, uint8_t 
     char error[ERROR_SIZE];
     masu_headless_source source;
     masu_headless_target target;
-    assert_ok(masu_headless_source_create(&s.host, rgba, j->in_w, j->in_h, j->in_w + 19, j->in_h + 7, beyond, &source,
-                                          error, sizeof error));
-    assert_ok(masu_headless_target_create(&s.host, j->out_w, j->out_h, VK_FORMAT_R8G8B8A8_UNORM, true, &target, error,
-                                          sizeof error));
+    assert_ok(masu_headless_source_create(&s.host, rgba, j->in_w, j->in_h, j->in_w + 19,
+                                          j->in_h + 7, beyond, &source, error, sizeof error));
+    assert_ok(masu_headless_target_create(&s.host, j->out_w, j->out_h, VK_FORMAT_R8G8B8A8_UNORM,
+                                          true, &target, error, sizeof error));
     masu_desc d = s.desc;
     d.output = (VkExtent2D){j->out_w, j->out_h};
     d.targets.images = &target.image;
@@ -77,8 +78,10 @@ static void reference_easu(const job *j, const uint8_t *rgba, uint8_t *out) {
     free(result);
 }
 
-static void reference_rcas(uint32_t width, uint32_t height, float stops, const uint8_t *rgba, uint8_t *out) {
-    float *rgb = malloc((size_t)width * height * 3 * sizeof *rgb), *result = malloc((size_t)width * height * 3 * sizeof *rgb);
+static void reference_rcas(uint32_t width, uint32_t height, float stops, const uint8_t *rgba,
+                           uint8_t *out) {
+    float *rgb = malloc((size_t)width * height * 3 * sizeof *rgb),
+          *result = malloc((size_t)width * height * 3 * sizeof *rgb);
     masu_ref_from_rgba8(rgba, width, height, 0, rgb);
     struct masu_ref_image in = {rgb, width, height, 0};
     masu_ref_rcas(&in, exp2f(-stops), result);
@@ -87,9 +90,11 @@ static void reference_rcas(uint32_t width, uint32_t height, float stops, const u
     free(result);
 }
 
-/* Ratios: 2, 1.5, 1.3 (not a fraction of small numbers), 2.5, 1, and two different ones per axis. */
-static const uint32_t sizes[][4] = {{48, 40, 96, 80},  {64, 36, 96, 54}, {50, 30, 65, 39}, {40, 27, 100, 67},
-                                    {53, 31, 53, 31}, {37, 64, 90, 71}, {1, 1, 9, 5}};
+/* Ratios: 2, 1.5, 1.3 (not a fraction of small numbers), 2.5, 1, and two different ones per axis.
+ * */
+static const uint32_t sizes[][4] = {{48, 40, 96, 80},  {64, 36, 96, 54}, {50, 30, 65, 39},
+                                    {40, 27, 100, 67}, {53, 31, 53, 31}, {37, 64, 90, 71},
+                                    {1, 1, 9, 5}};
 
 #define SIZES (sizeof sizes / sizeof *sizes)
 #define MOST ((size_t)128 * 128 * 4)
@@ -108,8 +113,8 @@ static void easu_is_the_scalar_reference_within_one_step(void **state) {
             if (d > worst) worst = d;
             texels += j.out_w * j.out_h;
         }
-        print_message("  easu  %-12s %6u texels, worst %u/255\n", masu_pattern_name((enum masu_pattern)pattern), texels,
-                      worst);
+        print_message("  easu  %-12s %6u texels, worst %u/255\n",
+                      masu_pattern_name((enum masu_pattern)pattern), texels, worst);
         assert_true(worst <= 1);
     }
 }
@@ -128,12 +133,14 @@ static void rcas_is_the_scalar_reference_within_one_step(void **state) {
             uint32_t d = masu_ref_max_difference_rgba8(gpu, cpu, (size_t)j.out_w * j.out_h);
             if (d > worst) worst = d;
         }
-        print_message("  rcas  %-12s worst %u/255\n", masu_pattern_name((enum masu_pattern)pattern), worst);
+        print_message("  rcas  %-12s worst %u/255\n", masu_pattern_name((enum masu_pattern)pattern),
+                      worst);
         assert_true(worst <= 1);
     }
 }
 
-/* RCAS can amplify a step of EASU, so the second half of the chain is judged on the GPU's own first half. */
+/* RCAS can amplify a step of EASU, so the second half of the chain is judged on the GPU's own first
+ * half. */
 static void the_chain_is_easu_then_rcas(void **state) {
     (void)state;
     static uint8_t in[MOST], easu[MOST], gpu[MOST], cpu[MOST];

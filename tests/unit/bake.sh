@@ -268,6 +268,27 @@ says stdout ' 3 vertices, 1 triangles'
 sed "s|base64,.*\"}|base64,$nan\"}|" "$folder/nodes.gltf" > "$folder/nan.gltf"
 refuses 1 'nan.gltf: it holds no triangles that could be drawn; 1 of 1' "$folder/nan.gltf" "${x[@]}"
 
+# Nodes that show the same set of meshes share one masu mesh; another set with one of them does not.
+geometry() {
+    printf '<geometry id="%s"><mesh><source id="p%s"><float_array id="f%s" count="9">%s</float_array>
+        <technique_common><accessor source="#f%s" count="3" stride="3"><param name="X" type="float"/>
+        <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
+        </source><vertices id="v%s"><input semantic="POSITION" source="#p%s"/></vertices>
+        <triangles count="1"><input semantic="VERTEX" source="#v%s" offset="0"/><p>0 1 2</p>
+        </triangles></mesh></geometry>' "$1" "$1" "$1" "$2" "$1" "$1" "$1" "$1"
+}
+cat > "$folder/sets.dae" << END
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<library_geometries>$(geometry a '0 0 0 1 0 0 0 1 0')$(geometry b '0 0 1 1 0 1 0 1 1')
+</library_geometries><library_visual_scenes><visual_scene id="s">
+<node><instance_geometry url="#a"/><instance_geometry url="#b"/></node>
+<node><translate>5 0 0</translate><instance_geometry url="#a"/></node>
+<node><translate>9 0 0</translate><instance_geometry url="#a"/><instance_geometry url="#b"/></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
+END
+accepts "$folder/sets.dae" "${x[@]}"
+says stdout ' 6 vertices, 3 triangles (5 drawn), 2 meshes, 3 instances'
+
 # A model placed twice is stored once; an override makes new materials, not new geometry.
 scene '{"models": [{"file": "nodes.gltf"}, {"file": "nodes.gltf", "name": "b", "rotate_y": 90},
     {"file": "nodes.gltf", "material": {"roughness": 0.5}}]}'

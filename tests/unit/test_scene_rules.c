@@ -1,0 +1,414 @@
+/*
+ * test_scene_rules.c: the rules for the contents of a blob. Each is broken alone, in an otherwise
+ * good and well-sealed blob; the refusal names the section and the element. What is just within a
+ * rule is accepted.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support_bind.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static support_blob blob;
+
+static void assert_refused(const char *what, uint64_t element) {
+    masu_scene scene;
+    masu_detail detail;
+    char place[64];
+    support_blob_seal(blob.bytes, blob.size);
+    if (!support_bind(blob.bytes, blob.size, &scene, &detail)) fail_msg("%s was accepted", what);
+    assert_int_equal(detail.result, MASU_ERROR_SCENE);
+    if (strcmp(detail.what, what)) fail_msg("%s was refused as %s", what, detail.text);
+    assert_int_equal(detail.given, element);
+    (void)snprintf(place, sizeof place, "%s[%u]", what, (unsigned)element);
+    assert_non_null(strstr(detail.text, place));
+}
+
+/* A full blob, changed: refused by the name of the section and the number of the element. */
+#define REFUSED(what, element, ...)                                                                \
+    do {                                                                                           \
+        support_blob_write(&blob, SUPPORT_ALL);                                                    \
+        __VA_ARGS__;                                                                               \
+        assert_refused(what, element);                                                             \
+    } while (0)
+
+/* The same for a change that is still within the rules. */
+#define ACCEPTED(...)                                                                              \
+    do {                                                                                           \
+        masu_scene scene;                                                                          \
+        support_blob_write(&blob, SUPPORT_ALL);                                                    \
+        __VA_ARGS__;                                                                               \
+        support_blob_seal(blob.bytes, blob.size);                                                  \
+        support_accepted(&blob, &scene);                                                           \
+    } while (0)
+
+#define ROW(kind) support_blob_row(&blob, MASU_BLOB_##kind)
+#define TABLE_INDEX(kind)                                                                          \
+    (uint64_t)(ROW(kind) - (masu_blob_section *)(void *)(blob.bytes + sizeof(masu_blob_header)))
+#define AT(kind, type) ((type *)support_blob_find(&blob, MASU_BLOB_##kind))
+#define VERTEX AT(VERTICES, masu_blob_vertex)
+#define INDEX AT(INDICES, uint32_t)
+#define PRIMITIVE AT(PRIMITIVES, masu_blob_primitive)
+#define MESH AT(MESHES, masu_blob_mesh)
+#define INSTANCE AT(INSTANCES, masu_blob_instance)
+#define MATERIAL AT(MATERIALS, masu_blob_material)
+#define KEY AT(CAMERA_KEYS, masu_blob_camera_key)
+#define SKY AT(ENVIRONMENT, masu_blob_environment)
+#define FIELD AT(SDF, masu_blob_sdf)
+#define PARAM AT(SDF_PARAMS, masu_blob_sdf_param)
+#define SPIRV AT(MARCH_SPIRV, uint32_t)
+
+static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
+
+static void a_section_of_an_unknown_kind_is_refused(void **state) {
+    (void)state;
+    REFUSED("section", 1, ROW(INDICES)->kind = 0);
+    REFUSED("section", 1, ROW(INDICES)->kind = MASU_BLOB_KIND_COUNT);
+    REFUSED("section", 1, ROW(INDICES)->kind = UINT32_MAX);
+}
+
+static void a_section_that_appears_twice_is_refused(void **state) {
+    (void)state;
+    REFUSED("section", 4, *ROW(INSTANCES) = *ROW(MESHES));
+}
+
+static void a_section_of_another_element_size_is_refused(void **state) {
+    (void)state;
+    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        for (int change = 0; change < 3; change++) {
+            support_blob_write(&blob, SUPPORT_ALL);
+            uint32_t *stride = &support_blob_row(&blob, (enum masu_blob_kind)kind)->stride;
+            *stride = change == 0 ? 0 : change == 1 ? *stride + 1 : *stride * 2;
+            assert_refused("section", kind - 1); /* they stand in rising kind */
+        }
+    }
+}
+
+static void a_section_with_too_few_or_too_many_elements_is_refused(void **state) {
+    (void)state;
+    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        static const uint64_t counts[] = {0, 0x80000000u, (uint64_t)1 << 60, UINT64_MAX};
+        for (size_t i = 0; i < COUNT(counts); i++) {
+            support_blob_write(&blob, SUPPORT_ALL);
+            support_blob_row(&blob, (enum masu_blob_kind)kind)->count = counts[i];
+            assert_refused("section", kind - 1);
+        }
+    }
+    REFUSED("section", TABLE_INDEX(ENVIRONMENT), ROW(ENVIRONMENT)->count = 2);
+    REFUSED("section", TABLE_INDEX(SDF), ROW(SDF)->count = 2);
+    REFUSED("section", TABLE_INDEX(SDF_PARAMS), ROW(SDF_PARAMS)->count = MASU_MAX_SDF_PARAMS + 1);
+    REFUSED("section", TABLE_INDEX(MARCH_SPIRV),
+            ROW(MARCH_SPIRV)->count = ((uint64_t)16 << 20) + 1);
+}
+
+static void a_section_outside_the_blob_is_refused(void **state) {
+    (void)state;
+    uint64_t index = MASU_BLOB_NAMES - 1;
+    REFUSED("section", index, ROW(NAMES)->count++);
+    REFUSED("section", index, ROW(NAMES)->offset += 16);
+    REFUSED("section", index, ROW(NAMES)->offset += 8);                       /* misaligned */
+    REFUSED("section", index, ROW(NAMES)->offset = 0);                        /* the header */
+    REFUSED("section", index, ROW(NAMES)->offset = sizeof(masu_blob_header)); /* the table */
+    REFUSED("section", index, ROW(NAMES)->offset = (blob.size + 31) / 16 * 16);
+    REFUSED("section", index, ROW(NAMES)->offset = UINT64_MAX - 15);
+    REFUSED("section", index, ROW(NAMES)->offset = (uint64_t)1 << 63);
+}
+
+static void names_that_do_not_end_are_refused(void **state) {
+    (void)state;
+    REFUSED("names", ROW(NAMES)->count - 1, blob.bytes[blob.size - 1] = 'x');
+}
+
+static void a_vertex_that_is_not_finite_is_refused(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 3; k++) {
+            REFUSED("vertices", 10, VERTEX[10].position[k] = not_finite[i]);
+            REFUSED("vertices", 0, VERTEX[0].position[k] = not_finite[i]);
+        }
+    }
+    ACCEPTED(VERTEX[3].position[0] = 3e38f, VERTEX[3].normal[0] = -32768);
+}
+
+static void a_primitive_outside_its_sections_is_refused(void **state) {
+    (void)state;
+    REFUSED("primitives", 0, PRIMITIVE[0].index_count = 5);
+    REFUSED("primitives", 2, PRIMITIVE[2].first_index = 10);
+    REFUSED("primitives", 0, PRIMITIVE[0].first_index = UINT32_MAX - 2); /* wraps in 32 bits */
+    REFUSED("primitives", 0, PRIMITIVE[0].vertex_count = 0);
+    REFUSED("primitives", 0, PRIMITIVE[0].vertex_count = 0x1000000);
+    REFUSED("primitives", 2, PRIMITIVE[2].first_vertex = 8);
+    REFUSED("primitives", 1, PRIMITIVE[1].first_vertex = UINT32_MAX - 2);
+    REFUSED("primitives", 1, PRIMITIVE[1].material = 2);
+    REFUSED("primitives", 1, PRIMITIVE[1].material = UINT32_MAX);
+}
+
+static void primitives_that_share_indices_are_refused(void **state) {
+    (void)state;
+    REFUSED("primitives", 2, PRIMITIVE[1].index_count = 6);
+    REFUSED("primitives", 0, PRIMITIVE[0].index_count = 18);
+    REFUSED("primitives", 1, PRIMITIVE[1].index_count = 0xFFFFFFFF);
+}
+
+static void an_index_outside_its_primitive_is_refused(void **state) {
+    (void)state;
+    REFUSED("indices", 5, INDEX[5] = 4);
+    REFUSED("indices", 8, INDEX[8] = 3); /* a vertex, but the next primitive's */
+    REFUSED("indices", 14, INDEX[14] = UINT32_MAX);
+    ACCEPTED(INDEX[5] = 0);
+}
+
+static void bounds_that_are_not_finite_are_refused(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 3; k++) {
+            REFUSED("primitives", 1, PRIMITIVE[1].aabb_min[k] = not_finite[i]);
+            REFUSED("primitives", 2, PRIMITIVE[2].aabb_max[k] = not_finite[i]);
+            REFUSED("meshes", 0, MESH[0].aabb_min[k] = not_finite[i]);
+            REFUSED("meshes", 1, MESH[1].aabb_max[k] = not_finite[i]);
+        }
+    }
+}
+
+static void a_mesh_outside_the_primitives_is_refused(void **state) {
+    (void)state;
+    REFUSED("meshes", 1, MESH[1].first_primitive = 3);
+    REFUSED("meshes", 1, MESH[1].primitive_count = 2);
+    REFUSED("meshes", 0, MESH[0].first_primitive = UINT32_MAX); /* wraps in 32 bits */
+    ACCEPTED(MESH[1].first_primitive = 3, MESH[1].primitive_count = 0);
+}
+
+static void meshes_that_share_primitives_are_refused(void **state) {
+    (void)state;
+    REFUSED("meshes", 1, MESH[1].first_primitive = 0, MESH[1].primitive_count = 2);
+}
+
+static void an_instance_that_is_not_finite_is_refused(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 12; k++) {
+            REFUSED("instances", 2, INSTANCE[2].transform[k] = not_finite[i]);
+        }
+    }
+}
+
+static void an_instance_of_nothing_is_refused(void **state) {
+    (void)state;
+    REFUSED("instances", 2, INSTANCE[2].mesh = 2);
+    REFUSED("instances", 0, INSTANCE[0].mesh = UINT32_MAX);
+    REFUSED("instances", 1, INSTANCE[1].parent = 3);
+    REFUSED("instances", 1, INSTANCE[1].parent = MASU_BLOB_NONE - 1);
+}
+
+static void instances_that_are_not_sorted_by_mesh_are_refused(void **state) {
+    (void)state;
+    REFUSED("instances", 1, INSTANCE[0].mesh = 1);
+    REFUSED("instances", 2, INSTANCE[1].mesh = 1, INSTANCE[2].mesh = 0);
+}
+
+static void a_name_outside_the_names_is_refused(void **state) {
+    (void)state;
+    uint32_t end;
+    support_blob_write(&blob, SUPPORT_ALL);
+    end = (uint32_t)ROW(NAMES)->count;
+    const uint32_t outside[] = {end, end + 1, MASU_BLOB_NONE - 1};
+    for (size_t i = 0; i < COUNT(outside); i++) {
+        REFUSED("meshes", 1, MESH[1].name = outside[i]);
+        REFUSED("instances", 1, INSTANCE[1].name = outside[i]);
+        REFUSED("materials", 1, MATERIAL[1].name = outside[i]);
+        REFUSED("sdf parameters", 1, PARAM[1].name = outside[i]);
+    }
+    ACCEPTED(MESH[1].name = end - 1, MATERIAL[0].name = MASU_BLOB_NONE); /* "" and none */
+    REFUSED("meshes", 0, support_blob_drop(&blob, MASU_BLOB_NAMES));
+}
+
+static void a_material_out_of_range_is_refused(void **state) {
+    (void)state;
+    const float below = -1e-6f, above = 1.000001f;
+    for (int k = 0; k < 3; k++) {
+        REFUSED("materials", 0, MATERIAL[0].base_color[k] = below);
+        REFUSED("materials", 0, MATERIAL[0].base_color[k] = above);
+        REFUSED("materials", 0, MATERIAL[0].base_color[k] = (float)NAN);
+        REFUSED("materials", 1, MATERIAL[1].emissive[k] = below);
+        REFUSED("materials", 1, MATERIAL[1].emissive[k] = 1.1e9f);
+        REFUSED("materials", 1, MATERIAL[1].emissive[k] = (float)NAN);
+    }
+    REFUSED("materials", 1, MATERIAL[1].roughness = below);
+    REFUSED("materials", 1, MATERIAL[1].roughness = above);
+    REFUSED("materials", 1, MATERIAL[1].roughness = (float)NAN);
+    REFUSED("materials", 1, MATERIAL[1].metallic = below);
+    REFUSED("materials", 1, MATERIAL[1].metallic = above);
+    REFUSED("materials", 1, MATERIAL[1].metallic = (float)NAN);
+    ACCEPTED(MATERIAL[0].roughness = 0.0f, MATERIAL[0].metallic = 1.0f,
+             MATERIAL[0].emissive[0] = 1e9f, MATERIAL[0].base_color[2] = -0.0f);
+}
+
+static void a_camera_key_that_is_not_finite_is_refused(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 3; k++) {
+            REFUSED("camera keys", 1, KEY[1].position[k] = not_finite[i]);
+            REFUSED("camera keys", 2, KEY[2].target[k] = not_finite[i]);
+        }
+        REFUSED("camera keys", 0, KEY[0].time = not_finite[i]);
+        REFUSED("camera keys", 0, KEY[0].fov_y = not_finite[i]);
+    }
+}
+
+static void a_camera_key_that_sees_nothing_is_refused(void **state) {
+    (void)state;
+    REFUSED("camera keys", 2, KEY[2].fov_y = 0.0f);
+    REFUSED("camera keys", 2, KEY[2].fov_y = 0.0009f);
+    REFUSED("camera keys", 2, KEY[2].fov_y = 3.11f);
+    REFUSED("camera keys", 2, KEY[2].fov_y = -1.0f);
+    REFUSED("camera keys", 1, memcpy(KEY[1].target, KEY[1].position, sizeof KEY->target));
+    ACCEPTED(KEY[0].fov_y = 3.1f, KEY[1].fov_y = 0.001f);
+}
+
+static void a_camera_path_whose_time_does_not_rise_is_refused(void **state) {
+    (void)state;
+    REFUSED("camera keys", 1, KEY[1].time = 0.0f);
+    REFUSED("camera keys", 2, KEY[2].time = 1.25f);
+    REFUSED("camera keys", 1, KEY[0].time = 2.0f);
+    ACCEPTED(KEY[0].time = -5.0f);
+}
+
+static void a_blob_without_an_environment_is_refused(void **state) {
+    (void)state;
+    REFUSED("environment", 0, support_blob_drop(&blob, MASU_BLOB_ENVIRONMENT));
+}
+
+static void an_environment_out_of_range_is_refused(void **state) {
+    (void)state;
+    static const size_t colors[] = {
+        offsetof(masu_blob_environment, sun_color), offsetof(masu_blob_environment, ambient),
+        offsetof(masu_blob_environment, sky_zenith), offsetof(masu_blob_environment, sky_horizon)};
+    static const float bad[] = {-1e-6f, 1.1e9f, (float)NAN, (float)INFINITY};
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        for (size_t c = 0; c < COUNT(colors); c++) {
+            for (size_t k = 0; k < 3; k++) {
+                REFUSED("environment", 0, memcpy((char *)SKY + colors[c] + 4 * k, &bad[i], 4));
+            }
+        }
+        REFUSED("environment", 0, SKY->exposure = bad[i]);
+        REFUSED("environment", 0, SKY->near_distance = bad[i]);
+    }
+    REFUSED("environment", 0, SKY->exposure = 0.0f);
+    REFUSED("environment", 0, SKY->near_distance = 0.0f);
+}
+
+static void a_sun_without_a_direction_is_refused(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 3; k++) {
+            REFUSED("environment", 0, SKY->sun_direction[k] = not_finite[i]);
+        }
+    }
+    REFUSED("environment", 0, memset(SKY->sun_direction, 0, 12));
+    REFUSED("environment", 0, SKY->sun_direction[2] = 0.3f); /* 1.044 long */
+    REFUSED("environment", 0, SKY->sun_direction[2] = 1e30f);
+}
+
+static void parts_of_an_sdf_that_is_missing_are_refused(void **state) {
+    (void)state;
+    REFUSED("sdf", 0, support_blob_drop(&blob, MASU_BLOB_SDF));
+    REFUSED("sdf", 0, support_blob_drop(&blob, MASU_BLOB_SDF),
+            support_blob_drop(&blob, MASU_BLOB_SDF_PARAMS));
+    REFUSED("sdf", 0, support_blob_drop(&blob, MASU_BLOB_SDF),
+            support_blob_drop(&blob, MASU_BLOB_MARCH_SPIRV));
+}
+
+static void an_sdf_out_of_range_is_refused(void **state) {
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        for (size_t i = 0; i < COUNT(not_finite); i++) {
+            REFUSED("sdf", 0, FIELD->bounds_min[k] = not_finite[i]);
+            REFUSED("sdf", 0, FIELD->bounds_max[k] = not_finite[i]);
+        }
+        REFUSED("sdf", 0, FIELD->bounds_min[k] = FIELD->bounds_max[k] + 1.0f);
+        REFUSED("sdf", 0, FIELD->bounds_min[k] = -1.1e30f);
+        REFUSED("sdf", 0, FIELD->bounds_max[k] = 1.1e30f);
+        ACCEPTED(FIELD->bounds_min[k] = FIELD->bounds_max[k]); /* flat */
+    }
+    static const float lipschitz[] = {0.0f, -1.0f, 0.0009f, 1.1e6f, (float)NAN, (float)INFINITY};
+    static const float distance[] = {0.0f, -1.0f, 0.9e-6f, 1.1e30f, (float)NAN, (float)INFINITY};
+    for (size_t i = 0; i < COUNT(lipschitz); i++) {
+        REFUSED("sdf", 0, FIELD->lipschitz = lipschitz[i]);
+        REFUSED("sdf", 0, FIELD->max_distance = distance[i]);
+    }
+}
+
+static void code_compiled_for_other_instances_is_refused(void **state) {
+    (void)state;
+    REFUSED("sdf", 0, FIELD->has_raster = 0);
+    REFUSED("sdf", 0, FIELD->has_raster = 2);
+    REFUSED("sdf", 0, support_blob_drop(&blob, MASU_BLOB_INSTANCES));
+    support_blob_write(&blob, SUPPORT_SDF);
+    FIELD->has_raster = 1;
+    assert_refused("sdf", 0);
+}
+
+static void an_sdf_parameter_outside_its_range_is_refused(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        REFUSED("sdf parameters", 1, PARAM[1].value = not_finite[i]);
+        REFUSED("sdf parameters", 1, PARAM[1].minimum = not_finite[i]);
+        REFUSED("sdf parameters", 1, PARAM[1].maximum = not_finite[i]);
+    }
+    REFUSED("sdf parameters", 0, PARAM[0].value = 2.1f);
+    REFUSED("sdf parameters", 0, PARAM[0].value = -0.1f);
+    REFUSED("sdf parameters", 0, PARAM[0].minimum = 3.0f);
+    REFUSED("sdf parameters", 0, PARAM[0].maximum = -1.0f);
+    ACCEPTED(PARAM[0].minimum = PARAM[0].maximum = PARAM[0].value);
+}
+
+static void an_sdf_without_code_is_refused(void **state) {
+    (void)state;
+    REFUSED("march SPIR-V", 0, support_blob_drop(&blob, MASU_BLOB_MARCH_SPIRV));
+    REFUSED("march SPIR-V", 0, SPIRV[0] = 0x03022307); /* of the other byte order */
+    REFUSED("march SPIR-V", 0, ROW(MARCH_SPIRV)->count = 4);
+    ACCEPTED(support_blob_drop(&blob, MASU_BLOB_SDF_PARAMS)); /* these may be absent */
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_section_of_an_unknown_kind_is_refused),
+        cmocka_unit_test(a_section_that_appears_twice_is_refused),
+        cmocka_unit_test(a_section_of_another_element_size_is_refused),
+        cmocka_unit_test(a_section_with_too_few_or_too_many_elements_is_refused),
+        cmocka_unit_test(a_section_outside_the_blob_is_refused),
+        cmocka_unit_test(names_that_do_not_end_are_refused),
+        cmocka_unit_test(a_vertex_that_is_not_finite_is_refused),
+        cmocka_unit_test(a_primitive_outside_its_sections_is_refused),
+        cmocka_unit_test(primitives_that_share_indices_are_refused),
+        cmocka_unit_test(an_index_outside_its_primitive_is_refused),
+        cmocka_unit_test(bounds_that_are_not_finite_are_refused),
+        cmocka_unit_test(a_mesh_outside_the_primitives_is_refused),
+        cmocka_unit_test(meshes_that_share_primitives_are_refused),
+        cmocka_unit_test(an_instance_that_is_not_finite_is_refused),
+        cmocka_unit_test(an_instance_of_nothing_is_refused),
+        cmocka_unit_test(instances_that_are_not_sorted_by_mesh_are_refused),
+        cmocka_unit_test(a_name_outside_the_names_is_refused),
+        cmocka_unit_test(a_material_out_of_range_is_refused),
+        cmocka_unit_test(a_camera_key_that_is_not_finite_is_refused),
+        cmocka_unit_test(a_camera_key_that_sees_nothing_is_refused),
+        cmocka_unit_test(a_camera_path_whose_time_does_not_rise_is_refused),
+        cmocka_unit_test(a_blob_without_an_environment_is_refused),
+        cmocka_unit_test(an_environment_out_of_range_is_refused),
+        cmocka_unit_test(a_sun_without_a_direction_is_refused),
+        cmocka_unit_test(parts_of_an_sdf_that_is_missing_are_refused),
+        cmocka_unit_test(an_sdf_out_of_range_is_refused),
+        cmocka_unit_test(code_compiled_for_other_instances_is_refused),
+        cmocka_unit_test(an_sdf_parameter_outside_its_range_is_refused),
+        cmocka_unit_test(an_sdf_without_code_is_refused),
+    };
+    return cmocka_run_group_tests_name("scene_rules", tests, support_make_edge, NULL);
+}
