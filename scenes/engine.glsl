@@ -223,10 +223,12 @@ void masu_sdf_surface(vec3 p, inout masu_surface s)
     vec3 in_ring = to_ring(p);
     float d_ring = ring(in_ring);
     float d_pillars = pillars(p);
-    float d_cube = box(to_cube(p), vec3(cube_half));
+    vec3 in_cube = to_cube(p);
     float nearest = min(min(d_sand, d_stones), min(d_ring, d_pillars));
-    if (d_cube < nearest + 0.001) {
-        s.albedo = vec3(0.10, 0.27, 0.25) * mix(0.25, 1.0, exp2(min(d_cube, 0.0) * 4.0));
+    if (menger(in_cube) <= nearest) {
+        /* Darker with depth: little light finds its way in. */
+        float depth = max(-box(in_cube, vec3(cube_half)), 0.0);
+        s.albedo = vec3(0.10, 0.27, 0.25) * mix(0.25, 1.0, masu_exp2(-4.0 * depth));
         s.roughness = 0.7;
     } else if (d_pillars <= nearest) {
         pillar_surface(p, s);

@@ -172,9 +172,11 @@ bounds='"bounds": [[-1,-1,-1],[1,1,1]]'
 wrong ': sdf.lipschitz: expected a number from 0.001' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"lipschitz\": 0}}"
 wrong ': sdf.params\[0\].name: must be letters' \
-    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"params\": [{\"name\": \"a b\", \"value\": 0}]}}"
-wrong ': sdf.params\[0\]: value 3 is not between min 0 and max 1' "{\"sdf\": {\"source\": \"good.glsl\",
-    $bounds, \"params\": [{\"name\": \"a\", \"value\": 3, \"min\": 0, \"max\": 1}]}}"
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
+      \"params\": [{\"name\": \"a b\", \"value\": 0}]}}"
+wrong ': sdf.params\[0\]: value 3 is not between min 0 and max 1' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
+      \"params\": [{\"name\": \"a\", \"value\": 3, \"min\": 0, \"max\": 1}]}}"
 wrong ': sdf.params\[1\]: a second parameter would be called MASU_PARAM_AB' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
       \"params\": [{\"name\": \"ab\", \"value\": 0}, {\"name\": \"AB\", \"value\": 0}]}}"
@@ -270,10 +272,12 @@ refuses 1 'nan.gltf: it holds no triangles that could be drawn; 1 of 1' "$folder
 
 # Nodes that show the same set of meshes share one masu mesh; another set with one of them does not.
 geometry() {
-    printf '<geometry id="%s"><mesh><source id="p%s"><float_array id="f%s" count="9">%s</float_array>
-        <technique_common><accessor source="#f%s" count="3" stride="3"><param name="X" type="float"/>
-        <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
-        </source><vertices id="v%s"><input semantic="POSITION" source="#p%s"/></vertices>
+    printf '<geometry id="%s"><mesh><source id="p%s">
+        <float_array id="f%s" count="9">%s</float_array>
+        <technique_common><accessor source="#f%s" count="3" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/>
+        <param name="Z" type="float"/></accessor></technique_common></source>
+        <vertices id="v%s"><input semantic="POSITION" source="#p%s"/></vertices>
         <triangles count="1"><input semantic="VERTEX" source="#v%s" offset="0"/><p>0 1 2</p>
         </triangles></mesh></geometry>' "$1" "$1" "$1" "$2" "$1" "$1" "$1" "$1"
 }
