@@ -13,7 +13,7 @@ void *masu_arena_take(masu_arena *arena, const char *name, uint64_t count, uint6
                       uint64_t alignment) {
     if (arena->used == UINT64_MAX) return NULL;
     uint64_t offset = (arena->used + alignment - 1) & ~(alignment - 1);
-    if (element_bytes && count > (UINT64_MAX - offset) / element_bytes) {
+    if (offset < arena->used || (element_bytes && count > (UINT64_MAX - offset) / element_bytes)) {
         arena->used = UINT64_MAX;
         return NULL;
     }

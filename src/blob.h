@@ -4,7 +4,7 @@
  *   +--------+---------------+---------+---------+-----
  *   | header | section table | payload | payload | ...      little-endian, offsets from the first
  *   byte, no pointers +--------+---------------+---------+---------+-----
- *   0        64              16-byte aligned, in table order, gaps are zero
+ *   0        64              16-byte aligned, in table order, gaps are zero, < 16 bytes each
  *
  * Rules a reader may rely on after masu_scene_bind has passed a blob (src/scene.c checks each):
  *  - header.bytes is the exact length; hash is FNV-1a 64 over everything behind the header;

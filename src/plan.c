@@ -61,9 +61,11 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
     if (rung->march_steps > MASU_MARCH_STEPS_MAX) {
         return bad_range(detail, "rungs[].march_steps", rung->march_steps, 1, MASU_MARCH_STEPS_MAX);
     }
-    if ((unsigned)rung->upscale > MASU_ON || (unsigned)rung->sharpen > MASU_ON) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].upscale", MASU_ON, 0,
-                         "rungs[%u].upscale and .sharpen are MASU_AUTO, MASU_OFF or MASU_ON", r);
+    const masu_switch switches[2] = {rung->upscale, rung->sharpen};
+    static const char *const names[2] = {"rungs[].upscale", "rungs[].sharpen"};
+    for (uint32_t i = 0; i < 2; i++) {
+        if ((unsigned)switches[i] <= MASU_ON) continue;
+        return bad_range(detail, names[i], (unsigned)switches[i], MASU_AUTO, MASU_ON);
     }
     return MASU_OK;
 }

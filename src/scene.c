@@ -77,6 +77,11 @@ static masu_result check_header(reader *r, uint64_t given) {
                          "scene blob: version %u, this library reads version %u; bake it again",
                          h.version, MASU_BLOB_VERSION);
     }
+    uint64_t reserved = h.reserved0 | h.reserved[0] | h.reserved[1] | h.reserved[2] | h.reserved[3];
+    if (reserved) {
+        return masu_fail(r->detail, MASU_ERROR_SCENE, "header", 0, reserved,
+                         "scene blob: a reserved field of the header is not zero");
+    }
     if (h.bytes != given) {
         return masu_fail(
             r->detail, MASU_ERROR_SCENE, "bytes", h.bytes, given,
@@ -102,6 +107,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
     memcpy(&h, r->bytes, sizeof h);
     const void *start[MASU_BLOB_KIND_COUNT] = {0};
     uint64_t behind_table = sizeof h + h.section_count * sizeof(masu_blob_section);
+    uint64_t end = behind_table;
     for (uint32_t i = 0; i < h.section_count; i++) {
         masu_blob_section s;
         memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
@@ -116,8 +122,14 @@ static masu_result read_sections(reader *r, uint64_t given) {
             s.count * s.stride > given - s.offset) {
             return bad(r, "section", i, "lies outside the blob or is misaligned");
         }
+        if (s.offset + s.count * s.stride > end) end = s.offset + s.count * s.stride;
         start[s.kind] = r->bytes + s.offset;
         r->counts[s.kind] = s.count;
+    }
+    /* The count of sections is in front of what the hash covers. Bytes that no section owns, beyond
+     * padding, say that it was damaged. */
+    if (given - end >= MASU_BLOB_ALIGN) {
+        return bad(r, "section", h.section_count, "is missing: bytes are left behind the last one");
     }
     r->view = (masu_scene_view){.vertices = start[MASU_BLOB_VERTICES],
                                 .indices = start[MASU_BLOB_INDICES],

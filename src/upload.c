@@ -305,9 +305,10 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     struct masu_frame_uniforms u;
     memset(&u, 0, sizeof u);
     masu_camera camera;
-    if (!isfinite(f->time) || !isfinite(f->time_step)) {
+    /* Beyond this a float has no seconds left; far beyond, it is infinite. */
+    if (!(fabs(f->time) <= 1e15) || !(fabsf(f->time_step) <= 1e15f)) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "time", 0, 0,
-                         "time or time_step is not finite");
+                         "time or time_step is not finite or beyond 1e15 s");
     }
     if (f->camera) {
         camera = *f->camera;

@@ -46,7 +46,7 @@ vec3 masu_oct_decode(vec2 p)
         vec2 s = vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
         n.xy = (1.0 - abs(n.yx)) * s;
     }
-    return n * inversesqrt(dot(n, n));
+    return n * masu_rsqrt(dot(n, n));
 }
 
 bool masu_is_emissive(masu_surface s)

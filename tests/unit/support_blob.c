@@ -75,11 +75,15 @@ static const masu_blob_sdf_param sdf_params[] = {
 /* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
 static const uint32_t march_spirv[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
 
+static size_t aligned(size_t at) {
+    return (at + MASU_BLOB_ALIGN - 1) / MASU_BLOB_ALIGN * MASU_BLOB_ALIGN;
+}
+
 static void add(support_blob *blob, enum masu_blob_kind kind, const void *data, size_t stride,
                 size_t count) {
     masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
     masu_blob_section *row = (masu_blob_section *)(void *)(blob->bytes + sizeof *header);
-    size_t at = (blob->size + MASU_BLOB_ALIGN - 1) & ~(size_t)(MASU_BLOB_ALIGN - 1);
+    size_t at = aligned(blob->size);
     row[header->section_count++] = (masu_blob_section){(uint32_t)kind, (uint32_t)stride, at, count};
     if (at + stride * count > sizeof blob->bytes) {
         fputs("support_blob: SUPPORT_BLOB_ROOM is too small\n", stderr);
@@ -111,7 +115,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     ADD(MASU_BLOB_ENVIRONMENT, environment);
     if (parts & SUPPORT_SDF) {
         masu_blob_sdf sdf[] = {{{-10.0f, -1.0f, -10.0f},
-                                1.0f,
+                                2.0f,
                                 {10.0f, 4.0f, 10.0f},
                                 100.0f,
                                 parts & SUPPORT_RASTER ? 1u : 0u,
@@ -143,13 +147,21 @@ void *support_blob_find(support_blob *blob, enum masu_blob_kind kind) {
 }
 
 void support_blob_drop(support_blob *blob, enum masu_blob_kind kind) {
+    static support_blob old;
+    old = *blob;
+    const masu_blob_header *was = (const masu_blob_header *)(const void *)old.bytes;
+    const masu_blob_section *rows =
+        (const masu_blob_section *)(const void *)(old.bytes + sizeof *was);
     masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
-    masu_blob_section *rows = (masu_blob_section *)(void *)(blob->bytes + sizeof *header);
-    masu_blob_section *row = support_blob_row(blob, kind);
-    if (!row) return;
-    size_t behind = header->section_count - 1u - (size_t)(row - rows);
-    memmove(row, row + 1, behind * sizeof *row);
-    memset(&rows[--header->section_count], 0, sizeof *rows);
+    uint32_t kept = was->section_count - (support_blob_row(blob, kind) != NULL);
+    memset(blob->bytes + sizeof *was, 0, sizeof blob->bytes - sizeof *was);
+    header->section_count = 0;
+    blob->size = sizeof *header + kept * sizeof *rows;
+    for (uint32_t i = 0; i < was->section_count; i++) {
+        if (rows[i].kind == (uint32_t)kind) continue;
+        add(blob, (enum masu_blob_kind)rows[i].kind, old.bytes + rows[i].offset, rows[i].stride,
+            (size_t)rows[i].count);
+    }
 }
 
 void support_blob_seal(unsigned char *bytes, size_t size) {

@@ -2,7 +2,7 @@
  *
  * A blob is written with every field in range; a test finds a section, changes what it likes in
  * place, seals the blob again (length and hash) and hands it to the reader. The blobs are laid out
- * as blob.h says: sections in rising kind, 16-byte aligned, gaps zero.
+ * as blob.h says: sections in rising kind, 16-byte aligned, gaps zero; nothing follows the last.
  *
  * Full content (SUPPORT_RASTER | SUPPORT_SDF):
  *
@@ -41,7 +41,7 @@ masu_blob_section *support_blob_row(support_blob *blob, enum masu_blob_kind kind
 /* First element of a section; there must be one. */
 void *support_blob_find(support_blob *blob, enum masu_blob_kind kind);
 
-/* Takes a section out of the table; its bytes stay where they are. Does not seal. */
+/* Writes the blob again without a section. Does not seal. */
 void support_blob_drop(support_blob *blob, enum masu_blob_kind kind);
 
 /* Header.bytes and header.hash made to fit `size` bytes. */

@@ -228,6 +228,7 @@ static void a_bad_count_is_named(void **state) {
 static void a_missing_target_is_named(void **state) {
     (void)state;
     BAD("targets.images", d.targets.images = NULL);
+    BAD("targets.images", support_images[0] = VK_NULL_HANDLE);
     BAD("targets.images", support_images[1] = VK_NULL_HANDLE);
     BAD("targets.views", d.targets.views = NULL);
     BAD("targets.views", support_views[1] = VK_NULL_HANDLE);
@@ -284,6 +285,27 @@ static void a_rung_that_needs_upscaling_cannot_switch_it_off(void **state) {
     (void)state;
     BAD("rungs[].upscale", d.rungs[1].scale = 0.5f, d.rungs[1].upscale = MASU_OFF);
     BAD("rungs[].upscale", d = source_desc(10, 10), d.rungs[0].upscale = MASU_OFF);
+    BAD("rungs[].upscale", d = source_desc(1920, 10), d.rungs[0].upscale = MASU_OFF);
+}
+
+static void the_extremes_of_each_range_are_accepted(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER | SDF, 1, 16384);
+    d.rung_count = MASU_MAX_RUNGS;
+    d.targets.count = MASU_MAX_TARGETS;
+    d.frames_in_flight = MASU_MAX_FLIGHT;
+    d.readback = MASU_READBACK_ALL;
+    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, 1};
+    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, 256};
+    compile(&d, &plan);
+    d.targets.count = 1;
+    d.frames_in_flight = 1;
+    compile(&d, &plan);
+    d = source_desc(1, 16384);
+    compile(&d, &plan);
+    d = source_desc(16384, 1);
+    compile(&d, &plan);
 }
 
 static void refusals_say_what_was_given_and_what_is_allowed(void **state) {
@@ -406,6 +428,7 @@ int main(void) {
         cmocka_unit_test(a_bad_source_is_named),
         cmocka_unit_test(a_bad_rung_is_named),
         cmocka_unit_test(a_rung_that_needs_upscaling_cannot_switch_it_off),
+        cmocka_unit_test(the_extremes_of_each_range_are_accepted),
         cmocka_unit_test(refusals_say_what_was_given_and_what_is_allowed),
         cmocka_unit_test(a_scene_beyond_a_limit_is_refused_with_both_numbers),
         cmocka_unit_test(what_no_device_is_needed_for_is_refused_without_one),

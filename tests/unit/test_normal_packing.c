@@ -126,6 +126,20 @@ static void every_texel_gives_a_unit_vector(void **state) {
     }
 }
 
+static void a_coordinate_beyond_the_square_counts_as_its_edge(void **state) {
+    (void)state;
+    for (uint32_t y = 0; y < 8192; y++) {
+        float beyond[3], edge[3];
+        uint32_t on_edge = y == 8191 ? 8190 : y;
+        masu_unpack_normal(8191 | y << 13, beyond);
+        masu_unpack_normal(8190 | on_edge << 13, edge);
+        assert_memory_equal(beyond, edge, sizeof edge);
+        masu_unpack_normal(y | 8191 << 13, beyond);
+        masu_unpack_normal(on_edge | 8190 << 13, edge);
+        assert_memory_equal(beyond, edge, sizeof edge);
+    }
+}
+
 static void material_and_flags_do_not_turn_the_normal(void **state) {
     (void)state;
     uint64_t random = 3;
@@ -144,6 +158,7 @@ int main(void) {
         cmocka_unit_test(axes_come_back_exactly),
         cmocka_unit_test(directions_in_the_plane_of_two_axes_stay_in_it),
         cmocka_unit_test(every_texel_gives_a_unit_vector),
+        cmocka_unit_test(a_coordinate_beyond_the_square_counts_as_its_edge),
         cmocka_unit_test(material_and_flags_do_not_turn_the_normal),
     };
     return cmocka_run_group_tests_name("normal_packing", tests, NULL, NULL);

@@ -168,6 +168,20 @@ static void a_rung_that_rounds_to_the_output_size_is_not_upscaled(void **state) 
                  "light(r:albedo r:normal r:scene_depth w:hdr) tonemap(r:hdr w:target)");
 }
 
+static void a_rung_that_differs_in_one_direction_alone_is_upscaled(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(SDF, 1000, 1);
+    d.rung_count = 1;
+    d.rungs[0] = (masu_rung){.scale = 0.9f, .sharpen = MASU_OFF};
+    assert_frame(&d, 0,
+                 "march(u:albedo u:normal w:scene_depth) light(r:albedo r:normal r:scene_depth "
+                 "w:hdr) tonemap(r:hdr w:ldr) easu(r:ldr w:target)");
+    d = source_desc(1920, 1000);
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+    d = source_desc(1900, 1080);
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+}
+
 static void a_source_image_ignores_the_scales_of_the_rungs(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -306,6 +320,10 @@ static void the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it(void **s
     d.rung_count = 1; /* full size only */
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "render size is output size");
     assert_string_equal(why_of(&d, MASU_PASS_RCAS), "nothing was upscaled, or rung.sharpen is off");
+    d.rung_count = 3;
+    d.rungs[1].scale = 0.5f; /* in this one alone */
+    assert_string_equal(why_of(&d, MASU_PASS_EASU),
+                        "render size differs from output size, or rung.upscale is on");
     assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback asks for no image");
     assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "a scene is lit");
 }
@@ -491,6 +509,7 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
     assert_int_equal(b[MASU_BUFFER_INDICES].bytes, 15 * 4);
     assert_int_equal(b[MASU_BUFFER_MATERIALS].bytes, 2 * 32);
     assert_int_equal(b[MASU_BUFFER_COUNTERS].bytes, 2 * 4 * MASU_COUNTER_COUNT);
+    assert_int_equal(b[MASU_BUFFER_COUNTERS].count, 2 * MASU_COUNTER_COUNT);
     assert_int_equal(b[MASU_BUFFER_FRAME].stride, frame);
     assert_int_equal(b[MASU_BUFFER_FRAME].bytes, 3 * frame);
     assert_int_equal(b[MASU_BUFFER_INSTANCES].stride, 192); /* 3 * 48 up to a multiple of 64 */
@@ -529,6 +548,12 @@ static void readback_slots_hold_the_counters_and_then_the_images(void **state) {
     compile(&d, &plan);
     assert_int_equal(plan.readback_offset[3], 0);
     assert_int_equal(b->stride, 288);
+    d.debug.timestamps = 1; /* one before each pass and one at the end */
+    compile(&d, &plan);
+    uint64_t times = (8 * (MASU_PASS_COUNT + 1) + 15) / 16 * 16;
+    assert_int_equal(plan.readback_times, 0);
+    assert_int_equal(plan.readback_offset[3], times);
+    assert_int_equal(b->stride, times + 288);
 }
 
 /* ---- Export ---------------------------------------------------------------------------------- */
@@ -561,9 +586,12 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
     assert_string_equal(light->writes[0], "hdr");
     assert_null(light->writes[1]);
     assert_null(info.passes[MASU_PASS_MARCH].reads[0]);
+    assert_string_equal(info.passes[MASU_PASS_TONEMAP].writes[0], "target"); /* of rung 0 */
+    assert_null(info.passes[MASU_PASS_TONEMAP].writes[1]);
     assert_int_equal(info.rungs[0].dispatches, 3);
     assert_int_equal(info.rungs[1].dispatches, 5);
     assert_int_equal(info.rungs[1].barriers, 7);
+    assert_int_equal(info.rungs[0].render_width, 1920);
     assert_int_equal(info.rungs[2].render_width, 768);
     assert_int_equal(info.rungs[2].render_height, 432);
     assert_int_equal(info.image_count, MASU_IMAGE_SOURCE - 1);
@@ -583,6 +611,22 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
 
+static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static masu_plan_info info;
+    masu_desc d = source_desc(1000, 500);
+    d.rungs[0].sharpen = MASU_OFF;
+    compile(&d, &plan);
+    masu_plan_export(&plan, NULL, &info);
+    assert_int_equal(info.left_out_bytes, 28 * 1000 * 500 + 8 * 1920 * 1080);
+    d = scene_desc(RASTER | SDF, 100, 100); /* all but ldr, upscaled, final */
+    d.rung_count = 1;
+    compile(&d, &plan);
+    masu_plan_export(&plan, NULL, &info);
+    assert_int_equal(info.left_out_bytes, 12 * 100 * 100);
+}
+
 static void the_public_memory_sums_the_blocks(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -590,6 +634,7 @@ static void the_public_memory_sums_the_blocks(void **state) {
     memset(&plan, 0, sizeof plan);
     plan.blocks[MASU_ROLE_DEVICE] = (masu_block_plan){1000, 256, 6, 1, 0};
     plan.blocks[MASU_ROLE_READBACK] = (masu_block_plan){24, 16, 4, 2, 1};
+    plan.blocks[MASU_ROLE_UPLOAD] = (masu_block_plan){0, 8, 2, 3, 1}; /* not used */
     plan.transient_unaliased = 900, plan.transient_aliased = 600, plan.transient_lower_bound = 500;
     masu_memory_export(&plan, 777, &memory);
     assert_int_equal(memory.host_bytes, 777);
@@ -601,6 +646,8 @@ static void the_public_memory_sums_the_blocks(void **state) {
     assert_int_equal(memory.roles[MASU_ROLE_DEVICE].type, 1);
     assert_int_equal(memory.roles[MASU_ROLE_DEVICE].host_visible, 0);
     assert_int_equal(memory.roles[MASU_ROLE_UPLOAD].bytes, 0);
+    assert_int_equal(memory.roles[MASU_ROLE_UPLOAD].alignment, 0);
+    assert_int_equal(memory.roles[MASU_ROLE_UPLOAD].host_visible, 0);
     assert_int_equal(memory.roles[MASU_ROLE_READBACK].bytes, 24);
     assert_int_equal(memory.roles[MASU_ROLE_READBACK].host_visible, 1);
     assert_int_equal(memory.transient_unaliased, 900);
@@ -615,6 +662,7 @@ int main(void) {
         cmocka_unit_test(odd_sizes_round_to_nearest_and_never_to_nothing),
         cmocka_unit_test(any_scale_of_any_size_gives_a_size_within_half_a_pixel),
         cmocka_unit_test(a_rung_that_rounds_to_the_output_size_is_not_upscaled),
+        cmocka_unit_test(a_rung_that_differs_in_one_direction_alone_is_upscaled),
         cmocka_unit_test(a_source_image_ignores_the_scales_of_the_rungs),
         cmocka_unit_test(polygons_and_sdf_make_the_whole_frame),
         cmocka_unit_test(without_an_sdf_nothing_is_marched),
@@ -634,6 +682,7 @@ int main(void) {
         cmocka_unit_test(buffers_are_sized_by_the_scene_and_the_frames_in_flight),
         cmocka_unit_test(readback_slots_hold_the_counters_and_then_the_images),
         cmocka_unit_test(the_public_plan_tells_what_was_compiled),
+        cmocka_unit_test(bytes_left_out_are_counted_at_the_size_of_the_plan),
         cmocka_unit_test(the_public_memory_sums_the_blocks),
     };
     return cmocka_run_group_tests_name("plan", tests, NULL, NULL);

@@ -19,9 +19,10 @@
 
 static support_blob blob;
 
+static masu_detail detail; /* of the last refusal */
+
 static void assert_refused(const char *what, uint64_t element) {
     masu_scene scene;
-    masu_detail detail;
     char place[64];
     support_blob_seal(blob.bytes, blob.size);
     if (!support_bind(blob.bytes, blob.size, &scene, &detail)) fail_msg("%s was accepted", what);
@@ -72,6 +73,7 @@ static void a_section_of_an_unknown_kind_is_refused(void **state) {
     (void)state;
     REFUSED("section", 1, ROW(INDICES)->kind = 0);
     REFUSED("section", 1, ROW(INDICES)->kind = MASU_BLOB_KIND_COUNT);
+    assert_non_null(strstr(detail.text, "unknown kind"));
     REFUSED("section", 1, ROW(INDICES)->kind = UINT32_MAX);
 }
 
@@ -112,7 +114,7 @@ static void a_section_with_too_few_or_too_many_elements_is_refused(void **state)
 static void a_section_outside_the_blob_is_refused(void **state) {
     (void)state;
     uint64_t index = MASU_BLOB_NAMES - 1;
-    REFUSED("section", index, ROW(NAMES)->count++);
+    REFUSED("section", index, ROW(NAMES)->count += 16);
     REFUSED("section", index, ROW(NAMES)->offset += 16);
     REFUSED("section", index, ROW(NAMES)->offset += 8);                       /* misaligned */
     REFUSED("section", index, ROW(NAMES)->offset = 0);                        /* the header */
@@ -122,9 +124,26 @@ static void a_section_outside_the_blob_is_refused(void **state) {
     REFUSED("section", index, ROW(NAMES)->offset = (uint64_t)1 << 63);
 }
 
+/* The hash does not cover the count of sections: what none of them owns tells that it is wrong. */
+static void bytes_that_no_section_owns_are_refused(void **state) {
+    (void)state;
+    for (uint32_t parts = 0; parts <= SUPPORT_ALL; parts++) {
+        support_blob_write(&blob, parts);
+        masu_blob_header *header = (masu_blob_header *)(void *)blob.bytes;
+        assert_refused("section", --header->section_count);
+        support_blob_write(&blob, parts);
+        blob.size += MASU_BLOB_ALIGN;
+        assert_refused("section", header->section_count);
+        blob.size--; /* padding */
+        support_blob_seal(blob.bytes, blob.size);
+        masu_scene scene;
+        support_accepted(&blob, &scene);
+    }
+}
+
 static void names_that_do_not_end_are_refused(void **state) {
     (void)state;
-    REFUSED("names", ROW(NAMES)->count - 1, blob.bytes[blob.size - 1] = 'x');
+    REFUSED("names", ROW(NAMES)->count - 1, AT(NAMES, char)[ROW(NAMES)->count - 1] = 'x');
 }
 
 static void a_vertex_that_is_not_finite_is_refused(void **state) {
@@ -164,6 +183,8 @@ static void an_index_outside_its_primitive_is_refused(void **state) {
     REFUSED("indices", 8, INDEX[8] = 3); /* a vertex, but the next primitive's */
     REFUSED("indices", 14, INDEX[14] = UINT32_MAX);
     ACCEPTED(INDEX[5] = 0);
+    ACCEPTED(INDEX[9] = 3); /* the first behind a primitive of three vertices */
+    ACCEPTED(PRIMITIVE[1].vertex_count = 1, INDEX[7] = INDEX[8] = 0);
 }
 
 static void bounds_that_are_not_finite_are_refused(void **state) {
@@ -227,7 +248,9 @@ static void a_name_outside_the_names_is_refused(void **state) {
         REFUSED("sdf parameters", 1, PARAM[1].name = outside[i]);
     }
     ACCEPTED(MESH[1].name = end - 1, MATERIAL[0].name = MASU_BLOB_NONE); /* "" and none */
-    REFUSED("meshes", 0, support_blob_drop(&blob, MASU_BLOB_NAMES));
+    REFUSED("meshes", 0, blob.size = (size_t)ROW(NAMES)->offset;
+            support_blob_drop(&blob, MASU_BLOB_NAMES));
+    REFUSED("section", 11, support_blob_drop(&blob, MASU_BLOB_NAMES)); /* its bytes still there */
 }
 
 static void a_material_out_of_range_is_refused(void **state) {
@@ -337,6 +360,7 @@ static void an_sdf_out_of_range_is_refused(void **state) {
         REFUSED("sdf", 0, FIELD->bounds_min[k] = -1.1e30f);
         REFUSED("sdf", 0, FIELD->bounds_max[k] = 1.1e30f);
         ACCEPTED(FIELD->bounds_min[k] = FIELD->bounds_max[k]); /* flat */
+        ACCEPTED(FIELD->bounds_min[k] = -1e30f, FIELD->bounds_max[k] = 1e30f);
     }
     static const float lipschitz[] = {0.0f, -1.0f, 0.0009f, 1.1e6f, (float)NAN, (float)INFINITY};
     static const float distance[] = {0.0f, -1.0f, 0.9e-6f, 1.1e30f, (float)NAN, (float)INFINITY};
@@ -375,6 +399,7 @@ static void an_sdf_without_code_is_refused(void **state) {
     REFUSED("march SPIR-V", 0, support_blob_drop(&blob, MASU_BLOB_MARCH_SPIRV));
     REFUSED("march SPIR-V", 0, SPIRV[0] = 0x03022307); /* of the other byte order */
     REFUSED("march SPIR-V", 0, ROW(MARCH_SPIRV)->count = 4);
+    ACCEPTED(ROW(MARCH_SPIRV)->count = 5);                    /* a module's header */
     ACCEPTED(support_blob_drop(&blob, MASU_BLOB_SDF_PARAMS)); /* these may be absent */
 }
 
@@ -385,6 +410,7 @@ int main(void) {
         cmocka_unit_test(a_section_of_another_element_size_is_refused),
         cmocka_unit_test(a_section_with_too_few_or_too_many_elements_is_refused),
         cmocka_unit_test(a_section_outside_the_blob_is_refused),
+        cmocka_unit_test(bytes_that_no_section_owns_are_refused),
         cmocka_unit_test(names_that_do_not_end_are_refused),
         cmocka_unit_test(a_vertex_that_is_not_finite_is_refused),
         cmocka_unit_test(a_primitive_outside_its_sections_is_refused),

@@ -1,0 +1,79 @@
+/* support_renderer.c: see support_renderer.h. */
+#include "support_renderer.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support_bind.h"
+#include "support_desc.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+masu_renderer m;
+masu_scene scene;
+_Alignas(64) unsigned char memory[MASU_ROLE_COUNT][ROOM];
+masu_blob_camera_key keys[4];
+
+static support_blob blob;
+static VkCommandBuffer frame_handles[MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
+static VkCommandBuffer load_handles[64];
+static struct masu_instance_data instances[4];
+static uint64_t instance_names[4];
+static uint8_t instance_dirty[4];
+static masu_blob_sdf_param params[4];
+
+VkCommandBuffer *frames = frame_handles, *loads = load_handles;
+
+/* Lays the buffers of each role one behind the other. */
+void make_renderer(uint32_t parts, uint64_t staging) {
+    masu_detail detail;
+    memset(&m, 0, sizeof m);
+    memset(memory, NOISE, sizeof memory);
+    support_blob_write(&blob, parts);
+    support_accepted(&blob, &scene);
+    masu_desc d = scene_desc(0, 1280, 720);
+    d.scene = &scene;
+    if (masu_compile(&d, 64, 64, &m.plan, &detail)) fail_msg("%s", detail.text);
+    m.plan.buffers[MASU_BUFFER_STAGING].bytes = staging;
+    uint64_t used[MASU_ROLE_COUNT] = {0};
+    for (uint32_t b = 0; b < MASU_BUFFER_POISON; b++) {
+        masu_buffer_plan *buffer = &m.plan.buffers[b];
+        buffer->offset = used[buffer->role];
+        used[buffer->role] += (buffer->bytes + 63) / 64 * 64;
+        assert_true(used[buffer->role] <= ROOM);
+    }
+    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) m.mapped[role] = memory[role];
+    for (size_t i = 0; i < COUNT(frame_handles); i++) frames[i] = FAKE(VkCommandBuffer, i);
+    for (size_t i = 0; i < COUNT(load_handles); i++) loads[i] = FAKE(VkCommandBuffer, 0x800 + i);
+    for (uint32_t f = 0; f < MASU_MAX_FLIGHT; f++) m.slot_frame[f] = UINT64_MAX;
+    m.frames = frames;
+    m.loads = loads;
+    m.instances = instances;
+    m.instance_names = instance_names;
+    m.instance_dirty = instance_dirty;
+    m.camera_keys = keys;
+    m.sdf_params = params;
+    m.load_count = masu_load_chunks(&m.plan);
+    assert_true(m.load_count <= COUNT(load_handles));
+    masu_keep_scene(&m);
+}
+
+const unsigned char *slot_bytes(masu_buffer_id buffer, uint32_t slot) {
+    return masu_buffer_pointer(&m, buffer, slot);
+}
+
+struct masu_frame_uniforms uniforms(uint32_t slot) {
+    struct masu_frame_uniforms u;
+    memcpy(&u, slot_bytes(MASU_BUFFER_FRAME, slot), sizeof u);
+    return u;
+}
+
+void write_good(const masu_frame_desc *f, uint32_t slot) {
+    masu_detail detail;
+    if (masu_write_frame(&m, f, slot, &detail)) fail_msg("refused: %s", detail.text);
+}

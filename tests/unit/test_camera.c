@@ -1,0 +1,463 @@
+/*
+ * test_camera.c: the uniforms of a frame: the scene's camera path, the camera's matrix (compared
+ * with projection done the long way in double), light, SDF parameters, and what is refused. Without
+ * a GPU: see support_renderer.h.
+ */
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support_bind.h"
+#include "support_random.h"
+#include "support_renderer.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static masu_camera good_camera(void) {
+    return (masu_camera){
+        .position = {1.0, 2.0, 3.0}, .forward = {0.0f, 0.0f, -2.0f}, .fov_y = 1.0f};
+}
+
+static masu_light good_light(void) {
+    return (masu_light){.sun_direction = {0.0f, 2.0f, 0.0f}, .sun_color = {1.0f, 2.0f, 3.0f}};
+}
+
+/* ---- The camera path ------------------------------------------------------------------------- */
+
+static void assert_near(double a, double b, double tolerance) {
+    if (!(fabs(a - b) <= tolerance)) fail_msg("%.9g is not %.9g", a, b);
+}
+
+static void the_camera_path_is_linear_between_its_keys_and_held_at_its_ends(void **state) {
+    (void)state;
+    static const struct {
+        double time, position[3], target[3], fov;
+    } cases[] = {
+        {-10.0, {0, 1, 5}, {0, 0, 0}, 0.8},           {0.0, {0, 1, 5}, {0, 0, 0}, 0.8},
+        {0.75, {2.5, 1, 2.5}, {0, 0.25, 0}, 0.85},    {1.5, {5, 1, 0}, {0, 0.5, 0}, 0.9},
+        {2.75, {2.5, 1, -2.5}, {0, 0.25, 0.5}, 0.95}, {4.0, {0, 1, -5}, {0, 0, 1}, 1.0},
+        {1e300, {0, 1, -5}, {0, 0, 1}, 1.0},
+    };
+    make_renderer(SUPPORT_ALL, 0);
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        masu_camera c;
+        assert_int_equal(masu_camera_at(&m, cases[i].time, &c), MASU_OK);
+        for (int k = 0; k < 3; k++) {
+            assert_near(c.position[k], cases[i].position[k], 1e-6);
+            assert_near((double)c.forward[k], cases[i].target[k] - cases[i].position[k], 1e-6);
+            assert_true((double)c.up[k] == 0.0);
+        }
+        assert_near((double)c.fov_y, cases[i].fov, 1e-6);
+        assert_true((double)c.near_distance == 0.0);
+    }
+}
+
+static void a_camera_path_that_is_missing_or_asked_for_nonsense_says_so(void **state) {
+    (void)state;
+    masu_camera c;
+    masu_detail detail;
+    make_renderer(SUPPORT_ALL, 0);
+    assert_int_equal(masu_camera_at(&m, (double)NAN, &c), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_camera_at(&m, (double)INFINITY, &c), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_camera_at(&m, 0.0, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_camera_at(NULL, 0.0, &c), MASU_ERROR_ARGUMENT);
+    make_renderer(SUPPORT_RASTER, 0);
+    assert_int_equal(masu_camera_at(&m, 0.0, &c), MASU_ERROR_STATE);
+    masu_frame_desc f = {.time = 0.0};
+    assert_int_equal(masu_write_frame(&m, &f, 0, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "camera");
+}
+
+static void a_path_of_one_key_stands_still(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    m.plan.scene.camera_keys = 1;
+    for (double time = -3.0; time < 4.0; time += 1.0) {
+        masu_camera c;
+        assert_int_equal(masu_camera_at(&m, time, &c), MASU_OK);
+        assert_near(c.position[2], 5.0, 0.0);
+        assert_near((double)c.fov_y, 0.8, 1e-6);
+    }
+}
+
+/* Half-way, position and target meet in one point: there is no direction there. */
+static void keys_that_cross_over_keep_a_direction(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    keys[0] = (masu_blob_camera_key){0.0f, {-1.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 1.0f};
+    keys[1] = (masu_blob_camera_key){2.0f, {1.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}, 1.0f};
+    m.plan.scene.camera_keys = 2;
+    masu_camera c;
+    assert_int_equal(masu_camera_at(&m, 1.0, &c), MASU_OK);
+    assert_near((double)c.forward[0], 2.0, 0.0);
+    masu_frame_desc f = {.time = 1.0};
+    write_good(&f, 0);
+}
+
+/* ---- The camera's uniforms ------------------------------------------------------------------- */
+
+static double dot3(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross3(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void unit3(const float v[3], double out[3]) {
+    double d[3] = {(double)v[0], (double)v[1], (double)v[2]};
+    double length = sqrt(dot3(d, d));
+    for (int k = 0; k < 3; k++) out[k] = d[k] / length;
+}
+
+static void renormalise(double v[3]) {
+    double length = sqrt(dot3(v, v));
+    for (int k = 0; k < 3; k++) v[k] /= length;
+}
+
+/* clip = matrix * (rel, 1) */
+static void project(const struct masu_frame_uniforms *u, const double rel[3], double clip[4]) {
+    for (int row = 0; row < 4; row++) {
+        clip[row] = (double)u->clip_from_rel[12 + row];
+        for (int k = 0; k < 3; k++) clip[row] += (double)u->clip_from_rel[4 * k + row] * rel[k];
+    }
+}
+
+static float random_float(uint64_t *random, float low, float high) {
+    return low + (high - low) * (float)(support_random(random) >> 40) / 16777216.0f;
+}
+
+static void the_matrix_projects_as_a_camera_does(void **state) {
+    (void)state;
+    uint64_t random = 5;
+    make_renderer(SUPPORT_ALL, 0);
+    for (int n = 0; n < 500; n++) {
+        masu_camera c = {.fov_y = random_float(&random, 0.1f, 2.5f),
+                         .near_distance = random_float(&random, 0.01f, 2.0f)};
+        for (int k = 0; k < 3; k++) {
+            c.position[k] = (double)random_float(&random, -100.0f, 100.0f);
+            c.forward[k] = random_float(&random, -3.0f, 3.0f);
+            c.up[k] = random_float(&random, -3.0f, 3.0f);
+        }
+        double forward[3], wish[3], right[3], up[3], clip[4];
+        unit3(c.forward, forward);
+        unit3(c.up, wish);
+        if (fabs(dot3(forward, wish)) > 0.99) continue; /* all but parallel */
+        cross3(forward, wish, right);
+        renormalise(right);
+        cross3(right, forward, up);
+        double tan_y = tan((double)c.fov_y / 2.0), tan_x = tan_y * 1280.0 / 720.0;
+        masu_frame_desc f = {.camera = &c};
+        write_good(&f, 0);
+        struct masu_frame_uniforms u = uniforms(0);
+        for (int p = 0; p < 8; p++) {
+            double x = (double)random_float(&random, -2.0f, 2.0f);
+            double y = (double)random_float(&random, -2.0f, 2.0f);
+            double z = (double)random_float(&random, 0.1f, 50.0f), rel[3];
+            for (int k = 0; k < 3; k++) {
+                rel[k] = z * (forward[k] + x * tan_x * right[k] + y * tan_y * up[k]);
+            }
+            project(&u, rel, clip);
+            assert_near(clip[3], z, 1e-5 * z + 1e-5);
+            assert_near(clip[0] / clip[3], x, 2e-5);
+            assert_near(clip[1] / clip[3], -y, 2e-5); /* down is positive */
+            assert_near(clip[2] / clip[3], (double)c.near_distance / z, 1e-5);
+        }
+        for (int k = 0; k < 3; k++) { /* what the march makes its rays of */
+            assert_near((double)u.right[k], right[k] * tan_x, 1e-5);
+            assert_near((double)u.up[k], up[k] * tan_y, 1e-5);
+            assert_near((double)u.forward[k], forward[k], 1e-6);
+        }
+        assert_near((double)u.right[3], tan_x, 1e-5);
+        assert_near((double)u.up[3], tan_y, 1e-5);
+        assert_true(u.forward[3] == c.near_distance);
+    }
+}
+
+static void the_eye_keeps_its_precision_in_two_floats(void **state) {
+    (void)state;
+    static const double places[] = {0.1, 123456.789, -1e6 - 0.0625, 1e9 / 3.0, 0.0};
+    make_renderer(SUPPORT_ALL, 0);
+    for (size_t i = 0; i < COUNT(places); i++) {
+        masu_camera c = good_camera();
+        c.position[1] = places[i];
+        masu_frame_desc f = {.camera = &c};
+        write_good(&f, 1);
+        struct masu_frame_uniforms u = uniforms(1);
+        assert_true(u.eye_hi[1] == (float)places[i]);
+        assert_near((double)u.eye_hi[1] + (double)u.eye_lo[1], places[i],
+                    fabs(places[i]) / 70368744177664.0); /* 2^46 */
+    }
+}
+
+static void looking_straight_up_or_down_needs_no_up(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        masu_camera c = good_camera();
+        c.forward[0] = c.forward[2] = 0.0f;
+        c.forward[1] = (float)sign;
+        masu_frame_desc f = {.camera = &c};
+        write_good(&f, 0);
+        struct masu_frame_uniforms u = uniforms(0);
+        double right[3], up[3], forward[3];
+        unit3(u.right, right);
+        unit3(u.up, up);
+        unit3(u.forward, forward);
+        assert_near(dot3(right, up), 0.0, 1e-6);
+        assert_near(dot3(right, forward), 0.0, 1e-6);
+        assert_near(dot3(up, forward), 0.0, 1e-6);
+    }
+}
+
+static void the_near_distance_of_the_scene_is_the_default(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    masu_camera c = good_camera();
+    masu_frame_desc f = {.camera = &c};
+    write_good(&f, 0);
+    assert_true(uniforms(0).forward[3] == 0.05f);
+    assert_true(uniforms(0).clip_from_rel[14] == 0.05f);
+}
+
+/* ---- Refusals -------------------------------------------------------------------------------- */
+
+static void assert_frame_refused(const masu_frame_desc *f, const char *what) {
+    masu_detail detail;
+    static unsigned char before[ROOM];
+    memcpy(before, memory[MASU_ROLE_UPLOAD], ROOM);
+    memset(&detail, 0, sizeof detail);
+    if (!masu_write_frame(&m, f, 1, &detail)) fail_msg("%s was accepted", what);
+    assert_int_equal(detail.result, MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, what);
+    assert_memory_equal(memory[MASU_ROLE_UPLOAD], before, ROOM);
+}
+
+#define BAD_CAMERA(what, ...)                                                                      \
+    do {                                                                                           \
+        masu_camera c = good_camera();                                                             \
+        masu_frame_desc f = {.camera = &c};                                                        \
+        __VA_ARGS__;                                                                               \
+        assert_frame_refused(&f, what);                                                            \
+    } while (0)
+
+static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
+
+static void a_bad_camera_is_named(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 3; k++) {
+            BAD_CAMERA("camera.position", c.position[k] = (double)not_finite[i]);
+            BAD_CAMERA("camera.forward", c.forward[k] = not_finite[i]);
+            BAD_CAMERA("camera.up", c.up[k] = not_finite[i]);
+        }
+        BAD_CAMERA("camera.fov_y", c.fov_y = not_finite[i]);
+        BAD_CAMERA("camera.near_distance", c.near_distance = not_finite[i]);
+    }
+    BAD_CAMERA("camera.position", c.position[0] = 1.1e15);
+    BAD_CAMERA("camera.forward", c.forward[2] = 0.0f);
+    BAD_CAMERA("camera.up", c.up[2] = 3.0f);
+    BAD_CAMERA("camera.up", c.up[2] = -3.0f);
+    BAD_CAMERA("camera.fov_y", c.fov_y = 0.0f);
+    BAD_CAMERA("camera.fov_y", c.fov_y = 3.11f);
+    BAD_CAMERA("camera.near_distance", c.near_distance = -1.0f);
+    BAD_CAMERA("camera.near_distance", c.near_distance = 1.1e9f);
+}
+
+#define BAD_LIGHT(what, ...)                                                                       \
+    do {                                                                                           \
+        masu_light l = good_light();                                                               \
+        masu_frame_desc f = {.light = &l};                                                         \
+        __VA_ARGS__;                                                                               \
+        assert_frame_refused(&f, what);                                                            \
+    } while (0)
+
+static void a_bad_light_is_named(void **state) {
+    (void)state;
+    static const float bad[] = {(float)NAN, (float)INFINITY, -0.1f, 1.1e9f};
+    make_renderer(SUPPORT_ALL, 0);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        for (int k = 0; k < 3; k++) {
+            BAD_LIGHT("light", l.sun_color[k] = bad[i]);
+            BAD_LIGHT("light", l.ambient[k] = bad[i]);
+            BAD_LIGHT("light", l.sky_zenith[k] = bad[i]);
+            BAD_LIGHT("light", l.sky_horizon[k] = bad[i]);
+            if (i < 2) BAD_LIGHT("light.sun_direction", l.sun_direction[k] = bad[i]);
+        }
+        BAD_LIGHT("light.exposure", l.exposure = bad[i]);
+    }
+    BAD_LIGHT("light.sun_direction", l.sun_direction[1] = 0.0f);
+}
+
+static void a_bad_sdf_parameter_is_named(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        float values[3] = {0.5f, not_finite[i], 0.0f};
+        masu_frame_desc f = {.sdf_params = values, .sdf_param_count = 2};
+        assert_frame_refused(&f, "sdf_params");
+        f.sdf_param_count = 3;
+        assert_frame_refused(&f, "sdf_param_count");
+        f.sdf_param_count = UINT32_MAX;
+        assert_frame_refused(&f, "sdf_param_count");
+        f.sdf_param_count = 1; /* the bad one is not given */
+        write_good(&f, 0);
+    }
+}
+
+static void the_extremes_of_each_range_are_accepted(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    masu_camera c = good_camera();
+    masu_light l = good_light();
+    masu_frame_desc f = {.camera = &c, .light = &l};
+    c.position[0] = 1e15, c.position[1] = -1e15;
+    c.fov_y = 0.001f, c.near_distance = 1e-9f, l.exposure = 1e-9f, l.ambient[0] = 1e9f;
+    write_good(&f, 0);
+    c.fov_y = 3.1f, c.near_distance = 1e9f, l.exposure = 1e9f, l.sky_horizon[2] = 1e9f;
+    write_good(&f, 0);
+}
+
+/* The shaders trust every uniform to be finite: whatever is accepted must be. */
+static void whatever_is_accepted_makes_finite_uniforms(void **state) {
+    (void)state;
+    static const float values[] = {0.0f,   -0.0f,  1.0f,   -1.0f,  1e-45f,  -1e-45f, FLT_MIN,
+                                   1e-30f, 1e-20f, 1e-9f,  0.001f, 3.1f,    1e9f,    -1e9f,
+                                   1e15f,  1e20f,  -1e20f, 1e30f,  FLT_MAX, -FLT_MAX};
+    static const double times[] = {0.0, -1.0, 1e9, 1e38, 3.5e38, -3.5e38, 1e300, DBL_MAX, 5e-324};
+    uint64_t random = 9;
+    uint32_t accepted = 0;
+#define PICK values[support_random(&random) % COUNT(values)]
+    make_renderer(SUPPORT_ALL, 0);
+    for (int n = 0; n < 200000; n++) {
+        masu_camera c = good_camera();
+        masu_light l = good_light();
+        float given[2] = {PICK, PICK};
+        for (int k = 0; k < 3; k++) {
+            if (support_random(&random) % 2) c.position[k] = (double)PICK * 1e-3;
+            if (support_random(&random) % 2) c.forward[k] = PICK;
+            if (support_random(&random) % 4 == 0) c.up[k] = PICK;
+            if (support_random(&random) % 4 == 0) l.sun_direction[k] = PICK;
+            if (support_random(&random) % 8 == 0) l.sky_zenith[k] = PICK;
+        }
+        if (support_random(&random) % 4 == 0) c.fov_y = PICK;
+        if (support_random(&random) % 4 == 0) c.near_distance = PICK;
+        if (support_random(&random) % 4 == 0) l.exposure = PICK;
+        masu_frame_desc f = {.camera = &c,
+                             .light = support_random(&random) % 2 ? &l : NULL,
+                             .time = times[support_random(&random) % COUNT(times)],
+                             .time_step = PICK,
+                             .sdf_params = given,
+                             .sdf_param_count = 2};
+        memset(memory[MASU_ROLE_UPLOAD], 0xFF, ROOM); /* not finite */
+        masu_detail detail;
+        if (masu_write_frame(&m, &f, 0, &detail)) continue;
+        float all[sizeof(struct masu_frame_uniforms) / sizeof(float)];
+        memcpy(all, slot_bytes(MASU_BUFFER_FRAME, 0), sizeof all);
+        accepted++;
+        for (size_t i = 0; i < COUNT(all); i++) {
+            if (!isfinite(all[i])) fail_msg("case %d: float %zu is %g", n, i, (double)all[i]);
+        }
+    }
+    assert_true(accepted > 1000);
+}
+
+/* ---- Light and parameters -------------------------------------------------------------------- */
+
+static void the_light_of_the_scene_is_the_default(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    masu_frame_desc f = {.time = 0.5, .time_step = 0.25f};
+    write_good(&f, 0);
+    struct masu_frame_uniforms u = uniforms(0);
+    const float sun[] = {0.6f, 0.8f, 0.0f, 1.5f}, color[] = {2.0f, 1.5f, 1.0f};
+    for (int k = 0; k < 4; k++) assert_near((double)u.sun_direction[k], (double)sun[k], 1e-6);
+    assert_memory_equal(u.sun_color, color, sizeof color);
+    assert_true(u.ambient[2] == 0.3f && u.sky_zenith[2] == 0.8f && u.sky_horizon[1] == 0.7f);
+    assert_true(u.eye_hi[3] == 0.5f && u.eye_lo[3] == 0.25f);
+    assert_true(u.sdf_min[0] == -10.0f && u.sdf_min[3] == 0.5f);
+    assert_true(u.sdf_max[1] == 4.0f && u.sdf_max[3] == 100.0f);
+}
+
+static void a_given_light_takes_its_place(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    masu_light l = good_light();
+    masu_frame_desc f = {.light = &l};
+    write_good(&f, 0);
+    struct masu_frame_uniforms u = uniforms(0);
+    assert_true(u.sun_direction[1] == 1.0f); /* brought to unit length */
+    assert_true(u.sun_direction[3] == 1.0f); /* exposure 0 is 1 */
+    assert_true(u.sun_color[2] == 3.0f);
+    assert_true(u.ambient[0] == 0.0f);
+}
+
+static void sdf_parameters_are_defaulted_and_clamped(void **state) {
+    (void)state;
+    static const struct {
+        float given[2];
+        uint32_t count;
+        float expected[2];
+    } cases[] = {{{0.0f, 0.0f}, 0, {0.5f, -1.0f}},
+                 {{1.5f, 0.0f}, 1, {1.5f, -1.0f}},
+                 {{1.5f, 0.25f}, 2, {1.5f, 0.25f}},
+                 {{-9.0f, 9.0f}, 2, {0.0f, 1.0f}},
+                 {{FLT_MAX, -FLT_MAX}, 2, {2.0f, -1.0f}}};
+    make_renderer(SUPPORT_ALL, 0);
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        masu_frame_desc f = {.sdf_params = cases[i].given, .sdf_param_count = cases[i].count};
+        write_good(&f, 0);
+        struct masu_frame_uniforms u = uniforms(0);
+        assert_true(u.sdf_params[0][0] == cases[i].expected[0]);
+        assert_true(u.sdf_params[0][1] == cases[i].expected[1]);
+        assert_true(u.sdf_params[0][2] == 0.0f);
+    }
+    masu_frame_desc none = {.sdf_param_count = 7}; /* NULL: the defaults, whatever the count */
+    write_good(&none, 0);
+    assert_true(uniforms(0).sdf_params[0][0] == 0.5f);
+}
+
+static void a_frame_is_written_to_its_slot_alone(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    static unsigned char expected[ROOM];
+    memset(expected, NOISE, ROOM);
+    masu_frame_desc f = {.time = 1.0};
+    write_good(&f, 1);
+    uint64_t at = m.plan.buffers[MASU_BUFFER_FRAME].offset;
+    at += m.plan.buffers[MASU_BUFFER_FRAME].stride;
+    memcpy(expected + at, slot_bytes(MASU_BUFFER_FRAME, 1), sizeof(struct masu_frame_uniforms));
+    assert_memory_equal(memory[MASU_ROLE_UPLOAD], expected, ROOM);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_camera_path_is_linear_between_its_keys_and_held_at_its_ends),
+        cmocka_unit_test(a_camera_path_that_is_missing_or_asked_for_nonsense_says_so),
+        cmocka_unit_test(a_path_of_one_key_stands_still),
+        cmocka_unit_test(keys_that_cross_over_keep_a_direction),
+        cmocka_unit_test(the_matrix_projects_as_a_camera_does),
+        cmocka_unit_test(the_eye_keeps_its_precision_in_two_floats),
+        cmocka_unit_test(looking_straight_up_or_down_needs_no_up),
+        cmocka_unit_test(the_near_distance_of_the_scene_is_the_default),
+        cmocka_unit_test(a_bad_camera_is_named),
+        cmocka_unit_test(a_bad_light_is_named),
+        cmocka_unit_test(a_bad_sdf_parameter_is_named),
+        cmocka_unit_test(the_extremes_of_each_range_are_accepted),
+        cmocka_unit_test(whatever_is_accepted_makes_finite_uniforms),
+        cmocka_unit_test(the_light_of_the_scene_is_the_default),
+        cmocka_unit_test(a_given_light_takes_its_place),
+        cmocka_unit_test(sdf_parameters_are_defaulted_and_clamped),
+        cmocka_unit_test(a_frame_is_written_to_its_slot_alone),
+    };
+    return cmocka_run_group_tests_name("camera", tests, support_make_edge, NULL);
+}

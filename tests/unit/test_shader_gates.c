@@ -1,0 +1,325 @@
+/*
+ * test_shader_gates.c: what no shader of ours may do, asked of the SPIR-V: loop for as long as its
+ * data says (support_loops.h), and use more than three descriptor sets, of the four that every
+ * device has: GPU-assisted validation needs the fourth.
+ *
+ * Looked at are the shaders of the library as glslang writes them, and the march both with the
+ * fields of scenes/ before the optimiser and as it stands in the baked blobs. Small shaders
+ * compiled here show that the question can be answered with no.
+ */
+#define _XOPEN_SOURCE 700
+#include <glob.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "image.h"
+#include "scene.h"
+#include "support_loops.h"
+
+#define SETS_MOST 3u
+
+static char directory[] = "/tmp/masu_gates_XXXXXX";
+
+static const char *build_folder(void) {
+    const char *build = getenv("BUILD");
+    return build ? build : "build";
+}
+
+static int make_directory(void **state) {
+    (void)state;
+    return mkdtemp(directory) ? 0 : -1;
+}
+
+static int remove_directory(void **state) {
+    (void)state;
+    return rmdir(directory);
+}
+
+/* Paths that fit a pattern below $BUILD, or below the root of the tree; at least one. */
+static glob_t find(const char *root, const char *pattern) {
+    char path[512];
+    glob_t found;
+    (void)snprintf(path, sizeof path, "%s/%s", root, pattern);
+    if (glob(path, 0, NULL, &found)) fail_msg("there is no %s", path);
+    return found;
+}
+
+/* ---- The question ---------------------------------------------------------------------------- */
+
+static uint32_t descriptor_sets(const spirv_module *m) {
+    uint32_t sets = 0;
+    for (size_t k = 0; k < m->count; k++) {
+        const spirv_instruction *i = &m->list[k];
+        if (i->op != SPIRV_DECORATE || i->word[2] != SPIRV_DECORATION_DESCRIPTOR_SET) continue;
+        if (i->word[3] >= sets) sets = i->word[3] + 1;
+    }
+    return sets;
+}
+
+static uint32_t assert_passes(const spirv_module *m, const char *name) {
+    uint32_t loops = 0, sets = descriptor_sets(m);
+    const char *function = spirv_unbounded_loop(m, &loops);
+    if (function) fail_msg("%s: a loop in %s has no constant bound", name, function);
+    if (sets > SETS_MOST) fail_msg("%s: uses %u descriptor sets", name, sets);
+    return loops;
+}
+
+/* ---- Self-tests ------------------------------------------------------------------------------ */
+
+#define SHADER(declarations, body)                                                                 \
+    "#version 450\n"                                                                               \
+    "layout(local_size_x = 1) in;\n"                                                               \
+    "layout(set = 0, binding = 0) buffer B { int n; uint u; float x; };\n" declarations            \
+    "void main() {\n" body "}\n"
+
+static void write_file(const char *name, const char *text, char path[128]) {
+    (void)snprintf(path, 128, "%s/%s", directory, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void compile(const char *text, spirv_module *m) {
+    char path[128];
+    write_file("test.comp", text, path);
+    if (!spirv_compile(path, "", m)) fail_msg("does not compile: %s", text);
+    assert_int_equal(remove(path), 0);
+}
+
+static void assert_loops(const char *text, int bounded) {
+    spirv_module m;
+    uint32_t loops = 0;
+    compile(text, &m);
+    const char *function = spirv_unbounded_loop(&m, &loops);
+    if (!loops) fail_msg("no loop was found in:\n%s", text);
+    if (bounded && function) fail_msg("called unbounded:\n%s", text);
+    if (!bounded && !function) fail_msg("called bounded:\n%s", text);
+    spirv_free(&m);
+}
+
+#define BOUNDED(body) assert_loops(SHADER("", body), 1)
+#define UNBOUNDED(body) assert_loops(SHADER("", body), 0)
+
+static void a_loop_that_counts_to_a_constant_is_bounded(void **state) {
+    (void)state;
+    BOUNDED("for (int i = 0; i < 8; i++) x += 1.0;");
+    BOUNDED("for (int i = 0; i <= 8; i += 2) x += 1.0;");
+    BOUNDED("for (uint i = 0u; 8u > i; ++i) x += 1.0;");
+    BOUNDED("for (int i = 7; i >= 0; i--) x += 1.0;");
+    BOUNDED("for (uint i = 7u; i > 0u; i--) x += 1.0;");
+    BOUNDED("int i = 0; while (!(i >= 8)) { x += 1.0; i = 1 + i; }");
+    BOUNDED("int i = 0; do { x += 1.0; i++; } while (i < 8);");
+    BOUNDED("for (int i = 0; i + 3 < 8; i++) x += 1.0;");
+}
+
+static void a_bounded_loop_may_end_earlier(void **state) {
+    (void)state;
+    BOUNDED("for (int i = 0; i < 8; i++) { x *= 0.5; if (x < 1.0) break; }");
+    BOUNDED("for (int i = 0; i < 8; i++) { if (x < 1.0) continue; x *= 0.5; }");
+    BOUNDED("for (int i = 0; i < 8; i++) { x *= 0.5; if (x < 1.0) return; }");
+    BOUNDED("for (int i = 0; i < 8 && x > 1.0; i++) x *= 0.5;");
+    BOUNDED("for (int i = 0; x > 1.0 && i < 8; i++) x *= 0.5;");
+    BOUNDED("for (int i = 0; i < 8 && n / (i + n) > 1; i++) n--;");
+    BOUNDED("for (int i = 0; n / (n - 1) > 1 && i < 8; i++) n--;");
+    BOUNDED("int i = 0; while (true) { if (i >= 8 || x < 1.0) break; x *= 0.5; i++; }");
+    BOUNDED("for (int i = 0;; i++) { if (x < 1.0) break; if (i >= 8) break; x *= 0.5; }");
+}
+
+static void loops_inside_loops_are_bounded_each(void **state) {
+    (void)state;
+    BOUNDED("for (int i = 0; i < 8; i++) for (int j = 0; j < 4; j++) x += float(i * j);");
+    UNBOUNDED("for (int i = 0; i < 8; i++) for (int j = 0; j < n; j++) x += float(i * j);");
+    UNBOUNDED("for (int i = 0; i < n; i++) for (int j = 0; j < 8; j++) x += float(i * j);");
+    UNBOUNDED("for (int i = 0; i < 8; i++) for (int j = 0; j < 4; i++) x += float(i * j);");
+}
+
+static void a_loop_that_its_data_ends_is_unbounded(void **state) {
+    (void)state;
+    UNBOUNDED("while (x > 1.0) x *= 0.5;");
+    UNBOUNDED("for (int i = 0; i < n; i++) x += 1.0;");
+    UNBOUNDED("for (int i = n; i < 8; i++) x += 1.0;");
+    UNBOUNDED("for (int i = 0; i < 8; i += n) x += 1.0;");
+    UNBOUNDED("for (int i = 0; i < 8 || x > 1.0; i++) x *= 0.5;");
+    UNBOUNDED("for (int i = 0; i < 8 || n / (n - 1) > 1; i++) n--;");
+    UNBOUNDED("int i = 0; while (true) { if (i >= 8 && x < 1.0) break; x *= 0.5; i++; }");
+    UNBOUNDED("for (float f = 0.0; f < 8.0; f += x) u++;");
+    UNBOUNDED("for (float f = 0.0; f < 1e9; f += 1.0) u++;");
+}
+
+static void a_counter_that_is_tampered_with_counts_nothing(void **state) {
+    (void)state;
+    UNBOUNDED("for (int i = 0; i < 8; i++) if (x > 1.0) i = 0;");
+    UNBOUNDED("for (int i = 0; i < 8; i++) if (x > 1.0) i -= 1;");
+    UNBOUNDED("for (int i = 0; i < 8; ) if (x > 1.0) i++;");
+    UNBOUNDED("for (int i = 0; i < 8; i += 0) x += 1.0;");
+    UNBOUNDED("for (int i = 0; i < 8; i--) x += 1.0;");
+    UNBOUNDED("int k = 0; for (int i = 0; i < 8; k++) x += 1.0; n = k;");
+    UNBOUNDED("int k = 0; for (int i = 0; i < 8; i = k + 1) x += 1.0;");
+    assert_loops(SHADER("void spoil(inout int i) { if (x > 1.0) i = 0; }\n",
+                        "for (int i = 0; i < 8; i++) spoil(i);"),
+                 0);
+}
+
+static void a_bound_that_is_no_bound_is_none(void **state) {
+    (void)state;
+    UNBOUNDED("for (int i = 0; i < 1000000; i++) x += 1.0;");
+    UNBOUNDED("for (int i = 0; i <= 0x7FFFFFFF; i++) x += 1.0;");
+    UNBOUNDED("for (uint i = 8u; i >= 0u; i--) x += 1.0;");
+    UNBOUNDED("for (uint i = 5u; i > 0u; i -= 2u) x += 1.0;");
+    UNBOUNDED("for (int i = 0x7FFFFFF0; i < 0x7FFFFFFA; i += 10) x += 1.0;");
+    UNBOUNDED("int i = 0; while (true) { if (x > 2.0) { i++; continue; } if (i >= 8) break; }");
+    BOUNDED("for (int i = 0; i < 4096; i++) x += 1.0;");
+}
+
+static void an_unbounded_loop_is_named_by_its_function(void **state) {
+    (void)state;
+    spirv_module m;
+    uint32_t loops = 0;
+    compile(SHADER("float spin(float f) { while (f > 1.0) f *= 0.5; return f; }\n",
+                   "for (int i = 0; i < 8; i++) x += spin(x);"),
+            &m);
+    const char *function = spirv_unbounded_loop(&m, &loops);
+    assert_non_null(function);
+    assert_memory_equal(function, "spin(", 5);
+    spirv_free(&m);
+}
+
+static void a_fourth_descriptor_set_is_noticed(void **state) {
+    (void)state;
+    spirv_module m;
+    compile(SHADER("layout(set = 2, binding = 0) buffer C { int c; };\n", "c = n;"), &m);
+    assert_int_equal(descriptor_sets(&m), 3);
+    spirv_free(&m);
+    compile(SHADER("layout(set = 3, binding = 0) buffer C { int c; };\n", "c = n;"), &m);
+    assert_int_equal(descriptor_sets(&m), 4);
+    spirv_free(&m);
+}
+
+/* ---- The shaders ----------------------------------------------------------------------------- */
+
+static void every_shader_of_the_library_passes(void **state) {
+    (void)state;
+    glob_t sources = find("shaders", "*.????");
+    uint32_t loops = 0, modules = 0;
+    for (size_t i = 0; i < sources.gl_pathc; i++) {
+        const char *name = sources.gl_pathv[i] + strlen("shaders/");
+        size_t stem = strcspn(name, ".");
+        char path[512];
+        (void)snprintf(path, sizeof path, "%s/gen/%.*s_%s.spv", build_folder(), (int)stem, name,
+                       name + stem + 1);
+        spirv_module m;
+        if (!strcmp(name, "march.comp")) continue; /* needs a field: below */
+        if (!spirv_from_file(path, &m)) fail_msg("%s is missing or no SPIR-V", path);
+        loops += assert_passes(&m, name);
+        spirv_free(&m);
+        modules++;
+    }
+    printf("%u loops in %u modules\n", loops, modules);
+    assert_true(modules >= 6);
+    globfree(&sources);
+}
+
+/* sdf_scene.glsl as masu-bake writes it: a number for each parameter, then the field. Which number
+ * does not matter here. */
+static void write_field(const char *field, char path[128]) {
+    static char text[1 << 16];
+    char name[128];
+    size_t at = 0, length;
+    FILE *file = fopen(field, "r");
+    assert_non_null(file);
+    static char source[1 << 20];
+    length = fread(source, 1, sizeof source - 1, file);
+    assert_int_equal(fclose(file), 0);
+    source[length] = '\0';
+    for (const char *p = source; (p = strstr(p, "MASU_PARAM_")); p += length) {
+        length = strspn(p, "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+        (void)snprintf(name, sizeof name, "%.*s", (int)length, p);
+        at += (size_t)snprintf(text + at, sizeof text - at, "#ifndef %s\n#define %s 0\n#endif\n",
+                               name, name);
+        assert_true(at < sizeof text);
+    }
+    (void)snprintf(text + at, sizeof text - at, "#include \"%s\"\n", field);
+    write_file("sdf_scene.glsl", text, path);
+}
+
+static void the_march_passes_with_every_field_of_the_scenes(void **state) {
+    (void)state;
+    glob_t fields = find("scenes", "*.glsl");
+    uint32_t loops = 0;
+    for (size_t i = 0; i < fields.gl_pathc; i++) {
+        char wrapper[128], options[256];
+        write_field(fields.gl_pathv[i], wrapper);
+        for (int raster = 0; raster < 2; raster++) {
+            spirv_module m;
+            (void)snprintf(options, sizeof options, "-Ishaders -I. -I%s -DMASU_HAS_RASTER=%d",
+                           directory, raster);
+            int good = spirv_compile("shaders/march.comp", options, &m);
+            if (!good) fail_msg("march.comp does not compile with %s", fields.gl_pathv[i]);
+            uint32_t found = assert_passes(&m, fields.gl_pathv[i]);
+            assert_true(found >= 3); /* the march, its refinement, the normal */
+            loops += found;
+            spirv_free(&m);
+        }
+        assert_int_equal(remove(wrapper), 0);
+    }
+    printf("%u loops with %zu fields\n", loops, fields.gl_pathc);
+    globfree(&fields);
+}
+
+static void the_march_in_every_baked_scene_passes(void **state) {
+    (void)state;
+    glob_t scenes = find(build_folder(), "scenes/*.masu");
+    uint32_t loops = 0, marches = 0;
+    for (size_t i = 0; i < scenes.gl_pathc; i++) {
+        uint8_t *bytes;
+        size_t size;
+        char error[256];
+        masu_scene scene;
+        masu_detail detail;
+        const char *path = scenes.gl_pathv[i];
+        if (!masu_file_read(path, (size_t)1 << 30, &bytes, &size, error, sizeof error)) {
+            fail_msg("%s", error);
+        }
+        if (masu_scene_bind(bytes, size, &scene, &detail)) fail_msg("%s: %s", path, detail.text);
+        if (scene.sdf) {
+            masu_scene_view view = masu_scene_look(&scene);
+            spirv_module m;
+            if (!spirv_from_words(view.march_spirv, (size_t)view.march_words, &m)) {
+                fail_msg("%s: no SPIR-V", path);
+            }
+            loops += assert_passes(&m, path);
+            marches++;
+            spirv_free(&m);
+        }
+        free(bytes);
+    }
+    printf("%u loops in %u baked marches\n", loops, marches);
+    assert_true(marches > 0 && loops > 0);
+    globfree(&scenes);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_loop_that_counts_to_a_constant_is_bounded),
+        cmocka_unit_test(a_bounded_loop_may_end_earlier),
+        cmocka_unit_test(loops_inside_loops_are_bounded_each),
+        cmocka_unit_test(a_loop_that_its_data_ends_is_unbounded),
+        cmocka_unit_test(a_counter_that_is_tampered_with_counts_nothing),
+        cmocka_unit_test(a_bound_that_is_no_bound_is_none),
+        cmocka_unit_test(an_unbounded_loop_is_named_by_its_function),
+        cmocka_unit_test(a_fourth_descriptor_set_is_noticed),
+        cmocka_unit_test(every_shader_of_the_library_passes),
+        cmocka_unit_test(the_march_passes_with_every_field_of_the_scenes),
+        cmocka_unit_test(the_march_in_every_baked_scene_passes),
+    };
+    return cmocka_run_group_tests_name("shader_gates", tests, make_directory, remove_directory);
+}

@@ -1,0 +1,245 @@
+/*
+ * test_upload.c: what the host copies for the GPU: the scene, in chunks or at once, frames in their
+ * slots, and instances that move. Without a GPU: see support_renderer.h.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support_bind.h"
+#include "support_renderer.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
+
+/* ---- Loading --------------------------------------------------------------------------------- */
+
+static void assert_resident(const unsigned char *vertices, const unsigned char *indices,
+                            const unsigned char *materials) {
+    masu_scene_view v = masu_scene_look(&scene);
+    assert_memory_equal(vertices, v.vertices, 11 * sizeof *v.vertices);
+    assert_memory_equal(indices, v.indices, 15 * sizeof *v.indices);
+    const float expected[2][8] = {{0.5f, 0.25f, 1.0f, 0.4f, 0.0f, 0.0f, 0.0f, 0.9f},
+                                  {0.0f, 0.0f, 0.0f, 1.0f, 4.0f, 2.0f, 1.0f, 0.0f}};
+    assert_memory_equal(materials, expected, sizeof expected);
+}
+
+static void mapped_memory_is_loaded_at_once(void **state) {
+    (void)state;
+    masu_commands commands;
+    make_renderer(SUPPORT_ALL, 0);
+    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_null(commands.buffer);
+    assert_resident(slot_bytes(MASU_BUFFER_VERTICES, 0), slot_bytes(MASU_BUFFER_INDICES, 0),
+                    slot_bytes(MASU_BUFFER_MATERIALS, 0));
+    assert_int_equal(masu_load(&m, &commands), MASU_OK); /* again, without the blob */
+}
+
+/* Every size of staging buffer, also such as cut a vertex, an index or a material in two. */
+static void chunks_of_any_size_add_up_to_the_scene(void **state) {
+    (void)state;
+    static unsigned char copy[3][1024];
+    for (uint64_t staging = 5; staging <= 400; staging++) {
+        masu_commands commands;
+        uint32_t submitted = 0;
+        make_renderer(SUPPORT_ALL, staging);
+        memset(copy, NOISE, sizeof copy);
+        while (masu_load(&m, &commands) == MASU_INCOMPLETE) {
+            masu_chunk chunk = masu_load_chunk(&m.plan, submitted);
+            assert_ptr_equal(commands.buffer, loads[submitted]);
+            assert_true(chunk.bytes > 0 && chunk.bytes <= staging && chunk.buffer < 3);
+            assert_true(chunk.offset + chunk.bytes <= m.plan.buffers[chunk.buffer].bytes);
+            memcpy(copy[chunk.buffer] + chunk.offset, slot_bytes(MASU_BUFFER_STAGING, 0),
+                   (size_t)chunk.bytes);
+            unsigned char *behind = memory[MASU_ROLE_UPLOAD];
+            behind += m.plan.buffers[MASU_BUFFER_STAGING].offset + staging;
+            for (int k = 0; k < 64; k++) assert_int_equal(behind[k], NOISE);
+            submitted++;
+        }
+        assert_int_equal(submitted, m.load_count);
+        assert_resident(copy[MASU_BUFFER_VERTICES], copy[MASU_BUFFER_INDICES],
+                        copy[MASU_BUFFER_MATERIALS]);
+        assert_int_equal(masu_load_chunk(&m.plan, submitted).bytes, 0);
+    }
+}
+
+static void without_a_scene_there_is_nothing_to_load(void **state) {
+    (void)state;
+    masu_commands commands;
+    make_renderer(SUPPORT_ALL, 0);
+    memset(memory, NOISE, sizeof memory);
+    m.plan.desc.scene = NULL;
+    masu_keep_scene(&m);
+    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    for (size_t i = 0; i < ROOM; i++) assert_int_equal(memory[MASU_ROLE_DEVICE][i], NOISE);
+    assert_int_equal(masu_load(NULL, &commands), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_load(&m, NULL), MASU_ERROR_ARGUMENT);
+}
+
+static void the_blob_is_not_looked_at_after_loading(void **state) {
+    (void)state;
+    masu_commands commands;
+    make_renderer(SUPPORT_ALL, 0);
+    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_null(m.plan.scene.blob);
+    masu_frame_desc f = {.rung = 1, .target = 1};
+    assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+}
+
+/* ---- Frames ---------------------------------------------------------------------------------- */
+
+static void frames_take_their_slots_in_turn(void **state) {
+    (void)state;
+    masu_commands commands;
+    make_renderer(SUPPORT_ALL, 0);
+    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    for (uint32_t n = 0; n < 7; n++) {
+        masu_frame_desc f = {.rung = n % 3, .target = n % 2, .time = n};
+        assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+        assert_int_equal(commands.frame, n);
+        assert_int_equal(commands.slot, n % 2);
+        assert_int_equal(commands.rung, n % 3);
+        assert_ptr_equal(commands.buffer, frames[(n % 2 * 3 + n % 3) * 2 + n % 2]);
+        assert_true((double)uniforms(n % 2).eye_hi[3] == (double)n);
+    }
+}
+
+static void a_frame_that_is_refused_changes_nothing(void **state) {
+    (void)state;
+    static unsigned char before[ROOM];
+    masu_commands commands, untouched;
+    make_renderer(SUPPORT_ALL, 0);
+    masu_frame_desc f = {.rung = 0};
+    assert_int_equal(masu_frame(&m, &f, &commands), MASU_ERROR_STATE);
+    assert_string_equal(masu_last_error(&m)->what, "masu_load");
+    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+    memcpy(before, memory[MASU_ROLE_UPLOAD], ROOM);
+    memset(&commands, 0x5A, sizeof commands);
+    untouched = commands;
+    masu_camera camera = {.forward = {1.0f, 0.0f, 0.0f}, .fov_y = (float)NAN};
+    const masu_frame_desc bad[] = {
+        {.rung = 3},           {.rung = UINT32_MAX},           {.target = 2},
+        {.time = (double)NAN}, {.time_step = (float)INFINITY}, {.camera = &camera}};
+    static const char *const names[] = {"rung", "rung", "target", "time", "time", "camera.fov_y"};
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        assert_int_equal(masu_frame(&m, &bad[i], &commands), MASU_ERROR_ARGUMENT);
+        assert_string_equal(masu_last_error(&m)->what, names[i]);
+        assert_memory_equal(memory[MASU_ROLE_UPLOAD], before, ROOM);
+        assert_memory_equal(&commands, &untouched, sizeof commands);
+    }
+    assert_int_equal(masu_frame(NULL, &f, &commands), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(&m, NULL, &commands), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(&m, &f, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_frame(&m, &f, &commands), MASU_OK);
+    assert_int_equal(commands.frame, 1);
+}
+
+/* ---- Instances ------------------------------------------------------------------------------- */
+
+static void instances_are_found_by_name(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    assert_int_equal(masu_instance_find(&m, "plate").id, 1);
+    assert_int_equal(masu_instance_find(&m, "lid").id, 3);
+    assert_int_equal(masu_instance_find(&m, "steel").id, 0);
+    assert_int_equal(masu_instance_find(&m, "").id, 0);
+    assert_int_equal(masu_instance_find(&m, NULL).id, 0);
+    assert_int_equal(masu_instance_find(NULL, "plate").id, 0);
+}
+
+static void a_moved_instance_reaches_every_slot_once(void **state) {
+    (void)state;
+    const uint64_t size = sizeof(struct masu_instance_data);
+    static const float rows[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    make_renderer(SUPPORT_ALL, 0);
+    masu_scene_view v = masu_scene_look(&scene);
+    for (uint32_t slot = 0; slot < 2; slot++) { /* all, at first */
+        masu_write_instances(&m, slot);
+        for (uint32_t i = 0; i < 3; i++) {
+            assert_memory_equal(slot_bytes(MASU_BUFFER_INSTANCES, slot) + i * size,
+                                v.instances[i].transform, size);
+        }
+    }
+    assert_int_equal(masu_instance_set_transform(&m, (masu_instance){2}, rows), MASU_OK);
+    for (uint32_t frame = 0; frame < 4; frame++) { /* slots come in turn */
+        unsigned char *to = masu_buffer_pointer(&m, MASU_BUFFER_INSTANCES, frame % 2);
+        memset(to, NOISE, 3 * size);
+        masu_write_instances(&m, frame % 2);
+        if (frame < 2) {
+            assert_memory_equal(to + size, rows, size);
+        } else {
+            assert_int_equal(to[size], NOISE); /* both have it */
+        }
+        assert_int_equal(to[0], NOISE); /* the others have not moved */
+        assert_int_equal(to[2 * size], NOISE);
+    }
+}
+
+static void moving_twice_before_a_frame_keeps_the_last(void **state) {
+    (void)state;
+    float rows[12] = {0};
+    make_renderer(SUPPORT_ALL, 0);
+    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot);
+    for (int n = 1; n <= 5; n++) {
+        rows[3] = (float)n;
+        assert_int_equal(masu_instance_set_transform(&m, (masu_instance){3}, rows), MASU_OK);
+    }
+    for (uint32_t slot = 0; slot < 2; slot++) {
+        struct masu_instance_data got;
+        masu_write_instances(&m, slot);
+        memcpy(&got, slot_bytes(MASU_BUFFER_INSTANCES, slot) + 2 * sizeof got, sizeof got);
+        assert_true(got.row0[3] == 5.0f);
+    }
+    assert_int_equal(m.dirty_count, 0);
+}
+
+static void a_bad_instance_or_transform_is_refused(void **state) {
+    (void)state;
+    static const float good[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    make_renderer(SUPPORT_ALL, 0);
+    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot);
+    const uint32_t ids[] = {0, 4, UINT32_MAX};
+    for (size_t i = 0; i < COUNT(ids); i++) {
+        assert_int_equal(masu_instance_set_transform(&m, (masu_instance){ids[i]}, good),
+                         MASU_ERROR_ARGUMENT);
+        assert_string_equal(masu_last_error(&m)->what, "instance");
+    }
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 12; k++) {
+            float bad[12];
+            memcpy(bad, good, sizeof bad);
+            bad[k] = not_finite[i];
+            assert_int_equal(masu_instance_set_transform(&m, (masu_instance){1}, bad),
+                             MASU_ERROR_ARGUMENT);
+            assert_int_equal(masu_last_error(&m)->given, k);
+        }
+    }
+    assert_int_equal(masu_instance_set_transform(&m, (masu_instance){1}, NULL),
+                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(NULL, (masu_instance){1}, good),
+                     MASU_ERROR_ARGUMENT);
+    assert_int_equal(m.dirty_count, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mapped_memory_is_loaded_at_once),
+        cmocka_unit_test(chunks_of_any_size_add_up_to_the_scene),
+        cmocka_unit_test(without_a_scene_there_is_nothing_to_load),
+        cmocka_unit_test(the_blob_is_not_looked_at_after_loading),
+        cmocka_unit_test(frames_take_their_slots_in_turn),
+        cmocka_unit_test(a_frame_that_is_refused_changes_nothing),
+        cmocka_unit_test(instances_are_found_by_name),
+        cmocka_unit_test(a_moved_instance_reaches_every_slot_once),
+        cmocka_unit_test(moving_twice_before_a_frame_keeps_the_last),
+        cmocka_unit_test(a_bad_instance_or_transform_is_refused),
+    };
+    return cmocka_run_group_tests_name("upload", tests, support_make_edge, NULL);
+}
