@@ -25,7 +25,11 @@ int main(int argc, char **argv) {
     masu_scene scene;
     CHECK(masu_scene_bind(blob, size, &scene, &detail) == MASU_OK);
     masu_desc desc = {
-        .vulkan = {vkGetInstanceProcAddr, host.instance, host.physical, host.device, host.family},
+        .vulkan = {.get_instance_proc_addr = vkGetInstanceProcAddr,
+                   .instance = host.instance,
+                   .physical_device = host.physical,
+                   .device = host.device,
+                   .queue_family = host.family},
         .scene = &scene,
         .output = {1280, 720},
         .targets = {.images = &image.image, .views = &image.view, .count = 1, .storage = 1}};

@@ -167,22 +167,23 @@ typedef enum masu_switch { MASU_AUTO = 0, MASU_OFF = 1, MASU_ON = 2 } masu_switc
 typedef struct masu_rung {
     float scale; /* render size / output size per axis, 0 < scale <= 1; 0: 1.0. Ignored with a
                     source image */
-    masu_switch upscale;  /* EASU. AUTO: when the render size differs from the output size */
-    masu_switch sharpen;  /* RCAS. AUTO: when EASU runs */
-    float sharpness;      /* RCAS strength in stops, >= 0: 0 is sharpest, each stop halves it (AMD's
+    masu_switch upscale; /* EASU. AUTO: when the render size differs from the output size */
+    masu_switch sharpen; /* RCAS. AUTO: when EASU runs */
+    float sharpness;     /* RCAS strength in stops, 0..64: 0 is sharpest, each stop halves it (AMD's
                              definition) */
     uint32_t march_steps; /* most SDF steps per ray, 1..256; 0: 256 */
 } masu_rung;
 
-/* Most of each thing that the memory is sized for. 0: exactly what the scene has. A scene that has
- * more is refused with MASU_ERROR_LIMIT naming the field; masu_peaks() returns what was used under
- * the same names. */
+/* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
+ * a limit is a promise to the port that no scene of its will need more. A scene that has more is
+ * refused with MASU_ERROR_LIMIT naming the field; masu_peaks() returns what was used under the same
+ * names. */
 typedef struct masu_limits {
     uint64_t vertices;   /* 16 bytes each, device */
     uint64_t indices;    /* 4 bytes each, device */
     uint64_t materials;  /* 32 bytes each, device */
     uint64_t instances;  /* 48 bytes each per frame in flight, device, and 57 bytes each, host */
-    uint64_t sdf_params; /* 4 bytes each, at most 256 */
+    uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
 } masu_limits;
 
 typedef struct masu_peak_info {
@@ -433,13 +434,12 @@ typedef struct masu_light {
 typedef struct masu_frame_desc {
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
-    double time;             /* seconds since the start: animation of the SDF and the camera path */
-    float time_step;         /* seconds since the frame before; 0 is fine */
-    uint32_t rung;           /* 0 .. rung_count-1 */
-    uint32_t target;         /* 0 .. targets.count-1 */
-    const float *sdf_params; /* `sdf_param_count` values, NULL: the scene's defaults */
-    uint32_t
-        sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
+    double time;     /* seconds since the start, -1e15..1e15: animation of SDF and camera path */
+    float time_step; /* seconds since the frame before; 0 is fine, within +-1e15 */
+    uint32_t rung;   /* 0 .. rung_count-1 */
+    uint32_t target; /* 0 .. targets.count-1 */
+    const float *sdf_params;  /* `sdf_param_count` values, NULL: the scene's defaults */
+    uint32_t sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
                             clamped to their declared range; one that is not finite is an error */
 } masu_frame_desc;
 

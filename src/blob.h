@@ -2,16 +2,16 @@
  * that writes them.
  *
  *   +--------+---------------+---------+---------+-----
- *   | header | section table | payload | payload | ...      little-endian, offsets from the first
- *   byte, no pointers +--------+---------------+---------+---------+-----
- *   0        64              16-byte aligned, in table order, gaps are zero, < 16 bytes each
+ *   | header | section table | payload | payload | ...      little-endian; offsets count from the
+ *   +--------+---------------+---------+---------+-----     first byte; no pointers
+ *   0        64              16-byte aligned, in table order, gaps zero and < 16 bytes each
  *
  * Rules a reader may rely on after masu_scene_bind has passed a blob (src/scene.c checks each):
  *  - header.bytes is the exact length; hash is FNV-1a 64 over everything behind the header;
  *  - each section kind appears at most once; stride is the sizeof of its struct here;
  *  - every float is finite; every index is in range; instances are sorted by mesh;
- *  - primitives share no indices and meshes share no primitives (vertices may be shared): work stays
- *    linear in the blob's size;
+ *  - the primitives together have no more indices, and the meshes no more primitives, than there
+ *    are (vertices may be shared): work stays linear in the blob's size;
  *  - SPIR-V is code: a blob is as trusted as the executable and comes from the port's own build.
  *    The hash finds damage, not malice.
  * World space: right-handed, +Y up, metres, linear colour. docs/blob.md is the prose form of this

@@ -1,8 +1,7 @@
 /* frame.c: THE TABLE. The frame, in order: what each pass reads, what it writes, and when it is
  * needed.
  *
- * Adding a pass is adding a row here, its id in frame.h and a shader of the same name in shaders/.
- * */
+ * Adding a pass is adding a row here, its id in frame.h and a shader of the same name in shaders/. */
 #include "frame.h"
 
 #include <math.h>

@@ -209,8 +209,8 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
             }
         }
     }
-    /* The last colour pass writes the target itself, unless a blit does. */
-    if (!plan->needs.blit && last_color_pass >= 0) {
+    /* The last colour pass writes the target itself (a blit, where there is one, does so anyway). */
+    if (last_color_pass >= 0) {
         rp->access[last_color_pass][last_color_access].image = MASU_IMAGE_TARGET;
     }
 }

@@ -234,8 +234,10 @@ static masu_result check_looks(reader *r) {
     }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_CAMERA_KEYS]; i++) {
         const masu_blob_camera_key *k = &v->camera_keys[i];
-        if (!finite_all(&k->time, 1) || !finite_all(k->position, 3) || !finite_all(k->target, 3)) {
-            return bad(r, "camera keys", i, "is not finite");
+        /* Times and places that masu_frame would accept, so that the path works as a whole. */
+        if (!within(&k->time, 1, -1e15f, 1e15f) || !within(k->position, 3, -1e15f, 1e15f) ||
+            !within(k->target, 3, -1e15f, 1e15f)) {
+            return bad(r, "camera keys", i, "is not finite or beyond 1e15");
         }
         if (!(k->fov_y >= 0.001f && k->fov_y <= 3.1f)) {
             return bad(r, "camera keys", i, "field of view is not 0.001 to 3.1 radians");

@@ -9,7 +9,7 @@
  *                   bits 30-31        MASU_SURFACE_* flags
  *   depth, float:   near / view z; 0: nothing there
  *
- * 13 bits per axis leave a normal within 0.02 degrees. src/masu.c, masu_unpack_normal is the twin
+ * 13 bits per axis leave a normal within 0.03 degrees. src/masu.c, masu_unpack_normal is the twin
  * in C.
  */
 #ifndef MASU_PACK_GLSL
