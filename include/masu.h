@@ -34,8 +34,8 @@
  *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
  *    and sampled image. No optional feature is needed. What is missing is named in the detail.
  *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
- *    to be submitted once, to any queue of that family; submit frames in order. It starts with a
- *    full barrier against the frame before.
+ *    to be submitted once; all frames and loads go to one and the same queue, in order. It starts
+ *    with a full barrier against the frame before.
  *  - Target images: an array of views of host images, all `output` large. Storage targets
  *    (targets.storage != 0) must be VK_FORMAT_R8G8B8A8_UNORM with VK_IMAGE_USAGE_STORAGE_BIT; Masu
  *    writes them directly. Other targets (a swapchain's BGRA images, say) must have
@@ -44,6 +44,13 @@
  *    must wait for the image to be available (swapchain semaphore) at
  *    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT; writes are made available to all later commands and, with
  *    readback, to the host.
+ *
+ *  - Handles and callbacks of the description (allocator, log, clock, target and source views) must
+ *    live until masu_destroy; the description itself, its arrays and pipeline_cache only during the
+ *    call.
+ *  - Another output size, other targets or another scene: masu_destroy, then masu_init again, in the
+ *    same blocks if they are large enough for all. A frame that is not submitted after all (a
+ *    swapchain out of date) still counts: its slot's numbers are those of an older frame.
  *
  * CONVENTIONS
  *  - World: right-handed, +Y up, metres. Colour: linear, unless said otherwise. Angles: radians.
@@ -201,7 +208,8 @@ typedef enum masu_role {
 } masu_role;
 
 /* A device block of the host's own, one per role that masu_memory_query asks for. memory ==
- * VK_NULL_HANDLE: masu_init makes the one allocation of that role itself. */
+ * VK_NULL_HANDLE: masu_init makes the one allocation of that role itself. The memory type can change
+ * the plan (what the host can write needs no staging buffer): query again with the blocks set. */
 typedef struct masu_device_block {
     VkDeviceMemory memory;
     VkDeviceSize offset; /* a multiple of masu_memory.roles[].alignment */
@@ -237,7 +245,8 @@ typedef struct masu_targets {
     const VkImage *images;    /* `count` images of the output size */
     const VkImageView *views; /* one per image; needed for storage targets, else may be NULL */
     uint32_t count;           /* 1..8 */
-    VkFormat format;          /* 0: VK_FORMAT_R8G8B8A8_UNORM */
+    VkFormat format;          /* UNORM: the picture is encoded already, an sRGB format would do it
+                                 twice. 0: VK_FORMAT_R8G8B8A8_UNORM */
     uint32_t storage;         /* not 0: written directly as storage images; 0: filled by a blit */
     VkImageLayout
         final_layout; /* VK_IMAGE_LAYOUT_UNDEFINED (0): VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL */
@@ -283,7 +292,7 @@ typedef struct masu_desc {
     uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes over all roles; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
-    uint32_t readback; /* masu_readback_bits */
+    uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
     masu_debug debug;
     masu_deny deny;
     masu_log_fn log; /* NULL: silent */
@@ -382,7 +391,8 @@ typedef struct masu_plan_image {
 
 typedef struct masu_plan_rung {
     uint32_t render_width, render_height;
-    uint32_t dispatches, barriers; /* per frame; graphics passes count as one dispatch */
+    uint32_t dispatches; /* per frame; a graphics or transfer pass counts as one */
+    uint32_t barriers;   /* per frame; 0 from masu_plan: they are counted while recording */
 } masu_plan_rung;
 
 typedef struct masu_plan_info {
@@ -454,7 +464,8 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
 /* Why the last masu_load, masu_frame or masu_instance_set_transform failed. */
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 
-/* The scene's camera path at a time. MASU_ERROR_STATE: the scene has no camera. */
+/* The scene's camera path at a time, held at both ends. MASU_ERROR_STATE: the scene has no camera.
+ * MASU_ERROR_ARGUMENT: a NULL pointer or a time that is not finite. */
 MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer, double time,
                                                   masu_camera *out);
 

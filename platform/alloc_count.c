@@ -68,8 +68,9 @@ void *memalign(size_t alignment, size_t bytes) {
 void *aligned_alloc(size_t alignment, size_t bytes) { return memalign(alignment, bytes); }
 
 int posix_memalign(void **out, size_t alignment, size_t bytes) {
-    *out = memalign(alignment, bytes);
-    return *out ? 0 : 12; /* ENOMEM */
+    void *p = memalign(alignment, bytes);
+    if (p) *out = p;
+    return p ? 0 : 12; /* ENOMEM */
 }
 
 #endif
@@ -127,7 +128,10 @@ static void *VKAPI_CALL vk_reallocate(void *user, void *p, size_t bytes, size_t 
 }
 
 VkAllocationCallbacks masu_vk_alloc_callbacks(masu_vk_alloc_counts *counts) {
-    memset(counts, 0, sizeof *counts);
+    atomic_init(&counts->allocations, 0);
+    atomic_init(&counts->reallocations, 0);
+    atomic_init(&counts->frees, 0);
+    atomic_init(&counts->live, 0);
     return (VkAllocationCallbacks){.pUserData = counts,
                                    .pfnAllocation = vk_allocate,
                                    .pfnReallocation = vk_reallocate,

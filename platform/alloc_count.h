@@ -7,6 +7,7 @@
 #ifndef MASU_ALLOC_COUNT_H
 #define MASU_ALLOC_COUNT_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <vulkan/vulkan_core.h>
@@ -22,7 +23,7 @@ uint64_t masu_allocs_of_process(void); /* the same by all threads */
 /* Callbacks that count what a driver allocates through Vulkan; pass as VkAllocationCallbacks.
  * `counts` outlives every object made with them. */
 typedef struct masu_vk_alloc_counts {
-    uint64_t allocations, reallocations, frees, live;
+    atomic_uint_fast64_t allocations, reallocations, frees, live; /* drivers call from any thread */
 } masu_vk_alloc_counts;
 
 VkAllocationCallbacks masu_vk_alloc_callbacks(masu_vk_alloc_counts *counts);

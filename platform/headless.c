@@ -238,7 +238,7 @@ bool masu_headless_open(const masu_headless_desc *desc, masu_headless *host, cha
 
 void masu_headless_close(masu_headless *host) {
     if (host->device) {
-        vkDeviceWaitIdle(host->device);
+        masu_headless_settle(host);
         for (uint32_t i = 0; i < MASU_HEADLESS_SLOTS; i++) {
             vkDestroyFence(host->device, host->fences[i], host->desc.allocator);
         }
@@ -259,10 +259,18 @@ void masu_headless_close(masu_headless *host) {
 
 /* ---- Submits --------------------------------------------------------------------------------- */
 
+void masu_headless_settle(masu_headless *host) {
+    char ignored[128];
+    for (uint32_t i = 0; i < MASU_HEADLESS_SLOTS && host->device && !host->lost; i++) {
+        (void)masu_headless_wait(host, i, ignored, sizeof ignored);
+    }
+}
+
 bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t error_size) {
     if (!host->pending[slot]) return true;
     VkResult r =
         vkWaitForFences(host->device, 1, &host->fences[slot], VK_TRUE, MASU_HEADLESS_TIMEOUT_NS);
+    if (r) host->lost = true;
     if (r == VK_TIMEOUT) {
         snprintf(error, error_size, "the GPU has not finished within %u s",
                  (unsigned)(MASU_HEADLESS_TIMEOUT_NS / 1000000000u));

@@ -48,6 +48,7 @@ typedef struct masu_headless {
     uint32_t messages;       /* validation warnings and errors so far */
     bool validating;         /* the layer is really there */
     bool labels;             /* VK_EXT_debug_utils is enabled */
+    bool lost;               /* a wait has timed out or the device is gone: nothing is waited for */
     char first_message[512]; /* of the validation layer */
     char driver[1024]; /* "llvmpipe (...), lavapipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230" */
 } masu_headless;
@@ -55,7 +56,9 @@ typedef struct masu_headless {
 /* Opens what the description asks for. On false everything is closed again. */
 bool masu_headless_open(const masu_headless_desc *desc, masu_headless *host, char *error,
                         size_t error_size);
-/* Waits for the device and destroys everything; harmless on a zeroed struct. */
+/* Waits for what is pending, as long as any wait, and destroys everything; harmless on a zeroed
+ * struct. */
+void masu_headless_settle(masu_headless *host); /* only the waiting */
 void masu_headless_close(masu_headless *host);
 
 /* Submits; the slot's fence tells when it is done. The slot must not be pending. */

@@ -23,8 +23,7 @@
 /* A few kilobytes of PNG can unfold without end. 16-bit RGBA of the largest size is half this. */
 #define DECODER_BYTES_MAX ((size_t)1 << 30)
 
-static void *bounded_realloc(void *block, size_t bytes)
-{
+static void *bounded_realloc(void *block, size_t bytes) {
     return bytes > DECODER_BYTES_MAX ? NULL : realloc(block, bytes);
 }
 
@@ -58,8 +57,8 @@ _Static_assert(MASU_IMAGE_SIDE_MAX == STBI_MAX_DIMENSIONS, "one limit, stated tw
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-static bool fail(char *error, size_t error_size, const char *format, ...)
-{
+static bool
+fail(char *error, size_t error_size, const char *format, ...) {
     if (error && error_size) {
         va_list arguments;
         va_start(arguments, format);
@@ -69,16 +68,14 @@ static bool fail(char *error, size_t error_size, const char *format, ...)
     return false;
 }
 
-void masu_image_free(struct masu_image *image)
-{
+void masu_image_free(struct masu_image *image) {
     free(image->rgba);
     free(image->values);
-    *image = (struct masu_image){ 0 };
+    *image = (struct masu_image){0};
 }
 
 static bool size_is_allowed(const char *path, uint32_t width, uint32_t height, char *error,
-                            size_t error_size)
-{
+                            size_t error_size) {
     if (width == 0 || height == 0) {
         return fail(error, error_size, "%s: the picture is empty (%ux%u)", path, width, height);
     }
@@ -96,8 +93,7 @@ static bool size_is_allowed(const char *path, uint32_t width, uint32_t height, c
 /* ---- files ---- */
 
 /* Until `count` bytes or the end of the file; returns how many, or -1 with errno set. */
-static ssize_t read_up_to(int file, uint8_t *bytes, size_t count)
-{
+static ssize_t read_up_to(int file, uint8_t *bytes, size_t count) {
     size_t done = 0;
     while (done < count) {
         ssize_t n = read(file, bytes + done, count - done);
@@ -116,8 +112,7 @@ static ssize_t read_up_to(int file, uint8_t *bytes, size_t count)
 }
 
 bool masu_file_read(const char *path, size_t limit, uint8_t **bytes, size_t *count, char *error,
-                    size_t error_size)
-{
+                    size_t error_size) {
     *bytes = NULL;
     *count = 0;
     int file = open(path, O_RDONLY);
@@ -148,8 +143,7 @@ bool masu_file_read(const char *path, size_t limit, uint8_t **bytes, size_t *cou
     return true;
 }
 
-static bool write_all(int file, const uint8_t *bytes, size_t count)
-{
+static bool write_all(int file, const uint8_t *bytes, size_t count) {
     size_t done = 0;
     while (done < count) {
         ssize_t n = write(file, bytes + done, count - done);
@@ -165,8 +159,7 @@ static bool write_all(int file, const uint8_t *bytes, size_t count)
 }
 
 static bool write_straight(const char *path, const void *bytes, size_t count, char *error,
-                           size_t error_size)
-{
+                           size_t error_size) {
     int file = open(path, O_WRONLY);
     if (file < 0) {
         return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
@@ -182,8 +175,7 @@ static bool write_straight(const char *path, const void *bytes, size_t count, ch
 
 /* A new file beside the target, named after it and this process; its permissions follow the umask,
  * which mkstemp's would not. Returns -1 with errno set. */
-static int create_beside(const char *target, char *name, size_t name_size)
-{
+static int create_beside(const char *target, char *name, size_t name_size) {
     for (unsigned attempt = 0; attempt < 100; attempt++) {
         int n = snprintf(name, name_size, "%s.%ld-%u.tmp", target, (long)getpid(), attempt);
         if (n < 0 || (size_t)n >= name_size) {
@@ -199,8 +191,7 @@ static int create_beside(const char *target, char *name, size_t name_size)
 }
 
 static bool write_beside_and_rename(const char *path, const char *target, const void *bytes,
-                                    size_t count, char *error, size_t error_size)
-{
+                                    size_t count, char *error, size_t error_size) {
     size_t name_size = strlen(target) + 48;
     char *name = malloc(name_size);
     int file = name ? create_beside(target, name, name_size) : -1;
@@ -229,8 +220,7 @@ static bool write_beside_and_rename(const char *path, const char *target, const 
 }
 
 bool masu_file_write(const char *path, const void *bytes, size_t count, char *error,
-                     size_t error_size)
-{
+                     size_t error_size) {
     struct stat info;
     bool exists = stat(path, &info) == 0;
     if (exists && S_ISDIR(info.st_mode)) {
@@ -244,22 +234,20 @@ bool masu_file_write(const char *path, const void *bytes, size_t count, char *er
         return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
     }
     char *resolved = exists ? realpath(path, NULL) : NULL;
-    bool good = write_beside_and_rename(path, resolved ? resolved : path, bytes, count, error,
-                                        error_size);
+    bool good =
+        write_beside_and_rename(path, resolved ? resolved : path, bytes, count, error, error_size);
     free(resolved);
     return good;
 }
 
 /* ---- PNG ---- */
 
-static uint32_t big_endian(const uint8_t *p)
-{
+static uint32_t big_endian(const uint8_t *p) {
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
 /* CRC-32 of ISO 3309, four bits at a time: a table that fits in one line of sight. */
-static uint32_t crc32_of(const uint8_t *bytes, size_t count)
-{
+static uint32_t crc32_of(const uint8_t *bytes, size_t count) {
     static const uint32_t nibble[16] = {
         0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
         0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
@@ -276,8 +264,7 @@ static uint32_t crc32_of(const uint8_t *bytes, size_t count)
 
 /* A chunk is length, name, data, checksum of name and data. */
 static bool chunk_is_whole(const char *path, const uint8_t *chunk, size_t left, char *error,
-                           size_t error_size)
-{
+                           size_t error_size) {
     if (left < 12 || big_endian(chunk) > left - 12) {
         return fail(error, error_size, "%s: the PNG file is truncated", path);
     }
@@ -290,8 +277,7 @@ static bool chunk_is_whole(const char *path, const uint8_t *chunk, size_t left, 
 
 /* The IHDR chunk: its size, first place and the limits on the picture. */
 static bool header_is_allowed(const char *path, const uint8_t *chunk, char *error,
-                              size_t error_size)
-{
+                              size_t error_size) {
     if (memcmp(chunk + 4, "IHDR", 4) != 0 || big_endian(chunk) != 13) {
         return fail(error, error_size, "%s: the PNG file does not begin with its header", path);
     }
@@ -299,9 +285,8 @@ static bool header_is_allowed(const char *path, const uint8_t *chunk, char *erro
 }
 
 static bool png_is_whole(const char *path, const uint8_t *bytes, size_t count, char *error,
-                         size_t error_size)
-{
-    static const uint8_t signature[8] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n' };
+                         size_t error_size) {
+    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     if (count < 8 || memcmp(bytes, signature, 8) != 0) {
         return fail(error, error_size, "%s: is not a PNG file", path);
     }
@@ -321,9 +306,8 @@ static bool png_is_whole(const char *path, const uint8_t *bytes, size_t count, c
 }
 
 bool masu_image_load_png(const char *path, struct masu_image *image, char *error,
-                         size_t error_size)
-{
-    *image = (struct masu_image){ 0 };
+                         size_t error_size) {
+    *image = (struct masu_image){0};
     uint8_t *bytes;
     size_t count;
     if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size)) {
@@ -349,8 +333,7 @@ bool masu_image_load_png(const char *path, struct masu_image *image, char *error
 }
 
 bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,
-                         size_t row_bytes, char *error, size_t error_size)
-{
+                         size_t row_bytes, char *error, size_t error_size) {
     if (!size_is_allowed(path, width, height, error, error_size)) {
         return false;
     }
@@ -360,8 +343,8 @@ bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, 
                     width);
     }
     int count = 0;
-    unsigned char *bytes = stbi_write_png_to_mem(rgba, (int)row, (int)width, (int)height, 4,
-                                                 &count);
+    unsigned char *bytes =
+        stbi_write_png_to_mem(rgba, (int)row, (int)width, (int)height, 4, &count);
     if (!bytes) {
         return fail(error, error_size, "%s: out of memory for the PNG file", path);
     }
@@ -381,8 +364,7 @@ struct pfm_header {
 };
 
 /* The header is text: kind, width, height, scale, each ended by white space, then the samples. */
-static bool parse_pfm(const uint8_t *bytes, size_t count, struct pfm_header *header)
-{
+static bool parse_pfm(const uint8_t *bytes, size_t count, struct pfm_header *header) {
     char text[PFM_HEADER_MAX + 1];
     size_t kept = count < PFM_HEADER_MAX ? count : PFM_HEADER_MAX;
     memcpy(text, bytes, kept);
@@ -409,8 +391,7 @@ static bool parse_pfm(const uint8_t *bytes, size_t count, struct pfm_header *hea
     return true;
 }
 
-static uint32_t sample_bits(const uint8_t *p, bool big)
-{
+static uint32_t sample_bits(const uint8_t *p, bool big) {
     if (big) {
         return big_endian(p);
     }
@@ -418,8 +399,7 @@ static uint32_t sample_bits(const uint8_t *p, bool big)
 }
 
 static bool decode_pfm(const char *path, const uint8_t *bytes, size_t count,
-                       struct masu_image *image, char *error, size_t error_size)
-{
+                       struct masu_image *image, char *error, size_t error_size) {
     struct pfm_header header;
     if (!parse_pfm(bytes, count, &header)) {
         return fail(error, error_size, "%s: is not a PFM file", path);
@@ -454,9 +434,8 @@ static bool decode_pfm(const char *path, const uint8_t *bytes, size_t count,
 }
 
 bool masu_image_load_pfm(const char *path, struct masu_image *image, char *error,
-                         size_t error_size)
-{
-    *image = (struct masu_image){ 0 };
+                         size_t error_size) {
+    *image = (struct masu_image){0};
     uint8_t *bytes;
     size_t count;
     if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size)) {
@@ -468,8 +447,7 @@ bool masu_image_load_pfm(const char *path, struct masu_image *image, char *error
 }
 
 bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, uint32_t height,
-                         uint32_t channels, char *error, size_t error_size)
-{
+                         uint32_t channels, char *error, size_t error_size) {
     if (!size_is_allowed(path, width, height, error, error_size)) {
         return false;
     }

@@ -89,6 +89,8 @@ void clip_to_bounds(inout ray r)
     vec3 inverse = 1.0 / d;
     vec3 a = (frame.sdf_min.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz) * inverse;
     vec3 b = (frame.sdf_max.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz) * inverse;
+    a = clamp(a, vec3(-masu_huge), vec3(masu_huge));
+    b = clamp(b, vec3(-masu_huge), vec3(masu_huge));
     vec3 enter = min(a, b);
     vec3 leave = max(a, b);
     r.start = max(r.start, max(enter.x, max(enter.y, enter.z)));
@@ -211,6 +213,12 @@ void main()
             MASU_STORE_UNORM(albedo_image, at, masu_pack_albedo(s));
             MASU_STORE_UINT(normal_image, at, uvec4(masu_pack_normal(n, s)));
         }
+#if !MASU_HAS_RASTER
+        if (!(t >= 0.0)) { /* no polygon pass has cleared: what a host reads back is defined too */
+            MASU_STORE_UNORM(albedo_image, at, vec4(0.0));
+            MASU_STORE_UINT(normal_image, at, uvec4(0u));
+        }
+#endif
         masu_count(MASU_COUNTER_SDF_EVALS, evals);
         MASU_STORE_R32F(depth_image, at, depth);
     }

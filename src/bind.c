@@ -34,12 +34,6 @@ static masu_result take_host_block(masu_renderer *m, uint32_t role, masu_detail 
     const masu_device_block *given = &m->plan.desc.device_blocks[role];
     const masu_block_plan *need = &m->plan.blocks[role];
     const char *name = role_names[role];
-    if (given->memory_type >= m->vk.memory.memoryTypeCount ||
-        !(need->type_bits & 1u << given->memory_type)) {
-        return masu_fail(detail, MASU_ERROR_MEMORY, name, need->type_bits, given->memory_type,
-                         "%s: memory type %u cannot hold it, allowed are the bits 0x%x", name,
-                         given->memory_type, need->type_bits);
-    }
     if (given->offset % need->alignment) {
         return masu_fail(detail, MASU_ERROR_MEMORY, name, need->alignment, given->offset,
                          "%s: offset %llu is no multiple of %llu", name,

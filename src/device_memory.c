@@ -132,25 +132,38 @@ static const VkMemoryPropertyFlags preferences[MASU_ROLE_COUNT][3] = {
     [MASU_ROLE_READBACK] = {VISIBLE | CACHED, VISIBLE, VISIBLE},
 };
 
+/* The type of a block: the host's, where it brings the block, else the best that fits. On unified
+ * memory the one block has to be everything at once. */
 static masu_result choose_type(const masu_vk *vk, masu_frame_plan *plan, uint32_t role,
                                masu_detail *detail) {
     static const char *const names[] = {"device memory", "upload memory", "readback memory"};
     masu_block_plan *block = &plan->blocks[role];
+    const masu_device_block *given = &plan->desc.device_blocks[role];
     if (!block->bytes) return MASU_OK;
-    for (uint32_t i = 0; i < 3; i++) {
-        if (!find_type(vk, block->type_bits, preferences[role][i], block->bytes, &block->type))
-            continue;
-        if (plan->desc.device_blocks[role].memory) {
-            block->type = plan->desc.device_blocks[role].memory_type; /* checked when it is bound */
-        }
-        VkMemoryPropertyFlags flags = vk->memory.memoryTypes[block->type].propertyFlags;
-        block->host_visible = role != MASU_ROLE_DEVICE || (flags & VISIBLE) == VISIBLE;
-        return MASU_OK;
+    int found = 0;
+    for (uint32_t i = 0; i < 3 && !found; i++) {
+        VkMemoryPropertyFlags wanted = plan->unified ? LOCAL | VISIBLE : preferences[role][i];
+        found = find_type(vk, block->type_bits, wanted, block->bytes, &block->type);
     }
-    return masu_fail(detail, MASU_ERROR_DEVICE, names[role], block->bytes, 0,
-                     "no memory type of '%s' can hold %llu bytes of %s (type bits 0x%x)",
-                     vk->properties.deviceName, (unsigned long long)block->bytes, names[role],
-                     block->type_bits);
+    if (!found) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, names[role], block->bytes, 0,
+                         "no memory type of '%s' can hold %llu bytes of %s (type bits 0x%x)",
+                         vk->properties.deviceName, (unsigned long long)block->bytes, names[role],
+                         block->type_bits);
+    }
+    if (given->memory) {
+        if (given->memory_type >= vk->memory.memoryTypeCount ||
+            !(block->type_bits & 1u << given->memory_type)) {
+            return masu_fail(detail, MASU_ERROR_MEMORY, "device_blocks[].memory_type",
+                             block->type_bits, given->memory_type,
+                             "device_blocks[%u].memory_type is %u, allowed are the bits 0x%x", role,
+                             given->memory_type, block->type_bits);
+        }
+        block->type = given->memory_type;
+    }
+    VkMemoryPropertyFlags flags = vk->memory.memoryTypes[block->type].propertyFlags;
+    block->host_visible = plan->unified || role != MASU_ROLE_DEVICE || (flags & VISIBLE) == VISIBLE;
+    return MASU_OK;
 }
 
 /* ---- Objects --------------------------------------------------------------------------------- */
@@ -326,18 +339,9 @@ masu_result masu_objects_create(const masu_vk *vk, masu_frame_plan *plan, masu_o
     if (!result) result = create_staging(vk, plan, objects, detail);
     if (!result) result = create_poison(vk, plan, objects, detail);
     if (result) return result;
-    if (plan->unified) {
-        masu_block_plan *block = &plan->blocks[MASU_ROLE_DEVICE];
-        if (!find_type(vk, block->type_bits, LOCAL | VISIBLE, block->bytes, &block->type)) {
-            return masu_fail(detail, MASU_ERROR_DEVICE, "debug.poison", block->bytes, 0,
-                             "no unified memory type is left with debug.poison; set "
-                             "deny.unified_memory or leave debug.poison at 0");
-        }
-        block->host_visible = 1;
-    }
     uint64_t total = 0;
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
-        if (!plan->unified) result = choose_type(vk, plan, role, detail);
+        result = choose_type(vk, plan, role, detail);
         if (result) return result;
         total += plan->blocks[role].bytes;
     }

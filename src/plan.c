@@ -70,6 +70,27 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
     return MASU_OK;
 }
 
+/* Formats that hold display-encoded colour as it is. An sRGB format would encode it a second time,
+ * integer formats cannot be blitted to. */
+static int blit_format(VkFormat format) {
+    static const VkFormat formats[] = {
+        VK_FORMAT_R8G8B8A8_UNORM,           VK_FORMAT_B8G8R8A8_UNORM,
+        VK_FORMAT_A8B8G8R8_UNORM_PACK32,    VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+        VK_FORMAT_A2R10G10B10_UNORM_PACK32, VK_FORMAT_R5G6B5_UNORM_PACK16,
+        VK_FORMAT_B5G6R5_UNORM_PACK16,      VK_FORMAT_R16G16B16A16_UNORM};
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        if (formats[i] == format) return 1;
+    }
+    return 0;
+}
+
+static int final_layout_known(VkImageLayout layout) {
+    return layout == VK_IMAGE_LAYOUT_GENERAL || layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL ||
+           layout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL ||
+           layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL ||
+           layout == VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
+}
+
 static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
     const masu_targets *t = &d->targets;
     if (d->rung_count > MASU_MAX_RUNGS) {
@@ -100,6 +121,19 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
                          "storage targets must be VK_FORMAT_R8G8B8A8_UNORM (37), given is %d; set "
                          "targets.storage to 0 to have it blitted",
                          (int)t->format);
+    }
+    if (!blit_format(t->format)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.format", VK_FORMAT_B8G8R8A8_UNORM,
+                         (uint64_t)t->format,
+                         "targets.format %d: what is drawn is encoded already; use a UNORM colour "
+                         "format, such as VK_FORMAT_B8G8R8A8_UNORM (44)",
+                         (int)t->format);
+    }
+    if (!final_layout_known(t->final_layout)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.final_layout",
+                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, (uint64_t)t->final_layout,
+                         "targets.final_layout %d is none that a picture is used in",
+                         (int)t->final_layout);
     }
     if (!d->scene && !d->source.view) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,

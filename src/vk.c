@@ -59,6 +59,17 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
                              missing, format_floors[i].name);
         }
     }
+    VkFormat target = desc->targets.format ? desc->targets.format : VK_FORMAT_R8G8B8A8_UNORM;
+    VkFormatProperties target_properties;
+    memset(&target_properties, 0, sizeof target_properties);
+    vk->GetPhysicalDeviceFormatProperties(vk->physical, target, &target_properties);
+    if (!desc->targets.storage &&
+        !(target_properties.optimalTilingFeatures & VK_FORMAT_FEATURE_BLIT_DST_BIT)) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "targets.format",
+                         VK_FORMAT_FEATURE_BLIT_DST_BIT, target_properties.optimalTilingFeatures,
+                         "device '%s' cannot blit to targets.format %d", vk->properties.deviceName,
+                         (int)target);
+    }
     if (desc->debug.timestamps && vk->queue_family.timestampValidBits == 0) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "debug.timestamps", 1, 0,
                          "queue family %u of '%s' has no timestamps; leave debug.timestamps at 0",

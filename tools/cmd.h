@@ -28,6 +28,9 @@ enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };
 /* Handles one of them; false if the id is another's. */
 bool masu_device_option(masu_cli *cli, int id, masu_headless_desc *host);
 
+/* --size WxH: what a PNG may hold, 16384 a side and 64 Mi pixels; said before the work is done. */
+bool masu_output_size(const masu_cli *cli, VkExtent2D *size);
+
 /* Validation messages go to stderr as warnings; at the end they are a failure. */
 void masu_print_message(void *user, const char *text);
 int masu_finish_validation(const masu_headless *host, int code);

@@ -16,6 +16,14 @@ bool masu_device_option(masu_cli *cli, int id, masu_headless_desc *host) {
     }
 }
 
+bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {
+    if (!masu_cli_extent(cli, MASU_IMAGE_SIDE_MAX, &size->width, &size->height)) return false;
+    if ((uint64_t)size->width * size->height <= MASU_IMAGE_PIXELS_MAX) return true;
+    masu_cli_usage_error("%s %s: more than %u pixels", cli->option, cli->value,
+                         MASU_IMAGE_PIXELS_MAX);
+    return false;
+}
+
 void masu_print_message(void *user, const char *text) {
     (void)user;
     masu_cli_warn("validation: %s", text);

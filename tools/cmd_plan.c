@@ -187,8 +187,7 @@ static int run(masu_cli *cli) {
         if (masu_device_option(cli, id, &d.host)) continue;
         switch (id) {
         case OPTION_SIZE:
-            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height))
-                return MASU_CLI_USAGE;
+            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
             continue;
         case OPTION_FLIGHT:
             if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight))
@@ -219,7 +218,9 @@ static int run(masu_cli *cli) {
 }
 
 static const masu_cli_option options[] = {
-    {"size", "WxH", "output size in pixels (default 1920x1080)", OPTION_SIZE, 0},
+    {"size", "WxH",
+     "output size in pixels, at most 16384 a side and 64 Mi in all\n(default 1920x1080)",
+     OPTION_SIZE, 0},
     {"json", NULL, "print JSON", OPTION_JSON, 0},
     {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
     {"split-memory", NULL, "one block per memory role, even on unified memory", OPTION_SPLIT, 0},

@@ -237,8 +237,7 @@ static int run(masu_cli *cli) {
         case OPTION_OUTPUT: o.output = cli->value; continue;
         case OPTION_STATS: o.stats = cli->value; continue;
         case OPTION_SIZE:
-            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height))
-                return MASU_CLI_USAGE;
+            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
             continue;
         case OPTION_FRAMES:
             if (!masu_cli_uint(cli, 1, FRAMES_MAX, &o.frames)) return MASU_CLI_USAGE;
@@ -292,7 +291,9 @@ static int run(masu_cli *cli) {
 static const masu_cli_option options[] = {
     {"output", "FILE.png", "the last frame; with '####' in the name every frame, numbered",
      OPTION_OUTPUT, 'o'},
-    {"size", "WxH", "output size in pixels (default 1920x1080)", OPTION_SIZE, 0},
+    {"size", "WxH",
+     "output size in pixels, at most 16384 a side and 64 Mi in all\n(default 1920x1080)",
+     OPTION_SIZE, 0},
     {"frames", "N", "frames to draw along the scene's camera path (default 1)", OPTION_FRAMES, 0},
     {"rung", "R", "quality: 0 native, 1 at 0.8, 2 at 0.4 of the size and upscaled (default 0)",
      OPTION_RUNG, 0},

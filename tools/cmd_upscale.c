@@ -110,8 +110,7 @@ static int run(masu_cli *cli) {
         switch (id) {
         case OPTION_OUTPUT: files[1] = cli->value; continue;
         case OPTION_SIZE:
-            if (!masu_cli_extent(cli, 16384, &d.desc.output.width, &d.desc.output.height))
-                return MASU_CLI_USAGE;
+            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
             continue;
         case OPTION_SHARPNESS:
             if (!masu_cli_double(cli, 0.0, 64.0, &stops)) return MASU_CLI_USAGE;
@@ -136,7 +135,7 @@ static int run(masu_cli *cli) {
 }
 
 static const masu_cli_option options[] = {
-    {"size", "WxH", "output size in pixels", OPTION_SIZE, 0},
+    {"size", "WxH", "output size in pixels, at most 16384 a side and 64 Mi in all", OPTION_SIZE, 0},
     {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)",
      OPTION_SHARPNESS, 0},
     {"no-rcas", NULL, "EASU alone", OPTION_NO_RCAS, 0},

@@ -97,7 +97,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_Memory(VkDevice device,
         memset(out, 0xA5, sizeof *out);
         return wrap.fail_with;
     }
-    VkResult r = REAL(AllocateMemory)(device, info, allocator, out);
+    VkMemoryAllocateInfo real = *info;
+    if (wrap.fake_memory) real.memoryTypeIndex = 0;
+    wrap.allocate_calls++;
+    VkResult r = REAL(AllocateMemory)(device, &real, allocator, out);
     if (!r) made(1);
     return r;
 }
@@ -150,9 +153,59 @@ static VKAPI_ATTR VkResult VKAPI_CALL map_Memory(VkDevice device, VkDeviceMemory
     return REAL(MapMemory)(device, memory, offset, size, flags, out);
 }
 
+static VKAPI_ATTR void VKAPI_CALL buffer_requirements(VkDevice device, VkBuffer buffer,
+                                                      VkMemoryRequirements *out) {
+    REAL(GetBufferMemoryRequirements)(device, buffer, out);
+    if (wrap.fake_memory) out->memoryTypeBits = wrap.fake_memory == 2 ? 7 : 3;
+}
+
+static VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice device, VkImage image,
+                                                     VkMemoryRequirements *out) {
+    REAL(GetImageMemoryRequirements)(device, image, out);
+    if (wrap.fake_memory) out->memoryTypeBits = wrap.fake_memory == 2 ? 7 : 3;
+}
+
 /* Dispatchable objects without a device parameter: the real functions are kept at look-up. */
 static PFN_vkBeginCommandBuffer real_begin;
 static PFN_vkEndCommandBuffer real_end;
+static PFN_vkCmdPipelineBarrier real_barrier;
+static PFN_vkCmdFillBuffer real_fill;
+static PFN_vkCmdBeginDebugUtilsLabelEXT real_label;
+
+static VKAPI_ATTR void VKAPI_CALL cmd_barrier(VkCommandBuffer cmd, VkPipelineStageFlags from,
+                                              VkPipelineStageFlags to, VkDependencyFlags flags,
+                                              uint32_t memory_count, const VkMemoryBarrier *memory,
+                                              uint32_t buffer_count,
+                                              const VkBufferMemoryBarrier *buffers,
+                                              uint32_t image_count,
+                                              const VkImageMemoryBarrier *images) {
+    if (!wrap.first_barrier_to) {
+        wrap.first_barrier_from = from;
+        wrap.first_barrier_to = to;
+    }
+    for (uint32_t i = 0; i < memory_count; i++) {
+        VkAccessFlags a = memory[i].srcAccessMask, b = memory[i].dstAccessMask;
+        wrap.host_barrier |= to == VK_PIPELINE_STAGE_HOST_BIT && (a & VK_ACCESS_TRANSFER_WRITE_BIT) &&
+                             (b & VK_ACCESS_HOST_READ_BIT);
+        wrap.counter_barrier |= to == VK_PIPELINE_STAGE_TRANSFER_BIT &&
+                                (a & VK_ACCESS_SHADER_WRITE_BIT) &&
+                                (b & VK_ACCESS_TRANSFER_READ_BIT);
+    }
+    for (uint32_t i = 0; i < image_count; i++) wrap.last_layout = images[i].newLayout;
+    real_barrier(cmd, from, to, flags, memory_count, memory, buffer_count, buffers, image_count,
+                 images);
+}
+
+static VKAPI_ATTR void VKAPI_CALL cmd_fill(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset,
+                                           VkDeviceSize size, uint32_t word) {
+    wrap.fills_of_poison += word == 0x7FC07FC0u || word == 0x7C007C00u;
+    real_fill(cmd, buffer, offset, size, word);
+}
+
+static VKAPI_ATTR void VKAPI_CALL cmd_label(VkCommandBuffer cmd, const VkDebugUtilsLabelEXT *label) {
+    wrap.labels++;
+    real_label(cmd, label);
+}
 
 static VKAPI_ATTR VkResult VKAPI_CALL begin_CommandBuffer(VkCommandBuffer cmd,
                                                           const VkCommandBufferBeginInfo *info) {
@@ -184,7 +237,13 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
                   {"vkBindImageMemory", (PFN_vkVoidFunction)bind_ImageMemory},
                   {"vkMapMemory", (PFN_vkVoidFunction)map_Memory},
                   {"vkBeginCommandBuffer", (PFN_vkVoidFunction)begin_CommandBuffer},
-                  {"vkEndCommandBuffer", (PFN_vkVoidFunction)end_CommandBuffer}};
+                  {"vkEndCommandBuffer", (PFN_vkVoidFunction)end_CommandBuffer},
+                  {"vkGetBufferMemoryRequirements", (PFN_vkVoidFunction)buffer_requirements},
+                  {"vkGetImageMemoryRequirements", (PFN_vkVoidFunction)image_requirements},
+                  {"vkCmdPipelineBarrier", (PFN_vkVoidFunction)cmd_barrier},
+                  {"vkCmdFillBuffer", (PFN_vkVoidFunction)cmd_fill}};
+    real_barrier = REAL(CmdPipelineBarrier);
+    real_fill = REAL(CmdFillBuffer);
     real_begin = REAL(BeginCommandBuffer);
     real_end = REAL(EndCommandBuffer);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
@@ -200,6 +259,23 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
     vkGetPhysicalDeviceProperties(device, out);
     if (wrap.api_version) out->apiVersion = wrap.api_version;
     if (wrap.max_image) out->limits.maxImageDimension2D = wrap.max_image;
+    if (wrap.fake_memory) {
+        out->deviceType = wrap.fake_memory == 1 ? VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU
+                                                : VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    }
+}
+
+static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
+                                             VkPhysicalDeviceMemoryProperties *out) {
+    vkGetPhysicalDeviceMemoryProperties(device, out);
+    if (!wrap.fake_memory) return;
+    VkMemoryPropertyFlags local = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    VkMemoryPropertyFlags visible =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    out->memoryTypeCount = wrap.fake_memory == 2 ? 3 : 2;
+    out->memoryTypes[0] = (VkMemoryType){local, 0};
+    out->memoryTypes[1] = (VkMemoryType){visible, 0};
+    out->memoryTypes[2] = (VkMemoryType){local | visible, 0};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format,
@@ -222,6 +298,13 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL wrap_get_instance_proc_addr(VkInstance 
     if (wrap.unknown_function && !strcmp(name, wrap.unknown_function)) return NULL;
     if (!strcmp(name, "vkGetDeviceProcAddr")) return (PFN_vkVoidFunction)get_device_proc_addr;
     if (!strcmp(name, "vkGetPhysicalDeviceProperties")) return (PFN_vkVoidFunction)get_properties;
+    if (!strcmp(name, "vkGetPhysicalDeviceMemoryProperties")) {
+        return (PFN_vkVoidFunction)get_memory;
+    }
+    if (!strcmp(name, "vkCmdBeginDebugUtilsLabelEXT")) {
+        real_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetInstanceProcAddr(instance, name);
+        return real_label ? (PFN_vkVoidFunction)cmd_label : NULL;
+    }
     if (!strcmp(name, "vkGetPhysicalDeviceFormatProperties")) return (PFN_vkVoidFunction)get_format;
     if (!strcmp(name, "vkGetPhysicalDeviceQueueFamilyProperties"))
         return (PFN_vkVoidFunction)get_families;

@@ -31,6 +31,15 @@ typedef struct wrap_state {
     bool no_timestamps;
     uint32_t max_image;           /* maxImageDimension2D; 0: the truth */
     const char *unknown_function; /* not found */
+    /* 1: a discrete GPU: device-local memory that the host cannot see, and memory that it can.
+     * 2: an APU: as 1, and a third type that is both. Behind all stands the driver's type 0. */
+    int fake_memory;
+    uint32_t allocate_calls;
+    /* What the last recording began and ended with, and what is in between. */
+    VkPipelineStageFlags first_barrier_from, first_barrier_to;
+    bool host_barrier, counter_barrier;
+    VkImageLayout last_layout;
+    uint32_t labels, fills_of_poison;
 } wrap_state;
 
 extern wrap_state wrap;

@@ -1,0 +1,177 @@
+/* test_memory_kinds.c: memory as other devices have it, and what a recording must hold that no
+ * software driver would miss: both seen through support_wrap. */
+#include "support.h"
+#include "support_wrap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 96, H = 64, BYTES = W * H * 4 };
+
+static uint8_t reference[BYTES], pixels[BYTES];
+
+/* The sphere mesh is 6.5 MB: more than one staging buffer. */
+static masu_session_desc sphere_desc(void) {
+    masu_session_desc d = test_desc("test_sphere_mesh", W, H);
+    wrap_reset();
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    return d;
+}
+
+static void draw_reference(void) {
+    masu_session_desc d = test_desc("test_sphere_mesh", W, H);
+    masu_session s;
+    open_session(&s, &d);
+    draw_rung(&s, 0, reference);
+    close_session(&s);
+}
+
+/* Draws with the memory that `wrap` pretends; returns how often the scene had to be copied. */
+static uint32_t draw_with(masu_session *s, const masu_session_desc *d, masu_memory *need) {
+    char error[ERROR_SIZE];
+    masu_session_desc without = *d;
+    masu_commands commands;
+    uint32_t copies = 0;
+    without.no_renderer = true;
+    open_session(s, &without);
+    assert_int_equal(masu_memory_query(&s->desc, need, NULL), MASU_OK);
+    s->block = aligned_alloc(64, (need->host_bytes + 63) / 64 * 64);
+    masu_detail detail;
+    if (masu_init(&s->desc, s->block, need->host_bytes, &s->m, &detail)) fail_msg("%s", detail.text);
+    while (masu_load(s->m, &commands) == MASU_INCOMPLETE) {
+        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+        copies++;
+    }
+    draw_rung(s, 0, pixels);
+    return copies;
+}
+
+static void one_type_for_everything_is_one_allocation_without_copies(void **state) {
+    (void)state;
+    masu_session_desc d = sphere_desc();
+    masu_session s;
+    masu_memory need;
+    draw_reference();
+    assert_int_equal(draw_with(&s, &d, &need), 0);
+    assert_int_equal(need.unified, 1);
+    assert_int_equal(wrap.allocate_calls, 1);
+    assert_int_equal(max_difference(pixels, reference, BYTES), 0);
+    close_session(&s);
+    d.desc.deny.unified_memory = 1;
+    wrap.allocate_calls = 0;
+    assert_int_equal(draw_with(&s, &d, &need), 0); /* still visible: written in place */
+    assert_int_equal(need.unified, 0);
+    assert_int_equal(wrap.allocate_calls, 3);
+    close_session(&s);
+}
+
+static void a_discrete_device_gets_the_scene_through_a_staging_buffer_in_chunks(void **state) {
+    (void)state;
+    masu_session_desc d = sphere_desc();
+    masu_session s;
+    masu_memory need;
+    draw_reference();
+    wrap.fake_memory = 1;
+    assert_int_equal(draw_with(&s, &d, &need), 3); /* 2.6 MB vertices, 3.9 MB indices, a material */
+    assert_int_equal(need.unified, 0);
+    assert_int_equal(wrap.allocate_calls, 3);
+    assert_int_equal(need.roles[MASU_ROLE_DEVICE].host_visible, 0);
+    assert_int_equal(max_difference(pixels, reference, BYTES), 0);
+    close_session(&s);
+    assert_int_equal(wrap.live, 0);
+    wrap_reset();
+}
+
+/* The first device-local type of such a device cannot be seen by the host: it must not mislead. */
+static void an_apu_gets_one_block_of_the_type_that_is_both(void **state) {
+    (void)state;
+    masu_session_desc d = sphere_desc();
+    masu_session s;
+    masu_memory need;
+    draw_reference();
+    wrap.fake_memory = 2;
+    assert_int_equal(draw_with(&s, &d, &need), 0);
+    assert_int_equal(need.unified, 1);
+    assert_int_equal(need.roles[MASU_ROLE_DEVICE].type, 2);
+    assert_int_equal(wrap.allocate_calls, 1);
+    assert_int_equal(max_difference(pixels, reference, BYTES), 0);
+    close_session(&s);
+    wrap_reset();
+}
+
+static void a_block_of_the_host_that_cannot_serve_is_refused(void **state) {
+    (void)state;
+    masu_session_desc d = sphere_desc();
+    masu_session s;
+    masu_memory need;
+    masu_detail detail;
+    masu_renderer *m;
+    d.no_renderer = true;
+    open_session(&s, &d);
+    assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
+    const masu_role_need *role = &need.roles[MASU_ROLE_DEVICE];
+    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                 .allocationSize = role->bytes + 4096,
+                                 .memoryTypeIndex = role->type};
+    VkDeviceMemory memory;
+    void *mapped = NULL, *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
+    assert_int_equal(vkAllocateMemory(s.host.device, &info, NULL, &memory), VK_SUCCESS);
+    assert_int_equal(vkMapMemory(s.host.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
+    masu_device_block *given = &s.desc.device_blocks[MASU_ROLE_DEVICE];
+    const masu_device_block good = {memory, 0, role->bytes, mapped, role->type};
+    *given = good, given->memory_type = 0xFFFFFFFF;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_MEMORY);
+    assert_non_null(strstr(detail.text, "memory_type"));
+    *given = good, given->memory_type = 31;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_MEMORY);
+    *given = good, given->offset = 1;
+    assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, &detail), MASU_ERROR_MEMORY);
+    assert_non_null(strstr(detail.text, "offset"));
+    *given = good, given->mapped = NULL;
+    assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, &detail), MASU_ERROR_MEMORY);
+    assert_non_null(strstr(detail.text, "mapped"));
+    *given = good;
+    assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, &detail), MASU_OK);
+    masu_destroy(m);
+    free(block);
+    vkFreeMemory(s.host.device, memory, NULL);
+    close_session(&s);
+}
+
+static void recordings_hold_the_barriers_that_only_real_devices_need(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_both", W, H);
+    masu_session s;
+    wrap_reset();
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    d.desc.targets.final_layout = VK_IMAGE_LAYOUT_GENERAL;
+    d.desc.readback = MASU_READBACK_DEPTH;
+    d.desc.debug.labels = 1;
+    d.desc.debug.poison = 1;
+    open_session(&s, &d);
+    assert_int_equal(wrap.first_barrier_from, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+    assert_int_equal(wrap.first_barrier_to, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+    assert_true(wrap.counter_barrier);
+    assert_true(wrap.host_barrier);
+    assert_int_equal(wrap.last_layout, VK_IMAGE_LAYOUT_GENERAL);
+    masu_plan_info plan;
+    masu_plan_of(s.m, &plan);
+    uint32_t passes = 0;
+    for (uint32_t r = 0; r < plan.rung_count; r++) passes += plan.rungs[r].dispatches;
+    assert_int_equal(wrap.labels, passes * 2);       /* two frames in flight */
+    assert_int_equal(wrap.fills_of_poison, 3u * 2u); /* each recording */
+    assert_true(plan.rungs[0].barriers > 4);
+    close_session(&s);
+    wrap_reset();
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_type_for_everything_is_one_allocation_without_copies),
+        cmocka_unit_test(a_discrete_device_gets_the_scene_through_a_staging_buffer_in_chunks),
+        cmocka_unit_test(an_apu_gets_one_block_of_the_type_that_is_both),
+        cmocka_unit_test(a_block_of_the_host_that_cannot_serve_is_refused),
+        cmocka_unit_test(recordings_hold_the_barriers_that_only_real_devices_need),
+    };
+    return cmocka_run_group_tests_name("memory_kinds", tests, NULL, NULL);
+}
