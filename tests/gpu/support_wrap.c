@@ -185,8 +185,8 @@ static VKAPI_ATTR void VKAPI_CALL cmd_barrier(VkCommandBuffer cmd, VkPipelineSta
     }
     for (uint32_t i = 0; i < memory_count; i++) {
         VkAccessFlags a = memory[i].srcAccessMask, b = memory[i].dstAccessMask;
-        wrap.host_barrier |= to == VK_PIPELINE_STAGE_HOST_BIT && (a & VK_ACCESS_TRANSFER_WRITE_BIT) &&
-                             (b & VK_ACCESS_HOST_READ_BIT);
+        wrap.host_barrier |= to == VK_PIPELINE_STAGE_HOST_BIT &&
+                             (a & VK_ACCESS_TRANSFER_WRITE_BIT) && (b & VK_ACCESS_HOST_READ_BIT);
         wrap.counter_barrier |= to == VK_PIPELINE_STAGE_TRANSFER_BIT &&
                                 (a & VK_ACCESS_SHADER_WRITE_BIT) &&
                                 (b & VK_ACCESS_TRANSFER_READ_BIT);
@@ -196,13 +196,14 @@ static VKAPI_ATTR void VKAPI_CALL cmd_barrier(VkCommandBuffer cmd, VkPipelineSta
                  images);
 }
 
-static VKAPI_ATTR void VKAPI_CALL cmd_fill(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset,
-                                           VkDeviceSize size, uint32_t word) {
+static VKAPI_ATTR void VKAPI_CALL cmd_fill(VkCommandBuffer cmd, VkBuffer buffer,
+                                           VkDeviceSize offset, VkDeviceSize size, uint32_t word) {
     wrap.fills_of_poison += word == 0x7FC07FC0u || word == 0x7C007C00u;
     real_fill(cmd, buffer, offset, size, word);
 }
 
-static VKAPI_ATTR void VKAPI_CALL cmd_label(VkCommandBuffer cmd, const VkDebugUtilsLabelEXT *label) {
+static VKAPI_ATTR void VKAPI_CALL cmd_label(VkCommandBuffer cmd,
+                                            const VkDebugUtilsLabelEXT *label) {
     wrap.labels++;
     real_label(cmd, label);
 }

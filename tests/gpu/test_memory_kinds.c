@@ -37,7 +37,8 @@ static uint32_t draw_with(masu_session *s, const masu_session_desc *d, masu_memo
     assert_int_equal(masu_memory_query(&s->desc, need, NULL), MASU_OK);
     s->block = aligned_alloc(64, (need->host_bytes + 63) / 64 * 64);
     masu_detail detail;
-    if (masu_init(&s->desc, s->block, need->host_bytes, &s->m, &detail)) fail_msg("%s", detail.text);
+    if (masu_init(&s->desc, s->block, need->host_bytes, &s->m, &detail))
+        fail_msg("%s", detail.text);
     while (masu_load(s->m, &commands) == MASU_INCOMPLETE) {
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
         copies++;
