@@ -293,7 +293,7 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     masu_desc d = scene_desc(RASTER, 1920, 1080);
     d.targets.storage = 0;
     d.targets.views = NULL; /* not needed then */
-    d.targets.format = VK_FORMAT_B8G8R8A8_SRGB;
+    d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
     assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) present(from:ldr to:target)");
     assert_frame(&d, 1,
                  GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) "
