@@ -98,7 +98,7 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
 lib: $(BUILD)/lib/libmasu.a ## build build/lib/libmasu.a alone
-tools: $(BUILD)/bin/masu $(BUILD)/bin/masu-bake ## build build/bin/masu and build/bin/masu-bake
+tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc) ## build build/bin/masu, masu-bake, masu-sdfc
 shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
@@ -156,12 +156,12 @@ install-lib: lib ## install header, library and masu.pc
 	$(V)install -m 644 $(BUILD)/lib/libmasu.a "$(root)/lib/libmasu.a"
 	$(V)sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' masu.pc.in \
 	    > "$(root)/lib/pkgconfig/masu.pc"
-install-tools: tools ## install masu and masu-bake
+install-tools: tools ## install masu, masu-bake and masu-sdfc
 	$(V)install -d "$(root)/bin"
-	$(V)install -m 755 $(BUILD)/bin/masu $(BUILD)/bin/masu-bake "$(root)/bin"
+	$(V)install -m 755 $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-sdfc "$(root)/bin"
 uninstall: ## remove what install has put there
 	$(V)cd "$(root)" && rm -f include/masu.h lib/libmasu.a lib/pkgconfig/masu.pc
-	$(V)cd "$(root)" && rm -f bin/masu bin/masu-bake
+	$(V)cd "$(root)" && rm -f bin/masu bin/masu-bake bin/masu-sdfc
 
 .PHONY: clean help
 clean: ## remove what was built, of all configurations; keeps build/drivers

@@ -143,6 +143,9 @@ typedef struct masu_scene {
     uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
     uint32_t sdf;        /* 1: the scene has an SDF */
     uint32_t sdf_params; /* run-time parameters of it */
+    uint32_t sdf_parts, sdf_slots;
+    uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
+    uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
     uint32_t draws;      /* draw calls of one G-buffer pass */
     uint64_t triangles;  /* of one frame: every instance counted */
 } masu_scene;
@@ -169,6 +172,19 @@ MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name)
 
 typedef enum masu_switch { MASU_AUTO = 0, MASU_OFF = 1, MASU_ON = 2 } masu_switch;
 
+/* How the SDF is marched. AUTO is the fast way; the others are for comparisons and need a blob that
+ * was baked with --variants (else masu_init fails with MASU_ERROR_SCENE). */
+typedef enum masu_march {
+    MASU_MARCH_AUTO = 0,
+    MASU_MARCH_PLAIN = 1,        /* each pixel by itself, compute */
+    MASU_MARCH_FRAGMENT = 2,     /* each pixel by itself, fragment shader; scenes without polygons */
+    MASU_MARCH_SEED = 3,         /* two-phase checkerboard with capped, unchecked restarts */
+    MASU_MARCH_CONE8 = 4,        /* 8x8 cones alone */
+    MASU_MARCH_CONES = 5,        /* 8x8, then 2x2 cones */
+    MASU_MARCH_CHECKERBOARD = 6, /* 8x8 cones, then two-phase with provably safe restarts */
+    MASU_MARCH_UNPRUNED = 7      /* as AUTO, every tile with all parts */
+} masu_march;
+
 /* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen
  * freshly every frame. */
 typedef struct masu_rung {
@@ -178,6 +194,7 @@ typedef struct masu_rung {
     masu_switch sharpen; /* RCAS. AUTO: when EASU runs */
     float sharpness;     /* RCAS strength in stops, 0..64: 0 is sharpest, each stop halves it (AMD's
                              definition) */
+    masu_march march;
     uint32_t march_steps; /* most SDF steps per ray, 1..256; 0: 256 */
 } masu_rung;
 
@@ -223,6 +240,7 @@ typedef struct masu_device_block {
  * readback role. */
 typedef enum masu_readback_bits {
     MASU_READBACK_DEPTH = 1,  /* float: near / view z of the nearest surface, 0: none */
+    /* The next two are not defined where the depth is 0. */
     MASU_READBACK_ALBEDO = 2, /* 4 x uint8: sqrt of linear albedo, roughness */
     MASU_READBACK_NORMAL =
         4, /* uint32: octahedral 13+13 bits, metallic 4 bits, flags 2 bits (masu_unpack_normal) */

@@ -8,7 +8,8 @@
 # is not complete without the GLSL of a scene: masu-bake compiles it, so it and all that it may
 # include are embedded as text instead.
 
-SCENE_SHADERS := march.comp
+SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
+    march_checkerboard.comp march_fragment.frag
 
 SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag

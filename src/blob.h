@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 1u
+#define MASU_BLOB_VERSION 2u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -39,7 +39,16 @@ enum masu_blob_kind {
     MASU_BLOB_SDF_PARAMS = 10,
     MASU_BLOB_MARCH_SPIRV = 11, /* uint32 words: the march pass specialised to this scene */
     MASU_BLOB_NAMES = 12,       /* NUL-terminated UTF-8 strings, last byte is NUL */
-    MASU_BLOB_KIND_COUNT = 13
+    MASU_BLOB_CLASSIFY_SPIRV = 13, /* these three are present exactly when MARCH_SPIRV is */
+    MASU_BLOB_CONE8_SPIRV = 14,
+    MASU_BLOB_CONE2_SPIRV = 15,
+    MASU_BLOB_UPDATE_SPIRV = 16, /* present when slots depend on parameters or time */
+    MASU_BLOB_PLAIN_SPIRV = 17,  /* from here on: only with --variants */
+    MASU_BLOB_SEED_SPIRV = 18,
+    MASU_BLOB_CHECKERBOARD_SPIRV = 19,
+    MASU_BLOB_FRAGMENT_SPIRV = 20, /* only without instances */
+    MASU_BLOB_SLOTS = 21,          /* float: initial values of the SDF's slots; at least one */
+    MASU_BLOB_KIND_COUNT = 22
 };
 
 typedef struct masu_blob_header {
@@ -129,9 +138,9 @@ typedef struct masu_blob_sdf {
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
     float bounds_max[3];
     float max_distance;  /* longest ray, > 0 */
-    uint32_t has_raster; /* 1: MARCH_SPIRV was compiled to read a raster depth (the blob has
-                            instances) */
-    uint32_t reserved[3];
+    uint32_t has_raster; /* 1: the code was compiled to read a raster depth (there are instances) */
+    uint32_t part_count; /* 1..4096 */
+    uint32_t reserved[2];
 } masu_blob_sdf;
 
 typedef struct masu_blob_sdf_param {

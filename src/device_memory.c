@@ -291,7 +291,8 @@ static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu
                                   masu_detail *detail) {
     uint64_t resident = plan->buffers[MASU_BUFFER_VERTICES].bytes +
                         plan->buffers[MASU_BUFFER_INDICES].bytes +
-                        plan->buffers[MASU_BUFFER_MATERIALS].bytes;
+                        plan->buffers[MASU_BUFFER_MATERIALS].bytes +
+                        plan->buffers[MASU_BUFFER_SLOTS].bytes;
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
     if (!resident || plan->blocks[MASU_ROLE_DEVICE].host_visible) return MASU_OK;
     staging->bytes = resident < STAGING_BYTES ? resident : STAGING_BYTES;

@@ -15,6 +15,8 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
                           MASU_READBACK_DEPTH},
     [MASU_IMAGE_SCENE_DEPTH] = {"scene_depth", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_RENDER,
                                 MASU_CLASS_DEPTH, MASU_READBACK_DEPTH},
+    [MASU_IMAGE_CONE8] = {"cone8", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK8, MASU_CLASS_OTHER, 0},
+    [MASU_IMAGE_CONE2] = {"cone2", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK2, MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
                         MASU_READBACK_HDR},
     [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
@@ -38,8 +40,51 @@ static int needs_gbuffer(const masu_needs *n, const char **why) {
                    "no scene: a source image is upscaled", why);
 }
 
-static int needs_march(const masu_needs *n, const char **why) {
-    return decided(n->sdf, "the scene has an SDF", "the scene has no SDF", why);
+static int uses_tiles(const masu_needs *n) {
+    return n->sdf && n->march != MASU_MARCH_PLAIN && n->march != MASU_MARCH_SEED &&
+           n->march != MASU_MARCH_FRAGMENT;
+}
+
+/* Why a pass of the SDF does not run: there is none, or the rung marches it in another way. */
+static const char *no_march(const masu_needs *n) {
+    return n->sdf ? "rung.march asks for another way" : "the scene has no SDF";
+}
+
+static int needs_update(const masu_needs *n, const char **why) {
+    return decided(n->sdf && n->dynamic, "the SDF depends on parameters or time",
+                   n->sdf ? "the SDF's slots are constant" : "the scene has no SDF", why);
+}
+
+static int needs_tiles(const masu_needs *n, const char **why) {
+    return decided(uses_tiles(n), "the scene has an SDF", no_march(n), why);
+}
+
+static int needs_cone2(const masu_needs *n, const char **why) {
+    return decided(uses_tiles(n) && n->march != MASU_MARCH_CHECKERBOARD, "the scene has an SDF",
+                   no_march(n), why);
+}
+
+static int needs_march(const masu_needs *n, const char **why) { return needs_cone2(n, why); }
+
+static int needs_variant(const masu_needs *n, masu_march march, const char **why) {
+    return decided(n->sdf && n->march == march, "rung.march asks for it",
+                   n->sdf ? "rung.march does not ask for it" : "the scene has no SDF", why);
+}
+
+static int needs_checkerboard(const masu_needs *n, const char **why) {
+    return needs_variant(n, MASU_MARCH_CHECKERBOARD, why);
+}
+
+static int needs_plain(const masu_needs *n, const char **why) {
+    return needs_variant(n, MASU_MARCH_PLAIN, why);
+}
+
+static int needs_seed(const masu_needs *n, const char **why) {
+    return needs_variant(n, MASU_MARCH_SEED, why);
+}
+
+static int needs_fragment(const masu_needs *n, const char **why) {
+    return needs_variant(n, MASU_MARCH_FRAGMENT, why);
 }
 
 static int needs_shading(const masu_needs *n, const char **why) {
@@ -66,9 +111,19 @@ static int needs_present(const masu_needs *n, const char **why) {
                    "the last pass writes the target itself", why);
 }
 
-/* index.x: most SDF steps per ray. */
+/* index.x: most SDF steps per ray or cone. */
 static void march_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = rung->march_steps;
+}
+
+/* Cones of 8x8 alone: those of 2x2 make no step and hand on what they got. */
+static void cone2_params(const masu_rung *rung, struct masu_push *push) {
+    push->index[0] = rung->march == MASU_MARCH_CONE8 ? 0 : rung->march_steps;
+}
+
+/* index.y: not 0: every tile gets all parts. */
+static void classify_params(const masu_rung *rung, struct masu_push *push) {
+    push->index[1] = rung->march == MASU_MARCH_UNPRUNED;
 }
 
 /* param.x: RCAS lobe scale. One stop halves the strength (AMD: con = exp2(-sharpness)). */
@@ -83,11 +138,53 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_gbuffer, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR}, {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR},
          {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}},
+    [MASU_PASS_UPDATE] = {
+        "update", "SDF: slots that depend on parameters or time",
+        MASU_PASS_COMPUTE, MASU_EXTENT_ONE, needs_update, NULL,
+        {{MASU_RESOURCE_SLOTS, MASU_WRITE_BUFFER}}, MASU_BLOB_UPDATE_SPIRV},
+    [MASU_PASS_CLASSIFY] = {
+        "classify", "SDF: parts that matter per 16x16 tile, list of tiles that have any",
+        MASU_PASS_COMPUTE, MASU_EXTENT_TILE, needs_tiles, classify_params,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
+         {MASU_IMAGE_SCENE_DEPTH, MASU_WRITE}, {MASU_RESOURCE_TILES, MASU_WRITE_BUFFER}}, MASU_BLOB_CLASSIFY_SPIRV},
+    [MASU_PASS_CONE8] = {
+        "cone8", "SDF: one cone per 8x8 block, marched while all of the cone is free",
+        MASU_PASS_COMPUTE, MASU_EXTENT_BLOCK8, needs_tiles, march_params,
+        {{MASU_RESOURCE_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_CONE8, MASU_WRITE}}, MASU_BLOB_CONE8_SPIRV},
+    [MASU_PASS_CONE2] = {
+        "cone2", "the same per 2x2 block, from where its 8x8 block stopped",
+        MASU_PASS_COMPUTE, MASU_EXTENT_BLOCK2, needs_cone2, cone2_params,
+        {{MASU_IMAGE_CONE8, MASU_READ}, {MASU_RESOURCE_TILES, MASU_READ_BUFFER},
+         {MASU_IMAGE_CONE2, MASU_WRITE}}, MASU_BLOB_CONE2_SPIRV},
     [MASU_PASS_MARCH] = {
         "march", "SDF: sphere tracing up to the raster depth; hits become G-buffer texels",
-        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_march, march_params,
-        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_ALBEDO, MASU_UPDATE},
-         {MASU_IMAGE_NORMAL, MASU_UPDATE}, {MASU_IMAGE_SCENE_DEPTH, MASU_WRITE}}},
+        MASU_PASS_COMPUTE, MASU_EXTENT_TILES, needs_march, march_params,
+        {{MASU_IMAGE_CONE2, MASU_READ}, {MASU_RESOURCE_TILES, MASU_READ_BUFFER},
+         {MASU_IMAGE_ALBEDO, MASU_UPDATE},
+         {MASU_IMAGE_NORMAL, MASU_UPDATE}, {MASU_IMAGE_SCENE_DEPTH, MASU_UPDATE}}, MASU_BLOB_MARCH_SPIRV},
+    [MASU_PASS_MARCH_CHECKERBOARD] = {
+        "march_checkerboard", "for comparison: 8x8 cones, then two phases with safe restarts",
+        MASU_PASS_COMPUTE, MASU_EXTENT_TILES, needs_checkerboard, march_params,
+        {{MASU_IMAGE_CONE8, MASU_READ}, {MASU_RESOURCE_TILES, MASU_READ_BUFFER},
+         {MASU_IMAGE_ALBEDO, MASU_UPDATE},
+         {MASU_IMAGE_NORMAL, MASU_UPDATE}, {MASU_IMAGE_SCENE_DEPTH, MASU_UPDATE}}, MASU_BLOB_CHECKERBOARD_SPIRV},
+    [MASU_PASS_MARCH_PLAIN] = {
+        "march_plain", "for comparison: each pixel by itself",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_plain, march_params,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
+         {MASU_IMAGE_ALBEDO, MASU_UPDATE},
+         {MASU_IMAGE_NORMAL, MASU_UPDATE}, {MASU_IMAGE_SCENE_DEPTH, MASU_WRITE}}, MASU_BLOB_PLAIN_SPIRV},
+    [MASU_PASS_MARCH_SEED] = {
+        "march_seed", "for comparison: two phases with capped, unchecked restarts",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_seed, march_params,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
+         {MASU_IMAGE_ALBEDO, MASU_UPDATE},
+         {MASU_IMAGE_NORMAL, MASU_UPDATE}, {MASU_IMAGE_SCENE_DEPTH, MASU_WRITE}}, MASU_BLOB_SEED_SPIRV},
+    [MASU_PASS_MARCH_FRAGMENT] = {
+        "march_fragment", "for comparison: each pixel by itself, as a fragment shader",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_fragment, march_params,
+        {{MASU_RESOURCE_SLOTS, MASU_READ_BUFFER}, {MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR},
+         {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR}, {MASU_IMAGE_SCENE_DEPTH, MASU_WRITE_COLOR}}, MASU_BLOB_FRAGMENT_SPIRV},
     [MASU_PASS_LIGHT] = {
         "light", "sun, constant ambient, sky",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
@@ -118,3 +215,18 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
 };
 
 int masu_usage_writes(masu_usage usage) { return usage >= MASU_WRITE; }
+
+int masu_access_binds(masu_access access, int writes) {
+    if (!writes) return access.usage == MASU_READ;
+    return access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
+}
+
+VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2D output) {
+    uint32_t block = extent == MASU_EXTENT_BLOCK8   ? 8
+                     : extent == MASU_EXTENT_BLOCK2 ? 2
+                     : extent == MASU_EXTENT_TILE   ? MASU_TILE
+                                                    : 1;
+    if (extent == MASU_EXTENT_ONE) return (VkExtent2D){1, 1};
+    VkExtent2D size = extent == MASU_EXTENT_OUTPUT ? output : render;
+    return (VkExtent2D){(size.width + block - 1) / block, (size.height + block - 1) / block};
+}

@@ -7,6 +7,7 @@
 #ifndef MASU_FRAME_H
 #define MASU_FRAME_H
 
+#include "blob.h"
 #include "masu.h"
 #include "shared/masu_shared.h"
 
@@ -16,6 +17,8 @@ typedef enum masu_image_id {
     MASU_IMAGE_NORMAL,      /* packed octahedral normal, metallic, flags */
     MASU_IMAGE_DEPTH,       /* raster depth, reverse-Z */
     MASU_IMAGE_SCENE_DEPTH, /* the nearer of raster and SDF, same encoding */
+    MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
+    MASU_IMAGE_CONE2,       /* the same of each 2x2 block */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
     MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
@@ -23,6 +26,9 @@ typedef enum masu_image_id {
     MASU_IMAGE_SOURCE,      /* the host's input, upscaling only */
     MASU_IMAGE_TARGET,      /* the host's output */
     MASU_IMAGE_COUNT,
+    MASU_RESOURCE_TILES, /* not images: buffers of set 0, in rows for their barriers alone */
+    MASU_RESOURCE_SLOTS,
+    MASU_RESOURCE_END,
     /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row
      * has written. */
     MASU_LATEST_DEPTH = 32,
@@ -34,7 +40,16 @@ typedef enum masu_image_class {
     MASU_CLASS_DEPTH,
     MASU_CLASS_COLOR
 } masu_image_class;
-typedef enum masu_image_extent { MASU_EXTENT_RENDER, MASU_EXTENT_OUTPUT } masu_image_extent;
+/* Render and output size, and one texel per block of 8x8 or 2x2 render pixels. */
+typedef enum masu_image_extent {
+    MASU_EXTENT_RENDER,
+    MASU_EXTENT_OUTPUT,
+    MASU_EXTENT_BLOCK8,
+    MASU_EXTENT_BLOCK2,
+    MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
+    MASU_EXTENT_TILES, /* the same, for active tiles only: indirect */
+    MASU_EXTENT_ONE    /* one workgroup */
+} masu_image_extent;
 
 typedef struct masu_image_row {
     const char *name;
@@ -47,11 +62,13 @@ typedef struct masu_image_row {
 typedef enum masu_usage {
     MASU_USE_NONE = 0,
     MASU_READ,        /* sampled */
+    MASU_READ_BUFFER, /* storage buffer, or arguments of the row's indirect dispatch */
     MASU_READ_COPY,   /* transfer source */
     MASU_WRITE,       /* storage, whole sub-rectangle, earlier content is lost */
     MASU_UPDATE,      /* storage, some texels, the rest is kept */
     MASU_WRITE_COLOR, /* colour attachment, cleared first */
     MASU_WRITE_DEPTH, /* depth attachment, cleared to 0 (far) first */
+    MASU_WRITE_BUFFER, /* storage buffer */
     MASU_WRITE_COPY   /* transfer destination */
 } masu_usage;
 
@@ -76,8 +93,10 @@ typedef struct masu_needs {
     int sdf;           /* it has an SDF */
     uint32_t readback; /* masu_readback_bits */
     int blit;          /* targets are filled by a blit */
+    int dynamic;       /* slots of the SDF depend on parameters or time */
     /* of one rung: */
     int upscale, sharpen;
+    masu_march march;
 } masu_needs;
 
 typedef struct masu_pass_row {
@@ -90,11 +109,20 @@ typedef struct masu_pass_row {
     /* Pass-specific push constants of a rung; NULL: none. */
     void (*params)(const masu_rung *rung, struct masu_push *push);
     masu_access access[MASU_PASS_ACCESSES];
+    uint32_t code; /* masu_blob_kind of the scene's own SPIR-V; 0: the library's */
 } masu_pass_row;
 
 typedef enum masu_pass_id {
     MASU_PASS_GBUFFER,
+    MASU_PASS_UPDATE,
+    MASU_PASS_CLASSIFY,
+    MASU_PASS_CONE8,
+    MASU_PASS_CONE2,
     MASU_PASS_MARCH,
+    MASU_PASS_MARCH_CHECKERBOARD,
+    MASU_PASS_MARCH_PLAIN,
+    MASU_PASS_MARCH_SEED,
+    MASU_PASS_MARCH_FRAGMENT,
     MASU_PASS_LIGHT,
     MASU_PASS_READBACK,
     MASU_PASS_TONEMAP,
@@ -108,5 +136,11 @@ extern const masu_image_row masu_images[MASU_IMAGE_COUNT];
 extern const masu_pass_row masu_passes[MASU_PASS_COUNT];
 
 int masu_usage_writes(masu_usage usage);
+
+/* Whether an access of a compute row takes a binding of set 1, as a read or as a write. */
+int masu_access_binds(masu_access access, int writes);
+
+/* Pixels of an extent in a frame of that render and output size. */
+VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2D output);
 
 #endif

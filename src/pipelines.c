@@ -7,6 +7,7 @@
 #include "shared/masu_shared.h"
 
 #include "easu_comp.spv.h"
+#include "fullscreen_vert.spv.h"
 #include "gbuffer_frag.spv.h"
 #include "gbuffer_vert.spv.h"
 #include "light_comp.spv.h"
@@ -20,17 +21,20 @@ typedef struct spirv {
     uint64_t bytes;
 } spirv;
 
-/* Compute code by pass; the march's comes with the scene. */
+static spirv scene_code(const masu_renderer *m, uint32_t pass) {
+    masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+    return (spirv){v.code[masu_passes[pass].code].words,
+                   v.code[masu_passes[pass].code].count * sizeof(uint32_t)};
+}
+
+/* Compute code by pass: the scene's own where the row names a section of the blob. */
 static spirv compute_code(const masu_renderer *m, uint32_t pass) {
+    if (masu_passes[pass].code) return scene_code(m, pass);
     switch (pass) {
     case MASU_PASS_LIGHT: return (spirv){masu_spv_light_comp, sizeof masu_spv_light_comp};
     case MASU_PASS_TONEMAP: return (spirv){masu_spv_tonemap_comp, sizeof masu_spv_tonemap_comp};
     case MASU_PASS_EASU: return (spirv){masu_spv_easu_comp, sizeof masu_spv_easu_comp};
     case MASU_PASS_RCAS: return (spirv){masu_spv_rcas_comp, sizeof masu_spv_rcas_comp};
-    case MASU_PASS_MARCH: {
-        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
-        return (spirv){v.march_spirv, v.march_words * sizeof(uint32_t)};
-    }
     default: return (spirv){NULL, 0};
     }
 }
@@ -51,8 +55,9 @@ static uint64_t now(const masu_renderer *m) {
 /* ---- Layouts --------------------------------------------------------------------------------- */
 
 static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
-    VkShaderStageFlags all =
-        VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    VkShaderStageFlags compute = VK_SHADER_STAGE_COMPUTE_BIT;
+    VkShaderStageFlags fragment = VK_SHADER_STAGE_FRAGMENT_BIT;
+    VkShaderStageFlags all = compute | fragment | VK_SHADER_STAGE_VERTEX_BIT;
     VkDescriptorSetLayoutBinding bindings[] = {
         {MASU_BIND_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
         {MASU_BIND_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT,
@@ -60,7 +65,9 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
          NULL},
         {MASU_BIND_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
-         NULL}};
+         NULL},
+        {MASU_BIND_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL},
+        {MASU_BIND_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL}};
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                             .bindingCount = sizeof bindings / sizeof *bindings,
@@ -86,7 +93,7 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
     int compute = masu_passes[pass].kind == MASU_PASS_COMPUTE;
     for (int writes = 0; writes < 2 && compute; writes++) {
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
-            if (masu_usage_writes((masu_usage)rp->access[pass][a].usage) != writes) continue;
+            if (!masu_access_binds(rp->access[pass][a], writes)) continue;
             bindings[n] = (VkDescriptorSetLayoutBinding){
                 n,
                 writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
@@ -151,18 +158,25 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
 
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
- * */
-static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
-    const masu_image_id ids[3] = {MASU_IMAGE_ALBEDO, MASU_IMAGE_NORMAL, MASU_IMAGE_DEPTH};
-    VkAttachmentDescription attachments[3];
-    VkImageView views[3];
-    uint32_t width = m->plan.images[MASU_IMAGE_DEPTH].width;
-    uint32_t height = m->plan.images[MASU_IMAGE_DEPTH].height;
-    for (uint32_t i = 0; i < 3; i++) {
-        VkImageLayout layout = i == 2 ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
-                                      : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        attachments[i] =
-            (VkAttachmentDescription){.format = masu_images[ids[i]].format,
+ * A plan has one graphics row at most (polygons, or the SDF as a fragment shader). */
+static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+    VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
+    VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
+    VkImageView views[MASU_PASS_ACCESSES];
+    uint32_t n = 0, color_count = 0, width = 0, height = 0;
+    for (uint32_t a = 0; a < MASU_PASS_ACCESSES && masu_passes[pass].access[a].image; a++) {
+        masu_access access = masu_passes[pass].access[a];
+        int is_depth = access.usage == MASU_WRITE_DEPTH;
+        if (!is_depth && access.usage != MASU_WRITE_COLOR) continue;
+        VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                                        : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        if (is_depth) {
+            depth = (VkAttachmentReference){n, layout};
+        } else {
+            colors[color_count++] = (VkAttachmentReference){n, layout};
+        }
+        attachments[n] =
+            (VkAttachmentDescription){.format = masu_images[access.image].format,
                                       .samples = VK_SAMPLE_COUNT_1_BIT,
                                       .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
                                       .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
@@ -170,17 +184,17 @@ static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
                                       .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
                                       .initialLayout = layout,
                                       .finalLayout = layout};
-        views[i] = m->views[ids[i]];
+        views[n++] = m->views[access.image];
+        width = m->plan.images[access.image].width;
+        height = m->plan.images[access.image].height;
     }
-    VkAttachmentReference colors[2] = {{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
-                                       {1, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL}};
-    VkAttachmentReference depth = {2, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
     VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                    .colorAttachmentCount = 2,
+                                    .colorAttachmentCount = color_count,
                                     .pColorAttachments = colors,
-                                    .pDepthStencilAttachment = &depth};
+                                    .pDepthStencilAttachment =
+                                        depth.layout == VK_IMAGE_LAYOUT_UNDEFINED ? NULL : &depth};
     VkRenderPassCreateInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
-                                   .attachmentCount = 3,
+                                   .attachmentCount = n,
                                    .pAttachments = attachments,
                                    .subpassCount = 1,
                                    .pSubpasses = &subpass};
@@ -188,7 +202,7 @@ static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
     if (MASU_FAILED(r, m->render_pass)) return masu_fail_vulkan(detail, r, "vkCreateRenderPass");
     VkFramebufferCreateInfo frame = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
                                      .renderPass = m->render_pass,
-                                     .attachmentCount = 3,
+                                     .attachmentCount = n,
                                      .pAttachments = views,
                                      .width = width,
                                      .height = height,
@@ -198,7 +212,9 @@ static masu_result make_render_pass(masu_renderer *m, masu_detail *detail) {
                                           : MASU_OK;
 }
 
-static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule modules[2]) {
+static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
+                                         const VkShaderModule modules[2]) {
+    int polygons = pass == MASU_PASS_GBUFFER; /* else one triangle without vertices or depth */
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
         stages[i] = (VkPipelineShaderStageCreateInfo){
@@ -214,9 +230,9 @@ static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule m
         {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(masu_blob_vertex, normal)}};
     VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-        .vertexBindingDescriptionCount = 1,
+        .vertexBindingDescriptionCount = polygons ? 1 : 0,
         .pVertexBindingDescriptions = &binding,
-        .vertexAttributeDescriptionCount = 2,
+        .vertexAttributeDescriptionCount = polygons ? 2 : 0,
         .pVertexAttributeDescriptions = attributes};
     VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
@@ -237,17 +253,18 @@ static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule m
         .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
     VkPipelineDepthStencilStateCreateInfo depth = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = VK_TRUE,
-        .depthWriteEnable = VK_TRUE,
+        .depthTestEnable = polygons ? VK_TRUE : VK_FALSE,
+        .depthWriteEnable = polygons ? VK_TRUE : VK_FALSE,
         .depthCompareOp = VK_COMPARE_OP_GREATER};
-    VkPipelineColorBlendAttachmentState blend[2] = {
-        {.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                           VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT},
-        {.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                           VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT}};
+    VkPipelineColorBlendAttachmentState blend[3];
+    memset(blend, 0, sizeof blend);
+    for (uint32_t i = 0; i < 3; i++) {
+        blend[i].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                                  VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    }
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = 2,
+        .attachmentCount = polygons ? 2 : 3,
         .pAttachments = blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamics = {
@@ -265,27 +282,30 @@ static VkResult create_gbuffer_pipeline(masu_renderer *m, const VkShaderModule m
                                          .pDepthStencilState = &depth,
                                          .pColorBlendState = &blending,
                                          .pDynamicState = &dynamics,
-                                         .layout = m->layouts[MASU_PASS_GBUFFER],
+                                         .layout = m->layouts[pass],
                                          .renderPass = m->render_pass};
     return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1, &info,
-                                         m->vk.allocator, &m->pipelines[MASU_PASS_GBUFFER]);
+                                         m->vk.allocator, &m->pipelines[pass]);
 }
 
-static masu_result make_gbuffer(masu_renderer *m, masu_detail *detail) {
-    masu_result result = make_render_pass(m, detail);
-    if (result || !m->plan.needs.raster) return result; /* an empty scene only clears */
-    VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    result = make_module(m, (spirv){masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert},
-                         &modules[0], detail);
-    if (!result) {
-        result = make_module(m, (spirv){masu_spv_gbuffer_frag, sizeof masu_spv_gbuffer_frag},
-                             &modules[1], detail);
+static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+    masu_result result = make_render_pass(m, pass, detail);
+    int polygons = pass == MASU_PASS_GBUFFER;
+    if (result || (polygons && !m->plan.needs.raster)) return result; /* an empty scene clears */
+    spirv vertex = {masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert};
+    spirv fragment = {masu_spv_gbuffer_frag, sizeof masu_spv_gbuffer_frag};
+    if (!polygons) {
+        vertex = (spirv){masu_spv_fullscreen_vert, sizeof masu_spv_fullscreen_vert};
+        fragment = scene_code(m, pass);
     }
+    VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
+    result = make_module(m, vertex, &modules[0], detail);
+    if (!result) result = make_module(m, fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
-        VkResult r = create_gbuffer_pipeline(m, modules);
-        m->pipeline_ns[MASU_PASS_GBUFFER] = now(m) - start;
-        if (MASU_FAILED(r, m->pipelines[MASU_PASS_GBUFFER])) {
+        VkResult r = create_graphics_pipeline(m, pass, modules);
+        m->pipeline_ns[pass] = now(m) - start;
+        if (MASU_FAILED(r, m->pipelines[pass])) {
             result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
         }
     }
@@ -308,7 +328,8 @@ masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
         if (masu_passes[p].kind == MASU_PASS_TRANSFER) continue;
         result = make_pass_layout(m, p, detail);
         if (result || !m->layouts[p]) continue;
-        result = p == MASU_PASS_GBUFFER ? make_gbuffer(m, detail) : make_compute(m, p, detail);
+        int graphics = masu_passes[p].kind == MASU_PASS_GRAPHICS;
+        result = graphics ? make_graphics(m, p, detail) : make_compute(m, p, detail);
         if (!result)
             masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->pipelines[p]),
                       masu_passes[p].name);

@@ -61,6 +61,9 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
     if (rung->march_steps > MASU_MARCH_STEPS_MAX) {
         return bad_range(detail, "rungs[].march_steps", rung->march_steps, 1, MASU_MARCH_STEPS_MAX);
     }
+    if ((unsigned)rung->march > MASU_MARCH_UNPRUNED) {
+        return bad_range(detail, "rungs[].march", (unsigned)rung->march, 0, MASU_MARCH_UNPRUNED);
+    }
     const masu_switch switches[2] = {rung->upscale, rung->sharpen};
     static const char *const names[2] = {"rungs[].upscale", "rungs[].sharpen"};
     for (uint32_t i = 0; i < 2; i++) {
@@ -231,10 +234,11 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         rp->active |= 1u << p;
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_image_id image = resolve(row->access[a].image, depth, color);
-            if (!keeps_access(plan, (masu_pass_id)p, image)) continue;
+            if (image < MASU_IMAGE_COUNT && !keeps_access(plan, (masu_pass_id)p, image)) continue;
             rp->access[p][rp->access_count[p]++] =
                 (masu_access){(uint8_t)image, row->access[a].usage};
             if (!masu_usage_writes((masu_usage)row->access[a].usage)) continue;
+            if (image > MASU_IMAGE_COUNT) continue;
             if (masu_images[image].class_of == MASU_CLASS_DEPTH) depth = image;
             if (masu_images[image].class_of == MASU_CLASS_COLOR) {
                 color = image;
@@ -260,6 +264,8 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_WRITE_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     case MASU_WRITE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    case MASU_READ_BUFFER:
+    case MASU_WRITE_BUFFER:
     case MASU_USE_NONE: break;
     }
     return 0;
@@ -273,19 +279,16 @@ static void gather_images(masu_frame_plan *plan) {
             for (uint32_t a = 0; a < rp->access_count[p]; a++) {
                 masu_image_id id = (masu_image_id)rp->access[p][a].image;
                 writes_target |= id == MASU_IMAGE_TARGET;
-                if (id == MASU_IMAGE_TARGET || id == MASU_IMAGE_SOURCE) continue;
+                if (id >= MASU_IMAGE_SOURCE) continue; /* the host's, or a buffer */
                 masu_image_plan *image = &plan->images[id];
-                uint32_t w = masu_images[id].extent == MASU_EXTENT_RENDER ? rp->render_width
-                                                                          : plan->desc.output.width;
-                uint32_t h = masu_images[id].extent == MASU_EXTENT_RENDER
-                                 ? rp->render_height
-                                 : plan->desc.output.height;
+                VkExtent2D render = {rp->render_width, rp->render_height};
+                VkExtent2D size = masu_extent_of(masu_images[id].extent, render, plan->desc.output);
                 if (!image->used) image->first = p;
                 if (image->first > p) image->first = p;
                 if (image->last < p) image->last = p;
                 image->used = 1;
-                if (image->width < w) image->width = w;
-                if (image->height < h) image->height = h;
+                if (image->width < size.width) image->width = size.width;
+                if (image->height < size.height) image->height = size.height;
                 image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
             }
             if (!(rp->active & 1u << p) || masu_passes[p].kind != MASU_PASS_COMPUTE) continue;
@@ -305,6 +308,14 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     b[MASU_BUFFER_FRAME].count = flights;
     b[MASU_BUFFER_FRAME].stride = align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
     b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
+    for (uint32_t r = 0; r < plan->desc.rung_count && s->sdf; r++) {
+        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
+        VkExtent2D tiles = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
+        uint64_t list = s->sdf_parts < MASU_TILE_PARTS_MAX ? s->sdf_parts : MASU_TILE_PARTS_MAX;
+        uint64_t words = MASU_TILES_HEADER + (uint64_t)tiles.width * tiles.height * (list + 2);
+        if (words > b[MASU_BUFFER_TILES].count) b[MASU_BUFFER_TILES].count = words;
+    }
+    b[MASU_BUFFER_TILES].bytes = b[MASU_BUFFER_TILES].count * sizeof(uint32_t);
     if (s->instances) {
         b[MASU_BUFFER_INSTANCES].stride =
             align_up((uint64_t)s->instances * sizeof(struct masu_instance_data), storage_alignment);
@@ -352,6 +363,11 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         b[MASU_BUFFER_MATERIALS].count * sizeof(struct masu_material_data);
     b[MASU_BUFFER_COUNTERS] = (masu_buffer_plan){
         .name = "counters", .usage = storage | dst | VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
+    b[MASU_BUFFER_SLOTS] = (masu_buffer_plan){
+        .name = "slots", .usage = storage | dst, .count = s && s->sdf ? s->sdf_slots : 0};
+    b[MASU_BUFFER_SLOTS].bytes = b[MASU_BUFFER_SLOTS].count * sizeof(float);
+    b[MASU_BUFFER_TILES] = (masu_buffer_plan){
+        .name = "tiles", .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
     b[MASU_BUFFER_FRAME] = (masu_buffer_plan){.name = "frame uniforms",
                                               .role = MASU_ROLE_UPLOAD,
                                               .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
@@ -393,6 +409,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     plan->needs = (masu_needs){.scene = d->scene != NULL,
                                .raster = d->scene && d->scene->instances,
                                .sdf = d->scene && d->scene->sdf,
+                               .dynamic = d->scene && d->scene->sdf_dynamic,
                                .readback = d->readback,
                                .blit = !d->targets.storage};
     for (uint32_t r = 0; r < d->rung_count; r++) {
@@ -408,6 +425,13 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              r, rp->render_width, rp->render_height, d->output.width,
                              d->output.height);
         }
+        plan->needs.march = d->rungs[r].march;
+        if (d->scene && d->scene->sdf && !(d->scene->sdf_march & 1u << plan->needs.march)) {
+            return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
+                             "rungs[%u].march is %d, for which the blob has no code (bake with "
+                             "--variants; FRAGMENT: without polygons)",
+                             r, (int)plan->needs.march);
+        }
         resolve_switches(d, rp, &d->rungs[r], &plan->needs);
         compile_rung(plan, r);
     }
@@ -419,6 +443,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
 /* ---- Export ---------------------------------------------------------------------------------- */
 
 static const char *image_name(uint8_t image) {
+    if (image == MASU_RESOURCE_TILES) return "tiles";
+    if (image == MASU_RESOURCE_SLOTS) return "slots";
     return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL;
 }
 
@@ -441,16 +467,17 @@ void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_m
 
 /* Bytes of the table's images that this plan does not have, at their size in this plan. */
 static uint64_t left_out_bytes(const masu_frame_plan *plan) {
-    uint64_t render = 0, output = (uint64_t)plan->desc.output.width * plan->desc.output.height;
+    VkExtent2D render = {0, 0};
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
-        uint64_t v = (uint64_t)plan->rungs[r].render_width * plan->rungs[r].render_height;
-        if (v > render) render = v;
+        const masu_rung_plan *rp = &plan->rungs[r];
+        if (rp->render_width > render.width) render.width = rp->render_width;
+        if (rp->render_height > render.height) render.height = rp->render_height;
     }
     uint64_t bytes = 0;
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (plan->images[i].used) continue;
-        bytes += masu_format_bytes(masu_images[i].format) *
-                 (masu_images[i].extent == MASU_EXTENT_RENDER ? render : output);
+        VkExtent2D size = masu_extent_of(masu_images[i].extent, render, plan->desc.output);
+        bytes += (uint64_t)size.width * size.height * masu_format_bytes(masu_images[i].format);
     }
     return bytes;
 }

@@ -33,6 +33,8 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_INDICES,
     MASU_BUFFER_MATERIALS,
     MASU_BUFFER_COUNTERS,
+    MASU_BUFFER_SLOTS, /* of the SDF: its parts as data */
+    MASU_BUFFER_TILES, /* of the SDF: which parts matter where; masu_shared.h has the layout */
     MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
     MASU_BUFFER_INSTANCES, /* one array per frame in flight */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */

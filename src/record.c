@@ -38,7 +38,15 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0};
     case MASU_WRITE:
     case MASU_UPDATE:
-        return (image_state){1, shader, VK_ACCESS_SHADER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL, 1};
+        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_GENERAL, 1};
+    case MASU_READ_BUFFER:
+        return (image_state){1, shader | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
+                             VK_IMAGE_LAYOUT_UNDEFINED, 0};
+    case MASU_WRITE_BUFFER:
+        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_UNDEFINED, 1};
     case MASU_WRITE_COLOR:
         return (image_state){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
                              VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
@@ -63,7 +71,7 @@ typedef struct recorder {
     VkCommandBuffer cmd;
     uint32_t flight, rung, target;
     masu_rung_plan *rp;
-    image_state states[MASU_IMAGE_COUNT];
+    image_state states[MASU_RESOURCE_END]; /* images, then the buffers that rows name */
     uint32_t barriers;
 } recorder;
 
@@ -112,6 +120,7 @@ static VkImageMemoryBarrier image_barrier(const recorder *rec, masu_image_id id,
 
 static void barrier_before(recorder *rec, uint32_t pass) {
     VkImageMemoryBarrier barriers[MASU_PASS_ACCESSES];
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     uint32_t n = 0;
     VkPipelineStageFlags from = 0, to = 0;
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
@@ -119,7 +128,17 @@ static void barrier_before(recorder *rec, uint32_t pass) {
         masu_usage usage = (masu_usage)rec->rp->access[pass][a].usage;
         if (id == MASU_IMAGE_SOURCE) continue; /* the host's contract: readable already */
         image_state next = state_of(usage, masu_passes[pass].kind), *now = &rec->states[id];
-        if (!now->used) {
+        if (id > MASU_IMAGE_COUNT) {
+            /* A buffer. Its first use in a frame is behind the barrier at the frame's top. */
+            if (now->used && (now->writes || next.writes)) {
+                from |= now->stages;
+                to |= next.stages;
+                memory.srcAccessMask |= now->writes ? now->access : 0;
+                memory.dstAccessMask |= next.access;
+            } else {
+                next.stages |= now->stages;
+            }
+        } else if (!now->used) {
             VkAccessFlags access = 0;
             from |= next.stages;
             add_tenants(rec, id, &from, &access);
@@ -135,8 +154,9 @@ static void barrier_before(recorder *rec, uint32_t pass) {
         }
         *now = next;
     }
-    if (!n) return;
-    rec->m->vk.CmdPipelineBarrier(rec->cmd, from, to, 0, 0, NULL, 0, NULL, n, barriers);
+    if (!to) return;
+    rec->m->vk.CmdPipelineBarrier(rec->cmd, from, to, 0, memory.dstAccessMask != 0, &memory, 0,
+                                  NULL, n, barriers);
     rec->barriers++;
 }
 
@@ -153,23 +173,21 @@ static void memory_barrier(recorder *rec, VkPipelineStageFlags from, VkAccessFla
 
 static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
     const masu_desc *d = &rec->m->plan.desc;
-    int render = masu_passes[pass].extent == MASU_EXTENT_RENDER;
+    VkExtent2D render = {rec->rp->render_width, rec->rp->render_height};
+    VkExtent2D output = masu_extent_of(masu_passes[pass].extent, render, d->output);
+    VkExtent2D input = render; /* of the first image read that is not of blocks */
     struct masu_push push;
     memset(&push, 0, sizeof push);
-    push.output_width = render ? rec->rp->render_width : d->output.width;
-    push.output_height = render ? rec->rp->render_height : d->output.height;
-    /* Input size: that of the first image read. */
-    push.render_width = rec->rp->render_width;
-    push.render_height = rec->rp->render_height;
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
         masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
         if (rec->rp->access[pass][a].usage != MASU_READ) continue;
-        if (masu_images[id].extent == MASU_EXTENT_OUTPUT) {
-            push.render_width = d->output.width;
-            push.render_height = d->output.height;
-        }
+        if (masu_images[id].extent == MASU_EXTENT_OUTPUT) input = d->output;
         break;
     }
+    push.render_width = input.width;
+    push.render_height = input.height;
+    push.output_width = output.width;
+    push.output_height = output.height;
     if (masu_passes[pass].params) masu_passes[pass].params(&d->rungs[rec->rung], &push);
     return push;
 }
@@ -186,8 +204,15 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1,
                               &set, 0, NULL);
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
-    vk->CmdDispatch(rec->cmd, (push.output_width + MASU_GROUP - 1) / MASU_GROUP,
-                    (push.output_height + MASU_GROUP - 1) / MASU_GROUP, 1);
+    masu_image_extent extent = masu_passes[pass].extent;
+    if (extent == MASU_EXTENT_TILES) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TILES], 0);
+        return;
+    }
+    /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
+    uint32_t group = extent == MASU_EXTENT_TILE || extent == MASU_EXTENT_ONE ? 1 : MASU_GROUP;
+    vk->CmdDispatch(rec->cmd, (push.output_width + group - 1) / group,
+                    (push.output_height + group - 1) / group, 1);
 }
 
 /* One draw per primitive of each placed mesh; instances of one mesh are neighbours, so one draw
@@ -225,7 +250,19 @@ static void record_draws(recorder *rec) {
     }
 }
 
-static void record_gbuffer(recorder *rec) {
+/* One triangle over everything, for the SDF as a fragment shader. */
+static void record_fullscreen(recorder *rec, uint32_t pass) {
+    const masu_vk *vk = &rec->m->vk;
+    struct masu_push push = push_constants(rec, pass);
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
+    vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->layouts[pass],
+                              MASU_SET_GLOBAL, 1, &rec->m->global_sets[rec->flight], 0, NULL);
+    vk->CmdPushConstants(rec->cmd, rec->m->layouts[pass], VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                         sizeof push, &push);
+    vk->CmdDraw(rec->cmd, 3, 1, 0, 0);
+}
+
+static void record_graphics(recorder *rec, uint32_t pass) {
     const masu_vk *vk = &rec->m->vk;
     VkClearValue clear[3];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
@@ -239,10 +276,11 @@ static void record_gbuffer(recorder *rec) {
                                    .clearValueCount = 3,
                                    .pClearValues = clear};
     vk->CmdBeginRenderPass(rec->cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    if (rec->m->plan.needs.raster) {
+    if (rec->m->pipelines[pass]) { /* else it only clears */
         vk->CmdSetViewport(rec->cmd, 0, 1, &viewport);
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
-        record_draws(rec);
+        if (pass == MASU_PASS_GBUFFER) record_draws(rec);
+        if (pass != MASU_PASS_GBUFFER) record_fullscreen(rec, pass);
     }
     vk->CmdEndRenderPass(rec->cmd);
 }
@@ -322,7 +360,16 @@ static void record_prologue(recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_POISON], 0, VK_WHOLE_SIZE,
                             poison_word(m->plan.desc.debug.poison));
     }
-    if (counters || m->plan.buffers[MASU_BUFFER_POISON].bytes) {
+    if (m->plan.buffers[MASU_BUFFER_TILES].bytes) {
+        /* Arguments of the indirect dispatch: no tile yet, its four quarters, one layer. */
+        static const uint32_t arguments[3] = {0, 4, 1};
+        for (uint32_t i = 0; i < 3; i++) {
+            m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_TILES], 4 * i, 4,
+                                arguments[i]);
+        }
+    }
+    if (counters || m->plan.buffers[MASU_BUFFER_TILES].bytes ||
+        m->plan.buffers[MASU_BUFFER_POISON].bytes) {
         memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                        VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -378,7 +425,7 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
         if (rec->rp->active & 1u << p) {
             begin_label(rec, masu_passes[p].name);
             barrier_before(rec, p);
-            if (p == MASU_PASS_GBUFFER) record_gbuffer(rec);
+            if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p);
             if (p == MASU_PASS_READBACK) record_readback(rec, p);
             if (p == MASU_PASS_PRESENT) record_present(rec, p);
             if (masu_passes[p].kind == MASU_PASS_COMPUTE) record_compute(rec, p, sets[p]);
@@ -397,7 +444,7 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 5 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MASU_PASS_ACCESSES * sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -429,7 +476,9 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
     } rows[] = {{MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
                 {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                 {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+                {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                {MASU_BIND_TILES, MASU_BUFFER_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
     for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;
@@ -464,7 +513,7 @@ static void write_pass_set(masu_renderer *m, const masu_rung_plan *rp, uint32_t 
     uint32_t binding = 0;
     for (int writes = 0; writes < 2; writes++) {
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
-            if (masu_usage_writes((masu_usage)rp->access[pass][a].usage) != writes) continue;
+            if (!masu_access_binds(rp->access[pass][a], writes)) continue;
             uint32_t id = rp->access[pass][a].image;
             VkDescriptorImageInfo image = {
                 .imageView =

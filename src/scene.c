@@ -13,23 +13,34 @@ typedef struct section_rule {
     const char *name;
     uint32_t stride;
     uint64_t most; /* elements */
+    int code;      /* it is SPIR-V */
 } section_rule;
 
 #define MANY 0x7FFFFFFFu
+#define CODE(kind, name) [kind] = {name, sizeof(uint32_t), (uint64_t)16 << 20, 1}
 
 static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
-    [MASU_BLOB_VERTICES] = {"vertices", sizeof(masu_blob_vertex), MANY},
-    [MASU_BLOB_INDICES] = {"indices", sizeof(uint32_t), MANY},
-    [MASU_BLOB_PRIMITIVES] = {"primitives", sizeof(masu_blob_primitive), MANY},
-    [MASU_BLOB_MESHES] = {"meshes", sizeof(masu_blob_mesh), MANY},
-    [MASU_BLOB_INSTANCES] = {"instances", sizeof(masu_blob_instance), MANY},
-    [MASU_BLOB_MATERIALS] = {"materials", sizeof(masu_blob_material), MANY},
-    [MASU_BLOB_CAMERA_KEYS] = {"camera keys", sizeof(masu_blob_camera_key), MANY},
-    [MASU_BLOB_ENVIRONMENT] = {"environment", sizeof(masu_blob_environment), 1},
-    [MASU_BLOB_SDF] = {"sdf", sizeof(masu_blob_sdf), 1},
-    [MASU_BLOB_SDF_PARAMS] = {"sdf parameters", sizeof(masu_blob_sdf_param), MASU_MAX_SDF_PARAMS},
-    [MASU_BLOB_MARCH_SPIRV] = {"march SPIR-V", sizeof(uint32_t), (uint64_t)16 << 20},
-    [MASU_BLOB_NAMES] = {"names", 1, MANY},
+    [MASU_BLOB_VERTICES] = {"vertices", sizeof(masu_blob_vertex), MANY, 0},
+    [MASU_BLOB_INDICES] = {"indices", sizeof(uint32_t), MANY, 0},
+    [MASU_BLOB_PRIMITIVES] = {"primitives", sizeof(masu_blob_primitive), MANY, 0},
+    [MASU_BLOB_MESHES] = {"meshes", sizeof(masu_blob_mesh), MANY, 0},
+    [MASU_BLOB_INSTANCES] = {"instances", sizeof(masu_blob_instance), MANY, 0},
+    [MASU_BLOB_MATERIALS] = {"materials", sizeof(masu_blob_material), MANY, 0},
+    [MASU_BLOB_CAMERA_KEYS] = {"camera keys", sizeof(masu_blob_camera_key), MANY, 0},
+    [MASU_BLOB_ENVIRONMENT] = {"environment", sizeof(masu_blob_environment), 1, 0},
+    [MASU_BLOB_SDF] = {"sdf", sizeof(masu_blob_sdf), 1, 0},
+    [MASU_BLOB_SDF_PARAMS] = {"sdf parameters", sizeof(masu_blob_sdf_param), MASU_MAX_SDF_PARAMS, 0},
+    CODE(MASU_BLOB_MARCH_SPIRV, "march SPIR-V"),
+    CODE(MASU_BLOB_CLASSIFY_SPIRV, "classify SPIR-V"),
+    CODE(MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V"),
+    CODE(MASU_BLOB_CONE2_SPIRV, "cone2 SPIR-V"),
+    CODE(MASU_BLOB_UPDATE_SPIRV, "update SPIR-V"),
+    CODE(MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V"),
+    CODE(MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V"),
+    CODE(MASU_BLOB_CHECKERBOARD_SPIRV, "march_checkerboard SPIR-V"),
+    CODE(MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V"),
+    [MASU_BLOB_SLOTS] = {"slots", sizeof(float), 65536, 0},
+    [MASU_BLOB_NAMES] = {"names", 1, MANY, 0},
 };
 
 typedef struct reader {
@@ -141,10 +152,15 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .environment = start[MASU_BLOB_ENVIRONMENT],
                                 .sdf = start[MASU_BLOB_SDF],
                                 .sdf_params = start[MASU_BLOB_SDF_PARAMS],
-                                .march_spirv = start[MASU_BLOB_MARCH_SPIRV],
-                                .march_words = r->counts[MASU_BLOB_MARCH_SPIRV],
+                                .slots = start[MASU_BLOB_SLOTS],
+                                .slot_count = r->counts[MASU_BLOB_SLOTS],
                                 .names = start[MASU_BLOB_NAMES],
                                 .name_bytes = r->counts[MASU_BLOB_NAMES]};
+    for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
+        if (!rules[k].code || !start[k]) continue;
+        r->view.code[k].words = start[k];
+        r->view.code[k].count = r->counts[k];
+    }
     return MASU_OK;
 }
 
@@ -267,10 +283,9 @@ static masu_result check_looks(reader *r) {
 static masu_result check_sdf(reader *r) {
     const masu_scene_view *v = &r->view;
     if (!v->sdf) {
-        if (v->sdf_params || v->march_spirv) {
-            return bad(r, "sdf", 0, "is missing, but its parameters or code are there");
-        }
-        return MASU_OK;
+        int more = v->sdf_params || v->slots;
+        for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) more |= v->code[k].words != NULL;
+        return more ? bad(r, "sdf", 0, "is missing, but parts of it are there") : MASU_OK;
     }
     const masu_blob_sdf *s = v->sdf;
     for (uint32_t k = 0; k < 3; k++) {
@@ -294,10 +309,43 @@ static masu_result check_sdf(reader *r) {
         }
         if (!name_ok(r, p->name)) return bad(r, "sdf parameters", i, "name lies outside the names");
     }
-    if (!v->march_spirv || v->march_words < 5 || v->march_spirv[0] != 0x07230203u) {
-        return bad(r, "march SPIR-V", 0, "is missing or is no SPIR-V");
+    if (s->part_count < 1 || s->part_count > MASU_SDF_PARTS_MAX) {
+        return bad(r, "sdf", 0, "part count is not 1 to 4096");
+    }
+    if (s->has_raster && v->code[MASU_BLOB_FRAGMENT_SPIRV].words) {
+        return bad(r, "march_fragment SPIR-V", 0, "is there beside polygons, which it would erase");
+    }
+    if (!v->slots) return bad(r, "slots", 0, "are missing");
+    for (uint64_t i = 0; i < v->slot_count; i++) {
+        if (!finite_all(&v->slots[i], 1)) return bad(r, "slots", i, "is not finite");
+    }
+    for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
+        int needed = k == MASU_BLOB_MARCH_SPIRV || k == MASU_BLOB_CLASSIFY_SPIRV ||
+                     k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE2_SPIRV;
+        if (!v->code[k].words && !needed) continue;
+        if (!v->code[k].words || v->code[k].count < 5 || v->code[k].words[0] != 0x07230203u) {
+            return bad(r, rules[k].name, 0, "is missing or is no SPIR-V");
+        }
     }
     return MASU_OK;
+}
+
+static void look_at_sdf(const reader *r, masu_scene *out) {
+    static const struct {
+        uint32_t kind;
+        masu_march march;
+    } variants[] = {{MASU_BLOB_PLAIN_SPIRV, MASU_MARCH_PLAIN},
+                    {MASU_BLOB_FRAGMENT_SPIRV, MASU_MARCH_FRAGMENT},
+                    {MASU_BLOB_SEED_SPIRV, MASU_MARCH_SEED},
+                    {MASU_BLOB_CHECKERBOARD_SPIRV, MASU_MARCH_CHECKERBOARD}};
+    out->sdf_parts = r->view.sdf->part_count;
+    out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];
+    out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL;
+    out->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 | 1u << MASU_MARCH_CONES |
+                     1u << MASU_MARCH_UNPRUNED;
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        if (r->view.code[variants[i].kind].words) out->sdf_march |= 1u << variants[i].march;
+    }
 }
 
 masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out,
@@ -327,6 +375,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
                         .camera_keys = (uint32_t)r.counts[MASU_BLOB_CAMERA_KEYS],
                         .sdf = r.view.sdf != NULL,
                         .sdf_params = (uint32_t)r.counts[MASU_BLOB_SDF_PARAMS]};
+    if (r.view.sdf) look_at_sdf(&r, out);
     uint32_t from = 0;
     for (uint32_t m = 0; m < out->meshes; m++) {
         uint32_t first, end = masu_scene_mesh_instances(&r.view, out->instances, m, from, &first);

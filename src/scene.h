@@ -21,8 +21,12 @@ typedef struct masu_scene_view {
     const masu_blob_environment *environment;
     const masu_blob_sdf *sdf; /* NULL: none */
     const masu_blob_sdf_param *sdf_params;
-    const uint32_t *march_spirv;
-    uint64_t march_words;
+    const float *slots;
+    uint64_t slot_count;
+    struct {
+        const uint32_t *words; /* NULL: none */
+        uint64_t count;
+    } code[MASU_BLOB_KIND_COUNT]; /* the SPIR-V sections, by kind */
     const char *names;
     uint64_t name_bytes;
 } masu_scene_view;

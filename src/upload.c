@@ -12,7 +12,8 @@
 /* ---- Scene ----------------------------------------------------------------------------------- */
 
 static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDICES,
-                                          MASU_BUFFER_MATERIALS};
+                                          MASU_BUFFER_MATERIALS,
+                                          MASU_BUFFER_SLOTS};
 
 #define RESIDENT_COUNT (sizeof resident / sizeof *resident)
 
@@ -51,6 +52,8 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
         memcpy(to, (const unsigned char *)v->vertices + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_INDICES) {
         memcpy(to, (const unsigned char *)v->indices + chunk.offset, (size_t)chunk.bytes);
+    } else if (chunk.buffer == MASU_BUFFER_SLOTS) {
+        memcpy(to, (const unsigned char *)v->slots + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_MATERIALS) {
         /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy
          * the part. */

@@ -22,14 +22,15 @@ SCRIPT_TESTS := $(call only,$(wildcard tests/unit/*.sh $(if $(FULL),tests/full/*
 DRIVER_INFO  := $(BUILD)/tests/driver_info
 
 REFERENCE    := $(BUILD)/lib/libmasu-reference.a
-TEST_LIBS    := $(REFERENCE) $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+TEST_LIBS    := $(REFERENCE) $(BUILD)/lib/libmasu-bench.a
+TEST_LIBS    += $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 UNIT_SUPPORT := $(call objects,$(wildcard tests/unit/support*.c))
 GPU_SUPPORT  := $(call objects,$(wildcard tests/gpu/support*.c)) $(KEEP_LOADED)
 FUZZ_MAIN    := $(BUILD)/obj/tests/fuzz/standalone_main.o
 
 $(REFERENCE): $(call objects,$(wildcard tests/reference/*.c))
 
-$(BUILD)/tests/%: LIBS = -lcmocka -lvulkan -lm
+$(BUILD)/tests/%: LIBS = -lcmocka -lvulkan -lm -ldl -lpthread
 
 $(BUILD)/tests/unit/%: $(BUILD)/obj/tests/unit/%.o $(UNIT_SUPPORT) $(TEST_LIBS)
 	$(link)
@@ -50,8 +51,13 @@ FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 $(BUILD)/tests/fuzz/seed_scene: $(call objects,tests/fuzz/seed_scene.c tests/unit/support_blob.c)
 	$(link)
 $(BUILD)/tests/fuzz/scene.masu: $(BUILD)/tests/fuzz/seed_scene
-	$(V)$< $@ 7
+	$(V)$< $@ 15
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
+
+# Every feature in a few lines, and a scene.
+FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf
+$(BUILD)/tests/fuzz/fuzz_sdfc $(BUILD)/tests/unit/test_sdfc: $(SDFC_OBJECTS)
+fuzz-sdfc: $(SDFC_OBJECTS)
 
 FUZZ      ?= scene
 FUZZ_TIME ?= 60

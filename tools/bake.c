@@ -26,7 +26,7 @@
 
 #define ASSIMP_MODELS "/usr/share/assimp/models"
 
-enum { OPTION_OUTPUT = 1, OPTION_STATS, OPTION_MODELS };
+enum { OPTION_OUTPUT = 1, OPTION_STATS, OPTION_MODELS, OPTION_VARIANTS };
 
 typedef struct totals {
     uint64_t triangles;       /* stored */
@@ -143,6 +143,7 @@ static int run(masu_cli *cli) {
         case OPTION_OUTPUT: output = cli->value; break;
         case OPTION_STATS: stats = cli->value; break;
         case OPTION_MODELS: request.models_directory = cli->value; break;
+        case OPTION_VARIANTS: request.variants = true; break;
         case MASU_CLI_ARGUMENT:
             if (request.input) return masu_cli_usage_error("more than one input: %s", cli->value);
             request.input = cli->value;
@@ -164,6 +165,8 @@ int main(int argc, char **argv) {
     static const masu_cli_option options[] = {
         {"output", "FILE", "where the blob goes; replaced only by a complete one", OPTION_OUTPUT,
          'o'},
+        {"variants", NULL, "add the other ways to march the SDF, for masu march-bench",
+         OPTION_VARIANTS, 0},
         {"stats", "FILE", "write counts, bytes and bounds as JSON", OPTION_STATS, 0},
         {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
          OPTION_MODELS, 0},

@@ -51,6 +51,15 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_SDF] = "sdf",
         [MASU_BLOB_SDF_PARAMS] = "sdf_params",
         [MASU_BLOB_MARCH_SPIRV] = "march_spirv",
+        [MASU_BLOB_CLASSIFY_SPIRV] = "classify_spirv",
+        [MASU_BLOB_CONE8_SPIRV] = "cone8_spirv",
+        [MASU_BLOB_CONE2_SPIRV] = "cone2_spirv",
+        [MASU_BLOB_UPDATE_SPIRV] = "update_spirv",
+        [MASU_BLOB_PLAIN_SPIRV] = "plain_spirv",
+        [MASU_BLOB_SEED_SPIRV] = "seed_spirv",
+        [MASU_BLOB_CHECKERBOARD_SPIRV] = "checkerboard_spirv",
+        [MASU_BLOB_FRAGMENT_SPIRV] = "fragment_spirv",
+        [MASU_BLOB_SLOTS] = "slots",
         [MASU_BLOB_NAMES] = "names",
     };
     return names[kind];

@@ -19,6 +19,15 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_SDF] = sizeof(masu_blob_sdf),
     [MASU_BLOB_SDF_PARAMS] = sizeof(masu_blob_sdf_param),
     [MASU_BLOB_MARCH_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CLASSIFY_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CONE8_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CONE2_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_UPDATE_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_PLAIN_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_SEED_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CHECKERBOARD_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_FRAGMENT_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_SLOTS] = sizeof(float),
     [MASU_BLOB_NAMES] = 1,
 };
 

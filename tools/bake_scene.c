@@ -116,13 +116,14 @@ static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, ma
         !read_params(&sdf, content)) {
         return false;
     }
-    if (!*source) return masu_bake_json_wrong(&sdf, "needs \"source\", a GLSL file");
+    if (!*source) return masu_bake_json_wrong(&sdf, "needs \"source\", a GLSL or .sdf file");
     masu_blob_sdf out = {
         .bounds_min = {(float)box.low.x, (float)box.low.y, (float)box.low.z},
         .bounds_max = {(float)box.high.x, (float)box.high.y, (float)box.high.z},
         .lipschitz = (float)lipschitz,
         .max_distance = (float)max_distance,
         .has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0,
+        .part_count = 1,
     };
     masu_bake_append(&content->section[MASU_BLOB_SDF], &out, sizeof out);
     /* Models say better than an endless world's bounds what the camera should look at. */
@@ -151,7 +152,7 @@ static bool read_all(const masu_bake_json *scene, const char *directory,
     if (!source) return true;
     char *path = NULL;
     if (source[0] != '/' && strcmp(directory, ".") != 0) path = masu_bake_join(directory, source);
-    bool good = masu_bake_compile_march(content, path ? path : source);
+    bool good = masu_bake_compile_march(content, path ? path : source, request->variants);
     free(path);
     return good;
 }

@@ -12,6 +12,7 @@
 
 typedef struct masu_bake_request {
     const char *input;
+    bool variants; /* with the marching variants for comparisons */
     const char *models_directory; /* what "@assimp/" stands for */
 } masu_bake_request;
 

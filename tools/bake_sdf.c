@@ -5,6 +5,7 @@
 #include "bake_process.h"
 #include "cli.h"
 #include "scene_sources.h"
+#include "sdfc.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -61,20 +62,100 @@ static void append_scene_header(masu_bake_buffer *text, const masu_bake_content 
     masu_bake_append_text(text, "\"\n");
 }
 
-static bool lay_out(const char *directory, const masu_bake_content *content,
-                    const char *glsl_path) {
+/* What masu-sdfc would have generated besides the field: a hand-written one is a single part without
+ * bounds. */
+static const char hand_written[] = "#define MASU_SDF_PART_COUNT 1\n"
+                                   "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
+                                   "uint masu_sdf_nearest(vec3 p) { return 0u; }\n";
+
+/* ---- the language of docs/sdf.md ---- */
+
+static bool is_sdf(const char *path) {
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".sdf") == 0;
+}
+
+/* Every line of a message by itself: "file:1:2: expected ...", the line, the caret. */
+static void report_lines(const char *text, bool warnings) {
+    while (*text) {
+        int length = (int)strcspn(text, "\n");
+        if (warnings)
+            masu_cli_warn("%.*s", length, text);
+        else
+            masu_cli_error("%.*s", length, text);
+        text += length + (text[length] == '\n');
+    }
+}
+
+static void take_params(const masu_sdfc_result *scene, masu_bake_content *content) {
+    for (uint32_t i = 0; i < scene->param_count; i++) {
+        const masu_sdfc_param *p = &scene->params[i];
+        masu_blob_sdf_param param = {(float)p->value, (float)p->minimum, (float)p->maximum,
+                                     masu_bake_name(content, p->name, strlen(p->name))};
+        masu_bake_append(&content->section[MASU_BLOB_SDF_PARAMS], &param, sizeof param);
+    }
+}
+
+/* The parts' data, and the code's shape that depends on them. */
+static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content, bool *dynamic) {
+    static const float no_slot = 0.0f;
+    masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
+    sdf->part_count = scene->part_count;
+    masu_bake_append(&content->section[MASU_BLOB_SLOTS],
+                     scene->slot_count ? scene->slots : &no_slot,
+                     (scene->slot_count ? scene->slot_count : 1) * sizeof(float));
+    *dynamic = scene->dynamic;
+}
+
+static bool compile_scene(const char *path, masu_bake_content *content, masu_bake_buffer *out,
+                          bool *dynamic) {
+    masu_bake_buffer own = {0};
+    masu_sdfc_result scene;
+    char error[2048];
+    if (!masu_bake_read_file(path, MASU_SDFC_SOURCE_MAX, &own)) return false;
+    masu_cli_progress("compiling %s", path);
+    bool good = masu_bake_count(content, MASU_BLOB_SDF_PARAMS) == 0;
+    if (!good) {
+        masu_cli_error("%s: its parameters are declared in it, not in the scene's JSON", path);
+        masu_bake_release(&own);
+        return false;
+    }
+    good = masu_sdfc_compile((const char *)own.data, own.bytes, path, &scene, error, sizeof error);
+    if (good) {
+        report_lines(scene.warnings, true);
+        take_params(&scene, content);
+        take_parts(&scene, content, dynamic);
+        masu_bake_append_text(out, scene.glsl);
+    } else {
+        report_lines(error, false);
+    }
+    masu_sdfc_release(&scene);
+    masu_bake_release(&own);
+    return good;
+}
+
+static bool lay_out(const char *directory, masu_bake_content *content, const char *glsl_path,
+                    bool *dynamic) {
     for (size_t i = 0; i < sizeof masu_scene_sources / sizeof masu_scene_sources[0]; i++) {
         const char *name = masu_scene_sources[i].name, *text = masu_scene_sources[i].text;
         if (name && !write_text(directory, name, text, strlen(text))) return false;
     }
     masu_bake_buffer text = {0}, own = {0};
-    bool good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
-    if (good) {
-        append_scene_header(&text, content, glsl_path);
-        masu_bake_append(&text, own.data, own.bytes);
-        masu_bake_append_text(&text, "\n");
-        good = write_text(directory, "sdf_scene.glsl", text.data, text.bytes);
+    bool good;
+    if (is_sdf(glsl_path)) {
+        good = compile_scene(glsl_path, content, &text, dynamic);
+    } else {
+        good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
+        if (good) {
+            append_scene_header(&text, content, glsl_path);
+            masu_bake_append(&text, own.data, own.bytes);
+            masu_bake_append_text(&text, "\n");
+            masu_bake_append_text(&text, hand_written);
+            static const float no_slot = 0.0f;
+            masu_bake_append(&content->section[MASU_BLOB_SLOTS], &no_slot, sizeof no_slot);
+        }
     }
+    good = good && write_text(directory, "sdf_scene.glsl", text.data, text.bytes);
     masu_bake_release(&own);
     masu_bake_release(&text);
     return good;
@@ -92,8 +173,8 @@ static void hide_directory(char *line, const char *directory) {
 }
 
 /* glslang says "ERROR: FILE:LINE: message" and a count at the end. */
-static void report_compiler(char *text, const char *directory) {
-    bool about_contract = false;
+static void report_compiler(char *text, const char *directory, const char *glsl_path) {
+    bool about_contract = false, scene_blamed = false;
     int shown = 0;
     char *save = NULL;
     for (char *line = strtok_r(text, "\n", &save); line; line = strtok_r(NULL, "\n", &save)) {
@@ -103,6 +184,11 @@ static void report_compiler(char *text, const char *directory) {
         if (!error || strstr(line, "compilation errors.  No code") || shown >= ERRORS_SHOWN) {
             continue;
         }
+        /* After an error in the scene's own file glslang loses what follows it: more errors in our
+         * headers say nothing new. */
+        bool own = strncmp(line + 7, glsl_path, strlen(glsl_path)) == 0;
+        if (scene_blamed && !own) continue;
+        scene_blamed = scene_blamed || own;
         masu_cli_error("%s", line + 7);
         about_contract = about_contract || strstr(line, "'masu_sdf");
         shown++;
@@ -122,7 +208,7 @@ static bool run_tool(const char *const *arguments, const char *package, const ch
     bool good = result.end == MASU_BAKE_EXITED && result.code == 0;
     bool compiler = strcmp(arguments[0], "glslangValidator") == 0;
     if (good && compiler) {
-        report_compiler(text, directory);
+        report_compiler(text, directory, glsl_path);
     } else if (result.end == MASU_BAKE_EXITED && result.code == MASU_BAKE_CANNOT_START) {
         masu_cli_error("cannot run %s; is it installed? (package %s)", arguments[0], package);
     } else if (result.end == MASU_BAKE_SIGNALED) {
@@ -132,7 +218,7 @@ static bool run_tool(const char *const *arguments, const char *package, const ch
     } else if (result.end == MASU_BAKE_NO_CHILD) {
         masu_cli_error("cannot start %s: %s", arguments[0], strerror(result.code));
     } else if (!good && compiler && strstr(text, "ERROR: ")) {
-        report_compiler(text, directory);
+        report_compiler(text, directory, glsl_path);
     } else if (!good) {
         hide_directory(text, directory);
         text[strcspn(text, "\n")] = '\0';
@@ -144,6 +230,7 @@ static bool run_tool(const char *const *arguments, const char *package, const ch
 
 typedef struct paths {
     char *source, *raw, *optimised, *include_here, *include_scene;
+    const char *define, *stage;
 } paths;
 
 static bool run_tools(const paths *p, bool has_raster, const char *directory,
@@ -155,8 +242,9 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                    p->include_here,
                                    p->include_scene,
                                    has_raster ? "-DMASU_HAS_RASTER=1" : "-DMASU_HAS_RASTER=0",
+                                   p->define,
                                    "-S",
-                                   "comp",
+                                   p->stage,
                                    "-o",
                                    p->raw,
                                    p->source,
@@ -180,8 +268,9 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
     return true;
 }
 
-static bool take_spirv(masu_bake_content *content, const char *path, const char *glsl_path) {
-    masu_bake_buffer *spirv = &content->section[MASU_BLOB_MARCH_SPIRV];
+static bool take_spirv(masu_bake_content *content, uint32_t kind, const char *path,
+                       const char *glsl_path) {
+    masu_bake_buffer *spirv = &content->section[kind];
     if (!masu_bake_read_file(path, SPIRV_MAX, spirv)) return false;
     uint32_t magic = 0;
     if (spirv->bytes >= 20) memcpy(&magic, spirv->data, sizeof magic);
@@ -197,22 +286,55 @@ static char *include_option(const char *directory) {
     return option;
 }
 
-bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path) {
+enum { ALWAYS, DYNAMIC, VARIANT, WITHOUT_RASTER };
+
+/* The shaders that are compiled together with the scene's field, and the sections they go to. */
+static const struct {
+    const char *source, *define, *raw, *optimised;
+    uint32_t kind;
+    int when; /* always; with dynamic slots; with --variants, and then only without polygons */
+} scene_shaders[] = {
+    {"update.comp", "-DMASU_PASS=1", "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, DYNAMIC},
+    {"classify.comp", "-DMASU_PASS=1", "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
+    {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
+    {"cone.comp", "-DMASU_CONE_BLOCK=2", "cone2.raw", "cone2.spv", MASU_BLOB_CONE2_SPIRV, ALWAYS},
+    {"march.comp", "-DMASU_PASS=1", "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
+    {"march_plain.comp", "-DMASU_PASS=1", "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
+    {"march_seed.comp", "-DMASU_PASS=1", "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
+    {"march_checkerboard.comp", "-DMASU_PASS=1", "check.raw", "check.spv",
+     MASU_BLOB_CHECKERBOARD_SPIRV, VARIANT},
+    {"march_fragment.frag", "-DMASU_PASS=1", "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
+     WITHOUT_RASTER}};
+
+static bool wanted(int when, bool dynamic, bool variants, bool has_raster) {
+    if (when == DYNAMIC) return dynamic;
+    if (when == WITHOUT_RASTER) return variants && !has_raster;
+    return when == ALWAYS || variants;
+}
+
+bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
-    paths p = {masu_bake_join(directory, "march.comp"), masu_bake_join(directory, "march.raw.spv"),
-               masu_bake_join(directory, "march.spv"), include_option(directory),
-               include_option(scene_directory)};
+    char *include_here = include_option(directory), *include_scene = include_option(scene_directory);
     bool has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0;
-    bool good = lay_out(directory, content, glsl_path) &&
-                run_tools(&p, has_raster, directory, glsl_path) &&
-                take_spirv(content, p.optimised, glsl_path);
-    free(p.source);
-    free(p.raw);
-    free(p.optimised);
-    free(p.include_here);
-    free(p.include_scene);
+    bool dynamic = false;
+    bool good = lay_out(directory, content, glsl_path, &dynamic);
+    for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
+        if (!wanted(scene_shaders[i].when, dynamic, variants, has_raster)) continue;
+        paths p = {masu_bake_join(directory, scene_shaders[i].source),
+                   masu_bake_join(directory, scene_shaders[i].raw),
+                   masu_bake_join(directory, scene_shaders[i].optimised), include_here,
+                   include_scene, scene_shaders[i].define,
+                   strrchr(scene_shaders[i].source, '.') + 1};
+        good = run_tools(&p, has_raster, directory, glsl_path) &&
+               take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path);
+        free(p.source);
+        free(p.raw);
+        free(p.optimised);
+    }
+    free(include_here);
+    free(include_scene);
     free(scene_directory);
     return good;
 }

@@ -1,4 +1,5 @@
-/* bake_sdf.h: the scene's GLSL becomes the march shader that travels in the blob.
+/* bake_sdf.h: the scene's GLSL, or its .sdf text (docs/sdf.md) by way of the SDF compiler, becomes
+ * the march shader that travels in the blob.
  *
  * The march shader and its headers are part of masu-bake (scene_sources.h, made by the build). They
  * are laid out in a temporary directory together with sdf_scene.glsl, which holds one #define per
@@ -13,9 +14,10 @@
 #define MASU_BAKE_TOOL_SECONDS 120
 
 /* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances and SDF parameters are
- * complete: they decide how the shader is compiled. Reports errors under the GLSL's own name and
+ * complete: they decide how the shader is compiled. A .sdf brings its own parameters, which are
+ * added. Reports errors under the GLSL's own name and
  * lines. */
-bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path);
+bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, bool variants);
 
 /* "MASU_PARAM_" and the name in upper case, cut at `room`. */
 void masu_bake_param_macro(const char *name, char *out, size_t room);

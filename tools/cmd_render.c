@@ -22,7 +22,8 @@ enum {
     OPTION_STATS,
     OPTION_POISON,
     OPTION_SPLIT,
-    OPTION_FLIGHT
+    OPTION_FLIGHT,
+    OPTION_MARCH
 };
 
 #define FRAMES_MAX 100000u
@@ -229,7 +230,10 @@ static int check(const masu_session_desc *d, const render_options *o) {
 static int run(masu_cli *cli) {
     masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}}};
     render_options o = {.frames = 1, .time_step = 1.0 / 60.0};
-    uint32_t poison = 0;
+    static const char *const marches[] = {"auto",         "plain",     "fragment", "seed",
+                                          "cone8",        "cones",     "checkerboard",
+                                          "unpruned",     NULL};
+    uint32_t poison = 0, march = MASU_MARCH_AUTO;
     for (;;) {
         int id = masu_cli_next(cli);
         if (masu_device_option(cli, id, &d.host)) continue;
@@ -255,6 +259,9 @@ static int run(masu_cli *cli) {
             if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight))
                 return MASU_CLI_USAGE;
             continue;
+        case OPTION_MARCH:
+            if (!masu_cli_choice(cli, marches, &march)) return MASU_CLI_USAGE;
+            continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case MASU_CLI_ARGUMENT:
@@ -266,6 +273,8 @@ static int run(masu_cli *cli) {
         }
         break;
     }
+    d.desc = masu_desc_resolved(&d.desc); /* the default rungs, to change one knob of them */
+    for (uint32_t r = 0; r < d.desc.rung_count; r++) d.desc.rungs[r].march = (masu_march)march;
     int code = check(&d, &o);
     if (code) return code;
     masu_vk_alloc_counts counts;
@@ -301,6 +310,10 @@ static const masu_cli_option options[] = {
     {"time-step", "SECONDS", "between frames (default 1/60)", OPTION_TIME_STEP, 0},
     {"stats", "FILE.json", "times, counts, memory, allocations of the frames; - for stdout",
      OPTION_STATS, 0},
+    {"march", "WAY",
+     "auto, cone8, cones, unpruned; plain, fragment, seed, checkerboard need a blob baked\n"
+     "with --variants (default auto)",
+     OPTION_MARCH, 0},
     {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
     {"poison", NULL,
      "fill all transient images with NaN before each frame (the picture must not change)",

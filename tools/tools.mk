@@ -1,15 +1,25 @@
 # tools.mk: the programs. masu is masu.c and one cmd_NAME.c per command, masu-bake is bake.c and
-# bake_*.c; cli*.c belong to both.
+# bake_*.c, masu-sdfc is sdfc.c; the compiler itself, sdfc_*.c, is also part of masu-bake. cli*.c
+# belong to all.
 
 CLI_OBJECTS := $(call objects,$(wildcard tools/cli*.c))
+SDFC_OBJECTS := $(call objects,$(wildcard tools/sdfc_*.c))
 
-$(BUILD)/bin/masu: LIBS = -lvulkan -ljansson -lm
-$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu.c tools/cmd_*.c)) $(CLI_OBJECTS)
-$(BUILD)/bin/masu: $(KEEP_LOADED) $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+$(BUILD)/bin/masu-sdfc: LIBS = -lm
+$(BUILD)/bin/masu-sdfc: $(call objects,tools/sdfc.c) $(SDFC_OBJECTS) $(CLI_OBJECTS)
 	$(link)
 
+$(BUILD)/bin/masu: LIBS = -lvulkan -ljansson -lm -ldl -lpthread
+$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu.c tools/cmd_*.c)) $(CLI_OBJECTS)
+$(BUILD)/bin/masu: $(KEEP_LOADED) $(BUILD)/lib/libmasu-bench.a
+$(BUILD)/bin/masu: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+	$(link)
+
+# What masu measures with, for the tests too.
+$(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/bench_*.c tools/metric_*.c))
+
 $(BUILD)/bin/masu-bake: LIBS = -lassimp -ljansson -lm
-$(BUILD)/bin/masu-bake: $(call objects,$(wildcard tools/bake.c tools/bake_*.c)) $(CLI_OBJECTS)
+$(BUILD)/bin/masu-bake: $(call objects,$(wildcard tools/bake.c tools/bake_*.c)) $(CLI_OBJECTS) $(SDFC_OBJECTS)
 $(BUILD)/bin/masu-bake: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
 
@@ -27,3 +37,25 @@ $(BUILD)/examples/%: LIBS = -lvulkan -lm
 $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(KEEP_LOADED) $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
 EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
+
+# For masu march-bench: each .sdf scene with all ways to march it, and its double-precision truth
+# beside it. Not part of `all` or of the tests.
+MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
+
+$(BUILD)/march/%.masu: scenes/%.json scenes/%.sdf $(BUILD)/bin/masu-bake
+	@mkdir -p $(@D)
+	@echo "  BAKE    $< --variants"
+	$(V)$(BUILD)/bin/masu-bake $< -o $@ --variants --quiet
+
+$(BUILD)/march/%.truth.c: scenes/%.sdf $(BUILD)/bin/masu-sdfc
+	@mkdir -p $(@D)
+	$(V)$(BUILD)/bin/masu-sdfc $< --c $@ --quiet
+
+$(BUILD)/march/%.truth.so: $(BUILD)/march/%.truth.c
+	@echo "  TRUTH   $@"
+	$(V)$(CC) -std=c11 -O2 -w -shared -fPIC -o $@ $< -lm
+
+.PHONY: march-bench
+MARCH_ARGS ?= --size 960x540
+march-bench: $(BUILD)/bin/masu $(MARCH_SCENES) $(MARCH_SCENES:.masu=.truth.so) ## measure the ways to march the SDF: MARCH_ARGS='--size 960x540 --csv FILE'
+	$(V)$(BUILD)/bin/masu march-bench $(MARCH_SCENES) $(MARCH_ARGS)

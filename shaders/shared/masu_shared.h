@@ -35,6 +35,19 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_INSTANCES 1
 #define MASU_BIND_MATERIALS 2
 #define MASU_BIND_COUNTERS 3
+#define MASU_BIND_TILES 4
+#define MASU_BIND_SLOTS 5
+
+/* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
+ *   0..2                  arguments of the indirect dispatch: active tiles, 4 quarters, 1
+ *   TILES_HEADER + k      number of the k-th active tile, in no particular order
+ *   TILES_HEADER + tiles  the lists, `stride` uints each: how many parts, then their numbers
+ * A list that would not fit says TILE_ALL: all parts then count. That is slower and just as right. */
+#define MASU_TILE 16
+#define MASU_TILES_HEADER 8
+#define MASU_TILE_PARTS_MAX 63
+#define MASU_TILE_ALL 0xFFFFFFFFu
+#define MASU_SDF_PARTS_MAX 4096
 
 /* Run-time SDF parameters: floats, packed four to a vec4. */
 #define MASU_SDF_PARAM_VEC4S 64

@@ -59,7 +59,10 @@ static void read_sections(walker *w) {
     read_section(w, v->environment, 1, sizeof *v->environment, "environment");
     read_section(w, v->sdf, s->sdf, sizeof *v->sdf, "sdf");
     read_section(w, v->sdf_params, s->sdf_params, sizeof *v->sdf_params, "sdf parameters");
-    read_section(w, v->march_spirv, v->march_words, sizeof *v->march_spirv, "march SPIR-V");
+    read_section(w, v->slots, v->slot_count, sizeof *v->slots, "slots");
+    for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
+        read_section(w, v->code[k].words, v->code[k].count, sizeof *v->code[k].words, "SPIR-V");
+    }
     read_section(w, v->names, v->name_bytes, 1, "names");
 }
 
@@ -165,10 +168,48 @@ static void read_looks(walker *w) {
     expect(w, all_within(&e->near_distance, 1, 1e-10, ANY_FLOAT), "the near distance");
 }
 
+/* What each kind of code allows, said once more: 0 no such code, 1 may be absent, 2 not. */
+static const struct {
+    int code;
+    uint32_t marches; /* ways to march that need it and are there with it */
+} kinds[MASU_BLOB_KIND_COUNT] = {
+    [MASU_BLOB_MARCH_SPIRV] = {2, 0},
+    [MASU_BLOB_CLASSIFY_SPIRV] = {2, 0},
+    [MASU_BLOB_CONE8_SPIRV] = {2, 0},
+    [MASU_BLOB_CONE2_SPIRV] = {2, 0},
+    [MASU_BLOB_UPDATE_SPIRV] = {1, 0},
+    [MASU_BLOB_PLAIN_SPIRV] = {1, 1u << MASU_MARCH_PLAIN},
+    [MASU_BLOB_SEED_SPIRV] = {1, 1u << MASU_MARCH_SEED},
+    [MASU_BLOB_CHECKERBOARD_SPIRV] = {1, 1u << MASU_MARCH_CHECKERBOARD},
+    [MASU_BLOB_FRAGMENT_SPIRV] = {1, 1u << MASU_MARCH_FRAGMENT},
+};
+
+static void read_code(walker *w) {
+    uint32_t marches = w->view.sdf ? 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 |
+                                         1u << MASU_MARCH_CONES | 1u << MASU_MARCH_UNPRUNED
+                                   : 0;
+    for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
+        const uint32_t *words = w->view.code[k].words;
+        if (!words) {
+            expect(w, kinds[k].code < 2 || !w->view.sdf, "the SDF lacks code");
+            continue;
+        }
+        expect(w, kinds[k].code && w->view.sdf, "code of no SDF");
+        expect(w, w->view.code[k].count >= 5 && words[0] == 0x07230203u, "the SPIR-V");
+        marches |= kinds[k].marches;
+    }
+    expect(w, w->scene->sdf_march == marches, "sdf_march");
+    expect(w, w->scene->sdf_dynamic == (w->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL),
+           "sdf_dynamic");
+}
+
 static void read_sdf(walker *w) {
     const masu_blob_sdf *s = w->view.sdf;
+    read_code(w);
+    expect(w, w->scene->sdf_slots == w->view.slot_count, "sdf_slots");
+    expect(w, w->scene->sdf_parts == (s ? s->part_count : 0), "sdf_parts");
     if (!s) {
-        expect(w, !w->view.sdf_params && !w->view.march_spirv, "an SDF has parts but is missing");
+        expect(w, !w->view.sdf_params && !w->view.slots, "an SDF has parts but is missing");
         return;
     }
     for (uint32_t k = 0; k < 3; k++) {
@@ -180,7 +221,11 @@ static void read_sdf(walker *w) {
     expect(w, all_within(&s->lipschitz, 1, 0.00099, ANY_FLOAT), "the Lipschitz constant");
     expect(w, all_within(&s->max_distance, 1, 1e-10, ANY_FLOAT), "the longest ray");
     expect(w, s->has_raster == (w->scene->instances > 0), "has_raster");
-    expect(w, w->view.march_words >= 5 && w->view.march_spirv[0] == 0x07230203u, "the SPIR-V");
+    expect(w, s->part_count >= 1 && s->part_count <= 4096, "the number of parts");
+    expect(w, w->view.slot_count >= 1 && w->view.slot_count <= 65536, "the number of slots");
+    for (uint64_t i = 0; i < w->view.slot_count && !w->fault; i++) {
+        expect(w, isfinite(w->view.slots[i]), "a slot is not finite");
+    }
     expect(w, w->scene->sdf_params <= MASU_MAX_SDF_PARAMS, "too many SDF parameters");
     for (uint32_t i = 0; i < w->scene->sdf_params && !w->fault; i++) {
         const masu_blob_sdf_param *p = &w->view.sdf_params[i];

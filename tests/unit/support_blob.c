@@ -73,7 +73,9 @@ static const masu_blob_sdf_param sdf_params[] = {
 };
 
 /* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
-static const uint32_t march_spirv[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
+static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
+
+static const float slots[] = {0.5f, -1.0f, 2.0f};
 
 static size_t aligned(size_t at) {
     return (at + MASU_BLOB_ALIGN - 1) / MASU_BLOB_ALIGN * MASU_BLOB_ALIGN;
@@ -101,7 +103,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     header->magic = MASU_BLOB_MAGIC;
     header->version = MASU_BLOB_VERSION;
     size_t sections = 1 + (parts & SUPPORT_RASTER ? 6u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
-                      (parts & SUPPORT_SDF ? 3u : 0u) + 1;
+                      (parts & SUPPORT_SDF ? 7u : 0u) + 1;
+    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 4 : 5;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -119,12 +122,26 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
                                 {10.0f, 4.0f, 10.0f},
                                 100.0f,
                                 parts & SUPPORT_RASTER ? 1u : 0u,
+                                1,
                                 {0}}};
         ADD(MASU_BLOB_SDF, sdf);
         ADD(MASU_BLOB_SDF_PARAMS, sdf_params);
-        ADD(MASU_BLOB_MARCH_SPIRV, march_spirv);
+        ADD(MASU_BLOB_MARCH_SPIRV, code);
     }
     ADD(MASU_BLOB_NAMES, names);
+    if (parts & SUPPORT_SDF) {
+        ADD(MASU_BLOB_CLASSIFY_SPIRV, code);
+        ADD(MASU_BLOB_CONE8_SPIRV, code);
+        ADD(MASU_BLOB_CONE2_SPIRV, code);
+        if (parts & SUPPORT_VARIANTS) {
+            ADD(MASU_BLOB_UPDATE_SPIRV, code);
+            ADD(MASU_BLOB_PLAIN_SPIRV, code);
+            ADD(MASU_BLOB_SEED_SPIRV, code);
+            ADD(MASU_BLOB_CHECKERBOARD_SPIRV, code);
+            if (!(parts & SUPPORT_RASTER)) ADD(MASU_BLOB_FRAGMENT_SPIRV, code);
+        }
+        ADD(MASU_BLOB_SLOTS, slots);
+    }
     support_blob_seal(blob->bytes, blob->size);
 }
 

@@ -9,7 +9,7 @@
  *   vertices   0-3 square   4-6 triangle   7-10 square          materials    0 "steel"  1 "glow"
  *   primitives 0: square, 2 triangles  1: triangle  2: square   camera keys  at 0 s, 1.5 s, 4 s
  *   meshes     0 "plate": primitives 0-1   1 "lid": primitive 2 sdf params   0 "radius"  1 "bend"
- *   instances  0, 1 of mesh 0, 2 of mesh 1 */
+ *   instances  0, 1 of mesh 0, 2 of mesh 1                      slots        three; parts: one */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
 
@@ -20,9 +20,11 @@
 
 enum {
     SUPPORT_RASTER = 1, /* geometry, instances, materials */
-    SUPPORT_SDF = 2,    /* field, parameters, code */
+    SUPPORT_SDF = 2,    /* field, parameters, slots, code */
     SUPPORT_CAMERA = 4,
-    SUPPORT_ALL = 7
+    SUPPORT_VARIANTS = 8, /* with an SDF: the code that a blob may have or lack; that of
+                             march_fragment only without SUPPORT_RASTER */
+    SUPPORT_ALL = 15
 };
 
 #define SUPPORT_BLOB_ROOM 4096u

@@ -29,7 +29,11 @@ masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height) {
         s->vertices = 11, s->indices = 15, s->primitives = 3, s->meshes = 2;
         s->instances = 3, s->materials = 2, s->draws = 3, s->triangles = 8;
     }
-    if (parts & SDF) s->sdf = 1, s->sdf_params = 2;
+    if (parts & SDF) {
+        s->sdf = 1, s->sdf_params = 2, s->sdf_parts = 5, s->sdf_slots = 7;
+        s->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 | 1u << MASU_MARCH_CONES |
+                       1u << MASU_MARCH_UNPRUNED;
+    }
     d.scene = s;
     return d;
 }

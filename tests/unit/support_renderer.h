@@ -6,8 +6,8 @@
 #include "renderer.h"
 #include "support_blob.h"
 
-#define ROOM 16384u /* bytes of each role */
-#define NOISE 0xA5  /* what they are filled with */
+#define ROOM (1u << 16)
+#define NOISE 0xA5 /* what they are filled with */
 
 extern masu_renderer m;
 extern masu_scene scene; /* what it was made from */

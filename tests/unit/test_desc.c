@@ -70,6 +70,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].upscale);
         SAME(rungs[r].sharpen);
         SAME(rungs[r].sharpness);
+        SAME(rungs[r].march);
         SAME(rungs[r].march_steps);
     }
     SAME(limits.vertices);
@@ -107,9 +108,9 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
-    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, 256};
-    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, 256};
-    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, 256};
+    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 256};
+    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 256};
+    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 256};
     masu_desc resolved = masu_desc_resolved(&zero);
     assert_same_desc(&resolved, &expected);
     resolved = masu_desc_resolved(NULL);
@@ -126,8 +127,8 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.frames_in_flight = 2;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, 256};
-    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, 256};
+    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 256};
+    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 256};
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
 
@@ -158,7 +159,8 @@ static masu_desc full_desc(void) {
     d.frames_in_flight = 3;
     d.rung_count = MASU_MAX_RUNGS;
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
-        d.rungs[r] = (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, r + 1};
+        d.rungs[r] =
+            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1};
     }
     d.limits = (masu_limits){9, 10, 11, 12, 13};
     d.host_budget = 14;
@@ -271,6 +273,8 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].sharpness", d.rungs[0].sharpness = infinity);
     BAD("rungs[].march_steps", d.rungs[1].march_steps = 257);
     BAD("rungs[].march_steps", d.rungs[1].march_steps = UINT32_MAX);
+    BAD("rungs[].march", d.rungs[1].march = (masu_march)(MASU_MARCH_UNPRUNED + 1));
+    BAD("rungs[].march", d.rungs[0].march = (masu_march)-1);
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)3);
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
     BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
@@ -278,6 +282,36 @@ static void a_bad_rung_is_named(void **state) {
     static masu_frame_plan plan;
     d.rung_count = 1;
     d.rungs[1].scale = nan; /* behind the count */
+    compile(&d, &plan);
+}
+
+static void a_march_that_the_blob_has_no_code_for_is_a_scene_error(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    const uint32_t always = scene_desc(SDF, 64, 64).scene->sdf_march;
+    for (uint32_t parts = SDF; parts <= (RASTER | SDF); parts++) {
+        for (uint32_t march = 0; march <= MASU_MARCH_UNPRUNED; march++) {
+            masu_desc d = scene_desc(parts, 64, 64);
+            masu_detail detail;
+            d.rung_count = 2;
+            d.rungs[1].march = (masu_march)march;
+            if (always & 1u << march) {
+                compile(&d, &plan);
+                continue;
+            }
+            assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), MASU_ERROR_SCENE);
+            assert_string_equal(detail.what, "rungs[].march");
+            assert_non_null(strstr(detail.text, "rungs[1].march"));
+            support_scene.sdf_march |= 1u << march;
+            compile(&d, &plan);
+            d.rung_count = 1; /* then it stands behind the count */
+            support_scene.sdf_march = always;
+            compile(&d, &plan);
+        }
+    }
+    masu_desc d = scene_desc(RASTER, 64, 64); /* without an SDF there is nothing to march */
+    d.rung_count = 1;
+    d.rungs[0].march = MASU_MARCH_SEED;
     compile(&d, &plan);
 }
 
@@ -296,8 +330,8 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.targets.count = MASU_MAX_TARGETS;
     d.frames_in_flight = MASU_MAX_FLIGHT;
     d.readback = MASU_READBACK_ALL;
-    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, 1};
-    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, 256};
+    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1};
+    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;
@@ -427,6 +461,7 @@ int main(void) {
         cmocka_unit_test(scene_and_source_exclude_each_other),
         cmocka_unit_test(a_bad_source_is_named),
         cmocka_unit_test(a_bad_rung_is_named),
+        cmocka_unit_test(a_march_that_the_blob_has_no_code_for_is_a_scene_error),
         cmocka_unit_test(a_rung_that_needs_upscaling_cannot_switch_it_off),
         cmocka_unit_test(the_extremes_of_each_range_are_accepted),
         cmocka_unit_test(refusals_say_what_was_given_and_what_is_allowed),

@@ -3,8 +3,9 @@
  * what each reads and writes, how large and how long-lived each image is. (What is refused:
  * test_desc.c.)
  *
- * Frames are compared as text, one word per pass: march(r:depth u:albedo u:normal w:scene_depth).
- * r sampled, w written, u updated, c colour and d depth attachment, from and to of a copy.
+ * Frames are compared as text, one word per pass: light(r:albedo r:normal r:depth w:hdr).
+ * r sampled, w written, u updated, c colour and d depth attachment, from and to of a copy; rb and
+ * wb a buffer that is read or written.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -36,11 +37,19 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 
 static const char *usage_text(uint8_t usage) {
     static const char *const texts[] = {
-        [MASU_USE_NONE] = "?",    [MASU_READ] = "r",        [MASU_READ_COPY] = "from",
-        [MASU_WRITE] = "w",       [MASU_UPDATE] = "u",      [MASU_WRITE_COLOR] = "c",
-        [MASU_WRITE_DEPTH] = "d", [MASU_WRITE_COPY] = "to",
+        [MASU_USE_NONE] = "?",      [MASU_READ] = "r",        [MASU_READ_COPY] = "from",
+        [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_WRITE_COLOR] = "c",
+        [MASU_WRITE_DEPTH] = "d",   [MASU_WRITE_COPY] = "to", [MASU_READ_BUFFER] = "rb",
+        [MASU_WRITE_BUFFER] = "wb",
     };
     return texts[usage];
+}
+
+static const char *resource_text(uint8_t resource) {
+    if (resource == MASU_RESOURCE_TILES) return "tiles";
+    if (resource == MASU_RESOURCE_SLOTS) return "slots";
+    assert_in_range(resource, 1, MASU_IMAGE_COUNT - 1);
+    return masu_images[resource].name;
 }
 
 static const char *frame_text(const masu_frame_plan *plan, uint32_t rung) {
@@ -57,9 +66,8 @@ static const char *frame_text(const masu_frame_plan *plan, uint32_t rung) {
                                masu_passes[p].name);
         for (uint32_t a = 0; a < rp->access_count[p]; a++) {
             const masu_access *access = &rp->access[p][a];
-            assert_in_range(access->image, 1, MASU_IMAGE_COUNT - 1);
             at += (size_t)snprintf(text + at, sizeof text - at, "%s%s:%s", a ? " " : "",
-                                   usage_text(access->usage), masu_images[access->image].name);
+                                   usage_text(access->usage), resource_text(access->image));
         }
         at += (size_t)snprintf(text + at, sizeof text - at, ")");
         assert_true(at < sizeof text);
@@ -108,6 +116,18 @@ static void every_row_of_the_table_fits_what_is_derived_from_it(void **state) {
         }
     }
 }
+
+#define GBUFFER "gbuffer(c:albedo c:normal d:depth) "
+#define CLASSIFY_ON_RASTER "classify(r:depth rb:slots w:scene_depth wb:tiles) "
+#define CLASSIFY_ALONE "classify(rb:slots w:scene_depth wb:tiles) "
+#define CONE8 "cone8(rb:tiles w:cone8) "
+#define CONE2 "cone2(r:cone8 rb:tiles w:cone2) "
+#define MARCH "march(r:cone2 rb:tiles u:albedo u:normal u:scene_depth) "
+#define MARCH_ON_RASTER CLASSIFY_ON_RASTER CONE8 CONE2 MARCH
+#define MARCH_ALONE CLASSIFY_ALONE CONE8 CONE2 MARCH
+#define LIGHT_RASTER "light(r:albedo r:normal r:depth w:hdr) "
+#define LIGHT_SDF "light(r:albedo r:normal r:scene_depth w:hdr) "
+#define TONEMAP "tonemap(r:hdr w:target)"
 
 /* ---- Sizes of rungs -------------------------------------------------------------------------- */
 
@@ -163,9 +183,7 @@ static void any_scale_of_any_size_gives_a_size_within_half_a_pixel(void **state)
 static void a_rung_that_rounds_to_the_output_size_is_not_upscaled(void **state) {
     (void)state;
     masu_desc d = scene_desc(SDF, 1, 1);
-    assert_frame(&d, 2,
-                 "march(u:albedo u:normal w:scene_depth) "
-                 "light(r:albedo r:normal r:scene_depth w:hdr) tonemap(r:hdr w:target)");
+    assert_frame(&d, 2, MARCH_ALONE LIGHT_SDF "tonemap(r:hdr w:target)");
 }
 
 static void a_rung_that_differs_in_one_direction_alone_is_upscaled(void **state) {
@@ -173,9 +191,7 @@ static void a_rung_that_differs_in_one_direction_alone_is_upscaled(void **state)
     masu_desc d = scene_desc(SDF, 1000, 1);
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.scale = 0.9f, .sharpen = MASU_OFF};
-    assert_frame(&d, 0,
-                 "march(u:albedo u:normal w:scene_depth) light(r:albedo r:normal r:scene_depth "
-                 "w:hdr) tonemap(r:hdr w:ldr) easu(r:ldr w:target)");
+    assert_frame(&d, 0, MARCH_ALONE LIGHT_SDF "tonemap(r:hdr w:ldr) easu(r:ldr w:target)");
     d = source_desc(1920, 1000);
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
     d = source_desc(1900, 1080);
@@ -195,12 +211,6 @@ static void a_source_image_ignores_the_scales_of_the_rungs(void **state) {
 }
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
-
-#define GBUFFER "gbuffer(c:albedo c:normal d:depth) "
-#define MARCH_ON_RASTER "march(r:depth u:albedo u:normal w:scene_depth) "
-#define MARCH_ALONE "march(u:albedo u:normal w:scene_depth) "
-#define LIGHT_RASTER "light(r:albedo r:normal r:depth w:hdr) "
-#define LIGHT_SDF "light(r:albedo r:normal r:scene_depth w:hdr) "
 
 static void polygons_and_sdf_make_the_whole_frame(void **state) {
     (void)state;
@@ -228,6 +238,89 @@ static void without_instances_nothing_is_rasterised(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_GBUFFER),
                         "no instances; the march writes every pixel");
     assert_string_equal(why_of(&d, MASU_PASS_MARCH), "the scene has an SDF");
+}
+
+/* Before anything that reads the slots, in whatever way they are read. */
+static void slots_are_updated_only_if_something_changes_them(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER | SDF, 64, 64);
+    assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the SDF's slots are constant");
+    support_scene.sdf_dynamic = 1;
+    assert_frame(&d, 0, GBUFFER "update(wb:slots) " MARCH_ON_RASTER LIGHT_SDF TONEMAP);
+    assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the SDF depends on parameters or time");
+    d = scene_desc(SDF, 64, 64);
+    support_scene.sdf_dynamic = 1;
+    support_scene.sdf_march |= 1u << MASU_MARCH_PLAIN;
+    assert_frame(&d, 0, "update(wb:slots) " MARCH_ALONE LIGHT_SDF TONEMAP);
+    d.rungs[0].march = MASU_MARCH_PLAIN;
+    d.rung_count = 1;
+    assert_frame(&d, 0,
+                 "update(wb:slots) march_plain(rb:slots u:albedo u:normal w:scene_depth) " LIGHT_SDF
+                     TONEMAP);
+    d = scene_desc(RASTER, 64, 64);
+    assert_string_equal(why_of(&d, MASU_PASS_UPDATE), "the scene has no SDF");
+}
+
+static void each_way_to_march_has_its_passes(void **state) {
+    (void)state;
+    static const char *const alone[] = {
+        [MASU_MARCH_AUTO] = MARCH_ALONE,
+        [MASU_MARCH_PLAIN] = "march_plain(rb:slots u:albedo u:normal w:scene_depth) ",
+        [MASU_MARCH_FRAGMENT] = "march_fragment(rb:slots c:albedo c:normal c:scene_depth) ",
+        [MASU_MARCH_SEED] = "march_seed(rb:slots u:albedo u:normal w:scene_depth) ",
+        [MASU_MARCH_CONE8] = MARCH_ALONE, /* its 2x2 cones make no step */
+        [MASU_MARCH_CONES] = MARCH_ALONE,
+        [MASU_MARCH_CHECKERBOARD] = CLASSIFY_ALONE CONE8
+        "march_checkerboard(r:cone8 rb:tiles u:albedo u:normal u:scene_depth) ",
+        [MASU_MARCH_UNPRUNED] = MARCH_ALONE,
+    };
+    static const char *const on_raster[COUNT(alone)] = {
+        [MASU_MARCH_AUTO] = MARCH_ON_RASTER,
+        [MASU_MARCH_PLAIN] = "march_plain(r:depth rb:slots u:albedo u:normal w:scene_depth) ",
+        [MASU_MARCH_SEED] = "march_seed(r:depth rb:slots u:albedo u:normal w:scene_depth) ",
+        [MASU_MARCH_CONE8] = MARCH_ON_RASTER,
+        [MASU_MARCH_CONES] = MARCH_ON_RASTER,
+        [MASU_MARCH_CHECKERBOARD] = CLASSIFY_ON_RASTER CONE8
+        "march_checkerboard(r:cone8 rb:tiles u:albedo u:normal u:scene_depth) ",
+        [MASU_MARCH_UNPRUNED] = MARCH_ON_RASTER,
+    };
+    assert_int_equal(COUNT(alone), MASU_MARCH_UNPRUNED + 1);
+    for (uint32_t parts = SDF; parts <= (RASTER | SDF); parts++) {
+        for (uint32_t march = 0; march < COUNT(alone); march++) {
+            const char *passes = parts & RASTER ? on_raster[march] : alone[march];
+            if (!passes) continue; /* such a blob has no such code */
+            masu_desc d = scene_desc(parts, 64, 64);
+            char expected[512];
+            support_scene.sdf_march = 0xFF;
+            d.rung_count = 2;
+            d.rungs[1].march = (masu_march)march;
+            (void)snprintf(expected, sizeof expected, "%s%s" LIGHT_SDF TONEMAP,
+                           parts & RASTER ? GBUFFER : "", passes);
+            assert_frame(&d, 1, expected);
+            (void)snprintf(expected, sizeof expected, "%s%s" LIGHT_SDF TONEMAP,
+                           parts & RASTER ? GBUFFER : "",
+                           parts & RASTER ? MARCH_ON_RASTER : MARCH_ALONE);
+            assert_frame(&d, 0, expected); /* that of the other rung */
+        }
+    }
+}
+
+static void knobs_of_a_way_to_march_reach_the_shaders(void **state) {
+    (void)state;
+    for (uint32_t march = 0; march <= MASU_MARCH_UNPRUNED; march++) {
+        masu_rung rung = {.march = (masu_march)march, .march_steps = 77};
+        struct masu_push classify, cone8, cone2, last;
+        memset(&classify, 0, sizeof classify);
+        cone8 = cone2 = last = classify;
+        masu_passes[MASU_PASS_CLASSIFY].params(&rung, &classify);
+        masu_passes[MASU_PASS_CONE8].params(&rung, &cone8);
+        masu_passes[MASU_PASS_CONE2].params(&rung, &cone2);
+        masu_passes[MASU_PASS_MARCH].params(&rung, &last);
+        assert_int_equal(classify.index[1] != 0, march == MASU_MARCH_UNPRUNED);
+        assert_int_equal(cone8.index[0], 77);
+        assert_int_equal(cone2.index[0], march == MASU_MARCH_CONE8 ? 0 : 77);
+        assert_int_equal(last.index[0], 77);
+    }
 }
 
 static void an_empty_scene_is_cleared_and_lit(void **state) {
@@ -363,10 +456,14 @@ static void readback_copies_what_is_asked_for(void **state) {
 static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void **state) {
     (void)state;
     static masu_frame_plan plan;
-    for (uint32_t c = 0; c < 2 * 4 * 3 * 3 * 3 * 2; c++) {
-        uint32_t n = c, storage = n % 2, parts = (n /= 2) % 4;
+    for (uint32_t c = 0; c < 8 * 2 * 2 * 4 * 3 * 3 * 3 * 2; c++) {
+        uint32_t n = c, march = n % 8, dynamic = (n /= 8) % 2;
+        uint32_t storage = (n /= 2) % 2, parts = (n /= 2) % 4;
         masu_desc d = scene_desc(parts, 640, 480);
         d.rung_count = 1;
+        if (march == MASU_MARCH_FRAGMENT && parts & RASTER) continue; /* there is no such code */
+        d.rungs[0].march = (masu_march)march;
+        if (parts & SDF) support_scene.sdf_march = 0xFF, support_scene.sdf_dynamic = dynamic;
         d.rungs[0].upscale = (masu_switch)((n /= 4) % 3);
         d.rungs[0].sharpen = (masu_switch)((n /= 3) % 3);
         uint32_t size = (n /= 3) % 3, source = n / 3;
@@ -380,6 +477,7 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         compile(&d, &plan);
         const masu_rung_plan *rp = &plan.rungs[0];
         uint32_t writers = 0, written = 1u << MASU_IMAGE_SOURCE;
+        written |= 1u << MASU_RESOURCE_SLOTS; /* uploaded once */
         int last_pass = -1;
         for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
             if (rp->active & 1u << p) last_pass = (int)p;
@@ -388,7 +486,7 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
                 writes = (uint32_t)masu_usage_writes((masu_usage)rp->access[p][a].usage);
                 if (!writes && !(written & 1u << image)) {
                     fail_msg("case %u: %s reads %s, which nothing has written", c,
-                             masu_passes[p].name, masu_images[image].name);
+                             masu_passes[p].name, resource_text((uint8_t)image));
                 }
                 if (writes) written |= 1u << image;
                 if (image != MASU_IMAGE_TARGET) continue;
@@ -433,9 +531,13 @@ static void images_live_from_their_first_to_their_last_pass(void **state) {
                  COLOR | STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_NORMAL, MASU_PASS_GBUFFER, MASU_PASS_LIGHT, 1920, 1080,
                  COLOR | STORAGE | SAMPLED);
-    assert_image(&plan, MASU_IMAGE_DEPTH, MASU_PASS_GBUFFER, MASU_PASS_MARCH, 1920, 1080,
+    assert_image(&plan, MASU_IMAGE_DEPTH, MASU_PASS_GBUFFER, MASU_PASS_CLASSIFY, 1920, 1080,
                  DEPTH | SAMPLED);
-    assert_image(&plan, MASU_IMAGE_SCENE_DEPTH, MASU_PASS_MARCH, MASU_PASS_LIGHT, 1920, 1080,
+    assert_image(&plan, MASU_IMAGE_SCENE_DEPTH, MASU_PASS_CLASSIFY, MASU_PASS_LIGHT, 1920, 1080,
+                 STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE2, 240, 135,
+                 STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_CONE2, MASU_PASS_CONE2, MASU_PASS_MARCH, 960, 540,
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_LIGHT, MASU_PASS_TONEMAP, 1920, 1080,
                  STORAGE | SAMPLED);
@@ -482,6 +584,11 @@ static void images_are_as_large_as_the_largest_rung_in_any_order(void **state) {
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1000, 10,
                  STORAGE | SAMPLED);
+    /* Blocks are counted up: 900x9 has two rows of 8x8, five of 2x2. */
+    assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE2, 113, 2,
+                 STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_CONE2, MASU_PASS_CONE2, MASU_PASS_MARCH, 450, 5,
+                 STORAGE | SAMPLED);
 }
 
 static void a_pass_that_writes_the_target_has_a_set_for_each_target(void **state) {
@@ -490,11 +597,11 @@ static void a_pass_that_writes_the_target_has_a_set_for_each_target(void **state
     masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
     d.targets.count = 3;
     compile(&d, &plan);
-    /* march, light, tonemap x 3; then twice: march, light, tonemap, easu, rcas x 3 */
-    assert_int_equal(plan.pass_sets, (2 + 3) + 2 * (4 + 3));
+    /* classify, cone8, cone2, march, light, tonemap x 3; then twice: these once, easu, rcas x 3 */
+    assert_int_equal(plan.pass_sets, (5 + 3) + 2 * (7 + 3));
     d.targets.storage = 0; /* the blit needs none */
     compile(&d, &plan);
-    assert_int_equal(plan.pass_sets, 3 + 2 * 5);
+    assert_int_equal(plan.pass_sets, 6 + 2 * 8);
 }
 
 static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state) {
@@ -514,6 +621,8 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
     assert_int_equal(b[MASU_BUFFER_FRAME].bytes, 3 * frame);
     assert_int_equal(b[MASU_BUFFER_INSTANCES].stride, 192); /* 3 * 48 up to a multiple of 64 */
     assert_int_equal(b[MASU_BUFFER_INSTANCES].bytes, 3 * 192);
+    assert_int_equal(b[MASU_BUFFER_SLOTS].bytes, 7 * 4);
+    assert_int_equal(b[MASU_BUFFER_TILES].bytes, (8 + 120 * 68 * (5 + 2)) * 4);
     assert_int_equal(b[MASU_BUFFER_READBACK].bytes, 0);
     assert_int_equal(b[MASU_BUFFER_STAGING].bytes, 0); /* known only with a device */
     assert_int_equal(b[MASU_BUFFER_FRAME].role, MASU_ROLE_UPLOAD);
@@ -527,6 +636,33 @@ static void buffers_are_sized_by_the_scene_and_the_frames_in_flight(void **state
         assert_non_null(b[i].name);
         assert_int_equal(b[i].bytes, 0);
     }
+}
+
+static void tiles_have_room_for_lists_at_the_largest_rung(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t parts, words;
+    } cases[] = {{1, 3}, {5, 7}, {62, 64}, {63, 65}, {64, 65}, {4096, 65}};
+    static masu_frame_plan plan;
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        masu_desc d = scene_desc(SDF, 1000, 100);
+        support_scene.sdf_parts = cases[i].parts;
+        d.rung_count = 3;
+        d.rungs[0].scale = 0.3f;
+        d.rungs[1].scale = 0.5f; /* 500x50: 32x4 tiles */
+        d.rungs[2].scale = 0.4f;
+        compile(&d, &plan);
+        const masu_buffer_plan *tiles = &plan.buffers[MASU_BUFFER_TILES];
+        assert_int_equal(tiles->count, 8 + 32 * 4 * cases[i].words);
+        assert_int_equal(tiles->bytes, 4 * tiles->count);
+        assert_int_equal(tiles->role, MASU_ROLE_DEVICE);
+        assert_true(tiles->usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        assert_true(tiles->usage & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    }
+    masu_desc d = scene_desc(RASTER, 1000, 100); /* no SDF, none of either */
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_TILES].bytes, 0);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].bytes, 0);
 }
 
 static void readback_slots_hold_the_counters_and_then_the_images(void **state) {
@@ -605,8 +741,8 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth and final: 4 bytes each per texel */
-    assert_int_equal(info.left_out_bytes, 2 * 4 * 1920 * 1080);
+    /* scene_depth and final, cone8, cone2: 4 bytes each per texel */
+    assert_int_equal(info.left_out_bytes, 4 * (2 * 1920 * 1080 + 240 * 135 + 960 * 540));
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
@@ -619,7 +755,8 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     d.rungs[0].sharpen = MASU_OFF;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 28 * 1000 * 500 + 8 * 1920 * 1080);
+    assert_int_equal(info.left_out_bytes,
+                     28 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 500 * 250));
     d = scene_desc(RASTER | SDF, 100, 100); /* all but ldr, upscaled, final */
     d.rung_count = 1;
     compile(&d, &plan);
@@ -667,6 +804,9 @@ int main(void) {
         cmocka_unit_test(polygons_and_sdf_make_the_whole_frame),
         cmocka_unit_test(without_an_sdf_nothing_is_marched),
         cmocka_unit_test(without_instances_nothing_is_rasterised),
+        cmocka_unit_test(slots_are_updated_only_if_something_changes_them),
+        cmocka_unit_test(each_way_to_march_has_its_passes),
+        cmocka_unit_test(knobs_of_a_way_to_march_reach_the_shaders),
         cmocka_unit_test(an_empty_scene_is_cleared_and_lit),
         cmocka_unit_test(a_source_image_alone_is_upscaled_and_sharpened),
         cmocka_unit_test(a_source_image_of_the_output_size_is_written_all_the_same),
@@ -680,6 +820,7 @@ int main(void) {
         cmocka_unit_test(images_are_as_large_as_the_largest_rung_in_any_order),
         cmocka_unit_test(a_pass_that_writes_the_target_has_a_set_for_each_target),
         cmocka_unit_test(buffers_are_sized_by_the_scene_and_the_frames_in_flight),
+        cmocka_unit_test(tiles_have_room_for_lists_at_the_largest_rung),
         cmocka_unit_test(readback_slots_hold_the_counters_and_then_the_images),
         cmocka_unit_test(the_public_plan_tells_what_was_compiled),
         cmocka_unit_test(bytes_left_out_are_counted_at_the_size_of_the_plan),

@@ -35,6 +35,9 @@ static void a_full_blob_is_accepted_with_its_numbers(void **state) {
     assert_int_equal(s.camera_keys, 3);
     assert_int_equal(s.sdf, 1);
     assert_int_equal(s.sdf_params, 2);
+    assert_int_equal(s.sdf_parts, 1);
+    assert_int_equal(s.sdf_slots, 3);
+    assert_int_equal(s.sdf_dynamic, 1);
     assert_int_equal(s.draws, 3);                   /* two of mesh 0, one of mesh 1 */
     assert_int_equal(s.triangles, 2 * (2 + 1) + 2); /* mesh 0 is placed twice */
 }
@@ -51,6 +54,20 @@ static void a_blob_of_any_parts_is_accepted_with_these_alone(void **state) {
         assert_int_equal(s.sdf, parts & SUPPORT_SDF ? 1 : 0);
         assert_int_equal(s.sdf_params, parts & SUPPORT_SDF ? 2 : 0);
         assert_int_equal(s.camera_keys, parts & SUPPORT_CAMERA ? 3 : 0);
+        assert_int_equal(s.sdf_parts, parts & SUPPORT_SDF ? 1 : 0);
+        assert_int_equal(s.sdf_slots, parts & SUPPORT_SDF ? 3 : 0);
+        int variants = parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS;
+        assert_int_equal(s.sdf_dynamic, variants);
+        uint32_t march = 0;
+        if (parts & SUPPORT_SDF) {
+            march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 | 1u << MASU_MARCH_CONES |
+                    1u << MASU_MARCH_UNPRUNED;
+        }
+        if (variants) {
+            march |= 1u << MASU_MARCH_PLAIN | 1u << MASU_MARCH_SEED | 1u << MASU_MARCH_CHECKERBOARD;
+            if (!(parts & SUPPORT_RASTER)) march |= 1u << MASU_MARCH_FRAGMENT;
+        }
+        assert_int_equal(s.sdf_march, march);
     }
 }
 
@@ -229,7 +246,8 @@ static masu_blob_header *header(void) { return (masu_blob_header *)(void *)blob.
 
 static void another_version_is_a_version_error(void **state) {
     (void)state;
-    static const uint32_t versions[] = {0, MASU_BLOB_VERSION + 1, 0x01000000, UINT32_MAX};
+    static const uint32_t versions[] = {0, MASU_BLOB_VERSION - 1, MASU_BLOB_VERSION + 1, 0x01000000,
+                                        UINT32_MAX};
     for (size_t i = 0; i < COUNT(versions); i++) {
         support_blob_write(&blob, SUPPORT_ALL);
         header()->version = versions[i];

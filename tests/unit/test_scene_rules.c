@@ -65,7 +65,29 @@ static void assert_refused(const char *what, uint64_t element) {
 #define SKY AT(ENVIRONMENT, masu_blob_environment)
 #define FIELD AT(SDF, masu_blob_sdf)
 #define PARAM AT(SDF_PARAMS, masu_blob_sdf_param)
-#define SPIRV AT(MARCH_SPIRV, uint32_t)
+
+/* A blob that has a section of that kind, as full as one can be. Returns the section's index. */
+static uint64_t write_with(uint32_t kind) {
+    uint32_t without = kind == MASU_BLOB_FRAGMENT_SPIRV ? SUPPORT_RASTER : 0;
+    support_blob_write(&blob, SUPPORT_ALL & ~without);
+    masu_blob_section *row = support_blob_row(&blob, (enum masu_blob_kind)kind);
+    assert_non_null(row);
+    return (uint64_t)(row - (masu_blob_section *)(void *)(blob.bytes + sizeof(masu_blob_header)));
+}
+
+static const struct {
+    uint32_t kind;
+    const char *name;
+    int needed;
+} codes[] = {{MASU_BLOB_MARCH_SPIRV, "march SPIR-V", 1},
+             {MASU_BLOB_CLASSIFY_SPIRV, "classify SPIR-V", 1},
+             {MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V", 1},
+             {MASU_BLOB_CONE2_SPIRV, "cone2 SPIR-V", 1},
+             {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 0},
+             {MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V", 0},
+             {MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V", 0},
+             {MASU_BLOB_CHECKERBOARD_SPIRV, "march_checkerboard SPIR-V", 0},
+             {MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V", 0}};
 
 static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
 
@@ -86,10 +108,10 @@ static void a_section_of_another_element_size_is_refused(void **state) {
     (void)state;
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
         for (int change = 0; change < 3; change++) {
-            support_blob_write(&blob, SUPPORT_ALL);
+            uint64_t index = write_with(kind);
             uint32_t *stride = &support_blob_row(&blob, (enum masu_blob_kind)kind)->stride;
             *stride = change == 0 ? 0 : change == 1 ? *stride + 1 : *stride * 2;
-            assert_refused("section", kind - 1); /* they stand in rising kind */
+            assert_refused("section", index);
         }
     }
 }
@@ -99,29 +121,36 @@ static void a_section_with_too_few_or_too_many_elements_is_refused(void **state)
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
         static const uint64_t counts[] = {0, 0x80000000u, (uint64_t)1 << 60, UINT64_MAX};
         for (size_t i = 0; i < COUNT(counts); i++) {
-            support_blob_write(&blob, SUPPORT_ALL);
+            uint64_t index = write_with(kind);
             support_blob_row(&blob, (enum masu_blob_kind)kind)->count = counts[i];
-            assert_refused("section", kind - 1);
+            assert_refused("section", index);
         }
     }
     REFUSED("section", TABLE_INDEX(ENVIRONMENT), ROW(ENVIRONMENT)->count = 2);
     REFUSED("section", TABLE_INDEX(SDF), ROW(SDF)->count = 2);
     REFUSED("section", TABLE_INDEX(SDF_PARAMS), ROW(SDF_PARAMS)->count = MASU_MAX_SDF_PARAMS + 1);
-    REFUSED("section", TABLE_INDEX(MARCH_SPIRV),
-            ROW(MARCH_SPIRV)->count = ((uint64_t)16 << 20) + 1);
+    REFUSED("section", TABLE_INDEX(SLOTS), ROW(SLOTS)->count = 65537);
+    for (size_t i = 0; i < COUNT(codes); i++) {
+        uint64_t index = write_with(codes[i].kind);
+        support_blob_row(&blob, (enum masu_blob_kind)codes[i].kind)->count =
+            ((uint64_t)16 << 20) + 1;
+        assert_refused("section", index);
+        assert_non_null(strstr(detail.text, "element count"));
+    }
 }
 
 static void a_section_outside_the_blob_is_refused(void **state) {
     (void)state;
-    uint64_t index = MASU_BLOB_NAMES - 1;
-    REFUSED("section", index, ROW(NAMES)->count += 16);
-    REFUSED("section", index, ROW(NAMES)->offset += 16);
-    REFUSED("section", index, ROW(NAMES)->offset += 8);                       /* misaligned */
-    REFUSED("section", index, ROW(NAMES)->offset = 0);                        /* the header */
-    REFUSED("section", index, ROW(NAMES)->offset = sizeof(masu_blob_header)); /* the table */
-    REFUSED("section", index, ROW(NAMES)->offset = (blob.size + 31) / 16 * 16);
-    REFUSED("section", index, ROW(NAMES)->offset = UINT64_MAX - 15);
-    REFUSED("section", index, ROW(NAMES)->offset = (uint64_t)1 << 63);
+    support_blob_write(&blob, SUPPORT_ALL);
+    uint64_t index = TABLE_INDEX(SLOTS); /* the last one */
+    REFUSED("section", index, ROW(SLOTS)->count += 16);
+    REFUSED("section", index, ROW(SLOTS)->offset += 16);
+    REFUSED("section", index, ROW(SLOTS)->offset += 8);                       /* misaligned */
+    REFUSED("section", index, ROW(SLOTS)->offset = 0);                        /* the header */
+    REFUSED("section", index, ROW(SLOTS)->offset = sizeof(masu_blob_header)); /* the table */
+    REFUSED("section", index, ROW(SLOTS)->offset = (blob.size + 31) / 16 * 16);
+    REFUSED("section", index, ROW(SLOTS)->offset = UINT64_MAX - 15);
+    REFUSED("section", index, ROW(SLOTS)->offset = (uint64_t)1 << 63);
 }
 
 /* The hash does not cover the count of sections: what none of them owns tells that it is wrong. */
@@ -345,6 +374,17 @@ static void parts_of_an_sdf_that_is_missing_are_refused(void **state) {
             support_blob_drop(&blob, MASU_BLOB_SDF_PARAMS));
     REFUSED("sdf", 0, support_blob_drop(&blob, MASU_BLOB_SDF),
             support_blob_drop(&blob, MASU_BLOB_MARCH_SPIRV));
+    static const uint32_t rest[] = {MASU_BLOB_SDF_PARAMS, MASU_BLOB_SLOTS};
+    for (size_t k = 0; k < COUNT(rest) + COUNT(codes); k++) {
+        uint32_t left = k < COUNT(rest) ? rest[k] : codes[k - COUNT(rest)].kind;
+        (void)write_with(left);
+        support_blob_drop(&blob, MASU_BLOB_SDF);
+        for (uint32_t kind = MASU_BLOB_SDF_PARAMS; kind < MASU_BLOB_KIND_COUNT; kind++) {
+            if (kind == left || kind == MASU_BLOB_NAMES) continue;
+            support_blob_drop(&blob, (enum masu_blob_kind)kind);
+        }
+        assert_refused("sdf", 0); /* for this part alone */
+    }
 }
 
 static void an_sdf_out_of_range_is_refused(void **state) {
@@ -394,11 +434,49 @@ static void an_sdf_parameter_outside_its_range_is_refused(void **state) {
 
 static void an_sdf_without_code_is_refused(void **state) {
     (void)state;
-    REFUSED("march SPIR-V", 0, support_blob_drop(&blob, MASU_BLOB_MARCH_SPIRV));
-    REFUSED("march SPIR-V", 0, SPIRV[0] = 0x03022307); /* of the other byte order */
-    REFUSED("march SPIR-V", 0, ROW(MARCH_SPIRV)->count = 4);
-    ACCEPTED(ROW(MARCH_SPIRV)->count = 5);                    /* a module's header */
+    for (size_t i = 0; i < COUNT(codes); i++) {
+        enum masu_blob_kind kind = (enum masu_blob_kind)codes[i].kind;
+        masu_scene scene;
+        (void)write_with(kind);
+        *(uint32_t *)support_blob_find(&blob, kind) = 0x03022307; /* of the other byte order */
+        assert_refused(codes[i].name, 0);
+        (void)write_with(kind);
+        support_blob_row(&blob, kind)->count = 4;
+        assert_refused(codes[i].name, 0);
+        (void)write_with(kind);
+        support_blob_row(&blob, kind)->count = 5; /* a module's header */
+        support_blob_seal(blob.bytes, blob.size);
+        support_accepted(&blob, &scene);
+        (void)write_with(kind);
+        support_blob_drop(&blob, kind);
+        if (codes[i].needed) {
+            assert_refused(codes[i].name, 0);
+        } else {
+            support_blob_seal(blob.bytes, blob.size);
+            support_accepted(&blob, &scene);
+        }
+    }
     ACCEPTED(support_blob_drop(&blob, MASU_BLOB_SDF_PARAMS)); /* these may be absent */
+}
+
+static void an_sdf_without_slots_that_are_finite_is_refused(void **state) {
+    (void)state;
+    REFUSED("slots", 0, support_blob_drop(&blob, MASU_BLOB_SLOTS));
+    ACCEPTED(ROW(SLOTS)->count = 1);
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        REFUSED("slots", 2, AT(SLOTS, float)[2] = not_finite[i]);
+    }
+}
+
+static void an_sdf_of_no_parts_or_too_many_is_refused(void **state) {
+    (void)state;
+    static const uint32_t counts[] = {0, 4097, UINT32_MAX};
+    for (size_t i = 0; i < COUNT(counts); i++) {
+        REFUSED("sdf", 0, FIELD->part_count = counts[i]);
+        assert_non_null(strstr(detail.text, "part count"));
+    }
+    ACCEPTED(FIELD->part_count = 2);
+    ACCEPTED(FIELD->part_count = 4096);
 }
 
 int main(void) {
@@ -433,6 +511,8 @@ int main(void) {
         cmocka_unit_test(code_compiled_for_other_instances_is_refused),
         cmocka_unit_test(an_sdf_parameter_outside_its_range_is_refused),
         cmocka_unit_test(an_sdf_without_code_is_refused),
+        cmocka_unit_test(an_sdf_without_slots_that_are_finite_is_refused),
+        cmocka_unit_test(an_sdf_of_no_parts_or_too_many_is_refused),
     };
     return cmocka_run_group_tests_name("scene_rules", tests, support_make_edge, NULL);
 }

@@ -3,9 +3,10 @@
  * data says (support_loops.h), and use more than three descriptor sets, of the four that every
  * device has: GPU-assisted validation needs the fourth.
  *
- * Looked at are the shaders of the library as glslang writes them, and the march both with the
- * fields of scenes/ before the optimiser and as it stands in the baked blobs. Small shaders
- * compiled here show that the question can be answered with no.
+ * Looked at are the shaders of the library as glslang writes them, and those that are compiled
+ * together with a scene's field both with the fields of scenes/ before the optimiser and as they
+ * stand in the baked blobs. Small shaders compiled here show that the question can be answered with
+ * no.
  */
 #define _XOPEN_SOURCE 700
 #include <glob.h>
@@ -24,6 +25,7 @@
 #include "scene.h"
 #include "support_loops.h"
 
+#define COUNT(array) (sizeof(array) / sizeof *(array))
 #define SETS_MOST 3u
 
 static char directory[] = "/tmp/masu_gates_XXXXXX";
@@ -206,6 +208,31 @@ static void a_fourth_descriptor_set_is_noticed(void **state) {
 
 /* ---- The shaders ----------------------------------------------------------------------------- */
 
+/* Those that need a field, as masu-bake compiles them, and how many loops each has at least. */
+static const struct {
+    const char *source, *define;
+    int sides;      /* 2: it differs with and without a raster depth */
+    int dynamic;    /* it needs slots that change, which a hand-written field has not */
+    uint32_t loops; /* of its own, whatever the field */
+} scene_shaders[] = {
+    {"update.comp", "-DMASU_PASS=1", 1, 1, 0},
+    {"classify.comp", "-DMASU_PASS=1", 2, 0, 1},
+    {"cone.comp", "-DMASU_CONE_BLOCK=8", 1, 0, 1},
+    {"cone.comp", "-DMASU_CONE_BLOCK=2", 1, 0, 1},
+    {"march.comp", "-DMASU_PASS=1", 1, 0, 3}, /* the march, its refinement, the normal */
+    {"march_plain.comp", "-DMASU_PASS=1", 2, 0, 3},
+    {"march_seed.comp", "-DMASU_PASS=1", 2, 0, 3},
+    {"march_checkerboard.comp", "-DMASU_PASS=1", 1, 0, 3},
+    {"march_fragment.frag", "-DMASU_PASS=1", 1, 0, 3},
+};
+
+static int needs_a_field(const char *name) {
+    for (size_t i = 0; i < COUNT(scene_shaders); i++) {
+        if (!strcmp(scene_shaders[i].source, name)) return 1;
+    }
+    return 0;
+}
+
 static void every_shader_of_the_library_passes(void **state) {
     (void)state;
     glob_t sources = find("shaders", "*.????");
@@ -217,7 +244,7 @@ static void every_shader_of_the_library_passes(void **state) {
         (void)snprintf(path, sizeof path, "%s/gen/%.*s_%s.spv", build_folder(), (int)stem, name,
                        name + stem + 1);
         spirv_module m;
-        if (!strcmp(name, "march.comp")) continue; /* needs a field: below */
+        if (needs_a_field(name)) continue; /* below */
         if (!spirv_from_file(path, &m)) fail_msg("%s is missing or no SPIR-V", path);
         loops += assert_passes(&m, name);
         spirv_free(&m);
@@ -228,8 +255,8 @@ static void every_shader_of_the_library_passes(void **state) {
     globfree(&sources);
 }
 
-/* sdf_scene.glsl as masu-bake writes it: a number for each parameter, then the field. Which number
- * does not matter here. */
+/* sdf_scene.glsl as masu-bake writes it: a number for each parameter, the field, and what masu-sdfc
+ * would have added. Which number does not matter here. */
 static void write_field(const char *field, char path[128]) {
     static char text[1 << 16];
     char name[128];
@@ -247,38 +274,73 @@ static void write_field(const char *field, char path[128]) {
                                name, name);
         assert_true(at < sizeof text);
     }
-    (void)snprintf(text + at, sizeof text - at, "#include \"%s\"\n", field);
+    (void)snprintf(text + at, sizeof text - at,
+                   "#include \"%s\"\n"
+                   "#define MASU_SDF_PART_COUNT 1\n"
+                   "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
+                   "uint masu_sdf_nearest(vec3 p) { return 0u; }\n",
+                   field);
     write_file("sdf_scene.glsl", text, path);
 }
 
-static void the_march_passes_with_every_field_of_the_scenes(void **state) {
+/* With sdf_scene.glsl in the test's directory. Returns the loops. */
+static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
+    uint32_t loops = 0;
+    for (size_t i = 0; i < COUNT(scene_shaders); i++) {
+        if (scene_shaders[i].dynamic && !dynamic) continue;
+        /* This field counts its faults, and a fragment shader counts nothing. */
+        int counts = strstr(field, "planted_fault") != NULL;
+        if (counts && !strcmp(scene_shaders[i].source, "march_fragment.frag")) continue;
+        for (int raster = 0; raster < scene_shaders[i].sides; raster++) {
+            char path[64], name[256], options[256];
+            spirv_module m;
+            (void)snprintf(path, sizeof path, "shaders/%s", scene_shaders[i].source);
+            (void)snprintf(name, sizeof name, "%s %s with %s", scene_shaders[i].source,
+                           scene_shaders[i].define, field);
+            (void)snprintf(options, sizeof options, "-Ishaders -I. -I%s -DMASU_HAS_RASTER=%d %s",
+                           directory, raster, scene_shaders[i].define);
+            if (!spirv_compile(path, options, &m)) fail_msg("%s does not compile", name);
+            uint32_t found = assert_passes(&m, name);
+            if (found < scene_shaders[i].loops) fail_msg("%s: %u loops only", name, found);
+            loops += found;
+            spirv_free(&m);
+        }
+    }
+    return loops;
+}
+
+static void scene_shaders_pass_with_every_field_of_the_scenes(void **state) {
     (void)state;
     glob_t fields = find("scenes", "*.glsl");
     uint32_t loops = 0;
     for (size_t i = 0; i < fields.gl_pathc; i++) {
-        char wrapper[128], options[256];
+        char wrapper[128];
         write_field(fields.gl_pathv[i], wrapper);
-        for (int raster = 0; raster < 2; raster++) {
-            spirv_module m;
-            (void)snprintf(options, sizeof options, "-Ishaders -I. -I%s -DMASU_HAS_RASTER=%d",
-                           directory, raster);
-            int good = spirv_compile("shaders/march.comp", options, &m);
-            if (!good) fail_msg("march.comp does not compile with %s", fields.gl_pathv[i]);
-            uint32_t found = assert_passes(&m, fields.gl_pathv[i]);
-            assert_true(found >= 3); /* the march, its refinement, the normal */
-            loops += found;
-            spirv_free(&m);
-        }
+        loops += assert_scene_shaders_pass(fields.gl_pathv[i], 0);
         assert_int_equal(remove(wrapper), 0);
     }
     printf("%u loops with %zu fields\n", loops, fields.gl_pathc);
     globfree(&fields);
 }
 
-static void the_march_in_every_baked_scene_passes(void **state) {
+/* Every feature of the language, slots that change among them. */
+static void scene_shaders_pass_with_what_masu_sdfc_writes(void **state) {
+    (void)state;
+    char command[512], wrapper[128];
+    (void)snprintf(wrapper, sizeof wrapper, "%s/sdf_scene.glsl", directory);
+    (void)snprintf(command, sizeof command,
+                   "%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 tests/unit/features.sdf",
+                   build_folder(), wrapper);
+    assert_int_equal(system(command), 0);
+    uint32_t loops = assert_scene_shaders_pass("features.sdf", 1);
+    assert_int_equal(remove(wrapper), 0);
+    printf("%u loops\n", loops);
+}
+
+static void the_code_in_every_baked_scene_passes(void **state) {
     (void)state;
     glob_t scenes = find(build_folder(), "scenes/*.masu");
-    uint32_t loops = 0, marches = 0;
+    uint32_t loops = 0, modules = 0;
     for (size_t i = 0; i < scenes.gl_pathc; i++) {
         uint8_t *bytes;
         size_t size;
@@ -290,20 +352,26 @@ static void the_march_in_every_baked_scene_passes(void **state) {
             fail_msg("%s", error);
         }
         if (masu_scene_bind(bytes, size, &scene, &detail)) fail_msg("%s: %s", path, detail.text);
-        if (scene.sdf) {
-            masu_scene_view view = masu_scene_look(&scene);
+        masu_scene_view view = masu_scene_look(&scene);
+        uint32_t found = 0;
+        for (uint32_t kind = 0; kind < MASU_BLOB_KIND_COUNT; kind++) {
+            char name[512];
             spirv_module m;
-            if (!spirv_from_words(view.march_spirv, (size_t)view.march_words, &m)) {
-                fail_msg("%s: no SPIR-V", path);
+            if (!view.code[kind].words) continue;
+            (void)snprintf(name, sizeof name, "%s, section of kind %u", path, kind);
+            if (!spirv_from_words(view.code[kind].words, (size_t)view.code[kind].count, &m)) {
+                fail_msg("%s: no SPIR-V", name);
             }
-            loops += assert_passes(&m, path);
-            marches++;
+            loops += assert_passes(&m, name);
+            found++;
             spirv_free(&m);
         }
+        assert_true(scene.sdf ? found >= 4 : found == 0);
+        modules += found;
         free(bytes);
     }
-    printf("%u loops in %u baked marches\n", loops, marches);
-    assert_true(marches > 0 && loops > 0);
+    printf("%u loops in %u baked modules\n", loops, modules);
+    assert_true(modules > 0 && loops > 0);
     globfree(&scenes);
 }
 
@@ -318,8 +386,9 @@ int main(void) {
         cmocka_unit_test(an_unbounded_loop_is_named_by_its_function),
         cmocka_unit_test(a_fourth_descriptor_set_is_noticed),
         cmocka_unit_test(every_shader_of_the_library_passes),
-        cmocka_unit_test(the_march_passes_with_every_field_of_the_scenes),
-        cmocka_unit_test(the_march_in_every_baked_scene_passes),
+        cmocka_unit_test(scene_shaders_pass_with_every_field_of_the_scenes),
+        cmocka_unit_test(scene_shaders_pass_with_what_masu_sdfc_writes),
+        cmocka_unit_test(the_code_in_every_baked_scene_passes),
     };
     return cmocka_run_group_tests_name("shader_gates", tests, make_directory, remove_directory);
 }

@@ -1,0 +1,171 @@
+/*
+ * classify.comp: which parts of the SDF can be seen in which tile, and which tiles have any.
+ *
+ * One workgroup per tile of 16x16 pixels. It takes the raster depth over to scene_depth (0 where
+ * nothing is), so that the march touches only pixels it hits. A part stays out of a tile's list when
+ * its bounding sphere lies outside one of the tile's four side planes, before the near plane or
+ * behind the farthest raster depth of the tile: no ray of the tile can meet it then. Leaving it out
+ * makes steps longer, never wrong. The list is in the order of the parts, whatever the order in
+ * which invocations run. index.y not 0: every tile gets all parts (for the report).
+ * Compiled by masu-bake together with the scene's field.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#define MASU_CLASSIFY 1
+#include "shared/store.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+#if MASU_HAS_RASTER
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D raster_depth;
+#define MASU_FIRST_WRITE 1
+#else
+#define MASU_FIRST_WRITE 0
+#endif
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, r32f) uniform writeonly image2D depth_image;
+
+#include "sdf/field.glsl"
+
+#define MASKS ((MASU_SDF_PART_COUNT + 31) / 32)
+#define INVOCATIONS (MASU_GROUP * MASU_GROUP)
+
+shared uint farthest; /* bits of the least reverse-Z depth; positive floats order like their bits */
+shared uint masks[MASKS];
+
+/* Raster depth of the tile to scene_depth. */
+void take_depth(uvec2 corner, uvec2 size)
+{
+    for (int i = 0; i < 4; i++) {
+        uvec2 at = corner + gl_LocalInvocationID.xy + uvec2(i & 1, i >> 1) * uint(MASU_GROUP);
+        if (all(lessThan(at, size))) {
+            float depth = 0.0;
+#if MASU_HAS_RASTER
+            depth = texelFetch(raster_depth, ivec2(at), 0).r;
+#endif
+            atomicMin(farthest, floatBitsToUint(depth));
+            MASU_STORE_R32F(depth_image, at, depth);
+        }
+    }
+}
+
+/* The four side planes of the tile through the eye, normals inwards, half a pixel wider: the march
+ * stops a tenth of a pixel before a surface. */
+void tile_planes(uvec2 corner, uvec2 size, out vec3 planes[4])
+{
+    vec2 low = (vec2(corner) - 0.5) / vec2(size) * 2.0 - 1.0;
+    vec2 high = (vec2(corner + uint(MASU_TILE)) + 0.5) / vec2(size) * 2.0 - 1.0;
+    vec3 f = frame.forward.xyz;
+    vec3 right = frame.right.xyz;
+    vec3 down = -frame.up.xyz;
+    planes[0] = masu_normalize(cross(f + right * low.x, frame.up.xyz), vec3(0.0));
+    planes[1] = -masu_normalize(cross(f + right * high.x, frame.up.xyz), vec3(0.0));
+    planes[2] = masu_normalize(cross(f + down * low.y, right), vec3(0.0));
+    planes[3] = -masu_normalize(cross(f + down * high.y, right), vec3(0.0));
+    for (int i = 0; i < 4; i++) {
+        vec3 middle = f + right * (low.x + high.x) * 0.5 + down * (low.y + high.y) * 0.5;
+        planes[i] = dot(planes[i], middle) < 0.0 ? -planes[i] : planes[i];
+    }
+}
+
+bool sphere_seen(vec4 sphere, vec3 planes[4], float z_far)
+{
+    if (!(sphere.w >= 0.0)) {
+        return true; /* unbounded, or not a number: kept */
+    }
+    vec3 c = sphere.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz;
+    /* Rounding of the centre and of the planes: a few ulp of the distances involved. */
+    float radius = sphere.w + 16.0 * ulp * (length(c) + length(sphere.xyz) + sphere.w);
+    float z = dot(c, frame.forward.xyz);
+    bool outside = z + radius < frame.forward.w || z - radius > z_far;
+    for (int i = 0; i < 4; i++) {
+        outside = outside || dot(planes[i], c) < -radius;
+    }
+    return !outside;
+}
+
+/* The SDF's bounds against the same planes: the corner farthest along each normal. */
+bool bounds_seen(vec3 planes[4], float z_far)
+{
+    vec3 low = frame.sdf_min.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz;
+    vec3 high = frame.sdf_max.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz;
+    vec3 forward = frame.forward.xyz;
+    float slack = 16.0 * ulp * (length(frame.sdf_min.xyz) + length(frame.sdf_max.xyz) + length(low));
+    vec3 near_corner = mix(low, high, lessThan(forward, vec3(0.0)));
+    bool outside = dot(near_corner, forward) > z_far + slack;
+    for (int i = 0; i < 4; i++) {
+        vec3 corner = mix(low, high, greaterThan(planes[i], vec3(0.0)));
+        outside = outside || dot(planes[i], corner) < -slack;
+    }
+    return !outside;
+}
+
+void write_list(uint tile, uvec2 size)
+{
+    uvec2 grid = masu_tile_grid(size);
+    uint stride = masu_list_stride();
+    uint list = uint(MASU_TILES_HEADER) + grid.x * grid.y + tile * stride;
+    uint count = 0u;
+    for (int w = 0; w < MASKS; w++) {
+        count += uint(bitCount(masks[w]));
+    }
+    bool all_parts = pc.index.y != 0u || count >= stride;
+    masu_tiles_out[list] = all_parts ? MASU_TILE_ALL : count;
+    if (count == 0u && pc.index.y == 0u) {
+        return;
+    }
+    uint place = atomicAdd(masu_tiles_out[0], 1u);
+    masu_tiles_out[uint(MASU_TILES_HEADER) + place] = tile;
+    if (all_parts) {
+        return;
+    }
+    uint next = list + 1u;
+    for (int w = 0; w < MASKS; w++) {
+        uint bits = masks[w];
+        for (int b = 0; b < 32; b++) {
+            if (bits == 0u) {
+                break;
+            }
+            masu_tiles_out[next] = uint(w) * 32u + uint(findLSB(bits));
+            bits &= bits - 1u;
+            next++;
+        }
+    }
+}
+
+void main()
+{
+    uint me = gl_LocalInvocationIndex;
+    uvec2 size = uvec2(pc.render_width, pc.render_height);
+    uvec2 corner = gl_WorkGroupID.xy * uint(MASU_TILE);
+    uint tile = gl_WorkGroupID.y * masu_tile_grid(size).x + gl_WorkGroupID.x;
+    if (me == 0u) {
+        farthest = floatBitsToUint(1.0);
+    }
+    for (int w = 0; w < (MASKS + INVOCATIONS - 1) / INVOCATIONS; w++) {
+        if (uint(w * INVOCATIONS) + me < uint(MASKS)) {
+            masks[uint(w * INVOCATIONS) + me] = 0u;
+        }
+    }
+    barrier();
+    take_depth(corner, size);
+    barrier();
+    float least = uintBitsToFloat(farthest);
+    float z_far = least > 0.0 ? frame.forward.w / least : 3e38;
+    vec3 planes[4];
+    tile_planes(corner, size, planes);
+    bool seen = bounds_seen(planes, z_far);
+    for (int i = 0; i < (MASU_SDF_PART_COUNT + INVOCATIONS - 1) / INVOCATIONS; i++) {
+        uint part = uint(i * INVOCATIONS) + me;
+        if (seen && part < uint(MASU_SDF_PART_COUNT) && sphere_seen(masu_sdf_bounds(part), planes, z_far)) {
+            atomicOr(masks[part >> 5], 1u << (part & 31u));
+        }
+    }
+    barrier();
+    if (me == 0u) {
+        write_list(tile, size);
+    }
+}

@@ -1,0 +1,82 @@
+/*
+ * cone.comp: how far the rays of a whole block of pixels are free. Compiled by masu-bake with the
+ * scene's field, once per MASU_CONE_BLOCK: 8 (from the start), then 2 (from where its 8x8 block
+ * stopped).
+ *
+ * The rays of a block lie in a cone around the ray through its middle, of tangent k = block / sqrt(2)
+ * pixels. If the field allows a step r at distance t, all of the cone is free up to the plane where
+ * its rim leaves the sphere of radius r:  (s - t)^2 + (k s)^2 = r^2.  A ray of the block meets that
+ * plane at s or later, so that it may start at s: nothing is approximated, no feature is jumped over.
+ * The march stops where the sphere no longer holds the cone, or gains less than a quarter of its
+ * radius (beyond that the pixels do better alone).
+ *
+ * Outside the SDF's bounds nothing is drawn: there the distance to the bounds is a step as well.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+#if MASU_CONE_BLOCK == 2
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D parent_image;
+layout(set = MASU_SET_PASS, binding = 1, r32f) uniform writeonly image2D cone_image;
+#else
+layout(set = MASU_SET_PASS, binding = 0, r32f) uniform writeonly image2D cone_image;
+#endif
+
+#include "sdf/field.glsl"
+
+float outside_bounds(vec3 p)
+{
+    vec3 past = max(max(frame.sdf_min.xyz - p, p - frame.sdf_max.xyz), vec3(0.0));
+    return length(past);
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 at = gl_GlobalInvocationID.xy;
+    if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
+        vec2 size = vec2(pc.render_width, pc.render_height);
+        vec2 ndc = (vec2(at) + 0.5) * float(MASU_CONE_BLOCK) / size * 2.0 - 1.0;
+        vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
+        ray r;
+        r.direction = through / length(through);
+        r.pixel = 2.0 * max(frame.up.w / size.y, frame.right.w / size.x);
+        float k = float(MASU_CONE_BLOCK) * 0.70711 * r.pixel;
+        float t = frame.forward.w;
+#if MASU_CONE_BLOCK == 2
+        t = max(t, texelFetch(parent_image, ivec2(at) / 4, 0).r);
+#endif
+        uint evals = 0u;
+        uvec2 pixels = uvec2(pc.render_width, pc.render_height);
+        uvec2 tile = at * uint(MASU_CONE_BLOCK) / uint(MASU_TILE);
+        bool empty = !masu_use_tile(tile.y * masu_tile_grid(pixels).x + tile.x, pixels);
+        for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
+            if (empty || uint(i) >= pc.index.x || !(t < frame.sdf_max.w)) {
+                break;
+            }
+            bool usable;
+            float f = step_at(r, t, usable);
+            evals++;
+            float radius = max(f, outside_bounds(world_at(r.direction, t)));
+            float inside = radius * radius * (1.0 + k * k) - k * k * t * t;
+            if (!usable || !(radius > 0.0) || !(inside > 0.0)) {
+                break;
+            }
+            float gain = (t + sqrt(inside)) / (1.0 + k * k) - t;
+            if (!(gain > 0.25 * k * t)) {
+                break;
+            }
+            t += gain;
+        }
+        masu_count(MASU_COUNTER_SDF_EVALS, evals);
+        MASU_STORE_R32F(cone_image, at, t);
+    }
+    masu_count_end();
+}

@@ -1,0 +1,90 @@
+/*
+ * march_checkerboard.comp: for comparison with march.comp: 8x8 cones, then two phases. The second half of the pixels
+ * starts where its marched neighbours have proved its way free. Compiled by masu-bake with
+ * --variants.
+ *
+ * A sample r at distance t on a neighbour's ray keeps free every point within r of it. On a ray that
+ * differs by the angle d those are the distances t +- h, h = sqrt(r^2 - (t d)^2 + (t d^2 / 2)^2) -
+ * t d^2 / 2. Intervals are chained while they overlap, from the distance the cone has proved free;
+ * the first gap ends the chain. Any pixel may start at the largest of its neighbours' ends: nothing
+ * is approximated, no cap, no fallback colours. d is the pixel spacing at the middle of the picture,
+ * the largest there is.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D cone_image;
+layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform writeonly image2D albedo_image;
+layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D normal_image;
+layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
+
+#define MASU_RELAXED
+#define MASU_SAFE_HINT
+#include "sdf/hit.glsl"
+
+#define EDGE (2 * MASU_GROUP)
+
+shared float free_to[EDGE][EDGE]; /* of first-phase pixels: the neighbours are free to here */
+
+/* One pixel; returns how far its neighbours are free. */
+float march_pixel(uvec2 at, uvec2 size, float start)
+{
+    if (any(greaterThanEqual(at, size))) {
+        return 0.0;
+    }
+    float z_scale;
+    uint evals;
+    ray r = pixel_ray(at, size, imageLoad(depth_image, ivec2(at)).r, z_scale);
+    r.start = max(r.start, start);
+    masu_hint_delta = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
+    masu_hint_free = start;
+    masu_hint_open = true;
+    float t = march(r, evals);
+    if (t >= 0.0) {
+        float depth = write_hit(at, r, t, z_scale);
+        MASU_STORE_R32F(depth_image, at, depth);
+    }
+    masu_count(MASU_COUNTER_SDF_EVALS, evals);
+    return masu_hint_free;
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 size = uvec2(pc.output_width, pc.output_height);
+    uint tile = masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];
+    uint columns = masu_tile_grid(size).x;
+    uvec2 corner = uvec2(tile % columns, tile / columns) * uint(MASU_TILE);
+    masu_use_tile(tile, size);
+    uvec2 me = gl_LocalInvocationID.xy * 2u;
+    /* Only the first of the four quarters works: it owns the whole tile. */
+    if (gl_WorkGroupID.y == 0u) {
+        for (int i = 0; i < 2; i++) {
+            uvec2 p = me + uvec2(uint(i));
+            float start = texelFetch(cone_image, ivec2((corner + p) / 8u), 0).r;
+            free_to[p.y][p.x] = march_pixel(corner + p, size, start);
+        }
+    }
+    barrier();
+    if (gl_WorkGroupID.y == 0u) {
+        for (int i = 0; i < 2; i++) {
+            ivec2 p = ivec2(me) + ivec2(1 - i, i);
+            float start = texelFetch(cone_image, (ivec2(corner) + p) / 8, 0).r;
+            for (int k = 0; k < 4; k++) {
+                ivec2 q = p + ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
+                if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(EDGE)))) {
+                    start = max(start, free_to[q.y][q.x]);
+                }
+            }
+            march_pixel(corner + uvec2(p), size, start);
+        }
+    }
+    masu_count_end();
+}

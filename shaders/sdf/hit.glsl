@@ -1,0 +1,23 @@
+/*
+ * hit.glsl: what a hit writes. The including shader has declared albedo_image and normal_image.
+ */
+#ifndef MASU_HIT_GLSL
+#define MASU_HIT_GLSL
+
+#include "sdf/trace.glsl"
+
+/* A hit becomes texels of the G-buffer. Returns its depth. */
+float write_hit(uvec2 at, ray r, float t, float z_scale)
+{
+    vec3 p = world_at(r.direction, t);
+    vec3 n = normal_at(r, t);
+    masu_surface s = masu_surface(vec3(0.5), 0.5, vec3(0.0), 0.0);
+    masu_sdf_surface(p, s);
+    masu_count(MASU_COUNTER_SDF_EVALS, 4u);
+    masu_count(MASU_COUNTER_SDF_HITS, 1u);
+    MASU_STORE_UNORM(albedo_image, at, masu_pack_albedo(s));
+    MASU_STORE_UINT(normal_image, at, uvec4(masu_pack_normal(n, s)));
+    return depth_of(t, z_scale);
+}
+
+#endif

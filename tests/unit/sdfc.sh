@@ -1,0 +1,72 @@
+#!/bin/bash
+# masu-sdfc from outside: exit codes, messages, the three outputs; every .sdf of scenes/ compiles, and
+# masu-bake takes a .sdf where it takes GLSL.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+sdfc=$(realpath "${BUILD:-build}/bin/masu-sdfc")
+bake=$(realpath "${BUILD:-build}/bin/masu-bake")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# run COMMAND...: its exit code in $code, its streams in stdout and stderr
+run() {
+    "$@" > "$folder/stdout" 2> "$folder/stderr"
+    code=$?
+}
+
+# expect CODE PATTERN COMMAND...: that exit code, and the pattern on stderr
+expect() {
+    local wanted=$1 pattern=$2
+    shift 2
+    run "$@"
+    [ $code = "$wanted" ] || fail "$*: exit code $code, not $wanted: $(cat "$folder/stderr")"
+    grep -q -e "$pattern" "$folder/stderr" || fail "$*: \"$pattern\" is not in: $(cat "$folder/stderr")"
+}
+
+good=$folder/good.sdf
+printf 'param r = 1 [0.5, 2];\npart a = sphere(r);\n' > "$good"
+printf 'part a = sphere(1);\npart b = shpere(1);\n' > "$folder/bad.sdf"
+
+expect 2 'no IN.sdf given' "$sdfc"
+expect 2 'more than one input' "$sdfc" a b
+expect 1 'cannot read .*none.sdf: No such file' "$sdfc" "$folder/none.sdf"
+expect 1 'bad.sdf:2:10: expected a shape, found "shpere"' "$sdfc" "$folder/bad.sdf"
+[ "$(sed -n 2,3p "$folder/stderr")" = "masu-sdfc: part b = shpere(1);
+masu-sdfc:          ^" ] || fail "the line and its caret: $(cat "$folder/stderr")"
+expect 1 'cannot write' "$sdfc" "$good" --glsl "$folder/none/x"
+run "$sdfc" "$good" --glsl "$folder/x.glsl" --c "$folder/x.c" --table "$folder/x.json"
+[ $code = 0 ] || fail "good.sdf: $(cat "$folder/stderr")"
+grep -q 'float masu_sdf_part(uint part, vec3 p)' "$folder/x.glsl" || fail "no masu_sdf_part"
+grep -q 'double masu_truth_distance(' "$folder/x.c" || fail "no masu_truth_distance"
+grep -q '"name": "a", "shape": 0, "slot": 16, "slots": 1, "material": 0, "lipschitz": 1,' \
+    "$folder/x.json" || fail "table: $(cat "$folder/x.json")"
+[ "$(cat "$folder/stdout")" = \
+    "$good: 1 parts of 1 forms, 17 slots (some change), $(wc -c < "$folder/x.glsl") bytes of GLSL" ] ||
+    fail "summary: $(cat "$folder/stdout")"
+
+for scene in scenes/*.sdf; do
+    run "$sdfc" "$scene"
+    [ $code = 0 ] || fail "$scene: $(cat "$folder/stderr")"
+done
+
+# json SOURCE MORE: the scene's JSON
+json() {
+    echo "{\"sdf\": {\"source\": \"$1\", \"bounds\": [[-2, -2, -2], [2, 2, 2]] $2}}" > "$folder/s.json"
+}
+json good.sdf ''
+run "$bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/stats.json"
+[ $code = 0 ] || fail "baking good.sdf: $(cat "$folder/stderr")"
+tr -d ' \n' < "$folder/stats.json" | grep -q '"sdf_params":{"count":1' || fail "no parameter in the blob"
+json bad.sdf ''
+expect 1 '^masu-bake: .*bad.sdf:2:10: expected a shape' "$bake" "$folder/s.json" -o "$folder/t.masu"
+[ ! -e "$folder/t.masu" ] || fail "bad.sdf was baked"
+json good.sdf ', "params": [{"name": "r", "value": 1}]'
+expect 1 'its parameters are declared in it' "$bake" "$folder/s.json" -o "$folder/t.masu"
+
+[ $failures = 0 ]

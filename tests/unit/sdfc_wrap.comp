@@ -1,0 +1,25 @@
+#version 450
+/* sdfc_wrap.comp: what a shader must provide for the GLSL of masu-sdfc, at its plainest. For tests. */
+#extension GL_GOOGLE_include_directive : require
+#define MASU_SDF_SETUP 1
+#include "shared/guard.glsl"
+struct masu_surface { vec3 albedo; float roughness; vec3 emissive; float metallic; };
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0, std430) buffer Slots { float slots[]; };
+layout(set = 0, binding = 1, std430) buffer Params { float time; uint count; float params[256]; };
+layout(set = 0, binding = 2, std430) readonly buffer Points { vec4 points[]; };
+layout(set = 0, binding = 3, std430) buffer Result { vec4 result[]; };
+float masu_param(int i) { return params[i]; }
+float masu_time() { return time; }
+float masu_slot(uint i) { return slots[i]; }
+void masu_slot_write(uint i, float v) { slots[i] = v; }
+uint masu_part_count() { return count; }
+uint masu_part_at(uint i) { return i; }
+#include "sdf_scene.glsl"
+void main() {
+    if (gl_GlobalInvocationID.x == 0xFFFFFFFFu) masu_sdf_update();
+    vec3 p = points[gl_GlobalInvocationID.x].xyz;
+    masu_surface s = masu_surface(vec3(0.5), 0.5, vec3(0.0), 0.0);
+    masu_sdf_surface(p, s);
+    result[gl_GlobalInvocationID.x] = vec4(masu_sdf(p), float(masu_sdf_nearest(p)), s.albedo.x, masu_sdf_bounds(0u).w);
+}

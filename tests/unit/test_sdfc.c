@@ -1,0 +1,679 @@
+/*
+ * test_sdfc.c: the SDF compiler. features.sdf has a part for each feature of the language: its GLSL
+ * must compile, its C must give the numbers of the formulas below, which are written here anew, and
+ * both must keep to the Lipschitz constants and bounds of the table. Mistakes in the text have exact
+ * messages; mistakes in the analysis, planted here, are found by the compiler's own check.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <dlfcn.h>
+#include <math.h>
+#include <unistd.h>
+
+#include "sdfc.h"
+#include "sdfc_internal.h"
+#include "support_random.h"
+
+#define FEATURES "tests/unit/features.sdf"
+#define POINTS 2000
+#define PI 3.14159265358979323846
+
+/* ---- compiling and loading ---- */
+
+typedef struct scene {
+    masu_sdfc_result result;
+    void *library;
+    double (*distance)(const double *, double, const double *);
+    double (*step)(const double *, double, const double *);
+    double (*part_distance)(const double *, double, const double *, int);
+    int (*part)(const double *, double, const double *);
+    void (*material)(int, double *);
+} scene;
+
+static char folder[] = "/tmp/masu-test-sdfc-XXXXXX";
+static scene features;
+
+static char *path_of(const char *name) {
+    static char path[2][128];
+    static int turn;
+    turn = !turn;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+    return path[turn];
+}
+
+static void write_text(const char *name, const char *text) {
+    FILE *file = fopen(path_of(name), "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
+    assert_int_equal(fclose(file), 0);
+}
+
+static char *read_text(const char *path, size_t *bytes) {
+    FILE *file = fopen(path, "rb");
+    char *text = malloc(MASU_SDFC_SOURCE_MAX);
+    assert_non_null(file);
+    assert_non_null(text);
+    *bytes = fread(text, 1, MASU_SDFC_SOURCE_MAX, file);
+    fclose(file);
+    return text;
+}
+
+static int run(const char *format, ...) {
+    char command[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(command, sizeof command, format, arguments);
+    va_end(arguments);
+    return system(command);
+}
+
+static void assert_compiles(const char *text, size_t bytes, masu_sdfc_result *result) {
+    char error[2048];
+    if (!masu_sdfc_compile(text, bytes, "x.sdf", result, error, sizeof error))
+        fail_msg("%s", error);
+}
+
+static void *symbol(void *library, const char *name) {
+    void *found = dlsym(library, name);
+    assert_non_null(found);
+    return found;
+}
+
+/* dlsym's object pointer becomes a function pointer, which ISO C has no cast for. */
+#define LOAD(s, member, name)                                                                      \
+    do {                                                                                           \
+        void *found = symbol((s)->library, name);                                                  \
+        memcpy(&(s)->member, &found, sizeof found);                                                \
+    } while (0)
+
+static int load_features(void **state) {
+    size_t bytes;
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    char *text = read_text(FEATURES, &bytes);
+    assert_compiles(text, bytes, &features.result);
+    free(text);
+    write_text("truth.c", features.result.c);
+    const char *compiler = getenv("CC");
+    assert_int_equal(
+        run("%s -std=c11 -Wall -Wextra -Werror -Wno-unused-function -O1 -shared -fPIC %s -o %s -lm",
+            compiler && *compiler ? compiler : "cc", path_of("truth.c"), path_of("truth.so")),
+        0);
+    features.library = dlopen(path_of("truth.so"), RTLD_NOW);
+    assert_non_null(features.library);
+    LOAD(&features, distance, "masu_truth_distance");
+    LOAD(&features, step, "masu_truth_step");
+    LOAD(&features, part_distance, "masu_truth_part_distance");
+    LOAD(&features, part, "masu_truth_part");
+    LOAD(&features, material, "masu_truth_material");
+    return 0;
+}
+
+static int unload_features(void **state) {
+    (void)state;
+    masu_sdfc_release(&features.result);
+    if (features.library) dlclose(features.library);
+    return run("rm -rf %s", folder);
+}
+
+static int part_named(const char *name) {
+    for (uint32_t i = 0; i < features.result.part_count; i++) {
+        if (!strcmp(features.result.parts[i].name, name)) return (int)i;
+    }
+    fail_msg("no part %s", name);
+    return -1;
+}
+
+/* ---- formulas, written anew ---- */
+
+#define R 0.5 /* the parameters' defaults */
+
+static double len(double x, double y, double z) { return sqrt(x * x + y * y + z * z); }
+
+static double ref_box(double x, double y, double z, double a, double b, double c) {
+    double u = fabs(x) - a, v = fabs(y) - b, w = fabs(z) - c;
+    double inside = fmin(fmax(u, fmax(v, w)), 0);
+    return len(fmax(u, 0), fmax(v, 0), fmax(w, 0)) + inside;
+}
+
+static double f_sphere(double x, double y, double z) { return len(x, y - 1, z) - R; }
+static double f_moving(double x, double y, double z) { return len(x - 3, y - R, z) - 0.5; }
+static double f_box(double x, double y, double z) { return ref_box(x, y, z, 1, 2, 3); }
+static double f_rounded(double x, double y, double z) {
+    return ref_box(x, y, z, 0.8, 1.8, 2.8) - 0.2;
+}
+static double f_torus(double x, double y, double z) { return hypot(hypot(x, z) - 2, y) - 0.3; }
+static double f_capsule(double x, double y, double z) {
+    double t = fmax(0, fmin(1, (x + 2 * y + 3 * z) / 14));
+    return len(x - t, y - 2 * t, z - 3 * t) - 0.25;
+}
+static double f_cylinder(double x, double y, double z) {
+    double a = hypot(x, z) - 0.5, b = fabs(y) - 1;
+    return a > 0 && b > 0 ? hypot(a, b) : fmax(a, b);
+}
+/* by a search over the profile's outline (2 h high, radii 0.8 and 0.2) */
+static double f_cone(double x, double y, double z) {
+    static const double outline[4][2] = {{0, -1}, {0.8, -1}, {0.2, 1}, {0, 1}};
+    double r = hypot(x, z), best = 1e30;
+    for (int i = 0; i < 3; i++) {
+        double dx = outline[i + 1][0] - outline[i][0], dy = outline[i + 1][1] - outline[i][1];
+        double t = ((r - outline[i][0]) * dx + (y - outline[i][1]) * dy) / (dx * dx + dy * dy);
+        t = fmax(0, fmin(1, t));
+        best = fmin(best, hypot(r - outline[i][0] - t * dx, y - outline[i][1] - t * dy));
+    }
+    bool inside = fabs(y) < 1 && r < 0.8 - 0.3 * (y + 1);
+    return inside ? -best : best;
+}
+static double f_plane(double x, double y, double z) { return (void)x, (void)z, y + 1; }
+static double f_ellipsoid(double x, double y, double z) { return (len(x, y / 2, z * 2) - 1) * 0.5; }
+static double f_frame(double x, double y, double z) {
+    double best = 1e30;
+    for (int axis = 0; axis < 3; axis++) { /* four bars along each axis */
+        for (int i = 0; i < 4; i++) {
+            double a = i & 1 ? 0.9 : -0.9, b = i & 2 ? 0.9 : -0.9;
+            double d = axis == 0   ? ref_box(x, y - a, z - b, 1, 0.1, 0.1)
+                       : axis == 1 ? ref_box(x - a, y, z - b, 0.1, 1, 0.1)
+                                   : ref_box(x - a, y - b, z, 0.1, 0.1, 1);
+            best = fmin(best, d);
+        }
+    }
+    return best;
+}
+static double f_link(double x, double y, double z) {
+    double v = y > 0.5 ? y - 0.5 : y < -0.5 ? y + 0.5 : 0;
+    return hypot(hypot(x, v) - 0.4, z) - 0.1;
+}
+static double f_union(double x, double y, double z) {
+    return fmin(len(x, y, z) - 1, len(x - 2, y, z) - 0.5);
+}
+static double ref_smooth(double a, double b, double k) {
+    double h = fmax(0, 1 - fabs(a - b) / k);
+    return fmin(a, b) - k * h * h / 4;
+}
+static double f_smooth_union(double x, double y, double z) {
+    double d = ref_smooth(len(x, y, z) - 1, ref_box(x - 1, y, z, 0.5, 0.5, 0.5), 0.3);
+    return ref_smooth(d, hypot(hypot(x, z) - 2, y) - 0.1, 0.3);
+}
+static double f_smooth_difference(double x, double y, double z) {
+    return -ref_smooth(-ref_box(x, y, z, 1, 1, 1), len(x, y, z) - 1.2, 0.1);
+}
+static double f_smooth_intersection(double x, double y, double z) {
+    return -ref_smooth(-ref_box(x, y, z, 1, 1, 1), 1.2 - len(x, y, z), 0.1);
+}
+static double f_difference(double x, double y, double z) {
+    return fmax(ref_box(x, y, z, 1, 1, 1), 1.2 - len(x, y, z));
+}
+static double f_intersection(double x, double y, double z) {
+    return fmax(fmax(ref_box(x, y, z, 1, 1, 1), len(x, y, z) - 1.2), ref_box(x, y, z, 2, 0.5, 0.7));
+}
+/* counterclockwise seen from above: +z turns towards +x */
+static double f_rotate(double x, double y, double z) {
+    double c = cos(PI / 6), s = sin(PI / 6);
+    return ref_box(c * x - s * z, y, s * x + c * z, 1, 2, 3);
+}
+/* x by 90 degrees takes (1,2,3) to (1,3,2), z by 90 degrees that to (3,1,2) */
+static double f_euler(double x, double y, double z) { return ref_box(x, y, z, 3, 1, 2); }
+static double f_scale(double x, double y, double z) { return ref_box(x, y, z, 2, 2, 2); }
+static double f_mirror(double x, double y, double z) {
+    return fmin(len(x - 1, y - 1, z - 1), len(x + 1, y - 1, z - 1)) - 0.5;
+}
+static double f_repeat(double x, double y, double z) {
+    double best = 1e30;
+    for (int i = -6; i <= 6; i++) {
+        for (int k = -6; k <= 6; k++) best = fmin(best, len(x - 4 * i, y, z - 4 * k) - 1);
+    }
+    return best;
+}
+static double f_repeat_aside(double x, double y, double z) {
+    double best = 1e30;
+    for (int i = -6; i <= 6; i++) {
+        for (int k = -6; k <= 6; k++) {
+            best = fmin(best, ref_box(x - 4 * i - 0.5, y, z - 4 * k - 0.3, 1, 3, 1));
+        }
+    }
+    return best;
+}
+static double f_row(double x, double y, double z) {
+    double best = 1e30;
+    for (int i = -2; i <= 2; i++) {
+        for (int k = 0; k < 4; k++) {
+            best = fmin(best, ref_box(x - 4 * i - 0.5, y, z - 4 * k + 6 - 0.3, 1, 3, 1));
+        }
+    }
+    return best;
+}
+static double f_polar(double x, double y, double z) {
+    double best = 1e30;
+    for (int i = 0; i < 7; i++) {
+        double a = 2 * PI * i / 7;
+        best = fmin(best, len(x - 3 * cos(a), y, z - 3 * sin(a)) - 0.5);
+    }
+    return best;
+}
+static double f_polar_two(double x, double y, double z) {
+    return fmin(ref_box(x - 3, y, z - 0.2, 0.5, 0.4, 0.6),
+                ref_box(-x - 3, y, -z - 0.2, 0.5, 0.4, 0.6));
+}
+static double f_twist(double x, double y, double z) {
+    double c = cos(2 * y), s = sin(2 * y);
+    return ref_box(c * x + s * z, y, c * z - s * x, 0.5, 2, 0.5);
+}
+static double f_bend(double x, double y, double z) {
+    double c = cos(0.5 * x), s = sin(0.5 * x);
+    return ref_box(c * x + s * y, c * y - s * x, z, 2, 0.2, 0.5);
+}
+static double f_elongate(double x, double y, double z) {
+    double w = z > 1 ? z - 1 : z < -1 ? z + 1 : 0;
+    return hypot(hypot(x, w) - 1, y) - 0.2;
+}
+static double f_onion(double x, double y, double z) { return fabs(len(x, y, z) - 1) - 0.05; }
+static double f_round(double x, double y, double z) { return ref_box(x, y, z, 1, 1, 1) - 0.1; }
+static double f_displace(double x, double y, double z) {
+    return len(x, y, z) - 1 + 0.1 * sin(5 * x) * sin(6 * y) * sin(7 * z);
+}
+static double f_morph(double x, double y, double z) {
+    return 0.5 * (len(x, y, z) - 1) + 0.5 * ref_box(x, y, z, 1, 1, 1);
+}
+/* solid where no base-3 digit is 1 in two coordinates at once, to three levels */
+static double f_menger(double x, double y, double z) {
+    double p[3] = {x, y, z};
+    if (fabs(x) > 1 || fabs(y) > 1 || fabs(z) > 1) return 1;
+    for (int level = 0; level < 3; level++) {
+        int middles = 0;
+        for (int i = 0; i < 3; i++) {
+            double u = (p[i] + 1) / 2 * 3;
+            double digit = fmin(floor(u), 2);
+            middles += digit == 1;
+            p[i] = (u - digit) * 2 - 1;
+        }
+        if (middles >= 2) return 1;
+    }
+    return -1;
+}
+static double f_mixed(double x, double y, double z) {
+    double c = cos(5 * y), s = sin(5 * y), u = x - 3;
+    return fmin(len(x, y, z) - 1, ref_box(c * u + s * z, y, c * z - s * u, 0.4, 0.4, 0.4));
+}
+
+typedef enum how {
+    EQUAL, /* the same number */
+    NEAR,  /* the same up to 0.5, beyond that no more than it and still at least 0.5 */
+    SIGN   /* solid in the same places */
+} how;
+
+static const struct {
+    const char *part;
+    double (*f)(double, double, double);
+    how how;
+} formulas[] = {{"sphere", f_sphere, EQUAL},
+                {"moving", f_moving, EQUAL},
+                {"box", f_box, EQUAL},
+                {"rounded_box", f_rounded, EQUAL},
+                {"torus", f_torus, EQUAL},
+                {"capsule", f_capsule, EQUAL},
+                {"cylinder", f_cylinder, EQUAL},
+                {"cone", f_cone, EQUAL},
+                {"plane", f_plane, EQUAL},
+                {"ellipsoid", f_ellipsoid, EQUAL},
+                {"box_frame", f_frame, SIGN},
+                {"link", f_link, EQUAL},
+                {"union", f_union, EQUAL},
+                {"smooth_union", f_smooth_union, EQUAL},
+                {"smooth_difference", f_smooth_difference, EQUAL},
+                {"smooth_intersection", f_smooth_intersection, EQUAL},
+                {"difference", f_difference, EQUAL},
+                {"intersection", f_intersection, EQUAL},
+                {"rotate", f_rotate, EQUAL},
+                {"euler", f_euler, EQUAL},
+                {"scale", f_scale, EQUAL},
+                {"mirror", f_mirror, EQUAL},
+                {"repeat", f_repeat, EQUAL},
+                {"repeat_aside", f_repeat_aside, NEAR},
+                {"row", f_row, NEAR},
+                {"polar", f_polar, EQUAL},
+                {"polar_two", f_polar_two, EQUAL},
+                {"twist", f_twist, SIGN},
+                {"bend", f_bend, SIGN},
+                {"elongate", f_elongate, EQUAL},
+                {"onion", f_onion, EQUAL},
+                {"round", f_round, EQUAL},
+                {"displace", f_displace, EQUAL},
+                {"morph", f_morph, EQUAL},
+                {"menger", f_menger, SIGN},
+                {"mixed", f_mixed, SIGN}};
+
+static double between(uint64_t *seed, double low, double high) {
+    return low + (high - low) * (double)(support_random(seed) >> 11) / 9007199254740992.0;
+}
+
+static void near_part(uint64_t *seed, int part, double p[3]) {
+    const masu_sdfc_part *at = &features.result.parts[part];
+    if (!(at->radius >= 0)) return;
+    for (int k = 0; k < 3; k++) p[k] = at->center[k] + between(seed, -1, 1) * at->radius;
+}
+
+static void values_are_those_of_the_formulas(void **state) {
+    (void)state;
+    const double params[2] = {0.5, 0.5};
+    for (size_t i = 0; i < sizeof formulas / sizeof formulas[0]; i++) {
+        uint64_t seed = i;
+        int part = part_named(formulas[i].part), solid = 0;
+        for (int n = 0; n < POINTS; n++) {
+            double reach = n % 2 ? 2 : 12, p[3];
+            for (int k = 0; k < 3; k++) p[k] = between(&seed, -reach, reach);
+            if (n % 4 == 1) near_part(&seed, part, p);
+            double f = features.part_distance(params, 0, p, part);
+            double g = formulas[i].f(p[0], p[1], p[2]);
+            bool good = false;
+            switch (formulas[i].how) {
+            case EQUAL: good = fabs(f - g) < 1e-9; break;
+            case NEAR: good = g < 0.5 ? fabs(f - g) < 1e-9 : f <= g + 1e-9 && f >= 0.5; break;
+            case SIGN: good = (f < 0) == (g < 0) || fabs(f) < 1e-9; break;
+            }
+            solid += f < 0;
+            if (!good) {
+                fail_msg("%s at (%.17g, %.17g, %.17g): %.17g, by formula %.17g", formulas[i].part,
+                         p[0], p[1], p[2], f, g);
+            }
+        }
+        if (solid == 0) fail_msg("%s: no point within", formulas[i].part);
+    }
+}
+
+/* ---- what the march relies on, of the C that comes out ---- */
+
+static double apart(const double p[3], const double q[3]) {
+    return len(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+}
+
+static void constants_and_bounds_hold_for_the_C(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    for (uint32_t i = 0; i < features.result.part_count; i++) {
+        const masu_sdfc_part *part = &features.result.parts[i];
+        bool estimate = !strcmp(part->name, "mandelbulb");
+        for (int n = 0; n < POINTS; n++) {
+            double p[3], q[3], params[2] = {between(&seed, 0.2, 1), between(&seed, -1, 1)};
+            double time = between(&seed, 0, 10), by = pow(10, between(&seed, -5, 0.5));
+            for (int k = 0; k < 3; k++) p[k] = between(&seed, -6, 6);
+            for (int k = 0; k < 3; k++) q[k] = p[k] + by * between(&seed, -1, 1);
+            double f = features.part_distance(params, time, p, (int)i);
+            double g = features.part_distance(params, time, q, (int)i);
+            double most = part->lipschitz * apart(p, q) * (1 + 1e-9) + 1e-9;
+            if (!estimate && !(fabs(f - g) <= most)) {
+                fail_msg("%s: %.17g and %.17g are %.9g apart, more than %.9g", part->name, f, g,
+                         fabs(f - g), most);
+            }
+            bool outside = part->radius >= 0 && apart(p, part->center) > part->radius + 1e-9;
+            for (int k = 0; k < 3; k++) {
+                outside = outside || p[k] < part->low[k] - 1e-9 || p[k] > part->high[k] + 1e-9;
+            }
+            if (outside && !(f > 0)) fail_msg("%s: solid outside of its bounds", part->name);
+        }
+    }
+}
+
+static void the_scene_is_the_union_of_its_parts(void **state) {
+    (void)state;
+    uint64_t seed = 9;
+    const double params[2] = {0.7, -0.3};
+    for (int n = 0; n < 200; n++) {
+        double p[3], least = SDFC_INFINITY, step = SDFC_INFINITY, out[8];
+        int nearest = -1;
+        for (int k = 0; k < 3; k++) p[k] = between(&seed, -8, 8);
+        for (uint32_t i = 0; i < features.result.part_count; i++) {
+            double f = features.part_distance(params, 2, p, (int)i);
+            least = fmin(least, f);
+            if (f / features.result.parts[i].lipschitz < step) {
+                step = f / features.result.parts[i].lipschitz;
+                nearest = (int)i;
+            }
+        }
+        assert_true(features.distance(params, 2, p) == least);
+        assert_true(features.step(params, 2, p) == step);
+        assert_int_equal(features.part(params, 2, p), nearest);
+        features.material(part_named("box"), out);
+        assert_true(out[0] == 0.4 && out[3] == 0.7 && out[7] == 0);
+    }
+}
+
+/* ---- GLSL ---- */
+
+static void assert_glsl_compiles(const masu_sdfc_result *result) {
+    static const char *const options[] = {"", "-DMASU_SDF_ASCENDING"};
+    write_text("sdf_scene.glsl", result->glsl);
+    for (int i = 0; i < 2; i++) {
+        int code = run("glslangValidator --quiet -V %s --target-env vulkan1.1 -Ishaders -I%s "
+                       "-o %s/x.spv tests/unit/sdfc_wrap.comp && "
+                       "spirv-val --target-env vulkan1.1 %s/x.spv",
+                       options[i], folder, folder, folder);
+        assert_int_equal(code, 0);
+    }
+}
+
+static void glsl_of_all_features_compiles(void **state) {
+    (void)state;
+    assert_glsl_compiles(&features.result);
+}
+
+static int count(const char *text, const char *what) {
+    int n = 0;
+    for (const char *at = text; (at = strstr(at, what)); at++) n++;
+    return n;
+}
+
+static void one_sphere_has_the_code_of_one_sphere(void **state) {
+    (void)state;
+    static const char text[] = "shape unused = menger(4);\npart a = sphere(1.5);\n";
+    masu_sdfc_result result;
+    assert_compiles(text, sizeof text - 1, &result);
+    assert_glsl_compiles(&result);
+    assert_int_equal(count(result.glsl, "masu_h_sphere("), 2);
+    assert_int_equal(count(result.glsl, "masu_h_"), 2);
+    assert_int_equal(count(result.glsl, "switch"), 0);
+    assert_int_equal(count(result.glsl, ", 1.5)"), 1); /* a literal, no slot */
+    assert_int_equal(result.slot_count, MASU_SDFC_PART_SLOTS + MASU_SDFC_MATERIAL_SLOTS);
+    assert_false(result.dynamic);
+    masu_sdfc_release(&result);
+}
+
+static void parts_of_one_form_share_its_code(void **state) {
+    (void)state;
+    static const char text[] =
+        "param r = 1 [0, 2];\n"
+        "for i in 0..100 { part a = translate((i, 0, 0), sphere(0.4)); }\n"
+        "for i in 0..50 { part b = translate((0, i, 0), box((0.2, hash(i), r))); }\n";
+    masu_sdfc_result result;
+    assert_compiles(text, sizeof text - 1, &result);
+    assert_glsl_compiles(&result);
+    assert_int_equal(result.part_count, 150);
+    assert_int_equal(result.shape_count, 2);
+    assert_int_equal(count(result.glsl, "real masu_shape_"), 2);
+    assert_true(result.dynamic);
+    assert_string_equal(result.parts[7].name, "a_7");
+    /* x of a; y, hash and r of b: all else is the same in all of them */
+    uint32_t head = 150 * MASU_SDFC_PART_SLOTS + MASU_SDFC_MATERIAL_SLOTS;
+    assert_int_equal(result.slot_count, head + 100 + 3 * 50);
+    const float *record = result.slots + 7 * MASU_SDFC_PART_SLOTS;
+    assert_true(record[0] == 7 && record[3] > 0.4f && record[3] < 0.4001f && record[4] == 1);
+    assert_true(record[5] == 0 && record[6] == (float)(head + 7) && record[7] == 0);
+    assert_true(result.slots[head + 7] == 7);
+    assert_int_equal(count(result.glsl, "masu_slot_write("), 50);
+    masu_sdfc_release(&result);
+}
+
+static void the_same_text_gives_the_same_result(void **state) {
+    (void)state;
+    size_t bytes;
+    char *text = read_text(FEATURES, &bytes);
+    masu_sdfc_result again;
+    assert_compiles(text, bytes, &again);
+    assert_string_equal(again.glsl, features.result.glsl);
+    assert_string_equal(again.c, features.result.c);
+    assert_string_equal(again.table, features.result.table);
+    masu_sdfc_release(&again);
+    free(text);
+}
+
+/* ---- mistakes in the text ---- */
+
+static void mistakes_name_their_place(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *message;
+    } cases[] = {
+        {"", "x.sdf:1:1: expected a part, found the end of the text"},
+        {"part a = sphere(1)", "x.sdf:1:19: expected \";\", found the end of the text\n"
+                               "part a = sphere(1)\n                  ^"},
+        {"let a = 1;\npart b = spher(1);", "x.sdf:2:10: expected a shape, found \"spher\"\n"
+                                           "part b = spher(1);\n         ^"},
+        {"part a = box(1, 2);", "x.sdf:1:15: expected \")\", found \",\""},
+        {"part a = sphere((1, 2, 3));", "x.sdf:1:17: expected a number, found three numbers"},
+        {"part a : gold = sphere(1);", "x.sdf:1:10: expected a material, found \"gold\""},
+        {"param r = 3 [0, 1]; part a = sphere(r);",
+         "x.sdf:1:14: expected a range that holds 3, found [0, 1]"},
+        {"part a = menger(9);", "x.sdf:1:17: expected a whole number from 1 to 8, found 9"},
+        {"part a = menger(time);", "x.sdf:1:17: expected a whole number known at compile time, "
+                                   "found an expression of parameters or time"},
+        {"let pi = 3;", "x.sdf:1:5: expected a name that is no word of the language, found \"pi\""},
+        {"let a = 1; let a = 2;", "x.sdf:1:16: expected a name that is new, found \"a\""},
+        {"let a = 1 / 0;", "x.sdf:1:13: expected a divisor, found 0"},
+        {"let a = $;", "x.sdf:1:9: expected a statement, found \"$\""},
+        {"let a = 1e99;", "x.sdf:1:9: expected a number of at most 1e30"},
+        {"part a = repeat((2, 0, 0), translate((0.6, 0, 0), sphere(0.5)));",
+         "x.sdf:1:10: repeat: expected a shape within its cell (or symmetric in it): it reaches "
+         "1.1 from the middle along x, the cell 1"},
+        {"part a = twist(1, plane((0, 1, 0), 0));",
+         "x.sdf:1:10: twist: expected a shape with an end, and a rate with limits"},
+        {"part a = rotate((0, 0, 0), 1, sphere(1));",
+         "x.sdf:1:10: rotate: expected an axis that is not zero"},
+        {"part a = glsl { return 1.0; ", "x.sdf:1:15: expected a \"}\" for this \"{\""},
+        {"for i in 0..9 { part a = sphere(1);", "x.sdf:1:36: expected param, let, shape, material, "
+                                                "part or for, found the end of the text"},
+        {"for i in 0..5000 { part a = sphere(1); }", "x.sdf:1:27: more than 4096 parts"},
+        {"for i in 0..60000 { for j in 0..60000 { } }", "x.sdf:1:"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        masu_sdfc_result result;
+        char error[1024];
+        bool good = masu_sdfc_compile(cases[i].text, strlen(cases[i].text), "x.sdf", &result, error,
+                                      sizeof error);
+        size_t length = strlen(cases[i].message);
+        if (good || strncmp(error, cases[i].message, length) != 0) {
+            fail_msg("%s\nis answered by\n%s", cases[i].text, good ? "success" : error);
+        }
+        assert_null(result.glsl);
+        masu_sdfc_release(&result);
+    }
+}
+
+static void depth_is_limited(void **state) {
+    (void)state;
+    char text[20000], error[256];
+    masu_sdfc_result result;
+    static const char *const opening[] = {"let a = ", "part a = "};
+    static const char *const unit[] = {"(", "round(0,"};
+    for (int kind = 0; kind < 2; kind++) {
+        size_t length = (size_t)snprintf(text, sizeof text, "%s", opening[kind]);
+        for (int i = 0; i < 2000; i++) {
+            length += (size_t)snprintf(text + length, sizeof text - length, "%s", unit[kind]);
+        }
+        assert_false(masu_sdfc_compile(text, length, "x", &result, error, sizeof error));
+        assert_non_null(strstr(error, "expected at most 64 levels of nesting"));
+    }
+}
+
+/* Doubling names: the tree is huge, the text is not. */
+static void size_is_limited(void **state) {
+    (void)state;
+    char text[4096], error[256];
+    size_t length = (size_t)snprintf(text, sizeof text, "shape s0 = sphere(1);\n");
+    masu_sdfc_result result;
+    for (int i = 0; i < 40; i++) {
+        length += (size_t)snprintf(text + length, sizeof text - length,
+                                   "shape s%d = union(s%d, s%d);\n", i + 1, i, i);
+    }
+    length += (size_t)snprintf(text + length, sizeof text - length, "part a = s40;\n");
+    assert_false(masu_sdfc_compile(text, length, "x", &result, error, sizeof error));
+    assert_non_null(strstr(error, "expected a part of at most 2048 shapes"));
+}
+
+/* ---- mistakes in the analysis, planted ---- */
+
+typedef enum fault { FAULT_NONE, FAULT_LIPSCHITZ, FAULT_BOX, FAULT_SPHERE, FAULT_CELL } fault;
+
+static bool check_finds(const char *text, fault planted, char *error, size_t error_size) {
+    sdfc *c = calloc(1, sizeof *c);
+    assert_non_null(c);
+    *c = (sdfc){.text = text,
+                .bytes = strlen(text),
+                .name = "x.sdf",
+                .error = error,
+                .error_size = error_size,
+                .time_expr = -1};
+    if (setjmp(c->failed)) {
+        sdfc_free(c);
+        return true;
+    }
+    sdfc_lex(c);
+    sdfc_parse(c);
+    sdfc_facts *f = &c->shapes[c->parts[0].shape].facts;
+    if (planted == FAULT_LIPSCHITZ) f->lipschitz *= 0.98;
+    if (planted == FAULT_BOX) f->box.high[0] -= 0.1;
+    if (planted == FAULT_SPHERE) f->radius *= 0.95;
+    if (planted == FAULT_CELL)
+        c->shapes[c->parts[0].shape].extra[0] = 1; /* only the nearest cell */
+    sdfc_lower(c, &c->parts[0]);
+    sdfc_group_parts(c);
+    sdfc_check(c, 20000);
+    sdfc_free(c);
+    return false;
+}
+
+static void planted_faults_are_found(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        fault fault;
+    } cases[] = {
+        {"part a = sphere(1);", FAULT_LIPSCHITZ},
+        {"part a = scale((1, 2, 4), union(sphere(1), torus(3, 0.2)));", FAULT_LIPSCHITZ},
+        {"part a = box((1, 2, 3));", FAULT_BOX},
+        {"part a = torus(2, 0.3);", FAULT_SPHERE},
+        {"part a = repeat((4, 0, 0), translate((0.7, 0, 0), box((1, 1, 1))));", FAULT_CELL},
+        {"part a = polar(5, translate((3, 0, 0.8), box((0.5, 1, 1))));", FAULT_CELL},
+    };
+    char error[1024];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        if (check_finds(cases[i].text, FAULT_NONE, error, sizeof error)) fail_msg("%s", error);
+        if (!check_finds(cases[i].text, cases[i].fault, error, sizeof error)) {
+            fail_msg("%s: fault %d was not found", cases[i].text, (int)cases[i].fault);
+        }
+        assert_non_null(strstr(error, "x.sdf:1:6: part a: the field is "));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(values_are_those_of_the_formulas),
+        cmocka_unit_test(constants_and_bounds_hold_for_the_C),
+        cmocka_unit_test(the_scene_is_the_union_of_its_parts),
+        cmocka_unit_test(glsl_of_all_features_compiles),
+        cmocka_unit_test(one_sphere_has_the_code_of_one_sphere),
+        cmocka_unit_test(parts_of_one_form_share_its_code),
+        cmocka_unit_test(the_same_text_gives_the_same_result),
+        cmocka_unit_test(mistakes_name_their_place),
+        cmocka_unit_test(depth_is_limited),
+        cmocka_unit_test(size_is_limited),
+        cmocka_unit_test(planted_faults_are_found),
+    };
+    return cmocka_run_group_tests(tests, load_features, unload_features);
+}

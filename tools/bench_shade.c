@@ -1,0 +1,137 @@
+/* bench_shade.c: see bench_shade.h. The names are those of light.comp. */
+#include "bench_shade.h"
+
+#include "shared/masu_shared.h"
+
+#include <math.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double clamped(double x, double low, double high) {
+    return x < low ? low : x > high ? high : x;
+}
+
+static double mix(double a, double b, double u) { return a + (b - a) * u; }
+
+/* ---- light.comp ------------------------------------------------------------------------------ */
+
+static void sky(const masu_view *v, const double direction[3], double out[3]) {
+    double u = sqrt(clamped(direction[1], 0, 1));
+    for (int c = 0; c < 3; c++) out[c] = mix(v->sky_horizon[c], v->sky_zenith[c], u);
+}
+
+void masu_shade_sky(const masu_view *v, const double direction[3], double out[3]) {
+    double towards = clamped(dot(direction, v->sun_direction), 0, 1);
+    double glow = 0.25 * pow(towards, 350) + 0.05 * pow(towards, 12);
+    sky(v, direction, out);
+    for (int c = 0; c < 3; c++) out[c] += v->sun_color[c] * glow;
+}
+
+static double specular_lobe(const double n[3], const double h[3], double alpha, double n_l,
+                            double n_v) {
+    double n_h = clamped(dot(n, h), 0, 1), a = n_h * alpha, a2 = alpha * alpha;
+    double sine[3] = {n[1] * h[2] - n[2] * h[1], n[2] * h[0] - n[0] * h[2],
+                      n[0] * h[1] - n[1] * h[0]};
+    double k = alpha / (dot(sine, sine) + a * a);
+    double g = n_l * sqrt(a2 + (1 - a2) * n_v * n_v) + n_v * sqrt(a2 + (1 - a2) * n_l * n_l);
+    return fmin(k * k * 0.5 / fmax(g, 1e-5), 65504);
+}
+
+/* As a texel of `steps` + 1 levels. */
+static double stored(double x, double steps) { return rint(clamped(x, 0, 1) * steps) / steps; }
+
+void masu_shade_surface(const masu_view *view, const double direction[3], const double n[3],
+                        const double material[8], double out[3]) {
+    const double *emissive = material + 4, *l = view->sun_direction;
+    double albedo[3], v[3], h[3], mirror_way[3], reflected[3];
+    bool emits = emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
+    for (int c = 0; c < 3; c++) {
+        double color = emits ? emissive[c] / 16 : material[c];
+        double root = stored(sqrt(clamped(color, 0, 1)), 255);
+        albedo[c] = root * root;
+        out[c] = 16 * albedo[c];
+    }
+    if (emits) return;
+    double roughness = stored(material[3], 255), metallic = stored(material[7], 15);
+    for (int i = 0; i < 3; i++) v[i] = -direction[i];
+    double n_v = fmax(dot(n, v), 1e-4), n_l = dot(n, l);
+    double alpha = fmax(roughness, 0.045) * fmax(roughness, 0.045);
+    double lobe = 0, f5 = 0, length = 0;
+    for (int i = 0; i < 3; i++) {
+        h[i] = l[i] + v[i];
+        length += h[i] * h[i];
+    }
+    length = sqrt(length);
+    if (n_l > 0) {
+        for (int i = 0; i < 3; i++) h[i] = length > 1e-30 ? h[i] / length : n[i];
+        lobe = specular_lobe(n, h, alpha, n_l, n_v);
+        f5 = pow(clamped(1 - clamped(dot(v, h), 0, 1), 0, 1), 5);
+    }
+    double toward = 2 * dot(n, direction), edge = pow(1 - n_v, 5);
+    for (int i = 0; i < 3; i++) mirror_way[i] = direction[i] - toward * n[i];
+    sky(view, mirror_way, reflected);
+    for (int c = 0; c < 3; c++) {
+        double f0 = mix(0.04, albedo[c], metallic), diffuse = albedo[c] * (1 - metallic);
+        double lit = 0;
+        if (n_l > 0) {
+            double f = f0 + (1 - f0) * f5;
+            lit = view->sun_color[c] * n_l * (diffuse * (1 - f) + f * lobe);
+        }
+        double mirror = f0 + (fmax(1 - roughness, f0) - f0) * edge;
+        out[c] = lit + view->ambient[c] * diffuse +
+                 mirror * mix(reflected[c], view->ambient[c], roughness);
+    }
+}
+
+void masu_shade_texel(const masu_view *view, const double direction[3], const uint8_t albedo[4],
+                      uint32_t normal, double out[3]) {
+    double material[8] = {0}, n[3];
+    float unpacked[3];
+    bool emits = (normal >> 30 & MASU_SURFACE_EMISSIVE) != 0;
+    for (int c = 0; c < 3; c++) {
+        double color = (albedo[c] / 255.0) * (albedo[c] / 255.0);
+        material[emits ? 4 + c : c] = emits ? 16 * color : color;
+    }
+    material[3] = albedo[3] / 255.0;
+    material[7] = (normal >> 26 & 15) / 15.0;
+    masu_unpack_normal(normal, unpacked);
+    for (int i = 0; i < 3; i++) n[i] = (double)unpacked[i];
+    masu_shade_surface(view, direction, n, material, out);
+}
+
+/* ---- tonemap.comp ---------------------------------------------------------------------------- */
+
+void masu_shade_encode(const masu_view *view, const double radiance[3], uint8_t rgba[4]) {
+    for (int c = 0; c < 3; c++) {
+        double x = clamped(clamped(radiance[c], 0, 65504) * view->exposure, 0, 1e4);
+        double y = clamped((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0, 1);
+        double z = y <= 0.0031308 ? 12.92 * y : 1.055 * pow(y, 1 / 2.4) - 0.055;
+        rgba[c] = (uint8_t)rint(clamped(z, 0, 1) * 255);
+    }
+    rgba[3] = 255;
+}
+
+void masu_shade_image(const masu_truth *truth, const masu_view *view, uint32_t stride,
+                      const masu_truth_sample *samples, uint8_t *rgba) {
+    uint32_t columns = masu_truth_columns(view->width, stride);
+    uint32_t rows = masu_truth_columns(view->height, stride);
+    (void)truth->step(view->params, view->time, view->eye); /* materials are as of this moment */
+    for (uint32_t y = 0; y < rows; y++) {
+        for (uint32_t x = 0; x < columns; x++) {
+            size_t i = (size_t)y * columns + x;
+            masu_view_ray ray = masu_view_ray_at(view, x * stride, y * stride);
+            double radiance[3], material[8];
+            if (samples[i].kind == MASU_TRUTH_HIT) {
+                memset(material, 0, sizeof material);
+                truth->material(samples[i].part, material);
+                masu_shade_surface(view, ray.direction, samples[i].normal, material, radiance);
+            } else {
+                masu_shade_sky(view, ray.direction, radiance);
+            }
+            masu_shade_encode(view, radiance, &rgba[4 * i]);
+        }
+    }
+}

@@ -1,0 +1,573 @@
+/* sdfc_emit.c: operations -> text. GLSL and C differ in how a slot is read and in what surrounds the
+ * functions; the functions themselves are the same lines. What no part uses is not written. */
+#include "sdfc_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct writer {
+    sdfc *c;
+    sdfc_text *out;
+    bool glsl;
+} writer;
+
+#define PUT(w, ...) sdfc_put((w)->c, (w)->out, __VA_ARGS__)
+
+/* ---- numbers and operands ---- */
+
+static void put_number(writer *w, double v) {
+    char text[40];
+    if (v != v) v = 0;
+    if (v > 1e30) v = 1e30;
+    if (v < -1e30) v = -1e30;
+    snprintf(text, sizeof text, w->glsl ? "%.9g" : "%.17g", v);
+    bool whole = !strpbrk(text, ".e");
+    PUT(w, v < 0 ? "(%s%s)" : "%s%s", text, whole ? ".0" : "");
+}
+
+static void put_operand(writer *w, const sdfc_group *g, const sdfc_program *p, int operand) {
+    if (operand >= 0) {
+        if (operand < 3)
+            PUT(w, "%c", 'x' + operand);
+        else
+            PUT(w, "v%d", operand);
+        return;
+    }
+    int a = ~operand, slot = g->slot_of_arg[a];
+    if (slot < 0)
+        put_number(w, w->c->exprs[p->args[a]].value);
+    else
+        PUT(w, w->glsl ? "masu_slot(base + %du)" : "slot[base + %du]", slot);
+}
+
+/* ---- functions of the library ---- */
+
+static void mark_used(bool *used, int op) {
+    if (op <= SDFC_TIME || op >= SDFC_CALL_MIN || used[op]) return;
+    used[op] = true;
+    if (!sdfc_ops[op].body) return;
+    /* Bodies name others as masu_h_NAME; the library has them in the order of their use. */
+    for (const char *at = sdfc_ops[op].body; (at = strstr(at, "masu_h_"));) {
+        at += 7;
+        for (int other = SDFC_TIME + 1; other < op; other++) {
+            size_t length = strlen(sdfc_ops[other].name);
+            if (strncmp(at, sdfc_ops[other].name, length) == 0 && at[length] == '(') {
+                mark_used(used, other);
+            }
+        }
+    }
+}
+
+static void put_library(writer *w, bool with_expressions) {
+    bool used[SDFC_OP_COUNT] = {false};
+    for (int g = 0; g < w->c->group_count; g++) {
+        const sdfc_program *p = &w->c->parts[w->c->groups[g].first_part].program;
+        for (int f = 0; f < p->function_count; f++) {
+            for (int i = 0; i < p->functions[f].count; i++) {
+                mark_used(used, p->functions[f].instrs[i].op);
+            }
+        }
+    }
+    if (with_expressions) {
+        for (int i = 0; i < w->c->expr_count; i++) {
+            if (w->c->needed[i]) mark_used(used, w->c->exprs[i].op);
+        }
+    }
+    for (int op = SDFC_TIME + 1; op < SDFC_CALL_MIN; op++) {
+        const sdfc_op_info *info = &sdfc_ops[op];
+        if (!used[op] || !info->body) continue;
+        PUT(w, "%sreal masu_h_%s%s\n", w->glsl ? "" : "static ", info->name, info->params);
+        sdfc_put_bytes(w->c, w->out, info->body, strlen(info->body));
+        PUT(w, "\n");
+    }
+}
+
+/* ---- shapes ---- */
+
+static void put_template(writer *w, const sdfc_group *g, const sdfc_program *p,
+                         const sdfc_instr *i) {
+    for (const char *t = sdfc_ops[i->op].text; *t; t++) {
+        if (*t == '$')
+            put_operand(w, g, p, i->operand[*++t - '0']);
+        else
+            PUT(w, "%c", *t);
+    }
+}
+
+/* x - 0 and x * 1 with a literal: the shape that stands at the origin beside others that do not. */
+static bool does_nothing(const writer *w, const sdfc_group *g, const sdfc_program *p,
+                         const sdfc_instr *i) {
+    if (i->op != SDFC_sub && i->op != SDFC_mul) return false;
+    if (i->operand[1] >= 0 || g->slot_of_arg[~i->operand[1]] >= 0) return false;
+    return w->c->exprs[p->args[~i->operand[1]]].value == (i->op == SDFC_mul ? 1 : 0);
+}
+
+static void put_call_min(writer *w, int group, const sdfc_group *g, const sdfc_program *p,
+                         const sdfc_instr *i, int variable) {
+    PUT(w, "    real v%d = 1e30;\n    for (int i = 0; i < %d; i++) {\n", variable, i->points);
+    for (int k = 0; k < 3; k++) {
+        PUT(w, "        real p%d = ", k);
+        if (i->select[k]) {
+            PUT(w, "(i & %d) != 0 ? ", 1 << (i->select[k] - 1));
+            put_operand(w, g, p, i->operand[2 * k + 1]);
+            PUT(w, " : ");
+        }
+        put_operand(w, g, p, i->operand[2 * k]);
+        PUT(w, ";\n");
+    }
+    PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base));\n    }\n", variable,
+        variable, group, i->aux);
+}
+
+static void put_instr(writer *w, int group, const sdfc_program *p, const sdfc_instr *i,
+                      int variable) {
+    const sdfc_group *g = &w->c->groups[group];
+    if (i->op == SDFC_CALL_MIN) {
+        put_call_min(w, group, g, p, i, variable);
+        return;
+    }
+    PUT(w, "    real v%d = ", variable);
+    if (i->op == SDFC_CALL_USER) {
+        PUT(w, w->glsl ? "masu_user_%d(vec3(" : "masu_user_%d(", i->aux);
+        for (int k = 0; k < 3; k++) {
+            put_operand(w, g, p, i->operand[k]);
+            PUT(w, k < 2 ? ", " : w->glsl ? "))" : ")");
+        }
+    } else if (does_nothing(w, g, p, i)) {
+        put_operand(w, g, p, i->operand[0]);
+    } else if (sdfc_ops[i->op].text) {
+        put_template(w, g, p, i);
+    } else {
+        PUT(w, "masu_h_%s(", sdfc_ops[i->op].name);
+        for (int k = 0; k < sdfc_ops[i->op].operands; k++) {
+            if (k) PUT(w, ", ");
+            put_operand(w, g, p, i->operand[k]);
+        }
+        PUT(w, ")");
+    }
+    PUT(w, ";\n");
+}
+
+static void put_function(writer *w, int group, const sdfc_program *p, int function, bool root) {
+    const sdfc_function *f = &p->functions[function];
+    PUT(w, "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
+    if (!root) PUT(w, "_%d", function);
+    PUT(w, "(real x, real y, real z, uint base)\n{\n");
+    if (!w->glsl) PUT(w, "    (void)base;\n");
+    for (int k = 0; k < f->count; k++) put_instr(w, group, p, &f->instrs[k], 3 + k);
+    PUT(w, "    return ");
+    put_operand(w, &w->c->groups[group], p, f->result);
+    PUT(w, ";\n}\n\n");
+}
+
+static bool group_truth(const sdfc *c, int group) {
+    return c->shapes[c->parts[c->groups[group].first_part].shape].facts.truth;
+}
+
+/* A function is called by later ones only, but the first is the part's. */
+static void put_shapes(writer *w) {
+    for (int g = 0; g < w->c->group_count; g++) {
+        const sdfc_part *part = &w->c->parts[w->c->groups[g].first_part];
+        const sdfc_program *p = &part->program;
+        if (!w->glsl && !group_truth(w->c, g)) continue;
+        PUT(w, "/* %s%s */\n", part->name, w->c->groups[g].part_count > 1 ? " and others" : "");
+        for (int f = p->function_count; f-- > 0;) put_function(w, g, p, f, f == 0);
+    }
+}
+
+static void put_users(writer *w) {
+    bool *used = sdfc_take(w->c, (size_t)w->c->user_count, sizeof *used);
+    free(w->c->scratch);
+    w->c->scratch = used;
+    for (int g = 0; g < w->c->group_count; g++) {
+        const sdfc_program *p = &w->c->parts[w->c->groups[g].first_part].program;
+        for (int f = 0; f < p->function_count; f++) {
+            for (int i = 0; i < p->functions[f].count; i++) {
+                const sdfc_instr *instr = &p->functions[f].instrs[i];
+                if (instr->op == SDFC_CALL_USER) used[instr->aux] = true;
+            }
+        }
+    }
+    for (int i = 0; i < w->c->user_count; i++) {
+        const sdfc_user *u = &w->c->users[i];
+        if (!used[i] || (!w->glsl && !u->has_c)) continue;
+        PUT(w,
+            w->glsl ? "float masu_user_%d(vec3 p)\n{"
+                    : "static double masu_user_%d(double x, double y, double z)\n{",
+            i);
+        if (!w->glsl) PUT(w, " (void)x; (void)y; (void)z;");
+        sdfc_put_bytes(w->c, w->out, w->c->text + (w->glsl ? u->glsl_offset : u->c_offset),
+                       w->glsl ? u->glsl_length : u->c_length);
+        PUT(w, "\n}\n\n");
+    }
+}
+
+/* ---- slots that change ---- */
+
+static void find_needed(sdfc *c) {
+    c->needed = sdfc_take(c, (size_t)c->expr_count, sizeof *c->needed);
+    for (int i = 0; i < c->dynamic_count; i++) c->needed[c->dynamic_slots[2 * i + 1]] = true;
+    for (int i = c->expr_count; i-- > 0;) {
+        if (!c->needed[i]) continue;
+        int op = c->exprs[i].op;
+        for (int k = 0; k < sdfc_ops[op].operands; k++) c->needed[c->exprs[i].a[k]] = true;
+    }
+}
+
+static void put_expr(writer *w, int e) {
+    if (sdfc_constant(w->c, e))
+        put_number(w, w->c->exprs[e].value);
+    else
+        PUT(w, "e%d", e);
+}
+
+static void put_update(writer *w) {
+    sdfc *c = w->c;
+    for (int i = 0; i < c->expr_count; i++) {
+        const sdfc_expr *e = &c->exprs[i];
+        if (!c->needed[i] || e->op == SDFC_CONST) continue;
+        PUT(w, "    real e%d = ", i);
+        if (e->op == SDFC_PARAM) {
+            PUT(w, "masu_param(%d)", e->a[0]);
+        } else if (e->op == SDFC_TIME) {
+            PUT(w, "masu_time()");
+        } else if (sdfc_ops[e->op].text) {
+            for (const char *t = sdfc_ops[e->op].text; *t; t++) {
+                if (*t == '$')
+                    put_expr(w, e->a[*++t - '0']);
+                else
+                    PUT(w, "%c", *t);
+            }
+        } else {
+            PUT(w, "masu_h_%s(", sdfc_ops[e->op].name);
+            for (int k = 0; k < sdfc_ops[e->op].operands; k++) {
+                if (k) PUT(w, ", ");
+                put_expr(w, e->a[k]);
+            }
+            PUT(w, ")");
+        }
+        PUT(w, ";\n");
+    }
+    for (int i = 0; i < c->dynamic_count; i++) {
+        PUT(w, w->glsl ? "    masu_slot_write(%uu, e%u);\n" : "    slot[%u] = e%u;\n",
+            c->dynamic_slots[2 * i], c->dynamic_slots[2 * i + 1]);
+    }
+}
+
+/* ---- GLSL ---- */
+
+static void put_glsl_dispatch(writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "float masu_sdf_part(uint part, vec3 p)\n{\n");
+    if (c->part_count == 1) {
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, %uu)", c->parts[0].slot_base);
+        if (c->initial[4] != 1) {
+            PUT(w, " * ");
+            put_number(w, c->initial[4]);
+        }
+        PUT(w, ";\n}\n\n");
+        return;
+    }
+    PUT(w, "    uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
+    PUT(w, "    float safe = masu_slot(record + 4u);\n");
+    PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
+    if (c->group_count == 1) {
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, base) * safe;\n}\n\n");
+        return;
+    }
+    PUT(w, "    float d = 1e30;\n    switch (uint(masu_slot(record + 5u))) {\n");
+    for (int g = 0; g < c->group_count; g++) {
+        PUT(w, "    case %du: d = masu_shape_%d(p.x, p.y, p.z, base); break;\n", g, g);
+    }
+    PUT(w, "    }\n    return d * safe;\n}\n\n");
+}
+
+static void put_head(writer *w, bool nearest) {
+    PUT(w, "%s(vec3 p)\n{\n    float d = 1e30;\n    uint count = masu_part_count();\n",
+        nearest ? "uint masu_sdf_nearest" : "float masu_sdf");
+    if (nearest) PUT(w, "    uint nearest = masu_part_at(0u);\n");
+}
+
+/* A part whose field is NaN is not there. */
+static void put_least(writer *w, bool nearest) {
+    if (nearest) PUT(w, "        nearest = f < d ? part : nearest;\n");
+    PUT(w, "        d = f < d ? f : d;\n");
+}
+
+static void put_any_order(writer *w, bool nearest) {
+    put_head(w, nearest);
+    PUT(w, "    for (uint i = 0u; i < uint(MASU_SDF_PART_COUNT); i++) {\n"
+           "        if (i >= count) {\n            break;\n        }\n"
+           "        uint part = masu_part_at(i);\n        float f = masu_sdf_part(part, p);\n");
+    put_least(w, nearest);
+    PUT(w, "    }\n    return %s;\n}\n", nearest ? "nearest" : "d");
+}
+
+/* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
+ * costs its own form and not all of them. Needs a list in rising order. */
+static void put_ascending(writer *w, bool nearest) {
+    const sdfc *c = w->c;
+    put_head(w, nearest);
+    PUT(w, "    uint i = 0u;\n");
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        int end = group->first_part + group->part_count;
+        PUT(w, "    for (uint n = 0u; n < %du; n++) {\n", group->part_count);
+        PUT(w, "        if (i >= count) {\n            break;\n        }\n"
+               "        uint part = masu_part_at(i);\n");
+        if (g + 1 < c->group_count) {
+            PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
+        }
+        if (group->part_count == 1) {
+            PUT(w, "        float f = masu_shape_%d(p.x, p.y, p.z, %uu)", g,
+                c->parts[group->first_part].slot_base);
+            double safe = c->initial[group->first_part * MASU_SDFC_PART_SLOTS + 4];
+            if (safe != 1) {
+                PUT(w, " * ");
+                put_number(w, safe);
+            }
+            PUT(w, ";\n");
+        } else {
+            PUT(w, "        uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
+            PUT(w, "        uint base = uint(masu_slot(record + 6u));\n");
+            PUT(w,
+                "        float f = masu_shape_%d(p.x, p.y, p.z, base) * "
+                "masu_slot(record + 4u);\n",
+                g);
+        }
+        put_least(w, nearest);
+        PUT(w, "        i++;\n    }\n");
+    }
+    PUT(w, "    return %s;\n}\n", nearest ? "nearest" : "d");
+}
+
+static void put_glsl(writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "/* Made by masu-sdfc: %d parts of %d forms. */\n", c->part_count, c->group_count);
+    PUT(w, "#define MASU_SDF_PART_COUNT %d\n", c->part_count);
+    PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
+    PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", c->dynamic_count > 0);
+    put_users(w);
+    PUT(w, "#define real float\n#define TO_INT(x) int(x)\n");
+    put_library(w, false);
+    PUT(w, "\n");
+    put_shapes(w);
+    put_glsl_dispatch(w);
+    PUT(w,
+        "vec4 masu_sdf_bounds(uint part)\n{\n"
+        "    uint record = part * %uu;\n"
+        "    return vec4(masu_slot(record), masu_slot(record + 1u), masu_slot(record + 2u),\n"
+        "                masu_slot(record + 3u));\n}\n\n",
+        MASU_SDFC_PART_SLOTS);
+    PUT(w, "#ifdef MASU_SDF_ASCENDING\n");
+    put_ascending(w, false);
+    put_ascending(w, true);
+    PUT(w, "#else\n");
+    put_any_order(w, false);
+    put_any_order(w, true);
+    PUT(w, "#endif\n\n");
+    PUT(w,
+        "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
+        "    uint material = uint(masu_slot(masu_sdf_nearest(p) * %uu + 7u));\n"
+        "    uint at = %uu + material * %uu;\n"
+        "    s.albedo = vec3(masu_slot(at), masu_slot(at + 1u), masu_slot(at + 2u));\n"
+        "    s.roughness = masu_slot(at + 3u);\n"
+        "    s.emissive = vec3(masu_slot(at + 4u), masu_slot(at + 5u), masu_slot(at + 6u));\n"
+        "    s.metallic = masu_slot(at + 7u);\n}\n\n",
+        MASU_SDFC_PART_SLOTS, (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
+        MASU_SDFC_MATERIAL_SLOTS);
+    PUT(w, "#ifdef MASU_SDF_SETUP\n");
+    bool has_mod = false;
+    for (int i = 0; i < c->expr_count; i++) {
+        has_mod = has_mod || (c->needed[i] && c->exprs[i].op == SDFC_mod);
+    }
+    if (has_mod) {
+        PUT(w, "real masu_h_mod%s\n%s\n", sdfc_ops[SDFC_mod].params, sdfc_ops[SDFC_mod].body);
+    }
+    PUT(w, "void masu_sdf_update()\n{\n");
+    put_update(w);
+    PUT(w, "}\n#endif\n#undef real\n#undef TO_INT\n");
+}
+
+/* ---- C ---- */
+
+static void put_c_field(writer *w) {
+    sdfc *c = w->c;
+    PUT(w,
+        "static double field(int part, const double p[3])\n{\n"
+        "    uint base = (uint)slot[part * %u + 6];\n"
+        "    switch ((int)slot[part * %u + 5]) {\n",
+        MASU_SDFC_PART_SLOTS, MASU_SDFC_PART_SLOTS);
+    for (int g = 0; g < c->group_count; g++) {
+        if (!group_truth(c, g)) continue;
+        PUT(w, "    case %d: return masu_shape_%d(p[0], p[1], p[2], base);\n", g, g);
+    }
+    PUT(w, "    default: return INFINITY;\n    }\n}\n\n");
+}
+
+static const char c_api[] =
+    "static int nearest(const double *params, double time, const double p[3], double *step,\n"
+    "                   double *distance)\n"
+    "{\n"
+    "    int part = -1;\n"
+    "    *step = *distance = INFINITY;\n"
+    "    update(params, time);\n"
+    "    for (int i = 0; i < PARTS; i++) {\n"
+    "        double f = field(i, p);\n"
+    "        if (f < *distance) *distance = f;\n"
+    "        if (f / lipschitz[i] < *step) {\n"
+    "            *step = f / lipschitz[i];\n"
+    "            part = i;\n"
+    "        }\n"
+    "    }\n"
+    "    return part;\n"
+    "}\n\n"
+    "const int masu_truth_part_count = PARTS;\n\n"
+    "double masu_truth_distance(const double *params, double time, const double p[3])\n"
+    "{\n"
+    "    double step, distance;\n"
+    "    nearest(params, time, p, &step, &distance);\n"
+    "    return distance;\n"
+    "}\n\n"
+    "/* one part's field; INFINITY where it has no C */\n"
+    "double masu_truth_part_distance(const double *params, double time, const double p[3],\n"
+    "                                int part)\n"
+    "{\n"
+    "    if (part < 0 || part >= PARTS) return INFINITY;\n"
+    "    update(params, time);\n"
+    "    return field(part, p);\n"
+    "}\n\n"
+    "double masu_truth_step(const double *params, double time, const double p[3])\n"
+    "{\n"
+    "    double step, distance;\n"
+    "    nearest(params, time, p, &step, &distance);\n"
+    "    return step;\n"
+    "}\n\n"
+    "int masu_truth_part(const double *params, double time, const double p[3])\n"
+    "{\n"
+    "    double step, distance;\n"
+    "    return nearest(params, time, p, &step, &distance);\n"
+    "}\n\n"
+    "/* albedo, roughness, emissive, metallic, as of the last call above in this thread */\n"
+    "void masu_truth_material(int part, double out[8])\n"
+    "{\n"
+    "    if (part < 0 || part >= PARTS) part = 0;\n"
+    "    if (!ready) memcpy(slot, initial, sizeof slot);\n"
+    "    ready = 1;\n"
+    "    memcpy(out, slot + MATERIALS + 8 * (int)slot[part * 8 + 7], 8 * sizeof *out);\n"
+    "}\n";
+
+static void put_c(writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "/* Made by masu-sdfc: the distance in double precision. */\n"
+           "#include <math.h>\n#include <stdint.h>\n#include <string.h>\n\n");
+    PUT(w, "#define PARTS %d\n#define MATERIALS %d\n#define PARAMS %d\n\n", c->part_count,
+        c->part_count * MASU_SDFC_PART_SLOTS, c->param_count);
+    PUT(w, "static const double initial[%u] = {", c->slot_count);
+    for (uint32_t i = 0; i < c->slot_count; i++) {
+        PUT(w, i % 8 ? " " : "\n    ");
+        put_number(w, c->initial[i]);
+        PUT(w, ",");
+    }
+    PUT(w, "\n};\nstatic const double lipschitz[PARTS] = {");
+    for (int i = 0; i < c->part_count; i++) {
+        PUT(w, i % 8 ? " " : "\n    ");
+        put_number(w, c->shapes[c->parts[i].shape].facts.lipschitz);
+        PUT(w, ",");
+    }
+    PUT(w, "\n};\nstatic _Thread_local double slot[%u];\n", c->slot_count);
+    PUT(w, "static _Thread_local double now[PARAMS + 1]; /* parameters and time of the slots */\n"
+           "static _Thread_local int ready;\n\n"
+           "static double masu_param(int i) { return now[i]; }\n"
+           "static double masu_time(void) { return now[PARAMS]; }\n\n");
+    put_users(w);
+    sdfc_put_bytes(c, w->out, sdfc_c_prelude, strlen(sdfc_c_prelude));
+    PUT(w, "\ntypedef uint32_t uint;\n#define uint(x) ((uint32_t)(x))\n#define real(x) "
+           "((real)(x))\n"
+           "#define TO_INT(x) ((int32_t)((x) == (x) ? (x) : 0.0))\n"
+           "#define min lib_min\n#define max lib_max\n#define mix lib_mix\n#define abs fabs\n\n");
+    put_library(w, true);
+    PUT(w, "\n");
+    put_shapes(w);
+    put_c_field(w);
+    PUT(w, "static void update(const double *params, double time)\n{\n"
+           "    (void)masu_param;\n    (void)masu_time;\n"
+           "    if (ready && now[PARAMS] == time &&\n"
+           "        (PARAMS == 0 || memcmp(now, params, PARAMS * sizeof *now) == 0)) {\n"
+           "        return;\n    }\n"
+           "    if (!ready) memcpy(slot, initial, sizeof slot);\n    ready = 1;\n"
+           "    if (PARAMS > 0) memcpy(now, params, PARAMS * sizeof *now);\n"
+           "    now[PARAMS] = time;\n");
+    put_update(w);
+    PUT(w, "}\n\n");
+    sdfc_put_bytes(c, w->out, c_api, sizeof c_api - 1);
+}
+
+/* ---- table ---- */
+
+static void put_json_number(writer *w, double v) {
+    if (isfinite(v))
+        PUT(w, "%.17g", v);
+    else
+        PUT(w, "null");
+}
+
+static void put_json_vector(writer *w, const char *name, const double v[3]) {
+    PUT(w, "\"%s\": [", name);
+    for (int i = 0; i < 3; i++) {
+        put_json_number(w, v[i]);
+        PUT(w, i < 2 ? ", " : "]");
+    }
+}
+
+static void put_table(writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "{\n  \"dynamic\": %s,\n  \"shapes\": %d,\n  \"slots\": %u,\n  \"params\": [",
+        c->dynamic_count ? "true" : "false", c->group_count, c->slot_count);
+    for (int i = 0; i < c->param_count; i++) {
+        const masu_sdfc_param *p = &c->params[i];
+        PUT(w, "%s\n    {\"name\": \"%s\", \"value\": %.17g, \"min\": %.17g, \"max\": %.17g}",
+            i ? "," : "", p->name, p->value, p->minimum, p->maximum);
+    }
+    PUT(w, "%s],\n  \"materials\": [", c->param_count ? "\n  " : "");
+    for (int i = 0; i < c->material_count; i++) {
+        PUT(w, "%s\n    {\"name\": \"%s\", \"slot\": %d}", i ? "," : "", c->materials[i].name,
+            c->part_count * MASU_SDFC_PART_SLOTS + i * MASU_SDFC_MATERIAL_SLOTS);
+    }
+    PUT(w, "\n  ],\n  \"parts\": [");
+    for (int i = 0; i < c->part_count; i++) {
+        const sdfc_part *p = &c->parts[i];
+        const sdfc_facts *f = &c->shapes[p->shape].facts;
+        PUT(w,
+            "%s\n    {\"name\": \"%s\", \"shape\": %d, \"slot\": %u, \"slots\": %d, "
+            "\"material\": %d, \"lipschitz\": %.17g, ",
+            i ? "," : "", p->name, p->group, p->slot_base, c->groups[p->group].slot_count,
+            p->material, f->lipschitz);
+        put_json_vector(w, "center", f->center);
+        PUT(w, ", \"radius\": ");
+        put_json_number(w, isfinite(f->radius) ? f->radius : -1);
+        PUT(w, ", ");
+        put_json_vector(w, "low", f->box.low);
+        PUT(w, ", ");
+        put_json_vector(w, "high", f->box.high);
+        PUT(w, ", \"operations\": %.9g, \"truth\": %s}", f->cost, f->truth ? "true" : "false");
+    }
+    PUT(w, "\n  ]\n}\n");
+}
+
+void sdfc_emit(sdfc *c) {
+    find_needed(c);
+    for (int i = 0; i < c->part_count; i++) {
+        if (c->shapes[c->parts[i].shape].facts.truth) continue;
+        sdfc_warn(c, c->parts[i].token,
+                  "part %s has GLSL and no C: it is not checked and not in the truth",
+                  c->parts[i].name);
+    }
+    writer w = {c, &c->glsl, true};
+    put_glsl(&w);
+    w = (writer){c, &c->c, false};
+    put_c(&w);
+    w = (writer){c, &c->table, false};
+    put_table(&w);
+}
