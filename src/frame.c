@@ -137,7 +137,7 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         "gbuffer", "polygons: albedo, normal, roughness, metallic, depth",
         MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_gbuffer, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR}, {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR},
-         {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}},
+         {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}, 0},
     [MASU_PASS_UPDATE] = {
         "update", "SDF: slots that depend on parameters or time",
         MASU_PASS_COMPUTE, MASU_EXTENT_ONE, needs_update, NULL,
@@ -189,28 +189,28 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         "light", "sun, constant ambient, sky",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
-         {MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}},
+         {MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
     [MASU_PASS_READBACK] = {
         "readback", "copies the images the host asked for",
         MASU_PASS_TRANSFER, MASU_EXTENT_RENDER, needs_readback, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ_COPY}, {MASU_IMAGE_NORMAL, MASU_READ_COPY},
-         {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY}}},
+         {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY}}, 0},
     [MASU_PASS_TONEMAP] = {
         "tonemap", "exposure, tone curve, sRGB encoding",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
-        {{MASU_IMAGE_HDR, MASU_READ}, {MASU_IMAGE_LDR, MASU_WRITE}}},
+        {{MASU_IMAGE_HDR, MASU_READ}, {MASU_IMAGE_LDR, MASU_WRITE}}, 0},
     [MASU_PASS_EASU] = {
         "easu", "FSR1 edge-adaptive spatial upsampling",
         MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_easu, NULL,
-        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_UPSCALED, MASU_WRITE}}},
+        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_UPSCALED, MASU_WRITE}}, 0},
     [MASU_PASS_RCAS] = {
         "rcas", "FSR1 robust contrast-adaptive sharpening",
         MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_rcas, rcas_params,
-        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_FINAL, MASU_WRITE}}},
+        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_FINAL, MASU_WRITE}}, 0},
     [MASU_PASS_PRESENT] = {
         "present", "blit to a target that is no storage image",
         MASU_PASS_TRANSFER, MASU_EXTENT_OUTPUT, needs_present, NULL,
-        {{MASU_LATEST_COLOR, MASU_READ_COPY}, {MASU_IMAGE_TARGET, MASU_WRITE_COPY}}},
+        {{MASU_LATEST_COLOR, MASU_READ_COPY}, {MASU_IMAGE_TARGET, MASU_WRITE_COPY}}, 0},
     /* clang-format on */
 };
 
