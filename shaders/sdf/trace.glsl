@@ -3,9 +3,9 @@
  *
  * Stop: f < 0.1 pixel cones, but never below what fp32 can resolve there: 8 ulp of the largest
  * coordinate involved (the field's own rounding is up to 6.1 ulp; below it a march never
- * converges). Then two refining steps by the secant of the last two samples: at grazing angles f
- * falls slowly along the ray, and a step of f alone leaves depth 1.5e-3 off at the rim of a sphere
- * 150 pixels across, the secant 1.5e-6. Steps used up: the sample of least f/t stands for the
+ * converges). Then up to two refining steps by the secant of the last two samples, while f is above
+ * 0.01 pixel: at grazing angles f falls slowly along the ray, and a step of f alone leaves depth
+ * 1.5e-3 off at the rim of a sphere 150 pixels across, the secant 5.9e-5. Steps used up: the sample of least f/t stands for the
  * surface if it came within 2 pixels (Keinert et al., "Enhanced Sphere Tracing", STAG 2014, section
  * 3.3), else the ray misses. Never "hit" by default: that draws holes into the sky.
  */
