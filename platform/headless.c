@@ -10,7 +10,7 @@
 
 #define MANY 64u
 
-static bool fail(char *error, size_t size, const char *what, VkResult r) {
+bool masu_headless_fail(char *error, size_t size, const char *what, VkResult r) {
     snprintf(error, size, "%s failed with VkResult %d%s", what, (int)r,
              r == VK_ERROR_DEVICE_LOST             ? " (device lost)"
              : r == VK_ERROR_OUT_OF_DEVICE_MEMORY  ? " (out of device memory)"
@@ -109,13 +109,13 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
                                  .enabledExtensionCount = extension_count,
                                  .ppEnabledExtensionNames = extensions};
     VkResult r = vkCreateInstance(&info, host->desc.allocator, &host->instance);
-    if (r) return fail(error, size, "vkCreateInstance", r);
+    if (r) return masu_headless_fail(error, size, "vkCreateInstance", r);
     PFN_vkCreateDebugUtilsMessengerEXT create =
         (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(host->instance,
                                                                   "vkCreateDebugUtilsMessengerEXT");
     if (host->validating && create) {
         r = create(host->instance, &messenger, host->desc.allocator, &host->messenger);
-        if (r) return fail(error, size, "vkCreateDebugUtilsMessengerEXT", r);
+        if (r) return masu_headless_fail(error, size, "vkCreateDebugUtilsMessengerEXT", r);
     }
     return true;
 }
@@ -162,7 +162,8 @@ static bool choose_device(masu_headless *host, char *error, size_t size) {
     const char *wanted = host->desc.device ? host->desc.device : getenv("MASU_DEVICE");
     bool by_index = wanted && is_index(wanted, &wanted_index);
     VkResult r = vkEnumeratePhysicalDevices(host->instance, &n, devices);
-    if (r && r != VK_INCOMPLETE) return fail(error, size, "vkEnumeratePhysicalDevices", r);
+    if (r && r != VK_INCOMPLETE)
+        return masu_headless_fail(error, size, "vkEnumeratePhysicalDevices", r);
     size_t used = (size_t)snprintf(error, size, "no Vulkan device%s%s; there are:",
                                    wanted ? " matches " : " suits", wanted ? wanted : "");
     for (uint32_t i = 0; i < n; i++) {
@@ -190,16 +191,16 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                .queueCreateInfoCount = 1,
                                .pQueueCreateInfos = &queue};
     VkResult r = vkCreateDevice(host->physical, &info, host->desc.allocator, &host->device);
-    if (r) return fail(error, size, "vkCreateDevice", r);
+    if (r) return masu_headless_fail(error, size, "vkCreateDevice", r);
     vkGetDeviceQueue(host->device, host->family, 0, &host->queue);
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .queueFamilyIndex = host->family};
     r = vkCreateCommandPool(host->device, &pool, host->desc.allocator, &host->pool);
-    if (r) return fail(error, size, "vkCreateCommandPool", r);
+    if (r) return masu_headless_fail(error, size, "vkCreateCommandPool", r);
     for (uint32_t i = 0; i < MASU_HEADLESS_SLOTS; i++) {
         VkFenceCreateInfo fence = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
         r = vkCreateFence(host->device, &fence, host->desc.allocator, &host->fences[i]);
-        if (r) return fail(error, size, "vkCreateFence", r);
+        if (r) return masu_headless_fail(error, size, "vkCreateFence", r);
     }
     return true;
 }
@@ -276,10 +277,10 @@ bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t 
                  (unsigned)(MASU_HEADLESS_TIMEOUT_NS / 1000000000u));
         return false;
     }
-    if (r) return fail(error, error_size, "vkWaitForFences", r);
+    if (r) return masu_headless_fail(error, error_size, "vkWaitForFences", r);
     host->pending[slot] = false;
     r = vkResetFences(host->device, 1, &host->fences[slot]);
-    return r ? fail(error, error_size, "vkResetFences", r) : true;
+    return r ? masu_headless_fail(error, error_size, "vkResetFences", r) : true;
 }
 
 bool masu_headless_submit(masu_headless *host, VkCommandBuffer commands, uint32_t slot, char *error,
@@ -288,7 +289,7 @@ bool masu_headless_submit(masu_headless *host, VkCommandBuffer commands, uint32_
                            .commandBufferCount = 1,
                            .pCommandBuffers = &commands};
     VkResult r = vkQueueSubmit(host->queue, 1, &submit, host->fences[slot]);
-    if (r) return fail(error, error_size, "vkQueueSubmit", r);
+    if (r) return masu_headless_fail(error, error_size, "vkQueueSubmit", r);
     host->pending[slot] = true;
     return true;
 }

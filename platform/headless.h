@@ -70,6 +70,9 @@ bool masu_headless_wait(masu_headless *host, uint32_t slot, char *error, size_t 
 bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *error,
                        size_t error_size);
 
+/* Writes the one line about a Vulkan call that failed. Returns false, for `return`. */
+bool masu_headless_fail(char *error, size_t error_size, const char *call, VkResult r);
+
 /* An image the renderer draws into, and the way back to the host. */
 typedef struct masu_headless_target {
     VkImage image;

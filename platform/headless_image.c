@@ -6,11 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool fail(char *error, size_t size, const char *what, VkResult r) {
-    snprintf(error, size, "%s failed with VkResult %d", what, (int)r);
-    return false;
-}
-
 static bool allocate(masu_headless *host, VkMemoryRequirements need, VkMemoryPropertyFlags wanted,
                      VkDeviceMemory *memory, char *error, size_t size) {
     uint32_t type = UINT32_MAX;
@@ -26,7 +21,7 @@ static bool allocate(masu_headless *host, VkMemoryRequirements need, VkMemoryPro
                                  .allocationSize = need.size,
                                  .memoryTypeIndex = type};
     VkResult r = vkAllocateMemory(host->device, &info, host->desc.allocator, memory);
-    return r ? fail(error, size, "vkAllocateMemory", r) : true;
+    return r ? masu_headless_fail(error, size, "vkAllocateMemory", r) : true;
 }
 
 static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags usage,
@@ -35,7 +30,7 @@ static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags 
     VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
     VkResult r = vkCreateBuffer(host->device, &info, host->desc.allocator, buffer);
-    if (r) return fail(error, size, "vkCreateBuffer", r);
+    if (r) return masu_headless_fail(error, size, "vkCreateBuffer", r);
     VkMemoryRequirements need;
     vkGetBufferMemoryRequirements(host->device, *buffer, &need);
     VkMemoryPropertyFlags visible =
@@ -49,7 +44,7 @@ static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags 
     }
     r = vkBindBufferMemory(host->device, *buffer, *memory, 0);
     if (!r) r = vkMapMemory(host->device, *memory, 0, VK_WHOLE_SIZE, 0, mapped);
-    return r ? fail(error, size, "vkMapMemory", r) : true;
+    return r ? masu_headless_fail(error, size, "vkMapMemory", r) : true;
 }
 
 static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkFormat format,
@@ -65,7 +60,7 @@ static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkF
                               .tiling = VK_IMAGE_TILING_OPTIMAL,
                               .usage = usage};
     VkResult r = vkCreateImage(host->device, &info, host->desc.allocator, image);
-    if (r) return fail(error, size, "vkCreateImage", r);
+    if (r) return masu_headless_fail(error, size, "vkCreateImage", r);
     VkMemoryRequirements need;
     vkGetImageMemoryRequirements(host->device, *image, &need);
     char ignored[128];
@@ -75,7 +70,7 @@ static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkF
         return false;
     }
     r = vkBindImageMemory(host->device, *image, *memory, 0);
-    if (r) return fail(error, size, "vkBindImageMemory", r);
+    if (r) return masu_headless_fail(error, size, "vkBindImageMemory", r);
     VkImageUsageFlags viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     if (!(usage & viewable)) return true;
     VkImageViewCreateInfo v = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -84,7 +79,7 @@ static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkF
                                .format = format,
                                .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
     r = vkCreateImageView(host->device, &v, host->desc.allocator, view);
-    return r ? fail(error, size, "vkCreateImageView", r) : true;
+    return r ? masu_headless_fail(error, size, "vkCreateImageView", r) : true;
 }
 
 static bool begin_commands(masu_headless *host, VkCommandBuffer *cmd, char *error, size_t size) {
@@ -93,10 +88,10 @@ static bool begin_commands(masu_headless *host, VkCommandBuffer *cmd, char *erro
                                         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                         .commandBufferCount = 1};
     VkResult r = vkAllocateCommandBuffers(host->device, &info, cmd);
-    if (r) return fail(error, size, "vkAllocateCommandBuffers", r);
+    if (r) return masu_headless_fail(error, size, "vkAllocateCommandBuffers", r);
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     r = vkBeginCommandBuffer(*cmd, &begin);
-    return r ? fail(error, size, "vkBeginCommandBuffer", r) : true;
+    return r ? masu_headless_fail(error, size, "vkBeginCommandBuffer", r) : true;
 }
 
 static VkBufferImageCopy whole(uint32_t width, uint32_t height) {
@@ -123,7 +118,7 @@ static bool record_copy(masu_headless *host, masu_headless_target *t, char *erro
     vkCmdPipelineBarrier(t->copy, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
                          &after, 0, NULL, 0, NULL);
     VkResult r = vkEndCommandBuffer(t->copy);
-    return r ? fail(error, size, "vkEndCommandBuffer", r) : true;
+    return r ? masu_headless_fail(error, size, "vkEndCommandBuffer", r) : true;
 }
 
 bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height,
@@ -188,8 +183,8 @@ static bool upload(masu_headless *host, VkImage image, VkBuffer buffer, uint32_t
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
                          0, NULL, 0, NULL, 1, &b);
     VkResult r = vkEndCommandBuffer(cmd);
-    bool done =
-        r ? fail(error, size, "vkEndCommandBuffer", r) : masu_headless_run(host, cmd, error, size);
+    bool done = r ? masu_headless_fail(error, size, "vkEndCommandBuffer", r)
+                  : masu_headless_run(host, cmd, error, size);
     vkFreeCommandBuffers(host->device, host->pool, 1, &cmd);
     return done;
 }

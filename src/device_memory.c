@@ -7,8 +7,6 @@
 
 #define STAGING_BYTES ((uint64_t)4 << 20)
 
-static uint64_t align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
-
 /* ---- Placement ------------------------------------------------------------------------------- */
 
 static int alive_together(const masu_placement *a, const masu_placement *b) {
@@ -27,7 +25,7 @@ static void place_one(masu_placement *items, const uint32_t *order, uint32_t k) 
     uint64_t best = UINT64_MAX;
     for (uint32_t c = 0; c <= k; c++) {
         uint64_t start = c == k ? 0 : items[order[c]].offset + items[order[c]].bytes;
-        item->offset = align_up(start, item->alignment);
+        item->offset = masu_align_up(start, item->alignment);
         if (item->offset >= best) continue;
         int fits = 1;
         for (uint32_t j = 0; j < k && fits; j++) {
@@ -233,7 +231,7 @@ static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
         if (!buffer->bytes || buffer->role != role || b == MASU_BUFFER_POISON) continue;
-        buffer->offset = align_up(block->bytes, buffer->alignment);
+        buffer->offset = masu_align_up(block->bytes, buffer->alignment);
         block->bytes = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
     }
@@ -256,14 +254,14 @@ static void lay_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan
     if (!n) return;
     plan->transient_aliased = masu_place(items, n);
     plan->transient_lower_bound = masu_place_lower_bound(items, n);
-    plan->transient_offset = align_up(block->bytes, start_alignment);
+    plan->transient_offset = masu_align_up(block->bytes, start_alignment);
     if (block->alignment < start_alignment) block->alignment = start_alignment;
     for (uint32_t k = 0; k < n; k++) {
         plan->images[ids[k]].offset = plan->transient_offset + items[k].offset;
     }
     /* What follows (buffers of other roles on unified memory) must not share a granule with an
      * image. */
-    block->bytes = align_up(plan->transient_offset + plan->transient_aliased, start_alignment);
+    block->bytes = masu_align_up(plan->transient_offset + plan->transient_aliased, start_alignment);
 }
 
 static void lay_out(const masu_vk *vk, masu_frame_plan *plan) {
@@ -289,10 +287,9 @@ static int is_unified(const masu_vk *vk, masu_frame_plan *plan) {
 /* Resident buffers need a staging buffer exactly when the host cannot write where they live. */
 static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
                                   masu_detail *detail) {
-    uint64_t resident = plan->buffers[MASU_BUFFER_VERTICES].bytes +
-                        plan->buffers[MASU_BUFFER_INDICES].bytes +
-                        plan->buffers[MASU_BUFFER_MATERIALS].bytes +
-                        plan->buffers[MASU_BUFFER_SLOTS].bytes;
+    uint64_t resident =
+        plan->buffers[MASU_BUFFER_VERTICES].bytes + plan->buffers[MASU_BUFFER_INDICES].bytes +
+        plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes;
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
     if (!resident || plan->blocks[MASU_ROLE_DEVICE].host_visible) return MASU_OK;
     staging->bytes = resident < STAGING_BYTES ? resident : STAGING_BYTES;

@@ -1,6 +1,6 @@
 /* pipelines.c: descriptor set layouts derived from the rows of the frame table, shader modules,
- * pipelines, and the render pass of the G-buffer. Modules live only while their pipeline is built.
- * */
+ * pipelines, and the render pass of the G-buffer. Modules live only while their pipeline is
+ * built. */
 #include "renderer.h"
 
 #include "error.h"

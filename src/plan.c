@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static uint64_t align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
-
 uint32_t masu_format_bytes(VkFormat format) {
     return format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
 }
@@ -306,7 +304,8 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
     b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
     b[MASU_BUFFER_FRAME].count = flights;
-    b[MASU_BUFFER_FRAME].stride = align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
+    b[MASU_BUFFER_FRAME].stride =
+        masu_align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
     b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
     for (uint32_t r = 0; r < plan->desc.rung_count && s->sdf; r++) {
         VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
@@ -317,11 +316,11 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     }
     b[MASU_BUFFER_TILES].bytes = b[MASU_BUFFER_TILES].count * sizeof(uint32_t);
     if (s->instances) {
-        b[MASU_BUFFER_INSTANCES].stride =
-            align_up((uint64_t)s->instances * sizeof(struct masu_instance_data), storage_alignment);
+        b[MASU_BUFFER_INSTANCES].stride = masu_align_up(
+            (uint64_t)s->instances * sizeof(struct masu_instance_data), storage_alignment);
         b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
     }
-    return plan->desc.debug.counters ? align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
+    return plan->desc.debug.counters ? masu_align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
 }
 
 /* Images of a readback slot from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer.
@@ -337,7 +336,7 @@ static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
                          masu_format_bytes(masu_images[id].format);
             if (v > bytes) bytes = v;
         }
-        slot = align_up(slot + bytes, 16);
+        slot = masu_align_up(slot + bytes, 16);
     }
     return slot;
 }
@@ -384,7 +383,7 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     if (s) slot = size_scene_buffers(plan, uniform_alignment, storage_alignment);
     if (plan->desc.debug.timestamps) {
         plan->readback_times = slot;
-        slot = align_up(slot + (MASU_PASS_COUNT + 1) * sizeof(uint64_t), 16);
+        slot = masu_align_up(slot + (MASU_PASS_COUNT + 1) * sizeof(uint64_t), 16);
     }
     slot = lay_readback_images(plan, slot);
     b[MASU_BUFFER_READBACK].stride = slot;

@@ -33,8 +33,8 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_INDICES,
     MASU_BUFFER_MATERIALS,
     MASU_BUFFER_COUNTERS,
-    MASU_BUFFER_SLOTS, /* of the SDF: its parts as data */
-    MASU_BUFFER_TILES, /* of the SDF: which parts matter where; masu_shared.h has the layout */
+    MASU_BUFFER_SLOTS,     /* of the SDF: its parts as data */
+    MASU_BUFFER_TILES,     /* of the SDF: which parts matter where; masu_shared.h has the layout */
     MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
     MASU_BUFFER_INSTANCES, /* one array per frame in flight */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
@@ -83,6 +83,9 @@ typedef struct masu_frame_plan {
 /* Fills plan from desc. Device limits that shape the buffers come in as alignments. */
 masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                          uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail);
+
+/* v rounded up to a multiple of a, which need not be a power of two. */
+static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);

@@ -242,12 +242,12 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                    p->include_here,
                                    p->include_scene,
                                    has_raster ? "-DMASU_HAS_RASTER=1" : "-DMASU_HAS_RASTER=0",
-                                   p->define,
                                    "-S",
                                    p->stage,
                                    "-o",
                                    p->raw,
                                    p->source,
+                                   p->define, /* NULL: the list ends here */
                                    NULL};
     const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
     const char *const optimise[] = {
@@ -290,20 +290,20 @@ enum { ALWAYS, DYNAMIC, VARIANT, WITHOUT_RASTER };
 
 /* The shaders that are compiled together with the scene's field, and the sections they go to. */
 static const struct {
-    const char *source, *define, *raw, *optimised;
+    const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
     int when; /* always; with dynamic slots; with --variants, and then only without polygons */
 } scene_shaders[] = {
-    {"update.comp", "-DMASU_PASS=1", "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, DYNAMIC},
-    {"classify.comp", "-DMASU_PASS=1", "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
+    {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, DYNAMIC},
+    {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=2", "cone2.raw", "cone2.spv", MASU_BLOB_CONE2_SPIRV, ALWAYS},
-    {"march.comp", "-DMASU_PASS=1", "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
-    {"march_plain.comp", "-DMASU_PASS=1", "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
-    {"march_seed.comp", "-DMASU_PASS=1", "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
-    {"march_checkerboard.comp", "-DMASU_PASS=1", "check.raw", "check.spv",
-     MASU_BLOB_CHECKERBOARD_SPIRV, VARIANT},
-    {"march_fragment.frag", "-DMASU_PASS=1", "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
+    {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
+    {"march_plain.comp", NULL, "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
+    {"march_seed.comp", NULL, "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
+    {"march_checkerboard.comp", NULL, "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
+     VARIANT},
+    {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
      WITHOUT_RASTER}};
 
 static bool wanted(int when, bool dynamic, bool variants, bool has_raster) {
@@ -316,7 +316,8 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, 
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
-    char *include_here = include_option(directory), *include_scene = include_option(scene_directory);
+    char *include_here = include_option(directory),
+         *include_scene = include_option(scene_directory);
     bool has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0;
     bool dynamic = false;
     bool good = lay_out(directory, content, glsl_path, &dynamic);
@@ -324,8 +325,10 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, 
         if (!wanted(scene_shaders[i].when, dynamic, variants, has_raster)) continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),
-                   masu_bake_join(directory, scene_shaders[i].optimised), include_here,
-                   include_scene, scene_shaders[i].define,
+                   masu_bake_join(directory, scene_shaders[i].optimised),
+                   include_here,
+                   include_scene,
+                   scene_shaders[i].define,
                    strrchr(scene_shaders[i].source, '.') + 1};
         good = run_tools(&p, has_raster, directory, glsl_path) &&
                take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path);
