@@ -30,7 +30,7 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, r32f) uniform writeonly 
 
 #include "sdf/field.glsl"
 
-#define MASKS ((MASU_SDF_PART_COUNT + 31) / 32)
+#define MASKS ((MASU_SDF_LISTED_COUNT + 31) / 32 + (MASU_SDF_LISTED_COUNT == 0 ? 1 : 0))
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 
 shared uint farthest; /* bits of the least reverse-Z depth; positive floats order like their bits */
@@ -103,7 +103,22 @@ bool bounds_seen(vec3 planes[4], float z_far)
     return !outside;
 }
 
-void write_list(uint tile, uvec2 size)
+/* Half-spaces are in no list. The rate at which a ray nears one is affine over the picture: if no
+ * corner ray of the tile meets it, none does. */
+bool flat_parts_seen(uvec2 corner, uvec2 size)
+{
+    bool seen = false;
+    for (int i = 0; i < 4; i++) {
+        vec2 at = vec2(corner) + vec2(i & 1, i >> 1) * float(MASU_TILE);
+        vec2 ndc = at / vec2(size) * 2.0 - 1.0;
+        vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
+        uint part;
+        seen = seen || masu_sdf_flat(world_at(through, 0.0), through, 0.0, part) < 1e30;
+    }
+    return seen;
+}
+
+void write_list(uint tile, uvec2 size, bool flat_seen)
 {
     uvec2 grid = masu_tile_grid(size);
     uint stride = masu_list_stride();
@@ -114,7 +129,7 @@ void write_list(uint tile, uvec2 size)
     }
     bool all_parts = pc.index.y != 0u || count >= stride;
     masu_tiles_out[list] = all_parts ? MASU_TILE_ALL : count;
-    if (count == 0u && pc.index.y == 0u) {
+    if (count == 0u && !flat_seen && pc.index.y == 0u) {
         return;
     }
     uint place = atomicAdd(masu_tiles_out[0], 1u);
@@ -158,14 +173,14 @@ void main()
     vec3 planes[4];
     tile_planes(corner, size, planes);
     bool seen = bounds_seen(planes, z_far);
-    for (int i = 0; i < (MASU_SDF_PART_COUNT + INVOCATIONS - 1) / INVOCATIONS; i++) {
+    for (int i = 0; i < (MASU_SDF_LISTED_COUNT + INVOCATIONS - 1) / INVOCATIONS; i++) {
         uint part = uint(i * INVOCATIONS) + me;
-        if (seen && part < uint(MASU_SDF_PART_COUNT) && sphere_seen(masu_sdf_bounds(part), planes, z_far)) {
+        if (seen && part < uint(MASU_SDF_LISTED_COUNT) && sphere_seen(masu_sdf_bounds(part), planes, z_far)) {
             atomicOr(masks[part >> 5], 1u << (part & 31u));
         }
     }
     barrier();
     if (me == 0u) {
-        write_list(tile, size);
+        write_list(tile, size, seen && flat_parts_seen(corner, size));
     }
 }

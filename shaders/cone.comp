@@ -29,6 +29,7 @@ layout(set = MASU_SET_PASS, binding = 1, r32f) uniform writeonly image2D cone_im
 layout(set = MASU_SET_PASS, binding = 0, r32f) uniform writeonly image2D cone_image;
 #endif
 
+#define MASU_SDF_NO_FLAT
 #include "sdf/field.glsl"
 
 float outside_bounds(vec3 p)
@@ -53,12 +54,15 @@ void main()
 #if MASU_CONE_BLOCK == 2
         t = max(t, texelFetch(parent_image, ivec2(at) / 4, 0).r);
 #endif
+        /* A half-space ends most cones; where the middle ray meets it is as far as any needs to go. */
+        uint part;
+        float limit = min(frame.sdf_max.w, masu_sdf_flat(world_at(r.direction, 0.0), r.direction, t, part));
         uint evals = 0u;
         uvec2 pixels = uvec2(pc.render_width, pc.render_height);
         uvec2 tile = at * uint(MASU_CONE_BLOCK) / uint(MASU_TILE);
         bool empty = !masu_use_tile(tile.y * masu_tile_grid(pixels).x + tile.x, pixels);
         for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
-            if (empty || uint(i) >= pc.index.x || !(t < frame.sdf_max.w)) {
+            if (empty || uint(i) >= pc.index.x || !(t < limit)) {
                 break;
             }
             bool usable;

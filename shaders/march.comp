@@ -21,6 +21,7 @@ layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D norma
 layout(set = MASU_SET_PASS, binding = 3, r32f) uniform  image2D depth_image;
 
 #define MASU_RELAXED
+#define MASU_SDF_NO_FLAT
 #include "sdf/hit.glsl"
 
 void main()
@@ -32,18 +33,28 @@ void main()
     uvec2 corner = uvec2(tile % columns, tile / columns) * uint(MASU_TILE);
     uvec2 quarter = uvec2(gl_WorkGroupID.y & 1u, gl_WorkGroupID.y >> 1) * uint(MASU_GROUP);
     uvec2 at = corner + quarter + gl_LocalInvocationID.xy;
-    masu_use_tile(tile, size);
+    bool listed = masu_use_tile(tile, size);
     if (all(lessThan(at, size))) {
         float z_scale;
-        uint evals;
+        uint evals = 0u;
         ray r = pixel_ray(at, size, imageLoad(depth_image, ivec2(at)).r, z_scale);
+        /* The nearest half-space ends the march. */
+        uint part;
+        float end = masu_sdf_flat(world_at(r.direction, 0.0), r.direction, r.start, part);
+        bool ends = end < r.limit;
+        r.limit = min(r.limit, end);
         r.start = max(r.start, texelFetch(cone_image, ivec2(at / 2u), 0).r);
-        float t = march(r, evals);
+        float t = -1.0;
+        if (listed) {
+            t = march(r, evals);
+            ends = ends && !(t >= 0.0);
+        }
+        t = ends ? end : t;
         if (t >= 0.0) {
-            float depth = write_hit(at, r, t, z_scale);
+            float depth = write_hit(at, r, t, ends, part, z_scale);
             MASU_STORE_R32F(depth_image, at, depth);
         }
-        masu_count(MASU_COUNTER_SDF_EVALS, evals);
+        masu_count(MASU_COUNTER_SDF_EVALS, evals + (MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? 1u : 0u));
     }
     masu_count_end();
 }

@@ -48,7 +48,7 @@ float march_pixel(uvec2 at, uvec2 size, float start)
     masu_hint_open = true;
     float t = march(r, evals);
     if (t >= 0.0) {
-        float depth = write_hit(at, r, t, z_scale);
+        float depth = write_hit(at, r, t, false, 0u, z_scale);
         MASU_STORE_R32F(depth_image, at, depth);
     }
     masu_count(MASU_COUNTER_SDF_EVALS, evals);

@@ -42,7 +42,7 @@ void main()
         ray r = pixel_ray(at, size, depth, z_scale);
         float t = march(r, evals);
         if (t >= 0.0) {
-            depth = write_hit(at, r, t, z_scale);
+            depth = write_hit(at, r, t, false, 0u, z_scale);
         }
         masu_count(MASU_COUNTER_SDF_EVALS, evals);
         MASU_STORE_R32F(depth_image, at, depth);

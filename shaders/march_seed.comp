@@ -71,7 +71,7 @@ void finish(uvec2 at, ray r, float t, float z_scale, float raster)
 {
     float depth = raster;
     if (t >= 0.0 && t < r.limit) {
-        depth = write_hit(at, r, t, z_scale);
+        depth = write_hit(at, r, t, false, 0u, z_scale);
     }
     MASU_STORE_R32F(depth_image, at, depth);
 }

@@ -64,9 +64,14 @@ static void append_scene_header(masu_bake_buffer *text, const masu_bake_content 
 
 /* What masu-sdfc would have generated besides the field: a hand-written one is a single part without
  * bounds. */
-static const char hand_written[] = "#define MASU_SDF_PART_COUNT 1\n"
-                                   "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
-                                   "uint masu_sdf_nearest(vec3 p) { return 0u; }\n";
+static const char hand_written[] =
+    "#define MASU_SDF_PART_COUNT 1\n"
+    "#define MASU_SDF_LISTED_COUNT 1\n"
+    "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
+    "uint masu_sdf_nearest(vec3 p) { return 0u; }\n"
+    "float masu_sdf_flat(vec3 o, vec3 d, float start, out uint part) { part = 1u; return 1e30; }\n"
+    "vec3 masu_sdf_flat_normal(uint part) { return vec3(0); }\n"
+    "void masu_sdf_part_surface(uint part, inout masu_surface s) {}\n";
 
 /* ---- the language of docs/sdf.md ---- */
 

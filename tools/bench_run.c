@@ -432,8 +432,10 @@ bool masu_bench_run(const masu_bench_desc *desc, masu_bench *out,
     if (!masu_session_open(&d, &b.s, error, error_size)) return false;
     snprintf(out->driver, sizeof out->driver, "%s", b.s.host.driver);
     bool good = b.s.scene.sdf ? find_truth(&b, &out->compared) : failed(&b, "has no SDF");
-    for (int v = 0; v < MASU_BENCH_VARIANTS && good; v++) good = look_at(&b, v);
-    good = good && measure(&b);
+    for (int v = 0; v < MASU_BENCH_VARIANTS && good; v++) {
+        if (!desc->only || (desc->only >> v & 1)) good = look_at(&b, v);
+    }
+    if (desc->runs) good = good && measure(&b);
     if (good && b.s.host.messages) good = failed(&b, "the validation layer has reported messages");
     close_all(&b);
     return good;

@@ -30,7 +30,9 @@ typedef struct masu_bench_desc {
     const char *scene_path;
     const char *truth_path; /* NULL: beside the scene, and none if there is none */
     const char *image_dir;  /* NULL: none; else SCENE.VARIANT.png and SCENE.truth.png go there */
-    uint32_t width, height, runs, stride;
+    uint32_t width, height, stride;
+    uint32_t runs;  /* timed frames of each variant; 0: counts and errors only */
+    uint32_t only;  /* bits 1 << MASU_BENCH_...: the variants to draw; 0: all */
     double time;
     masu_headless_desc host;
 } masu_bench_desc;

@@ -19,6 +19,7 @@ enum {
     OPTION_TRUTH,
     OPTION_STRIDE,
     OPTION_TIME,
+    OPTION_ONLY,
     OPTION_IMAGES
 };
 
@@ -110,7 +111,7 @@ static void csv_row(FILE *f, const bench_options *o, const masu_bench *b, int v)
     }
     fprintf(f, ",%s,", masu_bench_names[v]);
     field(f, there, (double)r->evals / pixels(o));
-    field(f, there, r->ms);
+    field(f, there && o->bench.runs, r->ms);
     field(f, there && plain > 0, plain / r->ms);
     field(f, compared, e->hitmiss_pct);
     field(f, compared, e->depth_off_pct);
@@ -118,10 +119,10 @@ static void csv_row(FILE *f, const bench_options *o, const masu_bench *b, int v)
     field(f, there && seed > 0, seed / r->ms);
     field(f, there, (double)r->hits);
     field(f, there, unconverged_pct(o, r));
-    field(f, there, r->wall_ms);
+    field(f, there && o->bench.runs, r->wall_ms);
     field(f, there && r->gpu_ms > 0, r->gpu_ms);
-    fprintf(f, "%s,", !there ? "n/a" : b->by_timestamps ? "timestamps" : "wall");
-    field(f, there, r->spread);
+    fprintf(f, "%s,", !there || !o->bench.runs ? "n/a" : b->by_timestamps ? "timestamps" : "wall");
+    field(f, there && o->bench.runs, r->spread);
     field(f, compared, e->depth_mean_px);
     field(f, compared, e->depth_max_px);
     field(f, compared, e->normal_mean);
@@ -164,8 +165,8 @@ static void print_row(const bench_options *o, const masu_bench *b, int v) {
     cell(8, "%.2f", true, (double)r->evals / pixels(o));
     cell(9, "%.0f", true, (double)r->hits);
     cell(8, "%.4f", true, unconverged_pct(o, r));
-    cell(8, "%.2f", true, r->ms);
-    cell(8, "%.2f", true, r->wall_ms);
+    cell(8, "%.2f", o->bench.runs > 0, r->ms);
+    cell(8, "%.2f", o->bench.runs > 0, r->wall_ms);
     cell(6, "%.2f", plain > 0, plain / r->ms);
     cell(6, "%.2f", seed > 0, seed / r->ms);
     cell(9, "%.4f", c, e->hitmiss_pct);
@@ -191,7 +192,9 @@ static void print_scene(const bench_options *o, const masu_bench *b) {
     } else {
         printf("  truth: none beside the scene; errors are not measured\n");
     }
-    if (b->by_timestamps) {
+    if (!o->bench.runs) {
+        printf("  ms: not measured\n");
+    } else if (b->by_timestamps) {
         printf("  ms: the SDF passes by timestamps, least of %" PRIu32 " runs\n", o->bench.runs);
     } else {
         printf("  ms: the frame's wall time less %.2f, that of a frame with one march step; least "
@@ -303,6 +306,25 @@ static int run_all(bench_options *o) {
     return code;
 }
 
+/* "plain_compute,masu" -> bits. */
+static bool only_variants(const char *names, uint32_t *bits) {
+    for (const char *at = names; *at;) {
+        size_t n = strcspn(at, ",");
+        int v = 0;
+        while (v < MASU_BENCH_VARIANTS &&
+               (strlen(masu_bench_names[v]) != n || strncmp(masu_bench_names[v], at, n) != 0)) {
+            v++;
+        }
+        if (v == MASU_BENCH_VARIANTS) {
+            masu_cli_usage_error("--only: there is no way of marching called \"%.*s\"", (int)n, at);
+            return false;
+        }
+        *bits |= 1u << v;
+        at += n + (at[n] == ',');
+    }
+    return true;
+}
+
 static int run(masu_cli *cli) {
     bench_options o = {.bench = {.width = 960, .height = 540, .runs = 9, .stride = 1}};
     o.bench.host.message = masu_print_message;
@@ -316,7 +338,13 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_CSV: o.csv = cli->value; continue;
         case OPTION_RUNS:
-            if (!masu_cli_uint(cli, 9, 10000, &o.bench.runs)) return MASU_CLI_USAGE;
+            if (!masu_cli_uint(cli, 0, 10000, &o.bench.runs)) return MASU_CLI_USAGE;
+            if (o.bench.runs && o.bench.runs < 9)
+                return masu_cli_usage_error("--runs %u: at least 9, or 0 for no times",
+                                            o.bench.runs);
+            continue;
+        case OPTION_ONLY:
+            if (!only_variants(cli->value, &o.bench.only)) return MASU_CLI_USAGE;
             continue;
         case OPTION_TRUTH: o.bench.truth_path = cli->value; continue;
         case OPTION_STRIDE:
@@ -347,7 +375,9 @@ static const masu_cli_option options[] = {
     {"size", "WxH", "size in pixels (default 960x540)", OPTION_SIZE, 0},
     {"csv", "FILE", "the same numbers and more, one line for each scene and variant", OPTION_CSV,
      0},
-    {"runs", "N", "timed frames of each variant, at least 9 (default 9)", OPTION_RUNS, 0},
+    {"runs", "N", "timed frames of each variant, at least 9 (default 9); 0: counts and errors only",
+     OPTION_RUNS, 0},
+    {"only", "A,B,...", "draw these ways alone, by the names of the table", OPTION_ONLY, 0},
     {"truth", "FILE.so", "the field in double precision (default: SCENE.truth.so, if it is there)",
      OPTION_TRUTH, 0},
     {"truth-stride", "S",

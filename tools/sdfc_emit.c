@@ -257,6 +257,95 @@ static void put_update(writer *w) {
 
 /* ---- GLSL ---- */
 
+/* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has several. */
+static void put_part_value(writer *w, int g, const char *name, const char *point) {
+    const sdfc *c = w->c;
+    const sdfc_group *group = &c->groups[g];
+    if (group->part_count == 1) {
+        PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, %uu)", name, g, point, point, point,
+            c->parts[group->first_part].slot_base);
+        double safe = c->initial[group->first_part * MASU_SDFC_PART_SLOTS + 4];
+        if (safe != 1) {
+            PUT(w, " * ");
+            put_number(w, safe);
+        }
+        PUT(w, ";\n");
+        return;
+    }
+    PUT(w, "        uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
+    PUT(w, "        uint base = uint(masu_slot(record + 6u));\n");
+    PUT(w,
+        "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, base) * masu_slot(record + 4u);\n", name,
+        g, point, point, point);
+}
+
+/* How fast a half-space's field changes along d: its operations without what they add. */
+static void put_slope(writer *w, int group) {
+    const sdfc_group *g = &w->c->groups[group];
+    const sdfc_program *p = &w->c->parts[g->first_part].program;
+    const sdfc_function *f = &p->functions[0];
+    PUT(w, "float masu_slope_%d(float x, float y, float z, uint base)\n{\n", group);
+    for (int k = 0; k < f->count; k++) {
+        const sdfc_instr *i = &f->instrs[k];
+        if (i->op == SDFC_sub) {
+            PUT(w, "    float v%d = ", 3 + k);
+            put_operand(w, g, p, i->operand[0]);
+            PUT(w, ";\n");
+        } else {
+            put_instr(w, group, p, i, 3 + k);
+        }
+    }
+    PUT(w, "    return ");
+    put_operand(w, g, p, f->result);
+    PUT(w, ";\n}\n\n");
+}
+
+static void put_slot_base(writer *w, int g) {
+    const sdfc_group *group = &w->c->groups[g];
+    if (group->part_count == 1)
+        PUT(w, "%uu", w->c->parts[group->first_part].slot_base);
+    else
+        PUT(w, "uint(masu_slot(part * %uu + 6u))", MASU_SDFC_PART_SLOTS);
+}
+
+/* Half-spaces along a ray, and their normals. No part has a field that is not a number. */
+static void put_flat(writer *w) {
+    const sdfc *c = w->c;
+    for (int g = 0; g < c->group_count; g++) {
+        if (c->groups[g].flat) put_slope(w, g);
+    }
+    PUT(w, "float masu_sdf_flat(vec3 o, vec3 d, float start, out uint nearest)\n{\n"
+           "    float first = 1e30;\n    nearest = %uu;\n",
+        (unsigned)(c->part_count - c->flat_parts));
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        if (!group->flat) continue;
+        PUT(w, "    for (uint part = %du; part < %du; part++) {\n", group->first_part,
+            group->first_part + group->part_count);
+        PUT(w, "        float h = masu_shape_%d(o.x, o.y, o.z, ", g);
+        put_slot_base(w, g);
+        PUT(w, ");\n        float slope = masu_slope_%d(d.x, d.y, d.z, ", g);
+        put_slot_base(w, g);
+        PUT(w, ");\n"
+               "        float t = h + slope * start <= 0.0 ? start : slope < 0.0 ? -h / slope : 1e30;\n"
+               "        nearest = t < first ? part : nearest;\n"
+               "        first = t < first ? t : first;\n    }\n");
+    }
+    PUT(w, "    return first;\n}\n\n"
+           "vec3 masu_sdf_flat_normal(uint part)\n{\n    vec3 n = vec3(0.0);\n");
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        if (!group->flat) continue;
+        PUT(w, "    if (part >= %du) {\n        n = vec3(", group->first_part);
+        for (int k = 0; k < 3; k++) {
+            PUT(w, "masu_slope_%d(%d.0, %d.0, %d.0, ", g, k == 0, k == 1, k == 2);
+            put_slot_base(w, g);
+            PUT(w, k < 2 ? "), " : "));\n    }\n");
+        }
+    }
+    PUT(w, "    return n;\n}\n\n");
+}
+
 static void put_glsl_dispatch(writer *w) {
     sdfc *c = w->c;
     PUT(w, "float masu_sdf_part(uint part, vec3 p)\n{\n");
@@ -295,50 +384,56 @@ static void put_least(writer *w, bool nearest) {
     PUT(w, "        d = f < d ? f : d;\n");
 }
 
+/* The half-spaces count always, unless the includer meets them in closed form. */
+static void put_flat_least(writer *w, bool nearest) {
+    const sdfc *c = w->c;
+    if (!c->flat_parts) return;
+    PUT(w, "#ifndef MASU_SDF_NO_FLAT\n");
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        if (!group->flat) continue;
+        PUT(w, "    for (uint part = %du; part < %du; part++) {\n", group->first_part,
+            group->first_part + group->part_count);
+        put_part_value(w, g, "f", "p");
+        put_least(w, nearest);
+        PUT(w, "    }\n");
+    }
+    PUT(w, "#endif\n");
+}
+
 static void put_any_order(writer *w, bool nearest) {
     put_head(w, nearest);
-    PUT(w, "    for (uint i = 0u; i < uint(MASU_SDF_PART_COUNT); i++) {\n"
+    PUT(w, "    for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {\n"
            "        if (i >= count) {\n            break;\n        }\n"
            "        uint part = masu_part_at(i);\n        float f = masu_sdf_part(part, p);\n");
     put_least(w, nearest);
-    PUT(w, "    }\n    return %s;\n}\n", nearest ? "nearest" : "d");
+    PUT(w, "    }\n");
+    put_flat_least(w, nearest);
+    PUT(w, "    return %s;\n}\n", nearest ? "nearest" : "d");
 }
 
 /* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
  * costs its own form and not all of them. Needs a list in rising order. */
 static void put_ascending(writer *w, bool nearest) {
     const sdfc *c = w->c;
+    int listed = c->part_count - c->flat_parts;
     put_head(w, nearest);
     PUT(w, "    uint i = 0u;\n");
     for (int g = 0; g < c->group_count; g++) {
         const sdfc_group *group = &c->groups[g];
         int end = group->first_part + group->part_count;
+        if (group->flat) continue;
         PUT(w, "    for (uint n = 0u; n < %du; n++) {\n", group->part_count);
         PUT(w, "        if (i >= count) {\n            break;\n        }\n"
                "        uint part = masu_part_at(i);\n");
-        if (g + 1 < c->group_count) {
+        if (end < listed) {
             PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
         }
-        if (group->part_count == 1) {
-            PUT(w, "        float f = masu_shape_%d(p.x, p.y, p.z, %uu)", g,
-                c->parts[group->first_part].slot_base);
-            double safe = c->initial[group->first_part * MASU_SDFC_PART_SLOTS + 4];
-            if (safe != 1) {
-                PUT(w, " * ");
-                put_number(w, safe);
-            }
-            PUT(w, ";\n");
-        } else {
-            PUT(w, "        uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
-            PUT(w, "        uint base = uint(masu_slot(record + 6u));\n");
-            PUT(w,
-                "        float f = masu_shape_%d(p.x, p.y, p.z, base) * "
-                "masu_slot(record + 4u);\n",
-                g);
-        }
+        put_part_value(w, g, "f", "p");
         put_least(w, nearest);
         PUT(w, "        i++;\n    }\n");
     }
+    put_flat_least(w, nearest);
     PUT(w, "    return %s;\n}\n", nearest ? "nearest" : "d");
 }
 
@@ -346,6 +441,8 @@ static void put_glsl(writer *w) {
     sdfc *c = w->c;
     PUT(w, "/* Made by masu-sdfc: %d parts of %d forms. */\n", c->part_count, c->group_count);
     PUT(w, "#define MASU_SDF_PART_COUNT %d\n", c->part_count);
+    PUT(w, "#define MASU_SDF_LISTED_COUNT %d /* the rest are half-spaces */\n",
+        c->part_count - c->flat_parts);
     PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
     PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", c->dynamic_count > 0);
     put_users(w);
@@ -367,14 +464,17 @@ static void put_glsl(writer *w) {
     put_any_order(w, false);
     put_any_order(w, true);
     PUT(w, "#endif\n\n");
+    put_flat(w);
     PUT(w,
-        "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
-        "    uint material = uint(masu_slot(masu_sdf_nearest(p) * %uu + 7u));\n"
+        "void masu_sdf_part_surface(uint part, inout masu_surface s)\n{\n"
+        "    uint material = uint(masu_slot(part * %uu + 7u));\n"
         "    uint at = %uu + material * %uu;\n"
         "    s.albedo = vec3(masu_slot(at), masu_slot(at + 1u), masu_slot(at + 2u));\n"
         "    s.roughness = masu_slot(at + 3u);\n"
         "    s.emissive = vec3(masu_slot(at + 4u), masu_slot(at + 5u), masu_slot(at + 6u));\n"
-        "    s.metallic = masu_slot(at + 7u);\n}\n\n",
+        "    s.metallic = masu_slot(at + 7u);\n}\n\n"
+        "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
+        "    masu_sdf_part_surface(masu_sdf_nearest(p), s);\n}\n\n",
         MASU_SDFC_PART_SLOTS, (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
         MASU_SDFC_MATERIAL_SLOTS);
     PUT(w, "#ifdef MASU_SDF_SETUP\n");

@@ -170,6 +170,7 @@ typedef struct sdfc_group {
     int first_part, part_count;
     int *slot_of_arg; /* -1: a literal */
     int slot_count;
+    bool flat; /* half-spaces: f is affine in the point */
 } sdfc_group;
 
 typedef struct sdfc_material {
@@ -229,6 +230,7 @@ typedef struct sdfc {
     sdfc_group *groups;
     int group_count, group_capacity;
     uint32_t slot_count;
+    int flat_parts; /* the last ones */
     uint32_t *dynamic_slots; /* pairs: slot, expression */
     int dynamic_count, dynamic_capacity;
     double *initial; /* slots */

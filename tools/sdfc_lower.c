@@ -513,6 +513,44 @@ static void fill_record(sdfc *c, int part) {
     record[7] = p->material;
 }
 
+/* Whether the form's field is affine in the point: a half-space, however it is placed. The march
+ * meets it in closed form. */
+static bool is_flat(const sdfc_program *p) {
+    if (p->function_count != 1) return false;
+    const sdfc_function *f = &p->functions[0];
+    for (int i = 0; i < f->count; i++) {
+        const sdfc_instr *at = &f->instrs[i];
+        int points = at->op == SDFC_dot3                                              ? 3
+                     : at->op == SDFC_sub || at->op == SDFC_mul || at->op == SDFC_neg ? 1
+                                                                                      : 0;
+        if (!points) return false;
+        for (int k = 0; k < sdfc_ops[at->op].operands; k++) {
+            if ((at->operand[k] >= 0) != (k < points)) return false;
+        }
+    }
+    return f->count > 0 && f->result >= 0;
+}
+
+/* Flat forms last: lists of parts never hold them. */
+static void order_groups(sdfc *c) {
+    int *place = sdfc_take(c, (size_t)c->group_count, sizeof *place), count = 0;
+    free(c->scratch);
+    c->scratch = place;
+    sdfc_group *ordered = sdfc_take(c, (size_t)c->group_count, sizeof *ordered);
+    for (int flat = 0; flat < 2; flat++) {
+        for (int g = 0; g < c->group_count; g++) {
+            if (c->groups[g].flat != (flat != 0)) continue;
+            if (flat) c->flat_parts += c->groups[g].part_count;
+            place[g] = count;
+            ordered[count++] = c->groups[g];
+        }
+    }
+    for (int i = 0; i < c->part_count; i++) c->parts[i].group = place[c->parts[i].group];
+    free(c->groups);
+    c->groups = ordered;
+    c->group_capacity = c->group_count;
+}
+
 /* Parts of one form stand together, else in the order of the text: the march can then go through
  * the forms one after another. */
 static void order_parts(sdfc *c) {
@@ -546,11 +584,13 @@ void sdfc_group_parts(sdfc *c) {
         if (p->group < 0) {
             c->groups = sdfc_grow(c, c->groups, c->group_count, &c->group_capacity,
                                   sizeof *c->groups, MASU_SDFC_PARTS_MAX, "forms");
-            c->groups[c->group_count] = (sdfc_group){.first_part = i};
+            c->groups[c->group_count] =
+                (sdfc_group){.first_part = i, .flat = is_flat(&p->program)};
             p->group = c->group_count++;
         }
         c->groups[p->group].part_count++;
     }
+    order_groups(c);
     order_parts(c);
     for (int g = 0; g < c->group_count; g++) choose_slots(c, g);
     long slots = (long)c->part_count * MASU_SDFC_PART_SLOTS +

@@ -70,7 +70,7 @@ uint masu_part_at(uint i)
 
 uint masu_part_count()
 {
-    return masu_list_count == MASU_TILE_ALL ? uint(MASU_SDF_PART_COUNT) : masu_list_count;
+    return masu_list_count == MASU_TILE_ALL ? uint(MASU_SDF_LISTED_COUNT) : masu_list_count;
 }
 
 uint masu_list_stride()
@@ -100,6 +100,7 @@ struct ray {
     vec3 direction; /* unit */
     float pixel;    /* width of a pixel's cone at distance 1 */
     float start, limit;
+    float rounding; /* what fp32 cannot resolve in the field near the eye */
 };
 
 vec3 world_at(vec3 direction, float t)
@@ -116,11 +117,17 @@ float step_at(ray r, float t, out bool usable)
     return usable ? f : 0.0;
 }
 
-float tolerance(ray r, float t)
+/* What fp32 cannot resolve in the field at t: 8 ulp of the largest coordinate that the ray can have
+ * there; the field's own rounding is up to 6.1 ulp of it. */
+float resolution(ray r, float t)
 {
-    vec3 p = abs(world_at(r.direction, t));
-    float extent = max(max(p.x, max(p.y, p.z)), t);
-    return max(0.1 * r.pixel * t, 8.0 * ulp * extent);
+    return r.rounding + 8.0 * ulp * t;
+}
+
+float rounding_at_eye()
+{
+    vec3 eye = abs(frame.eye_hi.xyz);
+    return 8.0 * ulp * max(eye.x, max(eye.y, eye.z));
 }
 
 /* Entry and exit of the SDF's bounds. A component of the direction that is zero is replaced by a

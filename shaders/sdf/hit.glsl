@@ -6,14 +6,20 @@
 
 #include "sdf/trace.glsl"
 
-/* A hit becomes texels of the G-buffer. Returns its depth. */
-float write_hit(uvec2 at, ray r, float t, float z_scale)
+/* A hit becomes texels of the G-buffer; `known`: of half-space `part`. Returns its depth. */
+float write_hit(uvec2 at, ray r, float t, bool known, uint part, float z_scale)
 {
     vec3 p = world_at(r.direction, t);
-    vec3 n = normal_at(r, t);
     masu_surface s = masu_surface(vec3(0.5), 0.5, vec3(0.0), 0.0);
-    masu_sdf_surface(p, s);
-    masu_count(MASU_COUNTER_SDF_EVALS, 4u);
+    vec3 n;
+    if (known) {
+        n = masu_normalize(masu_sdf_flat_normal(part), -r.direction);
+        masu_sdf_part_surface(part, s);
+    } else {
+        n = normal_at(r, t);
+        masu_sdf_surface(p, s);
+        masu_count(MASU_COUNTER_SDF_EVALS, 4u);
+    }
     masu_count(MASU_COUNTER_SDF_HITS, 1u);
     MASU_STORE_UNORM(albedo_image, at, masu_pack_albedo(s));
     MASU_STORE_UINT(normal_image, at, uvec4(masu_pack_normal(n, s)));

@@ -29,6 +29,7 @@ ray pixel_ray(uvec2 at, uvec2 size, float raster, out float z_scale)
     if (raster > 0.0) {
         r.limit = min(r.limit, near / raster * z_scale); /* a tie goes to the raster */
     }
+    r.rounding = rounding_at_eye();
     clip_to_bounds(r);
     return r;
 }
@@ -77,7 +78,26 @@ void note_best(inout march_end m, inout float best_ratio, float t, float f)
     best_ratio = min(best_ratio, ratio);
 }
 
+#define NEWTON_NEAR 0.3
+#define NEWTON_FAR 4.0
+#ifdef MASU_RELAXED
+#define REFINE 3
+#define ENOUGH 0.005
+#define REACH (r.pixel * m.t)
+#define NORMAL_STEP 0.02
+#else
+#define REFINE 2
+#define ENOUGH 0.01
+#define REACH tolerance(r, m.t)
+#define NORMAL_STEP 0.25
+#endif
+
 #ifndef MASU_RELAXED
+
+float tolerance(ray r, float t)
+{
+    return max(0.1 * r.pixel * t, resolution(r, t));
+}
 
 /* Hart 1996: each step as long as the field allows. */
 march_end walk(ray r)
@@ -108,12 +128,22 @@ march_end walk(ray r)
 
 #else
 
+float tolerance(ray r, float t)
+{
+    return max(0.002 * r.pixel * t, resolution(r, t));
+}
+
 /* Steps beyond the field's own distance, checked: a step s from a sample f1 to a sample f2 is right
  * when the two free spheres meet, s <= f1 + f2; else it is taken back and a plain step made. How
  * long to try: on a plane the field falls by a constant slope along the ray, and s = 2 f / (1 -
  * slope) makes the spheres just touch: up to twice the plain step, most where plain steps creep, at
  * grazing angles. The slope is that of the last samples (Ban and Valasek, "Automatic Step Size
- * Relaxation in Sphere Tracing", Eurographics 2023; the check is Keinert et al. 2014). */
+ * Relaxation in Sphere Tracing", Eurographics 2023; the check is Keinert et al. 2014).
+ *
+ * Within a pixel of the surface the step is Newton's, to where the slope says that the field is 0: the
+ * last pixel costs most of a march otherwise, since at a grazing angle each checked step takes only a
+ * fixed share of what is left. It goes past what is proved free, by a few pixels' widths at most, and
+ * stands only where the field is then 0 or below, or the spheres meet after all. */
 march_end walk(ray r)
 {
     march_end m = march_end(r.start, 0.0, r.start, 0.0, -1.0, false, false, 0u);
@@ -130,7 +160,9 @@ march_end walk(ray r)
         float f = step_at(r, m.t, usable);
         m.evals++;
         m.left = !usable;
-        bool apart = usable && !sure && reach > m.before_f + f;
+        bool touched = f < tolerance(r, m.t);
+        bool leap = touched && reach <= NEWTON_FAR * r.pixel * m.t;
+        bool apart = usable && !sure && !leap && reach > m.before_f + f;
         if (apart) {
             m.t = m.before_t + m.before_f;
             reach = m.before_f;
@@ -138,16 +170,18 @@ march_end walk(ray r)
             slope = -1.0;
         } else if (usable) {
             m.f = f;
-            m.hit = f < tolerance(r, m.t) && m.t < r.limit;
+            m.hit = touched && m.t < r.limit;
             m.left = !(m.t < r.limit);
             if (!m.hit && !m.left) {
                 note_best(m, best_ratio, m.t, f);
                 masu_note_hint(m.t, f);
-                if (reach > 0.0) {
-                    slope = mix(slope, clamp((f - m.before_f) / reach, -1.0, 0.9), 0.7);
-                }
+                float raw = reach > 0.0 ? clamp((f - m.before_f) / reach, -1.0, 0.9) : -1.0;
+                slope = mix(slope, raw, 0.7);
                 float plain = f;
                 reach = max(1.9 * f / (1.0 - slope), plain);
+                float pixel = r.pixel * m.t;
+                bool close = f < NEWTON_NEAR * pixel && raw < 0.0;
+                reach = close ? max(reach, min(f / max(-raw, 1e-6), NEWTON_FAR * pixel)) : reach;
                 m.before_t = m.t;
                 m.before_f = f;
                 sure = !(reach > plain);
@@ -176,8 +210,33 @@ float march(ray r, out uint evals)
         masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
         return m.best_t;
     }
-    for (int i = 0; i < 2; i++) {
-        float enough = max(0.01 * r.pixel * m.t, 8.0 * ulp * m.t);
+#ifdef MASU_RELAXED
+    /* Below 0 the surface lies between the last two samples: the secant, with the Illinois halving
+     * (Dowell and Jarratt 1971) so that neither end stays. */
+    float low = m.before_t;
+    float low_f = m.before_f;
+    float high = m.t;
+    float high_f = m.f;
+    for (int i = 0; i < 12; i++) {
+        if (!(m.f < -max(0.005 * r.pixel * m.t, resolution(r, m.t))) || !(low < high)) {
+            break;
+        }
+        float t = high - (high - low) * high_f / min(high_f - low_f, -1e-30);
+        t = clamp(t, low, high);
+        bool usable;
+        float f = step_at(r, t, usable);
+        evals++;
+        low_f = f < 0.0 ? 0.5 * low_f : f;
+        high_f = f < 0.0 ? f : 0.5 * high_f;
+        low = f < 0.0 ? low : t;
+        high = f < 0.0 ? t : high;
+        m.t = t;
+        m.f = f < 0.0 ? f : 0.0;
+        if (f > tolerance(r, t)) { m.f = -1e30; }
+    }
+#else
+    for (int i = 0; i < REFINE; i++) {
+        float enough = max(ENOUGH * r.pixel * m.t, resolution(r, m.t));
         if (abs(m.f) < enough) {
             break;
         }
@@ -187,7 +246,7 @@ float march(ray r, out uint evals)
          * polygon's inside would. */
         float fall = m.before_f - m.f;
         float rate = fall > 1e-30 ? (m.t - m.before_t) / fall : 1.0;
-        float reach = 16.0 * tolerance(r, m.t);
+        float reach = 16.0 * REACH;
         float next_t = max(m.t + clamp(m.f * max(rate, 1.0), -reach, reach), r.start);
         bool usable;
         float next_f = step_at(r, next_t, usable);
@@ -199,6 +258,7 @@ float march(ray r, out uint evals)
             m.f = next_f;
         }
     }
+#endif
     return m.t < r.limit ? m.t : -1.0;
 }
 
@@ -210,7 +270,7 @@ vec3 normal_at(ray r, float t)
 {
     vec3 p = world_at(r.direction, t);
     vec3 a = abs(p);
-    float h = max(0.25 * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
+    float h = max(NORMAL_STEP * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
         bvec3 plus = bvec3(i == 1 || i == 3, i >= 2, i == 0 || i == 3);
