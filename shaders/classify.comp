@@ -11,6 +11,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -127,14 +128,20 @@ void write_list(uint tile, uvec2 size, bool flat_seen)
     for (int w = 0; w < MASKS; w++) {
         count += uint(bitCount(masks[w]));
     }
-    bool all_parts = pc.index.y != 0u || count >= stride;
-    masu_tiles_out[list] = all_parts ? MASU_TILE_ALL : count;
-    if (count == 0u && !flat_seen && pc.index.y == 0u) {
-        return;
+    bool keep_all = pc.index.y != 0u;
+    bool active_tile = count > 0u || flat_seen || keep_all;
+    if (active_tile) {
+        uint place = atomicAdd(masu_tiles_out[0], 1u);
+        masu_tiles_out[uint(MASU_TILES_HEADER) + place] = tile;
     }
-    uint place = atomicAdd(masu_tiles_out[0], 1u);
-    masu_tiles_out[uint(MASU_TILES_HEADER) + place] = tile;
-    if (all_parts) {
+#if MASU_SDF_MASKED
+    for (int w = 0; w < MASU_LIST_WORDS; w++) {
+        masu_tiles_out[list + uint(w)] = keep_all ? 0xFFFFFFFFu : w < MASKS ? masks[min(w, MASKS - 1)] : 0u;
+    }
+#else
+    bool all_parts = keep_all || count >= stride;
+    masu_tiles_out[list] = all_parts ? MASU_TILE_ALL : count;
+    if (all_parts || !active_tile) {
         return;
     }
     uint next = list + 1u;
@@ -149,6 +156,7 @@ void write_list(uint tile, uvec2 size, bool flat_seen)
             next++;
         }
     }
+#endif
 }
 
 void main()

@@ -14,6 +14,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -61,7 +62,7 @@ void main()
         uvec2 pixels = uvec2(pc.render_width, pc.render_height);
         uvec2 tile = at * uint(MASU_CONE_BLOCK) / uint(MASU_TILE);
         bool empty = !masu_use_tile(tile.y * masu_tile_grid(pixels).x + tile.x, pixels);
-        for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
+        MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
             if (empty || uint(i) >= pc.index.x || !(t < limit)) {
                 break;
             }

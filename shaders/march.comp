@@ -7,6 +7,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -32,7 +33,7 @@ void main()
     uint columns = masu_tile_grid(size).x;
     uvec2 corner = uvec2(tile % columns, tile / columns) * uint(MASU_TILE);
     uvec2 quarter = uvec2(gl_WorkGroupID.y & 1u, gl_WorkGroupID.y >> 1) * uint(MASU_GROUP);
-    uvec2 at = corner + quarter + gl_LocalInvocationID.xy;
+    uvec2 at = corner + quarter + masu_block_at(gl_LocalInvocationIndex);
     bool listed = masu_use_tile(tile, size);
     if (all(lessThan(at, size))) {
         float z_scale;

@@ -10,6 +10,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -50,7 +51,7 @@ float capped(ray r, float start, uint cap, float epsilon)
     float t = start;
     uint evals = 0u;
     float found = -1.0;
-    for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
+    MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
         if (uint(i) >= cap || !(t < r.limit) || found >= 0.0) {
             break;
         }

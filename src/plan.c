@@ -310,8 +310,9 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     for (uint32_t r = 0; r < plan->desc.rung_count && s->sdf; r++) {
         VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
         VkExtent2D tiles = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
-        uint64_t list = s->sdf_parts < MASU_TILE_PARTS_MAX ? s->sdf_parts : MASU_TILE_PARTS_MAX;
-        uint64_t words = MASU_TILES_HEADER + (uint64_t)tiles.width * tiles.height * (list + 2);
+        uint64_t list = s->sdf_parts <= MASU_TILE_MASKED_MAX ? (s->sdf_parts + 31) / 32
+                                                             : 1 + MASU_TILE_PARTS_MAX;
+        uint64_t words = MASU_TILES_HEADER + (uint64_t)tiles.width * tiles.height * (1 + list);
         if (words > b[MASU_BUFFER_TILES].count) b[MASU_BUFFER_TILES].count = words;
     }
     b[MASU_BUFFER_TILES].bytes = b[MASU_BUFFER_TILES].count * sizeof(uint32_t);

@@ -5,6 +5,7 @@
 #include "bake_process.h"
 #include "cli.h"
 #include "scene_sources.h"
+#include "shared/masu_shared.h"
 #include "sdfc.h"
 
 #include <errno.h>
@@ -62,11 +63,14 @@ static void append_scene_header(masu_bake_buffer *text, const masu_bake_content 
     masu_bake_append_text(text, "\"\n");
 }
 
+_Static_assert(MASU_SDFC_MASKED_MAX == MASU_TILE_MASKED_MAX, "the compiler and the tiles agree");
+
 /* What masu-sdfc would have generated besides the field: a hand-written one is a single part without
  * bounds. */
 static const char hand_written[] =
     "#define MASU_SDF_PART_COUNT 1\n"
     "#define MASU_SDF_LISTED_COUNT 1\n"
+    "#define MASU_SDF_MASKED 1\n"
     "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
     "uint masu_sdf_nearest(vec3 p) { return 0u; }\n"
     "float masu_sdf_flat(vec3 o, vec3 d, float start, out uint part) { part = 1u; return 1e30; }\n"

@@ -28,6 +28,7 @@
 #define MASU_SDFC_MATERIALS_MAX 1024
 #define MASU_SDFC_DEPTH_MAX 64
 #define MASU_SDFC_NAME_MAX 64
+#define MASU_SDFC_MASKED_MAX 64 /* parts of a scene whose tiles have bits instead of lists */
 
 /* The slots: first one record of each part, then one of each material, then the arguments. A
  * number that is an index is stored as a float of that value. */

@@ -403,7 +403,7 @@ static void put_flat_least(writer *w, bool nearest) {
 
 static void put_any_order(writer *w, bool nearest) {
     put_head(w, nearest);
-    PUT(w, "    for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {\n"
+    PUT(w, "    MASU_LOOP for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {\n"
            "        if (i >= count) {\n            break;\n        }\n"
            "        uint part = masu_part_at(i);\n        float f = masu_sdf_part(part, p);\n");
     put_least(w, nearest);
@@ -412,26 +412,75 @@ static void put_any_order(writer *w, bool nearest) {
     PUT(w, "    return %s;\n}\n", nearest ? "nearest" : "d");
 }
 
-/* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
- * costs its own form and not all of them. Needs a list in rising order. */
-static void put_ascending(writer *w, bool nearest) {
+/* The parts of a form are known by number here: one alone is asked for and evaluated, several are
+ * found bit by bit. Wrong turn: lists of numbers in memory for a few parts as well. On lavapipe each
+ * lane fetches by itself, which cost more than the parts' own arithmetic. */
+static void put_masked_group(writer *w, int g, bool nearest) {
     const sdfc *c = w->c;
-    int listed = c->part_count - c->flat_parts;
-    put_head(w, nearest);
-    PUT(w, "    uint i = 0u;\n");
-    for (int g = 0; g < c->group_count; g++) {
-        const sdfc_group *group = &c->groups[g];
-        int end = group->first_part + group->part_count;
-        if (group->flat) continue;
-        PUT(w, "    for (uint n = 0u; n < %du; n++) {\n", group->part_count);
-        PUT(w, "        if (i >= count) {\n            break;\n        }\n"
-               "        uint part = masu_part_at(i);\n");
-        if (end < listed) {
-            PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
+    const sdfc_group *group = &c->groups[g];
+    int first = group->first_part, end = first + group->part_count;
+    if (group->part_count == 1) {
+        bool alone = c->part_count - c->flat_parts == 1;
+        if (alone) {
+            PUT(w, "    {\n");
+        } else {
+            PUT(w, "    if (masu_part_listed(%du)) {\n", first);
         }
         put_part_value(w, g, "f", "p");
+        if (nearest) PUT(w, "        const uint part = %du;\n", first);
         put_least(w, nearest);
-        PUT(w, "        i++;\n    }\n");
+        PUT(w, "    }\n");
+        return;
+    }
+    for (int word = first / 32; word * 32 < end; word++) {
+        int low = first > word * 32 ? first - word * 32 : 0;
+        int high = end < word * 32 + 32 ? end - word * 32 : 32;
+        uint32_t own = (high == 32 ? 0xFFFFFFFFu : (1u << high) - 1u) & ~((1u << low) - 1u);
+        PUT(w, "    MASU_LOOP for (uint n = 0u, bits = masu_part_bits(%d) & 0x%xu; n < %du; n++) {\n", word, own,
+            high - low);
+        PUT(w, "        if (bits == 0u) {\n            break;\n        }\n"
+               "        uint part = %du + masu_low_bit(bits);\n        bits &= bits - 1u;\n",
+            word * 32);
+        put_part_value(w, g, "f", "p");
+        put_least(w, nearest);
+        PUT(w, "    }\n");
+    }
+}
+
+static void put_listed_group(writer *w, int g, bool nearest) {
+    const sdfc *c = w->c;
+    const sdfc_group *group = &c->groups[g];
+    int end = group->first_part + group->part_count;
+    PUT(w, "    MASU_LOOP for (uint n = 0u; n < %du; n++) {\n", group->part_count);
+    PUT(w, "        if (i >= count) {\n            break;\n        }\n"
+           "        uint part = masu_part_at(i);\n");
+    if (end < c->part_count - c->flat_parts) {
+        PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
+    }
+    put_part_value(w, g, "f", "p");
+    put_least(w, nearest);
+    PUT(w, "        i++;\n    }\n");
+}
+
+/* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
+ * costs its own form and not all of them. Needs a list in rising order, or bits. */
+static void put_ascending(writer *w, bool nearest) {
+    const sdfc *c = w->c;
+    bool masked = c->part_count <= MASU_SDFC_MASKED_MAX;
+    if (masked) {
+        PUT(w, "%s(vec3 p)\n{\n    float d = 1e30;\n",
+            nearest ? "uint masu_sdf_nearest" : "float masu_sdf");
+        if (nearest) PUT(w, "    uint nearest = 0u;\n");
+    } else {
+        put_head(w, nearest);
+        PUT(w, "    uint i = 0u;\n");
+    }
+    for (int g = 0; g < c->group_count; g++) {
+        if (c->groups[g].flat) continue;
+        if (masked)
+            put_masked_group(w, g, nearest);
+        else
+            put_listed_group(w, g, nearest);
     }
     put_flat_least(w, nearest);
     PUT(w, "    return %s;\n}\n", nearest ? "nearest" : "d");
@@ -440,9 +489,12 @@ static void put_ascending(writer *w, bool nearest) {
 static void put_glsl(writer *w) {
     sdfc *c = w->c;
     PUT(w, "/* Made by masu-sdfc: %d parts of %d forms. */\n", c->part_count, c->group_count);
+    PUT(w, "#ifndef MASU_LOOP\n#define MASU_LOOP /* an includer's [[dont_unroll]] */\n#endif\n");
     PUT(w, "#define MASU_SDF_PART_COUNT %d\n", c->part_count);
     PUT(w, "#define MASU_SDF_LISTED_COUNT %d /* the rest are half-spaces */\n",
         c->part_count - c->flat_parts);
+    PUT(w, "#define MASU_SDF_MASKED %d /* 1: lists of parts are bits */\n",
+        c->part_count <= MASU_SDFC_MASKED_MAX);
     PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
     PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", c->dynamic_count > 0);
     put_users(w);

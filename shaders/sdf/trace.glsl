@@ -104,7 +104,7 @@ march_end walk(ray r)
 {
     march_end m = march_end(r.start, 0.0, r.start, 0.0, -1.0, false, false, 0u);
     float best_ratio = 2.0 * r.pixel;
-    for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
+    MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
         m.left = m.left || !(m.t < r.limit);
         if (m.hit || m.left || uint(i) >= pc.index.x) {
             break;
@@ -151,7 +151,7 @@ march_end walk(ray r)
     float slope = -1.0; /* of plain steps */
     float reach = 0.0;  /* from before_t to t, as tried */
     bool sure = true;   /* the way from before_t to t is free whatever f turns out to be */
-    for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
+    MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
         m.left = m.left || (sure && !(m.t < r.limit));
         if (m.hit || m.left || uint(i) >= pc.index.x) {
             break;
@@ -217,7 +217,7 @@ float march(ray r, out uint evals)
     float low_f = m.before_f;
     float high = m.t;
     float high_f = m.f;
-    for (int i = 0; i < 12; i++) {
+    MASU_LOOP for (int i = 0; i < 12; i++) {
         if (!(m.f < -max(0.005 * r.pixel * m.t, resolution(r, m.t))) || !(low < high)) {
             break;
         }
@@ -235,7 +235,7 @@ float march(ray r, out uint evals)
         if (f > tolerance(r, t)) { m.f = -1e30; }
     }
 #else
-    for (int i = 0; i < REFINE; i++) {
+    MASU_LOOP for (int i = 0; i < REFINE; i++) {
         float enough = max(ENOUGH * r.pixel * m.t, resolution(r, m.t));
         if (abs(m.f) < enough) {
             break;
@@ -272,7 +272,7 @@ vec3 normal_at(ray r, float t)
     vec3 a = abs(p);
     float h = max(NORMAL_STEP * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < 4; i++) {
+    MASU_LOOP for (int i = 0; i < 4; i++) {
         bvec3 plus = bvec3(i == 1 || i == 3, i >= 2, i == 0 || i == 3);
         vec3 corner = mix(vec3(-1.0), vec3(1.0), plus);
         sum += corner * masu_sdf(p + corner * h);

@@ -41,11 +41,13 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
  *   0..2                  arguments of the indirect dispatch: active tiles, 4 quarters, 1
  *   TILES_HEADER + k      number of the k-th active tile, in no particular order
- *   TILES_HEADER + tiles  the lists, `stride` uints each: how many parts, then their numbers
+ *   TILES_HEADER + tiles  the lists, `stride` uints each: of a scene of at most TILE_MASKED_MAX parts
+ *                         a bit for each part, else how many parts, then their numbers
  * A list that would not fit says TILE_ALL: all parts then count. That is slower and just as right. */
 #define MASU_TILE 16
 #define MASU_TILES_HEADER 8
 #define MASU_TILE_PARTS_MAX 63
+#define MASU_TILE_MASKED_MAX 64
 #define MASU_TILE_ALL 0xFFFFFFFFu
 #define MASU_SDF_PARTS_MAX 4096
 
