@@ -180,7 +180,7 @@ typedef enum masu_march {
     MASU_MARCH_FRAGMENT = 2,     /* each pixel by itself, fragment shader; scenes without polygons */
     MASU_MARCH_SEED = 3,         /* two-phase checkerboard with capped, unchecked restarts */
     MASU_MARCH_CONE8 = 4,        /* 8x8 cones alone */
-    MASU_MARCH_CONES = 5,        /* 8x8, then 2x2 cones */
+    MASU_MARCH_CONES = 5,        /* 8x8, then 4x4 cones */
     MASU_MARCH_CHECKERBOARD = 6, /* 8x8 cones, then two-phase with provably safe restarts */
     MASU_MARCH_UNPRUNED = 7      /* as AUTO, every tile with all parts */
 } masu_march;
@@ -195,7 +195,7 @@ typedef struct masu_rung {
     float sharpness;     /* RCAS strength in stops, 0..64: 0 is sharpest, each stop halves it (AMD's
                              definition) */
     masu_march march;
-    uint32_t march_steps; /* most SDF steps per ray, 1..256; 0: 256 */
+    uint32_t march_steps; /* most SDF steps per ray, 1..2048; 0: 2048 */
 } masu_rung;
 
 /* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so

@@ -1,6 +1,6 @@
 /*
  * cone.comp: how far the rays of a whole block of pixels are free. Compiled by masu-bake with the
- * scene's field, once per MASU_CONE_BLOCK: 8 (from the start), then 2 (from where its 8x8 block
+ * scene's field, once per MASU_CONE_BLOCK: 8 (from the start), then 4 (from where its 8x8 block
  * stopped).
  *
  * The rays of a block lie in a cone around the ray through its middle, of tangent k = block / sqrt(2)
@@ -23,7 +23,7 @@
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-#if MASU_CONE_BLOCK == 2
+#if MASU_CONE_BLOCK == 4
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D parent_image;
 layout(set = MASU_SET_PASS, binding = 1, r32f) uniform writeonly image2D cone_image;
 #else
@@ -52,8 +52,8 @@ void main()
         r.pixel = 2.0 * max(frame.up.w / size.y, frame.right.w / size.x);
         float k = float(MASU_CONE_BLOCK) * 0.70711 * r.pixel;
         float t = frame.forward.w;
-#if MASU_CONE_BLOCK == 2
-        t = max(t, texelFetch(parent_image, ivec2(at) / 4, 0).r);
+#if MASU_CONE_BLOCK == 4
+        t = max(t, texelFetch(parent_image, ivec2(at) / 2, 0).r);
 #endif
         /* A half-space ends most cones; where the middle ray meets it is as far as any needs to go. */
         uint part;

@@ -3,7 +3,7 @@
  * wins. A hit becomes texels of the G-buffer, so that every later pass has one path.
  *
  * Four workgroups per active tile of 16x16 pixels (WorkGroupID.y), with the tile's list of parts. A
- * pixel starts where the cone of its 2x2 block stopped (cone.comp). Compiled by masu-bake together with the scene's field.
+ * pixel starts where the cone of its 4x4 block stopped (cone.comp). Compiled by masu-bake together with the scene's field.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -38,13 +38,17 @@ void main()
     if (all(lessThan(at, size))) {
         float z_scale;
         uint evals = 0u;
-        ray r = pixel_ray(at, size, imageLoad(depth_image, ivec2(at)).r, z_scale);
+        float depth = 0.0;
+#if MASU_HAS_RASTER
+        depth = imageLoad(depth_image, ivec2(at)).r;
+#endif
+        ray r = pixel_ray(at, size, depth, z_scale);
         /* The nearest half-space ends the march. */
         uint part;
         float end = masu_sdf_flat(world_at(r.direction, 0.0), r.direction, r.start, part);
         bool ends = end < r.limit;
         r.limit = min(r.limit, end);
-        r.start = max(r.start, texelFetch(cone_image, ivec2(at / 2u), 0).r);
+        r.start = max(r.start, texelFetch(cone_image, ivec2(at / 4u), 0).r);
         float t = -1.0;
         if (listed) {
             t = march(r, evals);
@@ -52,9 +56,9 @@ void main()
         }
         t = ends ? end : t;
         if (t >= 0.0) {
-            float depth = write_hit(at, r, t, ends, part, z_scale);
-            MASU_STORE_R32F(depth_image, at, depth);
+            depth = write_hit(at, r, t, ends, part, z_scale);
         }
+        MASU_STORE_R32F(depth_image, at, depth);
         masu_count(MASU_COUNTER_SDF_EVALS, evals + (MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? 1u : 0u));
     }
     masu_count_end();

@@ -31,8 +31,10 @@ void main()
         discard;
     }
     masu_surface s = masu_surface(vec3(0.5), 0.5, vec3(0.0), 0.0);
-    masu_sdf_surface(world_at(r.direction, t), s);
+    uint part;
+    vec3 n = normal_at(r, t, part);
+    masu_sdf_part_surface(part, world_at(r.direction, t), s);
     out_albedo = masu_pack_albedo(s);
-    out_normal = masu_pack_normal(normal_at(r, t), s);
+    out_normal = masu_pack_normal(n, s);
     out_depth = masu_sane(depth_of(t, z_scale), 0.0, 1.0);
 }

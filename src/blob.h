@@ -41,7 +41,7 @@ enum masu_blob_kind {
     MASU_BLOB_NAMES = 12,       /* NUL-terminated UTF-8 strings, last byte is NUL */
     MASU_BLOB_CLASSIFY_SPIRV = 13, /* these three are present exactly when MARCH_SPIRV is */
     MASU_BLOB_CONE8_SPIRV = 14,
-    MASU_BLOB_CONE2_SPIRV = 15,
+    MASU_BLOB_CONE4_SPIRV = 15,
     MASU_BLOB_UPDATE_SPIRV = 16, /* present when slots depend on parameters or time */
     MASU_BLOB_PLAIN_SPIRV = 17,  /* from here on: only with --variants */
     MASU_BLOB_SEED_SPIRV = 18,

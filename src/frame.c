@@ -16,7 +16,7 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
     [MASU_IMAGE_SCENE_DEPTH] = {"scene_depth", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_RENDER,
                                 MASU_CLASS_DEPTH, MASU_READBACK_DEPTH},
     [MASU_IMAGE_CONE8] = {"cone8", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK8, MASU_CLASS_OTHER, 0},
-    [MASU_IMAGE_CONE2] = {"cone2", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK2, MASU_CLASS_OTHER, 0},
+    [MASU_IMAGE_CONE4] = {"cone4", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK4, MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
                         MASU_READBACK_HDR},
     [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
@@ -59,12 +59,12 @@ static int needs_tiles(const masu_needs *n, const char **why) {
     return decided(uses_tiles(n), "the scene has an SDF", no_march(n), why);
 }
 
-static int needs_cone2(const masu_needs *n, const char **why) {
+static int needs_cone4(const masu_needs *n, const char **why) {
     return decided(uses_tiles(n) && n->march != MASU_MARCH_CHECKERBOARD, "the scene has an SDF",
                    no_march(n), why);
 }
 
-static int needs_march(const masu_needs *n, const char **why) { return needs_cone2(n, why); }
+static int needs_march(const masu_needs *n, const char **why) { return needs_cone4(n, why); }
 
 static int needs_variant(const masu_needs *n, masu_march march, const char **why) {
     return decided(n->sdf && n->march == march, "rung.march asks for it",
@@ -116,8 +116,8 @@ static void march_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = rung->march_steps;
 }
 
-/* Cones of 8x8 alone: those of 2x2 make no step and hand on what they got. */
-static void cone2_params(const masu_rung *rung, struct masu_push *push) {
+/* Cones of 8x8 alone: those of 4x4 make no step and hand on what they got. */
+static void cone4_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = rung->march == MASU_MARCH_CONE8 ? 0 : rung->march_steps;
 }
 
@@ -151,15 +151,15 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         "cone8", "SDF: one cone per 8x8 block, marched while all of the cone is free",
         MASU_PASS_COMPUTE, MASU_EXTENT_BLOCK8, needs_tiles, march_params,
         {{MASU_RESOURCE_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_CONE8, MASU_WRITE}}, MASU_BLOB_CONE8_SPIRV},
-    [MASU_PASS_CONE2] = {
-        "cone2", "the same per 2x2 block, from where its 8x8 block stopped",
-        MASU_PASS_COMPUTE, MASU_EXTENT_BLOCK2, needs_cone2, cone2_params,
+    [MASU_PASS_CONE4] = {
+        "cone4", "the same per 4x4 block, from where its 8x8 block stopped",
+        MASU_PASS_COMPUTE, MASU_EXTENT_BLOCK4, needs_cone4, cone4_params,
         {{MASU_IMAGE_CONE8, MASU_READ}, {MASU_RESOURCE_TILES, MASU_READ_BUFFER},
-         {MASU_IMAGE_CONE2, MASU_WRITE}}, MASU_BLOB_CONE2_SPIRV},
+         {MASU_IMAGE_CONE4, MASU_WRITE}}, MASU_BLOB_CONE4_SPIRV},
     [MASU_PASS_MARCH] = {
         "march", "SDF: sphere tracing up to the raster depth; hits become G-buffer texels",
         MASU_PASS_COMPUTE, MASU_EXTENT_TILES, needs_march, march_params,
-        {{MASU_IMAGE_CONE2, MASU_READ}, {MASU_RESOURCE_TILES, MASU_READ_BUFFER},
+        {{MASU_IMAGE_CONE4, MASU_READ}, {MASU_RESOURCE_TILES, MASU_READ_BUFFER},
          {MASU_IMAGE_ALBEDO, MASU_UPDATE},
          {MASU_IMAGE_NORMAL, MASU_UPDATE}, {MASU_IMAGE_SCENE_DEPTH, MASU_UPDATE}}, MASU_BLOB_MARCH_SPIRV},
     [MASU_PASS_MARCH_CHECKERBOARD] = {
@@ -223,7 +223,7 @@ int masu_access_binds(masu_access access, int writes) {
 
 VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2D output) {
     uint32_t block = extent == MASU_EXTENT_BLOCK8   ? 8
-                     : extent == MASU_EXTENT_BLOCK2 ? 2
+                     : extent == MASU_EXTENT_BLOCK4 ? 4
                      : extent == MASU_EXTENT_TILE   ? MASU_TILE
                                                     : 1;
     if (extent == MASU_EXTENT_ONE) return (VkExtent2D){1, 1};

@@ -18,7 +18,7 @@ typedef enum masu_image_id {
     MASU_IMAGE_DEPTH,       /* raster depth, reverse-Z */
     MASU_IMAGE_SCENE_DEPTH, /* the nearer of raster and SDF, same encoding */
     MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
-    MASU_IMAGE_CONE2,       /* the same of each 2x2 block */
+    MASU_IMAGE_CONE4,       /* the same of each 4x4 block */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
     MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
@@ -40,12 +40,12 @@ typedef enum masu_image_class {
     MASU_CLASS_DEPTH,
     MASU_CLASS_COLOR
 } masu_image_class;
-/* Render and output size, and one texel per block of 8x8 or 2x2 render pixels. */
+/* Render and output size, and one texel per block of 8x8 or 4x4 render pixels. */
 typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
     MASU_EXTENT_BLOCK8,
-    MASU_EXTENT_BLOCK2,
+    MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
     MASU_EXTENT_TILES, /* the same, for active tiles only: indirect */
     MASU_EXTENT_ONE    /* one workgroup */
@@ -117,7 +117,7 @@ typedef enum masu_pass_id {
     MASU_PASS_UPDATE,
     MASU_PASS_CLASSIFY,
     MASU_PASS_CONE8,
-    MASU_PASS_CONE2,
+    MASU_PASS_CONE4,
     MASU_PASS_MARCH,
     MASU_PASS_MARCH_CHECKERBOARD,
     MASU_PASS_MARCH_PLAIN,

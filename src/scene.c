@@ -33,7 +33,7 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_MARCH_SPIRV, "march SPIR-V"),
     CODE(MASU_BLOB_CLASSIFY_SPIRV, "classify SPIR-V"),
     CODE(MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V"),
-    CODE(MASU_BLOB_CONE2_SPIRV, "cone2 SPIR-V"),
+    CODE(MASU_BLOB_CONE4_SPIRV, "cone4 SPIR-V"),
     CODE(MASU_BLOB_UPDATE_SPIRV, "update SPIR-V"),
     CODE(MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V"),
     CODE(MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V"),
@@ -321,7 +321,7 @@ static masu_result check_sdf(reader *r) {
     }
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
         int needed = k == MASU_BLOB_MARCH_SPIRV || k == MASU_BLOB_CLASSIFY_SPIRV ||
-                     k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE2_SPIRV;
+                     k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE4_SPIRV;
         if (!v->code[k].words && !needed) continue;
         if (!v->code[k].words || v->code[k].count < 5 || v->code[k].words[0] != 0x07230203u) {
             return bad(r, rules[k].name, 0, "is missing or is no SPIR-V");

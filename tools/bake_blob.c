@@ -53,7 +53,7 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_MARCH_SPIRV] = "march_spirv",
         [MASU_BLOB_CLASSIFY_SPIRV] = "classify_spirv",
         [MASU_BLOB_CONE8_SPIRV] = "cone8_spirv",
-        [MASU_BLOB_CONE2_SPIRV] = "cone2_spirv",
+        [MASU_BLOB_CONE4_SPIRV] = "cone4_spirv",
         [MASU_BLOB_UPDATE_SPIRV] = "update_spirv",
         [MASU_BLOB_PLAIN_SPIRV] = "plain_spirv",
         [MASU_BLOB_SEED_SPIRV] = "seed_spirv",

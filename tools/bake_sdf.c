@@ -73,9 +73,10 @@ static const char hand_written[] =
     "#define MASU_SDF_MASKED 1\n"
     "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
     "uint masu_sdf_nearest(vec3 p) { return 0u; }\n"
+    "float masu_sdf_with(vec3 p, out uint part) { part = 0u; return masu_sdf(p); }\n"
     "float masu_sdf_flat(vec3 o, vec3 d, float start, out uint part) { part = 1u; return 1e30; }\n"
     "vec3 masu_sdf_flat_normal(uint part) { return vec3(0); }\n"
-    "void masu_sdf_part_surface(uint part, inout masu_surface s) {}\n";
+    "void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s) { masu_sdf_surface(p, s); }\n";
 
 /* ---- the language of docs/sdf.md ---- */
 
@@ -306,7 +307,7 @@ static const struct {
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, DYNAMIC},
     {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
-    {"cone.comp", "-DMASU_CONE_BLOCK=2", "cone2.raw", "cone2.spv", MASU_BLOB_CONE2_SPIRV, ALWAYS},
+    {"cone.comp", "-DMASU_CONE_BLOCK=4", "cone4.raw", "cone4.spv", MASU_BLOB_CONE4_SPIRV, ALWAYS},
     {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
     {"march_plain.comp", NULL, "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
     {"march_seed.comp", NULL, "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},

@@ -372,20 +372,18 @@ static void put_glsl_dispatch(writer *w) {
     PUT(w, "    }\n    return d * safe;\n}\n\n");
 }
 
-static void put_head(writer *w, bool nearest) {
-    PUT(w, "%s(vec3 p)\n{\n    float d = 1e30;\n    uint count = masu_part_count();\n",
-        nearest ? "uint masu_sdf_nearest" : "float masu_sdf");
-    if (nearest) PUT(w, "    uint nearest = masu_part_at(0u);\n");
+static void put_head(writer *w) {
+    PUT(w, "float masu_sdf_with(vec3 p, out uint nearest)\n{\n    float d = 1e30;\n"
+           "    nearest = 0u;\n");
 }
 
 /* A part whose field is NaN is not there. */
-static void put_least(writer *w, bool nearest) {
-    if (nearest) PUT(w, "        nearest = f < d ? part : nearest;\n");
-    PUT(w, "        d = f < d ? f : d;\n");
+static void put_least(writer *w) {
+    PUT(w, "        nearest = f < d ? part : nearest;\n        d = f < d ? f : d;\n");
 }
 
 /* The half-spaces count always, unless the includer meets them in closed form. */
-static void put_flat_least(writer *w, bool nearest) {
+static void put_flat_least(writer *w) {
     const sdfc *c = w->c;
     if (!c->flat_parts) return;
     PUT(w, "#ifndef MASU_SDF_NO_FLAT\n");
@@ -395,27 +393,28 @@ static void put_flat_least(writer *w, bool nearest) {
         PUT(w, "    for (uint part = %du; part < %du; part++) {\n", group->first_part,
             group->first_part + group->part_count);
         put_part_value(w, g, "f", "p");
-        put_least(w, nearest);
+        put_least(w);
         PUT(w, "    }\n");
     }
     PUT(w, "#endif\n");
 }
 
-static void put_any_order(writer *w, bool nearest) {
-    put_head(w, nearest);
-    PUT(w, "    MASU_LOOP for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {\n"
+static void put_any_order(writer *w) {
+    put_head(w);
+    PUT(w, "    uint count = masu_part_count();\n"
+           "    MASU_LOOP for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {\n"
            "        if (i >= count) {\n            break;\n        }\n"
            "        uint part = masu_part_at(i);\n        float f = masu_sdf_part(part, p);\n");
-    put_least(w, nearest);
+    put_least(w);
     PUT(w, "    }\n");
-    put_flat_least(w, nearest);
-    PUT(w, "    return %s;\n}\n", nearest ? "nearest" : "d");
+    put_flat_least(w);
+    PUT(w, "    return d;\n}\n");
 }
 
 /* The parts of a form are known by number here: one alone is asked for and evaluated, several are
  * found bit by bit. Wrong turn: lists of numbers in memory for a few parts as well. On lavapipe each
  * lane fetches by itself, which cost more than the parts' own arithmetic. */
-static void put_masked_group(writer *w, int g, bool nearest) {
+static void put_masked_group(writer *w, int g) {
     const sdfc *c = w->c;
     const sdfc_group *group = &c->groups[g];
     int first = group->first_part, end = first + group->part_count;
@@ -427,8 +426,8 @@ static void put_masked_group(writer *w, int g, bool nearest) {
             PUT(w, "    if (masu_part_listed(%du)) {\n", first);
         }
         put_part_value(w, g, "f", "p");
-        if (nearest) PUT(w, "        const uint part = %du;\n", first);
-        put_least(w, nearest);
+        PUT(w, "        const uint part = %du;\n", first);
+        put_least(w);
         PUT(w, "    }\n");
         return;
     }
@@ -442,12 +441,12 @@ static void put_masked_group(writer *w, int g, bool nearest) {
                "        uint part = %du + masu_low_bit(bits);\n        bits &= bits - 1u;\n",
             word * 32);
         put_part_value(w, g, "f", "p");
-        put_least(w, nearest);
+        put_least(w);
         PUT(w, "    }\n");
     }
 }
 
-static void put_listed_group(writer *w, int g, bool nearest) {
+static void put_listed_group(writer *w, int g) {
     const sdfc *c = w->c;
     const sdfc_group *group = &c->groups[g];
     int end = group->first_part + group->part_count;
@@ -458,32 +457,26 @@ static void put_listed_group(writer *w, int g, bool nearest) {
         PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
     }
     put_part_value(w, g, "f", "p");
-    put_least(w, nearest);
+    put_least(w);
     PUT(w, "        i++;\n    }\n");
 }
 
 /* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
  * costs its own form and not all of them. Needs a list in rising order, or bits. */
-static void put_ascending(writer *w, bool nearest) {
+static void put_ascending(writer *w) {
     const sdfc *c = w->c;
     bool masked = c->part_count <= MASU_SDFC_MASKED_MAX;
-    if (masked) {
-        PUT(w, "%s(vec3 p)\n{\n    float d = 1e30;\n",
-            nearest ? "uint masu_sdf_nearest" : "float masu_sdf");
-        if (nearest) PUT(w, "    uint nearest = 0u;\n");
-    } else {
-        put_head(w, nearest);
-        PUT(w, "    uint i = 0u;\n");
-    }
+    put_head(w);
+    if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = 0u;\n");
     for (int g = 0; g < c->group_count; g++) {
         if (c->groups[g].flat) continue;
         if (masked)
-            put_masked_group(w, g, nearest);
+            put_masked_group(w, g);
         else
-            put_listed_group(w, g, nearest);
+            put_listed_group(w, g);
     }
-    put_flat_least(w, nearest);
-    PUT(w, "    return %s;\n}\n", nearest ? "nearest" : "d");
+    put_flat_least(w);
+    PUT(w, "    return d;\n}\n");
 }
 
 static void put_glsl(writer *w) {
@@ -510,15 +503,16 @@ static void put_glsl(writer *w) {
         "                masu_slot(record + 3u));\n}\n\n",
         MASU_SDFC_PART_SLOTS);
     PUT(w, "#ifdef MASU_SDF_ASCENDING\n");
-    put_ascending(w, false);
-    put_ascending(w, true);
+    put_ascending(w);
     PUT(w, "#else\n");
-    put_any_order(w, false);
-    put_any_order(w, true);
-    PUT(w, "#endif\n\n");
+    put_any_order(w);
+    PUT(w, "#endif\n\n"
+           "float masu_sdf(vec3 p)\n{\n    uint part;\n    return masu_sdf_with(p, part);\n}\n\n"
+           "uint masu_sdf_nearest(vec3 p)\n{\n    uint part;\n    masu_sdf_with(p, part);\n"
+           "    return part;\n}\n\n");
     put_flat(w);
     PUT(w,
-        "void masu_sdf_part_surface(uint part, inout masu_surface s)\n{\n"
+        "void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)\n{\n"
         "    uint material = uint(masu_slot(part * %uu + 7u));\n"
         "    uint at = %uu + material * %uu;\n"
         "    s.albedo = vec3(masu_slot(at), masu_slot(at + 1u), masu_slot(at + 2u));\n"
@@ -526,7 +520,7 @@ static void put_glsl(writer *w) {
         "    s.emissive = vec3(masu_slot(at + 4u), masu_slot(at + 5u), masu_slot(at + 6u));\n"
         "    s.metallic = masu_slot(at + 7u);\n}\n\n"
         "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
-        "    masu_sdf_part_surface(masu_sdf_nearest(p), s);\n}\n\n",
+        "    masu_sdf_part_surface(masu_sdf_nearest(p), p, s);\n}\n\n",
         MASU_SDFC_PART_SLOTS, (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
         MASU_SDFC_MATERIAL_SLOTS);
     PUT(w, "#ifdef MASU_SDF_SETUP\n");

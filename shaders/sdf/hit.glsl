@@ -14,12 +14,11 @@ float write_hit(uvec2 at, ray r, float t, bool known, uint part, float z_scale)
     vec3 n;
     if (known) {
         n = masu_normalize(masu_sdf_flat_normal(part), -r.direction);
-        masu_sdf_part_surface(part, s);
     } else {
-        n = normal_at(r, t);
-        masu_sdf_surface(p, s);
+        n = normal_at(r, t, part);
         masu_count(MASU_COUNTER_SDF_EVALS, 4u);
     }
+    masu_sdf_part_surface(part, p, s);
     masu_count(MASU_COUNTER_SDF_HITS, 1u);
     MASU_STORE_UNORM(albedo_image, at, masu_pack_albedo(s));
     MASU_STORE_UINT(normal_image, at, uvec4(masu_pack_normal(n, s)));

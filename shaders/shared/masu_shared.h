@@ -57,7 +57,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 
 /* Most sphere-tracing steps of one ray: the constant bound of the loop. A rung may ask for fewer.
  * */
-#define MASU_MARCH_STEPS_MAX 1024
+#define MASU_MARCH_STEPS_MAX 2048
 
 /* Counters, uint32 pairs (low, high). Reset by each frame, read back by masu_stats. */
 #define MASU_COUNTER_SDF_EVALS 0

@@ -176,7 +176,7 @@ static const struct {
     [MASU_BLOB_MARCH_SPIRV] = {2, 0},
     [MASU_BLOB_CLASSIFY_SPIRV] = {2, 0},
     [MASU_BLOB_CONE8_SPIRV] = {2, 0},
-    [MASU_BLOB_CONE2_SPIRV] = {2, 0},
+    [MASU_BLOB_CONE4_SPIRV] = {2, 0},
     [MASU_BLOB_UPDATE_SPIRV] = {1, 0},
     [MASU_BLOB_PLAIN_SPIRV] = {1, 1u << MASU_MARCH_PLAIN},
     [MASU_BLOB_SEED_SPIRV] = {1, 1u << MASU_MARCH_SEED},

@@ -132,7 +132,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if (parts & SUPPORT_SDF) {
         ADD(MASU_BLOB_CLASSIFY_SPIRV, code);
         ADD(MASU_BLOB_CONE8_SPIRV, code);
-        ADD(MASU_BLOB_CONE2_SPIRV, code);
+        ADD(MASU_BLOB_CONE4_SPIRV, code);
         if (parts & SUPPORT_VARIANTS) {
             ADD(MASU_BLOB_UPDATE_SPIRV, code);
             ADD(MASU_BLOB_PLAIN_SPIRV, code);

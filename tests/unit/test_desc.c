@@ -271,7 +271,7 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].sharpness", d.rungs[1].sharpness = -0.1f);
     BAD("rungs[].sharpness", d.rungs[0].sharpness = nan);
     BAD("rungs[].sharpness", d.rungs[0].sharpness = infinity);
-    BAD("rungs[].march_steps", d.rungs[1].march_steps = 257);
+    BAD("rungs[].march_steps", d.rungs[1].march_steps = 2049);
     BAD("rungs[].march_steps", d.rungs[1].march_steps = UINT32_MAX);
     BAD("rungs[].march", d.rungs[1].march = (masu_march)(MASU_MARCH_UNPRUNED + 1));
     BAD("rungs[].march", d.rungs[0].march = (masu_march)-1);

@@ -121,10 +121,10 @@ static void every_row_of_the_table_fits_what_is_derived_from_it(void **state) {
 #define CLASSIFY_ON_RASTER "classify(r:depth rb:slots w:scene_depth wb:tiles) "
 #define CLASSIFY_ALONE "classify(rb:slots w:scene_depth wb:tiles) "
 #define CONE8 "cone8(rb:tiles w:cone8) "
-#define CONE2 "cone2(r:cone8 rb:tiles w:cone2) "
-#define MARCH "march(r:cone2 rb:tiles u:albedo u:normal u:scene_depth) "
-#define MARCH_ON_RASTER CLASSIFY_ON_RASTER CONE8 CONE2 MARCH
-#define MARCH_ALONE CLASSIFY_ALONE CONE8 CONE2 MARCH
+#define CONE4 "cone4(r:cone8 rb:tiles w:cone4) "
+#define MARCH "march(r:cone4 rb:tiles u:albedo u:normal u:scene_depth) "
+#define MARCH_ON_RASTER CLASSIFY_ON_RASTER CONE8 CONE4 MARCH
+#define MARCH_ALONE CLASSIFY_ALONE CONE8 CONE4 MARCH
 #define LIGHT_RASTER "light(r:albedo r:normal r:depth w:hdr) "
 #define LIGHT_SDF "light(r:albedo r:normal r:scene_depth w:hdr) "
 #define TONEMAP "tonemap(r:hdr w:target)"
@@ -268,7 +268,7 @@ static void each_way_to_march_has_its_passes(void **state) {
         [MASU_MARCH_PLAIN] = "march_plain(rb:slots u:albedo u:normal w:scene_depth) ",
         [MASU_MARCH_FRAGMENT] = "march_fragment(rb:slots c:albedo c:normal c:scene_depth) ",
         [MASU_MARCH_SEED] = "march_seed(rb:slots u:albedo u:normal w:scene_depth) ",
-        [MASU_MARCH_CONE8] = MARCH_ALONE, /* its 2x2 cones make no step */
+        [MASU_MARCH_CONE8] = MARCH_ALONE, /* its 4x4 cones make no step */
         [MASU_MARCH_CONES] = MARCH_ALONE,
         [MASU_MARCH_CHECKERBOARD] = CLASSIFY_ALONE CONE8
         "march_checkerboard(r:cone8 rb:tiles u:albedo u:normal u:scene_depth) ",
@@ -309,16 +309,16 @@ static void knobs_of_a_way_to_march_reach_the_shaders(void **state) {
     (void)state;
     for (uint32_t march = 0; march <= MASU_MARCH_UNPRUNED; march++) {
         masu_rung rung = {.march = (masu_march)march, .march_steps = 77};
-        struct masu_push classify, cone8, cone2, last;
+        struct masu_push classify, cone8, cone4, last;
         memset(&classify, 0, sizeof classify);
-        cone8 = cone2 = last = classify;
+        cone8 = cone4 = last = classify;
         masu_passes[MASU_PASS_CLASSIFY].params(&rung, &classify);
         masu_passes[MASU_PASS_CONE8].params(&rung, &cone8);
-        masu_passes[MASU_PASS_CONE2].params(&rung, &cone2);
+        masu_passes[MASU_PASS_CONE4].params(&rung, &cone4);
         masu_passes[MASU_PASS_MARCH].params(&rung, &last);
         assert_int_equal(classify.index[1] != 0, march == MASU_MARCH_UNPRUNED);
         assert_int_equal(cone8.index[0], 77);
-        assert_int_equal(cone2.index[0], march == MASU_MARCH_CONE8 ? 0 : 77);
+        assert_int_equal(cone4.index[0], march == MASU_MARCH_CONE8 ? 0 : 77);
         assert_int_equal(last.index[0], 77);
     }
 }
@@ -535,9 +535,9 @@ static void images_live_from_their_first_to_their_last_pass(void **state) {
                  DEPTH | SAMPLED);
     assert_image(&plan, MASU_IMAGE_SCENE_DEPTH, MASU_PASS_CLASSIFY, MASU_PASS_LIGHT, 1920, 1080,
                  STORAGE | SAMPLED);
-    assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE2, 240, 135,
+    assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE4, 240, 135,
                  STORAGE | SAMPLED);
-    assert_image(&plan, MASU_IMAGE_CONE2, MASU_PASS_CONE2, MASU_PASS_MARCH, 960, 540,
+    assert_image(&plan, MASU_IMAGE_CONE4, MASU_PASS_CONE4, MASU_PASS_MARCH, 960, 540,
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_HDR, MASU_PASS_LIGHT, MASU_PASS_TONEMAP, 1920, 1080,
                  STORAGE | SAMPLED);
@@ -584,10 +584,10 @@ static void images_are_as_large_as_the_largest_rung_in_any_order(void **state) {
                  STORAGE | SAMPLED);
     assert_image(&plan, MASU_IMAGE_UPSCALED, MASU_PASS_EASU, MASU_PASS_RCAS, 1000, 10,
                  STORAGE | SAMPLED);
-    /* Blocks are counted up: 900x9 has two rows of 8x8, five of 2x2. */
-    assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE2, 113, 2,
+    /* Blocks are counted up: 900x9 has two rows of 8x8, three of 4x4. */
+    assert_image(&plan, MASU_IMAGE_CONE8, MASU_PASS_CONE8, MASU_PASS_CONE4, 113, 2,
                  STORAGE | SAMPLED);
-    assert_image(&plan, MASU_IMAGE_CONE2, MASU_PASS_CONE2, MASU_PASS_MARCH, 450, 5,
+    assert_image(&plan, MASU_IMAGE_CONE4, MASU_PASS_CONE4, MASU_PASS_MARCH, 225, 3,
                  STORAGE | SAMPLED);
 }
 
@@ -597,7 +597,7 @@ static void a_pass_that_writes_the_target_has_a_set_for_each_target(void **state
     masu_desc d = scene_desc(RASTER | SDF, 1920, 1080);
     d.targets.count = 3;
     compile(&d, &plan);
-    /* classify, cone8, cone2, march, light, tonemap x 3; then twice: these once, easu, rcas x 3 */
+    /* classify, cone8, cone4, march, light, tonemap x 3; then twice: these once, easu, rcas x 3 */
     assert_int_equal(plan.pass_sets, (5 + 3) + 2 * (7 + 3));
     d.targets.storage = 0; /* the blit needs none */
     compile(&d, &plan);
@@ -741,7 +741,7 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth and final, cone8, cone2: 4 bytes each per texel */
+    /* scene_depth and final, cone8, cone4: 4 bytes each per texel */
     assert_int_equal(info.left_out_bytes, 4 * (2 * 1920 * 1080 + 240 * 135 + 960 * 540));
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);

@@ -82,7 +82,7 @@ static const struct {
 } codes[] = {{MASU_BLOB_MARCH_SPIRV, "march SPIR-V", 1},
              {MASU_BLOB_CLASSIFY_SPIRV, "classify SPIR-V", 1},
              {MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V", 1},
-             {MASU_BLOB_CONE2_SPIRV, "cone2 SPIR-V", 1},
+             {MASU_BLOB_CONE4_SPIRV, "cone4 SPIR-V", 1},
              {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 0},
              {MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V", 0},
              {MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V", 0},
