@@ -151,7 +151,7 @@ void write_list(uint tile, uvec2 size, bool flat_seen)
             if (bits == 0u) {
                 break;
             }
-            masu_tiles_out[next] = uint(w) * 32u + uint(findLSB(bits));
+            masu_tiles_out[next] = uint(w) * 32u + masu_low_bit(bits);
             bits &= bits - 1u;
             next++;
         }

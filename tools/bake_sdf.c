@@ -65,19 +65,6 @@ static void append_scene_header(masu_bake_buffer *text, const masu_bake_content 
 
 _Static_assert(MASU_SDFC_MASKED_MAX == MASU_TILE_MASKED_MAX, "the compiler and the tiles agree");
 
-/* What masu-sdfc would have generated besides the field: a hand-written one is a single part without
- * bounds. */
-static const char hand_written[] =
-    "#define MASU_SDF_PART_COUNT 1\n"
-    "#define MASU_SDF_LISTED_COUNT 1\n"
-    "#define MASU_SDF_MASKED 1\n"
-    "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
-    "uint masu_sdf_nearest(vec3 p) { return 0u; }\n"
-    "float masu_sdf_with(vec3 p, out uint part) { part = 0u; return masu_sdf(p); }\n"
-    "float masu_sdf_flat(vec3 o, vec3 d, float start, out uint part) { part = 1u; return 1e30; }\n"
-    "vec3 masu_sdf_flat_normal(uint part) { return vec3(0); }\n"
-    "void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s) { masu_sdf_surface(p, s); }\n";
-
 /* ---- the language of docs/sdf.md ---- */
 
 static bool is_sdf(const char *path) {
@@ -160,7 +147,7 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
             append_scene_header(&text, content, glsl_path);
             masu_bake_append(&text, own.data, own.bytes);
             masu_bake_append_text(&text, "\n");
-            masu_bake_append_text(&text, hand_written);
+            masu_bake_append_text(&text, "#include \"sdf/hand_written.glsl\"\n");
             static const float no_slot = 0.0f;
             masu_bake_append(&content->section[MASU_BLOB_SLOTS], &no_slot, sizeof no_slot);
         }

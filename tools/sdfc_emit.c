@@ -423,7 +423,7 @@ static void put_masked_group(writer *w, int g) {
         if (alone) {
             PUT(w, "    {\n");
         } else {
-            PUT(w, "    if (masu_part_listed(%du)) {\n", first);
+            PUT(w, "    if ((masu_part_bits(%d) & 0x%xu) != 0u) {\n", first / 32, 1u << first % 32);
         }
         put_part_value(w, g, "f", "p");
         PUT(w, "        const uint part = %du;\n", first);

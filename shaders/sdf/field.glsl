@@ -64,18 +64,6 @@ uint masu_part_bits(int word)
     return masu_list_bits[word];
 }
 
-bool masu_part_listed(uint part)
-{
-    return (masu_list_bits[part >> 5] >> (part & 31u) & 1u) != 0u;
-}
-
-/* findLSB by the exponent of the lowest bit alone: lavapipe has no vector instruction for findLSB, which
- * cost more than the part that it found. */
-uint masu_low_bit(uint bits)
-{
-    return (floatBitsToUint(float(bits & (~bits + 1u))) >> 23) - 127u;
-}
-
 uint masu_part_count();
 
 uint masu_part_at(uint i)

@@ -144,4 +144,11 @@ vec3 masu_normalize(vec3 v, vec3 fallback)
     return usable ? u : fallback;
 }
 
+/* findLSB of what is not 0, by the exponent of the lowest bit alone: no vector instruction of a CPU does
+ * findLSB. */
+uint masu_low_bit(uint bits)
+{
+    return (floatBitsToUint(float(bits & (~bits + 1u))) >> 23) - 127u;
+}
+
 #endif

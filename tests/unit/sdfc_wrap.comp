@@ -15,6 +15,7 @@ float masu_slot(uint i) { return slots[i]; }
 void masu_slot_write(uint i, float v) { slots[i] = v; }
 uint masu_part_count() { return count; }
 uint masu_part_at(uint i) { return i; }
+uint masu_part_bits(int word) { return 0xFFFFFFFFu; }
 #include "sdf_scene.glsl"
 void main() {
     if (gl_GlobalInvocationID.x == 0xFFFFFFFFu) masu_sdf_update();

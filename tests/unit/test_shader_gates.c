@@ -276,9 +276,7 @@ static void write_field(const char *field, char path[128]) {
     }
     (void)snprintf(text + at, sizeof text - at,
                    "#include \"%s\"\n"
-                   "#define MASU_SDF_PART_COUNT 1\n"
-                   "vec4 masu_sdf_bounds(uint part) { return vec4(0, 0, 0, -1); }\n"
-                   "uint masu_sdf_nearest(vec3 p) { return 0u; }\n",
+                   "#include \"sdf/hand_written.glsl\"\n",
                    field);
     write_file("sdf_scene.glsl", text, path);
 }

@@ -1,0 +1,39 @@
+/*
+ * hand_written.glsl: what masu-sdfc generates besides the field, for a field that was written by hand:
+ * one part, without bounds, and no half-spaces.
+ */
+#define MASU_SDF_PART_COUNT 1
+#define MASU_SDF_LISTED_COUNT 1
+#define MASU_SDF_MASKED 1
+
+vec4 masu_sdf_bounds(uint part)
+{
+    return vec4(0.0, 0.0, 0.0, -1.0);
+}
+
+float masu_sdf_with(vec3 p, out uint part)
+{
+    part = 0u;
+    return masu_sdf(p);
+}
+
+uint masu_sdf_nearest(vec3 p)
+{
+    return 0u;
+}
+
+float masu_sdf_flat(vec3 o, vec3 d, float start, out uint part)
+{
+    part = 1u;
+    return 1e30;
+}
+
+vec3 masu_sdf_flat_normal(uint part)
+{
+    return vec3(0.0);
+}
+
+void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)
+{
+    masu_sdf_surface(p, s);
+}
