@@ -110,7 +110,7 @@ demo-picture: $(BUILD)/bin/masu $(BUILD)/scenes/$(WORLD).masu
 	$(V)$(BUILD)/bin/masu render $(BUILD)/scenes/$(WORLD).masu -o $(BUILD)/demo.png --size $(SIZE)
 	@echo "The picture is $(abspath $(BUILD)/demo.png)"
 
-.PHONY: check check-built unit gpu fuzz coverage
+.PHONY: check check-built unit gpu stiff fuzz coverage
 check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=
 	+$(V)$(more) check-built
 
@@ -123,6 +123,11 @@ unit: all scenes $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulka
 gpu: | $(filter unit,$(MAKECMDGOALS)) # they use one folder for results
 gpu: all scenes $(GPU_TESTS) $(DRIVER_INFO) ## run the tests that need one: DRIVERS=all TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_GPU)
+
+stiff: all scenes $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the march's errors on stiff scenes: DRIVERS=all
+	$(V)$(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_stiff; code=$$?; \
+	    for f in $(BUILD)/test-results/*/test_stiff.log; do \
+	        echo; echo "$$f"; grep '^|\|^  figures' "$$f"; done; exit $$code
 
 fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 	+$(V)$(more) config=fuzz CC=clang fuzz-$(FUZZ)

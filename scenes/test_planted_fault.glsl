@@ -2,7 +2,7 @@
 
 float masu_sdf(vec3 p)
 {
-    return length(p) - 0.5 + 1e-30 * float(masu_counters[uint(masu_param(MASU_PARAM_OFFSET))]);
+    return length(p) - 0.5 + 1e-30 * masu_slot(uint(masu_param(MASU_PARAM_OFFSET)));
 }
 
 void masu_sdf_surface(vec3 p, inout masu_surface s)

@@ -8,6 +8,8 @@
 #                             which tests/fuzz/seed_NAME.c writes where no file will do
 #   tests/unit/support*.c     linked to every program of the folder, as is tests/gpu/support*.c
 #   tests/reference/*.c       linked to everything
+#   tests/stiff/NAME.json     a scene with NAME.sdf beside it, baked to $(BUILD)/stiff for test_stiff,
+#                             with its truth in double precision
 
 # TESTS="arena frame" leaves only those.
 TESTS ?=
@@ -40,6 +42,21 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_LIBS)
 	$(link)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
+
+# ---- Stiff and extreme scenes --------------------------------------------------------------------
+
+STIFF := $(patsubst tests/stiff/%.json,$(BUILD)/stiff/%.masu,$(wildcard tests/stiff/*.json))
+
+$(BUILD)/stiff/%.masu: tests/stiff/%.json tests/stiff/%.sdf $(BUILD)/bin/masu-bake
+	@mkdir -p $(@D)
+	@echo "  BAKE    $<"
+	$(V)$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $< -o $@ --quiet
+
+$(BUILD)/stiff/%.truth.c: tests/stiff/%.sdf $(BUILD)/bin/masu-sdfc
+	@mkdir -p $(@D)
+	$(V)$(BUILD)/bin/masu-sdfc $< --c $@ --quiet
+
+$(BUILD)/tests/gpu/test_stiff: | $(STIFF) $(STIFF:.masu=.truth.so)
 
 # ---- Fuzzing. Seeds are whole files; without any, a fuzzer starts from nothing. ------------------
 

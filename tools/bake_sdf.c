@@ -3,6 +3,7 @@
 #include "bake_sdf.h"
 #include "bake_file.h"
 #include "bake_process.h"
+#include "bake_try.h"
 #include "cli.h"
 #include "scene_sources.h"
 #include "shared/masu_shared.h"
@@ -104,10 +105,10 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     *dynamic = scene->dynamic;
 }
 
+/* `scene` is the caller's to release, whatever is returned. */
 static bool compile_scene(const char *path, masu_bake_content *content, masu_bake_buffer *out,
-                          bool *dynamic) {
+                          bool *dynamic, masu_sdfc_result *scene) {
     masu_bake_buffer own = {0};
-    masu_sdfc_result scene;
     char error[2048];
     if (!masu_bake_read_file(path, MASU_SDFC_SOURCE_MAX, &own)) return false;
     masu_cli_progress("compiling %s", path);
@@ -117,22 +118,21 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
         masu_bake_release(&own);
         return false;
     }
-    good = masu_sdfc_compile((const char *)own.data, own.bytes, path, &scene, error, sizeof error);
+    good = masu_sdfc_compile((const char *)own.data, own.bytes, path, scene, error, sizeof error);
     if (good) {
-        report_lines(scene.warnings, true);
-        take_params(&scene, content);
-        take_parts(&scene, content, dynamic);
-        masu_bake_append_text(out, scene.glsl);
+        report_lines(scene->warnings, true);
+        take_params(scene, content);
+        take_parts(scene, content, dynamic);
+        masu_bake_append_text(out, scene->glsl);
     } else {
         report_lines(error, false);
     }
-    masu_sdfc_release(&scene);
     masu_bake_release(&own);
     return good;
 }
 
 static bool lay_out(const char *directory, masu_bake_content *content, const char *glsl_path,
-                    bool *dynamic) {
+                    bool *dynamic, masu_sdfc_result *scene) {
     for (size_t i = 0; i < sizeof masu_scene_sources / sizeof masu_scene_sources[0]; i++) {
         const char *name = masu_scene_sources[i].name, *text = masu_scene_sources[i].text;
         if (name && !write_text(directory, name, text, strlen(text))) return false;
@@ -140,7 +140,7 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
     masu_bake_buffer text = {0}, own = {0};
     bool good;
     if (is_sdf(glsl_path)) {
-        good = compile_scene(glsl_path, content, &text, dynamic);
+        good = compile_scene(glsl_path, content, &text, dynamic, scene);
     } else {
         good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
         if (good) {
@@ -152,7 +152,8 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
             masu_bake_append(&content->section[MASU_BLOB_SLOTS], &no_slot, sizeof no_slot);
         }
     }
-    good = good && write_text(directory, "sdf_scene.glsl", text.data, text.bytes);
+    good = good && write_text(directory, "sdf_scene.glsl", text.data, text.bytes) &&
+           write_text(directory, "try.comp", masu_bake_try_source, strlen(masu_bake_try_source));
     masu_bake_release(&own);
     masu_bake_release(&text);
     return good;
@@ -309,6 +310,30 @@ static bool wanted(int when, bool dynamic, bool variants, bool has_raster) {
     return when == ALWAYS || variants;
 }
 
+/* After the others: what does not compile is reported under the march's name, as it always is. */
+static bool try_blocks(const masu_sdfc_result *scene, const char *directory, char *include_here,
+                       char *include_scene, const char *path) {
+    masu_bake_buffer spirv = {0};
+    if (!masu_bake_try_needed(scene)) return true;
+    paths p = {masu_bake_join(directory, "try.comp"),
+               masu_bake_join(directory, "try.raw"),
+               masu_bake_join(directory, "try.spv"),
+               include_here,
+               include_scene,
+               NULL,
+               "comp"};
+    masu_cli_progress("trying %s", path);
+    bool good =
+        run_tools(&p, false, directory, path) &&
+        masu_bake_read_file(p.optimised, SPIRV_MAX, &spirv) &&
+        masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, path);
+    masu_bake_release(&spirv);
+    free(p.source);
+    free(p.raw);
+    free(p.optimised);
+    return good;
+}
+
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
@@ -317,7 +342,8 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, 
          *include_scene = include_option(scene_directory);
     bool has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0;
     bool dynamic = false;
-    bool good = lay_out(directory, content, glsl_path, &dynamic);
+    masu_sdfc_result scene = {0};
+    bool good = lay_out(directory, content, glsl_path, &dynamic, &scene);
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         if (!wanted(scene_shaders[i].when, dynamic, variants, has_raster)) continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
@@ -333,6 +359,8 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, 
         free(p.raw);
         free(p.optimised);
     }
+    good = good && try_blocks(&scene, directory, include_here, include_scene, glsl_path);
+    masu_sdfc_release(&scene);
     free(include_here);
     free(include_scene);
     free(scene_directory);

@@ -46,6 +46,7 @@ typedef struct masu_sdfc_part {
     double low[3], high[3];   /* may be infinite */
     bool dynamic;             /* some of its slots depend on parameters or time */
     bool truth;               /* the C evaluates it */
+    bool user;                /* holds a glsl block: not checked by the compiler */
 } masu_sdfc_part;
 
 typedef struct masu_sdfc_param {

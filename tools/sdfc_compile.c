@@ -57,6 +57,7 @@ static void fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     memcpy(out->high, f->box.high, sizeof out->high);
     out->radius = isfinite(f->radius) ? f->radius : -1;
     out->truth = f->truth;
+    out->user = f->user;
     for (int a = 0; a < p->program.arg_count; a++) {
         out->dynamic = out->dynamic || c->exprs[p->program.args[a]].dynamic;
     }

@@ -400,6 +400,12 @@ static void put_flat_least(writer *w) {
 }
 
 static void put_any_order(writer *w) {
+    if (w->c->part_count == 1 && !w->c->flat_parts) {
+        PUT(w, "float masu_sdf_with(vec3 p, out uint nearest)\n{\n    nearest = 0u;\n"
+               "    float f = masu_part_count() > 0u ? masu_sdf_part(0u, p) : 1e30;\n"
+               "    return f < 1e30 ? f : 1e30;\n}\n");
+        return;
+    }
     put_head(w);
     PUT(w, "    uint count = masu_part_count();\n"
            "    MASU_LOOP for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {\n"

@@ -51,7 +51,7 @@ $(BUILD)/march/%.truth.c: scenes/%.sdf $(BUILD)/bin/masu-sdfc
 	@mkdir -p $(@D)
 	$(V)$(BUILD)/bin/masu-sdfc $< --c $@ --quiet
 
-$(BUILD)/march/%.truth.so: $(BUILD)/march/%.truth.c
+%.truth.so: %.truth.c
 	@echo "  TRUTH   $@"
 	$(V)$(CC) -std=c11 -O2 -w -shared -fPIC -o $@ $< -lm
 

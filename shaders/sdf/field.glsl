@@ -134,7 +134,6 @@ struct ray {
     vec3 direction; /* unit */
     float pixel;    /* width of a pixel's cone at distance 1 */
     float start, limit;
-    float rounding; /* what fp32 cannot resolve in the field near the eye */
 };
 
 vec3 world_at(vec3 direction, float t)
@@ -151,17 +150,12 @@ float step_at(ray r, float t, out bool usable)
     return usable ? f : 0.0;
 }
 
-/* What fp32 cannot resolve in the field at t: 8 ulp of the largest coordinate that the ray can have
- * there; the field's own rounding is up to 6.1 ulp of it. */
+/* What fp32 cannot resolve in the field at t: 8 ulp of the largest coordinate there; the field's own
+ * rounding is up to 6.1 ulp of it. */
 float resolution(ray r, float t)
 {
-    return r.rounding + 8.0 * ulp * t;
-}
-
-float rounding_at_eye()
-{
-    vec3 eye = abs(frame.eye_hi.xyz);
-    return 8.0 * ulp * max(eye.x, max(eye.y, eye.z));
+    vec3 p = abs(world_at(r.direction, t));
+    return 8.0 * ulp * max(max(p.x, max(p.y, p.z)), t);
 }
 
 /* Entry and exit of the SDF's bounds. A component of the direction that is zero is replaced by a

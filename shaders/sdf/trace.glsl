@@ -31,7 +31,6 @@ ray pixel_ray(uvec2 at, uvec2 size, float raster, out float z_scale)
     if (raster > 0.0) {
         r.limit = min(r.limit, near / raster * z_scale); /* a tie goes to the raster */
     }
-    r.rounding = rounding_at_eye();
     clip_to_bounds(r);
     return r;
 }
@@ -223,6 +222,10 @@ void refine(ray r, inout march_end m)
     float high_f = m.f;
     float low_f = m.before_f;
     bool found = !(m.f < -tolerance(r, m.t)) || !(m.before_t < m.t);
+    if (found) { /* what is left, by the last slope, without another look */
+        float rate = (m.t - m.before_t) / max(m.before_f - m.f, 1e-30);
+        m.t = max(m.t + m.f * clamp(rate, 0.0, 16.0), m.before_t);
+    }
     MASU_LOOP for (int i = 0; i < 12; i++) {
         if (found) {
             break;

@@ -282,6 +282,40 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
     close_session(&s);
 }
 
+/* The camera is inside an SDF solid, which a ray meets where it begins: at the near plane, depth 1.
+ * A plate lies exactly there, with numbers that floats hold. */
+static void at_the_same_depth_the_polygon_wins(void **state) {
+    (void)state;
+    static picture p;
+    masu_session s;
+    open_for_pictures(&s, "test_tie");
+    const masu_camera c = {.position = {0, 0.5, 0},
+                           .forward = {0, -1, 0},
+                           .up = {0, 0, -1},
+                           .fov_y = 0.7f,
+                           .near_distance = 0.5f};
+    masu_frame_desc frame = {.camera = &c};
+    uint32_t plate[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        /* On the near plane; behind it; on it again. */
+        const float rows[12] = {1, 0, 0, 0, 0, 1, 0, i == 1 ? -0.25f : 0, 0, 0, 1, 0};
+        assert_int_equal(masu_instance_set_transform(s.m, masu_instance_find(s.m, "plate"), rows),
+                         MASU_OK);
+        take_picture(&s, &frame, &p);
+        for (uint32_t k = 0; k < W * H; k++) {
+            assert_true(p.depth[k] == 0.5f); /* view depth: near / 1 */
+            plate[i] += p.albedo[4 * k + 2] > p.albedo[4 * k];
+        }
+    }
+    /* A plate of 0.25 at 0.5, where the picture's height is 0.365. */
+    print_message("  the plate has %u pixels on the near plane, %u behind it\n", plate[0],
+                  plate[1]);
+    assert_in_range(plate[0], 131 * 131, 133 * 133);
+    assert_int_equal(plate[1], 0);
+    assert_int_equal(plate[2], plate[0]);
+    close_session(&s);
+}
+
 static void a_million_metres_from_the_origin_polygons_look_the_same(void **state) {
     (void)state;
     static picture here, there;
@@ -313,6 +347,7 @@ int main(void) {
         cmocka_unit_test(a_sphere_is_the_same_as_mesh_as_sdf_and_in_double_precision),
         cmocka_unit_test(a_parameter_sets_the_radius_and_is_clamped_to_its_range),
         cmocka_unit_test(the_nearer_of_polygon_and_sdf_wins_at_every_pixel),
+        cmocka_unit_test(at_the_same_depth_the_polygon_wins),
         cmocka_unit_test(a_million_metres_from_the_origin_polygons_look_the_same),
     };
     return cmocka_run_group_tests_name("agreement", tests, NULL, NULL);

@@ -160,6 +160,26 @@ static void light_beyond_what_halves_hold_is_clamped_and_not_infinite(void **sta
     close_session(&s);
 }
 
+/* The field adds 2^17 to a counter in each of its evaluations, which another counter counts. */
+static void a_counter_carries_into_its_high_word(void **state) {
+    (void)state;
+    masu_session s;
+    masu_stats_info stats;
+    masu_commands commands;
+    masu_frame_desc frame = {0};
+    masu_session_desc d = test_desc("test_counter_carry", 256, 192);
+    d.desc.rung_count = 1;
+    d.desc.rungs[0].scale = 1.0f;
+    open_session(&s, &d);
+    for (int i = 0; i < 2; i++) { /* and the next frame begins at 0 again */
+        draw(&s, &frame, &commands, NULL);
+        assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+        assert_true(stats.sdf_evals > 1u << 15);
+        assert_int_equal(stats.replaced, stats.sdf_evals << 17);
+    }
+    close_session(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_field_of_nan_and_infinity_is_a_miss_and_breaks_nothing_beside_it),
@@ -168,6 +188,7 @@ int main(void) {
         cmocka_unit_test(rays_that_run_out_of_steps_are_counted_and_never_drawn_by_default),
         cmocka_unit_test(views_beside_behind_and_far_from_the_bounds_draw_only_sky),
         cmocka_unit_test(axis_parallel_views_are_not_special),
+        cmocka_unit_test(a_counter_carries_into_its_high_word),
         cmocka_unit_test(light_beyond_what_halves_hold_is_clamped_and_not_infinite),
     };
     return cmocka_run_group_tests_name("extremes", tests, NULL, NULL);

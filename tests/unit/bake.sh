@@ -82,6 +82,7 @@ accepts scenes/test_both.json --output="$folder/out/a.masu" --quiet
 accepts "-o$folder/out/b.masu" -- scenes/test_both.json
 says stdout 'b.masu: [0-9]* bytes, 24 vertices, 12 triangles'
 cmp "$folder/out/a.masu" "$folder/out/b.masu" || fail "the same scene gives other bytes"
+accepts scenes/test_planted_fault.json -o "$folder/out/c.masu" --variants --quiet
 
 # ---- files ---------------------------------------------------------------------------------------
 

@@ -303,6 +303,7 @@ static void a_march_that_the_blob_has_no_code_for_is_a_scene_error(void **state)
             assert_string_equal(detail.what, "rungs[].march");
             assert_non_null(strstr(detail.text, "rungs[1].march"));
             support_scene.sdf_march |= 1u << march;
+            if (parts & RASTER && march == MASU_MARCH_FRAGMENT) continue; /* below */
             compile(&d, &plan);
             d.rung_count = 1; /* then it stands behind the count */
             support_scene.sdf_march = always;
@@ -313,6 +314,25 @@ static void a_march_that_the_blob_has_no_code_for_is_a_scene_error(void **state)
     d.rung_count = 1;
     d.rungs[0].march = MASU_MARCH_SEED;
     compile(&d, &plan);
+}
+
+/* Whatever code the blob has. */
+static void a_march_as_fragment_shader_beside_polygons_is_refused_in_one_line(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    for (int code = 0; code < 2; code++) {
+        masu_desc d = scene_desc(RASTER | SDF, 64, 64);
+        masu_detail detail;
+        if (code) support_scene.sdf_march |= 1u << MASU_MARCH_FRAGMENT;
+        d.rung_count = 2;
+        d.rungs[1].march = MASU_MARCH_FRAGMENT;
+        assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), MASU_ERROR_SCENE);
+        assert_string_equal(detail.what, "rungs[].march");
+        assert_string_equal(detail.text, "rungs[1].march is MASU_MARCH_FRAGMENT, which erases "
+                                         "polygons: the scene has 3 instances");
+        d.rungs[1].march = MASU_MARCH_AUTO;
+        compile(&d, &plan);
+    }
 }
 
 static void a_rung_that_needs_upscaling_cannot_switch_it_off(void **state) {
@@ -462,6 +482,7 @@ int main(void) {
         cmocka_unit_test(a_bad_source_is_named),
         cmocka_unit_test(a_bad_rung_is_named),
         cmocka_unit_test(a_march_that_the_blob_has_no_code_for_is_a_scene_error),
+        cmocka_unit_test(a_march_as_fragment_shader_beside_polygons_is_refused_in_one_line),
         cmocka_unit_test(a_rung_that_needs_upscaling_cannot_switch_it_off),
         cmocka_unit_test(the_extremes_of_each_range_are_accepted),
         cmocka_unit_test(refusals_say_what_was_given_and_what_is_allowed),

@@ -418,6 +418,13 @@ static void code_compiled_for_other_instances_is_refused(void **state) {
     assert_refused("sdf", 0);
 }
 
+static void march_fragment_code_beside_polygons_is_refused(void **state) {
+    (void)state;
+    /* In place of code that such a blob may have, and of the last kind: the order stays. */
+    REFUSED("march_fragment SPIR-V", 0, ROW(CHECKERBOARD_SPIRV)->kind = MASU_BLOB_FRAGMENT_SPIRV);
+    assert_non_null(strstr(detail.text, "polygons"));
+}
+
 static void an_sdf_parameter_outside_its_range_is_refused(void **state) {
     (void)state;
     for (size_t i = 0; i < COUNT(not_finite); i++) {
@@ -509,6 +516,7 @@ int main(void) {
         cmocka_unit_test(parts_of_an_sdf_that_is_missing_are_refused),
         cmocka_unit_test(an_sdf_out_of_range_is_refused),
         cmocka_unit_test(code_compiled_for_other_instances_is_refused),
+        cmocka_unit_test(march_fragment_code_beside_polygons_is_refused),
         cmocka_unit_test(an_sdf_parameter_outside_its_range_is_refused),
         cmocka_unit_test(an_sdf_without_code_is_refused),
         cmocka_unit_test(an_sdf_without_slots_that_are_finite_is_refused),

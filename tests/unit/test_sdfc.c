@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include <dlfcn.h>
+#include <glob.h>
 #include <math.h>
 #include <unistd.h>
 
@@ -479,10 +480,39 @@ static void one_sphere_has_the_code_of_one_sphere(void **state) {
     assert_int_equal(count(result.glsl, "masu_h_sphere("), 2);
     assert_int_equal(count(result.glsl, "masu_h_"), 2);
     assert_int_equal(count(result.glsl, "switch"), 0);
+    assert_int_equal(count(result.glsl, "for ("), 0);
+    assert_int_equal(count(result.glsl, "masu_part_at("), 0);
     assert_int_equal(count(result.glsl, ", 1.5)"), 1); /* a literal, no slot */
     assert_int_equal(result.slot_count, MASU_SDFC_PART_SLOTS + MASU_SDFC_MATERIAL_SLOTS);
     assert_false(result.dynamic);
     masu_sdfc_release(&result);
+}
+
+/* Each function of the library that a scene's GLSL defines is called in it. */
+static void no_scene_has_a_function_that_it_does_not_call(void **state) {
+    (void)state;
+    uint32_t functions = 0;
+    glob_t scenes;
+    assert_int_equal(glob("scenes/*.sdf", 0, NULL, &scenes), 0);
+    for (size_t i = 0; i < scenes.gl_pathc; i++) {
+        static char text[1 << 16];
+        masu_sdfc_result result;
+        FILE *f = fopen(scenes.gl_pathv[i], "rb");
+        assert_non_null(f);
+        size_t bytes = fread(text, 1, sizeof text, f);
+        fclose(f);
+        assert_compiles(text, bytes, &result);
+        for (const char *at = result.glsl; (at = strstr(at, "\nreal masu_h_"));) {
+            char call[128];
+            at += strlen("\nreal ");
+            snprintf(call, sizeof call, "%.*s(", (int)strcspn(at, "("), at);
+            if (count(result.glsl, call) < 2) fail_msg("%s: %s", scenes.gl_pathv[i], call);
+            functions++;
+        }
+        masu_sdfc_release(&result);
+    }
+    globfree(&scenes);
+    assert_true(functions > 20);
 }
 
 static void parts_of_one_form_share_its_code(void **state) {
@@ -668,6 +698,7 @@ int main(void) {
         cmocka_unit_test(the_scene_is_the_union_of_its_parts),
         cmocka_unit_test(glsl_of_all_features_compiles),
         cmocka_unit_test(one_sphere_has_the_code_of_one_sphere),
+        cmocka_unit_test(no_scene_has_a_function_that_it_does_not_call),
         cmocka_unit_test(parts_of_one_form_share_its_code),
         cmocka_unit_test(the_same_text_gives_the_same_result),
         cmocka_unit_test(mistakes_name_their_place),

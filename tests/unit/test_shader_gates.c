@@ -286,9 +286,6 @@ static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
     uint32_t loops = 0;
     for (size_t i = 0; i < COUNT(scene_shaders); i++) {
         if (scene_shaders[i].dynamic && !dynamic) continue;
-        /* This field counts its faults, and a fragment shader counts nothing. */
-        int counts = strstr(field, "planted_fault") != NULL;
-        if (counts && !strcmp(scene_shaders[i].source, "march_fragment.frag")) continue;
         for (int raster = 0; raster < scene_shaders[i].sides; raster++) {
             char path[64], name[256], options[256];
             spirv_module m;
@@ -333,6 +330,43 @@ static void scene_shaders_pass_with_what_masu_sdfc_writes(void **state) {
     uint32_t loops = assert_scene_shaders_pass("features.sdf", 1);
     assert_int_equal(remove(wrapper), 0);
     printf("%u loops\n", loops);
+}
+
+/* Words of march.comp with the field of a .sdf file, and its loops. */
+static size_t march_words(const char *sdf, uint32_t *loops) {
+    char command[512], options[256], wrapper[128];
+    spirv_module m;
+    (void)snprintf(wrapper, sizeof wrapper, "%s/sdf_scene.glsl", directory);
+    (void)snprintf(command, sizeof command, "%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 %s",
+                   build_folder(), wrapper, sdf);
+    assert_int_equal(system(command), 0);
+    (void)snprintf(options, sizeof options, "-Ishaders -I%s -DMASU_HAS_RASTER=0", directory);
+    assert_true(spirv_compile("shaders/march.comp", options, &m));
+    size_t words = m.word_count;
+    *loops = assert_passes(&m, sdf);
+    spirv_free(&m);
+    assert_int_equal(remove(wrapper), 0);
+    return words;
+}
+
+static void a_march_has_the_code_that_its_scene_needs(void **state) {
+    (void)state;
+    char one[128], two[128];
+    write_file("one.sdf", "part a = sphere(1);\n", one);
+    write_file("two.sdf", "part a = sphere(1);\npart b = box((1, 2, 3));\n", two);
+    uint32_t loops[4];
+    size_t single = march_words(one, &loops[0]), pair = march_words(two, &loops[1]);
+    size_t parts = march_words("scenes/parts300.sdf", &loops[2]);
+    size_t city = march_words("scenes/city.sdf", &loops[3]);
+    printf("march.comp: %zu words with a sphere, %zu with a box too, %zu with 300 parts, %zu with "
+           "the city\n",
+           single, pair, parts, city);
+    assert_true(single < pair && pair < parts && parts < city);
+    /* None over parts: those of march.comp itself. */
+    assert_int_equal(loops[0], loops[1]);
+    assert_true(loops[2] > loops[0]);
+    assert_int_equal(remove(one), 0);
+    assert_int_equal(remove(two), 0);
 }
 
 static void the_code_in_every_baked_scene_passes(void **state) {
@@ -386,6 +420,7 @@ int main(void) {
         cmocka_unit_test(every_shader_of_the_library_passes),
         cmocka_unit_test(scene_shaders_pass_with_every_field_of_the_scenes),
         cmocka_unit_test(scene_shaders_pass_with_what_masu_sdfc_writes),
+        cmocka_unit_test(a_march_has_the_code_that_its_scene_needs),
         cmocka_unit_test(the_code_in_every_baked_scene_passes),
     };
     return cmocka_run_group_tests_name("shader_gates", tests, make_directory, remove_directory);

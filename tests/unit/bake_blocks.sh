@@ -1,0 +1,85 @@
+#!/bin/bash
+# GLSL blocks in .sdf scenes: masu-bake runs them on the CPU and refuses one that is steeper than its
+# author says, with the two points. blocks.sdf has each instruction that such code may hold.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+bake=$(realpath "${BUILD:-build}/bin/masu-bake")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+echo '{"sdf": {"source": "s.sdf", "bounds": [[-2, -2, -2], [2, 2, 2]]}}' > "$folder/s.json"
+
+# bake TEXT: bakes that .sdf; exit code in $code
+bake() {
+    printf '%s\n' "$1" > "$folder/s.sdf"
+    rm -f "$folder/s.masu"
+    "$bake" "$folder/s.json" -o "$folder/s.masu" --quiet > "$folder/stdout" 2> "$folder/stderr"
+    code=$?
+}
+
+# accepts WHAT TEXT
+accepts() {
+    bake "$2"
+    [ $code = 0 ] && [ ! -s "$folder/stderr" ] && [ -s "$folder/s.masu" ] ||
+        fail "$1: exit code $code: $(cat "$folder/stderr")"
+}
+
+# refuses WHAT TEXT: in one line that holds two points whose values are too far apart
+number='(-?[0-9.]+(e[-+]?[0-9]+)?)'
+refuses() {
+    bake "$2"
+    [ $code = 1 ] || fail "$1: exit code $code"
+    [ ! -e "$folder/s.masu" ] || fail "$1: wrote its output"
+    [ "$(wc -l < "$folder/stderr")" = 1 ] || fail "$1: not one line: $(cat "$folder/stderr")"
+    local steep="part a: its glsl is steeper than its lipschitz constant $number: "
+    steep+="f\($number, $number, $number\) = $number, f\($number, $number, $number\) = $number, "
+    steep+="$number apart, at time $number$"
+    sed -nE "s/.*$steep/\1 \3 \5 \7 \9/p" "$folder/stderr" > "$folder/first"
+    grep -qE "$steep" "$folder/stderr" || fail "$1: no pair in $(cat "$folder/stderr")"
+    # L, then the values and the distance, by their words
+    sed -E 's/[=,()]/ /g; s/.*constant //' "$folder/stderr" | awk '
+        { l = $1 + 0; n = 0; for (i = 1; i <= NF; i++) if ($i == "f") at[n++] = i
+          d = $(at[0] + 4) - $(at[1] + 4); for (i = 1; i <= NF; i++) if ($i == "apart") r = $(i - 1)
+          if (d < 0) d = -d; exit !(r > 0 && d > l * r) }' ||
+        fail "$1: the pair is none: $(cat "$folder/stderr")"
+}
+
+# block L GLSL: a part with that block
+block() {
+    echo "param k = 1 [1, 2];"
+    echo "part a = glsl { $2 } bounds (-1, -1, -1), (1, 1, 1) lipschitz $1 c { return 0; };"
+}
+
+all=$(< tests/unit/blocks.sdf)
+accepts "every instruction" "$all"
+for line in $(grep -n '    ok = ok' tests/unit/blocks.sdf | cut -d: -f1); do
+    inverted=$(sed "${line}s/ok = ok && \(.*\);/ok = ok \&\& !(\1);/" tests/unit/blocks.sdf)
+    [ "$inverted" != "$all" ] || fail "line $line is as before"
+    bake "$inverted"
+    [ $code = 1 ] && grep -q 'part all: its glsl is steeper' "$folder/stderr" ||
+        fail "line $line of blocks.sdf says nothing: exit code $code"
+done
+
+accepts "a sphere" "$(block 1 'return length(p) - 1.0;')"
+accepts "a steep sphere" "$(block 3 'return 3.0 * (length(p) - 1.0);')"
+refuses "1.05" "$(block 1 'return 1.05 * (length(p) - 1.0);')"
+refuses "a displacement not divided" "$(block 1 'return length(p) - 1.0 + 0.1 * sin(20.0 * p.x);')"
+refuses "a jump" "$(block 2 'return length(p) - (p.x > 0.3 ? 1.0 : 0.99);')"
+refuses "a parameter, not at its default" "$(block 1 'return masu_param(0) * (length(p) - 1.0);')"
+refuses "time" "$(block 1 'return length(p) * (1.0 + 0.5 * abs(sin(masu_time()))) - 1.0;')"
+refuses "within an operator" "part a = union(sphere(0.2), scale(2, $(
+    block 1 'return 1.5 * (length(p) - 1.0);' | sed -n 's/part a = \(.*\);$/\1/p')));
+param k = 1 [1, 2];"
+
+bake "$(block 1 'float s = 0.0; for (int i = 0; i < 1000000; i++) s += p.x; return s;')"
+[ $code = 0 ] || fail "a long loop: exit code $code: $(cat "$folder/stderr")"
+grep -q 'warning: .*part a: its glsl is believed, .*it does not end within' "$folder/stderr" ||
+    fail "a long loop: $(cat "$folder/stderr")"
+
+[ $failures = 0 ]
