@@ -145,6 +145,7 @@ typedef struct masu_scene {
     uint32_t sdf_params; /* run-time parameters of it */
     uint32_t sdf_parts, sdf_slots;
     uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
+    uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
     uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
     uint32_t draws;      /* draw calls of one G-buffer pass */
     uint64_t triangles;  /* of one frame: every instance counted */
@@ -206,7 +207,8 @@ typedef struct masu_limits {
     uint64_t vertices;   /* 16 bytes each, device */
     uint64_t indices;    /* 4 bytes each, device */
     uint64_t materials;  /* 32 bytes each, device */
-    uint64_t instances;  /* 48 bytes each per frame in flight, device, and 57 bytes each, host */
+    uint64_t instances;  /* 48 bytes each per frame in flight, device, and 57 bytes each, host; with
+                            velocities 96 and 105 */
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
 } masu_limits;
 
@@ -245,7 +247,13 @@ typedef enum masu_readback_bits {
     MASU_READBACK_NORMAL =
         4, /* uint32: octahedral 13+13 bits, metallic 4 bits, flags 2 bits (masu_unpack_normal) */
     MASU_READBACK_HDR = 8, /* 4 x half: linear radiance before exposure */
-    MASU_READBACK_ALL = 15
+    /* 4 x half: where the pixel's surface point was in the frame before: x, y: previous position
+     * minus the present one, in pixels of this frame's render size, y down; z: previous view depth
+     * / present one, minus 1 (0 for the sky); w: 1, or 0 where the point was behind the camera or
+     * cannot be told, x y z are then 0. Halves: off by up to 2^-12 of the motion. Asking for it
+     * makes the plan keep the frame before: one more image and one more pass or two. */
+    MASU_READBACK_VELOCITY = 16,
+    MASU_READBACK_ALL = 31
 } masu_readback_bits;
 
 typedef struct masu_vulkan {
@@ -466,6 +474,9 @@ typedef struct masu_frame_desc {
     float time_step; /* seconds since the frame before; 0 is fine, within +-1e15 */
     uint32_t rung;   /* 0 .. rung_count-1 */
     uint32_t target; /* 0 .. targets.count-1 */
+    uint32_t cut;    /* not 0: what is seen has nothing to do with the frame before (a camera cut):
+                        nothing has moved. The first frame is one anyway. "Before" is the frame that
+                        masu_frame handed out last, submitted or not */
     const float *sdf_params;  /* `sdf_param_count` values, NULL: the scene's defaults */
     uint32_t sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
                             clamped to their declared range; one that is not finite is an error */

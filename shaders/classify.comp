@@ -77,7 +77,7 @@ bool sphere_seen(vec4 sphere, vec3 planes[4], float z_far)
     if (!(sphere.w >= 0.0)) {
         return true; /* unbounded, or not a number: kept */
     }
-    vec3 c = sphere.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz;
+    vec3 c = sphere.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
     /* Rounding of the centre and of the planes: a few ulp of the distances involved. */
     float radius = sphere.w + 16.0 * ulp * (length(c) + length(sphere.xyz) + sphere.w);
     float z = dot(c, frame.forward.xyz);
@@ -91,8 +91,8 @@ bool sphere_seen(vec4 sphere, vec3 planes[4], float z_far)
 /* The SDF's bounds against the same planes: the corner farthest along each normal. */
 bool bounds_seen(vec3 planes[4], float z_far)
 {
-    vec3 low = frame.sdf_min.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz;
-    vec3 high = frame.sdf_max.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz;
+    vec3 low = frame.sdf_min.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
+    vec3 high = frame.sdf_max.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
     vec3 forward = frame.forward.xyz;
     float slack = 16.0 * ulp * (length(frame.sdf_min.xyz) + length(frame.sdf_max.xyz) + length(low));
     vec3 near_corner = mix(low, high, lessThan(forward, vec3(0.0)));

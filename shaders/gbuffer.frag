@@ -1,15 +1,23 @@
 /*
- * gbuffer.frag: the material of a polygon into the G-buffer. index.x is the draw's material.
+ * gbuffer.frag: the material of a polygon into the G-buffer. index.x is the draw's material. With
+ * MASU_MOTION (gbuffer_velocity) its velocity too.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/pack.glsl"
 
+#ifdef MASU_MOTION
+#include "shared/globals.glsl"
+#include "shared/motion.glsl"
+layout(location = 2) in vec3 in_before;
+layout(location = 2) out vec4 out_velocity;
+#else
 layout(push_constant) uniform Push
 {
     masu_push pc;
 };
+#endif
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly buffer Materials
 {
@@ -35,4 +43,8 @@ void main()
     n = dot(n, in_rel) > 0.0 ? -n : n;
     out_albedo = masu_pack_albedo(s);
     out_normal = masu_pack_normal(n, s);
+#ifdef MASU_MOTION
+    out_velocity = masu_velocity(vec4(in_rel, 1.0), vec4(in_before, 1.0),
+                                 vec2(pc.output_width, pc.output_height));
+#endif
 }

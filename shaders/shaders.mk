@@ -9,7 +9,7 @@
 # include are embedded as text instead.
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
-    march_checkerboard.comp march_fragment.frag
+    march_checkerboard.comp march_fragment.frag sdf_velocity.comp
 
 SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag
@@ -17,22 +17,32 @@ STAGES       := comp vert frag
 SHADERS := $(filter-out $(SCENE_SHADERS:%=shaders/%),$(wildcard $(STAGES:%=shaders/*.%)))
 SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
 
+# A shader compiled a second time with a macro: NAME_STAGE of the second build, its file, the macro.
+SECOND_BUILDS := gbuffer_velocity_vert:gbuffer.vert:MASU_MOTION
+SECOND_BUILDS += gbuffer_velocity_frag:gbuffer.frag:MASU_MOTION
+
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
+SPIRV_HEADERS += $(foreach b,$(SECOND_BUILDS),$(BUILD)/gen/$(firstword $(subst :, ,$(b))).spv.h)
 GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
+# $(1) the result without .spv (% for any), $(2) its source, $(3) a macro or nothing
 define shader_rule
-$(BUILD)/gen/%_$(2).spv: $(1)/%.$(2)
+$(BUILD)/gen/$(1).spv: $(2)
 	@mkdir -p $$(@D)
 	@echo "  GLSL    $$<"
-	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) -Ishaders --depfile $$(@:.spv=.d) -o $$@ $$<
+	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(3)) -Ishaders \
+	    --depfile $$(@:.spv=.d) -o $$@ $$<
 	$$(V)sed -n 's/^[^:]*: *//p' $$(@:.spv=.d) | tr -s ' ' '\n' | \
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
 	$$(V)spirv-val $(SPIRV_TARGET) $$@
 endef
-$(foreach d,shaders tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,$(d),$(s)))))
+$(foreach d,shaders tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
+field = $(word $(2),$(subst :, ,$(1)))
+$(foreach b,$(SECOND_BUILDS),$(eval $(call \
+    shader_rule,$(call field,$(b),1),shaders/$(call field,$(b),2),$(call field,$(b),3))))
 
 $(BUILD)/gen/%.opt.spv: $(BUILD)/gen/%.spv
 	$(V)spirv-opt --target-env=vulkan1.1 -O --strip-debug $< -o $@

@@ -1,7 +1,12 @@
 /*
  * update.comp: slots of the SDF that depend on parameters or time, once per frame, so that no sample
  * of the field evaluates them again. Compiled by masu-bake together with the scene's field, and only
- * if there are such slots.
+ * if there are such slots; a second time with MASU_MOTION, as the pass update_previous: the slots as
+ * of the frame before, from that frame's parameters and time. Copying the present slots before they
+ * are overwritten would do, but would be a state that crosses frames.
+ *
+ * Slots that depend on the anchor alone (of all that stands still in a scene far from the origin)
+ * are data and not code: 64 invocations share them.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -11,12 +16,32 @@
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 #define MASU_SDF_SETUP
-
-layout(local_size_x = 1) in;
+#include "shared/wide.glsl"
 
 #include "sdf/field.glsl"
 
+#ifdef MASU_SDF_PLACES
+#define INVOCATIONS 64
+#else
+#define INVOCATIONS 1
+#endif
+layout(local_size_x = INVOCATIONS) in;
+
 void main()
 {
+#ifdef MASU_MOTION
+    masu_before = true;
+#endif
+#ifdef MASU_SDF_PLACES
+    for (int i = 0; i < (MASU_SDF_PLACES + INVOCATIONS - 1) / INVOCATIONS; i++) {
+        uint place = uint(i * INVOCATIONS) + gl_LocalInvocationIndex;
+        if (place < uint(MASU_SDF_PLACES)) {
+            masu_sdf_place(place);
+        }
+    }
+    if (gl_LocalInvocationIndex != 0u) {
+        return;
+    }
+#endif
     masu_sdf_update();
 }

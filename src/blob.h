@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 2u
+#define MASU_BLOB_VERSION 3u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -42,13 +42,15 @@ enum masu_blob_kind {
     MASU_BLOB_CLASSIFY_SPIRV = 13, /* these three are present exactly when MARCH_SPIRV is */
     MASU_BLOB_CONE8_SPIRV = 14,
     MASU_BLOB_CONE4_SPIRV = 15,
-    MASU_BLOB_UPDATE_SPIRV = 16, /* present when slots depend on parameters or time */
+    MASU_BLOB_UPDATE_SPIRV = 16, /* present when slots depend on parameters, time or the anchor */
     MASU_BLOB_PLAIN_SPIRV = 17,  /* from here on: only with --variants */
     MASU_BLOB_SEED_SPIRV = 18,
     MASU_BLOB_CHECKERBOARD_SPIRV = 19,
     MASU_BLOB_FRAGMENT_SPIRV = 20, /* only without instances */
     MASU_BLOB_SLOTS = 21,          /* float: initial values of the SDF's slots; at least one */
-    MASU_BLOB_KIND_COUNT = 22
+    MASU_BLOB_UPDATE_PREVIOUS_SPIRV = 22, /* present when slots depend on parameters or time */
+    MASU_BLOB_VELOCITY_SPIRV = 23,        /* present exactly when MARCH_SPIRV is */
+    MASU_BLOB_KIND_COUNT = 24
 };
 
 typedef struct masu_blob_header {
@@ -140,7 +142,8 @@ typedef struct masu_blob_sdf {
     float max_distance;  /* longest ray, > 0 */
     uint32_t has_raster; /* 1: the code was compiled to read a raster depth (there are instances) */
     uint32_t part_count; /* 1..4096 */
-    uint32_t reserved[2];
+    uint32_t anchored;   /* 1: the update SPIR-V moves the SDF's space to frame.anchor */
+    uint32_t reserved;
 } masu_blob_sdf;
 
 typedef struct masu_blob_sdf_param {

@@ -17,6 +17,10 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
                                 MASU_CLASS_DEPTH, MASU_READBACK_DEPTH},
     [MASU_IMAGE_CONE8] = {"cone8", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK8, MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_CONE4] = {"cone4", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK4, MASU_CLASS_OTHER, 0},
+    /* rgba16f: of the formats that hold a signed motion, the smallest that every device takes both
+     * as colour attachment and as storage image. */
+    [MASU_IMAGE_VELOCITY] = {"velocity", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER,
+                             MASU_CLASS_OTHER, MASU_READBACK_VELOCITY},
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
                         MASU_READBACK_HDR},
     [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
@@ -40,10 +44,11 @@ static int needs_gbuffer(const masu_needs *n, const char **why) {
                    "no scene: a source image is upscaled", why);
 }
 
-static int uses_tiles(const masu_needs *n) {
-    return n->sdf && n->march != MASU_MARCH_PLAIN && n->march != MASU_MARCH_SEED &&
-           n->march != MASU_MARCH_FRAGMENT;
+static int has_tiles(masu_march march) {
+    return march != MASU_MARCH_PLAIN && march != MASU_MARCH_SEED && march != MASU_MARCH_FRAGMENT;
 }
+
+static int uses_tiles(const masu_needs *n) { return n->sdf && has_tiles(n->march); }
 
 /* Why a pass of the SDF does not run: there is none, or the rung marches it in another way. */
 static const char *no_march(const masu_needs *n) {
@@ -51,8 +56,34 @@ static const char *no_march(const masu_needs *n) {
 }
 
 static int needs_update(const masu_needs *n, const char **why) {
+    if (n->sdf && n->anchored) {
+        return decided(1, "the SDF reaches far from the origin: its space follows the eye", NULL,
+                       why);
+    }
     return decided(n->sdf && n->dynamic, "the SDF depends on parameters or time",
                    n->sdf ? "the SDF's slots are constant" : "the scene has no SDF", why);
+}
+
+/* Why no pass of velocities runs, or of two kinds the other one. */
+static const char *no_velocity(const masu_needs *n, const char *other) {
+    return n->velocity ? other : "nothing reads velocities";
+}
+
+static int needs_update_previous(const masu_needs *n, const char **why) {
+    return decided(n->velocity && n->sdf && n->dynamic,
+                   "velocities compare the SDF with the frame before",
+                   no_velocity(n, n->sdf ? "the SDF's slots are constant" : "the scene has no SDF"),
+                   why);
+}
+
+static int needs_velocity(const masu_needs *n, const char **why) {
+    return decided(n->velocity && !n->sdf, "desc.readback asks for velocities",
+                   no_velocity(n, "sdf_velocity does it"), why);
+}
+
+static int needs_sdf_velocity(const masu_needs *n, const char **why) {
+    return decided(n->velocity && n->sdf, "desc.readback asks for velocities, the scene has an SDF",
+                   no_velocity(n, "the scene has no SDF"), why);
 }
 
 static int needs_tiles(const masu_needs *n, const char **why) {
@@ -126,6 +157,11 @@ static void classify_params(const masu_rung *rung, struct masu_push *push) {
     push->index[1] = rung->march == MASU_MARCH_UNPRUNED;
 }
 
+/* index.x: not 0: the tiles' lists of parts are there. */
+static void sdf_velocity_params(const masu_rung *rung, struct masu_push *push) {
+    push->index[0] = has_tiles(rung->march);
+}
+
 /* param.x: RCAS lobe scale. One stop halves the strength (AMD: con = exp2(-sharpness)). */
 static void rcas_params(const masu_rung *rung, struct masu_push *push) {
     push->param[0] = exp2f(-rung->sharpness);
@@ -134,14 +170,18 @@ static void rcas_params(const masu_rung *rung, struct masu_push *push) {
 const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
     /* clang-format off */
     [MASU_PASS_GBUFFER] = {
-        "gbuffer", "polygons: albedo, normal, roughness, metallic, depth",
+        "gbuffer", "polygons: albedo, normal, roughness, metallic, depth, velocity where it is read",
         MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_gbuffer, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR}, {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR},
-         {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}, 0},
+         {MASU_IMAGE_VELOCITY, MASU_WRITE_COLOR}, {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}, 0},
     [MASU_PASS_UPDATE] = {
-        "update", "SDF: slots that depend on parameters or time",
+        "update", "SDF: slots that depend on parameters, time or the anchor",
         MASU_PASS_COMPUTE, MASU_EXTENT_ONE, needs_update, NULL,
         {{MASU_RESOURCE_SLOTS, MASU_WRITE_BUFFER}}, MASU_BLOB_UPDATE_SPIRV},
+    [MASU_PASS_UPDATE_PREVIOUS] = {
+        "update_previous", "the same slots with the parameters and the time of the frame before",
+        MASU_PASS_COMPUTE, MASU_EXTENT_ONE, needs_update_previous, NULL,
+        {{MASU_RESOURCE_SLOTS, MASU_WRITE_BUFFER}}, MASU_BLOB_UPDATE_PREVIOUS_SPIRV},
     [MASU_PASS_CLASSIFY] = {
         "classify", "SDF: parts that matter per 16x16 tile, list of tiles that have any",
         MASU_PASS_COMPUTE, MASU_EXTENT_TILE, needs_tiles, classify_params,
@@ -185,6 +225,16 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_fragment, march_params,
         {{MASU_RESOURCE_SLOTS, MASU_READ_BUFFER}, {MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR},
          {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR}, {MASU_IMAGE_SCENE_DEPTH, MASU_WRITE_COLOR}}, MASU_BLOB_FRAGMENT_SPIRV},
+    [MASU_PASS_VELOCITY] = {
+        "velocity", "the sky's, where no polygon is",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_velocity, NULL,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_VELOCITY, MASU_UPDATE}}, 0},
+    [MASU_PASS_SDF_VELOCITY] = {
+        "sdf_velocity", "the SDF's and the sky's: where the part under the pixel was",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_sdf_velocity, sdf_velocity_params,
+        {{MASU_IMAGE_DEPTH, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
+         {MASU_RESOURCE_TILES, MASU_READ_BUFFER}, {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
+         {MASU_IMAGE_VELOCITY, MASU_UPDATE}}, MASU_BLOB_VELOCITY_SPIRV},
     [MASU_PASS_LIGHT] = {
         "light", "sun, constant ambient, sky",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
@@ -194,7 +244,8 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         "readback", "copies the images the host asked for",
         MASU_PASS_TRANSFER, MASU_EXTENT_RENDER, needs_readback, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ_COPY}, {MASU_IMAGE_NORMAL, MASU_READ_COPY},
-         {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY}}, 0},
+         {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY},
+         {MASU_IMAGE_VELOCITY, MASU_READ_COPY}}, 0},
     [MASU_PASS_TONEMAP] = {
         "tonemap", "exposure, tone curve, sRGB encoding",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,

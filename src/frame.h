@@ -19,6 +19,7 @@ typedef enum masu_image_id {
     MASU_IMAGE_SCENE_DEPTH, /* the nearer of raster and SDF, same encoding */
     MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
     MASU_IMAGE_CONE4,       /* the same of each 4x4 block */
+    MASU_IMAGE_VELOCITY,    /* where the surface was in the frame before */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
     MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
@@ -94,6 +95,8 @@ typedef struct masu_needs {
     uint32_t readback; /* masu_readback_bits */
     int blit;          /* targets are filled by a blit */
     int dynamic;       /* slots of the SDF depend on parameters or time */
+    int anchored;      /* and on where the eye is: the SDF reaches far from the origin */
+    int velocity;      /* something reads velocities: the frame before is kept */
     /* of one rung: */
     int upscale, sharpen;
     masu_march march;
@@ -115,6 +118,7 @@ typedef struct masu_pass_row {
 typedef enum masu_pass_id {
     MASU_PASS_GBUFFER,
     MASU_PASS_UPDATE,
+    MASU_PASS_UPDATE_PREVIOUS,
     MASU_PASS_CLASSIFY,
     MASU_PASS_CONE8,
     MASU_PASS_CONE4,
@@ -123,6 +127,8 @@ typedef enum masu_pass_id {
     MASU_PASS_MARCH_PLAIN,
     MASU_PASS_MARCH_SEED,
     MASU_PASS_MARCH_FRAGMENT,
+    MASU_PASS_VELOCITY,
+    MASU_PASS_SDF_VELOCITY,
     MASU_PASS_LIGHT,
     MASU_PASS_READBACK,
     MASU_PASS_TONEMAP,

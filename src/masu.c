@@ -34,6 +34,10 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
         masu_arena_take(arena, "camera keys", s->camera_keys, sizeof *to->camera_keys, 4);
     to->sdf_params =
         masu_arena_take(arena, "SDF parameters", s->sdf_params, sizeof *to->sdf_params, 4);
+    uint64_t before = plan->needs.velocity ? 1 : 0;
+    to->previous = masu_arena_take(arena, "previous frame", before, sizeof *to->previous, 16);
+    to->previous_instances = masu_arena_take(arena, "previous transforms", before * s->instances,
+                                             sizeof *to->previous_instances, 16);
     if (m) *m = r;
 }
 
@@ -261,7 +265,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_log(d, MASU_LOG_ERROR, m->error.text);
         return result;
     }
-    if (d->scene) masu_write_instances(m, slot);
+    if (d->scene) masu_write_instances(m, slot, masu_is_cut(m, frame));
     m->slot_frame[slot] = m->frame;
     m->slot_rung[slot] = frame->rung;
     *commands = (masu_commands){

@@ -9,10 +9,13 @@
 #include "easu_comp.spv.h"
 #include "fullscreen_vert.spv.h"
 #include "gbuffer_frag.spv.h"
+#include "gbuffer_velocity_frag.spv.h"
+#include "gbuffer_velocity_vert.spv.h"
 #include "gbuffer_vert.spv.h"
 #include "light_comp.spv.h"
 #include "rcas_comp.spv.h"
 #include "tonemap_comp.spv.h"
+#include "velocity_comp.spv.h"
 
 #include <string.h>
 
@@ -31,6 +34,7 @@ static spirv scene_code(const masu_renderer *m, uint32_t pass) {
 static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     if (masu_passes[pass].code) return scene_code(m, pass);
     switch (pass) {
+    case MASU_PASS_VELOCITY: return (spirv){masu_spv_velocity_comp, sizeof masu_spv_velocity_comp};
     case MASU_PASS_LIGHT: return (spirv){masu_spv_light_comp, sizeof masu_spv_light_comp};
     case MASU_PASS_TONEMAP: return (spirv){masu_spv_tonemap_comp, sizeof masu_spv_tonemap_comp};
     case MASU_PASS_EASU: return (spirv){masu_spv_easu_comp, sizeof masu_spv_easu_comp};
@@ -67,7 +71,10 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
          NULL},
         {MASU_BIND_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL},
-        {MASU_BIND_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL}};
+        {MASU_BIND_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL},
+        {MASU_BIND_PREVIOUS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
+        {MASU_BIND_PREVIOUS_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+         VK_SHADER_STAGE_VERTEX_BIT, NULL}};
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                             .bindingCount = sizeof bindings / sizeof *bindings,
@@ -82,11 +89,15 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
 /* Set 1: reads first, then writes, in the order of the row. Which images stand behind the bindings
  * may differ from rung to rung, their number and kind do not: the first rung that runs the pass
  * speaks for all. */
-static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail *detail) {
-    const masu_rung_plan *rp = NULL;
-    for (uint32_t r = 0; r < m->plan.desc.rung_count && !rp; r++) {
-        if (m->plan.rungs[r].active & 1u << pass) rp = &m->plan.rungs[r];
+static const masu_rung_plan *first_rung(const masu_renderer *m, uint32_t pass) {
+    for (uint32_t r = 0; r < m->plan.desc.rung_count; r++) {
+        if (m->plan.rungs[r].active & 1u << pass) return &m->plan.rungs[r];
     }
+    return NULL;
+}
+
+static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+    const masu_rung_plan *rp = first_rung(m, pass);
     if (!rp) return MASU_OK;
     VkDescriptorSetLayoutBinding bindings[MASU_PASS_ACCESSES];
     uint32_t n = 0;
@@ -164,8 +175,9 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
     VkImageView views[MASU_PASS_ACCESSES];
     uint32_t n = 0, color_count = 0, width = 0, height = 0;
-    for (uint32_t a = 0; a < MASU_PASS_ACCESSES && masu_passes[pass].access[a].image; a++) {
-        masu_access access = masu_passes[pass].access[a];
+    const masu_rung_plan *rp = first_rung(m, pass);
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+        masu_access access = rp->access[pass][a];
         int is_depth = access.usage == MASU_WRITE_DEPTH;
         if (!is_depth && access.usage != MASU_WRITE_COLOR) continue;
         VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
@@ -264,7 +276,7 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
     }
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = polygons ? 2 : 3,
+        .attachmentCount = polygons && !m->plan.needs.velocity ? 2 : 3,
         .pAttachments = blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamics = {
@@ -294,6 +306,12 @@ static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *d
     if (result || (polygons && !m->plan.needs.raster)) return result; /* an empty scene clears */
     spirv vertex = {masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert};
     spirv fragment = {masu_spv_gbuffer_frag, sizeof masu_spv_gbuffer_frag};
+    if (m->plan.needs.velocity) {
+        vertex =
+            (spirv){masu_spv_gbuffer_velocity_vert, sizeof masu_spv_gbuffer_velocity_vert};
+        fragment =
+            (spirv){masu_spv_gbuffer_velocity_frag, sizeof masu_spv_gbuffer_velocity_frag};
+    }
     if (!polygons) {
         vertex = (spirv){masu_spv_fullscreen_vert, sizeof masu_spv_fullscreen_vert};
         fragment = scene_code(m, pass);

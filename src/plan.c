@@ -212,6 +212,9 @@ static masu_image_id resolve(uint8_t image, masu_image_id latest_depth,
 
 static int keeps_access(const masu_frame_plan *plan, masu_pass_id pass, masu_image_id image) {
     if (image == MASU_IMAGE_NONE) return 0;
+    if (image == MASU_IMAGE_VELOCITY && !plan->needs.velocity) return 0;
+    /* It asks which pixels are polygons; without polygons nobody has written that depth. */
+    if (pass == MASU_PASS_SDF_VELOCITY && image == MASU_IMAGE_DEPTH) return plan->needs.raster;
     if (pass == MASU_PASS_READBACK) {
         return (masu_images[image].readback & plan->desc.readback) != 0;
     }
@@ -303,9 +306,11 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     uint64_t flights = plan->desc.frames_in_flight;
     b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
     b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
-    b[MASU_BUFFER_FRAME].count = flights;
+    /* With the frame before: each slot has two halves, its own and that of the frame before it. */
+    uint64_t halves = plan->needs.velocity ? 2 : 1;
+    b[MASU_BUFFER_FRAME].count = halves * flights;
     b[MASU_BUFFER_FRAME].stride =
-        masu_align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
+        halves * masu_align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
     b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
     for (uint32_t r = 0; r < plan->desc.rung_count && s->sdf; r++) {
         VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
@@ -317,8 +322,10 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     }
     b[MASU_BUFFER_TILES].bytes = b[MASU_BUFFER_TILES].count * sizeof(uint32_t);
     if (s->instances) {
-        b[MASU_BUFFER_INSTANCES].stride = masu_align_up(
-            (uint64_t)s->instances * sizeof(struct masu_instance_data), storage_alignment);
+        b[MASU_BUFFER_INSTANCES].count *= halves;
+        b[MASU_BUFFER_INSTANCES].stride =
+            halves * masu_align_up((uint64_t)s->instances * sizeof(struct masu_instance_data),
+                                   storage_alignment);
         b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
     }
     return plan->desc.debug.counters ? masu_align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
@@ -365,6 +372,8 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         .name = "counters", .usage = storage | dst | VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
     b[MASU_BUFFER_SLOTS] = (masu_buffer_plan){
         .name = "slots", .usage = storage | dst, .count = s && s->sdf ? s->sdf_slots : 0};
+    /* A second set, as of the frame before. */
+    if (plan->needs.velocity && plan->needs.dynamic) b[MASU_BUFFER_SLOTS].count *= 2;
     b[MASU_BUFFER_SLOTS].bytes = b[MASU_BUFFER_SLOTS].count * sizeof(float);
     b[MASU_BUFFER_TILES] = (masu_buffer_plan){
         .name = "tiles", .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
@@ -410,7 +419,9 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .raster = d->scene && d->scene->instances,
                                .sdf = d->scene && d->scene->sdf,
                                .dynamic = d->scene && d->scene->sdf_dynamic,
+                               .anchored = d->scene && d->scene->sdf_anchored,
                                .readback = d->readback,
+                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0,
                                .blit = !d->targets.storage};
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];

@@ -264,7 +264,7 @@ static void record_fullscreen(recorder *rec, uint32_t pass) {
 
 static void record_graphics(recorder *rec, uint32_t pass) {
     const masu_vk *vk = &rec->m->vk;
-    VkClearValue clear[3];
+    VkClearValue clear[4];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
     VkRect2D area = {{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
     VkViewport viewport = {0.0f, 0.0f, (float)area.extent.width, (float)area.extent.height,
@@ -273,7 +273,7 @@ static void record_graphics(recorder *rec, uint32_t pass) {
                                    .renderPass = rec->m->render_pass,
                                    .framebuffer = rec->m->framebuffer,
                                    .renderArea = area,
-                                   .clearValueCount = 3,
+                                   .clearValueCount = 4,
                                    .pClearValues = clear};
     vk->CmdBeginRenderPass(rec->cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
     if (rec->m->pipelines[pass]) { /* else it only clears */
@@ -443,8 +443,8 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
 static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 5 * flights},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 6 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MASU_PASS_ACCESSES * sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -473,20 +473,29 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
         uint32_t binding;
         masu_buffer_id buffer;
         VkDescriptorType type;
-    } rows[] = {{MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},
-                {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                {MASU_BIND_TILES, MASU_BUFFER_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+        int previous; /* the half of a slot that is of the frame before */
+    } rows[] = {{MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
+                {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                {MASU_BIND_TILES, MASU_BUFFER_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+                {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES,
+                 VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}};
     for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             const masu_buffer_plan *b = &m->plan.buffers[rows[i].buffer];
             if (!b->bytes) continue; /* no pass of this plan looks at it */
-            VkDescriptorBufferInfo buffer = {m->objects.buffers[rows[i].buffer], f * b->stride,
-                                             b->stride ? b->stride : b->bytes};
+            if (rows[i].previous && !m->plan.needs.velocity) continue;
+            int halves = m->plan.needs.velocity && (rows[i].buffer == MASU_BUFFER_FRAME ||
+                                                    rows[i].buffer == MASU_BUFFER_INSTANCES);
+            uint64_t bytes = b->stride ? b->stride : b->bytes;
+            if (halves) bytes /= 2;
+            VkDescriptorBufferInfo buffer = {m->objects.buffers[rows[i].buffer],
+                                             f * b->stride + (rows[i].previous ? bytes : 0), bytes};
             if (rows[i].buffer == MASU_BUFFER_FRAME)
                 buffer.range = sizeof(struct masu_frame_uniforms);
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,

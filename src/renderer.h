@@ -60,8 +60,12 @@ struct masu_renderer {
     uint32_t load_count, load_next; /* chunks in all, chunks handed out */
     int loaded;
     struct masu_instance_data *instances; /* the host's truth, copied to a slot when dirty */
+    /* The frame before, of no length where nothing reads velocities. It is kept here and not on the device,
+     * so that no state crosses frames there and frames in flight need not know of each other. */
+    struct masu_instance_data *previous_instances;
+    struct masu_frame_uniforms *previous;
     uint64_t *instance_names;             /* FNV-1a 64 of the name, 0: none */
-    uint8_t *instance_dirty;              /* slots that have not seen the newest transform yet */
+    uint8_t *instance_dirty;              /* frames that still have to write the transform */
     uint32_t dirty_count;
     masu_blob_camera_key *camera_keys;
     masu_blob_sdf_param *sdf_params;
@@ -92,7 +96,9 @@ void masu_keep_scene(masu_renderer *m);
 /* Writes camera, light, time and parameters to a slot. Checks first, writes after. */
 masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
                              masu_detail *detail);
-void masu_write_instances(masu_renderer *m, uint32_t slot);
+void masu_write_instances(masu_renderer *m, uint32_t slot, int cut);
+/* Whether nothing of the frame before counts: it is taken to be as this one. */
+int masu_is_cut(const masu_renderer *m, const masu_frame_desc *frame);
 
 /* Host pointer to a buffer's first byte, of a slot where it has slots. NULL where it is not
  * host-visible. */

@@ -39,6 +39,8 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V"),
     CODE(MASU_BLOB_CHECKERBOARD_SPIRV, "march_checkerboard SPIR-V"),
     CODE(MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V"),
+    CODE(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V"),
+    CODE(MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V"),
     [MASU_BLOB_SLOTS] = {"slots", sizeof(float), 65536, 0},
     [MASU_BLOB_NAMES] = {"names", 1, MANY, 0},
 };
@@ -312,6 +314,7 @@ static masu_result check_sdf(reader *r) {
     if (s->part_count < 1 || s->part_count > MASU_SDF_PARTS_MAX) {
         return bad(r, "sdf", 0, "part count is not 1 to 4096");
     }
+    if (s->anchored > 1) return bad(r, "sdf", 0, "anchored is neither 0 nor 1");
     if (s->has_raster && v->code[MASU_BLOB_FRAGMENT_SPIRV].words) {
         return bad(r, "march_fragment SPIR-V", 0, "is there beside polygons, which it would erase");
     }
@@ -321,7 +324,14 @@ static masu_result check_sdf(reader *r) {
     }
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
         int needed = k == MASU_BLOB_MARCH_SPIRV || k == MASU_BLOB_CLASSIFY_SPIRV ||
-                     k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE4_SPIRV;
+                     k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE4_SPIRV ||
+                     k == MASU_BLOB_VELOCITY_SPIRV;
+        /* The slots of an anchored SDF change with the anchor, if with nothing else. */
+        if (k == MASU_BLOB_UPDATE_SPIRV) {
+            needed = s->anchored || v->code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words;
+        } else if (k == MASU_BLOB_UPDATE_PREVIOUS_SPIRV) {
+            needed = !s->anchored && v->code[MASU_BLOB_UPDATE_SPIRV].words;
+        }
         if (!v->code[k].words && !needed) continue;
         if (!v->code[k].words || v->code[k].count < 5 || v->code[k].words[0] != 0x07230203u) {
             return bad(r, rules[k].name, 0, "is missing or is no SPIR-V");
@@ -340,7 +350,8 @@ static void look_at_sdf(const reader *r, masu_scene *out) {
                     {MASU_BLOB_CHECKERBOARD_SPIRV, MASU_MARCH_CHECKERBOARD}};
     out->sdf_parts = r->view.sdf->part_count;
     out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];
-    out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL;
+    out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
+    out->sdf_anchored = r->view.sdf->anchored;
     out->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 | 1u << MASU_MARCH_CONES |
                      1u << MASU_MARCH_UNPRUNED;
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {

@@ -53,7 +53,13 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
     } else if (chunk.buffer == MASU_BUFFER_INDICES) {
         memcpy(to, (const unsigned char *)v->indices + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_SLOTS) {
-        memcpy(to, (const unsigned char *)v->slots + chunk.offset, (size_t)chunk.bytes);
+        /* The buffer may hold two sets; both begin as the blob has them. */
+        uint64_t size = v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
+        while (at < end) {
+            uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
+            memcpy(to + (at - chunk.offset), (const unsigned char *)v->slots + skip, (size_t)part);
+            at += part;
+        }
     } else if (chunk.buffer == MASU_BUFFER_MATERIALS) {
         /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy
          * the part. */
@@ -91,6 +97,12 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     return MASU_OK;
 }
 
+/* A transform must reach every slot; with the frame before, once more: the slot of the frame that
+ * moved it still says that it is moving. */
+static uint8_t frames_to_write(const masu_renderer *m) {
+    return (uint8_t)(m->plan.desc.frames_in_flight + (m->plan.needs.velocity ? 1 : 0));
+}
+
 void masu_keep_scene(masu_renderer *m) {
     const masu_scene *scene = m->plan.desc.scene;
     if (!scene) return;
@@ -98,10 +110,11 @@ void masu_keep_scene(masu_renderer *m) {
     m->environment = *v.environment;
     for (uint32_t i = 0; i < scene->instances; i++) {
         memcpy(&m->instances[i], v.instances[i].transform, sizeof m->instances[i]);
+        if (m->plan.needs.velocity) m->previous_instances[i] = m->instances[i];
         uint32_t name = v.instances[i].name;
         m->instance_names[i] =
             name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v.names + name, strlen(v.names + name));
-        m->instance_dirty[i] = (uint8_t)m->plan.desc.frames_in_flight;
+        m->instance_dirty[i] = frames_to_write(m);
     }
     m->dirty_count = scene->instances;
     if (scene->camera_keys)
@@ -120,13 +133,19 @@ void masu_keep_scene(masu_renderer *m) {
 /* ---- Instances ------------------------------------------------------------------------------- */
 
 /* The same transform must reach every slot, each when it is free. */
-void masu_write_instances(masu_renderer *m, uint32_t slot) {
+void masu_write_instances(masu_renderer *m, uint32_t slot, int cut) {
     if (!m->dirty_count) return;
-    struct masu_instance_data *to =
-        (struct masu_instance_data *)(void *)masu_buffer_pointer(m, MASU_BUFFER_INSTANCES, slot);
+    unsigned char *at = masu_buffer_pointer(m, MASU_BUFFER_INSTANCES, slot);
+    struct masu_instance_data *to = (struct masu_instance_data *)(void *)at;
+    struct masu_instance_data *before = (struct masu_instance_data *)(void *)(
+        at + m->plan.buffers[MASU_BUFFER_INSTANCES].stride / 2);
     for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
         if (!m->instance_dirty[i]) continue;
         to[i] = m->instances[i];
+        if (m->plan.needs.velocity) {
+            before[i] = cut ? m->instances[i] : m->previous_instances[i];
+            m->previous_instances[i] = m->instances[i];
+        }
         if (--m->instance_dirty[i] == 0) m->dirty_count--;
     }
 }
@@ -157,7 +176,7 @@ masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance
     uint32_t i = instance.id - 1;
     memcpy(&m->instances[i], rows, sizeof m->instances[i]);
     if (!m->instance_dirty[i]) m->dirty_count++;
-    m->instance_dirty[i] = (uint8_t)m->plan.desc.frames_in_flight;
+    m->instance_dirty[i] = frames_to_write(m);
     return MASU_OK;
 }
 
@@ -263,6 +282,28 @@ static masu_result write_camera(masu_renderer *m, const masu_camera *c,
     return MASU_OK;
 }
 
+/* The SDF's space. Where fp32 would resolve world coordinates too coarsely at the eye, and the
+ * scene's code knows of anchors, the origin moves to a point near the eye. It lies on a grid, so that
+ * it rarely moves: what the field rounds would otherwise differ from frame to frame. */
+static void write_anchor(const masu_renderer *m, const masu_camera *c,
+                         struct masu_frame_uniforms *u) {
+    int far = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        far |= m->plan.scene.sdf_anchored && fabs(c->position[i]) >= MASU_ANCHOR_FROM;
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        double steps = floor(c->position[i] / MASU_ANCHOR_GRID + 0.5);
+        u->anchor[i] = far ? (float)(steps * MASU_ANCHOR_GRID) : 0.0f;
+        double anchor = (double)u->anchor[i], eye = c->position[i] - anchor;
+        u->sdf_eye_hi[i] = (float)eye;
+        u->sdf_eye_lo[i] = (float)(eye - (double)u->sdf_eye_hi[i]);
+        u->sdf_min[i] = (float)((double)m->sdf_bounds[0][i] - anchor);
+        u->sdf_max[i] = (float)((double)m->sdf_bounds[1][i] - anchor);
+    }
+    u->sdf_min[3] = m->sdf_bounds[0][3];
+    u->sdf_max[3] = m->sdf_bounds[1][3];
+}
+
 static int light_ok(const float *v) {
     for (uint32_t i = 0; i < 3; i++) {
         if (!(v[i] >= 0.0f && v[i] <= 1e9f)) return 0;
@@ -303,6 +344,10 @@ static masu_result write_light(const masu_renderer *m, const masu_light *given,
     return MASU_OK;
 }
 
+int masu_is_cut(const masu_renderer *m, const masu_frame_desc *f) {
+    return f->cut || m->frame == 0;
+}
+
 masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_t slot,
                              masu_detail *detail) {
     struct masu_frame_uniforms u;
@@ -336,10 +381,15 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
         }
         u.sdf_params[i / 4][i % 4] = v < p->minimum ? p->minimum : v > p->maximum ? p->maximum : v;
     }
-    memcpy(u.sdf_min, m->sdf_bounds[0], sizeof u.sdf_min);
-    memcpy(u.sdf_max, m->sdf_bounds[1], sizeof u.sdf_max);
+    write_anchor(m, &camera, &u);
     u.eye_hi[3] = (float)f->time;
     u.eye_lo[3] = f->time_step;
-    memcpy(masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot), &u, sizeof u);
+    unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);
+    memcpy(to, &u, sizeof u);
+    if (m->plan.needs.velocity) {
+        uint64_t half = m->plan.buffers[MASU_BUFFER_FRAME].stride / 2;
+        memcpy(to + half, masu_is_cut(m, f) ? &u : m->previous, sizeof u);
+        *m->previous = u;
+    }
     return MASU_OK;
 }

@@ -123,6 +123,14 @@ bool masu_bake_json_vec3(const masu_bake_json *at, const char *name, double low,
     return true;
 }
 
+bool masu_bake_json_boolean(const masu_bake_json *at, const char *name, bool *out) {
+    masu_bake_json member = masu_bake_json_member(at, name);
+    if (!member.value) return true;
+    if (!json_is_boolean(member.value)) return wrong_type(&member, "true or false");
+    *out = json_is_true(member.value);
+    return true;
+}
+
 bool masu_bake_json_string(const masu_bake_json *at, const char *name, const char **out) {
     masu_bake_json member = masu_bake_json_member(at, name);
     if (!member.value) return true;

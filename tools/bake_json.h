@@ -39,6 +39,7 @@ bool masu_bake_json_number(const masu_bake_json *at, const char *name, double lo
                            double *out);
 bool masu_bake_json_vec3(const masu_bake_json *at, const char *name, double low, double high,
                          masu_bake_vec3 *out);
+bool masu_bake_json_boolean(const masu_bake_json *at, const char *name, bool *out);
 bool masu_bake_json_string(const masu_bake_json *at, const char *name, const char **out);
 bool masu_bake_json_has(const masu_bake_json *at, const char *name);
 

@@ -6,6 +6,9 @@
 #include "bake_sdf.h"
 #include "cli.h"
 
+#include "shared/masu_shared.h"
+
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,23 +103,34 @@ static bool read_bounds(const masu_bake_json *sdf, masu_bake_box *out) {
     return true;
 }
 
+static bool reaches_far(const masu_bake_box *box) {
+    double low = fmin(box->low.x, fmin(box->low.y, box->low.z));
+    return fmax(-low, fmax(box->high.x, fmax(box->high.y, box->high.z))) > MASU_ANCHOR_FROM;
+}
+
 /* All of the SDF but its shader. `source` is left NULL without an SDF. */
 static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, masu_bake_box *bounds,
                      const char **source) {
     static const char *const members[] = {"source",       "bounds", "lipschitz",
-                                          "max_distance", "params", NULL};
+                                          "max_distance", "params", "anchored", NULL};
     masu_bake_json sdf = masu_bake_json_member(scene, "sdf");
     if (!sdf.value) return true;
     masu_bake_box box = masu_bake_box_empty();
     double lipschitz = 1, max_distance = 200;
+    bool anchored = false, given = masu_bake_json_has(&sdf, "anchored");
     if (!masu_bake_json_object(&sdf, members) || !masu_bake_json_string(&sdf, "source", source) ||
         !read_bounds(&sdf, &box) ||
         !masu_bake_json_number(&sdf, "lipschitz", 1e-3, 1e6, &lipschitz) ||
         !masu_bake_json_number(&sdf, "max_distance", 1e-3, 1e15, &max_distance) ||
+        !masu_bake_json_boolean(&sdf, "anchored", &anchored) ||
         !read_params(&sdf, content)) {
         return false;
     }
     if (!*source) return masu_bake_json_wrong(&sdf, "needs \"source\", a GLSL or .sdf file");
+    if (anchored && !masu_bake_is_sdf(*source)) {
+        return masu_bake_json_wrong(&sdf, "only a .sdf file can be \"anchored\"");
+    }
+    if (!given) anchored = masu_bake_is_sdf(*source) && reaches_far(&box);
     masu_blob_sdf out = {
         .bounds_min = {(float)box.low.x, (float)box.low.y, (float)box.low.z},
         .bounds_max = {(float)box.high.x, (float)box.high.y, (float)box.high.z},
@@ -124,6 +138,7 @@ static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, ma
         .max_distance = (float)max_distance,
         .has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0,
         .part_count = 1,
+        .anchored = anchored,
     };
     masu_bake_append(&content->section[MASU_BLOB_SDF], &out, sizeof out);
     /* Models say better than an endless world's bounds what the camera should look at. */

@@ -68,7 +68,7 @@ _Static_assert(MASU_SDFC_MASKED_MAX == MASU_TILE_MASKED_MAX, "the compiler and t
 
 /* ---- the language of docs/sdf.md ---- */
 
-static bool is_sdf(const char *path) {
+bool masu_bake_is_sdf(const char *path) {
     size_t length = strlen(path);
     return length > 4 && strcmp(path + length - 4, ".sdf") == 0;
 }
@@ -99,6 +99,7 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     static const float no_slot = 0.0f;
     masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
     sdf->part_count = scene->part_count;
+    if (!scene->anchored) sdf->anchored = 0; /* nothing in it depends on where it is */
     masu_bake_append(&content->section[MASU_BLOB_SLOTS],
                      scene->slot_count ? scene->slots : &no_slot,
                      (scene->slot_count ? scene->slot_count : 1) * sizeof(float));
@@ -118,7 +119,10 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
         masu_bake_release(&own);
         return false;
     }
-    good = masu_sdfc_compile((const char *)own.data, own.bytes, path, scene, error, sizeof error);
+    masu_sdfc_options options = {
+        .anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0};
+    good = masu_sdfc_compile_with((const char *)own.data, own.bytes, path, &options, scene, error,
+                                  sizeof error);
     if (good) {
         report_lines(scene->warnings, true);
         take_params(scene, content);
@@ -139,7 +143,7 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
     }
     masu_bake_buffer text = {0}, own = {0};
     bool good;
-    if (is_sdf(glsl_path)) {
+    if (masu_bake_is_sdf(glsl_path)) {
         good = compile_scene(glsl_path, content, &text, dynamic, scene);
     } else {
         good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
@@ -284,15 +288,19 @@ static char *include_option(const char *directory) {
     return option;
 }
 
-enum { ALWAYS, DYNAMIC, VARIANT, WITHOUT_RASTER };
+enum { ALWAYS, UPDATED, DYNAMIC, VARIANT, WITHOUT_RASTER };
 
 /* The shaders that are compiled together with the scene's field, and the sections they go to. */
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
-    int when; /* always; with dynamic slots; with --variants, and then only without polygons */
+    int when; /* always; with slots that change, or with time; with --variants, and then only
+                 without polygons */
 } scene_shaders[] = {
-    {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, DYNAMIC},
+    {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
+    {"update.comp", "-DMASU_MOTION=1", "before.raw", "before.spv", MASU_BLOB_UPDATE_PREVIOUS_SPIRV,
+     DYNAMIC},
+    {"sdf_velocity.comp", NULL, "motion.raw", "motion.spv", MASU_BLOB_VELOCITY_SPIRV, ALWAYS},
     {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=4", "cone4.raw", "cone4.spv", MASU_BLOB_CONE4_SPIRV, ALWAYS},
@@ -304,7 +312,8 @@ static const struct {
     {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
      WITHOUT_RASTER}};
 
-static bool wanted(int when, bool dynamic, bool variants, bool has_raster) {
+static bool wanted(int when, bool dynamic, bool anchored, bool variants, bool has_raster) {
+    if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
     if (when == WITHOUT_RASTER) return variants && !has_raster;
     return when == ALWAYS || variants;
@@ -345,7 +354,8 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, 
     masu_sdfc_result scene = {0};
     bool good = lay_out(directory, content, glsl_path, &dynamic, &scene);
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
-        if (!wanted(scene_shaders[i].when, dynamic, variants, has_raster)) continue;
+        bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, variants, has_raster)) continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),
                    masu_bake_join(directory, scene_shaders[i].optimised),

@@ -19,6 +19,9 @@
  * lines. */
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, bool variants);
 
+/* Whether a source is a file in the language of docs/sdf.md. */
+bool masu_bake_is_sdf(const char *path);
+
 /* "MASU_PARAM_" and the name in upper case, cut at `room`. */
 void masu_bake_param_macro(const char *name, char *out, size_t room);
 

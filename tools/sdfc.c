@@ -13,7 +13,7 @@
 #define TEXT(x) #x
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
-enum { OPTION_GLSL = 1, OPTION_C, OPTION_TABLE, OPTION_PAIRS };
+enum { OPTION_GLSL = 1, OPTION_C, OPTION_TABLE, OPTION_PAIRS, OPTION_ANCHORED };
 
 static bool read_text(const char *path, char **text, size_t *bytes) {
     FILE *file = fopen(path, "rb");
@@ -92,6 +92,7 @@ static int run(masu_cli *cli) {
         case OPTION_PAIRS:
             if (!masu_cli_uint(cli, 1, 1000000000, &options.pairs)) return MASU_CLI_USAGE;
             break;
+        case OPTION_ANCHORED: options.anchored = true; break;
         case MASU_CLI_ARGUMENT:
             if (input) return masu_cli_usage_error("more than one input: %s", cli->value);
             input = cli->value;
@@ -110,6 +111,7 @@ int main(int argc, char **argv) {
         {"c", "FILE", "write the distance in double precision, C11", OPTION_C, 0},
         {"table", "FILE", "write parts, bounds and parameters as JSON", OPTION_TABLE, 0},
         {"pairs", "N", "random pairs tried per form (20000)", OPTION_PAIRS, 0},
+        {"anchored", NULL, "keep the precision of the GLSL far from the origin", OPTION_ANCHORED, 0},
         {NULL, NULL, NULL, 0, 0},
     };
     static const masu_cli_command command = {

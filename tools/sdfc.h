@@ -63,11 +63,13 @@ typedef struct masu_sdfc_result {
     uint32_t param_count;
     float *slots; /* initial values: parameters at their defaults, time 0 */
     uint32_t slot_count;
-    bool dynamic;
+    bool dynamic;  /* slots depend on parameters or time */
+    bool anchored; /* slots depend on the anchor */
 } masu_sdfc_result;
 
 typedef struct masu_sdfc_options {
     uint32_t pairs; /* tried per distinct shape; 0: 20000. UINT32_MAX: none */
+    bool anchored;  /* the GLSL takes points relative to masu_anchor() */
 } masu_sdfc_options;
 
 /* False: `error` holds "name:line:column: message", the line and a caret. The result is then empty.

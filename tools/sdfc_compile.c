@@ -14,6 +14,7 @@ void sdfc_free(sdfc *c) {
         for (int f = 0; f < p->function_count; f++) free(p->functions[f].instrs);
         free(p->functions);
         free(p->args);
+        free(p->root);
     }
     for (int i = 0; i < c->group_count; i++) free(c->groups[i].slot_of_arg);
     free(c->tokens);
@@ -26,6 +27,7 @@ void sdfc_free(sdfc *c) {
     free(c->parts);
     free(c->groups);
     free(c->dynamic_slots);
+    free(c->places);
     free(c->initial);
     free(c->scratch);
     free(c->needed);
@@ -59,7 +61,7 @@ static void fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     out->truth = f->truth;
     out->user = f->user;
     for (int a = 0; a < p->program.arg_count; a++) {
-        out->dynamic = out->dynamic || c->exprs[p->program.args[a]].dynamic;
+        out->dynamic = out->dynamic || c->exprs[p->program.args[a]].timed;
     }
 }
 
@@ -80,7 +82,12 @@ static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->material_count = (uint32_t)c->material_count;
     out->param_count = (uint32_t)c->param_count;
     out->slot_count = c->slot_count;
-    out->dynamic = c->dynamic_count > 0;
+    out->anchored = c->place_count > 0;
+    for (int i = 0; i < c->dynamic_count; i++) {
+        const sdfc_expr *e = &c->exprs[c->dynamic_slots[2 * i + 1]];
+        out->dynamic = out->dynamic || e->timed;
+        out->anchored = out->anchored || e->anchored;
+    }
     out->glsl = taken(&c->glsl);
     out->c = taken(&c->c);
     out->table = taken(&c->table);
@@ -90,6 +97,7 @@ static void fill_result(sdfc *c, masu_sdfc_result *out) {
 static void compile(sdfc *c, uint32_t pairs, masu_sdfc_result *out) {
     sdfc_lex(c);
     sdfc_parse(c);
+    for (int i = 0; i < 3 && c->anchored; i++) c->anchor_expr[i] = sdfc_anchor_expr(c, i);
     for (int i = 0; i < c->part_count; i++) sdfc_lower(c, &c->parts[i]);
     sdfc_group_parts(c);
     if (pairs != UINT32_MAX) sdfc_check(c, pairs ? pairs : 20000);
@@ -113,6 +121,7 @@ bool masu_sdfc_compile_with(const char *text, size_t bytes, const char *name,
         return false;
     }
     c->time_expr = -1;
+    c->anchored = options && options->anchored;
     c->text = text;
     c->bytes = bytes;
     c->name = name;

@@ -215,6 +215,81 @@ static void find_needed(sdfc *c) {
     }
 }
 
+static bool any_timed(const sdfc *c) {
+    for (int i = 0; i < c->dynamic_count; i++) {
+        if (c->exprs[c->dynamic_slots[2 * i + 1]].timed) return true;
+    }
+    return false;
+}
+
+/* Which expressions the GLSL needs as one float, which as two. What depends on the anchor is large
+ * before it is small, and so is what it is added to: 1e6 + sin(time) in one float is off by 0.06. */
+enum { ONE_FLOAT = 1, TWO_FLOATS = 2 };
+
+static unsigned char *find_widths(sdfc *c) {
+    unsigned char *widths = sdfc_take(c, (size_t)c->expr_count, 1);
+    free(c->scratch);
+    c->scratch = widths;
+    for (int i = 0; i < c->dynamic_count; i++) {
+        uint32_t e = c->dynamic_slots[2 * i + 1];
+        widths[e] |= c->exprs[e].anchored ? TWO_FLOATS : ONE_FLOAT;
+    }
+    for (int i = c->expr_count; i-- > 0;) {
+        for (int k = 0; k < sdfc_ops[c->exprs[i].op].operands; k++) {
+            const sdfc_expr *a = &c->exprs[c->exprs[i].a[k]];
+            bool sums = a->op == SDFC_add || a->op == SDFC_sub || a->op == SDFC_mul ||
+                        a->op == SDFC_neg || a->anchored;
+            if (widths[i] & TWO_FLOATS) {
+                widths[c->exprs[i].a[k]] |= sums ? TWO_FLOATS : ONE_FLOAT;
+            }
+            if (widths[i] & ONE_FLOAT) widths[c->exprs[i].a[k]] |= ONE_FLOAT;
+        }
+    }
+    return widths;
+}
+
+static void put_wide(writer *w, int e, const unsigned char *widths) {
+    const sdfc_expr *x = &w->c->exprs[e];
+    if (x->op == SDFC_CONST) {
+        double high = (double)(float)x->value;
+        PUT(w, "vec2(");
+        put_number(w, high);
+        PUT(w, ", ");
+        put_number(w, x->value - high);
+        PUT(w, ")");
+    } else if (widths[e] & TWO_FLOATS) {
+        PUT(w, "w%d", e);
+    } else {
+        PUT(w, "vec2(e%d, 0.0)", e);
+    }
+}
+
+/* Anchored expressions are made of these operations only (sdfc_lower.c). */
+static void put_wide_expr(writer *w, int i, const unsigned char *widths) {
+    const sdfc_expr *e = &w->c->exprs[i];
+    static const struct {
+        int op;
+        const char *name;
+    } names[] = {{SDFC_add, "masu_wide_add"},
+                 {SDFC_sub, "masu_wide_sub"},
+                 {SDFC_mul, "masu_wide_mul"},
+                 {SDFC_neg, "-"},
+                 {SDFC_fold, "masu_wide_fold"}};
+    PUT(w, "    vec2 w%d = ", i);
+    if (e->op == SDFC_ANCHOR) {
+        PUT(w, "vec2(masu_anchor(%d), 0.0);\n", e->a[0]);
+        return;
+    }
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        if (names[k].op == e->op) PUT(w, "%s(", names[k].name);
+    }
+    for (int k = 0; k < sdfc_ops[e->op].operands; k++) {
+        if (k) PUT(w, ", ");
+        put_wide(w, e->a[k], widths);
+    }
+    PUT(w, ");\n");
+}
+
 static void put_expr(writer *w, int e) {
     if (sdfc_constant(w->c, e))
         put_number(w, w->c->exprs[e].value);
@@ -224,14 +299,19 @@ static void put_expr(writer *w, int e) {
 
 static void put_update(writer *w) {
     sdfc *c = w->c;
+    const unsigned char *widths = w->glsl ? find_widths(c) : NULL;
     for (int i = 0; i < c->expr_count; i++) {
         const sdfc_expr *e = &c->exprs[i];
         if (!c->needed[i] || e->op == SDFC_CONST) continue;
+        if (widths && widths[i] & TWO_FLOATS) put_wide_expr(w, i, widths);
+        if (widths && !(widths[i] & ONE_FLOAT)) continue;
         PUT(w, "    real e%d = ", i);
         if (e->op == SDFC_PARAM) {
             PUT(w, "masu_param(%d)", e->a[0]);
         } else if (e->op == SDFC_TIME) {
             PUT(w, "masu_time()");
+        } else if (e->op == SDFC_ANCHOR) {
+            PUT(w, "0.0"); /* in C: the truth needs no anchor */
         } else if (sdfc_ops[e->op].text) {
             for (const char *t = sdfc_ops[e->op].text; *t; t++) {
                 if (*t == '$')
@@ -250,8 +330,11 @@ static void put_update(writer *w) {
         PUT(w, ";\n");
     }
     for (int i = 0; i < c->dynamic_count; i++) {
-        PUT(w, w->glsl ? "    masu_slot_write(%uu, e%u);\n" : "    slot[%u] = e%u;\n",
-            c->dynamic_slots[2 * i], c->dynamic_slots[2 * i + 1]);
+        uint32_t slot = c->dynamic_slots[2 * i], e = c->dynamic_slots[2 * i + 1];
+        if (w->glsl && c->exprs[e].anchored)
+            PUT(w, "    masu_slot_write(%uu, w%u.x + w%u.y);\n", slot, e, e);
+        else
+            PUT(w, w->glsl ? "    masu_slot_write(%uu, e%u);\n" : "    slot[%u] = e%u;\n", slot, e);
     }
 }
 
@@ -485,6 +568,75 @@ static void put_ascending(writer *w) {
     PUT(w, "    return d;\n}\n");
 }
 
+/* ---- GLSL: the root transforms ---- */
+
+/* One step, inwards or outwards. The rows of a turn are orthonormal: its transpose undoes it. */
+static void put_root_step(writer *w, int group, const sdfc_root_step *step, bool out) {
+    const sdfc_group *g = &w->c->groups[group];
+    const sdfc_program *p = &w->c->parts[g->first_part].program;
+    bool turn = step->kind == SDFC_KIND_ROTATE;
+    PUT(w, "        p = ");
+    if (!turn) PUT(w, step->kind == SDFC_KIND_SCALE ? "p * " : out ? "p + " : "p - ");
+    PUT(w, "vec3(");
+    for (int i = 0; i < 3; i++) {
+        if (i) PUT(w, ", ");
+        if (turn) {
+            PUT(w, "dot(p, vec3(");
+            for (int k = 0; k < 3; k++) {
+                if (k) PUT(w, ", ");
+                put_operand(w, g, p, ~step->arg[out ? 3 * k + i : 3 * i + k]);
+            }
+            PUT(w, "))");
+        } else {
+            bool invert = step->kind == SDFC_KIND_SCALE && out;
+            if (invert) PUT(w, "masu_rcp(");
+            put_operand(w, g, p, ~step->arg[i]);
+            if (invert) PUT(w, ")");
+        }
+    }
+    PUT(w, ");\n");
+}
+
+/* From the world into a part's own space, and out of it: the movements, turns and scalings that
+ * stand around all else in the part. Of parts where these do not change: nothing. */
+static void put_roots(writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "#ifdef MASU_MOTION\nvec3 masu_sdf_root(uint part, vec3 p, bool out_of)\n{\n");
+    PUT(w, "    uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
+    PUT(w, "    uint form = uint(masu_slot(record + 5u));\n");
+    PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_program *p = &c->parts[c->groups[g].first_part].program;
+        if (!c->groups[g].moves) continue;
+        PUT(w, "    if (form == %du && !out_of) {\n", g);
+        for (int i = 0; i < p->root_count; i++) put_root_step(w, g, &p->root[i], false);
+        PUT(w, "    }\n    if (form == %du && out_of) {\n", g);
+        for (int i = p->root_count; i-- > 0;) put_root_step(w, g, &p->root[i], true);
+        PUT(w, "    }\n");
+    }
+    PUT(w, "    return p;\n}\n#endif\n\n");
+}
+
+/* One slot of those that depend on the anchor alone; their constants are slots themselves. */
+static void put_places(writer *w) {
+    PUT(w,
+        "#define MASU_SDF_PLACES %d\n"
+        "void masu_sdf_place(uint i)\n{\n"
+        "    uint at = %uu + i * %uu;\n"
+        "    vec2 v = vec2(masu_slot(at + 7u), masu_slot(at + 8u));\n"
+        "    for (int k = 0; k < 3; k++) {\n"
+        "        uint factor = at + 1u + 2u * uint(k);\n"
+        "        vec2 m = vec2(masu_slot(factor), masu_slot(factor + 1u));\n"
+        "        v = masu_wide_add(v, masu_wide_mul(m, vec2(masu_anchor(k), 0.0)));\n"
+        "    }\n"
+        "    if (masu_slot(at + 11u) != 0.0) {\n"
+        "        vec2 period = vec2(masu_slot(at + 9u), masu_slot(at + 10u));\n"
+        "        v = masu_wide_fold(v, period, vec2(masu_slot(at + 11u), 0.0));\n"
+        "    }\n"
+        "    masu_slot_write(uint(masu_slot(at)), v.x + v.y);\n}\n",
+        w->c->place_count, w->c->place_base, SDFC_PLACE_SLOTS);
+}
+
 static void put_glsl(writer *w) {
     sdfc *c = w->c;
     PUT(w, "/* Made by masu-sdfc: %d parts of %d forms. */\n", c->part_count, c->group_count);
@@ -495,7 +647,7 @@ static void put_glsl(writer *w) {
     PUT(w, "#define MASU_SDF_MASKED %d /* 1: lists of parts are bits */\n",
         c->part_count <= MASU_SDFC_MASKED_MAX);
     PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
-    PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", c->dynamic_count > 0);
+    PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", any_timed(c));
     put_users(w);
     PUT(w, "#define real float\n#define TO_INT(x) int(x)\n");
     put_library(w, false);
@@ -508,6 +660,7 @@ static void put_glsl(writer *w) {
         "    return vec4(masu_slot(record), masu_slot(record + 1u), masu_slot(record + 2u),\n"
         "                masu_slot(record + 3u));\n}\n\n",
         MASU_SDFC_PART_SLOTS);
+    put_roots(w);
     PUT(w, "#ifdef MASU_SDF_ASCENDING\n");
     put_ascending(w);
     PUT(w, "#else\n");
@@ -537,6 +690,7 @@ static void put_glsl(writer *w) {
     if (has_mod) {
         PUT(w, "real masu_h_mod%s\n%s\n", sdfc_ops[SDFC_mod].params, sdfc_ops[SDFC_mod].body);
     }
+    if (c->place_count) put_places(w);
     PUT(w, "void masu_sdf_update()\n{\n");
     put_update(w);
     PUT(w, "}\n#endif\n#undef real\n#undef TO_INT\n");

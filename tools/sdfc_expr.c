@@ -33,6 +33,7 @@ int sdfc_param_expr(sdfc *c, int param) {
     return add_expr(c, (sdfc_expr){.op = SDFC_PARAM,
                                    .a = {param, 0, 0},
                                    .dynamic = true,
+                                   .timed = true,
                                    .value = p->value,
                                    .low = p->minimum,
                                    .high = p->maximum});
@@ -42,9 +43,20 @@ int sdfc_time_expr(sdfc *c) {
     if (c->time_expr < 0) {
         c->time_expr = add_expr(
             c, (sdfc_expr){
-                   .op = SDFC_TIME, .dynamic = true, .low = -SDFC_INFINITY, .high = SDFC_INFINITY});
+                   .op = SDFC_TIME, .dynamic = true, .timed = true, .low = -SDFC_INFINITY,
+                   .high = SDFC_INFINITY});
     }
     return c->time_expr;
+}
+
+/* The checker and the truth work in double precision around the origin of the world. */
+int sdfc_anchor_expr(sdfc *c, int axis) {
+    return add_expr(c, (sdfc_expr){.op = SDFC_ANCHOR,
+                                   .a = {axis, 0, 0},
+                                   .dynamic = true,
+                                   .anchored = true,
+                                   .low = -SDFC_INFINITY,
+                                   .high = SDFC_INFINITY});
 }
 
 /* ---- intervals ---- */
@@ -148,12 +160,13 @@ static interval widened(interval r) {
 int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
     int a[3] = {x, y, z};
     int count = sdfc_ops[op].operands;
-    bool constant = true, dynamic = false;
+    bool constant = true, timed = false, anchored = false;
     double values[3] = {0};
     for (int i = 0; i < count; i++) {
         values[i] = c->exprs[a[i]].value;
         constant = constant && sdfc_constant(c, a[i]);
-        dynamic = dynamic || c->exprs[a[i]].dynamic;
+        timed = timed || c->exprs[a[i]].timed;
+        anchored = anchored || c->exprs[a[i]].anchored;
     }
     double value = sdfc_ops[op].run(values);
     if (constant) return sdfc_number(c, value);
@@ -167,7 +180,9 @@ int sdfc_apply(sdfc *c, int op, int x, int y, int z) {
     interval r = widened(range(c, op, a));
     return add_expr(c, (sdfc_expr){.op = op,
                                    .a = {a[0], a[1], a[2]},
-                                   .dynamic = dynamic,
+                                   .dynamic = timed || anchored,
+                                   .timed = timed,
+                                   .anchored = anchored,
                                    .value = in_range(c, value),
                                    .low = r.low,
                                    .high = r.high});
@@ -181,6 +196,7 @@ void sdfc_evaluate(const sdfc *c, const double *params, double time, double *val
         case SDFC_CONST: values[i] = e->value; break;
         case SDFC_PARAM: values[i] = params[e->a[0]]; break;
         case SDFC_TIME: values[i] = time; break;
+        case SDFC_ANCHOR: values[i] = 0; break;
         default:
             for (int k = 0; k < 3; k++) a[k] = values[e->a[k]];
             values[i] = sdfc_ops[e->op].run(a);

@@ -33,6 +33,7 @@
 enum sdfc_op {
     SDFC_CONST,
     SDFC_PARAM,
+    SDFC_ANCHOR, /* a[0]: axis */
     SDFC_TIME,
 #define T(name, count, text, code) SDFC_##name,
 #define F(name, count, params, ...) SDFC_##name,
@@ -78,7 +79,9 @@ typedef struct sdfc_token {
 
 typedef struct sdfc_expr {
     int op, a[3]; /* PARAM: a[0] is its index */
-    bool dynamic;
+    bool dynamic;  /* depends on parameters, time or the anchor */
+    bool timed;    /* on parameters or time */
+    bool anchored; /* on the anchor */
     double value, low, high; /* value: at the parameters' defaults and time 0 */
 } sdfc_expr;
 
@@ -147,7 +150,15 @@ typedef struct sdfc_function {
     int first_variable;
 } sdfc_function;
 
+/* A step of a part's root transform: what stands around all else in it. */
+typedef struct sdfc_root_step {
+    int kind;   /* SDFC_KIND_TRANSLATE, _ROTATE or _SCALE */
+    int arg[9]; /* arguments: the offset; the matrix; the factors, inverted */
+} sdfc_root_step;
+
 typedef struct sdfc_program {
+    sdfc_root_step *root; /* from the world inwards */
+    int root_count, root_capacity;
     sdfc_function *functions; /* the first one is the part's */
     int function_count, function_capacity;
     int *args; /* expressions */
@@ -171,6 +182,7 @@ typedef struct sdfc_group {
     int *slot_of_arg; /* -1: a literal */
     int slot_count;
     bool flat; /* half-spaces: f is affine in the point */
+    bool moves; /* a root transform of its parts changes */
 } sdfc_group;
 
 typedef struct sdfc_material {
@@ -191,6 +203,14 @@ typedef struct sdfc_symbol {
     sdfc_value value;
     int index;
 } sdfc_symbol;
+
+/* A slot that is a constant sum of the anchor's coordinates, taken modulo a period where that is not
+ * 0. As data: a scene has thousands of them, and as code no optimiser comes to an end. */
+typedef struct sdfc_place {
+    uint32_t slot;
+    double factor[3], term, period, inverse;
+} sdfc_place;
+enum { SDFC_PLACE_SLOTS = 12 }; /* the slot, then the rest in two floats each, inverse in one */
 
 typedef struct sdfc_text {
     char *data;
@@ -215,6 +235,8 @@ typedef struct sdfc {
     sdfc_expr *exprs;
     int expr_count, expr_capacity;
     int time_expr; /* -1: not yet needed */
+    bool anchored;
+    int anchor_expr[3];
     sdfc_shape *shapes;
     int shape_count, shape_capacity;
     sdfc_user *users;
@@ -233,6 +255,9 @@ typedef struct sdfc {
     int flat_parts; /* the last ones */
     uint32_t *dynamic_slots; /* pairs: slot, expression */
     int dynamic_count, dynamic_capacity;
+    sdfc_place *places; /* behind all other slots, from place_base on */
+    int place_count, place_capacity;
+    uint32_t place_base;
     double *initial; /* slots */
     void *scratch;
     bool *needed;   /* expressions that slots are made of */
@@ -261,6 +286,7 @@ void *sdfc_take(sdfc *c, size_t count, size_t size); /* zeros */
 int sdfc_number(sdfc *c, double value);
 int sdfc_param_expr(sdfc *c, int param);
 int sdfc_time_expr(sdfc *c);
+int sdfc_anchor_expr(sdfc *c, int axis); /* 0 but in the GLSL of an anchored scene */
 int sdfc_apply(sdfc *c, int op, int x, int y, int z); /* unused operands: 0 */
 /* The values of all expressions for these parameters and this time. */
 void sdfc_evaluate(const sdfc *c, const double *params, double time, double *values);

@@ -1,7 +1,13 @@
 /* sdfc_lower.c: a part's tree of shapes becomes functions of straight-line operations on numbers.
  * Points travel from the outside in as three variables, distances come back as one. What a
  * parameter of the scene or a literal of the text contributes is an argument, by number: two parts
- * with the same operations and different arguments share their code (sdfc_group_parts). */
+ * with the same operations and different arguments share their code (sdfc_group_parts).
+ *
+ * In an anchored scene the GLSL's points are relative to an anchor, which may be a million metres
+ * from the origin. So a point carries an offset that is still to be added to it, at first the
+ * anchor: movements, turns, scalings and endless repetitions change the offset and not the point,
+ * and what needs true coordinates adds it up. By then it is small, since what one sees stands near
+ * the anchor. The offset's expressions are evaluated in two floats each (shared/wide.glsl). */
 #include "sdfc_internal.h"
 
 #include <stdlib.h>
@@ -13,13 +19,15 @@ typedef struct lowering {
     sdfc *c;
     sdfc_program *program;
     int function; /* being written */
+    bool root;    /* no shape but movements, turns and scalings has been met */
 } lowering;
 
 typedef struct point {
     int x, y, z;
+    int offset[3]; /* expressions + 1, to be added; 0: nothing */
 } point;
 
-static const point entry = {0, 1, 2}; /* the variables of a function that are its parameters */
+static const point entry = {0, 1, 2, {0}}; /* the variables of a function that are its parameters */
 
 /* ---- writing ---- */
 
@@ -67,17 +75,100 @@ static int open_function(lowering *l) {
     return before;
 }
 
+/* ---- offsets ---- */
+
+static bool has_offset(const point *p) { return p->offset[0] || p->offset[1] || p->offset[2]; }
+
+static int offset_of(lowering *l, const point *p, int axis) {
+    return p->offset[axis] ? p->offset[axis] - 1 : sdfc_number(l->c, 0);
+}
+
+/* What is to be subtracted from a coordinate. */
+static int against(lowering *l, const point *p, int axis) {
+    return sdfc_apply(l->c, SDFC_neg, offset_of(l, p, axis), 0, 0);
+}
+
+/* The point in true coordinates. */
+static point settled(lowering *l, point p) {
+    int v[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; i++) {
+        if (p.offset[i]) v[i] = OP(l, sub, v[i], argument(l, against(l, &p, i)));
+    }
+    return (point){v[0], v[1], v[2], {0}};
+}
+
+static point moved_offset(lowering *l, point p, const int by[3]) {
+    for (int i = 0; i < 3; i++) {
+        p.offset[i] = sdfc_apply(l->c, SDFC_sub, offset_of(l, &p, i), by[i], 0) + 1;
+    }
+    return p;
+}
+
+static void turn_offset(lowering *l, const sdfc_shape *s, const point *from, point *to) {
+    for (int i = 0; i < 3; i++) {
+        int sum = sdfc_number(l->c, 0);
+        for (int j = 0; j < 3; j++) {
+            int part = sdfc_apply(l->c, SDFC_mul, s->number[3 * i + j], offset_of(l, from, j), 0);
+            sum = sdfc_apply(l->c, SDFC_add, sum, part, 0);
+        }
+        to->offset[i] = sum + 1;
+    }
+}
+
+/* A constant coordinate, to be compared with the point's. */
+static int relative(lowering *l, const point *p, int axis, double value) {
+    int e = sdfc_number(l->c, value);
+    if (p->offset[axis]) e = sdfc_apply(l->c, SDFC_sub, e, p->offset[axis] - 1, 0);
+    return argument(l, e);
+}
+
+static bool any_timed(const sdfc *c, const int *exprs, int count) {
+    for (int i = 0; i < count; i++) {
+        if (c->exprs[exprs[i]].timed) return true;
+    }
+    return false;
+}
+
+/* Which forms hand an offset on, instead of having it added first. A turn or a factor that changes
+ * is known to 24 bits only: more bits of its product with the offset would say nothing. */
+static bool hands_offset_on(const sdfc *c, const sdfc_shape *s) {
+    switch (s->kind) {
+    case SDFC_KIND_ROTATE:
+    case SDFC_KIND_ROTATE_EULER: return !any_timed(c, s->number, 9);
+    case SDFC_KIND_TRANSLATE:
+    case SDFC_KIND_REPEAT:
+    case SDFC_KIND_PLANE:
+    case SDFC_KIND_ONION:
+    case SDFC_KIND_ROUND:
+    case SDFC_KIND_DISPLACE:
+    case SDFC_KIND_DISPLACE_NOISE:
+    case SDFC_KIND_MORPH:
+    case SDFC_KIND_UNION:
+    case SDFC_KIND_INTERSECTION:
+    case SDFC_KIND_DIFFERENCE:
+    case SDFC_KIND_SMOOTH_UNION:
+    case SDFC_KIND_SMOOTH_INTERSECTION:
+    case SDFC_KIND_SMOOTH_DIFFERENCE: return true;
+    case SDFC_KIND_SCALE: /* which looks at the point again where it may be 0 */
+        return s->extra[0] == 0 && !any_timed(c, s->number, 3);
+    default: return false;
+    }
+}
+
 static int lower(lowering *l, int shape, point p);
 
-/* The child as a function of its own, since it is called at several points. */
-static int child_function(lowering *l, int shape, bool join_box, const sdfc_shape *owner) {
+/* The child as a function of its own, since it is called at several points. They share `offset`. */
+static int child_function(lowering *l, int shape, bool join_box, const sdfc_shape *owner,
+                          const int offset[3]) {
     int before = open_function(l), function = l->function;
-    int d = lower(l, shape, entry);
+    const point start = {0, 1, 2, {offset[0], offset[1], offset[2]}};
+    int d = lower(l, shape, start);
     double lipschitz = l->c->shapes[shape].facts.lipschitz;
     if (join_box) {
         int outside;
         int e[6];
-        for (int i = 0; i < 6; i++) e[i] = constant(l, owner->extra[4 + i]);
+        for (int i = 0; i < 3; i++) e[i] = relative(l, &start, i, owner->extra[4 + i]);
+        for (int i = 3; i < 6; i++) e[i] = constant(l, owner->extra[4 + i]);
         outside = OP(l, around_box, 0, 1, 2, e[0], e[1], e[2], e[3], e[4], e[5]);
         if (owner->kind == SDFC_KIND_POLAR) {
             int cosine = constant(l, owner->extra[1]);
@@ -102,7 +193,7 @@ static int capped(lowering *l, int d, int least, const sdfc_facts *f, point p) {
     if (ends) {
         for (int i = 0; i < 3; i++) {
             bool end = isfinite(f->box.low[i]) && isfinite(f->box.high[i]);
-            e[i] = constant(l, end ? (f->box.low[i] + f->box.high[i]) / 2 : 0);
+            e[i] = end ? relative(l, &p, i, (f->box.low[i] + f->box.high[i]) / 2) : constant(l, 0);
             e[3 + i] = constant(l, end ? (f->box.high[i] - f->box.low[i]) / 2 : 1e30);
         }
         int outside = OP(l, around_box, p.x, p.y, p.z, e[0], e[1], e[2], e[3], e[4], e[5]);
@@ -111,10 +202,56 @@ static int capped(lowering *l, int d, int least, const sdfc_facts *f, point p) {
     return OP(l, min, d, least);
 }
 
+/* ---- the root transform ---- */
+
+/* Arguments `first` on, `count` of them; count 1: the one stands for three. */
+static void add_root_step(lowering *l, int kind, int first, int count) {
+    sdfc_program *p = l->program;
+    p->root = sdfc_grow(l->c, p->root, p->root_count, &p->root_capacity, sizeof *p->root,
+                        MASU_SDFC_DEPTH_MAX, "movements around a part");
+    sdfc_root_step *step = &p->root[p->root_count++];
+    memset(step, 0, sizeof *step);
+    step->kind = kind;
+    for (int i = 0; i < 9; i++) step->arg[i] = i < count ? first + i : first;
+}
+
+/* It matters where it changes: only then has it carried the part. */
+static bool root_moves(const sdfc *c, const sdfc_program *p) {
+    for (int i = 0; i < p->root_count; i++) {
+        int count = p->root[i].kind == SDFC_KIND_ROTATE ? 9 : 3;
+        for (int k = 0; k < count; k++) {
+            if (c->exprs[p->args[p->root[i].arg[k]]].timed) return true;
+        }
+    }
+    return false;
+}
+
+/* What the offset has gathered is a movement too. At the end of the root transform it needs no
+ * arguments where nothing of all this changes with time: nothing has moved. */
+static void gather_root(lowering *l, const point *p, bool ends) {
+    if (!has_offset(p)) return;
+    bool timed = !ends || root_moves(l->c, l->program);
+    for (int i = 0; i < 3; i++) timed = timed || l->c->exprs[offset_of(l, p, i)].timed;
+    if (!timed) return;
+    int first = l->program->arg_count;
+    for (int i = 0; i < 3; i++) argument(l, against(l, p, i));
+    add_root_step(l, SDFC_KIND_TRANSLATE, first, 3);
+}
+
 /* ---- operators ---- */
 
 static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
     bool limited = s->kind == SDFC_KIND_REPEAT_LIMITED;
+    point rest = p; /* the offset that the axes which do not repeat keep */
+    for (int i = 0; i < 3; i++) {
+        if (s->extra[i] != 0) rest.offset[i] = 0;
+        if (s->extra[i] == 0) p.offset[i] = 0;
+        if (!p.offset[i]) continue; /* whole periods of it do not matter */
+        p.offset[i] =
+            1 + sdfc_apply(l->c, SDFC_fold, p.offset[i] - 1, s->number[i], s->number[3 + i]);
+    }
+    p = settled(l, p);
+    memcpy(p.offset, rest.offset, sizeof p.offset);
     int in[3] = {p.x, p.y, p.z}, own[3], beside[3], bits = 0, bit[3] = {0, 0, 0};
     for (int i = 0; i < 3; i++) {
         own[i] = beside[i] = in[i];
@@ -132,8 +269,11 @@ static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
         beside[i] = limited ? OP(l, beside_row, in[i], period, inverse, half)
                             : OP(l, beside, own[i], period);
     }
-    if (!bits) return lower(l, s->child[0], (point){own[0], own[1], own[2]});
-    int function = child_function(l, s->child[0], s->extra[10] != 0, s);
+    if (!bits) {
+        point q = {own[0], own[1], own[2], {p.offset[0], p.offset[1], p.offset[2]}};
+        return lower(l, s->child[0], q);
+    }
+    int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
     sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
     call->aux = function;
     call->points = 1 << bits;
@@ -151,11 +291,11 @@ static int lower_polar(lowering *l, const sdfc_shape *s, point p) {
     int sector = constant(l, 6.283185307179586 / s->whole[0]);
     int zero = constant(l, 0), one = constant(l, 1);
     int a = OP(l, polar_angle, p.x, p.z, sector, zero);
-    point q = {OP(l, turn_x, p.x, p.z, a), p.y, OP(l, turn_z, p.x, p.z, a)};
+    point q = {OP(l, turn_x, p.x, p.z, a), p.y, OP(l, turn_z, p.x, p.z, a), {0}};
     if (s->extra[0] == 1) return lower(l, s->child[0], q);
     int b = OP(l, polar_angle, p.x, p.z, sector, one);
-    point r = {OP(l, turn_x, p.x, p.z, b), p.y, OP(l, turn_z, p.x, p.z, b)};
-    int function = child_function(l, s->child[0], s->extra[10] != 0, s);
+    point r = {OP(l, turn_x, p.x, p.z, b), p.y, OP(l, turn_z, p.x, p.z, b), {0}};
+    int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
     sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
     *call = (sdfc_instr){.op = SDFC_CALL_MIN,
                          .aux = function,
@@ -175,7 +315,7 @@ static int lower_bend(lowering *l, const sdfc_shape *s, point p) {
     int a = OP(l, mul, twist ? p.y : p.x, rate);
     int u = p.x, v = twist ? p.z : p.y;
     int turned_u = OP(l, turn_x, u, v, a), turned_v = OP(l, turn_z, u, v, a);
-    point q = twist ? (point){turned_u, p.y, turned_v} : (point){turned_u, turned_v, p.z};
+    point q = {turned_u, twist ? p.y : turned_v, twist ? turned_v : p.z, {0}};
     int d = lower(l, s->child[0], q);
     int along = twist ? p.y : p.z;
     int radius = constant(l, s->extra[2]), middle = constant(l, s->extra[3]);
@@ -190,13 +330,13 @@ static point matrix(lowering *l, const sdfc_shape *s, point p) {
         int a = argument(l, s->number[3 * i]), b = argument(l, s->number[3 * i + 1]);
         v[i] = OP(l, dot3, p.x, p.y, p.z, a, b, argument(l, s->number[3 * i + 2]));
     }
-    return (point){v[0], v[1], v[2]};
+    return (point){v[0], v[1], v[2], {0}};
 }
 
 static point reflect(lowering *l, point p, int nx, int ny, int nz) {
     int d = OP(l, dot3, p.x, p.y, p.z, nx, ny, nz);
     int x = OP(l, reflect, p.x, d, nx), y = OP(l, reflect, p.y, d, ny);
-    return (point){x, y, OP(l, reflect, p.z, d, nz)};
+    return (point){x, y, OP(l, reflect, p.z, d, nz), {0}};
 }
 
 /* Into one octant, then across its diagonals into x >= y >= z: reflections only. Then the factor. */
@@ -212,7 +352,7 @@ static int lower_kaleidoscope(lowering *l, const sdfc_shape *s, point p) {
         middle = OP(l, min, high, middle);
         int x = OP(l, sub, OP(l, mul, most, k), shift[0]);
         int y = OP(l, sub, OP(l, mul, middle, k), shift[1]);
-        p = (point){x, y, OP(l, sub, OP(l, mul, least, k), shift[2])};
+        p = (point){x, y, OP(l, sub, OP(l, mul, least, k), shift[2]), {0}};
     }
     return OP(l, mul, lower(l, s->child[0], p), argument(l, s->number[4]));
 }
@@ -289,8 +429,13 @@ static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
     case SDFC_KIND_CYLINDER: return plain(l, SDFC_cylinder, s, p, 2);
     case SDFC_KIND_CONE: return plain(l, SDFC_cone, s, p, 3);
     case SDFC_KIND_PLANE: {
-        int d = plain(l, SDFC_dot3, s, p, 3);
-        return OP(l, sub, d, argument(l, s->number[3]));
+        int d = plain(l, SDFC_dot3, s, p, 3), e = s->number[3];
+        for (int i = 0; i < 3; i++) {
+            if (!p.offset[i]) continue;
+            int along = sdfc_apply(l->c, SDFC_mul, s->number[i], p.offset[i] - 1, 0);
+            e = sdfc_apply(l->c, SDFC_sub, e, along, 0);
+        }
+        return OP(l, sub, d, argument(l, e));
     }
     case SDFC_KIND_ELLIPSOID: return plain(l, SDFC_ellipsoid, s, p, 4);
     case SDFC_KIND_BOX_FRAME: return plain(l, SDFC_box_frame, s, p, 4);
@@ -321,20 +466,44 @@ static int lower(lowering *l, int shape, point p) {
     /* A copy: expressions made below may move the array. */
     const sdfc_shape copy = c->shapes[shape], *s = &copy;
     const int *n = s->number;
+    bool root = l->root;
+    l->root = root && (s->kind == SDFC_KIND_TRANSLATE || s->kind == SDFC_KIND_ROTATE ||
+                       s->kind == SDFC_KIND_ROTATE_EULER || s->kind == SDFC_KIND_SCALE);
+    if (root && (!l->root || !hands_offset_on(l->c, s))) gather_root(l, &p, !l->root);
+    if (!hands_offset_on(l->c, s)) p = settled(l, p);
     if (s->children == 0) return lower_primitive(l, s, p);
-    int first = s->child[0];
+    int first = s->child[0], next = l->program->arg_count;
     switch (s->kind) {
     case SDFC_KIND_TRANSLATE: {
+        if (has_offset(&p)) return lower(l, first, moved_offset(l, p, n));
         int x = OP(l, sub, p.x, argument(l, n[0])), y = OP(l, sub, p.y, argument(l, n[1]));
-        return lower(l, first, (point){x, y, OP(l, sub, p.z, argument(l, n[2]))});
+        int z = OP(l, sub, p.z, argument(l, n[2]));
+        if (root) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);
+        return lower(l, first, (point){x, y, z, {0}});
     }
     case SDFC_KIND_ROTATE:
-    case SDFC_KIND_ROTATE_EULER: return lower(l, first, matrix(l, s, p));
+    case SDFC_KIND_ROTATE_EULER: {
+        point turned = matrix(l, s, p);
+        if (has_offset(&p)) turn_offset(l, s, &p, &turned);
+        if (root) add_root_step(l, SDFC_KIND_ROTATE, next, 9);
+        return lower(l, first, turned);
+    }
     case SDFC_KIND_SCALE: {
         int a[3] = {argument(l, n[0]), 0, 0};
         for (int i = 1; i < 3; i++) a[i] = n[i] == n[0] ? a[0] : argument(l, n[i]);
-        int x = OP(l, mul, p.x, a[0]), y = OP(l, mul, p.y, a[1]);
-        int d = lower(l, first, (point){x, y, OP(l, mul, p.z, a[2])});
+        int x = OP(l, mul, p.x, a[0]), y = OP(l, mul, p.y, a[1]), z = OP(l, mul, p.z, a[2]);
+        if (root) {
+            add_root_step(l, SDFC_KIND_SCALE, next, 1);
+            sdfc_root_step *step = &l->program->root[l->program->root_count - 1];
+            for (int i = 0; i < 3; i++) step->arg[i] = ~a[i];
+        }
+        point q = {x, y, z, {0}};
+        for (int i = 0; i < 3; i++) {
+            if (p.offset[i]) {
+                q.offset[i] = 1 + sdfc_apply(c, SDFC_mul, p.offset[i] - 1, n[i], 0);
+            }
+        }
+        int d = lower(l, first, q);
         int k = argument(l, n[3]);
         return s->extra[0] != 0 ? OP(l, unscale, d, k, p.x, p.y, p.z) : OP(l, mul, d, k);
     }
@@ -343,7 +512,7 @@ static int lower(lowering *l, int shape, point p) {
             if (fabs(c->exprs[n[i]].value) != 1) continue;
             int v = OP(l, abs, i == 0 ? p.x : i == 1 ? p.y : p.z);
             if (c->exprs[n[i]].value < 0) v = OP(l, neg, v);
-            return lower(l, first, (point){i == 0 ? v : p.x, i == 1 ? v : p.y, i == 2 ? v : p.z});
+            return lower(l, first, (point){i == 0 ? v : p.x, i == 1 ? v : p.y, i == 2 ? v : p.z, {0}});
         }
         int x = argument(l, n[0]), y = argument(l, n[1]);
         return lower(l, first, reflect(l, p, x, y, argument(l, n[2])));
@@ -356,7 +525,7 @@ static int lower(lowering *l, int shape, point p) {
     case SDFC_KIND_ELONGATE: {
         int x = OP(l, elongate, p.x, argument(l, n[0]));
         int y = OP(l, elongate, p.y, argument(l, n[1]));
-        return lower(l, first, (point){x, y, OP(l, elongate, p.z, argument(l, n[2]))});
+        return lower(l, first, (point){x, y, OP(l, elongate, p.z, argument(l, n[2])), {0}});
     }
     case SDFC_KIND_ONION: {
         int d = lower(l, first, p);
@@ -369,11 +538,13 @@ static int lower(lowering *l, int shape, point p) {
     case SDFC_KIND_DISPLACE: {
         int d = lower(l, first, p), a = argument(l, n[0]);
         int x = argument(l, n[1]), y = argument(l, n[2]);
+        p = settled(l, p);
         int w = OP(l, waves, p.x, p.y, p.z, x, y, argument(l, n[3]));
         return OP(l, add, d, OP(l, mul, w, a));
     }
     case SDFC_KIND_DISPLACE_NOISE: {
         int d = lower(l, first, p), a = argument(l, n[0]), k = argument(l, n[1]);
+        p = settled(l, p);
         int x = OP(l, mul, p.x, k), y = OP(l, mul, p.y, k);
         int w = OP(l, noise, x, y, OP(l, mul, p.z, k));
         return OP(l, add, d, OP(l, mul, w, a));
@@ -388,11 +559,13 @@ static int lower(lowering *l, int shape, point p) {
 }
 
 void sdfc_lower(sdfc *c, sdfc_part *part) {
-    lowering l = {c, &part->program, 0};
+    lowering l = {c, &part->program, 0, true};
     c->at = part->token;
     open_function(&l);
     int root = l.function;
-    int d = lower(&l, part->shape, entry);
+    point whole = entry;
+    for (int i = 0; i < 3 && c->anchored; i++) whole.offset[i] = c->anchor_expr[i] + 1;
+    int d = lower(&l, part->shape, whole);
     part->program.functions[root].result = d;
     int variables = 0;
     for (int i = 0; i < part->program.function_count; i++) {
@@ -411,6 +584,10 @@ static bool same_user(const sdfc *c, int a, int b) {
 
 static bool same_form(const sdfc *c, const sdfc_program *a, const sdfc_program *b) {
     if (a->function_count != b->function_count || a->arg_count != b->arg_count) return false;
+    if (a->root_count != b->root_count) return false;
+    if (a->root_count && memcmp(a->root, b->root, (size_t)a->root_count * sizeof *a->root)) {
+        return false;
+    }
     for (int i = 0; i < a->function_count; i++) {
         const sdfc_function *f = &a->functions[i], *g = &b->functions[i];
         if (f->count != g->count || f->result != g->result) return false;
@@ -470,6 +647,101 @@ static void set_slot(sdfc *c, uint32_t slot, int expr) {
     if (c->exprs[expr].dynamic) add_dynamic(c, slot, expr);
 }
 
+/* ---- slots that depend on the anchor alone ---- */
+
+/* factor . anchor + term, folded into the period if that is not 0. */
+typedef struct affine {
+    sdfc_place sum;
+    bool known;
+} affine;
+
+static affine affine_of(const sdfc *c, int e, const affine *all) {
+    const sdfc_expr *x = &c->exprs[e];
+    affine r = {.known = false}, a = all[x->a[0]], b = all[x->a[1]];
+    bool sums = a.known && b.known && a.sum.period == 0 && b.sum.period == 0;
+    switch (x->op) {
+    case SDFC_CONST: return (affine){{.term = x->value}, true};
+    case SDFC_ANCHOR:
+        r.sum.factor[x->a[0]] = 1;
+        r.known = true;
+        return r;
+    case SDFC_add:
+    case SDFC_sub:
+    case SDFC_neg: {
+        double s = x->op == SDFC_add ? 1 : -1;
+        if (x->op == SDFC_neg) b = a, a = (affine){.known = true}, sums = b.known;
+        for (int i = 0; i < 3; i++) a.sum.factor[i] += s * b.sum.factor[i];
+        a.sum.term += s * b.sum.term;
+        if (x->op == SDFC_neg) a.sum.period = b.sum.period, a.sum.inverse = b.sum.inverse;
+        a.known = sums;
+        return a;
+    }
+    case SDFC_mul: {
+        bool first = sdfc_constant(c, x->a[0]);
+        double s = c->exprs[x->a[first ? 0 : 1]].value;
+        if (first) a = b;
+        for (int i = 0; i < 3; i++) a.sum.factor[i] *= s;
+        a.sum.term *= s;
+        a.known = sums && (first || sdfc_constant(c, x->a[1]));
+        return a;
+    }
+    case SDFC_fold:
+        a.known = a.known && a.sum.period == 0 && sdfc_constant(c, x->a[1]) &&
+                  sdfc_constant(c, x->a[2]);
+        a.sum.period = c->exprs[x->a[1]].value;
+        a.sum.inverse = c->exprs[x->a[2]].value;
+        return a;
+    default: return r;
+    }
+}
+
+/* A number and what a float leaves of it. */
+static void put_pair(double *to, double v) {
+    to[0] = (double)(float)v;
+    to[1] = v - to[0];
+}
+
+/* Takes them out of the code that the update runs, and lays them behind the slots. */
+static void gather_places(sdfc *c) {
+    affine *all = sdfc_take(c, (size_t)c->expr_count, sizeof *all);
+    free(c->scratch);
+    c->scratch = all;
+    for (int i = 0; i < c->expr_count; i++) all[i] = affine_of(c, i, all);
+    int kept = 0;
+    for (int i = 0; i < c->dynamic_count; i++) {
+        uint32_t slot = c->dynamic_slots[2 * i], e = c->dynamic_slots[2 * i + 1];
+        if (all[e].known) {
+            c->places = sdfc_grow(c, c->places, c->place_count, &c->place_capacity,
+                                  sizeof *c->places, MASU_SDFC_SLOTS_MAX, "slots");
+            c->places[c->place_count] = all[e].sum;
+            c->places[c->place_count++].slot = slot;
+        } else {
+            c->dynamic_slots[2 * kept] = slot;
+            c->dynamic_slots[2 * kept++ + 1] = e;
+        }
+    }
+    c->dynamic_count = kept;
+    long slots = (long)c->slot_count + (long)c->place_count * SDFC_PLACE_SLOTS;
+    if (slots > MASU_SDFC_SLOTS_MAX) {
+        sdfc_fail(c, c->parts[c->part_count - 1].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
+    }
+    double *initial = sdfc_take(c, (size_t)slots, sizeof *initial);
+    memcpy(initial, c->initial, c->slot_count * sizeof *initial);
+    free(c->initial);
+    c->initial = initial;
+    c->place_base = c->slot_count;
+    for (int i = 0; i < c->place_count; i++) {
+        const sdfc_place *p = &c->places[i];
+        double *to = initial + c->place_base + i * SDFC_PLACE_SLOTS;
+        to[0] = p->slot;
+        for (int k = 0; k < 3; k++) put_pair(to + 1 + 2 * k, p->factor[k]);
+        put_pair(to + 7, p->term);
+        put_pair(to + 9, p->period);
+        to[11] = p->inverse;
+    }
+    c->slot_count = (uint32_t)slots;
+}
+
 /* A translation by something that changes, around all else. */
 static void find_motion(sdfc *c, sdfc_part *p) {
     const sdfc_shape *s = &c->shapes[p->shape];
@@ -497,11 +769,18 @@ static void fill_record(sdfc *c, int part) {
     for (int i = 0; i < 3; i++) {
         double most = fabs(f->center[i]);
         record[i] = ends ? f->center[i] : 0;
+        int center = -1;
         if (p->moves) {
             const sdfc_expr *e = &c->exprs[p->moving_center[i]];
             most = fmin(fmax(fabs(e->low), fabs(e->high)), 1e4);
-            set_slot(c, at + (uint32_t)i, p->moving_center[i]);
+            center = p->moving_center[i];
         }
+        if (c->anchored && ends) {
+            /* Rounded relative to the anchor, which classify allows for. */
+            if (!p->moves) most = 0, center = sdfc_number(c, f->center[i]);
+            center = sdfc_apply(c, SDFC_sub, center, c->anchor_expr[i], 0);
+        }
+        if (center >= 0) set_slot(c, at + (uint32_t)i, center);
         slack += ends ? most * 2.4e-7 : 0;
     }
     double radius = p->moves ? p->moving_radius : f->radius;
@@ -589,6 +868,7 @@ void sdfc_group_parts(sdfc *c) {
             p->group = c->group_count++;
         }
         c->groups[p->group].part_count++;
+        c->groups[p->group].moves = c->groups[p->group].moves || root_moves(c, &p->program);
     }
     order_groups(c);
     order_parts(c);
@@ -618,4 +898,5 @@ void sdfc_group_parts(sdfc *c) {
             set_slot(c, p->slot_base + (uint32_t)g->slot_of_arg[a], p->program.args[a]);
         }
     }
+    if (c->anchored) gather_places(c);
 }

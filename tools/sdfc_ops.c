@@ -59,6 +59,7 @@ typedef uint32_t uint;
 const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
     [SDFC_CONST] = {"const", 0, NULL, NULL, NULL, NULL},
     [SDFC_PARAM] = {"param", 0, NULL, NULL, NULL, NULL},
+    [SDFC_ANCHOR] = {"anchor", 0, NULL, NULL, NULL, NULL},
     [SDFC_TIME] = {"time", 0, NULL, NULL, NULL, NULL},
 #define T(name, count, text, code) [SDFC_##name] = {#name, count, text, NULL, NULL, run_##name},
 #define F(name, count, params, ...) [SDFC_##name] = {#name, count, NULL, #params, #__VA_ARGS__, run_##name},

@@ -40,7 +40,7 @@ EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c)
 
 # For masu march-bench: each .sdf scene with all ways to march it, and its double-precision truth
 # beside it. Not part of `all` or of the tests.
-MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
+MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(filter-out scenes/test_%,$(wildcard scenes/*.sdf)))
 
 $(BUILD)/march/%.masu: scenes/%.json scenes/%.sdf $(BUILD)/bin/masu-bake
 	@mkdir -p $(@D)

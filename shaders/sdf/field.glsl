@@ -27,9 +27,11 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SLOTS, std430) buffer Slots
     float masu_slots[];
 };
 
+uint masu_first_slot();
+
 void masu_slot_write(uint i, float value)
 {
-    masu_slots[i] = value;
+    masu_slots[masu_first_slot() + i] = value;
 }
 #else
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SLOTS, std430) readonly buffer Slots
@@ -38,6 +40,27 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SLOTS, std430) readonly buffer
 };
 #endif
 
+#ifdef MASU_MOTION
+/* The field of the frame before stands beside the present one: masu_before chooses which of them
+ * the functions below speak of. Its slots follow the present ones. */
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS, std140) uniform Previous
+{
+    masu_frame_uniforms previous;
+};
+
+bool masu_before = false;
+uint masu_first_slot();
+
+float masu_param(int i)
+{
+    return masu_before ? previous.sdf_params[i >> 2][i & 3] : frame.sdf_params[i >> 2][i & 3];
+}
+
+float masu_time()
+{
+    return masu_before ? previous.eye_hi.w : frame.eye_hi.w;
+}
+#else
 float masu_param(int i)
 {
     return frame.sdf_params[i >> 2][i & 3];
@@ -48,9 +71,20 @@ float masu_time()
     return frame.eye_hi.w;
 }
 
+uint masu_first_slot()
+{
+    return 0u;
+}
+#endif
+
+float masu_anchor(int axis)
+{
+    return frame.anchor[axis];
+}
+
 float masu_slot(uint i)
 {
-    return masu_slots[i];
+    return masu_slots[masu_first_slot() + i];
 }
 
 /* The list of the tile that this invocation works on; all parts until masu_use_tile. A scene of few
@@ -80,6 +114,13 @@ uint masu_part_at(uint i)
 #include "sdf_scene.glsl"
 
 #define MASU_LIST_WORDS ((MASU_SDF_PART_COUNT + 31) / 32)
+
+#ifdef MASU_MOTION
+uint masu_first_slot()
+{
+    return masu_before && MASU_SDF_DYNAMIC != 0 ? uint(MASU_SDF_SLOT_COUNT) : 0u;
+}
+#endif
 
 uint masu_part_count()
 {
@@ -136,9 +177,10 @@ struct ray {
     float start, limit;
 };
 
+/* In the SDF's space: world minus frame.anchor. */
 vec3 world_at(vec3 direction, float t)
 {
-    return frame.eye_hi.xyz + (frame.eye_lo.xyz + direction * t);
+    return frame.sdf_eye_hi.xyz + (frame.sdf_eye_lo.xyz + direction * t);
 }
 
 /* The field as a step that cannot pass through a surface. Where it is not finite there is nothing to
@@ -164,8 +206,8 @@ void clip_to_bounds(inout ray r)
 {
     vec3 d = mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
     vec3 inverse = 1.0 / d;
-    vec3 a = (frame.sdf_min.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz) * inverse;
-    vec3 b = (frame.sdf_max.xyz - frame.eye_hi.xyz - frame.eye_lo.xyz) * inverse;
+    vec3 a = (frame.sdf_min.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
+    vec3 b = (frame.sdf_max.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
     a = clamp(a, vec3(-masu_huge), vec3(masu_huge));
     b = clamp(b, vec3(-masu_huge), vec3(masu_huge));
     vec3 enter = min(a, b);

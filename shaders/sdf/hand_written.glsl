@@ -5,6 +5,8 @@
 #define MASU_SDF_PART_COUNT 1
 #define MASU_SDF_LISTED_COUNT 1
 #define MASU_SDF_MASKED 1
+#define MASU_SDF_SLOT_COUNT 1
+#define MASU_SDF_DYNAMIC 0
 
 vec4 masu_sdf_bounds(uint part)
 {
@@ -37,3 +39,15 @@ void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)
 {
     masu_sdf_surface(p, s);
 }
+
+#ifdef MASU_MOTION
+float masu_sdf_part(uint part, vec3 p)
+{
+    return masu_sdf(p);
+}
+
+vec3 masu_sdf_root(uint part, vec3 p, bool out_of)
+{
+    return p;
+}
+#endif

@@ -37,6 +37,9 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_COUNTERS 3
 #define MASU_BIND_TILES 4
 #define MASU_BIND_SLOTS 5
+/* The frame before, where the plan keeps it: its uniforms and its instances. */
+#define MASU_BIND_PREVIOUS 6
+#define MASU_BIND_PREVIOUS_INSTANCES 7
 
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
  *   0..2                  arguments of the indirect dispatch: active tiles, 4 quarters, 1
@@ -50,6 +53,12 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_TILE_MASKED_MAX 64
 #define MASU_TILE_ALL 0xFFFFFFFFu
 #define MASU_SDF_PARTS_MAX 4096
+
+/* An SDF that reaches further than ANCHOR_FROM metres from the origin along an axis is compiled so
+ * that its space can be anchored elsewhere; it is where the eye is that far out, at multiples of
+ * ANCHOR_GRID. Below, fp32 resolves 0.5 mm or better. */
+#define MASU_ANCHOR_FROM 4096
+#define MASU_ANCHOR_GRID 64
 
 /* Run-time SDF parameters: floats, packed four to a vec4. */
 #define MASU_SDF_PARAM_VEC4S 64
@@ -81,7 +90,13 @@ struct masu_frame_uniforms {
     masu_vec4 ambient;       /* rgb radiance of the constant ambient; w unused */
     masu_vec4 sky_zenith;    /* rgb radiance straight up */
     masu_vec4 sky_horizon;   /* rgb radiance at the horizon and below */
-    masu_vec4 sdf_min;       /* xyz lower corner of the SDF's bounds; w 1 / Lipschitz constant */
+    /* The SDF's space: world minus the anchor, which is zero or a point near the eye that stays the
+     * same while the eye moves by less than MASU_ANCHOR_GRID. */
+    masu_vec4 anchor;        /* xyz; w unused */
+    masu_vec4 sdf_eye_hi;    /* xyz eye minus anchor, rounded to float; w unused */
+    masu_vec4 sdf_eye_lo;    /* xyz the rest; w unused */
+    masu_vec4 sdf_min;       /* xyz lower corner of the SDF's bounds, in its space; w 1 / Lipschitz
+                                constant */
     masu_vec4 sdf_max;       /* xyz upper corner; w longest ray, world units */
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
 };

@@ -177,6 +177,8 @@ static const struct {
     [MASU_BLOB_CLASSIFY_SPIRV] = {2, 0},
     [MASU_BLOB_CONE8_SPIRV] = {2, 0},
     [MASU_BLOB_CONE4_SPIRV] = {2, 0},
+    [MASU_BLOB_VELOCITY_SPIRV] = {2, 0},
+    [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = {1, 0},
     [MASU_BLOB_UPDATE_SPIRV] = {1, 0},
     [MASU_BLOB_PLAIN_SPIRV] = {1, 1u << MASU_MARCH_PLAIN},
     [MASU_BLOB_SEED_SPIRV] = {1, 1u << MASU_MARCH_SEED},
@@ -199,8 +201,12 @@ static void read_code(walker *w) {
         marches |= kinds[k].marches;
     }
     expect(w, w->scene->sdf_march == marches, "sdf_march");
-    expect(w, w->scene->sdf_dynamic == (w->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL),
-           "sdf_dynamic");
+    int timed = w->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
+    int anchored = w->view.sdf && w->view.sdf->anchored;
+    expect(w, w->scene->sdf_dynamic == (uint32_t)timed, "sdf_dynamic");
+    expect(w, w->scene->sdf_anchored == (uint32_t)anchored, "sdf_anchored");
+    expect(w, (w->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL) == (timed || anchored),
+           "update SPIR-V");
 }
 
 static void read_sdf(walker *w) {

@@ -55,6 +55,23 @@ for scene in scenes/*.sdf; do
     [ $code = 0 ] || fail "$scene: $(cat "$folder/stderr")"
 done
 
+# With anchors the fields are the same ones, around the origin; a literal place becomes a slot.
+run "$sdfc" tests/unit/features.sdf --anchored
+[ $code = 0 ] || fail "features.sdf, anchored: $(cat "$folder/stderr")"
+printf 'part a = translate((1000000.3, 0, 0), sphere(1));\n' > "$folder/far.sdf"
+run "$sdfc" "$folder/far.sdf" --glsl "$folder/near.glsl"
+run "$sdfc" "$folder/far.sdf" --anchored --glsl "$folder/far.glsl" --c "$folder/far.c"
+grep -q 'masu_anchor' "$folder/near.glsl" && fail "anchors that nobody asked for"
+grep -q '#define MASU_SDF_PLACES 6' "$folder/far.glsl" || fail "the places are not data"
+grep -q '1000000.3125, (-0.01249999' "$folder/far.c" ||
+    fail "the place is not kept in two floats: $(grep 1000000 "$folder/far.c")"
+printf 'part a = translate((1000000.3 + sin(time), 0, 0), sphere(1));\n' > "$folder/moves.sdf"
+run "$sdfc" "$folder/moves.sdf" --anchored --glsl "$folder/moves.glsl"
+grep -q 'masu_wide_add(vec2(1000000.31, (-0.0125)), vec2(e[0-9]*, 0.0))' "$folder/moves.glsl" ||
+    fail "1000000.3 + sin(time) is not a sum of two floats: $(grep wide "$folder/moves.glsl")"
+grep -q 'MASU_SDF_DYNAMIC 0' "$folder/far.glsl" || fail "an anchor is no time"
+grep -q 'masu_anchor' "$folder/far.c" && fail "the truth needs no anchor"
+
 # json SOURCE MORE: the scene's JSON
 json() {
     echo "{\"sdf\": {\"source\": \"$1\", \"bounds\": [[-2, -2, -2], [2, 2, 2]] $2}}" > "$folder/s.json"
@@ -66,6 +83,11 @@ tr -d ' \n' < "$folder/stats.json" | grep -q '"sdf_params":{"count":1' || fail "
 json bad.sdf ''
 expect 1 '^masu-bake: .*bad.sdf:2:10: expected a shape' "$bake" "$folder/s.json" -o "$folder/t.masu"
 [ ! -e "$folder/t.masu" ] || fail "bad.sdf was baked"
+json good.sdf ', "anchored": 1'
+expect 1 'anchored: expected true or false' "$bake" "$folder/s.json" -o "$folder/t.masu"
+printf 'float masu_sdf(vec3 p) { return length(p) - 1.0; }\nvoid masu_sdf_surface(vec3 p, inout masu_surface s) {}\n' > "$folder/hand.glsl"
+json hand.glsl ', "anchored": true'
+expect 1 'only a .sdf file can be "anchored"' "$bake" "$folder/s.json" -o "$folder/t.masu"
 json good.sdf ', "params": [{"name": "r", "value": 1}]'
 expect 1 'its parameters are declared in it' "$bake" "$folder/s.json" -o "$folder/t.masu"
 

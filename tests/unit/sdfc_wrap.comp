@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SDF_SETUP 1
 #include "shared/guard.glsl"
+#include "shared/wide.glsl"
 struct masu_surface { vec3 albedo; float roughness; vec3 emissive; float metallic; };
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, std430) buffer Slots { float slots[]; };
@@ -11,6 +12,7 @@ layout(set = 0, binding = 2, std430) readonly buffer Points { vec4 points[]; };
 layout(set = 0, binding = 3, std430) buffer Result { vec4 result[]; };
 float masu_param(int i) { return params[i]; }
 float masu_time() { return time; }
+float masu_anchor(int axis) { return 0.0; }
 float masu_slot(uint i) { return slots[i]; }
 void masu_slot_write(uint i, float v) { slots[i] = v; }
 uint masu_part_count() { return count; }

@@ -103,8 +103,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     header->magic = MASU_BLOB_MAGIC;
     header->version = MASU_BLOB_VERSION;
     size_t sections = 1 + (parts & SUPPORT_RASTER ? 6u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
-                      (parts & SUPPORT_SDF ? 7u : 0u) + 1;
-    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 4 : 5;
+                      (parts & SUPPORT_SDF ? 8u : 0u) + 1;
+    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 5 : 6;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -123,7 +123,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
                                 100.0f,
                                 parts & SUPPORT_RASTER ? 1u : 0u,
                                 1,
-                                {0}}};
+                                0,
+                                0}};
         ADD(MASU_BLOB_SDF, sdf);
         ADD(MASU_BLOB_SDF_PARAMS, sdf_params);
         ADD(MASU_BLOB_MARCH_SPIRV, code);
@@ -133,8 +134,10 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_CLASSIFY_SPIRV, code);
         ADD(MASU_BLOB_CONE8_SPIRV, code);
         ADD(MASU_BLOB_CONE4_SPIRV, code);
+        ADD(MASU_BLOB_VELOCITY_SPIRV, code);
         if (parts & SUPPORT_VARIANTS) {
             ADD(MASU_BLOB_UPDATE_SPIRV, code);
+            ADD(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, code);
             ADD(MASU_BLOB_PLAIN_SPIRV, code);
             ADD(MASU_BLOB_SEED_SPIRV, code);
             ADD(MASU_BLOB_CHECKERBOARD_SPIRV, code);

@@ -371,6 +371,38 @@ static void whatever_is_accepted_makes_finite_uniforms(void **state) {
     assert_true(accepted > 1000);
 }
 
+/* ---- The SDF's space ------------------------------------------------------------------------- */
+
+static void the_anchor_is_on_a_grid_near_an_eye_that_is_far_out(void **state) {
+    (void)state;
+    uint64_t random = 9;
+    make_renderer(SUPPORT_ALL, 0);
+    for (int n = 0; n < 2000; n++) {
+        m.plan.scene.sdf_anchored = n % 4 != 0;
+        double reach = n % 2 ? 1e7 : 6000, most = 0;
+        masu_camera c = {.forward = {0, 0, -1}, .fov_y = 1, .near_distance = 0.1f};
+        for (int k = 0; k < 3; k++) {
+            c.position[k] = reach * ((double)(support_random(&random) >> 11) / (1ull << 52) - 1);
+            most = fmax(most, fabs(c.position[k]));
+        }
+        masu_frame_desc f = {.camera = &c};
+        write_good(&f, 0);
+        struct masu_frame_uniforms u = uniforms(0);
+        int far = n % 4 != 0 && most >= MASU_ANCHOR_FROM;
+        for (int k = 0; k < 3; k++) {
+            double anchor = (double)u.anchor[k];
+            double eye = (double)u.sdf_eye_hi[k] + (double)u.sdf_eye_lo[k];
+            assert_near(fmod(anchor, MASU_ANCHOR_GRID), 0, 0);
+            assert_near(anchor + eye, c.position[k], 1e-8);
+            assert_near((double)u.sdf_min[k] + anchor, (double)m.sdf_bounds[0][k], 1);
+            assert_near((double)u.sdf_max[k] + anchor, (double)m.sdf_bounds[1][k], 1);
+            if (far) assert_near(eye, 0, MASU_ANCHOR_GRID / 2 + 1e-8);
+            if (!far) assert_near(anchor, 0, 0);
+            if (!far) assert_true(u.sdf_eye_hi[k] == u.eye_hi[k] && u.sdf_eye_lo[k] == u.eye_lo[k]);
+        }
+    }
+}
+
 /* ---- Light and parameters -------------------------------------------------------------------- */
 
 static void the_light_of_the_scene_is_the_default(void **state) {
@@ -454,6 +486,7 @@ int main(void) {
         cmocka_unit_test(a_bad_sdf_parameter_is_named),
         cmocka_unit_test(the_extremes_of_each_range_are_accepted),
         cmocka_unit_test(whatever_is_accepted_makes_finite_uniforms),
+        cmocka_unit_test(the_anchor_is_on_a_grid_near_an_eye_that_is_far_out),
         cmocka_unit_test(the_light_of_the_scene_is_the_default),
         cmocka_unit_test(a_given_light_takes_its_place),
         cmocka_unit_test(sdf_parameters_are_defaulted_and_clamped),

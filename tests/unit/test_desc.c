@@ -223,7 +223,7 @@ static void a_bad_count_is_named(void **state) {
     BAD("frames_in_flight", d.frames_in_flight = MASU_MAX_FLIGHT + 1);
     BAD("targets.count", d.targets.count = 0);
     BAD("targets.count", d.targets.count = MASU_MAX_TARGETS + 1);
-    BAD("readback", d.readback = 16);
+    BAD("readback", d.readback = MASU_READBACK_ALL + 1);
     BAD("readback", d.readback = UINT32_MAX);
 }
 

@@ -427,7 +427,7 @@ static void readback_copies_what_is_asked_for(void **state) {
         uint32_t parts, bits;
         const char *pass;
     } cases[] = {
-        {RASTER | SDF, MASU_READBACK_ALL,
+        {RASTER | SDF, MASU_READBACK_ALL & ~(uint32_t)MASU_READBACK_VELOCITY,
          "readback(from:albedo from:normal from:scene_depth from:hdr) "},
         {RASTER, MASU_READBACK_DEPTH, "readback(from:depth) "},
         {SDF, MASU_READBACK_DEPTH | MASU_READBACK_HDR, "readback(from:scene_depth from:hdr) "},
@@ -450,6 +450,49 @@ static void readback_copies_what_is_asked_for(void **state) {
     masu_desc d = source_desc(64, 64); /* has none of these images */
     d.readback = MASU_READBACK_ALL;
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+}
+
+static void velocities_keep_the_frame_before_and_nothing_else_does(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static const char *const gbuffer = "gbuffer(c:albedo c:normal c:velocity d:depth) ";
+    char expected[512];
+    masu_desc d = scene_desc(RASTER, 64, 64);
+    d.readback = MASU_READBACK_VELOCITY;
+    (void)snprintf(expected, sizeof expected,
+                   "%svelocity(r:depth u:velocity) " LIGHT_RASTER "readback(from:velocity) " TONEMAP,
+                   gbuffer);
+    assert_frame(&d, 0, expected);
+    d = scene_desc(RASTER | SDF, 64, 64);
+    d.readback = MASU_READBACK_VELOCITY;
+    (void)snprintf(expected, sizeof expected,
+                   "%s" MARCH_ON_RASTER
+                   "sdf_velocity(r:depth r:scene_depth rb:tiles rb:slots u:velocity) " LIGHT_SDF
+                   "readback(from:velocity) " TONEMAP,
+                   gbuffer);
+    assert_frame(&d, 0, expected);
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].count, 7);
+    assert_int_equal(plan.buffers[MASU_BUFFER_FRAME].count, 4);
+    assert_int_equal(plan.buffers[MASU_BUFFER_INSTANCES].count, 6);
+    d = scene_desc(SDF, 64, 64);
+    support_scene.sdf_dynamic = 1;
+    d.readback = MASU_READBACK_VELOCITY;
+    assert_frame(&d, 0,
+                 "update(wb:slots) update_previous(wb:slots) " MARCH_ALONE
+                 "sdf_velocity(r:scene_depth rb:tiles rb:slots u:velocity) " LIGHT_SDF
+                 "readback(from:velocity) " TONEMAP);
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].count, 14);
+    uint64_t with = plan.buffers[MASU_BUFFER_FRAME].bytes;
+    d.readback = MASU_READBACK_ALL & ~(uint32_t)MASU_READBACK_VELOCITY;
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].count, 7);
+    assert_int_equal(plan.buffers[MASU_BUFFER_FRAME].bytes * 2, with);
+    assert_int_equal(plan.images[MASU_IMAGE_VELOCITY].used, 0);
+    assert_string_equal(plan.why[MASU_PASS_SDF_VELOCITY], "nothing reads velocities");
+    assert_string_equal(plan.why[MASU_PASS_VELOCITY], "nothing reads velocities");
+    assert_string_equal(plan.why[MASU_PASS_UPDATE_PREVIOUS], "nothing reads velocities");
 }
 
 /* Over everything that shapes a frame: the properties that no frame may lack. */
@@ -673,11 +716,12 @@ static void readback_slots_hold_the_counters_and_then_the_images(void **state) {
     d.readback = MASU_READBACK_ALL;
     compile(&d, &plan);
     const masu_buffer_plan *b = &plan.buffers[MASU_BUFFER_READBACK];
-    static const uint64_t offsets[MASU_READBACK_IMAGES] = {32, 32 + 144, 32 + 288, 32 + 432};
+    static const uint64_t offsets[MASU_READBACK_IMAGES] = {32, 32 + 144, 32 + 288, 32 + 432,
+                                                         32 + 432 + 288};
     for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
         assert_int_equal(plan.readback_offset[i], offsets[i]);
     }
-    assert_int_equal(b->stride, 32 + 432 + 288);
+    assert_int_equal(b->stride, 32 + 432 + 2 * 288);
     assert_int_equal(b->bytes, 2 * b->stride);
     d.debug.counters = 0;
     d.readback = MASU_READBACK_HDR;
@@ -741,8 +785,8 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth and final, cone8, cone4: 4 bytes each per texel */
-    assert_int_equal(info.left_out_bytes, 4 * (2 * 1920 * 1080 + 240 * 135 + 480 * 270));
+    /* scene_depth and final, cone8, cone4: 4 bytes each per texel; velocity 8 */
+    assert_int_equal(info.left_out_bytes, 4 * (4 * 1920 * 1080 + 240 * 135 + 480 * 270));
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
@@ -756,12 +800,12 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     28 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125));
-    d = scene_desc(RASTER | SDF, 100, 100); /* all but ldr, upscaled, final */
+                     36 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125));
+    d = scene_desc(RASTER | SDF, 100, 100); /* all but ldr, upscaled, final, velocity */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 12 * 100 * 100);
+    assert_int_equal(info.left_out_bytes, 20 * 100 * 100);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
@@ -814,6 +858,7 @@ int main(void) {
         cmocka_unit_test(a_target_that_is_no_storage_image_is_blitted_to),
         cmocka_unit_test(the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it),
         cmocka_unit_test(readback_copies_what_is_asked_for),
+        cmocka_unit_test(velocities_keep_the_frame_before_and_nothing_else_does),
         cmocka_unit_test(in_every_frame_the_last_colour_writer_alone_writes_the_target),
         cmocka_unit_test(images_live_from_their_first_to_their_last_pass),
         cmocka_unit_test(readback_and_blits_lengthen_lives),

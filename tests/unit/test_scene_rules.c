@@ -83,7 +83,9 @@ static const struct {
              {MASU_BLOB_CLASSIFY_SPIRV, "classify SPIR-V", 1},
              {MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V", 1},
              {MASU_BLOB_CONE4_SPIRV, "cone4 SPIR-V", 1},
-             {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 0},
+             {MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V", 1},
+             {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V", 1},
+             {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 1}, /* beside the one before */
              {MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V", 0},
              {MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V", 0},
              {MASU_BLOB_CHECKERBOARD_SPIRV, "march_checkerboard SPIR-V", 0},
@@ -466,6 +468,26 @@ static void an_sdf_without_code_is_refused(void **state) {
     ACCEPTED(support_blob_drop(&blob, MASU_BLOB_SDF_PARAMS)); /* these may be absent */
 }
 
+static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
+    (void)state;
+    REFUSED("sdf", 0, AT(SDF, masu_blob_sdf)->anchored = 2);
+    for (uint32_t constant = 0; constant < 2; constant++) { /* but for the anchor */
+        masu_scene scene;
+        support_blob_write(&blob, SUPPORT_ALL);
+        AT(SDF, masu_blob_sdf)->anchored = 1;
+        if (constant) support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
+        support_blob_seal(blob.bytes, blob.size);
+        support_accepted(&blob, &scene);
+        assert_int_equal(scene.sdf_anchored, 1);
+        assert_int_equal(scene.sdf_dynamic, !constant);
+    }
+    REFUSED("update SPIR-V", 0, {
+        AT(SDF, masu_blob_sdf)->anchored = 1;
+        support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
+        support_blob_drop(&blob, MASU_BLOB_UPDATE_SPIRV);
+    });
+}
+
 static void an_sdf_without_slots_that_are_finite_is_refused(void **state) {
     (void)state;
     REFUSED("slots", 0, support_blob_drop(&blob, MASU_BLOB_SLOTS));
@@ -519,6 +541,7 @@ int main(void) {
         cmocka_unit_test(march_fragment_code_beside_polygons_is_refused),
         cmocka_unit_test(an_sdf_parameter_outside_its_range_is_refused),
         cmocka_unit_test(an_sdf_without_code_is_refused),
+        cmocka_unit_test(an_anchored_sdf_needs_the_code_that_moves_it),
         cmocka_unit_test(an_sdf_without_slots_that_are_finite_is_refused),
         cmocka_unit_test(an_sdf_of_no_parts_or_too_many_is_refused),
     };

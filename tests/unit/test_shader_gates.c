@@ -216,6 +216,8 @@ static const struct {
     uint32_t loops; /* of its own, whatever the field */
 } scene_shaders[] = {
     {"update.comp", "-DMASU_PASS=1", 1, 1, 0},
+    {"update.comp", "-DMASU_MOTION=1", 1, 1, 0},
+    {"sdf_velocity.comp", "-DMASU_PASS=1", 2, 0, 2},
     {"classify.comp", "-DMASU_PASS=1", 2, 0, 1},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", 1, 0, 1},
     {"cone.comp", "-DMASU_CONE_BLOCK=2", 1, 0, 1},
@@ -250,6 +252,16 @@ static void every_shader_of_the_library_passes(void **state) {
         spirv_free(&m);
         modules++;
     }
+    /* and those that are compiled a second time with a macro */
+    glob_t second = find(build_folder(), "gen/gbuffer_velocity_????.spv");
+    for (size_t i = 0; i < second.gl_pathc; i++) {
+        spirv_module m;
+        if (!spirv_from_file(second.gl_pathv[i], &m)) fail_msg("%s", second.gl_pathv[i]);
+        loops += assert_passes(&m, second.gl_pathv[i]);
+        spirv_free(&m);
+    }
+    assert_int_equal(second.gl_pathc, 2);
+    globfree(&second);
     printf("%u loops in %u modules\n", loops, modules);
     assert_true(modules >= 6);
     globfree(&sources);
@@ -323,12 +335,15 @@ static void scene_shaders_pass_with_what_masu_sdfc_writes(void **state) {
     (void)state;
     char command[512], wrapper[128];
     (void)snprintf(wrapper, sizeof wrapper, "%s/sdf_scene.glsl", directory);
-    (void)snprintf(command, sizeof command,
-                   "%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 tests/unit/features.sdf",
-                   build_folder(), wrapper);
-    assert_int_equal(system(command), 0);
-    uint32_t loops = assert_scene_shaders_pass("features.sdf", 1);
-    assert_int_equal(remove(wrapper), 0);
+    uint32_t loops = 0;
+    for (int anchored = 0; anchored < 2; anchored++) {
+        (void)snprintf(command, sizeof command,
+                       "%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 tests/unit/features.sdf %s",
+                       build_folder(), wrapper, anchored ? "--anchored" : "");
+        assert_int_equal(system(command), 0);
+        loops += assert_scene_shaders_pass("features.sdf", 1);
+        assert_int_equal(remove(wrapper), 0);
+    }
     printf("%u loops\n", loops);
 }
 

@@ -19,7 +19,7 @@
 #include "shared/masu_shared.h"
 #include "support_spirv.h"
 
-#define MEMBERS_MOST 16u
+#define MEMBERS_MOST 24u
 
 typedef struct member {
     const char *name;
@@ -45,7 +45,9 @@ static const layout layouts[] = {
       MEMBER(masu_frame_uniforms, up), MEMBER(masu_frame_uniforms, forward),
       MEMBER(masu_frame_uniforms, sun_direction), MEMBER(masu_frame_uniforms, sun_color),
       MEMBER(masu_frame_uniforms, ambient), MEMBER(masu_frame_uniforms, sky_zenith),
-      MEMBER(masu_frame_uniforms, sky_horizon), MEMBER(masu_frame_uniforms, sdf_min),
+      MEMBER(masu_frame_uniforms, sky_horizon), MEMBER(masu_frame_uniforms, anchor),
+      MEMBER(masu_frame_uniforms, sdf_eye_hi), MEMBER(masu_frame_uniforms, sdf_eye_lo),
+      MEMBER(masu_frame_uniforms, sdf_min),
       MEMBER(masu_frame_uniforms, sdf_max), MEMBER(masu_frame_uniforms, sdf_params)}},
     {STRUCT(masu_instance_data),
      1,

@@ -164,7 +164,7 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
     make_renderer(SUPPORT_ALL, 0);
     masu_scene_view v = masu_scene_look(&scene);
     for (uint32_t slot = 0; slot < 2; slot++) { /* all, at first */
-        masu_write_instances(&m, slot);
+        masu_write_instances(&m, slot, 0);
         for (uint32_t i = 0; i < 3; i++) {
             assert_memory_equal(slot_bytes(MASU_BUFFER_INSTANCES, slot) + i * size,
                                 v.instances[i].transform, size);
@@ -174,7 +174,7 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
     for (uint32_t frame = 0; frame < 4; frame++) { /* slots come in turn */
         unsigned char *to = masu_buffer_pointer(&m, MASU_BUFFER_INSTANCES, frame % 2);
         memset(to, NOISE, 3 * size);
-        masu_write_instances(&m, frame % 2);
+        masu_write_instances(&m, frame % 2, 0);
         if (frame < 2) {
             assert_memory_equal(to + size, rows, size);
         } else {
@@ -189,14 +189,14 @@ static void moving_twice_before_a_frame_keeps_the_last(void **state) {
     (void)state;
     float rows[12] = {0};
     make_renderer(SUPPORT_ALL, 0);
-    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot);
+    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot, 0);
     for (int n = 1; n <= 5; n++) {
         rows[3] = (float)n;
         assert_int_equal(masu_instance_set_transform(&m, (masu_instance){3}, rows), MASU_OK);
     }
     for (uint32_t slot = 0; slot < 2; slot++) {
         struct masu_instance_data got;
-        masu_write_instances(&m, slot);
+        masu_write_instances(&m, slot, 0);
         memcpy(&got, slot_bytes(MASU_BUFFER_INSTANCES, slot) + 2 * sizeof got, sizeof got);
         assert_true(got.row0[3] == 5.0f);
     }
@@ -207,7 +207,7 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
     (void)state;
     static const float good[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     make_renderer(SUPPORT_ALL, 0);
-    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot);
+    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot, 0);
     const uint32_t ids[] = {0, 4, UINT32_MAX};
     for (size_t i = 0; i < COUNT(ids); i++) {
         assert_int_equal(masu_instance_set_transform(&m, (masu_instance){ids[i]}, good),

@@ -1,0 +1,139 @@
+/*
+ * sdf_velocity.comp: the velocity of what the SDF shows, and of the sky. Compiled by masu-bake with
+ * the scene's field.
+ *
+ * The point under a pixel belongs to the nearest part. Where that point was in the frame before:
+ *
+ *   1. The part's root transform (the movements, turns and scalings that stand around all else in
+ *      it) takes the point into the part's own space with the present slots and out of it with the
+ *      previous ones. This is all there is to a part that moves, turns or grows as a whole.
+ *   2. What is left is the change of the field itself: a radius, a morph, a blend. The part's field
+ *      f at the present point and the previous one f' at the point of step 1 differ by what the
+ *      surface has moved along its normal; steps of (f' - f) / |grad f'| take it back. A point of a
+ *      changing surface has no past of its own: the one along the normal is the nearest.
+ *
+ * f is compared with f', not with 0: the march stops a little before the surface, and this distance
+ * is no motion. A field that did not change is evaluated twice, by the same code, and gives 0.
+ *
+ * index.x not 0: the tiles' lists of parts are there.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#define MASU_MOTION 1
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+#if MASU_HAS_RASTER
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D raster_depth;
+#define MASU_FIRST_IMAGE 1
+#else
+#define MASU_FIRST_IMAGE 0
+#endif
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1, rgba16f)
+    uniform writeonly image2D velocity_image;
+
+#include "sdf/field.glsl"
+#include "shared/motion.glsl"
+
+/* Where the root transform of the part says that p was. */
+vec3 carried(uint part, vec3 p)
+{
+    vec3 own = masu_sdf_root(part, p, false);
+    vec3 places[2];
+    MASU_LOOP for (int i = 0; i < 2; i++) {
+        masu_before = i == 1;
+        places[i] = masu_sdf_root(part, own, true);
+    }
+    masu_before = false;
+    vec3 q = p + (places[1] - places[0]);
+    return masu_finite(q) ? q : p;
+}
+
+#define ROUNDS 2
+#define SAMPLES (1 + 5 * ROUNDS)
+
+/* One loop over all samples, so that the field is compiled once: the present field at p; then, each
+ * round, the previous one at q and at the corners of a tetrahedron around it. */
+vec3 followed(uint part, vec3 p, vec3 q, float h, float enough)
+{
+    float now = 0.0;
+    float residue = 0.0;
+    vec3 slope = vec3(0.0);
+    MASU_LOOP for (int i = 0; i < SAMPLES; i++) {
+        int k = (i + 4) % 5; /* 0: at q; 1 to 4: corners */
+        vec3 corner = vec3(k == 2 || k == 4 ? 1.0 : -1.0, k >= 3 ? 1.0 : -1.0,
+                           k == 1 || k == 4 ? 1.0 : -1.0);
+        masu_before = i > 0;
+        float f = masu_sdf_part(part, i == 0 ? p : k == 0 ? q : q + corner * h);
+        if (i == 0) {
+            now = f;
+        } else if (k == 0) {
+            residue = f - now;
+            slope = vec3(0.0);
+            if (!(abs(residue) > enough)) {
+                break; /* nothing has moved, or it is not a number */
+            }
+        } else {
+            slope += corner * (f / (4.0 * h));
+        }
+        if (i > 0 && k == 4) {
+            vec3 step = slope * (residue * masu_rcp(dot(slope, slope)));
+            q = masu_finite(step) ? q - step : q;
+        }
+    }
+    masu_before = false;
+    return q;
+}
+
+vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
+{
+    vec3 through = masu_pixel_ray(at, size);
+    float z_scale = length(through);
+    vec3 direction = through / z_scale;
+    float t = frame.forward.w * z_scale / depth;
+    vec3 p = world_at(direction, t);
+    uvec2 tile = at / uint(MASU_TILE);
+    if (pc.index.x != 0u) {
+        masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
+    }
+    uint part = masu_sdf_nearest(p);
+    vec3 a = abs(p);
+    float pixel = 2.0 * frame.up.w / float(size.y) * t / z_scale;
+    float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
+    vec3 q = followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent),
+                      max(1e-3 * pixel, 8.0 * extent));
+    precise vec3 eye_step = (frame.eye_hi.xyz - previous.eye_hi.xyz) +
+                            (frame.eye_lo.xyz - previous.eye_lo.xyz);
+    precise vec3 rel = direction * t;
+    precise vec3 before = rel + (eye_step + (q - p));
+    return masu_velocity(vec4(rel, 1.0), vec4(before, 1.0), vec2(size));
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 at = gl_GlobalInvocationID.xy;
+    uvec2 size = uvec2(pc.output_width, pc.output_height);
+    if (all(lessThan(at, size))) {
+        float depth = texelFetch(depth_image, ivec2(at), 0).r;
+        bool polygon = false;
+#if MASU_HAS_RASTER
+        polygon = depth > 0.0 && depth == texelFetch(raster_depth, ivec2(at), 0).r;
+#endif
+        if (!polygon) {
+            vec4 velocity = masu_sky_velocity(at, size);
+            if (depth > 0.0) {
+                velocity = surface_velocity(at, size, depth);
+            }
+            MASU_STORE_HALF(velocity_image, at, velocity);
+        }
+    }
+    masu_count_end();
+}

@@ -1,0 +1,54 @@
+/*
+ * motion.glsl: the velocity of a surface point, as the image `velocity` holds it:
+ *
+ *   x, y  previous position minus present one, pixels of this frame's render size, y down
+ *   z     previous view depth / present one, minus 1; 0 for the sky
+ *   w     1; 0 (and all else 0): the point was behind the camera, or cannot be told
+ *
+ * so that previous = present + velocity. Both positions are projected by the same operations, and
+ * what did not move has a velocity of exactly 0. The difference of the two, and not "previous minus
+ * pixel centre": a rasteriser that snaps vertices to a grid shows a point beside the pixel's centre.
+ * Needs globals.glsl before it.
+ */
+#ifndef MASU_MOTION_GLSL
+#define MASU_MOTION_GLSL
+
+#include "shared/guard.glsl"
+
+/* sdf/field.glsl declares it where the field itself needs it. */
+#ifndef MASU_FIELD_GLSL
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS, std140) uniform Previous
+{
+    masu_frame_uniforms previous;
+};
+#endif
+
+vec3 masu_clip(masu_mat4 m, vec4 rel)
+{
+    precise vec4 clip = m * rel;
+    return clip.xyw;
+}
+
+/* rel: the point, seen from the eye; before: where it was, seen from the previous eye. w is 1, or 0
+ * of a direction. */
+vec4 masu_velocity(vec4 rel, vec4 before, vec2 size)
+{
+    vec3 now = masu_clip(frame.clip_from_rel, rel);
+    vec3 was = masu_clip(previous.clip_from_rel, before);
+    bool told = now.z > masu_tiny && was.z > 1e-6 * now.z;
+    vec2 ahead = told ? now.xy / now.z : vec2(0.0);
+    vec2 behind = told ? was.xy / was.z : vec2(0.0);
+    precise vec2 moved = (behind - ahead) * (0.5 * size);
+    float depth = told && rel.w > 0.0 ? was.z / now.z - 1.0 : 0.0;
+    vec4 velocity = vec4(moved, depth, 1.0);
+    told = told && masu_finite(velocity) && all(lessThan(abs(velocity.xyz), vec3(65504.0)));
+    return told ? velocity : vec4(0.0);
+}
+
+vec4 masu_sky_velocity(uvec2 at, uvec2 size)
+{
+    vec4 direction = vec4(masu_pixel_ray(at, size), 0.0);
+    return masu_velocity(direction, direction, vec2(size));
+}
+
+#endif

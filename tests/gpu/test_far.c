@@ -1,0 +1,257 @@
+/* test_far.c: a scene of signed distance fields a million and ten million metres from the origin is
+ * the picture that it is at the origin: coverage, depth, material and velocity. The scene is written
+ * and baked here, with another offset each time; without anchors the same comparison fails. */
+#include "support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 128, H = 72 };
+
+static char dir[] = "/tmp/masu-far-XXXXXX";
+
+/* Where the middle of what is seen stands from the offset: where the anchor goes over to the next
+ * point of its grid, so that small movements of the camera move it. */
+#define MIDDLE 32
+
+/* Offsets are multiples of the periods 4, 3.2 and 1000000 / 303000, so that what is repeated without
+ * being moved looks the same. The turned part's middle is turned back by hand. */
+static const char *const text =
+    "param radius = 0.5 [0.2, 0.9];\n"
+    "let o = (%d + %d, 0, %d); let a = 0.3;\n"
+    "let turned = (cos(a) * o.x - sin(a) * o.z, 0, sin(a) * o.x + cos(a) * o.z);\n"
+    "material red { albedo (0.8, 0.2, 0.2); roughness 0.5 }\n"
+    "material green { albedo (0.2, 0.8, 0.2); roughness 0.5 }\n"
+    "material blue { albedo (0.2, 0.2, 0.8); roughness 0.5 }\n"
+    "material grey { albedo 0.5; roughness 0.5 }\n"
+    "part ground : grey = plane((0, 1, 0), -1);\n"
+    "part slope : blue = translate(o + (-3, 0, 0), plane((0.8, 0.6, 0), -1.2));\n"
+    "part ball : red = translate(o + (-1.3, 0, 0.3), sphere(radius));\n"
+    "part crate : green = translate(o + (0.1 * time, 0.1, 0), rotate((1, 2, 3), 0.7 + 0.3 * time,\n"
+    "    scale(1 + 0.1 * time, box((0.5, 0.4, 0.3)))));\n"
+    "part wheel : blue = rotate((0, 1, 0), a, translate(turned, torus(2, 0.1)));\n"
+    "part drops : red = repeat((4, 0, 3.2), translate((0.3, 2, 0.4), sphere(0.2)));\n"
+    "part rows : green = repeat((0, 0, 1000000 / 303000), translate((%d + %d + 1.6, -0.5, 0.7),\n"
+    "    box((0.2, 0.5, 0.3))));\n"
+    "part blend : red = smooth_union(0.3, translate(o + (1.2, 0, 0.5), sphere(0.4)),\n"
+    "    translate(o + (1.2, 0.6, 0.5), displace(0.05, (5, 6, 7), box((0.3, 0.2, 0.2)))));\n"
+    "part pair : blue = translate(o + (0, 1.1, 0), mirror((1, 0, 0), translate((0.4, 0, 0),\n"
+    "    octahedron(0.3))));\n"
+    "part flat : grey = translate(o + (-0.6, 0.9, 1), scale((1, 0.5, 1.5), sphere(0.3)));\n";
+
+typedef struct picture {
+    float depth[W * H]; /* view depth, 0: nothing */
+    uint8_t albedo[W * H * 4];
+    double velocity[W * H][4];
+} picture;
+
+static int make_dir(void **state) {
+    (void)state;
+    return mkdtemp(dir) ? 0 : 1;
+}
+
+static int remove_dir(void **state) {
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", dir);
+    return system(command);
+}
+
+static void write_file(const char *name, const char *content) {
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_true(fputs(content, f) >= 0);
+    assert_int_equal(fclose(f), 0);
+}
+
+/* The blob, baked when it is asked for first. member: of the SDF's description, or "". */
+static const char *baked(int offset, const char *member) {
+    static char scene[4096], json[1024], path[256], command[1024];
+    const char *build = getenv("BUILD");
+    snprintf(path, sizeof path, "%s/%d-%zu.masu", dir, offset, strlen(member));
+    FILE *there_already = fopen(path, "rb");
+    if (there_already) {
+        fclose(there_already);
+        return path;
+    }
+    snprintf(scene, sizeof scene, text, offset, MIDDLE, -offset, offset, MIDDLE);
+    write_file("s.sdf", scene);
+    snprintf(json, sizeof json,
+             "{\"camera\": {\"near\": 0.1}, \"sdf\": {\"source\": \"s.sdf\", \"bounds\": "
+             "[[%d, -2, %d], [%d, 8, %d]], \"max_distance\": 100%s}}",
+             offset + MIDDLE - 40, -offset - 40, offset + MIDDLE + 40, -offset + 40, member);
+    write_file("s.json", json);
+    snprintf(command, sizeof command, "%s/bin/masu-bake %s/s.json -o %s --quiet",
+             build ? build : "build", dir, path);
+    assert_int_equal(system(command), 0);
+    return path;
+}
+
+static void open_at(masu_session *s, int offset, const char *member) {
+    masu_session_desc d = test_desc(NULL, W, H);
+    d.scene_path = baked(offset, member);
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_ALBEDO | MASU_READBACK_VELOCITY;
+    d.desc.rung_count = 1;
+    open_session(s, &d);
+}
+
+static double half(uint16_t h) {
+    int exponent = h >> 10 & 31, mantissa = h & 1023;
+    double v = exponent ? ldexp(mantissa + 1024, exponent - 25) : ldexp(mantissa, -24);
+    return h & 0x8000 ? -v : v;
+}
+
+/* Frame 0 or 1 of a camera that goes past the middle, while the crate moves and the ball grows. */
+static void take(masu_session *s, int offset, int number, picture *p) {
+    masu_commands commands;
+    masu_readback_image image;
+    float radius = 0.5f + 0.03f * (float)number;
+    masu_camera c = {.position = {offset + MIDDLE - 0.04 + 0.08 * number, 1.4, -offset + 5.0},
+                     .forward = {0.02f * (float)number, -0.25f, -1},
+                     .fov_y = 0.9f,
+                     .near_distance = 0.1f};
+    masu_frame_desc frame = {
+        .camera = &c, .time = 0.5 + 0.1 * number, .sdf_params = &radius, .sdf_param_count = 1};
+    draw(s, &frame, &commands, NULL);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    for (uint32_t i = 0; i < W * H; i++) {
+        float d = ((const float *)image.pixels)[i];
+        p->depth[i] = d > 0.0f ? c.near_distance / d : 0.0f;
+    }
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_ALBEDO, &image), MASU_OK);
+    memcpy(p->albedo, image.pixels, sizeof p->albedo);
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+    for (uint32_t i = 0; i < W * H; i++) {
+        for (int k = 0; k < 4; k++)
+            p->velocity[i][k] = half(((const uint16_t *)image.pixels)[4 * i + k]);
+    }
+}
+
+/* The other picture has a surface of that depth and material within a pixel: at a silhouette, where
+ * the least rounding decides whether a ray hits, that is all that can be asked. */
+static int near_a_border(const picture *a, uint32_t i) {
+    for (int dy = -1; dy <= 1; dy++) {
+        for (int dx = -1; dx <= 1; dx++) {
+            int x = (int)(i % W) + dx, y = (int)(i / W) + dy;
+            if (x < 0 || y < 0 || x >= W || y >= H) continue;
+            float z = a->depth[y * W + x];
+            if ((z > 0) != (a->depth[i] > 0) || fabsf(z - a->depth[i]) > 0.05f * z) return 1;
+        }
+    }
+    return 0;
+}
+
+typedef struct difference {
+    uint32_t hits, coverage, surface; /* pixels; that differ in what they hit at all, or in which */
+    double depth, velocity;           /* of the others: relative, pixels */
+    uint32_t deep;                    /* of the others: pixels with depths over 1e-4 apart */
+} difference;
+
+static difference compare(const picture *a, const picture *b) {
+    difference d;
+    memset(&d, 0, sizeof d);
+    for (uint32_t i = 0; i < W * H; i++) {
+        int here = a->depth[i] > 0, there = b->depth[i] > 0;
+        d.hits += (uint32_t)here;
+        d.coverage += here != there;
+        if (!here || !there) continue;
+        double off = fabs((double)b->depth[i] / (double)a->depth[i] - 1);
+        if (memcmp(a->albedo + 4 * i, b->albedo + 4 * i, 4) != 0 ||
+            (off > 1e-4 && near_a_border(a, i))) {
+            d.surface++;
+            continue;
+        }
+        d.depth = fmax(d.depth, off);
+        d.deep += off > 1e-4;
+        d.velocity = fmax(d.velocity, hypot(a->velocity[i][0] - b->velocity[i][0],
+                                            a->velocity[i][1] - b->velocity[i][1]));
+    }
+    return d;
+}
+
+static picture here[2], there[2];
+
+static void take_both(int offset, const char *member, picture p[2]) {
+    masu_session s;
+    open_at(&s, offset, member);
+    for (int i = 0; i < 2; i++) take(&s, offset, i, &p[i]);
+    close_session(&s);
+}
+
+static difference worst_of(const char *what) {
+    difference worst = {0};
+    for (int i = 0; i < 2; i++) {
+        difference d = compare(&here[i], &there[i]);
+        print_message("  %s, frame %d: %u hits; %u pixels differ in coverage, %u at borders; depth "
+                      "by %.1e (%u pixels above 1e-4), velocity by %.4f px\n",
+                      what, i, d.hits, d.coverage, d.surface, d.depth, d.deep, d.velocity);
+        assert_true(d.hits > W * H / 2);
+        if (d.coverage > worst.coverage) worst.coverage = d.coverage;
+        if (d.surface > worst.surface) worst.surface = d.surface;
+        if (d.deep > worst.deep) worst.deep = d.deep;
+        worst.velocity = fmax(worst.velocity, d.velocity);
+        worst.depth = fmax(worst.depth, d.depth);
+    }
+    return worst;
+}
+
+static void far_from_the_origin_it_looks_the_same(void **state) {
+    (void)state;
+    static const struct {
+        int offset;
+        const char *member, *what;
+    } cases[] = {{0, ", \"anchored\": true", "at the origin, anchored"},
+                 {1000000, "", "1e6 m away"},
+                 {10000000, "", "1e7 m away"}};
+    take_both(0, "", here);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        take_both(cases[i].offset, cases[i].member, there);
+        difference d = worst_of(cases[i].what);
+        assert_true(d.coverage <= 4);
+        assert_true(d.surface <= 30);
+        assert_true(d.depth < 1e-4);
+        assert_true(d.velocity < 0.02);
+    }
+}
+
+/* The comparison can tell: world coordinates in single precision are 0.06 m apart there. */
+static void without_anchors_it_does_not(void **state) {
+    (void)state;
+    take_both(0, "", here);
+    take_both(1000000, ", \"anchored\": false", there);
+    difference d = worst_of("1e6 m away, not anchored");
+    assert_true(d.deep > 1000);
+}
+
+static void the_plan_says_whether_it_is_anchored(void **state) {
+    (void)state;
+    static const char *const why[] = {
+        "the SDF depends on parameters or time",
+        "the SDF reaches far from the origin: its space follows the eye"};
+    for (int i = 0; i < 2; i++) {
+        masu_session s;
+        masu_plan_info plan;
+        open_at(&s, i * 1000000, "");
+        assert_int_equal(s.scene.sdf_anchored, i);
+        masu_plan_of(s.m, &plan);
+        for (uint32_t p = 0; p < plan.pass_count; p++) {
+            if (!strcmp(plan.passes[p].name, "update")) {
+                assert_string_equal(plan.passes[p].why, why[i]);
+            }
+        }
+        close_session(&s);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(far_from_the_origin_it_looks_the_same),
+        cmocka_unit_test(without_anchors_it_does_not),
+        cmocka_unit_test(the_plan_says_whether_it_is_anchored),
+    };
+    return cmocka_run_group_tests_name("far", tests, make_dir, remove_dir);
+}

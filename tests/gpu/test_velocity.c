@@ -1,0 +1,555 @@
+/* test_velocity.c: where each pixel's surface was in the frame before, against double precision: the
+ * point that the depth names is carried back by the same motions in plain C (for what changes in
+ * itself by the C that masu-sdfc writes of the scene, compiled here), seen by the previous camera,
+ * and compared in pixels. scenes/test_velocity.sdf says how its parts move. */
+#include "support.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 160, H = 120 };
+enum { SKY, GROUND, MOVER, GROWER, MORPHER, BOX, KINDS };
+static const char *const kind_names[KINDS] = {"sky",    "ground",  "mover",
+                                              "grower", "morpher", "polygon"};
+
+typedef struct vec {
+    double x, y, z;
+} vec;
+
+static vec add(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static vec scale(vec a, double s) { return (vec){a.x * s, a.y * s, a.z * s}; }
+static vec sub(vec a, vec b) { return add(a, scale(b, -1)); }
+static double dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static vec cross(vec a, vec b) {
+    return (vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static vec unit(vec a) { return scale(a, 1.0 / sqrt(dot(a, a))); }
+
+static vec turned(vec p, vec axis, double angle) {
+    vec k = unit(axis);
+    return add(add(scale(p, cos(angle)), scale(cross(k, p), sin(angle))),
+               scale(k, dot(k, p) * (1 - cos(angle))));
+}
+
+/* ---- The scene's fields in double precision -------------------------------------------------- */
+
+static char dir[] = "/tmp/masu-velocity-XXXXXX";
+static void *library;
+static double (*part_distance)(const double *params, double time, const double p[3], int part);
+static int (*nearest_part)(const double *params, double time, const double p[3]);
+
+static int shell(const char *format, ...) {
+    char command[1024];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(command, sizeof command, format, args);
+    va_end(args);
+    return system(command);
+}
+
+static int make_truth(void **state) {
+    (void)state;
+    const char *build = getenv("BUILD"), *cc = getenv("CC");
+    char path[256];
+    if (!mkdtemp(dir)) return 1;
+    if (shell("%s/bin/masu-sdfc scenes/test_velocity.sdf --c %s/t.c --quiet --pairs 100",
+              build ? build : "build", dir) ||
+        shell("%s -std=c11 -O2 -w -shared -fPIC -o %s/t.so %s/t.c -lm", cc && *cc ? cc : "cc", dir,
+              dir)) {
+        return 1;
+    }
+    snprintf(path, sizeof path, "%s/t.so", dir);
+    library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (!library) return 1;
+    void *symbol = dlsym(library, "masu_truth_part_distance");
+    memcpy(&part_distance, &symbol, sizeof symbol);
+    symbol = dlsym(library, "masu_truth_part");
+    memcpy(&nearest_part, &symbol, sizeof symbol);
+    return !part_distance || !nearest_part;
+}
+
+static int remove_truth(void **state) {
+    (void)state;
+    if (library) dlclose(library);
+    return shell("rm -rf %s", dir);
+}
+
+/* ---- One moment ------------------------------------------------------------------------------ */
+
+typedef struct moment {
+    masu_camera camera;
+    double time;
+    float radius;
+    float rows[12]; /* of the polygons' box */
+} moment;
+
+/* The parts stand in the order of their forms: of this scene, of the text. */
+static double field(const moment *m, vec p, int kind) {
+    double radius = (double)m->radius, at[3] = {p.x, p.y, p.z};
+    return part_distance(&radius, m->time, at, kind - GROUND);
+}
+
+static vec gradient(const moment *m, vec p, int kind) {
+    double h = 1e-6;
+    return (vec){field(m, add(p, (vec){h, 0, 0}), kind) - field(m, add(p, (vec){-h, 0, 0}), kind),
+                 field(m, add(p, (vec){0, h, 0}), kind) - field(m, add(p, (vec){0, -h, 0}), kind),
+                 field(m, add(p, (vec){0, 0, h}), kind) - field(m, add(p, (vec){0, 0, -h}), kind)};
+}
+
+typedef struct eye {
+    vec position, forward, right, up; /* right and up of unit length */
+    double tan_x, tan_y;
+} eye;
+
+static eye eye_of(const masu_camera *c) {
+    eye e = {.position = {c->position[0], c->position[1], c->position[2]},
+             .forward =
+                 unit((vec){(double)c->forward[0], (double)c->forward[1], (double)c->forward[2]}),
+             .tan_y = tan((double)c->fov_y / 2)};
+    e.tan_x = e.tan_y * W / H;
+    e.right = unit(cross(e.forward, (vec){0, 1, 0}));
+    e.up = cross(e.right, e.forward);
+    return e;
+}
+
+static vec ray_through(const eye *e, double x, double y) {
+    return add(e->forward, add(scale(e->right, (2 * x / W - 1) * e->tan_x),
+                               scale(e->up, (1 - 2 * y / H) * e->tan_y)));
+}
+
+/* Pixel coordinates of a direction from the eye. */
+static void project(const eye *e, vec rel, double *x, double *y, double *z) {
+    *z = dot(rel, e->forward);
+    *x = (dot(rel, e->right) / *z / e->tan_x + 1) * W / 2;
+    *y = (1 - dot(rel, e->up) / *z / e->tan_y) * H / 2;
+}
+
+/* ---- What moved where ------------------------------------------------------------------------ */
+
+static vec mover_in(double t, vec p) {
+    vec q = sub(p, (vec){-1.6 + 0.3 * t, 0.2 * t, 0.1 * t});
+    return scale(turned(q, (vec){0.3, 1, 0.2}, -0.5 * t), 1 / (1 + 0.1 * t));
+}
+
+static vec mover_out(double t, vec q) {
+    return add(turned(scale(q, 1 + 0.1 * t), (vec){0.3, 1, 0.2}, 0.5 * t),
+               (vec){-1.6 + 0.3 * t, 0.2 * t, 0.1 * t});
+}
+
+static vec row(const float *rows, int i) {
+    return (vec){(double)rows[4 * i], (double)rows[4 * i + 1], (double)rows[4 * i + 2]};
+}
+
+/* The matrices of this test turn and move, no more. */
+static vec box_before(const moment *now, const moment *was, vec p) {
+    vec q = sub(p, (vec){(double)now->rows[3], (double)now->rows[7], (double)now->rows[11]});
+    vec own = add(scale(row(now->rows, 0), q.x),
+                  add(scale(row(now->rows, 1), q.y), scale(row(now->rows, 2), q.z)));
+    return (vec){dot(row(was->rows, 0), own) + (double)was->rows[3],
+                 dot(row(was->rows, 1), own) + (double)was->rows[7],
+                 dot(row(was->rows, 2), own) + (double)was->rows[11]};
+}
+
+/* The surface that was along the normal: steps of the field's change over its slope until nothing is
+ * left. (Which normal, the present or the previous one, is a matter of definition and up to 0.04
+ * pixels here; it is the previous one.) */
+static vec surface_before(const moment *now, const moment *was, vec p, int kind) {
+    double level = field(now, p, kind);
+    for (int i = 0; i < 30; i++) {
+        vec g = scale(gradient(was, p, kind), 1 / 2e-6);
+        p = sub(p, scale(g, (field(was, p, kind) - level) / dot(g, g)));
+    }
+    return p;
+}
+
+/* Within two pixels of an edge of a surface that changes, "along the normal" says nothing. */
+static int at_crease(const moment *m, vec p, double reach) {
+    vec n = unit(gradient(m, p, MORPHER));
+    for (int i = 0; i < 6; i++) {
+        double s = i & 1 ? reach : -reach;
+        vec o = i < 2 ? (vec){s, 0, 0} : i < 4 ? (vec){0, s, 0} : (vec){0, 0, s};
+        if (dot(n, unit(gradient(m, add(p, o), MORPHER))) < 0.9) return 1;
+    }
+    return 0;
+}
+
+static vec before(const moment *now, const moment *was, vec p, int kind) {
+    switch (kind) {
+    case MOVER: return mover_out(was->time, mover_in(now->time, p));
+    case GROWER: {
+        vec c = {0, 0.2, 0};
+        return add(p, scale(unit(sub(p, c)), (double)was->radius - (double)now->radius));
+    }
+    case MORPHER: return surface_before(now, was, p, kind);
+    case BOX: return box_before(now, was, p);
+    default: return p;
+    }
+}
+
+/* ---- Pictures -------------------------------------------------------------------------------- */
+
+typedef struct picture {
+    float depth[W * H]; /* view depth, 0: nothing */
+    double velocity[W * H][4];
+} picture;
+
+static double half(uint16_t h) {
+    int exponent = h >> 10 & 31, mantissa = h & 1023;
+    double v = exponent ? ldexp(mantissa + 1024, exponent - 25) : ldexp(mantissa, -24);
+    return h & 0x8000 ? -v : v;
+}
+
+static void open_moving(masu_session *s, const char *scene, uint32_t flights) {
+    masu_session_desc d = test_desc(scene, W, H);
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
+    d.desc.rung_count = 1;
+    d.desc.frames_in_flight = flights;
+    d.desc.debug.poison = 1;
+    open_session(s, &d);
+}
+
+static void take(masu_session *s, const moment *m, uint32_t cut, picture *p) {
+    masu_commands commands;
+    masu_readback_image image;
+    masu_frame_desc frame = {
+        .camera = &m->camera, .time = m->time, .cut = cut, .sdf_params = &m->radius};
+    frame.sdf_param_count = s->scene.sdf_params;
+    assert_int_equal(
+        masu_instance_set_transform(s->m, masu_instance_find(s->m, "box"), m->rows), MASU_OK);
+    draw(s, &frame, &commands, NULL);
+    if (!p) return;
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    for (uint32_t i = 0; i < W * H; i++) {
+        float d = ((const float *)image.pixels)[i];
+        p->depth[i] = d > 0.0f ? m->camera.near_distance / d : 0.0f;
+    }
+    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+    assert_int_equal(image.format, VK_FORMAT_R16G16B16A16_SFLOAT);
+    assert_int_equal(image.row_bytes, W * 8);
+    for (uint32_t i = 0; i < W * H; i++) {
+        for (int k = 0; k < 4; k++)
+            p->velocity[i][k] = half(((const uint16_t *)image.pixels)[4 * i + k]);
+    }
+}
+
+static int kind_at(const masu_session *s, const moment *m, vec p, double z) {
+    double at[3] = {p.x, p.y, p.z}, radius = (double)m->radius;
+    if (!s->scene.sdf) return BOX;
+    int part = nearest_part(&radius, m->time, at);
+    return fabs(field(m, p, part + GROUND)) > 2e-3 * z ? BOX : part + GROUND;
+}
+
+/* Largest error in pixels and of the depth ratio, by kind of surface. */
+typedef struct errors {
+    double pixels[KINDS], depth[KINDS], longest[KINDS];
+    uint32_t count[KINDS], creases;
+} errors;
+
+static errors compare(const masu_session *s, const picture *p, const moment *now,
+                      const moment *was) {
+    errors e;
+    memset(&e, 0, sizeof e);
+    eye a = eye_of(&now->camera), b = eye_of(&was->camera);
+    for (int i = 0; i < W * H; i++) {
+        double x = i % W + 0.5, y = i / W + 0.5, px, py, pz, z = (double)p->depth[i];
+        vec d = ray_through(&a, x, y), rel = d;
+        int kind = SKY;
+        if (z > 0) {
+            vec at = add(a.position, scale(d, z));
+            kind = kind_at(s, now, at, z);
+            if (kind == MORPHER && was->time != now->time &&
+                (at_crease(now, at, 4 * a.tan_y / H * z) ||
+                 at_crease(was, at, 4 * a.tan_y / H * z))) {
+                e.creases++;
+                continue;
+            }
+            rel = sub(before(now, was, at, kind), b.position);
+        }
+        project(&b, rel, &px, &py, &pz);
+        assert_true(p->velocity[i][3] == 1.0);
+        double off = hypot(p->velocity[i][0] - (px - x), p->velocity[i][1] - (py - y));
+        double depth = z > 0 ? fabs(p->velocity[i][2] - (pz / z - 1)) : fabs(p->velocity[i][2]);
+        e.pixels[kind] = fmax(e.pixels[kind], off);
+        e.depth[kind] = fmax(e.depth[kind], depth);
+        e.longest[kind] = fmax(e.longest[kind], hypot(px - x, py - y));
+        e.count[kind]++;
+    }
+    return e;
+}
+
+static void assert_right(const errors *e, double limit, const char *what) {
+    for (int k = 0; k < KINDS; k++) {
+        if (!e->count[k]) continue;
+        print_message("  %s, %s: %u pixels, longest motion %.2f px, off by %.4f px, depth by %.1e\n",
+                      what, kind_names[k], e->count[k], e->longest[k], e->pixels[k], e->depth[k]);
+    }
+    if (e->creases) print_message("  %s, at edges of the morph: %u pixels\n", what, e->creases);
+    assert_true(e->creases <= e->count[MORPHER]);
+    for (int k = 0; k < KINDS; k++) {
+        assert_true(e->pixels[k] < limit);
+        assert_true(e->depth[k] < 1e-3);
+    }
+}
+
+/* ---- Tests ----------------------------------------------------------------------------------- */
+
+static const moment start = {.camera = {.position = {0.6, 1.2, 4.5},
+                                        .forward = {-0.6f, -1.0f, -4.5f},
+                                        .fov_y = 0.87f,
+                                        .near_distance = 0.1f},
+                             .time = 0.7,
+                             .radius = 0.5f,
+                             .rows = {1, 0, 0, 0, 0, 1, 0, 1.4f, 0, 0, 1, -0.5f}};
+
+static void move_camera(moment *m) {
+    m->camera.position[0] += 0.06;
+    m->camera.position[1] -= 0.03;
+    m->camera.position[2] -= 0.15;
+    m->camera.forward[0] += 0.13f;
+    m->camera.forward[1] += 0.05f;
+}
+
+static void turn_box(moment *m, double angle) {
+    vec axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int i = 0; i < 3; i++) {
+        vec c = turned(axes[i], (vec){1, 2, 3}, angle);
+        m->rows[i] = (float)c.x, m->rows[4 + i] = (float)c.y, m->rows[8 + i] = (float)c.z;
+    }
+    m->rows[3] += 0.05f, m->rows[11] += 0.1f;
+}
+
+static void a_moving_camera_moves_polygons_sdf_and_sky(void **state) {
+    (void)state;
+    static picture p;
+    masu_session s;
+    moment now = start;
+    now.camera.forward[1] = -0.7f; /* with some sky */
+    moment was = now;
+    move_camera(&now);
+    open_moving(&s, "test_velocity", 2);
+    take(&s, &was, 0, &p);
+    errors e = compare(&s, &p, &was, &was);
+    assert_right(&e, 1e-4, "first frame");
+    take(&s, &now, 0, &p);
+    e = compare(&s, &p, &now, &was);
+    assert_right(&e, 0.01, "camera");
+    for (int k = 0; k < KINDS; k++) assert_true(e.count[k] > 150 && e.longest[k] > 1);
+    close_session(&s);
+}
+
+/* Every slot of the frames in flight, one after the other. */
+static void what_moves_and_what_changes_is_followed(void **state) {
+    (void)state;
+    static picture p;
+    for (uint32_t flights = 1; flights <= 3; flights++) {
+        masu_session s;
+        moment was = start;
+        open_moving(&s, "test_velocity", flights);
+        take(&s, &was, 0, NULL);
+        for (int i = 0; i < 4; i++) {
+            moment now = was;
+            now.time += 0.06 + 0.02 * i;
+            now.radius += 0.02f;
+            turn_box(&now, 0.05 * i);
+            if (i & 1) move_camera(&now);
+            take(&s, &now, 0, &p);
+            errors e = compare(&s, &p, &now, &was);
+            if (flights < 3)
+                assert_right(&e, 0.02, i & 1 ? "all moves" : "all but the camera");
+            else
+                for (int k = 0; k < KINDS; k++) assert_true(e.pixels[k] < 0.02);
+            /* Not by chance: a truth with another past is missed by far. */
+            moment wrong = was;
+            wrong.time -= 0.1;
+            wrong.radius -= 0.03f;
+            wrong.rows[3] += 0.05f;
+            errors f = compare(&s, &p, &now, &wrong);
+            for (int k = MOVER; k < KINDS; k++) assert_true(f.pixels[k] > 0.1);
+            was = now;
+        }
+        /* The frame after, nothing moves: in every slot the past is forgotten. */
+        for (uint32_t i = 0; i < flights + 1; i++) {
+            take(&s, &was, 0, &p);
+            for (int k = 0; k < W * H; k++) {
+                for (int c = 0; c < 3; c++) assert_true(p.velocity[k][c] == 0);
+            }
+        }
+        close_session(&s);
+    }
+}
+
+static void polygons_alone_have_velocities(void **state) {
+    (void)state;
+    static picture p;
+    masu_session s;
+    moment was = start, now = start;
+    move_camera(&now);
+    turn_box(&now, 0.2);
+    open_moving(&s, "test_velocity_mesh", 2);
+    take(&s, &was, 0, NULL);
+    take(&s, &now, 0, &p);
+    errors e = compare(&s, &p, &now, &was);
+    assert_right(&e, 0.02, "polygons");
+    assert_true(e.count[BOX] > 300 && e.count[SKY] > 500 && e.longest[BOX] > 2);
+    close_session(&s);
+}
+
+static void a_cut_forgets_the_frame_before(void **state) {
+    (void)state;
+    static picture p;
+    masu_session s;
+    moment was = start, now = start;
+    move_camera(&now);
+    turn_box(&now, 0.2);
+    now.time += 5;
+    now.radius = 0.9f;
+    open_moving(&s, "test_velocity", 2);
+    take(&s, &was, 0, NULL);
+    take(&s, &was, 0, NULL);
+    take(&s, &now, 1, &p);
+    for (int i = 0; i < W * H; i++) {
+        for (int c = 0; c < 3; c++) assert_true(p.velocity[i][c] == 0);
+        assert_true(p.velocity[i][3] == 1);
+    }
+    close_session(&s);
+}
+
+/* What the camera has passed has no place in the picture before. */
+static void a_point_that_was_behind_the_camera_says_so(void **state) {
+    (void)state;
+    static picture p;
+    masu_session s;
+    moment was = start, now = start;
+    was.camera.position[2] = 0, was.camera.position[1] = 3;
+    was.camera.forward[1] = 0;
+    now.camera.position[2] = 5;
+    now.camera.forward[1] = -2;
+    open_moving(&s, "test_velocity", 2);
+    take(&s, &was, 0, NULL);
+    take(&s, &now, 0, &p);
+    uint32_t untold = 0;
+    for (int i = 0; i < W * H; i++) {
+        if (p.velocity[i][3] == 1) continue;
+        for (int c = 0; c < 4; c++) assert_true(p.velocity[i][c] == 0);
+        untold++;
+    }
+    print_message("  %u pixels without a past\n", untold);
+    assert_true(untold > W * H / 10 && untold < W * H);
+    close_session(&s);
+}
+
+/* Those without tiles look at all parts. The fragment shader takes no polygons. */
+static void every_way_to_march_has_velocities(void **state) {
+    (void)state;
+    static picture p;
+    static const masu_march marches[] = {MASU_MARCH_CONE8, MASU_MARCH_UNPRUNED, MASU_MARCH_PLAIN,
+                                         MASU_MARCH_SEED, MASU_MARCH_CHECKERBOARD};
+    char path[256];
+    const char *build = getenv("BUILD");
+    snprintf(path, sizeof path, "%s/variants.masu", dir);
+    assert_int_equal(shell("%s/bin/masu-bake scenes/test_velocity.json -o %s --variants --quiet",
+                           build ? build : "build", path),
+                     0);
+    for (size_t i = 0; i < sizeof marches / sizeof *marches; i++) {
+        masu_session s;
+        masu_session_desc d = test_desc(NULL, W, H);
+        d.scene_path = path;
+        d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
+        d.desc.rung_count = 1;
+        d.desc.rungs[0].march = marches[i];
+        open_session(&s, &d);
+        moment was = start, now = start;
+        now.time += 0.1;
+        take(&s, &was, 0, NULL);
+        take(&s, &now, 0, &p);
+        errors e = compare(&s, &p, &now, &was);
+        /* The seed's march stops up to 0.1 m before a surface: its points are not on the parts. */
+        for (int k = 0; k < KINDS && marches[i] != MASU_MARCH_SEED; k++) {
+            assert_true(e.pixels[k] < 0.02);
+        }
+        close_session(&s);
+    }
+}
+
+/* A field by hand has no parts that move; its surface is followed along its normal all the same. */
+static void a_field_by_hand_is_followed_along_its_normal(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = test_desc("test_sphere_sdf", W, H);
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
+    d.desc.rung_count = 1;
+    open_session(&s, &d);
+    masu_commands commands;
+    masu_readback_image image;
+    masu_camera c = {.position = {0, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.8f};
+    c.near_distance = 0.1f;
+    float radius = 0.9f;
+    masu_frame_desc frame = {.camera = &c, .sdf_params = &radius, .sdf_param_count = 1};
+    draw(&s, &frame, &commands, NULL);
+    radius = 1.0f;
+    draw(&s, &frame, &commands, NULL);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    const float *depth = image.pixels;
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+    const uint16_t *texels = image.pixels;
+    eye e = eye_of(&c);
+    double worst = 0, longest = 0;
+    for (int i = 0; i < W * H; i++) {
+        if (!(depth[i] > 0)) continue;
+        double x = i % W + 0.5, y = i / W + 0.5, px, py, pz;
+        vec p = add(e.position, scale(ray_through(&e, x, y), 0.1 / (double)depth[i]));
+        project(&e, sub(scale(unit(p), sqrt(dot(p, p)) - 0.1), e.position), &px, &py, &pz);
+        worst = fmax(worst, hypot(half(texels[4 * i]) - (px - x), half(texels[4 * i + 1]) - (py - y)));
+        longest = fmax(longest, hypot(px - x, py - y));
+    }
+    print_message("  longest motion %.2f px, off by %.4f px\n", longest, worst);
+    assert_true(longest > 3 && worst < 0.02);
+    close_session(&s);
+}
+
+static void who_does_not_ask_has_no_velocities(void **state) {
+    (void)state;
+    masu_session s;
+    masu_plan_info plan;
+    masu_session_desc d = test_desc("test_velocity", W, H);
+    d.desc.readback = MASU_READBACK_DEPTH;
+    open_session(&s, &d);
+    masu_plan_of(s.m, &plan);
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < plan.pass_count; i++) {
+        if (!strstr(plan.passes[i].name, "velocity") && !strstr(plan.passes[i].name, "previous"))
+            continue;
+        found++;
+        assert_int_equal(plan.passes[i].active, 0);
+        assert_string_equal(plan.passes[i].why, "nothing reads velocities");
+    }
+    assert_int_equal(found, 3);
+    for (uint32_t i = 0; i < plan.image_count; i++) {
+        if (strcmp(plan.images[i].name, "velocity") != 0) continue;
+        assert_int_equal(plan.images[i].used, 0);
+        assert_int_equal(plan.images[i].bytes, 0);
+    }
+    uint64_t without = s.need.host_bytes;
+    close_session(&s);
+    d.desc.readback |= MASU_READBACK_VELOCITY;
+    open_session(&s, &d);
+    assert_true(s.need.host_bytes > without);
+    close_session(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_moving_camera_moves_polygons_sdf_and_sky),
+        cmocka_unit_test(what_moves_and_what_changes_is_followed),
+        cmocka_unit_test(polygons_alone_have_velocities),
+        cmocka_unit_test(a_cut_forgets_the_frame_before),
+        cmocka_unit_test(a_point_that_was_behind_the_camera_says_so),
+        cmocka_unit_test(every_way_to_march_has_velocities),
+        cmocka_unit_test(a_field_by_hand_is_followed_along_its_normal),
+        cmocka_unit_test(who_does_not_ask_has_no_velocities),
+    };
+    return cmocka_run_group_tests_name("velocity", tests, make_truth, remove_truth);
+}
