@@ -224,7 +224,7 @@ static void without_anchors_it_does_not(void **state) {
     take_both(0, "", here);
     take_both(1000000, ", \"anchored\": false", there);
     difference d = worst_of("1e6 m away, not anchored");
-    assert_true(d.deep > 1000);
+    assert_true(d.surface > 300 && d.deep > 100);
 }
 
 static void the_plan_says_whether_it_is_anchored(void **state) {
