@@ -2,8 +2,9 @@
  * march.comp: sphere tracing of the scene's SDF, limited by the raster depth; the nearer surface
  * wins. A hit becomes texels of the G-buffer, so that every later pass has one path.
  *
- * Four workgroups per active tile of 16x16 pixels (WorkGroupID.y), with the tile's list of parts. A
- * pixel starts where the cone of its 4x4 block stopped (cone.comp). Compiled by masu-bake together with the scene's field.
+ * One workgroup per active tile of 16x16 pixels, with the tile's list of parts; each invocation has four
+ * pixels. A pixel starts where the cone of its 4x4 block stopped (cone.comp). Compiled by masu-bake
+ * together with the scene's field.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -19,11 +20,90 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D cone_image;
 layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform writeonly image2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D normal_image;
-layout(set = MASU_SET_PASS, binding = 3, r32f) uniform  image2D depth_image;
+layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
 
 #define MASU_RELAXED
 #define MASU_SDF_NO_FLAT
 #include "sdf/hit.glsl"
+
+/* Of the four pixels of an invocation, one in each quarter of the tile. */
+vec4 start = vec4(0.0);
+vec4 limit = vec4(-1.0);
+vec4 flat_end = vec4(-1.0); /* distance of a half-space, or -1 */
+uvec4 flat_part = uvec4(0u);
+vec4 found = vec4(-1.0);
+
+bvec4 only(int k)
+{
+    return equal(ivec4(k), ivec4(0, 1, 2, 3));
+}
+
+float lane(vec4 v, int k)
+{
+    return k == 0 ? v.x : k == 1 ? v.y : k == 2 ? v.z : v.w;
+}
+
+uvec2 pixel_of(uvec2 corner, int k)
+{
+    return corner + uvec2(k & 1, k >> 1) * uint(MASU_GROUP) + masu_block_at(gl_LocalInvocationIndex);
+}
+
+/* Where the ray of a pixel begins and ends. The nearest half-space ends the march. */
+void prepare(uvec2 at, uvec2 size, int k)
+{
+    float z_scale, depth = 0.0;
+#if MASU_HAS_RASTER
+    depth = imageLoad(depth_image, ivec2(at)).r;
+#endif
+    ray r = pixel_ray(at, size, depth, z_scale);
+    uint part;
+    float end = masu_sdf_flat(world_at(r.direction, 0.0), r.direction, r.start, part);
+    bool ends = end < r.limit;
+    start = mix(start, vec4(max(r.start, texelFetch(cone_image, ivec2(at / 4u), 0).r)), only(k));
+    limit = mix(limit, vec4(min(r.limit, end)), only(k));
+    flat_end = mix(flat_end, vec4(ends ? end : -1.0), only(k));
+    flat_part = uvec4(mix(vec4(flat_part), vec4(part), only(k)));
+}
+
+ray ray_of(uvec2 corner, uvec2 size, int k)
+{
+    vec3 through = masu_pixel_ray(pixel_of(corner, k), size);
+    float z_scale = length(through);
+    return ray(through / z_scale, 2.0 * frame.up.w / float(size.y) / z_scale, lane(start, k),
+               lane(limit, k));
+}
+
+/* All four rays in one loop: who is done with one takes the next, instead of waiting for the slowest of
+ * its subgroup. Eight lanes that wait took 1.2 to 1.9 times the steps of their mean. */
+uint march_all(uvec2 corner, uvec2 size)
+{
+    int k = 0;
+    uint evals = 0u;
+    ray r = ray_of(corner, size, 0);
+    march_state m = march_begin(r);
+    MASU_LOOP for (int i = 0; i < 4 * MASU_MARCH_STEPS_MAX; i++) {
+        if (k > 3) {
+            break;
+        }
+        if (!m.done && m.steps == 0u && !(r.start < r.limit)) {
+            m.done = true;
+            m.t = -1.0;
+        }
+        if (!m.done) {
+            bool usable;
+            float f = step_at(r, m.t, usable);
+            evals++;
+            march_step(m, r, f, usable);
+        }
+        if (m.done) {
+            found = mix(found, vec4(m.t), only(k));
+            k++;
+            r = ray_of(corner, size, k);
+            m = march_begin(r);
+        }
+    }
+    return evals;
+}
 
 void main()
 {
@@ -32,34 +112,35 @@ void main()
     uint tile = masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];
     uint columns = masu_tile_grid(size).x;
     uvec2 corner = uvec2(tile % columns, tile / columns) * uint(MASU_TILE);
-    uvec2 quarter = uvec2(gl_WorkGroupID.y & 1u, gl_WorkGroupID.y >> 1) * uint(MASU_GROUP);
-    uvec2 at = corner + quarter + masu_block_at(gl_LocalInvocationIndex);
     bool listed = masu_use_tile(tile, size);
-    if (all(lessThan(at, size))) {
-        float z_scale;
-        uint evals = 0u;
-        float depth = 0.0;
-#if MASU_HAS_RASTER
-        depth = imageLoad(depth_image, ivec2(at)).r;
+    MASU_LOOP for (int k = 0; k < 4; k++) {
+        if (all(lessThan(pixel_of(corner, k), size))) {
+            prepare(pixel_of(corner, k), size, k);
+        }
+    }
+    if (listed) {
+        masu_count(MASU_COUNTER_SDF_EVALS, march_all(corner, size));
+    }
+    MASU_LOOP for (int k = 0; k < 4; k++) {
+        uvec2 at = pixel_of(corner, k);
+        if (all(lessThan(at, size))) {
+            float t = lane(found, k);
+            bool known = !(t >= 0.0);
+            t = known ? lane(flat_end, k) : t;
+            if (t >= 0.0) {
+                ray r = ray_of(corner, size, k);
+                float z_scale = length(masu_pixel_ray(at, size));
+                uint part = flat_part[k];
+                float depth = write_hit(at, r, t, known, part, z_scale);
+                MASU_STORE_R32F(depth_image, at, depth);
+            }
+#if !MASU_HAS_RASTER
+            else {
+                MASU_STORE_R32F(depth_image, at, 0.0);
+            }
 #endif
-        ray r = pixel_ray(at, size, depth, z_scale);
-        /* The nearest half-space ends the march. */
-        uint part;
-        float end = masu_sdf_flat(world_at(r.direction, 0.0), r.direction, r.start, part);
-        bool ends = end < r.limit;
-        r.limit = min(r.limit, end);
-        r.start = max(r.start, texelFetch(cone_image, ivec2(at / 4u), 0).r);
-        float t = -1.0;
-        if (listed) {
-            t = march(r, evals);
-            ends = ends && !(t >= 0.0);
+            masu_count(MASU_COUNTER_SDF_EVALS, MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? 1u : 0u);
         }
-        t = ends ? end : t;
-        if (t >= 0.0) {
-            depth = write_hit(at, r, t, ends, part, z_scale);
-        }
-        MASU_STORE_R32F(depth_image, at, depth);
-        masu_count(MASU_COUNTER_SDF_EVALS, evals + (MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? 1u : 0u));
     }
     masu_count_end();
 }

@@ -65,27 +65,22 @@ void main()
     uvec2 corner = uvec2(tile % columns, tile / columns) * uint(MASU_TILE);
     masu_use_tile(tile, size);
     uvec2 me = gl_LocalInvocationID.xy * 2u;
-    /* Only the first of the four quarters works: it owns the whole tile. */
-    if (gl_WorkGroupID.y == 0u) {
-        MASU_LOOP for (int i = 0; i < 2; i++) {
-            uvec2 p = me + uvec2(uint(i));
-            float start = texelFetch(cone_image, ivec2((corner + p) / 8u), 0).r;
-            free_to[p.y][p.x] = march_pixel(corner + p, size, start);
-        }
+    MASU_LOOP for (int i = 0; i < 2; i++) {
+        uvec2 p = me + uvec2(uint(i));
+        float start = texelFetch(cone_image, ivec2((corner + p) / 8u), 0).r;
+        free_to[p.y][p.x] = march_pixel(corner + p, size, start);
     }
     barrier();
-    if (gl_WorkGroupID.y == 0u) {
-        MASU_LOOP for (int i = 0; i < 2; i++) {
-            ivec2 p = ivec2(me) + ivec2(1 - i, i);
-            float start = texelFetch(cone_image, (ivec2(corner) + p) / 8, 0).r;
-            MASU_LOOP for (int k = 0; k < 4; k++) {
-                ivec2 q = p + ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
-                if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(EDGE)))) {
-                    start = max(start, free_to[q.y][q.x]);
-                }
+    MASU_LOOP for (int i = 0; i < 2; i++) {
+        ivec2 p = ivec2(me) + ivec2(1 - i, i);
+        float start = texelFetch(cone_image, (ivec2(corner) + p) / 8, 0).r;
+        MASU_LOOP for (int k = 0; k < 4; k++) {
+            ivec2 q = p + ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
+            if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(EDGE)))) {
+                start = max(start, free_to[q.y][q.x]);
             }
-            march_pixel(corner + uvec2(p), size, start);
         }
+        march_pixel(corner + uvec2(p), size, start);
     }
     masu_count_end();
 }

@@ -361,8 +361,8 @@ static void record_prologue(recorder *rec) {
                             poison_word(m->plan.desc.debug.poison));
     }
     if (m->plan.buffers[MASU_BUFFER_TILES].bytes) {
-        /* Arguments of the indirect dispatch: no tile yet, its four quarters, one layer. */
-        static const uint32_t arguments[3] = {0, 4, 1};
+        /* Arguments of the indirect dispatch: no tile yet, one row, one layer. */
+        static const uint32_t arguments[3] = {0, 1, 1};
         for (uint32_t i = 0; i < 3; i++) {
             m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_TILES], 4 * i, 4,
                                 arguments[i]);

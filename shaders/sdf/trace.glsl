@@ -63,6 +63,8 @@ void masu_note_hint(float t, float f)
 }
 #endif
 
+#ifndef MASU_RELAXED
+
 /* How a march ended. */
 struct march_end {
     float t, f;               /* last sample */
@@ -78,8 +80,6 @@ void note_best(inout march_end m, inout float best_ratio, float t, float f)
     m.best_t = ratio < best_ratio ? t : m.best_t;
     best_ratio = min(best_ratio, ratio);
 }
-
-#ifndef MASU_RELAXED
 
 const float normal_step = 0.25; /* pixels */
 
@@ -140,15 +140,95 @@ void refine(ray r, inout march_end m)
     }
 }
 
+/* Distance along the ray of the first surface, or -1. */
+float march(ray r, out uint evals)
+{
+    march_end m = walk(r);
+    if (m.hit) {
+        refine(r, m);
+    } else if (!m.left) {
+        masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
+        m.t = m.best_t;
+    }
+    evals = m.evals;
+    return (m.hit || !m.left) && m.t < r.limit ? m.t : -1.0;
+}
+
 #else
 
 const float normal_step = 0.02;
 const float newton_from = 0.3; /* pixels: nearer than this, and then at most so far ahead */
 const float newton_reach = 4.0;
+const uint bracket_steps = 12u;
 
 float tolerance(ray r, float t)
 {
     return max(0.002 * r.pixel * t, resolution(r, t));
+}
+
+/* A march between two samples. It asks for the field at t, and is done when t is the hit, or -1. One
+ * function takes all kinds of steps, so that a loop around it holds the field once, and may take the
+ * next ray while its neighbours in a subgroup still walk. */
+struct march_state {
+    float t;
+    float before_t, before_f;     /* the sample before; of a bracket: its end above 0 */
+    float high_t, high_f;         /* of a bracket: its end below 0 */
+    float slope;                  /* of the field along the ray; -1: as on a plane that is met head-on */
+    float reach;                  /* from before_t to t, as tried */
+    float best_t, best_ratio;     /* sample of least f/t within 2 pixels, or -1 */
+    uint steps, bracket;          /* samples, and those of a bracket */
+    bool sure;                    /* the way from before_t to t is free whatever f turns out to be */
+    bool done;
+};
+
+march_state march_begin(ray r)
+{
+    return march_state(r.start, r.start, 0.0, 0.0, 0.0, -1.0, 0.0, -1.0, 2.0 * r.pixel, 0u, 0u, true,
+                       false);
+}
+
+void march_finish(inout march_state m, ray r, float t)
+{
+    m.t = t < r.limit ? t : -1.0;
+    m.done = true;
+}
+
+/* Between two samples of different sign: the secant, with the Illinois halving so that neither end
+ * stays for ever (Dowell and Jarratt, BIT 11, 1971). */
+void march_narrow(inout march_state m)
+{
+    float share = m.high_f / min(m.high_f - m.before_f, -1e-30);
+    m.t = mix(m.high_t, m.before_t, clamp(share, 0.0, 1.0));
+    m.bracket++;
+}
+
+void march_in_bracket(inout march_state m, ray r, float f)
+{
+    if (abs(f) < tolerance(r, m.t) || m.bracket > bracket_steps) {
+        march_finish(m, r, m.t);
+        return;
+    }
+    bool inside = f < 0.0;
+    m.before_t = inside ? m.before_t : m.t;
+    m.before_f = inside ? 0.5 * m.before_f : f;
+    m.high_t = inside ? m.t : m.high_t;
+    m.high_f = inside ? f : 0.5 * m.high_f;
+    march_narrow(m);
+}
+
+/* At a surface: below 0 it lies between the last two samples, above it what is left is taken by the last
+ * slope without another look. A camera inside a solid has no sample before: it sees it at the near
+ * plane, as a clipped polygon's inside would. */
+void march_touch(inout march_state m, ray r, float f, float enough)
+{
+    if (f < -enough && m.before_t < m.t) {
+        m.high_t = m.t;
+        m.high_f = f;
+        march_narrow(m);
+        return;
+    }
+    float rate = (m.t - m.before_t) / max(m.before_f - f, 1e-30);
+    march_finish(m, r, max(m.t + f * clamp(rate, 0.0, 16.0), m.before_t));
 }
 
 /* Steps beyond the field's own distance, checked: a step s from a sample f1 to a sample f2 is right
@@ -163,104 +243,79 @@ float tolerance(ray r, float t)
  * fixed share of what is left. It may end in a surface before the spheres meet, but then it was at
  * most four pixels' widths long. Wrong turn: letting any step end so. A relaxed step across the rim of
  * one ball into the next one lost the first. */
-march_end walk(ray r)
+void march_walk(inout march_state m, ray r, float f)
 {
-    march_end m = march_end(r.start, 0.0, r.start, 0.0, -1.0, false, false, 0u);
-    float best_ratio = 2.0 * r.pixel;
-    float slope = -1.0; /* of plain steps */
-    float reach = 0.0;  /* from before_t to t, as tried */
-    bool sure = true;   /* the way from before_t to t is free whatever f turns out to be */
-    MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
-        m.left = m.left || (sure && !(m.t < r.limit));
-        if (m.hit || m.left || uint(i) >= pc.index.x) {
-            break;
-        }
-        bool usable;
-        float f = step_at(r, m.t, usable);
-        m.evals++;
-        m.left = !usable;
-        float pixel = r.pixel * m.t;
-        bool touched = f < tolerance(r, m.t);
-        bool meet = sure || reach <= m.before_f + f || (touched && reach <= newton_reach * pixel);
-        if (usable && !meet) {
-            m.t = m.before_t + m.before_f;
-            reach = m.before_f;
-            sure = true;
-            slope = -1.0;
-        } else if (usable) {
-            m.f = f;
-            m.hit = touched && m.t < r.limit;
-            m.left = !(m.t < r.limit);
-            if (!m.hit && !m.left) {
-                note_best(m, best_ratio, m.t, f);
-                masu_note_hint(m.t, f);
-                float last = reach > 0.0 ? clamp((f - m.before_f) / reach, -1.0, 0.9) : -1.0;
-                slope = mix(slope, last, 0.7);
-                reach = max(1.9 * f / (1.0 - slope), f);
-                if (f < newton_from * pixel && last < 0.0) {
-                    reach = max(reach, min(f / max(-last, 1e-6), newton_reach * pixel));
-                }
-                m.before_t = m.t;
-                m.before_f = f;
-                /* Not past the limit unless a plain step already is: the end is checked as well. */
-                sure = !(reach > f) || m.t + f >= r.limit;
-                reach = sure ? f : min(reach, r.limit - m.t);
-                m.t += reach;
-            }
-        }
+    float pixel = r.pixel * m.t;
+    float enough = tolerance(r, m.t);
+    bool touched = f < enough;
+    bool meet = m.sure || m.reach <= m.before_f + f || (touched && m.reach <= newton_reach * pixel);
+    if (!meet) {
+        m.t = m.before_t + m.before_f;
+        m.reach = m.before_f;
+        m.sure = true;
+        m.slope = -1.0;
+    } else if (touched && m.t < r.limit) {
+        march_touch(m, r, f, enough);
+        return;
+    } else {
+        float ratio = f / max(m.t, 1e-20);
+        m.best_t = ratio < m.best_ratio ? m.t : m.best_t;
+        m.best_ratio = min(m.best_ratio, ratio);
+        masu_note_hint(m.t, f);
+        float last = m.reach > 0.0 ? clamp((f - m.before_f) / m.reach, -1.0, 0.9) : -1.0;
+        m.slope = mix(m.slope, last, 0.7);
+        float reach = max(1.9 * f / (1.0 - m.slope), f);
+        bool newton = f < newton_from * pixel && last < 0.0;
+        float root = min(f / max(-last, 1e-6), newton_reach * pixel);
+        reach = newton ? max(reach, root) : reach;
+        m.before_t = m.t;
+        m.before_f = f;
+        /* Not past the limit unless a plain step already is: the end is checked as well. */
+        m.sure = !(reach > f) || m.t + f >= r.limit;
+        m.reach = m.sure ? f : min(reach, r.limit - m.t);
+        m.t += m.reach;
     }
-    m.left = m.left || (sure && !(m.t < r.limit));
-    return m;
-}
-
-/* A hit below 0 has the surface between the last two samples: the secant, with the Illinois halving so
- * that neither end stays for ever (Dowell and Jarratt, BIT 11, 1971). A camera inside a solid has no
- * sample before: it sees it at the near plane, as a clipped polygon's inside would. */
-void refine(ray r, inout march_end m)
-{
-    float high_t = m.t;
-    float high_f = m.f;
-    float low_f = m.before_f;
-    bool found = !(m.f < -tolerance(r, m.t)) || !(m.before_t < m.t);
-    if (found) { /* what is left, by the last slope, without another look */
-        float rate = (m.t - m.before_t) / max(m.before_f - m.f, 1e-30);
-        m.t = max(m.t + m.f * clamp(rate, 0.0, 16.0), m.before_t);
-    }
-    MASU_LOOP for (int i = 0; i < 12; i++) {
-        if (found) {
-            break;
-        }
-        float share = high_f / min(high_f - low_f, -1e-30);
-        float t = mix(high_t, m.before_t, clamp(share, 0.0, 1.0));
-        bool usable;
-        float f = step_at(r, t, usable);
-        m.evals++;
-        found = abs(f) < tolerance(r, t);
-        bool inside = f < 0.0;
-        low_f = inside ? 0.5 * low_f : f;
-        high_f = inside ? f : 0.5 * high_f;
-        high_t = inside ? t : high_t;
-        m.before_t = inside ? m.before_t : t;
-        m.t = t;
-        m.f = f;
+    if (m.sure && !(m.t < r.limit)) {
+        march_finish(m, r, r.limit);
     }
 }
 
-#endif
+/* The field at m.t is f; `usable` is false where it is not a number. */
+void march_step(inout march_state m, ray r, float f, bool usable)
+{
+    m.steps++;
+    if (!usable) {
+        march_finish(m, r, r.limit);
+    } else if (m.bracket > 0u) {
+        march_in_bracket(m, r, f);
+    } else {
+        march_walk(m, r, f);
+    }
+    if (!m.done && m.steps >= pc.index.x) {
+        masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
+        march_finish(m, r, m.bracket > 0u ? m.t : m.best_t);
+    }
+}
 
 /* Distance along the ray of the first surface, or -1. */
 float march(ray r, out uint evals)
 {
-    march_end m = walk(r);
-    if (m.hit) {
-        refine(r, m);
-    } else if (!m.left) {
-        masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
-        m.t = m.best_t;
+    march_state m = march_begin(r);
+    m.done = !(r.start < r.limit);
+    m.t = m.done ? -1.0 : m.t;
+    MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
+        if (m.done) {
+            break;
+        }
+        bool usable;
+        float f = step_at(r, m.t, usable);
+        march_step(m, r, f, usable);
     }
-    evals = m.evals;
-    return (m.hit || !m.left) && m.t < r.limit ? m.t : -1.0;
+    evals = m.steps;
+    return m.t;
 }
+
+#endif
 
 /* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The
  * step grows with distance (0.02 pixel: a quarter of one, as the plain march takes, rounds every edge of

@@ -42,7 +42,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_PREVIOUS_INSTANCES 7
 
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
- *   0..2                  arguments of the indirect dispatch: active tiles, 4 quarters, 1
+ *   0..2                  arguments of the indirect dispatch: active tiles, 1, 1
  *   TILES_HEADER + k      number of the k-th active tile, in no particular order
  *   TILES_HEADER + tiles  the lists, `stride` uints each: of a scene of at most TILE_MASKED_MAX parts
  *                         a bit for each part, else how many parts, then their numbers
