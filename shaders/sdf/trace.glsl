@@ -166,135 +166,75 @@ float tolerance(ray r, float t)
     return max(0.002 * r.pixel * t, resolution(r, t));
 }
 
-/* A march between two samples. It asks for the field at t, and is done when t is the hit, or -1. One
- * function takes all kinds of steps, so that a loop around it holds the field once, and may take the
- * next ray while its neighbours in a subgroup still walk. */
+/* A march between two samples. It asks for the field at t, and is done when t is the hit, or -1. */
 struct march_state {
     float t;
-    float before_t, before_f;     /* the sample before; of a bracket: its end above 0 */
-    float high_t, high_f;         /* of a bracket: its end below 0 */
-    float slope;                  /* of the field along the ray; -1: as on a plane that is met head-on */
-    float reach;                  /* from before_t to t, as tried */
-    float best_t, best_ratio;     /* sample of least f/t within 2 pixels, or -1 */
-    uint steps, bracket;          /* samples, and those of a bracket */
-    bool sure;                    /* the way from before_t to t is free whatever f turns out to be */
+    float before_t, before_f; /* the sample before; of a bracket: its end above 0 */
+    float high_t, high_f;     /* of a bracket: its end below 0; high_t < 0: no bracket yet */
+    float slope;              /* of the field along the ray; -1: as on a plane that is met head-on */
+    float gap;                /* from before_t to t, if more than is proved free, else 0 */
+    float best_t, best_ratio; /* sample of least f/t within 2 pixels, or -1 */
+    uint steps;
     bool done;
 };
 
 march_state march_begin(ray r)
 {
-    return march_state(r.start, r.start, 0.0, 0.0, 0.0, -1.0, 0.0, -1.0, 2.0 * r.pixel, 0u, 0u, true,
-                       false);
+    return march_state(r.start, r.start, 0.0, -1.0, 0.0, -1.0, 0.0, -1.0, 2.0 * r.pixel, 0u, false);
 }
 
-void march_finish(inout march_state m, ray r, float t)
-{
-    m.t = t < r.limit ? t : -1.0;
-    m.done = true;
-}
-
-/* Between two samples of different sign: the secant, with the Illinois halving so that neither end
- * stays for ever (Dowell and Jarratt, BIT 11, 1971). */
-void march_narrow(inout march_state m)
-{
-    float share = m.high_f / min(m.high_f - m.before_f, -1e-30);
-    m.t = mix(m.high_t, m.before_t, clamp(share, 0.0, 1.0));
-    m.bracket++;
-}
-
-void march_in_bracket(inout march_state m, ray r, float f)
-{
-    if (abs(f) < tolerance(r, m.t) || m.bracket > bracket_steps) {
-        march_finish(m, r, m.t);
-        return;
-    }
-    bool inside = f < 0.0;
-    m.before_t = inside ? m.before_t : m.t;
-    m.before_f = inside ? 0.5 * m.before_f : f;
-    m.high_t = inside ? m.t : m.high_t;
-    m.high_f = inside ? f : 0.5 * m.high_f;
-    march_narrow(m);
-}
-
-/* At a surface: below 0 it lies between the last two samples, above it what is left is taken by the last
- * slope without another look. A camera inside a solid has no sample before: it sees it at the near
- * plane, as a clipped polygon's inside would. */
-void march_touch(inout march_state m, ray r, float f, float enough)
-{
-    if (f < -enough && m.before_t < m.t) {
-        m.high_t = m.t;
-        m.high_f = f;
-        march_narrow(m);
-        return;
-    }
-    float rate = (m.t - m.before_t) / max(m.before_f - f, 1e-30);
-    march_finish(m, r, max(m.t + f * clamp(rate, 0.0, 16.0), m.before_t));
-}
-
-/* Steps beyond the field's own distance, checked: a step s from a sample f1 to a sample f2 is right
- * when the two free spheres meet, s <= f1 + f2; else it is taken back and a plain step made. How
- * long to try: on a plane the field falls by a constant slope along the ray, and s = 2 f / (1 -
- * slope) makes the spheres just touch: up to twice the plain step, most where plain steps creep, at
- * grazing angles. The slope is that of the last samples (Ban and Valasek, "Automatic Step Size
- * Relaxation in Sphere Tracing", Eurographics 2023; the check is Keinert et al. 2014).
- *
- * In the last third of a pixel the step is Newton's, to where the slope says that the field is 0:
- * half of all evaluations were spent there, since at a grazing angle each checked step takes only a
- * fixed share of what is left. It may end in a surface before the spheres meet, but then it was at
- * most four pixels' widths long. Wrong turn: letting any step end so. A relaxed step across the rim of
- * one ball into the next one lost the first. */
-void march_walk(inout march_state m, ray r, float f)
+/* The field at m.t is f. */
+void march_step(inout march_state m, ray r, float f, bool usable)
 {
     float pixel = r.pixel * m.t;
     float enough = tolerance(r, m.t);
+    float reach = m.t - m.before_t;
     bool touched = f < enough;
-    bool meet = m.sure || m.reach <= m.before_f + f || (touched && m.reach <= newton_reach * pixel);
-    if (!meet) {
-        m.t = m.before_t + m.before_f;
-        m.reach = m.before_f;
-        m.sure = true;
-        m.slope = -1.0;
-    } else if (touched && m.t < r.limit) {
-        march_touch(m, r, f, enough);
-        return;
-    } else {
-        float ratio = f / max(m.t, 1e-20);
-        m.best_t = ratio < m.best_ratio ? m.t : m.best_t;
-        m.best_ratio = min(m.best_ratio, ratio);
-        masu_note_hint(m.t, f);
-        float last = m.reach > 0.0 ? clamp((f - m.before_f) / m.reach, -1.0, 0.9) : -1.0;
-        m.slope = mix(m.slope, last, 0.7);
-        float reach = max(1.9 * f / (1.0 - m.slope), f);
-        bool newton = f < newton_from * pixel && last < 0.0;
-        float root = min(f / max(-last, 1e-6), newton_reach * pixel);
-        reach = newton ? max(reach, root) : reach;
-        m.before_t = m.t;
-        m.before_f = f;
-        /* Not past the limit unless a plain step already is: the end is checked as well. */
-        m.sure = !(reach > f) || m.t + f >= r.limit;
-        m.reach = m.sure ? f : min(reach, r.limit - m.t);
-        m.t += m.reach;
-    }
-    if (m.sure && !(m.t < r.limit)) {
-        march_finish(m, r, r.limit);
-    }
-}
-
-/* The field at m.t is f; `usable` is false where it is not a number. */
-void march_step(inout march_state m, ray r, float f, bool usable)
-{
+    bool narrowing = m.high_t >= 0.0;
+    bool meet = narrowing || m.gap <= m.before_f + f || (touched && reach <= newton_reach * pixel);
+    /* Where it may end. */
+    bool through = f < -enough && reach > 0.0;
+    bool hit = narrowing ? abs(f) < enough : meet && touched && !through;
+    bool inside = f < 0.0;
+    bool bracket = meet && !hit && (narrowing || through);
+    float rate = clamp(reach / max(m.before_f - f, 1e-30), 0.0, 16.0);
+    float end = narrowing ? m.t : max(m.t + f * rate, m.before_t);
+    /* A longer step. */
+    float last = reach > 0.0 ? clamp((f - m.before_f) / reach, -1.0, 0.9) : -1.0;
+    float slope = mix(m.slope, last, 0.7);
+    float longer = max(1.9 * f / (1.0 - slope), f);
+    float root = min(f / max(-last, 1e-6), newton_reach * pixel);
+    longer = f < newton_from * pixel && last < 0.0 ? max(longer, root) : longer;
+    bool leaves = m.t + f >= r.limit;
+    longer = leaves ? f : min(longer, r.limit - m.t);
+    /* The best so far. */
+    float ratio = f / max(m.t, 1e-20);
+    bool better = meet && ratio < m.best_ratio;
+    m.best_t = better ? m.t : m.best_t;
+    m.best_ratio = better ? ratio : m.best_ratio;
+    /* A bracket's ends. */
+    float high_t = bracket && inside ? m.t : m.high_t;
+    float high_f = bracket ? (inside ? f : 0.5 * m.high_f) : m.high_f;
+    float low_t = bracket && inside ? m.before_t : m.t;
+    float low_f = bracket && inside ? (narrowing ? 0.5 : 1.0) * m.before_f : f;
+    float share = clamp(high_f / min(high_f - low_f, -1e-30), 0.0, 1.0);
+    float next = !meet ? m.before_t + m.before_f
+                 : bracket ? mix(high_t, low_t, share) : m.t + longer;
+    m.gap = meet && !bracket && longer > f ? longer : 0.0;
+    m.slope = meet ? slope : -1.0;
+    m.before_t = meet ? low_t : m.before_t;
+    m.before_f = meet ? low_f : m.before_f;
+    m.high_t = high_t;
+    m.high_f = high_f;
     m.steps++;
-    if (!usable) {
-        march_finish(m, r, r.limit);
-    } else if (m.bracket > 0u) {
-        march_in_bracket(m, r, f);
-    } else {
-        march_walk(m, r, f);
-    }
-    if (!m.done && m.steps >= pc.index.x) {
+    bool gone = !usable || (!hit && !(m.gap > 0.0) && !(next < r.limit));
+    bool spent = !hit && !gone && m.steps >= pc.index.x;
+    if (spent) {
         masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
-        march_finish(m, r, m.bracket > 0u ? m.t : m.best_t);
     }
+    m.done = hit || gone || spent;
+    end = hit ? end : spent ? (narrowing ? m.t : m.best_t) : r.limit;
+    m.t = m.done ? (end < r.limit ? end : -1.0) : next;
 }
 
 /* Distance along the ray of the first surface, or -1. */
