@@ -500,34 +500,74 @@ static void put_any_order(writer *w) {
     PUT(w, "    return d;\n}\n");
 }
 
-/* The parts of a form are known by number here: one alone is asked for and evaluated, several are
- * found bit by bit. Wrong turn: lists of numbers in memory for a few parts as well. On lavapipe each
- * lane fetches by itself, which cost more than the parts' own arithmetic. */
-static void put_masked_group(writer *w, int g) {
+/* A part alone of its form. */
+static void put_only_part(writer *w, int g) {
+    PUT(w, "    {\n");
+    put_part_value(w, g, "f", "p");
+    PUT(w, "        const uint part = %du;\n", w->c->groups[g].first_part);
+    put_least(w);
+    PUT(w, "    }\n");
+}
+
+/* Whether a tile that sees one of two parts nearly always sees both: each one's sphere holds the middle
+ * of the other's, well inside. */
+static bool share_a_place(const sdfc *c, int g, int h) {
+    const sdfc_part *p = &c->parts[c->groups[g].first_part], *q = &c->parts[c->groups[h].first_part];
+    const sdfc_facts *e = &c->shapes[p->shape].facts, *f = &c->shapes[q->shape].facts;
+    if (p->moves || q->moves || !isfinite(e->radius) || !isfinite(f->radius)) return false;
+    double distance = hypot(hypot(e->center[0] - f->center[0], e->center[1] - f->center[1]),
+                            e->center[2] - f->center[2]);
+    return distance < 0.5 * fmin(e->radius, f->radius);
+}
+
+/* Parts that are alone of their form and share a place are asked for together and evaluated one after
+ * the other: what they have in common, an angle around one axis for one, is then computed once.
+ * Wrong turn: one question for each part. In a tunnel of polar rings no tile leaves any out, and each
+ * had an arc tangent of its own: 1.4 times the time of the march. */
+static void put_place(writer *w, int g, bool *put) {
     const sdfc *c = w->c;
-    const sdfc_group *group = &c->groups[g];
-    int first = group->first_part, end = first + group->part_count;
-    if (group->part_count == 1) {
-        bool alone = c->part_count - c->flat_parts == 1;
-        if (alone) {
-            PUT(w, "    {\n");
-        } else {
-            PUT(w, "    if ((masu_part_bits(%d) & 0x%xu) != 0u) {\n", first / 32, 1u << first % 32);
-        }
-        put_part_value(w, g, "f", "p");
-        PUT(w, "        const uint part = %du;\n", first);
-        put_least(w);
-        PUT(w, "    }\n");
+    uint32_t bits[MASU_SDFC_MASKED_MAX / 32] = {0};
+    bool alone = c->part_count - c->flat_parts == 1;
+    for (int h = g; h < c->group_count; h++) {
+        const sdfc_group *group = &c->groups[h];
+        if (group->flat || group->part_count > 1 || put[h]) continue;
+        put[h] = h == g || share_a_place(c, g, h);
+        if (put[h]) bits[group->first_part / 32] |= 1u << group->first_part % 32;
+    }
+    if (alone) {
+        put_only_part(w, g);
         return;
     }
+    PUT(w, "    if (");
+    for (int word = 0, some = 0; word < MASU_SDFC_MASKED_MAX / 32; word++) {
+        if (!bits[word]) continue;
+        PUT(w, "%s(masu_part_bits(%d) & 0x%xu) != 0u", some++ ? " || " : "", word, bits[word]);
+    }
+    PUT(w, ") {\n");
+    for (int h = g; h < c->group_count; h++) {
+        int part = c->groups[h].first_part;
+        if (c->groups[h].part_count > 1 || !(bits[part / 32] >> part % 32 & 1u)) continue;
+        put_only_part(w, h);
+    }
+    PUT(w, "    }\n");
+}
+
+/* The parts of a form of several are found bit by bit. Wrong turn: lists of numbers in memory for a few
+ * parts as well. On lavapipe each lane fetches by itself, which cost more than the parts' own
+ * arithmetic. */
+static void put_masked_group(writer *w, int g) {
+    const sdfc_group *group = &w->c->groups[g];
+    int first = group->first_part, end = first + group->part_count;
     for (int word = first / 32; word * 32 < end; word++) {
         int low = first > word * 32 ? first - word * 32 : 0;
         int high = end < word * 32 + 32 ? end - word * 32 : 32;
         uint32_t own = (high == 32 ? 0xFFFFFFFFu : (1u << high) - 1u) & ~((1u << low) - 1u);
-        PUT(w, "    MASU_LOOP for (uint n = 0u, bits = masu_part_bits(%d) & 0x%xu; n < %du; n++) {\n", word, own,
-            high - low);
-        PUT(w, "        if (bits == 0u) {\n            break;\n        }\n"
-               "        uint part = %du + masu_low_bit(bits);\n        bits &= bits - 1u;\n",
+        PUT(w,
+            "    MASU_LOOP for (uint n = 0u, bits = masu_part_bits(%d) & 0x%xu; n < %du; n++) {\n",
+            word, own, high - low);
+        PUT(w,
+            "        if (bits == 0u) {\n            break;\n        }\n"
+            "        uint part = %du + masu_low_bit(bits);\n        bits &= bits - 1u;\n",
             word * 32);
         put_part_value(w, g, "f", "p");
         put_least(w);
@@ -554,15 +594,17 @@ static void put_listed_group(writer *w, int g) {
  * costs its own form and not all of them. Needs a list in rising order, or bits. */
 static void put_ascending(writer *w) {
     const sdfc *c = w->c;
-    bool masked = c->part_count <= MASU_SDFC_MASKED_MAX;
+    bool masked = c->part_count <= MASU_SDFC_MASKED_MAX, put[MASU_SDFC_MASKED_MAX] = {false};
     put_head(w);
     if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = 0u;\n");
     for (int g = 0; g < c->group_count; g++) {
         if (c->groups[g].flat) continue;
-        if (masked)
-            put_masked_group(w, g);
-        else
+        if (!masked)
             put_listed_group(w, g);
+        else if (c->groups[g].part_count > 1)
+            put_masked_group(w, g);
+        else if (!put[g])
+            put_place(w, g, put);
     }
     put_flat_least(w);
     PUT(w, "    return d;\n}\n");
