@@ -12,7 +12,7 @@
 
 #include "support_spirv.h"
 
-#define SUPPORT_ROUNDS_MOST 4096u /* a constant as large as that bounds nothing */
+#define SUPPORT_ROUNDS_MOST 8192u /* a constant as large as that bounds nothing */
 
 /* Adds the number of loops to *loops. NULL: all are bounded; else the name of the function that has
  * one that is not. */
