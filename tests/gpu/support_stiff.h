@@ -29,7 +29,7 @@ typedef struct stiff_case {
     masu_camera camera;
     uint32_t width, height, stride; /* stride: of the pixels compared; 0: 1 */
     float params[STIFF_PARAMS];
-    uint32_t param_count, steps; /* steps: most of a ray; 0: 256 */
+    uint32_t param_count, steps; /* steps: most of a ray; 0: 2048 */
     double least_hits; /* %: the truth shows at least as much, or the case would show nothing */
     stiff_figures most;
     const char *why;

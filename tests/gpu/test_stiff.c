@@ -31,17 +31,16 @@ static const stiff_case steep[] = {
      .width = 128,
      .height = 96,
      .least_hits = 50,
-     .most = {14.4, 0, 5.9e-2, 0.34, ANY_DEPTH, 66, ANY_ANGLE, 108, 0.2},
-     .why =
-         "the march stops where f / 50 is a tenth of a pixel: up to 5 pixels before the needles, "
-         "which are 4 pixels apart"},
+     .most = {0.37, 0, 2.9e-05, 0.059, ANY_DEPTH, 1.1, ANY_ANGLE, 145, 0},
+     .why = "needles 4 pixels apart; the steps are a fiftieth of the field, hence the "
+            "evaluations, and the rays that part from the truth pass between needles"},
     {.name = "displace, noise, L = 50",
      .scene = "displace_noise",
      .camera = LOOK(0.4, 0.5, 3.2, -0.1f, -0.15f, -1, 0.9f, 0.05f),
      .width = 128,
      .height = 96,
      .least_hits = 50,
-     .most = {15.1, 0, 5.0e-2, 0.33, ANY_DEPTH, 60, ANY_ANGLE, 113, 0.2},
+     .most = {0.18, 0, 6.1e-05, 0.05, ANY_DEPTH, 1.1, ANY_ANGLE, 172, 0},
      .why = "as with the sine"},
     {.name = "twist of 20 rad/unit",
      .scene = "twist",
@@ -49,8 +48,8 @@ static const stiff_case steep[] = {
      .width = 128,
      .height = 128,
      .least_hits = 25,
-     .most = {1.02, 0, 8.8e-5, 5.9e-2, 0.17, 2.6, ANY_ANGLE, 10.5, 0},
-     .why = "L = 10.7: it stops up to one pixel before the edges; between them it is exact"},
+     .most = {0.032, 0, 3.4e-05, 0.00061, 0.15, 0.13, ANY_ANGLE, 13, 0},
+     .why = "L = 10.7; at edges of the twisted bar a ray sees the next turn"},
 };
 
 /* ---- Deep zooms ------------------------------------------------------------------------------ */
@@ -63,8 +62,9 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 99,
-     .most = {0.1, 0, 2.3e-6, 7.7e-2, 0.62, 19.6, ANY_ANGLE, 22, 0},
-     .why = "a pixel is 100 ulp wide: faces are exact; at edges of holes it stops at the rim"},
+     .most = {0, 0, 2e-06, 0.011, 0.039, 0.08, ANY_ANGLE, 24, 0},
+     .why = "a pixel is 100 ulp wide: faces are exact; at the rims of holes it is one side or the "
+            "other"},
     {.name = "Menger, 1e-4",
      .scene = "menger",
      .camera = LOOK(0.2642, -0.6638, 1.0003, -0.1f, -0.1f, -1, 0.8f, 1e-6f),
@@ -72,7 +72,7 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 99,
-     .most = {0.1, 0, 1.8e-4, 0.43, 0.60, 0.1, ANY_ANGLE, 17, 0},
+     .most = {0, 0, 0.00021, 0.4, 0.66, 0.08, ANY_ANGLE, 13, 0},
      .why = "a pixel is 15 ulp wide: hits are as near as fp32 gets, 8 ulp"},
     {.name = "Menger, 1e-6",
      .scene = "menger",
@@ -81,7 +81,7 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 50,
-     .most = {0.82, 0.05, 1.5e-2, 0.32, 0.43, 0.1, 0.1, 13.5, 0.64},
+     .most = {0.093, 0, 0.053, 0.39, 0.48, 0.08, 0.25, 14, 0.061},
      .why = "the camera stands 25 ulp before the face, and hits are 8 ulp thick"},
     {.name = "Sierpinski, 1e-2",
      .scene = "sierpinski",
@@ -90,8 +90,8 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 35,
-     .most = {3.9, 0, 9.7e-6, ANY_DEPTH, ANY_DEPTH, 0.1, ANY_ANGLE, 29, 0.1},
-     .why = "it is full of holes, each with a rim of a tenth of a pixel"},
+     .most = {0.093, 0, 6.2e-07, 0.0094, ANY_DEPTH, 0.08, ANY_ANGLE, 42, 0.028},
+     .why = "it is full of holes: at their rims it is one side or the other"},
     {.name = "Sierpinski, 1e-3",
      .scene = "sierpinski",
      .camera = LOOK(1.002, 1.001, 1.0015, -0.0021f, -0.0011f, -0.0016f, 0.8f, 1e-5f),
@@ -99,7 +99,7 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 35,
-     .most = {1.8, 0, 1.8e-5, 0.61, ANY_DEPTH, 0.1, ANY_ANGLE, 34, 0.81},
+     .most = {0.093, 0, 6.5e-06, 0.09, ANY_DEPTH, 0.08, ANY_ANGLE, 41, 0.044},
      .why = "beneath its finest level; rims, and rays that creep through the inner holes"},
     {.name = "Mandelbulb",
      .scene = "mandelbulb",
@@ -108,8 +108,9 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 55,
-     .most = {7.4, 0, 2.3e-2, 0.22, 0.26, 83, ANY_ANGLE, 35, 0},
-     .why = "an estimate, in the fuzz much below the distance: it stops pixels before the surface"},
+     .most = {0.61, 0, 0.0015, 0.057, 0.24, 92, ANY_ANGLE, 80, 0},
+     .why = "an estimate, in the fuzz much below the distance, and detail far beneath a pixel: no "
+            "two hits have the same normal"},
     {.name = "Mandelbulb, 1e-2",
      .scene = "mandelbulb",
      .camera = LOOK(0.3, 0.2, 0.80, -0.1f, -0.1f, -1, 0.7f, 1e-4f),
@@ -117,7 +118,7 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 99,
-     .most = {0.1, 0, 2.3e-2, 0.49, 0.62, 70, ANY_ANGLE, 67, 0},
+     .most = {0, 0, 0.0026, 0.19, 0.64, 76, ANY_ANGLE, 130, 0.042},
      .why = "as above"},
     {.name = "Mandelbulb, 1e-3",
      .scene = "mandelbulb",
@@ -126,7 +127,7 @@ static const stiff_case fractals[] = {
      .height = 96,
      .stride = 3,
      .least_hits = 99,
-     .most = {0.1, 0, 4.4e-2, 0.43, 0.79, 68, ANY_ANGLE, 77, 0},
+     .most = {0, 0, 0.024, 0.41, 0.88, 69, ANY_ANGLE, 94, 0.053},
      .why = "as above; the powers of fp32 differ between drivers by 1 % of the distance"},
 };
 
@@ -139,9 +140,9 @@ static const stiff_case thin[] = {
      .width = 128,
      .height = 96,
      .least_hits = 2,
-     .most = {6.1, 0, 1.8e-5, 0.22, 0.22, 4.3, ANY_ANGLE, 9.2, 0},
-     .why =
-         "a tenth of a pixel is added on both sides: they look 0.4 pixel wide; none may be lost"},
+     .most = {1.6, 0, 1e-07, 3e-05, 0.24, 4.1, ANY_ANGLE, 9.7, 0},
+     .why = "none may be lost; the half percent that is too many passes within 0.002 pixel, or 8 "
+            "ulp, of a rod"},
 };
 
 static const stiff_case grazing[] = {
@@ -151,19 +152,16 @@ static const stiff_case grazing[] = {
      .width = 128,
      .height = 96,
      .least_hits = 60,
-     .most = {1.8, 0, 2.2e-7, ANY_DEPTH, ANY_DEPTH, 0.1, ANY_ANGLE, 68, 3.9},
-     .why =
-         "steps shrink with the angle: the three lines at the horizon use up 256, and are drawn "
-         "where "
-         "they came nearest if that was within 2 pixels of the plain: far too near, or not there"},
+     .most = {0, 0, 1.1e-07, 1e-06, ANY_DEPTH, 0.08, ANY_ANGLE, 2.2, 0},
+     .why = "a half-space is met in closed form, however small the angle"},
     {.name = "plain to 1e5 units, from 0.01",
      .scene = "ground",
      .camera = LOOK(0, 0.01, 0, 0, 0, -1, 0.3f, 0.01f),
      .width = 128,
      .height = 96,
      .least_hits = 50,
-     .most = {2.9, 0.86, 2.9e-7, ANY_DEPTH, ANY_DEPTH, 0.1, ANY_ANGLE, 83, 7.4},
-     .why = "the same with six lines"},
+     .most = {0, 0, 1e-07, 4.8e-06, ANY_DEPTH, 0.08, ANY_ANGLE, 2.3, 0},
+     .why = "as from 1 unit"},
 };
 
 /* ---- Where the camera is --------------------------------------------------------------------- */
@@ -175,7 +173,7 @@ static const stiff_case cameras[] = {
      .width = 96,
      .height = 64,
      .least_hits = 100,
-     .most = {0, 0, 1e-7, 1e-7, 1e-7, 0.06, 0.06, 11, 0},
+     .most = {0, 0, 1e-07, 1e-06, 1e-06, 0.081, 0.25, 7.7, 0},
      .why = "the near plane cuts the solid, exactly there"},
     {.name = "on a plane, along it",
      .scene = "figures",
@@ -183,16 +181,15 @@ static const stiff_case cameras[] = {
      .width = 96,
      .height = 64,
      .least_hits = 50,
-     .most = {1.6, 0, 1e-7, 8.8e-4, ANY_DEPTH, 0.1, 14.1, 26, 2},
-     .why = "half of the rays begin in the solid; those of the line above the horizon rise by half "
-            "a pixel, do not get away in 256 steps, and are taken for the plane"},
+     .most = {0.036, 0, 1e-07, 6.9e-06, ANY_DEPTH, 0.08, 0.27, 4.9, 0},
+     .why = "half of the rays begin in the solid; the line at the horizon may fall to either side"},
     {.name = "on a ball, along it",
      .scene = "figures",
      .camera = LOOK(-1, 1, 1, 0.1f, 0.1f, 0, 0.8f, 0.001f),
      .width = 96,
      .height = 64,
      .least_hits = 49,
-     .most = {0, 0, 1e-7, 1e-7, 1e-7, 0.08, 0.23, 14, 0},
+     .most = {0, 0, 1e-07, 1e-06, 1e-06, 0.08, 0.25, 11, 0},
      .why = "the tangent plane divides the picture; rays of one side begin in the solid"},
     {.name = "on a ball, inwards",
      .scene = "figures",
@@ -200,7 +197,7 @@ static const stiff_case cameras[] = {
      .width = 96,
      .height = 64,
      .least_hits = 100,
-     .most = {0, 0, 1e-7, 1e-7, 1e-7, 0.05, 0.2, 11, 0},
+     .most = {0, 0, 1e-07, 1e-06, 1e-06, 0.08, 0.25, 7.7, 0},
      .why = "as inside"},
 };
 
@@ -216,15 +213,15 @@ static const stiff_case figures[FIGURES_COUNT] = {
               .width = 128,
               .height = 96,
               .least_hits = 70,
-              .most = {0.14, 0, 1.2e-7, 2.9e-4, ANY_DEPTH, 0.1, 12, 14, 0},
-              .why = "nothing is special here: the tenth of a pixel at silhouettes"},
+              .most = {0, 0, 1e-07, 3.5e-06, ANY_DEPTH, 0.08, 0.25, 6, 0},
+              .why = "nothing is special here"},
     [SMALL] = {.name = "figures, 1e-4 of their size",
                .scene = "figures_small",
                .camera = FIGURES(1e-4, 0, 0),
                .width = 128,
                .height = 96,
                .least_hits = 70,
-               .most = {0.14, 0, 1.2e-7, 2.9e-4, ANY_DEPTH, 0.1, 12, 14, 0},
+               .most = {0, 0, 1e-07, 3.3e-06, ANY_DEPTH, 0.08, 0.25, 6, 0},
                .why = "no constant of the march has a unit: as at their own size"},
     [LARGE] = {.name = "figures, 1e4 times their size",
                .scene = "figures_large",
@@ -232,7 +229,7 @@ static const stiff_case figures[FIGURES_COUNT] = {
                .width = 128,
                .height = 96,
                .least_hits = 70,
-               .most = {0.14, 0, 1.2e-7, 2.9e-4, ANY_DEPTH, 0.1, 12, 14, 0},
+               .most = {0, 0, 1e-07, 3.4e-06, ANY_DEPTH, 0.08, 0.25, 6, 0},
                .why = "as at their own size"},
     [FAR] = {.name = "figures, 1e6 units away",
              .scene = "figures_far",
@@ -240,9 +237,8 @@ static const stiff_case figures[FIGURES_COUNT] = {
              .width = 128,
              .height = 96,
              .least_hits = 70,
-             .most = {2.0, 0, 2.4e-7, 0.35, ANY_DEPTH, 0.1, 160, 8, 0},
-             .why = "the field gets world positions in fp32, 0.06 apart, and hits are 8 ulp thick: "
-                    "what is claimed is that this is all; the aim is the row of `figures`"},
+             .most = {0, 0, 1e-07, 3.5e-06, ANY_DEPTH, 0.08, 0.25, 6, 0},
+             .why = "the field is anchored near the eye (docs/sdf.md): as at the origin"},
 };
 
 /* Pixels whose depth differs by more than that from the first's, in %. */
@@ -262,9 +258,9 @@ static const stiff_case sizes[] = {
      .width = 128,
      .height = 96,
      .least_hits = 4,
-     .most = {0.16, 0, 8e-8, 3e-7, 7.9e-6, ANY_ANGLE, ANY_ANGLE, 1.8, 0},
-     .why = "points and lines show only where a ray passes within a tenth of a pixel; plates are "
-            "exact. On a plate the gradient is zero: it has no normal to compare"},
+     .most = {0, 0, 1e-07, 1e-06, 1e-06, ANY_ANGLE, ANY_ANGLE, 1.4, 0},
+     .why = "points and lines are not there unless a ray meets them exactly; plates are exact. On "
+            "a plate the gradient is zero: it has no normal to compare"},
 };
 
 static const stiff_case point = {
@@ -274,7 +270,7 @@ static const stiff_case point = {
     .width = 128,
     .height = 96,
     .least_hits = 0,
-    .most = {0.01, 0, 0, 0, 0, 0, 0, 0.2, 0},
+    .most = {0, 0, 1e-07, 1e-06, 1e-06, 0.08, 0.25, 0.05, 0},
     .why = "one pixel of 12,288 at most; and only the tile around the point may be asked at all"};
 
 static const stiff_case blends[] = {
@@ -286,8 +282,8 @@ static const stiff_case blends[] = {
      .params = {0},
      .param_count = 1,
      .least_hits = 18,
-     .most = {0.19, 0, 1.7e-5, 1.7e-2, 1.9e-2, 0.25, 55, 3.8, 0},
-     .why = "a union: the tenth of a pixel at silhouettes and in the crease"},
+     .most = {0, 0, 1e-07, 0.00041, 0.0011, 0.08, 0.25, 3.8, 0},
+     .why = "a union: at silhouettes and in the crease it is one side or the other"},
     {.name = "smooth union of radius 2",
      .scene = "blend",
      .camera = LOOK(0.5, 0.6, 4, -0.12f, -0.15f, -1, 0.8f, 0.05f),
@@ -296,8 +292,8 @@ static const stiff_case blends[] = {
      .params = {2},
      .param_count = 1,
      .least_hits = 29,
-     .most = {0.39, 0, 3.6e-6, 1e-3, 8.8e-3, 0.15, 2, 6, 0},
-     .why = "larger than both parts: still the tenth of a pixel"},
+     .most = {0, 0, 1e-07, 1.6e-05, 0.0017, 0.08, 0.25, 5.9, 0},
+     .why = "larger than both parts"},
     {.name = "smooth union of radius 1e9",
      .scene = "blend",
      .camera = LOOK(0.5, 0.6, 4, -0.12f, -0.15f, -1, 0.8f, 0.05f),
@@ -306,7 +302,7 @@ static const stiff_case blends[] = {
      .params = {1e9f},
      .param_count = 1,
      .least_hits = 100,
-     .most = {0, 0, 1e-7, 3e-7, 5e-7, ANY_ANGLE, ANY_ANGLE, 12, 0},
+     .most = {0, 0, 1e-07, 1e-06, 1e-06, ANY_ANGLE, ANY_ANGLE, 6.4, 0},
      .why = "all of space is solid: the near plane. A field of -2.5e8 has no digits for a normal"},
 };
 
@@ -318,8 +314,8 @@ static const stiff_case many[] = {
      .height = 64,
      .stride = 2,
      .least_hits = 40,
-     .most = {4.6, 0, 6e-5, 1e-3, ANY_DEPTH, 3, 6, 13, 0},
-     .why = "balls of 3 pixels: a third of each is rim"},
+     .most = {0, 0, 2.1e-07, 6.5e-05, ANY_DEPTH, 0.24, 0.53, 14, 0},
+     .why = "balls of 3 pixels"},
 };
 
 /* By itself: Mesa 22.3's lavapipe ends every loop of an invocation after 65,535 rounds of all its
@@ -331,7 +327,7 @@ static const stiff_case many_at_once = {.name = "4096 parts, all in a tile",
                                         .height = 64,
                                         .stride = 4,
                                         .least_hits = 40,
-                                        .most = {3.6, 0, 6.8e-5, 0.1, 0.11, 4.7, ANY_ANGLE, 18, 0},
+                                        .most = {0.33, 0, 2.3e-05, 8.7e-05, 0.0042, 0.39, ANY_ANGLE, 22, 0},
                                         .why = "balls of a pixel near the horizon"};
 
 static const stiff_case coincident = {.name = "two surfaces in one place",
@@ -340,7 +336,7 @@ static const stiff_case coincident = {.name = "two surfaces in one place",
                                       .width = 128,
                                       .height = 96,
                                       .least_hits = 17,
-                                      .most = {0.27, 0, 2e-7, 3.9e-4, 3.3e-3, 0.06, 38, 3.8, 0},
+                                      .most = {0, 0, 1e-07, 4e-06, 0.00053, 0.08, 0.25, 3.3, 0},
                                       .why = "depth and normal are the same whichever wins"};
 
 static const stiff_case few_steps = {
@@ -351,7 +347,7 @@ static const stiff_case few_steps = {
     .height = 96,
     .steps = 5,
     .least_hits = 70,
-    .most = {5.5, 3.4, 3.3e-7, 0.38, ANY_DEPTH, 0.1, ANY_ANGLE, 12, 37},
+    .most = {2.1, 0, 1e-07, 0.36, ANY_DEPTH, 0.08, ANY_ANGLE, 5, 21},
     .why = "what is not within 2 pixels when the steps are used up is a miss, and never a hit: a "
            "third of the rays end so"};
 
@@ -393,7 +389,7 @@ static void scenes_scaled_and_moved_are_the_same_picture(void **state) {
     static float here[128 * 96];
     /* % of the pixels that may differ from the first's by more than 1e-5, whose own error is twice
      * the rounding of the coordinates. */
-    static const double most[FIGURES_COUNT] = {0, 0.05, 0.05, 38};
+    static const double most[FIGURES_COUNT] = {0, 0.1, 0.1, 0.1};
     memcpy(here, stiff_run(&figures[HERE])->depth, sizeof here);
     for (int i = SMALL; i < FIGURES_COUNT; i++) {
         const stiff_picture *p = stiff_run(&figures[i]);
