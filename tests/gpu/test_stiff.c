@@ -141,8 +141,8 @@ static const stiff_case thin[] = {
      .height = 96,
      .least_hits = 2,
      .most = {1.6, 0, 1e-07, 3e-05, 0.24, 4.1, ANY_ANGLE, 9.7, 0},
-     .why = "none may be lost; the half percent that is too many passes within 0.002 pixel, or 8 "
-            "ulp, of a rod"},
+     .why = "none may be lost; too many are two columns of pixels whose rays pass a rod at 0.0008 "
+            "pixel: hits are 0.002 pixel thick"},
 };
 
 static const stiff_case grazing[] = {
