@@ -147,6 +147,7 @@ typedef struct masu_scene {
     uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
     uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
+    uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
     uint32_t draws;      /* draw calls of one G-buffer pass */
     uint64_t triangles;  /* of one frame: every instance counted */
 } masu_scene;
@@ -253,7 +254,10 @@ typedef enum masu_readback_bits {
      * cannot be told, x y z are then 0. Halves: off by up to 2^-12 of the motion. Asking for it
      * makes the plan keep the frame before: one more image and one more pass or two. */
     MASU_READBACK_VELOCITY = 16,
-    MASU_READBACK_ALL = 31
+    /* 2 x 16 bit unorm: how much of the sun, and of the ambient light, is seen. Only of scenes with
+     * SDF shadows or SDF ambient occlusion; asking it of others is ignored. */
+    MASU_READBACK_OCCLUSION = 32,
+    MASU_READBACK_ALL = 63
 } masu_readback_bits;
 
 typedef struct masu_vulkan {
@@ -523,9 +527,11 @@ typedef struct masu_stats_info {
     uint64_t pass_ns[MASU_MAX_PASSES]; /* with debug.timestamps; passes that did not run have 0 */
     uint64_t gpu_ns;                   /* first to last timestamp */
     uint32_t timed;                    /* 1: the times above were read */
-    uint64_t sdf_evals;       /* evaluations of the field; with debug.counters, as the next three */
+    uint64_t sdf_evals;       /* of the field by the march; with debug.counters, as the next six */
     uint64_t sdf_hits;        /* pixels whose nearest surface is the SDF */
     uint64_t sdf_unconverged; /* rays that used up their steps */
+    uint64_t shadow_evals, occlusion_evals; /* of the field by SDF shadows, SDF ambient occlusion */
+    uint64_t shadow_unconverged;            /* shadow rays that used up their steps */
     uint64_t replaced; /* pixel components that were not finite and were replaced; should be 0 */
     uint64_t draws, triangles; /* submitted to the G-buffer */
 } masu_stats_info;

@@ -1,6 +1,7 @@
 /*
  * light.comp: one path for polygons and SDF hits: sun, constant ambient, sky where there is
- * nothing.
+ * nothing. Compiled twice: with MASU_OCCLUSION it is light_occluded, in which the sun and what comes
+ * from everywhere arrive as far as sdf_occlusion.comp says.
  *
  *   radiance = sun * (diffuse + specular) * N.L + ambient
  *   specular: GGX with height-correlated Smith visibility (Heitz, JCGT 3-2, 2014) and Schlick's
@@ -21,7 +22,22 @@ layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D depth_image;
+#ifdef MASU_OCCLUSION
+layout(set = MASU_SET_PASS, binding = 3) uniform usampler2D occlusion_image;
+layout(set = MASU_SET_PASS, binding = 4, rgba16f) uniform writeonly image2D hdr_image;
+#else
 layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D hdr_image;
+#endif
+
+/* How much arrives of the sun and of the ambient light. */
+vec2 arriving(uvec2 at)
+{
+#ifdef MASU_OCCLUSION
+    return unpackUnorm2x16(texelFetch(occlusion_image, ivec2(at), 0).r);
+#else
+    return vec2(1.0);
+#endif
+}
 
 /* The sky: zenith to horizon over the sine of elevation, the horizon's colour below it. */
 vec3 sky(vec3 direction)
@@ -58,7 +74,7 @@ vec3 fresnel(vec3 f0, float cosine)
     return f0 + (1.0 - f0) * (f2 * f2 * f);
 }
 
-vec3 shade(vec3 albedo, float roughness, float metallic, vec3 n, vec3 v)
+vec3 shade(vec3 albedo, float roughness, float metallic, vec3 n, vec3 v, vec2 seen)
 {
     vec3 l = frame.sun_direction.xyz;
     vec3 f0 = mix(vec3(0.04), albedo, metallic);
@@ -73,13 +89,13 @@ vec3 shade(vec3 albedo, float roughness, float metallic, vec3 n, vec3 v)
         vec3 h = masu_normalize(l + v, n);
         vec3 f = fresnel(f0, clamp(dot(v, h), 0.0, 1.0));
         vec3 brdf = diffuse * (1.0 - f) + f * specular_lobe(n, h, alpha, n_l, n_v);
-        lit = frame.sun_color.rgb * n_l * brdf;
+        lit = frame.sun_color.rgb * n_l * brdf * seen.x;
     }
     vec3 grazing = max(vec3(1.0 - roughness), f0);
     float edge = 1.0 - n_v;
     vec3 mirror = f0 + (grazing - f0) * (edge * edge * edge * edge * edge);
     vec3 reflected = mix(sky(reflect(-v, n)), frame.ambient.rgb, roughness);
-    return lit + frame.ambient.rgb * diffuse + mirror * reflected;
+    return lit + (frame.ambient.rgb * diffuse + mirror * reflected) * seen.y;
 }
 
 void main()
@@ -101,7 +117,7 @@ void main()
                 color = linear * masu_emissive_range;
             } else {
                 color = shade(linear, albedo.a, masu_unpack_metallic(normal),
-                              masu_unpack_normal(normal), -direction);
+                              masu_unpack_normal(normal), -direction, arriving(at));
             }
         }
         MASU_STORE_HALF(hdr_image, at, vec4(color, 1.0));

@@ -9,7 +9,7 @@
 # include are embedded as text instead.
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
-    march_checkerboard.comp march_fragment.frag sdf_velocity.comp
+    march_checkerboard.comp march_fragment.frag sdf_velocity.comp sdf_occlusion.comp
 
 SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag
@@ -20,6 +20,7 @@ SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
 # A shader compiled a second time with a macro: NAME_STAGE of the second build, its file, the macro.
 SECOND_BUILDS := gbuffer_velocity_vert:gbuffer.vert:MASU_MOTION
 SECOND_BUILDS += gbuffer_velocity_frag:gbuffer.frag:MASU_MOTION
+SECOND_BUILDS += light_occluded_comp:light.comp:MASU_OCCLUSION
 
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)

@@ -50,7 +50,8 @@ enum masu_blob_kind {
     MASU_BLOB_SLOTS = 21,          /* float: initial values of the SDF's slots; at least one */
     MASU_BLOB_UPDATE_PREVIOUS_SPIRV = 22, /* present when slots depend on parameters or time */
     MASU_BLOB_VELOCITY_SPIRV = 23,        /* present exactly when MARCH_SPIRV is */
-    MASU_BLOB_KIND_COUNT = 24
+    MASU_BLOB_OCCLUSION_SPIRV = 24,       /* with SDF shadows or SDF ambient occlusion */
+    MASU_BLOB_KIND_COUNT = 25
 };
 
 typedef struct masu_blob_header {

@@ -21,6 +21,8 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
      * as colour attachment and as storage image. */
     [MASU_IMAGE_VELOCITY] = {"velocity", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER,
                              MASU_CLASS_OTHER, MASU_READBACK_VELOCITY},
+    [MASU_IMAGE_OCCLUSION] = {"occlusion", VK_FORMAT_R32_UINT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
+                              MASU_READBACK_OCCLUSION},
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
                         MASU_READBACK_HDR},
     [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
@@ -118,6 +120,23 @@ static int needs_fragment(const masu_needs *n, const char **why) {
     return needs_variant(n, MASU_MARCH_FRAGMENT, why);
 }
 
+static int needs_occlusion(const masu_needs *n, const char **why) {
+    return decided(n->occlusion, "the scene asks for SDF shadows or SDF ambient occlusion",
+                   n->sdf ? "the scene asks for no SDF shadows or SDF ambient occlusion"
+                          : "the scene has no SDF",
+                   why);
+}
+
+static int needs_light(const masu_needs *n, const char **why) {
+    return decided(n->scene && !n->occlusion, "a scene is lit",
+                   n->scene ? "light_occluded does it" : "no scene: a source image is upscaled", why);
+}
+
+static int needs_light_occluded(const masu_needs *n, const char **why) {
+    return decided(n->occlusion, "a scene is lit, and sdf_occlusion says how much arrives",
+                   n->scene ? "light does it" : "no scene: a source image is upscaled", why);
+}
+
 static int needs_shading(const masu_needs *n, const char **why) {
     return decided(n->scene, "a scene is lit", "no scene: a source image is upscaled", why);
 }
@@ -160,6 +179,12 @@ static void classify_params(const masu_rung *rung, struct masu_push *push) {
 /* index.x: not 0: the tiles' lists of parts are there. */
 static void sdf_velocity_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = has_tiles(rung->march);
+}
+
+/* index.x: most SDF steps per shadow ray; index.y: not 0: every block of pixels gets all parts. */
+static void occlusion_params(const masu_rung *rung, struct masu_push *push) {
+    push->index[0] = rung->march_steps;
+    push->index[1] = rung->march == MASU_MARCH_UNPRUNED;
 }
 
 /* param.x: RCAS lobe scale. One stop halves the strength (AMD: con = exp2(-sharpness)). */
@@ -235,17 +260,27 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         {{MASU_IMAGE_DEPTH, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
          {MASU_RESOURCE_TILES, MASU_READ_BUFFER}, {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
          {MASU_IMAGE_VELOCITY, MASU_UPDATE}}, MASU_BLOB_VELOCITY_SPIRV},
+    [MASU_PASS_SDF_OCCLUSION] = {
+        "sdf_occlusion", "SDF: seen part of the sun and of the ambient light, per surface",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_occlusion, occlusion_params,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
+         {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER}, {MASU_IMAGE_OCCLUSION, MASU_WRITE}}, MASU_BLOB_OCCLUSION_SPIRV},
     [MASU_PASS_LIGHT] = {
         "light", "sun, constant ambient, sky",
-        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
          {MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
+    [MASU_PASS_LIGHT_OCCLUDED] = {
+        "light_occluded", "the same, as far as sdf_occlusion lets it through",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light_occluded, NULL,
+        {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
+         {MASU_IMAGE_OCCLUSION, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
     [MASU_PASS_READBACK] = {
         "readback", "copies the images the host asked for",
         MASU_PASS_TRANSFER, MASU_EXTENT_RENDER, needs_readback, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ_COPY}, {MASU_IMAGE_NORMAL, MASU_READ_COPY},
          {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY},
-         {MASU_IMAGE_VELOCITY, MASU_READ_COPY}}, 0},
+         {MASU_IMAGE_VELOCITY, MASU_READ_COPY}, {MASU_IMAGE_OCCLUSION, MASU_READ_COPY}}, 0},
     [MASU_PASS_TONEMAP] = {
         "tonemap", "exposure, tone curve, sRGB encoding",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,

@@ -20,6 +20,7 @@ typedef enum masu_image_id {
     MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
     MASU_IMAGE_CONE4,       /* the same of each 4x4 block */
     MASU_IMAGE_VELOCITY,    /* where the surface was in the frame before */
+    MASU_IMAGE_OCCLUSION,   /* 2 x 16 bit unorm: seen part of the sun, of the ambient light */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
     MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
@@ -97,6 +98,7 @@ typedef struct masu_needs {
     int dynamic;       /* slots of the SDF depend on parameters or time */
     int anchored;      /* and on where the eye is: the SDF reaches far from the origin */
     int velocity;      /* something reads velocities: the frame before is kept */
+    int occlusion;     /* the SDF casts shadows or occludes ambient light */
     /* of one rung: */
     int upscale, sharpen;
     masu_march march;
@@ -129,7 +131,9 @@ typedef enum masu_pass_id {
     MASU_PASS_MARCH_FRAGMENT,
     MASU_PASS_VELOCITY,
     MASU_PASS_SDF_VELOCITY,
+    MASU_PASS_SDF_OCCLUSION,
     MASU_PASS_LIGHT,
+    MASU_PASS_LIGHT_OCCLUDED,
     MASU_PASS_READBACK,
     MASU_PASS_TONEMAP,
     MASU_PASS_EASU,

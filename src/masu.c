@@ -317,6 +317,9 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
         out->sdf_hits = counter(m, slot, MASU_COUNTER_SDF_HITS);
         out->sdf_unconverged = counter(m, slot, MASU_COUNTER_SDF_UNCONVERGED);
         out->replaced = counter(m, slot, MASU_COUNTER_REPLACED);
+        out->shadow_evals = counter(m, slot, MASU_COUNTER_SHADOW_EVALS);
+        out->occlusion_evals = counter(m, slot, MASU_COUNTER_OCCLUSION_EVALS);
+        out->shadow_unconverged = counter(m, slot, MASU_COUNTER_SHADOW_UNCONVERGED);
     }
     if (m->queries) read_times(m, slot, out);
     return MASU_OK;

@@ -13,6 +13,7 @@
 #include "gbuffer_velocity_vert.spv.h"
 #include "gbuffer_vert.spv.h"
 #include "light_comp.spv.h"
+#include "light_occluded_comp.spv.h"
 #include "rcas_comp.spv.h"
 #include "tonemap_comp.spv.h"
 #include "velocity_comp.spv.h"
@@ -36,6 +37,8 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     switch (pass) {
     case MASU_PASS_VELOCITY: return (spirv){masu_spv_velocity_comp, sizeof masu_spv_velocity_comp};
     case MASU_PASS_LIGHT: return (spirv){masu_spv_light_comp, sizeof masu_spv_light_comp};
+    case MASU_PASS_LIGHT_OCCLUDED:
+        return (spirv){masu_spv_light_occluded_comp, sizeof masu_spv_light_occluded_comp};
     case MASU_PASS_TONEMAP: return (spirv){masu_spv_tonemap_comp, sizeof masu_spv_tonemap_comp};
     case MASU_PASS_EASU: return (spirv){masu_spv_easu_comp, sizeof masu_spv_easu_comp};
     case MASU_PASS_RCAS: return (spirv){masu_spv_rcas_comp, sizeof masu_spv_rcas_comp};

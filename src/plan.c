@@ -412,6 +412,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     if (d->scene) {
         plan->scene = *d->scene;
         d->scene = &plan->scene;
+        if (!d->scene->sdf_occlusion) d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
     } else {
         d->readback = 0; /* the images that could be asked for are the scene's */
     }
@@ -420,6 +421,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .sdf = d->scene && d->scene->sdf,
                                .dynamic = d->scene && d->scene->sdf_dynamic,
                                .anchored = d->scene && d->scene->sdf_anchored,
+                               .occlusion = d->scene && d->scene->sdf_occlusion,
                                .readback = d->readback,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0,
                                .blit = !d->targets.storage};

@@ -60,7 +60,7 @@ typedef struct masu_block_plan {
     int host_visible; /* mapped for the renderer's whole life */
 } masu_block_plan;
 
-#define MASU_READBACK_IMAGES 5u
+#define MASU_READBACK_IMAGES 6u
 
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */

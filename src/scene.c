@@ -41,6 +41,7 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V"),
     CODE(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V"),
     CODE(MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V"),
+    CODE(MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V"),
     [MASU_BLOB_SLOTS] = {"slots", sizeof(float), 65536, 0},
     [MASU_BLOB_NAMES] = {"names", 1, MANY, 0},
 };
@@ -352,6 +353,7 @@ static void look_at_sdf(const reader *r, masu_scene *out) {
     out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];
     out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
     out->sdf_anchored = r->view.sdf->anchored;
+    out->sdf_occlusion = r->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL;
     out->sdf_march = 1u << MASU_MARCH_AUTO | 1u << MASU_MARCH_CONE8 | 1u << MASU_MARCH_CONES |
                      1u << MASU_MARCH_UNPRUNED;
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {

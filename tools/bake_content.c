@@ -29,6 +29,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_FRAGMENT_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_VELOCITY_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_OCCLUSION_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_SLOTS] = sizeof(float),
     [MASU_BLOB_NAMES] = 1,
 };

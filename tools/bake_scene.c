@@ -108,11 +108,39 @@ static bool reaches_far(const masu_bake_box *box) {
     return fmax(-low, fmax(box->high.x, fmax(box->high.y, box->high.z))) > MASU_ANCHOR_FROM;
 }
 
+static bool read_shadows(const masu_bake_json *sdf, double max_distance, masu_bake_occlusion *out) {
+    static const char *const members[] = {"sun_radius", "distance", NULL};
+    masu_bake_json shadows = masu_bake_json_member(sdf, "shadows");
+    double degrees = 0.27;
+    out->shadows = shadows.value != NULL;
+    out->distance = max_distance;
+    if (!out->shadows) return true;
+    if (!masu_bake_json_object(&shadows, members) ||
+        !masu_bake_json_number(&shadows, "sun_radius", 0, 20, &degrees) ||
+        !masu_bake_json_number(&shadows, "distance", 1e-3, 1e15, &out->distance)) {
+        return false;
+    }
+    out->sun_radius = degrees * (MASU_BAKE_PI / 180.0);
+    return true;
+}
+
+static bool read_ambient_occlusion(const masu_bake_json *sdf, masu_bake_occlusion *out) {
+    static const char *const members[] = {"radius", "strength", NULL};
+    masu_bake_json ambient = masu_bake_json_member(sdf, "ambient_occlusion");
+    out->ambient = ambient.value != NULL;
+    out->radius = 1;
+    out->strength = 1;
+    return !out->ambient || (masu_bake_json_object(&ambient, members) &&
+                             masu_bake_json_number(&ambient, "radius", 1e-3, 1e6, &out->radius) &&
+                             masu_bake_json_number(&ambient, "strength", 0, 1, &out->strength));
+}
+
 /* All of the SDF but its shader. `source` is left NULL without an SDF. */
 static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, masu_bake_box *bounds,
-                     const char **source) {
-    static const char *const members[] = {"source",       "bounds", "lipschitz",
-                                          "max_distance", "params", "anchored", NULL};
+                     const char **source, masu_bake_occlusion *occlusion) {
+    static const char *const members[] = {
+        "source", "bounds",   "lipschitz", "max_distance", "params",
+        "anchored", "shadows", "ambient_occlusion", NULL};
     masu_bake_json sdf = masu_bake_json_member(scene, "sdf");
     if (!sdf.value) return true;
     masu_bake_box box = masu_bake_box_empty();
@@ -123,7 +151,8 @@ static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, ma
         !masu_bake_json_number(&sdf, "lipschitz", 1e-3, 1e6, &lipschitz) ||
         !masu_bake_json_number(&sdf, "max_distance", 1e-3, 1e15, &max_distance) ||
         !masu_bake_json_boolean(&sdf, "anchored", &anchored) ||
-        !read_params(&sdf, content)) {
+        !read_shadows(&sdf, max_distance, occlusion) ||
+        !read_ambient_occlusion(&sdf, occlusion) || !read_params(&sdf, content)) {
         return false;
     }
     if (!*source) return masu_bake_json_wrong(&sdf, "needs \"source\", a GLSL or .sdf file");
@@ -157,7 +186,8 @@ static bool read_all(const masu_bake_json *scene, const char *directory,
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = masu_bake_bounds(content, &identity);
     const char *source = NULL;
-    if (!read_sdf(scene, content, &bounds, &source) ||
+    masu_bake_occlusion occlusion = {0};
+    if (!read_sdf(scene, content, &bounds, &source, &occlusion) ||
         !masu_bake_read_look(scene, &bounds, content)) {
         return false;
     }
@@ -167,7 +197,8 @@ static bool read_all(const masu_bake_json *scene, const char *directory,
     if (!source) return true;
     char *path = NULL;
     if (source[0] != '/' && strcmp(directory, ".") != 0) path = masu_bake_join(directory, source);
-    bool good = masu_bake_compile_march(content, path ? path : source, request->variants);
+    bool good = masu_bake_compile_march(content, path ? path : source, &occlusion,
+                                        request->variants);
     free(path);
     return good;
 }

@@ -10,6 +10,7 @@
 #include "sdfc.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -133,6 +134,20 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
     }
     masu_bake_release(&own);
     return good;
+}
+
+/* Constants and not data: what a scene does not ask for is then not in its code. */
+static bool write_occlusion(const char *directory, const masu_bake_occlusion *o) {
+    char text[512];
+    int n = snprintf(text, sizeof text, "#define MASU_SHADOWS %d\n#define MASU_AMBIENT_OCCLUSION %d\n",
+                     o->shadows, o->ambient);
+    n += snprintf(text + n, sizeof text - (size_t)n,
+                  "#define MASU_SUN_TANGENT float(%.9g)\n#define MASU_SHADOW_DISTANCE float(%.9g)\n",
+                  tan(o->sun_radius), o->distance);
+    n += snprintf(text + n, sizeof text - (size_t)n,
+                  "#define MASU_AO_RADIUS float(%.9g)\n#define MASU_AO_STRENGTH float(%.9g)\n",
+                  o->radius, o->strength);
+    return write_text(directory, "sdf_options.glsl", text, (size_t)n);
 }
 
 static bool lay_out(const char *directory, masu_bake_content *content, const char *glsl_path,
@@ -288,14 +303,14 @@ static char *include_option(const char *directory) {
     return option;
 }
 
-enum { ALWAYS, UPDATED, DYNAMIC, VARIANT, WITHOUT_RASTER };
+enum { ALWAYS, UPDATED, DYNAMIC, VARIANT, WITHOUT_RASTER, OCCLUSION };
 
 /* The shaders that are compiled together with the scene's field, and the sections they go to. */
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
     int when; /* always; with slots that change, or with time; with --variants, and then only
-                 without polygons */
+                 without polygons; with shadows or ambient occlusion */
 } scene_shaders[] = {
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
     {"update.comp", "-DMASU_MOTION=1", "before.raw", "before.spv", MASU_BLOB_UPDATE_PREVIOUS_SPIRV,
@@ -310,11 +325,14 @@ static const struct {
     {"march_checkerboard.comp", NULL, "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
      VARIANT},
     {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
-     WITHOUT_RASTER}};
+     WITHOUT_RASTER},
+    {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION}};
 
-static bool wanted(int when, bool dynamic, bool anchored, bool variants, bool has_raster) {
+static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool variants,
+                   bool has_raster) {
     if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
+    if (when == OCCLUSION) return occlusion;
     if (when == WITHOUT_RASTER) return variants && !has_raster;
     return when == ALWAYS || variants;
 }
@@ -343,7 +361,8 @@ static bool try_blocks(const masu_sdfc_result *scene, const char *directory, cha
     return good;
 }
 
-bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, bool variants) {
+bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
+                             const masu_bake_occlusion *occlusion, bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
@@ -352,10 +371,13 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path, 
     bool has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0;
     bool dynamic = false;
     masu_sdfc_result scene = {0};
-    bool good = lay_out(directory, content, glsl_path, &dynamic, &scene);
+    bool darkens = occlusion->shadows || occlusion->ambient;
+    bool good = lay_out(directory, content, glsl_path, &dynamic, &scene) &&
+                (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
-        if (!wanted(scene_shaders[i].when, dynamic, anchored, variants, has_raster)) continue;
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, variants, has_raster))
+            continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),
                    masu_bake_join(directory, scene_shaders[i].optimised),

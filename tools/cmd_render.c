@@ -116,11 +116,14 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
         (double)plan.rungs[o->rung].render_width * (double)plan.rungs[o->rung].render_height;
     json_object_set_new(
         root, "counts",
-        json_pack("{s:I, s:I, s:I, s:I, s:f, s:I, s:I}", "draws", (json_int_t)last->draws,
+        json_pack("{s:I, s:I, s:I, s:I, s:f, s:I, s:I, s:f, s:f, s:I}", "draws", (json_int_t)last->draws,
                   "triangles", (json_int_t)last->triangles, "sdf_evals",
                   (json_int_t)last->sdf_evals, "sdf_hits", (json_int_t)last->sdf_hits,
                   "sdf_evals_per_pixel", (double)last->sdf_evals / pixels, "sdf_unconverged",
-                  (json_int_t)last->sdf_unconverged, "replaced", (json_int_t)last->replaced));
+                  (json_int_t)last->sdf_unconverged, "replaced", (json_int_t)last->replaced,
+                  "shadow_evals_per_pixel", (double)last->shadow_evals / pixels,
+                  "occlusion_evals_per_pixel", (double)last->occlusion_evals / pixels,
+                  "shadow_unconverged", (json_int_t)last->shadow_unconverged));
     if (masu_alloc_counting()) {
         json_object_set_new(root, "allocations_per_frame",
                             json_pack("{s:f, s:f, s:f}", "library", (double)library / (double)n,

@@ -100,10 +100,21 @@ uint masu_part_bits(int word)
 
 uint masu_part_count();
 
+#ifdef MASU_OWN_PARTS
+/* Lists that the workgroup makes for itself, because it asks the field elsewhere than on the rays of
+ * a tile: MASU_OWN_PARTS words. */
+shared uint masu_own_parts[MASU_OWN_PARTS];
+
+uint masu_part_at(uint i)
+{
+    return masu_list_count == MASU_TILE_ALL ? i : masu_own_parts[masu_list_first + i];
+}
+#else
 uint masu_part_at(uint i)
 {
     return masu_list_count == MASU_TILE_ALL ? i : masu_tiles[masu_list_first + i];
 }
+#endif
 
 /* A loop whose body holds the field stays a loop. Mesa 22.3 unrolls short ones, breaks and all, and
  * lavapipe then runs every copy for all lanes: 1.3 to 2.6 times the time of the march. */

@@ -67,13 +67,18 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* Most sphere-tracing steps of one ray: the constant bound of the loop. A rung may ask for fewer.
  * */
 #define MASU_MARCH_STEPS_MAX 2048
+/* The same of a shadow ray. */
+#define MASU_SHADOW_STEPS_MAX 128
 
 /* Counters, uint32 pairs (low, high). Reset by each frame, read back by masu_stats. */
 #define MASU_COUNTER_SDF_EVALS 0
 #define MASU_COUNTER_SDF_HITS 1
 #define MASU_COUNTER_SDF_UNCONVERGED 2
 #define MASU_COUNTER_REPLACED 3
-#define MASU_COUNTER_COUNT 4
+#define MASU_COUNTER_SHADOW_EVALS 4
+#define MASU_COUNTER_OCCLUSION_EVALS 5
+#define MASU_COUNTER_SHADOW_UNCONVERGED 6
+#define MASU_COUNTER_COUNT 7
 
 /* G-buffer material flags, two bits of the packed normal word. */
 #define MASU_SURFACE_EMISSIVE 1u

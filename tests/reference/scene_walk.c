@@ -184,6 +184,7 @@ static const struct {
     [MASU_BLOB_SEED_SPIRV] = {1, 1u << MASU_MARCH_SEED},
     [MASU_BLOB_CHECKERBOARD_SPIRV] = {1, 1u << MASU_MARCH_CHECKERBOARD},
     [MASU_BLOB_FRAGMENT_SPIRV] = {1, 1u << MASU_MARCH_FRAGMENT},
+    [MASU_BLOB_OCCLUSION_SPIRV] = {1, 0},
 };
 
 static void read_code(walker *w) {
@@ -207,6 +208,8 @@ static void read_code(walker *w) {
     expect(w, w->scene->sdf_anchored == (uint32_t)anchored, "sdf_anchored");
     expect(w, (w->view.code[MASU_BLOB_UPDATE_SPIRV].words != NULL) == (timed || anchored),
            "update SPIR-V");
+    expect(w, w->scene->sdf_occlusion == (w->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL),
+           "sdf_occlusion");
 }
 
 static void read_sdf(walker *w) {

@@ -181,6 +181,19 @@ wrong ': sdf.params\[0\]: value 3 is not between min 0 and max 1' \
 wrong ': sdf.params\[1\]: a second parameter would be called MASU_PARAM_AB' \
     "{\"sdf\": {\"source\": \"good.glsl\", $bounds,
       \"params\": [{\"name\": \"ab\", \"value\": 0}, {\"name\": \"AB\", \"value\": 0}]}}"
+wrong ': sdf.shadows: expected an object, found true' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": true}}"
+wrong ': sdf.shadows.radius: unknown key' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": {\"radius\": 1}}}"
+wrong ': sdf.shadows.sun_radius: expected a number from 0 to 20, found 21' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": {\"sun_radius\": 21}}}"
+wrong ': sdf.shadows.distance: expected a number from 0.001' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": {\"distance\": 1e16}}}"
+wrong ':1:.*NaN' "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"shadows\": {\"distance\": NaN}}}"
+wrong ': sdf.ambient_occlusion.radius: expected a number from 0.001' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"ambient_occlusion\": {\"radius\": 0}}}"
+wrong ': sdf.ambient_occlusion.strength: expected a number from 0 to 1, found 2' \
+    "{\"sdf\": {\"source\": \"good.glsl\", $bounds, \"ambient_occlusion\": {\"strength\": 2}}}"
 scene "{\"sdf\": {\"source\": \"none.glsl\", $bounds}}"
 refuses 1 "cannot read $folder/none.glsl: No such file" "$json" "${x[@]}"
 scene '{"models": [{"file": "none.obj"}]}'

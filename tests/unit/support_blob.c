@@ -104,7 +104,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     header->version = MASU_BLOB_VERSION;
     size_t sections = 1 + (parts & SUPPORT_RASTER ? 6u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
                       (parts & SUPPORT_SDF ? 8u : 0u) + 1;
-    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 5 : 6;
+    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -141,6 +141,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
             ADD(MASU_BLOB_PLAIN_SPIRV, code);
             ADD(MASU_BLOB_SEED_SPIRV, code);
             ADD(MASU_BLOB_CHECKERBOARD_SPIRV, code);
+            ADD(MASU_BLOB_OCCLUSION_SPIRV, code);
             if (!(parts & SUPPORT_RASTER)) ADD(MASU_BLOB_FRAGMENT_SPIRV, code);
         }
         ADD(MASU_BLOB_SLOTS, slots);

@@ -495,6 +495,33 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     assert_string_equal(plan.why[MASU_PASS_UPDATE_PREVIOUS], "nothing reads velocities");
 }
 
+/* Shadows and ambient occlusion of the SDF: a pass and an image more, another way to light; nothing
+ * of it in scenes that do not ask. */
+static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static const char *const light =
+        "light_occluded(r:albedo r:normal r:scene_depth r:occlusion w:hdr) ";
+    char expected[512];
+    masu_desc d = scene_desc(RASTER | SDF, 64, 64);
+    d.readback = MASU_READBACK_OCCLUSION;
+    assert_frame(&d, 0, GBUFFER MARCH_ON_RASTER LIGHT_SDF TONEMAP);
+    assert_string_equal(why_of(&d, MASU_PASS_SDF_OCCLUSION),
+                        "the scene asks for no SDF shadows or SDF ambient occlusion");
+    compile(&d, &plan);
+    assert_false(plan.images[MASU_IMAGE_OCCLUSION].used);
+    support_scene.sdf_occlusion = 1;
+    (void)snprintf(expected, sizeof expected, "%s%s%s%s%s%s", GBUFFER, MARCH_ON_RASTER,
+                   "sdf_occlusion(r:scene_depth r:normal rb:slots w:occlusion) ", light,
+                   "readback(from:occlusion) ", TONEMAP);
+    assert_frame(&d, 0, expected);
+    assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "light_occluded does it");
+    assert_string_equal(why_of(&d, MASU_PASS_LIGHT_OCCLUDED),
+                        "a scene is lit, and sdf_occlusion says how much arrives");
+    d = scene_desc(RASTER, 64, 64);
+    assert_string_equal(why_of(&d, MASU_PASS_SDF_OCCLUSION), "the scene has no SDF");
+}
+
 /* Over everything that shapes a frame: the properties that no frame may lack. */
 static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void **state) {
     (void)state;
@@ -716,12 +743,12 @@ static void readback_slots_hold_the_counters_and_then_the_images(void **state) {
     d.readback = MASU_READBACK_ALL;
     compile(&d, &plan);
     const masu_buffer_plan *b = &plan.buffers[MASU_BUFFER_READBACK];
-    static const uint64_t offsets[MASU_READBACK_IMAGES] = {32, 32 + 144, 32 + 288, 32 + 432,
-                                                         32 + 432 + 288};
-    for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
+    static const uint64_t offsets[MASU_READBACK_IMAGES] = {64, 64 + 144, 64 + 288, 64 + 432,
+                                                         64 + 432 + 288};
+    for (uint32_t i = 0; i < MASU_READBACK_IMAGES - 1; i++) {
         assert_int_equal(plan.readback_offset[i], offsets[i]);
     }
-    assert_int_equal(b->stride, 32 + 432 + 2 * 288);
+    assert_int_equal(b->stride, 64 + 432 + 2 * 288);
     assert_int_equal(b->bytes, 2 * b->stride);
     d.debug.counters = 0;
     d.readback = MASU_READBACK_HDR;
@@ -785,8 +812,8 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth and final, cone8, cone4: 4 bytes each per texel; velocity 8 */
-    assert_int_equal(info.left_out_bytes, 4 * (4 * 1920 * 1080 + 240 * 135 + 480 * 270));
+    /* scene_depth, occlusion and final, cone8, cone4: 4 bytes each per texel; velocity 8 */
+    assert_int_equal(info.left_out_bytes, 4 * (5 * 1920 * 1080 + 240 * 135 + 480 * 270));
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
@@ -800,12 +827,12 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     36 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125));
-    d = scene_desc(RASTER | SDF, 100, 100); /* all but ldr, upscaled, final, velocity */
+                     40 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125));
+    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, ldr, upscaled, final, velocity */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 20 * 100 * 100);
+    assert_int_equal(info.left_out_bytes, 24 * 100 * 100);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
@@ -859,6 +886,7 @@ int main(void) {
         cmocka_unit_test(the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it),
         cmocka_unit_test(readback_copies_what_is_asked_for),
         cmocka_unit_test(velocities_keep_the_frame_before_and_nothing_else_does),
+        cmocka_unit_test(sdf_occlusion_comes_between_march_and_light_if_asked),
         cmocka_unit_test(in_every_frame_the_last_colour_writer_alone_writes_the_target),
         cmocka_unit_test(images_live_from_their_first_to_their_last_pass),
         cmocka_unit_test(readback_and_blits_lengthen_lives),

@@ -89,7 +89,8 @@ static const struct {
              {MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V", 0},
              {MASU_BLOB_SEED_SPIRV, "march_seed SPIR-V", 0},
              {MASU_BLOB_CHECKERBOARD_SPIRV, "march_checkerboard SPIR-V", 0},
-             {MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V", 0}};
+             {MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V", 0},
+             {MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V", 0}};
 
 static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
 

@@ -1,0 +1,465 @@
+/* test_occlusion.c: SDF shadows and SDF ambient occlusion against the truth in double precision
+ * (tests/reference/occlusion.h), and what must hold whatever the error: no acne, the same picture
+ * with and without lists of parts, shadows on polygons, nothing of it in scenes that do not ask.
+ *
+ * The scenes of scenes/ are baked here again with the options; the fields of the truth come from the
+ * SDF compiler and go through the C compiler. The table of errors is printed (docs/DESIGN.md). */
+#include "support.h"
+
+#include "bench_truth.h"
+#include "reference/occlusion.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { W = 160, H = 90 };
+
+static char dir[] = "/tmp/masu-occlusion-XXXXXX";
+static masu_session s;
+
+/* ---- Scenes ---------------------------------------------------------------------------------- */
+
+static int shell(const char *format, ...) {
+    char command[2048];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(command, sizeof command, format, args);
+    va_end(args);
+    int status = system(command);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static const char *build_dir(void) {
+    const char *build = getenv("BUILD");
+    return build ? build : "build";
+}
+
+static void write_file(const char *name, const char *text) {
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_true(fputs(text, f) >= 0);
+    assert_int_equal(fclose(f), 0);
+}
+
+/* Bakes `json` to NAME.masu. */
+static void bake(const char *name, const char *json) {
+    char file[64];
+    snprintf(file, sizeof file, "%s.json", name);
+    write_file(file, json);
+    if (shell("%s/bin/masu-bake %s/%s.json -o %s/%s.masu --quiet", build_dir(), dir, name, dir, name))
+        fail_msg("%s.json cannot be baked", name);
+}
+
+/* scenes/NAME.json with more members of its "sdf". */
+static void bake_with(const char *name, const char *options) {
+    static char text[1 << 14], json[1 << 15];
+    char path[256], root[1024];
+    snprintf(path, sizeof path, "scenes/%s.json", name);
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    text[fread(text, 1, sizeof text - 1, f)] = 0;
+    fclose(f);
+    static const char before[] = "\"source\": \"";
+    char *source = strstr(text, before);
+    assert_non_null(source);
+    assert_non_null(getcwd(root, sizeof root));
+    snprintf(json, sizeof json, "%.*s%s%s%s/scenes/%s", (int)(source - text), text, options, before, root,
+             source + strlen(before));
+    bake(name, json);
+}
+
+static void open_scene(const char *name, uint32_t width, uint32_t height, int unpruned) {
+    static char path[256];
+    masu_session_desc d = test_desc(NULL, width, height);
+    snprintf(path, sizeof path, "%s/%s.masu", dir, name);
+    d.scene_path = path;
+    d.desc.readback = MASU_READBACK_ALL;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0].march = unpruned ? MASU_MARCH_UNPRUNED : MASU_MARCH_AUTO;
+    open_session(&s, &d);
+}
+
+static const void *image(masu_readback_bits which) {
+    masu_readback_image out;
+    assert_int_equal(masu_readback(s.m, 0, which, &out), MASU_OK);
+    return out.pixels;
+}
+
+static double sun_of(const uint32_t *texels, uint32_t i) { return (texels[i] & 0xFFFF) / 65535.0; }
+static double ambient_of(const uint32_t *texels, uint32_t i) { return (texels[i] >> 16) / 65535.0; }
+
+static void draw_once(void) {
+    masu_frame_desc frame = {0};
+    masu_commands commands;
+    draw(&s, &frame, &commands, NULL);
+}
+
+/* The session has let go of its blob: the scene is read again. */
+static void look_at(const char *name, const masu_camera *camera, masu_view *view) {
+    char path[256], error[ERROR_SIZE];
+    masu_scene scene;
+    snprintf(path, sizeof path, "%s/%s.masu", dir, name);
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    assert_int_equal(fseek(f, 0, SEEK_END), 0);
+    size_t bytes = (size_t)ftell(f);
+    rewind(f);
+    void *blob = aligned_alloc(16, (bytes + 15) / 16 * 16);
+    assert_non_null(blob);
+    assert_int_equal(fread(blob, 1, bytes, f), bytes);
+    fclose(f);
+    assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);
+    assert_ok(masu_view_of(&scene, camera, 0, W, H, view, error, sizeof error));
+    free(blob);
+}
+
+/* ---- Against the truth ----------------------------------------------------------------------- */
+
+typedef struct errors {
+    double squares, most;
+    uint32_t count, wrong; /* wrong: seen or not seen where the truth is sure of the opposite */
+} errors;
+
+static void note(errors *e, double truth, double is) {
+    double d = fabs(is - truth);
+    e->squares += d * d;
+    e->most = fmax(e->most, d);
+    e->wrong += (truth == 0 || truth == 1) && d > 0.5;
+    e->count++;
+}
+
+static double rmse(const errors *e) { return e->count ? sqrt(e->squares / e->count) : 0; }
+
+static void compare(const masu_truth *truth, const masu_view *view, double tangent, uint32_t stride,
+                    errors *sun, errors *ambient) {
+    const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+    const uint32_t *normals = image(MASU_READBACK_NORMAL);
+    const float *depths = image(MASU_READBACK_DEPTH);
+    masu_ref_field field = {truth->step, view->params, view->time, {0}, {0}};
+    memcpy(field.low, view->sdf_min, sizeof field.low);
+    memcpy(field.high, view->sdf_max, sizeof field.high);
+    for (uint32_t y = stride / 2; y < view->height; y += stride) {
+        for (uint32_t x = stride / 2; x < view->width; x += stride) {
+            uint32_t at = y * view->width + x;
+            masu_view_ray ray = masu_view_ray_at(view, x, y);
+            masu_truth_sample hit;
+            masu_truth_march(truth, view, &ray, &hit);
+            if (hit.kind != MASU_TRUTH_HIT || !(depths[at] > 0) || normals[at] >> 30) continue;
+            /* Another surface than the march found is an error of the march. */
+            double t = view->near_distance / (double)depths[at] * ray.z_scale;
+            if (fabs(t - hit.t) > 0.01 * hit.t) continue;
+            double p[3], n_l = 0;
+            for (int k = 0; k < 3; k++) {
+                p[k] = view->eye[k] + ray.direction[k] * hit.t;
+                n_l += hit.normal[k] * view->sun_direction[k];
+            }
+            if (ambient)
+                note(ambient, masu_ref_ambient_seen(&field, p, hit.normal, 1, 1024),
+                     ambient_of(seen, at));
+            if (n_l <= 0.02) continue; /* the sun hardly matters there */
+            note(sun,
+                 masu_ref_sun_seen(&field, p, hit.normal, view->sun_direction, tangent,
+                                   view->max_distance, 256),
+                 sun_of(seen, at));
+        }
+    }
+}
+
+/* The stated bounds: root mean square and greatest error of the sun, of the ambient light. */
+static const struct {
+    const char *scene;
+    double radius; /* of the sun, degrees */
+    double sun, sun_most, ambient, ambient_most;
+} stated[] = {{"spheres", 0.27, 0.02, 0.4, 0.03, 0.2}, {"spheres", 2, 0.015, 0.2, 0.03, 0.2},
+              {"city", 0.27, 0.05, 0.9, 0.05, 0.4},    {"city", 2, 0.03, 0.3, 0.05, 0.4},
+              {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4},   {"blobs", 2, 0.03, 0.3, 0.06, 0.4},
+              {"tunnel", 0.27, 0.02, 0.3, 0.05, 0.4}};
+
+static void the_error_against_the_truth_is_as_stated(void **state) {
+    (void)state;
+    const char *cc = getenv("CC");
+    int failed = 0;
+    for (size_t i = 0; i < sizeof stated / sizeof *stated; i++) {
+        const char *name = stated[i].scene;
+        char options[256], path[256], error[ERROR_SIZE];
+        snprintf(options, sizeof options,
+                 "\"shadows\": {\"sun_radius\": %g}, \"ambient_occlusion\": {}, ", stated[i].radius);
+        bake_with(name, options);
+        if (shell("test -e %s/%s.so || { %s/bin/masu-sdfc scenes/%s.sdf --c %s/%s.c --quiet && "
+                  "%s -std=c11 -O2 -w -shared -fPIC -o %s/%s.so %s/%s.c -lm; }",
+                  dir, name, build_dir(), name, dir, name, cc && *cc ? cc : "cc", dir, name, dir,
+                  name))
+            fail_msg("no truth of %s", name);
+        masu_truth truth;
+        masu_view view;
+        masu_camera camera;
+        masu_stats_info stats;
+        errors sun = {0}, ambient = {0};
+        snprintf(path, sizeof path, "%s/%s.so", dir, name);
+        assert_ok(masu_truth_open(path, &truth, error, sizeof error));
+        open_scene(name, W, H, 0);
+        draw_once();
+        assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        look_at(name, &camera, &view);
+        int both = i == 0 || strcmp(name, stated[i - 1].scene) != 0;
+        compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), 5, &sun,
+                both ? &ambient : NULL);
+        close_session(&s);
+        masu_truth_close(&truth);
+        print_message("%-8s %.2f: sun %.3f most %.2f wrong %u of %u, ambient %.3f most %.2f of %u, "
+                      "evaluations a pixel: march %.1f sun %.1f ambient %.1f, open %llu\n",
+                      name, stated[i].radius, rmse(&sun), sun.most, sun.wrong, sun.count,
+                      rmse(&ambient), ambient.most, ambient.count, (double)stats.sdf_evals / (W * H),
+                      (double)stats.shadow_evals / (W * H), (double)stats.occlusion_evals / (W * H),
+                      (unsigned long long)stats.shadow_unconverged);
+        assert_true(sun.count > 100 && (ambient.count > 200 || !both));
+        failed |= !(rmse(&sun) <= stated[i].sun && sun.most <= stated[i].sun_most);
+        failed |= !(rmse(&ambient) <= stated[i].ambient && ambient.most <= stated[i].ambient_most);
+        failed |= sun.wrong * 100 > sun.count; /* at most 1 % */
+        failed |= stats.replaced != 0;
+    }
+    assert_false(failed);
+}
+
+/* ---- What holds whatever the error ----------------------------------------------------------- */
+
+/* A scene of one .sdf text under a sun of 40 degrees, seen along -z and a little down. scale: of all
+ * lengths; the texts use it as SCALE. */
+static void bake_sdf(const char *name, const char *sdf, const char *models, const char *sun,
+                     double scale, const char *options) {
+    char text[1024], json[2048];
+    snprintf(text, sizeof text, "let k = %g;\n%s", scale, sdf);
+    snprintf(json, sizeof json, "%s.sdf", name);
+    write_file(json, text);
+    snprintf(json, sizeof json,
+             "{%s \"camera\": {\"fov_y\": 50, \"near\": %g, \"keys\": [{\"position\": [0, %g, %g], "
+             "\"target\": [0, 0, 0]}]}, \"sun\": {%s}, \"ambient\": [0.25, 0.25, 0.25], "
+             "\"sdf\": {\"source\": \"%s.sdf\", \"bounds\": [[%g, %g, %g], [%g, %g, %g]], "
+             "\"max_distance\": %g, %s}}",
+             models, 0.05 * scale, 3 * scale, 5 * scale, sun, name, -40 * scale, -3 * scale,
+             -40 * scale, 40 * scale, 20 * scale, 40 * scale, 200 * scale, options);
+    bake(name, json);
+}
+
+static const char *const plain_sun = "\"azimuth\": 70, \"elevation\": 40";
+static const char *const hard = "\"shadows\": {}, \"ambient_occlusion\": {}";
+
+/* Nothing but a plane, a sphere, a box: no point of a convex solid hides the sun or the sky from
+ * another that faces it. */
+static void nothing_shadows_itself(void **state) {
+    (void)state;
+    static const double scales[] = {1, 1000};
+    static const char *const fields[] = {"part a = plane((0, 1, 0), 0);", "part a = sphere(2 * k);",
+                                         "part a = rotate_euler((0.3, 0.5, 0.2), box((k, 2 * k, k)));"};
+    for (int i = 0; i < 6; i++) {
+        const double scale = scales[i % 2];
+        char options[128];
+        snprintf(options, sizeof options, "\"shadows\": {}, \"ambient_occlusion\": {\"radius\": %g}",
+                 scale);
+        bake_sdf("alone", fields[i / 2], "", plain_sun, scale, options);
+        open_scene("alone", 256, 192, 0);
+        draw_once();
+        const uint32_t *seen = image(MASU_READBACK_OCCLUSION), *normals = image(MASU_READBACK_NORMAL);
+        const float *depths = image(MASU_READBACK_DEPTH);
+        uint32_t looked = 0, dark = 0, closed = 0;
+        for (uint32_t k = 0; k < 256 * 192; k++) {
+            float n[3];
+            masu_unpack_normal(normals[k], n);
+            const double e = 40 * 3.14159265 / 180, a = 70 * 3.14159265 / 180;
+            double n_l = (double)n[0] * cos(e) * sin(a) + (double)n[1] * sin(e) +
+                         (double)n[2] * cos(e) * cos(a);
+            if (!(depths[k] > 0) || n_l < 0.02) continue;
+            looked++;
+            dark += sun_of(seen, k) < 0.999;
+            closed += ambient_of(seen, k) < 0.98;
+        }
+        close_session(&s);
+        /* The normal of an edge is between those of its faces: the box loses some sky there. */
+        if (dark || (closed && i / 2 < 2) || closed * 100 > looked)
+            fail_msg("field %d, scale %g: %u of %u in the shadow, %u occluded", i / 2, scale, dark,
+                     looked, closed);
+        assert_true(looked > 2000);
+    }
+}
+
+/* The sphere is left of the picture, its shadow is in it. Tiles do not have the sphere in their
+ * lists; the pass's own lists must. */
+static void what_is_out_of_sight_casts_its_shadow(void **state) {
+    (void)state;
+    bake_sdf("aside",
+             "part ground = plane((0, 1, 0), 0);\n"
+             "part caster = translate((-12, 8, 0), sphere(1.5));\n"
+             "for i in 0..6 { part other = translate((30, 2 * i, 30), sphere(0.5)); }\n",
+             "", "\"direction\": [-12, 8, 0]", 1, hard);
+    open_scene("aside", 128, 96, 0);
+    draw_once();
+    const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+    const uint32_t *normals = image(MASU_READBACK_NORMAL);
+    uint32_t dark = 0;
+    for (uint32_t k = 0; k < 128 * 96; k++) dark += normals[k] && sun_of(seen, k) < 0.1;
+    assert_true(sun_of(seen, 48 * 128 + 64) < 0.01); /* the origin: on the line to the sun */
+    /* An ellipse of half axes 1.5 and 1.5 / sin(33.7 degrees) at distance 5.8, near enough. */
+    assert_in_range(dark, 300, 4000);
+    assert_true(sun_of(seen, 90 * 128 + 120) > 0.99);
+    close_session(&s);
+}
+
+/* All parts for all blocks of pixels make the same picture. Not the same bits: without the parts
+ * that do not matter steps are longer, and samples of a penumbra lie elsewhere. And a part whose
+ * field is scaled (parts300 has many) seems nearer than it is: from farther away than the radius it
+ * darkens a little, unless it was left out. */
+static void lists_leave_out_nothing_that_matters(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"city", "blobs", "parts300"};
+    static uint32_t listed[W * H];
+    for (int i = 0; i < 3; i++) {
+        bake_with(scenes[i], "\"shadows\": {\"sun_radius\": 1}, \"ambient_occlusion\": {}, ");
+        masu_stats_info stats[2];
+        uint32_t sun = 0, ambient = 0, surface = 0;
+        for (int all = 0; all < 2; all++) {
+            open_scene(scenes[i], W, H, all);
+            draw_once();
+            const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+            const float *depths = image(MASU_READBACK_DEPTH);
+            assert_int_equal(masu_stats(s.m, 0, &stats[all]), MASU_OK);
+            if (!all) memcpy(listed, seen, sizeof listed);
+            for (uint32_t k = 0; k < W * H && all; k++) {
+                if (!(depths[k] > 0)) continue;
+                surface++;
+                sun += fabs(sun_of(seen, k) - sun_of(listed, k)) > 0.1;
+                ambient += fabs(ambient_of(seen, k) - ambient_of(listed, k)) > 0.02;
+            }
+            close_session(&s);
+        }
+        print_message("%s: %u surfaces, sun differs at %u, ambient at %u; evaluations %llu, all parts "
+                      "%llu\n",
+                      scenes[i], surface, sun, ambient, (unsigned long long)stats[0].shadow_evals,
+                      (unsigned long long)stats[1].shadow_evals);
+        assert_true(surface > 3000);
+        assert_true(sun * 200 <= surface && ambient * (i < 2 ? 200 : 50) <= surface);
+        assert_true(stats[0].shadow_evals <= stats[1].shadow_evals / 20 * 21);
+    }
+}
+
+/* An SDF sphere over a polygon floor, the sun straight above. */
+static void an_sdf_shadows_polygons(void **state) {
+    (void)state;
+    bake_sdf("floor", "part caster = translate((0, 1, 0), sphere(0.7));\n",
+             "\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 12, \"size_z\": 12}}}],",
+             "\"direction\": [0, 1, 0], \"color\": [1, 1, 1]", 1, hard);
+    open_scene("floor", 128, 96, 0);
+    draw_once();
+    const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+    const uint16_t *hdr = image(MASU_READBACK_HDR);
+    const uint32_t shadow = 48 * 128 + 64, light = 48 * 128 + 6;
+    assert_true(sun_of(seen, shadow) < 0.001);
+    assert_true(ambient_of(seen, shadow) < 1.0 && ambient_of(seen, shadow) > 0.5);
+    assert_true(sun_of(seen, light) > 0.999);
+    assert_true(ambient_of(seen, light) > 0.99);
+    /* Halves order like their bits. */
+    assert_true(hdr[4 * shadow] > 0 && hdr[4 * shadow] < hdr[4 * light]);
+    close_session(&s);
+}
+
+static const masu_plan_pass *pass_of(const masu_plan_info *plan, const char *name) {
+    for (uint32_t p = 0; p < plan->pass_count; p++)
+        if (!strcmp(plan->passes[p].name, name)) return &plan->passes[p];
+    fail_msg("there is no pass %s", name);
+    return NULL;
+}
+
+static uint64_t image_bytes(const masu_plan_info *plan, const char *name) {
+    for (uint32_t i = 0; i < plan->image_count; i++)
+        if (!strcmp(plan->images[i].name, name)) return plan->images[i].bytes;
+    fail_msg("there is no image %s", name);
+    return 0;
+}
+
+static void a_scene_that_does_not_ask_has_none_of_it(void **state) {
+    (void)state;
+    static masu_plan_info plan;
+    static const char *const options[] = {"", "\"shadows\": {}, ", "\"ambient_occlusion\": {}, "};
+    masu_readback_image out;
+    masu_stats_info stats;
+    for (int i = 0; i < 3; i++) {
+        bake_with("spheres", options[i]);
+        open_scene("spheres", 64, 48, 0);
+        draw_once();
+        masu_plan_of(s.m, &plan);
+        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(pass_of(&plan, "sdf_occlusion")->active, i > 0);
+        assert_int_equal(pass_of(&plan, "light_occluded")->active, i > 0);
+        assert_int_equal(pass_of(&plan, "light")->active, i == 0);
+        assert_string_equal(pass_of(&plan, "sdf_occlusion")->why,
+                            i ? "the scene asks for SDF shadows or SDF ambient occlusion"
+                              : "the scene asks for no SDF shadows or SDF ambient occlusion");
+        assert_true((image_bytes(&plan, "occlusion") > 0) == (i > 0));
+        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_OCCLUSION, &out),
+                         i ? MASU_OK : MASU_ERROR_ARGUMENT);
+        assert_true((stats.shadow_evals > 0) == (i == 1));
+        assert_true((stats.occlusion_evals > 0) == (i == 2));
+        close_session(&s);
+    }
+}
+
+/* Of a point sun, of endless rays and radii, of a field that is not finite: a picture all the same. */
+static void extremes_give_finite_pixels(void **state) {
+    (void)state;
+    static const char *const options[] = {
+        "\"shadows\": {\"sun_radius\": 0, \"distance\": 1e15}, \"ambient_occlusion\": {\"radius\": "
+        "1e6}, ",
+        "\"shadows\": {\"sun_radius\": 20, \"distance\": 1e-3}, \"ambient_occlusion\": {\"radius\": "
+        "1e-3}, "};
+    static const char *const scenes[] = {"test_broken_field", "spheres", "test_both"};
+    for (int i = 0; i < 6; i++) {
+        bake_with(scenes[i / 2], options[i % 2]);
+        open_scene(scenes[i / 2], 64, 48, 0);
+        draw_once();
+        const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+        const uint16_t *hdr = image(MASU_READBACK_HDR);
+        const float *depths = image(MASU_READBACK_DEPTH);
+        uint32_t surface = 0;
+        double lit = 0;
+        for (uint32_t k = 0; k < 64 * 48; k++) {
+            for (int c = 0; c < 4; c++) assert_true((hdr[4 * k + c] & 0x7C00) != 0x7C00);
+            if (!(depths[k] > 0)) continue;
+            surface++;
+            lit += sun_of(seen, k);
+        }
+        assert_true(surface > 100);
+        /* A ray of a millimetre leaves all but the terminator in the sun. */
+        if (i % 2 && i / 2) assert_true(lit > 0.9 * surface);
+        close_session(&s);
+    }
+}
+
+static int make_dir(void **state) {
+    (void)state;
+    return mkdtemp(dir) ? 0 : 1;
+}
+
+static int remove_dir(void **state) {
+    (void)state;
+    return shell("rm -rf %s", dir);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_shadows_itself),
+        cmocka_unit_test(what_is_out_of_sight_casts_its_shadow),
+        cmocka_unit_test(lists_leave_out_nothing_that_matters),
+        cmocka_unit_test(an_sdf_shadows_polygons),
+        cmocka_unit_test(a_scene_that_does_not_ask_has_none_of_it),
+        cmocka_unit_test(extremes_give_finite_pixels),
+        cmocka_unit_test(the_error_against_the_truth_is_as_stated),
+    };
+    return cmocka_run_group_tests_name("occlusion", tests, make_dir, remove_dir);
+}
