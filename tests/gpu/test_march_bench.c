@@ -188,11 +188,28 @@ static void what_is_missing_is_said(void **state) {
     assert_int_equal(bench(arguments), 2);
 }
 
+static void a_choice_of_ways_is_drawn_and_may_go_untimed(void **state) {
+    (void)state;
+    char arguments[1024];
+    snprintf(arguments, sizeof arguments, "%s --size 32x24 --runs 0 --only masu,unpruned --csv %s/c.csv",
+             scene_path("test_sphere_sdf"), dir);
+    if (bench(arguments)) fail_msg("%s", err_text);
+    read_text("c.csv", out_text, sizeof out_text);
+    assert_true(number("masu", "evals_per_px") > 1);
+    assert_true(number("unpruned", "evals_per_px") > 1);
+    assert_string_equal(csv_field(out_text, "masu", "ms"), "n/a");
+    assert_string_equal(csv_field(out_text, "cone8", "evals_per_px"), "n/a");
+    snprintf(arguments, sizeof arguments, "%s --only masu,seeds", scene_path("test_sphere_sdf"));
+    assert_int_equal(bench(arguments), 2);
+    assert_non_null(strstr(err_text, "\"seeds\""));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sphere_is_measured),
         cmocka_unit_test(the_shaded_truth_is_the_picture),
         cmocka_unit_test(what_is_missing_is_said),
+        cmocka_unit_test(a_choice_of_ways_is_drawn_and_may_go_untimed),
     };
     return cmocka_run_group_tests_name("march_bench", tests, make_truth, remove_dir);
 }
