@@ -141,6 +141,7 @@ typedef struct masu_scene {
     const void *blob; /* the caller's; see masu_scene_bind */
     uint64_t blob_bytes;
     uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
+    uint32_t groups, group_items; /* what is culled together; instances in groups */
     uint32_t sdf;        /* 1: the scene has an SDF */
     uint32_t sdf_params; /* run-time parameters of it */
     uint32_t sdf_parts, sdf_slots;
@@ -171,6 +172,7 @@ MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name)
 #define MASU_MAX_PASSES 24u
 #define MASU_MAX_RESOURCES 32u
 #define MASU_MAX_SDF_PARAMS 256u
+#define MASU_MAX_VIEWS 5u
 
 typedef enum masu_switch { MASU_AUTO = 0, MASU_OFF = 1, MASU_ON = 2 } masu_switch;
 
@@ -198,6 +200,8 @@ typedef struct masu_rung {
                              definition) */
     masu_march march;
     uint32_t march_steps; /* most SDF steps per ray, 1..2048; 0: 2048 */
+    masu_switch frustum; /* instances outside of the picture are not drawn, which the picture does not
+                            show. AUTO: on */
 } masu_rung;
 
 /* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
@@ -208,8 +212,8 @@ typedef struct masu_limits {
     uint64_t vertices;   /* 16 bytes each, device */
     uint64_t indices;    /* 4 bytes each, device */
     uint64_t materials;  /* 32 bytes each, device */
-    uint64_t instances;  /* 48 bytes each per frame in flight, device, and 57 bytes each, host; with
-                            velocities 96 and 105 */
+    uint64_t instances;  /* 52 bytes each per frame in flight, device, and 98 bytes each, host; with
+                            velocities 100 and 146 */
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
 } masu_limits;
 
@@ -519,6 +523,13 @@ MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *re
 
 /* ---- Looking at frames ----------------------------------------------------------------------- */
 
+/* One view: what culling did, and what it left. */
+typedef struct masu_view_stats {
+    uint64_t groups;      /* looked at */
+    uint64_t plane_tests; /* of groups and of instances, a plane each */
+    uint64_t instances, draws, triangles; /* kept */
+} masu_view_stats;
+
 typedef struct masu_stats_info {
     uint64_t frame; /* the newest finished frame that is known; UINT64_MAX: none yet */
     uint32_t rung;
@@ -533,7 +544,9 @@ typedef struct masu_stats_info {
     uint64_t shadow_evals, occlusion_evals; /* of the field by SDF shadows, SDF ambient occlusion */
     uint64_t shadow_unconverged;            /* shadow rays that used up their steps */
     uint64_t replaced; /* pixel components that were not finite and were replaced; should be 0 */
-    uint64_t draws, triangles; /* submitted to the G-buffer */
+    uint64_t draws, triangles; /* submitted to the G-buffer; draws of no instance do not count */
+    uint32_t view_count;
+    masu_view_stats views[MASU_MAX_VIEWS]; /* 0: the camera */
 } masu_stats_info;
 
 /* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for,

@@ -4,6 +4,8 @@
  * The eye is subtracted from the instance's translation in two steps (high part, then low part), so
  * that a world a million metres from the origin is as steady as one at the origin.
  *
+ * A draw's instances are listed from index.y on in the buffer of drawn instances.
+ *
  * With MASU_MOTION (gbuffer_velocity) also to where the vertex was in the frame before, by the same
  * operations: what stood still gets the same bits twice, and a velocity of exactly 0.
  */
@@ -20,6 +22,16 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_INSTANCES, std430) readonly buffer Instances
 {
     masu_instance_data instances[];
+};
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) readonly buffer Drawn
+{
+    uint drawn[];
+};
+
+layout(push_constant) uniform Push
+{
+    masu_push pc;
 };
 
 #ifdef MASU_MOTION
@@ -55,7 +67,8 @@ vec3 seen_from(masu_instance_data m, vec3 eye_hi, vec3 eye_lo)
 
 void main()
 {
-    masu_instance_data m = instances[gl_InstanceIndex];
+    uint id = drawn[pc.index.y + uint(gl_InstanceIndex)];
+    masu_instance_data m = instances[id];
     vec3 rel = seen_from(m, frame.eye_hi.xyz, frame.eye_lo.xyz);
 
     /* Normals go by the cofactor matrix: the inverse transpose times the determinant, which needs
@@ -69,7 +82,7 @@ void main()
     out_rel = rel;
 #ifdef MASU_MOTION
     out_before =
-        seen_from(previous_instances[gl_InstanceIndex], previous.eye_hi.xyz, previous.eye_lo.xyz);
+        seen_from(previous_instances[id], previous.eye_hi.xyz, previous.eye_lo.xyz);
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
 }

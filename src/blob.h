@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 3u
+#define MASU_BLOB_VERSION 4u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -51,7 +51,9 @@ enum masu_blob_kind {
     MASU_BLOB_UPDATE_PREVIOUS_SPIRV = 22, /* present when slots depend on parameters or time */
     MASU_BLOB_VELOCITY_SPIRV = 23,        /* present exactly when MARCH_SPIRV is */
     MASU_BLOB_OCCLUSION_SPIRV = 24,       /* with SDF shadows or SDF ambient occlusion */
-    MASU_BLOB_KIND_COUNT = 25
+    MASU_BLOB_GROUPS = 25,      /* what is culled together; a tree, group 0 is its root */
+    MASU_BLOB_GROUP_ITEMS = 26, /* uint32: instances, group after group; present with GROUPS */
+    MASU_BLOB_KIND_COUNT = 27
 };
 
 typedef struct masu_blob_header {
@@ -102,8 +104,20 @@ typedef struct masu_blob_instance {
     uint32_t mesh;
     uint32_t name;
     uint32_t parent; /* instance index or MASU_BLOB_NONE; transforms are already composed */
-    uint32_t reserved;
+    uint32_t group;  /* the group that has it as an item, or MASU_BLOB_NONE: culled by itself */
 } masu_blob_instance;
+
+/* Members are other groups, instances, or both. Children come behind their parent and side by
+ * side; each group but the first is a child exactly once. The box (world space) holds the boxes of
+ * all members as src/cull.h widens them. */
+typedef struct masu_blob_group {
+    float center[3];
+    float half[3];
+    uint32_t first_child, child_count;
+    uint32_t first_item, item_count; /* of GROUP_ITEMS; instances in rising order */
+    uint32_t name;
+    uint32_t reserved;
+} masu_blob_group;
 
 typedef struct masu_blob_material {
     float base_color[3]; /* linear, 0..1 */
@@ -168,6 +182,7 @@ _Static_assert(sizeof(masu_blob_vertex) == 16, "blob vertex");
 _Static_assert(sizeof(masu_blob_primitive) == 48, "blob primitive");
 _Static_assert(sizeof(masu_blob_mesh) == 40, "blob mesh");
 _Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
+_Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_material) == 48, "blob material");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
 _Static_assert(sizeof(masu_blob_environment) == 80, "blob environment");

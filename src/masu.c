@@ -38,6 +38,20 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
     to->previous = masu_arena_take(arena, "previous frame", before, sizeof *to->previous, 16);
     to->previous_instances = masu_arena_take(arena, "previous transforms", before * s->instances,
                                              sizeof *to->previous_instances, 16);
+    to->batches = masu_arena_take(arena, "batches", s->meshes, sizeof *to->batches, 8);
+    to->mesh_bounds = masu_arena_take(arena, "mesh bounds", s->meshes, sizeof *to->mesh_bounds, 4);
+    to->groups = masu_arena_take(arena, "groups", s->groups, sizeof *to->groups, 4);
+    to->group_states = masu_arena_take(arena, "group states", (uint64_t)plan->views * s->groups,
+                                       sizeof *to->group_states, 1);
+    to->boxes = masu_arena_take(arena, "boxes", 6 * ((uint64_t)s->instances + MASU_BOX_PADDING),
+                                sizeof *to->boxes, 16);
+    to->box_items = masu_arena_take(arena, "box owners", s->instances, sizeof *to->box_items, 4);
+    to->box_positions =
+        masu_arena_take(arena, "box positions", s->instances, sizeof *to->box_positions, 4);
+    to->moved = masu_arena_take(arena, "moved boxes", s->instances, sizeof *to->moved, 4);
+    to->instance_meshes =
+        masu_arena_take(arena, "instance meshes", s->instances, sizeof *to->instance_meshes, 4);
+    to->marks = masu_arena_take(arena, "instance marks", s->instances, sizeof *to->marks, 1);
     if (m) *m = r;
 }
 
@@ -265,7 +279,11 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_log(d, MASU_LOG_ERROR, m->error.text);
         return result;
     }
-    if (d->scene) masu_write_instances(m, slot, masu_is_cut(m, frame));
+    if (d->scene) {
+        masu_write_instances(m, slot, masu_is_cut(m, frame));
+        int culls = d->rungs[frame->rung].frustum != MASU_OFF;
+        masu_write_visible(m, slot, 0, culls ? &m->camera_view : NULL);
+    }
     m->slot_frame[slot] = m->frame;
     m->slot_rung[slot] = frame->rung;
     *commands = (masu_commands){
@@ -310,8 +328,10 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) out->pass_names[p] = masu_passes[p].name;
     if (out->frame == UINT64_MAX) return MASU_INCOMPLETE;
     out->rung = m->slot_rung[slot];
-    out->draws = m->plan.scene.draws;
-    out->triangles = m->plan.scene.triangles;
+    out->view_count = m->plan.needs.raster ? m->plan.views : 0;
+    memcpy(out->views, m->slot_views[slot], sizeof out->views);
+    out->draws = out->views[0].draws;
+    out->triangles = out->views[0].triangles;
     if (m->plan.desc.debug.counters && m->plan.needs.scene) {
         out->sdf_evals = counter(m, slot, MASU_COUNTER_SDF_EVALS);
         out->sdf_hits = counter(m, slot, MASU_COUNTER_SDF_HITS);

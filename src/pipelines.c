@@ -77,7 +77,8 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL},
         {MASU_BIND_PREVIOUS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
         {MASU_BIND_PREVIOUS_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-         VK_SHADER_STAGE_VERTEX_BIT, NULL}};
+         VK_SHADER_STAGE_VERTEX_BIT, NULL},
+        {MASU_BIND_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, NULL}};
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                             .bindingCount = sizeof bindings / sizeof *bindings,
@@ -126,7 +127,7 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
         return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
     VkDescriptorSetLayout sets[] = {m->global_layout, m->pass_layouts[pass]};
     VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(struct masu_push)};
-    if (!compute) push.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (!compute) push.stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .setLayoutCount = 2,
                                          .pSetLayouts = sets,

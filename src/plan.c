@@ -62,9 +62,9 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
     if ((unsigned)rung->march > MASU_MARCH_UNPRUNED) {
         return bad_range(detail, "rungs[].march", (unsigned)rung->march, 0, MASU_MARCH_UNPRUNED);
     }
-    const masu_switch switches[2] = {rung->upscale, rung->sharpen};
-    static const char *const names[2] = {"rungs[].upscale", "rungs[].sharpen"};
-    for (uint32_t i = 0; i < 2; i++) {
+    const masu_switch switches[] = {rung->upscale, rung->sharpen, rung->frustum};
+    static const char *const names[] = {"rungs[].upscale", "rungs[].sharpen", "rungs[].frustum"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if ((unsigned)switches[i] <= MASU_ON) continue;
         return bad_range(detail, names[i], (unsigned)switches[i], MASU_AUTO, MASU_ON);
     }
@@ -327,6 +327,14 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
             halves * masu_align_up((uint64_t)s->instances * sizeof(struct masu_instance_data),
                                    storage_alignment);
         b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
+        b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * s->draws;
+        b[MASU_BUFFER_DRAWS].stride =
+            masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
+        b[MASU_BUFFER_DRAWS].bytes = flights * b[MASU_BUFFER_DRAWS].stride;
+        b[MASU_BUFFER_DRAWN].count = (uint64_t)plan->views * s->instances;
+        b[MASU_BUFFER_DRAWN].stride =
+            masu_align_up(b[MASU_BUFFER_DRAWN].count * sizeof(uint32_t), storage_alignment);
+        b[MASU_BUFFER_DRAWN].bytes = flights * b[MASU_BUFFER_DRAWN].stride;
     }
     return plan->desc.debug.counters ? masu_align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
 }
@@ -384,6 +392,11 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                                                   .role = MASU_ROLE_UPLOAD,
                                                   .usage = storage,
                                                   .count = s ? s->instances : 0};
+    b[MASU_BUFFER_DRAWS] = (masu_buffer_plan){.name = "draw commands",
+                                              .role = MASU_ROLE_UPLOAD,
+                                              .usage = VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
+    b[MASU_BUFFER_DRAWN] = (masu_buffer_plan){
+        .name = "drawn instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
     b[MASU_BUFFER_STAGING] = (masu_buffer_plan){
         .name = "staging", .role = MASU_ROLE_UPLOAD, .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
     b[MASU_BUFFER_READBACK] =
@@ -425,6 +438,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .readback = d->readback,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0,
                                .blit = !d->targets.storage};
+    plan->views = 1;
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];
         rp->render_width = d->scene ? scaled(d->output.width, d->rungs[r].scale) : d->source.width;

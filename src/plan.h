@@ -37,6 +37,8 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_TILES,     /* of the SDF: which parts matter where; masu_shared.h has the layout */
     MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
     MASU_BUFFER_INSTANCES, /* one array per frame in flight */
+    MASU_BUFFER_DRAWS,     /* per frame in flight and view: an indirect command for each draw */
+    MASU_BUFFER_DRAWN,     /* per frame in flight and view: numbers of the instances drawn */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
     MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
     MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
@@ -61,6 +63,7 @@ typedef struct masu_block_plan {
 } masu_block_plan;
 
 #define MASU_READBACK_IMAGES 6u
+#define MASU_DRAW_BYTES 20u /* of a VkDrawIndexedIndirectCommand */
 
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
@@ -77,6 +80,7 @@ typedef struct masu_frame_plan {
     /* Within one readback slot: counters first, then timestamps, then images in the bit order of
      * masu_readback_bits. */
     uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
+    uint32_t views;     /* that instances are culled for: the camera */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
 } masu_frame_plan;
 

@@ -215,11 +215,14 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
                     (push.output_height + group - 1) / group, 1);
 }
 
+#define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
+
 /* One draw per primitive of each placed mesh; instances of one mesh are neighbours, so one draw
- * serves them all. */
+ * serves them all. visible.c says which. */
 static void record_draws(recorder *rec) {
     const masu_vk *vk = &rec->m->vk;
-    masu_scene_view v = masu_scene_look(rec->m->plan.desc.scene);
+    const masu_renderer *m = rec->m;
+    masu_scene_view v = masu_scene_look(m->plan.desc.scene);
     VkPipelineLayout layout = rec->m->layouts[MASU_PASS_GBUFFER];
     VkDeviceSize zero = 0;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
@@ -233,19 +236,16 @@ static void record_draws(recorder *rec) {
     memset(&push, 0, sizeof push);
     push.output_width = push.render_width = rec->rp->render_width;
     push.output_height = push.render_height = rec->rp->render_height;
-    uint32_t from = 0;
-    for (uint32_t mesh = 0; mesh < rec->m->plan.scene.meshes; mesh++) {
-        uint32_t first,
-            end = masu_scene_mesh_instances(&v, rec->m->plan.scene.instances, mesh, from, &first);
-        from = end;
-        for (uint32_t p = 0; p < v.meshes[mesh].primitive_count && end > first; p++) {
-            const masu_blob_primitive *primitive =
-                &v.primitives[v.meshes[mesh].first_primitive + p];
-            push.index[0] = primitive->material;
-            vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
-                                 &push);
-            vk->CmdDrawIndexed(rec->cmd, primitive->index_count, end - first,
-                               primitive->first_index, (int32_t)primitive->first_vertex, first);
+    VkDeviceSize at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride;
+    for (uint32_t b = 0; b < m->batch_count; b++) {
+        const masu_batch *batch = &m->batches[b];
+        push.index[1] = batch->first_instance;
+        for (uint32_t d = 0; d < batch->draw_count; d++) {
+            push.index[0] = v.primitives[batch->first_primitive + d].material;
+            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+            vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at, 1,
+                                       MASU_DRAW_BYTES);
+            at += MASU_DRAW_BYTES;
         }
     }
 }
@@ -257,8 +257,7 @@ static void record_fullscreen(recorder *rec, uint32_t pass) {
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->layouts[pass],
                               MASU_SET_GLOBAL, 1, &rec->m->global_sets[rec->flight], 0, NULL);
-    vk->CmdPushConstants(rec->cmd, rec->m->layouts[pass], VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                         sizeof push, &push);
+    vk->CmdPushConstants(rec->cmd, rec->m->layouts[pass], GRAPHICS_STAGES, 0, sizeof push, &push);
     vk->CmdDraw(rec->cmd, 3, 1, 0, 0);
 }
 
@@ -444,7 +443,7 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 6 * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 7 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MASU_PASS_ACCESSES * sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -482,7 +481,8 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
                 {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
                 {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
                 {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES,
-                 VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}};
+                 VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+                {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
     for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;

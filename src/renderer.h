@@ -6,6 +6,7 @@
  *   bind.c      memory allocated or taken, objects bound, views made
  *   pipelines.c layouts, shader modules, pipelines, render pass
  *   record.c    descriptor sets and command buffers: barriers derived from the table
+ *   visible.c   which instances a view draws: the tree of groups, draw commands
  *   upload.c    scene -> device, frame uniforms, instance transforms
  *
  * Everything of fixed size is a member; what depends on the scene are pointers into the same host
@@ -16,12 +17,22 @@
 
 #include "arena.h"
 #include "blob.h"
+#include "cull.h"
 #include "device_memory.h"
 #include "plan.h"
 #include "scene.h"
 #include "vk.h"
 
 #define MASU_RENDERER_COOKIE 0x4D415355u
+
+/* A placed mesh: its instances, and one draw for each of its primitives. */
+typedef struct masu_batch {
+    uint32_t first_primitive, first_draw, draw_count;
+    uint32_t first_instance, instance_count;
+    uint64_t triangles; /* of one instance */
+} masu_batch;
+
+#define MASU_BOX_PADDING 3u /* floats that SIMD may read behind the last box */
 
 struct masu_renderer {
     uint32_t cookie;
@@ -72,6 +83,23 @@ struct masu_renderer {
     masu_blob_environment environment;
     float sdf_bounds[2][4]; /* min and 1/Lipschitz, max and longest ray */
 
+    /* visible.c; positions are those of src/cull.h */
+    masu_batch *batches;
+    uint32_t batch_count;
+    masu_cull_node *groups;
+    uint8_t *group_states;   /* [view][group] */
+    float *boxes;            /* [6][box_stride] */
+    uint64_t box_stride;
+    uint32_t *box_items;     /* [position]: instance */
+    uint32_t *box_positions; /* [instance] */
+    uint32_t *moved;         /* positions */
+    uint32_t moved_count;
+    uint8_t *marks;            /* [instance]: a bit per view */
+    uint32_t *instance_meshes; /* [instance] */
+    float (*mesh_bounds)[6];   /* low, high */
+    masu_cull_view camera_view;
+    masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];
+
     /* frames */
     uint64_t frame;
     uint64_t slot_frame[MASU_MAX_FLIGHT]; /* UINT64_MAX: not used yet */
@@ -99,6 +127,16 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *frame, uin
 void masu_write_instances(masu_renderer *m, uint32_t slot, int cut);
 /* Whether nothing of the frame before counts: it is taken to be as this one. */
 int masu_is_cut(const masu_renderer *m, const masu_frame_desc *frame);
+
+/* Copies groups and bounds from the blob; needs m->instances. */
+void masu_keep_visible(masu_renderer *m, const masu_scene_view *v);
+/* Writes what does not change of the draw commands of all slots. */
+void masu_write_commands(masu_renderer *m, const masu_scene_view *v);
+/* After a transform has changed. */
+void masu_move_box(masu_renderer *m, uint32_t instance);
+/* Writes which instances a view draws to a slot. NULL: all of them. */
+void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view,
+                        const masu_cull_view *frustum);
 
 /* Host pointer to a buffer's first byte, of a slot where it has slots. NULL where it is not
  * host-visible. */

@@ -3,6 +3,7 @@
  * in 64. */
 #include "scene.h"
 
+#include "cull.h"
 #include "error.h"
 #include "shared/masu_shared.h"
 
@@ -43,6 +44,8 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V"),
     CODE(MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V"),
     [MASU_BLOB_SLOTS] = {"slots", sizeof(float), 65536, 0},
+    [MASU_BLOB_GROUPS] = {"groups", sizeof(masu_blob_group), MANY, 0},
+    [MASU_BLOB_GROUP_ITEMS] = {"group items", sizeof(uint32_t), MANY, 0},
     [MASU_BLOB_NAMES] = {"names", 1, MANY, 0},
 };
 
@@ -150,6 +153,8 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .primitives = start[MASU_BLOB_PRIMITIVES],
                                 .meshes = start[MASU_BLOB_MESHES],
                                 .instances = start[MASU_BLOB_INSTANCES],
+                                .groups = start[MASU_BLOB_GROUPS],
+                                .group_items = start[MASU_BLOB_GROUP_ITEMS],
                                 .materials = start[MASU_BLOB_MATERIALS],
                                 .camera_keys = start[MASU_BLOB_CAMERA_KEYS],
                                 .environment = start[MASU_BLOB_ENVIRONMENT],
@@ -173,6 +178,14 @@ static int name_ok(const reader *r, uint32_t name) {
     return name == MASU_BLOB_NONE || name < r->view.name_bytes;
 }
 
+/* Culling believes bounds. Two boxes; a point is a box too. */
+static int box_holds(const float *low, const float *high, const float *from, const float *to) {
+    for (uint32_t k = 0; k < 3; k++) {
+        if (!(low[k] <= from[k] && to[k] <= high[k])) return 0;
+    }
+    return 1;
+}
+
 static masu_result check_primitive(reader *r, uint64_t i) {
     const masu_blob_primitive *p = &r->view.primitives[i];
     if (p->index_count % 3) return bad(r, "primitives", i, "index count is no multiple of 3");
@@ -192,11 +205,30 @@ static masu_result check_primitive(reader *r, uint64_t i) {
         return bad(r, "primitives", i, "bounds are not finite");
     }
     for (uint32_t k = 0; k < p->index_count; k++) {
-        if (r->view.indices[p->first_index + k] >= p->vertex_count) {
+        uint32_t index = r->view.indices[p->first_index + k];
+        if (index >= p->vertex_count) {
             return bad(r, "indices", (uint64_t)p->first_index + k, "points outside its primitive");
+        }
+        const float *v = r->view.vertices[p->first_vertex + index].position;
+        if (!box_holds(p->aabb_min, p->aabb_max, v, v)) {
+            return bad(r, "primitives", i, "bounds do not hold its vertices");
         }
     }
     return MASU_OK;
+}
+
+static masu_result check_mesh(reader *r, uint64_t i) {
+    const masu_blob_mesh *m = &r->view.meshes[i];
+    if (!finite_all(m->aabb_min, 3) || !finite_all(m->aabb_max, 3)) {
+        return bad(r, "meshes", i, "bounds are not finite");
+    }
+    for (uint32_t k = 0; k < m->primitive_count; k++) {
+        const masu_blob_primitive *p = &r->view.primitives[m->first_primitive + k];
+        if (!box_holds(m->aabb_min, m->aabb_max, p->aabb_min, p->aabb_max)) {
+            return bad(r, "meshes", i, "bounds do not hold its primitives");
+        }
+    }
+    return name_ok(r, m->name) ? MASU_OK : bad(r, "meshes", i, "name lies outside the names");
 }
 
 static masu_result check_geometry(reader *r) {
@@ -222,10 +254,8 @@ static masu_result check_geometry(reader *r) {
         primitives += m->primitive_count;
         if (primitives > r->counts[MASU_BLOB_PRIMITIVES])
             return bad(r, "meshes", i, "shares primitives");
-        if (!finite_all(m->aabb_min, 3) || !finite_all(m->aabb_max, 3)) {
-            return bad(r, "meshes", i, "bounds are not finite");
-        }
-        if (!name_ok(r, m->name)) return bad(r, "meshes", i, "name lies outside the names");
+        masu_result result = check_mesh(r, i);
+        if (result) return result;
     }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_INSTANCES]; i++) {
         const masu_blob_instance *n = &v->instances[i];
@@ -237,6 +267,80 @@ static masu_result check_geometry(reader *r) {
         if (n->parent != MASU_BLOB_NONE && n->parent >= r->counts[MASU_BLOB_INSTANCES]) {
             return bad(r, "instances", i, "no such parent");
         }
+    }
+    return MASU_OK;
+}
+
+/* Groups lie in the order of a breadth-first walk, and so do their items: the children of the first
+ * group, then those of the second, ... That each has one parent, and that none is its own ancestor,
+ * follows without a mark for each. */
+static masu_result check_group(reader *r, uint64_t i, uint64_t *next_child, uint64_t *next_item) {
+    const masu_scene_view *v = &r->view;
+    const masu_blob_group *g = &v->groups[i];
+    if (i >= *next_child) return bad(r, "groups", i, "is a child of no group before it");
+    if (g->child_count &&
+        (g->first_child != *next_child ||
+         *next_child + g->child_count > r->counts[MASU_BLOB_GROUPS])) {
+        return bad(r, "groups", i, "children are not the next in breadth-first order");
+    }
+    if (g->item_count && (g->first_item != *next_item ||
+                          *next_item + g->item_count > r->counts[MASU_BLOB_GROUP_ITEMS])) {
+        return bad(r, "groups", i, "items are not the next of the items");
+    }
+    masu_cull_box box;
+    memcpy(box.center, g->center, sizeof box.center);
+    memcpy(box.half, g->half, sizeof box.half);
+    if (!within(g->center, 3, -MASU_CULL_FAR, MASU_CULL_FAR) ||
+        !within(g->half, 3, 0.0f, MASU_CULL_FAR)) {
+        return bad(r, "groups", i, "bounds are out of range");
+    }
+    for (uint32_t k = 0; k < g->child_count; k++) {
+        const masu_blob_group *child = &v->groups[g->first_child + k];
+        masu_cull_box inner;
+        memcpy(inner.center, child->center, sizeof inner.center);
+        memcpy(inner.half, child->half, sizeof inner.half);
+        if (!masu_cull_holds(&box, &inner)) {
+            return bad(r, "groups", i, "bounds do not hold its children");
+        }
+    }
+    for (uint32_t k = 0; k < g->item_count; k++) {
+        uint32_t item = v->group_items[g->first_item + k];
+        if (item >= r->counts[MASU_BLOB_INSTANCES] || v->instances[item].group != i) {
+            return bad(r, "group items", (uint64_t)g->first_item + k,
+                       "is no instance of its group");
+        }
+        if (k && item <= v->group_items[g->first_item + k - 1]) {
+            return bad(r, "group items", (uint64_t)g->first_item + k, "does not rise");
+        }
+        masu_cull_box inner = masu_scene_box(v, item);
+        inner = masu_cull_widen(&inner, 1.0f);
+        if (!masu_cull_holds(&box, &inner)) {
+            return bad(r, "groups", i, "bounds do not hold its instances");
+        }
+    }
+    *next_child += g->child_count;
+    *next_item += g->item_count;
+    return name_ok(r, g->name) ? MASU_OK : bad(r, "groups", i, "name lies outside the names");
+}
+
+static masu_result check_groups(reader *r) {
+    uint64_t groups = r->counts[MASU_BLOB_GROUPS], items = r->counts[MASU_BLOB_GROUP_ITEMS];
+    if (!groups != !items) return bad(r, "groups", 0, "are there without items, or items alone");
+    uint64_t next_child = 1, next_item = 0, level_end = 1, levels = 1, grouped = 0;
+    for (uint64_t i = 0; i < groups; i++) {
+        if (i == level_end) {
+            level_end = next_child;
+            if (++levels > MASU_CULL_DEPTH) return bad(r, "groups", i, "is below 64 levels");
+        }
+        masu_result result = check_group(r, i, &next_child, &next_item);
+        if (result) return result;
+    }
+    if (groups && (next_child != groups || next_item != items)) {
+        return bad(r, "group items", next_item, "belongs to no group");
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_INSTANCES]; i++) {
+        if (r->view.instances[i].group == MASU_BLOB_NONE) continue;
+        if (++grouped > items) return bad(r, "instances", i, "its group does not know it");
     }
     return MASU_OK;
 }
@@ -374,6 +478,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
         result = bad(&r, "names", r.view.name_bytes - 1, "does not end with NUL");
     }
     if (!result) result = check_geometry(&r);
+    if (!result) result = check_groups(&r);
     if (!result) result = check_looks(&r);
     if (!result) result = check_sdf(&r);
     if (result) return result;
@@ -385,6 +490,8 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
                         .meshes = (uint32_t)r.counts[MASU_BLOB_MESHES],
                         .instances = (uint32_t)r.counts[MASU_BLOB_INSTANCES],
                         .materials = (uint32_t)r.counts[MASU_BLOB_MATERIALS],
+                        .groups = (uint32_t)r.counts[MASU_BLOB_GROUPS],
+                        .group_items = (uint32_t)r.counts[MASU_BLOB_GROUP_ITEMS],
                         .camera_keys = (uint32_t)r.counts[MASU_BLOB_CAMERA_KEYS],
                         .sdf = r.view.sdf != NULL,
                         .sdf_params = (uint32_t)r.counts[MASU_BLOB_SDF_PARAMS]};
@@ -409,6 +516,12 @@ masu_scene_view masu_scene_look(const masu_scene *scene) {
     reader r = {.bytes = scene->blob};
     (void)read_sections(&r, scene->blob_bytes); /* has passed once on these bytes */
     return r.view;
+}
+
+masu_cull_box masu_scene_box(const masu_scene_view *view, uint32_t instance) {
+    const masu_blob_instance *n = &view->instances[instance];
+    const masu_blob_mesh *mesh = &view->meshes[n->mesh];
+    return masu_cull_place(n->transform, mesh->aabb_min, mesh->aabb_max);
 }
 
 uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count,

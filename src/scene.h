@@ -7,6 +7,7 @@
 #define MASU_SCENE_H
 
 #include "blob.h"
+#include "cull.h"
 #include "masu.h"
 
 /* Sections of a validated blob; absent ones are NULL with count 0. */
@@ -16,6 +17,8 @@ typedef struct masu_scene_view {
     const masu_blob_primitive *primitives;
     const masu_blob_mesh *meshes;
     const masu_blob_instance *instances;
+    const masu_blob_group *groups;
+    const uint32_t *group_items;
     const masu_blob_material *materials;
     const masu_blob_camera_key *camera_keys;
     const masu_blob_environment *environment;
@@ -33,6 +36,9 @@ typedef struct masu_scene_view {
 
 /* Sections of the blob behind a masu_scene that masu_scene_bind has filled. */
 masu_scene_view masu_scene_look(const masu_scene *scene);
+
+/* World box of an instance as the scene places it. */
+masu_cull_box masu_scene_box(const masu_scene_view *view, uint32_t instance);
 
 /* Range of instances [first, first + count) that place mesh `mesh`: instances are sorted by mesh.
  * `from` is where the search starts; returns the end. */

@@ -92,6 +92,10 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
             if (all.bytes) write_resident(&v, all, masu_buffer_pointer(m, resident[i], 0));
         }
     }
+    if (m->plan.desc.scene) {
+        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+        masu_write_commands(m, &v);
+    }
     m->loaded = 1;
     m->plan.scene.blob = NULL; /* from here on the host may free it */
     return MASU_OK;
@@ -117,6 +121,7 @@ void masu_keep_scene(masu_renderer *m) {
         m->instance_dirty[i] = frames_to_write(m);
     }
     m->dirty_count = scene->instances;
+    masu_keep_visible(m, &v);
     if (scene->camera_keys)
         memcpy(m->camera_keys, v.camera_keys, scene->camera_keys * sizeof *v.camera_keys);
     if (scene->sdf_params)
@@ -177,6 +182,7 @@ masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance
     memcpy(&m->instances[i], rows, sizeof m->instances[i]);
     if (!m->instance_dirty[i]) m->dirty_count++;
     m->instance_dirty[i] = frames_to_write(m);
+    masu_move_box(m, i);
     return MASU_OK;
 }
 
@@ -386,6 +392,7 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     u.eye_lo[3] = f->time_step;
     unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);
     memcpy(to, &u, sizeof u);
+    masu_cull_camera(&m->camera_view, u.clip_from_rel, camera.position, u.forward[3]);
     if (m->plan.needs.velocity) {
         uint64_t half = m->plan.buffers[MASU_BUFFER_FRAME].stride / 2;
         memcpy(to + half, masu_is_cut(m, f) ? &u : m->previous, sizeof u);

@@ -34,7 +34,7 @@
     X(CmdDispatch)                                                                                 \
     X(CmdDispatchIndirect)                                                                         \
     X(CmdDraw)                                                                                     \
-    X(CmdDrawIndexed)                                                                              \
+    X(CmdDrawIndexedIndirect)                                                                      \
     X(CmdEndRenderPass)                                                                            \
     X(CmdFillBuffer)                                                                               \
     X(CmdPipelineBarrier)                                                                          \

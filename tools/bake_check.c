@@ -100,6 +100,7 @@ static const char *check_instances(const masu_bake_content *c) {
         if (!finite_all(n->transform, 12)) return "an instance whose transform is not finite";
         if (n->mesh >= masu_bake_count(c, MASU_BLOB_MESHES)) return "an instance of no mesh";
         if (n->parent != MASU_BLOB_NONE && n->parent >= count) return "a parent out of range";
+        if (n->group != MASU_BLOB_NONE) return "an instance in a group that is not there";
         if (!name_ok(c, n->name)) return "a name out of range";
     }
     return NULL;

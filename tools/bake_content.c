@@ -31,6 +31,8 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_VELOCITY_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_OCCLUSION_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_SLOTS] = sizeof(float),
+    [MASU_BLOB_GROUPS] = sizeof(masu_blob_group),
+    [MASU_BLOB_GROUP_ITEMS] = sizeof(uint32_t),
     [MASU_BLOB_NAMES] = 1,
 };
 
@@ -178,7 +180,8 @@ uint32_t masu_bake_mesh(masu_bake_content *content, uint32_t first_primitive, ui
 uint32_t masu_bake_instance(masu_bake_content *content, const masu_bake_affine *transform,
                             uint32_t mesh, uint32_t parent, uint32_t name) {
     if (!masu_bake_affine_sane(transform)) return MASU_BLOB_NONE;
-    masu_blob_instance instance = {.mesh = mesh, .name = name, .parent = parent};
+    masu_blob_instance instance = {
+        .mesh = mesh, .name = name, .parent = parent, .group = MASU_BLOB_NONE};
     for (int i = 0; i < 12; i++) instance.transform[i] = (float)transform->m[i];
     masu_bake_append(&content->section[MASU_BLOB_INSTANCES], &instance, sizeof instance);
     return (uint32_t)(masu_bake_count(content, MASU_BLOB_INSTANCES) - 1);

@@ -1,6 +1,7 @@
 /* bake_place.c: the "models" of a scene. A file is imported once however often it is placed; each
  * placement is   translate * fit * rotate * scale   of the model as its file has it. */
 #include "bake_file.h"
+#include "bake_groups.h"
 #include "bake_import.h"
 #include "bake_scene.h"
 #include "bake_shape.h"
@@ -216,6 +217,27 @@ static bool read_override(const masu_bake_json *model, masu_bake_override *out) 
     return true;
 }
 
+/* Tags the instances from `first` on. */
+static bool read_group(const masu_bake_json *model, masu_bake_content *content, uint64_t first) {
+    const char *path = NULL;
+    bool moving = false;
+    if (!masu_bake_json_string(model, "group", &path) ||
+        !masu_bake_json_boolean(model, "moving", &moving)) {
+        return false;
+    }
+    if (moving && path) return masu_bake_json_wrong(model, "what is \"moving\" is in no \"group\"");
+    uint32_t tag = moving ? MASU_BAKE_MOVING : MASU_BLOB_NONE;
+    if (path && (tag = masu_bake_group(content, path)) == MASU_BLOB_NONE) {
+        masu_bake_json at = masu_bake_json_member(model, "group");
+        return masu_bake_json_wrong(&at, "must be 1 to %u names with / between them",
+                                    MASU_BAKE_GROUP_LEVELS);
+    }
+    for (uint64_t i = first; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
+        MASU_BAKE_INSTANCES(content)[i].group = tag;
+    }
+    return true;
+}
+
 static bool place(const masu_bake_json *model, const masu_bake_content *piece,
                   masu_bake_residence *residence, masu_bake_content *content) {
     masu_bake_affine placement;
@@ -225,15 +247,17 @@ static bool place(const masu_bake_json *model, const masu_bake_content *piece,
         !masu_bake_json_string(model, "name", &name)) {
         return false;
     }
+    uint64_t first = masu_bake_count(content, MASU_BLOB_INSTANCES);
     const char *problem = masu_bake_place(content, piece, residence, &placement, &override, name);
-    return !problem || masu_bake_json_wrong(model, "gives %s", problem);
+    if (problem) return masu_bake_json_wrong(model, "gives %s", problem);
+    return read_group(model, content, first);
 }
 
 static bool read_model(const masu_bake_json *model, const char *directory,
                        const masu_bake_request *request, shelf **shelves,
                        masu_bake_content *content) {
-    static const char *const members[] = {"file",     "mesh",  "name", "translate", "rotate",
-                                          "rotate_y", "scale", "fit",  "material",  NULL};
+    static const char *const members[] = {"file",  "mesh", "name",     "translate", "rotate", "rotate_y",
+                                          "scale", "fit",  "material", "group",     "moving", NULL};
     const char *file = NULL;
     if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file)) {
         return false;

@@ -40,6 +40,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* The frame before, where the plan keeps it: its uniforms and its instances. */
 #define MASU_BIND_PREVIOUS 6
 #define MASU_BIND_PREVIOUS_INSTANCES 7
+/* Numbers of the instances that are drawn: gl_InstanceIndex counts these. */
+#define MASU_BIND_DRAWN 8
 
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
  *   0..2                  arguments of the indirect dispatch: active tiles, 1, 1

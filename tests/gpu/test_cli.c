@@ -87,8 +87,9 @@ static int remove_dir(void **state) {
 
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
-    static const char *const commands[] = {"", "render", "upscale", "plan", "march-bench"};
-    for (size_t i = 0; i < 5; i++) {
+    static const char *const commands[] = {"",     "render",      "upscale",
+                                           "plan", "march-bench", "cull-bench"};
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(masu("%s --help", commands[i]), 0);
         assert_true(strlen(out_text) > 200);
         assert_string_equal(err_text, "");

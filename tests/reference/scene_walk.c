@@ -1,6 +1,7 @@
 /* scene_walk.c: see scene_walk.h. */
 #include "reference/scene_walk.h"
 
+#include "cull.h"
 #include "scene.h"
 
 #include <math.h>
@@ -10,6 +11,7 @@ typedef struct walker {
     const masu_scene *scene;
     masu_scene_view view;
     const char *fault;
+    uint32_t groups, items; /* met by a walk from the root */
 } walker;
 
 static void expect(walker *w, int good, const char *fault) {
@@ -54,6 +56,8 @@ static void read_sections(walker *w) {
     read_section(w, v->primitives, s->primitives, sizeof *v->primitives, "primitives");
     read_section(w, v->meshes, s->meshes, sizeof *v->meshes, "meshes");
     read_section(w, v->instances, s->instances, sizeof *v->instances, "instances");
+    read_section(w, v->groups, s->groups, sizeof *v->groups, "groups");
+    read_section(w, v->group_items, s->group_items, sizeof *v->group_items, "group items");
     read_section(w, v->materials, s->materials, sizeof *v->materials, "materials");
     read_section(w, v->camera_keys, s->camera_keys, sizeof *v->camera_keys, "camera keys");
     read_section(w, v->environment, 1, sizeof *v->environment, "environment");
@@ -113,6 +117,47 @@ static void count_draws(walker *w) {
     expect(w, triangles == w->scene->triangles, "triangles were counted wrongly");
 }
 
+/* From the root down: what the walk of masu_cull would meet, with the bounds it relies on. */
+static void walk_group(walker *w, uint32_t i, uint32_t depth) {
+    const masu_blob_group *g = &w->view.groups[i];
+    w->groups++;
+    expect(w, depth < MASU_CULL_DEPTH, "a group lies too deep");
+    expect(w, w->groups <= w->scene->groups, "a group is met twice");
+    read_name(w, g->name);
+    for (uint32_t k = 0; k < 3; k++) {
+        expect(w, fabsf(g->center[k]) <= 1e30f && g->half[k] >= 0.0f && g->half[k] <= 1e30f,
+               "the bounds of a group");
+    }
+    for (uint32_t k = 0; k < g->item_count && !w->fault; k++) {
+        expect(w, (uint64_t)g->first_item + k < w->scene->group_items, "an item lies outside");
+        if (w->fault) return;
+        uint32_t item = w->view.group_items[g->first_item + k];
+        expect(w, item < w->scene->instances, "an item is no instance");
+        if (w->fault) return;
+        expect(w, w->view.instances[item].group == i, "an instance of another group");
+        expect(w, ++w->items <= w->scene->group_items, "an item is met twice");
+        const masu_blob_instance *n = &w->view.instances[item];
+        const masu_blob_mesh *mesh = &w->view.meshes[n->mesh];
+        for (uint32_t corner = 0; corner < 8; corner++) {
+            for (uint32_t row = 0; row < 3; row++) {
+                const float *t = n->transform + 4 * row;
+                double x = (double)t[3];
+                for (uint32_t c = 0; c < 3; c++) {
+                    x += (double)t[c] * (double)(corner >> c & 1 ? mesh->aabb_max[c]
+                                                                 : mesh->aabb_min[c]);
+                }
+                expect(w, fabs(x - (double)g->center[row]) <= (double)g->half[row],
+                       "a group does not hold the corner of an instance");
+            }
+        }
+    }
+    for (uint32_t k = 0; k < g->child_count && !w->fault; k++) {
+        expect(w, g->first_child > i && (uint64_t)g->first_child + k < w->scene->groups,
+               "a child lies outside");
+        if (!w->fault) walk_group(w, g->first_child + k, depth + 1);
+    }
+}
+
 static void read_geometry(walker *w) {
     const masu_scene_view *v = &w->view;
     for (uint32_t i = 0; i < w->scene->primitives && !w->fault; i++) {
@@ -135,6 +180,14 @@ static void read_geometry(walker *w) {
         read_name(w, n->name);
     }
     if (!w->fault) count_draws(w);
+    if (!w->fault && w->scene->groups) walk_group(w, 0, 0);
+    uint32_t grouped = 0;
+    for (uint32_t i = 0; i < w->scene->instances && !w->fault; i++) {
+        grouped += v->instances[i].group != MASU_BLOB_NONE;
+    }
+    expect(w, grouped == w->scene->group_items, "instances and items of groups");
+    expect(w, w->groups == w->scene->groups && w->items == w->scene->group_items,
+           "a walk does not meet each group and item once");
 }
 
 static void read_looks(walker *w) {

@@ -42,9 +42,16 @@ static const masu_blob_mesh meshes[] = {
 
 static const masu_blob_instance instances[] = {
     {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, NAME_PLATE, MASU_BLOB_NONE, 0},
-    {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, -4}, 0, MASU_BLOB_NONE, 0, 0},
-    {{0, 0, 1, 0, 0, 1, 0, 5, -1, 0, 0, 0}, 1, NAME_LID, 0, 0},
+    {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, -4}, 0, MASU_BLOB_NONE, 0, 1},
+    {{0, 0, 1, 0, 0, 1, 0, 5, -1, 0, 0, 0}, 1, NAME_LID, 0, MASU_BLOB_NONE},
 };
+
+static const masu_blob_group groups[] = {
+    {{0, 0, 0}, {16, 16, 16}, 1, 1, 0, 1, MASU_BLOB_NONE, 0},
+    {{3, 1, -4}, {8, 8, 8}, 0, 0, 1, 1, NAME_PLATE, 0},
+};
+
+static const uint32_t group_items[] = {0, 1};
 
 static const masu_blob_material materials[] = {
     {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, {0}},
@@ -102,7 +109,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
     header->magic = MASU_BLOB_MAGIC;
     header->version = MASU_BLOB_VERSION;
-    size_t sections = 1 + (parts & SUPPORT_RASTER ? 6u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
+    size_t sections = 1 + (parts & SUPPORT_RASTER ? 8u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
                       (parts & SUPPORT_SDF ? 8u : 0u) + 1;
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
@@ -113,6 +120,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_MESHES, meshes);
         ADD(MASU_BLOB_INSTANCES, instances);
         ADD(MASU_BLOB_MATERIALS, materials);
+        ADD(MASU_BLOB_GROUPS, groups);
+        ADD(MASU_BLOB_GROUP_ITEMS, group_items);
     }
     if (parts & SUPPORT_CAMERA) ADD(MASU_BLOB_CAMERA_KEYS, camera_keys);
     ADD(MASU_BLOB_ENVIRONMENT, environment);

@@ -9,7 +9,8 @@
  *   vertices   0-3 square   4-6 triangle   7-10 square          materials    0 "steel"  1 "glow"
  *   primitives 0: square, 2 triangles  1: triangle  2: square   camera keys  at 0 s, 1.5 s, 4 s
  *   meshes     0 "plate": primitives 0-1   1 "lid": primitive 2 sdf params   0 "radius"  1 "bend"
- *   instances  0, 1 of mesh 0, 2 of mesh 1                      slots        three; parts: one */
+ *   instances  0, 1 of mesh 0, 2 of mesh 1                      slots        three; parts: one
+ *   groups     0: instance 0 and group 1  1: instance 1; instance 2 is in none */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
 
@@ -27,7 +28,7 @@ enum {
     SUPPORT_ALL = 15
 };
 
-#define SUPPORT_BLOB_ROOM 4096u
+#define SUPPORT_BLOB_ROOM 8192u
 
 typedef struct support_blob {
     _Alignas(64) unsigned char bytes[SUPPORT_BLOB_ROOM];

@@ -26,6 +26,11 @@ static struct masu_instance_data instances[4];
 static uint64_t instance_names[4];
 static uint8_t instance_dirty[4];
 static masu_blob_sdf_param params[4];
+static masu_batch batches[4];
+static masu_cull_node groups[4];
+static uint8_t group_states[4], marks[4];
+static float boxes[6 * (4 + MASU_BOX_PADDING)], mesh_bounds[4][6];
+static uint32_t box_items[4], box_positions[4], moved[4], instance_meshes[4];
 
 VkCommandBuffer *frames = frame_handles, *loads = load_handles;
 
@@ -58,6 +63,16 @@ void make_renderer(uint32_t parts, uint64_t staging) {
     m.instance_dirty = instance_dirty;
     m.camera_keys = keys;
     m.sdf_params = params;
+    m.batches = batches;
+    m.groups = groups;
+    m.group_states = group_states;
+    m.marks = marks;
+    m.boxes = boxes;
+    m.mesh_bounds = mesh_bounds;
+    m.box_items = box_items;
+    m.box_positions = box_positions;
+    m.moved = moved;
+    m.instance_meshes = instance_meshes;
     m.load_count = masu_load_chunks(&m.plan);
     assert_true(m.load_count <= COUNT(load_handles));
     masu_keep_scene(&m);

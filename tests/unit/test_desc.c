@@ -72,6 +72,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].sharpness);
         SAME(rungs[r].march);
         SAME(rungs[r].march_steps);
+        SAME(rungs[r].frustum);
     }
     SAME(limits.vertices);
     SAME(limits.indices);
@@ -108,9 +109,9 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
-    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048};
-    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048};
-    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048};
+    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
+    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
+    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
     masu_desc resolved = masu_desc_resolved(&zero);
     assert_same_desc(&resolved, &expected);
     resolved = masu_desc_resolved(NULL);
@@ -127,8 +128,8 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.frames_in_flight = 2;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048};
-    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048};
+    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
+    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
 
@@ -160,7 +161,7 @@ static masu_desc full_desc(void) {
     d.rung_count = MASU_MAX_RUNGS;
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
         d.rungs[r] =
-            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1};
+            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1, MASU_OFF};
     }
     d.limits = (masu_limits){9, 10, 11, 12, 13};
     d.host_budget = 14;
@@ -278,6 +279,7 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)3);
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
     BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
+    BAD("rungs[].frustum", d.rungs[1].frustum = (masu_switch)3);
     masu_desc d = scene_desc(RASTER, 64, 64);
     static masu_frame_plan plan;
     d.rung_count = 1;
@@ -350,8 +352,8 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.targets.count = MASU_MAX_TARGETS;
     d.frames_in_flight = MASU_MAX_FLIGHT;
     d.readback = MASU_READBACK_ALL;
-    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1};
-    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256};
+    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1, MASU_ON};
+    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256, MASU_OFF};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;

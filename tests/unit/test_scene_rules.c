@@ -63,8 +63,17 @@ static void assert_refused(const char *what, uint64_t element) {
 #define MATERIAL AT(MATERIALS, masu_blob_material)
 #define KEY AT(CAMERA_KEYS, masu_blob_camera_key)
 #define SKY AT(ENVIRONMENT, masu_blob_environment)
+#define GROUP AT(GROUPS, masu_blob_group)
+#define ITEM AT(GROUP_ITEMS, uint32_t)
 #define FIELD AT(SDF, masu_blob_sdf)
 #define PARAM AT(SDF_PARAMS, masu_blob_sdf_param)
+
+/* No instance is in a group. */
+static void ungroup(void) {
+    for (uint32_t i = 0; i < 3; i++) INSTANCE[i].group = MASU_BLOB_NONE;
+    support_blob_drop(&blob, MASU_BLOB_GROUPS);
+    support_blob_drop(&blob, MASU_BLOB_GROUP_ITEMS);
+}
 
 /* A blob that has a section of that kind, as full as one can be. Returns the section's index. */
 static uint64_t write_with(uint32_t kind) {
@@ -186,7 +195,8 @@ static void a_vertex_that_is_not_finite_is_refused(void **state) {
             REFUSED("vertices", 0, VERTEX[0].position[k] = not_finite[i]);
         }
     }
-    ACCEPTED(VERTEX[3].position[0] = 3e38f, VERTEX[3].normal[0] = -32768);
+    ACCEPTED(VERTEX[3].position[0] = PRIMITIVE[0].aabb_max[0] = MESH[0].aabb_max[0] = 3e38f,
+             VERTEX[3].normal[0] = -32768, ungroup());
 }
 
 static void a_primitive_outside_its_sections_is_refused(void **state) {
@@ -229,6 +239,100 @@ static void bounds_that_are_not_finite_are_refused(void **state) {
             REFUSED("meshes", 1, MESH[1].aabb_max[k] = not_finite[i]);
         }
     }
+}
+
+static void bounds_that_do_not_hold_what_they_should_are_refused(void **state) {
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        REFUSED("primitives", 2, VERTEX[9].position[k] = 2.25f);
+        REFUSED("primitives", 2, VERTEX[9].position[k] = -2.25f);
+        REFUSED("meshes", 0, PRIMITIVE[1].aabb_max[k] = 2.25f);
+        REFUSED("meshes", 1, PRIMITIVE[2].aabb_min[k] = -2.25f);
+        REFUSED("groups", 0, GROUP[1].half[k] = 16.5f);
+        REFUSED("groups", 1, GROUP[1].half[k] = 0.5f);
+        REFUSED("groups", 1, INSTANCE[1].transform[4 * k + 3] += 12.0f);
+        REFUSED("groups", 0, INSTANCE[0].transform[5 * k] = 100.0f);
+    }
+    assert_non_null(strstr(detail.text, "do not hold its instances"));
+    ACCEPTED(INSTANCE[2].transform[3] = 1e6f); /* in no group */
+    /* A box that just holds a point would cut what rounding makes of it. */
+    REFUSED("groups", 1, GROUP[1].half[0] = 1.0f);
+    ACCEPTED(GROUP[1].half[0] = 1.0001f);
+}
+
+static void groups_that_are_no_tree_are_refused(void **state) {
+    (void)state;
+    REFUSED("groups", 0, GROUP[0].first_child = 0);
+    REFUSED("groups", 0, GROUP[0].first_child = 2);
+    REFUSED("groups", 0, GROUP[0].child_count = 2);
+    REFUSED("groups", 0, GROUP[0].child_count = UINT32_MAX);
+    REFUSED("groups", 1, GROUP[0].child_count = 0);
+    REFUSED("groups", 1, GROUP[1].child_count = 1, GROUP[1].first_child = 1);
+    REFUSED("groups", 1, GROUP[1].child_count = 1, GROUP[1].first_child = 0);
+    REFUSED("groups", 1, GROUP[1].name = (uint32_t)ROW(NAMES)->count);
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        REFUSED("groups", 0, GROUP[0].center[1] = not_finite[i]);
+        REFUSED("groups", 0, GROUP[0].half[2] = not_finite[i]);
+    }
+    REFUSED("groups", 0, GROUP[0].half[0] = -1.0f);
+    REFUSED("groups", 0, GROUP[0].half[0] = 2e30f);
+}
+
+/* A chain of groups, each the only child of the one before. */
+static void groups_below_64_levels_are_refused(void **state) {
+    (void)state;
+    for (uint32_t levels = 63; levels <= 66; levels++) {
+        support_blob_write(&blob, SUPPORT_RASTER);
+        masu_blob_group *to = (masu_blob_group *)(void *)(blob.bytes + (blob.size + 15) / 16 * 16);
+        masu_blob_section *row = ROW(GROUPS);
+        assert_true((unsigned char *)(to + levels) <= blob.bytes + sizeof blob.bytes);
+        for (uint32_t i = 0; i < levels; i++) {
+            to[i] = GROUP[0];
+            to[i].first_child = i + 1;
+            to[i].child_count = i + 1 < levels;
+            to[i].item_count = i < 2;
+            to[i].first_item = i;
+        }
+        row->offset = (uint64_t)((unsigned char *)to - blob.bytes);
+        row->count = levels;
+        blob.size = (size_t)row->offset + levels * sizeof *to;
+        if (levels > 64) {
+            assert_refused("groups", 64);
+            continue;
+        }
+        masu_scene scene;
+        support_blob_seal(blob.bytes, blob.size);
+        support_accepted(&blob, &scene);
+        assert_int_equal(scene.groups, levels);
+        assert_int_equal(scene.group_items, 2);
+    }
+}
+
+static void items_that_do_not_fit_their_group_are_refused(void **state) {
+    (void)state;
+    REFUSED("group items", 0, ITEM[0] = 3);
+    REFUSED("group items", 0, ITEM[0] = UINT32_MAX);
+    REFUSED("group items", 1, ITEM[1] = 0);
+    REFUSED("group items", 1, ITEM[1] = 2);
+    REFUSED("group items", 1, GROUP[1].item_count = 0); /* it is left over */
+    REFUSED("groups", 1, GROUP[1].item_count = 2);
+    REFUSED("groups", 1, GROUP[1].first_item = 0);
+    REFUSED("groups", 0, GROUP[0].item_count = UINT32_MAX);
+    REFUSED("group items", 1, INSTANCE[1].group = MASU_BLOB_NONE);
+    REFUSED("group items", 0, INSTANCE[0].group = 1);
+    REFUSED("instances", 2, INSTANCE[2].group = 1);
+    REFUSED("instances", 2, INSTANCE[2].group = 77);
+    /* Both in one group, in falling order or the same twice. */
+    REFUSED("group items", 1, GROUP[0].item_count = 2, GROUP[1].item_count = 0,
+            INSTANCE[1].group = 0, ITEM[0] = 1, ITEM[1] = 0);
+    REFUSED("group items", 1, GROUP[0].item_count = 2, GROUP[1].item_count = 0,
+            INSTANCE[1].group = 0, ITEM[0] = ITEM[1] = 1);
+    ACCEPTED(GROUP[0].item_count = 2, GROUP[1].item_count = 0, INSTANCE[1].group = 0);
+    REFUSED("groups", 0, support_blob_drop(&blob, MASU_BLOB_GROUP_ITEMS));
+    REFUSED("groups", 0, support_blob_drop(&blob, MASU_BLOB_GROUPS));
+    REFUSED("instances", 0, support_blob_drop(&blob, MASU_BLOB_GROUPS),
+            support_blob_drop(&blob, MASU_BLOB_GROUP_ITEMS));
+    ACCEPTED(ungroup());
 }
 
 static void a_mesh_outside_the_primitives_is_refused(void **state) {
@@ -384,6 +488,7 @@ static void parts_of_an_sdf_that_is_missing_are_refused(void **state) {
         support_blob_drop(&blob, MASU_BLOB_SDF);
         for (uint32_t kind = MASU_BLOB_SDF_PARAMS; kind < MASU_BLOB_KIND_COUNT; kind++) {
             if (kind == left || kind == MASU_BLOB_NAMES) continue;
+            if (kind == MASU_BLOB_GROUPS || kind == MASU_BLOB_GROUP_ITEMS) continue;
             support_blob_drop(&blob, (enum masu_blob_kind)kind);
         }
         assert_refused("sdf", 0); /* for this part alone */
@@ -415,7 +520,7 @@ static void code_compiled_for_other_instances_is_refused(void **state) {
     (void)state;
     REFUSED("sdf", 0, FIELD->has_raster = 0);
     REFUSED("sdf", 0, FIELD->has_raster = 2);
-    REFUSED("sdf", 0, support_blob_drop(&blob, MASU_BLOB_INSTANCES));
+    REFUSED("sdf", 0, ungroup(), support_blob_drop(&blob, MASU_BLOB_INSTANCES));
     support_blob_write(&blob, SUPPORT_SDF);
     FIELD->has_raster = 1;
     assert_refused("sdf", 0);
@@ -536,6 +641,10 @@ int main(void) {
         cmocka_unit_test(a_blob_without_an_environment_is_refused),
         cmocka_unit_test(an_environment_out_of_range_is_refused),
         cmocka_unit_test(a_sun_without_a_direction_is_refused),
+        cmocka_unit_test(bounds_that_do_not_hold_what_they_should_are_refused),
+        cmocka_unit_test(groups_that_are_no_tree_are_refused),
+        cmocka_unit_test(groups_below_64_levels_are_refused),
+        cmocka_unit_test(items_that_do_not_fit_their_group_are_refused),
         cmocka_unit_test(parts_of_an_sdf_that_is_missing_are_refused),
         cmocka_unit_test(an_sdf_out_of_range_is_refused),
         cmocka_unit_test(code_compiled_for_other_instances_is_refused),
