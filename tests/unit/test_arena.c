@@ -14,7 +14,8 @@
 #include "arena.h"
 #include "support_random.h"
 
-#define ROWS_MOST 20u /* more than the report keeps */
+#define ROWS_MOST (MASU_ARENA_ROWS + 4u) /* more than the report keeps */
+#define ROWS_RANDOM 20u
 #define BLOCK_BYTES (64u << 10)
 #define GUARD_BYTES 256u
 #define NOISE 0xA5
@@ -29,8 +30,10 @@ typedef struct row_set {
     uint32_t count;
 } row_set;
 
-static const char *const row_names[ROWS_MOST] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j",
-                                                 "k", "l", "m", "n", "o", "p", "q", "r", "s", "t"};
+static const char *const row_names[ROWS_MOST] = {
+    "a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l",
+    "m", "n", "o", "p", "q", "r", "s", "t", "u", "v", "w", "x",
+    "y", "z", "a2", "b2", "c2", "d2", "e2", "f2", "g2", "h2", "i2", "j2"};
 
 /* guard | block | guard; the block starts at a multiple of MASU_ARENA_ALIGNMENT. */
 static _Alignas(64) unsigned char memory[GUARD_BYTES + BLOCK_BYTES + GUARD_BYTES];
@@ -39,7 +42,7 @@ static unsigned char *const block = memory + GUARD_BYTES;
 static row_set random_rows(uint64_t seed) {
     static const uint64_t sizes[] = {1, 2, 4, 8, 12, 16, 48, 57, 100, 640};
     row_set set = {.count = 0};
-    uint32_t n = (uint32_t)support_random_in(&seed, 1, ROWS_MOST);
+    uint32_t n = (uint32_t)support_random_in(&seed, 1, ROWS_RANDOM);
     for (; set.count < n; set.count++) {
         uint64_t count = support_random(&seed) % 5 ? support_random(&seed) % 40 : 0;
         set.rows[set.count] =
