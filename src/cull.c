@@ -85,8 +85,8 @@ int masu_cull_holds(const masu_cull_box *outer, const masu_cull_box *inner) {
 masu_cull_box masu_cull_around(const masu_cull_box *boxes, uint32_t n) {
     double low[3], high[3];
     for (uint32_t k = 0; k < 3; k++) {
-        low[k] = INFINITY;
-        high[k] = -INFINITY;
+        low[k] = (double)INFINITY;
+        high[k] = -(double)INFINITY;
         for (uint32_t i = 0; i < n; i++) {
             double c = (double)boxes[i].center[k], h = (double)boxes[i].half[k];
             if (!(c - h >= low[k])) low[k] = c - h;

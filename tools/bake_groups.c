@@ -162,7 +162,7 @@ static size_t split(thing *things, size_t n, uint32_t level) {
     }
     grown[0] = things[n - 1].box;
     size_t best = n / 2;
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (size_t i = n - 1; i >= n / 4 && i > 0; i--) {
         grown[1] = things[i].box;
         grown[0] = masu_cull_around(grown, 2);

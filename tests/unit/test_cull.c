@@ -329,7 +329,7 @@ static void boxes_beyond_the_slack_are_culled(void **state) {
 
 static void planes_that_are_no_planes_reject_nothing(void **state) {
     (void)state;
-    static const double normals[][3] = {{0, 0, 0}, {(double)NAN, 0, 1}, {INFINITY, 0, 0}, {0, 0, 0}};
+    static const double normals[][3] = {{0, 0, 0}, {(double)NAN, 0, 1}, {(double)INFINITY, 0, 0}, {0, 0, 0}};
     masu_cull_view view = {.count = 0};
     for (size_t i = 0; i < COUNT(normals); i++) masu_cull_add_plane(&view, normals[i], -1.0);
     masu_cull_add_plane(&view, (const double[3]){1, 0, 0}, (double)NAN);
