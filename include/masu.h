@@ -141,6 +141,7 @@ typedef struct masu_scene {
     const void *blob; /* the caller's; see masu_scene_bind */
     uint64_t blob_bytes;
     uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
+    uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
     uint32_t groups, group_items; /* what is culled together; instances in groups */
     uint32_t sdf;        /* 1: the scene has an SDF */
     uint32_t sdf_params; /* run-time parameters of it */
@@ -149,6 +150,7 @@ typedef struct masu_scene {
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
     uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
     uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
+    uint32_t most_instances, most_primitives; /* of one mesh */
     uint32_t draws;      /* draw calls of one G-buffer pass */
     uint64_t triangles;  /* of one frame: every instance counted */
 } masu_scene;
@@ -169,7 +171,7 @@ MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name)
 #define MASU_MAX_RUNGS 8u
 #define MASU_MAX_TARGETS 8u
 #define MASU_MAX_FLIGHT 3u
-#define MASU_MAX_PASSES 24u
+#define MASU_MAX_PASSES 32u
 #define MASU_MAX_RESOURCES 32u
 #define MASU_MAX_SDF_PARAMS 256u
 #define MASU_MAX_VIEWS 5u
@@ -202,6 +204,7 @@ typedef struct masu_rung {
     uint32_t march_steps; /* most SDF steps per ray, 1..2048; 0: 2048 */
     masu_switch frustum; /* instances outside of the picture are not drawn, which the picture does not
                             show. AUTO: on */
+    masu_switch occlusion; /* nor those that occluders hide. AUTO: on, if the scene has occluders */
 } masu_rung;
 
 /* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
@@ -213,7 +216,7 @@ typedef struct masu_limits {
     uint64_t indices;    /* 4 bytes each, device */
     uint64_t materials;  /* 32 bytes each, device */
     uint64_t instances;  /* 52 bytes each per frame in flight, device, and 98 bytes each, host; with
-                            velocities 100 and 146 */
+                            velocities 100 and 146; with occlusion 36 more on the device */
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
 } masu_limits;
 
@@ -302,6 +305,8 @@ typedef struct masu_debug {
                         the instance */
     uint32_t poison; /* not 0: fills all transient image memory with NaN patterns before each frame;
                         the picture must not change. A value of 2 uses infinities */
+    uint32_t casters; /* not 0: culls for the sun as well, with all of the scene in its view, for the
+                         numbers in masu_stats */
 } masu_debug;
 
 /* Switches off what would be used where the device offers it: to test the other path, or around a
@@ -528,6 +533,9 @@ typedef struct masu_view_stats {
     uint64_t groups;      /* looked at */
     uint64_t plane_tests; /* of groups and of instances, a plane each */
     uint64_t instances, draws, triangles; /* kept */
+    uint64_t occluders;                   /* drawn */
+    /* With debug.counters, where occlusion was on: */
+    uint64_t visible_instances, visible_triangles; /* not hidden by occluders */
 } masu_view_stats;
 
 typedef struct masu_stats_info {
@@ -544,7 +552,9 @@ typedef struct masu_stats_info {
     uint64_t shadow_evals, occlusion_evals; /* of the field by SDF shadows, SDF ambient occlusion */
     uint64_t shadow_unconverged;            /* shadow rays that used up their steps */
     uint64_t replaced; /* pixel components that were not finite and were replaced; should be 0 */
-    uint64_t draws, triangles; /* submitted to the G-buffer; draws of no instance do not count */
+    uint64_t draws; /* submitted to the G-buffer, but those of no instance; before occlusion */
+    uint64_t triangles; /* the same; with debug.counters after occlusion */
+    uint64_t occlusion_tests; /* with debug.counters */
     uint32_t view_count;
     masu_view_stats views[MASU_MAX_VIEWS]; /* 0: the camera */
 } masu_stats_info;

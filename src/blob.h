@@ -53,7 +53,8 @@ enum masu_blob_kind {
     MASU_BLOB_OCCLUSION_SPIRV = 24,       /* with SDF shadows or SDF ambient occlusion */
     MASU_BLOB_GROUPS = 25,      /* what is culled together; a tree, group 0 is its root */
     MASU_BLOB_GROUP_ITEMS = 26, /* uint32: instances, group after group; present with GROUPS */
-    MASU_BLOB_KIND_COUNT = 27
+    MASU_BLOB_OCCLUDERS = 27,   /* boxes inside of meshes, sorted by mesh */
+    MASU_BLOB_KIND_COUNT = 28
 };
 
 typedef struct masu_blob_header {
@@ -119,6 +120,14 @@ typedef struct masu_blob_group {
     uint32_t reserved;
 } masu_blob_group;
 
+/* A box that the mesh hides as a whole, from every side: what is behind it is behind the mesh. */
+typedef struct masu_blob_occluder {
+    float low[3]; /* object space, inside of the mesh's bounds */
+    float high[3];
+    uint32_t mesh;
+    uint32_t reserved;
+} masu_blob_occluder;
+
 typedef struct masu_blob_material {
     float base_color[3]; /* linear, 0..1 */
     float roughness;     /* perceptual, 0..1 */
@@ -183,6 +192,7 @@ _Static_assert(sizeof(masu_blob_primitive) == 48, "blob primitive");
 _Static_assert(sizeof(masu_blob_mesh) == 40, "blob mesh");
 _Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
+_Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
 _Static_assert(sizeof(masu_blob_material) == 48, "blob material");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
 _Static_assert(sizeof(masu_blob_environment) == 80, "blob environment");

@@ -15,6 +15,8 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
                           MASU_READBACK_DEPTH},
     [MASU_IMAGE_SCENE_DEPTH] = {"scene_depth", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_RENDER,
                                 MASU_CLASS_DEPTH, MASU_READBACK_DEPTH},
+    [MASU_IMAGE_OCCLUDERS] = {"occluders", VK_FORMAT_D32_SFLOAT, MASU_EXTENT_ATLAS,
+                              MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_CONE8] = {"cone8", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK8, MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_CONE4] = {"cone4", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK4, MASU_CLASS_OTHER, 0},
     /* rgba16f: of the formats that hold a signed motion, the smallest that every device takes both
@@ -44,6 +46,11 @@ static int needs_gbuffer(const masu_needs *n, const char **why) {
     if (n->sdf) return decided(0, NULL, "no instances; the march writes every pixel", why);
     return decided(n->scene, "clears: the scene is empty but for its sky",
                    "no scene: a source image is upscaled", why);
+}
+
+static int needs_occlusion(const masu_needs *n, const char **why) {
+    return decided(n->occlusion, "the scene has occluders",
+                   n->occluders ? "rung.occlusion is off" : "the scene has no occluders", why);
 }
 
 static int has_tiles(masu_march march) {
@@ -120,20 +127,20 @@ static int needs_fragment(const masu_needs *n, const char **why) {
     return needs_variant(n, MASU_MARCH_FRAGMENT, why);
 }
 
-static int needs_occlusion(const masu_needs *n, const char **why) {
-    return decided(n->occlusion, "the scene asks for SDF shadows or SDF ambient occlusion",
+static int needs_sdf_occlusion(const masu_needs *n, const char **why) {
+    return decided(n->sdf_occlusion, "the scene asks for SDF shadows or SDF ambient occlusion",
                    n->sdf ? "the scene asks for no SDF shadows or SDF ambient occlusion"
                           : "the scene has no SDF",
                    why);
 }
 
 static int needs_light(const masu_needs *n, const char **why) {
-    return decided(n->scene && !n->occlusion, "a scene is lit",
+    return decided(n->scene && !n->sdf_occlusion, "a scene is lit",
                    n->scene ? "light_occluded does it" : "no scene: a source image is upscaled", why);
 }
 
 static int needs_light_occluded(const masu_needs *n, const char **why) {
-    return decided(n->occlusion, "a scene is lit, and sdf_occlusion says how much arrives",
+    return decided(n->sdf_occlusion, "a scene is lit, and sdf_occlusion says how much arrives",
                    n->scene ? "light does it" : "no scene: a source image is upscaled", why);
 }
 
@@ -194,10 +201,23 @@ static void rcas_params(const masu_rung *rung, struct masu_push *push) {
 
 const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
     /* clang-format off */
+    [MASU_PASS_OCCLUDERS] = {
+        "occluders", "depth of what hides much, at low resolution, for the camera and the sun",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_ATLAS, needs_occlusion, NULL,
+        {{MASU_IMAGE_OCCLUDERS, MASU_WRITE_DEPTH}}, 0},
+    [MASU_PASS_CULL] = {
+        "cull", "which of the instances in view the occluders hide",
+        MASU_PASS_COMPUTE, MASU_EXTENT_KEPT, needs_occlusion, NULL,
+        {{MASU_IMAGE_OCCLUDERS, MASU_READ}, {MASU_RESOURCE_SEEN, MASU_WRITE_BUFFER}}, 0},
+    [MASU_PASS_COMPACT] = {
+        "compact", "lists and counts of the rest, for the indirect draws",
+        MASU_PASS_COMPUTE, MASU_EXTENT_BATCHES, needs_occlusion, NULL,
+        {{MASU_RESOURCE_SEEN, MASU_READ_BUFFER}, {MASU_RESOURCE_DRAWS, MASU_WRITE_BUFFER}}, 0},
     [MASU_PASS_GBUFFER] = {
         "gbuffer", "polygons: albedo, normal, roughness, metallic, depth, velocity where it is read",
         MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_gbuffer, NULL,
-        {{MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR}, {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR},
+        {{MASU_RESOURCE_DRAWS, MASU_READ_BUFFER},
+         {MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR}, {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR},
          {MASU_IMAGE_VELOCITY, MASU_WRITE_COLOR}, {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}, 0},
     [MASU_PASS_UPDATE] = {
         "update", "SDF: slots that depend on parameters, time or the anchor",
@@ -262,7 +282,7 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
          {MASU_IMAGE_VELOCITY, MASU_UPDATE}}, MASU_BLOB_VELOCITY_SPIRV},
     [MASU_PASS_SDF_OCCLUSION] = {
         "sdf_occlusion", "SDF: seen part of the sun and of the ambient light, per surface",
-        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_occlusion, occlusion_params,
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_sdf_occlusion, occlusion_params,
         {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
          {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER}, {MASU_IMAGE_OCCLUSION, MASU_WRITE}}, MASU_BLOB_OCCLUSION_SPIRV},
     [MASU_PASS_LIGHT] = {
@@ -312,7 +332,10 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
                      : extent == MASU_EXTENT_BLOCK4 ? 4
                      : extent == MASU_EXTENT_TILE   ? MASU_TILE
                                                     : 1;
-    if (extent == MASU_EXTENT_ONE) return (VkExtent2D){1, 1};
+    if (extent == MASU_EXTENT_ATLAS)
+        return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
+    if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES)
+        return (VkExtent2D){1, 1};
     VkExtent2D size = extent == MASU_EXTENT_OUTPUT ? output : render;
     return (VkExtent2D){(size.width + block - 1) / block, (size.height + block - 1) / block};
 }

@@ -17,6 +17,7 @@ typedef enum masu_image_id {
     MASU_IMAGE_NORMAL,      /* packed octahedral normal, metallic, flags */
     MASU_IMAGE_DEPTH,       /* raster depth, reverse-Z */
     MASU_IMAGE_SCENE_DEPTH, /* the nearer of raster and SDF, same encoding */
+    MASU_IMAGE_OCCLUDERS,   /* depth of occluders, the farthest of each texel */
     MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
     MASU_IMAGE_CONE4,       /* the same of each 4x4 block */
     MASU_IMAGE_VELOCITY,    /* where the surface was in the frame before */
@@ -30,6 +31,8 @@ typedef enum masu_image_id {
     MASU_IMAGE_COUNT,
     MASU_RESOURCE_TILES, /* not images: buffers of set 0, in rows for their barriers alone */
     MASU_RESOURCE_SLOTS,
+    MASU_RESOURCE_SEEN,
+    MASU_RESOURCE_DRAWS,
     MASU_RESOURCE_END,
     /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row
      * has written. */
@@ -50,7 +53,10 @@ typedef enum masu_image_extent {
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
     MASU_EXTENT_TILES, /* the same, for active tiles only: indirect */
-    MASU_EXTENT_ONE    /* one workgroup */
+    MASU_EXTENT_ONE,   /* one workgroup */
+    MASU_EXTENT_ATLAS, /* of occluders */
+    MASU_EXTENT_KEPT,    /* an invocation per instance and view */
+    MASU_EXTENT_BATCHES  /* see compact.comp */
 } masu_image_extent;
 
 typedef struct masu_image_row {
@@ -97,10 +103,11 @@ typedef struct masu_needs {
     int blit;          /* targets are filled by a blit */
     int dynamic;       /* slots of the SDF depend on parameters or time */
     int anchored;      /* and on where the eye is: the SDF reaches far from the origin */
+    int occluders;     /* the scene has some */
     int velocity;      /* something reads velocities: the frame before is kept */
-    int occlusion;     /* the SDF casts shadows or occludes ambient light */
+    int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
     /* of one rung: */
-    int upscale, sharpen;
+    int upscale, sharpen, occlusion;
     masu_march march;
 } masu_needs;
 
@@ -118,6 +125,9 @@ typedef struct masu_pass_row {
 } masu_pass_row;
 
 typedef enum masu_pass_id {
+    MASU_PASS_OCCLUDERS,
+    MASU_PASS_CULL,
+    MASU_PASS_COMPACT,
     MASU_PASS_GBUFFER,
     MASU_PASS_UPDATE,
     MASU_PASS_UPDATE_PREVIOUS,

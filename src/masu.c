@@ -39,6 +39,8 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
     to->previous_instances = masu_arena_take(arena, "previous transforms", before * s->instances,
                                              sizeof *to->previous_instances, 16);
     to->batches = masu_arena_take(arena, "batches", s->meshes, sizeof *to->batches, 8);
+    to->occluders =
+        masu_arena_take(arena, "occluders", s->occluders, sizeof *to->occluders, 4);
     to->mesh_bounds = masu_arena_take(arena, "mesh bounds", s->meshes, sizeof *to->mesh_bounds, 4);
     to->groups = masu_arena_take(arena, "groups", s->groups, sizeof *to->groups, 4);
     to->group_states = masu_arena_take(arena, "group states", (uint64_t)plan->views * s->groups,
@@ -91,6 +93,21 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
                          "instances need a storage buffer of %llu bytes, the device has %u",
                          (unsigned long long)plan->buffers[MASU_BUFFER_INSTANCES].stride,
                          limits->maxStorageBufferRange);
+    }
+    const masu_buffer_plan *drawn = &plan->buffers[MASU_BUFFER_DRAWN];
+    if (drawn->stride > limits->maxStorageBufferRange) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxStorageBufferRange", drawn->stride,
+                         limits->maxStorageBufferRange,
+                         "drawn instances need a storage buffer of %llu bytes, the device has %u",
+                         (unsigned long long)drawn->stride, limits->maxStorageBufferRange);
+    }
+    /* What set 0 shows to compute shaders: counters, tiles, slots; draws, drawn, seen. */
+    if (plan->occlusion && limits->maxPerStageDescriptorStorageBuffers < 6) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", 6,
+                         limits->maxPerStageDescriptorStorageBuffers,
+                         "occlusion culling needs 6 storage buffers in a stage, the device has %u: "
+                         "set rungs[].occlusion to MASU_OFF",
+                         limits->maxPerStageDescriptorStorageBuffers);
     }
     result = masu_objects_create(vk, plan, objects, detail);
     if (result) masu_objects_destroy(vk, objects);
@@ -229,10 +246,10 @@ void masu_destroy(masu_renderer *m) {
     vk->DestroyQueryPool(device, m->queries, vk->allocator);
     vk->DestroyCommandPool(device, m->command_pool, vk->allocator);
     vk->DestroyDescriptorPool(device, m->descriptor_pool, vk->allocator);
-    vk->DestroyFramebuffer(device, m->framebuffer, vk->allocator);
-    vk->DestroyRenderPass(device, m->render_pass, vk->allocator);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         vk->DestroyPipeline(device, m->pipelines[p], vk->allocator);
+        vk->DestroyFramebuffer(device, m->framebuffers[p], vk->allocator);
+        vk->DestroyRenderPass(device, m->render_passes[p], vk->allocator);
         vk->DestroyPipelineLayout(device, m->layouts[p], vk->allocator);
         vk->DestroyDescriptorSetLayout(device, m->pass_layouts[p], vk->allocator);
     }
@@ -282,7 +299,10 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (d->scene) {
         masu_write_instances(m, slot, masu_is_cut(m, frame));
         int culls = d->rungs[frame->rung].frustum != MASU_OFF;
-        masu_write_visible(m, slot, 0, culls ? &m->camera_view : NULL);
+        for (uint32_t v = 0; v < m->plan.views; v++)
+            masu_write_visible(m, slot, v, culls ? &m->view_planes[v] : NULL);
+        if (m->plan.rungs[frame->rung].active >> MASU_PASS_CULL & 1u)
+            masu_write_stage2(m, slot, masu_is_cut(m, frame));
     }
     m->slot_frame[slot] = m->frame;
     m->slot_rung[slot] = frame->rung;
@@ -320,6 +340,16 @@ static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     out->timed = 1;
 }
 
+static void read_stage2(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
+    out->occlusion_tests = counter(m, slot, MASU_COUNTER_OCCLUSION_TESTS);
+    for (uint32_t v = 0; v < out->view_count; v++) {
+        uint32_t c = MASU_COUNTER_VISIBLE_INSTANCES + (v ? 2 : 0);
+        out->views[v].visible_instances = counter(m, slot, c);
+        out->views[v].visible_triangles = counter(m, slot, c + 1);
+    }
+    out->triangles = out->views[0].visible_triangles;
+}
+
 masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
     if (!m || !out || slot >= m->plan.desc.frames_in_flight) return MASU_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
@@ -340,6 +370,7 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
         out->shadow_evals = counter(m, slot, MASU_COUNTER_SHADOW_EVALS);
         out->occlusion_evals = counter(m, slot, MASU_COUNTER_OCCLUSION_EVALS);
         out->shadow_unconverged = counter(m, slot, MASU_COUNTER_SHADOW_UNCONVERGED);
+        if (m->plan.rungs[out->rung].active >> MASU_PASS_CULL & 1u) read_stage2(m, slot, out);
     }
     if (m->queries) read_times(m, slot, out);
     return MASU_OK;

@@ -6,6 +6,8 @@
 #include "error.h"
 #include "shared/masu_shared.h"
 
+#include "compact_comp.spv.h"
+#include "cull_comp.spv.h"
 #include "easu_comp.spv.h"
 #include "fullscreen_vert.spv.h"
 #include "gbuffer_frag.spv.h"
@@ -14,6 +16,8 @@
 #include "gbuffer_vert.spv.h"
 #include "light_comp.spv.h"
 #include "light_occluded_comp.spv.h"
+#include "occluders_frag.spv.h"
+#include "occluders_vert.spv.h"
 #include "rcas_comp.spv.h"
 #include "tonemap_comp.spv.h"
 #include "velocity_comp.spv.h"
@@ -35,6 +39,8 @@ static spirv scene_code(const masu_renderer *m, uint32_t pass) {
 static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     if (masu_passes[pass].code) return scene_code(m, pass);
     switch (pass) {
+    case MASU_PASS_CULL: return (spirv){masu_spv_cull_comp, sizeof masu_spv_cull_comp};
+    case MASU_PASS_COMPACT: return (spirv){masu_spv_compact_comp, sizeof masu_spv_compact_comp};
     case MASU_PASS_VELOCITY: return (spirv){masu_spv_velocity_comp, sizeof masu_spv_velocity_comp};
     case MASU_PASS_LIGHT: return (spirv){masu_spv_light_comp, sizeof masu_spv_light_comp};
     case MASU_PASS_LIGHT_OCCLUDED:
@@ -78,10 +84,19 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_PREVIOUS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
         {MASU_BIND_PREVIOUS_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
          VK_SHADER_STAGE_VERTEX_BIT, NULL},
-        {MASU_BIND_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, NULL}};
+        {MASU_BIND_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, NULL},
+        /* The rest only for stage 2 of culling: devices need to have no more than four in a stage. */
+        {MASU_BIND_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute, NULL},
+        {MASU_BIND_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute, NULL}};
+    uint32_t count = sizeof bindings / sizeof *bindings;
+    if (!m->plan.occlusion) count -= 2;
+    for (uint32_t i = 0; i < count; i++) {
+        if (bindings[i].binding == MASU_BIND_DRAWN && m->plan.occlusion)
+            bindings[i].stageFlags |= compute;
+    }
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = sizeof bindings / sizeof *bindings,
+                                            .bindingCount = count,
                                             .pBindings = bindings};
     VkResult r =
         m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, &m->global_layout);
@@ -173,7 +188,7 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
 
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
- * A plan has one graphics row at most (polygons, or the SDF as a fragment shader). */
+ */
 static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
@@ -214,23 +229,25 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
                                    .pAttachments = attachments,
                                    .subpassCount = 1,
                                    .pSubpasses = &subpass};
-    VkResult r = m->vk.CreateRenderPass(m->vk.device, &info, m->vk.allocator, &m->render_pass);
-    if (MASU_FAILED(r, m->render_pass)) return masu_fail_vulkan(detail, r, "vkCreateRenderPass");
+    VkResult r = m->vk.CreateRenderPass(m->vk.device, &info, m->vk.allocator,
+                                         &m->render_passes[pass]);
+    if (MASU_FAILED(r, m->render_passes[pass])) return masu_fail_vulkan(detail, r, "vkCreateRenderPass");
     VkFramebufferCreateInfo frame = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
-                                     .renderPass = m->render_pass,
+                                     .renderPass = m->render_passes[pass],
                                      .attachmentCount = n,
                                      .pAttachments = views,
                                      .width = width,
                                      .height = height,
                                      .layers = 1};
-    r = m->vk.CreateFramebuffer(m->vk.device, &frame, m->vk.allocator, &m->framebuffer);
-    return MASU_FAILED(r, m->framebuffer) ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer")
+    r = m->vk.CreateFramebuffer(m->vk.device, &frame, m->vk.allocator, &m->framebuffers[pass]);
+    return MASU_FAILED(r, m->framebuffers[pass]) ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer")
                                           : MASU_OK;
 }
 
 static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
                                          const VkShaderModule modules[2]) {
-    int polygons = pass == MASU_PASS_GBUFFER; /* else one triangle without vertices or depth */
+    int polygons = pass == MASU_PASS_GBUFFER; /* else what the vertex shader makes up */
+    int boxes = pass == MASU_PASS_OCCLUDERS;  /* no colour; else one triangle, no depth */
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
         stages[i] = (VkPipelineShaderStageCreateInfo){
@@ -269,8 +286,8 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
         .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
     VkPipelineDepthStencilStateCreateInfo depth = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = polygons ? VK_TRUE : VK_FALSE,
-        .depthWriteEnable = polygons ? VK_TRUE : VK_FALSE,
+        .depthTestEnable = polygons || boxes ? VK_TRUE : VK_FALSE,
+        .depthWriteEnable = polygons || boxes ? VK_TRUE : VK_FALSE,
         .depthCompareOp = VK_COMPARE_OP_GREATER};
     VkPipelineColorBlendAttachmentState blend[3];
     memset(blend, 0, sizeof blend);
@@ -280,7 +297,7 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
     }
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = polygons && !m->plan.needs.velocity ? 2 : 3,
+        .attachmentCount = boxes ? 0 : polygons && !m->plan.needs.velocity ? 2 : 3,
         .pAttachments = blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamics = {
@@ -299,7 +316,7 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
                                          .pColorBlendState = &blending,
                                          .pDynamicState = &dynamics,
                                          .layout = m->layouts[pass],
-                                         .renderPass = m->render_pass};
+                                         .renderPass = m->render_passes[pass]};
     return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1, &info,
                                          m->vk.allocator, &m->pipelines[pass]);
 }
@@ -316,7 +333,10 @@ static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *d
         fragment =
             (spirv){masu_spv_gbuffer_velocity_frag, sizeof masu_spv_gbuffer_velocity_frag};
     }
-    if (!polygons) {
+    if (pass == MASU_PASS_OCCLUDERS) {
+        vertex = (spirv){masu_spv_occluders_vert, sizeof masu_spv_occluders_vert};
+        fragment = (spirv){masu_spv_occluders_frag, sizeof masu_spv_occluders_frag};
+    } else if (!polygons) {
         vertex = (spirv){masu_spv_fullscreen_vert, sizeof masu_spv_fullscreen_vert};
         fragment = scene_code(m, pass);
     }

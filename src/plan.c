@@ -62,8 +62,9 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
     if ((unsigned)rung->march > MASU_MARCH_UNPRUNED) {
         return bad_range(detail, "rungs[].march", (unsigned)rung->march, 0, MASU_MARCH_UNPRUNED);
     }
-    const masu_switch switches[] = {rung->upscale, rung->sharpen, rung->frustum};
-    static const char *const names[] = {"rungs[].upscale", "rungs[].sharpen", "rungs[].frustum"};
+    const masu_switch switches[] = {rung->upscale, rung->sharpen, rung->frustum, rung->occlusion};
+    static const char *const names[] = {"rungs[].upscale", "rungs[].sharpen", "rungs[].frustum",
+                                        "rungs[].occlusion"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if ((unsigned)switches[i] <= MASU_ON) continue;
         return bad_range(detail, names[i], (unsigned)switches[i], MASU_AUTO, MASU_ON);
@@ -235,6 +236,10 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         rp->active |= 1u << p;
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_image_id image = resolve(row->access[a].image, depth, color);
+            if (p == MASU_PASS_GBUFFER && image == (masu_image_id)MASU_RESOURCE_DRAWS &&
+                !plan->needs.occlusion) {
+                continue; /* the host has written them */
+            }
             if (image < MASU_IMAGE_COUNT && !keeps_access(plan, (masu_pass_id)p, image)) continue;
             rp->access[p][rp->access_count[p]++] =
                 (masu_access){(uint8_t)image, row->access[a].usage};
@@ -298,6 +303,29 @@ static void gather_images(masu_frame_plan *plan) {
     }
 }
 
+static void lay_drawn(masu_frame_plan *plan) {
+    const masu_scene *s = plan->desc.scene;
+    masu_drawn_plan *d = &plan->drawn;
+    uint64_t lists = (uint64_t)plan->views * s->instances, next = lists;
+    if (plan->occlusion) {
+        const struct {
+            uint64_t *offset, words;
+        } rows[] = {{&d->header, MASU_CULL_HEADER + plan->views * MASU_CULL_VIEW_WORDS},
+                    {&d->lists, lists},
+                    {&d->kept, lists + plan->views},
+                    {&d->batches, 4 * (uint64_t)s->meshes},
+                    {&d->large, s->meshes},
+                    {&d->boxes, 6 * (uint64_t)s->instances},
+                    {&d->occluders, 6 * (uint64_t)s->occluders},
+                    {&d->pairs, 2 * (uint64_t)plan->views * s->placed_occluders}};
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            *rows[i].offset = next;
+            next += rows[i].words;
+        }
+    }
+    d->words = next;
+}
+
 /* What only a scene needs. Returns the bytes of one readback slot that its counters take. */
 static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                                    uint64_t storage_alignment) {
@@ -327,11 +355,15 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
             halves * masu_align_up((uint64_t)s->instances * sizeof(struct masu_instance_data),
                                    storage_alignment);
         b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
+        lay_drawn(plan);
         b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * s->draws;
+        if (plan->occlusion) b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + plan->views;
         b[MASU_BUFFER_DRAWS].stride =
             masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
         b[MASU_BUFFER_DRAWS].bytes = flights * b[MASU_BUFFER_DRAWS].stride;
-        b[MASU_BUFFER_DRAWN].count = (uint64_t)plan->views * s->instances;
+        if (plan->occlusion) b[MASU_BUFFER_SEEN].count = (uint64_t)plan->views * s->instances;
+        b[MASU_BUFFER_SEEN].bytes = b[MASU_BUFFER_SEEN].count * sizeof(uint32_t);
+        b[MASU_BUFFER_DRAWN].count = plan->drawn.words;
         b[MASU_BUFFER_DRAWN].stride =
             masu_align_up(b[MASU_BUFFER_DRAWN].count * sizeof(uint32_t), storage_alignment);
         b[MASU_BUFFER_DRAWN].bytes = flights * b[MASU_BUFFER_DRAWN].stride;
@@ -395,6 +427,8 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     b[MASU_BUFFER_DRAWS] = (masu_buffer_plan){.name = "draw commands",
                                               .role = MASU_ROLE_UPLOAD,
                                               .usage = VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
+    if (plan->occlusion) b[MASU_BUFFER_DRAWS].usage |= storage;
+    b[MASU_BUFFER_SEEN] = (masu_buffer_plan){.name = "seen", .usage = storage};
     b[MASU_BUFFER_DRAWN] = (masu_buffer_plan){
         .name = "drawn instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
     b[MASU_BUFFER_STAGING] = (masu_buffer_plan){
@@ -434,11 +468,12 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .sdf = d->scene && d->scene->sdf,
                                .dynamic = d->scene && d->scene->sdf_dynamic,
                                .anchored = d->scene && d->scene->sdf_anchored,
-                               .occlusion = d->scene && d->scene->sdf_occlusion,
+                               .sdf_occlusion = d->scene && d->scene->sdf_occlusion,
                                .readback = d->readback,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0,
                                .blit = !d->targets.storage};
-    plan->views = 1;
+    plan->views = d->debug.casters && plan->needs.raster ? 2 : 1;
+    plan->needs.occluders = d->scene && d->scene->placed_occluders > 0;
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];
         rp->render_width = d->scene ? scaled(d->output.width, d->rungs[r].scale) : d->source.width;
@@ -466,6 +501,17 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              r, (int)plan->needs.march);
         }
         resolve_switches(d, rp, &d->rungs[r], &plan->needs);
+        plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
+        plan->occlusion |= plan->needs.occlusion;
+        if (plan->needs.occlusion && (d->scene->most_primitives > MASU_CULL_ROUNDS ||
+                                      d->scene->most_instances > 64 * MASU_CULL_ROUNDS)) {
+            return masu_fail(detail, MASU_ERROR_LIMIT, "rungs[].occlusion",
+                             d->scene->most_instances, 64 * MASU_CULL_ROUNDS,
+                             "rungs[%u].occlusion takes meshes of at most %d primitives and %d "
+                             "instances, the scene has one of %u or %u: set it to MASU_OFF",
+                             r, MASU_CULL_ROUNDS, 64 * MASU_CULL_ROUNDS, d->scene->most_primitives,
+                             d->scene->most_instances);
+        }
         compile_rung(plan, r);
     }
     gather_images(plan);
@@ -478,6 +524,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
 static const char *image_name(uint8_t image) {
     if (image == MASU_RESOURCE_TILES) return "tiles";
     if (image == MASU_RESOURCE_SLOTS) return "slots";
+    if (image == MASU_RESOURCE_SEEN) return "seen";
+    if (image == MASU_RESOURCE_DRAWS) return "draws";
     return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL;
 }
 

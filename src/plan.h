@@ -39,6 +39,7 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_INSTANCES, /* one array per frame in flight */
     MASU_BUFFER_DRAWS,     /* per frame in flight and view: an indirect command for each draw */
     MASU_BUFFER_DRAWN,     /* per frame in flight and view: numbers of the instances drawn */
+    MASU_BUFFER_SEEN,      /* what stage 2 of culling knows of each instance; outlives frames */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
     MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
     MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
@@ -65,6 +66,19 @@ typedef struct masu_block_plan {
 #define MASU_READBACK_IMAGES 6u
 #define MASU_DRAW_BYTES 20u /* of a VkDrawIndexedIndirectCommand */
 
+/* Where in a slot of MASU_BUFFER_DRAWS the draws of a view begin that stage 1 or 2 has counted, and
+ * the draw of its occluders. */
+#define MASU_DRAWS_OF(plan, view, stage2)                                                          \
+    (((uint64_t)(view) + ((stage2) ? (plan)->views : 0)) * (plan)->scene.draws * MASU_DRAW_BYTES)
+#define MASU_OCCLUDER_DRAW(plan, view)                                                             \
+    (MASU_DRAWS_OF(plan, (plan)->views, 1) + (uint64_t)(view)*MASU_DRAW_BYTES)
+
+/* Words of a slot of MASU_BUFFER_DRAWN; masu_shared.h says what is where. Without occlusion there
+ * are the lists of stage 1 alone. */
+typedef struct masu_drawn_plan {
+    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, words;
+} masu_drawn_plan;
+
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
     masu_scene scene;
@@ -80,7 +94,9 @@ typedef struct masu_frame_plan {
     /* Within one readback slot: counters first, then timestamps, then images in the bit order of
      * masu_readback_bits. */
     uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
-    uint32_t views;     /* that instances are culled for: the camera */
+    uint32_t views;     /* that instances are culled for: the camera, and the sun */
+    int occlusion;      /* a rung has stage 2 of culling */
+    masu_drawn_plan drawn;
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
 } masu_frame_plan;
 

@@ -29,6 +29,8 @@ typedef struct image_state {
 static image_state state_of(masu_usage usage, masu_pass_kind kind) {
     VkPipelineStageFlags shader = kind == MASU_PASS_GRAPHICS ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
                                                              : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+    VkPipelineStageFlags vertex =
+        kind == MASU_PASS_GRAPHICS ? VK_PIPELINE_STAGE_VERTEX_SHADER_BIT : 0;
     switch (usage) {
     case MASU_READ:
         return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT,
@@ -41,7 +43,7 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
         return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
                              VK_IMAGE_LAYOUT_GENERAL, 1};
     case MASU_READ_BUFFER:
-        return (image_state){1, shader | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+        return (image_state){1, shader | vertex | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
                              VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
                              VK_IMAGE_LAYOUT_UNDEFINED, 0};
     case MASU_WRITE_BUFFER:
@@ -181,6 +183,7 @@ static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
         masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
         if (rec->rp->access[pass][a].usage != MASU_READ) continue;
+        if (id == MASU_IMAGE_OCCLUDERS) continue;
         if (masu_images[id].extent == MASU_EXTENT_OUTPUT) input = d->output;
         break;
     }
@@ -190,6 +193,18 @@ static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
     push.output_height = output.height;
     if (masu_passes[pass].params) masu_passes[pass].params(&d->rungs[rec->rung], &push);
     return push;
+}
+
+/* Stage 2 of culling: 64 invocations to a group, views in y. */
+static void record_culling(recorder *rec, uint32_t pass, struct masu_push *push) {
+    const masu_frame_plan *plan = &rec->m->plan;
+    uint32_t few = (rec->m->batch_count + 63) / 64, groups = few + rec->m->large_count;
+    if (pass == MASU_PASS_CULL) groups = (plan->scene.instances + 63) / 64;
+    push->index[0] = (uint32_t)plan->drawn.header;
+    push->index[1] = few;
+    rec->m->vk.CmdPushConstants(rec->cmd, rec->m->layouts[pass], VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                                sizeof *push, push);
+    rec->m->vk.CmdDispatch(rec->cmd, groups, plan->views, 1);
 }
 
 static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
@@ -207,6 +222,10 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     masu_image_extent extent = masu_passes[pass].extent;
     if (extent == MASU_EXTENT_TILES) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TILES], 0);
+        return;
+    }
+    if (extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES) {
+        record_culling(rec, pass, &push);
         return;
     }
     /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
@@ -236,10 +255,13 @@ static void record_draws(recorder *rec) {
     memset(&push, 0, sizeof push);
     push.output_width = push.render_width = rec->rp->render_width;
     push.output_height = push.render_height = rec->rp->render_height;
-    VkDeviceSize at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride;
+    int occlusion = (int)(rec->rp->active >> MASU_PASS_CULL & 1u);
+    uint32_t lists = occlusion ? (uint32_t)m->plan.drawn.lists : 0;
+    VkDeviceSize at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
+                      MASU_DRAWS_OF(&m->plan, 0, occlusion);
     for (uint32_t b = 0; b < m->batch_count; b++) {
         const masu_batch *batch = &m->batches[b];
-        push.index[1] = batch->first_instance;
+        push.index[1] = lists + batch->first_instance;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             push.index[0] = v.primitives[batch->first_primitive + d].material;
             vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
@@ -247,6 +269,32 @@ static void record_draws(recorder *rec) {
                                        MASU_DRAW_BYTES);
             at += MASU_DRAW_BYTES;
         }
+    }
+}
+
+/* Each view has its part of the atlas. */
+static void record_occluders(recorder *rec) {
+    const masu_renderer *m = rec->m;
+    VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
+    m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                          m->pipelines[MASU_PASS_OCCLUDERS]);
+    m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL,
+                                1, &m->global_sets[rec->flight], 0, NULL);
+    struct masu_push push;
+    memset(&push, 0, sizeof push);
+    push.index[0] = (uint32_t)m->plan.drawn.header;
+    for (uint32_t view = 0; view < m->plan.views; view++) {
+        VkRect2D area = masu_atlas_part(view);
+        VkViewport viewport = {(float)area.offset.x,     (float)area.offset.y,
+                               (float)area.extent.width, (float)area.extent.height, 0.0f, 1.0f};
+        push.index[1] = view;
+        m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);
+        m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
+        m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+        m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
+                              rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
+                                  MASU_OCCLUDER_DRAW(&m->plan, view),
+                              1, MASU_DRAW_BYTES);
     }
 }
 
@@ -266,11 +314,13 @@ static void record_graphics(recorder *rec, uint32_t pass) {
     VkClearValue clear[4];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
     VkRect2D area = {{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
+    if (pass == MASU_PASS_OCCLUDERS)
+        area.extent = (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
     VkViewport viewport = {0.0f, 0.0f, (float)area.extent.width, (float)area.extent.height,
                            0.0f, 1.0f};
     VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-                                   .renderPass = rec->m->render_pass,
-                                   .framebuffer = rec->m->framebuffer,
+                                   .renderPass = rec->m->render_passes[pass],
+                                   .framebuffer = rec->m->framebuffers[pass],
                                    .renderArea = area,
                                    .clearValueCount = 4,
                                    .pClearValues = clear};
@@ -279,7 +329,8 @@ static void record_graphics(recorder *rec, uint32_t pass) {
         vk->CmdSetViewport(rec->cmd, 0, 1, &viewport);
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
         if (pass == MASU_PASS_GBUFFER) record_draws(rec);
-        if (pass != MASU_PASS_GBUFFER) record_fullscreen(rec, pass);
+        if (pass == MASU_PASS_OCCLUDERS) record_occluders(rec);
+        if (pass == MASU_PASS_MARCH_FRAGMENT) record_fullscreen(rec, pass);
     }
     vk->CmdEndRenderPass(rec->cmd);
 }
@@ -443,7 +494,7 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 7 * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 9 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MASU_PASS_ACCESSES * sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -482,7 +533,9 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
                 {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
                 {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES,
                  VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-                {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
+                {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                {MASU_BIND_DRAWS, MASU_BUFFER_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+                {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
     for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;
@@ -490,6 +543,7 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
             const masu_buffer_plan *b = &m->plan.buffers[rows[i].buffer];
             if (!b->bytes) continue; /* no pass of this plan looks at it */
             if (rows[i].previous && !m->plan.needs.velocity) continue;
+            if (rows[i].binding == MASU_BIND_DRAWS && !m->plan.occlusion) continue;
             int halves = m->plan.needs.velocity && (rows[i].buffer == MASU_BUFFER_FRAME ||
                                                     rows[i].buffer == MASU_BUFFER_INSTANCES);
             uint64_t bytes = b->stride ? b->stride : b->bytes;

@@ -7,6 +7,7 @@
  *   pipelines.c layouts, shader modules, pipelines, render pass
  *   record.c    descriptor sets and command buffers: barriers derived from the table
  *   visible.c   which instances a view draws: the tree of groups, draw commands
+ *   occlusion.c what of that occluders hide: views, boxes, the words of the shaders
  *   upload.c    scene -> device, frame uniforms, instance transforms
  *
  * Everything of fixed size is a member; what depends on the scene are pointers into the same host
@@ -32,6 +33,18 @@ typedef struct masu_batch {
     uint64_t triangles; /* of one instance */
 } masu_batch;
 
+/* An occluder and the instances of its mesh. */
+typedef struct masu_placed_occluder {
+    uint32_t first_instance, instance_count;
+} masu_placed_occluder;
+
+/* What stage 2 of culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
+typedef struct masu_stage2_view {
+    float clip[16], eye[4], atlas[4], near_distance, margin, blind, reserved;
+} masu_stage2_view;
+_Static_assert(sizeof(masu_stage2_view) == 4 * MASU_CULL_VIEW_WORDS, "stage 2 view");
+
+#define MASU_BOX_MOVED 0x80000000u /* in box_positions: the tree no longer knows the box */
 #define MASU_BOX_PADDING 3u /* floats that SIMD may read behind the last box */
 
 struct masu_renderer {
@@ -54,8 +67,8 @@ struct masu_renderer {
     VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
     VkPipelineLayout layouts[MASU_PASS_COUNT];
     VkPipeline pipelines[MASU_PASS_COUNT];
-    VkRenderPass render_pass;
-    VkFramebuffer framebuffer;
+    VkRenderPass render_passes[MASU_PASS_COUNT]; /* of graphics rows */
+    VkFramebuffer framebuffers[MASU_PASS_COUNT];
     uint64_t pipeline_ns[MASU_PASS_COUNT];
 
     /* record.c */
@@ -85,7 +98,8 @@ struct masu_renderer {
 
     /* visible.c; positions are those of src/cull.h */
     masu_batch *batches;
-    uint32_t batch_count;
+    uint32_t batch_count, large_count; /* large: of over 64 instances */
+    masu_placed_occluder *occluders;
     masu_cull_node *groups;
     uint8_t *group_states;   /* [view][group] */
     float *boxes;            /* [6][box_stride] */
@@ -97,7 +111,9 @@ struct masu_renderer {
     uint8_t *marks;            /* [instance]: a bit per view */
     uint32_t *instance_meshes; /* [instance] */
     float (*mesh_bounds)[6];   /* low, high */
-    masu_cull_view camera_view;
+    masu_cull_view view_planes[MASU_MAX_VIEWS];
+    masu_stage2_view stage2[MASU_MAX_VIEWS];
+    masu_cull_box scene_box; /* around all instances as the scene places them */
     masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];
 
     /* frames */
@@ -130,6 +146,9 @@ int masu_is_cut(const masu_renderer *m, const masu_frame_desc *frame);
 
 /* Copies groups and bounds from the blob; needs m->instances. */
 void masu_keep_visible(masu_renderer *m, const masu_scene_view *v);
+/* The same of occluders; after it. */
+void masu_keep_occluders(masu_renderer *m, const masu_scene_view *v);
+void masu_write_occluders(masu_renderer *m, const masu_scene_view *v);
 /* Writes what does not change of the draw commands of all slots. */
 void masu_write_commands(masu_renderer *m, const masu_scene_view *v);
 /* After a transform has changed. */
@@ -137,6 +156,16 @@ void masu_move_box(masu_renderer *m, uint32_t instance);
 /* Writes which instances a view draws to a slot. NULL: all of them. */
 void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view,
                         const masu_cull_view *frustum);
+
+/* Sets up the views of a frame, of the camera and the sun in `u`. */
+void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
+                    uint32_t rung);
+/* Part of the occluder atlas that a view has. */
+VkRect2D masu_atlas_part(uint32_t view);
+/* Writes what stage 2 of culling reads of a frame. */
+void masu_write_stage2(masu_renderer *m, uint32_t slot, int cut);
+/* The box of an instance, for stage 2. */
+void masu_write_box(masu_renderer *m, uint32_t slot, uint32_t instance);
 
 /* Host pointer to a buffer's first byte, of a slot where it has slots. NULL where it is not
  * host-visible. */

@@ -46,6 +46,7 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_SLOTS] = {"slots", sizeof(float), 65536, 0},
     [MASU_BLOB_GROUPS] = {"groups", sizeof(masu_blob_group), MANY, 0},
     [MASU_BLOB_GROUP_ITEMS] = {"group items", sizeof(uint32_t), MANY, 0},
+    [MASU_BLOB_OCCLUDERS] = {"occluders", sizeof(masu_blob_occluder), MANY, 0},
     [MASU_BLOB_NAMES] = {"names", 1, MANY, 0},
 };
 
@@ -155,6 +156,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .instances = start[MASU_BLOB_INSTANCES],
                                 .groups = start[MASU_BLOB_GROUPS],
                                 .group_items = start[MASU_BLOB_GROUP_ITEMS],
+                                .occluders = start[MASU_BLOB_OCCLUDERS],
                                 .materials = start[MASU_BLOB_MATERIALS],
                                 .camera_keys = start[MASU_BLOB_CAMERA_KEYS],
                                 .environment = start[MASU_BLOB_ENVIRONMENT],
@@ -345,6 +347,31 @@ static masu_result check_groups(reader *r) {
     return MASU_OK;
 }
 
+/* How many pairs of an occluder and an instance of its mesh there are. */
+static masu_result check_occluders(reader *r, uint64_t *pairs) {
+    const masu_scene_view *v = &r->view;
+    uint32_t from = 0, first = 0, end = 0;
+    *pairs = 0;
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_OCCLUDERS]; i++) {
+        const masu_blob_occluder *o = &v->occluders[i];
+        if (o->mesh >= r->counts[MASU_BLOB_MESHES]) return bad(r, "occluders", i, "no such mesh");
+        if (i && o->mesh < o[-1].mesh) return bad(r, "occluders", i, "not sorted by mesh");
+        const masu_blob_mesh *mesh = &v->meshes[o->mesh];
+        if (!box_holds(mesh->aabb_min, mesh->aabb_max, o->low, o->high) ||
+            !box_holds(o->low, o->high, o->high, o->low)) {
+            return bad(r, "occluders", i, "is no box inside of its mesh");
+        }
+        if (!i || o->mesh != o[-1].mesh) {
+            end = masu_scene_mesh_instances(v, (uint32_t)r->counts[MASU_BLOB_INSTANCES], o->mesh,
+                                            from, &first);
+            from = end;
+        }
+        *pairs += end - first;
+        if (*pairs > MANY) return bad(r, "occluders", i, "makes over 2^31 - 1 placed occluders");
+    }
+    return MASU_OK;
+}
+
 static masu_result check_looks(reader *r) {
     const masu_scene_view *v = &r->view;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_MATERIALS]; i++) {
@@ -478,7 +505,9 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
         result = bad(&r, "names", r.view.name_bytes - 1, "does not end with NUL");
     }
     if (!result) result = check_geometry(&r);
+    uint64_t pairs = 0;
     if (!result) result = check_groups(&r);
+    if (!result) result = check_occluders(&r, &pairs);
     if (!result) result = check_looks(&r);
     if (!result) result = check_sdf(&r);
     if (result) return result;
@@ -492,6 +521,8 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
                         .materials = (uint32_t)r.counts[MASU_BLOB_MATERIALS],
                         .groups = (uint32_t)r.counts[MASU_BLOB_GROUPS],
                         .group_items = (uint32_t)r.counts[MASU_BLOB_GROUP_ITEMS],
+                        .occluders = (uint32_t)r.counts[MASU_BLOB_OCCLUDERS],
+                        .placed_occluders = (uint32_t)pairs,
                         .camera_keys = (uint32_t)r.counts[MASU_BLOB_CAMERA_KEYS],
                         .sdf = r.view.sdf != NULL,
                         .sdf_params = (uint32_t)r.counts[MASU_BLOB_SDF_PARAMS]};
@@ -500,6 +531,9 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     for (uint32_t m = 0; m < out->meshes; m++) {
         uint32_t first, end = masu_scene_mesh_instances(&r.view, out->instances, m, from, &first);
         const masu_blob_mesh *mesh = &r.view.meshes[m];
+        if (end - first > out->most_instances) out->most_instances = end - first;
+        if (mesh->primitive_count > out->most_primitives)
+            out->most_primitives = mesh->primitive_count;
         for (uint32_t p = 0; p < mesh->primitive_count && end > first; p++) {
             out->draws++;
             out->triangles += (uint64_t)(end - first) *

@@ -19,6 +19,7 @@ typedef struct masu_scene_view {
     const masu_blob_instance *instances;
     const masu_blob_group *groups;
     const uint32_t *group_items;
+    const masu_blob_occluder *occluders;
     const masu_blob_material *materials;
     const masu_blob_camera_key *camera_keys;
     const masu_blob_environment *environment;

@@ -95,6 +95,7 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     if (m->plan.desc.scene) {
         masu_scene_view v = masu_scene_look(m->plan.desc.scene);
         masu_write_commands(m, &v);
+        masu_write_occluders(m, &v);
     }
     m->loaded = 1;
     m->plan.scene.blob = NULL; /* from here on the host may free it */
@@ -122,6 +123,7 @@ void masu_keep_scene(masu_renderer *m) {
     }
     m->dirty_count = scene->instances;
     masu_keep_visible(m, &v);
+    masu_keep_occluders(m, &v);
     if (scene->camera_keys)
         memcpy(m->camera_keys, v.camera_keys, scene->camera_keys * sizeof *v.camera_keys);
     if (scene->sdf_params)
@@ -147,6 +149,7 @@ void masu_write_instances(masu_renderer *m, uint32_t slot, int cut) {
     for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
         if (!m->instance_dirty[i]) continue;
         to[i] = m->instances[i];
+        masu_write_box(m, slot, i);
         if (m->plan.needs.velocity) {
             before[i] = cut ? m->instances[i] : m->previous_instances[i];
             m->previous_instances[i] = m->instances[i];
@@ -392,7 +395,7 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     u.eye_lo[3] = f->time_step;
     unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);
     memcpy(to, &u, sizeof u);
-    masu_cull_camera(&m->camera_view, u.clip_from_rel, camera.position, u.forward[3]);
+    masu_set_views(m, &u, camera.position, f->rung);
     if (m->plan.needs.velocity) {
         uint64_t half = m->plan.buffers[MASU_BUFFER_FRAME].stride / 2;
         memcpy(to + half, masu_is_cut(m, f) ? &u : m->previous, sizeof u);

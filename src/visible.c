@@ -7,6 +7,8 @@
  *
  * firstInstance stays 0, since another one would need the feature drawIndirectFirstInstance: a draw
  * finds the start of its list in its push constants. All primitives of a mesh share one list.
+ * With stage 2 (occlusion.c) both have a second half, in which the GPU writes what it has left.
+ *
  * Kept instances stay in order, so that what is not seen changes nothing: of two surfaces at one
  * depth the same one wins with and without it. */
 #include "renderer.h"
@@ -14,8 +16,6 @@
 #include <string.h>
 
 _Static_assert(sizeof(VkDrawIndexedIndirectCommand) == MASU_DRAW_BYTES, "indirect draw");
-
-#define MOVED 0x80000000u /* in box_positions: the tree no longer knows the box */
 
 /* ---- Once per scene -------------------------------------------------------------------------- */
 
@@ -30,6 +30,7 @@ static void keep_batches(masu_renderer *m, const masu_scene_view *v) {
         memcpy(m->mesh_bounds[mesh] + 3, what->aabb_max, sizeof what->aabb_max);
         if (end == first || !what->primitive_count) continue;
         masu_batch *b = &m->batches[m->batch_count++];
+        m->large_count += end - first > 64;
         *b = (masu_batch){.first_primitive = what->first_primitive,
                           .first_draw = draws,
                           .draw_count = what->primitive_count,
@@ -87,7 +88,8 @@ void masu_write_commands(masu_renderer *m, const masu_scene_view *v) {
     for (uint32_t slot = 0; slot < m->plan.desc.frames_in_flight; slot++) {
         VkDrawIndexedIndirectCommand *to = (VkDrawIndexedIndirectCommand *)(void *)
             masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot);
-        for (uint32_t view = 0; view < m->plan.views; view++) {
+        uint32_t lists = m->plan.views * (m->plan.occlusion ? 2 : 1);
+        for (uint32_t list = 0; list < lists; list++) {
             for (uint32_t b = 0; b < m->batch_count; b++) {
                 const masu_batch *batch = &m->batches[b];
                 for (uint32_t d = 0; d < batch->draw_count; d++) {
@@ -104,10 +106,10 @@ void masu_write_commands(masu_renderer *m, const masu_scene_view *v) {
 
 /* Once it has moved, an instance is tested by itself: groups keep the boxes they were baked with. */
 void masu_move_box(masu_renderer *m, uint32_t instance) {
-    uint32_t position = m->box_positions[instance] & ~MOVED;
+    uint32_t position = m->box_positions[instance] & ~MASU_BOX_MOVED;
     set_box(m, position, instance);
-    if (position >= m->plan.scene.group_items || m->box_positions[instance] & MOVED) return;
-    m->box_positions[instance] |= MOVED;
+    if (position >= m->plan.scene.group_items || m->box_positions[instance] & MASU_BOX_MOVED) return;
+    m->box_positions[instance] |= MASU_BOX_MOVED;
     m->moved[m->moved_count++] = position;
 }
 

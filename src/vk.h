@@ -34,6 +34,7 @@
     X(CmdDispatch)                                                                                 \
     X(CmdDispatchIndirect)                                                                         \
     X(CmdDraw)                                                                                     \
+    X(CmdDrawIndirect)                                                                             \
     X(CmdDrawIndexedIndirect)                                                                      \
     X(CmdEndRenderPass)                                                                            \
     X(CmdFillBuffer)                                                                               \

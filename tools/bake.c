@@ -4,7 +4,7 @@
  *   bake_import.c, bake_model.c               a model, read in a child     (bake_process.c)
  *   bake_mesh.c, bake_shape.c                 triangles, given or made
  *   bake_content.c, bake_check.c              the scene being put together
- *   bake_groups.c                             what is culled together
+ *   bake_groups.c, bake_occluders.c           what is culled together, and what hides it
  *   bake_sdf.c                                the scene's march shader, by the shader tools
  *   bake_blob.c, bake_file.c                  bytes, and files that are written whole
  *
@@ -12,6 +12,7 @@
 #include "bake_blob.h"
 #include "bake_file.h"
 #include "bake_groups.h"
+#include "bake_occluders.h"
 #include "bake_process.h"
 #include "bake_scene.h"
 #include "cli.h"
@@ -127,6 +128,7 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
     if (!good) return false;
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
+    masu_bake_sort_occluders(content);
     masu_bake_buffer blob = {0};
     masu_bake_make_blob(content, &blob);
     masu_cli_progress("writing %s", output);

@@ -33,6 +33,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_SLOTS] = sizeof(float),
     [MASU_BLOB_GROUPS] = sizeof(masu_blob_group),
     [MASU_BLOB_GROUP_ITEMS] = sizeof(uint32_t),
+    [MASU_BLOB_OCCLUDERS] = sizeof(masu_blob_occluder),
     [MASU_BLOB_NAMES] = 1,
 };
 

@@ -3,6 +3,7 @@
 #include "bake_file.h"
 #include "bake_groups.h"
 #include "bake_import.h"
+#include "bake_occluders.h"
 #include "bake_scene.h"
 #include "bake_shape.h"
 #include "cli.h"
@@ -238,6 +239,40 @@ static bool read_group(const masu_bake_json *model, masu_bake_content *content, 
     return true;
 }
 
+/* Two corners: a box in each mesh of the instances from `first` on; true: the mesh itself is one. */
+static bool read_occluder(const masu_bake_json *model, masu_bake_content *content, uint64_t first) {
+    masu_bake_json at = masu_bake_json_member(model, "occluder");
+    masu_bake_box box = masu_bake_box_empty();
+    const double most = MASU_BAKE_COORDINATE_MAX;
+    if (!at.value || json_is_false(at.value)) return true;
+    if (!json_is_true(at.value)) {
+        if (!masu_bake_json_array(&at, 2)) return false;
+        masu_bake_json low = masu_bake_json_element(&at, 0);
+        masu_bake_json high = masu_bake_json_element(&at, 1);
+        if (!masu_bake_json_vec3(&low, NULL, -most, most, &box.low) ||
+            !masu_bake_json_vec3(&high, NULL, -most, most, &box.high)) {
+            return false;
+        }
+        if (json_array_size(at.value) != 2 || !(box.low.x < box.high.x) ||
+            !(box.low.y < box.high.y) || !(box.low.z < box.high.z)) {
+            return masu_bake_json_wrong(&at, "expected true or two corners, the lower one first");
+        }
+    }
+    uint32_t last = MASU_BLOB_NONE;
+    for (uint64_t i = first; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
+        uint32_t mesh = MASU_BAKE_INSTANCES(content)[i].mesh;
+        if (mesh == last) continue;
+        last = mesh;
+        if (json_is_true(at.value) && !masu_bake_is_box(content, mesh, &box)) {
+            return masu_bake_json_wrong(&at, "the mesh \"%s\" is no box: give two corners",
+                                        masu_bake_name_text(content,
+                                                            MASU_BAKE_MESHES(content)[mesh].name));
+        }
+        (void)masu_bake_add_occluder(content, mesh, box); /* it may have it already */
+    }
+    return true;
+}
+
 static bool place(const masu_bake_json *model, const masu_bake_content *piece,
                   masu_bake_residence *residence, masu_bake_content *content) {
     masu_bake_affine placement;
@@ -250,14 +285,15 @@ static bool place(const masu_bake_json *model, const masu_bake_content *piece,
     uint64_t first = masu_bake_count(content, MASU_BLOB_INSTANCES);
     const char *problem = masu_bake_place(content, piece, residence, &placement, &override, name);
     if (problem) return masu_bake_json_wrong(model, "gives %s", problem);
-    return read_group(model, content, first);
+    return read_group(model, content, first) && read_occluder(model, content, first);
 }
 
 static bool read_model(const masu_bake_json *model, const char *directory,
                        const masu_bake_request *request, shelf **shelves,
                        masu_bake_content *content) {
     static const char *const members[] = {"file",  "mesh", "name",     "translate", "rotate", "rotate_y",
-                                          "scale", "fit",  "material", "group",     "moving", NULL};
+                                          "scale", "fit",  "material", "group",     "moving", "occluder",
+                                          NULL};
     const char *file = NULL;
     if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file)) {
         return false;

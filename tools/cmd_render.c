@@ -23,7 +23,9 @@ enum {
     OPTION_POISON,
     OPTION_SPLIT,
     OPTION_FLIGHT,
-    OPTION_MARCH
+    OPTION_MARCH,
+    OPTION_CULL,
+    OPTION_CASTERS
 };
 
 #define FRAMES_MAX 100000u
@@ -124,6 +126,20 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
                   "shadow_evals_per_pixel", (double)last->shadow_evals / pixels,
                   "occlusion_evals_per_pixel", (double)last->occlusion_evals / pixels,
                   "shadow_unconverged", (json_int_t)last->shadow_unconverged));
+    json_t *views = json_array();
+    for (uint32_t v = 0; v < last->view_count; v++) {
+        const masu_view_stats *view = &last->views[v];
+        json_array_append_new(
+            views, json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "view",
+                             v ? "sun" : "camera", "groups", (json_int_t)view->groups,
+                             "plane_tests", (json_int_t)view->plane_tests, "instances_in_view",
+                             (json_int_t)view->instances, "triangles_in_view",
+                             (json_int_t)view->triangles, "occluders",
+                             (json_int_t)view->occluders, "visible_instances",
+                             (json_int_t)view->visible_instances, "visible_triangles",
+                             (json_int_t)view->visible_triangles));
+    }
+    json_object_set_new(root, "views", views);
     if (masu_alloc_counting()) {
         json_object_set_new(root, "allocations_per_frame",
                             json_pack("{s:f, s:f, s:f}", "library", (double)library / (double)n,
@@ -236,7 +252,8 @@ static int run(masu_cli *cli) {
     static const char *const marches[] = {"auto",         "plain",     "fragment", "seed",
                                           "cone8",        "cones",     "checkerboard",
                                           "unpruned",     NULL};
-    uint32_t poison = 0, march = MASU_MARCH_AUTO;
+    static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
+    uint32_t poison = 0, march = MASU_MARCH_AUTO, cull = 0, casters = 0;
     for (;;) {
         int id = masu_cli_next(cli);
         if (masu_device_option(cli, id, &d.host)) continue;
@@ -265,6 +282,10 @@ static int run(masu_cli *cli) {
         case OPTION_MARCH:
             if (!masu_cli_choice(cli, marches, &march)) return MASU_CLI_USAGE;
             continue;
+        case OPTION_CULL:
+            if (!masu_cli_choice(cli, stages, &cull)) return MASU_CLI_USAGE;
+            continue;
+        case OPTION_CASTERS: casters = 1; continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case MASU_CLI_ARGUMENT:
@@ -277,13 +298,18 @@ static int run(masu_cli *cli) {
         break;
     }
     d.desc = masu_desc_resolved(&d.desc); /* the default rungs, to change one knob of them */
-    for (uint32_t r = 0; r < d.desc.rung_count; r++) d.desc.rungs[r].march = (masu_march)march;
+    for (uint32_t r = 0; r < d.desc.rung_count; r++) {
+        d.desc.rungs[r].march = (masu_march)march;
+        d.desc.rungs[r].frustum = cull < 2 ? MASU_ON : MASU_OFF;
+        d.desc.rungs[r].occlusion = cull % 2 ? MASU_OFF : MASU_ON;
+    }
     int code = check(&d, &o);
     if (code) return code;
     masu_vk_alloc_counts counts;
     VkAllocationCallbacks allocator = masu_vk_alloc_callbacks(&counts);
     d.desc.debug =
-        (masu_debug){.timestamps = o.stats != NULL, .counters = o.stats != NULL, .poison = poison};
+        (masu_debug){.timestamps = o.stats != NULL, .counters = o.stats != NULL, .poison = poison,
+                     .casters = casters};
     d.host.allocator = o.stats ? &allocator : NULL;
     d.host.message = masu_print_message;
     static masu_session s;
@@ -317,6 +343,9 @@ static const masu_cli_option options[] = {
      "auto, cone8, cones, unpruned; plain, fragment, seed, checkerboard need a blob baked\n"
      "with --variants (default auto)",
      OPTION_MARCH, 0},
+    {"cull", "STAGES", "both, frustum, occlusion or none: the picture stays the same (default both)",
+     OPTION_CULL, 0},
+    {"casters", NULL, "cull for the sun too, for the numbers of --stats", OPTION_CASTERS, 0},
     {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
     {"poison", NULL,
      "fill all transient images with NaN before each frame (the picture must not change)",

@@ -42,6 +42,43 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_PREVIOUS_INSTANCES 7
 /* Numbers of the instances that are drawn: gl_InstanceIndex counts these. */
 #define MASU_BIND_DRAWN 8
+#define MASU_BIND_DRAWS 9 /* draw commands, as words */
+#define MASU_BIND_SEEN 10 /* a word for each view and instance: not 0: visible when last asked */
+
+/* The atlas of occluder depth: the camera's view, below it the sun's. */
+#define MASU_ATLAS_WIDTH 256
+#define MASU_ATLAS_HEIGHT 384
+#define MASU_ATLAS_CAMERA_WIDTH 192
+#define MASU_ATLAS_CAMERA_HEIGHT 128
+#define MASU_ATLAS_SUN 256
+
+/* Stage 2 of culling. The buffer of drawn instances begins with the lists of stage 1, one of
+ * `instances` words for each view; behind them lies a header, whose words say where the rest is. */
+#define MASU_CULL_FRAME 0u       /* its number */
+#define MASU_CULL_CUT 1u         /* not 0: all are asked */
+#define MASU_CULL_VIEWS 2u       /* how many */
+#define MASU_CULL_INSTANCES 3u   /* how many */
+#define MASU_CULL_DRAWS 4u       /* how many of one view */
+#define MASU_CULL_BATCH_COUNT 5u
+#define MASU_CULL_LISTS 6u       /* lists of visible instances, as those of stage 1 */
+#define MASU_CULL_KEPT 7u        /* of each view: how many stage 1 has kept, then all of them */
+#define MASU_CULL_BATCHES 8u     /* of each: first instance, first draw, draws, triangles */
+#define MASU_CULL_LARGE 9u       /* numbers of batches with over 64 instances */
+#define MASU_CULL_BOXES 10u      /* of each instance: middle and half extents, world */
+#define MASU_CULL_OCCLUDERS 11u  /* of each: lower and upper corner, object space */
+#define MASU_CULL_PAIRS 12u      /* of each view: occluder and instance */
+#define MASU_CULL_PAIR_COUNT 13u /* most of one view */
+#define MASU_CULL_HEADER 16u
+/* Most primitives of a mesh, and most groups of 64 of its instances: bounds of loops. */
+#define MASU_CULL_ROUNDS 4096
+/* Then the numbers of each view: */
+#define MASU_CULL_VIEW_CLIP 0u   /* mat4, from world relative to the eye */
+#define MASU_CULL_VIEW_EYE 16u   /* vec4: (0, 0, 0, 1), or towards the sun and 0 */
+#define MASU_CULL_VIEW_ATLAS 20u /* vec4: left, top, width, height */
+#define MASU_CULL_VIEW_NEAR 24u  /* w of what is nearer than this cannot be divided by */
+#define MASU_CULL_VIEW_MARGIN 25u /* texels that the raster may be off by */
+#define MASU_CULL_VIEW_BLIND 26u /* meshes as near as this may be cut open by the near plane */
+#define MASU_CULL_VIEW_WORDS 28u
 
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
  *   0..2                  arguments of the indirect dispatch: active tiles, 1, 1
@@ -80,7 +117,12 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_COUNTER_SHADOW_EVALS 4
 #define MASU_COUNTER_OCCLUSION_EVALS 5
 #define MASU_COUNTER_SHADOW_UNCONVERGED 6
-#define MASU_COUNTER_COUNT 7
+#define MASU_COUNTER_VISIBLE_INSTANCES 7 /* by stage 2 of culling, of the camera */
+#define MASU_COUNTER_VISIBLE_TRIANGLES 8
+#define MASU_COUNTER_CASTER_INSTANCES 9 /* of the sun */
+#define MASU_COUNTER_CASTER_TRIANGLES 10
+#define MASU_COUNTER_OCCLUSION_TESTS 11
+#define MASU_COUNTER_COUNT 12
 
 /* G-buffer material flags, two bits of the packed normal word. */
 #define MASU_SURFACE_EMISSIVE 1u

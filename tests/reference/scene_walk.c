@@ -58,6 +58,7 @@ static void read_sections(walker *w) {
     read_section(w, v->instances, s->instances, sizeof *v->instances, "instances");
     read_section(w, v->groups, s->groups, sizeof *v->groups, "groups");
     read_section(w, v->group_items, s->group_items, sizeof *v->group_items, "group items");
+    read_section(w, v->occluders, s->occluders, sizeof *v->occluders, "occluders");
     read_section(w, v->materials, s->materials, sizeof *v->materials, "materials");
     read_section(w, v->camera_keys, s->camera_keys, sizeof *v->camera_keys, "camera keys");
     read_section(w, v->environment, 1, sizeof *v->environment, "environment");
@@ -181,6 +182,20 @@ static void read_geometry(walker *w) {
     }
     if (!w->fault) count_draws(w);
     if (!w->fault && w->scene->groups) walk_group(w, 0, 0);
+    uint64_t placed = 0;
+    for (uint32_t i = 0; i < w->scene->occluders && !w->fault; i++) {
+        const masu_blob_occluder *o = &v->occluders[i];
+        expect(w, o->mesh < w->scene->meshes, "an occluder has no mesh");
+        if (w->fault) return;
+        for (uint32_t k = 0; k < 3; k++) {
+            expect(w,
+                   v->meshes[o->mesh].aabb_min[k] <= o->low[k] && o->low[k] <= o->high[k] &&
+                       o->high[k] <= v->meshes[o->mesh].aabb_max[k],
+                   "an occluder is not in its mesh");
+        }
+        for (uint32_t n = 0; n < w->scene->instances; n++) placed += v->instances[n].mesh == o->mesh;
+    }
+    expect(w, placed == w->scene->placed_occluders, "placed_occluders");
     uint32_t grouped = 0;
     for (uint32_t i = 0; i < w->scene->instances && !w->fault; i++) {
         grouped += v->instances[i].group != MASU_BLOB_NONE;

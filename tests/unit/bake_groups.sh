@@ -74,6 +74,28 @@ refuses 'what is "moving" is in no "group"' "$(model ', "group": "a", "moving": 
 refuses 'models\[0\].moving' "$(model ', "moving": 1')"
 refuses 'models\[0\].group' "$(model ', "group": 3')"
 
+# occluders COUNT MODELS
+occluders() {
+    bakes "$2"
+    count=$(sed -n '/"occluders"/,/}/s/.*"count": \([0-9]*\).*/\1/p' "$folder/s.stats")
+    [ "$count" = "$1" ] || fail "$2: $count occluders, not $1"
+}
+occluders 0 "$(model '')"
+occluders 0 "$(model ', "occluder": false')"
+occluders 1 "$(model ', "occluder": true')"
+occluders 1 "$(model ', "occluder": [[-9, 0, -9], [9, 0.25, 9]]')" # cut to the mesh
+occluders 0 "$(model ', "occluder": [[2, 0, 0], [3, 1, 1]]')" # nothing is left
+occluders 2 "$(model ', "occluder": true'), $(model ', "occluder": true')"
+block='{"file": "'$PWD'/scenes/test_block.obj", "occluder": [[-0.5, 0, -0.5], [0.5, 1, 0.5]]}'
+occluders 1 "$block, $block" # one mesh
+refuses 'occluder: the mesh ".*" is no box: give two corners' \
+    '{"mesh": {"sphere": {}}, "occluder": true}'
+refuses 'occluder: the mesh ".*" is no box' '{"mesh": {"plane": {}}, "occluder": true}'
+refuses 'occluder: the mesh ".*" is no box' "${block//\[\[*\]\]/true}"
+refuses 'occluder: expected true or two corners' "$(model ', "occluder": [[0, 0, 0], [1, 0, 1]]')"
+refuses 'occluder' "$(model ', "occluder": 7')"
+refuses 'occluder' "$(model ', "occluder": [[0, 0, 0]]')"
+
 # The bench sees the same scene, and the tree saves tests. Times are nobody's business here.
 "$bin/masu" cull-bench "${BUILD:-build}/scenes/test_town.masu" --frames 20 --json > "$folder/b" ||
     fail "cull-bench fails"

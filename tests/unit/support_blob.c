@@ -53,6 +53,11 @@ static const masu_blob_group groups[] = {
 
 static const uint32_t group_items[] = {0, 1};
 
+static const masu_blob_occluder occluders[] = {
+    {{-0.5f, 0.25f, -0.5f}, {0.5f, 1.0f, 0.5f}, 0, 0},
+    {{-1.0f, -1.0f, 0.0f}, {1.0f, 2.0f, 0.0f}, 1, 0},
+};
+
 static const masu_blob_material materials[] = {
     {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, {0}},
     {{0.0f, 0.0f, 0.0f}, 1.0f, {4.0f, 2.0f, 1.0f}, 0.0f, NAME_GLOW, {0}},
@@ -109,7 +114,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
     header->magic = MASU_BLOB_MAGIC;
     header->version = MASU_BLOB_VERSION;
-    size_t sections = 1 + (parts & SUPPORT_RASTER ? 8u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
+    size_t sections = 1 + (parts & SUPPORT_RASTER ? 9u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
                       (parts & SUPPORT_SDF ? 8u : 0u) + 1;
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
@@ -122,6 +127,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_MATERIALS, materials);
         ADD(MASU_BLOB_GROUPS, groups);
         ADD(MASU_BLOB_GROUP_ITEMS, group_items);
+        ADD(MASU_BLOB_OCCLUDERS, occluders);
     }
     if (parts & SUPPORT_CAMERA) ADD(MASU_BLOB_CAMERA_KEYS, camera_keys);
     ADD(MASU_BLOB_ENVIRONMENT, environment);

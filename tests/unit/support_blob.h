@@ -10,7 +10,8 @@
  *   primitives 0: square, 2 triangles  1: triangle  2: square   camera keys  at 0 s, 1.5 s, 4 s
  *   meshes     0 "plate": primitives 0-1   1 "lid": primitive 2 sdf params   0 "radius"  1 "bend"
  *   instances  0, 1 of mesh 0, 2 of mesh 1                      slots        three; parts: one
- *   groups     0: instance 0 and group 1  1: instance 1; instance 2 is in none */
+ *   groups     0: instance 0 and group 1  1: instance 1; instance 2 is in none
+ *   occluders  one in each mesh: three are placed */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
 

@@ -73,6 +73,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].march);
         SAME(rungs[r].march_steps);
         SAME(rungs[r].frustum);
+        SAME(rungs[r].occlusion);
     }
     SAME(limits.vertices);
     SAME(limits.indices);
@@ -93,6 +94,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.counters);
     SAME(debug.labels);
     SAME(debug.poison);
+    SAME(debug.casters);
     SAME(deny.unified_memory);
     SAME(log);
     SAME(log_user);
@@ -109,9 +111,9 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
-    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
-    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
-    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
+    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
+    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
+    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
     masu_desc resolved = masu_desc_resolved(&zero);
     assert_same_desc(&resolved, &expected);
     resolved = masu_desc_resolved(NULL);
@@ -128,8 +130,8 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.frames_in_flight = 2;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
-    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO};
+    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
+    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
 
@@ -161,7 +163,7 @@ static masu_desc full_desc(void) {
     d.rung_count = MASU_MAX_RUNGS;
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
         d.rungs[r] =
-            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1, MASU_OFF};
+            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1, MASU_OFF, MASU_ON};
     }
     d.limits = (masu_limits){9, 10, 11, 12, 13};
     d.host_budget = 14;
@@ -170,7 +172,7 @@ static masu_desc full_desc(void) {
         d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
     }
     d.readback = 3;
-    d.debug = (masu_debug){1, 2, 3, 4};
+    d.debug = (masu_debug){1, 2, 3, 4, 5};
     d.deny.unified_memory = 1;
     d.log = no_log;
     d.log_user = &allocator;
@@ -279,12 +281,32 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)3);
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
     BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
+    BAD("rungs[].occlusion", d.rungs[1].occlusion = (masu_switch)3);
     BAD("rungs[].frustum", d.rungs[1].frustum = (masu_switch)3);
     masu_desc d = scene_desc(RASTER, 64, 64);
     static masu_frame_plan plan;
     d.rung_count = 1;
     d.rungs[1].scale = nan; /* behind the count */
     compile(&d, &plan);
+}
+
+static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER, 64, 64);
+    for (int instances = 0; instances < 2; instances++) {
+        uint32_t *most = instances ? &support_scene.most_instances : &support_scene.most_primitives;
+        uint32_t limit = instances ? 64 * 4096 : 4096;
+        *most = limit + 1;
+        support_scene.placed_occluders = 0;
+        compile(&d, &plan);
+        assert_int_equal(plan.occlusion, 0);
+        support_scene.placed_occluders = 1;
+        assert_refused(&d, MASU_ERROR_LIMIT, "rungs[].occlusion");
+        *most = limit;
+        compile(&d, &plan);
+        assert_int_equal(plan.occlusion, 1);
+    }
 }
 
 static void a_march_that_the_blob_has_no_code_for_is_a_scene_error(void **state) {
@@ -352,8 +374,8 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.targets.count = MASU_MAX_TARGETS;
     d.frames_in_flight = MASU_MAX_FLIGHT;
     d.readback = MASU_READBACK_ALL;
-    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1, MASU_ON};
-    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256, MASU_OFF};
+    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1, MASU_ON, MASU_ON};
+    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256, MASU_OFF, MASU_OFF};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;
@@ -483,6 +505,7 @@ int main(void) {
         cmocka_unit_test(scene_and_source_exclude_each_other),
         cmocka_unit_test(a_bad_source_is_named),
         cmocka_unit_test(a_bad_rung_is_named),
+        cmocka_unit_test(meshes_too_large_for_occlusion_are_a_limit),
         cmocka_unit_test(a_march_that_the_blob_has_no_code_for_is_a_scene_error),
         cmocka_unit_test(a_march_as_fragment_shader_beside_polygons_is_refused_in_one_line),
         cmocka_unit_test(a_rung_that_needs_upscaling_cannot_switch_it_off),

@@ -743,12 +743,12 @@ static void readback_slots_hold_the_counters_and_then_the_images(void **state) {
     d.readback = MASU_READBACK_ALL;
     compile(&d, &plan);
     const masu_buffer_plan *b = &plan.buffers[MASU_BUFFER_READBACK];
-    static const uint64_t offsets[MASU_READBACK_IMAGES] = {64, 64 + 144, 64 + 288, 64 + 432,
-                                                         64 + 432 + 288};
+    static const uint64_t offsets[MASU_READBACK_IMAGES] = {96, 96 + 144, 96 + 288, 96 + 432,
+                                                         96 + 432 + 288};
     for (uint32_t i = 0; i < MASU_READBACK_IMAGES - 1; i++) {
         assert_int_equal(plan.readback_offset[i], offsets[i]);
     }
-    assert_int_equal(b->stride, 64 + 432 + 2 * 288);
+    assert_int_equal(b->stride, 96 + 432 + 2 * 288);
     assert_int_equal(b->bytes, 2 * b->stride);
     d.debug.counters = 0;
     d.readback = MASU_READBACK_HDR;
@@ -812,8 +812,8 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth, occlusion and final, cone8, cone4: 4 bytes each per texel; velocity 8 */
-    assert_int_equal(info.left_out_bytes, 4 * (5 * 1920 * 1080 + 240 * 135 + 480 * 270));
+    /* scene_depth, occlusion and final, cone8, cone4: 4 bytes each per texel; velocity 8; the atlas */
+    assert_int_equal(info.left_out_bytes, 4 * (5 * 1920 * 1080 + 240 * 135 + 480 * 270 + 256 * 384));
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
@@ -827,12 +827,12 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     40 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125));
+                     40 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 256 * 384));
     d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, ldr, upscaled, final, velocity */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 24 * 100 * 100);
+    assert_int_equal(info.left_out_bytes, 24 * 100 * 100 + 4 * 256 * 384);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {

@@ -64,6 +64,7 @@ static void assert_refused(const char *what, uint64_t element) {
 #define KEY AT(CAMERA_KEYS, masu_blob_camera_key)
 #define SKY AT(ENVIRONMENT, masu_blob_environment)
 #define GROUP AT(GROUPS, masu_blob_group)
+#define OCCLUDER AT(OCCLUDERS, masu_blob_occluder)
 #define ITEM AT(GROUP_ITEMS, uint32_t)
 #define FIELD AT(SDF, masu_blob_sdf)
 #define PARAM AT(SDF_PARAMS, masu_blob_sdf_param)
@@ -335,6 +336,28 @@ static void items_that_do_not_fit_their_group_are_refused(void **state) {
     ACCEPTED(ungroup());
 }
 
+static void occluders_outside_of_their_mesh_are_refused(void **state) {
+    (void)state;
+    REFUSED("occluders", 1, OCCLUDER[1].mesh = 2);
+    REFUSED("occluders", 1, OCCLUDER[1].mesh = UINT32_MAX);
+    REFUSED("occluders", 1, OCCLUDER[0] = OCCLUDER[1], OCCLUDER[1].mesh = 0);
+    REFUSED("occluders", 0, OCCLUDER[0].high[1] = 2.25f);
+    REFUSED("occluders", 0, OCCLUDER[0].low[0] = -1.25f);
+    REFUSED("occluders", 1, OCCLUDER[1].low[1] = 2.0f, OCCLUDER[1].high[1] = -1.0f);
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        for (int k = 0; k < 3; k++) {
+            REFUSED("occluders", 0, OCCLUDER[0].low[k] = not_finite[i]);
+            REFUSED("occluders", 1, OCCLUDER[1].high[k] = not_finite[i]);
+        }
+    }
+    ACCEPTED(OCCLUDER[1] = OCCLUDER[0]);
+    masu_scene scene;
+    support_blob_write(&blob, SUPPORT_ALL);
+    support_accepted(&blob, &scene);
+    assert_int_equal(scene.occluders, 2);
+    assert_int_equal(scene.placed_occluders, 3);
+}
+
 static void a_mesh_outside_the_primitives_is_refused(void **state) {
     (void)state;
     REFUSED("meshes", 1, MESH[1].first_primitive = 3);
@@ -488,7 +511,7 @@ static void parts_of_an_sdf_that_is_missing_are_refused(void **state) {
         support_blob_drop(&blob, MASU_BLOB_SDF);
         for (uint32_t kind = MASU_BLOB_SDF_PARAMS; kind < MASU_BLOB_KIND_COUNT; kind++) {
             if (kind == left || kind == MASU_BLOB_NAMES) continue;
-            if (kind == MASU_BLOB_GROUPS || kind == MASU_BLOB_GROUP_ITEMS) continue;
+            if (kind >= MASU_BLOB_GROUPS && kind <= MASU_BLOB_OCCLUDERS) continue;
             support_blob_drop(&blob, (enum masu_blob_kind)kind);
         }
         assert_refused("sdf", 0); /* for this part alone */
@@ -645,6 +668,7 @@ int main(void) {
         cmocka_unit_test(groups_that_are_no_tree_are_refused),
         cmocka_unit_test(groups_below_64_levels_are_refused),
         cmocka_unit_test(items_that_do_not_fit_their_group_are_refused),
+        cmocka_unit_test(occluders_outside_of_their_mesh_are_refused),
         cmocka_unit_test(parts_of_an_sdf_that_is_missing_are_refused),
         cmocka_unit_test(an_sdf_out_of_range_is_refused),
         cmocka_unit_test(code_compiled_for_other_instances_is_refused),

@@ -1,0 +1,216 @@
+/* occlusion.c: the host's part of stage 2 of culling: views, placed occluders, and the words that
+ * shaders/occluders.vert, cull.comp and compact.comp read (masu_shared.h, MASU_CULL_*). They lie
+ * behind the lists of stage 1 in the same buffer, one slot per frame in flight: a GPU may then write
+ * what it reads next, and a device needs no more than four storage buffers in a stage.
+ *
+ * Nothing is read back. What the GPU remembers from frame to frame is only whether an instance was
+ * visible when it was last asked; see cull.comp for why that may be wrong. */
+#include "renderer.h"
+
+#include <math.h>
+#include <string.h>
+
+static uint32_t *drawn_words(const masu_renderer *m, uint32_t slot) {
+    return (uint32_t *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWN, slot);
+}
+
+/* ---- Views ----------------------------------------------------------------------------------- */
+
+VkRect2D masu_atlas_part(uint32_t view) {
+    if (view) return (VkRect2D){{0, MASU_ATLAS_CAMERA_HEIGHT}, {MASU_ATLAS_SUN, MASU_ATLAS_SUN}};
+    return (VkRect2D){{0, 0}, {MASU_ATLAS_CAMERA_WIDTH, MASU_ATLAS_CAMERA_HEIGHT}};
+}
+
+/* The sun looks at all of the scene as it was baked: a box along its direction, depth 1 at the side
+ * of the sun. */
+static void set_sun(masu_renderer *m, const float towards[3], const double eye[3],
+                    masu_stage2_view *v) {
+    double axis[3][3], center[3], half[3], least = fabs((double)towards[0]);
+    uint32_t k = 0;
+    for (uint32_t i = 1; i < 3; i++) {
+        if (fabs((double)towards[i]) < least) least = fabs((double)towards[i]), k = i;
+    }
+    /* x across the sun's direction and the axis that is least along it, y across both. */
+    double other[3] = {k == 0, k == 1, k == 2}, length = 0.0;
+    for (uint32_t i = 0; i < 3; i++) axis[2][i] = (double)towards[i];
+    for (uint32_t i = 0; i < 3; i++) {
+        uint32_t a = (i + 1) % 3, b = (i + 2) % 3;
+        axis[0][i] = axis[2][a] * other[b] - axis[2][b] * other[a];
+        length += axis[0][i] * axis[0][i];
+    }
+    for (uint32_t i = 0; i < 3; i++) axis[0][i] /= sqrt(length);
+    for (uint32_t i = 0; i < 3; i++) {
+        uint32_t a = (i + 1) % 3, b = (i + 2) % 3;
+        axis[1][i] = axis[2][a] * axis[0][b] - axis[2][b] * axis[0][a];
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        center[i] = (double)m->scene_box.center[i];
+        half[i] = 1e-6;
+        for (uint32_t j = 0; j < 3; j++)
+            half[i] += fabs(axis[i][j]) * 1.001 * (double)m->scene_box.half[j];
+    }
+    masu_cull_ortho(&m->view_planes[1], center, (const double(*)[3])axis, half);
+    for (uint32_t row = 0; row < 3; row++) {
+        double scale = row == 2 ? 0.5 : 1.0, offset = row == 2 ? 0.5 : 0.0;
+        for (uint32_t i = 0; i < 3; i++) {
+            double to = scale * axis[row][i] / half[row];
+            v->clip[4 * i + row] = (float)to;
+            offset += to * (eye[i] - center[i]);
+        }
+        v->clip[12 + row] = (float)offset;
+    }
+    v->clip[15] = 1.0f;
+    for (uint32_t i = 0; i < 3; i++) v->eye[i] = towards[i];
+    v->blind = -1.0f;
+}
+
+/* How far the raster may move an edge of a view of that size, in texels of its part of the atlas. */
+static float margin_of(const masu_renderer *m, uint32_t view, uint32_t width, uint32_t height) {
+    VkRect2D part = masu_atlas_part(view);
+    float step = ldexpf(1.0f, -(int)m->vk.properties.limits.subPixelPrecisionBits);
+    float x = (float)part.extent.width / (float)width;
+    float y = (float)part.extent.height / (float)height;
+    return step * (x > y ? x : y);
+}
+
+void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
+                    uint32_t rung) {
+    masu_cull_camera(&m->view_planes[0], u->clip_from_rel, eye, u->forward[3]);
+    if (!m->plan.occlusion && m->plan.views == 1) return;
+    memset(m->stage2, 0, sizeof m->stage2);
+    for (uint32_t view = 0; view < m->plan.views; view++) {
+        masu_stage2_view *v = &m->stage2[view];
+        VkRect2D part = masu_atlas_part(view);
+        v->atlas[0] = (float)part.offset.x;
+        v->atlas[1] = (float)part.offset.y;
+        v->atlas[2] = (float)part.extent.width;
+        v->atlas[3] = (float)part.extent.height;
+        v->margin = margin_of(m, view, view ? part.extent.width : m->plan.rungs[rung].render_width,
+                              view ? part.extent.height : m->plan.rungs[rung].render_height);
+        if (view) {
+            set_sun(m, u->sun_direction, eye, v);
+            continue;
+        }
+        memcpy(v->clip, u->clip_from_rel, sizeof v->clip);
+        v->eye[3] = 1.0f;
+        v->near_distance = u->forward[3];
+        v->blind = 1.001f * u->forward[3] *
+                   sqrtf(1.0f + u->right[3] * u->right[3] + u->up[3] * u->up[3]);
+    }
+}
+
+/* ---- Once per scene -------------------------------------------------------------------------- */
+
+void masu_keep_occluders(masu_renderer *m, const masu_scene_view *v) {
+    uint32_t from = 0, first = 0, end = 0;
+    for (uint32_t o = 0; o < m->plan.scene.occluders; o++) {
+        uint32_t mesh = v->occluders[o].mesh;
+        if (!o || mesh != v->occluders[o - 1].mesh) {
+            end = masu_scene_mesh_instances(v, m->plan.scene.instances, mesh, from, &first);
+            from = end;
+        }
+        m->occluders[o] = (masu_placed_occluder){first, end - first};
+    }
+    masu_cull_box all = {{0, 0, 0}, {0, 0, 0}};
+    for (uint32_t p = 0; p < m->plan.scene.instances; p++) {
+        masu_cull_box pair[2] = {all, all};
+        for (uint32_t k = 0; k < 3; k++) {
+            pair[1].center[k] = m->boxes[k * m->box_stride + p];
+            pair[1].half[k] = m->boxes[(3 + k) * m->box_stride + p];
+        }
+        masu_cull_box both = masu_cull_around(p ? pair : pair + 1, p ? 2 : 1);
+        if (both.half[0] <= MASU_CULL_FAR && both.half[1] <= MASU_CULL_FAR &&
+            both.half[2] <= MASU_CULL_FAR) {
+            all = both;
+        }
+    }
+    m->scene_box = all;
+}
+
+/* What stays the same in every frame, in every slot. */
+void masu_write_occluders(masu_renderer *m, const masu_scene_view *v) {
+    const masu_drawn_plan *d = &m->plan.drawn;
+    if (!m->plan.occlusion) return;
+    for (uint32_t slot = 0; slot < m->plan.desc.frames_in_flight; slot++) {
+        uint32_t *words = drawn_words(m, slot), *header = words + d->header, large = 0;
+        memset(header, 0, MASU_CULL_HEADER * sizeof *header);
+        header[MASU_CULL_VIEWS] = m->plan.views;
+        header[MASU_CULL_INSTANCES] = m->plan.scene.instances;
+        header[MASU_CULL_DRAWS] = m->plan.scene.draws;
+        header[MASU_CULL_BATCH_COUNT] = m->batch_count;
+        header[MASU_CULL_LISTS] = (uint32_t)d->lists;
+        header[MASU_CULL_KEPT] = (uint32_t)d->kept;
+        header[MASU_CULL_BATCHES] = (uint32_t)d->batches;
+        header[MASU_CULL_LARGE] = (uint32_t)d->large;
+        header[MASU_CULL_BOXES] = (uint32_t)d->boxes;
+        header[MASU_CULL_OCCLUDERS] = (uint32_t)d->occluders;
+        header[MASU_CULL_PAIRS] = (uint32_t)d->pairs;
+        header[MASU_CULL_PAIR_COUNT] = m->plan.scene.placed_occluders;
+        for (uint32_t b = 0; b < m->batch_count; b++) {
+            const masu_batch *batch = &m->batches[b];
+            uint32_t *to = words + d->batches + 4 * (uint64_t)b;
+            to[0] = batch->first_instance;
+            to[1] = batch->first_draw;
+            to[2] = batch->draw_count;
+            to[3] = (uint32_t)batch->triangles;
+            if (batch->instance_count > 64) words[d->large + large++] = b;
+        }
+        for (uint32_t o = 0; o < m->plan.scene.occluders; o++) {
+            uint32_t *to = words + d->occluders + 6 * (uint64_t)o;
+            memcpy(to, v->occluders[o].low, sizeof v->occluders[o].low);
+            memcpy(to + 3, v->occluders[o].high, sizeof v->occluders[o].high);
+        }
+        for (uint32_t view = 0; view < m->plan.views; view++) {
+            VkDrawIndirectCommand box = {18, 0, 0, 0};
+            memcpy(masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
+                       MASU_OCCLUDER_DRAW(&m->plan, view),
+                   &box, sizeof box);
+        }
+    }
+}
+
+/* ---- Each frame ------------------------------------------------------------------------------ */
+
+void masu_write_box(masu_renderer *m, uint32_t slot, uint32_t instance) {
+    if (!m->plan.occlusion) return;
+    uint32_t position = m->box_positions[instance] & ~MASU_BOX_MOVED;
+    float box[6];
+    for (uint32_t k = 0; k < 6; k++) box[k] = m->boxes[k * m->box_stride + position];
+    memcpy(drawn_words(m, slot) + m->plan.drawn.boxes + 6 * (uint64_t)instance, box, sizeof box);
+}
+
+/* Occluders that a view keeps. Those of hidden instances too: what they hide is hidden anyway. */
+static uint32_t write_pairs(masu_renderer *m, uint32_t view, uint32_t *to) {
+    uint32_t n = 0;
+    for (uint32_t o = 0; o < m->plan.scene.occluders; o++) {
+        const masu_placed_occluder *p = &m->occluders[o];
+        for (uint32_t i = 0; i < p->instance_count; i++) {
+            if (!(m->marks[p->first_instance + i] >> view & 1u)) continue;
+            to[2 * (uint64_t)n] = o;
+            to[2 * (uint64_t)n++ + 1] = p->first_instance + i;
+        }
+    }
+    return n;
+}
+
+void masu_write_stage2(masu_renderer *m, uint32_t slot, int cut) {
+    const masu_drawn_plan *d = &m->plan.drawn;
+    uint32_t *words = drawn_words(m, slot), *header = words + d->header;
+    header[MASU_CULL_FRAME] = (uint32_t)(m->frame % 5);
+    header[MASU_CULL_CUT] = cut != 0;
+    memcpy(header + MASU_CULL_HEADER, m->stage2, m->plan.views * sizeof *m->stage2);
+    for (uint32_t view = 0; view < m->plan.views; view++) {
+        uint64_t pairs = 2 * (uint64_t)view * m->plan.scene.placed_occluders;
+        uint32_t n = write_pairs(m, view, words + d->pairs + pairs);
+        unsigned char *draw = masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
+                              MASU_OCCLUDER_DRAW(&m->plan, view);
+        memcpy(draw + offsetof(VkDrawIndirectCommand, instanceCount), &n, sizeof n);
+        m->slot_views[slot][view].occluders = n;
+        /* All that stage 1 has kept, one after the other. */
+        uint32_t *kept = words + d->kept + view * ((uint64_t)m->plan.scene.instances + 1), count = 0;
+        for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
+            if (m->marks[i] >> view & 1u) kept[++count] = i;
+        }
+        kept[0] = count;
+    }
+}
