@@ -151,6 +151,9 @@ typedef struct masu_scene {
     uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
     uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
     uint32_t most_instances, most_primitives; /* of one mesh */
+    uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
+    uint32_t shadow_resolution;
+    float shadow_distance, shadow_lambda;
     uint32_t draws;      /* draw calls of one G-buffer pass */
     uint64_t triangles;  /* of one frame: every instance counted */
 } masu_scene;
@@ -174,7 +177,9 @@ MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name)
 #define MASU_MAX_PASSES 32u
 #define MASU_MAX_RESOURCES 32u
 #define MASU_MAX_SDF_PARAMS 256u
-#define MASU_MAX_VIEWS 5u
+#define MASU_MAX_VIEWS 5u /* the camera and each cascade */
+#define MASU_MAX_CASCADES 4u
+#define MASU_MAX_REFRESH 64u
 
 typedef enum masu_switch { MASU_AUTO = 0, MASU_OFF = 1, MASU_ON = 2 } masu_switch;
 
@@ -205,6 +210,16 @@ typedef struct masu_rung {
     masu_switch frustum; /* instances outside of the picture are not drawn, which the picture does not
                             show. AUTO: on */
     masu_switch occlusion; /* nor those that occluders hide. AUTO: on, if the scene has occluders */
+    /* The sun's shadow map, of scenes that have one. What asks for more than the scene has gets what
+     * the scene has; 0: that too. */
+    uint32_t shadow_cascades;   /* at most 4 */
+    uint32_t shadow_resolution; /* texels along an edge of a cascade, 16..8192 */
+    float shadow_distance;      /* view depth where shadows end, metres, > 0 */
+    /* Each cascade is drawn anew every so many frames, 1..64; 0: 1. In between it stays as it was
+     * drawn, and what moves leaves its shadow behind. Drawn at once all the same: after a cut, and
+     * when the view has left it. Any above 1 keeps the map's memory from being shared with other
+     * images, and doubles the rung's recordings. */
+    uint32_t shadow_refresh[MASU_MAX_CASCADES];
 } masu_rung;
 
 /* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
@@ -216,12 +231,16 @@ typedef struct masu_limits {
     uint64_t indices;    /* 4 bytes each, device */
     uint64_t materials;  /* 32 bytes each, device */
     uint64_t instances;  /* 52 bytes each per frame in flight, device, and 98 bytes each, host; with
-                            velocities 100 and 146; with occlusion 36 more on the device */
+                            velocities 100 and 146; with occlusion 36 more on the device; with a
+                            shadow map, for each cascade 4 more, with occlusion 16 */
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
+    uint64_t shadow_cascades;   /* of the shadow map, as the largest rung has it */
+    uint64_t shadow_resolution; /* a cascade of n has 4 n^2 bytes, device */
 } masu_limits;
 
 typedef struct masu_peak_info {
     uint64_t vertices, indices, materials, instances, sdf_params;
+    uint64_t shadow_cascades, shadow_resolution;
     uint64_t host_bytes;   /* of the host block */
     uint64_t device_bytes; /* of all device blocks */
 } masu_peak_info;
@@ -262,9 +281,12 @@ typedef enum masu_readback_bits {
      * makes the plan keep the frame before: one more image and one more pass or two. */
     MASU_READBACK_VELOCITY = 16,
     /* 2 x 16 bit unorm: how much of the sun, and of the ambient light, is seen. Only of scenes with
-     * SDF shadows or SDF ambient occlusion; asking it of others is ignored. */
+     * a shadow map, SDF shadows or SDF ambient occlusion; asking it of others is ignored. */
     MASU_READBACK_OCCLUSION = 32,
-    MASU_READBACK_ALL = 63
+    /* float, cascades side by side: depth along the sun, 1 nearest to it, 0 where nothing is. Only
+     * of scenes with a shadow map */
+    MASU_READBACK_SHADOW_MAP = 64,
+    MASU_READBACK_ALL = 127
 } masu_readback_bits;
 
 typedef struct masu_vulkan {
@@ -413,7 +435,7 @@ typedef struct masu_plan_pass {
     const char *name; /* also the shader's file name, the debug label and the timestamp's name */
     uint32_t active;  /* bit r: runs in rung r; 0: left out */
     const char *why;  /* why it is in or was left out */
-    const char *reads[6];
+    const char *reads[8];
     const char *writes[4];
     uint64_t pipeline_ns; /* time to build its pipeline in masu_init; 0 without a clock or before
                              masu_init */
@@ -489,7 +511,9 @@ typedef struct masu_frame_desc {
     uint32_t target; /* 0 .. targets.count-1 */
     uint32_t cut;    /* not 0: what is seen has nothing to do with the frame before (a camera cut):
                         nothing has moved. The first frame is one anyway. "Before" is the frame that
-                        masu_frame handed out last, submitted or not */
+                        masu_frame handed out last, submitted or not. With rungs[].shadow_refresh
+                        above 1 the frame after one that was not submitted must be a cut: the
+                        cascades that it should have drawn are not there */
     const float *sdf_params;  /* `sdf_param_count` values, NULL: the scene's defaults */
     uint32_t sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
                             clamped to their declared range; one that is not finite is an error */

@@ -41,8 +41,8 @@ batch batch_of(uint number)
 
 void finish(uint view, batch b, uint count)
 {
-    masu_count(MASU_COUNTER_VISIBLE_INSTANCES + 2u * min(view, 1u), count);
-    masu_count(MASU_COUNTER_VISIBLE_TRIANGLES + 2u * min(view, 1u), count * b.triangles);
+    masu_count(MASU_COUNTER_VISIBLE + 2u * view, count);
+    masu_count(MASU_COUNTER_VISIBLE + 2u * view + 1u, count * b.triangles);
 }
 
 void main()

@@ -51,7 +51,7 @@ bool hidden(uint at, vec3 center, vec3 extent)
         nearest = max(nearest, p.z / p.w);
     }
     /* 2^-13 for the depth that the raster interpolates, 2^-9 texel for the positions. */
-    nearest *= 1.0 + 1.2e-4;
+    nearest = nearest * (1.0 + 1.2e-4) + masu_drawn_float(at + MASU_CULL_VIEW_BIAS);
     low = clamp(floor(low - margin - 0.002), vec2(0.0), atlas.zw);
     high = clamp(ceil(high + margin + 0.002), vec2(0.0), atlas.zw);
     ivec2 from = ivec2(low), to = ivec2(high);

@@ -54,7 +54,8 @@ enum masu_blob_kind {
     MASU_BLOB_GROUPS = 25,      /* what is culled together; a tree, group 0 is its root */
     MASU_BLOB_GROUP_ITEMS = 26, /* uint32: instances, group after group; present with GROUPS */
     MASU_BLOB_OCCLUDERS = 27,   /* boxes inside of meshes, sorted by mesh */
-    MASU_BLOB_KIND_COUNT = 28
+    MASU_BLOB_SHADOW = 28,      /* at most one: the sun's shadow map */
+    MASU_BLOB_KIND_COUNT = 29
 };
 
 typedef struct masu_blob_header {
@@ -159,6 +160,19 @@ typedef struct masu_blob_environment {
     float reserved2;
 } masu_blob_environment;
 
+/* The sun's shadow map: of scenes that have instances too. Where it is absent nothing that has
+ * polygons casts a shadow. */
+typedef struct masu_blob_shadow {
+    uint32_t cascades;   /* 1..MASU_SHADOW_CASCADES_MAX */
+    uint32_t resolution; /* texels along the edge of one, MASU_SHADOW_SIZE_MIN.._MAX */
+    float distance;      /* view depth where shadows end, metres, 1e-3..1e9 */
+    float lambda;        /* of the cascades' ends: 0 evenly spaced, 1 by a constant factor */
+} masu_blob_shadow;
+
+#define MASU_SHADOW_CASCADES_MAX 4u
+#define MASU_SHADOW_SIZE_MIN 16u
+#define MASU_SHADOW_SIZE_MAX 8192u
+
 typedef struct masu_blob_sdf {
     float bounds_min[3]; /* nothing of the SDF is drawn outside; world space */
     float lipschitz;     /* >= 1e-3: |f(p)-f(q)| <= lipschitz |p-q| */
@@ -196,6 +210,7 @@ _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
 _Static_assert(sizeof(masu_blob_material) == 48, "blob material");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
 _Static_assert(sizeof(masu_blob_environment) == 80, "blob environment");
+_Static_assert(sizeof(masu_blob_shadow) == 16, "blob shadow");
 _Static_assert(sizeof(masu_blob_sdf) == 48, "blob sdf");
 _Static_assert(sizeof(masu_blob_sdf_param) == 16, "blob sdf parameter");
 

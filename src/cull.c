@@ -130,16 +130,6 @@ void masu_cull_camera(masu_cull_view *view, const float clip_from_rel[16], const
     }
 }
 
-void masu_cull_ortho(masu_cull_view *view, const double center[3], const double axis[3][3],
-                     const double half[3]) {
-    view->count = 0;
-    for (uint32_t plane = 0; plane < 6; plane++) {
-        double n[3], sign = plane % 2 ? -1.0 : 1.0;
-        for (uint32_t k = 0; k < 3; k++) n[k] = sign * axis[plane / 2][k];
-        masu_cull_add_plane(view, n, half[plane / 2] - dot(n, center));
-    }
-}
-
 /* ---- Groups ---------------------------------------------------------------------------------- */
 
 static float signed_distance(const masu_cull_plane *p, const float c[3]) {

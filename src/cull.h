@@ -96,10 +96,6 @@ void masu_cull_add_plane(masu_cull_view *view, const double n[3], double d);
 void masu_cull_camera(masu_cull_view *view, const float clip_from_rel[16], const double eye[3],
                       float near_distance);
 
-/* The six planes of the box |axis[i].(x - center)| <= half[i]; axes need not be unit vectors. */
-void masu_cull_ortho(masu_cull_view *view, const double center[3], const double axis[3][3],
-                     const double half[3]);
-
 /* Sets `bit` in marks[item] of every box that the view may see, and clears it in the others'.
  * `state`: a byte per group, zero at first, kept from frame to frame; a view of its own each.
  * Counts are added to. The two forms give the same marks, states and counts; masu_cull has SIMD

@@ -245,6 +245,14 @@ static void lay_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         masu_image_plan *image = &plan->images[i];
         if (!image->used) continue;
+        if (image->persistent) {
+            /* In front of the others, where nothing is poisoned. */
+            uint64_t apart = image->alignment > granularity ? image->alignment : granularity;
+            image->offset = masu_align_up(block->bytes, apart ? apart : 1);
+            block->bytes = image->offset + image->bytes;
+            add_to_block(block, image->alignment, image->type_bits);
+            continue;
+        }
         items[n] = (masu_placement){image->bytes, image->alignment, image->first, image->last, 0};
         ids[n++] = i;
         if (image->alignment > start_alignment) start_alignment = image->alignment;

@@ -23,6 +23,8 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
      * as colour attachment and as storage image. */
     [MASU_IMAGE_VELOCITY] = {"velocity", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER,
                              MASU_CLASS_OTHER, MASU_READBACK_VELOCITY},
+    [MASU_IMAGE_SHADOW_MAP] = {"shadow_map", VK_FORMAT_D32_SFLOAT, MASU_EXTENT_SHADOW,
+                               MASU_CLASS_OTHER, MASU_READBACK_SHADOW_MAP},
     [MASU_IMAGE_OCCLUSION] = {"occlusion", VK_FORMAT_R32_UINT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
                               MASU_READBACK_OCCLUSION},
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
@@ -134,13 +136,45 @@ static int needs_sdf_occlusion(const masu_needs *n, const char **why) {
                    why);
 }
 
+static const char *no_shadow_map(const masu_needs *n) {
+    return n->raster ? "the scene asks for no shadows of its polygons"
+                     : "the scene has no instances";
+}
+
+static int needs_cascade(const masu_needs *n, uint32_t cascade, const char **why) {
+    return decided(n->shadow && n->cascades > cascade, "polygons cast shadows",
+                   n->shadow ? "fewer cascades are asked for" : no_shadow_map(n), why);
+}
+
+static int needs_cascade_0(const masu_needs *n, const char **why) {
+    return needs_cascade(n, 0, why);
+}
+
+static int needs_cascade_1(const masu_needs *n, const char **why) {
+    return needs_cascade(n, 1, why);
+}
+
+static int needs_cascade_2(const masu_needs *n, const char **why) {
+    return needs_cascade(n, 2, why);
+}
+
+static int needs_cascade_3(const masu_needs *n, const char **why) {
+    return needs_cascade(n, 3, why);
+}
+
+static int needs_shadow(const masu_needs *n, const char **why) {
+    return decided(n->shadow, "polygons cast shadows", no_shadow_map(n), why);
+}
+
 static int needs_light(const masu_needs *n, const char **why) {
-    return decided(n->scene && !n->sdf_occlusion, "a scene is lit",
+    return decided(n->scene && !n->sdf_occlusion && !n->shadow, "a scene is lit",
                    n->scene ? "light_occluded does it" : "no scene: a source image is upscaled", why);
 }
 
 static int needs_light_occluded(const masu_needs *n, const char **why) {
-    return decided(n->sdf_occlusion, "a scene is lit, and sdf_occlusion says how much arrives",
+    return decided(n->sdf_occlusion || n->shadow,
+                   n->sdf_occlusion ? "a scene is lit, and sdf_occlusion says how much arrives"
+                                    : "a scene is lit, and shadow says how much arrives",
                    n->scene ? "light does it" : "no scene: a source image is upscaled", why);
 }
 
@@ -280,18 +314,39 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         {{MASU_IMAGE_DEPTH, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
          {MASU_RESOURCE_TILES, MASU_READ_BUFFER}, {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
          {MASU_IMAGE_VELOCITY, MASU_UPDATE}}, MASU_BLOB_VELOCITY_SPIRV},
+    [MASU_PASS_CASCADE_0] = {
+        "cascade_0", "what of the polygons the sun sees, nearest to the eye",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_SHADOW, needs_cascade_0, NULL,
+        {{MASU_RESOURCE_DRAWS, MASU_READ_BUFFER}, {MASU_IMAGE_SHADOW_MAP, MASU_UPDATE_DEPTH}}, 0},
+    [MASU_PASS_CASCADE_1] = {
+        "cascade_1", "the same, farther",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_SHADOW, needs_cascade_1, NULL,
+        {{MASU_RESOURCE_DRAWS, MASU_READ_BUFFER}, {MASU_IMAGE_SHADOW_MAP, MASU_UPDATE_DEPTH}}, 0},
+    [MASU_PASS_CASCADE_2] = {
+        "cascade_2", "the same, farther",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_SHADOW, needs_cascade_2, NULL,
+        {{MASU_RESOURCE_DRAWS, MASU_READ_BUFFER}, {MASU_IMAGE_SHADOW_MAP, MASU_UPDATE_DEPTH}}, 0},
+    [MASU_PASS_CASCADE_3] = {
+        "cascade_3", "the same, farthest",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_SHADOW, needs_cascade_3, NULL,
+        {{MASU_RESOURCE_DRAWS, MASU_READ_BUFFER}, {MASU_IMAGE_SHADOW_MAP, MASU_UPDATE_DEPTH}}, 0},
     [MASU_PASS_SDF_OCCLUSION] = {
         "sdf_occlusion", "SDF: seen part of the sun and of the ambient light, per surface",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_sdf_occlusion, occlusion_params,
         {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
          {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER}, {MASU_IMAGE_OCCLUSION, MASU_WRITE}}, MASU_BLOB_OCCLUSION_SPIRV},
+    [MASU_PASS_SHADOW] = {
+        "shadow", "seen part of the sun per surface, by the shadow map and what the SDF leaves",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shadow, NULL,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_IMAGE_SHADOW_MAP, MASU_READ},
+         {MASU_IMAGE_OCCLUSION, MASU_UPDATE}}, 0},
     [MASU_PASS_LIGHT] = {
         "light", "sun, constant ambient, sky",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
          {MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
     [MASU_PASS_LIGHT_OCCLUDED] = {
-        "light_occluded", "the same, as far as sdf_occlusion lets it through",
+        "light_occluded", "the same, as far as sdf_occlusion and shadow let it through",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light_occluded, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
          {MASU_IMAGE_OCCLUSION, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
@@ -300,7 +355,8 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         MASU_PASS_TRANSFER, MASU_EXTENT_RENDER, needs_readback, NULL,
         {{MASU_IMAGE_ALBEDO, MASU_READ_COPY}, {MASU_IMAGE_NORMAL, MASU_READ_COPY},
          {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY},
-         {MASU_IMAGE_VELOCITY, MASU_READ_COPY}, {MASU_IMAGE_OCCLUSION, MASU_READ_COPY}}, 0},
+         {MASU_IMAGE_VELOCITY, MASU_READ_COPY}, {MASU_IMAGE_OCCLUSION, MASU_READ_COPY},
+         {MASU_IMAGE_SHADOW_MAP, MASU_READ_COPY}}, 0},
     [MASU_PASS_TONEMAP] = {
         "tonemap", "exposure, tone curve, sRGB encoding",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
@@ -322,6 +378,10 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
 
 int masu_usage_writes(masu_usage usage) { return usage >= MASU_WRITE; }
 
+int masu_is_cascade(uint32_t pass) {
+    return pass >= MASU_PASS_CASCADE_0 && pass <= MASU_PASS_CASCADE_3;
+}
+
 int masu_access_binds(masu_access access, int writes) {
     if (!writes) return access.usage == MASU_READ;
     return access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
@@ -336,6 +396,7 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
         return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES)
         return (VkExtent2D){1, 1};
+    if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
     VkExtent2D size = extent == MASU_EXTENT_OUTPUT ? output : render;
     return (VkExtent2D){(size.width + block - 1) / block, (size.height + block - 1) / block};
 }

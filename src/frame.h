@@ -21,6 +21,7 @@ typedef enum masu_image_id {
     MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
     MASU_IMAGE_CONE4,       /* the same of each 4x4 block */
     MASU_IMAGE_VELOCITY,    /* where the surface was in the frame before */
+    MASU_IMAGE_SHADOW_MAP,  /* depth along the sun, the cascades side by side */
     MASU_IMAGE_OCCLUSION,   /* 2 x 16 bit unorm: seen part of the sun, of the ambient light */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
@@ -56,7 +57,8 @@ typedef enum masu_image_extent {
     MASU_EXTENT_ONE,   /* one workgroup */
     MASU_EXTENT_ATLAS, /* of occluders */
     MASU_EXTENT_KEPT,    /* an invocation per instance and view */
-    MASU_EXTENT_BATCHES  /* see compact.comp */
+    MASU_EXTENT_BATCHES, /* see compact.comp */
+    MASU_EXTENT_SHADOW   /* all cascades of the shadow map; plan.c knows how large */
 } masu_image_extent;
 
 typedef struct masu_image_row {
@@ -76,6 +78,7 @@ typedef enum masu_usage {
     MASU_UPDATE,      /* storage, some texels, the rest is kept */
     MASU_WRITE_COLOR, /* colour attachment, cleared first */
     MASU_WRITE_DEPTH, /* depth attachment, cleared to 0 (far) first */
+    MASU_UPDATE_DEPTH, /* the same of a part of the image, the rest is kept */
     MASU_WRITE_BUFFER, /* storage buffer */
     MASU_WRITE_COPY   /* transfer destination */
 } masu_usage;
@@ -106,13 +109,15 @@ typedef struct masu_needs {
     int occluders;     /* the scene has some */
     int velocity;      /* something reads velocities: the frame before is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
+    int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
     /* of one rung: */
     int upscale, sharpen, occlusion;
     masu_march march;
+    uint32_t cascades; /* of the shadow map */
 } masu_needs;
 
 typedef struct masu_pass_row {
-    const char *name; /* also the shader's file name */
+    const char *name; /* also the shader's file name; cascade_N are all of cascade.vert */
     const char *purpose;
     masu_pass_kind kind;
     masu_image_extent extent; /* size of the dispatch */
@@ -141,7 +146,12 @@ typedef enum masu_pass_id {
     MASU_PASS_MARCH_FRAGMENT,
     MASU_PASS_VELOCITY,
     MASU_PASS_SDF_VELOCITY,
+    MASU_PASS_CASCADE_0, /* one after the other */
+    MASU_PASS_CASCADE_1,
+    MASU_PASS_CASCADE_2,
+    MASU_PASS_CASCADE_3,
     MASU_PASS_SDF_OCCLUSION,
+    MASU_PASS_SHADOW,
     MASU_PASS_LIGHT,
     MASU_PASS_LIGHT_OCCLUDED,
     MASU_PASS_READBACK,
@@ -156,6 +166,9 @@ extern const masu_image_row masu_images[MASU_IMAGE_COUNT];
 extern const masu_pass_row masu_passes[MASU_PASS_COUNT];
 
 int masu_usage_writes(masu_usage usage);
+
+/* Whether it is a cascade of the shadow map: it does not run in every frame. */
+int masu_is_cascade(uint32_t pass);
 
 /* Whether an access of a compute row takes a binding of set 1, as a read or as a write. */
 int masu_access_binds(masu_access access, int writes);

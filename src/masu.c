@@ -15,7 +15,7 @@
 static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_renderer **m) {
     const masu_desc *d = &plan->desc;
     const masu_scene *s = &plan->scene;
-    uint64_t frames = (uint64_t)d->frames_in_flight * d->rung_count * d->targets.count;
+    uint64_t frames = (uint64_t)d->frames_in_flight * plan->recordings;
     masu_renderer *r = masu_arena_take(arena, "renderer", 1, sizeof *r, MASU_ARENA_ALIGNMENT);
     masu_renderer scrap; /* takes the NULLs of a counting walk */
     masu_renderer *to = r ? r : &scrap;
@@ -108,6 +108,17 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
                          "occlusion culling needs 6 storage buffers in a stage, the device has %u: "
                          "set rungs[].occlusion to MASU_OFF",
                          limits->maxPerStageDescriptorStorageBuffers);
+    }
+    VkExtent2D map = masu_plan_extent(plan, MASU_EXTENT_SHADOW, plan->desc.output);
+    uint32_t widest = map.width > map.height ? map.width : map.height;
+    if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
+        widest > limits->maxFramebufferHeight) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxImageDimension2D", widest,
+                         limits->maxImageDimension2D,
+                         "the shadow map's %u cascades of %u texels make an image of %ux%u, the "
+                         "device's may be %u",
+                         plan->cascades, plan->cascade_size, map.width, map.height,
+                         limits->maxImageDimension2D);
     }
     result = masu_objects_create(vk, plan, objects, detail);
     if (result) masu_objects_destroy(vk, objects);
@@ -300,15 +311,17 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_write_instances(m, slot, masu_is_cut(m, frame));
         int culls = d->rungs[frame->rung].frustum != MASU_OFF;
         for (uint32_t v = 0; v < m->plan.views; v++)
-            masu_write_visible(m, slot, v, culls ? &m->view_planes[v] : NULL);
+            masu_write_visible(m, slot, v, culls);
         if (m->plan.rungs[frame->rung].active >> MASU_PASS_CULL & 1u)
             masu_write_stage2(m, slot, masu_is_cut(m, frame));
     }
     m->slot_frame[slot] = m->frame;
     m->slot_rung[slot] = frame->rung;
-    *commands = (masu_commands){
-        m->frames[(slot * d->rung_count + frame->rung) * d->targets.count + frame->target], slot,
-        frame->rung, m->frame};
+    const masu_rung_plan *rp = &m->plan.rungs[frame->rung];
+    uint32_t recording = rp->first_recording + frame->target * rp->variants +
+                         masu_recording_variant(rp, m->drawn);
+    *commands = (masu_commands){m->frames[slot * m->plan.recordings + recording], slot,
+                                frame->rung, m->frame};
     m->frame++;
     return MASU_OK;
 }
@@ -343,7 +356,7 @@ static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *o
 static void read_stage2(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
     out->occlusion_tests = counter(m, slot, MASU_COUNTER_OCCLUSION_TESTS);
     for (uint32_t v = 0; v < out->view_count; v++) {
-        uint32_t c = MASU_COUNTER_VISIBLE_INSTANCES + (v ? 2 : 0);
+        uint32_t c = MASU_COUNTER_VISIBLE + 2 * v;
         out->views[v].visible_instances = counter(m, slot, c);
         out->views[v].visible_triangles = counter(m, slot, c + 1);
     }
@@ -383,6 +396,8 @@ void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
                             .materials = s->materials,
                             .instances = s->instances,
                             .sdf_params = s->sdf_params,
+                            .shadow_cascades = m->plan.cascades,
+                            .shadow_resolution = m->plan.cascade_size,
                             .host_bytes = m->arena.used};
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++)
         out->device_bytes += m->plan.blocks[role].bytes;
@@ -402,10 +417,12 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
     VkFormat format = masu_images[id].format;
     if (format == VK_FORMAT_D32_SFLOAT)
         format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
+    VkExtent2D size = masu_plan_extent(&m->plan, masu_images[id].extent,
+                                       (VkExtent2D){rp->render_width, rp->render_height});
     *out = (masu_readback_image){masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
                                      m->plan.readback_offset[bit],
-                                 rp->render_width, rp->render_height,
-                                 (uint64_t)rp->render_width * masu_format_bytes(format), format};
+                                 size.width, size.height,
+                                 (uint64_t)size.width * masu_format_bytes(format), format};
     return MASU_OK;
 }
 
@@ -448,7 +465,7 @@ uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint3
         if (n < capacity) {
             rows[n] = device_row(&m->plan, "image", masu_images[i].name, MASU_ROLE_DEVICE,
                                  (uint64_t)p->width * p->height, p->bytes, p->alignment, p->offset);
-            rows[n].transient = 1;
+            rows[n].transient = !p->persistent;
             rows[n].first_pass = p->first;
             rows[n].last_pass = p->last;
         }

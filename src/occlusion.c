@@ -16,87 +16,144 @@ static uint32_t *drawn_words(const masu_renderer *m, uint32_t slot) {
 
 /* ---- Views ----------------------------------------------------------------------------------- */
 
-VkRect2D masu_atlas_part(uint32_t view) {
-    if (view) return (VkRect2D){{0, MASU_ATLAS_CAMERA_HEIGHT}, {MASU_ATLAS_SUN, MASU_ATLAS_SUN}};
+VkRect2D masu_atlas_part(uint32_t part) {
+    if (part) return (VkRect2D){{0, MASU_ATLAS_CAMERA_HEIGHT}, {MASU_ATLAS_SUN, MASU_ATLAS_SUN}};
     return (VkRect2D){{0, 0}, {MASU_ATLAS_CAMERA_WIDTH, MASU_ATLAS_CAMERA_HEIGHT}};
 }
 
-/* The sun looks at all of the scene as it was baked: a box along its direction, depth 1 at the side
- * of the sun. */
-static void set_sun(masu_renderer *m, const float towards[3], const double eye[3],
-                    masu_stage2_view *v) {
-    double axis[3][3], center[3], half[3], least = fabs((double)towards[0]);
-    uint32_t k = 0;
-    for (uint32_t i = 1; i < 3; i++) {
-        if (fabs((double)towards[i]) < least) least = fabs((double)towards[i]), k = i;
-    }
-    /* x across the sun's direction and the axis that is least along it, y across both. */
-    double other[3] = {k == 0, k == 1, k == 2}, length = 0.0;
-    for (uint32_t i = 0; i < 3; i++) axis[2][i] = (double)towards[i];
+/* A box along the sun's direction, which is its last axis. It reaches from the centre `half` across it,
+ * `behind` away from the sun and `ahead` towards it: how far that is may be more than the position
+ * of a middle could bear. */
+typedef struct sun_box {
+    double axis[3][3], center[3], half[2], behind, ahead;
+} sun_box;
+
+static double along(const double axis[3], const double p[3]) {
+    return axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+}
+
+/* All of the scene as it was baked. */
+static sun_box around_scene(const masu_renderer *m, const float sun[3]) {
+    sun_box b;
+    double towards[3], half[3] = {1e-6, 1e-6, 1e-6};
+    for (uint32_t i = 0; i < 3; i++) towards[i] = (double)sun[i];
+    masu_shadow_axes(towards, b.axis);
     for (uint32_t i = 0; i < 3; i++) {
-        uint32_t a = (i + 1) % 3, b = (i + 2) % 3;
-        axis[0][i] = axis[2][a] * other[b] - axis[2][b] * other[a];
-        length += axis[0][i] * axis[0][i];
-    }
-    for (uint32_t i = 0; i < 3; i++) axis[0][i] /= sqrt(length);
-    for (uint32_t i = 0; i < 3; i++) {
-        uint32_t a = (i + 1) % 3, b = (i + 2) % 3;
-        axis[1][i] = axis[2][a] * axis[0][b] - axis[2][b] * axis[0][a];
-    }
-    for (uint32_t i = 0; i < 3; i++) {
-        center[i] = (double)m->scene_box.center[i];
-        half[i] = 1e-6;
+        b.center[i] = (double)m->scene_box.center[i];
         for (uint32_t j = 0; j < 3; j++)
-            half[i] += fabs(axis[i][j]) * 1.001 * (double)m->scene_box.half[j];
+            half[i] += fabs(b.axis[i][j]) * 1.001 * (double)m->scene_box.half[j];
     }
-    masu_cull_ortho(&m->view_planes[1], center, (const double(*)[3])axis, half);
+    b.half[0] = half[0];
+    b.half[1] = half[1];
+    b.behind = b.ahead = half[2];
+    return b;
+}
+
+static sun_box around_cascade(const masu_cascade *c) {
+    sun_box b;
+    memcpy(b.axis, c->axis, sizeof b.axis);
+    memcpy(b.center, c->center, sizeof b.center);
+    b.half[0] = b.half[1] = c->half;
+    b.behind = c->behind;
+    b.ahead = c->ahead;
+    return b;
+}
+
+/* The least box around two of the same axes. */
+static sun_box around_both(const sun_box *a, const sun_box *b) {
+    sun_box both = *a;
+    double apart[3];
+    for (uint32_t i = 0; i < 3; i++) apart[i] = b->center[i] - a->center[i];
+    for (uint32_t i = 0; i < 2; i++) {
+        double at = along(a->axis[i], apart);
+        double low = fmin(-a->half[i], at - b->half[i]), high = fmax(a->half[i], at + b->half[i]);
+        both.half[i] = 0.5 * (high - low);
+        for (uint32_t k = 0; k < 3; k++) both.center[k] += a->axis[i][k] * 0.5 * (high + low);
+    }
+    both.behind = fmax(a->behind, b->behind - along(a->axis[2], apart));
+    both.ahead = fmax(a->ahead, b->ahead + along(a->axis[2], apart));
+    return both;
+}
+
+/* Its planes, but for the one on the side of the sun: nothing there may be left out. */
+static void set_planes(const sun_box *b, masu_cull_view *view) {
+    view->count = 0;
+    for (uint32_t plane = 0; plane < 5; plane++) {
+        double n[3], sign = plane % 2 ? -1.0 : 1.0, reach = plane < 4 ? b->half[plane / 2] : b->behind;
+        for (uint32_t k = 0; k < 3; k++) n[k] = sign * b->axis[plane / 2][k];
+        masu_cull_add_plane(view, n, reach - along(n, b->center));
+    }
+}
+
+/* Depth is 1 at the side of the sun. */
+static void look_from_sun(const sun_box *b, const double eye[3], masu_stage2_view *v) {
     for (uint32_t row = 0; row < 3; row++) {
-        double scale = row == 2 ? 0.5 : 1.0, offset = row == 2 ? 0.5 : 0.0;
+        double scale = 1.0 / (row == 2 ? b->behind + b->ahead : b->half[row]);
+        double offset = row == 2 ? b->behind * scale : 0.0;
         for (uint32_t i = 0; i < 3; i++) {
-            double to = scale * axis[row][i] / half[row];
-            v->clip[4 * i + row] = (float)to;
-            offset += to * (eye[i] - center[i]);
+            v->clip[4 * i + row] = (float)(scale * b->axis[row][i]);
+            offset += scale * b->axis[row][i] * (eye[i] - b->center[i]);
         }
         v->clip[12 + row] = (float)offset;
     }
     v->clip[15] = 1.0f;
-    for (uint32_t i = 0; i < 3; i++) v->eye[i] = towards[i];
+    for (uint32_t i = 0; i < 3; i++) v->eye[i] = (float)b->axis[2][i];
     v->blind = -1.0f;
 }
 
-/* How far the raster may move an edge of a view of that size, in texels of its part of the atlas. */
-static float margin_of(const masu_renderer *m, uint32_t view, uint32_t width, uint32_t height) {
-    VkRect2D part = masu_atlas_part(view);
-    float step = ldexpf(1.0f, -(int)m->vk.properties.limits.subPixelPrecisionBits);
-    float x = (float)part.extent.width / (float)width;
-    float y = (float)part.extent.height / (float)height;
-    return step * (x > y ? x : y);
+static void set_atlas(masu_stage2_view *v, uint32_t part) {
+    VkRect2D area = masu_atlas_part(part);
+    v->atlas[0] = (float)area.offset.x;
+    v->atlas[1] = (float)area.offset.y;
+    v->atlas[2] = (float)area.extent.width;
+    v->atlas[3] = (float)area.extent.height;
+}
+
+/* The sun's views share one part of the atlas, a square around all that this frame draws. Cascades
+ * lie inside of each other, so that what hides something in the part hides it in each of them; but a
+ * cascade moves surfaces away from the sun, and so a mesh may be a little behind its occluder. */
+static void set_suns(masu_renderer *m, const float sun[3], const double eye[3], float step) {
+    sun_box boxes[MASU_CASCADES_MAX], all;
+    uint32_t suns = m->plan.views - 1, any = 0;
+    for (uint32_t k = 0; k < suns; k++) {
+        if (m->plan.needs.shadow && !(m->drawn >> k & 1u)) continue;
+        boxes[k] = m->plan.needs.shadow ? around_cascade(&m->cascades[k]) : around_scene(m, sun);
+        set_planes(&boxes[k], &m->view_planes[1 + k]);
+        all = any ? around_both(&all, &boxes[k]) : boxes[k];
+        any = 1;
+    }
+    if (!any || !m->plan.occlusion) return;
+    all.half[0] = all.half[1] = fmax(all.half[0], all.half[1]);
+    masu_stage2_view shared = m->stage2[1];
+    set_atlas(&shared, 1);
+    look_from_sun(&all, eye, &shared);
+    for (uint32_t k = 0; k < suns; k++) {
+        double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN;
+        double drawn = m->plan.needs.shadow ? 2.0 * m->cascades[k].half / m->cascades[k].size : texel;
+        double bias = m->plan.needs.shadow ? MASU_SHADOW_BIAS_MOST * drawn : 0.0;
+        shared.margin = (float)((double)step * drawn / texel);
+        shared.bias = (float)(bias / (all.behind + all.ahead) + 2e-6);
+        m->stage2[1 + k] = shared;
+    }
 }
 
 void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
                     uint32_t rung) {
     masu_cull_camera(&m->view_planes[0], u->clip_from_rel, eye, u->forward[3]);
-    if (!m->plan.occlusion && m->plan.views == 1) return;
     memset(m->stage2, 0, sizeof m->stage2);
-    for (uint32_t view = 0; view < m->plan.views; view++) {
-        masu_stage2_view *v = &m->stage2[view];
-        VkRect2D part = masu_atlas_part(view);
-        v->atlas[0] = (float)part.offset.x;
-        v->atlas[1] = (float)part.offset.y;
-        v->atlas[2] = (float)part.extent.width;
-        v->atlas[3] = (float)part.extent.height;
-        v->margin = margin_of(m, view, view ? part.extent.width : m->plan.rungs[rung].render_width,
-                              view ? part.extent.height : m->plan.rungs[rung].render_height);
-        if (view) {
-            set_sun(m, u->sun_direction, eye, v);
-            continue;
-        }
-        memcpy(v->clip, u->clip_from_rel, sizeof v->clip);
-        v->eye[3] = 1.0f;
-        v->near_distance = u->forward[3];
-        v->blind = 1.001f * u->forward[3] *
-                   sqrtf(1.0f + u->right[3] * u->right[3] + u->up[3] * u->up[3]);
-    }
+    /* How far the raster may move an edge, in its own texels. */
+    float step = ldexpf(1.0f, -(int)m->vk.properties.limits.subPixelPrecisionBits);
+    set_suns(m, u->sun_direction, eye, step);
+    masu_stage2_view *v = &m->stage2[0];
+    set_atlas(v, 0);
+    memcpy(v->clip, u->clip_from_rel, sizeof v->clip);
+    float across = v->atlas[2] / (float)m->plan.rungs[rung].render_width;
+    float down = v->atlas[3] / (float)m->plan.rungs[rung].render_height;
+    v->margin = step * (across > down ? across : down);
+    v->eye[3] = 1.0f;
+    v->near_distance = u->forward[3];
+    v->blind = 1.001f * u->forward[3] *
+               sqrtf(1.0f + u->right[3] * u->right[3] + u->up[3] * u->up[3]);
 }
 
 /* ---- Once per scene -------------------------------------------------------------------------- */
@@ -160,10 +217,10 @@ void masu_write_occluders(masu_renderer *m, const masu_scene_view *v) {
             memcpy(to, v->occluders[o].low, sizeof v->occluders[o].low);
             memcpy(to + 3, v->occluders[o].high, sizeof v->occluders[o].high);
         }
-        for (uint32_t view = 0; view < m->plan.views; view++) {
+        for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
             VkDrawIndirectCommand box = {18, 0, 0, 0};
             memcpy(masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
-                       MASU_OCCLUDER_DRAW(&m->plan, view),
+                       MASU_OCCLUDER_DRAW(&m->plan, part),
                    &box, sizeof box);
         }
     }
@@ -179,13 +236,14 @@ void masu_write_box(masu_renderer *m, uint32_t slot, uint32_t instance) {
     memcpy(drawn_words(m, slot) + m->plan.drawn.boxes + 6 * (uint64_t)instance, box, sizeof box);
 }
 
-/* Occluders that a view keeps. Those of hidden instances too: what they hide is hidden anyway. */
-static uint32_t write_pairs(masu_renderer *m, uint32_t view, uint32_t *to) {
+/* Occluders that any view of `marks` keeps. Those of hidden instances too: what they hide is hidden
+ * anyway. */
+static uint32_t write_pairs(masu_renderer *m, uint32_t marks, uint32_t *to) {
     uint32_t n = 0;
     for (uint32_t o = 0; o < m->plan.scene.occluders; o++) {
         const masu_placed_occluder *p = &m->occluders[o];
         for (uint32_t i = 0; i < p->instance_count; i++) {
-            if (!(m->marks[p->first_instance + i] >> view & 1u)) continue;
+            if (!(m->marks[p->first_instance + i] & marks)) continue;
             to[2 * (uint64_t)n] = o;
             to[2 * (uint64_t)n++ + 1] = p->first_instance + i;
         }
@@ -199,13 +257,15 @@ void masu_write_stage2(masu_renderer *m, uint32_t slot, int cut) {
     header[MASU_CULL_FRAME] = (uint32_t)(m->frame % 5);
     header[MASU_CULL_CUT] = cut != 0;
     memcpy(header + MASU_CULL_HEADER, m->stage2, m->plan.views * sizeof *m->stage2);
-    for (uint32_t view = 0; view < m->plan.views; view++) {
-        uint64_t pairs = 2 * (uint64_t)view * m->plan.scene.placed_occluders;
-        uint32_t n = write_pairs(m, view, words + d->pairs + pairs);
+    for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
+        uint64_t pairs = 2 * (uint64_t)part * m->plan.scene.placed_occluders;
+        uint32_t n = write_pairs(m, part ? ~1u : 1u, words + d->pairs + pairs);
         unsigned char *draw = masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
-                              MASU_OCCLUDER_DRAW(&m->plan, view);
+                              MASU_OCCLUDER_DRAW(&m->plan, part);
         memcpy(draw + offsetof(VkDrawIndirectCommand, instanceCount), &n, sizeof n);
-        m->slot_views[slot][view].occluders = n;
+        m->slot_views[slot][part].occluders = n;
+    }
+    for (uint32_t view = 0; view < m->plan.views; view++) {
         /* All that stage 1 has kept, one after the other. */
         uint32_t *kept = words + d->kept + view * ((uint64_t)m->plan.scene.instances + 1), count = 0;
         for (uint32_t i = 0; i < m->plan.scene.instances; i++) {

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "shared/masu_shared.h"
 
+#include "cascade_vert.spv.h"
 #include "compact_comp.spv.h"
 #include "cull_comp.spv.h"
 #include "easu_comp.spv.h"
@@ -19,6 +20,7 @@
 #include "occluders_frag.spv.h"
 #include "occluders_vert.spv.h"
 #include "rcas_comp.spv.h"
+#include "shadow_comp.spv.h"
 #include "tonemap_comp.spv.h"
 #include "velocity_comp.spv.h"
 
@@ -42,6 +44,7 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     case MASU_PASS_CULL: return (spirv){masu_spv_cull_comp, sizeof masu_spv_cull_comp};
     case MASU_PASS_COMPACT: return (spirv){masu_spv_compact_comp, sizeof masu_spv_compact_comp};
     case MASU_PASS_VELOCITY: return (spirv){masu_spv_velocity_comp, sizeof masu_spv_velocity_comp};
+    case MASU_PASS_SHADOW: return (spirv){masu_spv_shadow_comp, sizeof masu_spv_shadow_comp};
     case MASU_PASS_LIGHT: return (spirv){masu_spv_light_comp, sizeof masu_spv_light_comp};
     case MASU_PASS_LIGHT_OCCLUDED:
         return (spirv){masu_spv_light_occluded_comp, sizeof masu_spv_light_occluded_comp};
@@ -84,6 +87,8 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_PREVIOUS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
         {MASU_BIND_PREVIOUS_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
          VK_SHADER_STAGE_VERTEX_BIT, NULL},
+        {MASU_BIND_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1,
+         compute | VK_SHADER_STAGE_VERTEX_BIT, NULL},
         {MASU_BIND_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, NULL},
         /* The rest only for stage 2 of culling: devices need to have no more than four in a stage. */
         {MASU_BIND_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute, NULL},
@@ -184,11 +189,11 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
     return MASU_OK;
 }
 
-/* ---- G-buffer -------------------------------------------------------------------------------- */
+/* ---- Graphics -------------------------------------------------------------------------------- */
 
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
- */
+ * Only the render area is cleared: a cascade of the shadow map leaves the others alone. */
 static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
@@ -197,7 +202,7 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
     const masu_rung_plan *rp = first_rung(m, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_access access = rp->access[pass][a];
-        int is_depth = access.usage == MASU_WRITE_DEPTH;
+        int is_depth = access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
         if (!is_depth && access.usage != MASU_WRITE_COLOR) continue;
         VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
                                         : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -229,9 +234,10 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
                                    .pAttachments = attachments,
                                    .subpassCount = 1,
                                    .pSubpasses = &subpass};
-    VkResult r = m->vk.CreateRenderPass(m->vk.device, &info, m->vk.allocator,
-                                         &m->render_passes[pass]);
-    if (MASU_FAILED(r, m->render_passes[pass])) return masu_fail_vulkan(detail, r, "vkCreateRenderPass");
+    VkResult r =
+        m->vk.CreateRenderPass(m->vk.device, &info, m->vk.allocator, &m->render_passes[pass]);
+    if (MASU_FAILED(r, m->render_passes[pass]))
+        return masu_fail_vulkan(detail, r, "vkCreateRenderPass");
     VkFramebufferCreateInfo frame = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
                                      .renderPass = m->render_passes[pass],
                                      .attachmentCount = n,
@@ -240,14 +246,16 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
                                      .height = height,
                                      .layers = 1};
     r = m->vk.CreateFramebuffer(m->vk.device, &frame, m->vk.allocator, &m->framebuffers[pass]);
-    return MASU_FAILED(r, m->framebuffers[pass]) ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer")
-                                          : MASU_OK;
+    return MASU_FAILED(r, m->framebuffers[pass])
+               ? masu_fail_vulkan(detail, r, "vkCreateFramebuffer")
+               : MASU_OK;
 }
 
 static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
                                          const VkShaderModule modules[2]) {
-    int polygons = pass == MASU_PASS_GBUFFER; /* else what the vertex shader makes up */
-    int boxes = pass == MASU_PASS_OCCLUDERS;  /* no colour; else one triangle, no depth */
+    int cascade = masu_is_cascade(pass);                 /* no colour */
+    int polygons = pass == MASU_PASS_GBUFFER || cascade; /* else what the vertex shader makes up */
+    int boxes = pass == MASU_PASS_OCCLUDERS;             /* no colour; else one triangle, no depth */
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
         stages[i] = (VkPipelineShaderStageCreateInfo){
@@ -297,7 +305,9 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
     }
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = boxes ? 0 : polygons && !m->plan.needs.velocity ? 2 : 3,
+        .attachmentCount = boxes || cascade                      ? 0
+                           : polygons && !m->plan.needs.velocity ? 2
+                                                                 : 3,
         .pAttachments = blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamics = {
@@ -305,7 +315,7 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
         .dynamicStateCount = 2,
         .pDynamicStates = dynamic};
     VkGraphicsPipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                         .stageCount = 2,
+                                         .stageCount = cascade ? 1 : 2,
                                          .pStages = stages,
                                          .pVertexInputState = &input,
                                          .pInputAssemblyState = &assembly,
@@ -322,8 +332,9 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
 }
 
 static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+    if (masu_is_cascade(pass) && pass != MASU_PASS_CASCADE_0) return MASU_OK;
     masu_result result = make_render_pass(m, pass, detail);
-    int polygons = pass == MASU_PASS_GBUFFER;
+    int cascade = masu_is_cascade(pass), polygons = pass == MASU_PASS_GBUFFER;
     if (result || (polygons && !m->plan.needs.raster)) return result; /* an empty scene clears */
     spirv vertex = {masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert};
     spirv fragment = {masu_spv_gbuffer_frag, sizeof masu_spv_gbuffer_frag};
@@ -336,13 +347,15 @@ static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *d
     if (pass == MASU_PASS_OCCLUDERS) {
         vertex = (spirv){masu_spv_occluders_vert, sizeof masu_spv_occluders_vert};
         fragment = (spirv){masu_spv_occluders_frag, sizeof masu_spv_occluders_frag};
+    } else if (cascade) {
+        vertex = (spirv){masu_spv_cascade_vert, sizeof masu_spv_cascade_vert};
     } else if (!polygons) {
         vertex = (spirv){masu_spv_fullscreen_vert, sizeof masu_spv_fullscreen_vert};
         fragment = scene_code(m, pass);
     }
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     result = make_module(m, vertex, &modules[0], detail);
-    if (!result) result = make_module(m, fragment, &modules[1], detail);
+    if (!result && !cascade) result = make_module(m, fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
         VkResult r = create_graphics_pipeline(m, pass, modules);

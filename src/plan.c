@@ -27,6 +27,9 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
         if (d.rungs[r].scale == 0.0f) d.rungs[r].scale = 1.0f;
         if (d.rungs[r].march_steps == 0) d.rungs[r].march_steps = MASU_MARCH_STEPS_MAX;
+        for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
+            if (d.rungs[r].shadow_refresh[k] == 0) d.rungs[r].shadow_refresh[k] = 1;
+        }
     }
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
@@ -61,6 +64,25 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
     }
     if ((unsigned)rung->march > MASU_MARCH_UNPRUNED) {
         return bad_range(detail, "rungs[].march", (unsigned)rung->march, 0, MASU_MARCH_UNPRUNED);
+    }
+    if (rung->shadow_cascades > MASU_MAX_CASCADES) {
+        return bad_range(detail, "rungs[].shadow_cascades", rung->shadow_cascades, 0,
+                         MASU_MAX_CASCADES);
+    }
+    if (rung->shadow_resolution && (rung->shadow_resolution < MASU_SHADOW_SIZE_MIN ||
+                                    rung->shadow_resolution > MASU_SHADOW_SIZE_MAX)) {
+        return bad_range(detail, "rungs[].shadow_resolution", rung->shadow_resolution,
+                         MASU_SHADOW_SIZE_MIN, MASU_SHADOW_SIZE_MAX);
+    }
+    if (!(rung->shadow_distance >= 0.0f && rung->shadow_distance <= 1e30f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].shadow_distance", 0, 0,
+                         "rungs[%u].shadow_distance is %g m, allowed are 0 to 1e30", r,
+                         (double)rung->shadow_distance);
+    }
+    for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
+        if (rung->shadow_refresh[k] <= MASU_MAX_REFRESH) continue;
+        return bad_range(detail, "rungs[].shadow_refresh", rung->shadow_refresh[k], 0,
+                         MASU_MAX_REFRESH);
     }
     const masu_switch switches[] = {rung->upscale, rung->sharpen, rung->frustum, rung->occlusion};
     static const char *const names[] = {"rungs[].upscale", "rungs[].sharpen", "rungs[].frustum",
@@ -163,8 +185,23 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
+static uint32_t least(uint32_t wish, uint32_t has) { return wish && wish < has ? wish : has; }
+
+/* Cascades of the rung that has most of them, and the edge of the largest. */
+static void most_shadow(const masu_desc *d, uint32_t *cascades, uint32_t *size) {
+    *cascades = *size = 0;
+    for (uint32_t r = 0; r < d->rung_count && d->scene && d->scene->shadow_cascades; r++) {
+        uint32_t n = least(d->rungs[r].shadow_cascades, d->scene->shadow_cascades);
+        uint32_t s = least(d->rungs[r].shadow_resolution, d->scene->shadow_resolution);
+        if (*cascades < n) *cascades = n;
+        if (*size < s) *size = s;
+    }
+}
+
 static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
     const masu_scene *s = d->scene;
+    uint32_t cascades, cascade_size;
+    most_shadow(d, &cascades, &cascade_size);
     if (!s) return MASU_OK;
     const struct {
         const char *name;
@@ -173,7 +210,9 @@ static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
                 {"limits.indices", d->limits.indices, s->indices},
                 {"limits.materials", d->limits.materials, s->materials},
                 {"limits.instances", d->limits.instances, s->instances},
-                {"limits.sdf_params", d->limits.sdf_params, s->sdf_params}};
+                {"limits.sdf_params", d->limits.sdf_params, s->sdf_params},
+                {"limits.shadow_cascades", d->limits.shadow_cascades, cascades},
+                {"limits.shadow_resolution", d->limits.shadow_resolution, cascade_size}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (rows[i].limit && rows[i].needed > rows[i].limit) {
             return masu_fail(detail, MASU_ERROR_LIMIT, rows[i].name, rows[i].needed, rows[i].limit,
@@ -200,6 +239,59 @@ static void resolve_switches(const masu_desc *d, masu_rung_plan *rp, const masu_
     needs->sharpen = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && needs->upscale);
     /* Upscaling only, at ratio 1, with everything off: something has to write the target. */
     if (!needs->scene && !needs->upscale && !needs->sharpen) needs->upscale = 1;
+}
+
+/* ---- The shadow map -------------------------------------------------------------------------- */
+
+/* One below the other, but for four: up to 2048 a square is within the size that every device
+ * has. */
+static uint32_t cascade_columns(const masu_frame_plan *plan) { return plan->cascades == 4 ? 2 : 1; }
+
+VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade) {
+    uint32_t columns = cascade_columns(plan);
+    return (VkOffset2D){(int32_t)(cascade % columns * plan->cascade_size),
+                        (int32_t)(cascade / columns * plan->cascade_size)};
+}
+
+VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
+                            VkExtent2D render) {
+    uint32_t columns = cascade_columns(plan);
+    if (extent != MASU_EXTENT_SHADOW) return masu_extent_of(extent, render, plan->desc.output);
+    return (VkExtent2D){columns * plan->cascade_size,
+                        (plan->cascades + columns - 1) / columns * plan->cascade_size};
+}
+
+uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn) {
+    uint32_t variant = 0, bit = 0;
+    for (uint32_t k = 0; k < rung->cascades; k++) {
+        if (rung->slow & 1u << k) variant |= (drawn >> k & 1u) << bit++;
+    }
+    return variant;
+}
+
+int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t cascade) {
+    uint32_t only = 1u << cascade;
+    if (cascade >= rung->cascades) return 0;
+    return !(rung->slow & only) || (masu_recording_variant(rung, only) & variant) != 0;
+}
+
+static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
+    masu_rung_plan *rp = &plan->rungs[r];
+    const masu_rung *rung = &plan->desc.rungs[r];
+    rp->variants = 1;
+    if (plan->needs.shadow) {
+        rp->cascades = least(rung->shadow_cascades, plan->scene.shadow_cascades);
+        rp->cascade_size = least(rung->shadow_resolution, plan->scene.shadow_resolution);
+    }
+    for (uint32_t k = 0; k < rp->cascades; k++) {
+        if (rung->shadow_refresh[k] == 1) continue;
+        rp->slow |= 1u << k;
+        rp->variants *= 2;
+    }
+    plan->images[MASU_IMAGE_SHADOW_MAP].persistent |= rp->slow != 0;
+    plan->needs.cascades = rp->cascades;
+    rp->first_recording = plan->recordings;
+    plan->recordings += rp->variants * plan->desc.targets.count;
 }
 
 /* Which concrete image an access of the table means in this rung, or NONE if there is no such image
@@ -236,7 +328,7 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         rp->active |= 1u << p;
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_image_id image = resolve(row->access[a].image, depth, color);
-            if (p == MASU_PASS_GBUFFER && image == (masu_image_id)MASU_RESOURCE_DRAWS &&
+            if (image == (masu_image_id)MASU_RESOURCE_DRAWS &&
                 !plan->needs.occlusion) {
                 continue; /* the host has written them */
             }
@@ -268,7 +360,8 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_WRITE:
     case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
     case MASU_WRITE_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    case MASU_WRITE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    case MASU_WRITE_DEPTH:
+    case MASU_UPDATE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     case MASU_READ_BUFFER:
     case MASU_WRITE_BUFFER:
@@ -288,7 +381,7 @@ static void gather_images(masu_frame_plan *plan) {
                 if (id >= MASU_IMAGE_SOURCE) continue; /* the host's, or a buffer */
                 masu_image_plan *image = &plan->images[id];
                 VkExtent2D render = {rp->render_width, rp->render_height};
-                VkExtent2D size = masu_extent_of(masu_images[id].extent, render, plan->desc.output);
+                VkExtent2D size = masu_plan_extent(plan, masu_images[id].extent, render);
                 if (!image->used) image->first = p;
                 if (image->first > p) image->first = p;
                 if (image->last < p) image->last = p;
@@ -317,7 +410,7 @@ static void lay_drawn(masu_frame_plan *plan) {
                     {&d->large, s->meshes},
                     {&d->boxes, 6 * (uint64_t)s->instances},
                     {&d->occluders, 6 * (uint64_t)s->occluders},
-                    {&d->pairs, 2 * (uint64_t)plan->views * s->placed_occluders}};
+                    {&d->pairs, 2 * (uint64_t)MASU_ATLAS_PARTS(plan) * s->placed_occluders}};
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             *rows[i].offset = next;
             next += rows[i].words;
@@ -340,6 +433,12 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     b[MASU_BUFFER_FRAME].stride =
         halves * masu_align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
     b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
+    if (plan->needs.shadow) {
+        b[MASU_BUFFER_SHADOW].count = flights;
+        b[MASU_BUFFER_SHADOW].stride =
+            masu_align_up(sizeof(struct masu_shadow_uniforms), uniform_alignment);
+        b[MASU_BUFFER_SHADOW].bytes = flights * b[MASU_BUFFER_SHADOW].stride;
+    }
     for (uint32_t r = 0; r < plan->desc.rung_count && s->sdf; r++) {
         VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
         VkExtent2D tiles = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
@@ -357,7 +456,7 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
         b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
         lay_drawn(plan);
         b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * s->draws;
-        if (plan->occlusion) b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + plan->views;
+        if (plan->occlusion) b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + MASU_ATLAS_PARTS(plan);
         b[MASU_BUFFER_DRAWS].stride =
             masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
         b[MASU_BUFFER_DRAWS].bytes = flights * b[MASU_BUFFER_DRAWS].stride;
@@ -420,6 +519,9 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     b[MASU_BUFFER_FRAME] = (masu_buffer_plan){.name = "frame uniforms",
                                               .role = MASU_ROLE_UPLOAD,
                                               .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+    b[MASU_BUFFER_SHADOW] = (masu_buffer_plan){.name = "shadow uniforms",
+                                               .role = MASU_ROLE_UPLOAD,
+                                               .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
     b[MASU_BUFFER_INSTANCES] = (masu_buffer_plan){.name = "instances",
                                                   .role = MASU_ROLE_UPLOAD,
                                                   .usage = storage,
@@ -459,7 +561,9 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     if (d->scene) {
         plan->scene = *d->scene;
         d->scene = &plan->scene;
-        if (!d->scene->sdf_occlusion) d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
+        if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades)
+            d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
+        if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
     } else {
         d->readback = 0; /* the images that could be asked for are the scene's */
     }
@@ -469,10 +573,14 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .dynamic = d->scene && d->scene->sdf_dynamic,
                                .anchored = d->scene && d->scene->sdf_anchored,
                                .sdf_occlusion = d->scene && d->scene->sdf_occlusion,
+                               .shadow = d->scene && d->scene->shadow_cascades,
                                .readback = d->readback,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0,
                                .blit = !d->targets.storage};
-    plan->views = d->debug.casters && plan->needs.raster ? 2 : 1;
+    most_shadow(d, &plan->cascades, &plan->cascade_size);
+    /* The sun's: each cascade, else all of the scene. */
+    uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
+    plan->views = plan->needs.raster ? 1 + suns : 1;
     plan->needs.occluders = d->scene && d->scene->placed_occluders > 0;
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];
@@ -512,6 +620,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              r, MASU_CULL_ROUNDS, 64 * MASU_CULL_ROUNDS, d->scene->most_primitives,
                              d->scene->most_instances);
         }
+        resolve_shadow(plan, r);
         compile_rung(plan, r);
     }
     gather_images(plan);
@@ -557,7 +666,7 @@ static uint64_t left_out_bytes(const masu_frame_plan *plan) {
     uint64_t bytes = 0;
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (plan->images[i].used) continue;
-        VkExtent2D size = masu_extent_of(masu_images[i].extent, render, plan->desc.output);
+        VkExtent2D size = masu_plan_extent(plan, masu_images[i].extent, render);
         bytes += (uint64_t)size.width * size.height * masu_format_bytes(masu_images[i].format);
     }
     return bytes;
@@ -586,7 +695,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
                 const char *name = image_name(rp->access[p][a].image);
                 if (masu_usage_writes((masu_usage)rp->access[p][a].usage)) {
                     if (writes < 4) pass->writes[writes++] = name;
-                } else if (reads < 6) {
+                } else if (reads < 8) {
                     pass->reads[reads++] = name;
                 }
             }

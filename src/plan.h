@@ -13,6 +13,7 @@
 
 typedef struct masu_image_plan {
     int used;
+    int persistent; /* its content outlives the frame: it shares its bytes with nothing */
     uint32_t width, height; /* as allocated: the largest rung */
     VkImageUsageFlags usage;
     uint32_t first, last; /* rows of the table between which its content is alive, over all rungs */
@@ -22,6 +23,10 @@ typedef struct masu_image_plan {
 
 typedef struct masu_rung_plan {
     uint32_t render_width, render_height;
+    uint32_t cascades, cascade_size; /* of the shadow map; 0: none */
+    uint32_t slow; /* bit per cascade that is not drawn in every frame */
+    /* A recording for each set of slow cascades, per target; the last draws them all. */
+    uint32_t variants, first_recording;
     uint32_t active; /* bit per pass */
     uint32_t access_count[MASU_PASS_COUNT];
     masu_access access[MASU_PASS_COUNT][MASU_PASS_ACCESSES]; /* stand-ins resolved */
@@ -40,6 +45,7 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_DRAWS,     /* per frame in flight and view: an indirect command for each draw */
     MASU_BUFFER_DRAWN,     /* per frame in flight and view: numbers of the instances drawn */
     MASU_BUFFER_SEEN,      /* what stage 2 of culling knows of each instance; outlives frames */
+    MASU_BUFFER_SHADOW,    /* one masu_shadow_uniforms per frame in flight */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
     MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
     MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
@@ -63,15 +69,17 @@ typedef struct masu_block_plan {
     int host_visible; /* mapped for the renderer's whole life */
 } masu_block_plan;
 
-#define MASU_READBACK_IMAGES 6u
+#define MASU_READBACK_IMAGES 7u
 #define MASU_DRAW_BYTES 20u /* of a VkDrawIndexedIndirectCommand */
 
+/* The atlas of occluders has a part for the camera and one for the sun, whose views all share it. */
+#define MASU_ATLAS_PARTS(plan) ((plan)->views > 1 ? 2u : 1u)
 /* Where in a slot of MASU_BUFFER_DRAWS the draws of a view begin that stage 1 or 2 has counted, and
- * the draw of its occluders. */
+ * the draw of the occluders of a part of the atlas. */
 #define MASU_DRAWS_OF(plan, view, stage2)                                                          \
     (((uint64_t)(view) + ((stage2) ? (plan)->views : 0)) * (plan)->scene.draws * MASU_DRAW_BYTES)
-#define MASU_OCCLUDER_DRAW(plan, view)                                                             \
-    (MASU_DRAWS_OF(plan, (plan)->views, 1) + (uint64_t)(view)*MASU_DRAW_BYTES)
+#define MASU_OCCLUDER_DRAW(plan, part)                                                             \
+    (MASU_DRAWS_OF(plan, (plan)->views, 1) + (uint64_t)(part)*MASU_DRAW_BYTES)
 
 /* Words of a slot of MASU_BUFFER_DRAWN; masu_shared.h says what is where. Without occlusion there
  * are the lists of stage 1 alone. */
@@ -94,10 +102,12 @@ typedef struct masu_frame_plan {
     /* Within one readback slot: counters first, then timestamps, then images in the bit order of
      * masu_readback_bits. */
     uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
-    uint32_t views;     /* that instances are culled for: the camera, and the sun */
+    uint32_t views;     /* that instances are culled for: the camera, the cascades */
     int occlusion;      /* a rung has stage 2 of culling */
     masu_drawn_plan drawn;
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
+    uint32_t recordings; /* of one frame in flight: rungs, their targets, their variants */
+    uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */
 } masu_frame_plan;
 
 /* Fills plan from desc. Device limits that shape the buffers come in as alignments. */
@@ -106,6 +116,16 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
 
 /* v rounded up to a multiple of a, which need not be a power of two. */
 static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
+
+/* Where a cascade lies in the shadow map, of the size that the map is laid out for. */
+VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
+/* Bits over a rung's slow cascades only, out of bits over all: the variant that draws them. */
+uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn);
+/* Whether a variant of a rung's recordings draws a cascade. */
+int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t cascade);
+/* Size of an image or of a pass of a rung. */
+VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
+                            VkExtent2D render);
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);

@@ -1,5 +1,6 @@
 /* record.c: the table becomes descriptor sets and command buffers. One recording per (frame in
- * flight, rung, target), made once in masu_init and submitted again and again.
+ * flight, rung, target, and where a rung draws cascades of the shadow map less often than every
+ * frame: set of those that it draws), made once in masu_init and submitted again and again.
  *
  * Barriers are derived by walking the rung's accesses with, per image, the stage, access and layout
  * of its last use:
@@ -7,7 +8,8 @@
  *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image
  *    that shares bytes with it and was used before;
  *  - a full barrier at the top of the frame orders it behind the frame before, so no state crosses
- *    frames.
+ *    frames, but for an image whose content outlives them: it rests in the layout that shaders
+ *    read, and comes from UNDEFINED only where the recording draws all that its rung reads of it.
  * Each pass gets at most one vkCmdPipelineBarrier. */
 #include "renderer.h"
 
@@ -54,6 +56,7 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
                              VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
                              VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
     case MASU_WRITE_DEPTH:
+    case MASU_UPDATE_DEPTH:
         return (image_state){1,
                              VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                                  VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
@@ -71,7 +74,7 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
 typedef struct recorder {
     masu_renderer *m;
     VkCommandBuffer cmd;
-    uint32_t flight, rung, target;
+    uint32_t flight, rung, target, variant;
     masu_rung_plan *rp;
     image_state states[MASU_RESOURCE_END]; /* images, then the buffers that rows name */
     uint32_t barriers;
@@ -176,7 +179,7 @@ static void memory_barrier(recorder *rec, VkPipelineStageFlags from, VkAccessFla
 static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
     const masu_desc *d = &rec->m->plan.desc;
     VkExtent2D render = {rec->rp->render_width, rec->rp->render_height};
-    VkExtent2D output = masu_extent_of(masu_passes[pass].extent, render, d->output);
+    VkExtent2D output = masu_plan_extent(&rec->m->plan, masu_passes[pass].extent, render);
     VkExtent2D input = render; /* of the first image read that is not of blocks */
     struct masu_push push;
     memset(&push, 0, sizeof push);
@@ -236,35 +239,33 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
-/* One draw per primitive of each placed mesh; instances of one mesh are neighbours, so one draw
- * serves them all. visible.c says which. */
-static void record_draws(recorder *rec) {
-    const masu_vk *vk = &rec->m->vk;
+/* One draw per primitive of each placed mesh, for one view; instances of one mesh are neighbours, so one
+ * draw serves them all. visible.c says which. index.y of the push constants: where the draw's list
+ * begins; index.x: its material, of the camera. */
+static void record_polygons(recorder *rec, uint32_t pass, uint32_t view, struct masu_push *push) {
     const masu_renderer *m = rec->m;
+    const masu_vk *vk = &m->vk;
     masu_scene_view v = masu_scene_look(m->plan.desc.scene);
-    VkPipelineLayout layout = rec->m->layouts[MASU_PASS_GBUFFER];
+    uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
+    VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
-    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                        rec->m->pipelines[MASU_PASS_GBUFFER]);
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[objects]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
-                              &rec->m->global_sets[rec->flight], 0, NULL);
-    vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &rec->m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
-    vk->CmdBindIndexBuffer(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_INDICES], 0,
+                              &m->global_sets[rec->flight], 0, NULL);
+    vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
+    vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
-    struct masu_push push;
-    memset(&push, 0, sizeof push);
-    push.output_width = push.render_width = rec->rp->render_width;
-    push.output_height = push.render_height = rec->rp->render_height;
     int occlusion = (int)(rec->rp->active >> MASU_PASS_CULL & 1u);
-    uint32_t lists = occlusion ? (uint32_t)m->plan.drawn.lists : 0;
+    uint32_t lists = view * m->plan.scene.instances;
+    if (occlusion) lists += (uint32_t)m->plan.drawn.lists;
     VkDeviceSize at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                      MASU_DRAWS_OF(&m->plan, 0, occlusion);
+                      MASU_DRAWS_OF(&m->plan, view, occlusion);
     for (uint32_t b = 0; b < m->batch_count; b++) {
         const masu_batch *batch = &m->batches[b];
-        push.index[1] = lists + batch->first_instance;
+        push->index[1] = lists + batch->first_instance;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
-            push.index[0] = v.primitives[batch->first_primitive + d].material;
-            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+            if (!view) push->index[0] = v.primitives[batch->first_primitive + d].material;
+            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof *push, push);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at, 1,
                                        MASU_DRAW_BYTES);
             at += MASU_DRAW_BYTES;
@@ -272,7 +273,22 @@ static void record_draws(recorder *rec) {
     }
 }
 
-/* Each view has its part of the atlas. */
+static void record_draws(recorder *rec) {
+    struct masu_push push;
+    memset(&push, 0, sizeof push);
+    push.output_width = push.render_width = rec->rp->render_width;
+    push.output_height = push.render_height = rec->rp->render_height;
+    record_polygons(rec, MASU_PASS_GBUFFER, 0, &push);
+}
+
+/* index.x: the cascade. */
+static void record_casters(recorder *rec, uint32_t pass) {
+    struct masu_push push;
+    memset(&push, 0, sizeof push);
+    push.index[0] = pass - MASU_PASS_CASCADE_0;
+    record_polygons(rec, pass, 1 + push.index[0], &push);
+}
+
 static void record_occluders(recorder *rec) {
     const masu_renderer *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
@@ -283,17 +299,17 @@ static void record_occluders(recorder *rec) {
     struct masu_push push;
     memset(&push, 0, sizeof push);
     push.index[0] = (uint32_t)m->plan.drawn.header;
-    for (uint32_t view = 0; view < m->plan.views; view++) {
-        VkRect2D area = masu_atlas_part(view);
+    for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
+        VkRect2D area = masu_atlas_part(part);
         VkViewport viewport = {(float)area.offset.x,     (float)area.offset.y,
                                (float)area.extent.width, (float)area.extent.height, 0.0f, 1.0f};
-        push.index[1] = view;
+        push.index[1] = part;
         m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);
         m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
         m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
         m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
                               rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                                  MASU_OCCLUDER_DRAW(&m->plan, view),
+                                  MASU_OCCLUDER_DRAW(&m->plan, part),
                               1, MASU_DRAW_BYTES);
     }
 }
@@ -309,27 +325,37 @@ static void record_fullscreen(recorder *rec, uint32_t pass) {
     vk->CmdDraw(rec->cmd, 3, 1, 0, 0);
 }
 
+/* The part of its images that a graphics pass clears and draws. */
+static VkRect2D render_area(const recorder *rec, uint32_t pass) {
+    if (pass == MASU_PASS_OCCLUDERS)
+        return (VkRect2D){{0, 0}, {MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT}};
+    if (!masu_is_cascade(pass))
+        return (VkRect2D){{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
+    return (VkRect2D){masu_cascade_place(&rec->m->plan, pass - MASU_PASS_CASCADE_0),
+                      {rec->rp->cascade_size, rec->rp->cascade_size}};
+}
+
 static void record_graphics(recorder *rec, uint32_t pass) {
     const masu_vk *vk = &rec->m->vk;
+    uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
     VkClearValue clear[4];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
-    VkRect2D area = {{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
-    if (pass == MASU_PASS_OCCLUDERS)
-        area.extent = (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
-    VkViewport viewport = {0.0f, 0.0f, (float)area.extent.width, (float)area.extent.height,
-                           0.0f, 1.0f};
+    VkRect2D area = render_area(rec, pass);
+    VkViewport viewport = {(float)area.offset.x, (float)area.offset.y, (float)area.extent.width,
+                           (float)area.extent.height, 0.0f, 1.0f};
     VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-                                   .renderPass = rec->m->render_passes[pass],
-                                   .framebuffer = rec->m->framebuffers[pass],
+                                   .renderPass = rec->m->render_passes[objects],
+                                   .framebuffer = rec->m->framebuffers[objects],
                                    .renderArea = area,
                                    .clearValueCount = 4,
                                    .pClearValues = clear};
     vk->CmdBeginRenderPass(rec->cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    if (rec->m->pipelines[pass]) { /* else it only clears */
+    if (rec->m->pipelines[objects]) { /* else it only clears */
         vk->CmdSetViewport(rec->cmd, 0, 1, &viewport);
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
         if (pass == MASU_PASS_GBUFFER) record_draws(rec);
         if (pass == MASU_PASS_OCCLUDERS) record_occluders(rec);
+        if (masu_is_cascade(pass)) record_casters(rec, pass);
         if (pass == MASU_PASS_MARCH_FRAGMENT) record_fullscreen(rec, pass);
     }
     vk->CmdEndRenderPass(rec->cmd);
@@ -339,6 +365,9 @@ static void record_readback(recorder *rec, uint32_t pass) {
     const masu_buffer_plan *buffer = &rec->m->plan.buffers[MASU_BUFFER_READBACK];
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
         masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
+        VkExtent2D size =
+            masu_plan_extent(&rec->m->plan, masu_images[id].extent,
+                             (VkExtent2D){rec->rp->render_width, rec->rp->render_height});
         uint32_t bit = 0;
         while (masu_images[id].readback >> bit != 1u) bit++;
         VkBufferImageCopy copy = {
@@ -347,7 +376,7 @@ static void record_readback(recorder *rec, uint32_t pass) {
                                                    ? VK_IMAGE_ASPECT_DEPTH_BIT
                                                    : VK_IMAGE_ASPECT_COLOR_BIT,
                                  .layerCount = 1},
-            .imageExtent = {rec->rp->render_width, rec->rp->render_height, 1}};
+            .imageExtent = {size.width, size.height, 1}};
         rec->m->vk.CmdCopyImageToBuffer(rec->cmd, rec->m->objects.images[id],
                                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                         rec->m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
@@ -430,6 +459,29 @@ static void record_prologue(recorder *rec) {
     }
 }
 
+/* An image that outlives the frame begins it as the one before has left it, except where nothing of
+ * it is needed any more. */
+static void find_persistent(recorder *rec) {
+    int all = rec->variant + 1 == rec->rp->variants;
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (!rec->m->plan.images[i].persistent || all) continue;
+        rec->states[i] = state_of(MASU_READ, MASU_PASS_COMPUTE);
+    }
+}
+
+static void leave_persistent(recorder *rec) {
+    image_state rest = state_of(MASU_READ, MASU_PASS_COMPUTE);
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        const image_state *now = &rec->states[i];
+        if (!rec->m->plan.images[i].persistent || now->layout == rest.layout) continue;
+        VkImageMemoryBarrier b = image_barrier(
+            rec, (masu_image_id)i, now->writes ? now->access : 0, &rest, now->layout);
+        rec->m->vk.CmdPipelineBarrier(rec->cmd, now->stages, rest.stages, 0, 0, NULL, 0, NULL, 1,
+                                      &b);
+        rec->barriers++;
+    }
+}
+
 static void record_epilogue(recorder *rec) {
     const masu_renderer *m = rec->m;
     const masu_buffer_plan *readback = &m->plan.buffers[MASU_BUFFER_READBACK];
@@ -470,9 +522,12 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
     VkResult r = m->vk.BeginCommandBuffer(rec->cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
     record_prologue(rec);
+    find_persistent(rec);
     timestamp(rec, 0);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (rec->rp->active & 1u << p) {
+        int drawn = !masu_is_cascade(p) ||
+                    masu_variant_draws(rec->rp, rec->variant, p - MASU_PASS_CASCADE_0);
+        if (rec->rp->active & 1u << p && drawn) {
             begin_label(rec, masu_passes[p].name);
             barrier_before(rec, p);
             if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p);
@@ -483,6 +538,7 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
         }
         timestamp(rec, p + 1);
     }
+    leave_persistent(rec);
     record_epilogue(rec);
     r = m->vk.EndCommandBuffer(rec->cmd);
     return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
@@ -493,7 +549,7 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
 static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * flights},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3 * flights},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 9 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MASU_PASS_ACCESSES * sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
@@ -533,6 +589,7 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
                 {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
                 {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES,
                  VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+                {MASU_BIND_SHADOW, MASU_BUFFER_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
                 {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
                 {MASU_BIND_DRAWS, MASU_BUFFER_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
                 {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
@@ -552,6 +609,8 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
                                              f * b->stride + (rows[i].previous ? bytes : 0), bytes};
             if (rows[i].buffer == MASU_BUFFER_FRAME)
                 buffer.range = sizeof(struct masu_frame_uniforms);
+            if (rows[i].buffer == MASU_BUFFER_SHADOW)
+                buffer.range = sizeof(struct masu_shadow_uniforms);
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                           .dstSet = m->global_sets[f],
                                           .dstBinding = rows[i].binding,
@@ -659,27 +718,29 @@ static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
 
 masu_result masu_record(masu_renderer *m, masu_detail *detail) {
     const masu_desc *d = &m->plan.desc;
-    uint32_t rungs = d->rung_count, targets = d->targets.count;
+    uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan.recordings;
     masu_result result = make_pool(m, detail);
     if (!result) result = make_global_sets(m, detail);
     if (!result) result = make_queries(m, detail);
-    if (!result) result = make_command_buffers(m, d->frames_in_flight * rungs * targets, detail);
+    if (!result) result = make_command_buffers(m, d->frames_in_flight * recordings, detail);
     uint32_t next = 0;
     for (uint32_t r = 0; r < rungs && !result; r++) {
         VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
         memset(sets, 0, sizeof sets);
-        result = make_pass_sets(m, &m->plan.rungs[r], &next, sets, detail);
-        for (uint32_t f = 0; f < d->frames_in_flight && !result; f++) {
-            for (uint32_t t = 0; t < targets && !result; t++) {
-                recorder rec = {.m = m,
-                                .cmd = m->frames[(f * rungs + r) * targets + t],
-                                .flight = f,
-                                .rung = r,
-                                .target = t,
-                                .rp = &m->plan.rungs[r]};
-                result = record_frame(&rec, sets[t], detail);
-                m->plan.rungs[r].barriers = rec.barriers;
-            }
+        masu_rung_plan *rp = &m->plan.rungs[r];
+        result = make_pass_sets(m, rp, &next, sets, detail);
+        uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
+        for (uint32_t i = 0; i < d->frames_in_flight * own && !result; i++) {
+            uint32_t f = i / own, t = i % own / rp->variants;
+            recorder rec = {.m = m,
+                            .cmd = m->frames[f * recordings + rp->first_recording + i % own],
+                            .flight = f,
+                            .rung = r,
+                            .target = t,
+                            .variant = i % rp->variants,
+                            .rp = rp};
+            result = record_frame(&rec, sets[t], detail);
+            rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }
     }
     for (uint32_t i = 0; i < m->load_count && !result; i++) result = record_load(m, i, detail);

@@ -9,6 +9,7 @@
  *   visible.c   which instances a view draws: the tree of groups, draw commands
  *   occlusion.c what of that occluders hide: views, boxes, the words of the shaders
  *   upload.c    scene -> device, frame uniforms, instance transforms
+ *   shadow.c    cascades of the sun's shadow map: where they lie, when they are drawn anew
  *
  * Everything of fixed size is a member; what depends on the scene are pointers into the same host
  * block. All handles are zero before they are created, so masu_renderer_destroy may run after any
@@ -22,6 +23,7 @@
 #include "device_memory.h"
 #include "plan.h"
 #include "scene.h"
+#include "shadow.h"
 #include "vk.h"
 
 #define MASU_RENDERER_COOKIE 0x4D415355u
@@ -40,7 +42,7 @@ typedef struct masu_placed_occluder {
 
 /* What stage 2 of culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
 typedef struct masu_stage2_view {
-    float clip[16], eye[4], atlas[4], near_distance, margin, blind, reserved;
+    float clip[16], eye[4], atlas[4], near_distance, margin, blind, bias;
 } masu_stage2_view;
 _Static_assert(sizeof(masu_stage2_view) == 4 * MASU_CULL_VIEW_WORDS, "stage 2 view");
 
@@ -67,7 +69,9 @@ struct masu_renderer {
     VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
     VkPipelineLayout layouts[MASU_PASS_COUNT];
     VkPipeline pipelines[MASU_PASS_COUNT];
-    VkRenderPass render_passes[MASU_PASS_COUNT]; /* of graphics rows */
+    /* Of the graphics rows; the cascades of the shadow map share those of the first, and its
+     * pipeline. */
+    VkRenderPass render_passes[MASU_PASS_COUNT];
     VkFramebuffer framebuffers[MASU_PASS_COUNT];
     uint64_t pipeline_ns[MASU_PASS_COUNT];
 
@@ -76,7 +80,7 @@ struct masu_renderer {
     VkDescriptorSet global_sets[MASU_MAX_FLIGHT];
     VkDescriptorSet *pass_sets; /* plan.pass_sets of them, in the order record.c walks */
     VkCommandPool command_pool;
-    VkCommandBuffer *frames; /* [flight][rung][target] */
+    VkCommandBuffer *frames; /* [flight][rung][target][variant]; plan.recordings of each flight */
     VkCommandBuffer *loads;  /* one per staging chunk */
     VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
 
@@ -115,11 +119,15 @@ struct masu_renderer {
     masu_stage2_view stage2[MASU_MAX_VIEWS];
     masu_cull_box scene_box; /* around all instances as the scene places them */
     masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];
+    /* shadow.c, of no length without a shadow map */
+    masu_cascade cascades[MASU_CASCADES_MAX]; /* as drawn last */
+    double casters[2][3];                      /* a box around all instances, wherever they have been */
 
     /* frames */
     uint64_t frame;
     uint64_t slot_frame[MASU_MAX_FLIGHT]; /* UINT64_MAX: not used yet */
     uint32_t slot_rung[MASU_MAX_FLIGHT];
+    uint32_t drawn; /* bit per cascade that the frame at hand draws */
 };
 
 masu_result masu_bind_memory(masu_renderer *m, masu_detail *detail);
@@ -140,6 +148,12 @@ void masu_keep_scene(masu_renderer *m);
 /* Writes camera, light, time and parameters to a slot. Checks first, writes after. */
 masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
                              masu_detail *detail);
+/* Fits the cascades of the shadow map to the camera and sun of the uniforms, writes them to a slot
+ * and returns a bit for each that the frame has to draw. */
+uint32_t masu_write_shadow(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
+                           const struct masu_frame_uniforms *u, const double eye[3]);
+/* Widens the box around all casters by one of an instance. */
+void masu_note_caster(masu_renderer *m, const masu_cull_box *box);
 void masu_write_instances(masu_renderer *m, uint32_t slot, int cut);
 /* Whether nothing of the frame before counts: it is taken to be as this one. */
 int masu_is_cut(const masu_renderer *m, const masu_frame_desc *frame);
@@ -154,14 +168,13 @@ void masu_write_commands(masu_renderer *m, const masu_scene_view *v);
 /* After a transform has changed. */
 void masu_move_box(masu_renderer *m, uint32_t instance);
 /* Writes which instances a view draws to a slot. NULL: all of them. */
-void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view,
-                        const masu_cull_view *frustum);
+void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls);
 
 /* Sets up the views of a frame, of the camera and the sun in `u`. */
 void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
                     uint32_t rung);
-/* Part of the occluder atlas that a view has. */
-VkRect2D masu_atlas_part(uint32_t view);
+/* Of the occluder atlas: 0 is the camera's, 1 the sun's. */
+VkRect2D masu_atlas_part(uint32_t part);
 /* Writes what stage 2 of culling reads of a frame. */
 void masu_write_stage2(masu_renderer *m, uint32_t slot, int cut);
 /* The box of an instance, for stage 2. */

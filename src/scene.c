@@ -47,6 +47,7 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_GROUPS] = {"groups", sizeof(masu_blob_group), MANY, 0},
     [MASU_BLOB_GROUP_ITEMS] = {"group items", sizeof(uint32_t), MANY, 0},
     [MASU_BLOB_OCCLUDERS] = {"occluders", sizeof(masu_blob_occluder), MANY, 0},
+    [MASU_BLOB_SHADOW] = {"shadow", sizeof(masu_blob_shadow), 1, 0},
     [MASU_BLOB_NAMES] = {"names", 1, MANY, 0},
 };
 
@@ -160,6 +161,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .materials = start[MASU_BLOB_MATERIALS],
                                 .camera_keys = start[MASU_BLOB_CAMERA_KEYS],
                                 .environment = start[MASU_BLOB_ENVIRONMENT],
+                                .shadow = start[MASU_BLOB_SHADOW],
                                 .sdf = start[MASU_BLOB_SDF],
                                 .sdf_params = start[MASU_BLOB_SDF_PARAMS],
                                 .slots = start[MASU_BLOB_SLOTS],
@@ -414,6 +416,19 @@ static masu_result check_looks(reader *r) {
     return MASU_OK;
 }
 
+static masu_result check_shadow(reader *r) {
+    const masu_blob_shadow *s = r->view.shadow;
+    if (!s) return MASU_OK;
+    if (s->cascades < 1 || s->cascades > MASU_SHADOW_CASCADES_MAX)
+        return bad(r, "shadow", 0, "cascades are not 1 to 4");
+    if (s->resolution < MASU_SHADOW_SIZE_MIN || s->resolution > MASU_SHADOW_SIZE_MAX)
+        return bad(r, "shadow", 0, "resolution is not 16 to 8192");
+    if (!within(&s->distance, 1, 1e-3f, 1e9f))
+        return bad(r, "shadow", 0, "distance is not 0.001 to 1e9 m");
+    if (!within(&s->lambda, 1, 0.0f, 1.0f)) return bad(r, "shadow", 0, "lambda is not 0 to 1");
+    return MASU_OK;
+}
+
 static masu_result check_sdf(reader *r) {
     const masu_scene_view *v = &r->view;
     if (!v->sdf) {
@@ -509,6 +524,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     if (!result) result = check_groups(&r);
     if (!result) result = check_occluders(&r, &pairs);
     if (!result) result = check_looks(&r);
+    if (!result) result = check_shadow(&r);
     if (!result) result = check_sdf(&r);
     if (result) return result;
     *out = (masu_scene){.blob = blob,
@@ -527,6 +543,12 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
                         .sdf = r.view.sdf != NULL,
                         .sdf_params = (uint32_t)r.counts[MASU_BLOB_SDF_PARAMS]};
     if (r.view.sdf) look_at_sdf(&r, out);
+    if (r.view.shadow && out->instances) { /* without polygons there is nothing to draw into it */
+        out->shadow_cascades = r.view.shadow->cascades;
+        out->shadow_resolution = r.view.shadow->resolution;
+        out->shadow_distance = r.view.shadow->distance;
+        out->shadow_lambda = r.view.shadow->lambda;
+    }
     uint32_t from = 0;
     for (uint32_t m = 0; m < out->meshes; m++) {
         uint32_t first, end = masu_scene_mesh_instances(&r.view, out->instances, m, from, &first);

@@ -23,7 +23,8 @@ typedef struct masu_scene_view {
     const masu_blob_material *materials;
     const masu_blob_camera_key *camera_keys;
     const masu_blob_environment *environment;
-    const masu_blob_sdf *sdf; /* NULL: none */
+    const masu_blob_shadow *shadow; /* NULL: none */
+    const masu_blob_sdf *sdf;       /* NULL: none */
     const masu_blob_sdf_param *sdf_params;
     const float *slots;
     uint64_t slot_count;

@@ -395,6 +395,7 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     u.eye_lo[3] = f->time_step;
     unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);
     memcpy(to, &u, sizeof u);
+    m->drawn = m->plan.needs.shadow ? masu_write_shadow(m, f, slot, &u, camera.position) : 0;
     masu_set_views(m, &u, camera.position, f->rung);
     if (m->plan.needs.velocity) {
         uint64_t half = m->plan.buffers[MASU_BUFFER_FRAME].stride / 2;

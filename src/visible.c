@@ -56,11 +56,13 @@ static void set_box(masu_renderer *m, uint32_t position, uint32_t instance) {
         m->boxes[k * m->box_stride + position] = box.center[k];
         m->boxes[(3 + k) * m->box_stride + position] = box.half[k];
     }
+    if (m->plan.needs.shadow) masu_note_caster(m, &box);
 }
 
 void masu_keep_visible(masu_renderer *m, const masu_scene_view *v) {
     const masu_scene *scene = &m->plan.scene;
     m->box_stride = (uint64_t)scene->instances + MASU_BOX_PADDING;
+    for (uint32_t k = 0; k < 3; k++) m->casters[0][k] = 1e30, m->casters[1][k] = -1e30;
     keep_batches(m, v);
     for (uint32_t g = 0; g < scene->groups; g++) {
         const masu_blob_group *from = &v->groups[g];
@@ -127,17 +129,19 @@ static masu_cull_set box_set(const masu_renderer *m) {
     return set;
 }
 
-void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view,
-                        const masu_cull_view *frustum) {
+void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls) {
     const masu_scene *scene = &m->plan.scene;
+    int idle = view && m->plan.needs.shadow && !(m->drawn >> (view - 1) & 1u);
     masu_view_stats *counts = &m->slot_views[slot][view];
     uint8_t bit = (uint8_t)(1u << view);
     memset(counts, 0, sizeof *counts);
     if (!scene->instances) return;
-    if (frustum) {
+    if (idle) { /* a cascade that this frame does not draw */
+        for (uint32_t i = 0; i < scene->instances; i++) m->marks[i] &= (uint8_t)~bit;
+    } else if (culls) {
         masu_cull_set set = box_set(m);
         masu_cull_counts c = {0, 0};
-        masu_cull(&set, frustum, m->group_states + (uint64_t)view * scene->groups, m->marks, bit,
+        masu_cull(&set, &m->view_planes[view], m->group_states + (uint64_t)view * scene->groups, m->marks, bit,
                   &c);
         counts->groups = c.nodes;
         counts->plane_tests = c.plane_tests;

@@ -68,7 +68,7 @@ FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 $(BUILD)/tests/fuzz/seed_scene: $(call objects,tests/fuzz/seed_scene.c tests/unit/support_blob.c)
 	$(link)
 $(BUILD)/tests/fuzz/scene.masu: $(BUILD)/tests/fuzz/seed_scene
-	$(V)$< $@ 15
+	$(V)$< $@ 31
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 
 # Every feature in a few lines, and a scene.

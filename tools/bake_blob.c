@@ -62,6 +62,7 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = "update_previous_spirv",
         [MASU_BLOB_VELOCITY_SPIRV] = "velocity_spirv",
         [MASU_BLOB_OCCLUSION_SPIRV] = "occlusion_spirv",
+        [MASU_BLOB_SHADOW] = "shadow",
         [MASU_BLOB_SLOTS] = "slots",
         [MASU_BLOB_GROUPS] = "groups",
         [MASU_BLOB_GROUP_ITEMS] = "group_items",

@@ -30,6 +30,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_VELOCITY_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_OCCLUSION_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_SHADOW] = sizeof(masu_blob_shadow),
     [MASU_BLOB_SLOTS] = sizeof(float),
     [MASU_BLOB_GROUPS] = sizeof(masu_blob_group),
     [MASU_BLOB_GROUP_ITEMS] = sizeof(uint32_t),

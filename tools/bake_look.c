@@ -127,9 +127,45 @@ static look default_look(const masu_bake_box *bounds) {
                   .near = default_near(bounds)};
 }
 
-static bool read_sun(const masu_bake_json *scene, look *l) {
-    static const char *const members[] = {"direction", "azimuth",   "elevation",
-                                          "color",     "intensity", NULL};
+static bool read_whole(const masu_bake_json *at, const char *name, uint32_t low, uint32_t high,
+                       uint32_t *out) {
+    double value = *out;
+    if (!masu_bake_json_number(at, name, low, high, &value)) return false;
+    if (value != floor(value)) {
+        masu_bake_json where = masu_bake_json_member(at, name);
+        return masu_bake_json_wrong(&where, "expected a whole number");
+    }
+    *out = (uint32_t)value;
+    return true;
+}
+
+/* The sun's shadow map, for polygons: without any it is left out. */
+static bool read_shadows(const masu_bake_json *sun, const masu_bake_box *bounds,
+                         masu_bake_content *content) {
+    static const char *const members[] = {"cascades", "resolution", "distance", "lambda", NULL};
+    masu_bake_json shadows = masu_bake_json_member(sun, "shadows");
+    if (!shadows.value) return true;
+    masu_blob_shadow out = {.cascades = 3, .resolution = 1024};
+    double distance = fmin(6 * box_radius(bounds), 200), lambda = 0.75;
+    if (!masu_bake_json_object(&shadows, members) ||
+        !read_whole(&shadows, "cascades", 1, MASU_SHADOW_CASCADES_MAX, &out.cascades) ||
+        !read_whole(&shadows, "resolution", MASU_SHADOW_SIZE_MIN, MASU_SHADOW_SIZE_MAX,
+                    &out.resolution) ||
+        !masu_bake_json_number(&shadows, "distance", 1e-3, 1e9, &distance) ||
+        !masu_bake_json_number(&shadows, "lambda", 0, 1, &lambda)) {
+        return false;
+    }
+    out.distance = fmaxf((float)distance, 1e-3f);
+    out.lambda = (float)lambda;
+    if (masu_bake_count(content, MASU_BLOB_INSTANCES) > 0)
+        masu_bake_append(&content->section[MASU_BLOB_SHADOW], &out, sizeof out);
+    return true;
+}
+
+static bool read_sun(const masu_bake_json *scene, const masu_bake_box *bounds, look *l,
+                     masu_bake_content *content) {
+    static const char *const members[] = {"direction", "azimuth", "elevation", "color",
+                                          "intensity", "shadows", NULL};
     masu_bake_json sun = masu_bake_json_member(scene, "sun");
     if (!sun.value) return true;
     double azimuth = 60, elevation = 50;
@@ -139,7 +175,8 @@ static bool read_sun(const masu_bake_json *scene, look *l) {
         !masu_bake_json_number(&sun, "elevation", -90, 90, &elevation) ||
         !masu_bake_json_vec3(&sun, "direction", -1e6, 1e6, &direction) ||
         !masu_bake_json_vec3(&sun, "color", 0, RADIANCE_MAX, &l->sun_color) ||
-        !masu_bake_json_number(&sun, "intensity", 0, 1000, &l->sun_intensity)) {
+        !masu_bake_json_number(&sun, "intensity", 0, 1000, &l->sun_intensity) ||
+        !read_shadows(&sun, bounds, content)) {
         return false;
     }
     bool angles = masu_bake_json_has(&sun, "azimuth") || masu_bake_json_has(&sun, "elevation");
@@ -181,7 +218,7 @@ static void add_environment(const look *l, masu_bake_content *content) {
 bool masu_bake_read_look(const masu_bake_json *scene, const masu_bake_box *bounds,
                          masu_bake_content *content) {
     look l = default_look(bounds);
-    if (!read_camera(scene, bounds, content, &l.near) || !read_sun(scene, &l) ||
+    if (!read_camera(scene, bounds, content, &l.near) || !read_sun(scene, bounds, &l, content) ||
         !read_sky(scene, &l) ||
         !masu_bake_json_vec3(scene, "ambient", 0, RADIANCE_MAX, &l.ambient) ||
         !masu_bake_json_number(scene, "exposure", 1e-6, 1e6, &l.exposure)) {

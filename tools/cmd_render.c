@@ -129,9 +129,11 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
     json_t *views = json_array();
     for (uint32_t v = 0; v < last->view_count; v++) {
         const masu_view_stats *view = &last->views[v];
+        char name[16] = "camera";
+        if (v) snprintf(name, sizeof name, "sun %u", v - 1);
         json_array_append_new(
             views, json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "view",
-                             v ? "sun" : "camera", "groups", (json_int_t)view->groups,
+                             name, "groups", (json_int_t)view->groups,
                              "plane_tests", (json_int_t)view->plane_tests, "instances_in_view",
                              (json_int_t)view->instances, "triangles_in_view",
                              (json_int_t)view->triangles, "occluders",

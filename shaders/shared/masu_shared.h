@@ -44,6 +44,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_DRAWN 8
 #define MASU_BIND_DRAWS 9 /* draw commands, as words */
 #define MASU_BIND_SEEN 10 /* a word for each view and instance: not 0: visible when last asked */
+/* The sun's shadow map, where the plan has one. */
+#define MASU_BIND_SHADOW 11
 
 /* The atlas of occluder depth: the camera's view, below it the sun's. */
 #define MASU_ATLAS_WIDTH 256
@@ -78,6 +80,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_CULL_VIEW_NEAR 24u  /* w of what is nearer than this cannot be divided by */
 #define MASU_CULL_VIEW_MARGIN 25u /* texels that the raster may be off by */
 #define MASU_CULL_VIEW_BLIND 26u /* meshes as near as this may be cut open by the near plane */
+#define MASU_CULL_VIEW_BIAS 27u  /* depth by which the raster may have moved an occluder's mesh away */
 #define MASU_CULL_VIEW_WORDS 28u
 
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
@@ -109,6 +112,13 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* The same of a shadow ray. */
 #define MASU_SHADOW_STEPS_MAX 128
 
+/* Most cascades of the sun's shadow map. */
+#define MASU_CASCADES_MAX 4
+/* Surfaces are drawn into the shadow map farther from the sun by so many texels per texel of their
+ * slope against it, steeper ones as if they had the steepest. */
+#define MASU_SHADOW_BIAS 1.25
+#define MASU_SHADOW_STEEPEST 4.0
+
 /* Counters, uint32 pairs (low, high). Reset by each frame, read back by masu_stats. */
 #define MASU_COUNTER_SDF_EVALS 0
 #define MASU_COUNTER_SDF_HITS 1
@@ -117,12 +127,10 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_COUNTER_SHADOW_EVALS 4
 #define MASU_COUNTER_OCCLUSION_EVALS 5
 #define MASU_COUNTER_SHADOW_UNCONVERGED 6
-#define MASU_COUNTER_VISIBLE_INSTANCES 7 /* by stage 2 of culling, of the camera */
-#define MASU_COUNTER_VISIBLE_TRIANGLES 8
-#define MASU_COUNTER_CASTER_INSTANCES 9 /* of the sun */
-#define MASU_COUNTER_CASTER_TRIANGLES 10
-#define MASU_COUNTER_OCCLUSION_TESTS 11
-#define MASU_COUNTER_COUNT 12
+#define MASU_COUNTER_OCCLUSION_TESTS 7
+/* After stage 2 of culling, of each view: */
+#define MASU_COUNTER_VISIBLE 8 /* instances, triangles */
+#define MASU_COUNTER_COUNT 18
 
 /* G-buffer material flags, two bits of the packed normal word. */
 #define MASU_SURFACE_EMISSIVE 1u
@@ -155,6 +163,23 @@ struct masu_instance_data {
     masu_vec4 row0;
     masu_vec4 row1;
     masu_vec4 row2;
+};
+
+/* The sun's shadow map; an element of each array is a cascade as it was drawn, maybe some frames
+ * ago: an orthographic box along the sun's direction. A point p has the coordinates row.xyz . (p -
+ * origin), x and y in -1..1, and the depth row2.xyz . (p - origin) + rect.w, which is 1 nearest to
+ * the sun and 0 farthest from it. The w of the rows serves points relative to the present eye:
+ * row.xyz . rel + row.w. */
+struct masu_shadow_uniforms {
+    masu_vec4 row0[MASU_CASCADES_MAX];
+    masu_vec4 row1[MASU_CASCADES_MAX];
+    masu_vec4 row2[MASU_CASCADES_MAX];      /* w includes rect.w */
+    masu_vec4 origin_hi[MASU_CASCADES_MAX]; /* xyz origin rounded to float; w a texel's width, m */
+    masu_vec4 origin_lo[MASU_CASCADES_MAX]; /* xyz origin minus origin_hi; w depth of a metre */
+    masu_vec4 rect[MASU_CASCADES_MAX]; /* xy first texel, z texels of an edge, w origin's depth */
+    /* x cascades; y view depth from which they fade, z 1 / the depth over which they do; w not 0:
+     * the occlusion image holds what the SDF leaves of the sun */
+    masu_vec4 reach;
 };
 
 struct masu_material_data {

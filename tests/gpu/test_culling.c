@@ -1,8 +1,10 @@
 /* test_culling.c: what is not drawn cannot be seen: pictures with and without culling are the same
  * in every bit, wherever the camera turns and whatever moves, and less is drawn. */
-#include "support.h"
+#include "support_shadow.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { W = 64, H = 40, BYTES = W * H * 4, FRAMES = 600 };
@@ -154,11 +156,101 @@ static void velocities_are_the_same_without_culling(void **state) {
     for (uint32_t i = 0; i < 2; i++) close_session(&s[i]);
 }
 
+/* The town with a shadow map, which the test bakes. */
+static void bake_shadows(void) {
+    assert_int_equal(shadow_shell("sed -e 's#\"test_block.obj\"#\"'\"$PWD\"'/scenes/test_block.obj\"#' "
+                                  "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
+                                  "\"resolution\": 192, \"distance\": 90}, #' "
+                                  "scenes/test_town.json > %s/town.json",
+                                  shadow_dir()),
+                     0);
+    assert_int_equal(shadow_shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet",
+                                  getenv("BUILD") ? getenv("BUILD") : "build", shadow_dir(),
+                                  shadow_dir()),
+                     0);
+}
+
+/* Each way of culling in a renderer of its own: what a slow cascade has kept is of that way alone. The
+ * sun moves from low over the roofs to high and to the other side. */
+static void compare_shadows(uint32_t frames, const uint32_t refresh[3], uint64_t casters[WAYS]) {
+    static char file[128];
+    static uint8_t map[2][3 * 192 * 192 * 4];
+    masu_session s[WAYS];
+    snprintf(file, sizeof file, "%s/town.masu", shadow_dir());
+    for (uint32_t way = 0; way < WAYS; way++) {
+        masu_session_desc d = test_desc(NULL, W, H);
+        d.scene_path = file;
+        d.desc.rung_count = 1;
+        d.desc.readback = MASU_READBACK_SHADOW_MAP;
+        d.host.validate = way == BOTH;
+        d.desc.rungs[0].frustum = way == OCCLUSION || way == NEITHER ? MASU_OFF : MASU_ON;
+        d.desc.rungs[0].occlusion = way == FRUSTUM || way == NEITHER ? MASU_OFF : MASU_ON;
+        memcpy(d.desc.rungs[0].shadow_refresh, refresh, 3 * sizeof *refresh);
+        open_session(&s[way], &d);
+        casters[way] = 0;
+    }
+    for (uint32_t frame = 0; frame < frames; frame++) {
+        float t = (float)frame, up = 0.08f + 1.5f * (float)(frame % 29) / 29.0f;
+        masu_light light = {.sun_direction = {cosf(t * 0.02f), up, sinf(t * 0.02f)},
+                            .sun_color = {3, 3, 3},
+                            .ambient = {0.2f, 0.2f, 0.2f}};
+        masu_camera c = path(refresh[0] > 1 ? frame / 3 : frame);
+        uint64_t drawn = 0;
+        for (uint32_t way = WAYS; way-- > 0;) {
+            masu_frame_desc f = {.camera = &c, .light = &light, .cut = frame % 60 == 59};
+            masu_commands commands;
+            masu_readback_image image;
+            masu_stats_info stats;
+            move(&s[way], "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
+            move(&s[way], "late1", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, 2.0f);
+            draw(&s[way], &f, &commands, pixels[way]);
+            assert_int_equal(masu_stats(s[way].m, commands.slot, &stats), MASU_OK);
+            assert_int_equal(
+                masu_readback(s[way].m, commands.slot, MASU_READBACK_SHADOW_MAP, &image), MASU_OK);
+            assert_int_equal(image.width * image.height * 4, sizeof map[0]);
+            memcpy(map[way != NEITHER], image.pixels, sizeof map[0]);
+            assert_int_equal(stats.view_count, 4);
+            uint64_t all = 0;
+            for (uint32_t v = 1; v < 4; v++) {
+                const masu_view_stats *view = &stats.views[v];
+                int occlusion = way == BOTH || way == OCCLUSION;
+                assert_true(view->visible_triangles <= view->triangles);
+                all += occlusion ? view->visible_triangles : view->triangles;
+            }
+            if (way == NEITHER) drawn = all;
+            assert_true(all <= drawn);
+            casters[way] += all;
+            if (max_difference(map[0], map[1], sizeof map[0]) && way != NEITHER)
+                fail_msg("frame %u: the shadow map differs, stages %u", frame, way);
+            if (max_difference(pixels[way], pixels[NEITHER], BYTES))
+                fail_msg("frame %u differs, stages %u", frame, way);
+        }
+    }
+    for (uint32_t way = 0; way < WAYS; way++) {
+        print_message("stages %u: casters %8.1f triangles a frame\n", way,
+                      (double)casters[way] / frames);
+        close_session(&s[way]);
+    }
+}
+
+static void the_shadow_map_is_the_same_without_culling(void **state) {
+    (void)state;
+    uint64_t every[WAYS], slow[WAYS];
+    bake_shadows();
+    compare_shadows(180, (const uint32_t[3]){1, 1, 1}, every);
+    compare_shadows(90, (const uint32_t[3]){2, 3, 5}, slow);
+    assert_true(every[FRUSTUM] < every[NEITHER] * 9 / 10);
+    assert_true(every[BOTH] < every[FRUSTUM]);
+    assert_true(every[OCCLUSION] < every[NEITHER]);
+    assert_true(slow[NEITHER] > 0 && slow[NEITHER] < every[NEITHER] / 2);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_picture_is_the_same_without_culling),
         cmocka_unit_test(what_moves_is_culled_where_it_is),
         cmocka_unit_test(velocities_are_the_same_without_culling),
+        cmocka_unit_test(the_shadow_map_is_the_same_without_culling),
     };
-    return cmocka_run_group_tests_name("culling", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("culling", tests, shadow_folder, shadow_folder_away);
 }

@@ -13,9 +13,8 @@ enum { W = 32, H = 24 };
 static masu_session s;
 static void *block;
 
-static int open_without_renderer(void **state) {
-    (void)state;
-    masu_session_desc d = test_desc("test_both", W, H);
+static int open_scene(const char *scene) {
+    masu_session_desc d = test_desc(scene, W, H);
     wrap_reset();
     d.no_renderer = true;
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
@@ -27,12 +26,30 @@ static int open_without_renderer(void **state) {
     return 0;
 }
 
+static int open_without_renderer(void **state) {
+    (void)state;
+    return open_scene("test_both");
+}
+
 static int close_again(void **state) {
     (void)state;
     wrap_reset();
     free(block);
     close_session(&s);
     return 0;
+}
+
+static int open_shadows_instead(void **state) {
+    close_again(state);
+    int result = open_scene("test_shadows");
+    s.desc.rung_count = 1;
+    s.desc.rungs[0] = (masu_rung){.shadow_resolution = 64, .shadow_refresh = {1, 2, 4}};
+    return result;
+}
+
+static int open_the_first_again(void **state) {
+    close_again(state);
+    return open_without_renderer(state);
 }
 
 static masu_result try_init(masu_renderer **m, masu_detail *detail) {
@@ -83,6 +100,11 @@ static void any_call_of_init_may_run_out_of_memory_once(void **state) {
 static void any_call_of_init_may_fail_for_good(void **state) {
     (void)state;
     fail_every_call_of_init(VK_ERROR_OUT_OF_HOST_MEMORY, true, 1);
+}
+
+static void any_call_of_init_may_fail_with_a_shadow_map(void **state) {
+    (void)state;
+    fail_every_call_of_init(VK_ERROR_OUT_OF_DEVICE_MEMORY, false, 0);
 }
 
 static void the_device_may_be_lost_at_any_call_of_init(void **state) {
@@ -245,6 +267,8 @@ int main(void) {
         cmocka_unit_test(any_call_of_init_may_run_out_of_memory_once),
         cmocka_unit_test(any_call_of_init_may_fail_for_good),
         cmocka_unit_test(the_device_may_be_lost_at_any_call_of_init),
+        cmocka_unit_test_setup_teardown(any_call_of_init_may_fail_with_a_shadow_map,
+                                        open_shadows_instead, open_the_first_again),
         cmocka_unit_test(what_the_device_lacks_is_named),
         cmocka_unit_test(nonsense_in_a_frame_is_refused_by_name),
         cmocka_unit_test(extreme_transforms_stay_finite),

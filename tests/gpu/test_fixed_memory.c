@@ -11,8 +11,8 @@ enum { W = 64, H = 48 };
 
 /* Heap calls of the library's own are counted without the validation layer, which allocates inside
  * the calls it wraps. */
-static void three_hundred_frames(bool validate) {
-    masu_session_desc d = test_desc("test_both", W, H);
+static void three_hundred_frames(const char *scene, bool validate) {
+    masu_session_desc d = test_desc(scene, W, H);
     masu_session s;
     char error[ERROR_SIZE];
     wrap_reset();
@@ -20,6 +20,12 @@ static void three_hundred_frames(bool validate) {
     d.host.validate = validate;
     d.desc.debug.timestamps = 1;
     d.desc.readback = MASU_READBACK_DEPTH;
+    d.desc.rung_count = 3;
+    for (uint32_t r = 0; r < 3; r++) { /* the last two draw their cascades by turns, if any */
+        d.desc.rungs[r].scale = r == 0 ? 1.0f : r == 1 ? 0.8f : 0.4f;
+        d.desc.rungs[r].shadow_resolution = 128 >> r;
+        d.desc.rungs[r].shadow_refresh[1] = d.desc.rungs[r].shadow_refresh[2] = 1 + 2 * r;
+    }
     open_session(&s, &d);
     uint64_t setup = wrap.setup_calls, heap = 0;
     int64_t live = wrap.live;
@@ -57,12 +63,14 @@ static void three_hundred_frames(bool validate) {
 
 static void three_hundred_frames_with_rung_changes_allocate_nothing(void **state) {
     (void)state;
-    three_hundred_frames(false);
+    three_hundred_frames("test_both", false);
+    three_hundred_frames("test_shadows", false);
 }
 
 static void three_hundred_frames_with_rung_changes_create_nothing_and_validate(void **state) {
     (void)state;
-    three_hundred_frames(true);
+    three_hundred_frames("test_both", true);
+    three_hundred_frames("test_shadows", true);
 }
 
 static void the_counter_counts(void **state) {

@@ -62,6 +62,7 @@ static void read_sections(walker *w) {
     read_section(w, v->materials, s->materials, sizeof *v->materials, "materials");
     read_section(w, v->camera_keys, s->camera_keys, sizeof *v->camera_keys, "camera keys");
     read_section(w, v->environment, 1, sizeof *v->environment, "environment");
+    read_section(w, v->shadow, v->shadow != NULL, sizeof *v->shadow, "shadow");
     read_section(w, v->sdf, s->sdf, sizeof *v->sdf, "sdf");
     read_section(w, v->sdf_params, s->sdf_params, sizeof *v->sdf_params, "sdf parameters");
     read_section(w, v->slots, v->slot_count, sizeof *v->slots, "slots");
@@ -236,6 +237,19 @@ static void read_looks(walker *w) {
     expect(w, all_within(&e->near_distance, 1, 1e-10, ANY_FLOAT), "the near distance");
 }
 
+static void read_shadow(walker *w) {
+    const masu_blob_shadow *s = w->view.shadow;
+    const masu_scene *out = w->scene;
+    int there = s && out->instances;
+    expect(w, out->shadow_cascades == (there ? s->cascades : 0), "shadow_cascades");
+    expect(w, out->shadow_resolution == (there ? s->resolution : 0), "shadow_resolution");
+    if (!s) return;
+    expect(w, s->cascades >= 1 && s->cascades <= 4, "the cascades");
+    expect(w, s->resolution >= 16 && s->resolution <= 8192, "a cascade's resolution");
+    expect(w, all_within(&s->distance, 1, 0.00099, 1.001e9), "the shadows' distance");
+    expect(w, all_within(&s->lambda, 1, 0.0, 1.0), "the split of the cascades");
+}
+
 /* What each kind of code allows, said once more: 0 no such code, 1 may be absent, 2 not. */
 static const struct {
     int code;
@@ -326,6 +340,7 @@ const char *masu_ref_walk_scene(const masu_scene *scene) {
     read_sections(&w);
     if (!w.fault) read_geometry(&w);
     if (!w.fault) read_looks(&w);
+    if (!w.fault) read_shadow(&w);
     if (!w.fault) read_sdf(&w);
     return w.fault;
 }

@@ -164,6 +164,20 @@ wrong ': camera.keys\[1\]: time must be later' "{\"models\": [$sphere}],
 wrong ': sun.direction: has no length' "{\"models\": [$sphere}], \"sun\": {\"direction\": [0,0,0]}}"
 wrong ': sun: give either' \
     "{\"models\": [$sphere}], \"sun\": {\"direction\": [0,1,0], \"azimuth\": 3}}"
+for bad in '"cascades": 0' '"cascades": 5' '"cascades": -1' '"resolution": 0' '"resolution": 15' \
+    '"resolution": 8193' '"resolution": -64' '"distance": 0' '"distance": -3' '"distance": 1e10' \
+    '"lambda": -0.1' '"lambda": 1.1'; do
+    name=${bad%%:*} name=${name//\"/}
+    wrong ": sun.shadows.$name: expected a number from" \
+        "{\"models\": [$sphere}], \"sun\": {\"shadows\": {$bad}}}"
+done
+wrong ': sun.shadows.cascades: expected a whole number' \
+    "{\"models\": [$sphere}], \"sun\": {\"shadows\": {\"cascades\": 1.5}}}"
+wrong ':1:.*NaN' "{\"models\": [$sphere}], \"sun\": {\"shadows\": {\"distance\": NaN}}}"
+wrong ': sun.shadows.size: unknown key' \
+    "{\"models\": [$sphere}], \"sun\": {\"shadows\": {\"size\": 3}}}"
+wrong ': sun.shadows: expected an object, found true' \
+    "{\"models\": [$sphere}], \"sun\": {\"shadows\": true}}"
 wrong ': exposure: expected a number' "{\"models\": [$sphere}], \"exposure\": 0}"
 wrong ': sdf: needs "bounds"' '{"sdf": {"source": "good.glsl"}}'
 wrong ': sdf.bounds: the first corner must be the lower' \

@@ -79,6 +79,8 @@ static const masu_blob_environment environment[] = {{
     .sky_horizon = {1.0f, 0.7f, 0.4f},
 }};
 
+static const masu_blob_shadow shadow[] = {{2, 64, 50.0f, 0.5f}};
+
 static const masu_blob_sdf_param sdf_params[] = {
     {0.5f, 0.0f, 2.0f, NAME_RADIUS},
     {-1.0f, -1.0f, 1.0f, NAME_BEND},
@@ -115,7 +117,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     header->magic = MASU_BLOB_MAGIC;
     header->version = MASU_BLOB_VERSION;
     size_t sections = 1 + (parts & SUPPORT_RASTER ? 9u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
-                      (parts & SUPPORT_SDF ? 8u : 0u) + 1;
+                      (parts & SUPPORT_SDF ? 8u : 0u) + (parts & SUPPORT_SHADOW ? 1u : 0u) + 1;
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
@@ -131,6 +133,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     }
     if (parts & SUPPORT_CAMERA) ADD(MASU_BLOB_CAMERA_KEYS, camera_keys);
     ADD(MASU_BLOB_ENVIRONMENT, environment);
+    if (parts & SUPPORT_SHADOW) ADD(MASU_BLOB_SHADOW, shadow);
     if (parts & SUPPORT_SDF) {
         masu_blob_sdf sdf[] = {{{-10.0f, -1.0f, -10.0f},
                                 2.0f,

@@ -26,7 +26,8 @@ enum {
     SUPPORT_CAMERA = 4,
     SUPPORT_VARIANTS = 8, /* with an SDF: the code that a blob may have or lack; that of
                              march_fragment only without SUPPORT_RASTER */
-    SUPPORT_ALL = 15
+    SUPPORT_SHADOW = 16, /* the sun's shadow map */
+    SUPPORT_ALL = 31
 };
 
 #define SUPPORT_BLOB_ROOM 8192u

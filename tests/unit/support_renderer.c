@@ -37,6 +37,11 @@ VkCommandBuffer *frames = frame_handles, *loads = load_handles;
 
 /* Lays the buffers of each role one behind the other. */
 void make_renderer(uint32_t parts, uint64_t staging) {
+    make_renderer_with(parts, staging, NULL, 0);
+}
+
+void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs,
+                        uint32_t count) {
     masu_detail detail;
     memset(&m, 0, sizeof m);
     memset(memory, NOISE, sizeof memory);
@@ -44,6 +49,8 @@ void make_renderer(uint32_t parts, uint64_t staging) {
     support_accepted(&blob, &scene);
     masu_desc d = scene_desc(0, 1280, 720);
     d.scene = &scene;
+    d.rung_count = count;
+    for (uint32_t r = 0; r < count; r++) d.rungs[r] = rungs[r];
     if (masu_compile(&d, 64, 64, &m.plan, &detail)) fail_msg("%s", detail.text);
     m.plan.buffers[MASU_BUFFER_STAGING].bytes = staging;
     uint64_t used[MASU_ROLE_COUNT] = {0};

@@ -18,6 +18,8 @@ extern masu_blob_camera_key keys[4]; /* the renderer's copy */
 /* A blob of those parts (support_blob.h), 1280x720, two frames in flight, two targets, default
  * rungs; masu_load has not been called. staging 0: resident memory is mapped. */
 void make_renderer(uint32_t parts, uint64_t staging);
+/* The same with rungs of its own; none: the defaults. */
+void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs, uint32_t count);
 
 /* Bytes and uniforms as the GPU would see them. */
 const unsigned char *slot_bytes(masu_buffer_id buffer, uint32_t slot);

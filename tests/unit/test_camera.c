@@ -468,6 +468,8 @@ static void a_frame_is_written_to_its_slot_alone(void **state) {
     uint64_t at = m.plan.buffers[MASU_BUFFER_FRAME].offset;
     at += m.plan.buffers[MASU_BUFFER_FRAME].stride;
     memcpy(expected + at, slot_bytes(MASU_BUFFER_FRAME, 1), sizeof(struct masu_frame_uniforms));
+    at = m.plan.buffers[MASU_BUFFER_SHADOW].offset + m.plan.buffers[MASU_BUFFER_SHADOW].stride;
+    memcpy(expected + at, slot_bytes(MASU_BUFFER_SHADOW, 1), sizeof(struct masu_shadow_uniforms));
     assert_memory_equal(memory[MASU_ROLE_UPLOAD], expected, ROOM);
 }
 

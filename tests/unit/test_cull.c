@@ -104,6 +104,20 @@ static void random_camera(double span, masu_cull_view *view, exact_view *exact) 
            support_random(&seed) % 2 ? 0.1 : exp(uniform(log(1e-9), log(1e9))), view, exact);
 }
 
+/* The six planes of the box |axis[i].(x - center)| <= half[i]; axes need not be unit vectors. */
+static void set_box_planes(masu_cull_view *view, const double center[3], const double axis[3][3],
+                           const double half[3]) {
+    view->count = 0;
+    for (uint32_t plane = 0; plane < 6; plane++) {
+        double n[3], d = half[plane / 2];
+        for (uint32_t k = 0; k < 3; k++) {
+            n[k] = (plane % 2 ? -1.0 : 1.0) * axis[plane / 2][k];
+            d -= n[k] * center[k];
+        }
+        masu_cull_add_plane(view, n, d);
+    }
+}
+
 static void random_ortho(double span, masu_cull_view *view, exact_view *exact) {
     double center[3], axis[3][3], half[3];
     exact->count = 6;
@@ -112,7 +126,7 @@ static void random_ortho(double span, masu_cull_view *view, exact_view *exact) {
         half[i] = fabs(magnitude(1e-3, 2 * span));
         for (uint32_t k = 0; k < 3; k++) axis[i][k] = uniform(-1.0, 1.0);
     }
-    masu_cull_ortho(view, center, (const double(*)[3])axis, half);
+    set_box_planes(view, center, (const double(*)[3])axis, half);
     for (uint32_t p = 0; p < 6; p++) {
         exact->d[p] = half[p / 2];
         for (uint32_t k = 0; k < 3; k++) {

@@ -74,12 +74,18 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].march_steps);
         SAME(rungs[r].frustum);
         SAME(rungs[r].occlusion);
+        SAME(rungs[r].shadow_cascades);
+        SAME(rungs[r].shadow_resolution);
+        SAME(rungs[r].shadow_distance);
+        for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) SAME(rungs[r].shadow_refresh[k]);
     }
     SAME(limits.vertices);
     SAME(limits.indices);
     SAME(limits.materials);
     SAME(limits.instances);
     SAME(limits.sdf_params);
+    SAME(limits.shadow_cascades);
+    SAME(limits.shadow_resolution);
     SAME(host_budget);
     SAME(device_budget);
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -102,6 +108,9 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(clock_user);
 }
 
+/* Defaults of the shadow map: what the scene has, drawn in every frame. */
+#define SHADOW 0, 0, 0.0f, {1, 1, 1, 1}
+
 static void every_zero_becomes_its_documented_default(void **state) {
     (void)state;
     masu_desc zero, expected;
@@ -111,9 +120,9 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
-    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
-    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
-    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
+    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
+    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
+    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
     masu_desc resolved = masu_desc_resolved(&zero);
     assert_same_desc(&resolved, &expected);
     resolved = masu_desc_resolved(NULL);
@@ -130,8 +139,8 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.frames_in_flight = 2;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
-    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO};
+    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
+    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
 
@@ -163,9 +172,10 @@ static masu_desc full_desc(void) {
     d.rung_count = MASU_MAX_RUNGS;
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
         d.rungs[r] =
-            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1, MASU_OFF, MASU_ON};
+            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1,
+                        MASU_OFF, MASU_ON, r % 5, 100 + r, (float)r, {r + 1, 2, 3, 4}};
     }
-    d.limits = (masu_limits){9, 10, 11, 12, 13};
+    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15};
     d.host_budget = 14;
     d.device_budget = 15;
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -283,6 +293,14 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
     BAD("rungs[].occlusion", d.rungs[1].occlusion = (masu_switch)3);
     BAD("rungs[].frustum", d.rungs[1].frustum = (masu_switch)3);
+    BAD("rungs[].shadow_cascades", d.rungs[1].shadow_cascades = 5);
+    BAD("rungs[].shadow_resolution", d.rungs[1].shadow_resolution = 15);
+    BAD("rungs[].shadow_resolution", d.rungs[1].shadow_resolution = 8193);
+    BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = -1.0f);
+    BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = nan);
+    BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = infinity);
+    BAD("rungs[].shadow_refresh", d.rungs[1].shadow_refresh[0] = 65);
+    BAD("rungs[].shadow_refresh", d.rungs[0].shadow_refresh[3] = UINT32_MAX);
     masu_desc d = scene_desc(RASTER, 64, 64);
     static masu_frame_plan plan;
     d.rung_count = 1;
@@ -374,8 +392,10 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.targets.count = MASU_MAX_TARGETS;
     d.frames_in_flight = MASU_MAX_FLIGHT;
     d.readback = MASU_READBACK_ALL;
-    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1, MASU_ON, MASU_ON};
-    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256, MASU_OFF, MASU_OFF};
+    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1,
+                             MASU_ON, MASU_ON, 4,      8192,    1e30f,   {1, 64, 64, 64}};
+    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256,
+                             MASU_OFF, MASU_OFF, 1,    16,       1e-30f,   {64, 0, 0, 0}};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;
@@ -409,6 +429,8 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         {"limits.materials", offsetof(masu_limits, materials), 2},
         {"limits.instances", offsetof(masu_limits, instances), 3},
         {"limits.sdf_params", offsetof(masu_limits, sdf_params), 2},
+        {"limits.shadow_cascades", offsetof(masu_limits, shadow_cascades), 3},
+        {"limits.shadow_resolution", offsetof(masu_limits, shadow_resolution), 1024},
     };
     static masu_frame_plan plan;
     assert_int_equal(sizeof(masu_limits), COUNT(rows) * sizeof(uint64_t));
@@ -416,6 +438,8 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         masu_desc d = scene_desc(RASTER | SDF, 640, 480);
         masu_detail detail;
         uint64_t limit = rows[i].needed;
+        support_scene.shadow_cascades = 3;
+        support_scene.shadow_resolution = 1024;
         memcpy((char *)&d.limits + rows[i].offset, &limit, sizeof limit);
         compile(&d, &plan); /* exactly enough */
         limit--;

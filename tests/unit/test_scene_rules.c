@@ -67,6 +67,7 @@ static void assert_refused(const char *what, uint64_t element) {
 #define OCCLUDER AT(OCCLUDERS, masu_blob_occluder)
 #define ITEM AT(GROUP_ITEMS, uint32_t)
 #define FIELD AT(SDF, masu_blob_sdf)
+#define SHADOW AT(SHADOW, masu_blob_shadow)
 #define PARAM AT(SDF_PARAMS, masu_blob_sdf_param)
 
 /* No instance is in a group. */
@@ -497,6 +498,29 @@ static void a_sun_without_a_direction_is_refused(void **state) {
     REFUSED("environment", 0, SKY->sun_direction[2] = 1e30f);
 }
 
+static void a_shadow_map_out_of_range_is_refused(void **state) {
+    (void)state;
+    static const uint32_t sizes[] = {0, 15, 8193, UINT32_MAX};
+    static const float distances[] = {0.0f, -1.0f, 0.0009f, 1.1e9f};
+    REFUSED("shadow", 0, SHADOW->cascades = 0);
+    REFUSED("shadow", 0, SHADOW->cascades = 5);
+    REFUSED("shadow", 0, SHADOW->cascades = UINT32_MAX);
+    for (size_t i = 0; i < COUNT(sizes); i++) {
+        REFUSED("shadow", 0, SHADOW->resolution = sizes[i]);
+        REFUSED("shadow", 0, SHADOW->distance = distances[i]);
+    }
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        REFUSED("shadow", 0, SHADOW->distance = not_finite[i]);
+        REFUSED("shadow", 0, SHADOW->lambda = not_finite[i]);
+    }
+    REFUSED("shadow", 0, SHADOW->lambda = -0.1f);
+    REFUSED("shadow", 0, SHADOW->lambda = 1.1f);
+    ACCEPTED(SHADOW->cascades = 4, SHADOW->resolution = 8192, SHADOW->distance = 1e9f,
+             SHADOW->lambda = 1.0f);
+    ACCEPTED(SHADOW->cascades = 1, SHADOW->resolution = 16, SHADOW->distance = 1e-3f,
+             SHADOW->lambda = 0.0f);
+}
+
 static void parts_of_an_sdf_that_is_missing_are_refused(void **state) {
     (void)state;
     REFUSED("sdf", 0, support_blob_drop(&blob, MASU_BLOB_SDF));
@@ -669,6 +693,7 @@ int main(void) {
         cmocka_unit_test(groups_below_64_levels_are_refused),
         cmocka_unit_test(items_that_do_not_fit_their_group_are_refused),
         cmocka_unit_test(occluders_outside_of_their_mesh_are_refused),
+        cmocka_unit_test(a_shadow_map_out_of_range_is_refused),
         cmocka_unit_test(parts_of_an_sdf_that_is_missing_are_refused),
         cmocka_unit_test(an_sdf_out_of_range_is_refused),
         cmocka_unit_test(code_compiled_for_other_instances_is_refused),

@@ -1,0 +1,44 @@
+/*
+ * cascade.vert: polygons as the sun sees them, for one cascade of the shadow map; there is no
+ * fragment shader. index.x is the cascade. Placed relative to the cascade's own centre, not to the
+ * eye: while the cascade stays where it is, so does every bit of its texels.
+ *
+ * A surface that is steep to the sun changes its depth within a texel, and would shadow itself: it is
+ * drawn farther from the sun by BIAS times what it changes. By its normal and here, not by the
+ * rasteriser's slope bias, which has a bound only with an optional feature: culling by occluders must
+ * know how far a mesh may lie behind its occluder (src/occlusion.c), or what is culled would show.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/polygons.glsl"
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
+{
+    masu_shadow_uniforms shadow;
+};
+
+/* Depth that a surface of that normal gains or loses along the edge of a texel. */
+float slope_of(vec3 n, uint k)
+{
+    float texel = shadow.origin_hi[k].w;
+    float metre = shadow.origin_lo[k].w;
+    float half_width = 0.5 * texel * shadow.rect[k].z;
+    float across = max(abs(dot(n, shadow.row0[k].xyz)), abs(dot(n, shadow.row1[k].xyz))) * half_width;
+    float towards = abs(dot(n, shadow.row2[k].xyz)) / metre;
+    bool flat_enough = across < MASU_SHADOW_STEEPEST * towards;
+    return (flat_enough ? across / towards : MASU_SHADOW_STEEPEST) * texel * metre;
+}
+
+void main()
+{
+    masu_instance_data m = instances[masu_instance_id()];
+    uint k = min(pc.index.x, uint(MASU_CASCADES_MAX - 1));
+    precise vec3 at = masu_seen_from(m, shadow.origin_hi[k].xyz, shadow.origin_lo[k].xyz);
+    precise float x = dot(shadow.row0[k].xyz, at);
+    precise float y = dot(shadow.row1[k].xyz, at);
+    precise float z = dot(shadow.row2[k].xyz, at) + shadow.rect[k].w;
+    z -= MASU_SHADOW_BIAS * slope_of(masu_turned_normal(m), k);
+    /* What is nearer to the sun than the box is flattened onto its near side, not clipped. */
+    gl_Position = vec4(x, y, min(z, 1.0), 1.0);
+}

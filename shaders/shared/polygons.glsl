@@ -1,0 +1,58 @@
+/*
+ * polygons.glsl: what every vertex shader of placed meshes begins with: which instance it is of, and
+ * where that puts the vertex and its normal. A draw's instances are listed from index.y on in the
+ * buffer of drawn instances.
+ */
+#ifndef MASU_POLYGONS_GLSL
+#define MASU_POLYGONS_GLSL
+
+#include "shared/pack.glsl"
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_INSTANCES, std430) readonly buffer Instances
+{
+    masu_instance_data instances[];
+};
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) readonly buffer Drawn
+{
+    uint drawn[];
+};
+
+layout(push_constant) uniform Push
+{
+    masu_push pc;
+};
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 oct_normal;
+
+uint masu_instance_id()
+{
+    return drawn[pc.index.y + uint(gl_InstanceIndex)];
+}
+
+/* Relative to an origin given as a float and what that leaves. */
+vec3 masu_seen_from(masu_instance_data m, vec3 origin_hi, vec3 origin_lo)
+{
+    precise vec3 moved =
+        vec3(dot(m.row0.xyz, position), dot(m.row1.xyz, position), dot(m.row2.xyz, position));
+    vec3 placed = vec3(m.row0.w, m.row1.w, m.row2.w);
+    precise vec3 origin = (placed - origin_hi) - origin_lo;
+    precise vec3 rel = moved + origin;
+    return rel;
+}
+
+/* Of any length. Normals go by the cofactor matrix: the inverse transpose times the determinant,
+ * which needs no division and so stays finite for flattened objects. A mirrored object turns its
+ * sign. */
+vec3 masu_turned_normal(masu_instance_data m)
+{
+    vec3 c0 = cross(m.row1.xyz, m.row2.xyz);
+    vec3 c1 = cross(m.row2.xyz, m.row0.xyz);
+    vec3 c2 = cross(m.row0.xyz, m.row1.xyz);
+    vec3 n = masu_oct_decode(oct_normal);
+    vec3 turned = vec3(dot(c0, n), dot(c1, n), dot(c2, n));
+    return dot(m.row0.xyz, c0) < 0.0 ? -turned : turned;
+}
+
+#endif

@@ -1,0 +1,71 @@
+/* shadow.h: the cascades of the sun's shadow map: where each lies, and when it is drawn anew.
+ *
+ *        sun            A cascade is an orthographic box along the sun's direction around a sphere
+ *       /               that holds the view from the eye up to some depth, and so the cascades
+ *   +--/------+         before it. A surface point takes the first that it is well inside of.
+ *   | +-----+ |
+ *   | |  eye>--->       STABLE. The sphere's size depends on the field of view and the depth alone,
+ *   | +-----+ |         not on where the camera looks, and its centre moves by whole texels across
+ *   +---------+         the sun's direction: the texels of what stands still keep their places.
+ *                       And while the camera moves by less than a texel not one bit of the map
+ * changes: what is drawn is placed relative to the box's own centre, not to the eye.
+ *
+ * DEPTH is 1 nearest to the sun and 0 at the far side of the box, which ends just behind the
+ * sphere: the float's precision lies where the receivers are, however far towards the sun the box
+ * must reach to hold all casters. It reaches as far as their bounds; whatever gets beyond all the
+ * same is flattened onto its near side by the vertex shader.
+ *
+ * All in double precision and in world space: 1e7 m from the origin is as good as anywhere. */
+#ifndef MASU_SHADOW_H
+#define MASU_SHADOW_H
+
+#include "shared/masu_shared.h"
+
+#include <stdint.h>
+
+/* Texels by which cascade.vert moves surfaces away from the sun at most. */
+#define MASU_SHADOW_BIAS_MOST (MASU_SHADOW_BIAS * MASU_SHADOW_STEEPEST)
+
+typedef struct masu_cascade {
+    int drawn;            /* 0: the map holds nothing of it */
+    uint64_t frame;       /* that drew it */
+    double axis[3][3];    /* unit: across, across, towards the sun */
+    double center[3];     /* world */
+    double half;          /* half of its width */
+    double behind, ahead; /* how far it reaches from the centre away from the sun, towards it */
+    double radius;        /* of the sphere that it was made for */
+    uint32_t size;        /* texels along its edge */
+} masu_cascade;
+
+/* What a cascade has to hold. */
+typedef struct masu_shadow_view {
+    double eye[3], forward[3]; /* forward: unit */
+    double tan2;               /* square of the tangent of the view's half diagonal */
+    double near_distance;
+    double sun[3];        /* towards it, unit */
+    double casters[2][3]; /* box around all of them; low above high: there are none */
+} masu_shadow_view;
+
+/* Two unit vectors orthogonal to the sun's direction and to each other, and that direction. They
+ * turn continuously with it but for one straight from below. */
+void masu_shadow_axes(const double sun[3], double axis[3][3]);
+
+/* View depth where cascade k of n ends: between even steps (lambda 0) and a constant factor (1),
+ * which begins at the near distance, but not below 1/256 of the last depth (the practical split
+ * scheme; Zhang et al., VRCIA 2006). */
+double masu_shadow_split(double near_distance, double distance, double lambda, uint32_t k,
+                         uint32_t n);
+
+/* The cascade that holds the view up to `depth`. slack: share of its radius that it is made larger,
+ * to be of use while the camera moves on. */
+masu_cascade masu_cascade_fit(const masu_shadow_view *view, double depth, double slack,
+                              uint32_t size);
+
+/* Whether a cascade drawn earlier still holds all that `wanted` was made for. */
+int masu_cascade_holds(const masu_cascade *drawn, const masu_cascade *wanted);
+
+/* Element k of the uniforms, for an eye and a first texel in the map. */
+void masu_cascade_write(const masu_cascade *c, const double eye[3], const int32_t place[2],
+                        uint32_t k, struct masu_shadow_uniforms *u);
+
+#endif

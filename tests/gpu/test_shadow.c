@@ -1,0 +1,371 @@
+/* test_shadow.c: what the shadow map says of each pixel against rays towards the sun through the
+ * scene's triangles in double precision: hard shadows by one ray to the sun's middle, the filter by
+ * 256 over its disc; no acne, how much light leaks in at the foot of a caster, SDF and polygons
+ * together. The figures are printed (docs/DESIGN.md). test_shadow_frames.c has what holds from
+ * frame to frame. */
+#include "support_shadow.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 240, H = 136 };
+
+static shadow_test t;
+static const masu_camera above = {
+    .position = {0, 3, 6}, .forward = {0, -3, -6}, .fov_y = 0.873f, .near_distance = 0.1f};
+
+/* ---- Scenes ---------------------------------------------------------------------------------- */
+
+static char json[1 << 15];
+static size_t used;
+
+static void add(const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    used += (size_t)vsnprintf(json + used, sizeof json - used, format, args);
+    va_end(args);
+    assert_true(used < sizeof json);
+}
+
+static void begin(void) {
+    used = 0;
+    add("{\"models\": [");
+}
+
+/* Not larger: SwiftShader draws a plane of 200 m up to 0.2 % off in depth. */
+#define GROUND "{\"mesh\": {\"plane\": {\"size_x\": 60, \"size_z\": 60}}}"
+#define SPOT "{\"mesh\": {\"plane\": {\"size_x\": 3, \"size_z\": 3}}}"
+
+/* The last of the models, then the rest of the scene. */
+static void finish(const char *name, const char *last, uint32_t resolution, const char *more) {
+    add("%s], \"sun\": {\"shadows\": {\"cascades\": 2, \"resolution\": %u, \"distance\": 40}}, "
+        "\"camera\": {\"near\": 0.1}%s}",
+        last, resolution, more);
+    shadow_bake(name, json);
+}
+
+static uint32_t next(uint32_t *r) {
+    *r = *r * 1664525u + 1013904223u;
+    return *r >> 8;
+}
+
+static double in(uint32_t *r, double low, double high) {
+    return low + (high - low) * next(r) / (double)(1 << 24);
+}
+
+/* Forty boxes of 0.1 to 2 m, turned at will. */
+static void bake_boxes(void) {
+    uint32_t r = 5;
+    begin();
+    for (int i = 0; i < 40; i++) {
+        double size[3] = {in(&r, 0.1, 2), in(&r, 0.1, 2), in(&r, 0.1, 2)};
+        double turn[3] = {in(&r, 0, 360), in(&r, 0, 360), in(&r, 0, 360)};
+        double x = in(&r, -8, 8), y = in(&r, 0, 3), z = in(&r, -12, 3);
+        add("{\"mesh\": {\"box\": {\"size\": [%g, %g, %g]}}, \"rotate\": [%g, %g, %g], "
+            "\"translate\": [%g, %g, %g]}, ",
+            size[0], size[1], size[2], turn[0], turn[1], turn[2], x, y, z);
+    }
+    finish("boxes", GROUND, 512, "");
+}
+
+/* Sheets without thickness and posts of 2 cm, less than a texel. */
+static void bake_thin(void) {
+    begin();
+    for (int i = 0; i < 8; i++) {
+        add("{\"mesh\": {\"plane\": {\"size_x\": 1.5, \"size_z\": 1.5}}, \"rotate\": [%d, %d, 0], "
+            "\"translate\": [%g, 0.8, %g]}, ",
+            90 * (i % 2) + 20 * i, 30 * i, -4 + i * 1.1, -0.5 * i);
+        add("{\"mesh\": {\"box\": {\"size\": [0.02, 2, 0.02]}}, \"translate\": [%g, 1, 1]}, ",
+            -4 + i * 1.1);
+    }
+    finish("thin", GROUND, 512, "");
+}
+
+/* ---- Against the truth ----------------------------------------------------------------------- */
+
+typedef struct errors {
+    uint32_t looked, wrong,
+        far;              /* wrong: on the other side than the sun; of them beyond 1.5 texels */
+    double farthest;      /* of the wrong ones from an edge, texels */
+    double squares, most; /* of the filter against the disc */
+    uint32_t sampled;
+} errors;
+
+static errors compare(const masu_camera *camera) {
+    errors e = {0};
+    const double tangent = tan(0.27 * 3.14159265358979 / 180);
+    const uint32_t *seen = shadow_image(&t, MASU_READBACK_OCCLUSION);
+    const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
+    for (uint32_t y = 0; y < t.height; y++) {
+        for (uint32_t x = 0; x < t.width; x++) {
+            shadow_point p;
+            uint32_t cascade;
+            if (!shadow_point_at(&t, camera, depths, x, y, &p) || !p.faces || p.n_l < 0.005)
+                continue;
+            double texel = shadow_texel(&t, camera, &p, (double)camera->near_distance, &cascade);
+            if (!(texel > 0) || p.z > 0.9 * (double)t.scene.shadow_distance) continue;
+            double is = shadow_seen(seen, y * t.width + x);
+            int truth = shadow_truth(&t, &p);
+            e.looked++;
+            if (fabs(is - truth) > 0.5) {
+                double edge = shadow_edge(&t, &p, texel, 8);
+                e.wrong++;
+                e.far += edge > 1.5;
+                e.farthest = fmax(e.farthest, edge);
+            }
+            if (x % 5 != 1 || y % 5 != 1) continue;
+            double d = is - masu_ref_sun_share(&t.world, p.at, p.triangle, t.sun, tangent, 256);
+            e.squares += d * d;
+            e.most = fmax(e.most, fabs(d));
+            e.sampled++;
+        }
+    }
+    return e;
+}
+
+/* The stated bounds: pixels on the wrong side of an edge, per thousand; how far from it, texels;
+ * root mean square of the filter's error against the disc. */
+static const struct {
+    const char *scene;
+    double elevation, wrong, farthest, rmse;
+} stated[] = {{"boxes", 10, 6, 1.5, 0.06},
+              {"boxes", 40, 5, 1, 0.05},
+              {"boxes", 75, 5, 1, 0.06},
+              {"thin", 15, 7, 1.5, 0.045},
+              {"thin", 50, 4, 1, 0.05}};
+
+static void the_error_against_the_truth_is_as_stated(void **state) {
+    (void)state;
+    int failed = 0;
+    bake_boxes();
+    bake_thin();
+    for (size_t i = 0; i < sizeof stated / sizeof *stated; i++) {
+        shadow_open(&t, stated[i].scene, W, H, NULL);
+        shadow_sun(&t, 70, stated[i].elevation);
+        shadow_draw(&t, &above, 0);
+        errors e = compare(&above);
+        shadow_close(&t);
+        double rmse = sqrt(e.squares / e.sampled);
+        print_message("%-6s sun %2.0f: wrong %u of %u, beyond 1.5 texels %u, farthest %.2f texels; "
+                      "against the disc %.4f, most %.2f, of %u\n",
+                      stated[i].scene, stated[i].elevation, e.wrong, e.looked, e.far, e.farthest,
+                      rmse, e.most, e.sampled);
+        assert_true(e.looked > 20000 && e.sampled > 1000);
+        failed |= e.far != 0 || e.farthest > stated[i].farthest || rmse > stated[i].rmse;
+        failed |= e.wrong * 1000.0 > stated[i].wrong * e.looked;
+    }
+    assert_false(failed);
+}
+
+/* ---- Acne ------------------------------------------------------------------------------------ */
+
+/* Pixels that the sun sees by the truth and not by the map. */
+static uint32_t dark_in_the_sun(const masu_camera *camera, uint32_t *looked) {
+    const uint32_t *seen = shadow_image(&t, MASU_READBACK_OCCLUSION);
+    const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
+    uint32_t dark = 0;
+    *looked = 0;
+    for (uint32_t i = 0; i < t.width * t.height; i++) {
+        shadow_point p;
+        if (!shadow_point_at(&t, camera, depths, i % t.width, i / t.width, &p)) continue;
+        if (!p.faces || p.n_l < 0.01 || !shadow_truth(&t, &p)) continue;
+        ++*looked;
+        dark += shadow_seen(seen, i) < 0.99;
+    }
+    return dark;
+}
+
+/* Convex things alone hide the sun from nothing that faces it. */
+static void a_plane_has_no_acne_under_any_sun(void **state) {
+    (void)state;
+    static const double elevations[] = {1, 2, 3, 5, 8, 13, 21, 34, 45, 55, 67, 78, 85, 89};
+    static const double azimuths[] = {0, 33, 45, 190};
+    begin();
+    finish("plane", GROUND, 512, "");
+    shadow_open(&t, "plane", 128, 96, NULL);
+    for (size_t i = 0; i < 4 * sizeof elevations / sizeof *elevations; i++) {
+        uint32_t looked;
+        shadow_sun(&t, azimuths[i % 4], elevations[i / 4]);
+        shadow_draw(&t, &above, 0);
+        uint32_t dark = dark_in_the_sun(&above, &looked);
+        if (dark) fail_msg("%u of %u, sun at %g", dark, looked, elevations[i / 4]);
+        assert_true(looked > 5000);
+    }
+    shadow_close(&t);
+}
+
+static void balls_boxes_and_sheets_have_no_acne(void **state) {
+    (void)state;
+    static const struct {
+        const char *model;
+        uint32_t most; /* per thousand */
+    } models[] = {
+        {"{\"mesh\": {\"sphere\": {\"radius\": 2, \"subdivisions\": 5}}}", 0},
+        {"{\"mesh\": {\"sphere\": {\"radius\": 2, \"subdivisions\": 3}}}", 0},
+        {"{\"mesh\": {\"sphere\": {\"radius\": 2, \"subdivisions\": 2}}}", 1},
+        {"{\"mesh\": {\"box\": {\"size\": [2, 3, 1]}}, \"rotate\": [20, 40, 60]}", 0},
+        {"{\"mesh\": {\"box\": {\"size\": [3, 0.02, 3]}}, \"rotate\": [20, 40, 60]}", 0},
+        {"{\"mesh\": {\"plane\": {\"size_x\": 3, \"size_z\": 3}}, \"rotate\": [35, 10, 0]}", 0},
+        {"{\"mesh\": {\"box\": {\"size\": [0.05, 4, 0.05]}}, \"rotate\": [0, 20, 30]}", 0},
+    };
+    for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
+        uint32_t looked = 0, dark = 0;
+        begin();
+        finish("alone", models[i].model, 256, "");
+        shadow_open(&t, "alone", 160, 120, NULL);
+        for (int k = 0; k < 12; k++) {
+            uint32_t n;
+            shadow_sun(&t, 37 * k, 4 + 7 * k);
+            shadow_draw(&t, &above, 0);
+            dark += dark_in_the_sun(&above, &n);
+            looked += n;
+        }
+        shadow_close(&t);
+        if (dark * 1000 > models[i].most * looked)
+            fail_msg("%s: %u of %u", models[i].model, dark, looked);
+        assert_true(looked > 300);
+    }
+}
+
+/* ---- Light that leaks in --------------------------------------------------------------------- */
+
+/* Behind a sheet and a box that stand on the ground: how far from the foot the first shadow is. */
+static void shadows_begin_at_the_foot_of_their_caster(void **state) {
+    (void)state;
+    static const char *const casters[] = {
+        "{\"mesh\": {\"plane\": {\"size_x\": 4, \"size_z\": 4}}, \"rotate\": [90, 0, 0]}",
+        "{\"mesh\": {\"box\": {\"size\": [4, 4, 0.3]}}, \"translate\": [0, 0, 0.15]}"};
+    static const masu_camera behind = {
+        .position = {0.3, 3, -4}, .forward = {0, -3, 4}, .fov_y = 0.6f, .near_distance = 0.1f};
+    for (int i = 0; i < 2; i++) {
+        begin();
+        add("%s, ", casters[i]);
+        finish("foot", GROUND, 512, "");
+        shadow_open(&t, "foot", W, H, NULL);
+        double worst = 0;
+        for (int elevation = 5; elevation <= 80; elevation += 15) {
+            uint32_t cascade = 0, ground = 0;
+            double leak = 0;
+            shadow_sun(&t, 20, elevation);
+            shadow_draw(&t, &behind, 0);
+            const uint32_t *seen = shadow_image(&t, MASU_READBACK_OCCLUSION);
+            const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
+            for (uint32_t k = 0; k < W * H; k++) {
+                shadow_point p;
+                if (!shadow_point_at(&t, &behind, depths, k % W, k / W, &p)) continue;
+                if (fabs(p.at[1]) > 1e-6 || shadow_truth(&t, &p)) continue;
+                double texel = shadow_texel(&t, &behind, &p, 0.1, &cascade);
+                if (fabs(p.at[2]) > 10 * texel || fabs(p.at[0]) > 1) continue; /* no other edge */
+                ground++;
+                if (shadow_seen(seen, k) > 0.5) leak = fmax(leak, -p.at[2] / texel);
+            }
+            print_message("%s, sun %d: lit up to %.2f texels behind the foot, of %u pixels\n",
+                          i ? "box" : "sheet", elevation, leak, ground);
+            assert_true(ground > 100);
+            worst = fmax(worst, leak);
+        }
+        shadow_close(&t);
+        assert_true(worst <= (i ? 0.5 : 3.5));
+    }
+}
+
+/* A sheet that lies parallel to the ground: from how high on it casts a shadow. */
+static void a_sheet_above_the_ground_casts_from_a_few_texels_on(void **state) {
+    (void)state;
+    static const double elevations[4] = {10, 30, 60, 85};
+    double lost[4] = {0};
+    for (int k = 1; k <= 8; k++) {
+        double height = 0.01 * k;
+        /* From between the two, straight down. */
+        masu_camera low = {.position = {0, height / 2, 0},
+                           .forward = {0, -1, -0.2f},
+                           .fov_y = 1,
+                           .near_distance = 0.001f};
+        begin();
+        add("{\"mesh\": {\"plane\": {\"size_x\": 2, \"size_z\": 2}}, \"translate\": [0, %g, 0]}, ",
+            height);
+        finish("above", SPOT, 512, "");
+        shadow_open(&t, "above", 64, 48, NULL);
+        for (int i = 0; i < 4; i++) {
+            /* All that it sees is ground, and dark. */
+            shadow_point p = {.z = height / 2};
+            uint32_t cascade = 0, inside = 0, lit = 0;
+            shadow_sun(&t, 200, elevations[i]);
+            shadow_draw(&t, &low, 0);
+            const uint32_t *seen = shadow_image(&t, MASU_READBACK_OCCLUSION);
+            const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
+            for (uint32_t j = 0; j < 64 * 48; j++) {
+                inside += depths[j] > 0;
+                lit += shadow_seen(seen, j) > 0.5;
+            }
+            assert_int_equal(inside, 64 * 48);
+            if (lit) lost[i] = height / shadow_texel(&t, &low, &p, 0.001, &cascade);
+        }
+        shadow_close(&t);
+    }
+    for (int i = 0; i < 4; i++) {
+        print_message("sheet above the ground, sun %g: lost up to %.2f texels of height\n",
+                      elevations[i], lost[i]);
+        assert_true(lost[i] <= 1.5);
+    }
+}
+
+/* ---- SDF and polygons ------------------------------------------------------------------------ */
+
+/* What both leave of the sun is the product of what each leaves, on either's pixels; the ambient
+ * part is the SDF's alone. */
+static void sdf_and_polygons_shadow_each_other(void **state) {
+    (void)state;
+    static uint32_t seen[3][W * H];
+    static float depths[W * H];
+    static const char field[] = "part ball = translate((-1.2, 0.8, 0), sphere(0.8));\\n";
+    for (int i = 0; i < 3; i++) {
+        char text[2048];
+        assert_int_equal(shadow_shell("printf '%s' > %s/ball.sdf", field, shadow_dir()), 0);
+        snprintf(
+            text, sizeof text,
+            "{\"models\": [%s, {\"mesh\": {\"box\": {\"size\": [0.7, 3, 0.7]}}, \"translate\": "
+            "[0.6, 1.5, 0.5]}], \"camera\": {\"near\": 0.1}, \"sun\": {\"direction\": [0.8, 0.7, "
+            "0.3]%s}, \"sdf\": {\"source\": \"ball.sdf\", \"bounds\": [[-3, -1, -3], [3, 3, "
+            "3]]%s}}",
+            GROUND,
+            i != 0 ? ", \"shadows\": {\"cascades\": 2, \"resolution\": 512, \"distance\": 40}" : "",
+            i != 1 ? ", \"shadows\": {}, \"ambient_occlusion\": {}" : "");
+        shadow_bake("both", text);
+        shadow_open(&t, "both", W, H, NULL);
+        shadow_draw(&t, &above, 0);
+        memcpy(seen[i], shadow_image(&t, MASU_READBACK_OCCLUSION), sizeof seen[i]);
+        memcpy(depths, shadow_image(&t, MASU_READBACK_DEPTH), sizeof depths);
+        shadow_close(&t);
+    }
+    uint32_t on_ball = 0, by_ball = 0, by_box = 0;
+    for (uint32_t k = 0; k < W * H; k++) {
+        if (!(depths[k] > 0)) continue;
+        double sdf = shadow_seen(seen[0], k), map = shadow_seen(seen[1], k);
+        assert_true(fabs(shadow_seen(seen[2], k) - sdf * map) < 2e-4);
+        assert_int_equal(seen[2][k] >> 16, seen[0][k] >> 16);
+        assert_int_equal(seen[1][k] >> 16, 0xFFFF);
+        by_ball += sdf < 0.1;
+        by_box += map < 0.1;
+        /* The ball is left of the middle, and nothing else is that near. */
+        double z = 0.1 / (double)depths[k];
+        on_ball += map < 0.1 && k % W > W / 4 && k % W < W / 2 && z < 6.3;
+    }
+    print_message("dark by the ball %u, by the box %u, of these on the ball about %u\n", by_ball,
+                  by_box, on_ball);
+    assert_true(by_ball > 300 && by_box > 500 && on_ball > 100);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plane_has_no_acne_under_any_sun),
+        cmocka_unit_test(balls_boxes_and_sheets_have_no_acne),
+        cmocka_unit_test(shadows_begin_at_the_foot_of_their_caster),
+        cmocka_unit_test(a_sheet_above_the_ground_casts_from_a_few_texels_on),
+        cmocka_unit_test(sdf_and_polygons_shadow_each_other),
+        cmocka_unit_test(the_error_against_the_truth_is_as_stated),
+    };
+    return cmocka_run_group_tests_name("shadow", tests, shadow_folder, shadow_folder_away);
+}
