@@ -7,13 +7,13 @@
 # to build the library and the programs
 PACKAGES_build := gcc libc6-dev libvulkan-dev
 PACKAGES_build += glslang-tools spirv-tools
-PACKAGES_build += libassimp-dev libjansson-dev libstb-dev
+PACKAGES_build += libassimp-dev libjansson-dev libstb-dev libmagickwand-dev pkgconf
 
 # to bake and render the demo: a Vulkan driver for any processor, and the models that scenes/ places
 PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
 
-# to run the tests; g++ and pkgconf look at what is installed as a C++ or a C user would
-PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ pkgconf
+# to run the tests; g++, and pkgconf from above, look at what is installed as a C++ or a C user would
+PACKAGES_test := libcmocka-dev vulkan-validationlayers g++
 
 # to build everything a second time with the other compiler (make check FULL=1), and for `make fuzz`
 PACKAGES_full := clang

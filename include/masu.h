@@ -33,6 +33,7 @@
  * THE VULKAN CONTRACT
  *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
  *    and sampled image. No optional feature is needed. What is missing is named in the detail.
+ *    Of optional ones, textureCompressionBC and samplerAnisotropy serve textures (masu_vulkan).
  *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
  *    to be submitted once; all frames and loads go to one and the same queue, in order. It starts
  *    with a full barrier against the frame before.
@@ -156,6 +157,11 @@ typedef struct masu_scene {
     float shadow_distance, shadow_lambda;
     uint32_t draws;      /* draw calls of one G-buffer pass */
     uint64_t triangles;  /* of one frame: every instance counted */
+    uint32_t textures;   /* pictures: layers of the texture arrays */
+    uint32_t texture_arrays, texture_sets;
+    uint32_t masks; /* 1: some material has an alpha mask */
+    uint64_t texture_bytes;         /* of their texels as compressed blocks */
+    uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
 } masu_scene;
 
 /* Checks every offset, count, index, float and the hash of `blob` and fills `*out`. Allocates
@@ -236,11 +242,14 @@ typedef struct masu_limits {
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
     uint64_t shadow_cascades;   /* of the shadow map, as the largest rung has it */
     uint64_t shadow_resolution; /* a cascade of n has 4 n^2 bytes, device */
+    uint64_t textures;      /* pictures with their mip chains */
+    uint64_t texture_bytes; /* of texels on the device, as blocks or decoded, whichever is used;
+                               the device may add padding */
 } masu_limits;
 
 typedef struct masu_peak_info {
     uint64_t vertices, indices, materials, instances, sdf_params;
-    uint64_t shadow_cascades, shadow_resolution;
+    uint64_t shadow_cascades, shadow_resolution, textures, texture_bytes;
     uint64_t host_bytes;   /* of the host block */
     uint64_t device_bytes; /* of all device blocks */
 } masu_peak_info;
@@ -298,6 +307,11 @@ typedef struct masu_vulkan {
     const VkAllocationCallbacks
         *allocator; /* passed to every create and allocate; NULL: the driver's own */
     VkPipelineCache pipeline_cache; /* used in masu_init; VK_NULL_HANDLE: none */
+    /* Features that the device was created with; Vulkan does not let a library ask. */
+    uint32_t texture_compression_bc; /* not 0: textureCompressionBC. Textures then stay compressed:
+                                        1/4 to 1/8 of the memory */
+    float max_anisotropy; /* samplerAnisotropy is enabled: samples along the longer axis, 2 to
+                             limits.maxSamplerAnisotropy; 0: it is not */
 } masu_vulkan;
 
 typedef struct masu_targets {
@@ -336,6 +350,8 @@ typedef struct masu_debug {
 typedef struct masu_deny {
     uint32_t
         unified_memory; /* not 0: separate blocks per role even where one type could serve all */
+    uint32_t compressed_textures; /* not 0: textures are decoded even where the device takes them
+                                     compressed */
 } masu_deny;
 
 typedef struct masu_desc {
@@ -413,7 +429,7 @@ MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
 /* One row of the memory plan. */
 typedef struct masu_memory_row {
     const char *name;
-    const char *kind; /* "host", "buffer", "image" */
+    const char *kind; /* "host", "buffer", "texture" (an array of them), "image" */
     masu_role role;   /* of device rows */
     uint64_t count;   /* elements, or texels of an image */
     uint64_t bytes;   /* total */
@@ -483,7 +499,8 @@ typedef struct masu_commands {
 } masu_commands;
 
 /* Copies the scene to the device. MASU_INCOMPLETE: submit commands->buffer, wait for it, call
- * again. MASU_OK: done; nothing to submit. On unified memory the first call returns MASU_OK. */
+ * again. MASU_OK: done; nothing to submit. On unified memory a scene without textures needs no
+ * submit: the first call returns MASU_OK. */
 MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_commands *commands);
 
 typedef struct masu_camera {

@@ -187,9 +187,17 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                      .queueFamilyIndex = host->family,
                                      .queueCount = 1,
                                      .pQueuePriorities = &priority};
+    VkPhysicalDeviceFeatures offered;
+    vkGetPhysicalDeviceFeatures(host->physical, &offered);
+    VkPhysicalDeviceFeatures features = {.samplerAnisotropy = offered.samplerAnisotropy,
+                                         .textureCompressionBC = offered.textureCompressionBC};
+    host->compressed = offered.textureCompressionBC;
+    host->most_anisotropy =
+        offered.samplerAnisotropy ? host->properties.limits.maxSamplerAnisotropy : 0.0f;
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .queueCreateInfoCount = 1,
-                               .pQueueCreateInfos = &queue};
+                               .pQueueCreateInfos = &queue,
+                               .pEnabledFeatures = &features};
     VkResult r = vkCreateDevice(host->physical, &info, host->desc.allocator, &host->device);
     if (r) return masu_headless_fail(error, size, "vkCreateDevice", r);
     vkGetDeviceQueue(host->device, host->family, 0, &host->queue);

@@ -1,8 +1,9 @@
 /* headless.h: a Vulkan host without a window: instance, device, one queue, target and source
  * images, submits that wait.
  *
- * It is what a port's own host does, kept small: it enables no optional feature and no extension
- * but the validation layer's own and, for labels, VK_EXT_debug_utils. Every wait has a timeout.
+ * It is what a port's own host does, kept small: of optional features it enables those that serve
+ * textures, where they are offered, and no extension but the validation layer's own and, for labels,
+ * VK_EXT_debug_utils. Every wait has a timeout.
  * Functions that can fail return false and write one line without a newline to `error`. */
 #ifndef MASU_HEADLESS_H
 #define MASU_HEADLESS_H
@@ -48,6 +49,8 @@ typedef struct masu_headless {
     uint32_t messages;       /* validation warnings and errors so far */
     bool validating;         /* the layer is really there */
     bool labels;             /* VK_EXT_debug_utils is enabled */
+    bool compressed;         /* textureCompressionBC is enabled */
+    float most_anisotropy;   /* samplerAnisotropy is enabled: its limit; else 0 */
     bool lost;               /* a wait has timed out or the device is gone: nothing is waited for */
     char first_message[512]; /* of the validation layer */
     char driver[1024]; /* "llvmpipe (...), lavapipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230" */

@@ -91,13 +91,17 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
         masu_session_close(s);
         return false;
     }
+    float anisotropy = d->desc.vulkan.max_anisotropy, most = s->host.most_anisotropy;
+    if (anisotropy > most) anisotropy = most;
     s->desc.vulkan = (masu_vulkan){s->host.desc.get_instance_proc_addr,
                                    s->host.instance,
                                    s->host.physical,
                                    s->host.device,
                                    s->host.family,
                                    s->host.desc.allocator,
-                                   VK_NULL_HANDLE};
+                                   VK_NULL_HANDLE,
+                                   s->host.compressed,
+                                   anisotropy};
     s->desc.debug.labels = s->host.labels;
     if (!s->desc.clock_ns) s->desc.clock_ns = masu_clock_ns;
     if (!open_targets(d, s, error, error_size) ||

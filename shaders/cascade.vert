@@ -1,6 +1,6 @@
 /*
- * cascade.vert: polygons as the sun sees them, for one cascade of the shadow map; there is no
- * fragment shader. index.x is the cascade. Placed relative to the cascade's own centre, not to the
+ * cascade.vert: polygons as the sun sees them, for one cascade of the shadow map; a fragment shader
+ * have only masks (MASU_TEXTURES). index.x is the cascade. Placed relative to the cascade's own centre, not to the
  * eye: while the cascade stays where it is, so does every bit of its texels.
  *
  * A surface that is steep to the sun changes its depth within a texel, and would shadow itself: it is
@@ -17,6 +17,11 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
 {
     masu_shadow_uniforms shadow;
 };
+
+#ifdef MASU_TEXTURES
+layout(location = 2) in vec2 texcoord;
+layout(location = 3) out vec2 out_texcoord;
+#endif
 
 /* Depth that a surface of that normal gains or loses along the edge of a texel. */
 float slope_of(vec3 n, uint k)
@@ -39,6 +44,9 @@ void main()
     precise float y = dot(shadow.row1[k].xyz, at);
     precise float z = dot(shadow.row2[k].xyz, at) + shadow.rect[k].w;
     z -= MASU_SHADOW_BIAS * slope_of(masu_turned_normal(m), k);
+#ifdef MASU_TEXTURES
+    out_texcoord = texcoord;
+#endif
     /* What is nearer to the sun than the box is flattened onto its near side, not clipped. */
     gl_Position = vec4(x, y, min(z, 1.0), 1.0);
 }

@@ -5,7 +5,8 @@
  * that a world a million metres from the origin is as steady as one at the origin.
  *
  * With MASU_MOTION (gbuffer_velocity) also to where the vertex was in the frame before, by the same
- * operations: what stood still gets the same bits twice, and a velocity of exactly 0.
+ * operations: what stood still gets the same bits twice, and a velocity of exactly 0. With
+ * MASU_TEXTURES texture coordinates go along.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -32,6 +33,11 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS_INSTANCES, std430) re
 layout(location = 2) out vec3 out_before;
 #endif
 
+#ifdef MASU_TEXTURES
+layout(location = 2) in vec2 texcoord;
+layout(location = 3) out vec2 out_texcoord;
+#endif
+
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
 
@@ -42,6 +48,9 @@ void main()
     vec3 rel = masu_seen_from(m, frame.eye_hi.xyz, frame.eye_lo.xyz);
     out_normal = masu_turned_normal(m);
     out_rel = rel;
+#ifdef MASU_TEXTURES
+    out_texcoord = texcoord;
+#endif
 #ifdef MASU_MOTION
     out_before =
         masu_seen_from(previous_instances[id], previous.eye_hi.xyz, previous.eye_lo.xyz);

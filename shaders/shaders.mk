@@ -17,10 +17,16 @@ STAGES       := comp vert frag
 SHADERS := $(filter-out $(SCENE_SHADERS:%=shaders/%),$(wildcard $(STAGES:%=shaders/*.%)))
 SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
 
-# A shader compiled a second time with a macro: NAME_STAGE of the second build, its file, the macro.
+# A shader compiled a second time with macros: NAME_STAGE of the second build, its file, the macros
+# with + between.
 SECOND_BUILDS := gbuffer_velocity_vert:gbuffer.vert:MASU_MOTION
 SECOND_BUILDS += gbuffer_velocity_frag:gbuffer.frag:MASU_MOTION
 SECOND_BUILDS += light_occluded_comp:light.comp:MASU_OCCLUSION
+SECOND_BUILDS += cascade_masked_vert:cascade.vert:MASU_TEXTURES
+SECOND_BUILDS += gbuffer_textured_vert:gbuffer.vert:MASU_TEXTURES
+SECOND_BUILDS += gbuffer_textured_frag:gbuffer.frag:MASU_TEXTURES
+SECOND_BUILDS += gbuffer_textured_velocity_vert:gbuffer.vert:MASU_TEXTURES+MASU_MOTION
+SECOND_BUILDS += gbuffer_textured_velocity_frag:gbuffer.frag:MASU_TEXTURES+MASU_MOTION
 
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
@@ -29,12 +35,12 @@ GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
-# $(1) the result without .spv (% for any), $(2) its source, $(3) a macro or nothing
+# $(1) the result without .spv (% for any), $(2) its source, $(3) macros or nothing
 define shader_rule
 $(BUILD)/gen/$(1).spv: $(2)
 	@mkdir -p $$(@D)
 	@echo "  GLSL    $$<"
-	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(3)) -Ishaders \
+	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3))) -Ishaders \
 	    --depfile $$(@:.spv=.d) -o $$@ $$<
 	$$(V)sed -n 's/^[^:]*: *//p' $$(@:.spv=.d) | tr -s ' ' '\n' | \
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)

@@ -105,6 +105,30 @@ masu_result masu_bind_memory(masu_renderer *m, masu_detail *detail) {
         if (r) return masu_fail_vulkan(detail, r, "vkBindImageMemory");
         masu_name(m, VK_OBJECT_TYPE_IMAGE, MASU_HANDLE(m->objects.images[i]), masu_images[i].name);
     }
+    for (uint32_t i = 0; i < m->plan.scene.texture_arrays; i++) {
+        masu_texture_plan *t = &m->plan.textures[i];
+        VkResult r = m->vk.BindImageMemory(m->vk.device, t->image, m->memory[MASU_ROLE_DEVICE],
+                                           base + t->offset);
+        if (r) return masu_fail_vulkan(detail, r, "vkBindImageMemory");
+        masu_name(m, VK_OBJECT_TYPE_IMAGE, MASU_HANDLE(t->image), "texture");
+    }
+    return MASU_OK;
+}
+
+static masu_result make_texture_views(masu_renderer *m, masu_detail *detail) {
+    for (uint32_t i = 0; i < m->plan.scene.texture_arrays; i++) {
+        masu_texture_plan *t = &m->plan.textures[i];
+        VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                      .image = t->image,
+                                      .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
+                                      .format = t->format,
+                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0,
+                                                           VK_REMAINING_MIP_LEVELS, 0,
+                                                           VK_REMAINING_ARRAY_LAYERS}};
+        VkResult r = m->vk.CreateImageView(m->vk.device, &info, m->vk.allocator, &t->view);
+        if (MASU_FAILED(r, t->view)) return masu_fail_vulkan(detail, r, "vkCreateImageView");
+        masu_name(m, VK_OBJECT_TYPE_IMAGE_VIEW, MASU_HANDLE(t->view), "texture");
+    }
     return MASU_OK;
 }
 
@@ -130,5 +154,5 @@ masu_result masu_make_views(masu_renderer *m, masu_detail *detail) {
         masu_name(m, VK_OBJECT_TYPE_IMAGE_VIEW, MASU_HANDLE(m->views[i]), masu_images[i].name);
     }
     m->views[MASU_IMAGE_SOURCE] = m->plan.desc.source.view;
-    return MASU_OK;
+    return make_texture_views(m, detail);
 }

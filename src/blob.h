@@ -55,8 +55,46 @@ enum masu_blob_kind {
     MASU_BLOB_GROUP_ITEMS = 26, /* uint32: instances, group after group; present with GROUPS */
     MASU_BLOB_OCCLUDERS = 27,   /* boxes inside of meshes, sorted by mesh */
     MASU_BLOB_SHADOW = 28,      /* at most one: the sun's shadow map */
-    MASU_BLOB_KIND_COUNT = 29
+    MASU_BLOB_TEXCOORDS = 29,   /* float pairs, one per vertex; these four come together */
+    MASU_BLOB_TEXTURES = 30,
+    MASU_BLOB_TEXTURE_SETS = 31,
+    MASU_BLOB_TEXELS = 32, /* compressed blocks, in units of 16 bytes */
+    MASU_BLOB_KIND_COUNT = 33
 };
+
+/* Four texels by four make a block. sRGB formats hold display-encoded colour. */
+enum masu_blob_texture_format {
+    MASU_TEXTURE_BC1_SRGB = 1, /* opaque colour, 8 bytes a block */
+    MASU_TEXTURE_BC3_SRGB = 2, /* colour and alpha, 16 bytes */
+    MASU_TEXTURE_BC4 = 3,      /* one channel, 8 bytes */
+    MASU_TEXTURE_BC5 = 4       /* two channels, 16 bytes */
+};
+
+/* What a material may have a texture for: slots of a texture set, bits of a material's flags. */
+enum masu_blob_texture_slot {
+    MASU_SLOT_BASE = 0,    /* base colour, alpha in BC3 */
+    MASU_SLOT_NORMAL = 1,  /* BC5: x and y of the tangent-space normal as 0..1, +y up the image */
+    MASU_SLOT_SURFACE = 2, /* BC4: roughness; BC5: roughness, metallic */
+    MASU_SLOT_EMISSIVE = 3,
+    MASU_SLOT_COUNT = 4
+};
+
+/* Flags of a material; shaders/shared/masu_shared.h has them too. Bit of a slot: the map is there,
+ * and the material's factor is multiplied by it. */
+enum masu_blob_material_flags {
+    MASU_MATERIAL_HAS_MAPS = 0xF,
+    MASU_MATERIAL_HAS_METAL = 0x10, /* the surface map holds metallic as well */
+    MASU_MATERIAL_IS_MASK = 0x20,   /* texels with alpha below the cut-off are not there */
+    MASU_MATERIAL_IS_BLEND = 0x40,  /* meant to be transparent; drawn as a mask, or opaque */
+    MASU_MATERIAL_CUTOFF_SHIFT = 8, /* 8 bits: cut-off times 255 */
+    MASU_MATERIAL_KNOWN = 0xFF7F
+};
+
+/* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
+#define MASU_TEXTURE_SIZE_MAX 4096u
+#define MASU_TEXTURE_LAYERS_MAX 256u
+#define MASU_TEXTURE_ARRAYS_MAX 64u
+#define MASU_TEXCOORD_MAX 32768.0f
 
 typedef struct masu_blob_header {
     uint32_t magic;
@@ -135,8 +173,29 @@ typedef struct masu_blob_material {
     float emissive[3];   /* linear radiance, >= 0 */
     float metallic;      /* 0..1 */
     uint32_t name;
-    uint32_t reserved[3];
+    uint32_t flags;       /* masu_blob_material_flags; 0: no textures, and the next two are 0 */
+    uint32_t texture_set; /* element of TEXTURE_SETS */
+    uint32_t layers;      /* of the set's textures, 8 bits per slot */
 } masu_blob_material;
+
+/* An array of images of one format and size. Texels: layer after layer, each the whole mip chain
+ * from large to small, each mip's blocks row by row; a mip has ceil(size / 4) blocks each way. */
+typedef struct masu_blob_texture {
+    uint32_t format; /* masu_blob_texture_format */
+    uint32_t width;  /* 1..4096, of mip 0; mip m has max(1, width >> m) */
+    uint32_t height;
+    uint32_t mips;   /* 1..floor(log2(larger side)) + 1 */
+    uint32_t layers; /* 1..256 */
+    uint32_t name;
+    uint64_t offset; /* bytes into TEXELS: the end of the texture before, rounded up to 16 */
+} masu_blob_texture;
+
+/* What a draw binds together: a texture per slot, or MASU_BLOB_NONE. */
+typedef struct masu_blob_texture_set {
+    uint32_t texture[MASU_SLOT_COUNT];
+    uint32_t wrap[2]; /* along u and v: 0 repeat, 1 clamp, 2 mirror */
+    uint32_t reserved[2];
+} masu_blob_texture_set;
 
 /* Camera path: keys in rising time, linear in between (position and target), held at both ends. Up
  * is +Y. */
@@ -191,6 +250,26 @@ typedef struct masu_blob_sdf_param {
     uint32_t name;
 } masu_blob_sdf_param;
 
+/* Blocks of one format. 0: no such format. */
+static inline uint32_t masu_blob_block_bytes(uint32_t format) {
+    if (format == MASU_TEXTURE_BC1_SRGB || format == MASU_TEXTURE_BC4) return 8;
+    return format == MASU_TEXTURE_BC3_SRGB || format == MASU_TEXTURE_BC5 ? 16 : 0;
+}
+
+static inline uint32_t masu_blob_mip_size(uint32_t size, uint32_t mip) {
+    return size >> mip ? size >> mip : 1;
+}
+
+/* Bytes of all layers and mips, without the padding behind. */
+static inline uint64_t masu_blob_texture_bytes(const masu_blob_texture *t) {
+    uint64_t blocks = 0;
+    for (uint32_t m = 0; m < t->mips && m < 32; m++) {
+        blocks += (uint64_t)((masu_blob_mip_size(t->width, m) + 3) / 4) *
+                  ((masu_blob_mip_size(t->height, m) + 3) / 4);
+    }
+    return blocks * masu_blob_block_bytes(t->format) * t->layers;
+}
+
 /* FNV-1a, 64 bit (Fowler, Noll, Vo): offset basis and prime of the reference. */
 static inline uint64_t masu_fnv1a64(const void *data, uint64_t bytes) {
     const unsigned char *p = (const unsigned char *)data;
@@ -208,6 +287,8 @@ _Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
 _Static_assert(sizeof(masu_blob_material) == 48, "blob material");
+_Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
+_Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
 _Static_assert(sizeof(masu_blob_environment) == 80, "blob environment");
 _Static_assert(sizeof(masu_blob_shadow) == 16, "blob shadow");

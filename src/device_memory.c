@@ -2,6 +2,8 @@
 #include "device_memory.h"
 
 #include "error.h"
+#include "scene.h"
+#include "texture.h"
 
 #include <string.h>
 
@@ -207,7 +209,46 @@ static masu_result create_image(const masu_vk *vk, masu_frame_plan *plan, uint32
     return MASU_OK;
 }
 
-void masu_objects_destroy(const masu_vk *vk, masu_objects *objects) {
+static masu_result create_texture(const masu_vk *vk, const masu_blob_texture *t, int compressed,
+                                  masu_texture_plan *texture, masu_detail *detail) {
+    texture->format = masu_texture_form_of(t->format, compressed).format;
+    texture->layers = t->layers;
+    VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                              .imageType = VK_IMAGE_TYPE_2D,
+                              .format = texture->format,
+                              .extent = {t->width, t->height, 1},
+                              .mipLevels = t->mips,
+                              .arrayLayers = t->layers,
+                              .samples = VK_SAMPLE_COUNT_1_BIT,
+                              .tiling = VK_IMAGE_TILING_OPTIMAL,
+                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                              .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+    VkResult r = vk->CreateImage(vk->device, &info, vk->allocator, &texture->image);
+    if (MASU_FAILED(r, texture->image)) return masu_fail_vulkan(detail, r, "vkCreateImage");
+    VkMemoryRequirements need;
+    vk->GetImageMemoryRequirements(vk->device, texture->image, &need);
+    texture->bytes = need.size;
+    texture->alignment = need.alignment;
+    texture->type_bits = need.memoryTypeBits;
+    return MASU_OK;
+}
+
+static masu_result create_textures(const masu_vk *vk, masu_frame_plan *plan, masu_detail *detail) {
+    if (!plan->scene.texture_arrays) return MASU_OK;
+    masu_scene_view v = masu_scene_look(&plan->scene);
+    for (uint32_t i = 0; i < plan->scene.texture_arrays; i++) {
+        masu_result result =
+            create_texture(vk, &v.textures[i], plan->compressed, &plan->textures[i], detail);
+        if (result) return result;
+    }
+    return MASU_OK;
+}
+
+void masu_objects_destroy(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects) {
+    for (uint32_t i = 0; i < plan->scene.texture_arrays; i++) {
+        vk->DestroyImage(vk->device, plan->textures[i].image, vk->allocator);
+        plan->textures[i].image = VK_NULL_HANDLE;
+    }
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         vk->DestroyImage(vk->device, objects->images[i], vk->allocator);
         objects->images[i] = VK_NULL_HANDLE;
@@ -235,6 +276,21 @@ static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *
         block->bytes = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
     }
+}
+
+/* Textures stay as long as the renderer: behind one another, apart from buffers by the granularity. */
+static void lay_textures(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan *block) {
+    uint64_t granularity = vk->properties.limits.bufferImageGranularity;
+    if (!plan->scene.texture_arrays) return;
+    if (!granularity) granularity = 1;
+    block->bytes = masu_align_up(block->bytes, granularity);
+    for (uint32_t i = 0; i < plan->scene.texture_arrays; i++) {
+        masu_texture_plan *t = &plan->textures[i];
+        t->offset = masu_align_up(block->bytes, t->alignment);
+        block->bytes = t->offset + t->bytes;
+        add_to_block(block, t->alignment, t->type_bits);
+    }
+    block->bytes = masu_align_up(block->bytes, granularity);
 }
 
 static void lay_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan *block) {
@@ -278,6 +334,7 @@ static void lay_out(const masu_vk *vk, masu_frame_plan *plan) {
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
         masu_block_plan *block = &plan->blocks[plan->unified ? MASU_ROLE_DEVICE : role];
         lay_buffers(plan, (masu_role)role, block);
+        if (role == MASU_ROLE_DEVICE) lay_textures(vk, plan, block);
         if (role == MASU_ROLE_DEVICE) lay_images(vk, plan, block);
     }
 }
@@ -292,14 +349,31 @@ static int is_unified(const masu_vk *vk, masu_frame_plan *plan) {
     return block->bytes && find_type(vk, block->type_bits, LOCAL | VISIBLE, block->bytes, &unused);
 }
 
+/* What textures need in a staging buffer that takes them all at once. Images are tiled: they go
+ * through it even where the host could write their memory. */
+static uint64_t texture_staging(const masu_frame_plan *plan) {
+    if (!plan->scene.texture_arrays) return 0;
+    masu_scene_view v = masu_scene_look(&plan->scene);
+    uint64_t bytes = masu_scene_texture_bytes(&plan->desc);
+    for (uint32_t i = 0; i < plan->scene.texture_arrays; i++) {
+        bytes += (uint64_t)v.textures[i].layers * v.textures[i].mips * MASU_BLOB_ALIGN;
+    }
+    return bytes;
+}
+
 /* Resident buffers need a staging buffer exactly when the host cannot write where they live. */
 static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
                                   masu_detail *detail) {
     uint64_t resident =
         plan->buffers[MASU_BUFFER_VERTICES].bytes + plan->buffers[MASU_BUFFER_INDICES].bytes +
-        plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes;
+        plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes +
+        plan->buffers[MASU_BUFFER_TEXCOORDS].bytes;
+    uint64_t textures = texture_staging(plan);
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
-    if (!resident || plan->blocks[MASU_ROLE_DEVICE].host_visible) return MASU_OK;
+    plan->staged = resident && !plan->blocks[MASU_ROLE_DEVICE].host_visible;
+    if (!plan->staged) resident = 0;
+    if (resident < textures) resident = textures;
+    if (!resident) return MASU_OK;
     staging->bytes = resident < STAGING_BYTES ? resident : STAGING_BYTES;
     masu_result result = create_buffer(vk, plan, MASU_BUFFER_STAGING, objects, detail);
     if (!result) lay_out(vk, plan);
@@ -339,9 +413,11 @@ masu_result masu_objects_create(const masu_vk *vk, masu_frame_plan *plan, masu_o
         masu_result result = create_image(vk, plan, i, objects, detail);
         if (result) return result;
     }
+    masu_result result = create_textures(vk, plan, detail);
+    if (result) return result;
     plan->unified = is_unified(vk, plan);
     lay_out(vk, plan);
-    masu_result result = choose_type(vk, plan, MASU_ROLE_DEVICE, detail);
+    result = choose_type(vk, plan, MASU_ROLE_DEVICE, detail);
     if (!result) result = create_staging(vk, plan, objects, detail);
     if (!result) result = create_poison(vk, plan, objects, detail);
     if (result) return result;

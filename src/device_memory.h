@@ -50,6 +50,6 @@ typedef struct masu_objects {
  * buffer is needed, and fills the memory part of the plan. */
 masu_result masu_objects_create(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
                                 masu_detail *detail);
-void masu_objects_destroy(const masu_vk *vk, masu_objects *objects);
+void masu_objects_destroy(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects);
 
 #endif

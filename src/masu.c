@@ -17,6 +17,7 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
     const masu_scene *s = &plan->scene;
     uint64_t frames = (uint64_t)d->frames_in_flight * plan->recordings;
     masu_renderer *r = masu_arena_take(arena, "renderer", 1, sizeof *r, MASU_ARENA_ALIGNMENT);
+    masu_texture_plan *textures;
     masu_renderer scrap; /* takes the NULLs of a counting walk */
     masu_renderer *to = r ? r : &scrap;
     to->frames = masu_arena_take(arena, "command buffers", frames, sizeof *to->frames, 8);
@@ -34,6 +35,13 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
         masu_arena_take(arena, "camera keys", s->camera_keys, sizeof *to->camera_keys, 4);
     to->sdf_params =
         masu_arena_take(arena, "SDF parameters", s->sdf_params, sizeof *to->sdf_params, 4);
+    textures = masu_arena_take(arena, "textures", s->texture_arrays, sizeof *textures, 8);
+    if (r) {
+        for (uint32_t i = 0; i < s->texture_arrays; i++) textures[i] = plan->textures[i];
+    }
+    to->plan.textures = textures;
+    to->texture_sets =
+        masu_arena_take(arena, "texture sets", s->texture_sets, sizeof *to->texture_sets, 8);
     uint64_t before = plan->needs.velocity ? 1 : 0;
     to->previous = masu_arena_take(arena, "previous frame", before, sizeof *to->previous, 16);
     to->previous_instances = masu_arena_take(arena, "previous transforms", before * s->instances,
@@ -70,8 +78,10 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
 /* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys
  * them. */
 static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
+                             masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX],
                              masu_objects *objects, masu_detail *detail) {
     memset(objects, 0, sizeof *objects);
+    memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
     if (!desc) return masu_fail(detail, MASU_ERROR_ARGUMENT, "desc", 1, 0, "desc is NULL");
     if (desc->scene && !desc->scene->blob) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
@@ -120,8 +130,9 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
                          plan->cascades, plan->cascade_size, map.width, map.height,
                          limits->maxImageDimension2D);
     }
+    plan->textures = textures;
     result = masu_objects_create(vk, plan, objects, detail);
-    if (result) masu_objects_destroy(vk, objects);
+    if (result) masu_objects_destroy(vk, plan, objects);
     return result;
 }
 
@@ -129,13 +140,15 @@ static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,
                                    uint64_t *host_bytes, masu_detail *detail) {
     masu_vk vk;
     masu_objects objects;
-    masu_result result = make_plan(desc, &vk, plan, &objects, detail);
+    masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX];
+    masu_result result = make_plan(desc, &vk, plan, textures, &objects, detail);
     if (result) return result;
-    masu_objects_destroy(&vk, &objects);
+    masu_objects_destroy(&vk, plan, &objects);
     masu_arena arena;
     masu_arena_begin(&arena, NULL, 0);
     layout_host(&arena, plan, NULL);
     *host_bytes = arena.used;
+    plan->textures = NULL; /* they were on this stack */
     return check_host(plan, arena.used, detail);
 }
 
@@ -179,12 +192,13 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     masu_vk vk;
     masu_frame_plan plan;
     masu_objects objects;
+    masu_texture_plan textures[MASU_TEXTURE_ARRAYS_MAX];
     if (!block || (uintptr_t)block % MASU_ARENA_ALIGNMENT) {
         return masu_fail(detail, MASU_ERROR_MEMORY, "host block", MASU_ARENA_ALIGNMENT,
                          (uintptr_t)block, "host block is NULL or not %u-byte aligned",
                          MASU_ARENA_ALIGNMENT);
     }
-    masu_result result = make_plan(desc, &vk, &plan, &objects, detail);
+    masu_result result = make_plan(desc, &vk, &plan, textures, &objects, detail);
     if (result) return result;
     masu_arena arena;
     masu_renderer *m = NULL;
@@ -197,13 +211,14 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
                            (unsigned long long)arena.used, (unsigned long long)block_bytes);
     }
     if (result) {
-        masu_objects_destroy(&vk, &objects);
+        masu_objects_destroy(&vk, &plan, &objects);
         return result;
     }
     masu_arena_begin(&arena, block, block_bytes);
     layout_host(&arena, &plan, &m);
     m->cookie = MASU_RENDERER_COOKIE;
     m->vk = vk;
+    plan.textures = m->plan.textures; /* the walk has put them into the block */
     m->plan = plan;
     m->plan.desc.scene = plan.desc.scene ? &m->plan.scene : NULL;
     m->arena = arena;
@@ -266,9 +281,17 @@ void masu_destroy(masu_renderer *m) {
     }
     vk->DestroyDescriptorSetLayout(device, m->global_layout, vk->allocator);
     vk->DestroySampler(device, m->sampler, vk->allocator);
+    for (uint32_t i = 0; i < MASU_TEXTURED_COUNT; i++)
+        vk->DestroyPipeline(device, m->textured[i], vk->allocator);
+    vk->DestroyPipeline(device, m->masked_casters, vk->allocator);
+    vk->DestroyDescriptorSetLayout(device, m->texture_layout, vk->allocator);
+    for (uint32_t i = 0; i < MASU_SAMPLER_COUNT; i++)
+        vk->DestroySampler(device, m->samplers[i], vk->allocator);
+    for (uint32_t i = 0; i < m->plan.scene.texture_arrays; i++)
+        vk->DestroyImageView(device, m->plan.textures[i].view, vk->allocator);
     for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++)
         vk->DestroyImageView(device, m->views[i], vk->allocator);
-    masu_objects_destroy(vk, &m->objects);
+    masu_objects_destroy(vk, &m->plan, &m->objects);
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
         if (m->memory_owned[role])
             vk->FreeMemory(device, m->memory[role], vk->allocator); /* also unmaps */
@@ -398,6 +421,8 @@ void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
                             .sdf_params = s->sdf_params,
                             .shadow_cascades = m->plan.cascades,
                             .shadow_resolution = m->plan.cascade_size,
+                            .textures = s->textures,
+                            .texture_bytes = masu_scene_texture_bytes(&m->plan.desc),
                             .host_bytes = m->arena.used};
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++)
         out->device_bytes += m->plan.blocks[role].bytes;
@@ -438,6 +463,18 @@ static masu_memory_row device_row(const masu_frame_plan *plan, const char *kind,
                              .offset = offset};
 }
 
+static const char *texture_name(VkFormat format) {
+    switch (format) {
+    case VK_FORMAT_BC1_RGB_SRGB_BLOCK: return "textures BC1";
+    case VK_FORMAT_BC3_SRGB_BLOCK: return "textures BC3";
+    case VK_FORMAT_BC4_UNORM_BLOCK: return "textures BC4";
+    case VK_FORMAT_BC5_UNORM_BLOCK: return "textures BC5";
+    case VK_FORMAT_R8_UNORM: return "textures R8";
+    case VK_FORMAT_R8G8_UNORM: return "textures RG8";
+    default: return "textures RGBA8";
+    }
+}
+
 uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint32_t capacity) {
     uint32_t n = 0;
     for (uint32_t i = 0; i < m->arena.row_count; i++, n++) {
@@ -458,6 +495,13 @@ uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint3
                                  p->alignment, p->offset);
         }
         n++;
+    }
+    for (uint32_t i = 0; i < m->plan.scene.texture_arrays; i++, n++) {
+        const masu_texture_plan *t = &m->plan.textures[i];
+        if (n < capacity) {
+            rows[n] = device_row(&m->plan, "texture", texture_name(t->format), MASU_ROLE_DEVICE,
+                                 t->layers, t->bytes, t->alignment, t->offset);
+        }
     }
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         const masu_image_plan *p = &m->plan.images[i];

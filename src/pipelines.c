@@ -6,12 +6,18 @@
 #include "error.h"
 #include "shared/masu_shared.h"
 
+#include "cascade_frag.spv.h"
+#include "cascade_masked_vert.spv.h"
 #include "cascade_vert.spv.h"
 #include "compact_comp.spv.h"
 #include "cull_comp.spv.h"
 #include "easu_comp.spv.h"
 #include "fullscreen_vert.spv.h"
 #include "gbuffer_frag.spv.h"
+#include "gbuffer_textured_frag.spv.h"
+#include "gbuffer_textured_velocity_frag.spv.h"
+#include "gbuffer_textured_velocity_vert.spv.h"
+#include "gbuffer_textured_vert.spv.h"
 #include "gbuffer_velocity_frag.spv.h"
 #include "gbuffer_velocity_vert.spv.h"
 #include "gbuffer_vert.spv.h"
@@ -110,6 +116,30 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
     return MASU_OK;
 }
 
+static int draws_polygons(uint32_t pass) {
+    return pass == MASU_PASS_GBUFFER || masu_is_cascade(pass);
+}
+
+/* Set 2: the textures of a draw. */
+static masu_result make_texture_layout(masu_renderer *m, masu_detail *detail) {
+    if (!m->plan.scene.texture_arrays) return MASU_OK;
+    VkDescriptorSetLayoutBinding bindings[MASU_SLOT_COUNT];
+    for (uint32_t i = 0; i < MASU_SLOT_COUNT; i++) {
+        bindings[i] =
+            (VkDescriptorSetLayoutBinding){i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                                           VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
+    }
+    VkDescriptorSetLayoutCreateInfo info = {.sType =
+                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                            .bindingCount = MASU_SLOT_COUNT,
+                                            .pBindings = bindings};
+    VkResult r =
+        m->vk.CreateDescriptorSetLayout(m->vk.device, &info, m->vk.allocator, &m->texture_layout);
+    return MASU_FAILED(r, m->texture_layout)
+               ? masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout")
+               : MASU_OK;
+}
+
 /* Set 1: reads first, then writes, in the order of the row. Which images stand behind the bindings
  * may differ from rung to rung, their number and kind do not: the first rung that runs the pass
  * speaks for all. */
@@ -145,11 +175,12 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
                                                  &m->pass_layouts[pass]);
     if (MASU_FAILED(r, m->pass_layouts[pass]))
         return masu_fail_vulkan(detail, r, "vkCreateDescriptorSetLayout");
-    VkDescriptorSetLayout sets[] = {m->global_layout, m->pass_layouts[pass]};
+    VkDescriptorSetLayout sets[] = {m->global_layout, m->pass_layouts[pass], m->texture_layout};
     VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(struct masu_push)};
     if (!compute) push.stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                         .setLayoutCount = 2,
+                                         .setLayoutCount =
+                                             draws_polygons(pass) && m->texture_layout ? 3 : 2,
                                          .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
@@ -251,29 +282,36 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
                : MASU_OK;
 }
 
+/* textured: with texture coordinates; masked: with the discard of masks. */
 static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
-                                         const VkShaderModule modules[2]) {
+                                         const VkShaderModule modules[2], int textured,
+                                         VkBool32 masked, VkPipeline *out) {
     int cascade = masu_is_cascade(pass);                 /* no colour */
-    int polygons = pass == MASU_PASS_GBUFFER || cascade; /* else what the vertex shader makes up */
+    int polygons = draws_polygons(pass);                 /* else what the vertex shader makes up */
     int boxes = pass == MASU_PASS_OCCLUDERS;             /* no colour; else one triangle, no depth */
+    VkSpecializationMapEntry entry = {0, 0, sizeof masked};
+    VkSpecializationInfo special = {1, &entry, sizeof masked, &masked};
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
         stages[i] = (VkPipelineShaderStageCreateInfo){
             .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
-            .pName = "main"};
+            .pName = "main",
+            .pSpecializationInfo = textured && i ? &special : NULL};
     }
-    VkVertexInputBindingDescription binding = {0, sizeof(masu_blob_vertex),
-                                               VK_VERTEX_INPUT_RATE_VERTEX};
+    VkVertexInputBindingDescription bindings[] = {
+        {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},
+        {1, 2 * sizeof(float), VK_VERTEX_INPUT_RATE_VERTEX}};
     VkVertexInputAttributeDescription attributes[] = {
         {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(masu_blob_vertex, position)},
-        {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(masu_blob_vertex, normal)}};
+        {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(masu_blob_vertex, normal)},
+        {2, 1, VK_FORMAT_R32G32_SFLOAT, 0}};
     VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-        .vertexBindingDescriptionCount = polygons ? 1 : 0,
-        .pVertexBindingDescriptions = &binding,
-        .vertexAttributeDescriptionCount = polygons ? 2 : 0,
+        .vertexBindingDescriptionCount = textured ? 2 : polygons ? 1 : 0,
+        .pVertexBindingDescriptions = bindings,
+        .vertexAttributeDescriptionCount = textured ? 3 : polygons ? 2 : 0,
         .pVertexAttributeDescriptions = attributes};
     VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
@@ -315,7 +353,7 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
         .dynamicStateCount = 2,
         .pDynamicStates = dynamic};
     VkGraphicsPipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                         .stageCount = cascade ? 1 : 2,
+                                         .stageCount = modules[1] ? 2 : 1,
                                          .pStages = stages,
                                          .pVertexInputState = &input,
                                          .pInputAssemblyState = &assembly,
@@ -328,7 +366,56 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
                                          .layout = m->layouts[pass],
                                          .renderPass = m->render_passes[pass]};
     return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1, &info,
-                                         m->vk.allocator, &m->pipelines[pass]);
+                                         m->vk.allocator, out);
+}
+
+/* fragment.words NULL: depth alone. Times are added up per pass. */
+static masu_result make_pipeline(masu_renderer *m, uint32_t pass, spirv vertex, spirv fragment,
+                                 int textured, VkBool32 masked, VkPipeline *out,
+                                 masu_detail *detail) {
+    VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
+    masu_result result = make_module(m, vertex, &modules[0], detail);
+    if (!result && fragment.words) result = make_module(m, fragment, &modules[1], detail);
+    if (!result) {
+        uint64_t start = now(m);
+        VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, out);
+        m->pipeline_ns[pass] += now(m) - start;
+        if (MASU_FAILED(r, *out)) result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
+    }
+    for (uint32_t i = 0; i < 2; i++)
+        m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);
+    return result;
+}
+
+static masu_result make_textured(masu_renderer *m, masu_detail *detail) {
+    spirv vertex = {masu_spv_gbuffer_textured_vert, sizeof masu_spv_gbuffer_textured_vert};
+    spirv fragment = {masu_spv_gbuffer_textured_frag, sizeof masu_spv_gbuffer_textured_frag};
+    if (m->plan.needs.velocity) {
+        vertex = (spirv){masu_spv_gbuffer_textured_velocity_vert,
+                         sizeof masu_spv_gbuffer_textured_velocity_vert};
+        fragment = (spirv){masu_spv_gbuffer_textured_velocity_frag,
+                           sizeof masu_spv_gbuffer_textured_velocity_frag};
+    }
+    masu_result result = MASU_OK;
+    for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
+        if (i == MASU_TEXTURED_MASK && !m->plan.scene.masks) continue;
+        result = make_pipeline(m, MASU_PASS_GBUFFER, vertex, fragment, 1, i == MASU_TEXTURED_MASK,
+                               &m->textured[i], detail);
+        masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->textured[i]),
+                  i == MASU_TEXTURED_MASK ? "gbuffer, masks" : "gbuffer, textured");
+    }
+    return result;
+}
+
+/* Through the holes of a mask the sun shines. */
+static masu_result make_masked_casters(masu_renderer *m, masu_detail *detail) {
+    spirv vertex = {masu_spv_cascade_masked_vert, sizeof masu_spv_cascade_masked_vert};
+    spirv fragment = {masu_spv_cascade_frag, sizeof masu_spv_cascade_frag};
+    if (!m->plan.scene.masks) return MASU_OK;
+    masu_result result = make_pipeline(m, MASU_PASS_CASCADE_0, vertex, fragment, 1, VK_TRUE,
+                                       &m->masked_casters, detail);
+    masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_casters), "cascades, masks");
+    return result;
 }
 
 static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *detail) {
@@ -349,24 +436,45 @@ static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *d
         fragment = (spirv){masu_spv_occluders_frag, sizeof masu_spv_occluders_frag};
     } else if (cascade) {
         vertex = (spirv){masu_spv_cascade_vert, sizeof masu_spv_cascade_vert};
+        fragment = (spirv){NULL, 0};
     } else if (!polygons) {
         vertex = (spirv){masu_spv_fullscreen_vert, sizeof masu_spv_fullscreen_vert};
         fragment = scene_code(m, pass);
     }
-    VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    result = make_module(m, vertex, &modules[0], detail);
-    if (!result && !cascade) result = make_module(m, fragment, &modules[1], detail);
-    if (!result) {
-        uint64_t start = now(m);
-        VkResult r = create_graphics_pipeline(m, pass, modules);
-        m->pipeline_ns[pass] = now(m) - start;
-        if (MASU_FAILED(r, m->pipelines[pass])) {
-            result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
-        }
-    }
-    for (uint32_t i = 0; i < 2; i++)
-        m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);
+    result = make_pipeline(m, pass, vertex, fragment, 0, VK_FALSE, &m->pipelines[pass], detail);
+    if (!result && polygons && m->texture_layout) result = make_textured(m, detail);
+    if (!result && cascade && m->texture_layout) result = make_masked_casters(m, detail);
     return result;
+}
+
+/* Those that the scene's texture sets ask for: trilinear, and along the longer axis of a pixel's
+ * footprint where the device was created for it. */
+static masu_result make_samplers(masu_renderer *m, masu_detail *detail) {
+    static const VkSamplerAddressMode modes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                                 VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                                 VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
+    if (!m->plan.scene.texture_sets) return MASU_OK;
+    masu_scene_view v = masu_scene_look(&m->plan.scene);
+    float most = m->vk.properties.limits.maxSamplerAnisotropy;
+    float anisotropy = m->plan.desc.vulkan.max_anisotropy;
+    for (uint32_t i = 0; i < m->plan.scene.texture_sets; i++) {
+        const uint32_t *wrap = v.texture_sets[i].wrap;
+        VkSampler *sampler = &m->samplers[wrap[0] + 3 * wrap[1]];
+        if (*sampler) continue;
+        VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                    .magFilter = VK_FILTER_LINEAR,
+                                    .minFilter = VK_FILTER_LINEAR,
+                                    .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                    .addressModeU = modes[wrap[0]],
+                                    .addressModeV = modes[wrap[1]],
+                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                    .anisotropyEnable = anisotropy > 1.0f,
+                                    .maxAnisotropy = anisotropy < most ? anisotropy : most,
+                                    .maxLod = VK_LOD_CLAMP_NONE};
+        VkResult r = m->vk.CreateSampler(m->vk.device, &info, m->vk.allocator, sampler);
+        if (MASU_FAILED(r, *sampler)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
+    }
+    return MASU_OK;
 }
 
 masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
@@ -379,6 +487,8 @@ masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
     VkResult r = m->vk.CreateSampler(m->vk.device, &nearest, m->vk.allocator, &m->sampler);
     if (MASU_FAILED(r, m->sampler)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
     masu_result result = make_global_layout(m, detail);
+    if (!result) result = make_texture_layout(m, detail);
+    if (!result) result = make_samplers(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
         if (masu_passes[p].kind == MASU_PASS_TRANSFER) continue;
         result = make_pass_layout(m, p, detail);

@@ -175,6 +175,12 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
             return bad_range(detail, "source.height", d->source.height, 1, 16384);
         }
     }
+    if (d->vulkan.max_anisotropy != 0.0f &&
+        !(d->vulkan.max_anisotropy >= 1.0f && d->vulkan.max_anisotropy <= 64.0f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "vulkan.max_anisotropy", 1, 0,
+                         "vulkan.max_anisotropy is %g, allowed are 0 and 1 to 64",
+                         (double)d->vulkan.max_anisotropy);
+    }
     if (d->readback & ~(uint32_t)MASU_READBACK_ALL) {
         return bad_range(detail, "readback", d->readback, 0, MASU_READBACK_ALL);
     }
@@ -198,6 +204,15 @@ static void most_shadow(const masu_desc *d, uint32_t *cascades, uint32_t *size) 
     }
 }
 
+static int takes_blocks(const masu_desc *d) {
+    return d->vulkan.texture_compression_bc && !d->deny.compressed_textures;
+}
+
+uint64_t masu_scene_texture_bytes(const masu_desc *d) {
+    if (!d->scene) return 0;
+    return takes_blocks(d) ? d->scene->texture_bytes : d->scene->texture_bytes_decoded;
+}
+
 static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
     const masu_scene *s = d->scene;
     uint32_t cascades, cascade_size;
@@ -212,7 +227,9 @@ static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
                 {"limits.instances", d->limits.instances, s->instances},
                 {"limits.sdf_params", d->limits.sdf_params, s->sdf_params},
                 {"limits.shadow_cascades", d->limits.shadow_cascades, cascades},
-                {"limits.shadow_resolution", d->limits.shadow_resolution, cascade_size}};
+                {"limits.shadow_resolution", d->limits.shadow_resolution, cascade_size},
+                {"limits.textures", d->limits.textures, s->textures},
+                {"limits.texture_bytes", d->limits.texture_bytes, masu_scene_texture_bytes(d)}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (rows[i].limit && rows[i].needed > rows[i].limit) {
             return masu_fail(detail, MASU_ERROR_LIMIT, rows[i].name, rows[i].needed, rows[i].limit,
@@ -503,6 +520,11 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                                                 .usage = VK_BUFFER_USAGE_INDEX_BUFFER_BIT | dst,
                                                 .count = s ? s->indices : 0};
     b[MASU_BUFFER_INDICES].bytes = b[MASU_BUFFER_INDICES].count * sizeof(uint32_t);
+    b[MASU_BUFFER_TEXCOORDS] =
+        (masu_buffer_plan){.name = "texture coordinates",
+                           .usage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | dst,
+                           .count = s && s->texture_arrays ? s->vertices : 0};
+    b[MASU_BUFFER_TEXCOORDS].bytes = b[MASU_BUFFER_TEXCOORDS].count * 2 * sizeof(float);
     b[MASU_BUFFER_MATERIALS] = (masu_buffer_plan){
         .name = "materials", .usage = storage | dst, .count = s ? s->materials : 0};
     b[MASU_BUFFER_MATERIALS].bytes =
@@ -564,6 +586,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades)
             d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
         if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
+        plan->compressed = takes_blocks(d);
     } else {
         d->readback = 0; /* the images that could be asked for are the scene's */
     }

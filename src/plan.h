@@ -36,6 +36,7 @@ typedef struct masu_rung_plan {
 typedef enum masu_buffer_id {
     MASU_BUFFER_VERTICES,
     MASU_BUFFER_INDICES,
+    MASU_BUFFER_TEXCOORDS, /* of scenes with textures */
     MASU_BUFFER_MATERIALS,
     MASU_BUFFER_COUNTERS,
     MASU_BUFFER_SLOTS,     /* of the SDF: its parts as data */
@@ -87,6 +88,17 @@ typedef struct masu_drawn_plan {
     uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, words;
 } masu_drawn_plan;
 
+/* An array of textures on the device. Plans have as many as their scene, in the host block; while
+ * only asked for, on the stack. */
+typedef struct masu_texture_plan {
+    VkImage image;
+    VkImageView view;
+    VkFormat format;
+    uint64_t bytes, alignment, offset; /* in the device role's block */
+    uint32_t type_bits;
+    uint32_t layers;
+} masu_texture_plan;
+
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
     masu_scene scene;
@@ -96,7 +108,10 @@ typedef struct masu_frame_plan {
     masu_image_plan images[MASU_IMAGE_COUNT];
     masu_buffer_plan buffers[MASU_BUFFER_COUNT];
     masu_block_plan blocks[MASU_ROLE_COUNT];
+    masu_texture_plan *textures; /* scene.texture_arrays of them */
+    int compressed;              /* textures stay blocks on the device */
     int unified;
+    int staged; /* the host cannot write resident buffers: they go through the staging buffer */
     uint64_t transient_offset; /* of the transient region in the device role's block */
     uint64_t transient_unaliased, transient_aliased, transient_lower_bound;
     /* Within one readback slot: counters first, then timestamps, then images in the bit order of
@@ -126,6 +141,8 @@ int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t ca
 /* Size of an image or of a pass of a rung. */
 VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
                             VkExtent2D render);
+/* Bytes of the scene's texels as this description has them on the device. */
+uint64_t masu_scene_texture_bytes(const masu_desc *desc);
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);

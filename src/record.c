@@ -16,6 +16,7 @@
 #include "error.h"
 #include "shared/masu_shared.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- Use of an image ------------------------------------------------------------------------- */
@@ -239,56 +240,89 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
+/* How a material is drawn: 0 without textures, then as renderer.h counts. The sun asks for no maps but
+ * the masks. */
+static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
+    if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
+    if (material->flags & MASU_MATERIAL_IS_MASK) return 1 + MASU_TEXTURED_MASK;
+    return view ? 0 : 1 + MASU_TEXTURED_OPAQUE;
+}
+
+/* A material's flags and layers into the push constants, and its textures bound where they are not
+ * those of the draw before. index[0] is the pass's, index[1] the batch's. */
+static void bind_maps(recorder *rec, VkPipelineLayout layout, const masu_blob_material *material,
+                      struct masu_push *push, uint32_t *bound) {
+    push->index[2] = material->flags;
+    push->index[3] = material->layers;
+    if (*bound == material->texture_set) return;
+    *bound = material->texture_set;
+    rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
+                                     MASU_SET_TEXTURES, 1, &rec->m->texture_sets[*bound], 0, NULL);
+}
+
 /* One draw per primitive of each placed mesh, for one view; instances of one mesh are neighbours, so one
- * draw serves them all. visible.c says which. index.y of the push constants: where the draw's list
- * begins; index.x: its material, of the camera. */
-static void record_polygons(recorder *rec, uint32_t pass, uint32_t view, struct masu_push *push) {
+ * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
+ * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
+ * that most of what they would hide or shade in vain is known already. */
+static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct masu_push push) {
     const masu_renderer *m = rec->m;
     const masu_vk *vk = &m->vk;
     masu_scene_view v = masu_scene_look(m->plan.desc.scene);
-    uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
-    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[objects]);
+    int sun = masu_is_cascade(pass);
+    uint32_t bound = MASU_BLOB_NONE, view = sun ? 1 + pass - MASU_PASS_CASCADE_0 : 0;
+    VkPipeline pipeline = !sweep ? m->pipelines[sun ? MASU_PASS_CASCADE_0 : pass]
+                          : sun  ? m->masked_casters
+                                 : m->textured[sweep - 1];
+    if (!pipeline || (sun && sweep == 1 + MASU_TEXTURED_OPAQUE)) return; /* nothing is drawn so */
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
                               &m->global_sets[rec->flight], 0, NULL);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
+    if (sweep)
+        vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     int occlusion = (int)(rec->rp->active >> MASU_PASS_CULL & 1u);
     uint32_t lists = view * m->plan.scene.instances;
     if (occlusion) lists += (uint32_t)m->plan.drawn.lists;
-    VkDeviceSize at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                      MASU_DRAWS_OF(&m->plan, view, occlusion);
+    VkDeviceSize commands = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
+                            MASU_DRAWS_OF(&m->plan, view, occlusion);
     for (uint32_t b = 0; b < m->batch_count; b++) {
         const masu_batch *batch = &m->batches[b];
-        push->index[1] = lists + batch->first_instance;
+        push.index[1] = lists + batch->first_instance;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
-            if (!view) push->index[0] = v.primitives[batch->first_primitive + d].material;
-            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof *push, push);
-            vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at, 1,
-                                       MASU_DRAW_BYTES);
-            at += MASU_DRAW_BYTES;
+            uint32_t number = v.primitives[batch->first_primitive + d].material;
+            if (sweep_of(&v.materials[number], view) != sweep) continue;
+            if (!sun) push.index[0] = number;
+            if (sweep) bind_maps(rec, layout, &v.materials[number], &push, &bound);
+            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+            vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
+                                       commands + (VkDeviceSize)MASU_DRAW_BYTES *
+                                                      (batch->first_draw + d),
+                                       1, MASU_DRAW_BYTES);
         }
     }
 }
 
-static void record_draws(recorder *rec) {
+/* index[0] of the push constants: a draw's material, of a cascade its number. */
+static void record_polygons(recorder *rec, uint32_t pass) {
     struct masu_push push;
     memset(&push, 0, sizeof push);
     push.output_width = push.render_width = rec->rp->render_width;
     push.output_height = push.render_height = rec->rp->render_height;
-    record_polygons(rec, MASU_PASS_GBUFFER, 0, &push);
+    if (masu_is_cascade(pass)) {
+        push.index[0] = pass - MASU_PASS_CASCADE_0;
+    } else { /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what
+              * EASU gets blurred it cannot bring back. */
+        push.param[0] = log2f(rec->m->plan.desc.rungs[rec->rung].scale);
+    }
+    uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
+    for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep, push);
 }
 
-/* index.x: the cascade. */
-static void record_casters(recorder *rec, uint32_t pass) {
-    struct masu_push push;
-    memset(&push, 0, sizeof push);
-    push.index[0] = pass - MASU_PASS_CASCADE_0;
-    record_polygons(rec, pass, 1 + push.index[0], &push);
-}
-
+/* Each part of the atlas has its own. */
 static void record_occluders(recorder *rec) {
     const masu_renderer *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
@@ -353,9 +387,8 @@ static void record_graphics(recorder *rec, uint32_t pass) {
     if (rec->m->pipelines[objects]) { /* else it only clears */
         vk->CmdSetViewport(rec->cmd, 0, 1, &viewport);
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
-        if (pass == MASU_PASS_GBUFFER) record_draws(rec);
+        if (pass == MASU_PASS_GBUFFER || masu_is_cascade(pass)) record_polygons(rec, pass);
         if (pass == MASU_PASS_OCCLUDERS) record_occluders(rec);
-        if (masu_is_cascade(pass)) record_casters(rec, pass);
         if (pass == MASU_PASS_MARCH_FRAGMENT) record_fullscreen(rec, pass);
     }
     vk->CmdEndRenderPass(rec->cmd);
@@ -551,10 +584,11 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3 * flights},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 9 * flights},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, MASU_PASS_ACCESSES * sets},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+         MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan.scene.texture_sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = flights + sets,
+                                       .maxSets = flights + sets + m->plan.scene.texture_sets,
                                        .poolSizeCount = sizeof sizes / sizeof *sizes,
                                        .pPoolSizes = sizes};
     VkResult r =
@@ -623,6 +657,37 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
     return MASU_OK;
 }
 
+/* A slot without a texture gets one of the others: the shader does not look at it, but a set must be
+ * whole. */
+static masu_result make_texture_sets(masu_renderer *m, masu_detail *detail) {
+    masu_scene_view v = {0};
+    if (m->plan.scene.texture_sets) v = masu_scene_look(&m->plan.scene);
+    for (uint32_t i = 0; i < m->plan.scene.texture_sets; i++) {
+        const masu_blob_texture_set *from = &v.texture_sets[i];
+        masu_result result = allocate_set(m, m->texture_layout, &m->texture_sets[i], detail);
+        if (result) return result;
+        uint32_t any = 0;
+        while (from->texture[any] == MASU_BLOB_NONE) any++;
+        for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
+            uint32_t given = from->texture[slot];
+            if (given == MASU_BLOB_NONE) given = from->texture[any];
+            VkDescriptorImageInfo image = {.sampler =
+                                               m->samplers[from->wrap[0] + 3 * from->wrap[1]],
+                                           .imageView = m->plan.textures[given].view,
+                                           .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                          .dstSet = m->texture_sets[i],
+                                          .dstBinding = slot,
+                                          .descriptorCount = 1,
+                                          .descriptorType =
+                                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                          .pImageInfo = &image};
+            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+        }
+    }
+    return MASU_OK;
+}
+
 static int writes_target(const masu_rung_plan *rp, uint32_t pass) {
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         if (rp->access[pass][a].image == MASU_IMAGE_TARGET) return 1;
@@ -678,15 +743,61 @@ static masu_result make_pass_sets(masu_renderer *m, const masu_rung_plan *rp, ui
 
 /* ---- All recordings -------------------------------------------------------------------------- */
 
-static masu_result record_load(masu_renderer *m, uint32_t index, masu_detail *detail) {
-    masu_chunk chunk = masu_load_chunk(&m->plan, index);
+/* All of a texture to the layout that copies need, or from there to that of shaders. */
+static void move_texture(masu_renderer *m, VkCommandBuffer cmd, VkImage image, int to_shader) {
+    VkImageMemoryBarrier b = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+        .srcAccessMask = to_shader ? VK_ACCESS_TRANSFER_WRITE_BIT : 0,
+        .dstAccessMask = to_shader ? VK_ACCESS_SHADER_READ_BIT : VK_ACCESS_TRANSFER_WRITE_BIT,
+        .oldLayout = to_shader ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED,
+        .newLayout = to_shader ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+                               : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = image,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                             VK_REMAINING_ARRAY_LAYERS}};
+    m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             to_shader ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
+                                       : VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             0, 0, NULL, 0, NULL, 1, &b);
+}
+
+/* One chunk of textures from `next` on. Rows of one texture that two chunks copy do not overlap:
+ * they need no barrier between them. */
+static void record_textures(masu_renderer *m, VkCommandBuffer cmd, masu_texture_cursor *next) {
+    masu_scene_view v = masu_scene_look(&m->plan.scene);
+    masu_texture_region r;
+    uint64_t used = 0, room = m->plan.buffers[MASU_BUFFER_STAGING].bytes;
+    while (masu_texture_next(v.textures, m->plan.scene.texture_arrays, m->plan.compressed, room,
+                             next, &used, &r)) {
+        VkImage image = m->plan.textures[r.texture].image;
+        if (r.first) move_texture(m, cmd, image, 0);
+        VkBufferImageCopy copy = {
+            .bufferOffset = r.offset,
+            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, r.mip, r.layer, 1},
+            .imageOffset = {0, (int32_t)r.y, 0},
+            .imageExtent = {r.width, r.height, 1}};
+        m->vk.CmdCopyBufferToImage(cmd, m->objects.buffers[MASU_BUFFER_STAGING], image,
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+        if (r.last) move_texture(m, cmd, image, 1);
+    }
+}
+
+static masu_result record_load(masu_renderer *m, uint32_t index, masu_texture_cursor *next,
+                               masu_detail *detail) {
     VkCommandBuffer cmd = m->loads[index];
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
-    VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
-    m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING],
-                        m->objects.buffers[chunk.buffer], 1, &copy);
+    if (index < masu_buffer_chunks(&m->plan)) {
+        masu_chunk chunk = masu_load_chunk(&m->plan, index);
+        VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
+        m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING],
+                            m->objects.buffers[chunk.buffer], 1, &copy);
+    } else {
+        record_textures(m, cmd, next);
+    }
     r = m->vk.EndCommandBuffer(cmd);
     return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
 }
@@ -721,6 +832,7 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail) {
     uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan.recordings;
     masu_result result = make_pool(m, detail);
     if (!result) result = make_global_sets(m, detail);
+    if (!result) result = make_texture_sets(m, detail);
     if (!result) result = make_queries(m, detail);
     if (!result) result = make_command_buffers(m, d->frames_in_flight * recordings, detail);
     uint32_t next = 0;
@@ -743,6 +855,8 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail) {
             rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }
     }
-    for (uint32_t i = 0; i < m->load_count && !result; i++) result = record_load(m, i, detail);
+    masu_texture_cursor texture = {0};
+    for (uint32_t i = 0; i < m->load_count && !result; i++)
+        result = record_load(m, i, &texture, detail);
     return result;
 }

@@ -24,7 +24,13 @@
 #include "plan.h"
 #include "scene.h"
 #include "shadow.h"
+#include "texture.h"
 #include "vk.h"
+
+/* The ways to draw polygons with textures; those without have the pass's own pipeline. Masks have
+ * theirs, so that only they lose the early depth test. */
+enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
+#define MASU_SAMPLER_COUNT 9u
 
 #define MASU_RENDERER_COOKIE 0x4D415355u
 
@@ -73,12 +79,16 @@ struct masu_renderer {
      * pipeline. */
     VkRenderPass render_passes[MASU_PASS_COUNT];
     VkFramebuffer framebuffers[MASU_PASS_COUNT];
+    VkDescriptorSetLayout texture_layout; /* null without textures, as are the next three */
+    VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters;
+    VkSampler samplers[MASU_SAMPLER_COUNT]; /* wrap of u + 3 * wrap of v; those that sets ask for */
     uint64_t pipeline_ns[MASU_PASS_COUNT];
 
     /* record.c */
     VkDescriptorPool descriptor_pool;
     VkDescriptorSet global_sets[MASU_MAX_FLIGHT];
     VkDescriptorSet *pass_sets; /* plan.pass_sets of them, in the order record.c walks */
+    VkDescriptorSet *texture_sets; /* one per texture set of the scene */
     VkCommandPool command_pool;
     VkCommandBuffer *frames; /* [flight][rung][target][variant]; plan.recordings of each flight */
     VkCommandBuffer *loads;  /* one per staging chunk */
@@ -86,6 +96,7 @@ struct masu_renderer {
 
     /* upload.c */
     uint32_t load_count, load_next; /* chunks in all, chunks handed out */
+    masu_texture_cursor texture_next; /* first texel row of the next chunk */
     int loaded;
     struct masu_instance_data *instances; /* the host's truth, copied to a slot when dirty */
     /* The frame before, of no length where nothing reads velocities. It is kept here and not on the device,
@@ -135,8 +146,10 @@ masu_result masu_make_views(masu_renderer *m, masu_detail *detail);
 masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail);
 masu_result masu_record(masu_renderer *m, masu_detail *detail);
 
-/* How many staging chunks the scene needs; 0 where resident memory is host-visible. */
+/* How many staging chunks the scene needs: those of resident buffers, none where the host can write
+ * them, then those of textures. */
 uint32_t masu_load_chunks(const masu_frame_plan *plan);
+uint32_t masu_buffer_chunks(const masu_frame_plan *plan);
 /* One chunk: `bytes` of `buffer` from `offset`. */
 typedef struct masu_chunk {
     masu_buffer_id buffer;

@@ -28,6 +28,10 @@ typedef struct masu_scene_view {
     const masu_blob_sdf_param *sdf_params;
     const float *slots;
     uint64_t slot_count;
+    const float *texcoords;
+    const masu_blob_texture *textures;
+    const masu_blob_texture_set *texture_sets;
+    const unsigned char *texels;
     struct {
         const uint32_t *words; /* NULL: none */
         uint64_t count;

@@ -12,18 +12,26 @@
 /* ---- Scene ----------------------------------------------------------------------------------- */
 
 static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDICES,
-                                          MASU_BUFFER_MATERIALS,
+                                          MASU_BUFFER_TEXCOORDS, MASU_BUFFER_MATERIALS,
                                           MASU_BUFFER_SLOTS};
 
 #define RESIDENT_COUNT (sizeof resident / sizeof *resident)
 
-uint32_t masu_load_chunks(const masu_frame_plan *plan) {
+uint32_t masu_buffer_chunks(const masu_frame_plan *plan) {
     uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
     uint32_t chunks = 0;
-    for (size_t i = 0; i < RESIDENT_COUNT && step; i++) {
+    for (size_t i = 0; i < RESIDENT_COUNT && plan->staged; i++) {
         chunks += (uint32_t)((plan->buffers[resident[i]].bytes + step - 1) / step);
     }
     return chunks;
+}
+
+uint32_t masu_load_chunks(const masu_frame_plan *plan) {
+    uint32_t chunks = masu_buffer_chunks(plan);
+    if (!plan->scene.texture_arrays) return chunks;
+    masu_scene_view v = masu_scene_look(&plan->scene);
+    return chunks + masu_texture_chunks(v.textures, plan->scene.texture_arrays, plan->compressed,
+                                        plan->buffers[MASU_BUFFER_STAGING].bytes);
 }
 
 masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
@@ -52,6 +60,8 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
         memcpy(to, (const unsigned char *)v->vertices + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_INDICES) {
         memcpy(to, (const unsigned char *)v->indices + chunk.offset, (size_t)chunk.bytes);
+    } else if (chunk.buffer == MASU_BUFFER_TEXCOORDS) {
+        memcpy(to, (const unsigned char *)v->texcoords + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_SLOTS) {
         /* The buffer may hold two sets; both begin as the blob has them. */
         uint64_t size = v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
@@ -74,23 +84,37 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
     }
 }
 
+static void write_textures(masu_renderer *m, const masu_scene_view *v, unsigned char *to) {
+    uint64_t used = 0, room = m->plan.buffers[MASU_BUFFER_STAGING].bytes;
+    masu_texture_region region;
+    while (masu_texture_next(v->textures, m->plan.scene.texture_arrays, m->plan.compressed, room,
+                             &m->texture_next, &used, &region)) {
+        masu_texture_write(&v->textures[region.texture], v->texels, m->plan.compressed, &region,
+                           to);
+    }
+}
+
 masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     if (!m || !commands) return MASU_ERROR_ARGUMENT;
     memset(commands, 0, sizeof *commands);
     if (m->loaded) return MASU_OK;
-    if (m->load_next < m->load_count) {
-        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
-        masu_chunk chunk = masu_load_chunk(&m->plan, m->load_next);
-        write_resident(&v, chunk, masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0));
-        commands->buffer = m->loads[m->load_next++];
-        return MASU_INCOMPLETE;
-    }
-    if (!m->load_count && m->plan.desc.scene) {
+    if (!m->load_next && !m->plan.staged && m->plan.desc.scene) {
         masu_scene_view v = masu_scene_look(m->plan.desc.scene);
         for (size_t i = 0; i < RESIDENT_COUNT; i++) {
             masu_chunk all = {resident[i], 0, m->plan.buffers[resident[i]].bytes};
             if (all.bytes) write_resident(&v, all, masu_buffer_pointer(m, resident[i], 0));
         }
+    }
+    if (m->load_next < m->load_count) {
+        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+        unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0);
+        if (m->load_next < masu_buffer_chunks(&m->plan)) {
+            write_resident(&v, masu_load_chunk(&m->plan, m->load_next), to);
+        } else {
+            write_textures(m, &v, to);
+        }
+        commands->buffer = m->loads[m->load_next++];
+        return MASU_INCOMPLETE;
     }
     if (m->plan.desc.scene) {
         masu_scene_view v = masu_scene_look(m->plan.desc.scene);

@@ -29,6 +29,7 @@
     X(CmdBindVertexBuffers)                                                                        \
     X(CmdBlitImage)                                                                                \
     X(CmdCopyBuffer)                                                                               \
+    X(CmdCopyBufferToImage)                                                                        \
     X(CmdCopyImageToBuffer)                                                                        \
     X(CmdCopyQueryPoolResults)                                                                     \
     X(CmdDispatch)                                                                                 \

@@ -62,19 +62,25 @@ $(BUILD)/tests/gpu/test_stiff: | $(STIFF) $(STIFF:.masu=.truth.so)
 
 # A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
 # one.
-FUZZ_SEEDS_scene := $(BUILD)/tests/fuzz/scene.masu
+FUZZ_SEEDS_scene := $(BUILD)/tests/fuzz/scene.masu $(BUILD)/tests/fuzz/textures.masu
 FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(call objects,tests/fuzz/seed_scene.c tests/unit/support_blob.c)
 	$(link)
 $(BUILD)/tests/fuzz/scene.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 31
+$(BUILD)/tests/fuzz/textures.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 33
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 
 # Every feature in a few lines, and a scene.
 FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf
 $(BUILD)/tests/fuzz/fuzz_sdfc $(BUILD)/tests/unit/test_sdfc: $(SDFC_OBJECTS)
 fuzz-sdfc: $(SDFC_OBJECTS)
+
+# What masu-bake makes of texels.
+$(BUILD)/tests/unit/test_texels: $(call objects,tools/bake_texel.c)
+
 
 FUZZ      ?= scene
 FUZZ_TIME ?= 60

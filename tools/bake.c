@@ -5,6 +5,7 @@
  *   bake_mesh.c, bake_shape.c                 triangles, given or made
  *   bake_content.c, bake_check.c              the scene being put together
  *   bake_groups.c, bake_occluders.c           what is culled together, and what hides it
+ *   bake_image.c, bake_texel.c, bake_texture.c   pictures to texels, mips, blocks
  *   bake_sdf.c                                the scene's march shader, by the shader tools
  *   bake_blob.c, bake_file.c                  bytes, and files that are written whole
  *
@@ -15,6 +16,7 @@
 #include "bake_occluders.h"
 #include "bake_process.h"
 #include "bake_scene.h"
+#include "bake_texture.h"
 #include "cli.h"
 #include "masu.h"
 
@@ -29,7 +31,14 @@
 
 #define ASSIMP_MODELS "/usr/share/assimp/models"
 
-enum { OPTION_OUTPUT = 1, OPTION_STATS, OPTION_MODELS, OPTION_VARIANTS };
+enum {
+    OPTION_OUTPUT = 1,
+    OPTION_STATS,
+    OPTION_MODELS,
+    OPTION_VARIANTS,
+    OPTION_NO_TEXTURES,
+    OPTION_TEXTURE_PATH
+};
 
 typedef struct totals {
     uint64_t triangles;       /* stored */
@@ -104,6 +113,14 @@ static void print_summary(const char *path, const masu_bake_content *content, si
            (unsigned long long)masu_bake_count(content, MASU_BLOB_MATERIALS));
     size_t spirv = content->section[MASU_BLOB_MARCH_SPIRV].bytes;
     if (spirv) printf(", %zu bytes of SPIR-V", spirv);
+    uint64_t textures = 0;
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_TEXTURES); i++) {
+        textures += MASU_BAKE_ARRAY(content, MASU_BLOB_TEXTURES, masu_blob_texture)[i].layers;
+    }
+    if (textures) {
+        printf(", %llu textures (%zu bytes)", (unsigned long long)textures,
+               content->section[MASU_BLOB_TEXELS].bytes);
+    }
     putchar('\n');
 }
 
@@ -126,9 +143,12 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
     bool good = is_scene(request->input) ? masu_bake_read_scene(request, content)
                                          : masu_bake_bare_model(request, content);
     if (!good) return false;
+    good = masu_bake_make_textures(content, request->texture_path);
+    if (!good) return false;
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
     masu_bake_sort_occluders(content);
+    masu_bake_drop_occluders(content);
     masu_bake_buffer blob = {0};
     masu_bake_make_blob(content, &blob);
     masu_cli_progress("writing %s", output);
@@ -148,6 +168,8 @@ static int run(masu_cli *cli) {
         case OPTION_OUTPUT: output = cli->value; break;
         case OPTION_STATS: stats = cli->value; break;
         case OPTION_MODELS: request.models_directory = cli->value; break;
+        case OPTION_TEXTURE_PATH: request.texture_path = cli->value; break;
+        case OPTION_NO_TEXTURES: request.textures = MASU_BAKE_TEXTURES_OFF; break;
         case OPTION_VARIANTS: request.variants = true; break;
         case MASU_CLI_ARGUMENT:
             if (request.input) return masu_cli_usage_error("more than one input: %s", cli->value);
@@ -172,6 +194,10 @@ int main(int argc, char **argv) {
          'o'},
         {"variants", NULL, "add the other ways to march the SDF, for masu march-bench",
          OPTION_VARIANTS, 0},
+        {"no-textures", NULL, "leave textures out; the materials' factors stay", OPTION_NO_TEXTURES,
+         0},
+        {"texture-path", "DIR:...", "where to look for textures that are not where models say",
+         OPTION_TEXTURE_PATH, 0},
         {"stats", "FILE", "write counts, bytes and bounds as JSON", OPTION_STATS, 0},
         {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
          OPTION_MODELS, 0},

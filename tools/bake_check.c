@@ -106,6 +106,50 @@ static const char *check_instances(const masu_bake_content *c) {
     return NULL;
 }
 
+/* Pictures and maps. They are no part of the blob, so nobody else looks at them. */
+static const char *check_maps(const masu_bake_content *c) {
+    uint64_t materials = masu_bake_count(c, MASU_BLOB_MATERIALS);
+    size_t images = c->images.bytes / sizeof(masu_bake_image);
+    if (c->maps.bytes != materials * sizeof(masu_bake_maps) ||
+        c->images.bytes != images * sizeof(masu_bake_image)) {
+        return "maps of other materials";
+    }
+    if (c->image_text.bytes && c->image_text.data[c->image_text.bytes - 1] != 0) {
+        return "picture names that do not end";
+    }
+    for (size_t i = 0; i < images; i++) {
+        const masu_bake_image *image = &MASU_BAKE_IMAGES(c)[i];
+        if (image->name >= c->image_text.bytes || image->data > c->image_data.bytes ||
+            image->data_bytes > c->image_data.bytes - image->data) {
+            return "a picture out of range";
+        }
+        if ((uint64_t)image->raw_width * image->raw_height > image->data_bytes / 4) {
+            return "a picture of too few texels";
+        }
+    }
+    for (uint64_t i = 0; i < materials; i++) {
+        const masu_bake_maps *m = &MASU_BAKE_MAPS_OF(c)[i];
+        for (int k = 0; k < MASU_BAKE_MAPS; k++) {
+            if ((m->image[k] != MASU_BLOB_NONE && m->image[k] >= images) || m->channel[k] > 3) {
+                return "a map of no picture";
+            }
+        }
+        if (m->gloss > 1 || m->alpha > MASU_BAKE_ALPHA_BLEND || m->wrap[0] > 2 || m->wrap[1] > 2 ||
+            !in_range(&m->cutoff, 1, 0, 1) || !in_range(&m->normal_scale, 1, -16, 16)) {
+            return "a map out of range";
+        }
+    }
+    if (masu_bake_count(c, MASU_BLOB_TEXCOORDS) != masu_bake_count(c, MASU_BLOB_VERTICES)) {
+        return "not as many texture coordinates as vertices";
+    }
+    const float *texcoords = MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS, const float);
+    if (!in_range(texcoords, (size_t)(2 * masu_bake_count(c, MASU_BLOB_TEXCOORDS)),
+                  -MASU_TEXCOORD_MAX, MASU_TEXCOORD_MAX)) {
+        return "texture coordinates out of range";
+    }
+    return NULL;
+}
+
 static const char *check_materials(const masu_bake_content *c) {
     for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_MATERIALS); i++) {
         const masu_blob_material *m = &MASU_BAKE_MATERIALS(c)[i];
@@ -114,6 +158,7 @@ static const char *check_materials(const masu_bake_content *c) {
             return "a material out of range";
         }
         if (!name_ok(c, m->name)) return "a name out of range";
+        if (m->flags || m->texture_set || m->layers) return "a material with textures already";
     }
     return NULL;
 }
@@ -121,6 +166,7 @@ static const char *check_materials(const masu_bake_content *c) {
 const char *masu_bake_check(const masu_bake_content *piece) {
     const char *problem = check_sections(piece);
     if (!problem) problem = check_materials(piece);
+    if (!problem) problem = check_maps(piece);
     if (!problem) problem = check_geometry(piece);
     if (!problem) problem = check_instances(piece);
     return problem;

@@ -36,6 +36,10 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_GROUP_ITEMS] = sizeof(uint32_t),
     [MASU_BLOB_OCCLUDERS] = sizeof(masu_blob_occluder),
     [MASU_BLOB_NAMES] = 1,
+    [MASU_BLOB_TEXCOORDS] = 2 * sizeof(float),
+    [MASU_BLOB_TEXTURES] = sizeof(masu_blob_texture),
+    [MASU_BLOB_TEXTURE_SETS] = sizeof(masu_blob_texture_set),
+    [MASU_BLOB_TEXELS] = MASU_BLOB_ALIGN,
 };
 
 /* ---- arrays ---- */
@@ -91,6 +95,10 @@ void masu_bake_content_release(masu_bake_content *content) {
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
         masu_bake_release(&content->section[kind]);
     }
+    masu_bake_release(&content->maps);
+    masu_bake_release(&content->images);
+    masu_bake_release(&content->image_text);
+    masu_bake_release(&content->image_data);
 }
 
 /* ---- names ---- */
@@ -146,20 +154,63 @@ masu_blob_material masu_bake_default_material(void) {
         .base_color = {0.6f, 0.6f, 0.6f}, .roughness = 0.6f, .name = MASU_BLOB_NONE};
 }
 
+masu_bake_maps masu_bake_no_maps(void) {
+    masu_bake_maps maps;
+    memset(&maps, 0, sizeof maps);
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) maps.image[i] = MASU_BLOB_NONE;
+    maps.cutoff = 0.5f;
+    maps.normal_scale = 1;
+    return maps;
+}
+
+bool masu_bake_has_maps(const masu_bake_maps *maps) {
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (maps->image[i] != MASU_BLOB_NONE) return true;
+    }
+    return false;
+}
+
+uint32_t masu_bake_add_image(masu_bake_content *content, const char *name,
+                             const masu_bake_image *about, const void *data) {
+    size_t count = content->images.bytes / sizeof *about;
+    for (size_t i = 0; i < count; i++) {
+        const masu_bake_image *other = &MASU_BAKE_IMAGES(content)[i];
+        if (strcmp((const char *)content->image_text.data + other->name, name) == 0) {
+            return (uint32_t)i;
+        }
+    }
+    masu_bake_image image = {0};
+    if (about) image = *about;
+    image.name = (uint32_t)content->image_text.bytes;
+    image.data = content->image_data.bytes;
+    masu_bake_append(&content->image_text, name, strlen(name) + 1);
+    if (image.data_bytes) masu_bake_append(&content->image_data, data, (size_t)image.data_bytes);
+    masu_bake_append(&content->images, &image, sizeof image);
+    return (uint32_t)count;
+}
+
 uint32_t masu_bake_material(masu_bake_content *content, const masu_blob_material *material,
                             const char *name) {
+    masu_bake_maps none = masu_bake_no_maps();
+    return masu_bake_mapped_material(content, material, &none, name);
+}
+
+uint32_t masu_bake_mapped_material(masu_bake_content *content, const masu_blob_material *material,
+                                   const masu_bake_maps *maps, const char *name) {
     uint64_t count = masu_bake_count(content, MASU_BLOB_MATERIALS);
     masu_blob_material wanted = *material;
     for (uint64_t i = 0; i < count; i++) {
         const masu_blob_material *other = &MASU_BAKE_MATERIALS(content)[i];
         wanted.name = other->name;
         if (memcmp(other, &wanted, sizeof wanted) == 0 &&
+            memcmp(&MASU_BAKE_MAPS_OF(content)[i], maps, sizeof *maps) == 0 &&
             strcmp(masu_bake_name_text(content, other->name), name) == 0) {
             return (uint32_t)i;
         }
     }
     wanted.name = masu_bake_name(content, name, strlen(name));
     masu_bake_append(&content->section[MASU_BLOB_MATERIALS], &wanted, sizeof wanted);
+    masu_bake_append(&content->maps, maps, sizeof *maps);
     return (uint32_t)count;
 }
 
@@ -206,7 +257,28 @@ static uint32_t placed_material(masu_bake_content *scene, const masu_bake_conten
     if (override->roughness) material.roughness = v->roughness;
     if (override->metallic) material.metallic = v->metallic;
     if (override->emissive) memcpy(material.emissive, v->emissive, sizeof v->emissive);
-    return masu_bake_material(scene, &material, name);
+    masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (override->map[i]) {
+            maps.image[i] = override->maps.image[i];
+            maps.channel[i] = override->maps.channel[i];
+        } else if (maps.image[i] != MASU_BLOB_NONE) {
+            const masu_bake_image *from = &MASU_BAKE_IMAGES(piece)[maps.image[i]];
+            maps.image[i] =
+                masu_bake_add_image(scene, (const char *)piece->image_text.data + from->name, from,
+                                    piece->image_data.data + from->data);
+        }
+    }
+    if (override->map[MASU_BAKE_ROUGHNESS]) maps.gloss = 0;
+    if (override->alpha) maps.alpha = override->maps.alpha;
+    if (override->cutoff) maps.cutoff = override->maps.cutoff;
+    return masu_bake_mapped_material(scene, &material, &maps, name);
+}
+
+static bool changes(const masu_bake_override *o) {
+    bool any = o->base_color || o->roughness || o->metallic || o->emissive || o->alpha || o->cutoff;
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) any = any || o->map[i];
+    return any;
 }
 
 static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *piece, uint32_t name,
@@ -286,10 +358,10 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
     if (problem) return problem;
     if (!residence->has_vertices) {
         residence->first_vertex = copy_section(scene, piece, MASU_BLOB_VERTICES);
+        copy_section(scene, piece, MASU_BLOB_TEXCOORDS);
         residence->has_vertices = true;
     }
-    bool changed =
-        override->base_color || override->roughness || override->metallic || override->emissive;
+    bool changed = changes(override);
     uint32_t first_mesh = residence->first_mesh;
     if (changed || !residence->has_meshes) {
         /* Two primitives share no indices (src/scene.c): other materials, other indices. */

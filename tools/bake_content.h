@@ -31,7 +31,44 @@ void *masu_bake_allocate(size_t bytes); /* never NULL; free() it */
 
 typedef struct masu_bake_content {
     masu_bake_buffer section[MASU_BLOB_KIND_COUNT]; /* by masu_blob_kind */
+    /* Textures as materials ask for them; bake_texture.c makes sections of them at the end. */
+    masu_bake_buffer maps;       /* masu_bake_maps, one per material */
+    masu_bake_buffer images;     /* masu_bake_image */
+    masu_bake_buffer image_text; /* their names, each with its NUL */
+    masu_bake_buffer image_data; /* files that lie inside a model */
 } masu_bake_content;
+
+/* A picture: a file, or `data_bytes` of one at `data` of image_data; its name is then made up. */
+typedef struct masu_bake_image {
+    uint32_t name;                  /* offset into image_text */
+    uint32_t raw_width, raw_height; /* the data are BGRA texels; 0: a file's bytes */
+    uint32_t reserved;
+    uint64_t data, data_bytes;
+} masu_bake_image;
+
+/* What pictures can stand for. Roughness and metallic are apart here: they may come as one picture
+ * or as two. */
+enum {
+    MASU_BAKE_BASE,
+    MASU_BAKE_NORMAL,
+    MASU_BAKE_ROUGHNESS,
+    MASU_BAKE_METALLIC,
+    MASU_BAKE_EMISSIVE,
+    MASU_BAKE_OPACITY, /* alpha as a picture of its own */
+    MASU_BAKE_MAPS
+};
+
+enum { MASU_BAKE_ALPHA_AUTO, MASU_BAKE_ALPHA_OPAQUE, MASU_BAKE_ALPHA_MASK, MASU_BAKE_ALPHA_BLEND };
+
+typedef struct masu_bake_maps {
+    uint32_t image[MASU_BAKE_MAPS];  /* MASU_BLOB_NONE: no such map */
+    uint8_t channel[MASU_BAKE_MAPS]; /* 0..3: of the picture, for maps of one channel */
+    uint8_t gloss;                   /* roughness is 1 minus the picture */
+    uint8_t alpha;                   /* MASU_BAKE_ALPHA_*; AUTO: the picture decides */
+    uint8_t wrap[2];                 /* as in masu_blob_texture_set */
+    uint8_t reserved[2];
+    float cutoff, normal_scale;
+} masu_bake_maps;
 
 uint32_t masu_bake_stride(uint32_t kind); /* sizeof the section's element; 1 for NAMES */
 uint64_t masu_bake_count(const masu_bake_content *content, uint32_t kind);
@@ -53,7 +90,16 @@ const char *masu_bake_name_text(const masu_bake_content *content, uint32_t name)
 /* The index of a material with these values and this name, added if there is none yet. */
 uint32_t masu_bake_material(masu_bake_content *content, const masu_blob_material *material,
                             const char *name);
+uint32_t masu_bake_mapped_material(masu_bake_content *content, const masu_blob_material *material,
+                                   const masu_bake_maps *maps, const char *name);
 masu_blob_material masu_bake_default_material(void);
+masu_bake_maps masu_bake_no_maps(void);
+bool masu_bake_has_maps(const masu_bake_maps *maps);
+/* The index of the picture of that name, added if it is not there. `data` may be NULL. */
+uint32_t masu_bake_add_image(masu_bake_content *content, const char *name,
+                             const masu_bake_image *about, const void *data);
+#define MASU_BAKE_MAPS_OF(c) ((masu_bake_maps *)(void *)(c)->maps.data)
+#define MASU_BAKE_IMAGES(c) ((masu_bake_image *)(void *)(c)->images.data)
 
 /* Adds a mesh over primitives that are already there; its box is theirs. Returns its index. */
 uint32_t masu_bake_mesh(masu_bake_content *content, uint32_t first_primitive, uint32_t count,
@@ -67,6 +113,8 @@ uint32_t masu_bake_instance(masu_bake_content *content, const masu_bake_affine *
 typedef struct masu_bake_override {
     masu_blob_material value;
     bool base_color, roughness, metallic, emissive;
+    masu_bake_maps maps; /* pictures of the scene, by its own numbers */
+    bool map[MASU_BAKE_MAPS], alpha, cutoff;
 } masu_bake_override;
 
 /* Where a piece already lies in the scene, for the second and later placements. Zero at first. */
@@ -91,6 +139,8 @@ void masu_bake_sort_instances(masu_bake_content *content);
 typedef struct masu_bake_triangles {
     const float *positions; /* 3 per vertex */
     const float *normals;   /* 3 per vertex, or NULL */
+    const float *texcoords; /* 2 per vertex, v down the picture, or NULL */
+    bool repeats;           /* their textures repeat: whole turns may be taken off */
     uint32_t vertex_count;
     const uint32_t *indices;
     uint64_t index_count; /* a rest behind the last full triangle is ignored */
@@ -98,11 +148,12 @@ typedef struct masu_bake_triangles {
 } masu_bake_triangles;
 
 typedef struct masu_bake_losses {
-    uint64_t triangles;    /* looked at */
-    uint64_t bad_index;    /* dropped: an index beyond the vertices */
-    uint64_t bad_position; /* dropped: NaN, infinite or absurdly far */
-    uint64_t degenerate;   /* dropped: no area */
-    uint64_t bad_normals;  /* vertices whose normal had to be made from the triangles */
+    uint64_t triangles;     /* looked at */
+    uint64_t bad_index;     /* dropped: an index beyond the vertices */
+    uint64_t bad_position;  /* dropped: NaN, infinite or absurdly far */
+    uint64_t degenerate;    /* dropped: no area */
+    uint64_t bad_normals;   /* vertices whose normal had to be made from the triangles */
+    uint64_t bad_texcoords; /* corners whose texture coordinates became 0 */
 } masu_bake_losses;
 
 /* False: over 2^31 - 1 vertices or indices in all. */

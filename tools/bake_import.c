@@ -1,6 +1,6 @@
 /* bake_import.c: a model is read in a child process; see bake_import.h.
  *
- * What travels through the pipe: for each kind of section, then for the warnings and the error,
+ * What travels through the pipe: for each kind of section, for pictures, warnings and the error,
  * a uint64 of bytes and the bytes; then END, which proves that the child got that far. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake_import.h"
@@ -20,13 +20,23 @@ static void send_buffer(int fd, const masu_bake_buffer *buffer) {
     if (bytes) masu_bake_send(fd, buffer->data, buffer->bytes);
 }
 
+typedef struct import {
+    const char *path;
+    masu_bake_textures textures;
+} import;
+
 static void import_in_child(void *argument, int fd) {
+    const import *wanted = argument;
     masu_bake_content piece = {0};
     masu_bake_buffer warnings = {0}, error = {0};
-    masu_bake_read_model(argument, &piece, &warnings, &error);
+    masu_bake_read_model(wanted->path, wanted->textures, &piece, &warnings, &error);
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
         send_buffer(fd, &piece.section[kind]);
     }
+    send_buffer(fd, &piece.maps);
+    send_buffer(fd, &piece.images);
+    send_buffer(fd, &piece.image_text);
+    send_buffer(fd, &piece.image_data);
     send_buffer(fd, &warnings);
     send_buffer(fd, &error);
     masu_bake_send(fd, &(uint64_t){END}, sizeof(uint64_t));
@@ -61,7 +71,9 @@ static bool take_piece(const masu_bake_buffer *from, masu_bake_content *piece,
         if (!take_buffer(&r, &piece->section[kind])) return false;
     }
     uint64_t end = 0;
-    return take_buffer(&r, warnings) && take_buffer(&r, error) && take(&r, &end, sizeof end) &&
+    return take_buffer(&r, &piece->maps) && take_buffer(&r, &piece->images) &&
+           take_buffer(&r, &piece->image_text) && take_buffer(&r, &piece->image_data) &&
+           take_buffer(&r, warnings) && take_buffer(&r, error) && take(&r, &end, sizeof end) &&
            end == END && r.left == 0;
 }
 
@@ -113,10 +125,11 @@ static bool readable(const char *path) {
     return true;
 }
 
-static bool receive(const char *path, masu_bake_content *piece, masu_bake_buffer *output,
-                    masu_bake_buffer *warnings, masu_bake_buffer *error) {
+static bool receive(const char *path, masu_bake_textures textures, masu_bake_content *piece,
+                    masu_bake_buffer *output, masu_bake_buffer *warnings, masu_bake_buffer *error) {
+import wanted = {path, textures };
     masu_bake_result result =
-        masu_bake_fork(import_in_child, (void *)(uintptr_t)path, MASU_BAKE_IMPORT_SECONDS, output);
+        masu_bake_fork(import_in_child, &wanted, MASU_BAKE_IMPORT_SECONDS, output);
     if (result.end != MASU_BAKE_EXITED || !take_piece(output, piece, warnings, error)) {
         return report_end(path, result);
     }
@@ -132,10 +145,10 @@ static bool receive(const char *path, masu_bake_content *piece, masu_bake_buffer
     return !problem;
 }
 
-bool masu_bake_import(const char *path, masu_bake_content *piece) {
+bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece) {
     if (!readable(path)) return false;
     masu_bake_buffer output = {0}, warnings = {0}, error = {0};
-    bool good = receive(path, piece, &output, &warnings, &error);
+    bool good = receive(path, textures, piece, &output, &warnings, &error);
     masu_bake_release(&output);
     masu_bake_release(&warnings);
     masu_bake_release(&error);

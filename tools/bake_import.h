@@ -2,6 +2,7 @@
  *
  *   bake_import.c   runs the reader in a child process and checks what comes back
  *   bake_model.c    the reader: Assimp's scene to ours
+ *   bake_acc.c      a dialect that Assimp does not know
  *
  * Model files are hostile: the importing library is large, and asserts, overruns and endless loops
  * in it must end the child, not masu-bake. The child has a time limit and half of the memory. */
@@ -12,11 +13,24 @@
 
 #define MASU_BAKE_IMPORT_SECONDS 120
 
+/* Whether texture coordinates and textures are wanted. FORCED: coordinates even where the file's
+ * materials have no textures, because the scene gives some. */
+typedef enum masu_bake_textures {
+    MASU_BAKE_TEXTURES_WANTED,
+    MASU_BAKE_TEXTURES_FORCED,
+    MASU_BAKE_TEXTURES_OFF
+} masu_bake_textures;
+
 /* Fills `piece`. On false the error has been reported; losses are reported as warnings. */
-bool masu_bake_import(const char *path, masu_bake_content *piece);
+bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece);
+
+/* bake_acc.c: whether a file is TORCS's dialect of AC3D, and its text without what Assimp would
+ * misread. */
+bool masu_bake_is_acc(const char *path);
+void masu_bake_strip_acc(const char *text, size_t bytes, masu_bake_buffer *out);
 
 /* The child's part. Leaves warnings, one per line, and on failure an error. */
-void masu_bake_read_model(const char *path, masu_bake_content *piece, masu_bake_buffer *warnings,
-                          masu_bake_buffer *error);
+void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_bake_content *piece,
+                          masu_bake_buffer *warnings, masu_bake_buffer *error);
 
 #endif

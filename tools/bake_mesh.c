@@ -144,7 +144,15 @@ typedef struct welder {
     uint32_t *slots; /* open addressing; vertex number in the primitive, or EMPTY_SLOT */
     size_t slot_count;
     masu_blob_primitive primitive; /* being built; its vertices are the last of the content */
+    float shift[2]; /* whole turns taken off texture coordinates, so that they are small */
 } welder;
+
+/* A vertex with its texture coordinates, which are a section of their own. */
+typedef struct corner {
+    masu_blob_vertex vertex;
+    float texcoord[2];
+} corner;
+_Static_assert(sizeof(corner) == 24, "compared and hashed as bytes");
 
 static void welder_begin(welder *w, uint32_t material) {
     memset(w->slots, 0xFF, w->slot_count * sizeof *w->slots);
@@ -161,21 +169,28 @@ static void welder_end(welder *w) {
                      sizeof w->primitive);
 }
 
-static uint32_t weld(welder *w, const masu_blob_vertex *vertex) {
+static uint32_t weld(welder *w, const corner *c) {
     masu_blob_primitive *p = &w->primitive;
-    size_t slot = (size_t)masu_fnv1a64(vertex, sizeof *vertex) & (w->slot_count - 1);
+    const masu_blob_vertex *vertex = &c->vertex;
+    size_t slot = (size_t)masu_fnv1a64(c, sizeof *c) & (w->slot_count - 1);
     for (;; slot = (slot + 1) & (w->slot_count - 1)) {
         uint32_t there = w->slots[slot];
         if (there == EMPTY_SLOT) break;
         const masu_blob_vertex *other = &MASU_BAKE_VERTICES(w->content)[p->first_vertex + there];
-        if (memcmp(other, vertex, sizeof *vertex) == 0) return there;
+        const float *texcoord = MASU_BAKE_ARRAY(w->content, MASU_BLOB_TEXCOORDS, const float) +
+                                2 * ((size_t)p->first_vertex + there);
+        if (memcmp(other, vertex, sizeof *vertex) == 0 &&
+            memcmp(texcoord, c->texcoord, sizeof c->texcoord) == 0) {
+            return there;
+        }
     }
     w->slots[slot] = p->vertex_count;
     masu_bake_append(&w->content->section[MASU_BLOB_VERTICES], vertex, sizeof *vertex);
+    masu_bake_append(&w->content->section[MASU_BLOB_TEXCOORDS], c->texcoord, sizeof c->texcoord);
     for (int k = 0; k < 3; k++) {
-        float c = vertex->position[k];
-        if (p->vertex_count == 0 || c < p->aabb_min[k]) p->aabb_min[k] = c;
-        if (p->vertex_count == 0 || c > p->aabb_max[k]) p->aabb_max[k] = c;
+        float v = vertex->position[k];
+        if (p->vertex_count == 0 || v < p->aabb_min[k]) p->aabb_min[k] = v;
+        if (p->vertex_count == 0 || v > p->aabb_max[k]) p->aabb_max[k] = v;
     }
     return p->vertex_count++;
 }
@@ -187,6 +202,38 @@ static size_t slots_for(uint64_t index_count, uint32_t vertex_count) {
     size_t slots = 16;
     while (slots < 2 * most) slots *= 2;
     return slots;
+}
+
+static bool usable(float texcoord) {
+    return texcoord >= -MASU_TEXCOORD_MAX / 2 && texcoord <= MASU_TEXCOORD_MAX / 2;
+}
+
+/* Whole turns that centre the mapping about 0, where floats are finest. */
+static void find_shift(const masu_bake_triangles *t, const uint32_t *kept, uint64_t count,
+                       float shift[2]) {
+    for (int k = 0; k < 2; k++) {
+        float low = MASU_TEXCOORD_MAX, high = -MASU_TEXCOORD_MAX;
+        for (uint64_t i = 0; i < count && t->texcoords; i++) {
+            float v = t->texcoords[2 * (size_t)kept[i] + k];
+            if (!usable(v)) continue;
+            if (v < low) low = v;
+            if (v > high) high = v;
+        }
+        /* Coordinates in 0..1 stay; also what wraps in another way than by repeating. */
+        shift[k] = low <= high && (low < -2 || high > 3) ? roundf(low + (high - low) / 2) : 0;
+    }
+}
+
+static void find_texcoord(const masu_bake_triangles *t, uint32_t vertex, const float shift[2],
+                          float out[2], masu_bake_losses *losses) {
+    out[0] = out[1] = 0;
+    if (!t->texcoords) return;
+    const float *from = t->texcoords + 2 * (size_t)vertex;
+    if (!usable(from[0]) || !usable(from[1])) {
+        losses->bad_texcoords++;
+        return;
+    }
+    for (int k = 0; k < 2; k++) out[k] = from[k] - shift[k] + 0.0f;
 }
 
 bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangles *t,
@@ -204,6 +251,7 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
     make_normals(t, kept, count, normals, losses);
     welder w = {.content = content, .slot_count = slots_for(count, t->vertex_count)};
     w.slots = masu_bake_allocate(w.slot_count * sizeof *w.slots);
+    if (t->repeats) find_shift(t, kept, count, w.shift);
     welder_begin(&w, t->material);
     for (uint64_t i = 0; i < count; i += 3) {
         if (w.primitive.vertex_count > MASU_BAKE_PRIMITIVE_VERTICES - 3) {
@@ -212,11 +260,14 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
         }
         for (int k = 0; k < 3; k++) {
             uint32_t from = kept[i + k];
-            masu_blob_vertex vertex;
-            memcpy(vertex.normal, normals[from], sizeof vertex.normal);
+            corner made;
+            memcpy(made.vertex.normal, normals[from], sizeof made.vertex.normal);
             /* + 0 turns -0 into 0: equal positions are equal bits. */
-            for (int c = 0; c < 3; c++) vertex.position[c] = t->positions[3 * (size_t)from + c] + 0;
-            uint32_t index = weld(&w, &vertex);
+            for (int c = 0; c < 3; c++) {
+                made.vertex.position[c] = t->positions[3 * (size_t)from + c] + 0;
+            }
+            find_texcoord(t, from, w.shift, made.texcoord, losses);
+            uint32_t index = weld(&w, &made);
             masu_bake_append(&content->section[MASU_BLOB_INDICES], &index, sizeof index);
         }
         w.primitive.index_count += 3;

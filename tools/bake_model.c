@@ -2,17 +2,19 @@
  *
  *   aiMesh      -> one or more primitives (bake_mesh.c filters and welds)
  *   aiNode with meshes -> an instance; nodes that show the same set of meshes share one masu mesh
- *   aiMaterial  -> factors only. glTF factors are linear; the colours of older formats (OBJ, AC3D)
+ *   aiMaterial  -> factors and names of pictures, which bake_texture.c reads. glTF factors are linear; the colours of older formats (OBJ, AC3D)
  *                  were chosen on a screen and are decoded from sRGB. A specular exponent n becomes
  *                  the roughness (2 / (n + 2))^(1/4), at which GGX has the same lobe width.
  *
  * Nothing that Assimp returns is believed: indices, counts of faces, strings and transforms are
  * checked here, and what cannot be shown is counted and named in a warning. */
 #define _POSIX_C_SOURCE 200809L
+#include "bake_file.h"
 #include "bake_import.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
+#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -25,6 +27,7 @@
 #define CREASE_DEGREES 60.0f
 /* More nodes than any model has; a cycle among nodes ends here too. */
 #define NODES_MAX 4000000u
+#define ACC_MAX ((size_t)512 << 20)
 #define NAMES_MAX 4 /* in one warning; the rest is counted */
 
 typedef struct range {
@@ -40,7 +43,7 @@ typedef struct group {
 } group;
 
 /* What bake_mesh.c could not use, over all meshes. */
-enum { LOST_INDEX, LOST_POSITION, LOST_AREA, LOST_NORMAL, LOSSES };
+enum { LOST_INDEX, LOST_POSITION, LOST_AREA, LOST_NORMAL, LOST_TEXCOORD, LOSSES };
 
 typedef struct loss {
     uint64_t count;
@@ -50,6 +53,8 @@ typedef struct loss {
 
 typedef struct model {
     const struct aiScene *source;
+    const char *path;
+    masu_bake_textures wanted;
     masu_bake_content *piece;
     masu_bake_buffer *warnings;
     masu_blob_primitive *parts; /* primitives as converted, before meshes group them */
@@ -60,7 +65,7 @@ typedef struct model {
     masu_bake_buffer textures;
     loss losses[LOSSES];
     uint64_t triangles;
-    uint32_t texture_count, transparent, bad_nodes, skins;
+    uint32_t texture_count, transparent, bad_nodes, skins, unmapped, turned;
     bool full;
 } model;
 
@@ -119,9 +124,184 @@ static bool get_factor(const struct aiMaterial *m, const char *key, double *out)
 #define KEY(name) KEY_OF(name)       /* Assimp's macros are "key", type, index */
 #define KEY_OF(key, type, index) key /* and type and index are 0 for all of these */
 
+/* ---- textures ---- */
+
+/* The picture at `path`: "*3" or a name that the file embeds, else a file beside the model. */
+static uint32_t image_of(model *m, const struct aiString *path) {
+    char text[sizeof path->data + 1];
+    int length = string_length(path);
+    memcpy(text, path->data, (size_t)length);
+    text[length] = '\0';
+    const struct aiScene *s = m->source;
+    long number = -1;
+    if (text[0] == '*') {
+        char *end;
+        number = strtol(text + 1, &end, 10);
+        if (*end || end == text + 1) number = -1;
+    }
+    for (unsigned i = 0; i < s->mNumTextures && s->mTextures && number < 0; i++) {
+        const struct aiTexture *t = s->mTextures[i];
+        if (t && string_length(&t->mFilename) == length && length &&
+            memcmp(t->mFilename.data, text, (size_t)length) == 0) {
+            number = (long)i;
+        }
+    }
+    masu_bake_buffer name = {0};
+    masu_bake_image about = {0};
+    const void *data = NULL;
+    if (number >= 0 && number < (long)s->mNumTextures && s->mTextures && s->mTextures[number] &&
+        s->mTextures[number]->pcData) {
+        const struct aiTexture *t = s->mTextures[number];
+        append_format(&name, "%s:%ld", m->path, number);
+        data = t->pcData;
+        about.data_bytes = t->mWidth;
+        if (t->mHeight && t->mWidth <= 16384 && t->mHeight <= 16384) {
+            about.raw_width = t->mWidth;
+            about.raw_height = t->mHeight;
+            about.data_bytes = (uint64_t)t->mWidth * t->mHeight * 4;
+        }
+        if (about.data_bytes > (uint64_t)1 << 30) about.data_bytes = 0;
+    } else {
+        for (char *c = text; *c; c++) {
+            if (*c == '\\') *c = '/'; /* written where that was the separator */
+        }
+        if (text[0] != '/') {
+            const char *slash = strrchr(m->path, '/');
+            if (slash) masu_bake_append(&name, m->path, (size_t)(slash - m->path) + 1);
+        }
+        const char *from = text;
+        while (strncmp(from, "./", 2) == 0) from += 2;
+        masu_bake_append_text(&name, from);
+    }
+    masu_bake_append(&name, "", 1);
+    uint32_t image = masu_bake_add_image(m->piece, (const char *)name.data, &about, data);
+    masu_bake_release(&name);
+    return image;
+}
+
+typedef struct map_request {
+    int map;
+    enum aiTextureType type;
+    uint8_t channel;
+} map_request;
+
+static uint8_t wrap_of(const struct aiMaterial *from, const char *key, unsigned type) {
+    int mode = aiTextureMapMode_Wrap;
+    unsigned count = 1;
+    if (aiGetMaterialIntegerArray(from, key, type, 0, &mode, &count) != aiReturn_SUCCESS) return 0;
+    return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? 1
+           : mode == aiTextureMapMode_Mirror                                ? 2
+                                                                            : 0;
+}
+
+static bool take_map(model *m, const struct aiMaterial *from, const map_request *wanted,
+                     masu_bake_maps *to) {
+    struct aiString path = {0};
+    if (to->image[wanted->map] != MASU_BLOB_NONE ||
+        aiGetMaterialTextureCount(from, wanted->type) == 0 ||
+        aiGetMaterialTexture(from, wanted->type, 0, &path, NULL, NULL, NULL, NULL, NULL, NULL) !=
+            aiReturn_SUCCESS ||
+        string_length(&path) == 0) {
+        return false;
+    }
+    if (!masu_bake_has_maps(to)) { /* the first one speaks for all */
+        to->wrap[0] = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, wanted->type);
+        to->wrap[1] = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, wanted->type);
+    }
+    to->image[wanted->map] = image_of(m, &path);
+    to->channel[wanted->map] = wanted->channel;
+    return true;
+}
+
+static bool same_texture(const struct aiMaterial *m, enum aiTextureType a, enum aiTextureType b) {
+    struct aiString x = {0}, y = {0};
+    return aiGetMaterialTextureCount(m, a) && aiGetMaterialTextureCount(m, b) &&
+           aiGetMaterialTexture(m, a, 0, &x, NULL, NULL, NULL, NULL, NULL, NULL) ==
+               aiReturn_SUCCESS &&
+           aiGetMaterialTexture(m, b, 0, &y, NULL, NULL, NULL, NULL, NULL, NULL) ==
+               aiReturn_SUCCESS &&
+           string_length(&x) == string_length(&y) &&
+           memcmp(x.data, y.data, (size_t)string_length(&x)) == 0;
+}
+
+static void convert_alpha(const struct aiMaterial *from, masu_bake_maps *maps) {
+    struct aiString mode = {0};
+    double cutoff = 0.5;
+    if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS) {
+        mode.data[string_length(&mode) < (int)sizeof mode.data ? string_length(&mode)
+                                                               : (int)sizeof mode.data - 1] = 0;
+        maps->alpha = strcmp(mode.data, "MASK") == 0    ? MASU_BAKE_ALPHA_MASK
+                      : strcmp(mode.data, "BLEND") == 0 ? MASU_BAKE_ALPHA_BLEND
+                                                        : MASU_BAKE_ALPHA_OPAQUE;
+    }
+    if (get_factor(from, KEY(AI_MATKEY_GLTF_ALPHACUTOFF), &cutoff)) {
+        maps->cutoff = clamped(cutoff, 0, 1);
+    }
+}
+
+static masu_bake_maps convert_maps(model *m, const struct aiMaterial *from) {
+    static const map_request requests[] = {
+        {MASU_BAKE_BASE, aiTextureType_BASE_COLOR, 0},
+        {MASU_BAKE_BASE, aiTextureType_DIFFUSE, 0},
+        {MASU_BAKE_NORMAL, aiTextureType_NORMALS, 0},
+        {MASU_BAKE_NORMAL, aiTextureType_NORMAL_CAMERA, 0},
+        {MASU_BAKE_EMISSIVE, aiTextureType_EMISSIVE, 0},
+        {MASU_BAKE_EMISSIVE, aiTextureType_EMISSION_COLOR, 0},
+        {MASU_BAKE_OPACITY, aiTextureType_OPACITY, 0},
+    };
+    /* glTF has both in one picture: green and blue. */
+    static const map_request packed[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_UNKNOWN, 1},
+                                         {MASU_BAKE_METALLIC, aiTextureType_UNKNOWN, 2},
+                                         {MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 1},
+                                         {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 2}};
+    static const map_request apart[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 0},
+                                        {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 0}};
+    masu_bake_maps maps = masu_bake_no_maps();
+    if (m->wanted == MASU_BAKE_TEXTURES_OFF) return maps;
+    convert_alpha(from, &maps);
+    for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+        take_map(m, from, &requests[i], &maps);
+    }
+    struct aiString mode = {0};
+    bool gltf = aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
+    if (gltf || same_texture(from, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_METALNESS)) {
+        for (size_t i = 0; i < 4; i++) take_map(m, from, &packed[i], &maps);
+    } else {
+        for (size_t i = 0; i < 2; i++) take_map(m, from, &apart[i], &maps);
+    }
+    double scale = 1;
+    ai_real value = 0;
+    unsigned count = 1;
+    if (aiGetMaterialFloatArray(from, _AI_MATKEY_GLTF_SCALE_BASE, aiTextureType_NORMALS, 0, &value,
+                                &count) == aiReturn_SUCCESS &&
+        count == 1) {
+        scale = (double)value;
+    }
+    maps.normal_scale = clamped(scale, -16, 16);
+    return maps;
+}
+
+/* Types of texture that nothing is made of. */
+static bool is_used(int type) {
+    switch (type) {
+    case aiTextureType_BASE_COLOR:
+    case aiTextureType_DIFFUSE:
+    case aiTextureType_NORMALS:
+    case aiTextureType_NORMAL_CAMERA:
+    case aiTextureType_EMISSIVE:
+    case aiTextureType_EMISSION_COLOR:
+    case aiTextureType_OPACITY:
+    case aiTextureType_UNKNOWN:
+    case aiTextureType_DIFFUSE_ROUGHNESS:
+    case aiTextureType_METALNESS: return true;
+    default: return false;
+    }
+}
+
 static void note_textures(model *m, const struct aiMaterial *material) {
     for (int type = 1; type <= AI_TEXTURE_TYPE_MAX; type++) {
         unsigned count = aiGetMaterialTextureCount(material, (enum aiTextureType)type);
+        if (is_used(type) && m->wanted != MASU_BAKE_TEXTURES_OFF) continue;
         for (unsigned i = 0; i < count && i < 16; i++) {
             struct aiString path = {0};
             if (aiGetMaterialTexture(material, (enum aiTextureType)type, i, &path, NULL, NULL, NULL,
@@ -161,6 +341,17 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     double intensity = 1;
     get_factor(from, KEY(AI_MATKEY_EMISSIVE_INTENSITY), &intensity);
     if (get_color(from, KEY(AI_MATKEY_COLOR_EMISSIVE), c)) {
+        /* In older formats emission is mostly a way to brighten what is lit: the two were summed on the
+         * screen. Only what emits more than it reflects is a light. */
+        double diffuse[4] = {0, 0, 0, 1};
+        if (!linear && get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), diffuse) &&
+            fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {
+            for (int i = 0; i < 3; i++) {
+                to->base_color[i] =
+                    clamped(decode_srgb((double)clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
+            }
+            return;
+        }
         for (int i = 0; i < 3; i++) {
             double value = linear ? c[i] : decode_srgb((double)clamped(c[i], 0, 1));
             to->emissive[i] = clamped(value * intensity, 0, 65504);
@@ -197,13 +388,18 @@ static uint32_t material_of(model *m, unsigned index) {
     convert_color(from, &to, &alpha);
     convert_shine(from, &to);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
-    if (alpha * opacity < 0.999) m->transparent++;
+    masu_bake_maps maps = convert_maps(m, from);
+    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK &&
+        alpha * opacity < 0.999) {
+        m->transparent++;
+        maps.alpha = MASU_BAKE_ALPHA_BLEND;
+    }
     note_textures(m, from);
     struct aiString name = {0};
     aiGetMaterialString(from, AI_MATKEY_NAME, &name);
     name.data[string_length(&name) < (int)sizeof name.data ? string_length(&name)
                                                            : (int)sizeof name.data - 1] = '\0';
-    uint32_t result = masu_bake_material(m->piece, &to, name.data);
+    uint32_t result = masu_bake_mapped_material(m->piece, &to, &maps, name.data);
     m->material[index] = result + 1;
     return result;
 }
@@ -226,6 +422,7 @@ static void note_losses(model *m, const struct aiMesh *mesh, const masu_bake_los
     note_loss(m, LOST_POSITION, lost->bad_position, mesh);
     note_loss(m, LOST_AREA, lost->degenerate, mesh);
     note_loss(m, LOST_NORMAL, lost->bad_normals, mesh);
+    note_loss(m, LOST_TEXCOORD, lost->bad_texcoords, mesh);
 }
 
 static void report_losses(model *m) {
@@ -234,13 +431,14 @@ static void report_losses(model *m) {
         [LOST_POSITION] = "triangles left out, a vertex is not finite",
         [LOST_AREA] = "triangles left out, they have no area",
         [LOST_NORMAL] = "normals made new, they were not usable",
+        [LOST_TEXCOORD] = "texture coordinates set to 0, they were not finite or beyond 16384",
     };
     for (int kind = 0; kind < LOSSES; kind++) {
         loss *l = &m->losses[kind];
         if (l->count == 0) continue;
         masu_bake_append(&l->names, "", 1);
         append_format(m->warnings, "%llu ", (unsigned long long)l->count);
-        if (kind != LOST_NORMAL) {
+        if (kind != LOST_NORMAL && kind != LOST_TEXCOORD) {
             append_format(m->warnings, "of %llu ", (unsigned long long)m->triangles);
         }
         append_format(m->warnings, "%s (in %u meshes: ", what[kind], l->meshes);
@@ -248,6 +446,59 @@ static void report_losses(model *m) {
         masu_bake_append_text(m->warnings, l->meshes > NAMES_MAX ? ", ...)\n" : ")\n");
         masu_bake_release(&l->names);
     }
+}
+
+/* KHR_texture_transform and its like: scale, then move; turns are warned of. Assimp's v grows
+ * upwards. */
+static bool texture_transform(const model *m, const struct aiMesh *mesh,
+                              struct aiUVTransform *out) {
+    const struct aiScene *s = m->source;
+    if (mesh->mMaterialIndex >= s->mNumMaterials || !s->mMaterials[mesh->mMaterialIndex]) {
+        return false;
+    }
+    static const enum aiTextureType types[] = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
+    for (int i = 0; i < 2; i++) {
+        if (aiGetMaterialUVTransform(s->mMaterials[mesh->mMaterialIndex],
+                                     AI_MATKEY_UVTRANSFORM(types[i], 0), out) == aiReturn_SUCCESS) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Two floats per vertex, v down the picture, of the channel that the base colour uses; NULL if the
+ * mesh has none. free() it. */
+static float *texcoords_of(model *m, const struct aiMesh *mesh) {
+    const struct aiScene *s = m->source;
+    int channel = 0;
+    unsigned count = 1;
+    if (mesh->mMaterialIndex < s->mNumMaterials && s->mMaterials[mesh->mMaterialIndex]) {
+        aiGetMaterialIntegerArray(s->mMaterials[mesh->mMaterialIndex],
+                                  AI_MATKEY_UVWSRC(aiTextureType_BASE_COLOR, 0), &channel, &count);
+    }
+    if (channel < 0 || channel >= AI_MAX_NUMBER_OF_TEXTURECOORDS ||
+        !mesh->mTextureCoords[channel]) {
+        channel = 0;
+    }
+    const struct aiVector3D *from = mesh->mTextureCoords[channel];
+    if (!from) {
+        m->unmapped++;
+        return NULL;
+    }
+    struct aiUVTransform transform;
+    bool moved = texture_transform(m, mesh, &transform);
+    if (moved && transform.mRotation != 0) m->turned++;
+    float *out = masu_bake_allocate((size_t)mesh->mNumVertices * 2 * sizeof *out);
+    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        double u = (double)from[i].x, v = (double)from[i].y;
+        if (moved) {
+            u = u * (double)transform.mScaling.x + (double)transform.mTranslation.x;
+            v = v * (double)transform.mScaling.y + (double)transform.mTranslation.y;
+        }
+        out[2 * i] = (float)u;
+        out[2 * i + 1] = (float)(1 - v);
+    }
+    return out;
 }
 
 static void convert_mesh(model *m, unsigned index) {
@@ -266,17 +517,26 @@ static void convert_mesh(model *m, unsigned index) {
         }
     }
     _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float), "Assimp built for double");
+    uint32_t material = material_of(m, mesh->mMaterialIndex);
+    const masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(m->piece)[material];
+    float *texcoords = NULL;
+    if (m->wanted == MASU_BAKE_TEXTURES_FORCED || masu_bake_has_maps(maps)) {
+        texcoords = texcoords_of(m, mesh);
+    }
     masu_bake_triangles triangles = {
         .positions = &mesh->mVertices->x,
         .normals = mesh->mNormals ? &mesh->mNormals->x : NULL,
         .vertex_count = mesh->mNumVertices,
         .indices = (const uint32_t *)(const void *)indices.data,
         .index_count = indices.bytes / sizeof(uint32_t),
-        .material = material_of(m, mesh->mMaterialIndex),
+        .texcoords = texcoords,
+        .repeats = !maps->wrap[0] && !maps->wrap[1],
+        .material = material,
     };
     masu_bake_losses lost = {0};
     if (!masu_bake_add_triangles(m->piece, &triangles, &lost)) m->full = true;
     masu_bake_release(&indices);
+    free(texcoords);
     note_losses(m, mesh, &lost);
     if (mesh->mNumBones) m->skins++;
     m->mesh_parts[index].count =
@@ -424,8 +684,17 @@ static void report(model *m) {
     if (m->texture_count) {
         m->textures.bytes -= 2; /* the last ", " */
         masu_bake_append(&m->textures, "", 1);
-        append_format(w, "textures are not supported, the materials' factors are used: %s%s\n",
-                      (const char *)m->textures.data, m->texture_count > NAMES_MAX ? ", ..." : "");
+        append_format(w, "textures that nothing is made of: %s%s\n", (const char *)m->textures.data,
+                      m->texture_count > NAMES_MAX ? ", ..." : "");
+    }
+    if (m->turned) {
+        append_format(w, "%u meshes have textures that are turned: they are not\n", m->turned);
+    }
+    if (m->unmapped) {
+        append_format(w,
+                      "%u meshes have textures but no texture coordinates: they get the colour "
+                      "of one texel\n",
+                      m->unmapped);
     }
     if (m->transparent) {
         append_format(w, "%u transparent materials are drawn opaque\n", m->transparent);
@@ -483,8 +752,8 @@ static void convert(model *m, masu_bake_buffer *error) {
     masu_bake_release(&parts);
 }
 
-void masu_bake_read_model(const char *path, masu_bake_content *piece, masu_bake_buffer *warnings,
-                          masu_bake_buffer *error) {
+void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_bake_content *piece,
+                          masu_bake_buffer *warnings, masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     if (properties) {
         aiSetImportPropertyFloat(properties, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, CREASE_DEGREES);
@@ -493,12 +762,21 @@ void masu_bake_read_model(const char *path, masu_bake_content *piece, masu_bake_
     /* Welding, dropping bad triangles and the like are done here, where every index is checked:
      * each step of the library is one more that hostile data can break. */
     unsigned flags = aiProcess_Triangulate | aiProcess_GenSmoothNormals;
-    const struct aiScene *scene = aiImportFileExWithProperties(path, flags, NULL, properties);
+    const struct aiScene *scene;
+    masu_bake_buffer whole = {0}, text = {0};
+    if (masu_bake_is_acc(path) && masu_bake_read_file(path, ACC_MAX, &whole)) {
+        masu_bake_strip_acc((const char *)whole.data, whole.bytes, &text);
+        scene = aiImportFileFromMemoryWithProperties((const char *)text.data, (unsigned)text.bytes,
+                                                     flags, "ac", properties);
+    } else {
+        scene = aiImportFileExWithProperties(path, flags, NULL, properties);
+    }
     if (!scene) {
         const char *why = aiGetErrorString();
         masu_bake_append_text(error, why && *why ? why : "the importer gives no reason");
         return; /* this process ends now: nothing is worth releasing */
     }
-    model m = {.source = scene, .piece = piece, .warnings = warnings};
+    model m = {
+        .source = scene, .path = path, .wanted = textures, .piece = piece, .warnings = warnings};
     convert(&m, error);
 }

@@ -2,6 +2,8 @@
  * word of the scene's file, but for meshes that are boxes, which is looked up triangle by triangle. */
 #include "bake_occluders.h"
 
+#include "cli.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,6 +83,34 @@ bool masu_bake_is_box(const masu_bake_content *content, uint32_t mesh, masu_bake
     box->low = masu_bake_v3f(m->aabb_min);
     box->high = masu_bake_v3f(m->aabb_max);
     return true;
+}
+
+static bool is_opaque(const masu_bake_content *content, const masu_blob_mesh *mesh) {
+    for (uint32_t i = 0; i < mesh->primitive_count; i++) {
+        uint32_t material = MASU_BAKE_PRIMITIVES(content)[mesh->first_primitive + i].material;
+        if (MASU_BAKE_MATERIALS(content)[material].flags &
+            (MASU_MATERIAL_IS_MASK | MASU_MATERIAL_IS_BLEND)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void masu_bake_drop_occluders(masu_bake_content *content) {
+    uint64_t count = masu_bake_count(content, MASU_BLOB_OCCLUDERS), kept = 0;
+    uint32_t warned = MASU_BLOB_NONE;
+    for (uint64_t i = 0; i < count; i++) {
+        masu_blob_occluder o = OCCLUDERS(content)[i];
+        const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(content)[o.mesh];
+        if (is_opaque(content, mesh)) {
+            OCCLUDERS(content)[kept++] = o;
+        } else if (o.mesh != warned) {
+            warned = o.mesh;
+            masu_cli_warn("the mesh \"%s\" is masked or blended: it is no occluder",
+                          masu_bake_name_text(content, mesh->name));
+        }
+    }
+    content->section[MASU_BLOB_OCCLUDERS].bytes = (size_t)kept * sizeof(masu_blob_occluder);
 }
 
 static int by_mesh(const void *a, const void *b) {

@@ -18,6 +18,7 @@
 typedef struct shelf {
     struct shelf *next;
     char *path;
+    masu_bake_textures textures; /* as imported */
     masu_bake_content piece;
     masu_bake_residence residence;
 } shelf;
@@ -34,60 +35,66 @@ static char *resolve(const char *name, const char *directory, const char *models
     return copy;
 }
 
-static shelf *fetch(shelf **shelves, char *path) {
+static shelf *fetch(shelf **shelves, char *path, masu_bake_textures textures) {
     for (shelf *s = *shelves; s; s = s->next) {
-        if (strcmp(s->path, path) == 0) {
+        if (s->textures == textures && strcmp(s->path, path) == 0) {
             free(path);
             return s;
         }
     }
     shelf *s = masu_bake_allocate(sizeof *s);
-    *s = (shelf){.next = *shelves, .path = path};
+    *s = (shelf){.next = *shelves, .path = path, .textures = textures};
     *shelves = s;
     masu_cli_progress("importing %s", path);
-    return masu_bake_import(path, &s->piece) ? s : NULL;
+    return masu_bake_import(path, textures, &s->piece) ? s : NULL;
 }
 
 /* ---- procedural meshes ---- */
 
-static bool read_sphere(const masu_bake_json *at, masu_bake_content *piece) {
-    static const char *const members[] = {"radius", "subdivisions", NULL};
-    double radius = 1, subdivisions = 5;
+/* `mapped`: with texture coordinates, since the material has textures. */
+static bool read_sphere(const masu_bake_json *at, bool mapped, masu_bake_content *piece) {
+    static const char *const members[] = {"radius", "subdivisions", "tile", NULL};
+    double radius = 1, subdivisions = 5, tile = 1;
     if (!masu_bake_json_object(at, members) ||
         !masu_bake_json_number(at, "radius", 1e-6, 1e6, &radius) ||
+        !masu_bake_json_number(at, "tile", 1e-3, 1e3, &tile) ||
         !masu_bake_json_number(at, "subdivisions", 0, MASU_BAKE_SUBDIVISIONS_MAX, &subdivisions)) {
         return false;
     }
     if (subdivisions != floor(subdivisions)) {
         return masu_bake_json_wrong(at, "subdivisions must be a whole number");
     }
-    masu_bake_sphere(piece, radius, (uint32_t)subdivisions);
+    masu_bake_sphere(piece, radius, (uint32_t)subdivisions, mapped ? tile : 0);
     return true;
 }
 
-static bool read_box(const masu_bake_json *at, masu_bake_content *piece) {
-    static const char *const members[] = {"size", NULL};
+static bool read_box(const masu_bake_json *at, bool mapped, masu_bake_content *piece) {
+    static const char *const members[] = {"size", "tile", NULL};
     masu_bake_vec3 size = {1, 1, 1};
-    if (!masu_bake_json_object(at, members) || !masu_bake_json_vec3(at, "size", 1e-6, 1e6, &size)) {
+    double tile = 1;
+    if (!masu_bake_json_object(at, members) ||
+        !masu_bake_json_number(at, "tile", 1e-3, 1e3, &tile) ||
+        !masu_bake_json_vec3(at, "size", 1e-6, 1e6, &size)) {
         return false;
     }
-    masu_bake_cuboid(piece, size);
+    masu_bake_cuboid(piece, size, mapped ? tile : 0);
     return true;
 }
 
-static bool read_plane(const masu_bake_json *at, masu_bake_content *piece) {
-    static const char *const members[] = {"size_x", "size_z", NULL};
-    double x = 1, z = 1;
+static bool read_plane(const masu_bake_json *at, bool mapped, masu_bake_content *piece) {
+    static const char *const members[] = {"size_x", "size_z", "tile", NULL};
+    double x = 1, z = 1, tile = 1;
     if (!masu_bake_json_object(at, members) ||
         !masu_bake_json_number(at, "size_x", 1e-6, 1e6, &x) ||
+        !masu_bake_json_number(at, "tile", 1e-3, 1e3, &tile) ||
         !masu_bake_json_number(at, "size_z", 1e-6, 1e6, &z)) {
         return false;
     }
-    masu_bake_plane(piece, x, z);
+    masu_bake_plane(piece, x, z, mapped ? tile : 0);
     return true;
 }
 
-static bool read_shape(const masu_bake_json *mesh, masu_bake_content *piece) {
+static bool read_shape(const masu_bake_json *mesh, bool mapped, masu_bake_content *piece) {
     static const char *const members[] = {"sphere", "box", "plane", NULL};
     if (!masu_bake_json_object(mesh, members)) return false;
     if (json_object_size(mesh->value) != 1) {
@@ -96,8 +103,8 @@ static bool read_shape(const masu_bake_json *mesh, masu_bake_content *piece) {
     masu_bake_json sphere = masu_bake_json_member(mesh, "sphere");
     masu_bake_json box = masu_bake_json_member(mesh, "box");
     masu_bake_json plane = masu_bake_json_member(mesh, "plane");
-    if (sphere.value) return read_sphere(&sphere, piece);
-    return box.value ? read_box(&box, piece) : read_plane(&plane, piece);
+    if (sphere.value) return read_sphere(&sphere, mapped, piece);
+    return box.value ? read_box(&box, mapped, piece) : read_plane(&plane, mapped, piece);
 }
 
 /* ---- placement ---- */
@@ -193,9 +200,78 @@ static void store_color(masu_bake_vec3 v, float out[3]) {
     out[2] = (float)v.z;
 }
 
-static bool read_override(const masu_bake_json *model, masu_bake_override *out) {
-    static const char *const members[] = {"base_color", "roughness", "metallic", "emissive", NULL};
-    *out = (masu_bake_override){.value = masu_bake_default_material()};
+/* The members that name a picture, and what it stands for. */
+static const struct {
+    const char *member;
+    int map;
+    uint8_t channel;
+} map_members[] = {
+    {"base_color_map", MASU_BAKE_BASE, 0},     {"normal_map", MASU_BAKE_NORMAL, 0},
+    {"roughness_map", MASU_BAKE_ROUGHNESS, 0}, {"metallic_map", MASU_BAKE_METALLIC, 0},
+    {"emissive_map", MASU_BAKE_EMISSIVE, 0},   {"opacity_map", MASU_BAKE_OPACITY, 0},
+    {"surface_map", MASU_BAKE_ROUGHNESS, 1},   {"surface_map", MASU_BAKE_METALLIC, 2},
+};
+#define MAP_MEMBERS (sizeof map_members / sizeof *map_members)
+
+static bool has_map_member(const masu_bake_json *model) {
+    masu_bake_json at = masu_bake_json_member(model, "material");
+    for (size_t i = 0; i < MAP_MEMBERS; i++) {
+        if (at.value && masu_bake_json_has(&at, map_members[i].member)) return true;
+    }
+    return false;
+}
+
+static bool read_maps(const masu_bake_json *at, const char *directory,
+                      const masu_bake_request *request, masu_bake_content *content,
+                      masu_bake_override *out) {
+    static const char *const alphas[] = {"opaque", "mask", "blend"};
+    for (size_t i = 0; i < MAP_MEMBERS; i++) {
+        const char *name = NULL;
+        if (!masu_bake_json_string(at, map_members[i].member, &name)) return false;
+        if (!name || request->textures == MASU_BAKE_TEXTURES_OFF) continue;
+        int map = map_members[i].map;
+        if (out->map[map]) {
+            return masu_bake_json_wrong(at, "%s: there is another map for the same",
+                                        map_members[i].member);
+        }
+        char *path = resolve(name, directory, request->models_directory);
+        out->map[map] = true;
+        out->maps.image[map] = masu_bake_add_image(content, path, NULL, NULL);
+        out->maps.channel[map] = map_members[i].channel;
+        free(path);
+    }
+    const char *alpha = NULL;
+    double cutoff = 0.5;
+    if (!masu_bake_json_string(at, "alpha", &alpha) ||
+        !masu_bake_json_number(at, "alpha_cutoff", 0, 1, &cutoff)) {
+        return false;
+    }
+    for (uint8_t i = 0; i < 3 && alpha; i++) {
+        if (strcmp(alpha, alphas[i]) == 0) {
+            out->alpha = true;
+            out->maps.alpha = (uint8_t)(MASU_BAKE_ALPHA_OPAQUE + i);
+        }
+    }
+    out->cutoff = masu_bake_json_has(at, "alpha_cutoff");
+    out->maps.cutoff = (float)cutoff;
+    if (alpha && !out->alpha) {
+        masu_bake_json where = masu_bake_json_member(at, "alpha");
+        return masu_bake_json_wrong(&where, "expected \"opaque\", \"mask\" or \"blend\"");
+    }
+    return true;
+}
+
+static bool read_override(const masu_bake_json *model, const char *directory,
+                          const masu_bake_request *request, masu_bake_content *content,
+                          masu_bake_override *out) {
+    static const char *const members[] = {"base_color",   "roughness",
+                                          "metallic",     "emissive",
+                                          "alpha",        "base_color_map",
+                                          "normal_map",   "roughness_map",
+                                          "metallic_map", "emissive_map",
+                                          "opacity_map",  "surface_map",
+                                          "alpha_cutoff", NULL};
+    *out = (masu_bake_override){.value = masu_bake_default_material(), .maps = masu_bake_no_maps()};
     masu_bake_json at = masu_bake_json_member(model, "material");
     if (!at.value) return true;
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
@@ -204,7 +280,8 @@ static bool read_override(const masu_bake_json *model, masu_bake_override *out) 
         !masu_bake_json_vec3(&at, "base_color", 0, 1, &color) ||
         !masu_bake_json_number(&at, "roughness", 0, 1, &roughness) ||
         !masu_bake_json_number(&at, "metallic", 0, 1, &metallic) ||
-        !masu_bake_json_vec3(&at, "emissive", 0, 65504, &emissive)) {
+        !masu_bake_json_vec3(&at, "emissive", 0, 65504, &emissive) ||
+        !read_maps(&at, directory, request, content, out)) {
         return false;
     }
     out->base_color = masu_bake_json_has(&at, "base_color");
@@ -273,12 +350,14 @@ static bool read_occluder(const masu_bake_json *model, masu_bake_content *conten
     return true;
 }
 
-static bool place(const masu_bake_json *model, const masu_bake_content *piece,
+static bool place(const masu_bake_json *model, const char *directory,
+                  const masu_bake_request *request, const masu_bake_content *piece,
                   masu_bake_residence *residence, masu_bake_content *content) {
     masu_bake_affine placement;
     masu_bake_override override;
     const char *name = NULL;
-    if (!read_placement(model, piece, &placement) || !read_override(model, &override) ||
+    if (!read_placement(model, piece, &placement) ||
+        !read_override(model, directory, request, content, &override) ||
         !masu_bake_json_string(model, "name", &name)) {
         return false;
     }
@@ -303,12 +382,18 @@ static bool read_model(const masu_bake_json *model, const char *directory,
         return masu_bake_json_wrong(model, "needs either \"file\" or \"mesh\"");
     }
     if (file) {
-        shelf *s = fetch(shelves, resolve(file, directory, request->models_directory));
-        return s && place(model, &s->piece, &s->residence, content);
+        masu_bake_textures textures = request->textures;
+        if (textures == MASU_BAKE_TEXTURES_WANTED && has_map_member(model)) {
+            textures = MASU_BAKE_TEXTURES_FORCED;
+        }
+        shelf *s = fetch(shelves, resolve(file, directory, request->models_directory), textures);
+        return s && place(model, directory, request, &s->piece, &s->residence, content);
     }
     masu_bake_content piece = {0};
     masu_bake_residence residence = {0};
-    bool good = read_shape(&mesh, &piece) && place(model, &piece, &residence, content);
+    bool mapped = has_map_member(model) && request->textures != MASU_BAKE_TEXTURES_OFF;
+    bool good = read_shape(&mesh, mapped, &piece) &&
+                place(model, directory, request, &piece, &residence, content);
     masu_bake_content_release(&piece);
     return good;
 }
@@ -340,7 +425,7 @@ bool masu_bake_bare_model(const masu_bake_request *request, masu_bake_content *c
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_override none = {.base_color = false};
     masu_cli_progress("importing %s", request->input);
-    bool good = masu_bake_import(request->input, &piece);
+    bool good = masu_bake_import(request->input, request->textures, &piece);
     if (good) {
         const char *problem = masu_bake_place(content, &piece, &residence, &identity, &none, NULL);
         if (problem) masu_cli_error("%s: gives %s", request->input, problem);

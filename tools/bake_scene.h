@@ -8,10 +8,13 @@
 #define MASU_BAKE_SCENE_H
 
 #include "bake_content.h"
+#include "bake_import.h"
 #include "bake_json.h"
 
 typedef struct masu_bake_request {
     const char *input;
+    masu_bake_textures textures; /* WANTED or OFF */
+    const char *texture_path;    /* folders with ':' between, or NULL */
     bool variants; /* with the marching variants for comparisons */
     const char *models_directory; /* what "@assimp/" stands for */
 } masu_bake_request;

@@ -74,6 +74,9 @@ static void print_pipelines(const masu_plan_info *p) {
     }
 }
 
+/* Tens, and one for each array of textures. */
+#define MEMORY_ROWS 160u
+
 static void print_memory(const masu_session *s, const masu_plan_info *p) {
     static const char *const names[MASU_ROLE_COUNT] = {"device", "upload", "readback"};
     const masu_memory *m = &p->memory;
@@ -89,10 +92,10 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
            (unsigned long long)m->transient_unaliased, (unsigned long long)m->transient_aliased,
            (unsigned long long)m->transient_lower_bound);
     printf("  left out: %llu bytes of images\n", (unsigned long long)p->left_out_bytes);
-    masu_memory_row rows[64];
-    uint32_t n = masu_memory_report(s->m, rows, 64);
+    masu_memory_row rows[MEMORY_ROWS];
+    uint32_t n = masu_memory_report(s->m, rows, MEMORY_ROWS);
     printf("\n  %-22s %-7s %10s %12s %12s\n", "row", "kind", "count", "bytes", "offset");
-    for (uint32_t i = 0; i < n && i < 64; i++) {
+    for (uint32_t i = 0; i < n && i < MEMORY_ROWS; i++) {
         printf("  %-22s %-7s %10llu %12llu %12llu\n", rows[i].name, rows[i].kind,
                (unsigned long long)rows[i].count, (unsigned long long)rows[i].bytes,
                (unsigned long long)rows[i].offset);
@@ -104,6 +107,11 @@ static int print_text(const masu_session *s, const masu_plan_info *p, const char
     printf("scene: %u instances of %u meshes, %u draws, %llu triangles, %s\n", s->scene.instances,
            s->scene.meshes, s->scene.draws, (unsigned long long)s->scene.triangles,
            s->scene.sdf ? "an SDF" : "no SDF");
+    if (s->scene.textures) {
+        printf("textures: %u in %u arrays, %llu bytes as blocks, %llu decoded\n", s->scene.textures,
+               s->scene.texture_arrays, (unsigned long long)s->scene.texture_bytes,
+               (unsigned long long)s->scene.texture_bytes_decoded);
+    }
     printf("output %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
     for (uint32_t r = 0; r < p->rung_count; r++) {
         const masu_plan_rung *rung = &p->rungs[r];
@@ -124,10 +132,10 @@ static json_t *names_json(const char *const *names, size_t n) {
 }
 
 static json_t *rows_json(const masu_session *s) {
-    masu_memory_row rows[64];
-    uint32_t n = masu_memory_report(s->m, rows, 64);
+    masu_memory_row rows[MEMORY_ROWS];
+    uint32_t n = masu_memory_report(s->m, rows, MEMORY_ROWS);
     json_t *list = json_array();
-    for (uint32_t i = 0; i < n && i < 64; i++) {
+    for (uint32_t i = 0; i < n && i < MEMORY_ROWS; i++) {
         json_array_append_new(
             list, json_pack("{s:s, s:s, s:i, s:I, s:I, s:I, s:b}", "name", rows[i].name, "kind",
                             rows[i].kind, "role", (int)rows[i].role, "count",

@@ -25,7 +25,8 @@ enum {
     OPTION_FLIGHT,
     OPTION_MARCH,
     OPTION_CULL,
-    OPTION_CASTERS
+    OPTION_CASTERS,
+    OPTION_ANISOTROPY
 };
 
 #define FRAMES_MAX 100000u
@@ -288,6 +289,12 @@ static int run(masu_cli *cli) {
             if (!masu_cli_choice(cli, stages, &cull)) return MASU_CLI_USAGE;
             continue;
         case OPTION_CASTERS: casters = 1; continue;
+        case OPTION_ANISOTROPY: {
+            double most = 0;
+            if (!masu_cli_double(cli, 1.0, 64.0, &most)) return MASU_CLI_USAGE;
+            d.desc.vulkan.max_anisotropy = (float)most;
+            continue;
+        }
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case MASU_CLI_ARGUMENT:
@@ -348,6 +355,9 @@ static const masu_cli_option options[] = {
     {"cull", "STAGES", "both, frustum, occlusion or none: the picture stays the same (default both)",
      OPTION_CULL, 0},
     {"casters", NULL, "cull for the sun too, for the numbers of --stats", OPTION_CASTERS, 0},
+    {"anisotropy", "N",
+     "samples of textures along the longer axis, where the device offers it (default 1)",
+     OPTION_ANISOTROPY, 0},
     {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
     {"poison", NULL,
      "fill all transient images with NaN before each frame (the picture must not change)",

@@ -19,7 +19,10 @@ $(BUILD)/bin/masu: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 # What masu measures with, for the tests too.
 $(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/bench_*.c tools/metric_*.c))
 
-$(BUILD)/bin/masu-bake: LIBS = -lassimp -ljansson -lm
+# Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
+$(BUILD)/obj/tools/bake_image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
+    sed 's/-I/-isystem /g; s/-fopenmp//g')
+$(BUILD)/bin/masu-bake: LIBS = -lassimp -ljansson $$(pkg-config --libs MagickWand) -lm
 $(BUILD)/bin/masu-bake: $(call objects,$(wildcard tools/bake.c tools/bake_*.c)) $(CLI_OBJECTS) $(SDFC_OBJECTS)
 $(BUILD)/bin/masu-bake: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
@@ -28,10 +31,21 @@ $(BUILD)/bin/masu-bake: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 # lie beside them.
 SCENES := $(patsubst scenes/%.json,$(BUILD)/scenes/%.masu,$(wildcard scenes/*.json))
 
-$(BUILD)/scenes/%.masu: scenes/%.json $(BUILD)/bin/masu-bake $(wildcard scenes/*.* scenes/*/*.*)
+$(BUILD)/scenes/%.masu: scenes/%.json $(BUILD)/bin/masu-bake $(wildcard scenes/*.* scenes/*/*.*) $(BUILD)/textures/made
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
-	$(V)$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $< -o $@
+	$(V)$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $< -o $@ --texture-path $(BUILD)/textures
+
+# The pictures that scenes/textures.json and the tests place: made here, by formula.
+# stb's JPEG writer shifts bits out of signed integers.
+$(BUILD)/obj/tools/make_textures.o: FOLDER_FLAGS += -fno-sanitize=shift
+$(BUILD)/tools/make_textures: LIBS = -lm
+$(BUILD)/tools/make_textures: $(BUILD)/obj/tools/make_textures.o
+	$(link)
+$(BUILD)/textures/made: $(BUILD)/tools/make_textures
+	@mkdir -p $(@D)
+	$(V)$< $(@D)
+	$(V)touch $@
 
 # The example of the README.
 $(BUILD)/examples/%: LIBS = -lvulkan -lm

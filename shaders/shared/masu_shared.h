@@ -28,9 +28,12 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  * (128). */
 #define MASU_GROUP 8
 
-/* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/frame.c. */
+/* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/frame.c. Set 2, of
+ * gbuffer alone: the textures of what is drawn, one binding per slot of blob.h's texture sets. With
+ * three sets of the four that every device has, and 4 sampled images of 16 in a stage. */
 #define MASU_SET_GLOBAL 0
 #define MASU_SET_PASS 1
+#define MASU_SET_TEXTURES 2
 #define MASU_BIND_FRAME 0
 #define MASU_BIND_INSTANCES 1
 #define MASU_BIND_MATERIALS 2
@@ -134,6 +137,14 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 
 /* G-buffer material flags, two bits of the packed normal word. */
 #define MASU_SURFACE_EMISSIVE 1u
+
+/* Flags of a material with textures; src/blob.h has them too. */
+#define MASU_MAP_BASE 1u
+#define MASU_MAP_NORMAL 2u
+#define MASU_MAP_SURFACE 4u
+#define MASU_MAP_EMISSIVE 8u
+#define MASU_MAP_METAL 16u
+#define MASU_MAP_CUTOFF_SHIFT 8
 
 struct masu_frame_uniforms {
     masu_mat4 clip_from_rel; /* rel position -> clip; reverse-Z, no far plane, depth = near / view z */

@@ -47,6 +47,11 @@ static int open_shadows_instead(void **state) {
     return result;
 }
 
+static int open_textures_instead(void **state) {
+    close_again(state);
+    return open_scene("test_texture_mask");
+}
+
 static int open_the_first_again(void **state) {
     close_again(state);
     return open_without_renderer(state);
@@ -110,6 +115,12 @@ static void any_call_of_init_may_fail_with_a_shadow_map(void **state) {
 static void the_device_may_be_lost_at_any_call_of_init(void **state) {
     (void)state;
     fail_every_call_of_init(VK_ERROR_DEVICE_LOST, true, 0);
+}
+
+/* Textures, their samplers, sets and copies in chunks. */
+static void any_call_of_init_with_textures_may_fail(void **state) {
+    (void)state;
+    fail_every_call_of_init(VK_ERROR_OUT_OF_DEVICE_MEMORY, false, 1);
 }
 
 static void expect_device_error(const char *what) {
@@ -269,6 +280,8 @@ int main(void) {
         cmocka_unit_test(the_device_may_be_lost_at_any_call_of_init),
         cmocka_unit_test_setup_teardown(any_call_of_init_may_fail_with_a_shadow_map,
                                         open_shadows_instead, open_the_first_again),
+        cmocka_unit_test_setup_teardown(any_call_of_init_with_textures_may_fail,
+                                        open_textures_instead, open_the_first_again),
         cmocka_unit_test(what_the_device_lacks_is_named),
         cmocka_unit_test(nonsense_in_a_frame_is_refused_by_name),
         cmocka_unit_test(extreme_transforms_stay_finite),

@@ -11,7 +11,7 @@ enum { W = 64, H = 48 };
 
 /* Heap calls of the library's own are counted without the validation layer, which allocates inside
  * the calls it wraps. */
-static void three_hundred_frames(const char *scene, bool validate) {
+static void three_hundred_frames(const char *scene, const char *instance, bool validate) {
     masu_session_desc d = test_desc(scene, W, H);
     masu_session s;
     char error[ERROR_SIZE];
@@ -30,7 +30,7 @@ static void three_hundred_frames(const char *scene, bool validate) {
     uint64_t setup = wrap.setup_calls, heap = 0;
     int64_t live = wrap.live;
     assert_true(setup > 50); /* the wrapper is in the way */
-    masu_instance box = masu_instance_find(s.m, "box");
+    masu_instance box = masu_instance_find(s.m, instance);
     assert_int_not_equal(box.id, 0);
     for (uint32_t i = 0; i < 300; i++) {
         masu_frame_desc frame = {.rung = (i * 7 + i / 3) % 3, .time = 0.01 * i};
@@ -63,14 +63,15 @@ static void three_hundred_frames(const char *scene, bool validate) {
 
 static void three_hundred_frames_with_rung_changes_allocate_nothing(void **state) {
     (void)state;
-    three_hundred_frames("test_both", false);
-    three_hundred_frames("test_shadows", false);
+    three_hundred_frames("test_both", "box", false);
+    three_hundred_frames("test_shadows", "box", false);
+    three_hundred_frames("test_texture_mask", "disc", false);
 }
 
 static void three_hundred_frames_with_rung_changes_create_nothing_and_validate(void **state) {
     (void)state;
-    three_hundred_frames("test_both", true);
-    three_hundred_frames("test_shadows", true);
+    three_hundred_frames("test_both", "box", true);
+    three_hundred_frames("test_shadows", "box", true);
 }
 
 static void the_counter_counts(void **state) {
@@ -135,9 +136,8 @@ static void the_block_is_used_to_the_byte(void **state) {
     close_session(&s);
 }
 
-static void the_query_equals_the_use_for_many_descriptions(void **state) {
-    (void)state;
-    masu_session_desc d = test_desc("test_both", W, H);
+static void query_and_use(const char *scene) {
+    masu_session_desc d = test_desc(scene, W, H);
     masu_session s;
     d.no_renderer = true;
     open_session(&s, &d);
@@ -153,6 +153,7 @@ static void the_query_equals_the_use_for_many_descriptions(void **state) {
         q.readback = (random >> 20) % 16;
         q.debug.timestamps = (random >> 25) & 1;
         q.deny.unified_memory = (random >> 26) & 1;
+        q.deny.compressed_textures = (random >> 27) & 1;
         masu_memory need;
         masu_renderer *m = NULL;
         assert_int_equal(masu_memory_query(&q, &need, NULL), MASU_OK);
@@ -183,6 +184,12 @@ static void the_query_equals_the_use_for_many_descriptions(void **state) {
         free(block);
     }
     close_session(&s);
+}
+
+static void the_query_equals_the_use_for_many_descriptions(void **state) {
+    (void)state;
+    query_and_use("test_both");
+    query_and_use("test_texture_mask");
 }
 
 static void budgets_and_limits_are_refused_by_name(void **state) {

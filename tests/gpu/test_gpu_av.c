@@ -16,8 +16,8 @@ static masu_session_desc gpu_av_desc(const char *scene) {
 
 static void every_pass_stays_inside_its_buffers_and_images(void **state) {
     (void)state;
-    static const char *const scenes[] = {"test_both", "test_broken_field", "test_shadows",
-                                         "engine"};
+    static const char *const scenes[] = {"test_both", "test_broken_field", "test_shadows", "engine",
+                                         "textures"};
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         masu_session_desc d = gpu_av_desc(scenes[i]);
         masu_session s;

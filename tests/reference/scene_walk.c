@@ -48,6 +48,24 @@ static void read_name(walker *w, uint32_t name) {
            "a name does not end");
 }
 
+static uint32_t side(uint32_t size, uint32_t mip) {
+    uint32_t v = size >> mip;
+    return v < 1 ? 1 : v;
+}
+
+/* Bytes of a texture, by walking its blocks. */
+static uint64_t count_blocks(const masu_blob_texture *t) {
+    uint64_t bytes = 0;
+    for (uint32_t m = 0; m < t->mips && m < 13; m++) {
+        for (uint32_t y = 0; y < side(t->height, m); y += 4) {
+            for (uint32_t x = 0; x < side(t->width, m); x += 4) {
+                bytes += t->format == 1 || t->format == 3 ? 8 : 16;
+            }
+        }
+    }
+    return bytes * t->layers;
+}
+
 static void read_sections(walker *w) {
     const masu_scene *s = w->scene;
     const masu_scene_view *v = &w->view;
@@ -70,6 +88,88 @@ static void read_sections(walker *w) {
         read_section(w, v->code[k].words, v->code[k].count, sizeof *v->code[k].words, "SPIR-V");
     }
     read_section(w, v->names, v->name_bytes, 1, "names");
+    uint64_t texcoords = v->texcoords ? s->vertices : 0, texels = 0;
+    read_section(w, v->texcoords, texcoords, 2 * sizeof(float), "texture coordinates");
+    read_section(w, v->textures, s->texture_arrays, sizeof *v->textures, "textures");
+    read_section(w, v->texture_sets, s->texture_sets, sizeof *v->texture_sets, "texture sets");
+    for (uint32_t i = 0; i < s->texture_arrays && !w->fault; i++) {
+        texels = v->textures[i].offset + count_blocks(&v->textures[i]);
+    }
+    read_section(w, v->texels, texels, 1, "texels");
+}
+
+/* ---- Textures -------------------------------------------------------------------------------- */
+
+static void read_map(walker *w, const masu_blob_material *m, uint32_t slot) {
+    if (!(m->flags >> slot & 1)) return;
+    expect(w, m->texture_set < w->scene->texture_sets, "a material's texture set");
+    if (w->fault) return;
+    uint32_t texture = w->view.texture_sets[m->texture_set].texture[slot];
+    expect(w, texture < w->scene->texture_arrays, "a map has no texture");
+    if (w->fault) return;
+    const masu_blob_texture *t = &w->view.textures[texture];
+    expect(w, (m->layers >> 8 * slot & 255) < t->layers, "a map has no layer");
+    static const uint32_t formats[MASU_SLOT_COUNT] = {1u << 1 | 1u << 2, 1u << 4, 1u << 3 | 1u << 4,
+                                                      1u << 1}; /* allowed, by number */
+    expect(w, formats[slot] >> t->format & 1, "a map's format");
+    if (slot == MASU_SLOT_BASE && m->flags & MASU_MATERIAL_IS_MASK) {
+        expect(w, t->format == MASU_TEXTURE_BC3_SRGB, "a mask has no alpha");
+    }
+    if (slot == MASU_SLOT_SURFACE && m->flags & MASU_MATERIAL_HAS_METAL) {
+        expect(w, t->format == MASU_TEXTURE_BC5, "a map has no metallic");
+    }
+}
+
+static void read_textures(walker *w) {
+    const masu_scene *s = w->scene;
+    const masu_scene_view *v = &w->view;
+    uint64_t layers = 0, bytes = 0, decoded = 0;
+    int masks = 0;
+    expect(w, s->texture_arrays <= 64, "too many textures");
+    expect(w, !s->texture_arrays == !v->texcoords, "texture coordinates without textures");
+    for (uint32_t i = 0; i < s->texture_arrays && !w->fault; i++) {
+        const masu_blob_texture *t = &v->textures[i];
+        uint64_t end = t->offset + count_blocks(t);
+        expect(w, t->width - 1 < 4096 && t->height - 1 < 4096, "a texture's size");
+        expect(w, t->layers - 1 < 256, "a texture's layers");
+        expect(w, t->offset % 16 == 0, "a texture begins between");
+        if (i + 1 < s->texture_arrays) {
+            expect(w, end <= v->textures[i + 1].offset, "textures overlap");
+        }
+        /* The last mip is one texel, or there might be more: never a mip beyond that. */
+        expect(w, t->mips && (t->width >> (t->mips - 1) || t->height >> (t->mips - 1)),
+               "a texture's mips");
+        read_name(w, t->name);
+        if (w->fault) return;
+        layers += t->layers;
+        bytes += count_blocks(t);
+        uint64_t texels = 0;
+        for (uint32_t m = 0; m < t->mips; m++)
+            texels += (uint64_t)side(t->width, m) * side(t->height, m);
+        decoded += texels * t->layers * (t->format == 3 ? 1 : t->format == 4 ? 2 : 4);
+    }
+    for (uint64_t i = 0; v->texcoords && i < 2 * (uint64_t)s->vertices; i++) {
+        expect(w, fabsf(v->texcoords[i]) <= 32768.0f, "a texture coordinate");
+    }
+    for (uint32_t i = 0; i < s->texture_sets && !w->fault; i++) {
+        const masu_blob_texture_set *set = &v->texture_sets[i];
+        expect(w, set->wrap[0] < 3 && set->wrap[1] < 3, "a texture set's wrapping");
+        uint32_t given = 0;
+        for (uint32_t k = 0; k < MASU_SLOT_COUNT; k++) {
+            if (set->texture[k] == MASU_BLOB_NONE) continue;
+            given++;
+            expect(w, set->texture[k] < s->texture_arrays, "a texture set's texture");
+        }
+        expect(w, given > 0, "a texture set is empty");
+    }
+    for (uint32_t i = 0; i < s->materials && !w->fault; i++) {
+        masks |= (v->materials[i].flags & MASU_MATERIAL_IS_MASK) != 0;
+        for (uint32_t k = 0; k < MASU_SLOT_COUNT; k++) read_map(w, &v->materials[i], k);
+    }
+    expect(w, s->textures == layers, "textures were counted wrongly");
+    expect(w, s->texture_bytes == bytes, "texture bytes were counted wrongly");
+    expect(w, s->texture_bytes_decoded == decoded, "decoded bytes were counted wrongly");
+    expect(w, s->masks == (uint32_t)masks, "masks");
 }
 
 static void read_primitive(walker *w, const masu_blob_primitive *p) {
@@ -339,6 +439,7 @@ const char *masu_ref_walk_scene(const masu_scene *scene) {
     walker w = {.scene = scene, .view = masu_scene_look(scene)};
     read_sections(&w);
     if (!w.fault) read_geometry(&w);
+    if (!w.fault) read_textures(&w);
     if (!w.fault) read_looks(&w);
     if (!w.fault) read_shadow(&w);
     if (!w.fault) read_sdf(&w);

@@ -19,8 +19,8 @@ model() { printf '{"mesh": {"box": {}}%s}' "$1"; }
 # bakes MODELS: groups and items in $groups and $items
 bakes() {
     printf '{"models": [%s]}' "$1" > "$folder/s.json"
-    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet ||
-        fail "$1: is refused"
+    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
+        2> "$folder/err" || fail "$1: is refused: $(cat "$folder/err")"
     groups=$(sed -n '/"groups"/,/}/s/.*"count": \([0-9]*\).*/\1/p' "$folder/s.stats")
     items=$(sed -n '/"group_items"/,/}/s/.*"count": \([0-9]*\).*/\1/p' "$folder/s.stats")
 }
@@ -88,6 +88,17 @@ occluders 0 "$(model ', "occluder": [[2, 0, 0], [3, 1, 1]]')" # nothing is left
 occluders 2 "$(model ', "occluder": true'), $(model ', "occluder": true')"
 block='{"file": "'$PWD'/scenes/test_block.obj", "occluder": [[-0.5, 0, -0.5], [0.5, 1, 0.5]]}'
 occluders 1 "$block, $block" # one mesh
+# What one can look through hides nothing, and a warning says so, once for each mesh.
+leaf='"base_color_map": "'$(realpath "${BUILD:-build}")'/textures/leaf.tga"'
+seen_through() { # COUNT MODELS: so many warnings, no occluders
+    occluders 0 "$2"
+    [ "$(grep -c 'warning: the mesh .* is masked or blended: it is no occluder' "$folder/err")" = "$1" ] ||
+        fail "$2: not $1 warnings: $(cat "$folder/err")"
+}
+seen_through 1 "$(model ", \"occluder\": true, \"material\": {$leaf}")"
+seen_through 1 "$(model ", \"occluder\": true, \"material\": {$leaf, \"alpha\": \"blend\"}")"
+seen_through 1 "${block%\}}, \"material\": {$leaf}}"
+occluders 1 "$(model ", \"occluder\": true, \"material\": {$leaf, \"alpha\": \"opaque\"}")"
 refuses 'occluder: the mesh ".*" is no box: give two corners' \
     '{"mesh": {"sphere": {}}, "occluder": true}'
 refuses 'occluder: the mesh ".*" is no box' '{"mesh": {"plane": {}}, "occluder": true}'

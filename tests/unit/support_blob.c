@@ -59,8 +59,8 @@ static const masu_blob_occluder occluders[] = {
 };
 
 static const masu_blob_material materials[] = {
-    {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, {0}},
-    {{0.0f, 0.0f, 0.0f}, 1.0f, {4.0f, 2.0f, 1.0f}, 0.0f, NAME_GLOW, {0}},
+    {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, 0, 0, 0},
+    {{0.0f, 0.0f, 0.0f}, 1.0f, {4.0f, 2.0f, 1.0f}, 0.0f, NAME_GLOW, 0, 0, 0},
 };
 
 static const masu_blob_camera_key camera_keys[] = {
@@ -85,6 +85,42 @@ static const masu_blob_sdf_param sdf_params[] = {
     {0.5f, 0.0f, 2.0f, NAME_RADIUS},
     {-1.0f, -1.0f, 1.0f, NAME_BEND},
 };
+
+static const masu_blob_material mapped[] = {
+    {{0.5f, 0.25f, 1.0f},
+     0.4f,
+     {0.0f, 0.0f, 0.0f},
+     0.9f,
+     NAME_STEEL,
+     7 | MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | 128 << MASU_MATERIAL_CUTOFF_SHIFT,
+     0,
+     1},
+    {{0.0f, 0.0f, 0.0f},
+     1.0f,
+     {4.0f, 2.0f, 1.0f},
+     0.0f,
+     NAME_GLOW,
+     8 | MASU_MATERIAL_IS_BLEND,
+     1,
+     0},
+};
+
+static const float texcoords[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {-3.5f, 2},   {0.5f, 0.5f},
+                                     {7, 7}, {0, 0}, {4, 0}, {4, 4}, {0, 32768.0f}};
+
+static const masu_blob_texture textures[] = {
+    {MASU_TEXTURE_BC3_SRGB, 8, 8, 4, 2, NAME_PLATE, 0},
+    {MASU_TEXTURE_BC5, 6, 3, 3, 1, MASU_BLOB_NONE, 224},
+    {MASU_TEXTURE_BC1_SRGB, 4, 4, 1, 1, NAME_LID, 288},
+};
+
+static const masu_blob_texture_set texture_sets[] = {
+    {{0, 1, 1, MASU_BLOB_NONE}, {0, 2}, {0}},
+    {{MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE, 2}, {1, 1}, {0}},
+};
+
+/* 7 blocks of 16 bytes twice, 2 + 1 + 1 of 16, 1 of 8 and padding. */
+static const unsigned char texels[19][16] = {{1, 2, 3}, {0xFF, 0, 0x5A}};
 
 /* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
 static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
@@ -119,6 +155,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     size_t sections = 1 + (parts & SUPPORT_RASTER ? 9u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
                       (parts & SUPPORT_SDF ? 8u : 0u) + (parts & SUPPORT_SHADOW ? 1u : 0u) + 1;
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
+    uint32_t with_textures = SUPPORT_RASTER | SUPPORT_TEXTURES;
+    if ((parts & with_textures) == with_textures) sections += 4;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -126,7 +164,11 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_PRIMITIVES, primitives);
         ADD(MASU_BLOB_MESHES, meshes);
         ADD(MASU_BLOB_INSTANCES, instances);
-        ADD(MASU_BLOB_MATERIALS, materials);
+        if (parts & SUPPORT_TEXTURES) {
+            ADD(MASU_BLOB_MATERIALS, mapped);
+        } else {
+            ADD(MASU_BLOB_MATERIALS, materials);
+        }
         ADD(MASU_BLOB_GROUPS, groups);
         ADD(MASU_BLOB_GROUP_ITEMS, group_items);
         ADD(MASU_BLOB_OCCLUDERS, occluders);
@@ -163,6 +205,12 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
             if (!(parts & SUPPORT_RASTER)) ADD(MASU_BLOB_FRAGMENT_SPIRV, code);
         }
         ADD(MASU_BLOB_SLOTS, slots);
+    }
+    if ((parts & with_textures) == with_textures) {
+        ADD(MASU_BLOB_TEXCOORDS, texcoords);
+        ADD(MASU_BLOB_TEXTURES, textures);
+        ADD(MASU_BLOB_TEXTURE_SETS, texture_sets);
+        ADD(MASU_BLOB_TEXELS, texels);
     }
     support_blob_seal(blob->bytes, blob->size);
 }

@@ -11,7 +11,9 @@
  *   meshes     0 "plate": primitives 0-1   1 "lid": primitive 2 sdf params   0 "radius"  1 "bend"
  *   instances  0, 1 of mesh 0, 2 of mesh 1                      slots        three; parts: one
  *   groups     0: instance 0 and group 1  1: instance 1; instance 2 is in none
- *   occluders  one in each mesh: three are placed */
+ *   occluders  one in each mesh: three are placed
+ *   textures   0: BC3, 8 x 8, 4 mips, 2 layers   1: BC5, 6 x 3, 3 mips   2: BC1, 4 x 4, 1 mip
+ *   sets       0: base 0, normal 1, surface 1    1: emissive 2 */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
 
@@ -27,7 +29,8 @@ enum {
     SUPPORT_VARIANTS = 8, /* with an SDF: the code that a blob may have or lack; that of
                              march_fragment only without SUPPORT_RASTER */
     SUPPORT_SHADOW = 16, /* the sun's shadow map */
-    SUPPORT_ALL = 31
+    SUPPORT_ALL = 31,
+    SUPPORT_TEXTURES = 32 /* with SUPPORT_RASTER: "steel" has maps, and is a mask */
 };
 
 #define SUPPORT_BLOB_ROOM 8192u

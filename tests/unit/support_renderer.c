@@ -53,6 +53,7 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     for (uint32_t r = 0; r < count; r++) d.rungs[r] = rungs[r];
     if (masu_compile(&d, 64, 64, &m.plan, &detail)) fail_msg("%s", detail.text);
     m.plan.buffers[MASU_BUFFER_STAGING].bytes = staging;
+    m.plan.staged = staging != 0;
     uint64_t used[MASU_ROLE_COUNT] = {0};
     for (uint32_t b = 0; b < MASU_BUFFER_POISON; b++) {
         masu_buffer_plan *buffer = &m.plan.buffers[b];

@@ -86,6 +86,11 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(limits.sdf_params);
     SAME(limits.shadow_cascades);
     SAME(limits.shadow_resolution);
+    SAME(limits.textures);
+    SAME(limits.texture_bytes);
+    SAME(vulkan.texture_compression_bc);
+    SAME(vulkan.max_anisotropy);
+    SAME(deny.compressed_textures);
     SAME(host_budget);
     SAME(device_budget);
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -163,7 +168,8 @@ static masu_desc full_desc(void) {
     masu_desc d = scene_desc(RASTER, 320, 200);
     d.vulkan = (masu_vulkan){
         no_function, FAKE(VkInstance, 1), FAKE(VkPhysicalDevice, 2), FAKE(VkDevice, 3),
-        1,           &allocator,          FAKE(VkPipelineCache, 4)};
+        1,           &allocator,          FAKE(VkPipelineCache, 4),  1,
+        4.0f};
     d.source = (masu_source){FAKE(VkImageView, 5), 6, 7};
     d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
     d.targets.storage = 8;
@@ -431,6 +437,8 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         {"limits.sdf_params", offsetof(masu_limits, sdf_params), 2},
         {"limits.shadow_cascades", offsetof(masu_limits, shadow_cascades), 3},
         {"limits.shadow_resolution", offsetof(masu_limits, shadow_resolution), 1024},
+        {"limits.textures", offsetof(masu_limits, textures), 4},
+        {"limits.texture_bytes", offsetof(masu_limits, texture_bytes), 1000},
     };
     static masu_frame_plan plan;
     assert_int_equal(sizeof(masu_limits), COUNT(rows) * sizeof(uint64_t));

@@ -80,7 +80,8 @@ static void ungroup(void) {
 /* A blob that has a section of that kind, as full as one can be. Returns the section's index. */
 static uint64_t write_with(uint32_t kind) {
     uint32_t without = kind == MASU_BLOB_FRAGMENT_SPIRV ? SUPPORT_RASTER : 0;
-    support_blob_write(&blob, SUPPORT_ALL & ~without);
+    uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES : 0;
+    support_blob_write(&blob, (SUPPORT_ALL & ~without) | with);
     masu_blob_section *row = support_blob_row(&blob, (enum masu_blob_kind)kind);
     assert_non_null(row);
     return (uint64_t)(row - (masu_blob_section *)(void *)(blob.bytes + sizeof(masu_blob_header)));

@@ -1,0 +1,104 @@
+/*
+ * maps.glsl: the textures of a material, for gbuffer.frag and cascade.frag. The flags are the same for all of a draw,
+ * so every branch here is uniform and implicit derivatives are defined.
+ *
+ * Tangents are not stored: the directions in which u and v grow follow from the derivatives of
+ * position and texture coordinate (Schueler, "Followup: Normal Mapping Without Precomputed Tangents",
+ * 2013). That saves 8 bytes a vertex, needs no splitting of vertices where a mapping mirrors, and is
+ * as precise everywhere: positions are relative to the camera, so that the step from pixel to pixel
+ * is some 1e-3 of them or more, whatever the distance. Within one triangle the frame follows the
+ * interpolated normal but not an interpolated tangent: on coarse meshes the relief has facets that
+ * MikkTSpace's would not have.
+ */
+#ifndef MASU_MAPS_GLSL
+#define MASU_MAPS_GLSL
+
+layout(constant_id = 0) const bool masked = false;
+
+layout(set = MASU_SET_TEXTURES, binding = 0) uniform sampler2DArray base_map;
+layout(set = MASU_SET_TEXTURES, binding = 1) uniform sampler2DArray normal_map;
+layout(set = MASU_SET_TEXTURES, binding = 2) uniform sampler2DArray surface_map;
+layout(set = MASU_SET_TEXTURES, binding = 3) uniform sampler2DArray emissive_map;
+
+float masu_layer(uint slot)
+{
+    return float(pc.index.w >> 8 * slot & 0xFFu);
+}
+
+float masu_cutoff()
+{
+    return float(pc.index.z >> MASU_MAP_CUTOFF_SHIFT & 0xFFu) / 255.0;
+}
+
+/* Base colour and alpha; white where there is no map. */
+vec4 masu_base(vec2 at)
+{
+    if ((pc.index.z & MASU_MAP_BASE) == 0u) {
+        return vec4(1.0);
+    }
+    return texture(base_map, vec3(at, masu_layer(0u)), pc.param.x);
+}
+
+/* Multiplies the factors of `s`; returns alpha. */
+float masu_sample_maps(vec2 at, inout masu_surface s)
+{
+    float bias = pc.param.x;
+    vec4 base = masu_base(at);
+    s.albedo *= base.rgb;
+    if ((pc.index.z & MASU_MAP_SURFACE) != 0u) {
+        vec2 surface = texture(surface_map, vec3(at, masu_layer(2u)), bias).rg;
+        s.roughness *= surface.r;
+        if ((pc.index.z & MASU_MAP_METAL) != 0u) {
+            s.metallic *= surface.g;
+        }
+    }
+    if ((pc.index.z & MASU_MAP_EMISSIVE) != 0u) {
+        vec3 glow = texture(emissive_map, vec3(at, masu_layer(3u)), bias).rgb;
+        /* What glows is not lit (pack.glsl). A trace of light that filtering or a block brings from
+         * a neighbouring texel must not put out the surface there. */
+        s.emissive *= max(glow.r, max(glow.g, glow.b)) < 0.2 ? vec3(0.0) : glow;
+    }
+    return base.a;
+}
+
+/* A relief is seen where it faces the viewer. Normals that point away, which near a silhouette some
+ * of any map do, would shine there as if seen edge-on; they are turned until they are all but edge-on.
+ */
+vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
+{
+    vec3 view = masu_normalize(-rel, fallback);
+    vec3 n = masu_normalize(normal, fallback);
+    if ((pc.index.z & MASU_MAP_NORMAL) == 0u) {
+        return n;
+    }
+    return masu_normalize(n + view * max(0.1 - dot(n, view), 0.0), fallback);
+}
+
+/* The normal of the map in world space, unnormalised, on the side of `normal`. */
+vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
+{
+    if ((pc.index.z & MASU_MAP_NORMAL) == 0u) {
+        return normal;
+    }
+    vec2 xy = texture(normal_map, vec3(at, masu_layer(1u)), pc.param.x).rg;
+    /* 128 / 255 is zero: an even number of steps has no middle. */
+    xy = clamp((xy * 255.0 - 128.0) / 127.0, -1.0, 1.0);
+    float z = sqrt(max(1.0 - dot(xy, xy), 0.0));
+    vec3 dx = dFdx(rel);
+    vec3 dy = dFdy(rel);
+    vec2 du = vec2(dFdx(at.x), dFdy(at.x));
+    vec2 dv = vec2(dFdx(at.y), dFdy(at.y));
+    vec3 n = masu_normalize(normal, vec3(0.0, 1.0, 0.0));
+    /* The gradients of u and v on the surface, times the area of the pixel's footprint, whose sign
+     * says on which side of the surface the normal is. Each is made a unit vector, as bakers of
+     * normal maps have it, however the mapping stretches. v grows down the image, +y of the map is up. */
+    vec3 right = cross(dy, n);
+    vec3 down = cross(n, dx);
+    float side = dot(right, dx) < 0.0 ? -1.0 : 1.0;
+    vec3 t = (right * du.x + down * du.y) * side;
+    vec3 b = (right * dv.x + down * dv.y) * -side;
+    /* Of a mapping without extent along u or v that direction is zero, and its lean is left out. */
+    return t * (masu_rsqrt(dot(t, t)) * xy.x) + b * (masu_rsqrt(dot(b, b)) * xy.y) + n * z;
+}
+
+#endif

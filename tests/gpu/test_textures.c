@@ -1,0 +1,502 @@
+/* test_textures.c: textures from blob to pixel, against the same blob sampled on the CPU: mips and
+ * their bias, blocks taken by the device and blocks decoded on the host, masks, normal maps, light,
+ * grazing views, memory. */
+#include "support.h"
+
+#include "blob.h"
+#include "image.h"
+#include "scene.h"
+#include "texture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 128, PIXELS = SIDE * SIDE };
+
+static masu_session s;
+static uint8_t *blob; /* the reference's own copy */
+static masu_scene look;
+
+static void read_blob(const char *scene) {
+    char error[ERROR_SIZE];
+    size_t size;
+    masu_detail detail;
+    free(blob);
+    assert_ok(masu_file_read(scene_path(scene), 1 << 30, &blob, &size, error, sizeof error));
+    assert_int_equal(masu_scene_bind(blob, size, &look, &detail), MASU_OK);
+}
+
+static void open_textured(const char *scene, int decoded, float scale) {
+    masu_session_desc d = test_desc(scene, SIDE, SIDE);
+    read_blob(scene);
+    d.desc.readback = MASU_READBACK_ALL;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.scale = scale};
+    d.desc.deny.compressed_textures = (uint32_t)decoded;
+    open_session(&s, &d);
+}
+
+static const void *image_of(const masu_frame_desc *frame, masu_readback_bits which) {
+    masu_commands commands;
+    masu_readback_image image;
+    draw(&s, frame, &commands, NULL);
+    assert_int_equal(masu_readback(s.m, commands.slot, which, &image), MASU_OK);
+    return image.pixels;
+}
+
+static float half(uint16_t h) {
+    int exponent = h >> 10 & 31, mantissa = h & 1023;
+    float v =
+        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
+    if (exponent == 31) v = NAN;
+    return h & 0x8000 ? -v : v;
+}
+
+/* ---- The reference: texels of the blob, in linear light -------------------------------------- */
+
+static double linear(uint8_t c) {
+    double v = c / 255.0;
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+typedef struct mip {
+    uint32_t width, height;
+    double *rgba;
+} mip;
+
+/* One mip of layer 0, decoded block by block; free .rgba. */
+static mip mip_of(uint32_t texture, uint32_t level) {
+    masu_scene_view v = masu_scene_look(&look);
+    const masu_blob_texture *t = &v.textures[texture];
+    const unsigned char *at = v.texels + t->offset;
+    uint32_t block_bytes = masu_blob_block_bytes(t->format);
+    int srgb = t->format == MASU_TEXTURE_BC1_SRGB || t->format == MASU_TEXTURE_BC3_SRGB;
+    for (uint32_t m = 0; m < level; m++) {
+        at += (size_t)((masu_blob_mip_size(t->width, m) + 3) / 4) *
+              ((masu_blob_mip_size(t->height, m) + 3) / 4) * block_bytes;
+    }
+    mip out = {masu_blob_mip_size(t->width, level), masu_blob_mip_size(t->height, level), NULL};
+    out.rgba = calloc((size_t)out.width * out.height * 4, sizeof *out.rgba);
+    for (uint32_t y = 0; y < out.height; y++) {
+        for (uint32_t x = 0; x < out.width; x++) {
+            uint8_t block[64];
+            masu_texture_decode(
+                t->format, at + ((size_t)(y / 4) * ((out.width + 3) / 4) + x / 4) * block_bytes,
+                block);
+            for (uint32_t k = 0; k < 4 && srgb; k++) {
+                uint8_t c = block[4 * (y % 4 * 4 + x % 4) + k];
+                out.rgba[4 * ((size_t)y * out.width + x) + k] = k < 3 ? linear(c) : c / 255.0;
+            }
+        }
+    }
+    return out;
+}
+
+/* Bilinear, repeating. */
+static double sample(const mip *m, double u, double v, uint32_t k) {
+    double x = u * m->width - 0.5, y = v * m->height - 0.5, sum = 0;
+    double fx = x - floor(x), fy = y - floor(y);
+    for (int j = 0; j < 2; j++) {
+        for (int i = 0; i < 2; i++) {
+            int64_t px = ((int64_t)floor(x) + i) % m->width,
+                    py = ((int64_t)floor(y) + j) % m->height;
+            if (px < 0) px += m->width;
+            if (py < 0) py += m->height;
+            sum += (i ? fx : 1 - fx) * (j ? fy : 1 - fy) *
+                   m->rgba[4 * ((size_t)py * m->width + (size_t)px) + k];
+        }
+    }
+    return sum;
+}
+
+/* ---- Mips ------------------------------------------------------------------------------------ */
+
+/* A quad 2 x 2 seen face-on from where one pixel of the render size is `texels` of its 256. */
+static masu_camera face_on(double texels, uint32_t render) {
+    double pixel = texels * 2 / 256, height = pixel * render; /* world units */
+    return (masu_camera){
+        .position = {0, 0, height / (2 * tan(0.35))}, .forward = {0, 0, -1}, .fov_y = 0.7f};
+}
+
+/* Draws and compares sqrt of albedo, bytes, with one mip. Returns the largest error. */
+static double compare_face_on(double texels, uint32_t render, uint32_t level, uint32_t *compared,
+                              double *mean) {
+    masu_camera camera = face_on(texels, render);
+    masu_frame_desc frame = {.camera = &camera};
+    const uint8_t *got = image_of(&frame, MASU_READBACK_ALBEDO);
+    mip m = mip_of(0, level);
+    double worst = 0, sum = 0;
+    *compared = 0;
+    for (uint32_t y = 0; y < render; y++) {
+        for (uint32_t x = 0; x < render; x++) {
+            double u = 0.5 + (x + 0.5 - render / 2.0) * texels / 256;
+            double v = 0.5 + (y + 0.5 - render / 2.0) * texels / 256;
+            double rim = texels / 256 * 1.5; /* the rim's pixels may not be covered */
+            if (u < rim || u > 1 - rim || v < rim || v > 1 - rim) continue;
+            for (uint32_t k = 0; k < 3; k++) {
+                double want = 255 * sqrt(sample(&m, u, v, k));
+                double error = fabs(want - got[4 * (y * render + x) + k]);
+                if (error > worst) worst = error;
+                sum += error;
+            }
+            (*compared)++;
+        }
+    }
+    *mean = sum / (3.0 * *compared);
+    free(m.rgba);
+    return worst;
+}
+
+static void a_quad_shows_the_mip_of_its_distance(void **state) {
+    (void)state;
+    /* Texels per pixel and the mip they ask for: trilinear filtering has nothing to mix. */
+    static const struct {
+        double texels;
+        uint32_t level;
+    } rows[] = {{0.25, 0}, {0.5, 0}, {1, 0}, {2, 1}, {4, 2}, {8, 3}, {16, 4}};
+    for (int decoded = 0; decoded < 2; decoded++) {
+        open_textured("test_texture_quad", decoded, 1.0f);
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            uint32_t compared;
+            double mean,
+                worst = compare_face_on(rows[i].texels, SIDE, rows[i].level, &compared, &mean);
+            print_message("%s, %g texels a pixel: mip %u, off by %.2f at most, %.3f in the mean "
+                          "(of 255, %u pixels)\n",
+                          decoded ? "decoded" : "blocks ", rows[i].texels, rows[i].level, worst,
+                          mean, compared);
+            assert_true(compared > (rows[i].texels < 8 ? 500 : 20));
+            assert_true(worst <= 3.0);
+            assert_true(mean <= 0.8);
+            if (rows[i].level) { /* and not the mip before */
+                double other;
+                assert_true(compare_face_on(rows[i].texels, SIDE, rows[i].level - 1, &compared,
+                                            &other) > 8);
+            }
+        }
+        close_session(&s);
+    }
+}
+
+static void fewer_pixels_take_the_mip_of_the_output(void **state) {
+    (void)state;
+    /* At half size a pixel has twice the texels; the bias of -1 takes that back. */
+    uint32_t compared;
+    double mean;
+    open_textured("test_texture_quad", 0, 0.5f);
+    assert_true(compare_face_on(4, SIDE / 2, 1, &compared, &mean) <= 3.0);
+    assert_true(compare_face_on(4, SIDE / 2, 2, &compared, &mean) > 8);
+    close_session(&s);
+}
+
+static void blocks_and_decoded_texels_give_one_picture(void **state) {
+    (void)state;
+    static uint8_t pictures[2][4 * PIXELS];
+    uint64_t bytes[2] = {0};
+    /* 1200 x 1200 is more than a staging buffer: it arrives in chunks. */
+    for (int decoded = 0; decoded < 2; decoded++) {
+        masu_memory_row rows[64];
+        open_textured("test_texture_large", decoded, 1.0f);
+        draw_rung(&s, 0, pictures[decoded]);
+        uint32_t n = masu_memory_report(s.m, rows, 64);
+        for (uint32_t i = 0; i < n; i++) {
+            if (!strcmp(rows[i].kind, "texture")) bytes[decoded] += rows[i].bytes;
+            if (!strcmp(rows[i].name, "staging")) assert_true(rows[i].bytes < 5u << 20);
+        }
+        masu_peak_info peaks;
+        masu_peaks(s.m, &peaks);
+        assert_int_equal(peaks.textures, 3);
+        assert_int_equal(peaks.texture_bytes, decoded || !s.host.compressed
+                                                  ? s.scene.texture_bytes_decoded
+                                                  : s.scene.texture_bytes);
+        assert_true(bytes[decoded] >= peaks.texture_bytes);
+        close_session(&s);
+    }
+    uint32_t worst = max_difference(pictures[0], pictures[1], sizeof pictures[0]);
+    print_message("blocks: %llu bytes, decoded: %llu; pictures differ by %u of 255\n",
+                  (unsigned long long)bytes[0], (unsigned long long)bytes[1], worst);
+    assert_true(worst <= 3);
+    uint32_t colours = 0; /* it is a picture */
+    for (uint32_t i = 4; i < 4 * PIXELS; i += 4) {
+        colours += memcmp(pictures[0] + i, pictures[0] + i - 4, 3) != 0;
+    }
+    assert_true(colours > PIXELS / 8);
+}
+
+/* ---- Grazing views --------------------------------------------------------------------------- */
+
+static void a_floor_to_the_horizon_is_finite_and_grey(void **state) {
+    (void)state;
+    for (int decoded = 0; decoded < 2; decoded++) {
+        masu_frame_desc frame = {0};
+        open_textured("test_texture_floor", decoded, 1.0f);
+        const uint8_t *albedo = image_of(&frame, MASU_READBACK_ALBEDO);
+        double sum = 0;
+        uint32_t count = 0;
+        for (uint32_t y = SIDE * 3 / 4; y < SIDE; y++) {
+            for (uint32_t x = 0; x < SIDE; x++) {
+                double v = albedo[4 * (y * SIDE + x)] / 255.0;
+                sum += v * v; /* 37 fields of an odd checker: half of them and half a field */
+                count++;
+            }
+        }
+        print_message("checker at a grazing angle: %.4f of 0.5\n", sum / count);
+        assert_true(fabs(sum / count - 0.5) < 0.03);
+        const uint16_t *hdr = image_of(&frame, MASU_READBACK_HDR);
+        for (uint32_t i = 0; i < 4 * PIXELS; i++) {
+            assert_true(isfinite(half(hdr[i])) && half(hdr[i]) >= 0);
+        }
+        masu_stats_info stats;
+        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(stats.replaced, 0);
+        close_session(&s);
+    }
+}
+
+/* ---- Masks ----------------------------------------------------------------------------------- */
+
+static void a_mask_has_the_silhouette_of_its_alpha(void **state) {
+    (void)state;
+    for (int decoded = 0; decoded < 2; decoded++) {
+        masu_camera camera = {.position = {0, 0, 3.2}, .forward = {0, 0, -1}, .fov_y = 0.7f};
+        masu_frame_desc frame = {.camera = &camera};
+        open_textured("test_texture_mask", decoded, 1.0f);
+        const float *depth = image_of(&frame, MASU_READBACK_DEPTH);
+        masu_scene_view v = masu_scene_look(&look);
+        uint32_t texture = 0;
+        while (v.textures[texture].format != MASU_TEXTURE_BC3_SRGB) texture++;
+        mip m = mip_of(texture, 0);
+        uint32_t there = 0, wrong = 0, near = 0;
+        double pixel = 2 * 3.2 * tan(0.35) / SIDE;
+        for (uint32_t y = 0; y < SIDE; y++) {
+            for (uint32_t x = 0; x < SIDE; x++) {
+                double u = 0.5 + (x + 0.5 - SIDE / 2) * pixel / 2;
+                double t = 0.5 + (y + 0.5 - SIDE / 2) * pixel / 2;
+                double alpha = u > 0 && u < 1 && t > 0 && t < 1 ? sample(&m, u, t, 3) : 0;
+                int want = alpha >= 0.5, got = depth[y * SIDE + x] > 0;
+                there += (uint32_t)got;
+                near += fabs(alpha - 0.5) < 0.05;
+                wrong += want != got && fabs(alpha - 0.5) >= 0.05;
+            }
+        }
+        free(m.rgba);
+        double radius = 24.0 / 64 * 2 / pixel, area = 3.14159265 * radius * radius;
+        print_message("mask: %u pixels of %.0f, %u wrong, %u too near to tell\n", there, area,
+                      wrong, near);
+        assert_int_equal(wrong, 0);
+        assert_true(fabs(there - area) < 0.03 * area);
+        /* The same picture without its alpha is all there. */
+        camera.position[0] = 3;
+        depth = image_of(&frame, MASU_READBACK_DEPTH);
+        uint32_t whole = 0;
+        for (uint32_t i = 0; i < PIXELS; i++) whole += depth[i] > 0;
+        assert_true(fabs(whole - 4 / (pixel * pixel)) < 0.03 * whole);
+        close_session(&s);
+    }
+}
+
+/* A mask far away covers what it covers near by. */
+static void a_mask_keeps_its_area_with_distance(void **state) {
+    (void)state;
+    open_textured("test_texture_mask", 0, 1.0f);
+    for (double distance = 3; distance < 30; distance *= 1.5) {
+        masu_camera camera = {.position = {0, 0, distance}, .forward = {0, 0, -1}, .fov_y = 0.7f};
+        masu_frame_desc frame = {.camera = &camera};
+        const float *depth = image_of(&frame, MASU_READBACK_DEPTH);
+        double pixel = 2 * distance * tan(0.35) / SIDE;
+        uint32_t there = 0;
+        for (uint32_t y = 0; y < SIDE; y++) {
+            for (uint32_t x = 0; x < SIDE; x++) {
+                there += depth[y * SIDE + x] > 0 && fabs((x + 0.5 - SIDE / 2) * pixel) < 1;
+            }
+        }
+        double area = 3.14159265 * 0.75 * 0.75 / (pixel * pixel);
+        assert_true(fabs(there - area) < 0.08 * area + 4);
+    }
+    close_session(&s);
+}
+
+/* ---- Normal maps ----------------------------------------------------------------------------- */
+
+typedef struct vec {
+    double x, y, z;
+} vec;
+
+static vec scaled(vec a, double f) { return (vec){a.x * f, a.y * f, a.z * f}; }
+static vec plus(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static double dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static vec unit(vec a) { return scaled(a, 1 / sqrt(dot(a, a))); }
+
+/* Where the pixel's ray from (0, 0, 8) meets the unit sphere about (x, 0, 0); 0: it does not. */
+static int hit(uint32_t px, uint32_t py, double center, vec *normal, vec *view) {
+    double half_size = tan(0.25);
+    vec ray = unit((vec){(2 * (px + 0.5) / SIDE - 1) * half_size,
+                         (1 - 2 * (py + 0.5) / SIDE) * half_size, -1});
+    vec from = {-center, 0, 8};
+    double b = dot(ray, from), disc = b * b - dot(from, from) + 1;
+    if (disc < 0) return 0;
+    *normal = plus(from, scaled(ray, -b - sqrt(disc)));
+    *view = scaled(ray, -1);
+    return 1;
+}
+
+/* The left sphere leans by 30 degrees to where its picture's right is: east, as seen from outside;
+ * the right one, which is mirrored, up. */
+static vec bent(int right, vec n) {
+    vec east = unit((vec){n.z, 0, -n.x}),
+        north = unit((vec){-n.x * n.y, 1 - n.y * n.y, -n.z * n.y});
+    return plus(scaled(right ? north : east, sin(3.14159265358979 / 6)),
+                scaled(n, cos(3.14159265358979 / 6)));
+}
+
+/* light.comp in double: sun alone, no metal. */
+static double lit(vec n, vec v, vec l, double albedo, double roughness) {
+    double nl = dot(n, l), nv = fmax(dot(n, v), 1e-4);
+    if (nl <= 0) return 0;
+    vec h = unit(plus(l, v));
+    double nh = dot(n, h), vh = dot(v, h), alpha = roughness * roughness;
+    double f = 0.04 + 0.96 * pow(1 - vh, 5);
+    double d = nh * nh * (alpha * alpha - 1) + 1; /* GGX, times pi */
+    double g = nl * sqrt(alpha * alpha + (1 - alpha * alpha) * nv * nv) +
+               nv * sqrt(alpha * alpha + (1 - alpha * alpha) * nl * nl);
+    return nl * (albedo * (1 - f) + f * alpha * alpha / (d * d) * 0.5 / g);
+}
+
+static void normal_maps_lean_as_their_pictures_say(void **state) {
+    (void)state;
+    masu_camera camera = {.position = {0, 0, 8}, .forward = {0, 0, -1}, .fov_y = 0.5f};
+    masu_light light = {.sun_direction = {0.4f, 0.5f, 0.77f}, .sun_color = {2, 2, 2}};
+    masu_frame_desc frame = {.camera = &camera, .light = &light};
+    vec sun = unit((vec){0.4, 0.5, 0.77});
+    open_textured("test_texture_normals", 0, 1.0f);
+    static uint32_t normals[PIXELS];
+    memcpy(normals, image_of(&frame, MASU_READBACK_NORMAL), sizeof normals);
+    const uint16_t *hdr = image_of(&frame, MASU_READBACK_HDR);
+    double worst = 0, sum = 0, dark = 0, dim = 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        for (int right = 0; right < 2; right++) {
+            vec n, view;
+            float got[3];
+            if (!hit(i % SIDE, i / SIDE, right ? 1.2 : -1.2, &n, &view)) continue;
+            vec want = bent(right, n);
+            /* The poles have no east; rims are turned to the viewer, or not covered. */
+            if (fabs(n.y) > 0.85 || dot(n, view) < 0.3 || dot(want, view) < 0.2) continue;
+            masu_unpack_normal(normals[i], got);
+            vec g = {(double)got[0], (double)got[1], (double)got[2]};
+            double degrees = acos(fmin(dot(g, want), 1)) * 57.29578;
+            if (degrees > worst) worst = degrees;
+            sum += degrees;
+            count++;
+            double expected = 2 * lit(want, view, sun, 0.4, 0.5);
+            double found = (double)half(hdr[4 * i + 1]);
+            dark = fmax(dark, fabs(found - expected) / (0.05 + expected));
+            dim += fabs(found - expected) / (0.05 + expected);
+        }
+    }
+    print_message("normals of %u pixels: %.2f degrees off at most, %.2f in the mean; light off by "
+                  "%.3f at most, %.4f in the mean\n",
+                  count, worst, sum / count, dark, dim / count);
+    assert_true(count > 2000);
+    assert_true(worst < 2.0 && sum / count < 0.6);
+    assert_true(dark < 0.15 && dim / count < 0.03);
+    close_session(&s);
+}
+
+/* ---- What scenes without textures have -------------------------------------------------------- */
+
+static void a_scene_without_textures_has_nothing_of_them(void **state) {
+    (void)state;
+    static uint8_t pictures[2][4 * PIXELS];
+    for (int denied = 0; denied < 2; denied++) {
+        masu_memory_row rows[64];
+        masu_session_desc d = test_desc("test_both", SIDE, SIDE);
+        d.desc.deny.compressed_textures = (uint32_t)denied;
+        d.desc.vulkan.max_anisotropy = denied ? 0.0f : 4.0f;
+        open_session(&s, &d);
+        draw_rung(&s, 0, pictures[denied]);
+        uint32_t n = masu_memory_report(s.m, rows, 64);
+        for (uint32_t i = 0; i < n; i++) {
+            int of_textures = !strcmp(rows[i].kind, "texture") || strstr(rows[i].name, "texture");
+            assert_true(!of_textures || rows[i].bytes == 0);
+            if (!strcmp(rows[i].kind, "buffer")) {
+                assert_true(!of_textures);
+                assert_true(s.need.unified ? strcmp(rows[i].name, "staging") : 1);
+            }
+        }
+        masu_stats_info stats;
+        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(stats.draws, 1);
+        close_session(&s);
+    }
+    assert_int_equal(max_difference(pictures[0], pictures[1], sizeof pictures[0]), 0);
+}
+
+static void the_demo_draws_finite_pixels_at_every_rung(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("textures", 160, 90);
+    d.desc.readback = MASU_READBACK_ALL; /* velocities too: the other set of shaders */
+    d.desc.debug.poison = 1;
+    open_session(&s, &d);
+    for (uint32_t rung = 0; rung < 3; rung++) {
+        masu_commands commands;
+        masu_readback_image image;
+        masu_frame_desc frame = {.rung = rung, .time = rung};
+        draw(&s, &frame, &commands, NULL);
+        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
+        const uint16_t *hdr = image.pixels;
+        for (uint32_t i = 0; i < 4 * image.width * image.height; i++) {
+            assert_true(isfinite(half(hdr[i])));
+        }
+        masu_stats_info stats;
+        assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+        assert_int_equal(stats.replaced, 0);
+        assert_int_equal(stats.draws, 7);
+    }
+    close_session(&s);
+}
+
+static void anisotropy_is_taken_and_checked(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_texture_floor", SIDE, SIDE);
+    d.no_renderer = true;
+    open_session(&s, &d);
+    masu_detail detail;
+    masu_memory need;
+    s.desc.vulkan.max_anisotropy = 0.5f;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "vulkan.max_anisotropy");
+    s.desc.vulkan.max_anisotropy = (float)NAN;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_ARGUMENT);
+    s.desc.vulkan.max_anisotropy = s.host.most_anisotropy; /* 0 where there is none */
+    s.desc.limits.textures = 1;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_LIMIT);
+    assert_string_equal(detail.what, "limits.textures");
+    assert_true(detail.needed == 2 && detail.given == 1);
+    s.desc.limits.textures = 2;
+    s.desc.limits.texture_bytes = 100;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_LIMIT);
+    assert_string_equal(detail.what, "limits.texture_bytes");
+    s.desc.limits.texture_bytes = 0;
+    char error[ERROR_SIZE];
+    assert_ok(masu_session_start(&s, error, sizeof error));
+    draw_rung(&s, 0, NULL);
+    close_session(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_quad_shows_the_mip_of_its_distance),
+        cmocka_unit_test(fewer_pixels_take_the_mip_of_the_output),
+        cmocka_unit_test(blocks_and_decoded_texels_give_one_picture),
+        cmocka_unit_test(a_floor_to_the_horizon_is_finite_and_grey),
+        cmocka_unit_test(a_mask_has_the_silhouette_of_its_alpha),
+        cmocka_unit_test(a_mask_keeps_its_area_with_distance),
+        cmocka_unit_test(normal_maps_lean_as_their_pictures_say),
+        cmocka_unit_test(a_scene_without_textures_has_nothing_of_them),
+        cmocka_unit_test(the_demo_draws_finite_pixels_at_every_rung),
+        cmocka_unit_test(anisotropy_is_taken_and_checked),
+    };
+    return cmocka_run_group_tests_name("textures", tests, NULL, NULL);
+}

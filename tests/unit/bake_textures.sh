@@ -1,0 +1,226 @@
+#!/bin/bash
+# masu-bake and pictures: every format that is promised, models that embed them, and pictures that are
+# missing, broken, empty, too large or something else. None stops a bake: each is one warning that
+# names the file, and its material has its factors alone.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+build=$(realpath "${BUILD:-build}")
+bake=$build/bin/masu-bake
+pictures=$build/textures
+models=/usr/share/assimp/models
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# bakes ARGUMENT...: exit code 0, the blob in $folder/x.masu, statistics in $folder/stats
+bakes() {
+    "$bake" "$@" -o "$folder/x.masu" --stats "$folder/stats" > "$folder/stdout" 2> "$folder/stderr" ||
+        fail "$*: $(cat "$folder/stderr")"
+}
+
+# counts SECTION: elements of the last blob
+counts() {
+    tr -d ' \n' < "$folder/stats" | sed -n "s/.*\"$1\":{\"count\":\([0-9]*\).*/\1/p"
+}
+
+# warns COUNT [PATTERN]: that many warnings, one of which matches
+warns() {
+    [ "$(grep -c 'masu-bake: warning: ' "$folder/stderr")" = "$1" ] ||
+        fail "not $1 warnings: $(cat "$folder/stderr")"
+    [ -z "${2:-}" ] || grep -q -e "$2" "$folder/stderr" || fail "\"$2\" is not in $(cat "$folder/stderr")"
+}
+
+# quad MEMBERS: a scene of one plane with these members of its material
+quad() {
+    printf '{"models": [{"mesh": {"plane": {}}, "material": {%s}}]}\n' "$1" > "$folder/scene.json"
+}
+
+scene=$folder/scene.json
+
+# ---- formats -------------------------------------------------------------------------------------
+
+for name in bricks.png ground.jpg leaf.tga sign.rgb; do
+    quad "\"base_color_map\": \"$pictures/$name\""
+    bakes "$scene"
+    warns 0
+    [ "$(counts textures)" = 1 ] || fail "$name: $(counts textures) textures"
+done
+# Names are relative to the scene, or found in the texture path by their last part.
+cp "$pictures/gradient.png" "$folder/near.png"
+quad '"base_color_map": "near.png"'
+bakes "$scene"
+[ "$(counts textures)" = 1 ] || fail "a picture beside its scene is not found"
+quad '"base_color_map": "C/somewhere/else/gradient.png"'
+bakes "$scene"
+warns 1 'C/somewhere/else/gradient.png: No such file'
+bakes "$scene" --texture-path "/nowhere:$pictures"
+warns 0
+[ "$(counts textures)" = 1 ] || fail "the texture path is not looked at"
+
+# 64 x 64, 7 mips: 8 bytes a block, 341 + 1 + 1 blocks. With alpha 16 bytes.
+quad "\"base_color_map\": \"$pictures/gradient.png\""
+bakes "$scene"
+[ "$(counts texels)" = 172 ] || fail "gradient: $(counts texels) units of texels"
+quad "\"base_color_map\": \"$pictures/disc.png\""
+bakes "$scene"
+[ "$(counts texels)" = 343 ] || fail "disc: $(counts texels) units of texels"
+quad "\"base_color_map\": \"$pictures/disc.png\", \"alpha\": \"opaque\""
+bakes "$scene"
+[ "$(counts texels)" = 172 ] || fail "an opaque disc: $(counts texels) units of texels"
+quad "\"base_color_map\": \"$pictures/disc.png\", \"alpha\": \"blend\""
+bakes "$scene"
+warns 1 'meant to be blended'
+[ "$(counts texels)" = 343 ] || fail "a disc to blend: $(counts texels) units of texels"
+
+# Pictures of one size and format share an array; the same request is made once.
+printf '{"models": [%s{"mesh": {"plane": {}}}]}\n' "$(for i in 1 2 3; do
+    printf '{"mesh": {"plane": {}}, "name": "a%s", "material": {"base_color": [0, 0, 0.%s],
+        "base_color_map": "%s/gradient.png"}},' "$i" "$i" "$pictures"
+    printf '{"mesh": {"plane": {}}, "material": {"base_color_map": "%s/checker.png"}},' "$pictures"
+done)" > "$scene"
+bakes "$scene"
+[ "$(counts textures)" = 1 ] || fail "$(counts textures) arrays of two pictures of one size"
+[ "$(counts texels)" = 343 ] || fail "two pictures take $(counts texels) units"
+[ "$(counts texture_sets)" = 1 ] || fail "$(counts texture_sets) texture sets"
+[ "$(counts materials)" = 5 ] || fail "$(counts materials) materials"
+
+# Normals whose variance is lost in mips make a map of roughness, but not of what is fully rough.
+quad "\"roughness\": 0.5, \"normal_map\": \"$pictures/bricks_normal.png\""
+bakes "$scene"
+[ "$(counts textures)" = 2 ] || fail "a normal map: $(counts textures) textures"
+quad "\"roughness\": 1, \"normal_map\": \"$pictures/bricks_normal.png\""
+bakes "$scene"
+[ "$(counts textures)" = 1 ] || fail "a rough normal map: $(counts textures) textures"
+
+# The same bytes twice.
+cp "$folder/x.masu" "$folder/first.masu"
+bakes "$scene"
+cmp "$folder/x.masu" "$folder/first.masu" || fail "not the same bytes twice"
+
+# ---- models --------------------------------------------------------------------------------------
+
+for model in glTF2/BoxTextured-glTF-Binary/BoxTextured.glb \
+    glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf glTF2/BoxTextured-glTF/BoxTextured.gltf; do
+    bakes "$models/$model"
+    warns 0
+    [ "$(counts textures)" = 1 ] || fail "$model: $(counts textures) textures"
+    [ "$(counts texcoords)" = "$(counts vertices)" ] || fail "$model: texture coordinates"
+    bakes "$models/$model" --no-textures
+    [ "$(counts textures)" = 0 ] && [ "$(counts texcoords)" = 0 ] || fail "$model: textures all the same"
+done
+bakes "$models/OBJ/spider.obj"
+[ "$(counts materials)" = 4 ] || fail "spider: $(counts materials) materials"
+grep -q 'texture' "$folder/stderr" && fail "spider: $(cat "$folder/stderr")"
+
+# TORCS's dialect of AC3D: of several textures the one that is the base, wherever it stands. Emission
+# that is no more than what is reflected brightens and does not glow.
+cat > "$folder/quad.acc" << END
+AC3Db
+MATERIAL "" rgb 0.40 0.40 0.40 amb 0.80 0.80 0.80 emis 0.40 0.40 0.40 spec 0.50 0.50 0.50 shi 50 trans 0
+OBJECT world
+kids 1
+OBJECT poly
+name "quad"
+texture "gone.png" tiled
+texture "near.png" base
+texture empty_texture_no_mapping skids
+numvert 4
+0 0 0 0 0 1
+1 0 0 0 0 1
+1 1 0 0 0 1
+0 1 0 0 0 1
+numsurf 1
+SURF 0x14
+mat 0
+refs 4
+0 0 0 0.5 0.5
+1 1 0 0.5 0.5
+2 1 1 0.5 0.5
+3 0 1 0.5 0.5
+kids 0
+END
+bakes "$folder/quad.acc"
+warns 0
+[ "$(counts textures)" = 1 ] || fail "quad.acc: $(counts textures) textures"
+grep -aq near.png "$folder/x.masu" || fail "quad.acc: another texture"
+
+# ---- pictures that are none ----------------------------------------------------------------------
+
+# broken NAME REASON [TYPE]: one warning, no texture, a blob all the same
+broken() {
+    quad "\"base_color_map\": \"$1\""
+    bakes "$scene"
+    warns 1 "texture .*$(basename "$1"): .*$2.*left out"
+    [ "$(counts textures)" = 0 ] && [ "$(counts texcoords)" = 0 ] || fail "$1: has become a texture"
+    [ "$(counts vertices)" = 4 ] || fail "$1: the quad is gone"
+}
+
+broken "$folder/none.png" 'No such file'
+broken "$folder" 'not a regular file'
+broken /dev/zero 'not a regular file'
+: > "$folder/empty.png"
+broken "$folder/empty.png" 'empty'
+head -c 5000 /dev/urandom > "$folder/noise.png"
+broken "$folder/noise.png" 'not a picture'
+echo 'push graphic-context' > "$folder/script.mvg"
+broken "$folder/script.mvg" 'not a picture'
+printf '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>' > "$folder/drawing.svg"
+broken "$folder/drawing.svg" 'not a picture'
+for name in bricks.png ground.jpg leaf.tga sign.rgb; do
+    # Cut short. Readers that fill up what is missing are welcome to.
+    head -c 300 "$pictures/$name" > "$folder/cut.${name##*.}"
+    quad "\"base_color_map\": \"$folder/cut.${name##*.}\""
+    bakes "$scene"
+    # Every byte of the head wrong in turn.
+    for at in 0 1 2 3 4 5 6 7 8 12 13 16 17 18 19 20 21 22 23 24 25 28; do
+        cp "$pictures/$name" "$folder/bad.${name##*.}"
+        printf '\377' | dd of="$folder/bad.${name##*.}" bs=1 seek=$at conv=notrunc 2> /dev/null
+        quad "\"base_color_map\": \"$folder/bad.${name##*.}\""
+        bakes "$scene"
+        [ -s "$folder/x.masu" ] || fail "$name, byte $at: no blob"
+    done
+done
+# A PNG that says it is 65,535 x 65,535, one that says it has no width, an SGI of 65,535 x 65,535.
+head -c 16 "$pictures/bricks.png" > "$folder/huge.png"
+printf '\000\000\377\377\000\000\377\377\010\006\000\000\000\000\000\000\000' >> "$folder/huge.png"
+broken "$folder/huge.png" '.'
+head -c 16 "$pictures/bricks.png" > "$folder/flat.png"
+printf '\000\000\000\000\000\000\000\010\010\006\000\000\000\000\000\000\000' >> "$folder/flat.png"
+broken "$folder/flat.png" '.'
+printf '\001\332\000\001\000\003\377\377\377\377\000\004' > "$folder/huge.rgb"
+head -c 500 /dev/zero >> "$folder/huge.rgb"
+broken "$folder/huge.rgb" '.'
+truncate -s 300M "$folder/long.png"
+broken "$folder/long.png" 'larger than 256 MiB'
+
+# A missing picture is warned of once, however many ask for it; a lamp without its map is dark.
+printf '{"models": [%s{"mesh": {"plane": {}}}]}\n' "$(for i in 1 2 3; do
+    printf '{"mesh": {"plane": {}}, "material": {"base_color": [0, 0, 0.%s], "emissive": [9, 9, 9],
+        "emissive_map": "gone.png", "normal_map": "gone.png"}},' "$i"
+done)" > "$scene"
+bakes "$scene"
+warns 1 'gone.png: No such file'
+
+# ---- mistakes in the scene -----------------------------------------------------------------------
+
+# refuses PATTERN MEMBERS
+refuses() {
+    quad "$2"
+    "$bake" "$scene" -o "$folder/y.masu" > /dev/null 2> "$folder/stderr" && fail "$2: accepted"
+    grep -q -e "models\[0\]\.material.*$1" "$folder/stderr" || fail "$2: $(cat "$folder/stderr")"
+    [ "$(wc -l < "$folder/stderr")" = 1 ] || fail "$2: not one line"
+}
+
+refuses 'expected a string' '"normal_map": 3'
+refuses 'expected "opaque"' '"alpha": "see-through"'
+refuses 'from 0 to 1' '"alpha_cutoff": 2'
+refuses 'another map' '"surface_map": "a.png", "roughness_map": "b.png"'
+refuses 'unknown key' '"colour_map": "a.png"'
+
+[ $failures = 0 ] && echo "masu-bake: pictures as expected"
+[ $failures = 0 ]
