@@ -102,22 +102,38 @@ tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc) ## build build/bin/ma
 shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
-.PHONY: demo demo-picture
-demo: deps-demo ## install what is missing, build, bake, render: WORLD=engine SIZE=1920x1080
+.PHONY: demo demo-picture worlds hostile
+demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
+demo: ## install what is missing, build, bake, render: WORLD=engine|forza|city|... SIZE=1920x1080 TIME=
 	+$(V)$(more) demo-picture
 
-demo-picture: $(BUILD)/bin/masu $(BUILD)/scenes/$(WORLD).masu
-	$(V)$(BUILD)/bin/masu render $(BUILD)/scenes/$(WORLD).masu -o $(BUILD)/demo.png --size $(SIZE)
-	@echo "The picture is $(abspath $(BUILD)/demo.png)"
+picture := $(BUILD)/demo$(if $(filter-out engine,$(WORLD)),-$(WORLD)).png
+picture_of := $(BUILD)/$(if $(filter $(WORLDS),$(WORLD)),worlds,scenes)/$(WORLD).masu
+demo-picture: $(BUILD)/bin/masu $(picture_of)
+	$(V)$(BUILD)/bin/masu render $(picture_of) -o $(picture) --size $(SIZE) --time $(or $(TIME),$(TIME_$(WORLD)),0)
+	@echo "The picture is $(abspath $(picture))"
+
+# CI has no use for it and must not depend on it: without TORCS's data there is no forza, and that is
+# no failure.
+worlds: deps-build ## bake the worlds city and forza to build/worlds; installs torcs-data if it can
+	+$(V)$(more) world-city
+	+$(V)if $(MAKE) --no-print-directory deps-worlds && [ -d "$(TORCS)" ]; then \
+	    $(more) world-forza; \
+	else \
+	    echo "masu: no world forza: the package torcs-data cannot be installed here"; \
+	fi
+
+hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmodels, broken ones too: RENDER=1
+	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
 
 .PHONY: check check-built unit gpu stiff fuzz coverage
 check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=
 	+$(V)$(more) check-built
 
-check-built: all scenes $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
+check-built: all scenes $(BUILD)/bin/masu-world $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
 	$(V)$(RUN_TESTS) $(RUN_UNIT) $(RUN_GPU)
 
-unit: all scenes $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
+unit: all scenes $(BUILD)/bin/masu-world $(UNIT_TESTS) $(FUZZ_TESTS) ## run the tests that need no Vulkan driver: TESTS=name
 	$(V)$(RUN_TESTS) $(RUN_UNIT)
 
 gpu: | $(filter unit,$(MAKECMDGOALS)) # they use one folder for results

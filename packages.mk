@@ -7,10 +7,13 @@
 # to build the library and the programs
 PACKAGES_build := gcc libc6-dev libvulkan-dev
 PACKAGES_build += glslang-tools spirv-tools
-PACKAGES_build += libassimp-dev libjansson-dev libstb-dev libmagickwand-dev pkgconf
+PACKAGES_build += libassimp-dev libjansson-dev libstb-dev libmagickwand-dev pkgconf libmeshoptimizer-dev
 
 # to bake and render the demo: a Vulkan driver for any processor, and the models that scenes/ places
 PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
+
+# to bake the world forza: the data of TORCS
+PACKAGES_worlds := torcs-data
 
 # to run the tests; g++, and pkgconf from above, look at what is installed as a C++ or a C user would
 PACKAGES_test := libcmocka-dev vulkan-validationlayers g++
@@ -40,13 +43,15 @@ $$apt update && $$apt install -y $$missing > /dev/null || { \
     echo "masu: apt-get could not install:$$missing" >&2; exit 1; }
 endef
 
-.PHONY: packages deps-build deps-demo deps-test
+.PHONY: packages deps-build deps-demo deps-worlds deps-test
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo test full dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds test full dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs
 	$(call install-packages,$(PACKAGES_build) $(PACKAGES_demo))
+deps-worlds: ## install the packages that the worlds need
+	$(call install-packages,$(PACKAGES_build) $(PACKAGES_worlds))
 deps-test: ## install the packages that the tests need
 	$(call install-packages,$(PACKAGES_build) $(PACKAGES_demo) $(PACKAGES_test) \
 	    $(if $(FULL),$(PACKAGES_full)))

@@ -142,6 +142,7 @@ typedef struct masu_scene {
     const void *blob; /* the caller's; see masu_scene_bind */
     uint64_t blob_bytes;
     uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
+    uint32_t lods; /* coarser forms of meshes, in all */
     uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
     uint32_t groups, group_items; /* what is culled together; instances in groups */
     uint32_t sdf;        /* 1: the scene has an SDF */

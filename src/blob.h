@@ -10,8 +10,8 @@
  *  - header.bytes is the exact length; hash is FNV-1a 64 over everything behind the header;
  *  - each section kind appears at most once; stride is the sizeof of its struct here;
  *  - every float is finite; every index is in range; instances are sorted by mesh;
- *  - the primitives together have no more indices, and the meshes no more primitives, than there
- *    are (vertices may be shared): work stays linear in the blob's size;
+ *  - the primitives together have no more indices, and meshes and LODs no more primitives,
+ *    than there are (vertices may be shared): work stays linear in the blob's size;
  *  - SPIR-V is code: a blob is as trusted as the executable and comes from the port's own build.
  *    The hash finds damage, not malice.
  * World space: right-handed, +Y up, metres, linear colour. docs/blob.md is the prose form of this
@@ -59,7 +59,8 @@ enum masu_blob_kind {
     MASU_BLOB_TEXTURES = 30,
     MASU_BLOB_TEXTURE_SETS = 31,
     MASU_BLOB_TEXELS = 32, /* compressed blocks, in units of 16 bytes */
-    MASU_BLOB_KIND_COUNT = 33
+    MASU_BLOB_LODS = 33,   /* by mesh; of one mesh the finer first, at most MASU_BLOB_LODS_MAX */
+    MASU_BLOB_KIND_COUNT = 34
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -139,6 +140,17 @@ typedef struct masu_blob_mesh {
     uint32_t reserved;
 } masu_blob_mesh;
 
+/* A coarser form of a mesh: as many primitives as the mesh has, in its order, with its materials; of
+ * no triangles where all of one have vanished. */
+#define MASU_BLOB_LODS_MAX 3u
+typedef struct masu_blob_lod {
+    uint32_t mesh;
+    uint32_t first_primitive;
+    float error; /* object space: no point of either surface is farther from the other; it does not
+                    fall from level to level */
+    uint32_t reserved;
+} masu_blob_lod;
+
 typedef struct masu_blob_instance {
     float transform[12]; /* rows of the 3x4 matrix, object to world */
     uint32_t mesh;
@@ -164,7 +176,7 @@ typedef struct masu_blob_occluder {
     float low[3]; /* object space, inside of the mesh's bounds */
     float high[3];
     uint32_t mesh;
-    uint32_t reserved;
+    uint32_t lods; /* of the mesh's LODs so many, the finest, hide it too */
 } masu_blob_occluder;
 
 typedef struct masu_blob_material {
@@ -283,6 +295,7 @@ _Static_assert(sizeof(masu_blob_section) == 24, "blob section");
 _Static_assert(sizeof(masu_blob_vertex) == 16, "blob vertex");
 _Static_assert(sizeof(masu_blob_primitive) == 48, "blob primitive");
 _Static_assert(sizeof(masu_blob_mesh) == 40, "blob mesh");
+_Static_assert(sizeof(masu_blob_lod) == 16, "blob lod");
 _Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");

@@ -28,10 +28,12 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_MESHES] = {"meshes", sizeof(masu_blob_mesh), MANY, 0},
     [MASU_BLOB_INSTANCES] = {"instances", sizeof(masu_blob_instance), MANY, 0},
     [MASU_BLOB_MATERIALS] = {"materials", sizeof(masu_blob_material), MANY, 0},
+    [MASU_BLOB_LODS] = {"lods", sizeof(masu_blob_lod), MANY, 0},
     [MASU_BLOB_CAMERA_KEYS] = {"camera keys", sizeof(masu_blob_camera_key), MANY, 0},
     [MASU_BLOB_ENVIRONMENT] = {"environment", sizeof(masu_blob_environment), 1, 0},
     [MASU_BLOB_SDF] = {"sdf", sizeof(masu_blob_sdf), 1, 0},
-    [MASU_BLOB_SDF_PARAMS] = {"sdf parameters", sizeof(masu_blob_sdf_param), MASU_MAX_SDF_PARAMS, 0},
+    [MASU_BLOB_SDF_PARAMS] = {"sdf parameters", sizeof(masu_blob_sdf_param), MASU_MAX_SDF_PARAMS,
+                              0},
     CODE(MASU_BLOB_MARCH_SPIRV, "march SPIR-V"),
     CODE(MASU_BLOB_CLASSIFY_SPIRV, "classify SPIR-V"),
     CODE(MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V"),
@@ -135,7 +137,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
     for (uint32_t i = 0; i < h.section_count; i++) {
         masu_blob_section s;
         memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
-        if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT)
+        if (s.kind >= MASU_BLOB_KIND_COUNT || !rules[s.kind].stride)
             return bad(r, "section", i, "unknown kind");
         if (start[s.kind]) return bad(r, "section", i, "appears twice");
         if (s.stride != rules[s.kind].stride) return bad(r, "section", i, "element size is wrong");
@@ -163,6 +165,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .groups = start[MASU_BLOB_GROUPS],
                                 .group_items = start[MASU_BLOB_GROUP_ITEMS],
                                 .occluders = start[MASU_BLOB_OCCLUDERS],
+                                .lods = start[MASU_BLOB_LODS],
                                 .materials = start[MASU_BLOB_MATERIALS],
                                 .camera_keys = start[MASU_BLOB_CAMERA_KEYS],
                                 .environment = start[MASU_BLOB_ENVIRONMENT],
@@ -244,6 +247,42 @@ static masu_result check_mesh(reader *r, uint64_t i) {
     return name_ok(r, m->name) ? MASU_OK : bad(r, "meshes", i, "name lies outside the names");
 }
 
+static masu_result check_lods(reader *r, uint64_t *primitives) {
+    const masu_scene_view *v = &r->view;
+    uint32_t level = 0;
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_LODS]; i++) {
+        const masu_blob_lod *l = &v->lods[i];
+        if (l->mesh >= r->counts[MASU_BLOB_MESHES]) return bad(r, "lods", i, "no such mesh");
+        const masu_blob_mesh *m = &v->meshes[l->mesh];
+        if (i && l->mesh < l[-1].mesh) return bad(r, "lods", i, "not sorted by mesh");
+        level = i && l->mesh == l[-1].mesh ? level + 1 : 1;
+        if (level > MASU_BLOB_LODS_MAX) return bad(r, "lods", i, "a mesh has more than three");
+        if (!(l->error >= 0.0f && l->error <= 1e30f)) {
+            return bad(r, "lods", i, "error is negative or not finite");
+        }
+        if (level > 1 && !(l->error >= l[-1].error)) {
+            return bad(r, "lods", i, "error falls from level to level");
+        }
+        if ((uint64_t)l->first_primitive + m->primitive_count > r->counts[MASU_BLOB_PRIMITIVES]) {
+            return bad(r, "lods", i, "primitives lie outside their section");
+        }
+        *primitives += m->primitive_count;
+        if (*primitives > r->counts[MASU_BLOB_PRIMITIVES])
+            return bad(r, "lods", i, "shares primitives");
+        for (uint32_t p = 0; p < m->primitive_count; p++) {
+            const masu_blob_primitive *fine = &v->primitives[m->first_primitive + p];
+            const masu_blob_primitive *coarse = &v->primitives[l->first_primitive + p];
+            if (coarse->material != fine->material)
+                return bad(r, "lods", i, "has another material than its mesh");
+            if (coarse->index_count > fine->index_count)
+                return bad(r, "lods", i, "has more triangles than its mesh");
+            if (!box_holds(m->aabb_min, m->aabb_max, coarse->aabb_min, coarse->aabb_max))
+                return bad(r, "lods", i, "reaches out of the bounds of its mesh");
+        }
+    }
+    return MASU_OK;
+}
+
 static masu_result check_geometry(reader *r) {
     const masu_scene_view *v = &r->view;
     /* Ranges may not be shared: else a small blob could ask for quadratic work, here and in every
@@ -281,7 +320,7 @@ static masu_result check_geometry(reader *r) {
             return bad(r, "instances", i, "no such parent");
         }
     }
-    return MASU_OK;
+    return check_lods(r, &primitives);
 }
 
 /* Groups lie in the order of a breadth-first walk, and so do their items: the children of the first
@@ -372,6 +411,7 @@ static masu_result check_occluders(reader *r, uint64_t *pairs) {
             !box_holds(o->low, o->high, o->high, o->low)) {
             return bad(r, "occluders", i, "is no box inside of its mesh");
         }
+        if (o->lods > MASU_BLOB_LODS_MAX) return bad(r, "occluders", i, "knows more than 3 LODs");
         if (!i || o->mesh != o[-1].mesh) {
             end = masu_scene_mesh_instances(v, (uint32_t)r->counts[MASU_BLOB_INSTANCES], o->mesh,
                                             from, &first);
@@ -670,6 +710,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
                         .primitives = (uint32_t)r.counts[MASU_BLOB_PRIMITIVES],
                         .meshes = (uint32_t)r.counts[MASU_BLOB_MESHES],
                         .instances = (uint32_t)r.counts[MASU_BLOB_INSTANCES],
+                        .lods = (uint32_t)r.counts[MASU_BLOB_LODS],
                         .materials = (uint32_t)r.counts[MASU_BLOB_MATERIALS],
                         .groups = (uint32_t)r.counts[MASU_BLOB_GROUPS],
                         .group_items = (uint32_t)r.counts[MASU_BLOB_GROUP_ITEMS],
@@ -733,6 +774,21 @@ uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instanc
     *first = from;
     while (from < instance_count && view->instances[from].mesh == mesh) from++;
     return from;
+}
+
+uint32_t masu_scene_mesh_lods(const masu_scene_view *view, uint32_t lod_count, uint32_t mesh,
+                              uint32_t *first) {
+    uint32_t low = 0, high = lod_count;
+    while (low < high) { /* the first that is not below */
+        uint32_t middle = low + (high - low) / 2;
+        if (view->lods[middle].mesh < mesh)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *first = low;
+    while (high < lod_count && view->lods[high].mesh == mesh) high++;
+    return high - low;
 }
 
 int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name) {

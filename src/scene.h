@@ -19,6 +19,7 @@ typedef struct masu_scene_view {
     const masu_blob_instance *instances;
     const masu_blob_group *groups;
     const uint32_t *group_items;
+    const masu_blob_lod *lods;
     const masu_blob_occluder *occluders;
     const masu_blob_material *materials;
     const masu_blob_camera_key *camera_keys;
@@ -45,6 +46,11 @@ masu_scene_view masu_scene_look(const masu_scene *scene);
 
 /* World box of an instance as the scene places it. */
 masu_cull_box masu_scene_box(const masu_scene_view *view, uint32_t instance);
+
+/* The coarser forms of a mesh, finest first: `*first` is the first one's index in view->lods, the
+ * result how many there are (0 to MASU_BLOB_LODS_MAX). */
+uint32_t masu_scene_mesh_lods(const masu_scene_view *view, uint32_t lod_count, uint32_t mesh,
+                              uint32_t *first);
 
 /* Range of instances [first, first + count) that place mesh `mesh`: instances are sorted by mesh.
  * `from` is where the search starts; returns the end. */

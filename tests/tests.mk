@@ -43,6 +43,11 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_LIBS)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
 
+# What masu-bake makes of meshes, tested apart from its command line.
+BAKE_OBJECTS := $(call objects,$(wildcard tools/bake_*.c)) $(SDFC_OBJECTS) $(CLI_OBJECTS)
+$(BUILD)/tests/unit/test_bake_detail: LIBS = -lcmocka $(BAKE_LIBS)
+$(BUILD)/tests/unit/test_bake_detail: $(BAKE_OBJECTS)
+
 # ---- Stiff and extreme scenes --------------------------------------------------------------------
 
 STIFF := $(patsubst tests/stiff/%.json,$(BUILD)/stiff/%.masu,$(wildcard tests/stiff/*.json))

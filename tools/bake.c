@@ -3,8 +3,10 @@
  *   bake_scene.c, bake_place.c, bake_look.c   what the scene says          (bake_json.c reads it)
  *   bake_import.c, bake_model.c               a model, read in a child     (bake_process.c)
  *   bake_mesh.c, bake_shape.c                 triangles, given or made
+ *   bake_merge.c, bake_lod.c                  less to draw                 (bake_surface.c judges)
  *   bake_content.c, bake_check.c              the scene being put together
  *   bake_groups.c, bake_occluders.c           what is culled together, and what hides it
+ *   bake_inside.c                             boxes inside of meshes
  *   bake_image.c, bake_texel.c, bake_texture.c   pictures to texels, mips, blocks
  *   bake_sdf.c                                the scene's march shader, by the shader tools
  *   bake_blob.c, bake_file.c                  bytes, and files that are written whole
@@ -23,6 +25,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <time.h>
 
 #define TEXT(x) #x
 #define NUMBER(x) TEXT(x)
@@ -61,8 +65,34 @@ static totals sum_triangles(const masu_bake_content *content) {
     return t;
 }
 
-static bool write_stats(const char *path, const char *input, const masu_bake_content *content,
-                        const masu_bake_buffer *blob) {
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+/* The largest that this process or one of its children has been, bytes. */
+static double peak_memory(void) {
+    struct rusage own, children;
+    if (getrusage(RUSAGE_SELF, &own) || getrusage(RUSAGE_CHILDREN, &children)) return 0;
+    long most = own.ru_maxrss > children.ru_maxrss ? own.ru_maxrss : children.ru_maxrss;
+    return (double)most * 1024;
+}
+
+static json_t *detail_json(const masu_bake_detail *d) {
+    return json_pack("{s:{s:I, s:I, s:I, s:I}, s:{s:I, s:I, s:I, s:I, s:I}}", "lods", "meshes",
+                     (json_int_t)d->lods.meshes, "levels", (json_int_t)d->lods.levels, "too_small",
+                     (json_int_t)d->lods.too_small, "refused", (json_int_t)d->lods.refused,
+                     "occluders", "given", (json_int_t)d->occluders.given, "whole",
+                     (json_int_t)d->occluders.whole, "inside", (json_int_t)d->occluders.inside,
+                     "dropped", (json_int_t)d->occluders.dropped, "too_small",
+                     (json_int_t)d->occluders.too_small);
+}
+
+static bool write_stats(const char *path, const masu_bake_request *request,
+                        const masu_bake_content *content, const masu_bake_buffer *blob,
+                        double started) {
+    const char *input = request->input;
     masu_blob_header header;
     memcpy(&header, blob->data, sizeof header);
     totals t = sum_triangles(content);
@@ -70,6 +100,7 @@ static bool write_stats(const char *path, const char *input, const masu_bake_con
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)header.hash);
     json_t *sections = json_object();
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        if (!masu_bake_kind_name(kind)) continue;
         json_object_set_new(sections, masu_bake_kind_name(kind),
                             json_pack("{s:I, s:I}", "count",
                                       (json_int_t)masu_bake_count(content, kind), "bytes",
@@ -82,11 +113,13 @@ static bool write_stats(const char *path, const char *input, const masu_bake_con
         bounds =
             json_pack("[[f,f,f],[f,f,f]]", b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z);
     }
-    json_t *root = json_pack(
-        "{s:s, s:I, s:I, s:s, s:I, s:I, s:I, s:o, s:o}", "input", input, "version",
-        (json_int_t)header.version, "bytes", (json_int_t)header.bytes, "hash", hash, "triangles",
-        (json_int_t)t.triangles, "drawn_triangles", (json_int_t)t.drawn_triangles, "warnings",
-        (json_int_t)masu_cli_warnings(), "bounds", bounds, "sections", sections);
+    json_t *root =
+        json_pack("{s:s, s:I, s:I, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:f, s:I}", "input", input,
+                  "version", (json_int_t)header.version, "bytes", (json_int_t)header.bytes, "hash",
+                  hash, "triangles", (json_int_t)t.triangles, "drawn_triangles",
+                  (json_int_t)t.drawn_triangles, "warnings", (json_int_t)masu_cli_warnings(),
+                  "bounds", bounds, "sections", sections, "detail", detail_json(request->detail),
+                  "seconds", now() - started, "peak_bytes", (json_int_t)peak_memory());
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
     json_decref(root);
     if (!text) { /* the input's name is not UTF-8 */
@@ -140,6 +173,7 @@ static bool accepted(const char *input, const masu_bake_buffer *blob) {
 
 static bool bake(const masu_bake_request *request, const char *output, const char *stats,
                  masu_bake_content *content) {
+    double started = now();
     bool good = is_scene(request->input) ? masu_bake_read_scene(request, content)
                                          : masu_bake_bare_model(request, content);
     if (!good) return false;
@@ -153,7 +187,7 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
     masu_bake_make_blob(content, &blob);
     masu_cli_progress("writing %s", output);
     good = accepted(request->input, &blob) && masu_bake_write_file(output, blob.data, blob.bytes) &&
-           (!stats || write_stats(stats, request->input, content, &blob));
+           (!stats || write_stats(stats, request, content, &blob, started));
     masu_cli_progress_clear();
     if (good && !masu_cli_quiet()) print_summary(output, content, blob.bytes);
     masu_bake_release(&blob);
@@ -161,7 +195,8 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
 }
 
 static int run(masu_cli *cli) {
-    masu_bake_request request = {.models_directory = ASSIMP_MODELS};
+    masu_bake_detail detail = {.levels = 0};
+    masu_bake_request request = {.models_directory = ASSIMP_MODELS, .detail = &detail};
     const char *output = NULL, *stats = NULL;
     for (;;) {
         switch (masu_cli_next(cli)) {
@@ -198,7 +233,8 @@ int main(int argc, char **argv) {
          0},
         {"texture-path", "DIR:...", "where to look for textures that are not where models say",
          OPTION_TEXTURE_PATH, 0},
-        {"stats", "FILE", "write counts, bytes and bounds as JSON", OPTION_STATS, 0},
+        {"stats", "FILE", "write counts, bytes, bounds, seconds and peak memory as JSON",
+         OPTION_STATS, 0},
         {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
          OPTION_MODELS, 0},
         {NULL, NULL, NULL, 0, 0},

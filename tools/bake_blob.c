@@ -66,6 +66,7 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_SLOTS] = "slots",
         [MASU_BLOB_GROUPS] = "groups",
         [MASU_BLOB_GROUP_ITEMS] = "group_items",
+        [MASU_BLOB_LODS] = "lods",
         [MASU_BLOB_OCCLUDERS] = "occluders",
         [MASU_BLOB_NAMES] = "names",
         [MASU_BLOB_TEXCOORDS] = "texcoords",

@@ -34,6 +34,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_SLOTS] = sizeof(float),
     [MASU_BLOB_GROUPS] = sizeof(masu_blob_group),
     [MASU_BLOB_GROUP_ITEMS] = sizeof(uint32_t),
+    [MASU_BLOB_LODS] = sizeof(masu_blob_lod),
     [MASU_BLOB_OCCLUDERS] = sizeof(masu_blob_occluder),
     [MASU_BLOB_NAMES] = 1,
     [MASU_BLOB_TEXCOORDS] = 2 * sizeof(float),
@@ -88,7 +89,7 @@ void masu_bake_release(masu_bake_buffer *buffer) {
 uint32_t masu_bake_stride(uint32_t kind) { return strides[kind]; }
 
 uint64_t masu_bake_count(const masu_bake_content *content, uint32_t kind) {
-    return content->section[kind].bytes / strides[kind];
+    return content->section[kind].bytes / masu_bake_stride(kind);
 }
 
 void masu_bake_content_release(masu_bake_content *content) {
@@ -275,11 +276,6 @@ static uint32_t placed_material(masu_bake_content *scene, const masu_bake_conten
     return masu_bake_mapped_material(scene, &material, &maps, name);
 }
 
-static bool changes(const masu_bake_override *o) {
-    bool any = o->base_color || o->roughness || o->metallic || o->emissive || o->alpha || o->cutoff;
-    for (int i = 0; i < MASU_BAKE_MAPS; i++) any = any || o->map[i];
-    return any;
-}
 
 static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *piece, uint32_t name,
                             const char *prefix) {
@@ -361,16 +357,13 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
         copy_section(scene, piece, MASU_BLOB_TEXCOORDS);
         residence->has_vertices = true;
     }
-    bool changed = changes(override);
     uint32_t first_mesh = residence->first_mesh;
-    if (changed || !residence->has_meshes) {
+    if (!residence->has_meshes) {
         /* Two primitives share no indices (src/scene.c): other materials, other indices. */
         uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
         first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, override);
-        if (!changed) {
-            residence->first_mesh = first_mesh;
-            residence->has_meshes = true;
-        }
+        residence->first_mesh = first_mesh;
+        residence->has_meshes = true;
     }
     uint32_t first_instance = (uint32_t)masu_bake_count(scene, MASU_BLOB_INSTANCES);
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_INSTANCES); i++) {

@@ -117,14 +117,16 @@ typedef struct masu_bake_override {
     bool map[MASU_BAKE_MAPS], alpha, cutoff;
 } masu_bake_override;
 
-/* Where a piece already lies in the scene, for the second and later placements. Zero at first. */
+/* Where a piece already lies in the scene, for the second and later placements with the same
+ * override. Zero at first; with another override, one whose has_meshes is false again. */
 typedef struct masu_bake_residence {
     uint32_t first_vertex, first_mesh;
     bool has_vertices, has_meshes;
 } masu_bake_residence;
 
-/* Appends `piece` to `scene`: vertices once, meshes once and again for every material override,
- * instances every time. `prefix` goes before the instances' names; may be NULL. Returns NULL or what is wrong. */
+/* Appends `piece` to `scene`: vertices and meshes where the residence says that they are missing,
+ * instances every time. `prefix` goes before the instances' names; may be NULL. Returns NULL or what is
+ * wrong. */
 const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
                             masu_bake_residence *residence, const masu_bake_affine *placement,
                             const masu_bake_override *override, const char *prefix);

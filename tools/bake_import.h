@@ -5,13 +5,15 @@
  *   bake_acc.c      a dialect that Assimp does not know
  *
  * Model files are hostile: the importing library is large, and asserts, overruns and endless loops
- * in it must end the child, not masu-bake. The child has a time limit and half of the memory. */
+ * in it must end the child, not masu-bake. The child has a time limit and a limit of memory. */
 #ifndef MASU_BAKE_IMPORT_H
 #define MASU_BAKE_IMPORT_H
 
 #include "bake_content.h"
 
 #define MASU_BAKE_IMPORT_SECONDS 120
+/* Address space for importing, to which 16 times the file's size is added. */
+#define MASU_BAKE_IMPORT_MEMORY ((rlim_t)3 << 29)
 
 /* Whether texture coordinates and textures are wanted. FORCED: coordinates even where the file's
  * materials have no textures, because the scene gives some. */

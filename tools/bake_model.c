@@ -752,6 +752,31 @@ static void convert(model *m, masu_bake_buffer *error) {
     masu_bake_release(&parts);
 }
 
+/* The library drops some of what is broken before we see it and says so in its log alone. Of its
+ * many remarks those are passed on that speak of lost data, each once, a few at most. */
+static void note_remark(const char *text, char *user) {
+    static const char *const losses[] = {"dropped", "out-of-range", "out of range", "discard"};
+    masu_bake_buffer *remarks = (masu_bake_buffer *)(void *)user;
+    const char *colon = strstr(text, ": "); /* behind "Warn,  T0" */
+    if (strncmp(text, "Warn", 4) != 0 || !colon) return;
+    bool lost = false;
+    for (size_t i = 0; i < sizeof losses / sizeof losses[0]; i++) {
+        lost = lost || strstr(colon, losses[i]);
+    }
+    int length = (int)strcspn(colon + 2, "\n");
+    masu_bake_buffer line = {0};
+    masu_bake_append_text(&line, "the importer says: ");
+    append_name(&line, colon + 2, length < 200 ? length : 200);
+    masu_bake_append(&line, "\n", 2); /* with its NUL */
+    masu_bake_append(remarks, "", 1);
+    remarks->bytes--;
+    if (lost && remarks->bytes < 1000 &&
+        !strstr((const char *)remarks->data, (const char *)line.data)) {
+        masu_bake_append_text(remarks, (const char *)line.data);
+    }
+    masu_bake_release(&line);
+}
+
 void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_bake_content *piece,
                           masu_bake_buffer *warnings, masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
@@ -762,6 +787,8 @@ void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_ba
     /* Welding, dropping bad triangles and the like are done here, where every index is checked:
      * each step of the library is one more that hostile data can break. */
     unsigned flags = aiProcess_Triangulate | aiProcess_GenSmoothNormals;
+    struct aiLogStream log = {note_remark, (char *)(void *)warnings};
+    aiAttachLogStream(&log);
     const struct aiScene *scene;
     masu_bake_buffer whole = {0}, text = {0};
     if (masu_bake_is_acc(path) && masu_bake_read_file(path, ACC_MAX, &whole)) {

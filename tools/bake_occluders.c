@@ -1,13 +1,13 @@
-/* bake_occluders.c: see bake_occluders.h. That a box lies inside of what the mesh hides is the
- * word of the scene's file, but for meshes that are boxes, which is looked up triangle by triangle. */
+/* bake_occluders.c: see bake_occluders.h. That a box lies inside of what the mesh hides is proven,
+ * triangle by triangle, but for boxes that the scene's file gives: those are its word. For LODs those
+ * are proven too. */
 #include "bake_occluders.h"
+#include "bake_surface.h"
 
 #include "cli.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define OCCLUDERS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_OCCLUDERS, masu_blob_occluder)
 
 bool masu_bake_add_occluder(masu_bake_content *content, uint32_t mesh, masu_bake_box box) {
     const masu_blob_mesh *m = &MASU_BAKE_MESHES(content)[mesh];
@@ -23,7 +23,7 @@ bool masu_bake_add_occluder(masu_bake_content *content, uint32_t mesh, masu_bake
         o.high[k] = (float)to;
     }
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_OCCLUDERS); i++) {
-        if (!memcmp(&OCCLUDERS(content)[i], &o, sizeof o)) return false;
+        if (!memcmp(&MASU_BAKE_OCCLUDERS(content)[i], &o, sizeof o)) return false;
     }
     masu_bake_append(&content->section[MASU_BLOB_OCCLUDERS], &o, sizeof o);
     return true;
@@ -100,10 +100,10 @@ void masu_bake_drop_occluders(masu_bake_content *content) {
     uint64_t count = masu_bake_count(content, MASU_BLOB_OCCLUDERS), kept = 0;
     uint32_t warned = MASU_BLOB_NONE;
     for (uint64_t i = 0; i < count; i++) {
-        masu_blob_occluder o = OCCLUDERS(content)[i];
+        masu_blob_occluder o = MASU_BAKE_OCCLUDERS(content)[i];
         const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(content)[o.mesh];
         if (is_opaque(content, mesh)) {
-            OCCLUDERS(content)[kept++] = o;
+            MASU_BAKE_OCCLUDERS(content)[kept++] = o;
         } else if (o.mesh != warned) {
             warned = o.mesh;
             masu_cli_warn("the mesh \"%s\" is masked or blended: it is no occluder",
@@ -111,6 +111,86 @@ void masu_bake_drop_occluders(masu_bake_content *content) {
         }
     }
     content->section[MASU_BLOB_OCCLUDERS].bytes = (size_t)kept * sizeof(masu_blob_occluder);
+}
+
+/* ---- All meshes ------------------------------------------------------------------------------ */
+
+/* The largest factor by which a placement of each mesh lengthens anything along an axis. */
+static double *largest_scales(const masu_bake_content *content) {
+    uint64_t meshes = masu_bake_count(content, MASU_BLOB_MESHES);
+    double *scales = masu_bake_allocate(meshes * sizeof *scales);
+    for (uint64_t i = 0; i < meshes; i++) scales[i] = 0;
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
+        const masu_blob_instance *n = &MASU_BAKE_INSTANCES(content)[i];
+        for (int k = 0; k < 3; k++) {
+            masu_bake_vec3 column =
+                masu_bake_v3((double)n->transform[k], (double)n->transform[4 + k],
+                             (double)n->transform[8 + k]);
+            scales[n->mesh] = fmax(scales[n->mesh], masu_bake_length(column));
+        }
+    }
+    return scales;
+}
+
+static void make_one(masu_bake_content *content, uint32_t index, double least,
+                     masu_bake_occluder_report *report) {
+    const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(content)[index];
+    masu_bake_box boxes[MASU_BAKE_BOXES_MAX];
+    boxes[0] = (masu_bake_box){masu_bake_v3f(mesh->aabb_min), masu_bake_v3f(mesh->aabb_max)};
+    if (!(masu_bake_second_side(&boxes[0]) >= least)) {
+        report->too_small++;
+        return;
+    }
+    uint32_t count = 1, added = 0;
+    bool whole = masu_bake_is_box(content, index, &boxes[0]);
+    if (!whole) {
+        masu_bake_buffer corners = {0};
+        masu_bake_surface_collect(content, mesh->first_primitive, mesh->primitive_count, &corners);
+        count = masu_bake_boxes_inside((const masu_bake_vec3(*)[3])(void *)corners.data,
+                                       corners.bytes / (3 * sizeof(masu_bake_vec3)), least, boxes);
+        masu_bake_release(&corners);
+    }
+    for (uint32_t i = 0; i < count; i++) added += masu_bake_add_occluder(content, index, boxes[i]);
+    report->whole += added && whole;
+    report->inside += added && !whole;
+    report->dropped += !added;
+}
+
+void masu_bake_make_occluders(masu_bake_content *content, double least,
+                              masu_bake_occluder_report *report) {
+    uint64_t meshes = masu_bake_count(content, MASU_BLOB_MESHES);
+    bool *has = masu_bake_allocate(meshes * sizeof *has);
+    memset(has, 0, meshes * sizeof *has);
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_OCCLUDERS); i++) {
+        has[MASU_BAKE_OCCLUDERS(content)[i].mesh] = true;
+    }
+    double *scales = largest_scales(content);
+    for (uint32_t m = 0; m < meshes; m++) {
+        report->given += has[m];
+        if (!has[m] && least > 0 && scales[m] > 0) make_one(content, m, least / scales[m], report);
+    }
+    free(scales);
+    free(has);
+}
+
+void masu_bake_prove_occluders(masu_bake_content *content) {
+    uint64_t lods = masu_bake_count(content, MASU_BLOB_LODS);
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_OCCLUDERS); i++) {
+        masu_blob_occluder *o = &MASU_BAKE_OCCLUDERS(content)[i];
+        masu_bake_box box = {masu_bake_v3f(o->low), masu_bake_v3f(o->high)};
+        uint32_t primitives = MASU_BAKE_MESHES(content)[o->mesh].primitive_count;
+        bool good = true;
+        for (uint64_t k = 0; k < lods && good; k++) { /* of one mesh the finer first */
+            const masu_blob_lod *l = &MASU_BAKE_ARRAY(content, MASU_BLOB_LODS, masu_blob_lod)[k];
+            if (l->mesh != o->mesh) continue;
+            masu_bake_buffer corners = {0};
+            masu_bake_surface_collect(content, l->first_primitive, primitives, &corners);
+            good = masu_bake_is_inside((const masu_bake_vec3(*)[3])(void *)corners.data,
+                                       corners.bytes / (3 * sizeof(masu_bake_vec3)), &box);
+            masu_bake_release(&corners);
+            o->lods += good;
+        }
+    }
 }
 
 static int by_mesh(const void *a, const void *b) {
@@ -121,5 +201,5 @@ static int by_mesh(const void *a, const void *b) {
 
 void masu_bake_sort_occluders(masu_bake_content *content) {
     size_t count = (size_t)masu_bake_count(content, MASU_BLOB_OCCLUDERS);
-    if (count) qsort(OCCLUDERS(content), count, sizeof(masu_blob_occluder), by_mesh);
+    if (count) qsort(MASU_BAKE_OCCLUDERS(content), count, sizeof(masu_blob_occluder), by_mesh);
 }

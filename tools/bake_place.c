@@ -1,5 +1,6 @@
 /* bake_place.c: the "models" of a scene. A file is imported once however often it is placed; each
  * placement is   translate * fit * rotate * scale   of the model as its file has it. */
+#include "bake_detail.h"
 #include "bake_file.h"
 #include "bake_groups.h"
 #include "bake_import.h"
@@ -14,13 +15,24 @@
 
 #define ASSIMP_PREFIX "@assimp/"
 
-/* Imported files, by resolved path. */
+/* What a piece looks like in the scene with one set of overridden values: placed again with the
+ * same values, it is the same meshes. */
+typedef struct guise {
+    masu_bake_override override;
+    masu_bake_residence residence;
+} guise;
+
+/* Imported files, by resolved path and by how they are merged, and procedural meshes, by their
+ * description. */
 typedef struct shelf {
     struct shelf *next;
-    char *path;
-    masu_bake_textures textures; /* as imported */
+    char *path;                  /* NULL: procedural */
+    const json_t *shape;         /* borrowed from the scene */
+    double merge;                /* metres, 0: as the file has it */
+    masu_bake_textures textures; /* as imported; of a shape FORCED: it has coordinates */
     masu_bake_content piece;
-    masu_bake_residence residence;
+    masu_bake_residence residence; /* of the vertices: the first guise's */
+    masu_bake_buffer guises;
 } shelf;
 
 static char *resolve(const char *name, const char *directory, const char *models_directory) {
@@ -35,18 +47,37 @@ static char *resolve(const char *name, const char *directory, const char *models
     return copy;
 }
 
-static shelf *fetch(shelf **shelves, char *path, masu_bake_textures textures) {
+static shelf *add_shelf(shelf **shelves, shelf made) {
+    shelf *s = masu_bake_allocate(sizeof *s);
+    *s = made;
+    s->next = *shelves;
+    return *shelves = s;
+}
+
+static void release_shelves(shelf *s) {
+    while (s) {
+        shelf *next = s->next;
+        masu_bake_content_release(&s->piece);
+        masu_bake_release(&s->guises);
+        free(s->path);
+        free(s);
+        s = next;
+    }
+}
+
+static shelf *fetch(const masu_bake_json *model, shelf **shelves, char *path, double merge,
+                    masu_bake_textures textures) {
     for (shelf *s = *shelves; s; s = s->next) {
-        if (s->textures == textures && strcmp(s->path, path) == 0) {
+        if (s->path && strcmp(s->path, path) == 0 && s->merge == merge && s->textures == textures) {
             free(path);
             return s;
         }
     }
-    shelf *s = masu_bake_allocate(sizeof *s);
-    *s = (shelf){.next = *shelves, .path = path, .textures = textures};
-    *shelves = s;
+    shelf *s = add_shelf(shelves, (shelf){.path = path, .merge = merge, .textures = textures});
     masu_cli_progress("importing %s", path);
-    return masu_bake_import(path, textures, &s->piece) ? s : NULL;
+    if (!masu_bake_import(path, textures, &s->piece)) return NULL;
+    const char *problem = merge > 0 ? masu_bake_merge(&s->piece, merge) : NULL;
+    return !problem || masu_bake_json_wrong(model, "gives %s", problem) ? s : NULL;
 }
 
 /* ---- procedural meshes ---- */
@@ -350,34 +381,63 @@ static bool read_occluder(const masu_bake_json *model, masu_bake_content *conten
     return true;
 }
 
+static bool same_override(const masu_bake_override *a, const masu_bake_override *b) {
+    const masu_blob_material *x = &a->value, *y = &b->value;
+    return a->base_color == b->base_color && a->roughness == b->roughness &&
+           a->metallic == b->metallic && a->emissive == b->emissive && a->alpha == b->alpha &&
+           a->cutoff == b->cutoff && memcmp(a->map, b->map, sizeof a->map) == 0 &&
+           memcmp(&a->maps, &b->maps, sizeof a->maps) == 0 &&
+           memcmp(x->base_color, y->base_color, sizeof x->base_color) == 0 &&
+           memcmp(x->emissive, y->emissive, sizeof x->emissive) == 0 &&
+           x->roughness == y->roughness && x->metallic == y->metallic;
+}
+
+/* The guise with these values, new if there is none: meshes are per guise, vertices shared. */
+static guise *guise_of(shelf *s, const masu_bake_override *override) {
+    guise *guises = (guise *)(void *)s->guises.data;
+    for (size_t i = 0; i < s->guises.bytes / sizeof *guises; i++) {
+        if (same_override(&guises[i].override, override)) return &guises[i];
+    }
+    guise made = {.override = *override, .residence = s->residence};
+    made.residence.has_meshes = false;
+    return masu_bake_append(&s->guises, &made, sizeof made);
+}
+
 static bool place(const masu_bake_json *model, const char *directory,
-                  const masu_bake_request *request, const masu_bake_content *piece,
-                  masu_bake_residence *residence, masu_bake_content *content) {
+                  const masu_bake_request *request, shelf *s, masu_bake_content *content) {
     masu_bake_affine placement;
     masu_bake_override override;
     const char *name = NULL;
-    if (!read_placement(model, piece, &placement) ||
+    if (!read_placement(model, &s->piece, &placement) ||
         !read_override(model, directory, request, content, &override) ||
         !masu_bake_json_string(model, "name", &name)) {
         return false;
     }
     uint64_t first = masu_bake_count(content, MASU_BLOB_INSTANCES);
-    const char *problem = masu_bake_place(content, piece, residence, &placement, &override, name);
+    guise *g = guise_of(s, &override);
+    const char *problem =
+        masu_bake_place(content, &s->piece, &g->residence, &placement, &override, name);
     if (problem) return masu_bake_json_wrong(model, "gives %s", problem);
+    s->residence = g->residence;
     return read_group(model, content, first) && read_occluder(model, content, first);
 }
 
 static bool read_model(const masu_bake_json *model, const char *directory,
                        const masu_bake_request *request, shelf **shelves,
                        masu_bake_content *content) {
-    static const char *const members[] = {"file",  "mesh", "name",     "translate", "rotate", "rotate_y",
-                                          "scale", "fit",  "material", "group",     "moving", "occluder",
-                                          NULL};
+    static const char *const members[] = {"file",   "mesh",     "name",  "group", "moving",
+                                          "translate", "rotate",   "rotate_y", "scale", "fit",
+                                          "material",  "occluder", "merge",    NULL};
     const char *file = NULL;
-    if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file)) {
+    double merge = 0;
+    if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file) ||
+        !masu_bake_json_number(model, "merge", 1e-3, 1e9, &merge)) {
         return false;
     }
     masu_bake_json mesh = masu_bake_json_member(model, "mesh");
+    if (merge > 0 && masu_bake_json_has(model, "occluder")) {
+        return masu_bake_json_wrong(model, "what is \"merge\"d has no \"occluder\"");
+    }
     if (!file == !mesh.value) {
         return masu_bake_json_wrong(model, "needs either \"file\" or \"mesh\"");
     }
@@ -386,16 +446,19 @@ static bool read_model(const masu_bake_json *model, const char *directory,
         if (textures == MASU_BAKE_TEXTURES_WANTED && has_map_member(model)) {
             textures = MASU_BAKE_TEXTURES_FORCED;
         }
-        shelf *s = fetch(shelves, resolve(file, directory, request->models_directory), textures);
-        return s && place(model, directory, request, &s->piece, &s->residence, content);
+        shelf *s = fetch(model, shelves, resolve(file, directory, request->models_directory), merge,
+                         textures);
+        return s && place(model, directory, request, s, content);
     }
-    masu_bake_content piece = {0};
-    masu_bake_residence residence = {0};
+    if (merge > 0) return masu_bake_json_wrong(model, "\"merge\" is for files");
     bool mapped = has_map_member(model) && request->textures != MASU_BAKE_TEXTURES_OFF;
-    bool good = read_shape(&mesh, mapped, &piece) &&
-                place(model, directory, request, &piece, &residence, content);
-    masu_bake_content_release(&piece);
-    return good;
+    masu_bake_textures textures = mapped ? MASU_BAKE_TEXTURES_FORCED : MASU_BAKE_TEXTURES_OFF;
+    for (shelf *s = *shelves; s; s = s->next) {
+        if (s->shape && s->textures == textures && json_equal(s->shape, mesh.value))
+            return place(model, directory, request, s, content);
+    }
+    shelf *s = add_shelf(shelves, (shelf){.shape = mesh.value, .textures = textures});
+    return read_shape(&mesh, mapped, &s->piece) && place(model, directory, request, s, content);
 }
 
 bool masu_bake_read_models(const masu_bake_json *scene, const char *directory,
@@ -409,13 +472,7 @@ bool masu_bake_read_models(const masu_bake_json *scene, const char *directory,
         masu_bake_json model = masu_bake_json_element(&models, i);
         good = read_model(&model, directory, request, &shelves, content);
     }
-    while (shelves) {
-        shelf *s = shelves;
-        shelves = s->next;
-        masu_bake_content_release(&s->piece);
-        free(s->path);
-        free(s);
-    }
+    release_shelves(shelves);
     return good;
 }
 

@@ -175,14 +175,36 @@ static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, ma
     return true;
 }
 
+static bool read_detail(const masu_bake_json *scene, masu_bake_detail *detail) {
+    double levels = 0;
+    if (!masu_bake_json_number(scene, "lods", 0, MASU_BLOB_LODS_MAX, &levels) ||
+        !masu_bake_json_number(scene, "occluders", 0, 1e9, &detail->least)) {
+        return false;
+    }
+    if (levels != floor(levels)) {
+        return masu_bake_json_wrong(scene, "lods must be a whole number");
+    }
+    detail->levels = (uint32_t)levels;
+    return true;
+}
+
+/* Occluders first: they are of the meshes as they are, and then looked for in their LODs. */
+static void make_detail(masu_bake_content *content, masu_bake_detail *detail) {
+    masu_cli_progress("making occluders and LODs");
+    masu_bake_make_occluders(content, detail->least, &detail->occluders);
+    masu_bake_make_lods(content, detail->levels, &detail->lods);
+    masu_bake_prove_occluders(content);
+}
+
 static bool read_all(const masu_bake_json *scene, const char *directory,
                      const masu_bake_request *request, masu_bake_content *content) {
-    static const char *const members[] = {"models", "camera",   "sun", "ambient",
-                                          "sky",    "exposure", "sdf", NULL};
-    if (!masu_bake_json_object(scene, members) ||
+    static const char *const members[] = {"models",   "camera", "sun",  "ambient",   "sky",
+                                          "exposure", "sdf",    "lods", "occluders", NULL};
+    if (!masu_bake_json_object(scene, members) || !read_detail(scene, request->detail) ||
         !masu_bake_read_models(scene, directory, request, content)) {
         return false;
     }
+    make_detail(content, request->detail);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = masu_bake_bounds(content, &identity);
     const char *source = NULL;

@@ -9,14 +9,25 @@
 
 #include "bake_content.h"
 #include "bake_import.h"
+#include "bake_detail.h"
 #include "bake_json.h"
+#include "bake_occluders.h"
+
+/* What a scene asks to be made of its meshes, and what came of it. */
+typedef struct masu_bake_detail {
+    uint32_t levels; /* LODs per mesh, 0: none */
+    double least;    /* occluders for what is this large, metres; 0: none */
+    masu_bake_lod_report lods;
+    masu_bake_occluder_report occluders;
+} masu_bake_detail;
 
 typedef struct masu_bake_request {
     const char *input;
     masu_bake_textures textures; /* WANTED or OFF */
-    const char *texture_path;    /* folders with ':' between, or NULL */
-    bool variants; /* with the marching variants for comparisons */
+    const char *texture_path;     /* folders with ':' between, or NULL */
+    bool variants;                /* with the marching variants for comparisons */
     const char *models_directory; /* what "@assimp/" stands for */
+    masu_bake_detail *detail;     /* filled */
 } masu_bake_request;
 
 /* Every function here reports its own errors and returns false after one. */

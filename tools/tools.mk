@@ -22,9 +22,17 @@ $(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/bench_*.c tools/me
 # Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
 $(BUILD)/obj/tools/bake_image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
     sed 's/-I/-isystem /g; s/-fopenmp//g')
-$(BUILD)/bin/masu-bake: LIBS = -lassimp -ljansson $$(pkg-config --libs MagickWand) -lm
+BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer $$(pkg-config --libs MagickWand) -lm
+$(BUILD)/bin/masu-bake: LIBS = $(BAKE_LIBS)
 $(BUILD)/bin/masu-bake: $(call objects,$(wildcard tools/bake.c tools/bake_*.c)) $(CLI_OBJECTS) $(SDFC_OBJECTS)
 $(BUILD)/bin/masu-bake: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+	$(link)
+
+# Writes the scenes of whole worlds; reads models as masu-bake does.
+$(BUILD)/bin/masu-world: LIBS = -lassimp -ljansson -lmeshoptimizer -lm
+$(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/world.c tools/world_*.c)) $(CLI_OBJECTS)
+$(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/bake_*.c)) $(SDFC_OBJECTS)
+$(BUILD)/bin/masu-world: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
 
 # A scene is baked again when any file of scenes/ changes: descriptions name models and GLSL that
@@ -46,6 +54,28 @@ $(BUILD)/textures/made: $(BUILD)/tools/make_textures
 	@mkdir -p $(@D)
 	$(V)$< $(@D)
 	$(V)touch $@
+
+# Worlds are written by masu-world and baked like any scene. Not part of `all` or of the tests.
+WORLDS     := city forza
+TORCS      ?= /usr/share/games/torcs
+TIME_city  := 1
+TIME_forza := 0.7
+
+$(BUILD)/worlds/city/city.json: $(BUILD)/bin/masu-world
+	@mkdir -p $(@D)
+	$(V)$(BUILD)/bin/masu-world city $(@D) --quiet
+$(BUILD)/worlds/forza/forza.json: $(BUILD)/bin/masu-world
+	@mkdir -p $(@D)
+	$(V)$(BUILD)/bin/masu-world forza $(@D) --torcs '$(TORCS)'
+
+.PHONY: $(WORLDS:%=world-%)
+$(WORLDS:%=world-%): world-%: $(BUILD)/worlds/%.masu
+define world_rule
+$(BUILD)/worlds/$(1).masu: $(BUILD)/worlds/$(1)/$(1).json $(BUILD)/bin/masu-bake
+	@echo "  BAKE    $$<"
+	$$(V)$(BUILD)/bin/masu-bake $$< -o $$@ --stats $$(@:.masu=.stats.json)
+endef
+$(foreach w,$(WORLDS),$(eval $(call world_rule,$(w))))
 
 # The example of the README.
 $(BUILD)/examples/%: LIBS = -lvulkan -lm

@@ -78,6 +78,7 @@ static void read_sections(walker *w) {
     read_section(w, v->group_items, s->group_items, sizeof *v->group_items, "group items");
     read_section(w, v->occluders, s->occluders, sizeof *v->occluders, "occluders");
     read_section(w, v->materials, s->materials, sizeof *v->materials, "materials");
+    read_section(w, v->lods, s->lods, sizeof *v->lods, "lods");
     read_section(w, v->camera_keys, s->camera_keys, sizeof *v->camera_keys, "camera keys");
     read_section(w, v->environment, 1, sizeof *v->environment, "environment");
     read_section(w, v->shadow, v->shadow != NULL, sizeof *v->shadow, "shadow");
@@ -260,6 +261,51 @@ static void walk_group(walker *w, uint32_t i, uint32_t depth) {
     }
 }
 
+/* Every mesh's coarser forms, looked for from the start, and what the accessors say about them. */
+static void read_detail(walker *w) {
+    uint64_t used = 0;
+    for (uint32_t m = 0; m < w->scene->meshes && !w->fault; m++) {
+        const masu_blob_mesh *mesh = &w->view.meshes[m];
+        uint32_t seen = 0, first = 0, found_first;
+        double last = 0.0;
+        used += mesh->primitive_count;
+        for (uint32_t i = 0; i < w->scene->lods && !w->fault; i++) {
+            const masu_blob_lod *l = &w->view.lods[i];
+            if (l->mesh != m) continue;
+            if (!seen) first = i;
+            expect(w, i == first + seen, "LODs of a mesh are apart");
+            expect(w, all_within(&l->error, 1, last, 1e30), "an error of a LOD");
+            last = (double)l->error;
+            seen++;
+            used += mesh->primitive_count;
+            for (uint32_t p = 0; p < mesh->primitive_count && !w->fault; p++) {
+                uint64_t at = (uint64_t)l->first_primitive + p;
+                expect(w, at < w->scene->primitives, "a LOD's primitives lie outside");
+                if (w->fault) break;
+                const masu_blob_primitive *fine = &w->view.primitives[mesh->first_primitive + p];
+                expect(w, w->view.primitives[at].material == fine->material, "a LOD's material");
+                expect(w, w->view.primitives[at].index_count <= fine->index_count,
+                       "a LOD is finer than its mesh");
+                for (uint32_t k = 0; k < 3; k++) {
+                    expect(w,
+                           w->view.primitives[at].aabb_min[k] >= mesh->aabb_min[k] &&
+                               w->view.primitives[at].aabb_max[k] <= mesh->aabb_max[k],
+                           "a LOD is larger than its mesh");
+                }
+            }
+        }
+        expect(w, seen <= 3, "a mesh has many LODs");
+        expect(w,
+               masu_scene_mesh_lods(&w->view, w->scene->lods, m, &found_first) == seen &&
+                   (!seen || found_first == first),
+               "masu_scene_mesh_lods disagrees");
+    }
+    expect(w, used <= w->scene->primitives, "primitives are shared");
+    for (uint32_t i = 0; i < w->scene->lods && !w->fault; i++) {
+        expect(w, w->view.lods[i].mesh < w->scene->meshes, "a LOD has no mesh");
+    }
+}
+
 static void read_geometry(walker *w) {
     const masu_scene_view *v = &w->view;
     for (uint32_t i = 0; i < w->scene->primitives && !w->fault; i++) {
@@ -287,6 +333,7 @@ static void read_geometry(walker *w) {
     for (uint32_t i = 0; i < w->scene->occluders && !w->fault; i++) {
         const masu_blob_occluder *o = &v->occluders[i];
         expect(w, o->mesh < w->scene->meshes, "an occluder has no mesh");
+        expect(w, o->lods <= 3, "an occluder of many LODs");
         if (w->fault) return;
         for (uint32_t k = 0; k < 3; k++) {
             expect(w,
@@ -304,6 +351,7 @@ static void read_geometry(walker *w) {
     expect(w, grouped == w->scene->group_items, "instances and items of groups");
     expect(w, w->groups == w->scene->groups && w->items == w->scene->group_items,
            "a walk does not meet each group and item once");
+    if (!w->fault) read_detail(w);
 }
 
 static void read_looks(walker *w) {

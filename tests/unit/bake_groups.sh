@@ -85,7 +85,8 @@ occluders 0 "$(model ', "occluder": false')"
 occluders 1 "$(model ', "occluder": true')"
 occluders 1 "$(model ', "occluder": [[-9, 0, -9], [9, 0.25, 9]]')" # cut to the mesh
 occluders 0 "$(model ', "occluder": [[2, 0, 0], [3, 1, 1]]')" # nothing is left
-occluders 2 "$(model ', "occluder": true'), $(model ', "occluder": true')"
+occluders 1 "$(model ', "occluder": true'), $(model ', "occluder": true')" # one mesh
+occluders 2 "$(model ', "occluder": true'), {\"mesh\": {\"box\": {\"size\": [2, 1, 1]}}, \"occluder\": true}"
 block='{"file": "'$PWD'/scenes/test_block.obj", "occluder": [[-0.5, 0, -0.5], [0.5, 1, 0.5]]}'
 occluders 1 "$block, $block" # one mesh
 # What one can look through hides nothing, and a warning says so, once for each mesh.

@@ -27,13 +27,17 @@ static const masu_blob_vertex vertices[] = {
     {{-2.0f, 2.0f, 0.0f}, {0, 0}},
 };
 
-static const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 1, 2, 0, 2, 3};
+/* The last three are those of SUPPORT_DETAIL. */
+static const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 1, 2, 0, 2, 3, 0, 1, 2};
 
 static const masu_blob_primitive primitives[] = {
     {0, 6, 0, 4, 0, {-1.0f, 0.0f, -1.0f}, {1.0f, 0.0f, 1.0f}, 0},
     {6, 3, 4, 3, 1, {0.0f, 1.0f, 0.0f}, {0.0f, 2.0f, 1.0f}, 0},
     {9, 6, 7, 4, 0, {-2.0f, -2.0f, 0.0f}, {2.0f, 2.0f, 0.0f}, 0},
+    {15, 3, 7, 4, 0, {-2.0f, -2.0f, 0.0f}, {2.0f, 2.0f, 0.0f}, 0},
 };
+
+static const masu_blob_lod lods[] = {{1, 3, 2.5f, 0}};
 
 static const masu_blob_mesh meshes[] = {
     {0, 2, {-1.0f, 0.0f, -1.0f}, {1.0f, 2.0f, 1.0f}, NAME_PLATE, 0},
@@ -154,14 +158,17 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     header->version = MASU_BLOB_VERSION;
     size_t sections = 1 + (parts & SUPPORT_RASTER ? 9u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
                       (parts & SUPPORT_SDF ? 8u : 0u) + (parts & SUPPORT_SHADOW ? 1u : 0u) + 1;
+    int detail = parts & SUPPORT_RASTER && parts & SUPPORT_DETAIL;
+    if (detail) sections++;
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
     uint32_t with_textures = SUPPORT_RASTER | SUPPORT_TEXTURES;
     if ((parts & with_textures) == with_textures) sections += 4;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
-        ADD(MASU_BLOB_INDICES, indices);
-        ADD(MASU_BLOB_PRIMITIVES, primitives);
+        add(blob, MASU_BLOB_INDICES, indices, sizeof *indices, COUNT(indices) - (detail ? 0 : 3));
+        add(blob, MASU_BLOB_PRIMITIVES, primitives, sizeof *primitives,
+            COUNT(primitives) - (detail ? 0 : 1));
         ADD(MASU_BLOB_MESHES, meshes);
         ADD(MASU_BLOB_INSTANCES, instances);
         if (parts & SUPPORT_TEXTURES) {
@@ -212,6 +219,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_TEXTURE_SETS, texture_sets);
         ADD(MASU_BLOB_TEXELS, texels);
     }
+    if (detail) ADD(MASU_BLOB_LODS, lods);
     support_blob_seal(blob->bytes, blob->size);
 }
 

@@ -13,7 +13,9 @@
  *   groups     0: instance 0 and group 1  1: instance 1; instance 2 is in none
  *   occluders  one in each mesh: three are placed
  *   textures   0: BC3, 8 x 8, 4 mips, 2 layers   1: BC5, 6 x 3, 3 mips   2: BC1, 4 x 4, 1 mip
- *   sets       0: base 0, normal 1, surface 1    1: emissive 2 */
+ *   sets       0: base 0, normal 1, surface 1    1: emissive 2
+ *
+ * SUPPORT_DETAIL adds primitive 3, a triangle of the last square: the LOD of mesh 1. */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
 
@@ -30,7 +32,8 @@ enum {
                              march_fragment only without SUPPORT_RASTER */
     SUPPORT_SHADOW = 16, /* the sun's shadow map */
     SUPPORT_ALL = 31,
-    SUPPORT_TEXTURES = 32 /* with SUPPORT_RASTER: "steel" has maps, and is a mask */
+    SUPPORT_TEXTURES = 32, /* with SUPPORT_RASTER: "steel" has maps, and is a mask */
+    SUPPORT_DETAIL = 64 /* with SUPPORT_RASTER: a LOD. Not part of SUPPORT_ALL */
 };
 
 #define SUPPORT_BLOB_ROOM 8192u

@@ -77,10 +77,13 @@ static void ungroup(void) {
     support_blob_drop(&blob, MASU_BLOB_GROUP_ITEMS);
 }
 
+
 /* A blob that has a section of that kind, as full as one can be. Returns the section's index. */
 static uint64_t write_with(uint32_t kind) {
     uint32_t without = kind == MASU_BLOB_FRAGMENT_SPIRV ? SUPPORT_RASTER : 0;
-    uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES : 0;
+    uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES
+                    : kind == MASU_BLOB_LODS                                 ? SUPPORT_DETAIL
+                                                                             : 0;
     support_blob_write(&blob, (SUPPORT_ALL & ~without) | with);
     masu_blob_section *row = support_blob_row(&blob, (enum masu_blob_kind)kind);
     assert_non_null(row);

@@ -1,0 +1,585 @@
+/*
+ * test_bake_detail.c: what masu-bake makes of meshes holds what it promises, judged here by dense
+ * samples and rays in double precision that share no code with what is judged: errors of LODs are
+ * bounds, occluders lie inside, merged meshes show the same triangles.
+ */
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake_detail.h"
+#include "bake_occluders.h"
+#include "bake_shape.h"
+#include "bake_surface.h"
+#include "support_random.h"
+
+typedef masu_bake_vec3 vec3;
+
+static double uniform(uint64_t *state) {
+    return (double)(support_random(state) >> 11) / 9007199254740992.0;
+}
+
+static double between(uint64_t *state, double low, double high) {
+    return low + (high - low) * uniform(state);
+}
+
+/* ---- an own judge ---- */
+
+/* Distance from p to a triangle by its seven features, written apart from bake_surface.c. */
+static double own_distance(const vec3 t[3], vec3 p) {
+    vec3 e0 = masu_bake_sub(t[1], t[0]), e1 = masu_bake_sub(t[2], t[0]), d = masu_bake_sub(t[0], p);
+    double a = masu_bake_dot(e0, e0), b = masu_bake_dot(e0, e1), c = masu_bake_dot(e1, e1);
+    double f = masu_bake_dot(e0, d), g = masu_bake_dot(e1, d), best = DBL_MAX;
+    double det = a * c - b * b;
+    double u = (b * g - c * f) / det, v = (b * f - a * g) / det;
+    if (det > 0 && u >= 0 && v >= 0 && u + v <= 1) {
+        vec3 q = masu_bake_mad(masu_bake_mad(t[0], e0, u), e1, v);
+        best = masu_bake_length(masu_bake_sub(q, p));
+    }
+    for (int i = 0; i < 3; i++) {
+        vec3 s = t[i], e = masu_bake_sub(t[(i + 1) % 3], s);
+        double k = masu_bake_dot(masu_bake_sub(p, s), e) / fmax(masu_bake_dot(e, e), 1e-300);
+        vec3 q = masu_bake_mad(s, e, fmin(fmax(k, 0), 1));
+        best = fmin(best, masu_bake_length(masu_bake_sub(q, p)));
+    }
+    return best;
+}
+
+static double own_distance_all(const vec3 (*t)[3], size_t count, vec3 p) {
+    double best = DBL_MAX;
+    for (size_t i = 0; i < count; i++) best = fmin(best, own_distance(t[i], p));
+    return best;
+}
+
+static vec3 point_on(uint64_t *state, const vec3 t[3]) {
+    double u = uniform(state), v = uniform(state);
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    vec3 p = masu_bake_mad(t[0], masu_bake_sub(t[1], t[0]), u);
+    return masu_bake_mad(p, masu_bake_sub(t[2], t[0]), v);
+}
+
+/* Does the segment from a to b cross the triangle? (Moller, Trumbore) */
+static bool crosses(vec3 a, vec3 b, const vec3 t[3]) {
+    vec3 d = masu_bake_sub(b, a), e0 = masu_bake_sub(t[1], t[0]), e1 = masu_bake_sub(t[2], t[0]);
+    vec3 h = masu_bake_cross(d, e1), s = masu_bake_sub(a, t[0]), q = masu_bake_cross(s, e0);
+    double det = masu_bake_dot(e0, h);
+    if (fabs(det) < 1e-300) return false;
+    double u = masu_bake_dot(s, h) / det, v = masu_bake_dot(d, q) / det;
+    double k = masu_bake_dot(e1, q) / det;
+    return u >= -1e-9 && v >= -1e-9 && u + v <= 1 + 1e-9 && k >= 0 && k <= 1 + 1e-9;
+}
+
+/* ---- meshes ---- */
+
+typedef struct soup {
+    float positions[3 * 30000];
+    uint32_t indices[30000];
+    uint32_t count;
+} soup;
+
+static void corner(soup *s, vec3 p) {
+    s->positions[3 * s->count] = (float)p.x;
+    s->positions[3 * s->count + 1] = (float)p.y;
+    s->positions[3 * s->count + 2] = (float)p.z;
+    s->indices[s->count] = s->count;
+    s->count++;
+}
+
+static void face(soup *s, vec3 a, vec3 b, vec3 c) {
+    corner(s, a);
+    corner(s, b);
+    corner(s, c);
+}
+
+static void cuboid(soup *s, vec3 low, vec3 high, int without) {
+    static const unsigned char sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                              {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (int i = 0; i < 6; i++) {
+        vec3 v[4];
+        for (int k = 0; k < 4; k++) {
+            unsigned c = sides[i][k];
+            v[k] = masu_bake_v3(c & 1 ? high.x : low.x, c & 2 ? high.y : low.y,
+                                c & 4 ? high.z : low.z);
+        }
+        if (i == without) continue;
+        face(s, v[0], v[1], v[2]);
+        face(s, v[0], v[2], v[3]);
+    }
+}
+
+/* A tube around a circle: closed, with a hole. */
+static void torus(soup *s, double radius, double thickness, int n, int m, bool inwards) {
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < m; k++) {
+            vec3 v[4];
+            for (int c = 0; c < 4; c++) {
+                /* whole steps taken modulo, so that the ends meet bit for bit */
+                double a = 2 * MASU_BAKE_PI * ((i + (c == 1 || c == 2)) % n) / n;
+                double b = 2 * MASU_BAKE_PI * ((k + (c >= 2)) % m) / m;
+                double r = radius + thickness * cos(b);
+                v[c] = masu_bake_v3(r * cos(a), thickness * sin(b), -r * sin(a));
+            }
+            face(s, v[0], v[inwards ? 2 : 1], v[inwards ? 1 : 2]);
+            face(s, v[0], v[inwards ? 3 : 2], v[inwards ? 2 : 3]);
+        }
+    }
+}
+
+static void add_mesh(masu_bake_content *c, const soup *s, const char *name) {
+    masu_blob_material material = masu_bake_default_material();
+    masu_bake_losses losses = {0};
+    masu_bake_triangles t = {.positions = s->positions,
+                             .vertex_count = s->count,
+                             .indices = s->indices,
+                             .index_count = s->count,
+                             .material = masu_bake_material(c, &material, "")};
+    uint32_t first = (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES);
+    assert_true(masu_bake_add_triangles(c, &t, &losses));
+    uint32_t text = masu_bake_name(c, name, strlen(name));
+    uint32_t mesh =
+        masu_bake_mesh(c, first, (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES) - first, text);
+    masu_bake_affine identity = masu_bake_identity();
+    masu_bake_instance(c, &identity, mesh, MASU_BLOB_NONE, text);
+}
+
+static masu_bake_buffer triangles_of(const masu_bake_content *c, uint32_t first, uint32_t count) {
+    masu_bake_buffer b = {0};
+    masu_bake_surface_collect(c, first, count, &b);
+    return b;
+}
+
+#define TRIANGLES(b) ((const vec3(*)[3])(void *)(b).data)
+#define COUNT_OF(b) ((b).bytes / (3 * sizeof(vec3)))
+
+/* ---- distances ---- */
+
+static void distances_are_those_of_the_nearest_triangle(void **state) {
+    (void)state;
+    uint64_t random = 1;
+    for (int round = 0; round < 50; round++) {
+        vec3 t[60][3];
+        for (int i = 0; i < 180; i++) {
+            t[i / 3][i % 3] = masu_bake_v3(between(&random, -1, 1), between(&random, -1, 1),
+                                           round % 5 ? between(&random, -1, 1) : 0);
+        }
+        size_t count = (size_t)support_random_in(&random, 1, 60);
+        masu_bake_surface s = masu_bake_surface_make((const vec3(*)[3])t, count);
+        for (int i = 0; i < 100; i++) {
+            vec3 p = {between(&random, -2, 2), between(&random, -2, 2), between(&random, -2, 2)};
+            double got = masu_bake_surface_distance(&s, p, NULL);
+            double want = own_distance_all((const vec3(*)[3])t, count, p);
+            assert_true(fabs(got - want) < 1e-9);
+        }
+        masu_bake_surface_release(&s);
+    }
+}
+
+static void a_deviation_is_a_bound_and_not_much_more(void **state) {
+    (void)state;
+    uint64_t random = 2;
+    for (int round = 0; round < 40; round++) {
+        vec3 a[12][3], b[12][3];
+        for (int i = 0; i < 36; i++) {
+            a[i / 3][i % 3] = masu_bake_v3(between(&random, -1, 1), between(&random, -1, 1),
+                                           between(&random, -1, 1));
+            b[i / 3][i % 3] = masu_bake_v3(between(&random, -1, 1), between(&random, -1, 1),
+                                           between(&random, -1, 1));
+        }
+        masu_bake_surface from = masu_bake_surface_make((const vec3(*)[3])a, 12);
+        masu_bake_surface to = masu_bake_surface_make((const vec3(*)[3])b, 12);
+        double bound = masu_bake_surface_deviation(&from, &to, DBL_MAX), most = 0;
+        for (int i = 0; i < 12 * 400; i++) {
+            vec3 p = point_on(&random, (const vec3 *)a[i % 12]);
+            most = fmax(most, own_distance_all((const vec3(*)[3])b, 12, p));
+        }
+        for (int i = 0; i < 36; i++) {
+            most = fmax(most, own_distance_all((const vec3(*)[3])b, 12, a[i / 3][i % 3]));
+        }
+        assert_true(bound >= most);
+        assert_true(bound <= most * 1.25 + 0.02); /* a tenth of slack, and samples miss the worst */
+        assert_true(masu_bake_surface_deviation(&from, &to, most / 2) == DBL_MAX);
+        assert_true(masu_bake_surface_deviation(&from, &from, DBL_MAX) < 1e-12);
+        masu_bake_surface_release(&from);
+        masu_bake_surface_release(&to);
+    }
+}
+
+static void parts_and_closedness(void **state) {
+    (void)state;
+    static soup s;
+    s.count = 0;
+    cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(1, 2, 3), -1);
+    cuboid(&s, masu_bake_v3(5, 0, 0), masu_bake_v3(6, 2, 3), 2);
+    torus(&s, 20, 3, 12, 8, true);
+    vec3 t[400][3];
+    uint32_t part[400];
+    bool closed[400];
+    for (uint32_t i = 0; i < s.count; i++) t[i / 3][i % 3] = masu_bake_v3f(s.positions + 3 * i);
+    assert_int_equal(masu_bake_surface_parts((const vec3(*)[3])t, s.count / 3, part, closed), 3);
+    assert_true(closed[0]);
+    assert_false(closed[1]);
+    assert_true(closed[2]);
+    assert_int_equal(part[11], 0);
+    assert_int_equal(part[12], 1);
+    assert_int_equal(part[22], 2);
+    assert_true(fabs(masu_bake_winding((const vec3(*)[3])t, 12, masu_bake_v3(0.5, 1, 1)) - 1) <
+                1e-9);
+    assert_true(fabs(masu_bake_winding((const vec3(*)[3])t, 12, masu_bake_v3(-0.5, 1, 1))) < 1e-9);
+    assert_true(fabs(masu_bake_winding((const vec3(*)[3])(t + 22), 192, masu_bake_v3(20, 0, 0)) +
+                     1) < 1e-9);
+    assert_true(fabs(masu_bake_winding((const vec3(*)[3])(t + 22), 192, masu_bake_v3(0, 0, 0))) <
+                1e-9);
+}
+
+/* ---- LODs ---- */
+
+static void check_lods(masu_bake_content *c, uint32_t least_levels, uint64_t seed) {
+    masu_bake_lod_report report = {0};
+    masu_bake_make_lods(c, 3, &report);
+    uint64_t count = masu_bake_count(c, MASU_BLOB_LODS), random = seed;
+    assert_true(count >= least_levels);
+    assert_int_equal(count, report.levels);
+    uint32_t before = 0;
+    float error = 0;
+    for (uint64_t i = 0; i < count; i++) {
+        masu_blob_lod l = MASU_BAKE_LODS(c)[i];
+        masu_blob_mesh m = MASU_BAKE_MESHES(c)[l.mesh];
+        bool first = i == 0 || l.mesh != MASU_BAKE_LODS(c)[i - 1].mesh;
+        masu_bake_buffer fine = triangles_of(c, m.first_primitive, m.primitive_count);
+        masu_bake_buffer coarse = triangles_of(c, l.first_primitive, m.primitive_count);
+        if (first) before = (uint32_t)COUNT_OF(fine);
+        assert_true(COUNT_OF(coarse) > 0 && COUNT_OF(coarse) < before);
+        assert_true(first || l.error >= error);
+        before = (uint32_t)COUNT_OF(coarse);
+        error = l.error;
+        for (uint32_t p = 0; p < m.primitive_count; p++) {
+            assert_int_equal(MASU_BAKE_PRIMITIVES(c)[l.first_primitive + p].material,
+                             MASU_BAKE_PRIMITIVES(c)[m.first_primitive + p].material);
+        }
+        double most = 0;
+        for (int k = 0; k < 1500; k++) {
+            size_t f = (size_t)support_random_in(&random, 0, COUNT_OF(fine) - 1);
+            size_t g = (size_t)support_random_in(&random, 0, COUNT_OF(coarse) - 1);
+            vec3 p = point_on(&random, TRIANGLES(fine)[f]),
+                 q = point_on(&random, TRIANGLES(coarse)[g]);
+            most = fmax(most, own_distance_all(TRIANGLES(coarse), COUNT_OF(coarse), p));
+            most = fmax(most, own_distance_all(TRIANGLES(fine), COUNT_OF(fine), q));
+        }
+        assert_true(most <= (double)l.error * (1 + 1e-6) + 1e-9);
+        masu_bake_release(&fine);
+        masu_bake_release(&coarse);
+    }
+}
+
+static void errors_of_lods_are_bounds(void **state) {
+    (void)state;
+    masu_bake_content ball = {0}, ring = {0}, fence = {0}, small = {0};
+    static soup s;
+    masu_bake_sphere(&ball, 2.5, 3);
+    check_lods(&ball, 3, 10);
+    s.count = 0;
+    torus(&s, 4, 1, 32, 12, false);
+    add_mesh(&ring, &s, "ring");
+    check_lods(&ring, 2, 11);
+    s.count = 0; /* of many parts, which no collapse removes */
+    cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(10, 0.1, 0.1), -1);
+    cuboid(&s, masu_bake_v3(0, 1, 0), masu_bake_v3(10, 1.1, 0.1), -1);
+    for (int i = 0; i < 40; i++) {
+        double x = i * 0.25 + 0.05;
+        cuboid(&s, masu_bake_v3(x, 0.1, 0.03), masu_bake_v3(x + 0.04, 1, 0.07), -1);
+    }
+    add_mesh(&fence, &s, "fence");
+    check_lods(&fence, 1, 12);
+    masu_bake_cuboid(&small, masu_bake_v3(1, 1, 1));
+    masu_bake_lod_report report = {0};
+    masu_bake_make_lods(&small, 3, &report);
+    assert_int_equal(masu_bake_count(&small, MASU_BLOB_LODS), 0);
+    assert_int_equal(report.too_small, 1);
+    masu_bake_content_release(&ball);
+    masu_bake_content_release(&ring);
+    masu_bake_content_release(&fence);
+    masu_bake_content_release(&small);
+}
+
+/* ---- occluders ---- */
+
+static vec3 point_of_box(uint64_t *state, const masu_blob_occluder *o) {
+    double p[3];
+    for (int k = 0; k < 3; k++) p[k] = between(state, (double)o->low[k], (double)o->high[k]);
+    int face = (int)support_random_in(state, 0, 5);
+    p[face / 2] = (double)(face & 1 ? o->high : o->low)[face / 2];
+    return masu_bake_v3(p[0], p[1], p[2]);
+}
+
+/* From any eye outside the mesh's box, these primitives are in front of every point of the occluder;
+ * or not, somewhere. */
+static bool hides(const masu_bake_content *c, const masu_blob_occluder *o, uint32_t first,
+                  uint64_t seed) {
+    masu_blob_mesh m = MASU_BAKE_MESHES(c)[o->mesh];
+    masu_bake_buffer mesh = triangles_of(c, first, m.primitive_count);
+    vec3 low = masu_bake_v3f(m.aabb_min), size = masu_bake_sub(masu_bake_v3f(m.aabb_max), low);
+    vec3 middle = masu_bake_mad(low, size, 0.5);
+    double radius = masu_bake_length(size);
+    uint64_t random = seed;
+    bool hidden = true;
+    for (int i = 0; i < 3000 && hidden; i++) {
+        vec3 p = point_of_box(&random, o);
+        vec3 d = {between(&random, -1, 1), between(&random, -1, 1), between(&random, -1, 1)};
+        if (!masu_bake_normalize(&d)) continue;
+        vec3 eye = masu_bake_mad(middle, d, radius * between(&random, 1, 5));
+        hidden = false;
+        for (size_t t = 0; t < COUNT_OF(mesh) && !hidden; t++) {
+            hidden = crosses(eye, p, TRIANGLES(mesh)[t]);
+        }
+    }
+    masu_bake_release(&mesh);
+    return hidden;
+}
+
+/* All occluders: by their meshes, and by as many LODs as they say. Returns how many LODs in all. */
+static uint32_t check_occluders(const masu_bake_content *c, uint64_t seed) {
+    uint32_t lods = 0;
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_OCCLUDERS); i++) {
+        const masu_blob_occluder *o = &MASU_BAKE_OCCLUDERS(c)[i];
+        assert_true(hides(c, o, MASU_BAKE_MESHES(c)[o->mesh].first_primitive, seed + i));
+        uint32_t level = 0;
+        for (uint64_t k = 0; k < masu_bake_count(c, MASU_BLOB_LODS); k++) {
+            const masu_blob_lod *l = &MASU_BAKE_LODS(c)[k];
+            if (l->mesh != o->mesh || level++ >= o->lods) continue;
+            assert_true(hides(c, o, l->first_primitive, seed + i));
+        }
+        assert_true(o->lods <= level);
+        lods += o->lods;
+    }
+    return lods;
+}
+
+static double box_volume(const masu_blob_occluder *o) {
+    double v = 1;
+    for (int k = 0; k < 3; k++) v *= (double)o->high[k] - (double)o->low[k];
+    return v;
+}
+
+static void occluders_lie_inside(void **state) {
+    (void)state;
+    static soup s;
+    uint64_t random = 3;
+    for (int round = 0; round < 40; round++) {
+        masu_bake_content c = {0};
+        masu_bake_occluder_report report = {0};
+        s.count = 0;
+        vec3 low = {between(&random, -9, 0), between(&random, -9, 0), between(&random, -9, 0)};
+        vec3 high = {between(&random, 1, 9), between(&random, 1, 9), between(&random, 1, 9)};
+        if (round % 4 == 0)
+            torus(&s, between(&random, 4, 9), between(&random, 1, 3), 24, 10, round % 8);
+        if (round % 4 == 1) masu_bake_sphere(&c, between(&random, 1, 9), 3);
+        if (round % 4 ==
+            2) { /* a box of many faces in one that is open, so only the inner counts */
+            cuboid(&s, low, high, 3);
+            torus(&s, 6, 2, 16, 8, false);
+        }
+        if (round % 4 == 3) { /* a box, and one that is open */
+            cuboid(&s, low, high, round % 8 == 3 ? -1 : 4);
+        }
+        if (s.count) add_mesh(&c, &s, "solid");
+        masu_bake_make_occluders(&c, 0.5, &report);
+        assert_int_equal(masu_bake_count(&c, MASU_BLOB_OCCLUDERS), round % 8 != 7);
+        assert_int_equal(report.whole, round % 8 == 3);
+        assert_int_equal(report.inside, round % 4 != 3);
+        assert_int_equal(report.dropped, round % 8 == 7);
+        (void)check_occluders(&c, 100 + (uint64_t)round);
+        masu_bake_content_release(&c);
+    }
+}
+
+static void a_box_in_a_sphere_is_not_needlessly_small(void **state) {
+    (void)state;
+    masu_bake_content c = {0};
+    masu_bake_occluder_report report = {0};
+    masu_bake_sphere(&c, 1, 3);
+    masu_bake_make_occluders(&c, 0.5, &report);
+    assert_int_equal(report.inside, 1);
+    assert_true(box_volume(MASU_BAKE_OCCLUDERS(&c)) > 0.8 * 8 / sqrt(27.0)); /* the cube inside has side 2 / sqrt 3 */
+    masu_bake_content_release(&c);
+}
+
+static void what_is_open_thin_or_small_has_no_occluder(void **state) {
+    (void)state;
+    static soup s;
+    masu_bake_content c = {0};
+    masu_bake_occluder_report report = {0};
+    s.count = 0; /* open, and too many to draw as they are */
+    torus(&s, 6, 2, 16, 8, false);
+    s.count -= 3;
+    add_mesh(&c, &s, "open");
+    s.count = 0;
+    cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(9, 0.2, 0.2), -1);
+    add_mesh(&c, &s, "pole");
+    masu_bake_make_occluders(&c, 0.5, &report);
+    assert_int_equal(masu_bake_count(&c, MASU_BLOB_OCCLUDERS), 0);
+    assert_int_equal(report.dropped, 1);
+    assert_int_equal(report.too_small, 1);
+    masu_bake_content_release(&c);
+}
+
+static void an_occluder_says_which_lods_hold_it(void **state) {
+    (void)state;
+    uint32_t held = 0, not_held = 0;
+    for (int round = 0; round < 6; round++) {
+        static soup s;
+        masu_bake_content c = {0};
+        masu_bake_occluder_report report = {0};
+        masu_bake_lod_report lods = {0};
+        s.count = 0;
+        if (round < 3) masu_bake_sphere(&c, 1 + round, 3);
+        if (round >= 3) {
+            torus(&s, 6, 1 + 0.7 * (round - 3), 32, 16, false);
+            add_mesh(&c, &s, "ring");
+        }
+        masu_bake_make_occluders(&c, 0.5, &report);
+        if (round % 3 == 2) { /* one of half the size is in more of them */
+            masu_blob_occluder *o = MASU_BAKE_OCCLUDERS(&c);
+            for (int k = 0; k < 3; k++) {
+                float middle = 0.5f * (o->low[k] + o->high[k]);
+                o->low[k] = 0.5f * (o->low[k] + middle);
+                o->high[k] = 0.5f * (o->high[k] + middle);
+            }
+        }
+        masu_bake_make_lods(&c, 3, &lods);
+        masu_bake_prove_occluders(&c);
+        uint32_t of = check_occluders(&c, 300 + (uint64_t)round);
+        assert_true(lods.levels > 0);
+        held += of;
+        not_held += lods.levels - of;
+        masu_bake_content_release(&c);
+    }
+    assert_true(held > 0);
+    assert_true(not_held > 0); /* else nothing says that the proof can fail */
+}
+
+static void boxes_that_stick_out_are_not_inside(void **state) {
+    (void)state;
+    static soup s;
+    s.count = 0;
+    torus(&s, 6, 2, 16, 8, false);
+    vec3 t[256][3];
+    for (uint32_t i = 0; i < s.count; i++) t[i / 3][i % 3] = masu_bake_v3f(s.positions + 3 * i);
+    for (int out = 0; out < 3; out++) { /* in the ring; through its wall; in its hole */
+        double x = out == 0 ? 5 : out == 1 ? 5.5 : -1;
+        masu_bake_box box = {{x, -0.5, -0.5}, {x + (out == 1 ? 3 : 1.5), 0.5, 0.5}};
+        assert_int_equal(masu_bake_is_inside((const vec3(*)[3])t, s.count / 3, &box), out == 0);
+        /* Nothing is inside of what is open. */
+        assert_false(masu_bake_is_inside((const vec3(*)[3])t, s.count / 3 - 1, &box));
+    }
+}
+
+/* ---- merging ---- */
+
+/* Sums that no order of triangles changes much. */
+static void measure(const masu_bake_content *c, uint64_t *triangles, double *area, vec3 *flux) {
+    *triangles = 0;
+    *area = 0;
+    *flux = masu_bake_v3(0, 0, 0);
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_INSTANCES); i++) {
+        const masu_blob_instance *n = &MASU_BAKE_INSTANCES(c)[i];
+        const masu_blob_mesh *m = &MASU_BAKE_MESHES(c)[n->mesh];
+        masu_bake_affine a;
+        for (int k = 0; k < 12; k++) a.m[k] = (double)n->transform[k];
+        masu_bake_buffer b = triangles_of(c, m->first_primitive, m->primitive_count);
+        *triangles += COUNT_OF(b);
+        for (size_t t = 0; t < COUNT_OF(b); t++) {
+            vec3 p[3];
+            for (int k = 0; k < 3; k++) p[k] = masu_bake_apply(&a, TRIANGLES(b)[t][k]);
+            vec3 f = masu_bake_cross(masu_bake_sub(p[1], p[0]), masu_bake_sub(p[2], p[0]));
+            double y = (p[0].y + p[1].y + p[2].y) / 3;
+            *area += masu_bake_length(f) / 2;
+            *flux = masu_bake_mad(*flux, f, y);
+        }
+        masu_bake_release(&b);
+    }
+}
+
+static void merging_shows_the_same_triangles_in_small_meshes(void **state) {
+    (void)state;
+    static soup s;
+    masu_bake_content c = {0};
+    uint64_t random = 5, before, after;
+    double area, merged_area;
+    vec3 flux, merged_flux;
+    for (int i = 0; i < 60; i++) {
+        s.count = 0;
+        cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(1, 1, 1), -1);
+        add_mesh(&c, &s, "brick");
+        masu_blob_instance *n = &MASU_BAKE_INSTANCES(&c)[i];
+        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)between(&random, -50, 50);
+        n->transform[5] = (float)between(&random, 0.5, 3);
+    }
+    s.count = 0;
+    torus(&s, 4, 1, 32, 12, false);
+    add_mesh(&c, &s, "ring");
+    masu_bake_affine again = masu_bake_translation(masu_bake_v3(30, 0, 0));
+    masu_bake_instance(&c, &again, 60, MASU_BLOB_NONE, MASU_BLOB_NONE);
+    measure(&c, &before, &area, &flux);
+    assert_null(masu_bake_merge(&c, 25));
+    assert_null(masu_bake_check(&c));
+    measure(&c, &after, &merged_area, &merged_flux);
+    assert_int_equal(after, before);
+    assert_true(fabs(merged_area - area) < 1e-3 * area);
+    assert_true(masu_bake_length(masu_bake_sub(merged_flux, flux)) < 1e-3 * area);
+    assert_true(masu_bake_count(&c, MASU_BLOB_MESHES) < 61);
+    uint64_t rings = 0;
+    for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_MESHES); i++) {
+        const masu_blob_mesh *m = &MASU_BAKE_MESHES(&c)[i];
+        bool ring = strcmp(masu_bake_name_text(&c, m->name), "ring") == 0;
+        rings += ring;
+        for (int k = 0; k < 3 && !ring; k++) { /* a cell, and what stands out of it */
+            assert_true(m->aabb_max[k] - m->aabb_min[k] <= 25 + 2 * 3);
+        }
+    }
+    assert_int_equal(rings, 1); /* shown twice and large: left as it is */
+    masu_bake_content_release(&c);
+}
+
+static void merging_keeps_the_outside_of_what_is_mirrored(void **state) {
+    (void)state;
+    masu_bake_content c = {0};
+    masu_bake_sphere(&c, 1, 2);
+    MASU_BAKE_INSTANCES(&c)[0].transform[0] = -2;
+    uint64_t count;
+    double area;
+    vec3 flux;
+    assert_null(masu_bake_merge(&c, 100));
+    measure(&c, &count, &area, &flux);
+    masu_bake_buffer b = triangles_of(&c, 0, (uint32_t)masu_bake_count(&c, MASU_BLOB_PRIMITIVES));
+    double wound = masu_bake_winding(TRIANGLES(b), COUNT_OF(b), masu_bake_v3(0.1, 0, 0));
+    assert_true(fabs(wound - 1) < 1e-6);
+    masu_bake_release(&b);
+    masu_bake_content_release(&c);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(distances_are_those_of_the_nearest_triangle),
+        cmocka_unit_test(a_deviation_is_a_bound_and_not_much_more),
+        cmocka_unit_test(parts_and_closedness),
+        cmocka_unit_test(errors_of_lods_are_bounds),
+        cmocka_unit_test(occluders_lie_inside),
+        cmocka_unit_test(a_box_in_a_sphere_is_not_needlessly_small),
+        cmocka_unit_test(what_is_open_thin_or_small_has_no_occluder),
+        cmocka_unit_test(an_occluder_says_which_lods_hold_it),
+        cmocka_unit_test(boxes_that_stick_out_are_not_inside),
+        cmocka_unit_test(merging_shows_the_same_triangles_in_small_meshes),
+        cmocka_unit_test(merging_keeps_the_outside_of_what_is_mirrored),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,117 @@
+#!/bin/bash
+# masu-world and how masu-bake copes with what it writes: the city is the same every time and as large
+# as promised, placing thousands of parts shares their meshes and is quick, and what is wrong is said
+# in one line. forza is looked at only where its data is installed.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+world=$(realpath "${BUILD:-build}/bin/masu-world")
+bake=$(realpath "${BUILD:-build}/bin/masu-bake")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+number() { sed -n "s/.*\"$2\": \([0-9]*\).*/\1/p" "$1" | head -1; }
+count_of() { sed -n "/\"$2\": {/,/}/s/.*\"count\": \([0-9]*\).*/\1/p" "$1" | head -1; }
+between() { [ "$2" -ge "$3" ] && [ "$2" -le "$4" ] || fail "$1 is $2, not $3 to $4"; }
+
+# ---- the city ------------------------------------------------------------------------------------
+
+"$world" city "$folder/a" || fail "masu-world city"
+"$world" city "$folder/b" || fail "masu-world city, again"
+diff -r "$folder/a" "$folder/b" > /dev/null || fail "the city differs from itself"
+grep -q ': nan\|inf' "$folder/a/city.json" && fail "a number of the city is none"
+keys=$(grep -c '"time"' "$folder/a/city.json")
+[ "$keys" = 605 ] || fail "$keys camera keys"
+frame() { sed -n "s/.*\"time\": $1, \"position\": \[\([^]]*\)\].*/\1/p" "$folder/a/city.json"; }
+[ "$(frame 0.0000)" != "$(frame 10.0000)" ] || fail "the camera stands still"
+
+# Its meshes are baked without LODs here: those take ten seconds, and tests of their own.
+sed 's/"lods": 3/"lods": 0/' "$folder/a/city.json" > "$folder/a/plain.json"
+"$bake" "$folder/a/plain.json" -o "$folder/city.masu" --stats "$folder/city.stats" --quiet \
+    2> "$folder/stderr" || fail "the city does not bake: $(cat "$folder/stderr")"
+[ ! -s "$folder/stderr" ] || fail "the city bakes with: $(cat "$folder/stderr")"
+between "objects" "$(count_of "$folder/city.stats" instances)" 3000 8000
+between "drawn triangles" "$(number "$folder/city.stats" drawn_triangles)" 2500000 4000000
+between "stored triangles" "$(number "$folder/city.stats" triangles)" 10000 60000
+between "meshes" "$(count_of "$folder/city.stats" meshes)" 20 60 # one per part and colour
+between "occluders" "$(count_of "$folder/city.stats" occluders)" 8 60
+if [ "${config:-}" != sanitize ]; then # there it takes minutes, and the peak is the sanitizer's
+    "$bake" "$folder/b/city.json" -o "$folder/b.masu" --stats "$folder/b.stats" --quiet ||
+        fail "the city does not bake with LODs"
+    between "LODs" "$(count_of "$folder/b.stats" lods)" 30 120
+    between "peak bytes of the baker" "$(number "$folder/b.stats" peak_bytes)" 1 200000000
+fi
+
+# ---- what can go wrong ---------------------------------------------------------------------------
+
+# refuses CODE PATTERN COMMAND...: one line on stderr
+refuses() {
+    local wanted=$1 pattern=$2 code
+    shift 2
+    "$@" > /dev/null 2> "$folder/stderr"
+    code=$?
+    [ $code = "$wanted" ] || fail "$*: exit code $code: $(cat "$folder/stderr")"
+    [ "$(wc -l < "$folder/stderr")" = 1 ] || fail "$*: not one line: $(cat "$folder/stderr")"
+    grep -q -e "$pattern" "$folder/stderr" || fail "\"$pattern\" is not in: $(cat "$folder/stderr")"
+}
+refuses 2 'no folder given' "$world" city
+refuses 1 'cannot make the folder' "$world" city /dev/null/x
+refuses 1 'cannot read .*forza.xml: No such file' "$world" forza "$folder/f" --torcs "$folder"
+mkdir -p "$folder/torcs/tracks/road/forza"
+xml=$folder/torcs/tracks/road/forza/forza.xml
+echo '<params/>' > "$xml"
+refuses 1 'no track segments' "$world" forza "$folder/f" --torcs "$folder/torcs"
+{
+    echo '<section name="Track Segments">'
+    for i in 1 2 3 4 5; do
+        echo "<section name=\"$i\"><attstr name=\"type\" val=\"str\"/><attnum name=\"lg\" val=\"200\"/>"
+    done
+} > "$xml"
+refuses 1 'does not close' "$world" forza "$folder/f" --torcs "$folder/torcs"
+
+scene() {
+    printf '%s\n' "$1" > "$folder/s.json"
+    refuses 1 "$2" "$bake" "$folder/s.json" -o "$folder/x.masu"
+}
+ball='{"mesh": {"sphere": {"subdivisions": 3}}'
+scene "{\"models\": [$ball}], \"lods\": 4}" ': lods: expected a number from 0 to 3'
+scene "{\"models\": [$ball}], \"lods\": 1.5}" 'lods must be a whole number'
+scene "{\"models\": [$ball}], \"occluders\": -1}" ': occluders: expected a number from 0'
+scene "{\"models\": [$ball, \"merge\": 10}]}" '"merge" is for files'
+scene "{\"models\": [$ball, \"group\": 3}]}" ': models\[0\].group: expected a string'
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' > "$folder/t.obj"
+scene '{"models": [{"file": "t.obj", "merge": 0}]}' ': models\[0\].merge: expected a number'
+scene '{"models": [{"file": "t.obj", "merge": 1, "occluder": true}]}' 'what is "merge"d has no "occluder"'
+
+# One placed twice with each of two colours, and a shape twice: three meshes in all.
+cat > "$folder/s.json" << 'END'
+{"models": [{"file": "t.obj", "group": "a/b"}, {"file": "t.obj", "material": {"roughness": 0.1}},
+            {"file": "t.obj", "translate": [2, 0, 0], "group": "a/c"},
+            {"file": "t.obj", "translate": [4, 0, 0], "material": {"roughness": 0.1}},
+            {"mesh": {"box": {}}}, {"mesh": {"box": {}}, "translate": [0, 4, 0]}]}
+END
+"$bake" "$folder/s.json" -o "$folder/x.masu" --stats "$folder/x.stats" --quiet || fail "shared meshes"
+[ "$(count_of "$folder/x.stats" meshes)" = 3 ] || fail "meshes are not shared: $(cat "$folder/x.stats")"
+[ "$(count_of "$folder/x.stats" instances)" = 6 ] || fail "instances"
+[ "$(count_of "$folder/x.stats" indices)" = 60 ] || fail "indices are not shared"
+grep -aq 'a/c' "$folder/x.masu" || fail "the group's name is not in the blob"
+
+# ---- forza ---------------------------------------------------------------------------------------
+
+torcs=/usr/share/games/torcs
+if [ -d $torcs/tracks/road/forza ] && [ -d $torcs/cars/p406 ]; then
+    "$world" forza "$folder/forza" > "$folder/stdout" 2> /dev/null || fail "masu-world forza"
+    grep -q 'a lap of 57[0-9][0-9] m' "$folder/stdout" || fail "the lap: $(cat "$folder/stdout")"
+    sed 's/"lods": 3/"lods": 0/' "$folder/forza/forza.json" > "$folder/forza/plain.json"
+    "$bake" "$folder/forza/plain.json" -o "$folder/forza.masu" --stats "$folder/forza.stats" --quiet \
+        2> /dev/null || fail "forza does not bake"
+    between "forza's triangles" "$(number "$folder/forza.stats" triangles)" 90000 130000
+    between "forza's meshes" "$(count_of "$folder/forza.stats" meshes)" 200 2500
+fi
+
+[ $failures = 0 ] && echo "masu-world: all as expected"
+[ $failures = 0 ]
