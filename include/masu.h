@@ -143,6 +143,7 @@ typedef struct masu_scene {
     uint64_t blob_bytes;
     uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
     uint32_t lods; /* coarser forms of meshes, in all */
+    uint32_t lod_draws, lod_instances; /* draws of those; instances, counted for each form */
     uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
     uint32_t groups, group_items; /* what is culled together; instances in groups */
     uint32_t sdf;        /* 1: the scene has an SDF */
@@ -156,8 +157,8 @@ typedef struct masu_scene {
     uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
     uint32_t shadow_resolution;
     float shadow_distance, shadow_lambda;
-    uint32_t draws;      /* draw calls of one G-buffer pass */
-    uint64_t triangles;  /* of one frame: every instance counted */
+    uint32_t draws;      /* draw calls of one G-buffer pass, without LODs */
+    uint64_t triangles;  /* of one frame: every instance counted, in its finest form */
     uint32_t textures;   /* pictures: layers of the texture arrays */
     uint32_t texture_arrays, texture_sets;
     uint32_t masks; /* 1: some material has an alpha mask */
@@ -217,6 +218,8 @@ typedef struct masu_rung {
     masu_switch frustum; /* instances outside of the picture are not drawn, which the picture does not
                             show. AUTO: on */
     masu_switch occlusion; /* nor those that occluders hide. AUTO: on, if the scene has occluders */
+    float lod_error; /* how far a surface may be from its place where a coarser form of its mesh is
+                        drawn, pixels of the render size, at most 1e9; 0: 1. Below 0: no coarser forms */
     /* The sun's shadow map, of scenes that have one. What asks for more than the scene has gets what
      * the scene has; 0: that too. */
     uint32_t shadow_cascades;   /* at most 4 */
@@ -238,8 +241,9 @@ typedef struct masu_limits {
     uint64_t indices;    /* 4 bytes each, device */
     uint64_t materials;  /* 32 bytes each, device */
     uint64_t instances;  /* 52 bytes each per frame in flight, device, and 98 bytes each, host; with
-                            velocities 100 and 146; with occlusion 36 more on the device; with a
-                            shadow map, for each cascade 4 more, with occlusion 16 */
+                            velocities 100 and 146; with occlusion 36 more on the device; for each
+                            LOD of its mesh 4 more there (with occlusion 8), and 1 on the host; for
+                            each cascade of a shadow map 4 more there, with occlusion 16 */
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
     uint64_t shadow_cascades;   /* of the shadow map, as the largest rung has it */
     uint64_t shadow_resolution; /* a cascade of n has 4 n^2 bytes, device */

@@ -51,7 +51,8 @@ void main()
     uint view = gl_WorkGroupID.y, views = masu_cull_word(MASU_CULL_VIEWS);
     uint instance_count = masu_cull_word(MASU_CULL_INSTANCES);
     uint draw_count = masu_cull_word(MASU_CULL_DRAWS);
-    uint from = view * instance_count;                /* lists of stage 1, and of ours */
+    uint marks = view * instance_count;
+    uint from = view * masu_cull_word(MASU_CULL_LISTED); /* lists of stage 1, and of ours */
     uint to = masu_cull_word(MASU_CULL_LISTS) + from;
     uint draws_from = view * draw_count, draws_to = (views + view) * draw_count;
     uint lane = gl_LocalInvocationID.x;
@@ -69,7 +70,7 @@ void main()
                 break;
             }
             uint id = drawn[from + b.first + i];
-            if (seen[from + id] != 0u) {
+            if (seen[marks + id] != 0u) {
                 drawn[to + b.first + count] = id;
                 count++;
             }
@@ -89,7 +90,7 @@ void main()
             bool shows = false;
             if (place < kept) {
                 id = drawn[from + b.first + place];
-                shows = seen[from + id] != 0u;
+                shows = seen[marks + id] != 0u;
             }
             if (shows) {
                 atomicOr(group_mask[lane >> 5], 1u << (lane & 31u));

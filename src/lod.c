@@ -11,8 +11,6 @@ float masu_lod_scale(const float transform[12]) {
     return sqrtf(sum);
 }
 
-float masu_lod_pixels(float height, float fov_y) { return 0.5f * height / tanf(0.5f * fov_y); }
-
 uint32_t masu_lod_choose(const masu_blob_lod *lods, uint32_t count, float scale, float depth,
                          float pixels, float threshold) {
     uint32_t chosen = 0;

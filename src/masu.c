@@ -46,7 +46,10 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
     to->previous = masu_arena_take(arena, "previous frame", before, sizeof *to->previous, 16);
     to->previous_instances = masu_arena_take(arena, "previous transforms", before * s->instances,
                                              sizeof *to->previous_instances, 16);
-    to->batches = masu_arena_take(arena, "batches", s->meshes, sizeof *to->batches, 8);
+    uint64_t lods = plan->lods ? s->lods : 0;
+    to->batches = masu_arena_take(arena, "batches", s->meshes + lods, sizeof *to->batches, 8);
+    to->lods = masu_arena_take(arena, "LODs", lods, sizeof *to->lods, 4);
+    to->levels = masu_arena_take(arena, "instance LODs", lods ? s->instances : 0, sizeof *to->levels, 1);
     to->occluders =
         masu_arena_take(arena, "occluders", s->occluders, sizeof *to->occluders, 4);
     to->mesh_bounds = masu_arena_take(arena, "mesh bounds", s->meshes, sizeof *to->mesh_bounds, 4);

@@ -137,8 +137,25 @@ static void set_suns(masu_renderer *m, const float sun[3], const double eye[3], 
     }
 }
 
+/* Lengths of one at depth one, in pixels: of the two axes the one of more. */
+static void set_lods(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
+                     uint32_t rung) {
+    const masu_rung_plan *rp = &m->plan.rungs[rung];
+    float x = 0.5f * (float)rp->render_width / u->right[3];
+    float y = 0.5f * (float)rp->render_height / u->up[3];
+    m->lod_view.pixels = x > y ? x : y;
+    m->lod_view.widest = 1.0 / sqrt(1.0 + (double)u->right[3] * (double)u->right[3] +
+                                    (double)u->up[3] * (double)u->up[3]);
+    m->lod_view.threshold = m->plan.desc.rungs[rung].lod_error;
+    for (uint32_t k = 0; k < 3; k++) {
+        m->lod_view.eye[k] = eye[k];
+        m->lod_view.forward[k] = (double)u->forward[k];
+    }
+}
+
 void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
                     uint32_t rung) {
+    set_lods(m, u, eye, rung);
     masu_cull_camera(&m->view_planes[0], u->clip_from_rel, eye, u->forward[3]);
     memset(m->stage2, 0, sizeof m->stage2);
     /* How far the raster may move an edge, in its own texels. */
@@ -166,7 +183,7 @@ void masu_keep_occluders(masu_renderer *m, const masu_scene_view *v) {
             end = masu_scene_mesh_instances(v, m->plan.scene.instances, mesh, from, &first);
             from = end;
         }
-        m->occluders[o] = (masu_placed_occluder){first, end - first};
+        m->occluders[o] = (masu_placed_occluder){first, end - first, v->occluders[o].lods};
     }
     masu_cull_box all = {{0, 0, 0}, {0, 0, 0}};
     for (uint32_t p = 0; p < m->plan.scene.instances; p++) {
@@ -193,7 +210,8 @@ void masu_write_occluders(masu_renderer *m, const masu_scene_view *v) {
         memset(header, 0, MASU_CULL_HEADER * sizeof *header);
         header[MASU_CULL_VIEWS] = m->plan.views;
         header[MASU_CULL_INSTANCES] = m->plan.scene.instances;
-        header[MASU_CULL_DRAWS] = m->plan.scene.draws;
+        header[MASU_CULL_DRAWS] = m->plan.draws;
+        header[MASU_CULL_LISTED] = m->plan.listed;
         header[MASU_CULL_BATCH_COUNT] = m->batch_count;
         header[MASU_CULL_LISTS] = (uint32_t)d->lists;
         header[MASU_CULL_KEPT] = (uint32_t)d->kept;
@@ -206,7 +224,7 @@ void masu_write_occluders(masu_renderer *m, const masu_scene_view *v) {
         for (uint32_t b = 0; b < m->batch_count; b++) {
             const masu_batch *batch = &m->batches[b];
             uint32_t *to = words + d->batches + 4 * (uint64_t)b;
-            to[0] = batch->first_instance;
+            to[0] = batch->first_listed;
             to[1] = batch->first_draw;
             to[2] = batch->draw_count;
             to[3] = (uint32_t)batch->triangles;
@@ -236,14 +254,15 @@ void masu_write_box(masu_renderer *m, uint32_t slot, uint32_t instance) {
     memcpy(drawn_words(m, slot) + m->plan.drawn.boxes + 6 * (uint64_t)instance, box, sizeof box);
 }
 
-/* Occluders that any view of `marks` keeps. Those of hidden instances too: what they hide is hidden
- * anyway. */
+/* Occluders that any view of `marks` keeps, and that lie in what it draws. Those of hidden instances
+ * too: what they hide is hidden anyway. */
 static uint32_t write_pairs(masu_renderer *m, uint32_t marks, uint32_t *to) {
     uint32_t n = 0;
     for (uint32_t o = 0; o < m->plan.scene.occluders; o++) {
         const masu_placed_occluder *p = &m->occluders[o];
         for (uint32_t i = 0; i < p->instance_count; i++) {
             if (!(m->marks[p->first_instance + i] & marks)) continue;
+            if (m->plan.lods && m->levels[p->first_instance + i] > p->lods) continue;
             to[2 * (uint64_t)n] = o;
             to[2 * (uint64_t)n++ + 1] = p->first_instance + i;
         }

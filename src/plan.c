@@ -3,6 +3,7 @@
 
 #include "blob.h"
 #include "error.h"
+#include "lod.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,6 +31,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
             if (d.rungs[r].shadow_refresh[k] == 0) d.rungs[r].shadow_refresh[k] = 1;
         }
+        if (d.rungs[r].lod_error == 0.0f) d.rungs[r].lod_error = MASU_LOD_PIXELS;
     }
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
@@ -58,6 +60,11 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].sharpness", 0, 0,
                          "rungs[%u].sharpness is %g stops, allowed are 0 to 64", r,
                          (double)rung->sharpness);
+    }
+    if (!(rung->lod_error >= -1e9f && rung->lod_error <= 1e9f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].lod_error", 1, 0,
+                         "rungs[%u].lod_error is %g pixels, allowed are -1e9 to 1e9", r,
+                         (double)rung->lod_error);
     }
     if (rung->march_steps > MASU_MARCH_STEPS_MAX) {
         return bad_range(detail, "rungs[].march_steps", rung->march_steps, 1, MASU_MARCH_STEPS_MAX);
@@ -416,15 +423,16 @@ static void gather_images(masu_frame_plan *plan) {
 static void lay_drawn(masu_frame_plan *plan) {
     const masu_scene *s = plan->desc.scene;
     masu_drawn_plan *d = &plan->drawn;
-    uint64_t lists = (uint64_t)plan->views * s->instances, next = lists;
+    uint64_t lists = (uint64_t)plan->views * plan->listed, next = lists;
+    uint64_t forms = s->meshes + (plan->lods ? (uint64_t)s->lods : 0);
     if (plan->occlusion) {
         const struct {
             uint64_t *offset, words;
         } rows[] = {{&d->header, MASU_CULL_HEADER + plan->views * MASU_CULL_VIEW_WORDS},
                     {&d->lists, lists},
-                    {&d->kept, lists + plan->views},
-                    {&d->batches, 4 * (uint64_t)s->meshes},
-                    {&d->large, s->meshes},
+                    {&d->kept, (uint64_t)plan->views * (s->instances + (uint64_t)1)},
+                    {&d->batches, 4 * forms},
+                    {&d->large, forms},
                     {&d->boxes, 6 * (uint64_t)s->instances},
                     {&d->occluders, 6 * (uint64_t)s->occluders},
                     {&d->pairs, 2 * (uint64_t)MASU_ATLAS_PARTS(plan) * s->placed_occluders}};
@@ -472,7 +480,7 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
                                    storage_alignment);
         b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
         lay_drawn(plan);
-        b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * s->draws;
+        b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * plan->draws;
         if (plan->occlusion) b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + MASU_ATLAS_PARTS(plan);
         b[MASU_BUFFER_DRAWS].stride =
             masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
@@ -605,6 +613,13 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
     plan->views = plan->needs.raster ? 1 + suns : 1;
     plan->needs.occluders = d->scene && d->scene->placed_occluders > 0;
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        plan->lods |= d->scene && d->scene->lods && d->rungs[r].lod_error > 0.0f;
+    }
+    if (d->scene) {
+        plan->draws = d->scene->draws + (plan->lods ? d->scene->lod_draws : 0);
+        plan->listed = d->scene->instances + (plan->lods ? d->scene->lod_instances : 0);
+    }
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];
         rp->render_width = d->scene ? scaled(d->output.width, d->rungs[r].scale) : d->source.width;

@@ -78,7 +78,7 @@ typedef struct masu_block_plan {
 /* Where in a slot of MASU_BUFFER_DRAWS the draws of a view begin that stage 1 or 2 has counted, and
  * the draw of the occluders of a part of the atlas. */
 #define MASU_DRAWS_OF(plan, view, stage2)                                                          \
-    (((uint64_t)(view) + ((stage2) ? (plan)->views : 0)) * (plan)->scene.draws * MASU_DRAW_BYTES)
+    (((uint64_t)(view) + ((stage2) ? (plan)->views : 0)) * (plan)->draws * MASU_DRAW_BYTES)
 #define MASU_OCCLUDER_DRAW(plan, part)                                                             \
     (MASU_DRAWS_OF(plan, (plan)->views, 1) + (uint64_t)(part)*MASU_DRAW_BYTES)
 
@@ -119,6 +119,8 @@ typedef struct masu_frame_plan {
     uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
     uint32_t views;     /* that instances are culled for: the camera, the cascades */
     int occlusion;      /* a rung has stage 2 of culling */
+    int lods;           /* a rung draws coarser forms of meshes */
+    uint32_t draws, listed; /* draws of a view; words of its lists: a list for each form */
     masu_drawn_plan drawn;
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
     uint32_t recordings; /* of one frame in flight: rungs, their targets, their variants */

@@ -260,7 +260,7 @@ static void bind_maps(recorder *rec, VkPipelineLayout layout, const masu_blob_ma
                                      MASU_SET_TEXTURES, 1, &rec->m->texture_sets[*bound], 0, NULL);
 }
 
-/* One draw per primitive of each placed mesh, for one view; instances of one mesh are neighbours, so one
+/* One draw per primitive of each form of a placed mesh, for one view; instances of one mesh are neighbours, so one
  * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
  * that most of what they would hide or shade in vain is known already. */
@@ -285,13 +285,13 @@ static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct ma
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     int occlusion = (int)(rec->rp->active >> MASU_PASS_CULL & 1u);
-    uint32_t lists = view * m->plan.scene.instances;
+    uint32_t lists = view * m->plan.listed;
     if (occlusion) lists += (uint32_t)m->plan.drawn.lists;
     VkDeviceSize commands = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
                             MASU_DRAWS_OF(&m->plan, view, occlusion);
     for (uint32_t b = 0; b < m->batch_count; b++) {
         const masu_batch *batch = &m->batches[b];
-        push.index[1] = lists + batch->first_instance;
+        push.index[1] = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             uint32_t number = v.primitives[batch->first_primitive + d].material;
             if (sweep_of(&v.materials[number], view) != sweep) continue;

@@ -34,17 +34,27 @@ enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
 
 #define MASU_RENDERER_COOKIE 0x4D415355u
 
-/* A placed mesh: its instances, and one draw for each of its primitives. */
+/* A form of a placed mesh: its instances, and one draw for each of its primitives. The mesh itself comes
+ * first, then its LODs, if the plan has any, the finer first. */
 typedef struct masu_batch {
     uint32_t first_primitive, first_draw, draw_count;
     uint32_t first_instance, instance_count;
-    uint64_t triangles; /* of one instance */
+    uint32_t first_listed;        /* where in a view's lists its own begins */
+    uint32_t first_lod, lod_count; /* of the mesh itself: its LODs */
+    uint64_t triangles;            /* of one instance */
 } masu_batch;
 
-/* An occluder and the instances of its mesh. */
+/* An occluder, the instances of its mesh, and how many LODs hide it too. */
 typedef struct masu_placed_occluder {
-    uint32_t first_instance, instance_count;
+    uint32_t first_instance, instance_count, lods;
 } masu_placed_occluder;
+
+/* What LODs are chosen by: lod.h. */
+typedef struct masu_lod_view {
+    double eye[3], forward[3];
+    double widest; /* cosine of the angle from the middle of the picture to its corners */
+    float pixels, threshold;
+} masu_lod_view;
 
 /* What stage 2 of culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
 typedef struct masu_stage2_view {
@@ -114,6 +124,9 @@ struct masu_renderer {
     /* visible.c; positions are those of src/cull.h */
     masu_batch *batches;
     uint32_t batch_count, large_count; /* large: of over 64 instances */
+    masu_blob_lod *lods;
+    uint8_t *levels; /* [instance]: 0, or the LOD that it was last drawn as; with LODs alone */
+    masu_lod_view lod_view;
     masu_placed_occluder *occluders;
     masu_cull_node *groups;
     uint8_t *group_states;   /* [view][group] */

@@ -137,7 +137,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
     for (uint32_t i = 0; i < h.section_count; i++) {
         masu_blob_section s;
         memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
-        if (s.kind >= MASU_BLOB_KIND_COUNT || !rules[s.kind].stride)
+        if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT)
             return bad(r, "section", i, "unknown kind");
         if (start[s.kind]) return bad(r, "section", i, "appears twice");
         if (s.stride != rules[s.kind].stride) return bad(r, "section", i, "element size is wrong");
@@ -250,6 +250,9 @@ static masu_result check_mesh(reader *r, uint64_t i) {
 static masu_result check_lods(reader *r, uint64_t *primitives) {
     const masu_scene_view *v = &r->view;
     uint32_t level = 0;
+    if (r->counts[MASU_BLOB_LODS] && r->counts[MASU_BLOB_INSTANCES] > MANY / 4) {
+        return bad(r, "lods", 0, "are of over 2^29 instances"); /* listed once for each form */
+    }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_LODS]; i++) {
         const masu_blob_lod *l = &v->lods[i];
         if (l->mesh >= r->counts[MASU_BLOB_MESHES]) return bad(r, "lods", i, "no such mesh");
@@ -682,6 +685,29 @@ static void look_at_sdf(const reader *r, masu_scene *out) {
     }
 }
 
+/* Every form of a mesh has draws of its own, and room for the numbers of its instances. */
+static void look_at_draws(const reader *r, masu_scene *out) {
+    uint32_t from = 0, first_lod;
+    for (uint32_t m = 0; m < out->meshes; m++) {
+        uint32_t first, end = masu_scene_mesh_instances(&r->view, out->instances, m, from, &first);
+        const masu_blob_mesh *mesh = &r->view.meshes[m];
+        uint32_t placed = end - first;
+        from = end;
+        if (placed > out->most_instances) out->most_instances = placed;
+        if (mesh->primitive_count > out->most_primitives)
+            out->most_primitives = mesh->primitive_count;
+        if (!placed || !mesh->primitive_count) continue;
+        uint32_t lods = masu_scene_mesh_lods(&r->view, out->lods, m, &first_lod);
+        out->draws += mesh->primitive_count;
+        out->lod_draws += lods * mesh->primitive_count;
+        out->lod_instances += lods * placed;
+        for (uint32_t p = 0; p < mesh->primitive_count; p++) {
+            out->triangles += (uint64_t)placed *
+                              (r->view.primitives[mesh->first_primitive + p].index_count / 3);
+        }
+    }
+}
+
 masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out,
                             masu_detail *detail) {
     if (!blob || !out || (uintptr_t)blob % MASU_BLOB_ALIGN) {
@@ -737,20 +763,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     for (uint32_t i = 0; i < out->materials; i++) {
         if (r.view.materials[i].flags & MASU_MATERIAL_IS_MASK) out->masks = 1;
     }
-    uint32_t from = 0;
-    for (uint32_t m = 0; m < out->meshes; m++) {
-        uint32_t first, end = masu_scene_mesh_instances(&r.view, out->instances, m, from, &first);
-        const masu_blob_mesh *mesh = &r.view.meshes[m];
-        if (end - first > out->most_instances) out->most_instances = end - first;
-        if (mesh->primitive_count > out->most_primitives)
-            out->most_primitives = mesh->primitive_count;
-        for (uint32_t p = 0; p < mesh->primitive_count && end > first; p++) {
-            out->draws++;
-            out->triangles += (uint64_t)(end - first) *
-                              (r.view.primitives[mesh->first_primitive + p].index_count / 3);
-        }
-        from = end;
-    }
+    look_at_draws(&r, out);
     return MASU_OK;
 }
 

@@ -2,8 +2,13 @@
  * how many instances a draw has, and which, is read from two buffers that are written here for each
  * frame:
  *
- *   draw commands      [view][draw]      VkDrawIndexedIndirectCommand; instanceCount 0: nothing
- *   drawn instances    [view][instance]  of each placed mesh those that are kept, from its first on
+ *   draw commands      [view][draw]    VkDrawIndexedIndirectCommand; instanceCount 0: nothing
+ *   drawn instances    [view][list]    of each form of a placed mesh those that are kept
+ *
+ * Each form of a mesh, the mesh itself and its LODs, has draws and a list of its own, with room for all
+ * instances: where a list begins is recorded. A kept instance is in one of them. Which, depends on the
+ * camera and on where the instance is, and on nothing else: the same in each view and whatever is
+ * culled.
  *
  * firstInstance stays 0, since another one would need the feature drawIndirectFirstInstance: a draw
  * finds the start of its list in its push constants. All primitives of a mesh share one list.
@@ -11,45 +16,70 @@
  *
  * Kept instances stay in order, so that what is not seen changes nothing: of two surfaces at one
  * depth the same one wins with and without it. */
+#include "lod.h"
 #include "renderer.h"
 
+#include <math.h>
 #include <string.h>
 
 _Static_assert(sizeof(VkDrawIndexedIndirectCommand) == MASU_DRAW_BYTES, "indirect draw");
 
 /* ---- Once per scene -------------------------------------------------------------------------- */
 
+/* A form of a mesh that has instances. */
+static masu_batch *keep_batch(masu_renderer *m, const masu_scene_view *v, uint32_t first_primitive,
+                              uint32_t primitives, uint32_t first, uint32_t instances) {
+    masu_batch *b = &m->batches[m->batch_count];
+    *b = (masu_batch){.first_primitive = first_primitive,
+                      .draw_count = primitives,
+                      .first_instance = first,
+                      .instance_count = instances};
+    if (m->batch_count) {
+        b->first_draw = b[-1].first_draw + b[-1].draw_count;
+        b->first_listed = b[-1].first_listed + b[-1].instance_count;
+    }
+    for (uint32_t p = 0; p < primitives; p++) {
+        b->triangles += v->primitives[first_primitive + p].index_count / 3;
+    }
+    m->batch_count++;
+    m->large_count += instances > 64;
+    return b;
+}
+
 static void keep_batches(masu_renderer *m, const masu_scene_view *v) {
-    uint32_t from = 0, draws = 0;
-    for (uint32_t mesh = 0; mesh < m->plan.scene.meshes; mesh++) {
-        uint32_t first,
-            end = masu_scene_mesh_instances(v, m->plan.scene.instances, mesh, from, &first);
+    const masu_scene *scene = &m->plan.scene;
+    uint32_t from = 0;
+    for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
+        uint32_t first, first_lod,
+            end = masu_scene_mesh_instances(v, scene->instances, mesh, from, &first);
         from = end;
         const masu_blob_mesh *what = &v->meshes[mesh];
         memcpy(m->mesh_bounds[mesh], what->aabb_min, sizeof what->aabb_min);
         memcpy(m->mesh_bounds[mesh] + 3, what->aabb_max, sizeof what->aabb_max);
         if (end == first || !what->primitive_count) continue;
-        masu_batch *b = &m->batches[m->batch_count++];
-        m->large_count += end - first > 64;
-        *b = (masu_batch){.first_primitive = what->first_primitive,
-                          .first_draw = draws,
-                          .draw_count = what->primitive_count,
-                          .first_instance = first,
-                          .instance_count = end - first};
-        for (uint32_t p = 0; p < what->primitive_count; p++) {
-            b->triangles += v->primitives[what->first_primitive + p].index_count / 3;
+        masu_batch *b = keep_batch(m, v, what->first_primitive, what->primitive_count, first,
+                                   end - first);
+        if (!m->plan.lods) continue;
+        b->lod_count = masu_scene_mesh_lods(v, scene->lods, mesh, &first_lod);
+        b->first_lod = first_lod;
+        for (uint32_t l = 0; l < b->lod_count; l++) {
+            (void)keep_batch(m, v, v->lods[first_lod + l].first_primitive, what->primitive_count,
+                             first, end - first);
         }
-        draws += what->primitive_count;
     }
+    for (uint32_t l = 0; m->plan.lods && l < scene->lods; l++) m->lods[l] = v->lods[l];
+}
+
+static void rows_of(const struct masu_instance_data *at, float rows[12]) {
+    memcpy(rows, at->row0, sizeof at->row0);
+    memcpy(rows + 4, at->row1, sizeof at->row1);
+    memcpy(rows + 8, at->row2, sizeof at->row2);
 }
 
 static void set_box(masu_renderer *m, uint32_t position, uint32_t instance) {
     const float *bounds = m->mesh_bounds[m->instance_meshes[instance]];
-    const struct masu_instance_data *at = &m->instances[instance];
     float rows[12];
-    memcpy(rows, at->row0, sizeof at->row0);
-    memcpy(rows + 4, at->row1, sizeof at->row1);
-    memcpy(rows + 8, at->row2, sizeof at->row2);
+    rows_of(&m->instances[instance], rows);
     masu_cull_box box = masu_cull_place(rows, bounds, bounds + 3);
     box = masu_cull_widen(&box, 1.0f);
     for (uint32_t k = 0; k < 3; k++) {
@@ -129,6 +159,27 @@ static masu_cull_set box_set(const masu_renderer *m) {
     return set;
 }
 
+/* By the least depth that a point of the box can have in the picture: not below that of its nearest
+ * corner, nor below its distance times the cosine of the widest angle. The latter also serves what is
+ * beside or behind the camera and casts a shadow. What the camera is in is drawn as it is. */
+static uint32_t level_of(const masu_renderer *m, const masu_batch *mesh, uint32_t instance) {
+    const masu_lod_view *view = &m->lod_view;
+    uint32_t position = m->box_positions[instance] & ~MASU_BOX_MOVED;
+    double depth = 0.0, squared = 0.0;
+    float rows[12];
+    for (uint32_t k = 0; k < 3; k++) {
+        double rel = (double)m->boxes[k * m->box_stride + position] - view->eye[k];
+        double half = (double)m->boxes[(3 + k) * m->box_stride + position];
+        double outside = fmax(fabs(rel) - half, 0.0);
+        depth += view->forward[k] * rel - fabs(view->forward[k]) * half;
+        squared += outside * outside;
+    }
+    depth = fmax(depth, sqrt(squared) * view->widest);
+    rows_of(&m->instances[instance], rows);
+    return masu_lod_choose(m->lods + mesh->first_lod, mesh->lod_count, masu_lod_scale(rows),
+                           (float)depth, view->pixels, view->threshold);
+}
+
 void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls) {
     const masu_scene *scene = &m->plan.scene;
     int idle = view && m->plan.needs.shadow && !(m->drawn >> (view - 1) & 1u);
@@ -148,23 +199,31 @@ void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int cull
     } else {
         for (uint32_t i = 0; i < scene->instances; i++) m->marks[i] |= bit;
     }
-    /* Written in rising addresses and never read: upload memory may be write-combined. */
+    /* Never read: upload memory may be write-combined. */
     VkDrawIndexedIndirectCommand *draws =
         (VkDrawIndexedIndirectCommand *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
-        (uint64_t)view * scene->draws;
+        (uint64_t)view * m->plan.draws;
     uint32_t *ids = (uint32_t *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWN, slot) +
-                    (uint64_t)view * scene->instances;
-    for (uint32_t b = 0; b < m->batch_count; b++) {
-        const masu_batch *batch = &m->batches[b];
-        uint32_t kept = 0, end = batch->first_instance + batch->instance_count;
-        for (uint32_t i = batch->first_instance; i < end; i++) {
-            if (m->marks[i] & bit) ids[batch->first_instance + kept++] = i;
+                    (uint64_t)view * m->plan.listed;
+    for (uint32_t b = 0, forms; b < m->batch_count; b += forms) {
+        const masu_batch *mesh = &m->batches[b];
+        uint32_t kept[1 + MASU_BLOB_LODS_MAX] = {0};
+        uint32_t end = mesh->first_instance + mesh->instance_count;
+        forms = 1 + mesh->lod_count;
+        for (uint32_t i = mesh->first_instance; i < end; i++) {
+            if (!(m->marks[i] & bit)) continue;
+            uint32_t level = 0;
+            if (m->plan.lods) m->levels[i] = (uint8_t)(level = level_of(m, mesh, i));
+            ids[mesh[level].first_listed + kept[level]++] = i;
         }
-        for (uint32_t d = 0; d < batch->draw_count; d++) {
-            draws[batch->first_draw + d].instanceCount = kept;
+        for (uint32_t level = 0; level < forms; level++) {
+            const masu_batch *batch = &mesh[level];
+            for (uint32_t d = 0; d < batch->draw_count; d++) {
+                draws[batch->first_draw + d].instanceCount = kept[level];
+            }
+            counts->instances += kept[level];
+            counts->triangles += kept[level] * batch->triangles;
+            counts->draws += kept[level] ? batch->draw_count : 0;
         }
-        counts->instances += kept;
-        counts->triangles += kept * batch->triangles;
-        counts->draws += kept ? batch->draw_count : 0;
     }
 }

@@ -67,7 +67,7 @@ $(BUILD)/tests/gpu/test_stiff: | $(STIFF) $(STIFF:.masu=.truth.so)
 
 # A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
 # one.
-FUZZ_SEEDS_scene := $(BUILD)/tests/fuzz/scene.masu $(BUILD)/tests/fuzz/textures.masu
+FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods)
 FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(call objects,tests/fuzz/seed_scene.c tests/unit/support_blob.c)
@@ -76,6 +76,8 @@ $(BUILD)/tests/fuzz/scene.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 31
 $(BUILD)/tests/fuzz/textures.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 33
+$(BUILD)/tests/fuzz/lods.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 65
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 
 # Every feature in a few lines, and a scene.

@@ -26,7 +26,8 @@ enum {
     OPTION_MARCH,
     OPTION_CULL,
     OPTION_CASTERS,
-    OPTION_ANISOTROPY
+    OPTION_ANISOTROPY,
+    OPTION_LOD_ERROR
 };
 
 #define FRAMES_MAX 100000u
@@ -257,6 +258,7 @@ static int run(masu_cli *cli) {
                                           "unpruned",     NULL};
     static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
     uint32_t poison = 0, march = MASU_MARCH_AUTO, cull = 0, casters = 0;
+    double lod_error = 0.0;
     for (;;) {
         int id = masu_cli_next(cli);
         if (masu_device_option(cli, id, &d.host)) continue;
@@ -295,6 +297,9 @@ static int run(masu_cli *cli) {
             d.desc.vulkan.max_anisotropy = (float)most;
             continue;
         }
+        case OPTION_LOD_ERROR:
+            if (!masu_cli_double(cli, -1e9, 1e9, &lod_error)) return MASU_CLI_USAGE;
+            continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case MASU_CLI_ARGUMENT:
@@ -311,6 +316,7 @@ static int run(masu_cli *cli) {
         d.desc.rungs[r].march = (masu_march)march;
         d.desc.rungs[r].frustum = cull < 2 ? MASU_ON : MASU_OFF;
         d.desc.rungs[r].occlusion = cull % 2 ? MASU_OFF : MASU_ON;
+        d.desc.rungs[r].lod_error = (float)lod_error;
     }
     int code = check(&d, &o);
     if (code) return code;
@@ -354,6 +360,9 @@ static const masu_cli_option options[] = {
      OPTION_MARCH, 0},
     {"cull", "STAGES", "both, frustum, occlusion or none: the picture stays the same (default both)",
      OPTION_CULL, 0},
+    {"lod-error", "PIXELS",
+     "how wrong a surface may be drawn by a coarser form of its mesh; below 0: none (default 1)",
+     OPTION_LOD_ERROR, 0},
     {"casters", NULL, "cull for the sun too, for the numbers of --stats", OPTION_CASTERS, 0},
     {"anisotropy", "N",
      "samples of textures along the longer axis, where the device offers it (default 1)",

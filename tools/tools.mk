@@ -29,7 +29,7 @@ $(BUILD)/bin/masu-bake: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
 
 # Writes the scenes of whole worlds; reads models as masu-bake does.
-$(BUILD)/bin/masu-world: LIBS = -lassimp -ljansson -lmeshoptimizer -lm
+$(BUILD)/bin/masu-world: LIBS = $(BAKE_LIBS)
 $(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/world.c tools/world_*.c)) $(CLI_OBJECTS)
 $(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/bake_*.c)) $(SDFC_OBJECTS)
 $(BUILD)/bin/masu-world: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a

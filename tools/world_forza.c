@@ -253,7 +253,7 @@ static bool write_track(const char *folder, const char *torcs, const char *xml, 
     }
     shift(&t);
     masu_bake_content piece = {0};
-    good = masu_bake_import(model, &piece);
+    good = masu_bake_import(model, MASU_BAKE_TEXTURES_OFF, &piece);
     if (good) {
         ground g = triangles_of(&piece);
         int missing = find_heights(&t, &g);

@@ -57,8 +57,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_ATLAS_CAMERA_HEIGHT 128
 #define MASU_ATLAS_SUN 256
 
-/* Stage 2 of culling. The buffer of drawn instances begins with the lists of stage 1, one of
- * `instances` words for each view; behind them lies a header, whose words say where the rest is. */
+/* Stage 2 of culling. The buffer of drawn instances begins with the lists of stage 1, MASU_CULL_LISTED
+ * words for each view; behind them lies a header, whose words say where the rest is. */
 #define MASU_CULL_FRAME 0u       /* its number */
 #define MASU_CULL_CUT 1u         /* not 0: all are asked */
 #define MASU_CULL_VIEWS 2u       /* how many */
@@ -67,12 +67,13 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_CULL_BATCH_COUNT 5u
 #define MASU_CULL_LISTS 6u       /* lists of visible instances, as those of stage 1 */
 #define MASU_CULL_KEPT 7u        /* of each view: how many stage 1 has kept, then all of them */
-#define MASU_CULL_BATCHES 8u     /* of each: first instance, first draw, draws, triangles */
+#define MASU_CULL_BATCHES 8u     /* of each: start of its list, first draw, draws, triangles */
 #define MASU_CULL_LARGE 9u       /* numbers of batches with over 64 instances */
 #define MASU_CULL_BOXES 10u      /* of each instance: middle and half extents, world */
 #define MASU_CULL_OCCLUDERS 11u  /* of each: lower and upper corner, object space */
 #define MASU_CULL_PAIRS 12u      /* of each view: occluder and instance */
 #define MASU_CULL_PAIR_COUNT 13u /* most of one view */
+#define MASU_CULL_LISTED 14u     /* words of the lists of one view */
 #define MASU_CULL_HEADER 16u
 /* Most primitives of a mesh, and most groups of 64 of its instances: bounds of loops. */
 #define MASU_CULL_ROUNDS 4096

@@ -196,7 +196,7 @@ static void read_primitive(walker *w, const masu_blob_primitive *p) {
 
 /* The draws of one G-buffer pass, by counting instances for each mesh from the start. */
 static void count_draws(walker *w) {
-    uint64_t draws = 0, triangles = 0;
+    uint64_t draws = 0, triangles = 0, lod_draws = 0, lod_instances = 0;
     for (uint32_t m = 0; m < w->scene->meshes && !w->fault; m++) {
         const masu_blob_mesh *mesh = &w->view.meshes[m];
         uint32_t first = w->scene->instances, placed = 0, from = 0, found_first;
@@ -210,6 +210,11 @@ static void count_draws(walker *w) {
             masu_scene_mesh_instances(&w->view, w->scene->instances, m, from, &found_first);
         expect(w, end - found_first == placed && (!placed || found_first == first),
                "masu_scene_mesh_instances disagrees");
+        for (uint32_t i = 0; i < w->scene->lods; i++) {
+            if (w->view.lods[i].mesh != m || !placed || !mesh->primitive_count) continue;
+            lod_draws += mesh->primitive_count;
+            lod_instances += placed;
+        }
         for (uint32_t p = 0; p < mesh->primitive_count && placed && !w->fault; p++) {
             draws++;
             triangles +=
@@ -217,6 +222,8 @@ static void count_draws(walker *w) {
         }
     }
     expect(w, draws == w->scene->draws, "draws were counted wrongly");
+    expect(w, lod_draws == w->scene->lod_draws, "draws of LODs were counted wrongly");
+    expect(w, lod_instances == w->scene->lod_instances, "instances of LODs were counted wrongly");
     expect(w, triangles == w->scene->triangles, "triangles were counted wrongly");
 }
 

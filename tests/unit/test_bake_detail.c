@@ -285,7 +285,7 @@ static void errors_of_lods_are_bounds(void **state) {
     (void)state;
     masu_bake_content ball = {0}, ring = {0}, fence = {0}, small = {0};
     static soup s;
-    masu_bake_sphere(&ball, 2.5, 3);
+    masu_bake_sphere(&ball, 2.5, 3, 0);
     check_lods(&ball, 3, 10);
     s.count = 0;
     torus(&s, 4, 1, 32, 12, false);
@@ -300,7 +300,7 @@ static void errors_of_lods_are_bounds(void **state) {
     }
     add_mesh(&fence, &s, "fence");
     check_lods(&fence, 1, 12);
-    masu_bake_cuboid(&small, masu_bake_v3(1, 1, 1));
+    masu_bake_cuboid(&small, masu_bake_v3(1, 1, 1), 0);
     masu_bake_lod_report report = {0};
     masu_bake_make_lods(&small, 3, &report);
     assert_int_equal(masu_bake_count(&small, MASU_BLOB_LODS), 0);
@@ -382,7 +382,7 @@ static void occluders_lie_inside(void **state) {
         vec3 high = {between(&random, 1, 9), between(&random, 1, 9), between(&random, 1, 9)};
         if (round % 4 == 0)
             torus(&s, between(&random, 4, 9), between(&random, 1, 3), 24, 10, round % 8);
-        if (round % 4 == 1) masu_bake_sphere(&c, between(&random, 1, 9), 3);
+        if (round % 4 == 1) masu_bake_sphere(&c, between(&random, 1, 9), 3, 0);
         if (round % 4 ==
             2) { /* a box of many faces in one that is open, so only the inner counts */
             cuboid(&s, low, high, 3);
@@ -406,7 +406,7 @@ static void a_box_in_a_sphere_is_not_needlessly_small(void **state) {
     (void)state;
     masu_bake_content c = {0};
     masu_bake_occluder_report report = {0};
-    masu_bake_sphere(&c, 1, 3);
+    masu_bake_sphere(&c, 1, 3, 0);
     masu_bake_make_occluders(&c, 0.5, &report);
     assert_int_equal(report.inside, 1);
     assert_true(box_volume(MASU_BAKE_OCCLUDERS(&c)) > 0.8 * 8 / sqrt(27.0)); /* the cube inside has side 2 / sqrt 3 */
@@ -441,7 +441,7 @@ static void an_occluder_says_which_lods_hold_it(void **state) {
         masu_bake_occluder_report report = {0};
         masu_bake_lod_report lods = {0};
         s.count = 0;
-        if (round < 3) masu_bake_sphere(&c, 1 + round, 3);
+        if (round < 3) masu_bake_sphere(&c, 1 + round, 3, 0);
         if (round >= 3) {
             torus(&s, 6, 1 + 0.7 * (round - 3), 32, 16, false);
             add_mesh(&c, &s, "ring");
@@ -553,7 +553,7 @@ static void merging_shows_the_same_triangles_in_small_meshes(void **state) {
 static void merging_keeps_the_outside_of_what_is_mirrored(void **state) {
     (void)state;
     masu_bake_content c = {0};
-    masu_bake_sphere(&c, 1, 2);
+    masu_bake_sphere(&c, 1, 2, 0);
     MASU_BAKE_INSTANCES(&c)[0].transform[0] = -2;
     uint64_t count;
     double area;

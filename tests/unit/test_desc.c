@@ -78,6 +78,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].shadow_resolution);
         SAME(rungs[r].shadow_distance);
         for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) SAME(rungs[r].shadow_refresh[k]);
+        SAME(rungs[r].lod_error);
     }
     SAME(limits.vertices);
     SAME(limits.indices);
@@ -125,9 +126,12 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
-    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
-    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
-    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
+    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
+                                    SHADOW};
+    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
+                                    SHADOW};
+    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
+                                    SHADOW};
     masu_desc resolved = masu_desc_resolved(&zero);
     assert_same_desc(&resolved, &expected);
     resolved = masu_desc_resolved(NULL);
@@ -144,8 +148,10 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.frames_in_flight = 2;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
-    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, SHADOW};
+    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
+                                    SHADOW};
+    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
+                                    SHADOW};
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
 
@@ -179,9 +185,9 @@ static masu_desc full_desc(void) {
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
         d.rungs[r] =
             (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1,
-                        MASU_OFF, MASU_ON, r % 5, 100 + r, (float)r, {r + 1, 2, 3, 4}};
+                        MASU_OFF, MASU_ON, 0.5f + (float)r, r % 5, 100 + r, (float)r, {r + 1, 2, 3, 4}};
     }
-    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15};
+    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15, 16, 17};
     d.host_budget = 14;
     d.device_budget = 15;
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -298,6 +304,9 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
     BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
     BAD("rungs[].occlusion", d.rungs[1].occlusion = (masu_switch)3);
+    BAD("rungs[].lod_error", d.rungs[1].lod_error = nan);
+    BAD("rungs[].lod_error", d.rungs[0].lod_error = infinity);
+    BAD("rungs[].lod_error", d.rungs[1].lod_error = -infinity);
     BAD("rungs[].frustum", d.rungs[1].frustum = (masu_switch)3);
     BAD("rungs[].shadow_cascades", d.rungs[1].shadow_cascades = 5);
     BAD("rungs[].shadow_resolution", d.rungs[1].shadow_resolution = 15);
@@ -399,9 +408,9 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.frames_in_flight = MASU_MAX_FLIGHT;
     d.readback = MASU_READBACK_ALL;
     d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1,
-                             MASU_ON, MASU_ON, 4,      8192,    1e30f,   {1, 64, 64, 64}};
+                             MASU_ON, MASU_ON, 1e9f, 4,      8192,    1e30f,   {1, 64, 64, 64}};
     d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256,
-                             MASU_OFF, MASU_OFF, 1,    16,       1e-30f,   {64, 0, 0, 0}};
+                             MASU_OFF, MASU_OFF, -1e9f, 1,    16,       1e-30f,   {64, 0, 0, 0}};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;

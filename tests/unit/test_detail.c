@@ -127,8 +127,7 @@ static const masu_blob_lod forms[3] = {{0, 0, 0.01f, 0}, {0, 0, 0.1f, 0}, {0, 0,
 
 static void the_coarsest_form_within_the_threshold_is_chosen(void **state) {
     (void)state;
-    float pixels = masu_lod_pixels(1080.0f, 1.0471976f); /* 60 degrees */
-    assert_true(fabsf(pixels - 935.307f) < 0.01f);
+    const float pixels = 935.307f; /* 1080 in 60 degrees */
     for (int i = 0; i < 3; i++) {
         float depth = forms[i].error * pixels / MASU_LOD_PIXELS;
         assert_int_equal(masu_lod_choose(forms, 3, 1, depth * 0.999f, pixels, MASU_LOD_PIXELS), i);
@@ -137,6 +136,8 @@ static void the_coarsest_form_within_the_threshold_is_chosen(void **state) {
         assert_int_equal(masu_lod_choose(forms, 3, 2, depth * 1.999f, pixels, MASU_LOD_PIXELS), i);
     }
     assert_int_equal(masu_lod_choose(forms, 0, 1, 1e9f, pixels, 1), 0);
+    assert_int_equal(masu_lod_choose(forms, 3, 1, 1e9f, pixels, 1), 3);
+    assert_int_equal(masu_lod_choose(forms, 3, 1, 1e9f, pixels, -1), 0);
 }
 
 static void choosing_is_total_and_falls_back_to_the_mesh(void **state) {
