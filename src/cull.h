@@ -24,7 +24,7 @@
 
 #define MASU_CULL_SLACK 0x1p-20f /* 8 * 2^-23 */
 #define MASU_CULL_FAR 1e30f
-#define MASU_CULL_PLANES 6u
+#define MASU_CULL_PLANES 7u
 #define MASU_CULL_DEPTH 64u /* most levels of a tree */
 #define MASU_CULL_LEAF 16u  /* most boxes that masu-bake puts into one group */
 

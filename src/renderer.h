@@ -7,7 +7,8 @@
  *   pipelines.c layouts, shader modules, pipelines, render pass
  *   record.c    descriptor sets and command buffers: barriers derived from the table
  *   visible.c   which instances a view draws: the tree of groups, draw commands
- *   occlusion.c what of that occluders hide: views, boxes, the words of the shaders
+ *   views.c     the camera and the sun's cascades: planes, numbers of the shaders
+ *   occlusion.c what of that occluders hide: boxes, the words of the shaders
  *   upload.c    scene -> device, frame uniforms, instance transforms
  *   shadow.c    cascades of the sun's shadow map: where they lie, when they are drawn anew
  *
@@ -145,6 +146,7 @@ struct masu_renderer {
     masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];
     /* shadow.c, of no length without a shadow map */
     masu_cascade cascades[MASU_CASCADES_MAX]; /* as drawn last */
+    double shadow_distance;                    /* view depth where shadows end in this frame */
     double casters[2][3];                      /* a box around all instances, wherever they have been */
 
     /* frames */

@@ -149,6 +149,7 @@ uint32_t masu_write_shadow(masu_renderer *m, const masu_frame_desc *f, uint32_t 
     memset(&out, 0, sizeof out);
     double distance = (double)scene->shadow_distance, wish = (double)rung->shadow_distance;
     if (wish > 0.0 && wish < distance) distance = wish;
+    m->shadow_distance = distance;
     uint32_t drawn = 0;
     for (uint32_t k = 0; k < rp->cascades; k++) {
         masu_cascade *c = &m->cascades[k];

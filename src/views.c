@@ -1,0 +1,233 @@
+/* views.c: what a frame looks from: the camera, and the sun for each cascade of its shadow map (or, for
+ * the numbers alone, for all of the scene). For each view the planes of stage 1 of culling and what
+ * stage 2 reads, and for the camera what the choice of LODs asks. In double precision and world space
+ * up to where the numbers are written. */
+#include "renderer.h"
+
+#include <math.h>
+#include <string.h>
+
+VkRect2D masu_atlas_part(uint32_t part) {
+    if (part) return (VkRect2D){{0, MASU_ATLAS_CAMERA_HEIGHT}, {MASU_ATLAS_SUN, MASU_ATLAS_SUN}};
+    return (VkRect2D){{0, 0}, {MASU_ATLAS_CAMERA_WIDTH, MASU_ATLAS_CAMERA_HEIGHT}};
+}
+
+/* A box along the sun's direction, which is its last axis. It reaches from the centre `half` across it,
+ * `behind` away from the sun and `ahead` towards it: how far that is may be more than the position
+ * of a middle could bear. */
+typedef struct sun_box {
+    double axis[3][3], center[3], half[2], behind, ahead;
+} sun_box;
+
+static double along(const double axis[3], const double p[3]) {
+    return axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+}
+
+/* All of the scene as it was baked. */
+static sun_box around_scene(const masu_renderer *m, const float sun[3]) {
+    sun_box b;
+    double towards[3], half[3] = {1e-6, 1e-6, 1e-6};
+    for (uint32_t i = 0; i < 3; i++) towards[i] = (double)sun[i];
+    masu_shadow_axes(towards, b.axis);
+    for (uint32_t i = 0; i < 3; i++) {
+        b.center[i] = (double)m->scene_box.center[i];
+        for (uint32_t j = 0; j < 3; j++)
+            half[i] += fabs(b.axis[i][j]) * 1.001 * (double)m->scene_box.half[j];
+    }
+    b.half[0] = half[0];
+    b.half[1] = half[1];
+    b.behind = b.ahead = half[2];
+    return b;
+}
+
+static sun_box around_cascade(const masu_cascade *c) {
+    sun_box b;
+    memcpy(b.axis, c->axis, sizeof b.axis);
+    memcpy(b.center, c->center, sizeof b.center);
+    b.half[0] = b.half[1] = c->half;
+    b.behind = c->behind;
+    b.ahead = c->ahead;
+    return b;
+}
+
+/* The least box around two of the same axes. */
+static sun_box around_both(const sun_box *a, const sun_box *b) {
+    sun_box both = *a;
+    double apart[3];
+    for (uint32_t i = 0; i < 3; i++) apart[i] = b->center[i] - a->center[i];
+    for (uint32_t i = 0; i < 2; i++) {
+        double at = along(a->axis[i], apart);
+        double low = fmin(-a->half[i], at - b->half[i]), high = fmax(a->half[i], at + b->half[i]);
+        both.half[i] = 0.5 * (high - low);
+        for (uint32_t k = 0; k < 3; k++) both.center[k] += a->axis[i][k] * 0.5 * (high + low);
+    }
+    both.behind = fmax(a->behind, b->behind - along(a->axis[2], apart));
+    both.ahead = fmax(a->ahead, b->ahead + along(a->axis[2], apart));
+    return both;
+}
+
+/* Its planes, but for the one on the side of the sun: nothing there may be left out. */
+static void set_box_planes(const sun_box *b, masu_cull_view *view) {
+    view->count = 0;
+    for (uint32_t plane = 0; plane < 5; plane++) {
+        double n[3], sign = plane % 2 ? -1.0 : 1.0, reach = plane < 4 ? b->half[plane / 2] : b->behind;
+        for (uint32_t k = 0; k < 3; k++) n[k] = sign * b->axis[plane / 2][k];
+        masu_cull_add_plane(view, n, reach - along(n, b->center));
+    }
+}
+
+/* ---- Casters that matter --------------------------------------------------------------------- */
+
+/* Where the picture ends, seen from the sun: the eye and the corners of the picture at the depth where
+ * shadows end, in metres across the sun's direction from a box's centre. */
+typedef struct outline {
+    double at[5][2];
+} outline;
+
+static outline outline_of(const masu_renderer *m, const sun_box *b,
+                          const struct masu_frame_uniforms *u, const double eye[3]) {
+    outline o;
+    double depth = m->shadow_distance;
+    for (uint32_t i = 0; i < 5; i++) {
+        double rel[3], x = i & 1 ? 1.0 : -1.0, y = i & 2 ? 1.0 : -1.0;
+        for (uint32_t k = 0; k < 3; k++) {
+            double corner = (double)u->forward[k] + x * (double)u->right[k] + y * (double)u->up[k];
+            rel[k] = eye[k] - b->center[k] + (i < 4 ? depth * corner : 0.0);
+        }
+        o.at[i][0] = along(b->axis[0], rel);
+        o.at[i][1] = along(b->axis[1], rel);
+    }
+    return o;
+}
+
+/* How far the box reaches out of the half-plane on the left of i -> j, which holds the whole outline; or
+ * below 0 where it does not. n: the inside normal. */
+static double cut_of(const outline *o, uint32_t i, uint32_t j, const sun_box *b, double n[2]) {
+    double x = o->at[j][0] - o->at[i][0], y = o->at[j][1] - o->at[i][1], length = sqrt(x * x + y * y);
+    if (!(length > 0.0) || !(length <= 1e15)) return -1.0;
+    n[0] = -y / length;
+    n[1] = x / length;
+    for (uint32_t k = 0; k < 5; k++) {
+        double side = n[0] * (o->at[k][0] - o->at[i][0]) + n[1] * (o->at[k][1] - o->at[i][1]);
+        if (side < -1e-9 * length) return -1.0;
+    }
+    double edge = n[0] * o->at[i][0] + n[1] * o->at[i][1];
+    return edge + fabs(n[0]) * b->half[0] + fabs(n[1]) * b->half[1];
+}
+
+/* What casts no shadow into the picture need not be in a map that this frame alone looks at: of the
+ * outline the two edges that take most of the box away become planes, widened by `margin` metres. The
+ * box stays as it is: it is what the map holds. */
+static void add_outline(const outline *o, const sun_box *b, double margin, masu_cull_view *view) {
+    double most[2] = {margin, margin}, normal[2][2] = {{0, 0}, {0, 0}}, from[2] = {0, 0};
+    for (uint32_t edge = 0; edge < 25; edge++) {
+        double n[2], cut = cut_of(o, edge / 5, edge % 5, b, n);
+        uint32_t less = most[0] < most[1] ? 0 : 1;
+        if (!(cut > most[less])) continue;
+        most[less] = cut;
+        memcpy(normal[less], n, sizeof n);
+        from[less] = n[0] * o->at[edge / 5][0] + n[1] * o->at[edge / 5][1] - margin;
+    }
+    for (uint32_t e = 0; e < 2; e++) {
+        double n[3];
+        for (uint32_t k = 0; k < 3; k++)
+            n[k] = normal[e][0] * b->axis[0][k] + normal[e][1] * b->axis[1][k];
+        if (most[e] > margin) masu_cull_add_plane(view, n, -from[e] - along(n, b->center));
+    }
+}
+
+/* ---- Stage 2 --------------------------------------------------------------------------------- */
+
+/* Depth is 1 at the side of the sun. */
+static void look_from_sun(const sun_box *b, const double eye[3], masu_stage2_view *v) {
+    for (uint32_t row = 0; row < 3; row++) {
+        double scale = 1.0 / (row == 2 ? b->behind + b->ahead : b->half[row]);
+        double offset = row == 2 ? b->behind * scale : 0.0;
+        for (uint32_t i = 0; i < 3; i++) {
+            v->clip[4 * i + row] = (float)(scale * b->axis[row][i]);
+            offset += scale * b->axis[row][i] * (eye[i] - b->center[i]);
+        }
+        v->clip[12 + row] = (float)offset;
+    }
+    v->clip[15] = 1.0f;
+    for (uint32_t i = 0; i < 3; i++) v->eye[i] = (float)b->axis[2][i];
+    v->blind = -1.0f;
+}
+
+static void set_atlas(masu_stage2_view *v, uint32_t part) {
+    VkRect2D area = masu_atlas_part(part);
+    v->atlas[0] = (float)area.offset.x;
+    v->atlas[1] = (float)area.offset.y;
+    v->atlas[2] = (float)area.extent.width;
+    v->atlas[3] = (float)area.extent.height;
+}
+
+/* The sun's views share one part of the atlas, a square around all that this frame draws. Cascades
+ * lie inside of each other, so that what hides something in the part hides it in each of them; but a
+ * cascade moves surfaces away from the sun, and so a mesh may be a little behind its occluder. */
+static void set_suns(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
+                     const masu_rung_plan *rp, float step) {
+    sun_box boxes[MASU_CASCADES_MAX], all;
+    uint32_t suns = m->plan.views - 1, any = 0;
+    for (uint32_t k = 0; k < suns; k++) {
+        if (m->plan.needs.shadow && !(m->drawn >> k & 1u)) continue;
+        boxes[k] = m->plan.needs.shadow ? around_cascade(&m->cascades[k]) : around_scene(m, u->sun_direction);
+        set_box_planes(&boxes[k], &m->view_planes[1 + k]);
+        if (m->plan.needs.shadow && !(rp->slow >> k & 1u)) {
+            outline o = outline_of(m, &boxes[k], u, eye);
+            double texel = 2.0 * m->cascades[k].half / m->cascades[k].size;
+            add_outline(&o, &boxes[k], 4.0 * texel, &m->view_planes[1 + k]);
+        }
+        all = any ? around_both(&all, &boxes[k]) : boxes[k];
+        any = 1;
+    }
+    if (!any || !m->plan.occlusion) return;
+    all.half[0] = all.half[1] = fmax(all.half[0], all.half[1]);
+    masu_stage2_view shared = m->stage2[1];
+    set_atlas(&shared, 1);
+    look_from_sun(&all, eye, &shared);
+    for (uint32_t k = 0; k < suns; k++) {
+        double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN;
+        double drawn = m->plan.needs.shadow ? 2.0 * m->cascades[k].half / m->cascades[k].size : texel;
+        double bias = m->plan.needs.shadow ? MASU_SHADOW_BIAS_MOST * drawn : 0.0;
+        shared.margin = (float)((double)step * drawn / texel);
+        shared.bias = (float)(bias / (all.behind + all.ahead) + 2e-6);
+        m->stage2[1 + k] = shared;
+    }
+}
+
+/* Lengths of one at depth one, in pixels: of the two axes the one of more. */
+static void set_lods(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
+                     uint32_t rung) {
+    const masu_rung_plan *rp = &m->plan.rungs[rung];
+    float x = 0.5f * (float)rp->render_width / u->right[3];
+    float y = 0.5f * (float)rp->render_height / u->up[3];
+    m->lod_view.pixels = x > y ? x : y;
+    m->lod_view.widest = 1.0 / sqrt(1.0 + (double)u->right[3] * (double)u->right[3] +
+                                    (double)u->up[3] * (double)u->up[3]);
+    m->lod_view.threshold = m->plan.desc.rungs[rung].lod_error;
+    for (uint32_t k = 0; k < 3; k++) {
+        m->lod_view.eye[k] = eye[k];
+        m->lod_view.forward[k] = (double)u->forward[k];
+    }
+}
+
+void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
+                    uint32_t rung) {
+    set_lods(m, u, eye, rung);
+    masu_cull_camera(&m->view_planes[0], u->clip_from_rel, eye, u->forward[3]);
+    memset(m->stage2, 0, sizeof m->stage2);
+    /* How far the raster may move an edge, in its own texels. */
+    float step = ldexpf(1.0f, -(int)m->vk.properties.limits.subPixelPrecisionBits);
+    set_suns(m, u, eye, &m->plan.rungs[rung], step);
+    masu_stage2_view *v = &m->stage2[0];
+    set_atlas(v, 0);
+    memcpy(v->clip, u->clip_from_rel, sizeof v->clip);
+    float across = v->atlas[2] / (float)m->plan.rungs[rung].render_width;
+    float down = v->atlas[3] / (float)m->plan.rungs[rung].render_height;
+    v->margin = step * (across > down ? across : down);
+    v->eye[3] = 1.0f;
+    v->near_distance = u->forward[3];
+    v->blind = 1.001f * u->forward[3] *
+               sqrtf(1.0f + u->right[3] * u->right[3] + u->up[3] * u->up[3]);
+}
