@@ -12,6 +12,7 @@ extern const masu_cli_command masu_cmd_upscale;
 extern const masu_cli_command masu_cmd_plan;
 extern const masu_cli_command masu_cmd_march_bench;
 extern const masu_cli_command masu_cmd_cull_bench;
+extern const masu_cli_command masu_cmd_draw_bench;
 
 /* Options of every command that opens a device; ids from 900 on. */
 enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };

@@ -88,7 +88,7 @@ static int remove_dir(void **state) {
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
     static const char *const commands[] = {"",     "render",      "upscale",
-                                           "plan", "march-bench", "cull-bench"};
+                                           "plan", "march-bench", "cull-bench", "draw-bench"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(masu("%s --help", commands[i]), 0);
         assert_true(strlen(out_text) > 200);
@@ -229,6 +229,25 @@ static void plan_says_what_is_in_and_what_was_left_out(void **state) {
     assert_non_null(strstr(out_text, "\"left_out_bytes\""));
 }
 
+static void draw_bench_compares_pictures_and_counts_triangles(void **state) {
+    (void)state;
+    assert_int_equal(masu("draw-bench %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
+                          scene_path("test_town")),
+                     0);
+    assert_non_null(strstr(out_text, "4 frames, least of 1"));
+    assert_non_null(strstr(out_text, "pictures: 0 of 4 frames differ"));
+    assert_non_null(strstr(out_text, "1.00x  5042\n")); /* neither stage: all of the town */
+    assert_int_equal(masu("draw-bench %s --size 64x40 --frames 2 --repeat 2 --json --quiet",
+                          scene_path("test_shadows")),
+                     0);
+    assert_non_null(strstr(out_text, "\"different_frames\": 0"));
+    assert_non_null(strstr(out_text, "\"triangles_stage1\""));
+    assert_int_equal(masu("draw-bench"), 2);
+    said("no scene");
+    assert_int_equal(masu("draw-bench %s", scene_path("spheres")), 1);
+    said("has no instances");
+}
+
 static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void **state) {
     (void)state;
     enum { IW = 40, IH = 28, OW = 70, OH = 49 };
@@ -296,6 +315,7 @@ int main(void) {
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing),
         cmocka_unit_test(an_unknown_device_lists_those_that_are_there),
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
+        cmocka_unit_test(draw_bench_compares_pictures_and_counts_triangles),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
         cmocka_unit_test(the_example_of_the_readme_draws),
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
