@@ -452,7 +452,7 @@ static void the_demo_draws_finite_pixels_at_every_rung(void **state) {
         masu_stats_info stats;
         assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
         assert_int_equal(stats.replaced, 0);
-        assert_int_equal(stats.draws, 7);
+        assert_int_equal(stats.draws, 6);
     }
     close_session(&s);
 }
