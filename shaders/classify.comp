@@ -35,23 +35,41 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, r32f) uniform writeonly 
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 
 shared uint farthest; /* bits of the least reverse-Z depth; positive floats order like their bits */
+shared bool active_tile;
 shared uint masks[MASKS];
 
+uvec2 pixel_of(uvec2 corner, int i)
+{
+    return corner + gl_LocalInvocationID.xy + uvec2(i & 1, i >> 1) * uint(MASU_GROUP);
+}
+
+#if MASU_HAS_RASTER
 /* Raster depth of the tile to scene_depth. */
 void take_depth(uvec2 corner, uvec2 size)
 {
+    float least = 1.0;
     for (int i = 0; i < 4; i++) {
-        uvec2 at = corner + gl_LocalInvocationID.xy + uvec2(i & 1, i >> 1) * uint(MASU_GROUP);
+        uvec2 at = pixel_of(corner, i);
         if (all(lessThan(at, size))) {
-            float depth = 0.0;
-#if MASU_HAS_RASTER
-            depth = texelFetch(raster_depth, ivec2(at), 0).r;
-#endif
-            atomicMin(farthest, floatBitsToUint(depth));
+            float depth = texelFetch(raster_depth, ivec2(at), 0).r;
+            least = min(least, depth);
             MASU_STORE_R32F(depth_image, at, depth);
         }
     }
+    atomicMin(farthest, floatBitsToUint(least));
 }
+#else
+/* Where the march does not come, nothing is. */
+void clear_depth(uvec2 corner, uvec2 size)
+{
+    for (int i = 0; i < 4; i++) {
+        uvec2 at = pixel_of(corner, i);
+        if (all(lessThan(at, size))) {
+            MASU_STORE_R32F(depth_image, at, 0.0);
+        }
+    }
+}
+#endif
 
 /* The four side planes of the tile through the eye, normals inwards, half a pixel wider: the march
  * stops a tenth of a pixel before a surface. */
@@ -88,11 +106,11 @@ bool sphere_seen(vec4 sphere, vec3 planes[4], float z_far)
     return !outside;
 }
 
-/* The SDF's bounds against the same planes: the corner farthest along each normal. */
-bool bounds_seen(vec3 planes[4], float z_far)
+/* A box against the same planes: the corner farthest along each normal. */
+bool box_seen(vec3 low, vec3 high, vec3 planes[4], float z_far)
 {
-    vec3 low = frame.sdf_min.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
-    vec3 high = frame.sdf_max.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
+    low = low - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
+    high = high - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
     vec3 forward = frame.forward.xyz;
     float slack = 16.0 * ulp * (length(frame.sdf_min.xyz) + length(frame.sdf_max.xyz) + length(low));
     vec3 near_corner = mix(low, high, lessThan(forward, vec3(0.0)));
@@ -129,7 +147,7 @@ void write_list(uint tile, uvec2 size, bool flat_seen)
         count += uint(bitCount(masks[w]));
     }
     bool keep_all = pc.index.y != 0u;
-    bool active_tile = count > 0u || flat_seen || keep_all;
+    active_tile = count > 0u || flat_seen || keep_all;
     if (active_tile) {
         uint place = atomicAdd(masu_tiles_out[0], 1u);
         masu_tiles_out[uint(MASU_TILES_HEADER) + place] = tile;
@@ -165,30 +183,48 @@ void main()
     uvec2 size = uvec2(pc.render_width, pc.render_height);
     uvec2 corner = gl_WorkGroupID.xy * uint(MASU_TILE);
     uint tile = gl_WorkGroupID.y * masu_tile_grid(size).x + gl_WorkGroupID.x;
-    if (me == 0u) {
-        farthest = floatBitsToUint(1.0);
-    }
     for (int w = 0; w < (MASKS + INVOCATIONS - 1) / INVOCATIONS; w++) {
         if (uint(w * INVOCATIONS) + me < uint(MASKS)) {
             masks[uint(w * INVOCATIONS) + me] = 0u;
         }
     }
+    float least = 0.0;
+#if MASU_HAS_RASTER
+    if (me == 0u) {
+        farthest = floatBitsToUint(1.0);
+    }
     barrier();
     take_depth(corner, size);
     barrier();
-    float least = uintBitsToFloat(farthest);
+    least = uintBitsToFloat(farthest);
+#else
+    barrier();
+#endif
     float z_far = least > 0.0 ? frame.forward.w / least : 3e38;
-    vec3 planes[4];
-    tile_planes(corner, size, planes);
-    bool seen = bounds_seen(planes, z_far);
-    for (int i = 0; i < (MASU_SDF_LISTED_COUNT + INVOCATIONS - 1) / INVOCATIONS; i++) {
-        uint part = uint(i * INVOCATIONS) + me;
-        if (seen && part < uint(MASU_SDF_LISTED_COUNT) && sphere_seen(masu_sdf_bounds(part), planes, z_far)) {
-            atomicOr(masks[part >> 5], 1u << (part & 31u));
+    bool seen = false;
+    if (me < max(uint(MASU_SDF_LISTED_COUNT), 1u)) {
+        vec3 planes[4];
+        tile_planes(corner, size, planes);
+        seen = box_seen(frame.sdf_min.xyz, frame.sdf_max.xyz, planes, z_far);
+        vec3 low, high;
+        masu_listed_box(low, high);
+        bool listed_seen = box_seen(low, high, planes, z_far);
+        for (int i = 0; i < (MASU_SDF_LISTED_COUNT + INVOCATIONS - 1) / INVOCATIONS; i++) {
+            uint part = uint(i * INVOCATIONS) + me;
+            if (listed_seen && part < uint(MASU_SDF_LISTED_COUNT) &&
+                sphere_seen(masu_sdf_bounds(part), planes, z_far)) {
+                atomicOr(masks[part >> 5], 1u << (part & 31u));
+            }
         }
     }
     barrier();
     if (me == 0u) {
         write_list(tile, size, seen && flat_parts_seen(corner, size));
     }
+#if !MASU_HAS_RASTER
+    barrier();
+    if (!active_tile) {
+        clear_depth(corner, size);
+    }
+#endif
 }

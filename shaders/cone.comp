@@ -10,7 +10,7 @@
  * The march stops where the sphere no longer holds the cone, or gains less than a quarter of its
  * radius (beyond that the pixels do better alone).
  *
- * Outside the SDF's bounds nothing is drawn: there the distance to the bounds is a step as well.
+ * Outside the box of the listed parts nothing is listed: there the distance to it is a step as well.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -33,9 +33,11 @@ layout(set = MASU_SET_PASS, binding = 0, r32f) uniform writeonly image2D cone_im
 #define MASU_SDF_NO_FLAT
 #include "sdf/field.glsl"
 
-float outside_bounds(vec3 p)
+vec3 box_low, box_high;
+
+float outside_box(vec3 p)
 {
-    vec3 past = max(max(frame.sdf_min.xyz - p, p - frame.sdf_max.xyz), vec3(0.0));
+    vec3 past = max(max(box_low - p, p - box_high), vec3(0.0));
     return length(past);
 }
 
@@ -61,6 +63,7 @@ void main()
         uint evals = 0u;
         uvec2 pixels = uvec2(pc.render_width, pc.render_height);
         uvec2 tile = at * uint(MASU_CONE_BLOCK) / uint(MASU_TILE);
+        masu_listed_box(box_low, box_high);
         bool empty = !masu_use_tile(tile.y * masu_tile_grid(pixels).x + tile.x, pixels);
         MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
             if (empty || uint(i) >= pc.index.x || !(t < limit)) {
@@ -69,7 +72,7 @@ void main()
             bool usable;
             float f = step_at(r, t, usable);
             evals++;
-            float radius = max(f, outside_bounds(world_at(r.direction, t)));
+            float radius = max(f, outside_box(world_at(r.direction, t)));
             float inside = radius * radius * (1.0 + k * k) - k * k * t * t;
             if (!usable || !(radius > 0.0) || !(inside > 0.0)) {
                 break;

@@ -59,18 +59,25 @@ void prepare(uvec2 at, uvec2 size, int k)
     uint part;
     float end = masu_sdf_flat(world_at(r.direction, 0.0), r.direction, r.start, part);
     bool ends = end < r.limit;
+    vec3 low, high;
+    masu_listed_box(low, high);
+    float farthest = min(r.limit, end);
+    clip_to_box(r, low, high);
+    /* What ends at the very side of the box may be found a little behind it. */
+    r.limit = min(r.limit * (1.0 + newton_reach * r.pixel), farthest);
     start = mix(start, vec4(max(r.start, texelFetch(cone_image, ivec2(at / 4u), 0).r)), only(k));
-    limit = mix(limit, vec4(min(r.limit, end)), only(k));
+    limit = mix(limit, vec4(r.limit), only(k));
     flat_end = mix(flat_end, vec4(ends ? end : -1.0), only(k));
     flat_part = uvec4(mix(vec4(flat_part), vec4(part), only(k)));
 }
 
 ray ray_of(uvec2 corner, uvec2 size, int k)
 {
-    vec3 through = masu_pixel_ray(pixel_of(corner, k), size);
-    float z_scale = length(through);
-    return ray(through / z_scale, 2.0 * frame.up.w / float(size.y) / z_scale, lane(start, k),
-               lane(limit, k));
+    float z_scale;
+    ray r = ray_through(pixel_of(corner, k), size, z_scale);
+    r.start = lane(start, k);
+    r.limit = lane(limit, k);
+    return r;
 }
 
 /* All four rays in one loop: who is done with one takes the next, instead of waiting for the slowest of
@@ -85,15 +92,9 @@ uint march_all(uvec2 corner, uvec2 size)
         if (k > 3) {
             break;
         }
-        if (!m.done && m.steps == 0u && !(r.start < r.limit)) {
-            m.done = true;
-            m.t = -1.0;
-        }
         if (!m.done) {
-            bool usable;
-            float f = step_at(r, m.t, usable);
             evals++;
-            march_step(m, r, f, usable);
+            march_step(m, r, field_at(r, m.t));
         }
         if (m.done) {
             found = mix(found, vec4(m.t), only(k));

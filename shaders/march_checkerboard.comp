@@ -42,16 +42,23 @@ float march_pixel(uvec2 at, uvec2 size, float start)
     }
     float z_scale;
     uint evals;
-    ray r = pixel_ray(at, size, imageLoad(depth_image, ivec2(at)).r, z_scale);
+    float depth = 0.0;
+#if MASU_HAS_RASTER
+    depth = imageLoad(depth_image, ivec2(at)).r;
+#endif
+    ray r = pixel_ray(at, size, depth, z_scale);
+    /* Cones do not know half-spaces, and the field here does. */
+    uint part;
+    start = min(start, masu_sdf_flat(world_at(r.direction, 0.0), r.direction, r.start, part));
     r.start = max(r.start, start);
     masu_hint_delta = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
     masu_hint_free = start;
     masu_hint_open = true;
     float t = march(r, evals);
     if (t >= 0.0) {
-        float depth = write_hit(at, r, t, false, 0u, z_scale);
-        MASU_STORE_R32F(depth_image, at, depth);
+        depth = write_hit(at, r, t, false, 0u, z_scale);
     }
+    MASU_STORE_R32F(depth_image, at, depth);
     masu_count(MASU_COUNTER_SDF_EVALS, evals);
     return masu_hint_free;
 }
@@ -73,10 +80,13 @@ void main()
     barrier();
     MASU_LOOP for (int i = 0; i < 2; i++) {
         ivec2 p = ivec2(me) + ivec2(1 - i, i);
-        float start = texelFetch(cone_image, (ivec2(corner) + p) / 8, 0).r;
+        float own = texelFetch(cone_image, (ivec2(corner) + p) / 8, 0).r;
+        float start = own;
         MASU_LOOP for (int k = 0; k < 4; k++) {
             ivec2 q = p + ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
-            if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(EDGE)))) {
+            /* A neighbour's chain begins where the cone of its own block ended. */
+            if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(EDGE))) &&
+                texelFetch(cone_image, (ivec2(corner) + q) / 8, 0).r <= own) {
                 start = max(start, free_to[q.y][q.x]);
             }
         }

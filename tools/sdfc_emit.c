@@ -429,6 +429,25 @@ static void put_flat(writer *w) {
     PUT(w, "    return n;\n}\n\n");
 }
 
+/* The box around the listed parts. */
+static void put_box(writer *w) {
+    const sdfc *c = w->c;
+    PUT(w, "void masu_sdf_box(out vec3 low, out vec3 high)\n{\n");
+    for (int side = 0; side < 2; side++) {
+        PUT(w, side ? "    high = vec3(" : "    low = vec3(");
+        for (int axis = 0; axis < 3; axis++) {
+            int e = c->box[side][axis];
+            if (axis) PUT(w, ", ");
+            if (c->box_slot[side][axis])
+                PUT(w, "masu_slot(%uu)", c->box_slot[side][axis]);
+            else
+                put_number(w, e >= 0 ? c->exprs[e].value : side ? 1e30 : -1e30);
+        }
+        PUT(w, ");\n");
+    }
+    PUT(w, "}\n\n");
+}
+
 static void put_glsl_dispatch(writer *w) {
     sdfc *c = w->c;
     PUT(w, "float masu_sdf_part(uint part, vec3 p)\n{\n");
@@ -702,6 +721,7 @@ static void put_glsl(writer *w) {
         "    return vec4(masu_slot(record), masu_slot(record + 1u), masu_slot(record + 2u),\n"
         "                masu_slot(record + 3u));\n}\n\n",
         MASU_SDFC_PART_SLOTS);
+    put_box(w);
     put_roots(w);
     PUT(w, "#ifdef MASU_SDF_ASCENDING\n");
     put_ascending(w);

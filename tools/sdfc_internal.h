@@ -253,6 +253,8 @@ typedef struct sdfc {
     int group_count, group_capacity;
     uint32_t slot_count;
     int flat_parts; /* the last ones */
+    int box[2][3]; /* low and high side of the listed parts: expressions, or -1 */
+    uint32_t box_slot[2][3]; /* of those that change */
     uint32_t *dynamic_slots; /* pairs: slot, expression */
     int dynamic_count, dynamic_capacity;
     sdfc_place *places; /* behind all other slots, from place_base on */
@@ -318,6 +320,7 @@ int sdfc_parse_shape(sdfc *c);
 
 void sdfc_analyse(sdfc *c, int shape); /* fills in facts and extra */
 void sdfc_lower(sdfc *c, sdfc_part *part);
+int sdfc_box_side(sdfc *c, int axis, bool high); /* around the listed parts; -1: endless */
 void sdfc_group_parts(sdfc *c);
 void sdfc_emit(sdfc *c);
 void sdfc_check(sdfc *c, uint32_t pairs);

@@ -882,8 +882,19 @@ void sdfc_group_parts(sdfc *c) {
             sdfc_fail(c, c->parts[i].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
         }
     }
+    for (int i = 0; i < 6; i++) {
+        int side = c->box[i / 3][i % 3] = sdfc_box_side(c, i % 3, i >= 3);
+        if (side >= 0 && c->exprs[side].dynamic) c->box_slot[i / 3][i % 3] = (uint32_t)slots++;
+    }
+    if (slots > MASU_SDFC_SLOTS_MAX) {
+        sdfc_fail(c, c->parts[c->part_count - 1].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
+    }
     c->slot_count = (uint32_t)slots;
     c->initial = sdfc_take(c, (size_t)slots, sizeof *c->initial);
+    for (int i = 0; i < 6; i++) {
+        uint32_t slot = c->box_slot[i / 3][i % 3];
+        if (slot) set_slot(c, slot, c->box[i / 3][i % 3]);
+    }
     for (int m = 0; m < c->material_count; m++) {
         uint32_t base =
             (uint32_t)(c->part_count * MASU_SDFC_PART_SLOTS + m * MASU_SDFC_MATERIAL_SLOTS);

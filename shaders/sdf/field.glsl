@@ -188,17 +188,27 @@ struct ray {
     float start, limit;
 };
 
+/* Read once: lavapipe would load and check each word of them again at every sample. */
+vec3 eye_hi = frame.sdf_eye_hi.xyz;
+vec3 eye_lo = frame.sdf_eye_lo.xyz;
+float safe_step = frame.sdf_min.w;
+
 /* In the SDF's space: world minus frame.anchor. */
 vec3 world_at(vec3 direction, float t)
 {
-    return frame.sdf_eye_hi.xyz + (frame.sdf_eye_lo.xyz + direction * t);
+    return eye_hi + (eye_lo + direction * t);
+}
+
+float field_at(ray r, float t)
+{
+    return masu_sdf(world_at(r.direction, t)) * safe_step;
 }
 
 /* The field as a step that cannot pass through a surface. Where it is not finite there is nothing to
  * go by: a miss. */
 float step_at(ray r, float t, out bool usable)
 {
-    float f = masu_sdf(world_at(r.direction, t)) * frame.sdf_min.w;
+    float f = field_at(r, t);
     usable = masu_finite(f);
     return usable ? f : 0.0;
 }
@@ -211,14 +221,26 @@ float resolution(ray r, float t)
     return 8.0 * ulp * max(max(p.x, max(p.y, p.z)), t);
 }
 
-/* Entry and exit of the SDF's bounds. A component of the direction that is zero is replaced by a
- * tiny one: the slab is then left at +-1e30 or never entered, and 0 * Inf cannot arise. */
-void clip_to_bounds(inout ray r)
+/* Where the listed parts can be: within the SDF's bounds, and within their own box at the present
+ * parameters, as far as fp32 knows that one and the eye. Where it is not a number there is none. */
+void masu_listed_box(out vec3 low, out vec3 high)
+{
+    masu_sdf_box(low, high);
+    vec3 eye = abs(frame.sdf_eye_hi.xyz);
+    low = mix(low - 16.0 * ulp * (abs(low) + eye), frame.sdf_min.xyz, masu_not_finite(low));
+    high = mix(high + 16.0 * ulp * (abs(high) + eye), frame.sdf_max.xyz, masu_not_finite(high));
+    low = max(low, frame.sdf_min.xyz);
+    high = min(high, frame.sdf_max.xyz);
+}
+
+/* Entry and exit of a box. A component of the direction that is zero is replaced by a tiny one: the
+ * slab is then left at +-1e30 or never entered, and 0 * Inf cannot arise. */
+void clip_to_box(inout ray r, vec3 low, vec3 high)
 {
     vec3 d = mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
     vec3 inverse = 1.0 / d;
-    vec3 a = (frame.sdf_min.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
-    vec3 b = (frame.sdf_max.xyz - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
+    vec3 a = (low - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
+    vec3 b = (high - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
     a = clamp(a, vec3(-masu_huge), vec3(masu_huge));
     b = clamp(b, vec3(-masu_huge), vec3(masu_huge));
     vec3 enter = min(a, b);

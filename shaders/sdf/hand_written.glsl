@@ -13,6 +13,12 @@ vec4 masu_sdf_bounds(uint part)
     return vec4(0.0, 0.0, 0.0, -1.0);
 }
 
+void masu_sdf_box(out vec3 low, out vec3 high)
+{
+    low = vec3(-1e30);
+    high = vec3(1e30);
+}
+
 float masu_sdf_with(vec3 p, out uint part)
 {
     part = 0u;

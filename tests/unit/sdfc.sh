@@ -47,7 +47,7 @@ grep -q 'double masu_truth_distance(' "$folder/x.c" || fail "no masu_truth_dista
 grep -q '"name": "a", "shape": 0, "slot": 16, "slots": 1, "material": 0, "lipschitz": 1,' \
     "$folder/x.json" || fail "table: $(cat "$folder/x.json")"
 [ "$(cat "$folder/stdout")" = \
-    "$good: 1 parts of 1 forms, 17 slots (some change), $(wc -c < "$folder/x.glsl") bytes of GLSL" ] ||
+    "$good: 1 parts of 1 forms, 23 slots (some change), $(wc -c < "$folder/x.glsl") bytes of GLSL" ] ||
     fail "summary: $(cat "$folder/stdout")"
 
 for scene in scenes/*.sdf; do

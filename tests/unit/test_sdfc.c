@@ -482,7 +482,8 @@ static void one_sphere_has_the_code_of_one_sphere(void **state) {
     assert_int_equal(count(result.glsl, "switch"), 0);
     assert_int_equal(count(result.glsl, "for ("), 0);
     assert_int_equal(count(result.glsl, "masu_part_at("), 0);
-    assert_int_equal(count(result.glsl, ", 1.5)"), 1); /* a literal, no slot */
+    assert_int_equal(count(result.glsl, "(x, y, z, 1.5)"), 1); /* a literal, no slot */
+    assert_int_equal(count(result.glsl, "high = vec3(1.5, 1.5, 1.5)"), 1);
     assert_int_equal(result.slot_count, MASU_SDFC_PART_SLOTS + MASU_SDFC_MATERIAL_SLOTS);
     assert_false(result.dynamic);
     masu_sdfc_release(&result);
@@ -538,6 +539,53 @@ static void parts_of_one_form_share_its_code(void **state) {
     assert_true(result.slots[head + 7] == 7);
     assert_int_equal(count(result.glsl, "masu_slot_write("), 50);
     masu_sdfc_release(&result);
+}
+
+/* The slots that the function masu_sdf_box reads, or its literals: what is said of low or high. */
+static void box_sides(const masu_sdfc_result *result, const char *name, double out[3]) {
+    const char *at = strstr(result->glsl, "void masu_sdf_box(");
+    assert_non_null(at);
+    at = strstr(at, name);
+    assert_non_null(at);
+    at = strchr(at, '(') + 1;
+    for (int i = 0; i < 3; i++) {
+        unsigned slot;
+        at += strspn(at, " (,)u");
+        if (sscanf(at, "masu_slot(%u", &slot) == 1) {
+            assert_true(slot < result->slot_count);
+            out[i] = (double)result->slots[slot];
+            at += strlen("masu_slot(");
+        } else {
+            assert_int_equal(sscanf(at, "%lf", &out[i]), 1);
+        }
+        at += strspn(at, "-+.e0123456789");
+    }
+}
+
+static void the_box_of_the_parts_follows_the_parameters(void **state) {
+    (void)state;
+    for (double r = 0.25; r < 1.4; r += 0.25) {
+        char text[512];
+        double low[3], high[3];
+        masu_sdfc_result result;
+        int length = snprintf(text, sizeof text,
+                              "param r = %.17g [0.2, 1.4];\n"
+                              "part a = translate((0, r, -r), repeat((4, 0, 0), sphere(r)));\n"
+                              "part b = translate((0, 1, 0), box((1, 0.5, 3)));\n"
+                              "part c = plane((0, 1, 0), 0);\n",
+                              r);
+        assert_compiles(text, (size_t)length, &result);
+        assert_glsl_compiles(&result);
+        box_sides(&result, "low = ", low);
+        box_sides(&result, "high = ", high);
+        assert_true(low[0] <= -1e30 && high[0] >= 1e30);
+        const double true_low[] = {0, -fmax(2 * r, 3)}, true_high[] = {fmax(2 * r, 1.5), 3};
+        for (int i = 0; i < 2; i++) {
+            assert_true(low[i + 1] <= true_low[i] && low[i + 1] > true_low[i] - 1e-5);
+            assert_true(high[i + 1] >= true_high[i] && high[i + 1] < true_high[i] + 1e-5);
+        }
+        masu_sdfc_release(&result);
+    }
 }
 
 static void the_same_text_gives_the_same_result(void **state) {
@@ -700,6 +748,7 @@ int main(void) {
         cmocka_unit_test(one_sphere_has_the_code_of_one_sphere),
         cmocka_unit_test(no_scene_has_a_function_that_it_does_not_call),
         cmocka_unit_test(parts_of_one_form_share_its_code),
+        cmocka_unit_test(the_box_of_the_parts_follows_the_parameters),
         cmocka_unit_test(the_same_text_gives_the_same_result),
         cmocka_unit_test(mistakes_name_their_place),
         cmocka_unit_test(depth_is_limited),
