@@ -1,7 +1,8 @@
 /* bake_merge.c: static geometry of many small meshes becomes a few: one per material and cell of a
  * grid, so that a track of 3,900 meshes of 18 triangles is drawn by hundreds of draws instead of
  * thousands and each of them can still be culled. Cells, not whole materials: a mesh that is
- * everywhere is never outside the view.
+ * everywhere is never outside the view. The origin is in the middle of a cell: a model around it that
+ * is smaller than a cell becomes one mesh per material.
  *
  * Vertices keep their bytes and texture coordinates but for place and normal, which move to the
  * model's space. */
@@ -93,7 +94,7 @@ static bool cell_of(const masu_bake_content *piece, const masu_blob_primitive *p
     const double c[3] = {middle.x / cell, middle.y / cell, middle.z / cell};
     for (int k = 0; k < 3; k++) {
         if (!(fabs(c[k]) < 1e9)) return false;
-        b->cell[k] = (int32_t)floor(c[k]);
+        b->cell[k] = (int32_t)floor(c[k] + 0.5);
     }
     return true;
 }
@@ -253,9 +254,9 @@ const char *masu_bake_merge(masu_bake_content *piece, double cell) {
         }
         for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
             bool ours = kind == MASU_BLOB_VERTICES || kind == MASU_BLOB_TEXCOORDS ||
-                        kind == MASU_BLOB_INDICES || kind == MASU_BLOB_PRIMITIVES || kind == MASU_BLOB_MESHES ||
-                        kind == MASU_BLOB_INSTANCES || kind == MASU_BLOB_MATERIALS ||
-                        kind == MASU_BLOB_NAMES;
+                        kind == MASU_BLOB_INDICES || kind == MASU_BLOB_PRIMITIVES ||
+                        kind == MASU_BLOB_MESHES || kind == MASU_BLOB_INSTANCES ||
+                        kind == MASU_BLOB_MATERIALS || kind == MASU_BLOB_NAMES;
             if (ours) continue; /* what else a piece may hold stays */
             out.section[kind] = piece->section[kind];
             piece->section[kind] = (masu_bake_buffer){0};

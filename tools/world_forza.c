@@ -63,25 +63,16 @@ static bool bend(track *t, double arc, double radius0, double radius1, int side)
     return true;
 }
 
-/* The number of <attnum name="NAME" ... val="V"/> between two places, or the default. */
-static double attribute(const char *from, const char *to, const char *name, double otherwise) {
-    char pattern[64];
-    snprintf(pattern, sizeof pattern, "<attnum name=\"%s\"", name);
-    const char *at = strstr(from, pattern);
-    if (!at || at >= to) return otherwise;
-    const char *value = strstr(at, "val=\""), *end = strchr(at, '>');
-    return value && end && value < end ? strtod(value + 5, NULL) : otherwise;
-}
-
 static bool read_segments(const char *text, track *t) {
     const char *at = strstr(text, "<section name=\"Track Segments\"");
     while (at && (at = strstr(at, "<attstr name=\"type\" val=\""))) {
         const char *type = at + strlen("<attstr name=\"type\" val=\"");
         const char *end = strstr(type, "<section"); /* its sides follow its numbers */
         if (!end) end = type + strlen(type);
-        double length = attribute(type, end, "lg", 0), arc = attribute(type, end, "arc", 0);
-        double radius = attribute(type, end, "radius", 0);
-        double radius1 = attribute(type, end, "end radius", radius);
+        double length = masu_world_number(type, end, "lg", 0),
+               arc = masu_world_number(type, end, "arc", 0);
+        double radius = masu_world_number(type, end, "radius", 0);
+        double radius1 = masu_world_number(type, end, "end radius", radius);
         if (strncmp(type, "str", 3) == 0 && length > 0 && length < 1e4) {
             int n = (int)(length / STEP) > 1 ? (int)(length / STEP) : 1;
             for (int i = 0; i < n; i++) {
@@ -184,20 +175,18 @@ static masu_bake_vec3 beside(const track *t, int i, double left, double above) {
     return masu_bake_v3(x, p->height + above, -y);
 }
 
-static void cars(const track *t, const char *torcs, FILE *out) {
-    static const char *const names[10] = {"155-DTM",   "acura-nsx-sz", "car1-trb1", "car2-trb1",
-                                          "car3-trb1", "car4-trb1",    "car5-trb1", "car6-trb1",
-                                          "car7-trb1", "p406"};
-    for (int i = 0; i < 10; i++) {
+static double height_below(void *user, double x, double z, double guess) {
+    double y = guess;
+    return height_at(user, x, z, guess, &y) && fabs(y - guess) < 1 ? y : guess;
+}
+
+static bool cars(const track *t, ground *g, const char *torcs, FILE *out) {
+    for (int i = 0; i < MASU_WORLD_CARS; i++) {
         int at = i < 6 ? 6 + 3 * i : 60 + 70 * (i - 6); /* a grid of six, the others on the track */
-        masu_bake_vec3 p = beside(t, at, i & 1 ? 3.2 : -3.2, 0.14);
-        fprintf(
-            out,
-            ",\n    {\"file\": \"%s/cars/%s/%s.acc\", \"name\": \"car%d\", \"group\": \"cars/%d\", "
-            "\"rotate_y\": %.3f, \"fit\": {\"base\": [%.3f, %.3f, %.3f]}}",
-            torcs, names[i], names[i], i, i,
-            fmod(t->points[at].heading * (180 / MASU_BAKE_PI), 360), p.x, p.y, p.z);
+        masu_bake_vec3 p = beside(t, at, i & 1 ? 3.2 : -3.2, 0);
+        if (!masu_world_car(out, torcs, i, p, t->points[at].heading, height_below, g)) return false;
     }
+    return true;
 }
 
 static void key(FILE *out, double time, masu_bake_vec3 eye, masu_bake_vec3 at, const char *end) {
@@ -207,13 +196,13 @@ static void key(FILE *out, double time, masu_bake_vec3 eye, masu_bake_vec3 at, c
             time, eye.x, eye.y, eye.z, at.x, at.y, at.z, end);
 }
 
-static bool write_scene(const track *t, const char *folder, const char *torcs) {
+static bool write_scene(const track *t, ground *g, const char *folder, const char *torcs) {
     FILE *out = masu_world_create(folder, "forza.json");
     if (!out) return false;
     fprintf(out,
             "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 64}",
             torcs);
-    cars(t, torcs, out);
+    if (!cars(t, g, torcs, out)) return fclose(out), false;
     fputs("\n  ],\n  \"camera\": {\n    \"fov_y\": 60,\n    \"near\": 0.2,\n    \"keys\": [\n",
           out);
     for (int i = 0; i < t->count; i += 2) {
@@ -230,7 +219,8 @@ static bool write_scene(const track *t, const char *folder, const char *torcs) {
     key(out, end + 11, high, middle, "");
     fputs("    ]\n  },\n"
           "  \"sun\": {\"azimuth\": 230, \"elevation\": 42, \"color\": [1, 0.95, 0.86], "
-          "\"intensity\": 1.3},\n"
+          "\"intensity\": 1.3,\n"
+          "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 300}},\n"
           "  \"ambient\": [0.26, 0.29, 0.34],\n  \"lods\": 3,\n  \"occluders\": 4\n}\n",
           out);
     if (!masu_cli_quiet()) {
@@ -253,19 +243,20 @@ static bool write_track(const char *folder, const char *torcs, const char *xml, 
     }
     shift(&t);
     masu_bake_content piece = {0};
-    good = masu_bake_import(model, MASU_BAKE_TEXTURES_OFF, &piece);
+    good = masu_bake_import(model, MASU_BAKE_TEXTURES_WANTED, &piece);
     if (good) {
         ground g = triangles_of(&piece);
         int missing = find_heights(&t, &g);
-        free(g.corners);
         if (missing > t.count / 20) {
             masu_cli_error("%s: %d of %d points of the road have no ground below", model, missing,
                            t.count);
             good = false;
         }
+        good = good && write_scene(&t, &g, folder, torcs);
+        free(g.corners);
     }
     masu_bake_content_release(&piece);
-    return good && write_scene(&t, folder, torcs);
+    return good;
 }
 
 bool masu_world_forza(const char *folder, const char *torcs) {

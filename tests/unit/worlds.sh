@@ -106,6 +106,19 @@ torcs=/usr/share/games/torcs
 if [ -d $torcs/tracks/road/forza ] && [ -d $torcs/cars/p406 ]; then
     "$world" forza "$folder/forza" > "$folder/stdout" 2> /dev/null || fail "masu-world forza"
     grep -q 'a lap of 57[0-9][0-9] m' "$folder/stdout" || fail "the lap: $(cat "$folder/stdout")"
+    # Ten cars on four wheels each: a wheel's scale is its diameter, its middle half of that above
+    # the road, and the road a hand's breadth below the body's origin; two are turned about.
+    awk -F'[][,]+' '
+        /cars\/[^"]*\.acc/ { cars++; body = $10 }
+        /wheels\/[^"]*\.acc/ {
+            wheels++
+            if ($5 < 0 && $7 < 0) turned++
+            road = $14 - $6 / 2
+            if (!($6 > 0.5 && $6 < 0.8 && road > body - 0.3 && road < body + 0.1)) print
+        }
+        END { if (cars != 10 || wheels != 40 || turned != 20) print cars, wheels, turned }
+    ' "$folder/forza/forza.json" > "$folder/wheels"
+    [ ! -s "$folder/wheels" ] || fail "wheels: $(cat "$folder/wheels")"
     sed 's/"lods": 3/"lods": 0/' "$folder/forza/forza.json" > "$folder/forza/plain.json"
     "$bake" "$folder/forza/plain.json" -o "$folder/forza.masu" --stats "$folder/forza.stats" --quiet \
         2> /dev/null || fail "forza does not bake"
