@@ -309,7 +309,7 @@ static bool write_scene(city *c, const char *folder) {
         "      {\"time\": 31, \"position\": [150, 130, 205], \"target\": [0, 20, 0]}\n    ]\n  },\n"
         "  \"sun\": {\"azimuth\": 130, \"elevation\": 48, \"color\": [1, 0.92, 0.8], "
         "\"intensity\": 1.2,\n"
-        "          \"shadows\": {\"cascades\": 3, \"resolution\": 1024, \"distance\": 150}},\n"
+        "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 400}},\n"
         "  \"ambient\": [0.24, 0.26, 0.30],\n"
         "  \"sky\": {\"zenith\": [0.30, 0.38, 0.50], \"horizon\": [0.86, 0.80, 0.66]},\n"
         "  \"lods\": 3,\n  \"occluders\": 4\n}\n",

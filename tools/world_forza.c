@@ -199,9 +199,10 @@ static void key(FILE *out, double time, masu_bake_vec3 eye, masu_bake_vec3 at, c
 static bool write_scene(const track *t, ground *g, const char *folder, const char *torcs) {
     FILE *out = masu_world_create(folder, "forza.json");
     if (!out) return false;
-    fprintf(out,
-            "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 64}",
-            torcs);
+    fprintf(
+        out,
+        "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 128}",
+        torcs);
     if (!cars(t, g, torcs, out)) return fclose(out), false;
     fputs("\n  ],\n  \"camera\": {\n    \"fov_y\": 60,\n    \"near\": 0.2,\n    \"keys\": [\n",
           out);

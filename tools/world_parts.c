@@ -46,7 +46,7 @@ static void arched_window(mesh *m, double x, double y, double w, double h) {
     enum { SIDES = 6 };
     window(m, x, y, w, h);
     masu_world_material(m, TRIM);
-    masu_world_tube(m, 2, x, y + h + 0.05, 0, 0.16, w / 2 + 0.16, w / 2 + 0.06, SIDES);
+    masu_world_tube(m, 2, x, y + h + 0.05, 0, 0.19, w / 2 + 0.16, w / 2 + 0.06, SIDES);
 }
 
 static void shutters(mesh *m, double x, double y, double w, double h) {

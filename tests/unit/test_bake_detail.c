@@ -409,7 +409,8 @@ static void a_box_in_a_sphere_is_not_needlessly_small(void **state) {
     masu_bake_sphere(&c, 1, 3, 0);
     masu_bake_make_occluders(&c, 0.5, &report);
     assert_int_equal(report.inside, 1);
-    assert_true(box_volume(MASU_BAKE_OCCLUDERS(&c)) > 0.8 * 8 / sqrt(27.0)); /* the cube inside has side 2 / sqrt 3 */
+    assert_true(box_volume(MASU_BAKE_OCCLUDERS(&c)) >
+                0.8 * 8 / sqrt(27.0)); /* the cube inside has side 2 / sqrt 3 */
     masu_bake_content_release(&c);
 }
 
@@ -567,6 +568,71 @@ static void merging_keeps_the_outside_of_what_is_mirrored(void **state) {
     masu_bake_content_release(&c);
 }
 
+typedef struct mapped_corner {
+    float position[3], texcoord[2]; /* in the world, rounded as the baker does */
+} mapped_corner;
+
+static int by_value(const void *a, const void *b) {
+    const mapped_corner *p = a, *q = b;
+    for (int k = 0; k < 3; k++) {
+        if (p->position[k] != q->position[k]) return p->position[k] < q->position[k] ? -1 : 1;
+    }
+    for (int k = 0; k < 2; k++) {
+        if (p->texcoord[k] != q->texcoord[k]) return p->texcoord[k] < q->texcoord[k] ? -1 : 1;
+    }
+    return 0;
+}
+
+/* Each corner of each triangle shown, sorted. */
+static masu_bake_buffer mapped_corners(const masu_bake_content *c) {
+    masu_bake_buffer out = {0};
+    const float *texcoords = MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS, const float);
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_INSTANCES); i++) {
+        const masu_blob_instance *n = &MASU_BAKE_INSTANCES(c)[i];
+        const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(c)[n->mesh];
+        masu_bake_affine a;
+        for (int k = 0; k < 12; k++) a.m[k] = (double)n->transform[k];
+        for (uint32_t j = 0; j < mesh->primitive_count; j++) {
+            const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(c)[mesh->first_primitive + j];
+            for (uint32_t k = 0; k < p->index_count; k++) {
+                size_t v = p->first_vertex + MASU_BAKE_INDICES(c)[p->first_index + k];
+                vec3 at = masu_bake_apply(&a, masu_bake_v3f(MASU_BAKE_VERTICES(c)[v].position));
+                mapped_corner m = {{(float)at.x + 0.0f, (float)at.y + 0.0f, (float)at.z + 0.0f},
+                                   {texcoords[2 * v], texcoords[2 * v + 1]}};
+                masu_bake_append(&out, &m, sizeof m);
+            }
+        }
+    }
+    qsort(out.data, out.bytes / sizeof(mapped_corner), sizeof(mapped_corner), by_value);
+    return out;
+}
+
+static void merging_carries_texture_coordinates(void **state) {
+    (void)state;
+    masu_bake_content c = {0};
+    uint64_t random = 9;
+    masu_bake_sphere(&c, 3, 2, 5); /* 320 triangles: kept where shown twice */
+    for (int i = 0; i < 40; i++) masu_bake_cuboid(&c, masu_bake_v3(2, 3, 4), 1 + i);
+    masu_bake_instance(&c, &(masu_bake_affine){{1, 0, 0, 60, 0, 1, 0, 0, 0, 0, 1, 0}}, 0,
+                       MASU_BLOB_NONE, MASU_BLOB_NONE);
+    for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_INSTANCES); i++) {
+        masu_blob_instance *n = &MASU_BAKE_INSTANCES(&c)[i];
+        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)between(&random, -50, 50);
+        if (i % 3 == 1) n->transform[0] = -2; /* mirrored: corners change their order */
+    }
+    masu_bake_buffer before = mapped_corners(&c);
+    assert_true(before.bytes > 2000 * sizeof(mapped_corner));
+    assert_null(masu_bake_merge(&c, 60));
+    assert_null(masu_bake_check(&c));
+    assert_true(masu_bake_count(&c, MASU_BLOB_MESHES) < 41);
+    masu_bake_buffer after = mapped_corners(&c);
+    assert_int_equal(after.bytes, before.bytes);
+    assert_memory_equal(after.data, before.data, before.bytes);
+    masu_bake_release(&before);
+    masu_bake_release(&after);
+    masu_bake_content_release(&c);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_are_those_of_the_nearest_triangle),
@@ -580,6 +646,7 @@ int main(void) {
         cmocka_unit_test(boxes_that_stick_out_are_not_inside),
         cmocka_unit_test(merging_shows_the_same_triangles_in_small_meshes),
         cmocka_unit_test(merging_keeps_the_outside_of_what_is_mirrored),
+        cmocka_unit_test(merging_carries_texture_coordinates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
