@@ -241,9 +241,10 @@ typedef struct masu_limits {
     uint64_t indices;    /* 4 bytes each, device */
     uint64_t materials;  /* 32 bytes each, device */
     uint64_t instances;  /* 52 bytes each per frame in flight, device, and 98 bytes each, host; with
-                            velocities 100 and 146; with occlusion 36 more on the device; for each
-                            LOD of its mesh 4 more there (with occlusion 8), and 1 on the host; for
-                            each cascade of a shadow map 4 more there, with occlusion 16 */
+                            velocities 100 and 146. With occlusion 32 more on the device, 4 once,
+                            and 8 for each of its occluders; with a shadow map for each cascade 4
+                            more, with occlusion 12 and 4 once. With LODs 1 more on the host, and on
+                            the device for each LOD of its mesh and each view 4 (8 with occlusion) */
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
     uint64_t shadow_cascades;   /* of the shadow map, as the largest rung has it */
     uint64_t shadow_resolution; /* a cascade of n has 4 n^2 bytes, device */
@@ -298,7 +299,8 @@ typedef enum masu_readback_bits {
      * a shadow map, SDF shadows or SDF ambient occlusion; asking it of others is ignored. */
     MASU_READBACK_OCCLUSION = 32,
     /* float, cascades side by side: depth along the sun, 1 nearest to it, 0 where nothing is. Only
-     * of scenes with a shadow map */
+     * of scenes with a shadow map. Culling leaves out what casts no shadow into the picture;
+     * rungs[].frustum and .occlusion MASU_OFF: all is there */
     MASU_READBACK_SHADOW_MAP = 64,
     MASU_READBACK_ALL = 127
 } masu_readback_bits;
@@ -414,7 +416,7 @@ typedef struct masu_renderer masu_renderer; /* lives inside the caller's block *
 
 /* Creates everything: plans memory, makes the device allocations that the host did not bring, all
  * images, buffers, pipelines, descriptor sets and one command buffer per (frame in flight, rung,
- * target). `block` is `block_bytes` of any content, aligned to masu_memory.host_alignment; it
+ * target), twice as many for each slow cascade (rungs[].shadow_refresh). `block` is `block_bytes` of any content, aligned to masu_memory.host_alignment; it
  * belongs to the renderer until masu_destroy. Nothing is written outside it. On failure *out is
  * NULL and every object is destroyed again. MASU_ERROR_ARGUMENT: a bad field, named.
  * MASU_ERROR_MEMORY: block NULL, misaligned or too small (needed, given); the same for device

@@ -4,10 +4,10 @@
  *
  * The answer is a word per view and instance that outlives the frame: what was hidden is asked again
  * in every frame, so that it is drawn in the frame in which it appears; what was visible, in every
- * fifth. After a cut all are asked. A word that is older than it should be, or noise, therefore costs
+ * fifth of those that draw the view. After a cut all are asked. A word that is older than it should be, or noise, therefore costs
  * time and never a pixel.
  *
- * index.x: the header of src/visible.c.
+ * index.x: the header of src/occlusion.c.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -85,7 +85,7 @@ void main()
         uint id = drawn[kept + 1u + gl_GlobalInvocationID.x];
         uint word = view * instance_count + id;
         bool asked = seen[word] != 1u || masu_cull_word(MASU_CULL_CUT) != 0u ||
-                     (id + masu_cull_word(MASU_CULL_FRAME)) % 5u == 0u;
+                     (id + drawn[masu_cull_view(view) + MASU_CULL_VIEW_TURN]) % 5u == 0u;
         if (asked) {
             uint box = masu_cull_word(MASU_CULL_BOXES) + 6u * id;
             vec3 center = (masu_drawn_vec3(box) - frame.eye_hi.xyz) - frame.eye_lo.xyz;

@@ -11,7 +11,7 @@
  * BIAS. Each of the nine is compared with the surface's own plane there where that rises towards
  * the sun, and with the point's depth where it falls: exact on a plane, under any sun. What normals
  * of curved meshes do not say about their flat triangles, and the foot of a steep wall seen from
- * the ground in front of it, is left to the rasteriser's slope bias (src/shadow.h). Wrong turns: to
+ * the ground in front of it, is left to the casters' bias (cascade.vert). Wrong turns: to
  * raise the point by its slope times the reach of the filter (three times as many pixels on the
  * wrong side of an edge, for it lets in light under whatever is nearer than that); to move it along
  * its normal (shifts the shadow sideways); to choose the cascade first and look once (a cascade of

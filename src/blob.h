@@ -171,6 +171,8 @@ typedef struct masu_blob_group {
     uint32_t reserved;
 } masu_blob_group;
 
+#define MASU_BLOB_OCCLUDERS_MAX 64u /* of one mesh: each is looked at for each instance in each frame */
+
 /* A box that the mesh hides as a whole, from every side: what is behind it is behind the mesh. */
 typedef struct masu_blob_occluder {
     float low[3]; /* object space, inside of the mesh's bounds */

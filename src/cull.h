@@ -38,8 +38,8 @@ typedef struct masu_cull_plane {
     float slack[2]; /* to r: of boxes, of groups */
 } masu_cull_plane;
 
-/* Five planes for a camera without a far plane, six for an orthographic box; any convex set of up
- * to six. */
+/* Five planes for a camera without a far plane or the box of a cascade; any convex set of up
+ * to seven. */
 typedef struct masu_cull_view {
     uint32_t count;
     masu_cull_plane planes[MASU_CULL_PLANES];

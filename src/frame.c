@@ -52,7 +52,10 @@ static int needs_gbuffer(const masu_needs *n, const char **why) {
 
 static int needs_occlusion(const masu_needs *n, const char **why) {
     return decided(n->occlusion, "the scene has occluders",
-                   n->occluders ? "rung.occlusion is off" : "the scene has no occluders", why);
+                   !n->occluders  ? "the scene has no occluders"
+                   : n->unculled  ? "a mesh has too many primitives or instances"
+                                  : "rung.occlusion is off, or the device has too few storage buffers",
+                   why);
 }
 
 static int has_tiles(masu_march march) {

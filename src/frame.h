@@ -107,6 +107,7 @@ typedef struct masu_needs {
     int dynamic;       /* slots of the SDF depend on parameters or time */
     int anchored;      /* and on where the eye is: the SDF reaches far from the origin */
     int occluders;     /* the scene has some */
+    int unculled;      /* and a mesh of too many primitives or instances for culling by them */
     int velocity;      /* something reads velocities: the frame before is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */

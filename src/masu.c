@@ -49,9 +49,9 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
     uint64_t lods = plan->lods ? s->lods : 0;
     to->batches = masu_arena_take(arena, "batches", s->meshes + lods, sizeof *to->batches, 8);
     to->lods = masu_arena_take(arena, "LODs", lods, sizeof *to->lods, 4);
-    to->levels = masu_arena_take(arena, "instance LODs", lods ? s->instances : 0, sizeof *to->levels, 1);
-    to->occluders =
-        masu_arena_take(arena, "occluders", s->occluders, sizeof *to->occluders, 4);
+    to->levels =
+        masu_arena_take(arena, "instance LODs", lods ? s->instances : 0, sizeof *to->levels, 1);
+    to->occluders = masu_arena_take(arena, "occluders", s->occluders, sizeof *to->occluders, 4);
     to->mesh_bounds = masu_arena_take(arena, "mesh bounds", s->meshes, sizeof *to->mesh_bounds, 4);
     to->groups = masu_arena_take(arena, "groups", s->groups, sizeof *to->groups, 4);
     to->group_states = masu_arena_take(arena, "group states", (uint64_t)plan->views * s->groups,
@@ -78,6 +78,58 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
 
 /* ---- Plan and query -------------------------------------------------------------------------- */
 
+/* What set 0 shows to compute shaders: counters, tiles, slots; draws, drawn, seen. */
+#define CULLING_BUFFERS 6u
+
+/* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
+ * without it where there are no more. */
+static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
+                                  const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
+    uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
+    if (!plan->occlusion || has >= CULLING_BUFFERS) return MASU_OK;
+    if (!desc->rung_count) {
+        desc->rung_count = plan->desc.rung_count;
+        memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
+    }
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        if (desc->rungs[r].occlusion == MASU_ON) {
+            return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
+                             CULLING_BUFFERS, has,
+                             "rungs[%u].occlusion needs %u storage buffers in a stage, the device "
+                             "has %u",
+                             r, CULLING_BUFFERS, has);
+        }
+        desc->rungs[r].occlusion = MASU_OFF;
+    }
+    return MASU_OK;
+}
+
+/* What grows with the scene and is bound whole, and the widest dispatch over instances. */
+static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
+                                masu_detail *detail) {
+    static const masu_buffer_id ids[] = {MASU_BUFFER_INSTANCES, MASU_BUFFER_DRAWN,
+                                         MASU_BUFFER_DRAWS, MASU_BUFFER_SEEN};
+    for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
+        const masu_buffer_plan *b = &plan->buffers[ids[i]];
+        uint64_t bytes = b->stride ? b->stride : b->bytes;
+        if (bytes <= limits->maxStorageBufferRange ||
+            !(b->usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT))
+            continue;
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxStorageBufferRange", bytes,
+                         limits->maxStorageBufferRange,
+                         "%s need a storage buffer of %llu bytes, the device has %u", b->name,
+                         (unsigned long long)bytes, limits->maxStorageBufferRange);
+    }
+    uint32_t groups = (plan->scene.instances + 63) / 64;
+    if (plan->occlusion && groups > limits->maxComputeWorkGroupCount[0]) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", groups,
+                         limits->maxComputeWorkGroupCount[0],
+                         "culling %u instances takes %u workgroups, the device has %u",
+                         plan->scene.instances, groups, limits->maxComputeWorkGroupCount[0]);
+    }
+    return MASU_OK;
+}
+
 /* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys
  * them. */
 static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
@@ -95,43 +147,26 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     if (!result) result = masu_vk_load(desc, vk, detail);
     if (result) return result;
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
+    masu_desc possible = *desc;
+    result = drop_occlusion(&possible, plan, limits, detail);
+    if (result) return result;
     result = masu_compile(
-        desc, limits->minUniformBufferOffsetAlignment ? limits->minUniformBufferOffsetAlignment : 1,
+        &possible,
+        limits->minUniformBufferOffsetAlignment ? limits->minUniformBufferOffsetAlignment : 1,
         limits->minStorageBufferOffsetAlignment ? limits->minStorageBufferOffsetAlignment : 1, plan,
         detail);
     if (result) return result;
-    if (plan->buffers[MASU_BUFFER_INSTANCES].stride > limits->maxStorageBufferRange) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "maxStorageBufferRange",
-                         plan->buffers[MASU_BUFFER_INSTANCES].stride, limits->maxStorageBufferRange,
-                         "instances need a storage buffer of %llu bytes, the device has %u",
-                         (unsigned long long)plan->buffers[MASU_BUFFER_INSTANCES].stride,
-                         limits->maxStorageBufferRange);
-    }
-    const masu_buffer_plan *drawn = &plan->buffers[MASU_BUFFER_DRAWN];
-    if (drawn->stride > limits->maxStorageBufferRange) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "maxStorageBufferRange", drawn->stride,
-                         limits->maxStorageBufferRange,
-                         "drawn instances need a storage buffer of %llu bytes, the device has %u",
-                         (unsigned long long)drawn->stride, limits->maxStorageBufferRange);
-    }
-    /* What set 0 shows to compute shaders: counters, tiles, slots; draws, drawn, seen. */
-    if (plan->occlusion && limits->maxPerStageDescriptorStorageBuffers < 6) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", 6,
-                         limits->maxPerStageDescriptorStorageBuffers,
-                         "occlusion culling needs 6 storage buffers in a stage, the device has %u: "
-                         "set rungs[].occlusion to MASU_OFF",
-                         limits->maxPerStageDescriptorStorageBuffers);
-    }
+    result = check_ranges(plan, limits, detail);
+    if (result) return result;
     VkExtent2D map = masu_plan_extent(plan, MASU_EXTENT_SHADOW, plan->desc.output);
     uint32_t widest = map.width > map.height ? map.width : map.height;
     if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
         widest > limits->maxFramebufferHeight) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "maxImageDimension2D", widest,
-                         limits->maxImageDimension2D,
-                         "the shadow map's %u cascades of %u texels make an image of %ux%u, the "
-                         "device's may be %u",
-                         plan->cascades, plan->cascade_size, map.width, map.height,
-                         limits->maxImageDimension2D);
+        return masu_fail(
+            detail, MASU_ERROR_DEVICE, "maxImageDimension2D", widest, limits->maxImageDimension2D,
+            "the shadow map's %u cascades of %u texels make an image of %ux%u, the "
+            "device's may be %u",
+            plan->cascades, plan->cascade_size, map.width, map.height, limits->maxImageDimension2D);
     }
     plan->textures = textures;
     result = masu_objects_create(vk, plan, objects, detail);
@@ -336,18 +371,17 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (d->scene) {
         masu_write_instances(m, slot, masu_is_cut(m, frame));
         int culls = d->rungs[frame->rung].frustum != MASU_OFF;
-        for (uint32_t v = 0; v < m->plan.views; v++)
-            masu_write_visible(m, slot, v, culls);
+        for (uint32_t v = 0; v < m->plan.views; v++) masu_write_visible(m, slot, v, culls);
         if (m->plan.rungs[frame->rung].active >> MASU_PASS_CULL & 1u)
             masu_write_stage2(m, slot, masu_is_cut(m, frame));
     }
     m->slot_frame[slot] = m->frame;
     m->slot_rung[slot] = frame->rung;
     const masu_rung_plan *rp = &m->plan.rungs[frame->rung];
-    uint32_t recording = rp->first_recording + frame->target * rp->variants +
-                         masu_recording_variant(rp, m->drawn);
-    *commands = (masu_commands){m->frames[slot * m->plan.recordings + recording], slot,
-                                frame->rung, m->frame};
+    uint32_t recording =
+        rp->first_recording + frame->target * rp->variants + masu_recording_variant(rp, m->drawn);
+    *commands = (masu_commands){m->frames[slot * m->plan.recordings + recording], slot, frame->rung,
+                                m->frame};
     m->frame++;
     return MASU_OK;
 }
@@ -447,10 +481,9 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
         format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
     VkExtent2D size = masu_plan_extent(&m->plan, masu_images[id].extent,
                                        (VkExtent2D){rp->render_width, rp->render_height});
-    *out = (masu_readback_image){masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
-                                     m->plan.readback_offset[bit],
-                                 size.width, size.height,
-                                 (uint64_t)size.width * masu_format_bytes(format), format};
+    *out = (masu_readback_image){
+        masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) + m->plan.readback_offset[bit],
+        size.width, size.height, (uint64_t)size.width * masu_format_bytes(format), format};
     return MASU_OK;
 }
 

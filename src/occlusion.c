@@ -1,7 +1,7 @@
 /* occlusion.c: the host's part of stage 2 of culling: placed occluders, and the words that
  * shaders/occluders.vert, cull.comp and compact.comp read (masu_shared.h, MASU_CULL_*). They lie
  * behind the lists of stage 1 in the same buffer, one slot per frame in flight: a GPU may then write
- * what it reads next, and a device needs no more than four storage buffers in a stage.
+ * what it reads next, and a stage has six storage buffers and not more.
  *
  * Nothing is read back. What the GPU remembers from frame to frame is only whether an instance was
  * visible when it was last asked; see cull.comp for why that may be wrong. */
@@ -113,20 +113,24 @@ static uint32_t write_pairs(masu_renderer *m, uint32_t marks, uint32_t *to) {
 void masu_write_stage2(masu_renderer *m, uint32_t slot, int cut) {
     const masu_drawn_plan *d = &m->plan.drawn;
     uint32_t *words = drawn_words(m, slot), *header = words + d->header;
-    header[MASU_CULL_FRAME] = (uint32_t)(m->frame % 5);
     header[MASU_CULL_CUT] = cut != 0;
+    for (uint32_t view = 0; view < m->plan.views; view++) {
+        m->stage2[view].turn = m->turns[view];
+        if (masu_view_draws(m, view)) m->turns[view] = (m->turns[view] + 1) % 5;
+    }
     memcpy(header + MASU_CULL_HEADER, m->stage2, m->plan.views * sizeof *m->stage2);
     for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
         uint64_t pairs = 2 * (uint64_t)part * m->plan.scene.placed_occluders;
         uint32_t n = write_pairs(m, part ? ~1u : 1u, words + d->pairs + pairs);
-        unsigned char *draw = masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
-                              MASU_OCCLUDER_DRAW(&m->plan, part);
+        unsigned char *draw =
+            masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) + MASU_OCCLUDER_DRAW(&m->plan, part);
         memcpy(draw + offsetof(VkDrawIndirectCommand, instanceCount), &n, sizeof n);
         m->slot_views[slot][part].occluders = n;
     }
     for (uint32_t view = 0; view < m->plan.views; view++) {
         /* All that stage 1 has kept, one after the other. */
-        uint32_t *kept = words + d->kept + view * ((uint64_t)m->plan.scene.instances + 1), count = 0;
+        uint32_t *kept = words + d->kept + view * ((uint64_t)m->plan.scene.instances + 1),
+                 count = 0;
         for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
             if (m->marks[i] >> view & 1u) kept[++count] = i;
         }

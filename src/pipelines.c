@@ -1,5 +1,5 @@
 /* pipelines.c: descriptor set layouts derived from the rows of the frame table, shader modules,
- * pipelines, and the render pass of the G-buffer. Modules live only while their pipeline is
+ * pipelines, and the render passes of graphics rows. Modules live only while their pipeline is
  * built. */
 #include "renderer.h"
 

@@ -352,8 +352,7 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         rp->active |= 1u << p;
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_image_id image = resolve(row->access[a].image, depth, color);
-            if (image == (masu_image_id)MASU_RESOURCE_DRAWS &&
-                !plan->needs.occlusion) {
+            if (image == (masu_image_id)MASU_RESOURCE_DRAWS && !plan->needs.occlusion) {
                 continue; /* the host has written them */
             }
             if (image < MASU_IMAGE_COUNT && !keeps_access(plan, (masu_pass_id)p, image)) continue;
@@ -481,7 +480,8 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
         b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
         lay_drawn(plan);
         b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * plan->draws;
-        if (plan->occlusion) b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + MASU_ATLAS_PARTS(plan);
+        if (plan->occlusion)
+            b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + MASU_ATLAS_PARTS(plan);
         b[MASU_BUFFER_DRAWS].stride =
             masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
         b[MASU_BUFFER_DRAWS].bytes = flights * b[MASU_BUFFER_DRAWS].stride;
@@ -561,8 +561,8 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                                               .usage = VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
     if (plan->occlusion) b[MASU_BUFFER_DRAWS].usage |= storage;
     b[MASU_BUFFER_SEEN] = (masu_buffer_plan){.name = "seen", .usage = storage};
-    b[MASU_BUFFER_DRAWN] = (masu_buffer_plan){
-        .name = "drawn instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
+    b[MASU_BUFFER_DRAWN] =
+        (masu_buffer_plan){.name = "drawn instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
     b[MASU_BUFFER_STAGING] = (masu_buffer_plan){
         .name = "staging", .role = MASU_ROLE_UPLOAD, .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
     b[MASU_BUFFER_READBACK] =
@@ -648,16 +648,20 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         }
         resolve_switches(d, rp, &d->rungs[r], &plan->needs);
         plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
-        plan->occlusion |= plan->needs.occlusion;
-        if (plan->needs.occlusion && (d->scene->most_primitives > MASU_CULL_ROUNDS ||
-                                      d->scene->most_instances > 64 * MASU_CULL_ROUNDS)) {
-            return masu_fail(detail, MASU_ERROR_LIMIT, "rungs[].occlusion",
-                             d->scene->most_instances, 64 * MASU_CULL_ROUNDS,
-                             "rungs[%u].occlusion takes meshes of at most %d primitives and %d "
-                             "instances, the scene has one of %u or %u: set it to MASU_OFF",
-                             r, MASU_CULL_ROUNDS, 64 * MASU_CULL_ROUNDS, d->scene->most_primitives,
-                             d->scene->most_instances);
+        plan->needs.unculled = d->scene && (d->scene->most_primitives > MASU_CULL_ROUNDS ||
+                                            d->scene->most_instances > 64 * MASU_CULL_ROUNDS);
+        if (plan->needs.occlusion && plan->needs.unculled) {
+            if (d->rungs[r].occlusion == MASU_ON) {
+                return masu_fail(detail, MASU_ERROR_LIMIT, "rungs[].occlusion",
+                                 d->scene->most_instances, 64 * MASU_CULL_ROUNDS,
+                                 "rungs[%u].occlusion takes meshes of at most %d primitives and %d "
+                                 "instances, the scene has one of %u or %u",
+                                 r, MASU_CULL_ROUNDS, 64 * MASU_CULL_ROUNDS,
+                                 d->scene->most_primitives, d->scene->most_instances);
+            }
+            plan->needs.occlusion = 0;
         }
+        plan->occlusion |= plan->needs.occlusion;
         resolve_shadow(plan, r);
         compile_rung(plan, r);
     }

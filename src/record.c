@@ -299,8 +299,8 @@ static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct ma
             if (sweep) bind_maps(rec, layout, &v.materials[number], &push, &bound);
             vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
-                                       commands + (VkDeviceSize)MASU_DRAW_BYTES *
-                                                      (batch->first_draw + d),
+                                       commands +
+                                           (VkDeviceSize)MASU_DRAW_BYTES * (batch->first_draw + d),
                                        1, MASU_DRAW_BYTES);
         }
     }
@@ -335,8 +335,12 @@ static void record_occluders(recorder *rec) {
     push.index[0] = (uint32_t)m->plan.drawn.header;
     for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
         VkRect2D area = masu_atlas_part(part);
-        VkViewport viewport = {(float)area.offset.x,     (float)area.offset.y,
-                               (float)area.extent.width, (float)area.extent.height, 0.0f, 1.0f};
+        VkViewport viewport = {(float)area.offset.x,
+                               (float)area.offset.y,
+                               (float)area.extent.width,
+                               (float)area.extent.height,
+                               0.0f,
+                               1.0f};
         push.index[1] = part;
         m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);
         m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
@@ -375,8 +379,12 @@ static void record_graphics(recorder *rec, uint32_t pass) {
     VkClearValue clear[4];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
     VkRect2D area = render_area(rec, pass);
-    VkViewport viewport = {(float)area.offset.x, (float)area.offset.y, (float)area.extent.width,
-                           (float)area.extent.height, 0.0f, 1.0f};
+    VkViewport viewport = {(float)area.offset.x,
+                           (float)area.offset.y,
+                           (float)area.extent.width,
+                           (float)area.extent.height,
+                           0.0f,
+                           1.0f};
     VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                    .renderPass = rec->m->render_passes[objects],
                                    .framebuffer = rec->m->framebuffers[objects],
@@ -507,8 +515,8 @@ static void leave_persistent(recorder *rec) {
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         const image_state *now = &rec->states[i];
         if (!rec->m->plan.images[i].persistent || now->layout == rest.layout) continue;
-        VkImageMemoryBarrier b = image_barrier(
-            rec, (masu_image_id)i, now->writes ? now->access : 0, &rest, now->layout);
+        VkImageMemoryBarrier b =
+            image_barrier(rec, (masu_image_id)i, now->writes ? now->access : 0, &rest, now->layout);
         rec->m->vk.CmdPipelineBarrier(rec->cmd, now->stages, rest.stages, 0, 0, NULL, 0, NULL, 1,
                                       &b);
         rec->barriers++;
@@ -614,19 +622,19 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
         masu_buffer_id buffer;
         VkDescriptorType type;
         int previous; /* the half of a slot that is of the frame before */
-    } rows[] = {{MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-                {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-                {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-                {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-                {MASU_BIND_TILES, MASU_BUFFER_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-                {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-                {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-                {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES,
-                 VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-                {MASU_BIND_SHADOW, MASU_BUFFER_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-                {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-                {MASU_BIND_DRAWS, MASU_BUFFER_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-                {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
+    } rows[] = {
+        {MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
+        {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_TILES, MASU_BUFFER_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+        {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+        {MASU_BIND_SHADOW, MASU_BUFFER_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
+        {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_DRAWS, MASU_BUFFER_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
     for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;

@@ -60,6 +60,7 @@ typedef struct masu_lod_view {
 /* What stage 2 of culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
 typedef struct masu_stage2_view {
     float clip[16], eye[4], atlas[4], near_distance, margin, blind, bias;
+    uint32_t turn, reserved[3];
 } masu_stage2_view;
 _Static_assert(sizeof(masu_stage2_view) == 4 * MASU_CULL_VIEW_WORDS, "stage 2 view");
 
@@ -142,9 +143,10 @@ struct masu_renderer {
     float (*mesh_bounds)[6];   /* low, high */
     masu_cull_view view_planes[MASU_MAX_VIEWS];
     masu_stage2_view stage2[MASU_MAX_VIEWS];
+    uint32_t turns[MASU_MAX_VIEWS]; /* frames that have drawn the view, modulo 5 */
     masu_cull_box scene_box; /* around all instances as the scene places them */
     masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];
-    /* shadow.c, of no length without a shadow map */
+    /* shadow.c */
     masu_cascade cascades[MASU_CASCADES_MAX]; /* as drawn last */
     double shadow_distance;                    /* view depth where shadows end in this frame */
     double casters[2][3];                      /* a box around all instances, wherever they have been */
@@ -195,12 +197,14 @@ void masu_write_occluders(masu_renderer *m, const masu_scene_view *v);
 void masu_write_commands(masu_renderer *m, const masu_scene_view *v);
 /* After a transform has changed. */
 void masu_move_box(masu_renderer *m, uint32_t instance);
-/* Writes which instances a view draws to a slot. NULL: all of them. */
+/* Writes which instances a view draws to a slot. culls 0: all of them. */
 void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls);
 
 /* Sets up the views of a frame, of the camera and the sun in `u`. */
 void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
                     uint32_t rung);
+/* Whether the frame at hand draws a view: the camera's always, of the cascades those that are due. */
+int masu_view_draws(const masu_renderer *m, uint32_t view);
 /* Of the occluder atlas: 0 is the camera's, 1 the sun's. */
 VkRect2D masu_atlas_part(uint32_t part);
 /* Writes what stage 2 of culling reads of a frame. */

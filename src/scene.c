@@ -403,7 +403,7 @@ static masu_result check_groups(reader *r) {
 /* How many pairs of an occluder and an instance of its mesh there are. */
 static masu_result check_occluders(reader *r, uint64_t *pairs) {
     const masu_scene_view *v = &r->view;
-    uint32_t from = 0, first = 0, end = 0;
+    uint32_t from = 0, first = 0, end = 0, of_mesh = 0;
     *pairs = 0;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_OCCLUDERS]; i++) {
         const masu_blob_occluder *o = &v->occluders[i];
@@ -419,7 +419,9 @@ static masu_result check_occluders(reader *r, uint64_t *pairs) {
             end = masu_scene_mesh_instances(v, (uint32_t)r->counts[MASU_BLOB_INSTANCES], o->mesh,
                                             from, &first);
             from = end;
+            of_mesh = 0;
         }
+        if (++of_mesh > MASU_BLOB_OCCLUDERS_MAX) return bad(r, "occluders", i, "over 64 in one mesh");
         *pairs += end - first;
         if (*pairs > MANY) return bad(r, "occluders", i, "makes over 2^31 - 1 placed occluders");
     }

@@ -78,7 +78,8 @@ masu_cascade masu_cascade_fit(const masu_shadow_view *view, double depth, double
 
 int masu_cascade_holds(const masu_cascade *drawn, const masu_cascade *wanted) {
     double d[3], usable = drawn->half * (1.0 - 3.0 / (double)drawn->size);
-    if (drawn->size != wanted->size || drawn->half != wanted->half) return 0;
+    if (drawn->trimmed || drawn->size != wanted->size || drawn->half != wanted->half) return 0;
+    if (drawn->lod_error != wanted->lod_error) return 0;
     for (uint32_t i = 0; i < 3; i++) d[i] = wanted->center[i] - drawn->center[i];
     double z = dot(drawn->axis[2], d);
     return fabs(dot(drawn->axis[0], d)) + wanted->radius <= usable &&
@@ -158,6 +159,8 @@ uint32_t masu_write_shadow(masu_renderer *m, const masu_frame_desc *f, uint32_t 
         double depth = masu_shadow_split(view.near_distance, distance, (double)scene->shadow_lambda,
                                          k, rp->cascades);
         masu_cascade wanted = masu_cascade_fit(&view, depth, slow ? SLACK : 0.0, rp->cascade_size);
+        wanted.trimmed = !slow;
+        wanted.lod_error = rung->lod_error;
         /* By the cascade's number, so that two of the same pace take turns. */
         int due = !slow || (m->frame + k) % every == 0 || m->frame - c->frame >= every;
         if (due || !c->drawn || masu_is_cut(m, f) || !masu_cascade_holds(c, &wanted)) {

@@ -35,6 +35,8 @@ typedef struct masu_cascade {
     double behind, ahead; /* how far it reaches from the centre away from the sun, towards it */
     double radius;        /* of the sphere that it was made for */
     uint32_t size;        /* texels along its edge */
+    int trimmed;          /* what casts no shadow into the picture of its frame was left out */
+    float lod_error;      /* of its rung: which forms of meshes it holds */
 } masu_cascade;
 
 /* What a cascade has to hold. */

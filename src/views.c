@@ -7,6 +7,10 @@
 #include <math.h>
 #include <string.h>
 
+int masu_view_draws(const masu_renderer *m, uint32_t view) {
+    return !view || !m->plan.needs.shadow || (m->drawn >> (view - 1) & 1u);
+}
+
 VkRect2D masu_atlas_part(uint32_t part) {
     if (part) return (VkRect2D){{0, MASU_ATLAS_CAMERA_HEIGHT}, {MASU_ATLAS_SUN, MASU_ATLAS_SUN}};
     return (VkRect2D){{0, 0}, {MASU_ATLAS_CAMERA_WIDTH, MASU_ATLAS_CAMERA_HEIGHT}};
@@ -50,6 +54,9 @@ static sun_box around_cascade(const masu_cascade *c) {
     return b;
 }
 
+/* Metres. */
+static double texel_of(const masu_cascade *c) { return 2.0 * c->half / c->size; }
+
 /* The least box around two of the same axes. */
 static sun_box around_both(const sun_box *a, const sun_box *b) {
     sun_box both = *a;
@@ -70,7 +77,8 @@ static sun_box around_both(const sun_box *a, const sun_box *b) {
 static void set_box_planes(const sun_box *b, masu_cull_view *view) {
     view->count = 0;
     for (uint32_t plane = 0; plane < 5; plane++) {
-        double n[3], sign = plane % 2 ? -1.0 : 1.0, reach = plane < 4 ? b->half[plane / 2] : b->behind;
+        double n[3], sign = plane % 2 ? -1.0 : 1.0,
+                     reach = plane < 4 ? b->half[plane / 2] : b->behind;
         for (uint32_t k = 0; k < 3; k++) n[k] = sign * b->axis[plane / 2][k];
         masu_cull_add_plane(view, n, reach - along(n, b->center));
     }
@@ -103,7 +111,8 @@ static outline outline_of(const masu_renderer *m, const sun_box *b,
 /* How far the box reaches out of the half-plane on the left of i -> j, which holds the whole outline; or
  * below 0 where it does not. n: the inside normal. */
 static double cut_of(const outline *o, uint32_t i, uint32_t j, const sun_box *b, double n[2]) {
-    double x = o->at[j][0] - o->at[i][0], y = o->at[j][1] - o->at[i][1], length = sqrt(x * x + y * y);
+    double x = o->at[j][0] - o->at[i][0], y = o->at[j][1] - o->at[i][1],
+           length = sqrt(x * x + y * y);
     if (!(length > 0.0) || !(length <= 1e15)) return -1.0;
     n[0] = -y / length;
     n[1] = x / length;
@@ -170,13 +179,13 @@ static void set_suns(masu_renderer *m, const struct masu_frame_uniforms *u, cons
     sun_box boxes[MASU_CASCADES_MAX], all;
     uint32_t suns = m->plan.views - 1, any = 0;
     for (uint32_t k = 0; k < suns; k++) {
-        if (m->plan.needs.shadow && !(m->drawn >> k & 1u)) continue;
-        boxes[k] = m->plan.needs.shadow ? around_cascade(&m->cascades[k]) : around_scene(m, u->sun_direction);
+        if (!masu_view_draws(m, 1 + k)) continue;
+        boxes[k] = m->plan.needs.shadow ? around_cascade(&m->cascades[k])
+                                        : around_scene(m, u->sun_direction);
         set_box_planes(&boxes[k], &m->view_planes[1 + k]);
         if (m->plan.needs.shadow && !(rp->slow >> k & 1u)) {
             outline o = outline_of(m, &boxes[k], u, eye);
-            double texel = 2.0 * m->cascades[k].half / m->cascades[k].size;
-            add_outline(&o, &boxes[k], 4.0 * texel, &m->view_planes[1 + k]);
+            add_outline(&o, &boxes[k], 4.0 * texel_of(&m->cascades[k]), &m->view_planes[1 + k]);
         }
         all = any ? around_both(&all, &boxes[k]) : boxes[k];
         any = 1;
@@ -186,11 +195,15 @@ static void set_suns(masu_renderer *m, const struct masu_frame_uniforms *u, cons
     masu_stage2_view shared = m->stage2[1];
     set_atlas(&shared, 1);
     look_from_sun(&all, eye, &shared);
+    double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN,
+           coarsest = m->plan.needs.shadow ? 0.0 : texel;
+    for (uint32_t k = 0; k < suns && m->plan.needs.shadow; k++) {
+        if (masu_view_draws(m, 1 + k)) coarsest = fmax(coarsest, texel_of(&m->cascades[k]));
+    }
+    shared.margin = (float)((double)step * coarsest / texel);
     for (uint32_t k = 0; k < suns; k++) {
-        double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN;
-        double drawn = m->plan.needs.shadow ? 2.0 * m->cascades[k].half / m->cascades[k].size : texel;
-        double bias = m->plan.needs.shadow ? MASU_SHADOW_BIAS_MOST * drawn : 0.0;
-        shared.margin = (float)((double)step * drawn / texel);
+        double bias =
+            m->plan.needs.shadow ? MASU_SHADOW_BIAS_MOST * texel_of(&m->cascades[k]) : 0.0;
         shared.bias = (float)(bias / (all.behind + all.ahead) + 2e-6);
         m->stage2[1 + k] = shared;
     }
@@ -228,6 +241,6 @@ void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const
     v->margin = step * (across > down ? across : down);
     v->eye[3] = 1.0f;
     v->near_distance = u->forward[3];
-    v->blind = 1.001f * u->forward[3] *
-               sqrtf(1.0f + u->right[3] * u->right[3] + u->up[3] * u->up[3]);
+    v->blind =
+        1.001f * u->forward[3] * sqrtf(1.0f + u->right[3] * u->right[3] + u->up[3] * u->up[3]);
 }

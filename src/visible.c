@@ -57,8 +57,8 @@ static void keep_batches(masu_renderer *m, const masu_scene_view *v) {
         memcpy(m->mesh_bounds[mesh], what->aabb_min, sizeof what->aabb_min);
         memcpy(m->mesh_bounds[mesh] + 3, what->aabb_max, sizeof what->aabb_max);
         if (end == first || !what->primitive_count) continue;
-        masu_batch *b = keep_batch(m, v, what->first_primitive, what->primitive_count, first,
-                                   end - first);
+        masu_batch *b =
+            keep_batch(m, v, what->first_primitive, what->primitive_count, first, end - first);
         if (!m->plan.lods) continue;
         b->lod_count = masu_scene_mesh_lods(v, scene->lods, mesh, &first_lod);
         b->first_lod = first_lod;
@@ -118,8 +118,8 @@ void masu_keep_visible(masu_renderer *m, const masu_scene_view *v) {
 void masu_write_commands(masu_renderer *m, const masu_scene_view *v) {
     if (!m->batch_count) return;
     for (uint32_t slot = 0; slot < m->plan.desc.frames_in_flight; slot++) {
-        VkDrawIndexedIndirectCommand *to = (VkDrawIndexedIndirectCommand *)(void *)
-            masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot);
+        VkDrawIndexedIndirectCommand *to =
+            (VkDrawIndexedIndirectCommand *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot);
         uint32_t lists = m->plan.views * (m->plan.occlusion ? 2 : 1);
         for (uint32_t list = 0; list < lists; list++) {
             for (uint32_t b = 0; b < m->batch_count; b++) {
@@ -140,7 +140,8 @@ void masu_write_commands(masu_renderer *m, const masu_scene_view *v) {
 void masu_move_box(masu_renderer *m, uint32_t instance) {
     uint32_t position = m->box_positions[instance] & ~MASU_BOX_MOVED;
     set_box(m, position, instance);
-    if (position >= m->plan.scene.group_items || m->box_positions[instance] & MASU_BOX_MOVED) return;
+    if (position >= m->plan.scene.group_items || m->box_positions[instance] & MASU_BOX_MOVED)
+        return;
     m->box_positions[instance] |= MASU_BOX_MOVED;
     m->moved[m->moved_count++] = position;
 }
@@ -182,18 +183,17 @@ static uint32_t level_of(const masu_renderer *m, const masu_batch *mesh, uint32_
 
 void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls) {
     const masu_scene *scene = &m->plan.scene;
-    int idle = view && m->plan.needs.shadow && !(m->drawn >> (view - 1) & 1u);
     masu_view_stats *counts = &m->slot_views[slot][view];
     uint8_t bit = (uint8_t)(1u << view);
     memset(counts, 0, sizeof *counts);
     if (!scene->instances) return;
-    if (idle) { /* a cascade that this frame does not draw */
+    if (!masu_view_draws(m, view)) {
         for (uint32_t i = 0; i < scene->instances; i++) m->marks[i] &= (uint8_t)~bit;
     } else if (culls) {
         masu_cull_set set = box_set(m);
         masu_cull_counts c = {0, 0};
-        masu_cull(&set, &m->view_planes[view], m->group_states + (uint64_t)view * scene->groups, m->marks, bit,
-                  &c);
+        masu_cull(&set, &m->view_planes[view], m->group_states + (uint64_t)view * scene->groups,
+                  m->marks, bit, &c);
         counts->groups = c.nodes;
         counts->plane_tests = c.plane_tests;
     } else {

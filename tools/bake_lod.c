@@ -4,10 +4,11 @@
  *   simplified   meshoptimizer's edge collapses, primitive by primitive
  *   thinned      parts that hang together dropped, the smallest first, the rest simplified: frames,
  *                bars and sills of a facade, which no collapse can remove
- *   clustered    meshoptimizer's "sloppy" form, where the others get stuck
+ *   clustered    meshoptimizer's "sloppy" form, where the others get stuck; not of what has textures
  *
  * The error is ours, not the simplifier's estimate: a bound of the two-sided distance between the
- * surfaces (bake_surface.c), in the units of the mesh. A level has the mesh's primitives in the
+ * surfaces (bake_surface.c), in the units of the mesh. Places alone: texture coordinates and normals
+ * are not judged. A level has the mesh's primitives in the
  * mesh's order, with its materials and vertices; only indices are added. */
 #include "bake_detail.h"
 #include "bake_surface.h"
@@ -87,6 +88,18 @@ static double measure(const source *s, const form *f, double limit) {
 }
 
 /* ---- candidates ---- */
+
+/* Clusters join vertices across the seams of texture coordinates. */
+static bool has_maps(const source *s) {
+    const masu_bake_maps *maps = (const masu_bake_maps *)(const void *)s->content->maps.data;
+    for (uint32_t i = 0; i < s->mesh.primitive_count; i++) {
+        const masu_bake_maps *m = &maps[primitive_of(s, i)->material];
+        for (int k = 0; k < MASU_BAKE_MAPS; k++) {
+            if (m->image[k] != MASU_BLOB_NONE) return true;
+        }
+    }
+    return false;
+}
 
 /* `keep` (by part, NULL: all) of the mesh, simplified to about `target` indices. */
 static form simplify(const source *s, const bool *keep, double target, bool sloppy) {
@@ -183,7 +196,8 @@ static form level(const source *s, double target, double most) {
         consider(s, &best, thin(s, target, false), most);
         consider(s, &best, thin(s, target, true), most);
     }
-    if (best.error > WORST * s->diagonal) consider(s, &best, simplify(s, NULL, target, true), most);
+    if (best.error > WORST * s->diagonal && !has_maps(s))
+        consider(s, &best, simplify(s, NULL, target, true), most);
     return best;
 }
 

@@ -12,7 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_SIZE = 1, OPTION_FRAMES, OPTION_REPEAT, OPTION_FROM, OPTION_TO, OPTION_TURN, OPTION_JSON };
+enum {
+    OPTION_SIZE = 1,
+    OPTION_FRAMES,
+    OPTION_REPEAT,
+    OPTION_FROM,
+    OPTION_TO,
+    OPTION_TURN,
+    OPTION_JSON
+};
 
 enum { BOTH, FRUSTUM, NEITHER, WAYS };
 static const char *const names[WAYS] = {"both stages", "frustum", "neither"};
@@ -26,9 +34,10 @@ typedef struct options {
 } options;
 
 typedef struct way {
-    uint64_t views, kept[MASU_MAX_VIEWS], visible[MASU_MAX_VIEWS]; /* triangles by stage 1, stage 2 */
-    double gpu_ms, wall_ms;                                       /* sums of the least of each frame */
-    double least_gpu, least_wall;                                 /* of the frame at hand */
+    uint64_t views, kept[MASU_MAX_VIEWS],
+        visible[MASU_MAX_VIEWS];  /* triangles by stage 1, stage 2 */
+    double gpu_ms, wall_ms;       /* sums of the least of each frame */
+    double least_gpu, least_wall; /* of the frame at hand */
 } way;
 
 typedef struct bench {
@@ -105,9 +114,10 @@ static json_t *way_json(const bench *b, uint32_t rung) {
     const way *w = &b->ways[rung];
     json_t *views = json_array();
     for (uint32_t v = 0; v < w->views; v++) {
-        json_array_append_new(views, json_pack("{s:s, s:f, s:f}", "view", v ? "sun" : "camera",
-                                               "triangles_stage1", (double)w->kept[v] / b->o->frames,
-                                               "triangles", (double)w->visible[v] / b->o->frames));
+        json_array_append_new(views,
+                              json_pack("{s:s, s:f, s:f}", "view", v ? "sun" : "camera",
+                                        "triangles_stage1", (double)w->kept[v] / b->o->frames,
+                                        "triangles", (double)w->visible[v] / b->o->frames));
     }
     return json_pack("{s:s, s:f, s:f, s:f, s:f, s:o}", "stages", names[rung], "gpu_ms",
                      w->gpu_ms / b->o->frames, "wall_ms", w->wall_ms / b->o->frames, "gpu_ratio",
@@ -219,7 +229,8 @@ static int run(masu_cli *cli) {
 static const masu_cli_option list[] = {
     {"size", "WxH", "size in pixels (default 960x540)", OPTION_SIZE, 0},
     {"frames", "N", "frames along the path (default 60)", OPTION_FRAMES, 0},
-    {"repeat", "N", "times that each is drawn; the least time counts (default 1)", OPTION_REPEAT, 0},
+    {"repeat", "N", "times that each is drawn; the least time counts (default 1)", OPTION_REPEAT,
+     0},
     {"from", "SECONDS", "where on the camera's path to begin (default 0)", OPTION_FROM, 0},
     {"to", "SECONDS", "and where to end (default 10)", OPTION_TO, 0},
     {"turn", "DEGREES", "turn the camera by so many degrees a frame (default 0)", OPTION_TURN, 0},

@@ -29,7 +29,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_GROUP 8
 
 /* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/frame.c. Set 2, of
- * gbuffer alone: the textures of what is drawn, one binding per slot of blob.h's texture sets. With
+ * gbuffer and the cascades: the textures of what is drawn, one binding per slot of blob.h's texture sets. With
  * three sets of the four that every device has, and 4 sampled images of 16 in a stage. */
 #define MASU_SET_GLOBAL 0
 #define MASU_SET_PASS 1
@@ -59,8 +59,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 
 /* Stage 2 of culling. The buffer of drawn instances begins with the lists of stage 1, MASU_CULL_LISTED
  * words for each view; behind them lies a header, whose words say where the rest is. */
-#define MASU_CULL_FRAME 0u       /* its number */
-#define MASU_CULL_CUT 1u         /* not 0: all are asked */
+#define MASU_CULL_CUT 0u         /* not 0: all are asked */
+#define MASU_CULL_LISTED 1u      /* words of the lists of one view */
 #define MASU_CULL_VIEWS 2u       /* how many */
 #define MASU_CULL_INSTANCES 3u   /* how many */
 #define MASU_CULL_DRAWS 4u       /* how many of one view */
@@ -73,7 +73,6 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_CULL_OCCLUDERS 11u  /* of each: lower and upper corner, object space */
 #define MASU_CULL_PAIRS 12u      /* of each view: occluder and instance */
 #define MASU_CULL_PAIR_COUNT 13u /* most of one view */
-#define MASU_CULL_LISTED 14u     /* words of the lists of one view */
 #define MASU_CULL_HEADER 16u
 /* Most primitives of a mesh, and most groups of 64 of its instances: bounds of loops. */
 #define MASU_CULL_ROUNDS 4096
@@ -85,7 +84,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_CULL_VIEW_MARGIN 25u /* texels that the raster may be off by */
 #define MASU_CULL_VIEW_BLIND 26u /* meshes as near as this may be cut open by the near plane */
 #define MASU_CULL_VIEW_BIAS 27u  /* depth by which the raster may have moved an occluder's mesh away */
-#define MASU_CULL_VIEW_WORDS 28u
+#define MASU_CULL_VIEW_TURN 28u  /* frames that have drawn the view, modulo 5 */
+#define MASU_CULL_VIEW_WORDS 32u
 
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:
  *   0..2                  arguments of the indirect dispatch: active tiles, 1, 1

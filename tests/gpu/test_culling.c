@@ -142,8 +142,8 @@ static void velocities_are_the_same_without_culling(void **state) {
             move(&s[i], "ball3", (float)c.position[0] + 4.0f * c.forward[0],
                  1.0f + 0.1f * (float)frame, (float)c.position[2] + 4.0f * c.forward[2], 1.0f);
             draw(&s[i], &f, &commands, NULL);
-            assert_int_equal(
-                masu_readback(s[i].m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+            assert_int_equal(masu_readback(s[i].m, commands.slot, MASU_READBACK_VELOCITY, &image),
+                             MASU_OK);
             for (uint32_t y = 0; y < H; y++) {
                 memcpy(velocity[i] + (size_t)y * W * 8,
                        (const uint8_t *)image.pixels + y * image.row_bytes, W * 8);
@@ -158,12 +158,13 @@ static void velocities_are_the_same_without_culling(void **state) {
 
 /* The town with a shadow map, which the test bakes. */
 static void bake_shadows(void) {
-    assert_int_equal(shadow_shell("sed -e 's#\"test_block.obj\"#\"'\"$PWD\"'/scenes/test_block.obj\"#' "
-                                  "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
-                                  "\"resolution\": 192, \"distance\": 90}, #' "
-                                  "scenes/test_town.json > %s/town.json",
-                                  shadow_dir()),
-                     0);
+    assert_int_equal(
+        shadow_shell("sed -e 's#\"test_block.obj\"#\"'\"$PWD\"'/scenes/test_block.obj\"#' "
+                     "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
+                     "\"resolution\": 192, \"distance\": 90}, #' "
+                     "scenes/test_town.json > %s/town.json",
+                     shadow_dir()),
+        0);
     assert_int_equal(shadow_shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet",
                                   getenv("BUILD") ? getenv("BUILD") : "build", shadow_dir(),
                                   shadow_dir()),
