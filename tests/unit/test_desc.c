@@ -335,7 +335,13 @@ static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
         compile(&d, &plan);
         assert_int_equal(plan.occlusion, 0);
         support_scene.placed_occluders = 1;
+        compile(&d, &plan); /* AUTO goes without, and says so */
+        assert_int_equal(plan.occlusion, 0);
+        assert_string_equal(plan.why[MASU_PASS_CULL], "a mesh has too many primitives or instances");
+        d.rung_count = 1;
+        d.rungs[0].occlusion = MASU_ON;
         assert_refused(&d, MASU_ERROR_LIMIT, "rungs[].occlusion");
+        d.rungs[0].occlusion = MASU_AUTO;
         *most = limit;
         compile(&d, &plan);
         assert_int_equal(plan.occlusion, 1);
