@@ -5,7 +5,7 @@
  *
  * Placed meshes of few instances have one invocation each; for the others a group works off 64
  * instances at a time. Views in y. index.x: the header of src/occlusion.c; index.y: groups of the
- * first kind.
+ * first kind; index.z: the first view.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -48,7 +48,7 @@ void finish(uint view, batch b, uint count)
 void main()
 {
     masu_count_begin();
-    uint view = gl_WorkGroupID.y, views = masu_cull_word(MASU_CULL_VIEWS);
+    uint view = gl_WorkGroupID.y + pc.index.z, views = masu_cull_word(MASU_CULL_VIEWS);
     uint instance_count = masu_cull_word(MASU_CULL_INSTANCES);
     uint draw_count = masu_cull_word(MASU_CULL_DRAWS);
     uint marks = view * instance_count;

@@ -7,7 +7,11 @@
  * fifth of those that draw the view. After a cut all are asked. A word that is older than it should be, or noise, therefore costs
  * time and never a pixel.
  *
- * index.x: the header of src/occlusion.c.
+ * A caster whose shadow falls on nothing in the picture is hidden as well, in cascades that this frame
+ * alone looks at: of each texel of the sun's part of the atlas, receivers.comp has noted how far from
+ * the sun the farthest surface in the picture is.
+ *
+ * index.x: the header of src/occlusion.c; index.z: the first view.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -27,6 +31,32 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SEEN, std430) buffer Seen
 
 /* Larger rectangles are taken to be visible: they nearly always are. */
 #define MASU_TEXELS_MOST 16384
+
+/* Whether a surface of the picture lies behind what is at `nearest`, in texels that its shadow may be looked
+ * up in. */
+bool receives(vec2 low, vec2 high, float nearest)
+{
+    ivec2 from = ivec2(clamp(floor(low), vec2(0.0), vec2(MASU_ATLAS_SUN)));
+    ivec2 to = ivec2(clamp(ceil(high), vec2(0.0), vec2(MASU_ATLAS_SUN)));
+    if ((to.x - from.x) * (to.y - from.y) > MASU_TEXELS_MOST) {
+        return true;
+    }
+    uint words = masu_cull_word(MASU_CULL_RECEIVERS);
+    uint depth = floatBitsToUint(max(nearest, 0.0));
+    bool any = false;
+    for (int y = 0; y < MASU_ATLAS_SUN; y++) {
+        if (any || from.y + y >= to.y) {
+            break;
+        }
+        for (int x = 0; x < MASU_ATLAS_SUN; x++) {
+            if (any || from.x + x >= to.x) {
+                break;
+            }
+            any = seen[words + uint((from.y + y) * MASU_ATLAS_SUN + from.x + x)] < depth;
+        }
+    }
+    return any;
+}
 
 bool hidden(uint at, vec3 center, vec3 extent)
 {
@@ -49,6 +79,11 @@ bool hidden(uint at, vec3 center, vec3 extent)
         low = min(low, texel);
         high = max(high, texel);
         nearest = max(nearest, p.z / p.w);
+    }
+    float reach = masu_drawn_float(at + MASU_CULL_VIEW_REACH);
+    if (drawn[at + MASU_CULL_VIEW_TRIMMED] != 0u &&
+        !receives(low - reach, high + reach, nearest * (1.0 + 1.2e-4) + 2e-6)) {
+        return true;
     }
     /* 2^-13 for the depth that the raster interpolates, 2^-9 texel for the positions. */
     nearest = nearest * (1.0 + 1.2e-4) + masu_drawn_float(at + MASU_CULL_VIEW_BIAS);
@@ -78,7 +113,7 @@ bool hidden(uint at, vec3 center, vec3 extent)
 void main()
 {
     masu_count_begin();
-    uint view = gl_WorkGroupID.y;
+    uint view = gl_WorkGroupID.y + pc.index.z;
     uint instance_count = masu_cull_word(MASU_CULL_INSTANCES);
     uint kept = masu_cull_word(MASU_CULL_KEPT) + view * (instance_count + 1u);
     if (gl_GlobalInvocationID.x < min(drawn[kept], instance_count)) {

@@ -58,6 +58,16 @@ static int needs_occlusion(const masu_needs *n, const char **why) {
                    why);
 }
 
+static int needs_casters(const masu_needs *n, const char **why) {
+    return decided(n->casters, "occluders hide things from the sun",
+                   n->occlusion ? "nothing draws what the sun sees" : "no culling by occluders", why);
+}
+
+static int needs_receivers(const masu_needs *n, const char **why) {
+    return decided(n->receivers, "shadows that fall on nothing in the picture are left out",
+                   n->casters ? "no cascade is drawn in every frame" : "no casters are culled", why);
+}
+
 static int has_tiles(masu_march march) {
     return march != MASU_MARCH_PLAIN && march != MASU_MARCH_SEED && march != MASU_MARCH_FRAGMENT;
 }
@@ -243,11 +253,11 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         MASU_PASS_GRAPHICS, MASU_EXTENT_ATLAS, needs_occlusion, NULL,
         {{MASU_IMAGE_OCCLUDERS, MASU_WRITE_DEPTH}}, 0},
     [MASU_PASS_CULL] = {
-        "cull", "which of the instances in view the occluders hide",
+        "cull", "which of the instances in view the occluders hide from the camera",
         MASU_PASS_COMPUTE, MASU_EXTENT_KEPT, needs_occlusion, NULL,
         {{MASU_IMAGE_OCCLUDERS, MASU_READ}, {MASU_RESOURCE_SEEN, MASU_WRITE_BUFFER}}, 0},
     [MASU_PASS_COMPACT] = {
-        "compact", "lists and counts of the rest, for the indirect draws",
+        "compact", "lists and counts of the rest, for the indirect draws of the camera",
         MASU_PASS_COMPUTE, MASU_EXTENT_BATCHES, needs_occlusion, NULL,
         {{MASU_RESOURCE_SEEN, MASU_READ_BUFFER}, {MASU_RESOURCE_DRAWS, MASU_WRITE_BUFFER}}, 0},
     [MASU_PASS_GBUFFER] = {
@@ -317,6 +327,19 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         {{MASU_IMAGE_DEPTH, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
          {MASU_RESOURCE_TILES, MASU_READ_BUFFER}, {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
          {MASU_IMAGE_VELOCITY, MASU_UPDATE}}, MASU_BLOB_VELOCITY_SPIRV},
+    [MASU_PASS_RECEIVERS] = {
+        "receivers", "where the picture has surfaces, as the sun sees them",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_receivers, NULL,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
+         {MASU_RESOURCE_SEEN, MASU_WRITE_BUFFER}}, 0},
+    [MASU_PASS_CULL_CASTERS] = {
+        "cull_casters", "which casters the occluders hide from the sun, or shadow nothing in the picture",
+        MASU_PASS_COMPUTE, MASU_EXTENT_KEPT, needs_casters, NULL,
+        {{MASU_IMAGE_OCCLUDERS, MASU_READ}, {MASU_RESOURCE_SEEN, MASU_WRITE_BUFFER}}, 0},
+    [MASU_PASS_COMPACT_CASTERS] = {
+        "compact_casters", "lists and counts of the rest, for the cascades",
+        MASU_PASS_COMPUTE, MASU_EXTENT_BATCHES, needs_casters, NULL,
+        {{MASU_RESOURCE_SEEN, MASU_READ_BUFFER}, {MASU_RESOURCE_DRAWS, MASU_WRITE_BUFFER}}, 0},
     [MASU_PASS_CASCADE_0] = {
         "cascade_0", "what of the polygons the sun sees, nearest to the eye",
         MASU_PASS_GRAPHICS, MASU_EXTENT_SHADOW, needs_cascade_0, NULL,

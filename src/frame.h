@@ -113,6 +113,8 @@ typedef struct masu_needs {
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
     /* of one rung: */
     int upscale, sharpen, occlusion;
+    int casters;   /* occlusion, of a view of the sun too */
+    int receivers; /* and of cascades that every frame draws anew */
     masu_march march;
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
@@ -147,6 +149,9 @@ typedef enum masu_pass_id {
     MASU_PASS_MARCH_FRAGMENT,
     MASU_PASS_VELOCITY,
     MASU_PASS_SDF_VELOCITY,
+    MASU_PASS_RECEIVERS,
+    MASU_PASS_CULL_CASTERS,
+    MASU_PASS_COMPACT_CASTERS,
     MASU_PASS_CASCADE_0, /* one after the other */
     MASU_PASS_CASCADE_1,
     MASU_PASS_CASCADE_2,

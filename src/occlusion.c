@@ -51,6 +51,7 @@ void masu_write_occluders(masu_renderer *m, const masu_scene_view *v) {
         header[MASU_CULL_VIEWS] = m->plan.views;
         header[MASU_CULL_INSTANCES] = m->plan.scene.instances;
         header[MASU_CULL_DRAWS] = m->plan.draws;
+        header[MASU_CULL_RECEIVERS] = (uint32_t)m->plan.receivers;
         header[MASU_CULL_LISTED] = m->plan.listed;
         header[MASU_CULL_BATCH_COUNT] = m->batch_count;
         header[MASU_CULL_LISTS] = (uint32_t)d->lists;

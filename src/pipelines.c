@@ -26,6 +26,7 @@
 #include "occluders_frag.spv.h"
 #include "occluders_vert.spv.h"
 #include "rcas_comp.spv.h"
+#include "receivers_comp.spv.h"
 #include "shadow_comp.spv.h"
 #include "tonemap_comp.spv.h"
 #include "velocity_comp.spv.h"
@@ -47,9 +48,13 @@ static spirv scene_code(const masu_renderer *m, uint32_t pass) {
 static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     if (masu_passes[pass].code) return scene_code(m, pass);
     switch (pass) {
-    case MASU_PASS_CULL: return (spirv){masu_spv_cull_comp, sizeof masu_spv_cull_comp};
-    case MASU_PASS_COMPACT: return (spirv){masu_spv_compact_comp, sizeof masu_spv_compact_comp};
+    case MASU_PASS_CULL:
+    case MASU_PASS_CULL_CASTERS: return (spirv){masu_spv_cull_comp, sizeof masu_spv_cull_comp};
+    case MASU_PASS_COMPACT:
+    case MASU_PASS_COMPACT_CASTERS: return (spirv){masu_spv_compact_comp, sizeof masu_spv_compact_comp};
     case MASU_PASS_VELOCITY: return (spirv){masu_spv_velocity_comp, sizeof masu_spv_velocity_comp};
+    case MASU_PASS_RECEIVERS:
+        return (spirv){masu_spv_receivers_comp, sizeof masu_spv_receivers_comp};
     case MASU_PASS_SHADOW: return (spirv){masu_spv_shadow_comp, sizeof masu_spv_shadow_comp};
     case MASU_PASS_LIGHT: return (spirv){masu_spv_light_comp, sizeof masu_spv_light_comp};
     case MASU_PASS_LIGHT_OCCLUDED:

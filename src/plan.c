@@ -486,6 +486,10 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
             masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
         b[MASU_BUFFER_DRAWS].bytes = flights * b[MASU_BUFFER_DRAWS].stride;
         if (plan->occlusion) b[MASU_BUFFER_SEEN].count = (uint64_t)plan->views * s->instances;
+        if (plan->receivers) {
+            plan->receivers = b[MASU_BUFFER_SEEN].count;
+            b[MASU_BUFFER_SEEN].count += (uint64_t)MASU_ATLAS_SUN * MASU_ATLAS_SUN;
+        }
         b[MASU_BUFFER_SEEN].bytes = b[MASU_BUFFER_SEEN].count * sizeof(uint32_t);
         b[MASU_BUFFER_DRAWN].count = plan->drawn.words;
         b[MASU_BUFFER_DRAWN].stride =
@@ -560,7 +564,7 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                                               .role = MASU_ROLE_UPLOAD,
                                               .usage = VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
     if (plan->occlusion) b[MASU_BUFFER_DRAWS].usage |= storage;
-    b[MASU_BUFFER_SEEN] = (masu_buffer_plan){.name = "seen", .usage = storage};
+    b[MASU_BUFFER_SEEN] = (masu_buffer_plan){.name = "seen", .usage = storage | dst};
     b[MASU_BUFFER_DRAWN] =
         (masu_buffer_plan){.name = "drawn instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
     b[MASU_BUFFER_STAGING] = (masu_buffer_plan){
@@ -663,6 +667,10 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         }
         plan->occlusion |= plan->needs.occlusion;
         resolve_shadow(plan, r);
+        plan->needs.casters = plan->needs.occlusion && plan->views > 1;
+        plan->needs.receivers = plan->needs.casters && plan->needs.shadow &&
+                                rp->slow != (1u << rp->cascades) - 1u;
+        if (plan->needs.receivers) plan->receivers = 1;
         compile_rung(plan, r);
     }
     gather_images(plan);

@@ -122,6 +122,7 @@ typedef struct masu_frame_plan {
     int lods;           /* a rung draws coarser forms of meshes */
     uint32_t draws, listed; /* draws of a view; words of its lists: a list for each form */
     masu_drawn_plan drawn;
+    uint64_t receivers; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
     uint32_t recordings; /* of one frame in flight: rungs, their targets, their variants */
     uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */

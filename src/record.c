@@ -199,22 +199,27 @@ static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
     return push;
 }
 
-/* Stage 2 of culling: 64 invocations to a group, views in y. */
+/* Stage 2 of culling: 64 invocations to a group, views in y: the camera, or the sun's. */
 static void record_culling(recorder *rec, uint32_t pass, struct masu_push *push) {
     const masu_frame_plan *plan = &rec->m->plan;
     uint32_t few = (rec->m->batch_count + 63) / 64, groups = few + rec->m->large_count;
-    if (pass == MASU_PASS_CULL) groups = (plan->scene.instances + 63) / 64;
-    push->index[0] = (uint32_t)plan->drawn.header;
+    uint32_t first = pass == MASU_PASS_CULL || pass == MASU_PASS_COMPACT ? 0 : 1;
+    if (masu_passes[pass].extent == MASU_EXTENT_KEPT) groups = (plan->scene.instances + 63) / 64;
     push->index[1] = few;
+    push->index[2] = first;
     rec->m->vk.CmdPushConstants(rec->cmd, rec->m->layouts[pass], VK_SHADER_STAGE_COMPUTE_BIT, 0,
                                 sizeof *push, push);
-    rec->m->vk.CmdDispatch(rec->cmd, groups, plan->views, 1);
+    rec->m->vk.CmdDispatch(rec->cmd, groups, first ? plan->views - 1 : 1, 1);
 }
 
 static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     struct masu_push push = push_constants(rec, pass);
     VkPipelineLayout layout = rec->m->layouts[pass];
+    masu_image_extent extent = masu_passes[pass].extent;
+    int culling = extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES;
+    if (culling || pass == MASU_PASS_RECEIVERS)
+        push.index[0] = (uint32_t)rec->m->plan.drawn.header;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
     if (rec->m->plan.needs.scene) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
@@ -223,12 +228,11 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1,
                               &set, 0, NULL);
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
-    masu_image_extent extent = masu_passes[pass].extent;
     if (extent == MASU_EXTENT_TILES) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TILES], 0);
         return;
     }
-    if (extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES) {
+    if (culling) {
         record_culling(rec, pass, &push);
         return;
     }
@@ -488,7 +492,12 @@ static void record_prologue(recorder *rec) {
                                 arguments[i]);
         }
     }
-    if (counters || m->plan.buffers[MASU_BUFFER_TILES].bytes ||
+    int receivers = (int)(rec->rp->active >> MASU_PASS_RECEIVERS & 1u);
+    if (receivers) { /* none yet: the least depth is the farthest from the sun */
+        m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
+                            m->plan.receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
+    }
+    if (counters || receivers || m->plan.buffers[MASU_BUFFER_TILES].bytes ||
         m->plan.buffers[MASU_BUFFER_POISON].bytes) {
         memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,

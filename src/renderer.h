@@ -60,7 +60,8 @@ typedef struct masu_lod_view {
 /* What stage 2 of culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
 typedef struct masu_stage2_view {
     float clip[16], eye[4], atlas[4], near_distance, margin, blind, bias;
-    uint32_t turn, reserved[3];
+    uint32_t turn, trimmed;
+    float reach, reserved;
 } masu_stage2_view;
 _Static_assert(sizeof(masu_stage2_view) == 4 * MASU_CULL_VIEW_WORDS, "stage 2 view");
 

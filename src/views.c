@@ -205,6 +205,10 @@ static void set_suns(masu_renderer *m, const struct masu_frame_uniforms *u, cons
         double bias =
             m->plan.needs.shadow ? MASU_SHADOW_BIAS_MOST * texel_of(&m->cascades[k]) : 0.0;
         shared.bias = (float)(bias / (all.behind + all.ahead) + 2e-6);
+        if (m->plan.needs.shadow) {
+            shared.trimmed = !(rp->slow >> k & 1u);
+            shared.reach = (float)(2.5 * texel_of(&m->cascades[k]) / texel) + 0.01f;
+        }
         m->stage2[1 + k] = shared;
     }
 }

@@ -61,6 +61,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  * words for each view; behind them lies a header, whose words say where the rest is. */
 #define MASU_CULL_CUT 0u         /* not 0: all are asked */
 #define MASU_CULL_LISTED 1u      /* words of the lists of one view */
+#define MASU_CULL_RECEIVERS 14u  /* of the words of what is seen, the first of receivers */
 #define MASU_CULL_VIEWS 2u       /* how many */
 #define MASU_CULL_INSTANCES 3u   /* how many */
 #define MASU_CULL_DRAWS 4u       /* how many of one view */
@@ -85,6 +86,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_CULL_VIEW_BLIND 26u /* meshes as near as this may be cut open by the near plane */
 #define MASU_CULL_VIEW_BIAS 27u  /* depth by which the raster may have moved an occluder's mesh away */
 #define MASU_CULL_VIEW_TURN 28u  /* frames that have drawn the view, modulo 5 */
+#define MASU_CULL_VIEW_TRIMMED 29u /* not 0: what shadows nothing in the picture is left out */
+#define MASU_CULL_VIEW_REACH 30u /* texels of the atlas that a shadow is looked up around a point */
 #define MASU_CULL_VIEW_WORDS 32u
 
 /* SDF tiles: TILE x TILE pixels share one list of parts. The tile buffer, in uints:

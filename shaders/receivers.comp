@@ -1,0 +1,63 @@
+/*
+ * receivers.comp: where the picture has surfaces that the sun may light, as the sun sees them: of each
+ * texel of its part of the occluder atlas the farthest, for cull.comp. Only what shadow.comp would look
+ * up a shadow for counts; where rounding might let the two disagree, it counts.
+ *
+ * index.x: the header of src/occlusion.c.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/globals.glsl"
+#include "shared/culling.glsl"
+#include "shared/pack.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
+layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SEEN, std430) buffer Seen
+{
+    uint seen[];
+};
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
+{
+    masu_shadow_uniforms shadow;
+};
+
+/* A point relative to the eye. */
+void note(vec3 rel)
+{
+    mat4 clip = masu_cull_matrix(masu_cull_view(1u) + MASU_CULL_VIEW_CLIP);
+    vec4 p = clip * vec4(rel, 1.0);
+    vec2 texel = floor((p.xy * 0.5 + 0.5) * float(MASU_ATLAS_SUN));
+    if (all(greaterThanEqual(texel, vec2(0.0))) && all(lessThan(texel, vec2(MASU_ATLAS_SUN)))) {
+        uint word = masu_cull_word(MASU_CULL_RECEIVERS) + uint(texel.y) * uint(MASU_ATLAS_SUN) +
+                    uint(texel.x);
+        uint depth = floatBitsToUint(clamp(p.z, 0.0, 1.0));
+        /* Most pixels find their texel noted by a neighbour. */
+        if (seen[word] > depth) {
+            atomicMin(seen[word], depth);
+        }
+    }
+}
+
+void main()
+{
+    uvec2 at = gl_GlobalInvocationID.xy;
+    uvec2 size = uvec2(pc.output_width, pc.output_height);
+    if (all(lessThan(at, size))) {
+        float depth = texelFetch(depth_image, ivec2(at), 0).r;
+        uint texel = texelFetch(normal_image, ivec2(at), 0).r;
+        float z = frame.forward.w * masu_rcp(depth);
+        vec3 rel = masu_pixel_ray(at, size) * z;
+        bool there = depth > 0.0 && (masu_unpack_flags(texel) & MASU_SURFACE_EMISSIVE) == 0u;
+        bool faces = dot(masu_unpack_normal(texel), frame.sun_direction.xyz) > -1e-3;
+        bool fades = (z - shadow.reach.y) * shadow.reach.z > 1.001;
+        if (there && faces && !fades && masu_finite(rel)) {
+            note(rel);
+        }
+    }
+}
