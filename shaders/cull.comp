@@ -9,7 +9,7 @@
  *
  * A caster whose shadow falls on nothing in the picture is hidden as well, in cascades that this frame
  * alone looks at: of each texel of the sun's part of the atlas, receivers.comp has noted how far from
- * the sun the farthest surface in the picture is.
+ * the sun the farthest surface in the picture is that looks into the cascade.
  *
  * index.x: the header of src/occlusion.c; index.z: the first view.
  */
@@ -34,14 +34,14 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SEEN, std430) buffer Seen
 
 /* Whether a surface of the picture lies behind what is at `nearest`, in texels that its shadow may be looked
  * up in. */
-bool receives(vec2 low, vec2 high, float nearest)
+bool receives(uint cascade, vec2 low, vec2 high, float nearest)
 {
     ivec2 from = ivec2(clamp(floor(low), vec2(0.0), vec2(MASU_ATLAS_SUN)));
     ivec2 to = ivec2(clamp(ceil(high), vec2(0.0), vec2(MASU_ATLAS_SUN)));
     if ((to.x - from.x) * (to.y - from.y) > MASU_TEXELS_MOST) {
         return true;
     }
-    uint words = masu_cull_word(MASU_CULL_RECEIVERS);
+    uint words = masu_cull_word(MASU_CULL_RECEIVERS) + cascade * MASU_RECEIVER_WORDS;
     uint depth = floatBitsToUint(max(nearest, 0.0));
     bool any = false;
     for (int y = 0; y < MASU_ATLAS_SUN; y++) {
@@ -58,8 +58,9 @@ bool receives(vec2 low, vec2 high, float nearest)
     return any;
 }
 
-bool hidden(uint at, vec3 center, vec3 extent)
+bool hidden(uint view, vec3 center, vec3 extent)
 {
+    uint at = masu_cull_view(view);
     mat4 clip = masu_cull_matrix(at + MASU_CULL_VIEW_CLIP);
     vec4 atlas = masu_drawn_vec4(at + MASU_CULL_VIEW_ATLAS);
     float margin = masu_drawn_float(at + MASU_CULL_VIEW_MARGIN);
@@ -82,7 +83,7 @@ bool hidden(uint at, vec3 center, vec3 extent)
     }
     float reach = masu_drawn_float(at + MASU_CULL_VIEW_REACH);
     if (drawn[at + MASU_CULL_VIEW_TRIMMED] != 0u &&
-        !receives(low - reach, high + reach, nearest * (1.0 + 1.2e-4) + 2e-6)) {
+        !receives(view - 1u, low - reach, high + reach, nearest * (1.0 + 1.2e-4) + 2e-6)) {
         return true;
     }
     /* 2^-13 for the depth that the raster interpolates, 2^-9 texel for the positions. */
@@ -124,7 +125,7 @@ void main()
         if (asked) {
             uint box = masu_cull_word(MASU_CULL_BOXES) + 6u * id;
             vec3 center = (masu_drawn_vec3(box) - frame.eye_hi.xyz) - frame.eye_lo.xyz;
-            seen[word] = hidden(masu_cull_view(view), center, masu_drawn_vec3(box + 3u)) ? 0u : 1u;
+            seen[word] = hidden(view, center, masu_drawn_vec3(box + 3u)) ? 0u : 1u;
             masu_count(MASU_COUNTER_OCCLUSION_TESTS, 1u);
         }
     }

@@ -1,6 +1,6 @@
 /*
  * receivers.comp: where the picture has surfaces that the sun may light, as the sun sees them: of each
- * texel of its part of the occluder atlas the farthest, for cull.comp. Only what shadow.comp would look
+ * texel of its part of the occluder atlas, and of each cascade, the farthest, for cull.comp. Only what shadow.comp would look
  * up a shadow for counts; where rounding might let the two disagree, it counts.
  *
  * index.x: the header of src/occlusion.c.
@@ -27,19 +27,34 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
     masu_shadow_uniforms shadow;
 };
 
-/* A point relative to the eye. */
+/* A point relative to the eye, in each cascade that shadow.comp looks into for it. */
 void note(vec3 rel)
 {
     mat4 clip = masu_cull_matrix(masu_cull_view(1u) + MASU_CULL_VIEW_CLIP);
     vec4 p = clip * vec4(rel, 1.0);
     vec2 texel = floor((p.xy * 0.5 + 0.5) * float(MASU_ATLAS_SUN));
-    if (all(greaterThanEqual(texel, vec2(0.0))) && all(lessThan(texel, vec2(MASU_ATLAS_SUN)))) {
-        uint word = masu_cull_word(MASU_CULL_RECEIVERS) + uint(texel.y) * uint(MASU_ATLAS_SUN) +
-                    uint(texel.x);
-        uint depth = floatBitsToUint(clamp(p.z, 0.0, 1.0));
+    if (!all(greaterThanEqual(texel, vec2(0.0))) || !all(lessThan(texel, vec2(MASU_ATLAS_SUN)))) {
+        return; /* this frame draws no cascade there */
+    }
+    uint depth = floatBitsToUint(clamp(p.z, 0.0, 1.0));
+    uint word = masu_cull_word(MASU_CULL_RECEIVERS) + uint(texel.y) * uint(MASU_ATLAS_SUN) +
+                uint(texel.x);
+    uint count = min(uint(shadow.reach.x), uint(MASU_CASCADES_MAX));
+    for (uint k = 0u; k < uint(MASU_CASCADES_MAX); k++) {
+        if (k >= count) {
+            break;
+        }
+        vec3 at = vec3(dot(shadow.row0[k].xyz, rel) + shadow.row0[k].w,
+                       dot(shadow.row1[k].xyz, rel) + shadow.row1[k].w,
+                       dot(shadow.row2[k].xyz, rel) + shadow.row2[k].w);
+        float inside = (1.0 - 3.0 / shadow.rect[k].z) - max(abs(at.x), abs(at.y));
+        uint here = word + k * MASU_RECEIVER_WORDS;
         /* Most pixels find their texel noted by a neighbour. */
-        if (seen[word] > depth) {
-            atomicMin(seen[word], depth);
+        if (inside >= -1e-4 && at.z >= -1e-4 && seen[here] > depth) {
+            atomicMin(seen[here], depth);
+        }
+        if (inside > MASU_CASCADE_BLEND + 1e-4 && at.z > 1e-4) {
+            break; /* it has all of the weight */
         }
     }
 }

@@ -37,7 +37,6 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
     masu_shadow_uniforms shadow;
 };
 
-const float blend = 0.1;      /* share of a half width over which the next cascade takes over */
 const float steepest = 200.0; /* slope against the sun that is still made up for: 0.3 degrees */
 const float least_bias = 0.1; /* texels: what depth and normal are rounded to */
 
@@ -97,7 +96,7 @@ float sun_seen(vec3 rel, vec3 n)
         vec2 slope = clamp(-across / facing, -steepest, steepest) * (texel * metre);
         float inside = (1.0 - 3.0 / size) - max(abs(at.x), abs(at.y));
         if (inside >= 0.0 && depth >= 0.0) {
-            float share = k + 1u == count ? 1.0 : min(inside / blend, 1.0);
+            float share = k + 1u == count ? 1.0 : min(inside / MASU_CASCADE_BLEND, 1.0);
             seen += left * share * lit((at * 0.5 + 0.5) * size, ivec2(shadow.rect[k].xy),
                                        depth + least_bias * texel * metre, slope);
             left -= left * share;

@@ -488,7 +488,7 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
         if (plan->occlusion) b[MASU_BUFFER_SEEN].count = (uint64_t)plan->views * s->instances;
         if (plan->receivers) {
             plan->receivers = b[MASU_BUFFER_SEEN].count;
-            b[MASU_BUFFER_SEEN].count += (uint64_t)MASU_ATLAS_SUN * MASU_ATLAS_SUN;
+            b[MASU_BUFFER_SEEN].count += (uint64_t)plan->cascades * MASU_RECEIVER_WORDS;
         }
         b[MASU_BUFFER_SEEN].bytes = b[MASU_BUFFER_SEEN].count * sizeof(uint32_t);
         b[MASU_BUFFER_DRAWN].count = plan->drawn.words;

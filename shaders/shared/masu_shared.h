@@ -61,7 +61,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  * words for each view; behind them lies a header, whose words say where the rest is. */
 #define MASU_CULL_CUT 0u         /* not 0: all are asked */
 #define MASU_CULL_LISTED 1u      /* words of the lists of one view */
-#define MASU_CULL_RECEIVERS 14u  /* of the words of what is seen, the first of receivers */
+#define MASU_CULL_RECEIVERS 14u  /* of the words of what is seen, the first of receivers: */
+#define MASU_RECEIVER_WORDS 65536u /* of each cascade, a word per texel of the sun's part */
 #define MASU_CULL_VIEWS 2u       /* how many */
 #define MASU_CULL_INSTANCES 3u   /* how many */
 #define MASU_CULL_DRAWS 4u       /* how many of one view */
@@ -121,6 +122,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 
 /* Most cascades of the sun's shadow map. */
 #define MASU_CASCADES_MAX 4
+/* Share of a cascade's half width over which the next one takes over. */
+#define MASU_CASCADE_BLEND 0.1
 /* Surfaces are drawn into the shadow map farther from the sun by so many texels per texel of their
  * slope against it, steeper ones as if they had the steepest. */
 #define MASU_SHADOW_BIAS 1.25
