@@ -6,7 +6,7 @@
 #include "renderer.h"
 #include "support_blob.h"
 
-#define ROOM (1u << 16)
+#define ROOM (1u << 21)
 #define NOISE 0xA5 /* what they are filled with */
 
 extern masu_renderer m;
