@@ -29,7 +29,7 @@ static masu_blob_sdf_param params[4];
 static masu_batch batches[4];
 static masu_cull_node groups[4];
 static masu_placed_occluder occluders[4];
-static uint8_t group_states[4], marks[4];
+static uint8_t group_states[4 * MASU_MAX_VIEWS], marks[4];
 static float boxes[6 * (4 + MASU_BOX_PADDING)], mesh_bounds[4][6];
 static uint32_t box_items[4], box_positions[4], moved[4], instance_meshes[4];
 
