@@ -98,7 +98,7 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
 lib: $(BUILD)/lib/libmasu.a ## build build/lib/libmasu.a alone
-tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc) ## build build/bin/masu, masu-bake, masu-sdfc
+tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso
 shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
@@ -177,12 +177,13 @@ install-lib: lib ## install header, library and masu.pc
 	$(V)install -m 644 $(BUILD)/lib/libmasu.a "$(root)/lib/libmasu.a"
 	$(V)sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' masu.pc.in \
 	    > "$(root)/lib/pkgconfig/masu.pc"
-install-tools: tools ## install masu, masu-bake and masu-sdfc
+install-tools: tools ## install masu, masu-bake, masu-sdfc and masu-meso
 	$(V)install -d "$(root)/bin"
-	$(V)install -m 755 $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-sdfc "$(root)/bin"
+	$(V)install -m 755 $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-sdfc \
+	    $(BUILD)/bin/masu-meso "$(root)/bin"
 uninstall: ## remove what install has put there
 	$(V)cd "$(root)" && rm -f include/masu.h lib/libmasu.a lib/pkgconfig/masu.pc
-	$(V)cd "$(root)" && rm -f bin/masu bin/masu-bake bin/masu-sdfc
+	$(V)cd "$(root)" && rm -f bin/masu bin/masu-bake bin/masu-sdfc bin/masu-meso
 
 .PHONY: clean help
 clean: ## remove what was built, of all configurations; keeps build/drivers

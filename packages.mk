@@ -8,6 +8,7 @@
 PACKAGES_build := gcc libc6-dev libvulkan-dev
 PACKAGES_build += glslang-tools spirv-tools
 PACKAGES_build += libassimp-dev libjansson-dev libstb-dev libmagickwand-dev pkgconf libmeshoptimizer-dev
+PACKAGES_build += libembree-dev
 
 # to bake and render the demo: a Vulkan driver for any processor, and the models that scenes/ places
 PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
@@ -20,6 +21,9 @@ PACKAGES_test := libcmocka-dev vulkan-validationlayers g++
 
 # to build everything a second time with the other compiler (make check FULL=1), and for `make fuzz`
 PACKAGES_full := clang
+
+# for the plots of masu-meso, which goes without. Never installed by itself
+PACKAGES_plots := gnuplot-nox
 
 # for who works on Masu: `make format`, `make compdb`. Never installed by itself
 PACKAGES_dev := clang-format bear
@@ -45,7 +49,7 @@ endef
 
 .PHONY: packages deps-build deps-demo deps-worlds deps-test
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo worlds test full dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds test full plots dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs

@@ -162,6 +162,19 @@ typedef struct masu_scene {
     uint32_t textures;   /* pictures: layers of the texture arrays */
     uint32_t texture_arrays, texture_sets;
     uint32_t masks; /* 1: some material has an alpha mask */
+    uint32_t surfaces; /* materials with a specular factor, a coat, small relief or an occlusion map */
+    uint32_t coats;    /* materials with a clear coat */
+    uint32_t meso;     /* small reliefs */
+    uint32_t blends;   /* materials that are blended */
+    uint32_t transparents; /* their primitives, counted for each instance */
+    uint32_t transparent_sets; /* texture sets that these use, at least 1 */
+    uint32_t lights;   /* points and spots */
+    uint32_t probes, probe_sets;
+    uint64_t probe_words; /* 4 bytes each: what all sets of all probes take */
+    uint32_t environment_size, environment_mips; /* texels along an edge of its map; 0: none */
+    uint32_t analytic_sky; /* 1: the sky follows from the sun */
+    uint32_t fog;          /* 1: there is fog */
+    float occlusion_radius; /* of ambient occlusion in screen space, metres; 0: none */
     uint64_t texture_bytes;         /* of their texels as compressed blocks */
     uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
 } masu_scene;
@@ -182,8 +195,8 @@ MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name)
 #define MASU_MAX_RUNGS 8u
 #define MASU_MAX_TARGETS 8u
 #define MASU_MAX_FLIGHT 3u
-#define MASU_MAX_PASSES 32u
-#define MASU_MAX_RESOURCES 32u
+#define MASU_MAX_PASSES 64u
+#define MASU_MAX_RESOURCES 64u
 #define MASU_MAX_SDF_PARAMS 256u
 #define MASU_MAX_VIEWS 5u /* the camera and each cascade */
 #define MASU_MAX_CASCADES 4u
@@ -220,6 +233,11 @@ typedef struct masu_rung {
     masu_switch occlusion; /* nor those that occluders hide. AUTO: on, if the scene has occluders */
     float lod_error; /* how far a surface may be from its place where a coarser form of its mesh is
                         drawn, pixels of the render size, at most 1e9; 0: 1. Below 0: no coarser forms */
+    /* Ambient occlusion in screen space, of scenes that ask for it. AUTO: on. A rung's samples per
+     * texel of half the render size are 2 * slices * steps. */
+    masu_switch ao;
+    uint32_t ao_slices; /* at most 8; 0: 2 */
+    uint32_t ao_steps;  /* on either side of a slice, at most 16; 0: 8 */
     /* The sun's shadow map, of scenes that have one. What asks for more than the scene has gets what
      * the scene has; 0: that too. */
     uint32_t shadow_cascades;   /* at most 4 */
@@ -230,6 +248,8 @@ typedef struct masu_rung {
      * when the view has left it. Any above 1 keeps the map's memory from being shared with other
      * images, and doubles the rung's recordings. */
     uint32_t shadow_refresh[MASU_MAX_CASCADES];
+    masu_switch light_tiles; /* each pixel asks the local lights of its tile alone, which the picture
+                                does not show. AUTO: on, if the scene has any */
 } masu_rung;
 
 /* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
@@ -239,7 +259,7 @@ typedef struct masu_rung {
 typedef struct masu_limits {
     uint64_t vertices;   /* 16 bytes each, device */
     uint64_t indices;    /* 4 bytes each, device */
-    uint64_t materials;  /* 32 bytes each, device */
+    uint64_t materials;  /* 48 bytes each, device */
     uint64_t instances;  /* 52 bytes each per frame in flight, device, and 98 bytes each, host; with
                             velocities 100 and 146. With occlusion 32 more on the device, 4 once,
                             and 8 for each of its occluders; with a shadow map for each cascade 4
@@ -248,14 +268,21 @@ typedef struct masu_limits {
     uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
     uint64_t shadow_cascades;   /* of the shadow map, as the largest rung has it */
     uint64_t shadow_resolution; /* a cascade of n has 4 n^2 bytes, device */
+    uint64_t probes;        /* light probes: for each 48 bytes, and 56 more of each set, and its map of
+                               distances; device */
     uint64_t textures;      /* pictures with their mip chains */
     uint64_t texture_bytes; /* of texels on the device, as blocks or decoded, whichever is used;
                                the device may add padding */
+    uint64_t transparents; /* blended primitives, counted for each instance: 76 bytes each, host; 24,
+                              and 20 for each texture set of theirs, per frame in flight, device. No
+                              scene has more than 4096, nor more than 65536 times their sets */
+    uint64_t lights; /* local ones: 80 bytes each per frame in flight, device, and 80 bytes each, host;
+                        no scene has more than 4096 */
 } masu_limits;
 
 typedef struct masu_peak_info {
     uint64_t vertices, indices, materials, instances, sdf_params;
-    uint64_t shadow_cascades, shadow_resolution, textures, texture_bytes;
+    uint64_t shadow_cascades, shadow_resolution, textures, texture_bytes, transparents, lights;
     uint64_t host_bytes;   /* of the host block */
     uint64_t device_bytes; /* of all device blocks */
 } masu_peak_info;
@@ -296,7 +323,8 @@ typedef enum masu_readback_bits {
      * makes the plan keep the frame before: one more image and one more pass or two. */
     MASU_READBACK_VELOCITY = 16,
     /* 2 x 16 bit unorm: how much of the sun, and of the ambient light, is seen. Only of scenes with
-     * a shadow map, SDF shadows or SDF ambient occlusion; asking it of others is ignored. */
+     * a shadow map, SDF shadows, or ambient occlusion of either kind; asking it of others is ignored,
+     * and a rung that has none of it leaves it as it was. */
     MASU_READBACK_OCCLUSION = 32,
     /* float, cascades side by side: depth along the sun, 1 nearest to it, 0 where nothing is. Only
      * of scenes with a shadow map. Culling leaves out what casts no shadow into the picture;
@@ -350,6 +378,8 @@ typedef struct masu_debug {
                         the picture must not change. A value of 2 uses infinities */
     uint32_t casters; /* not 0: culls for the sun as well, with all of the scene in its view, for the
                          numbers in masu_stats */
+    uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
+    uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
 } masu_debug;
 
 /* Switches off what would be used where the device offers it: to test the other path, or around a
@@ -376,6 +406,7 @@ typedef struct masu_desc {
     uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes over all roles; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
+    uint32_t analytic_sky; /* not 0: frames may have light.turbidity where the scene has none */
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
     masu_debug debug;
     masu_deny deny;
@@ -459,7 +490,7 @@ typedef struct masu_plan_pass {
     uint32_t active;  /* bit r: runs in rung r; 0: left out */
     const char *why;  /* why it is in or was left out */
     const char *reads[8];
-    const char *writes[4];
+    const char *writes[6];
     uint64_t pipeline_ns; /* time to build its pipeline in masu_init; 0 without a clock or before
                              masu_init */
 } masu_plan_pass;
@@ -524,6 +555,20 @@ typedef struct masu_light {
     float ambient[3];       /* radiance */
     float sky_zenith[3], sky_horizon[3];
     float exposure; /* linear factor before the tone curve; 0: 1 */
+    /* 0: the two colours and the ambient light above. 1.5 (very clear) to 10 (hazy): the sky follows
+     * from the sun, and with it the ambient light; a sun colour of all zero then is the sun's behind
+     * that air, which sets too. Takes a scene with such a sky or desc.analytic_sky. Computed anew,
+     * within a millisecond of the host's time, when the direction of the sun, turbidity or ground
+     * differ from those of the frame before. */
+    float turbidity;
+    float ground[3]; /* albedo of what lies below the horizon of such a sky, 0..1 */
+    /* Fog, of scenes that have some; others have no code for it. Its density at a height y is
+     * fog_density * exp(-fog_falloff * (y - fog_height)). */
+    float fog_color[3]; /* radiance of thick fog, 0..1e9; all 0: the sky's at the horizon */
+    float fog_density;  /* 1/m, 0..1e6; 0: none */
+    float fog_height;   /* metres, -1e9..1e9 */
+    float fog_falloff;  /* 1/m, 0..1e6; 0: the same at every height */
+    float fog_start;    /* metres from the eye, 0..1e9; nearer it is clear */
 } masu_light;
 
 typedef struct masu_frame_desc {
@@ -551,13 +596,18 @@ typedef struct masu_frame_desc {
 MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
                                               masu_commands *commands);
 
-/* Why the last masu_load, masu_frame or masu_instance_set_transform failed. */
+/* Why the last masu_load, masu_frame, masu_instance_set_transform, masu_local_light_get or _set
+ * failed. */
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 
 /* The scene's camera path at a time, held at both ends. MASU_ERROR_STATE: the scene has no camera.
  * MASU_ERROR_ARGUMENT: a NULL pointer or a time that is not finite. */
 MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer, double time,
                                                   masu_camera *out);
+
+/* The scene's own light, to be changed and given to masu_frame. MASU_ERROR_STATE: the renderer has no
+ * scene. MASU_ERROR_ARGUMENT: a NULL pointer. */
+MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, masu_light *out);
 
 /* Handle of one placed mesh. id 0 is none. A handle belongs to the renderer that gave it. */
 typedef struct masu_instance {
@@ -573,6 +623,40 @@ MASU_API masu_instance masu_instance_find(const masu_renderer *renderer, const c
 MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *renderer,
                                                                masu_instance instance,
                                                                const float rows[12]);
+
+/* Handle of a local light, a point or a spot. id 0 is none. A handle belongs to the renderer that gave
+ * it. */
+typedef struct masu_local_light {
+    uint32_t id;
+} masu_local_light;
+
+typedef struct masu_local_light_state {
+    double position[3];  /* world, or object space of the instance; within 1e15 */
+    float direction[3];  /* of a spot: where it shines, in the same space; need not be unit length */
+    float color[3];      /* radiant intensity / pi, 0..1e9; 0: it is off. A white matt surface that faces
+                            it at d metres has the radiance color / d^2, less towards the range */
+    float range;         /* metres, 0..1e15: nothing of it arrives beyond */
+    float radius;        /* of the source, 1e-6..1e9 metres: what is nearer is lit as if it were this far */
+    uint32_t spot;       /* 0: a point, 1: a spot */
+    float inner, outer;  /* of a spot, radians from its direction: all of the light up to inner, none
+                            from outer on; 0 <= inner <= outer <= pi */
+    masu_instance instance; /* that carries it; id 0: none */
+} masu_local_light_state;
+
+/* The first light of that name in the scene; id 0 if there is none. */
+MASU_API masu_local_light masu_local_light_find(const masu_renderer *renderer, const char *name);
+
+/* What it is set to: at first, what the scene says. MASU_ERROR_ARGUMENT: a NULL pointer, or a handle
+ * that is not of this renderer. */
+MASU_API MASU_MUST_USE masu_result masu_local_light_get(masu_renderer *renderer,
+                                                        masu_local_light light,
+                                                        masu_local_light_state *out);
+
+/* Moves, recolours or switches a light from the next masu_frame on. MASU_ERROR_ARGUMENT: a handle that
+ * is not of this renderer, or a value that is out of range or not finite: nothing is changed then. */
+MASU_API MASU_MUST_USE masu_result masu_local_light_set(masu_renderer *renderer,
+                                                        masu_local_light light,
+                                                        const masu_local_light_state *state);
 
 /* ---- Looking at frames ----------------------------------------------------------------------- */
 
@@ -602,7 +686,12 @@ typedef struct masu_stats_info {
     uint64_t replaced; /* pixel components that were not finite and were replaced; should be 0 */
     uint64_t draws; /* submitted to the G-buffer, but those of no instance; before occlusion */
     uint64_t triangles; /* the same; with debug.counters after occlusion */
+    uint64_t transparents; /* blended primitives drawn, each with a draw of its own */
     uint64_t occlusion_tests; /* with debug.counters */
+    uint32_t lights, lights_in_view; /* local ones of the scene; those that may light something seen */
+    /* With debug.counters: pairs of a light and a pixel that were looked at, those of them where
+     * something arrives; tiles of 16x16 that more than 63 lights reach: they look at all. */
+    uint64_t light_tests, light_shaded, light_tiles_full;
     uint32_t view_count;
     masu_view_stats views[MASU_MAX_VIEWS]; /* 0: the camera */
 } masu_stats_info;

@@ -1,18 +1,26 @@
 /*
  * gbuffer.frag: the material of a polygon into the G-buffer. index.x is the draw's material. With
- * MASU_MOTION (gbuffer_velocity) its velocity too. With MASU_TEXTURES the material's maps: index.z
- * its flags, index.w the layers of its maps, 8 bits each; param.x the bias of mip levels.
+ * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: index.z
+ * its flags, index.w the layers of its maps, 8 bits each; param.x the bias of mip levels, param.yz the
+ * scale of texture coordinates of all maps but base colour and emissive.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/pack.glsl"
 
+#ifdef MASU_SURFACE
+layout(location = 2) out vec4 out_surface;
+#define MASU_VELOCITY_LOCATION 3
+#else
+#define MASU_VELOCITY_LOCATION 2
+#endif
+
 #ifdef MASU_MOTION
 #include "shared/globals.glsl"
 #include "shared/motion.glsl"
 layout(location = 2) in vec3 in_before;
-layout(location = 2) out vec4 out_velocity;
+layout(location = MASU_VELOCITY_LOCATION) out vec4 out_velocity;
 #else
 layout(push_constant) uniform Push
 {
@@ -36,14 +44,39 @@ layout(location = 1) in vec3 in_rel;
 layout(location = 0) out vec4 out_albedo;
 layout(location = 1) out uint out_normal;
 
+#ifdef MASU_SURFACE
+#include "brdf/meso.glsl"
+/* The curves of the material's small relief, which lie behind the materials: their first element. */
+vec3 show_relief(vec3 normal, vec3 n, inout masu_surface s)
+{
+    uint at = uint(pc.param.w);
+    masu_material_data low = materials[at];
+    masu_material_data high = materials[at + 1u];
+    masu_meso_curves curves = masu_meso_curves(low.base_color, low.emissive, low.more,
+                                               high.base_color, high.emissive, high.more);
+    vec3 view = masu_normalize(-in_rel, n);
+    masu_meso_surface m =
+        masu_meso_surface(normal, s.albedo, s.roughness, s.occlusion, 1.0, 1.0);
+    masu_meso_bend(curves, view, abs(dot(view, n)), m);
+    s.albedo = m.color;
+    s.roughness = m.roughness;
+    s.occlusion = m.occlusion;
+    s.specular *= m.specular;
+    s.edge = m.specular;
+    s.shadow = m.shadow;
+    return m.normal;
+}
+#endif
+
 void main()
 {
     masu_material_data m = materials[pc.index.x];
-    masu_surface s;
-    s.albedo = m.base_color.rgb;
-    s.roughness = m.base_color.w;
+    masu_surface s = masu_plain_surface(m.base_color.rgb, m.base_color.w);
     s.emissive = m.emissive.rgb;
     s.metallic = m.emissive.w;
+    s.specular = m.more.x;
+    s.coat = m.more.y;
+    s.coat_roughness = m.more.z;
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
     float alpha = masu_sample_maps(in_texcoord, s);
@@ -56,12 +89,27 @@ void main()
     vec3 n = masu_normalize(in_normal, masu_normalize(-in_rel, vec3(0.0, 1.0, 0.0)));
 #ifdef MASU_TEXTURES
     /* A face seen from behind is the same relief from below: all of its normal turns. */
-    n = masu_seen_normal(dot(n, in_rel) > 0.0 ? -bent : bent, in_rel, n);
+    bent = dot(n, in_rel) > 0.0 ? -bent : bent;
+#ifdef MASU_SURFACE
+    if (pc.param.w > 0.0) {
+        bent = show_relief(bent, n, s);
+    }
+#endif
+    n = masu_seen_normal(bent, in_rel, n);
 #else
     n = dot(n, in_rel) > 0.0 ? -n : n;
+#ifdef MASU_SURFACE
+    if (pc.param.w > 0.0) {
+        n = masu_normalize(show_relief(n, n, s), n);
+    }
+#endif
 #endif
     out_albedo = masu_pack_albedo(s);
     out_normal = masu_pack_normal(n, s);
+#ifdef MASU_SURFACE
+    out_normal |= MASU_SURFACE_MORE << 30;
+    out_surface = masu_pack_surface(s);
+#endif
 #ifdef MASU_MOTION
     out_velocity = masu_velocity(vec4(in_rel, 1.0), vec4(in_before, 1.0),
                                  vec2(pc.output_width, pc.output_height));

@@ -30,7 +30,7 @@ void main()
     if (!(t >= 0.0)) {
         discard;
     }
-    masu_surface s = masu_surface(vec3(0.5), 0.5, vec3(0.0), 0.0);
+    masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
     uint part;
     vec3 n = normal_at(r, t, part);
     masu_sdf_part_surface(part, world_at(r.direction, t), s);

@@ -21,7 +21,29 @@ SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
 # with + between.
 SECOND_BUILDS := gbuffer_velocity_vert:gbuffer.vert:MASU_MOTION
 SECOND_BUILDS += gbuffer_velocity_frag:gbuffer.frag:MASU_MOTION
+SECOND_BUILDS += gbuffer_surface_frag:gbuffer.frag:MASU_SURFACE
+SECOND_BUILDS += gbuffer_velocity_surface_frag:gbuffer.frag:MASU_MOTION+MASU_SURFACE
+SECOND_BUILDS += gbuffer_textured_surface_frag:gbuffer.frag:MASU_TEXTURES+MASU_SURFACE
+SECOND_BUILDS += gbuffer_textured_velocity_surface_frag:gbuffer.frag:MASU_TEXTURES+MASU_MOTION+MASU_SURFACE
+SECOND_BUILDS += light_surface_comp:light.comp:MASU_SURFACE
+SECOND_BUILDS += light_probes_comp:light.comp:MASU_PROBES
+SECOND_BUILDS += light_probes_surface_comp:light.comp:MASU_PROBES+MASU_SURFACE
+SECOND_BUILDS += light_lights_comp:light.comp:MASU_LIGHTS
+SECOND_BUILDS += light_lights_surface_comp:light.comp:MASU_LIGHTS+MASU_SURFACE
+SECOND_BUILDS += light_lights_probes_comp:light.comp:MASU_LIGHTS+MASU_PROBES
+SECOND_BUILDS += light_lights_probes_surface_comp:light.comp:MASU_LIGHTS+MASU_PROBES+MASU_SURFACE
 SECOND_BUILDS += light_occluded_comp:light.comp:MASU_OCCLUSION
+SECOND_BUILDS += light_occluded_surface_comp:light.comp:MASU_OCCLUSION+MASU_SURFACE
+SECOND_BUILDS += light_occluded_probes_comp:light.comp:MASU_OCCLUSION+MASU_PROBES
+SECOND_BUILDS += light_occluded_probes_surface_comp:light.comp:MASU_OCCLUSION+MASU_PROBES+MASU_SURFACE
+SECOND_BUILDS += light_occluded_lights_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS
+SECOND_BUILDS += light_occluded_lights_surface_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS+MASU_SURFACE
+SECOND_BUILDS += light_occluded_lights_probes_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS+MASU_PROBES
+SECOND_BUILDS += light_occluded_lights_probes_surface_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS+MASU_PROBES+MASU_SURFACE
+SECOND_BUILDS += transparents_textured_vert:transparents.vert:MASU_TEXTURES
+SECOND_BUILDS += transparents_textured_frag:transparents.frag:MASU_TEXTURES
+SECOND_BUILDS += transparents_sun_frag:transparents.frag:MASU_SUN_MAP
+SECOND_BUILDS += transparents_textured_sun_frag:transparents.frag:MASU_TEXTURES+MASU_SUN_MAP
 SECOND_BUILDS += cascade_masked_vert:cascade.vert:MASU_TEXTURES
 SECOND_BUILDS += gbuffer_textured_vert:gbuffer.vert:MASU_TEXTURES
 SECOND_BUILDS += gbuffer_textured_frag:gbuffer.frag:MASU_TEXTURES
@@ -31,7 +53,7 @@ SECOND_BUILDS += gbuffer_textured_velocity_frag:gbuffer.frag:MASU_TEXTURES+MASU_
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
 SPIRV_HEADERS += $(foreach b,$(SECOND_BUILDS),$(BUILD)/gen/$(firstword $(subst :, ,$(b))).spv.h)
-GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h
+GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
@@ -83,3 +105,13 @@ $(BUILD)/gen/scene_sources.h: $(SCENE_TEXTS) $(BUILD)/gen/scene_texts.list
 $(BUILD)/gen/scene_texts.list: force
 	@mkdir -p $(@D)
 	@echo '$(SCENE_TEXTS)' | cmp -s - $@ || echo '$(SCENE_TEXTS)' > $@
+
+# The tables of shaders/brdf. Objects wait for what is generated, so this program has none; it takes
+# 5 s, and minutes without -O2.
+$(BUILD)/tools/make_split_sum: tools/make_split_sum.c shaders/shared/masu_shared.h
+	@mkdir -p $(@D)
+	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders $< -lm -o $@
+$(BUILD)/gen/split_sum.h: $(BUILD)/tools/make_split_sum
+	@mkdir -p $(@D)
+	@echo "  TABLE   $@"
+	$(V)$< > $@

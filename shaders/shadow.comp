@@ -1,21 +1,7 @@
 /*
  * shadow.comp: how much of the sun each surface sees past the polygons, by the shadow map;
  * multiplied with what the SDF leaves of it where there are SDF shadows (sdf_occlusion.comp, before
- * this).
- *
- * A point takes the first cascade that it is inside of, and a share of the next one near the
- * border; beyond the last one's depth the sun is seen. The comparison: nine texels, each lit or
- * not, with the weights of a quadratic B-spline around the point. They change smoothly while the
- * point moves across the texels, so that an edge is a ramp three texels wide without steps in it.
- *
- * BIAS. Each of the nine is compared with the surface's own plane there where that rises towards
- * the sun, and with the point's depth where it falls: exact on a plane, under any sun. What normals
- * of curved meshes do not say about their flat triangles, and the foot of a steep wall seen from
- * the ground in front of it, is left to the casters' bias (cascade.vert). Wrong turns: to
- * raise the point by its slope times the reach of the filter (three times as many pixels on the
- * wrong side of an edge, for it lets in light under whatever is nearer than that); to move it along
- * its normal (shifts the shadow sideways); to choose the cascade first and look once (a cascade of
- * each lane's own is indexed memory: 1.5 times the time on lavapipe).
+ * this). light/sun_map.glsl has the lookup.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -24,86 +10,13 @@
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 #include "shared/store.glsl"
+#include "light/sun_map.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
-layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D shadow_map;
 layout(set = MASU_SET_PASS, binding = 3, r32ui) uniform uimage2D occlusion_image;
-
-layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SHADOW, std140) uniform Shadow
-{
-    masu_shadow_uniforms shadow;
-};
-
-const float steepest = 200.0; /* slope against the sun that is still made up for: 0.3 degrees */
-const float least_bias = 0.1; /* texels: what depth and normal are rounded to */
-
-/* Weights of the texels before, at and after the point; f: how far it is from its texel's
- * centre. */
-vec3 spline(float f)
-{
-    float a = 0.5 - f;
-    float b = 0.5 + f;
-    return vec3(0.5 * a * a, 0.75 - f * f, 0.5 * b * b);
-}
-
-/* at: in texels of the cascade, 0 the edge of the first; corner: its first in the map; depth: of
- * the point; slope: what its surface gains of it per texel. */
-float lit(vec2 at, ivec2 corner, float depth, vec2 slope)
-{
-    vec2 texel = floor(at);
-    vec3 across = spline(at.x - texel.x - 0.5);
-    vec3 down = spline(at.y - texel.y - 0.5);
-    float sum = 0.0;
-    for (int y = 0; y < 3; y++) {
-        vec3 seen;
-        for (int x = 0; x < 3; x++) {
-            ivec2 tap = corner + ivec2(texel) + ivec2(x - 1, y - 1);
-            float nearest = texelFetch(shadow_map, tap, 0).r;
-            vec2 off = texel + vec2(x, y) - 0.5 - at;
-            float rise = max(dot(slope, off), 0.0);
-            seen[x] = min(depth + rise, 1.0) >= nearest ? 1.0 : 0.0;
-        }
-        sum += down[y] * dot(across, seen);
-    }
-    return sum;
-}
-
-/* rel: relative to the eye; n: unit, on the side of the sun. */
-float sun_seen(vec3 rel, vec3 n)
-{
-    uint count = min(uint(shadow.reach.x), uint(MASU_CASCADES_MAX));
-    float seen = 0.0;
-    float left = 1.0;
-    for (uint k = 0u; k < uint(MASU_CASCADES_MAX); k++) {
-        if (k >= count || !(left > 0.0)) {
-            break;
-        }
-        vec4 row0 = shadow.row0[k];
-        vec4 row1 = shadow.row1[k];
-        vec4 row2 = shadow.row2[k];
-        float texel = shadow.origin_hi[k].w;
-        float metre = shadow.origin_lo[k].w;
-        float size = shadow.rect[k].z;
-        /* The normal along the axes of the cascade. */
-        float facing = max(dot(n, row2.xyz) / metre, 1e-6);
-        float half_width = 0.5 * texel * size;
-        vec2 across = vec2(dot(n, row0.xyz), dot(n, row1.xyz)) * half_width;
-        vec2 at = vec2(dot(row0.xyz, rel) + row0.w, dot(row1.xyz, rel) + row1.w);
-        float depth = dot(row2.xyz, rel) + row2.w;
-        vec2 slope = clamp(-across / facing, -steepest, steepest) * (texel * metre);
-        float inside = (1.0 - 3.0 / size) - max(abs(at.x), abs(at.y));
-        if (inside >= 0.0 && depth >= 0.0) {
-            float share = k + 1u == count ? 1.0 : min(inside / MASU_CASCADE_BLEND, 1.0);
-            seen += left * share * lit((at * 0.5 + 0.5) * size, ivec2(shadow.rect[k].xy),
-                                       depth + least_bias * texel * metre, slope);
-            left -= left * share;
-        }
-    }
-    return seen + left;
-}
 
 void main()
 {
@@ -121,10 +34,9 @@ void main()
         float z = frame.forward.w * masu_rcp(depth);
         vec3 rel = masu_pixel_ray(at, size) * z;
         bool there = depth > 0.0 && (masu_unpack_flags(texel) & MASU_SURFACE_EMISSIVE) == 0u;
-        float fade = clamp((z - shadow.reach.y) * shadow.reach.z, 0.0, 1.0);
         bool asks = there && masu_finite(rel) && dot(n, frame.sun_direction.xyz) > 0.0;
-        if (asks && fade < 1.0 && seen.x > 0.0) {
-            seen.x *= mix(sun_seen(rel, n), 1.0, fade);
+        if (asks && seen.x > 0.0) {
+            seen.x *= masu_sun_seen(rel, n, z);
         }
         vec2 kept = masu_sane(vec4(seen, 0.0, 0.0), 0.0, 1.0).xy;
         MASU_STORE_UINT(occlusion_image, at, uvec4(packUnorm2x16(kept)));

@@ -34,6 +34,8 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
         vec3 hdr = texelFetch(hdr_image, ivec2(at), 0).rgb;
+        /* Layers that add up to more than a half holds are bright, not broken. */
+        hdr = mix(hdr, vec3(65504.0), equal(floatBitsToUint(hdr), uvec3(masu_exponent_mask)));
         /* 1e4 is far past white, and keeps the squares of the curve in range. */
         vec3 x = masu_sane(hdr * frame.sun_direction.w, 0.0, 1e4);
         vec3 y = curve(x);

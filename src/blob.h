@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 5u
+#define MASU_BLOB_VERSION 6u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -60,7 +60,13 @@ enum masu_blob_kind {
     MASU_BLOB_TEXTURE_SETS = 31,
     MASU_BLOB_TEXELS = 32, /* compressed blocks, in units of 16 bytes */
     MASU_BLOB_LODS = 33,   /* by mesh; of one mesh the finer first, at most MASU_BLOB_LODS_MAX */
-    MASU_BLOB_KIND_COUNT = 34
+    MASU_BLOB_MESO = 34,   /* small relief of materials: what the eye sees of it, by angle */
+    MASU_BLOB_LIGHTS = 35, /* points and spots */
+    MASU_BLOB_PROBES = 36, /* at most one: a grid of light probes; these two come together */
+    MASU_BLOB_PROBE_DATA = 37,
+    MASU_BLOB_ENVIRONMENT_MAP = 38, /* at most one: a sky from a picture; these two come together */
+    MASU_BLOB_ENVIRONMENT_TEXELS = 39,
+    MASU_BLOB_KIND_COUNT = 40
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -77,18 +83,20 @@ enum masu_blob_texture_slot {
     MASU_SLOT_NORMAL = 1,  /* BC5: x and y of the tangent-space normal as 0..1, +y up the image */
     MASU_SLOT_SURFACE = 2, /* BC4: roughness; BC5: roughness, metallic */
     MASU_SLOT_EMISSIVE = 3,
-    MASU_SLOT_COUNT = 4
+    MASU_SLOT_OCCLUSION = 4, /* BC4: what of the light from everywhere arrives, by the relief */
+    MASU_SLOT_COUNT = 5
 };
 
 /* Flags of a material; shaders/shared/masu_shared.h has them too. Bit of a slot: the map is there,
  * and the material's factor is multiplied by it. */
 enum masu_blob_material_flags {
-    MASU_MATERIAL_HAS_MAPS = 0xF,
-    MASU_MATERIAL_HAS_METAL = 0x10, /* the surface map holds metallic as well */
-    MASU_MATERIAL_IS_MASK = 0x20,   /* texels with alpha below the cut-off are not there */
-    MASU_MATERIAL_IS_BLEND = 0x40,  /* meant to be transparent; drawn as a mask, or opaque */
+    MASU_MATERIAL_HAS_MAPS = 0x1F,
+    MASU_MATERIAL_HAS_METAL = 0x20, /* the surface map holds metallic as well */
+    MASU_MATERIAL_IS_MASK = 0x40,   /* texels with alpha below the cut-off are not there */
+    MASU_MATERIAL_IS_BLEND = 0x80,  /* transparent: blended with what is behind it */
     MASU_MATERIAL_CUTOFF_SHIFT = 8, /* 8 bits: cut-off times 255 */
-    MASU_MATERIAL_KNOWN = 0xFF7F
+    MASU_MATERIAL_IS_ADDITIVE = 0x10000, /* with IS_BLEND: adds its light, hides nothing */
+    MASU_MATERIAL_KNOWN = 0x1FFFF
 };
 
 /* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
@@ -189,8 +197,94 @@ typedef struct masu_blob_material {
     uint32_t name;
     uint32_t flags;       /* masu_blob_material_flags; 0: no textures, and the next two are 0 */
     uint32_t texture_set; /* element of TEXTURE_SETS */
-    uint32_t layers;      /* of the set's textures, 8 bits per slot */
+    uint32_t layers;      /* of the set's textures, 8 bits per slot, of the first four */
+    float specular;       /* 0..1: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
+    float coat;           /* 0..1: how much of a clear coat lies on it */
+    float coat_roughness; /* perceptual, 0..1 */
+    float opacity;        /* 0..1, of blended materials; else 1 */
+    uint32_t meso;        /* element of MESO, or MASU_BLOB_NONE */
+    uint32_t occlusion_layer; /* of slot OCCLUSION: 0..255 */
+    float detail[2];          /* texture coordinates of all maps but colour and emissive are times it */
 } masu_blob_material;
+
+/* What a relief too small for polygons looks like from an angle: curves of shaders/brdf/meso.glsl, which
+ * masu-meso finds. Three coefficients each; all numbers within +-1000. */
+typedef struct masu_blob_meso {
+    float tilt[3], facet;       /* the normal leans to the viewer; roughness of the facets, 0..1 */
+    float roughness[3], spread; /* change of roughness; what lost normals take of diffuse light */
+    float occlusion[3], alpha;  /* change of occlusion; alpha of the local shadow, 0..4 */
+    float gain[3], offset;      /* change of diffuse light; offset of the local shadow, 0..4 */
+    float tint[3], spread1;     /* change of colour; spread is spread + y spread1 + y^2 spread2 */
+    float specular[3], spread2;
+} masu_blob_meso;
+
+enum masu_blob_light_type { MASU_LIGHT_POINT = 0, MASU_LIGHT_SPOT = 1 };
+
+/* Light of a place. At distance d a white surface that faces it has the radiance
+ * color / max(d, radius)^2, times a window that falls to 0 at range. */
+typedef struct masu_blob_light {
+    float position[3]; /* world, or object space of the parent */
+    float range;       /* metres, 0..1e15; 0: it lights nothing */
+    float color[3];    /* radiant intensity / pi, 0..1e9 */
+    float radius;      /* of the source, 1e-6..1e9 metres: nearer than this counts as this near */
+    float direction[3]; /* of spots: where they shine, unit length */
+    uint32_t type;      /* masu_blob_light_type */
+    float inner;        /* of spots: full light within this angle of the direction, radians, */
+    float outer;        /* none beyond this one; 0 <= inner <= outer <= pi. Points: both 0 */
+    uint32_t parent;    /* instance that carries it, or MASU_BLOB_NONE */
+    uint32_t name;
+} masu_blob_light;
+
+#define MASU_BLOB_LIGHTS_MAX 4096u
+#define MASU_PROBE_SUNS_MAX 16u
+#define MASU_PROBE_SETS_MAX 26u
+#define MASU_PROBE_WORDS 14u /* of one set: 27 halfs, coefficient after coefficient, RGB in each; then
+                                in the first set how far the probe is to be believed, 0..1 */
+#define MASU_PROBE_LIT_WORDS 12u /* of a probe under the light of a frame; not in blobs */
+#define MASU_PROBE_COUNT_MAX 262144u
+#define MASU_PROBE_BYTES_MAX ((uint64_t)64 << 20)
+#define MASU_PROBE_VISIBILITY_MAX 16u
+
+/* A grid of light probes: how the irradiance at each, / pi, answers to the sky and to the sun. Data, in
+ * words: of each probe (x first, z last) its sets; then of each its map of distances, (visibility +
+ * 2)^2 words: mean and mean square as 16 bits each, of 1.5 and 2.25 cell diagonals.
+ * Sets: sky_sets of them, for a sky whose radiance is a spherical harmonic; what emissive surfaces
+ * send, if any do; then what comes back from surfaces under each of `suns` suns of irradiance pi. */
+typedef struct masu_blob_probes {
+    float origin[3]; /* of the first probe */
+    float bias;      /* metres that points are lifted along their normal */
+    float spacing[3]; /* metres */
+    float reserved0;
+    uint32_t counts[3];  /* together at most MASU_PROBE_COUNT_MAX */
+    uint32_t sky_sets;   /* 1, 4 or 9 */
+    uint32_t suns;       /* 0..MASU_PROBE_SUNS_MAX */
+    uint32_t emissive;   /* 0 or 1 */
+    uint32_t visibility; /* texels along the edge of a map of distances; 0: no maps */
+    uint32_t reserved1;
+    float sun_direction[MASU_PROBE_SUNS_MAX][4]; /* towards it, unit length; unused ones 0 */
+    float sun_inverse[MASU_PROBE_SUNS_MAX][MASU_PROBE_SUNS_MAX]; /* of the matrix 1 - angle / pi */
+} masu_blob_probes;
+
+/* Words of PROBE_DATA for one probe. */
+static inline uint32_t masu_probe_words(const masu_blob_probes *p) {
+    uint32_t map = p->visibility ? (p->visibility + 2) * (p->visibility + 2) : 0;
+    return (p->sky_sets + p->emissive + p->suns) * MASU_PROBE_WORDS + map;
+}
+
+static inline uint32_t masu_probe_sets(const masu_blob_probes *p) {
+    return p->sky_sets + p->emissive + p->suns;
+}
+
+/* A sky of radiances over the octahedron of directions, +y at its middle: ENVIRONMENT_TEXELS holds
+ * mips of size, size / 2, ... texels along an edge, row by row; each texel 9 bits each of r, g, b
+ * and 5 of the exponent they share (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32). Mip m is what a surface of
+ * roughness m / (mips - 1) mirrors. */
+typedef struct masu_blob_environment_map {
+    uint32_t size; /* a power of two, 8..1024 */
+    uint32_t mips; /* 2..8, the smallest no less than 4 texels */
+    uint32_t reserved[2];
+    float sh[9][4]; /* rgb: irradiance / pi by the normal, order 2 */
+} masu_blob_environment_map;
 
 /* An array of images of one format and size. Texels: layer after layer, each the whole mip chain
  * from large to small, each mip's blocks row by row; a mip has ceil(size / 4) blocks each way. */
@@ -208,7 +302,7 @@ typedef struct masu_blob_texture {
 typedef struct masu_blob_texture_set {
     uint32_t texture[MASU_SLOT_COUNT];
     uint32_t wrap[2]; /* along u and v: 0 repeat, 1 clamp, 2 mirror */
-    uint32_t reserved[2];
+    uint32_t reserved;
 } masu_blob_texture_set;
 
 /* Camera path: keys in rising time, linear in between (position and target), held at both ends. Up
@@ -230,6 +324,14 @@ typedef struct masu_blob_environment {
     float sky_zenith[3];
     float reserved1;
     float sky_horizon[3];
+    float turbidity; /* 0: the two colours above; 1.5..10: an analytic sky */
+    float ground[3]; /* albedo of what lies below the analytic sky, 0..1 */
+    float occlusion_radius; /* of ambient occlusion in screen space, metres; 0: none */
+    float fog_color[3]; /* radiance of thick fog; all zero: the sky's at the horizon */
+    float fog_density;  /* at fog_height, 1/m; 0: no fog */
+    float fog_height;   /* m */
+    float fog_falloff;  /* >= 0, 1/m: the density falls by e over 1 / fog_falloff metres of height */
+    float fog_start;    /* >= 0, m: nearer than this it is clear */
     float reserved2;
 } masu_blob_environment;
 
@@ -284,6 +386,13 @@ static inline uint64_t masu_blob_texture_bytes(const masu_blob_texture *t) {
     return blocks * masu_blob_block_bytes(t->format) * t->layers;
 }
 
+/* Texels of all mips of an environment map. */
+static inline uint64_t masu_blob_environment_texels(uint32_t size, uint32_t mips) {
+    uint64_t texels = 0;
+    for (uint32_t m = 0; m < mips && m < 32; m++) texels += (uint64_t)(size >> m) * (size >> m);
+    return texels;
+}
+
 /* FNV-1a, 64 bit (Fowler, Noll, Vo): offset basis and prime of the reference. */
 static inline uint64_t masu_fnv1a64(const void *data, uint64_t bytes) {
     const unsigned char *p = (const unsigned char *)data;
@@ -301,11 +410,15 @@ _Static_assert(sizeof(masu_blob_lod) == 16, "blob lod");
 _Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
-_Static_assert(sizeof(masu_blob_material) == 48, "blob material");
+_Static_assert(sizeof(masu_blob_material) == 80, "blob material");
 _Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
 _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
-_Static_assert(sizeof(masu_blob_environment) == 80, "blob environment");
+_Static_assert(sizeof(masu_blob_environment) == 128, "blob environment");
+_Static_assert(sizeof(masu_blob_meso) == 96, "blob meso");
+_Static_assert(sizeof(masu_blob_light) == 64, "blob light");
+_Static_assert(sizeof(masu_blob_probes) == 1344, "blob probes");
+_Static_assert(sizeof(masu_blob_environment_map) == 160, "blob environment map");
 _Static_assert(sizeof(masu_blob_shadow) == 16, "blob shadow");
 _Static_assert(sizeof(masu_blob_sdf) == 48, "blob sdf");
 _Static_assert(sizeof(masu_blob_sdf_param) == 16, "blob sdf parameter");

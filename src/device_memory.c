@@ -367,7 +367,8 @@ static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu
     uint64_t resident =
         plan->buffers[MASU_BUFFER_VERTICES].bytes + plan->buffers[MASU_BUFFER_INDICES].bytes +
         plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes +
-        plan->buffers[MASU_BUFFER_TEXCOORDS].bytes;
+        plan->buffers[MASU_BUFFER_TEXCOORDS].bytes + plan->buffers[MASU_BUFFER_TABLES].bytes +
+        plan->buffers[MASU_BUFFER_PROBES].bytes;
     uint64_t textures = texture_staging(plan);
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
     plan->staged = resident && !plan->blocks[MASU_ROLE_DEVICE].host_visible;

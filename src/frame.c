@@ -19,12 +19,15 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
                               MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_CONE8] = {"cone8", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK8, MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_CONE4] = {"cone4", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK4, MASU_CLASS_OTHER, 0},
+    [MASU_IMAGE_SURFACE] = {"surface", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
+                            0},
     /* rgba16f: of the formats that hold a signed motion, the smallest that every device takes both
      * as colour attachment and as storage image. */
     [MASU_IMAGE_VELOCITY] = {"velocity", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER,
                              MASU_CLASS_OTHER, MASU_READBACK_VELOCITY},
     [MASU_IMAGE_SHADOW_MAP] = {"shadow_map", VK_FORMAT_D32_SFLOAT, MASU_EXTENT_SHADOW,
                                MASU_CLASS_OTHER, MASU_READBACK_SHADOW_MAP},
+    [MASU_IMAGE_AO] = {"ao", VK_FORMAT_R32_UINT, MASU_EXTENT_HALF, MASU_CLASS_OTHER, 0},
     [MASU_IMAGE_OCCLUSION] = {"occlusion", VK_FORMAT_R32_UINT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
                               MASU_READBACK_OCCLUSION},
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
@@ -179,20 +182,44 @@ static int needs_shadow(const masu_needs *n, const char **why) {
     return decided(n->shadow, "polygons cast shadows", no_shadow_map(n), why);
 }
 
+static int needs_probes(const masu_needs *n, const char **why) {
+    return decided(n->probes, "the scene has light probes", "the scene has no light probes", why);
+}
+
+static int needs_light_tiles(const masu_needs *n, const char **why) {
+    return decided(n->light_tiles, "the scene has local lights",
+                   n->lights ? "rung.light_tiles is off" : "the scene has no local lights", why);
+}
+
+static int needs_ao(const masu_needs *n, const char **why) {
+    return decided(n->ao, "the scene asks for ambient occlusion",
+                   "the scene asks for no ambient occlusion, or rung.ao is off", why);
+}
+
+/* Whether something says how much light arrives. */
+static int occluded(const masu_needs *n) { return n->sdf_occlusion || n->shadow || n->ao; }
+
 static int needs_light(const masu_needs *n, const char **why) {
-    return decided(n->scene && !n->sdf_occlusion && !n->shadow, "a scene is lit",
+    return decided(n->scene && !occluded(n), "a scene is lit",
                    n->scene ? "light_occluded does it" : "no scene: a source image is upscaled", why);
 }
 
 static int needs_light_occluded(const masu_needs *n, const char **why) {
-    return decided(n->sdf_occlusion || n->shadow,
-                   n->sdf_occlusion ? "a scene is lit, and sdf_occlusion says how much arrives"
-                                    : "a scene is lit, and shadow says how much arrives",
+    return decided(occluded(n),
+                   n->sdf_occlusion
+                       ? "a scene is lit, and sdf_occlusion says how much arrives"
+                   : n->shadow ? "a scene is lit, and shadow says how much arrives"
+                               : "a scene is lit, and ao_upsample says how much arrives",
                    n->scene ? "light does it" : "no scene: a source image is upscaled", why);
 }
 
 static int needs_shading(const masu_needs *n, const char **why) {
     return decided(n->scene, "a scene is lit", "no scene: a source image is upscaled", why);
+}
+
+static int needs_transparents(const masu_needs *n, const char **why) {
+    return decided(n->transparents, "some materials are blended",
+                   n->scene ? "no material is blended" : "no scene: a source image is upscaled", why);
 }
 
 static int needs_readback(const masu_needs *n, const char **why) {
@@ -241,6 +268,17 @@ static void occlusion_params(const masu_rung *rung, struct masu_push *push) {
     push->index[1] = rung->march == MASU_MARCH_UNPRUNED;
 }
 
+/* index.x: not 0: tiles have lists of lights; else each pixel asks them all. */
+static void light_params(const masu_rung *rung, struct masu_push *push) {
+    push->index[0] = rung->light_tiles != MASU_OFF;
+}
+
+/* index.x: slices; index.y: samples on either side of each; record.c has the rest. */
+static void ao_params(const masu_rung *rung, struct masu_push *push) {
+    push->index[0] = rung->ao_slices;
+    push->index[1] = rung->ao_steps;
+}
+
 /* param.x: RCAS lobe scale. One stop halves the strength (AMD: con = exp2(-sharpness)). */
 static void rcas_params(const masu_rung *rung, struct masu_push *push) {
     push->param[0] = exp2f(-rung->sharpness);
@@ -265,7 +303,8 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_gbuffer, NULL,
         {{MASU_RESOURCE_DRAWS, MASU_READ_BUFFER},
          {MASU_IMAGE_ALBEDO, MASU_WRITE_COLOR}, {MASU_IMAGE_NORMAL, MASU_WRITE_COLOR},
-         {MASU_IMAGE_VELOCITY, MASU_WRITE_COLOR}, {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}, 0},
+         {MASU_IMAGE_SURFACE, MASU_WRITE_COLOR}, {MASU_IMAGE_VELOCITY, MASU_WRITE_COLOR},
+         {MASU_IMAGE_DEPTH, MASU_WRITE_DEPTH}}, 0},
     [MASU_PASS_UPDATE] = {
         "update", "SDF: slots that depend on parameters, time or the anchor",
         MASU_PASS_COMPUTE, MASU_EXTENT_ONE, needs_update, NULL,
@@ -366,16 +405,41 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shadow, NULL,
         {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_IMAGE_SHADOW_MAP, MASU_READ},
          {MASU_IMAGE_OCCLUSION, MASU_UPDATE}}, 0},
+    [MASU_PASS_PROBES] = {
+        "probes", "the frame's light at every light probe, of what was baked",
+        MASU_PASS_COMPUTE, MASU_EXTENT_PROBES, needs_probes, NULL,
+        {{MASU_RESOURCE_PROBES, MASU_WRITE_BUFFER}}, 0},
+    [MASU_PASS_LIGHT_TILES] = {
+        "light_tiles", "which points and spots reach a surface of each 16x16 tile",
+        MASU_PASS_COMPUTE, MASU_EXTENT_TILE, needs_light_tiles, NULL,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_RESOURCE_LIGHT_TILES, MASU_WRITE_BUFFER}}, 0},
+    [MASU_PASS_AO] = {
+        "ao", "seen part of the ambient light past what the picture shows, at half size",
+        MASU_PASS_COMPUTE, MASU_EXTENT_HALF, needs_ao, ao_params,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_IMAGE_AO, MASU_WRITE}}, 0},
+    [MASU_PASS_AO_UPSAMPLE] = {
+        "ao_upsample", "the same per surface, with what sdf_occlusion and shadow have found",
+        MASU_PASS_COMPUTE, MASU_EXTENT_HALF, needs_ao, NULL,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_IMAGE_AO, MASU_READ},
+         {MASU_IMAGE_OCCLUSION, MASU_UPDATE}}, 0},
     [MASU_PASS_LIGHT] = {
-        "light", "sun, constant ambient, sky",
-        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light, NULL,
-        {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
-         {MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
+        "light", "sun, local lights, ambient light, sky",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light, light_params,
+        {{MASU_RESOURCE_LIGHT_TILES, MASU_READ_BUFFER}, {MASU_RESOURCE_PROBES, MASU_READ_BUFFER},
+         {MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
+         {MASU_IMAGE_SURFACE, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
     [MASU_PASS_LIGHT_OCCLUDED] = {
-        "light_occluded", "the same, as far as sdf_occlusion and shadow let it through",
-        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light_occluded, NULL,
-        {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
-         {MASU_IMAGE_OCCLUSION, MASU_READ}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
+        "light_occluded", "the same, as far as sdf_occlusion, shadow and ao let it through",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_light_occluded, light_params,
+        {{MASU_RESOURCE_LIGHT_TILES, MASU_READ_BUFFER},
+         {MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
+         {MASU_IMAGE_OCCLUSION, MASU_READ}, {MASU_IMAGE_SURFACE, MASU_READ},
+         {MASU_RESOURCE_PROBES, MASU_READ_BUFFER}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
+    [MASU_PASS_TRANSPARENTS] = {
+        "transparents", "glass, smoke: the farthest first, over what is lit",
+        MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_transparents, NULL,
+        {{MASU_LATEST_DEPTH, MASU_READ}, {MASU_IMAGE_SHADOW_MAP, MASU_READ},
+         {MASU_IMAGE_HDR, MASU_BLEND_COLOR}}, 0},
     [MASU_PASS_READBACK] = {
         "readback", "copies the images the host asked for",
         MASU_PASS_TRANSFER, MASU_EXTENT_RENDER, needs_readback, NULL,
@@ -408,19 +472,25 @@ int masu_is_cascade(uint32_t pass) {
     return pass >= MASU_PASS_CASCADE_0 && pass <= MASU_PASS_CASCADE_3;
 }
 
+int masu_has_set(uint32_t pass) {
+    return masu_passes[pass].kind == MASU_PASS_COMPUTE || pass == MASU_PASS_TRANSPARENTS;
+}
+
 int masu_access_binds(masu_access access, int writes) {
     if (!writes) return access.usage == MASU_READ;
     return access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
 }
 
 VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2D output) {
-    uint32_t block = extent == MASU_EXTENT_BLOCK8   ? 8
+    uint32_t block = extent == MASU_EXTENT_HALF     ? 2
+                     : extent == MASU_EXTENT_BLOCK8 ? 8
                      : extent == MASU_EXTENT_BLOCK4 ? 4
                      : extent == MASU_EXTENT_TILE   ? MASU_TILE
                                                     : 1;
     if (extent == MASU_EXTENT_ATLAS)
         return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
-    if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES)
+    if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
+        extent == MASU_EXTENT_PROBES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
     VkExtent2D size = extent == MASU_EXTENT_OUTPUT ? output : render;

@@ -20,8 +20,10 @@ typedef enum masu_image_id {
     MASU_IMAGE_OCCLUDERS,   /* depth of occluders, the farthest of each texel */
     MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
     MASU_IMAGE_CONE4,       /* the same of each 4x4 block */
+    MASU_IMAGE_SURFACE,     /* specular, coat, what small relief leaves; see pack.glsl */
     MASU_IMAGE_VELOCITY,    /* where the surface was in the frame before */
     MASU_IMAGE_SHADOW_MAP,  /* depth along the sun, the cascades side by side */
+    MASU_IMAGE_AO,          /* seen part of the ambient light at half size, and depth: ao_texel.glsl */
     MASU_IMAGE_OCCLUSION,   /* 2 x 16 bit unorm: seen part of the sun, of the ambient light */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
@@ -34,10 +36,12 @@ typedef enum masu_image_id {
     MASU_RESOURCE_SLOTS,
     MASU_RESOURCE_SEEN,
     MASU_RESOURCE_DRAWS,
+    MASU_RESOURCE_PROBES,
+    MASU_RESOURCE_LIGHT_TILES,
     MASU_RESOURCE_END,
     /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row
      * has written. */
-    MASU_LATEST_DEPTH = 32,
+    MASU_LATEST_DEPTH = 64,
     MASU_LATEST_COLOR
 } masu_image_id;
 
@@ -50,6 +54,7 @@ typedef enum masu_image_class {
 typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
+    MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
     MASU_EXTENT_BLOCK8,
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
@@ -58,6 +63,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_ATLAS, /* of occluders */
     MASU_EXTENT_KEPT,    /* an invocation per instance and view */
     MASU_EXTENT_BATCHES, /* see compact.comp */
+    MASU_EXTENT_PROBES,  /* an invocation per light probe */
     MASU_EXTENT_SHADOW   /* all cascades of the shadow map; plan.c knows how large */
 } masu_image_extent;
 
@@ -77,6 +83,7 @@ typedef enum masu_usage {
     MASU_WRITE,       /* storage, whole sub-rectangle, earlier content is lost */
     MASU_UPDATE,      /* storage, some texels, the rest is kept */
     MASU_WRITE_COLOR, /* colour attachment, cleared first */
+    MASU_BLEND_COLOR, /* the same of which earlier content is kept, and blended with */
     MASU_WRITE_DEPTH, /* depth attachment, cleared to 0 (far) first */
     MASU_UPDATE_DEPTH, /* the same of a part of the image, the rest is kept */
     MASU_WRITE_BUFFER, /* storage buffer */
@@ -108,13 +115,21 @@ typedef struct masu_needs {
     int anchored;      /* and on where the eye is: the SDF reaches far from the origin */
     int occluders;     /* the scene has some */
     int unculled;      /* and a mesh of too many primitives or instances for culling by them */
+    int surface;       /* some material has more than the four numbers of albedo and normal image */
+    int environment;   /* the sky is from a picture */
+    int sky;           /* the sky may follow from the sun */
     int velocity;      /* something reads velocities: the frame before is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
+    int probes;        /* it has light probes */
+    int lights;        /* there are points and spots */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
+    int transparents;  /* something is blended */
     /* of one rung: */
     int upscale, sharpen, occlusion;
+    int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receivers; /* and of cascades that every frame draws anew */
+    int light_tiles; /* lights are sorted into tiles */
     masu_march march;
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
@@ -158,8 +173,13 @@ typedef enum masu_pass_id {
     MASU_PASS_CASCADE_3,
     MASU_PASS_SDF_OCCLUSION,
     MASU_PASS_SHADOW,
+    MASU_PASS_PROBES,
+    MASU_PASS_LIGHT_TILES,
+    MASU_PASS_AO,
+    MASU_PASS_AO_UPSAMPLE,
     MASU_PASS_LIGHT,
     MASU_PASS_LIGHT_OCCLUDED,
+    MASU_PASS_TRANSPARENTS,
     MASU_PASS_READBACK,
     MASU_PASS_TONEMAP,
     MASU_PASS_EASU,
@@ -167,6 +187,9 @@ typedef enum masu_pass_id {
     MASU_PASS_PRESENT,
     MASU_PASS_COUNT
 } masu_pass_id;
+
+/* The bit of a pass in a mask of passes. */
+#define MASU_PASS_BIT(pass) ((uint64_t)1 << (pass))
 
 extern const masu_image_row masu_images[MASU_IMAGE_COUNT];
 extern const masu_pass_row masu_passes[MASU_PASS_COUNT];
@@ -176,7 +199,10 @@ int masu_usage_writes(masu_usage usage);
 /* Whether it is a cascade of the shadow map: it does not run in every frame. */
 int masu_is_cascade(uint32_t pass);
 
-/* Whether an access of a compute row takes a binding of set 1, as a read or as a write. */
+/* Whether a row's images are bound as set 1: those of compute rows, and of what is drawn over them. */
+int masu_has_set(uint32_t pass);
+
+/* Whether an access of such a row takes a binding of set 1, as a read or as a write. */
 int masu_access_binds(masu_access access, int writes);
 
 /* Pixels of an extent in a frame of that render and output size. */

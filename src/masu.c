@@ -64,7 +64,15 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
     to->moved = masu_arena_take(arena, "moved boxes", s->instances, sizeof *to->moved, 4);
     to->instance_meshes =
         masu_arena_take(arena, "instance meshes", s->instances, sizeof *to->instance_meshes, 4);
+    to->lights = masu_arena_take(arena, "local lights", s->lights, sizeof *to->lights, 8);
+    to->light_names =
+        masu_arena_take(arena, "light names", s->lights, sizeof *to->light_names, 8);
     to->marks = masu_arena_take(arena, "instance marks", s->instances, sizeof *to->marks, 1);
+    to->sky = masu_arena_take(arena, "sky", plan->needs.sky ? 1 : 0, sizeof *to->sky, 16);
+    to->transparents =
+        masu_arena_take(arena, "transparents", s->transparents, sizeof *to->transparents, 4);
+    to->far_first = masu_arena_take(arena, "their order", 2 * (uint64_t)s->transparents,
+                                    sizeof *to->far_first, 4);
     if (m) *m = r;
 }
 
@@ -78,15 +86,28 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
 
 /* ---- Plan and query -------------------------------------------------------------------------- */
 
-/* What set 0 shows to compute shaders: counters, tiles, slots; draws, drawn, seen. */
-#define CULLING_BUFFERS 6u
+/* What set 0 shows to compute shaders: counters, tiles, slots, tables; lights and their tiles; light
+ * probes; and draws, drawn, seen. */
+#define PLAIN_BUFFERS 4u
+#define CULLING_BUFFERS 3u
+
+static uint32_t storage_buffers(const masu_frame_plan *plan) {
+    return PLAIN_BUFFERS + (plan->needs.lights ? 2u : 0u) + (plan->needs.probes ? 1u : 0u);
+}
 
 /* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
  * without it where there are no more. */
 static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
                                   const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
     uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
-    if (!plan->occlusion || has >= CULLING_BUFFERS) return MASU_OK;
+    uint32_t plain = storage_buffers(plan), needed = plain + CULLING_BUFFERS;
+    if (has < plain) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain, has,
+                         "the scene's lights or probes need %u storage buffers in a stage, the device "
+                         "has %u",
+                         plain, has);
+    }
+    if (!plan->occlusion || has >= needed) return MASU_OK;
     if (!desc->rung_count) {
         desc->rung_count = plan->desc.rung_count;
         memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
@@ -94,10 +115,10 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].occlusion == MASU_ON) {
             return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
-                             CULLING_BUFFERS, has,
+                             needed, has,
                              "rungs[%u].occlusion needs %u storage buffers in a stage, the device "
                              "has %u",
-                             r, CULLING_BUFFERS, has);
+                             r, needed, has);
         }
         desc->rungs[r].occlusion = MASU_OFF;
     }
@@ -108,7 +129,8 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
 static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
                                 masu_detail *detail) {
     static const masu_buffer_id ids[] = {MASU_BUFFER_INSTANCES, MASU_BUFFER_DRAWN,
-                                         MASU_BUFFER_DRAWS, MASU_BUFFER_SEEN};
+                                         MASU_BUFFER_DRAWS, MASU_BUFFER_SEEN,
+                                         MASU_BUFFER_PROBES,    MASU_BUFFER_LIGHT_TILES};
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         const masu_buffer_plan *b = &plan->buffers[ids[i]];
         uint64_t bytes = b->stride ? b->stride : b->bytes;
@@ -372,6 +394,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_write_instances(m, slot, masu_is_cut(m, frame));
         int culls = d->rungs[frame->rung].frustum != MASU_OFF;
         for (uint32_t v = 0; v < m->plan.views; v++) masu_write_visible(m, slot, v, culls);
+        masu_write_transparents(m, slot);
         if (m->plan.rungs[frame->rung].active >> MASU_PASS_CULL & 1u)
             masu_write_stage2(m, slot, masu_is_cut(m, frame));
     }
@@ -404,7 +427,7 @@ static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
     double period = (double)m->vk.properties.limits.timestampPeriod;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!(m->plan.rungs[out->rung].active & 1u << p)) continue;
+        if (!(m->plan.rungs[out->rung].active & MASU_PASS_BIT(p))) continue;
         /* The counter may wrap between two stamps: the difference under the mask is right all the
          * same. */
         out->pass_ns[p] = (uint64_t)((double)((stamps[p + 1] - stamps[p]) & mask) * period);
@@ -433,8 +456,11 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     out->rung = m->slot_rung[slot];
     out->view_count = m->plan.needs.raster ? m->plan.views : 0;
     memcpy(out->views, m->slot_views[slot], sizeof out->views);
+    out->lights = m->plan.scene.lights;
+    out->lights_in_view = m->slot_lights[slot];
     out->draws = out->views[0].draws;
     out->triangles = out->views[0].triangles;
+    out->transparents = m->slot_transparents[slot];
     if (m->plan.desc.debug.counters && m->plan.needs.scene) {
         out->sdf_evals = counter(m, slot, MASU_COUNTER_SDF_EVALS);
         out->sdf_hits = counter(m, slot, MASU_COUNTER_SDF_HITS);
@@ -443,6 +469,9 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
         out->shadow_evals = counter(m, slot, MASU_COUNTER_SHADOW_EVALS);
         out->occlusion_evals = counter(m, slot, MASU_COUNTER_OCCLUSION_EVALS);
         out->shadow_unconverged = counter(m, slot, MASU_COUNTER_SHADOW_UNCONVERGED);
+        out->light_tests = counter(m, slot, MASU_COUNTER_LIGHT_TESTS);
+        out->light_shaded = counter(m, slot, MASU_COUNTER_LIGHT_SHADED);
+        out->light_tiles_full = counter(m, slot, MASU_COUNTER_LIGHT_TILES_FULL);
         if (m->plan.rungs[out->rung].active >> MASU_PASS_CULL & 1u) read_stage2(m, slot, out);
     }
     if (m->queries) read_times(m, slot, out);
@@ -460,6 +489,8 @@ void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
                             .shadow_resolution = m->plan.cascade_size,
                             .textures = s->textures,
                             .texture_bytes = masu_scene_texture_bytes(&m->plan.desc),
+                            .transparents = s->transparents,
+                            .lights = s->lights,
                             .host_bytes = m->arena.used};
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++)
         out->device_bytes += m->plan.blocks[role].bytes;

@@ -6,6 +6,8 @@
 #include "error.h"
 #include "shared/masu_shared.h"
 
+#include "ao_comp.spv.h"
+#include "ao_upsample_comp.spv.h"
 #include "cascade_frag.spv.h"
 #include "cascade_masked_vert.spv.h"
 #include "cascade_vert.spv.h"
@@ -14,21 +16,47 @@
 #include "easu_comp.spv.h"
 #include "fullscreen_vert.spv.h"
 #include "gbuffer_frag.spv.h"
+#include "gbuffer_surface_frag.spv.h"
 #include "gbuffer_textured_frag.spv.h"
+#include "gbuffer_textured_surface_frag.spv.h"
 #include "gbuffer_textured_velocity_frag.spv.h"
+#include "gbuffer_textured_velocity_surface_frag.spv.h"
 #include "gbuffer_textured_velocity_vert.spv.h"
 #include "gbuffer_textured_vert.spv.h"
 #include "gbuffer_velocity_frag.spv.h"
+#include "gbuffer_velocity_surface_frag.spv.h"
 #include "gbuffer_velocity_vert.spv.h"
 #include "gbuffer_vert.spv.h"
 #include "light_comp.spv.h"
+#include "light_lights_comp.spv.h"
+#include "light_lights_probes_comp.spv.h"
+#include "light_lights_probes_surface_comp.spv.h"
+#include "light_lights_surface_comp.spv.h"
 #include "light_occluded_comp.spv.h"
+#include "light_occluded_lights_comp.spv.h"
+#include "light_occluded_lights_probes_comp.spv.h"
+#include "light_occluded_lights_probes_surface_comp.spv.h"
+#include "light_occluded_lights_surface_comp.spv.h"
+#include "light_occluded_probes_comp.spv.h"
+#include "light_occluded_probes_surface_comp.spv.h"
+#include "light_occluded_surface_comp.spv.h"
+#include "light_probes_comp.spv.h"
+#include "light_probes_surface_comp.spv.h"
+#include "light_surface_comp.spv.h"
+#include "light_tiles_comp.spv.h"
 #include "occluders_frag.spv.h"
 #include "occluders_vert.spv.h"
+#include "probes_comp.spv.h"
 #include "rcas_comp.spv.h"
 #include "receivers_comp.spv.h"
 #include "shadow_comp.spv.h"
 #include "tonemap_comp.spv.h"
+#include "transparents_frag.spv.h"
+#include "transparents_sun_frag.spv.h"
+#include "transparents_textured_frag.spv.h"
+#include "transparents_textured_sun_frag.spv.h"
+#include "transparents_textured_vert.spv.h"
+#include "transparents_vert.spv.h"
 #include "velocity_comp.spv.h"
 
 #include <string.h>
@@ -44,6 +72,66 @@ static spirv scene_code(const masu_renderer *m, uint32_t pass) {
                    v.code[masu_passes[pass].code].count * sizeof(uint32_t)};
 }
 
+#define SPIRV(name) {masu_spv_##name, sizeof masu_spv_##name}
+
+/* The builds of what draws polygons, and of what lights, by what they do: bits that add up. */
+enum { GBUFFER_TEXTURED = 1, GBUFFER_VELOCITY = 2, GBUFFER_SURFACE = 4, GBUFFER_BUILDS = 8 };
+enum {
+    LIGHT_OCCLUDED = 1,
+    LIGHT_SURFACE = 2,
+    LIGHT_LIGHTS = 4,
+    LIGHT_PROBES = 8,
+    LIGHT_BUILDS = 16
+};
+
+static const spirv gbuffer_vertex[GBUFFER_SURFACE] = {
+    [0] = SPIRV(gbuffer_vert),
+    [GBUFFER_TEXTURED] = SPIRV(gbuffer_textured_vert),
+    [GBUFFER_VELOCITY] = SPIRV(gbuffer_velocity_vert),
+    [GBUFFER_TEXTURED | GBUFFER_VELOCITY] = SPIRV(gbuffer_textured_velocity_vert)};
+
+static const spirv gbuffer_fragment[GBUFFER_BUILDS] = {
+    [0] = SPIRV(gbuffer_frag),
+    [GBUFFER_TEXTURED] = SPIRV(gbuffer_textured_frag),
+    [GBUFFER_VELOCITY] = SPIRV(gbuffer_velocity_frag),
+    [GBUFFER_TEXTURED | GBUFFER_VELOCITY] = SPIRV(gbuffer_textured_velocity_frag),
+    [GBUFFER_SURFACE] = SPIRV(gbuffer_surface_frag),
+    [GBUFFER_SURFACE | GBUFFER_TEXTURED] = SPIRV(gbuffer_textured_surface_frag),
+    [GBUFFER_SURFACE | GBUFFER_VELOCITY] = SPIRV(gbuffer_velocity_surface_frag),
+    [GBUFFER_SURFACE | GBUFFER_TEXTURED | GBUFFER_VELOCITY] =
+        SPIRV(gbuffer_textured_velocity_surface_frag)};
+
+static const spirv light_builds[LIGHT_BUILDS] = {
+    [0] = SPIRV(light_comp),
+    [LIGHT_SURFACE] = SPIRV(light_surface_comp),
+    [LIGHT_PROBES] = SPIRV(light_probes_comp),
+    [LIGHT_PROBES | LIGHT_SURFACE] = SPIRV(light_probes_surface_comp),
+    [LIGHT_LIGHTS] = SPIRV(light_lights_comp),
+    [LIGHT_LIGHTS | LIGHT_SURFACE] = SPIRV(light_lights_surface_comp),
+    [LIGHT_LIGHTS | LIGHT_PROBES] = SPIRV(light_lights_probes_comp),
+    [LIGHT_LIGHTS | LIGHT_PROBES | LIGHT_SURFACE] = SPIRV(light_lights_probes_surface_comp),
+    [LIGHT_OCCLUDED] = SPIRV(light_occluded_comp),
+    [LIGHT_OCCLUDED | LIGHT_SURFACE] = SPIRV(light_occluded_surface_comp),
+    [LIGHT_OCCLUDED | LIGHT_PROBES] = SPIRV(light_occluded_probes_comp),
+    [LIGHT_OCCLUDED | LIGHT_PROBES | LIGHT_SURFACE] = SPIRV(light_occluded_probes_surface_comp),
+    [LIGHT_OCCLUDED | LIGHT_LIGHTS] = SPIRV(light_occluded_lights_comp),
+    [LIGHT_OCCLUDED | LIGHT_LIGHTS | LIGHT_SURFACE] = SPIRV(light_occluded_lights_surface_comp),
+    [LIGHT_OCCLUDED | LIGHT_LIGHTS | LIGHT_PROBES] = SPIRV(light_occluded_lights_probes_comp),
+    [LIGHT_OCCLUDED | LIGHT_LIGHTS | LIGHT_PROBES | LIGHT_SURFACE] = SPIRV(light_occluded_lights_probes_surface_comp)};
+
+static spirv light_code(const masu_renderer *m, uint32_t pass) {
+    uint32_t build = pass == MASU_PASS_LIGHT_OCCLUDED ? LIGHT_OCCLUDED : 0;
+    if (m->plan.needs.surface) build |= LIGHT_SURFACE;
+    if (m->plan.needs.probes) build |= LIGHT_PROBES;
+    if (m->plan.needs.lights) build |= LIGHT_LIGHTS;
+    return light_builds[build];
+}
+
+static uint32_t gbuffer_build(const masu_renderer *m) {
+    return (m->plan.needs.velocity ? GBUFFER_VELOCITY : 0u) |
+           (m->plan.needs.surface ? GBUFFER_SURFACE : 0u);
+}
+
 /* Compute code by pass: the scene's own where the row names a section of the blob. */
 static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     if (masu_passes[pass].code) return scene_code(m, pass);
@@ -55,10 +143,15 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     case MASU_PASS_VELOCITY: return (spirv){masu_spv_velocity_comp, sizeof masu_spv_velocity_comp};
     case MASU_PASS_RECEIVERS:
         return (spirv){masu_spv_receivers_comp, sizeof masu_spv_receivers_comp};
+    case MASU_PASS_PROBES: return (spirv){masu_spv_probes_comp, sizeof masu_spv_probes_comp};
+    case MASU_PASS_LIGHT_TILES:
+        return (spirv){masu_spv_light_tiles_comp, sizeof masu_spv_light_tiles_comp};
     case MASU_PASS_SHADOW: return (spirv){masu_spv_shadow_comp, sizeof masu_spv_shadow_comp};
-    case MASU_PASS_LIGHT: return (spirv){masu_spv_light_comp, sizeof masu_spv_light_comp};
-    case MASU_PASS_LIGHT_OCCLUDED:
-        return (spirv){masu_spv_light_occluded_comp, sizeof masu_spv_light_occluded_comp};
+    case MASU_PASS_AO: return (spirv){masu_spv_ao_comp, sizeof masu_spv_ao_comp};
+    case MASU_PASS_AO_UPSAMPLE:
+        return (spirv){masu_spv_ao_upsample_comp, sizeof masu_spv_ao_upsample_comp};
+    case MASU_PASS_LIGHT:
+    case MASU_PASS_LIGHT_OCCLUDED: return light_code(m, pass);
     case MASU_PASS_TONEMAP: return (spirv){masu_spv_tonemap_comp, sizeof masu_spv_tonemap_comp};
     case MASU_PASS_EASU: return (spirv){masu_spv_easu_comp, sizeof masu_spv_easu_comp};
     case MASU_PASS_RCAS: return (spirv){masu_spv_rcas_comp, sizeof masu_spv_rcas_comp};
@@ -81,34 +174,42 @@ static uint64_t now(const masu_renderer *m) {
 
 /* ---- Layouts --------------------------------------------------------------------------------- */
 
+/* What a plan has no buffer for takes no binding: devices need to have no more than four storage buffers
+ * in a stage. */
 static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
-    VkShaderStageFlags compute = VK_SHADER_STAGE_COMPUTE_BIT;
-    VkShaderStageFlags fragment = VK_SHADER_STAGE_FRAGMENT_BIT;
-    VkShaderStageFlags all = compute | fragment | VK_SHADER_STAGE_VERTEX_BIT;
-    VkDescriptorSetLayoutBinding bindings[] = {
-        {MASU_BIND_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
-        {MASU_BIND_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT,
-         NULL},
-        {MASU_BIND_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_FRAGMENT_BIT,
-         NULL},
-        {MASU_BIND_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
-         NULL},
-        {MASU_BIND_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL},
-        {MASU_BIND_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute | fragment, NULL},
-        {MASU_BIND_PREVIOUS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, all, NULL},
-        {MASU_BIND_PREVIOUS_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-         VK_SHADER_STAGE_VERTEX_BIT, NULL},
-        {MASU_BIND_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1,
-         compute | VK_SHADER_STAGE_VERTEX_BIT, NULL},
-        {MASU_BIND_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT, NULL},
-        /* The rest only for stage 2 of culling: devices need to have no more than four in a stage. */
-        {MASU_BIND_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute, NULL},
-        {MASU_BIND_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, compute, NULL}};
-    uint32_t count = sizeof bindings / sizeof *bindings;
-    if (!m->plan.occlusion) count -= 2;
-    for (uint32_t i = 0; i < count; i++) {
-        if (bindings[i].binding == MASU_BIND_DRAWN && m->plan.occlusion)
-            bindings[i].stageFlags |= compute;
+    const VkShaderStageFlags compute = VK_SHADER_STAGE_COMPUTE_BIT;
+    const VkShaderStageFlags fragment = VK_SHADER_STAGE_FRAGMENT_BIT;
+    const VkShaderStageFlags vertex = VK_SHADER_STAGE_VERTEX_BIT, all = compute | fragment | vertex;
+    const int stage2 = m->plan.occlusion;
+    const struct {
+        uint32_t binding;
+        int uniform, needed;
+        VkShaderStageFlags stages;
+    } rows[] = {{MASU_BIND_FRAME, 1, 1, all},
+                {MASU_BIND_INSTANCES, 0, 1, vertex},
+                {MASU_BIND_MATERIALS, 0, 1, fragment},
+                {MASU_BIND_COUNTERS, 0, 1, compute},
+                {MASU_BIND_TILES, 0, 1, compute | fragment},
+                {MASU_BIND_SLOTS, 0, 1, compute | fragment},
+                {MASU_BIND_PREVIOUS, 1, 1, all},
+                {MASU_BIND_PREVIOUS_INSTANCES, 0, 1, vertex},
+                {MASU_BIND_SHADOW, 1, 1, all},
+                {MASU_BIND_DRAWN, 0, 1, stage2 ? vertex | compute : vertex},
+                {MASU_BIND_DRAWS, 0, stage2, compute},
+                {MASU_BIND_SEEN, 0, stage2, compute},
+                {MASU_BIND_TABLES, 0, 1, compute | fragment},
+                {MASU_BIND_SKY, 1, 1, compute | fragment},
+                {MASU_BIND_PROBES, 0, m->plan.needs.probes, compute},
+                {MASU_BIND_LIGHTS, 0, m->plan.needs.lights, compute},
+                {MASU_BIND_LIGHT_TILES, 0, m->plan.needs.lights, compute}};
+    VkDescriptorSetLayoutBinding bindings[sizeof rows / sizeof *rows];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (!rows[i].needed) continue;
+        bindings[count++] = (VkDescriptorSetLayoutBinding){
+            rows[i].binding,
+            rows[i].uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            1, rows[i].stages, NULL};
     }
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -122,7 +223,7 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
 }
 
 static int draws_polygons(uint32_t pass) {
-    return pass == MASU_PASS_GBUFFER || masu_is_cascade(pass);
+    return pass == MASU_PASS_GBUFFER || pass == MASU_PASS_TRANSPARENTS || masu_is_cascade(pass);
 }
 
 /* Set 2: the textures of a draw. */
@@ -150,7 +251,7 @@ static masu_result make_texture_layout(masu_renderer *m, masu_detail *detail) {
  * speaks for all. */
 static const masu_rung_plan *first_rung(const masu_renderer *m, uint32_t pass) {
     for (uint32_t r = 0; r < m->plan.desc.rung_count; r++) {
-        if (m->plan.rungs[r].active & 1u << pass) return &m->plan.rungs[r];
+        if (m->plan.rungs[r].active & MASU_PASS_BIT(pass)) return &m->plan.rungs[r];
     }
     return NULL;
 }
@@ -161,14 +262,15 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
     VkDescriptorSetLayoutBinding bindings[MASU_PASS_ACCESSES];
     uint32_t n = 0;
     int compute = masu_passes[pass].kind == MASU_PASS_COMPUTE;
-    for (int writes = 0; writes < 2 && compute; writes++) {
+    for (int writes = 0; writes < 2 && masu_has_set(pass); writes++) {
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
             if (!masu_access_binds(rp->access[pass][a], writes)) continue;
             bindings[n] = (VkDescriptorSetLayoutBinding){
                 n,
                 writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                        : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                1, VK_SHADER_STAGE_COMPUTE_BIT, writes ? NULL : &m->sampler};
+                1, compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT,
+                writes ? NULL : &m->sampler};
             n++;
         }
     }
@@ -203,10 +305,15 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
     VkShaderModule module = VK_NULL_HANDLE;
     masu_result result = make_module(m, compute_code(m, pass), &module, detail);
     if (result) return result;
-    /* Constant 0: whether counters are kept. */
-    VkBool32 counters = m->plan.desc.debug.counters != 0;
-    VkSpecializationMapEntry entry = {0, 0, sizeof counters};
-    VkSpecializationInfo special = {1, &entry, sizeof counters, &counters};
+    /* Whether counters are kept; whether the sky may be the analytic one; whether there is fog; whether
+     * the sky is from a picture. */
+    const VkBool32 constants[] = {m->plan.desc.debug.counters != 0, m->plan.needs.sky != 0,
+                                  m->plan.scene.fog != 0, m->plan.needs.environment != 0};
+    const VkSpecializationMapEntry entries[] = {{0, 0, sizeof *constants},
+                                                {1, sizeof *constants, sizeof *constants},
+                                                {2, 2 * sizeof *constants, sizeof *constants},
+                                                {3, 3 * sizeof *constants, sizeof *constants}};
+    VkSpecializationInfo special = {4, entries, sizeof constants, constants};
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -239,7 +346,8 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_access access = rp->access[pass][a];
         int is_depth = access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
-        if (!is_depth && access.usage != MASU_WRITE_COLOR) continue;
+        int blended = access.usage == MASU_BLEND_COLOR;
+        if (!is_depth && !blended && access.usage != MASU_WRITE_COLOR) continue;
         VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
                                         : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
         if (is_depth) {
@@ -250,7 +358,8 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
         attachments[n] =
             (VkAttachmentDescription){.format = masu_images[access.image].format,
                                       .samples = VK_SAMPLE_COUNT_1_BIT,
-                                      .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                      .loadOp = blended ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                        : VK_ATTACHMENT_LOAD_OP_CLEAR,
                                       .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                       .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
                                       .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
@@ -294,8 +403,15 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
     int cascade = masu_is_cascade(pass);                 /* no colour */
     int polygons = draws_polygons(pass);                 /* else what the vertex shader makes up */
     int boxes = pass == MASU_PASS_OCCLUDERS;             /* no colour; else one triangle, no depth */
-    VkSpecializationMapEntry entry = {0, 0, sizeof masked};
-    VkSpecializationInfo special = {1, &entry, sizeof masked, &masked};
+    int blends = pass == MASU_PASS_TRANSPARENTS;         /* no depth */
+    /* Whether masks are cut; the rest as in make_compute. */
+    const VkBool32 constants[] = {masked, m->plan.needs.sky != 0, m->plan.scene.fog != 0,
+                                  m->plan.needs.environment != 0};
+    const VkSpecializationMapEntry entries[] = {{0, 0, sizeof *constants},
+                                                {1, sizeof *constants, sizeof *constants},
+                                                {2, 2 * sizeof *constants, sizeof *constants},
+                                                {3, 3 * sizeof *constants, sizeof *constants}};
+    VkSpecializationInfo special = {4, entries, sizeof constants, constants};
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
         stages[i] = (VkPipelineShaderStageCreateInfo){
@@ -303,7 +419,7 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
             .pName = "main",
-            .pSpecializationInfo = textured && i ? &special : NULL};
+            .pSpecializationInfo = (textured || blends) && i ? &special : NULL};
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},
@@ -337,20 +453,29 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
         .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
     VkPipelineDepthStencilStateCreateInfo depth = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = polygons || boxes ? VK_TRUE : VK_FALSE,
-        .depthWriteEnable = polygons || boxes ? VK_TRUE : VK_FALSE,
+        .depthTestEnable = (polygons && !blends) || boxes ? VK_TRUE : VK_FALSE,
+        .depthWriteEnable = (polygons && !blends) || boxes ? VK_TRUE : VK_FALSE,
         .depthCompareOp = VK_COMPARE_OP_GREATER};
-    VkPipelineColorBlendAttachmentState blend[3];
+    VkPipelineColorBlendAttachmentState blend[4];
     memset(blend, 0, sizeof blend);
-    for (uint32_t i = 0; i < 3; i++) {
+    for (uint32_t i = 0; i < 4; i++) {
         blend[i].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
                                   VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     }
+    if (blends) { /* the colour is multiplied by its alpha already; that of the picture stays */
+        blend[0].blendEnable = VK_TRUE;
+        blend[0].srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
+        blend[0].dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+        blend[0].srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
+        blend[0].dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+    }
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = boxes || cascade                      ? 0
-                           : polygons && !m->plan.needs.velocity ? 2
-                                                                 : 3,
+        .attachmentCount = boxes || cascade ? 0
+                           : blends            ? 1
+                           : polygons          ? 2u + (m->plan.needs.velocity ? 1u : 0u) +
+                                            (m->plan.needs.surface ? 1u : 0u)
+                                               : 3,
         .pAttachments = blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     VkPipelineDynamicStateCreateInfo dynamics = {
@@ -393,14 +518,9 @@ static masu_result make_pipeline(masu_renderer *m, uint32_t pass, spirv vertex, 
 }
 
 static masu_result make_textured(masu_renderer *m, masu_detail *detail) {
-    spirv vertex = {masu_spv_gbuffer_textured_vert, sizeof masu_spv_gbuffer_textured_vert};
-    spirv fragment = {masu_spv_gbuffer_textured_frag, sizeof masu_spv_gbuffer_textured_frag};
-    if (m->plan.needs.velocity) {
-        vertex = (spirv){masu_spv_gbuffer_textured_velocity_vert,
-                         sizeof masu_spv_gbuffer_textured_velocity_vert};
-        fragment = (spirv){masu_spv_gbuffer_textured_velocity_frag,
-                           sizeof masu_spv_gbuffer_textured_velocity_frag};
-    }
+    uint32_t build = gbuffer_build(m) | GBUFFER_TEXTURED;
+    spirv vertex = gbuffer_vertex[build & ~(uint32_t)GBUFFER_SURFACE];
+    spirv fragment = gbuffer_fragment[build];
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
         if (i == MASU_TEXTURED_MASK && !m->plan.scene.masks) continue;
@@ -423,19 +543,26 @@ static masu_result make_masked_casters(masu_renderer *m, masu_detail *detail) {
     return result;
 }
 
+/* One pipeline for all: in scenes with textures what has none passes by them. */
+static masu_result make_transparents(masu_renderer *m, masu_detail *detail) {
+    static const spirv fragments[] = {SPIRV(transparents_frag), SPIRV(transparents_textured_frag),
+                                      SPIRV(transparents_sun_frag),
+                                      SPIRV(transparents_textured_sun_frag)};
+    static const spirv vertices[] = {SPIRV(transparents_vert), SPIRV(transparents_textured_vert)};
+    int textured = m->texture_layout != VK_NULL_HANDLE;
+    return make_pipeline(m, MASU_PASS_TRANSPARENTS, vertices[textured],
+                         fragments[textured + (m->plan.needs.shadow ? 2 : 0)], textured, VK_FALSE,
+                         &m->pipelines[MASU_PASS_TRANSPARENTS], detail);
+}
+
 static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *detail) {
     if (masu_is_cascade(pass) && pass != MASU_PASS_CASCADE_0) return MASU_OK;
     masu_result result = make_render_pass(m, pass, detail);
     int cascade = masu_is_cascade(pass), polygons = pass == MASU_PASS_GBUFFER;
     if (result || (polygons && !m->plan.needs.raster)) return result; /* an empty scene clears */
-    spirv vertex = {masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert};
-    spirv fragment = {masu_spv_gbuffer_frag, sizeof masu_spv_gbuffer_frag};
-    if (m->plan.needs.velocity) {
-        vertex =
-            (spirv){masu_spv_gbuffer_velocity_vert, sizeof masu_spv_gbuffer_velocity_vert};
-        fragment =
-            (spirv){masu_spv_gbuffer_velocity_frag, sizeof masu_spv_gbuffer_velocity_frag};
-    }
+    if (pass == MASU_PASS_TRANSPARENTS) return make_transparents(m, detail);
+    spirv vertex = gbuffer_vertex[gbuffer_build(m) & ~(uint32_t)GBUFFER_SURFACE];
+    spirv fragment = gbuffer_fragment[gbuffer_build(m)];
     if (pass == MASU_PASS_OCCLUDERS) {
         vertex = (spirv){masu_spv_occluders_vert, sizeof masu_spv_occluders_vert};
         fragment = (spirv){masu_spv_occluders_frag, sizeof masu_spv_occluders_frag};

@@ -3,7 +3,9 @@
 
 #include "blob.h"
 #include "error.h"
+#include "lights.h"
 #include "lod.h"
+#include "transparents.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,6 +13,10 @@
 uint32_t masu_format_bytes(VkFormat format) {
     return format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
 }
+
+/* Of ambient occlusion: where more samples stop to pay (docs/DESIGN.md). */
+#define MASU_AO_SLICES 2
+#define MASU_AO_STEPS 8
 
 /* ---- Defaults -------------------------------------------------------------------------------- */
 
@@ -31,6 +37,8 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
             if (d.rungs[r].shadow_refresh[k] == 0) d.rungs[r].shadow_refresh[k] = 1;
         }
+        if (d.rungs[r].ao_slices == 0) d.rungs[r].ao_slices = MASU_AO_SLICES;
+        if (d.rungs[r].ao_steps == 0) d.rungs[r].ao_steps = MASU_AO_STEPS;
         if (d.rungs[r].lod_error == 0.0f) d.rungs[r].lod_error = MASU_LOD_PIXELS;
     }
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
@@ -91,9 +99,15 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
         return bad_range(detail, "rungs[].shadow_refresh", rung->shadow_refresh[k], 0,
                          MASU_MAX_REFRESH);
     }
-    const masu_switch switches[] = {rung->upscale, rung->sharpen, rung->frustum, rung->occlusion};
-    static const char *const names[] = {"rungs[].upscale", "rungs[].sharpen", "rungs[].frustum",
-                                        "rungs[].occlusion"};
+    if (rung->ao_slices > MASU_AO_SLICES_MAX)
+        return bad_range(detail, "rungs[].ao_slices", rung->ao_slices, 0, MASU_AO_SLICES_MAX);
+    if (rung->ao_steps > MASU_AO_STEPS_MAX)
+        return bad_range(detail, "rungs[].ao_steps", rung->ao_steps, 0, MASU_AO_STEPS_MAX);
+    const masu_switch switches[] = {rung->upscale,   rung->sharpen,     rung->frustum,
+                                    rung->occlusion, rung->light_tiles, rung->ao};
+    static const char *const names[] = {"rungs[].upscale",   "rungs[].sharpen",
+                                        "rungs[].frustum",   "rungs[].occlusion",
+                                        "rungs[].light_tiles", "rungs[].ao"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if ((unsigned)switches[i] <= MASU_ON) continue;
         return bad_range(detail, names[i], (unsigned)switches[i], MASU_AUTO, MASU_ON);
@@ -233,10 +247,17 @@ static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
                 {"limits.materials", d->limits.materials, s->materials},
                 {"limits.instances", d->limits.instances, s->instances},
                 {"limits.sdf_params", d->limits.sdf_params, s->sdf_params},
+                {"limits.probes", d->limits.probes, s->probes},
                 {"limits.shadow_cascades", d->limits.shadow_cascades, cascades},
                 {"limits.shadow_resolution", d->limits.shadow_resolution, cascade_size},
                 {"limits.textures", d->limits.textures, s->textures},
-                {"limits.texture_bytes", d->limits.texture_bytes, masu_scene_texture_bytes(d)}};
+                {"limits.texture_bytes", d->limits.texture_bytes, masu_scene_texture_bytes(d)},
+                {"limits.lights", d->limits.lights, s->lights},
+                {"limits.transparents", d->limits.transparents, s->transparents},
+                {"limits.transparents", MASU_TRANSPARENTS_MAX, s->transparents},
+                {"transparent texture sets", MASU_TRANSPARENT_SETS_MAX, s->transparent_sets},
+                {"transparents times their texture sets", MASU_TRANSPARENT_DRAWS_MAX,
+                 (uint64_t)s->transparents * s->transparent_sets}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (rows[i].limit && rows[i].needed > rows[i].limit) {
             return masu_fail(detail, MASU_ERROR_LIMIT, rows[i].name, rows[i].needed, rows[i].limit,
@@ -280,6 +301,7 @@ VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade) {
 VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
                             VkExtent2D render) {
     uint32_t columns = cascade_columns(plan);
+    if (extent == MASU_EXTENT_HALF && plan->desc.debug.ao_full) return render;
     if (extent != MASU_EXTENT_SHADOW) return masu_extent_of(extent, render, plan->desc.output);
     return (VkExtent2D){columns * plan->cascade_size,
                         (plan->cascades + columns - 1) / columns * plan->cascade_size};
@@ -330,8 +352,14 @@ static masu_image_id resolve(uint8_t image, masu_image_id latest_depth,
 static int keeps_access(const masu_frame_plan *plan, masu_pass_id pass, masu_image_id image) {
     if (image == MASU_IMAGE_NONE) return 0;
     if (image == MASU_IMAGE_VELOCITY && !plan->needs.velocity) return 0;
+    if (image == MASU_IMAGE_SURFACE && !plan->needs.surface) return 0;
+    if (pass == MASU_PASS_TRANSPARENTS && image == MASU_IMAGE_SHADOW_MAP) return plan->needs.shadow;
     /* It asks which pixels are polygons; without polygons nobody has written that depth. */
     if (pass == MASU_PASS_SDF_VELOCITY && image == MASU_IMAGE_DEPTH) return plan->needs.raster;
+    if (pass == MASU_PASS_READBACK && image == MASU_IMAGE_OCCLUSION && !plan->needs.sdf_occlusion &&
+        !plan->needs.shadow && !plan->needs.ao) {
+        return 0; /* nothing of this rung writes it */
+    }
     if (pass == MASU_PASS_READBACK) {
         return (masu_images[image].readback & plan->desc.readback) != 0;
     }
@@ -347,14 +375,17 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         const masu_pass_row *row = &masu_passes[p];
         const char *why = "";
         int runs = row->decide(&plan->needs, &why);
-        if (r == 0 || (runs && !(plan->rungs[0].active & 1u << p))) plan->why[p] = why;
+        if (r == 0 || (runs && !(plan->rungs[0].active & MASU_PASS_BIT(p)))) plan->why[p] = why;
         if (!runs) continue;
-        rp->active |= 1u << p;
+        rp->active |= MASU_PASS_BIT(p);
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_image_id image = resolve(row->access[a].image, depth, color);
             if (image == (masu_image_id)MASU_RESOURCE_DRAWS && !plan->needs.occlusion) {
                 continue; /* the host has written them */
             }
+            if (image == MASU_RESOURCE_PROBES && !plan->needs.probes) continue;
+            if (image == (masu_image_id)MASU_RESOURCE_LIGHT_TILES && !plan->needs.light_tiles)
+                continue;
             if (image < MASU_IMAGE_COUNT && !keeps_access(plan, (masu_pass_id)p, image)) continue;
             rp->access[p][rp->access_count[p]++] =
                 (masu_access){(uint8_t)image, row->access[a].usage};
@@ -382,7 +413,8 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_READ_COPY: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     case MASU_WRITE:
     case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
-    case MASU_WRITE_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    case MASU_WRITE_COLOR:
+    case MASU_BLEND_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     case MASU_WRITE_DEPTH:
     case MASU_UPDATE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -413,7 +445,7 @@ static void gather_images(masu_frame_plan *plan) {
                 if (image->height < size.height) image->height = size.height;
                 image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
             }
-            if (!(rp->active & 1u << p) || masu_passes[p].kind != MASU_PASS_COMPUTE) continue;
+            if (!(rp->active & MASU_PASS_BIT(p)) || !masu_has_set(p)) continue;
             plan->pass_sets += writes_target ? plan->desc.targets.count : 1;
         }
     }
@@ -440,7 +472,28 @@ static void lay_drawn(masu_frame_plan *plan) {
             next += rows[i].words;
         }
     }
-    d->words = next;
+    d->transparents = next;
+    d->words = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
+}
+
+static void size_light_buffers(masu_frame_plan *plan, uint64_t storage_alignment) {
+    masu_buffer_plan *lights = &plan->buffers[MASU_BUFFER_LIGHTS];
+    masu_buffer_plan *tiles = &plan->buffers[MASU_BUFFER_LIGHT_TILES];
+    lights->count = plan->scene.lights;
+    lights->stride = masu_align_up(
+        sizeof(masu_light_header) + lights->count * sizeof(struct masu_local_light_data),
+        storage_alignment);
+    lights->bytes = plan->desc.frames_in_flight * lights->stride;
+    tiles->count = 1; /* it is bound even where all rungs go without */
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
+        VkExtent2D grid = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
+        uint64_t words = (uint64_t)grid.width * grid.height *
+                         MASU_LIGHT_LIST_WORDS(plan->scene.lights);
+        if (plan->desc.rungs[r].light_tiles != MASU_OFF && words > tiles->count)
+            tiles->count = words;
+    }
+    tiles->bytes = tiles->count * sizeof(uint32_t);
 }
 
 /* What only a scene needs. Returns the bytes of one readback slot that its counters take. */
@@ -451,6 +504,11 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     uint64_t flights = plan->desc.frames_in_flight;
     b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
     b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
+    b[MASU_BUFFER_TABLES].count =
+        plan->needs.surface && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS;
+    b[MASU_BUFFER_TABLES].count +=
+        masu_blob_environment_texels(s->environment_size, s->environment_mips);
+    b[MASU_BUFFER_TABLES].bytes = b[MASU_BUFFER_TABLES].count * sizeof(uint32_t);
     /* With the frame before: each slot has two halves, its own and that of the frame before it. */
     uint64_t halves = plan->needs.velocity ? 2 : 1;
     b[MASU_BUFFER_FRAME].count = halves * flights;
@@ -463,6 +521,12 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
             masu_align_up(sizeof(struct masu_shadow_uniforms), uniform_alignment);
         b[MASU_BUFFER_SHADOW].bytes = flights * b[MASU_BUFFER_SHADOW].stride;
     }
+    if (plan->needs.sky) {
+        b[MASU_BUFFER_SKY].count = flights;
+        b[MASU_BUFFER_SKY].stride =
+            masu_align_up(sizeof(struct masu_sky_uniforms), uniform_alignment);
+        b[MASU_BUFFER_SKY].bytes = flights * b[MASU_BUFFER_SKY].stride;
+    }
     for (uint32_t r = 0; r < plan->desc.rung_count && s->sdf; r++) {
         VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
         VkExtent2D tiles = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
@@ -472,6 +536,7 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
         if (words > b[MASU_BUFFER_TILES].count) b[MASU_BUFFER_TILES].count = words;
     }
     b[MASU_BUFFER_TILES].bytes = b[MASU_BUFFER_TILES].count * sizeof(uint32_t);
+    if (s->lights) size_light_buffers(plan, storage_alignment);
     if (s->instances) {
         b[MASU_BUFFER_INSTANCES].count *= halves;
         b[MASU_BUFFER_INSTANCES].stride =
@@ -482,6 +547,8 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
         b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * plan->draws;
         if (plan->occlusion)
             b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + MASU_ATLAS_PARTS(plan);
+        plan->transparent_draws = b[MASU_BUFFER_DRAWS].count;
+        b[MASU_BUFFER_DRAWS].count += (uint64_t)s->transparents * s->transparent_sets;
         b[MASU_BUFFER_DRAWS].stride =
             masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
         b[MASU_BUFFER_DRAWS].bytes = flights * b[MASU_BUFFER_DRAWS].stride;
@@ -541,6 +608,8 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         .name = "materials", .usage = storage | dst, .count = s ? s->materials : 0};
     b[MASU_BUFFER_MATERIALS].bytes =
         b[MASU_BUFFER_MATERIALS].count * sizeof(struct masu_material_data);
+    /* The curves of small reliefs lie behind the materials, two elements each. */
+    if (s) b[MASU_BUFFER_MATERIALS].bytes += s->meso * sizeof(masu_blob_meso);
     b[MASU_BUFFER_COUNTERS] = (masu_buffer_plan){
         .name = "counters", .usage = storage | dst | VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
     b[MASU_BUFFER_SLOTS] = (masu_buffer_plan){
@@ -548,6 +617,15 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     /* A second set, as of the frame before. */
     if (plan->needs.velocity && plan->needs.dynamic) b[MASU_BUFFER_SLOTS].count *= 2;
     b[MASU_BUFFER_SLOTS].bytes = b[MASU_BUFFER_SLOTS].count * sizeof(float);
+    b[MASU_BUFFER_TABLES] = (masu_buffer_plan){.name = "tables", .usage = storage | dst};
+    b[MASU_BUFFER_PROBES] = (masu_buffer_plan){
+        .name = "light probes", .usage = storage | dst, .count = s ? s->probes : 0};
+    if (s && s->probes) {
+        b[MASU_BUFFER_PROBES].bytes =
+            sizeof(masu_blob_probes) +
+            (masu_align_up(s->probe_words, 4) + (uint64_t)s->probes * MASU_PROBE_LIT_WORDS) *
+                sizeof(uint32_t);
+    }
     b[MASU_BUFFER_TILES] = (masu_buffer_plan){
         .name = "tiles", .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
     b[MASU_BUFFER_FRAME] = (masu_buffer_plan){.name = "frame uniforms",
@@ -556,6 +634,12 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     b[MASU_BUFFER_SHADOW] = (masu_buffer_plan){.name = "shadow uniforms",
                                                .role = MASU_ROLE_UPLOAD,
                                                .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+    b[MASU_BUFFER_SKY] = (masu_buffer_plan){.name = "sky uniforms",
+                                            .role = MASU_ROLE_UPLOAD,
+                                            .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+    b[MASU_BUFFER_LIGHTS] =
+        (masu_buffer_plan){.name = "lights", .role = MASU_ROLE_UPLOAD, .usage = storage};
+    b[MASU_BUFFER_LIGHT_TILES] = (masu_buffer_plan){.name = "light tiles", .usage = storage};
     b[MASU_BUFFER_INSTANCES] = (masu_buffer_plan){.name = "instances",
                                                   .role = MASU_ROLE_UPLOAD,
                                                   .usage = storage,
@@ -584,6 +668,18 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     b[MASU_BUFFER_READBACK].count = flights;
 }
 
+/* Whether a rung has ambient occlusion in screen space, and whether any has. */
+static int rung_has_ao(const masu_desc *d, uint32_t r) {
+    return d->scene && d->scene->occlusion_radius > 0.0f && d->rungs[r].ao != MASU_OFF;
+}
+
+static int wants_ao(const masu_desc *d) {
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (rung_has_ao(d, r)) return 1;
+    }
+    return 0;
+}
+
 masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                          uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail) {
     memset(plan, 0, sizeof *plan);
@@ -595,7 +691,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     if (d->scene) {
         plan->scene = *d->scene;
         d->scene = &plan->scene;
-        if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades)
+        if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades && !wants_ao(d))
             d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
         if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
         plan->compressed = takes_blocks(d);
@@ -608,7 +704,13 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .dynamic = d->scene && d->scene->sdf_dynamic,
                                .anchored = d->scene && d->scene->sdf_anchored,
                                .sdf_occlusion = d->scene && d->scene->sdf_occlusion,
+                               .probes = d->scene && d->scene->probes,
                                .shadow = d->scene && d->scene->shadow_cascades,
+                               .transparents = d->scene && d->scene->transparents,
+                               .lights = d->scene && d->scene->lights,
+                               .surface = d->scene && d->scene->instances && d->scene->surfaces,
+                               .environment = d->scene && d->scene->environment_size,
+                               .sky = d->scene && (d->scene->analytic_sky || d->analytic_sky),
                                .readback = d->readback,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0,
                                .blit = !d->targets.storage};
@@ -651,6 +753,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              r, (int)plan->needs.march);
         }
         resolve_switches(d, rp, &d->rungs[r], &plan->needs);
+        plan->needs.ao = rung_has_ao(d, r);
         plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
         plan->needs.unculled = d->scene && (d->scene->most_primitives > MASU_CULL_ROUNDS ||
                                             d->scene->most_instances > 64 * MASU_CULL_ROUNDS);
@@ -666,6 +769,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
             plan->needs.occlusion = 0;
         }
         plan->occlusion |= plan->needs.occlusion;
+        plan->needs.light_tiles = plan->needs.lights && d->rungs[r].light_tiles != MASU_OFF;
         resolve_shadow(plan, r);
         plan->needs.casters = plan->needs.occlusion && plan->views > 1;
         plan->needs.receivers = plan->needs.casters && plan->needs.shadow &&
@@ -685,6 +789,8 @@ static const char *image_name(uint8_t image) {
     if (image == MASU_RESOURCE_SLOTS) return "slots";
     if (image == MASU_RESOURCE_SEEN) return "seen";
     if (image == MASU_RESOURCE_DRAWS) return "draws";
+    if (image == MASU_RESOURCE_PROBES) return "light probes";
+    if (image == MASU_RESOURCE_LIGHT_TILES) return "light tiles";
     return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL;
 }
 
@@ -735,7 +841,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
         int named = 0;
         for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
             const masu_rung_plan *rp = &plan->rungs[r];
-            if (!(rp->active & 1u << p)) continue;
+            if (!(rp->active & MASU_PASS_BIT(p))) continue;
             pass->active |= 1u << r;
             out->rungs[r].dispatches++;
             if (named) continue;
@@ -744,7 +850,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
             for (uint32_t a = 0; a < rp->access_count[p]; a++) {
                 const char *name = image_name(rp->access[p][a].image);
                 if (masu_usage_writes((masu_usage)rp->access[p][a].usage)) {
-                    if (writes < 4) pass->writes[writes++] = name;
+                    if (writes < 6) pass->writes[writes++] = name;
                 } else if (reads < 8) {
                     pass->reads[reads++] = name;
                 }

@@ -27,7 +27,7 @@ typedef struct masu_rung_plan {
     uint32_t slow; /* bit per cascade that is not drawn in every frame */
     /* A recording for each set of slow cascades, per target; the last draws them all. */
     uint32_t variants, first_recording;
-    uint32_t active; /* bit per pass */
+    uint64_t active; /* MASU_PASS_BIT of each */
     uint32_t access_count[MASU_PASS_COUNT];
     masu_access access[MASU_PASS_COUNT][MASU_PASS_ACCESSES]; /* stand-ins resolved */
     uint32_t barriers;                                       /* counted while recording */
@@ -40,6 +40,9 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_MATERIALS,
     MASU_BUFFER_COUNTERS,
     MASU_BUFFER_SLOTS,     /* of the SDF: its parts as data */
+    MASU_BUFFER_TABLES,    /* directional albedos; masu_shared.h has the layout; then the texels of a sky
+                              from a picture, if it is from one */
+    MASU_BUFFER_PROBES,    /* light probes: what was baked, then the light of the frame */
     MASU_BUFFER_TILES,     /* of the SDF: which parts matter where; masu_shared.h has the layout */
     MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
     MASU_BUFFER_INSTANCES, /* one array per frame in flight */
@@ -47,6 +50,9 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_DRAWN,     /* per frame in flight and view: numbers of the instances drawn */
     MASU_BUFFER_SEEN,      /* what stage 2 of culling knows of each instance; outlives frames */
     MASU_BUFFER_SHADOW,    /* one masu_shadow_uniforms per frame in flight */
+    MASU_BUFFER_SKY,       /* one masu_sky_uniforms per frame in flight */
+    MASU_BUFFER_LIGHTS,    /* per frame in flight: local lights that may be seen to light something */
+    MASU_BUFFER_LIGHT_TILES, /* lists of them by tile; masu_shared.h has the layout */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
     MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
     MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
@@ -85,7 +91,7 @@ typedef struct masu_block_plan {
 /* Words of a slot of MASU_BUFFER_DRAWN; masu_shared.h says what is where. Without occlusion there
  * are the lists of stage 1 alone. */
 typedef struct masu_drawn_plan {
-    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, words;
+    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, transparents, words;
 } masu_drawn_plan;
 
 /* An array of textures on the device. Plans have as many as their scene, in the host block; while
@@ -122,6 +128,7 @@ typedef struct masu_frame_plan {
     int lods;           /* a rung draws coarser forms of meshes */
     uint32_t draws, listed; /* draws of a view; words of its lists: a list for each form */
     masu_drawn_plan drawn;
+    uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
     uint64_t receivers; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
     uint32_t recordings; /* of one frame in flight: rungs, their targets, their variants */

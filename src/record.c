@@ -4,7 +4,8 @@
  *
  * Barriers are derived by walking the rung's accesses with, per image, the stage, access and layout
  * of its last use:
- *  - a read after a write, a write after anything, or another layout needs a barrier;
+ *  - a read after a write, a write after anything, another layout, or the first read by a stage needs
+ *    a barrier;
  *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image
  *    that shares bytes with it and was used before;
  *  - a full barrier at the top of the frame orders it behind the frame before, so no state crosses
@@ -55,6 +56,11 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
     case MASU_WRITE_COLOR:
         return (image_state){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
                              VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
+    case MASU_BLEND_COLOR:
+        return (image_state){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                             VK_ACCESS_COLOR_ATTACHMENT_READ_BIT |
+                                 VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
                              VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
     case MASU_WRITE_DEPTH:
     case MASU_UPDATE_DEPTH:
@@ -150,11 +156,15 @@ static void barrier_before(recorder *rec, uint32_t pass) {
             add_tenants(rec, id, &from, &access);
             barriers[n++] = image_barrier(rec, id, access, &next, VK_IMAGE_LAYOUT_UNDEFINED);
             to |= next.stages;
-        } else if (now->layout != next.layout || now->writes || next.writes) {
+        } else if (now->layout != next.layout || now->writes || next.writes ||
+                   next.stages & ~now->stages) { /* a stage to which it is not visible yet */
             from |= now->stages;
             barriers[n++] =
                 image_barrier(rec, id, now->writes ? now->access : 0, &next, now->layout);
             to |= next.stages;
+            /* Both have read it: a later writer waits for all of them. */
+            if (!now->writes && !next.writes && now->layout == next.layout)
+                next.stages |= now->stages;
         } else {
             next.stages |= now->stages; /* one more reader: a later writer waits for all of them */
         }
@@ -212,6 +222,17 @@ static void record_culling(recorder *rec, uint32_t pass, struct masu_push *push)
     rec->m->vk.CmdDispatch(rec->cmd, groups, first ? plan->views - 1 : 1, 1);
 }
 
+/* What the passes of ambient occlusion need of scene and description; the shaders name it. */
+static void ao_push(const recorder *rec, uint32_t pass, struct masu_push *push) {
+    const masu_frame_plan *plan = &rec->m->plan;
+    push->param[0] = plan->scene.occlusion_radius;
+    push->param[1] = (float)MASU_AO_REACH;
+    push->index[2] = plan->desc.debug.ao_full ? 1 : 2;
+    if (pass == MASU_PASS_AO) return;
+    push->index[0] = plan->needs.sdf_occlusion || plan->needs.shadow;
+    push->index[1] = plan->desc.debug.ao_nearest != 0;
+}
+
 static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     struct masu_push push = push_constants(rec, pass);
@@ -220,6 +241,7 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     int culling = extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES;
     if (culling || pass == MASU_PASS_RECEIVERS)
         push.index[0] = (uint32_t)rec->m->plan.drawn.header;
+    if (pass == MASU_PASS_AO || pass == MASU_PASS_AO_UPSAMPLE) ao_push(rec, pass, &push);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
     if (rec->m->plan.needs.scene) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
@@ -230,6 +252,10 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
     if (extent == MASU_EXTENT_TILES) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TILES], 0);
+        return;
+    }
+    if (extent == MASU_EXTENT_PROBES) {
+        vk->CmdDispatch(rec->cmd, (rec->m->plan.scene.probes + 63) / 64, 1, 1);
         return;
     }
     if (culling) {
@@ -247,6 +273,7 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
 /* How a material is drawn: 0 without textures, then as renderer.h counts. The sun asks for no maps but
  * the masks. */
 static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
+    if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
     if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
     if (material->flags & MASU_MATERIAL_IS_MASK) return 1 + MASU_TEXTURED_MASK;
     return view ? 0 : 1 + MASU_TEXTURED_OPAQUE;
@@ -256,8 +283,11 @@ static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
  * those of the draw before. index[0] is the pass's, index[1] the batch's. */
 static void bind_maps(recorder *rec, VkPipelineLayout layout, const masu_blob_material *material,
                       struct masu_push *push, uint32_t *bound) {
-    push->index[2] = material->flags;
+    push->index[2] = (material->flags & 0xFFFFFFu) |
+                     material->occlusion_layer << MASU_MAP_OCCLUSION_SHIFT;
     push->index[3] = material->layers;
+    push->param[1] = material->detail[0];
+    push->param[2] = material->detail[1];
     if (*bound == material->texture_set) return;
     *bound = material->texture_set;
     rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
@@ -299,7 +329,14 @@ static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct ma
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             uint32_t number = v.primitives[batch->first_primitive + d].material;
             if (sweep_of(&v.materials[number], view) != sweep) continue;
-            if (!sun) push.index[0] = number;
+            if (!sun) {
+                uint32_t meso = v.materials[number].meso;
+                push.index[0] = number;
+                /* The element of the buffer of materials where its curves begin; 0: none. */
+                push.param[3] = meso == MASU_BLOB_NONE
+                                    ? 0.0f
+                                    : (float)(v.material_count + 2 * (uint64_t)meso);
+            }
             if (sweep) bind_maps(rec, layout, &v.materials[number], &push, &bound);
             vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
@@ -324,6 +361,45 @@ static void record_polygons(recorder *rec, uint32_t pass) {
     }
     uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
     for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep, push);
+}
+
+/* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. */
+static void record_transparents(recorder *rec, VkDescriptorSet set) {
+    const masu_renderer *m = rec->m;
+    const masu_vk *vk = &m->vk;
+    const masu_scene *scene = &m->plan.scene;
+    VkPipelineLayout layout = m->layouts[MASU_PASS_TRANSPARENTS];
+    VkDeviceSize zero = 0, at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
+                                m->plan.transparent_draws * MASU_DRAW_BYTES;
+    const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
+    struct masu_push push;
+    memset(&push, 0, sizeof push);
+    push.output_width = push.render_width = rec->rp->render_width;
+    push.output_height = push.render_height = rec->rp->render_height;
+    push.param[0] = log2f(m->plan.desc.rungs[rec->rung].scale);
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                        m->pipelines[MASU_PASS_TRANSPARENTS]);
+    vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 2,
+                              sets, 0, NULL);
+    vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
+    if (m->texture_layout)
+        vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
+    vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
+                           VK_INDEX_TYPE_UINT32);
+    for (uint32_t k = 0; k < m->transparent_count; k++) {
+        push.index[1] = (uint32_t)m->plan.drawn.transparents + MASU_TRANSPARENT_WORDS * k;
+        vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+        for (uint32_t c = 0; c < scene->transparent_sets; c++) {
+            if (m->texture_layout && (k == 0 || scene->transparent_sets > 1)) {
+                vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
+                                          MASU_SET_TEXTURES, 1,
+                                          &m->texture_sets[m->transparent_sets[c]], 0, NULL);
+            }
+            vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at, 1,
+                                       MASU_DRAW_BYTES);
+            at += MASU_DRAW_BYTES;
+        }
+    }
 }
 
 /* Each part of the atlas has its own. */
@@ -377,10 +453,10 @@ static VkRect2D render_area(const recorder *rec, uint32_t pass) {
                       {rec->rp->cascade_size, rec->rp->cascade_size}};
 }
 
-static void record_graphics(recorder *rec, uint32_t pass) {
+static void record_graphics(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
-    VkClearValue clear[4];
+    VkClearValue clear[5];
     memset(clear, 0, sizeof clear); /* depth 0 is infinitely far */
     VkRect2D area = render_area(rec, pass);
     VkViewport viewport = {(float)area.offset.x,
@@ -393,7 +469,7 @@ static void record_graphics(recorder *rec, uint32_t pass) {
                                    .renderPass = rec->m->render_passes[objects],
                                    .framebuffer = rec->m->framebuffers[objects],
                                    .renderArea = area,
-                                   .clearValueCount = 4,
+                                   .clearValueCount = 5,
                                    .pClearValues = clear};
     vk->CmdBeginRenderPass(rec->cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
     if (rec->m->pipelines[objects]) { /* else it only clears */
@@ -401,6 +477,7 @@ static void record_graphics(recorder *rec, uint32_t pass) {
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
         if (pass == MASU_PASS_GBUFFER || masu_is_cascade(pass)) record_polygons(rec, pass);
         if (pass == MASU_PASS_OCCLUDERS) record_occluders(rec);
+        if (pass == MASU_PASS_TRANSPARENTS) record_transparents(rec, set);
         if (pass == MASU_PASS_MARCH_FRAGMENT) record_fullscreen(rec, pass);
     }
     vk->CmdEndRenderPass(rec->cmd);
@@ -577,10 +654,10 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         int drawn = !masu_is_cascade(p) ||
                     masu_variant_draws(rec->rp, rec->variant, p - MASU_PASS_CASCADE_0);
-        if (rec->rp->active & 1u << p && drawn) {
+        if (rec->rp->active & MASU_PASS_BIT(p) && drawn) {
             begin_label(rec, masu_passes[p].name);
             barrier_before(rec, p);
-            if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p);
+            if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets[p]);
             if (p == MASU_PASS_READBACK) record_readback(rec, p);
             if (p == MASU_PASS_PRESENT) record_present(rec, p);
             if (masu_passes[p].kind == MASU_PASS_COMPUTE) record_compute(rec, p, sets[p]);
@@ -599,8 +676,8 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
 static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3 * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 9 * flights},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4 * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 13 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
          MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan.scene.texture_sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
@@ -640,28 +717,35 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
         {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
         {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+        {MASU_BIND_PROBES, MASU_BUFFER_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
         {MASU_BIND_SHADOW, MASU_BUFFER_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
+        {MASU_BIND_SKY, MASU_BUFFER_SKY, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
         {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
         {MASU_BIND_DRAWS, MASU_BUFFER_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
+        {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_TABLES, MASU_BUFFER_TABLES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_LIGHTS, MASU_BUFFER_LIGHTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_LIGHT_TILES, MASU_BUFFER_LIGHT_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
     for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            const masu_buffer_plan *b = &m->plan.buffers[rows[i].buffer];
+            /* Code that reads these is compiled away without them, but a set must be whole. */
+            masu_buffer_id id = rows[i].buffer;
+            if (id == MASU_BUFFER_SKY && !m->plan.needs.sky) id = MASU_BUFFER_FRAME;
+            const masu_buffer_plan *b = &m->plan.buffers[id];
             if (!b->bytes) continue; /* no pass of this plan looks at it */
             if (rows[i].previous && !m->plan.needs.velocity) continue;
             if (rows[i].binding == MASU_BIND_DRAWS && !m->plan.occlusion) continue;
-            int halves = m->plan.needs.velocity && (rows[i].buffer == MASU_BUFFER_FRAME ||
-                                                    rows[i].buffer == MASU_BUFFER_INSTANCES);
+            int halves = m->plan.needs.velocity && (id == MASU_BUFFER_FRAME || id == MASU_BUFFER_INSTANCES);
             uint64_t bytes = b->stride ? b->stride : b->bytes;
             if (halves) bytes /= 2;
-            VkDescriptorBufferInfo buffer = {m->objects.buffers[rows[i].buffer],
+            VkDescriptorBufferInfo buffer = {m->objects.buffers[id],
                                              f * b->stride + (rows[i].previous ? bytes : 0), bytes};
-            if (rows[i].buffer == MASU_BUFFER_FRAME)
+            if (id == MASU_BUFFER_FRAME)
                 buffer.range = sizeof(struct masu_frame_uniforms);
-            if (rows[i].buffer == MASU_BUFFER_SHADOW)
-                buffer.range = sizeof(struct masu_shadow_uniforms);
+            if (id == MASU_BUFFER_SHADOW) buffer.range = sizeof(struct masu_shadow_uniforms);
+            if (id == MASU_BUFFER_SKY) buffer.range = sizeof(struct masu_sky_uniforms);
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                           .dstSet = m->global_sets[f],
                                           .dstBinding = rows[i].binding,
@@ -744,7 +828,7 @@ static masu_result make_pass_sets(masu_renderer *m, const masu_rung_plan *rp, ui
                                   VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
                                   masu_detail *detail) {
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!(rp->active & 1u << p) || masu_passes[p].kind != MASU_PASS_COMPUTE) continue;
+        if (!(rp->active & MASU_PASS_BIT(p)) || !masu_has_set(p)) continue;
         uint32_t targets = m->plan.desc.targets.count, own = writes_target(rp, p) ? targets : 1;
         for (uint32_t t = 0; t < own; t++) {
             VkDescriptorSet *set = &m->pass_sets[(*next)++];

@@ -10,6 +10,8 @@
  *   views.c     the camera and the sun's cascades: planes, numbers of the shaders
  *   occlusion.c what of that occluders hide: boxes, the words of the shaders
  *   upload.c    scene -> device, frame uniforms, instance transforms
+ *   transparents.c  what is blended, in the order of its distance
+ *   lights.c    points and spots: what the host sets, which of them may be seen to light something
  *   shadow.c    cascades of the sun's shadow map: where they lie, when they are drawn anew
  *
  * Everything of fixed size is a member; what depends on the scene are pointers into the same host
@@ -25,7 +27,9 @@
 #include "plan.h"
 #include "scene.h"
 #include "shadow.h"
+#include "sky.h"
 #include "texture.h"
+#include "transparents.h"
 #include "vk.h"
 
 /* The ways to draw polygons with textures; those without have the pass's own pipeline. Masks have
@@ -42,7 +46,8 @@ typedef struct masu_batch {
     uint32_t first_instance, instance_count;
     uint32_t first_listed;        /* where in a view's lists its own begins */
     uint32_t first_lod, lod_count; /* of the mesh itself: its LODs */
-    uint64_t triangles;            /* of one instance */
+    uint32_t blended;              /* of the draws those of blended materials: never recorded */
+    uint64_t triangles;            /* of one instance, without those */
 } masu_batch;
 
 /* An occluder, the instances of its mesh, and how many LODs hide it too. */
@@ -123,6 +128,9 @@ struct masu_renderer {
     masu_blob_sdf_param *sdf_params;
     masu_blob_environment environment;
     float sdf_bounds[2][4]; /* min and 1/Lipschitz, max and longest ray */
+    float environment_sh[9][3]; /* of a sky from a picture */
+    masu_sky *sky;          /* NULL where the plan has no analytic sky */
+    uint64_t slot_sky[MASU_MAX_FLIGHT]; /* sky->sun_updates that the slot has; 0: a gradient */
 
     /* visible.c; positions are those of src/cull.h */
     masu_batch *batches;
@@ -147,6 +155,16 @@ struct masu_renderer {
     uint32_t turns[MASU_MAX_VIEWS]; /* frames that have drawn the view, modulo 5 */
     masu_cull_box scene_box; /* around all instances as the scene places them */
     masu_view_stats slot_views[MASU_MAX_FLIGHT][MASU_MAX_VIEWS];
+    /* transparents.c */
+    masu_transparent *transparents; /* plan.scene.transparents of them */
+    masu_far_first *far_first;      /* twice as many */
+    uint32_t transparent_count, transparent_set_count;
+    uint32_t transparent_sets[MASU_TRANSPARENT_SETS_MAX];
+    uint32_t slot_transparents[MASU_MAX_FLIGHT]; /* drawn */
+    /* lights.c */
+    masu_local_light_state *lights;
+    uint64_t *light_names; /* FNV-1a 64 of the name, 0: none */
+    uint32_t slot_lights[MASU_MAX_FLIGHT]; /* in view */
     /* shadow.c */
     masu_cascade cascades[MASU_CASCADES_MAX]; /* as drawn last */
     double shadow_distance;                    /* view depth where shadows end in this frame */
@@ -168,10 +186,10 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail);
  * them, then those of textures. */
 uint32_t masu_load_chunks(const masu_frame_plan *plan);
 uint32_t masu_buffer_chunks(const masu_frame_plan *plan);
-/* One chunk: `bytes` of `buffer` from `offset`. */
+/* One chunk: `bytes` of `buffer`, which has `whole`, from `offset`. */
 typedef struct masu_chunk {
     masu_buffer_id buffer;
-    uint64_t offset, bytes;
+    uint64_t offset, bytes, whole;
 } masu_chunk;
 masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index);
 /* Copies what a frame needs later from the blob into the host block. */
@@ -179,6 +197,15 @@ void masu_keep_scene(masu_renderer *m);
 /* Writes camera, light, time and parameters to a slot. Checks first, writes after. */
 masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
                              masu_detail *detail);
+/* Unit vector of v; 0: it has none. */
+int masu_unit(const float v[3], float out[3]);
+/* light.c: checks the light of a frame, the scene's if none is given, and writes what does not follow
+ * from an analytic sky; `out` has it with defaults. */
+masu_result masu_write_light(const masu_renderer *m, const masu_light *given, double eye_y,
+                             struct masu_frame_uniforms *u, masu_light *out, masu_detail *detail);
+/* The frame's analytic sky, or that it has none, to a slot; its light to the uniforms. */
+void masu_write_sky(masu_renderer *m, const masu_light *light, uint32_t slot,
+                    struct masu_frame_uniforms *u);
 /* Fits the cascades of the shadow map to the camera and sun of the uniforms, writes them to a slot
  * and returns a bit for each that the frame has to draw. */
 uint32_t masu_write_shadow(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
@@ -188,6 +215,12 @@ void masu_note_caster(masu_renderer *m, const masu_cull_box *box);
 void masu_write_instances(masu_renderer *m, uint32_t slot, int cut);
 /* Whether nothing of the frame before counts: it is taken to be as this one. */
 int masu_is_cut(const masu_renderer *m, const masu_frame_desc *frame);
+
+/* Copies the lights of the blob. */
+void masu_keep_lights(masu_renderer *m, const masu_scene_view *v);
+/* Writes those that may be seen to light something to a slot. culls 0: all of them. */
+void masu_write_lights(masu_renderer *m, uint32_t slot, const struct masu_frame_uniforms *u,
+                       const double eye[3], int culls);
 
 /* Copies groups and bounds from the blob; needs m->instances. */
 void masu_keep_visible(masu_renderer *m, const masu_scene_view *v);
@@ -200,6 +233,11 @@ void masu_write_commands(masu_renderer *m, const masu_scene_view *v);
 void masu_move_box(masu_renderer *m, uint32_t instance);
 /* Writes which instances a view draws to a slot. culls 0: all of them. */
 void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls);
+
+/* Copies what is blended from the blob. */
+void masu_keep_transparents(masu_renderer *m, const masu_scene_view *v);
+/* Writes it to a slot, sorted; after masu_write_visible for the camera. */
+void masu_write_transparents(masu_renderer *m, uint32_t slot);
 
 /* Sets up the views of a frame, of the camera and the sun in `u`. */
 void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],

@@ -3,6 +3,8 @@
  * in 64. */
 #include "scene.h"
 
+#include "scene_reader.h"
+
 #include "cull.h"
 #include "error.h"
 #include "shared/masu_shared.h"
@@ -56,33 +58,13 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_TEXTURES] = {"textures", sizeof(masu_blob_texture), MASU_TEXTURE_ARRAYS_MAX, 0},
     [MASU_BLOB_TEXTURE_SETS] = {"texture sets", sizeof(masu_blob_texture_set), MANY, 0},
     [MASU_BLOB_TEXELS] = {"texels", MASU_BLOB_ALIGN, MANY, 0},
+    [MASU_BLOB_MESO] = {"meso", sizeof(masu_blob_meso), MANY, 0},
+    [MASU_BLOB_LIGHTS] = {"lights", sizeof(masu_blob_light), MASU_BLOB_LIGHTS_MAX, 0},
+    [MASU_BLOB_PROBES] = {"probes", sizeof(masu_blob_probes), 1, 0},
+    [MASU_BLOB_PROBE_DATA] = {"probe data", sizeof(uint32_t), MANY, 0},
+    [MASU_BLOB_ENVIRONMENT_MAP] = {"environment map", sizeof(masu_blob_environment_map), 1, 0},
+    [MASU_BLOB_ENVIRONMENT_TEXELS] = {"environment texels", sizeof(uint32_t), MANY, 0},
 };
-
-typedef struct reader {
-    const unsigned char *bytes;
-    masu_scene_view view;
-    uint64_t counts[MASU_BLOB_KIND_COUNT];
-    masu_detail *detail;
-} reader;
-
-static masu_result bad(reader *r, const char *what, uint64_t element, const char *problem) {
-    return masu_fail(r->detail, MASU_ERROR_SCENE, what, 0, element, "scene blob: %s[%llu]: %s",
-                     what, (unsigned long long)element, problem);
-}
-
-static int finite_all(const float *v, uint32_t n) {
-    for (uint32_t i = 0; i < n; i++) {
-        if (!isfinite(v[i])) return 0;
-    }
-    return 1;
-}
-
-static int within(const float *v, uint32_t n, float low, float high) {
-    for (uint32_t i = 0; i < n; i++) {
-        if (!(v[i] >= low && v[i] <= high)) return 0;
-    }
-    return 1;
-}
 
 /* ---- Header and sections --------------------------------------------------------------------- */
 
@@ -167,6 +149,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .occluders = start[MASU_BLOB_OCCLUDERS],
                                 .lods = start[MASU_BLOB_LODS],
                                 .materials = start[MASU_BLOB_MATERIALS],
+                                .material_count = r->counts[MASU_BLOB_MATERIALS],
                                 .camera_keys = start[MASU_BLOB_CAMERA_KEYS],
                                 .environment = start[MASU_BLOB_ENVIRONMENT],
                                 .shadow = start[MASU_BLOB_SHADOW],
@@ -178,6 +161,13 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .textures = start[MASU_BLOB_TEXTURES],
                                 .texture_sets = start[MASU_BLOB_TEXTURE_SETS],
                                 .texels = start[MASU_BLOB_TEXELS],
+                                .meso = start[MASU_BLOB_MESO],
+                                .lights = start[MASU_BLOB_LIGHTS],
+                                .probes = start[MASU_BLOB_PROBES],
+                                .probe_data = start[MASU_BLOB_PROBE_DATA],
+                                .probe_words = r->counts[MASU_BLOB_PROBE_DATA],
+                                .environment_map = start[MASU_BLOB_ENVIRONMENT_MAP],
+                                .environment_texels = start[MASU_BLOB_ENVIRONMENT_TEXELS],
                                 .names = start[MASU_BLOB_NAMES],
                                 .name_bytes = r->counts[MASU_BLOB_NAMES]};
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
@@ -189,10 +179,6 @@ static masu_result read_sections(reader *r, uint64_t given) {
 }
 
 /* ---- Contents -------------------------------------------------------------------------------- */
-
-static int name_ok(const reader *r, uint32_t name) {
-    return name == MASU_BLOB_NONE || name < r->view.name_bytes;
-}
 
 /* Culling believes bounds. Two boxes; a point is a box too. */
 static int box_holds(const float *low, const float *high, const float *from, const float *to) {
@@ -458,6 +444,7 @@ static int slot_takes(uint32_t slot, uint32_t format) {
     case MASU_SLOT_BASE: return format == MASU_TEXTURE_BC1_SRGB || format == MASU_TEXTURE_BC3_SRGB;
     case MASU_SLOT_NORMAL: return format == MASU_TEXTURE_BC5;
     case MASU_SLOT_SURFACE: return format == MASU_TEXTURE_BC4 || format == MASU_TEXTURE_BC5;
+    case MASU_SLOT_OCCLUSION: return format == MASU_TEXTURE_BC4;
     default: return format == MASU_TEXTURE_BC1_SRGB;
     }
 }
@@ -487,7 +474,7 @@ static masu_result check_maps(reader *r, uint64_t i) {
     uint32_t alpha = MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK;
     if (m->flags & ~(uint32_t)MASU_MATERIAL_KNOWN) return bad(r, "materials", i, "unknown flags");
     if (!maps) {
-        if (m->texture_set || m->layers || m->flags & alpha) {
+        if (m->texture_set || m->layers || m->occlusion_layer || m->flags & alpha) {
             return bad(r, "materials", i, "has no textures, but speaks of them");
         }
         return MASU_OK;
@@ -501,7 +488,9 @@ static masu_result check_maps(reader *r, uint64_t i) {
         if (set->texture[slot] == MASU_BLOB_NONE) {
             return bad(r, "materials", i, "its texture set lacks a texture");
         }
-        if ((m->layers >> 8 * slot & 0xFF) >= r->view.textures[set->texture[slot]].layers) {
+        uint32_t layer = slot == MASU_SLOT_OCCLUSION ? m->occlusion_layer
+                                                     : m->layers >> 8 * slot & 0xFF;
+        if (layer > 0xFF || layer >= r->view.textures[set->texture[slot]].layers) {
             return bad(r, "materials", i, "no such layer");
         }
     }
@@ -728,6 +717,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     if (!result) result = check_occluders(&r, &pairs);
     if (!result) result = check_looks(&r);
     if (!result) result = check_shadow(&r);
+    if (!result) result = masu_check_lighting(&r);
     if (!result) result = check_textures(&r);
     if (!result) result = check_sdf(&r);
     if (result) return result;
@@ -765,6 +755,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     for (uint32_t i = 0; i < out->materials; i++) {
         if (r.view.materials[i].flags & MASU_MATERIAL_IS_MASK) out->masks = 1;
     }
+    masu_look_at_lighting(&r, out);
     look_at_draws(&r, out);
     return MASU_OK;
 }

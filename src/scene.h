@@ -22,6 +22,7 @@ typedef struct masu_scene_view {
     const masu_blob_lod *lods;
     const masu_blob_occluder *occluders;
     const masu_blob_material *materials;
+    uint64_t material_count;
     const masu_blob_camera_key *camera_keys;
     const masu_blob_environment *environment;
     const masu_blob_shadow *shadow; /* NULL: none */
@@ -33,6 +34,13 @@ typedef struct masu_scene_view {
     const masu_blob_texture *textures;
     const masu_blob_texture_set *texture_sets;
     const unsigned char *texels;
+    const masu_blob_meso *meso;
+    const masu_blob_light *lights;
+    const masu_blob_probes *probes; /* NULL: none */
+    const uint32_t *probe_data;
+    uint64_t probe_words;
+    const masu_blob_environment_map *environment_map; /* NULL: none */
+    const uint32_t *environment_texels;
     struct {
         const uint32_t *words; /* NULL: none */
         uint64_t count;

@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "shared/masu_shared.h"
+#include "split_sum.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,7 +14,8 @@
 
 static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDICES,
                                           MASU_BUFFER_TEXCOORDS, MASU_BUFFER_MATERIALS,
-                                          MASU_BUFFER_SLOTS};
+                                          MASU_BUFFER_SLOTS, MASU_BUFFER_TABLES,
+                                          MASU_BUFFER_PROBES};
 
 #define RESIDENT_COUNT (sizeof resident / sizeof *resident)
 
@@ -41,18 +43,68 @@ masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
         uint32_t chunks = (uint32_t)((bytes + step - 1) / step);
         if (index < chunks) {
             uint64_t offset = index * step, left = bytes - offset;
-            return (masu_chunk){resident[i], offset, left < step ? left : step};
+            return (masu_chunk){resident[i], offset, left < step ? left : step, bytes};
         }
         index -= chunks;
     }
-    return (masu_chunk){MASU_BUFFER_COUNT, 0, 0};
+    return (masu_chunk){MASU_BUFFER_COUNT, 0, 0, 0};
 }
 
 static struct masu_material_data device_material(const masu_blob_material *m) {
     struct masu_material_data d = {
         {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
-        {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic}};
+        {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic},
+        {m->specular, m->coat, m->coat_roughness, m->opacity}};
     return d;
+}
+
+_Static_assert(sizeof(masu_blob_meso) == 2 * sizeof(struct masu_material_data),
+               "curves lie in the buffer of materials");
+
+/* An element of the buffer of materials: a material, or half of the curves of a small relief. */
+static struct masu_material_data material_element(const masu_scene_view *v, uint64_t i) {
+    struct masu_material_data d;
+    if (i < v->material_count) return device_material(&v->materials[i]);
+    memcpy(&d, (const unsigned char *)v->meso + (i - v->material_count) * sizeof d, sizeof d);
+    return d;
+}
+
+_Static_assert(sizeof(masu_blob_probes) == sizeof(struct masu_probe_grid), "probes");
+
+/* The grid, its data, and room that the GPU fills. */
+static void write_probes(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
+    const struct {
+        const void *from;
+        uint64_t bytes;
+    } parts[] = {{v->probes, sizeof *v->probes},
+                 {v->probe_data, v->probe_words * sizeof(uint32_t)}};
+    uint64_t start = 0;
+    memset(to, 0, (size_t)chunk.bytes);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        uint64_t end = start + parts[i].bytes, last = chunk.offset + chunk.bytes;
+        uint64_t low = start > chunk.offset ? start : chunk.offset, high = end < last ? end : last;
+        if (low < high) {
+            memcpy(to + (low - chunk.offset), (const unsigned char *)parts[i].from + (low - start),
+                   (size_t)(high - low));
+        }
+        start = end;
+    }
+}
+
+/* The library's tables, then the scene's picture of a sky. */
+static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
+    const masu_blob_environment_map *map = v->environment_map;
+    uint64_t texels = map ? masu_blob_environment_texels(map->size, map->mips) : 0;
+    uint64_t own = chunk.whole - texels * sizeof(uint32_t), from = 0;
+    if (chunk.offset < own) {
+        from = own - chunk.offset < chunk.bytes ? own - chunk.offset : chunk.bytes;
+        memcpy(to, (const unsigned char *)masu_split_sum + chunk.offset, (size_t)from);
+    }
+    if (from < chunk.bytes) {
+        memcpy(to + from,
+               (const unsigned char *)v->environment_texels + (chunk.offset + from - own),
+               (size_t)(chunk.bytes - from));
+    }
 }
 
 static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
@@ -62,6 +114,8 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
         memcpy(to, (const unsigned char *)v->indices + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_TEXCOORDS) {
         memcpy(to, (const unsigned char *)v->texcoords + chunk.offset, (size_t)chunk.bytes);
+    } else if (chunk.buffer == MASU_BUFFER_TABLES) {
+        write_tables(v, chunk, to);
     } else if (chunk.buffer == MASU_BUFFER_SLOTS) {
         /* The buffer may hold two sets; both begin as the blob has them. */
         uint64_t size = v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
@@ -70,13 +124,15 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
             memcpy(to + (at - chunk.offset), (const unsigned char *)v->slots + skip, (size_t)part);
             at += part;
         }
+    } else if (chunk.buffer == MASU_BUFFER_PROBES) {
+        write_probes(v, chunk, to);
     } else if (chunk.buffer == MASU_BUFFER_MATERIALS) {
         /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy
          * the part. */
         uint64_t size = sizeof(struct masu_material_data), at = chunk.offset,
                  end = at + chunk.bytes;
         while (at < end) {
-            struct masu_material_data d = device_material(&v->materials[at / size]);
+            struct masu_material_data d = material_element(v, at / size);
             uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
             memcpy(to + (at - chunk.offset), (const unsigned char *)&d + skip, (size_t)part);
             at += part;
@@ -101,7 +157,8 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     if (!m->load_next && !m->plan.staged && m->plan.desc.scene) {
         masu_scene_view v = masu_scene_look(m->plan.desc.scene);
         for (size_t i = 0; i < RESIDENT_COUNT; i++) {
-            masu_chunk all = {resident[i], 0, m->plan.buffers[resident[i]].bytes};
+            uint64_t bytes = m->plan.buffers[resident[i]].bytes;
+            masu_chunk all = {resident[i], 0, bytes, bytes};
             if (all.bytes) write_resident(&v, all, masu_buffer_pointer(m, resident[i], 0));
         }
     }
@@ -137,6 +194,10 @@ void masu_keep_scene(masu_renderer *m) {
     if (!scene) return;
     masu_scene_view v = masu_scene_look(scene);
     m->environment = *v.environment;
+    if (v.environment_map) {
+        for (uint32_t k = 0; k < 9; k++)
+            memcpy(m->environment_sh[k], v.environment_map->sh[k], sizeof m->environment_sh[k]);
+    }
     for (uint32_t i = 0; i < scene->instances; i++) {
         memcpy(&m->instances[i], v.instances[i].transform, sizeof m->instances[i]);
         if (m->plan.needs.velocity) m->previous_instances[i] = m->instances[i];
@@ -146,8 +207,10 @@ void masu_keep_scene(masu_renderer *m) {
         m->instance_dirty[i] = frames_to_write(m);
     }
     m->dirty_count = scene->instances;
+    masu_keep_lights(m, &v);
     masu_keep_visible(m, &v);
     masu_keep_occluders(m, &v);
+    masu_keep_transparents(m, &v);
     if (scene->camera_keys)
         memcpy(m->camera_keys, v.camera_keys, scene->camera_keys * sizeof *v.camera_keys);
     if (scene->sdf_params)
@@ -217,7 +280,7 @@ masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance
 
 /* Unit vector of v, or 0 if it has none. The scale keeps 1e-30 and 1e+30 out of under- and
  * overflow. */
-static int unit(const float v[3], float out[3]) {
+int masu_unit(const float v[3], float out[3]) {
     double x = (double)v[0], y = (double)v[1], z = (double)v[2];
     double length = sqrt(x * x + y * y + z * z);
     if (!(length > 0.0) || !isfinite(length)) return 0;
@@ -254,7 +317,7 @@ masu_result masu_camera_at(const masu_renderer *m, double time, masu_camera *out
     /* Two keys whose positions and targets cross over meet in a point half-way: look along the
      * first key's. */
     float ignored[3];
-    if (!unit(out->forward, ignored)) {
+    if (!masu_unit(out->forward, ignored)) {
         for (uint32_t i = 0; i < 3; i++) out->forward[i] = a->target[i] - a->position[i];
     }
     return MASU_OK;
@@ -272,12 +335,12 @@ static masu_result write_camera(masu_renderer *m, const masu_camera *c,
             return bad_camera(detail, "camera.position", "is not finite or beyond 1e15 m");
         }
     }
-    if (!unit(c->forward, forward))
+    if (!masu_unit(c->forward, forward))
         return bad_camera(detail, "camera.forward", "is zero or not finite");
     int own_up = c->up[0] != 0.0f || c->up[1] != 0.0f || c->up[2] != 0.0f;
-    if (own_up && !unit(c->up, wish)) return bad_camera(detail, "camera.up", "is not finite");
+    if (own_up && !masu_unit(c->up, wish)) return bad_camera(detail, "camera.up", "is not finite");
     cross(forward, wish, right);
-    if (!unit(right, right)) {
+    if (!masu_unit(right, right)) {
         if (own_up) return bad_camera(detail, "camera.up", "is parallel to camera.forward");
         /* Looking straight up or down without an up of one's own: any right-hand side will do. */
         right[0] = 1.0f, right[1] = right[2] = 0.0f;
@@ -337,46 +400,6 @@ static void write_anchor(const masu_renderer *m, const masu_camera *c,
     u->sdf_max[3] = m->sdf_bounds[1][3];
 }
 
-static int light_ok(const float *v) {
-    for (uint32_t i = 0; i < 3; i++) {
-        if (!(v[i] >= 0.0f && v[i] <= 1e9f)) return 0;
-    }
-    return 1;
-}
-
-static masu_result write_light(const masu_renderer *m, const masu_light *given,
-                               struct masu_frame_uniforms *u, masu_detail *detail) {
-    const masu_blob_environment *e = &m->environment;
-    masu_light light;
-    if (given) {
-        light = *given;
-    } else {
-        light = (masu_light){.exposure = e->exposure};
-        memcpy(light.sun_direction, e->sun_direction, sizeof light.sun_direction);
-        memcpy(light.sun_color, e->sun_color, sizeof light.sun_color);
-        memcpy(light.ambient, e->ambient, sizeof light.ambient);
-        memcpy(light.sky_zenith, e->sky_zenith, sizeof light.sky_zenith);
-        memcpy(light.sky_horizon, e->sky_horizon, sizeof light.sky_horizon);
-    }
-    if (light.exposure == 0.0f) light.exposure = 1.0f;
-    if (!(light.exposure >= 1e-9f && light.exposure <= 1e9f)) {
-        return bad_camera(detail, "light.exposure", "is not 1e-9 to 1e9");
-    }
-    if (!unit(light.sun_direction, u->sun_direction)) {
-        return bad_camera(detail, "light.sun_direction", "is zero or not finite");
-    }
-    if (!light_ok(light.sun_color) || !light_ok(light.ambient) || !light_ok(light.sky_zenith) ||
-        !light_ok(light.sky_horizon)) {
-        return bad_camera(detail, "light", "has a colour that is not 0 to 1e9");
-    }
-    u->sun_direction[3] = light.exposure;
-    memcpy(u->sun_color, light.sun_color, sizeof light.sun_color);
-    memcpy(u->ambient, light.ambient, sizeof light.ambient);
-    memcpy(u->sky_zenith, light.sky_zenith, sizeof light.sky_zenith);
-    memcpy(u->sky_horizon, light.sky_horizon, sizeof light.sky_horizon);
-    return MASU_OK;
-}
-
 int masu_is_cut(const masu_renderer *m, const masu_frame_desc *f) {
     return f->cut || m->frame == 0;
 }
@@ -398,7 +421,8 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
                          "camera is NULL and the scene has no camera path");
     }
     masu_result result = write_camera(m, &camera, &u, detail);
-    if (!result) result = write_light(m, f->light, &u, detail);
+    masu_light light;
+    if (!result) result = masu_write_light(m, f->light, camera.position[1], &u, &light, detail);
     if (result) return result;
     uint32_t params = m->plan.scene.sdf_params, given = f->sdf_params ? f->sdf_param_count : 0;
     if (given > params) {
@@ -415,12 +439,15 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
         u.sdf_params[i / 4][i % 4] = v < p->minimum ? p->minimum : v > p->maximum ? p->maximum : v;
     }
     write_anchor(m, &camera, &u);
+    masu_write_sky(m, &light, slot, &u);
     u.eye_hi[3] = (float)f->time;
     u.eye_lo[3] = f->time_step;
     unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);
     memcpy(to, &u, sizeof u);
     m->drawn = m->plan.needs.shadow ? masu_write_shadow(m, f, slot, &u, camera.position) : 0;
     masu_set_views(m, &u, camera.position, f->rung);
+    masu_write_lights(m, slot, &u, camera.position,
+                      m->plan.desc.rungs[f->rung].frustum != MASU_OFF);
     if (m->plan.needs.velocity) {
         uint64_t half = m->plan.buffers[MASU_BUFFER_FRAME].stride / 2;
         memcpy(to + half, masu_is_cut(m, f) ? &u : m->previous, sizeof u);

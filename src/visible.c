@@ -39,7 +39,12 @@ static masu_batch *keep_batch(masu_renderer *m, const masu_scene_view *v, uint32
         b->first_listed = b[-1].first_listed + b[-1].instance_count;
     }
     for (uint32_t p = 0; p < primitives; p++) {
-        b->triangles += v->primitives[first_primitive + p].index_count / 3;
+        const masu_blob_primitive *one = &v->primitives[first_primitive + p];
+        if (v->materials[one->material].flags & MASU_MATERIAL_IS_BLEND) {
+            b->blended++; /* transparents.c draws it */
+        } else {
+            b->triangles += one->index_count / 3;
+        }
     }
     m->batch_count++;
     m->large_count += instances > 64;
@@ -223,7 +228,7 @@ void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int cull
             }
             counts->instances += kept[level];
             counts->triangles += kept[level] * batch->triangles;
-            counts->draws += kept[level] ? batch->draw_count : 0;
+            counts->draws += kept[level] ? batch->draw_count - batch->blended : 0;
         }
     }
 }

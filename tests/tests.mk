@@ -43,10 +43,24 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_LIBS)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
 
+# Rays as the truth of ambient occlusion.
+$(BUILD)/tests/gpu/test_ao: LIBS += -lembree3
+
 # What masu-bake makes of meshes, tested apart from its command line.
-BAKE_OBJECTS := $(call objects,$(wildcard tools/bake_*.c)) $(SDFC_OBJECTS) $(CLI_OBJECTS)
-$(BUILD)/tests/unit/test_bake_detail: LIBS = -lcmocka $(BAKE_LIBS)
-$(BUILD)/tests/unit/test_bake_detail: $(BAKE_OBJECTS)
+BAKE_OBJECTS := $(call objects,$(wildcard tools/bake_*.c) tools/probe_light.c) $(SDFC_OBJECTS) $(CLI_OBJECTS)
+$(BUILD)/tests/unit/test_bake_detail $(BUILD)/tests/unit/test_probes: LIBS = -lcmocka $(BAKE_LIBS)
+$(BUILD)/tests/unit/test_bake_detail $(BUILD)/tests/unit/test_probes: $(BAKE_OBJECTS)
+
+# Light probes as the tools know them, beside what the GPU makes of them.
+$(BUILD)/tests/gpu/test_probes: $(call objects,tools/probe_light.c)
+
+$(BUILD)/tests/unit/test_environment: LIBS = -lcmocka $(BAKE_LIBS)
+$(BUILD)/tests/unit/test_environment: $(BAKE_OBJECTS)
+
+# What masu-meso measures and fits.
+$(BUILD)/tests/unit/test_meso: LIBS = -lcmocka $(MESO_LIBS)
+$(BUILD)/tests/unit/test_meso: $(MESO_OBJECTS) $(BAKE_OBJECTS)
+$(BUILD)/tests/gpu/test_meso: $(call objects,tools/meso_model.c)
 
 # ---- Stiff and extreme scenes --------------------------------------------------------------------
 
@@ -86,7 +100,8 @@ $(BUILD)/tests/fuzz/fuzz_sdfc $(BUILD)/tests/unit/test_sdfc: $(SDFC_OBJECTS)
 fuzz-sdfc: $(SDFC_OBJECTS)
 
 # What masu-bake makes of texels.
-$(BUILD)/tests/unit/test_texels: $(call objects,tools/bake_texel.c)
+$(BUILD)/tests/unit/test_texels $(BUILD)/tests/unit/test_normal_filter: $(call objects,tools/bake_texel.c)
+$(BUILD)/tests/unit/test_masks: $(call objects,tools/bake_texel.c tools/bake_mask.c)
 
 
 FUZZ      ?= scene

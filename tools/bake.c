@@ -8,6 +8,8 @@
  *   bake_groups.c, bake_occluders.c           what is culled together, and what hides it
  *   bake_inside.c                             boxes inside of meshes
  *   bake_image.c, bake_texel.c, bake_texture.c   pictures to texels, mips, blocks
+ *   bake_trace.c, bake_path.c                 rays and paths of light through the scene
+ *   bake_probes.c, bake_probe_report.c        light probes, and what they are off by
  *   bake_sdf.c                                the scene's march shader, by the shader tools
  *   bake_blob.c, bake_file.c                  bytes, and files that are written whole
  *
@@ -41,7 +43,10 @@ enum {
     OPTION_MODELS,
     OPTION_VARIANTS,
     OPTION_NO_TEXTURES,
-    OPTION_TEXTURE_PATH
+    OPTION_TEXTURE_PATH,
+    OPTION_PROBES,
+    OPTION_PROBE_REPORT,
+    OPTION_THREADS
 };
 
 typedef struct totals {
@@ -171,8 +176,33 @@ static bool accepted(const char *input, const masu_bake_buffer *blob) {
     return false;
 }
 
+#define REPORT_POINTS 1024u
+#define REPORT_RAYS 4096u
+
+static bool add_probes(const masu_bake_probe_settings *probes, bool report,
+                       masu_bake_content *content) {
+    if (!probes->wanted) return true;
+    masu_bake_trace *trace = masu_bake_trace_make(content);
+    masu_bake_probe_report done = {0};
+    bool good = trace && masu_bake_make_probes(content, probes, trace, &done);
+    masu_cli_progress_clear();
+    if (good && !masu_cli_quiet()) {
+        printf("%llu light probes (%llu inside of things), %llu bytes, %llu rays at %llu triangles "
+               "in %.2f s: %.2f million a second\n",
+               (unsigned long long)done.probes, (unsigned long long)done.invalid,
+               (unsigned long long)done.bytes, (unsigned long long)done.rays,
+               (unsigned long long)done.triangles, done.seconds,
+               (double)done.rays / done.seconds * 1e-6);
+    }
+    if (good && report) {
+        masu_bake_report_probes(content, probes, trace, REPORT_POINTS, REPORT_RAYS);
+    }
+    masu_bake_trace_release(trace);
+    return good;
+}
+
 static bool bake(const masu_bake_request *request, const char *output, const char *stats,
-                 masu_bake_content *content) {
+                 bool report, masu_bake_content *content) {
     double started = now();
     bool good = is_scene(request->input) ? masu_bake_read_scene(request, content)
                                          : masu_bake_bare_model(request, content);
@@ -183,6 +213,8 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
     masu_bake_groups(content);
     masu_bake_sort_occluders(content);
     masu_bake_drop_occluders(content);
+    if (!add_probes(request->probes, report, content)) return false;
+    if (!output) return true;
     masu_bake_buffer blob = {0};
     masu_bake_make_blob(content, &blob);
     masu_cli_progress("writing %s", output);
@@ -196,7 +228,10 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
 
 static int run(masu_cli *cli) {
     masu_bake_detail detail = {.levels = 0};
-    masu_bake_request request = {.models_directory = ASSIMP_MODELS, .detail = &detail};
+    masu_bake_probe_settings probes = masu_bake_probe_defaults();
+    masu_bake_request request = {
+        .models_directory = ASSIMP_MODELS, .detail = &detail, .probes = &probes};
+    bool report = false;
     const char *output = NULL, *stats = NULL;
     for (;;) {
         switch (masu_cli_next(cli)) {
@@ -205,6 +240,11 @@ static int run(masu_cli *cli) {
         case OPTION_MODELS: request.models_directory = cli->value; break;
         case OPTION_TEXTURE_PATH: request.texture_path = cli->value; break;
         case OPTION_NO_TEXTURES: request.textures = MASU_BAKE_TEXTURES_OFF; break;
+        case OPTION_PROBES: probes.wanted = true; break;
+        case OPTION_PROBE_REPORT: probes.wanted = report = true; break;
+        case OPTION_THREADS:
+            if (!masu_cli_uint(cli, 1, 64, &probes.threads)) return MASU_CLI_USAGE;
+            break;
         case OPTION_VARIANTS: request.variants = true; break;
         case MASU_CLI_ARGUMENT:
             if (request.input) return masu_cli_usage_error("more than one input: %s", cli->value);
@@ -213,9 +253,9 @@ static int run(masu_cli *cli) {
         case MASU_CLI_EXIT: return cli->exit_code;
         case MASU_CLI_END: {
             if (!request.input) return masu_cli_usage_error("no MODEL or SCENE.json given");
-            if (!output) return masu_cli_usage_error("no output given; add -o X.masu");
+            if (!output && !report) return masu_cli_usage_error("no output given; add -o X.masu");
             masu_bake_content content = {0};
-            bool good = bake(&request, output, stats, &content);
+            bool good = bake(&request, output, stats, report, &content);
             masu_bake_content_release(&content);
             return good ? MASU_CLI_OK : MASU_CLI_FAILURE;
         }
@@ -233,6 +273,12 @@ int main(int argc, char **argv) {
          0},
         {"texture-path", "DIR:...", "where to look for textures that are not where models say",
          OPTION_TEXTURE_PATH, 0},
+        {"probes", NULL, "bake light probes, also if the scene asks for none", OPTION_PROBES, 0},
+        {"probe-report", NULL,
+         "bake them and print what they are off by from path-traced truth;\nneeds no -o",
+         OPTION_PROBE_REPORT, 0},
+        {"threads", "N", "threads that trace light probes; default: all processors",
+         OPTION_THREADS, 0},
         {"stats", "FILE", "write counts, bytes, bounds, seconds and peak memory as JSON",
          OPTION_STATS, 0},
         {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",

@@ -67,12 +67,15 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_GROUPS] = "groups",
         [MASU_BLOB_GROUP_ITEMS] = "group_items",
         [MASU_BLOB_LODS] = "lods",
+        [MASU_BLOB_LIGHTS] = "lights",
         [MASU_BLOB_OCCLUDERS] = "occluders",
         [MASU_BLOB_NAMES] = "names",
         [MASU_BLOB_TEXCOORDS] = "texcoords",
         [MASU_BLOB_TEXTURES] = "textures",
         [MASU_BLOB_TEXTURE_SETS] = "texture_sets",
         [MASU_BLOB_TEXELS] = "texels",
+        [MASU_BLOB_PROBES] = "probes",
+        [MASU_BLOB_PROBE_DATA] = "probe_data",
     };
     return names[kind];
 }

@@ -2,6 +2,7 @@
  * followed. The rules are those of blob.h for geometry, instances and materials; the finished scene
  * is judged by the runtime's own reader, masu_scene_bind. */
 #include "bake_content.h"
+#include "lights.h"
 
 static bool finite_all(const float *values, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -134,7 +135,7 @@ static const char *check_maps(const masu_bake_content *c) {
                 return "a map of no picture";
             }
         }
-        if (m->gloss > 1 || m->alpha > MASU_BAKE_ALPHA_BLEND || m->wrap[0] > 2 || m->wrap[1] > 2 ||
+        if (m->gloss > 1 || m->additive > 1 || m->alpha > MASU_BAKE_ALPHA_BLEND || m->wrap[0] > 2 || m->wrap[1] > 2 ||
             !in_range(&m->cutoff, 1, 0, 1) || !in_range(&m->normal_scale, 1, -16, 16)) {
             return "a map out of range";
         }
@@ -163,11 +164,28 @@ static const char *check_materials(const masu_bake_content *c) {
     return NULL;
 }
 
+static const char *check_lights(const masu_bake_content *c) {
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_LIGHTS); i++) {
+        const masu_blob_light *light = &MASU_BAKE_LIGHTS(c)[i];
+        double value;
+        masu_local_light_state state = masu_light_state_of(light);
+        if (light->type > MASU_LIGHT_SPOT || masu_light_state_wrong(&state, &value))
+            return "a light with a value out of range";
+        if (light->parent != MASU_BLOB_NONE &&
+            light->parent >= masu_bake_count(c, MASU_BLOB_INSTANCES)) {
+            return "a light of no instance";
+        }
+        if (!name_ok(c, light->name)) return "a name out of range";
+    }
+    return NULL;
+}
+
 const char *masu_bake_check(const masu_bake_content *piece) {
     const char *problem = check_sections(piece);
     if (!problem) problem = check_materials(piece);
     if (!problem) problem = check_maps(piece);
     if (!problem) problem = check_geometry(piece);
     if (!problem) problem = check_instances(piece);
+    if (!problem) problem = check_lights(piece);
     return problem;
 }

@@ -4,6 +4,7 @@
 #include "bake_content.h"
 #include "cli.h"
 
+#include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,6 +42,12 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_TEXTURES] = sizeof(masu_blob_texture),
     [MASU_BLOB_TEXTURE_SETS] = sizeof(masu_blob_texture_set),
     [MASU_BLOB_TEXELS] = MASU_BLOB_ALIGN,
+    [MASU_BLOB_MESO] = sizeof(masu_blob_meso),
+    [MASU_BLOB_LIGHTS] = sizeof(masu_blob_light),
+    [MASU_BLOB_PROBES] = sizeof(masu_blob_probes),
+    [MASU_BLOB_PROBE_DATA] = sizeof(uint32_t),
+    [MASU_BLOB_ENVIRONMENT_MAP] = sizeof(masu_blob_environment_map),
+    [MASU_BLOB_ENVIRONMENT_TEXELS] = sizeof(uint32_t),
 };
 
 /* ---- arrays ---- */
@@ -89,7 +96,7 @@ void masu_bake_release(masu_bake_buffer *buffer) {
 uint32_t masu_bake_stride(uint32_t kind) { return strides[kind]; }
 
 uint64_t masu_bake_count(const masu_bake_content *content, uint32_t kind) {
-    return content->section[kind].bytes / masu_bake_stride(kind);
+    return masu_bake_stride(kind) ? content->section[kind].bytes / masu_bake_stride(kind) : 0;
 }
 
 void masu_bake_content_release(masu_bake_content *content) {
@@ -151,8 +158,13 @@ const char *masu_bake_name_text(const masu_bake_content *content, uint32_t name)
 /* ---- materials, meshes, instances ---- */
 
 masu_blob_material masu_bake_default_material(void) {
-    return (masu_blob_material){
-        .base_color = {0.6f, 0.6f, 0.6f}, .roughness = 0.6f, .name = MASU_BLOB_NONE};
+    return (masu_blob_material){.base_color = {0.6f, 0.6f, 0.6f},
+                                .roughness = 0.6f,
+                                .name = MASU_BLOB_NONE,
+                                .specular = 0.5f,
+                                .opacity = 1.0f,
+                                .detail = {1.0f, 1.0f},
+                                .meso = MASU_BLOB_NONE};
 }
 
 masu_bake_maps masu_bake_no_maps(void) {
@@ -249,33 +261,70 @@ static masu_bake_affine instance_transform(const masu_blob_instance *instance) {
 
 /* ---- placing a piece ---- */
 
-static uint32_t placed_material(masu_bake_content *scene, const masu_bake_content *piece,
-                                uint32_t index, const masu_bake_override *override) {
-    masu_blob_material material = MASU_BAKE_MATERIALS(piece)[index];
-    const masu_blob_material *v = &override->value;
-    const char *name = masu_bake_name_text(piece, material.name);
-    if (override->base_color) memcpy(material.base_color, v->base_color, sizeof v->base_color);
-    if (override->roughness) material.roughness = v->roughness;
-    if (override->metallic) material.metallic = v->metallic;
-    if (override->emissive) memcpy(material.emissive, v->emissive, sizeof v->emissive);
-    masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
-    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
-        if (override->map[i]) {
-            maps.image[i] = override->maps.image[i];
-            maps.channel[i] = override->maps.channel[i];
-        } else if (maps.image[i] != MASU_BLOB_NONE) {
-            const masu_bake_image *from = &MASU_BAKE_IMAGES(piece)[maps.image[i]];
-            maps.image[i] =
-                masu_bake_add_image(scene, (const char *)piece->image_text.data + from->name, from,
-                                    piece->image_data.data + from->data);
-        }
-    }
-    if (override->map[MASU_BAKE_ROUGHNESS]) maps.gloss = 0;
-    if (override->alpha) maps.alpha = override->maps.alpha;
-    if (override->cutoff) maps.cutoff = override->maps.cutoff;
-    return masu_bake_mapped_material(scene, &material, &maps, name);
+/* The file of a path, without folders. */
+static const char *last_part(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
 }
 
+static bool matches(const masu_bake_content *piece, uint32_t index, const masu_bake_override *o) {
+    uint32_t image = MASU_BAKE_MAPS_OF(piece)[index].image[MASU_BAKE_BASE];
+    const char *name = masu_bake_name_text(piece, MASU_BAKE_MATERIALS(piece)[index].name);
+    if (!*o->match || fnmatch(o->match, name, 0) == 0) return true;
+    if (image == MASU_BLOB_NONE) return false;
+    const char *path =
+        (const char *)piece->image_text.data + MASU_BAKE_IMAGES(piece)[image].name;
+    return fnmatch(o->match, last_part(path), 0) == 0;
+}
+
+static void apply_override(const masu_bake_override *o, masu_blob_material *to,
+                           masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
+    const masu_blob_material *v = &o->value;
+    if (o->base_color) memcpy(to->base_color, v->base_color, sizeof v->base_color);
+    if (o->roughness) to->roughness = v->roughness;
+    if (o->metallic) to->metallic = v->metallic;
+    if (o->specular) to->specular = v->specular;
+    if (o->coat) to->coat = v->coat;
+    if (o->coat_roughness) to->coat_roughness = v->coat_roughness;
+    if (o->meso) to->meso = v->meso;
+    if (o->detail) memcpy(to->detail, v->detail, sizeof v->detail);
+    if (o->opacity) to->opacity = v->opacity;
+    if (o->emissive) memcpy(to->emissive, v->emissive, sizeof v->emissive);
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (!o->map[i]) continue;
+        maps->image[i] = o->maps.image[i];
+        maps->channel[i] = o->maps.channel[i];
+        own[i] = true;
+    }
+    if (o->map[MASU_BAKE_ROUGHNESS]) maps->gloss = 0;
+    if (o->alpha) {
+        maps->alpha = o->maps.alpha;
+        maps->additive = o->maps.additive;
+    } else if (o->opacity && v->opacity < 1.0f) {
+        maps->alpha = MASU_BAKE_ALPHA_BLEND;
+    }
+    if (o->cutoff) maps->cutoff = o->maps.cutoff;
+}
+
+static uint32_t placed_material(masu_bake_content *scene, const masu_bake_content *piece,
+                                uint32_t index, const masu_bake_overrides *overrides) {
+    masu_blob_material material = MASU_BAKE_MATERIALS(piece)[index];
+    const char *name = masu_bake_name_text(piece, material.name);
+    masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
+    bool own[MASU_BAKE_MAPS] = {false}; /* the scene's picture, not the piece's */
+    for (size_t i = 0; i < overrides->count; i++) {
+        if (!matches(piece, index, &overrides->items[i])) continue;
+        apply_override(&overrides->items[i], &material, &maps, own);
+    }
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (own[i] || maps.image[i] == MASU_BLOB_NONE) continue;
+        const masu_bake_image *from = &MASU_BAKE_IMAGES(piece)[maps.image[i]];
+        maps.image[i] =
+            masu_bake_add_image(scene, (const char *)piece->image_text.data + from->name, from,
+                                piece->image_data.data + from->data);
+    }
+    return masu_bake_mapped_material(scene, &material, &maps, name);
+}
 
 static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *piece, uint32_t name,
                             const char *prefix) {
@@ -295,13 +344,13 @@ static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *p
 /* Primitives and meshes of the piece, with its materials as overridden. Returns the first mesh. */
 static uint32_t place_meshes(masu_bake_content *scene, const masu_bake_content *piece,
                              uint32_t first_vertex, uint32_t first_index,
-                             const masu_bake_override *override) {
+                             const masu_bake_overrides *overrides) {
     uint32_t first_primitive = (uint32_t)masu_bake_count(scene, MASU_BLOB_PRIMITIVES);
     uint32_t first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
     uint64_t materials = masu_bake_count(piece, MASU_BLOB_MATERIALS);
     uint32_t *material_map = masu_bake_allocate((size_t)materials * sizeof *material_map);
     for (uint32_t i = 0; i < materials; i++) {
-        material_map[i] = placed_material(scene, piece, i, override);
+        material_map[i] = placed_material(scene, piece, i, overrides);
     }
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_PRIMITIVES); i++) {
         masu_blob_primitive p = MASU_BAKE_PRIMITIVES(piece)[i];
@@ -349,7 +398,7 @@ static uint32_t copy_section(masu_bake_content *scene, const masu_bake_content *
 
 const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
                             masu_bake_residence *residence, const masu_bake_affine *placement,
-                            const masu_bake_override *override, const char *prefix) {
+                            const masu_bake_overrides *overrides, const char *prefix) {
     const char *problem = room_for(scene, piece);
     if (problem) return problem;
     if (!residence->has_vertices) {
@@ -361,7 +410,7 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
     if (!residence->has_meshes) {
         /* Two primitives share no indices (src/scene.c): other materials, other indices. */
         uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
-        first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, override);
+        first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, overrides);
         residence->first_mesh = first_mesh;
         residence->has_meshes = true;
     }
@@ -418,6 +467,10 @@ void masu_bake_sort_instances(masu_bake_content *content) {
         sorted[place[i]] = moved;
     }
     if (count) memcpy(instances, sorted, count * sizeof *sorted);
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_LIGHTS); i++) {
+        masu_blob_light *light = &MASU_BAKE_LIGHTS(content)[i];
+        if (light->parent != MASU_BLOB_NONE) light->parent = place[light->parent];
+    }
     free(next);
     free(place);
     free(sorted);

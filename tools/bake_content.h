@@ -55,6 +55,7 @@ enum {
     MASU_BAKE_METALLIC,
     MASU_BAKE_EMISSIVE,
     MASU_BAKE_OPACITY, /* alpha as a picture of its own */
+    MASU_BAKE_OCCLUSION,
     MASU_BAKE_MAPS
 };
 
@@ -65,8 +66,9 @@ typedef struct masu_bake_maps {
     uint8_t channel[MASU_BAKE_MAPS]; /* 0..3: of the picture, for maps of one channel */
     uint8_t gloss;                   /* roughness is 1 minus the picture */
     uint8_t alpha;                   /* MASU_BAKE_ALPHA_*; AUTO: the picture decides */
+    uint8_t additive;                /* with ALPHA_BLEND: adds its light, hides nothing */
     uint8_t wrap[2];                 /* as in masu_blob_texture_set */
-    uint8_t reserved[2];
+    uint8_t reserved[4]; /* no padding: it is compared as bytes */
     float cutoff, normal_scale;
 } masu_bake_maps;
 
@@ -81,6 +83,7 @@ void masu_bake_content_release(masu_bake_content *content);
 #define MASU_BAKE_PRIMITIVES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_PRIMITIVES, masu_blob_primitive)
 #define MASU_BAKE_MESHES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_MESHES, masu_blob_mesh)
 #define MASU_BAKE_INSTANCES(c) MASU_BAKE_ARRAY(c, MASU_BLOB_INSTANCES, masu_blob_instance)
+#define MASU_BAKE_LIGHTS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_LIGHTS, masu_blob_light)
 #define MASU_BAKE_MATERIALS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_MATERIALS, masu_blob_material)
 
 /* A name's offset. Control characters and broken UTF-8 become '?'; an empty name is NONE. */
@@ -109,13 +112,22 @@ uint32_t masu_bake_mesh(masu_bake_content *content, uint32_t first_primitive, ui
 uint32_t masu_bake_instance(masu_bake_content *content, const masu_bake_affine *transform,
                             uint32_t mesh, uint32_t parent, uint32_t name);
 
+#define MASU_BAKE_MATCH 64u
+
 /* Replaces the fields that a scene gives; zero: none. */
 typedef struct masu_bake_override {
     masu_blob_material value;
-    bool base_color, roughness, metallic, emissive;
+    bool base_color, roughness, metallic, emissive, specular, coat, coat_roughness, meso;
     masu_bake_maps maps; /* pictures of the scene, by its own numbers */
-    bool map[MASU_BAKE_MAPS], alpha, cutoff;
+    bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity;
+    char match[MASU_BAKE_MATCH]; /* of the material's name or its colour's picture; "": all */
 } masu_bake_override;
+
+/* Applied one after the other. */
+typedef struct masu_bake_overrides {
+    masu_bake_override *items;
+    size_t count;
+} masu_bake_overrides;
 
 /* Where a piece already lies in the scene, for the second and later placements with the same
  * override. Zero at first; with another override, one whose has_meshes is false again. */
@@ -129,7 +141,17 @@ typedef struct masu_bake_residence {
  * wrong. */
 const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
                             masu_bake_residence *residence, const masu_bake_affine *placement,
-                            const masu_bake_override *override, const char *prefix);
+                            const masu_bake_overrides *overrides, const char *prefix);
+
+/* The same of a piece's lights, after it; those of instances stay with them. factor: of their colours;
+ * 0: without them. A range of 0 becomes masu_bake_light_range's. Returns NULL or what is wrong. */
+const char *masu_bake_place_lights(masu_bake_content *scene, const masu_bake_content *piece,
+                                   const masu_bake_affine *placement, uint32_t first_instance,
+                                   double factor, const char *prefix);
+/* Where instances go, their lights stay behind: into the piece's own space. */
+void masu_bake_detach_lights(masu_bake_content *piece);
+/* Where a white surface that faces a light of that colour has a radiance of a hundredth, metres. */
+double masu_bake_light_range(masu_bake_vec3 color);
 
 /* Box of everything the instances show under `placement`, from the vertices themselves. */
 masu_bake_box masu_bake_bounds(const masu_bake_content *content, const masu_bake_affine *placement);

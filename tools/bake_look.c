@@ -107,8 +107,13 @@ static bool read_camera(const masu_bake_json *scene, const masu_bake_box *bounds
 /* ---- light ---- */
 
 typedef struct look {
+    double occlusion_radius;
     masu_bake_vec3 sun_direction, sun_color, ambient, zenith, horizon;
-    double sun_intensity, exposure, near;
+    masu_bake_vec3 fog_color;
+    double sun_intensity, exposure, near, fog_density, fog_height, fog_falloff, fog_start;
+    double turbidity; /* 0: the two colours */
+    masu_bake_vec3 ground;
+    bool own_sun_color;
 } look;
 
 static masu_bake_vec3 direction_of(double azimuth, double elevation) {
@@ -124,6 +129,7 @@ static look default_look(const masu_bake_box *bounds) {
                   .zenith = {0.16, 0.32, 0.62},
                   .horizon = {0.72, 0.8, 0.88},
                   .exposure = 1,
+                  .ground = {0.2, 0.2, 0.2},
                   .near = default_near(bounds)};
 }
 
@@ -179,6 +185,7 @@ static bool read_sun(const masu_bake_json *scene, const masu_bake_box *bounds, l
         !read_shadows(&sun, bounds, content)) {
         return false;
     }
+    l->own_sun_color = masu_bake_json_has(&sun, "color") || masu_bake_json_has(&sun, "intensity");
     bool angles = masu_bake_json_has(&sun, "azimuth") || masu_bake_json_has(&sun, "elevation");
     if (masu_bake_json_has(&sun, "direction")) {
         if (angles) {
@@ -195,20 +202,80 @@ static bool read_sun(const masu_bake_json *scene, const masu_bake_box *bounds, l
     return true;
 }
 
+/* With a turbidity the sky follows from the sun: two colours, an ambient light of one's own and a
+ * ground without turbidity would be said in vain. */
 static bool read_sky(const masu_bake_json *scene, look *l) {
-    static const char *const members[] = {"zenith", "horizon", NULL};
+    static const char *const members[] = {"zenith", "horizon", "turbidity", "ground", NULL};
     masu_bake_json sky = masu_bake_json_member(scene, "sky");
-    return !sky.value || (masu_bake_json_object(&sky, members) &&
-                          masu_bake_json_vec3(&sky, "zenith", 0, RADIANCE_MAX, &l->zenith) &&
-                          masu_bake_json_vec3(&sky, "horizon", 0, RADIANCE_MAX, &l->horizon));
+    if (!sky.value) return true;
+    if (!masu_bake_json_object(&sky, members) ||
+        !masu_bake_json_vec3(&sky, "zenith", 0, RADIANCE_MAX, &l->zenith) ||
+        !masu_bake_json_vec3(&sky, "horizon", 0, RADIANCE_MAX, &l->horizon) ||
+        !masu_bake_json_number(&sky, "turbidity", 1.5, 10, &l->turbidity) ||
+        !masu_bake_json_vec3(&sky, "ground", 0, 1, &l->ground)) {
+        return false;
+    }
+    bool analytic = masu_bake_json_has(&sky, "turbidity");
+    bool colors = masu_bake_json_has(&sky, "zenith") || masu_bake_json_has(&sky, "horizon");
+    if (analytic && (colors || masu_bake_json_has(scene, "ambient"))) {
+        return masu_bake_json_wrong(
+            &sky, "with \"turbidity\" the colours of the sky and \"ambient\" follow from the sun");
+    }
+    if (!analytic && masu_bake_json_has(&sky, "ground"))
+        return masu_bake_json_wrong(&sky, "\"ground\" is of a sky with \"turbidity\"");
+    return true;
 }
 
-static void add_environment(const look *l, masu_bake_content *content) {
-    masu_blob_environment e = {.exposure = (float)l->exposure, .near_distance = (float)l->near};
+static bool read_occlusion(const masu_bake_json *scene, look *l) {
+    static const char *const members[] = {"radius", NULL};
+    masu_bake_json occlusion = masu_bake_json_member(scene, "ambient_occlusion");
+    if (!occlusion.value) return true;
+    l->occlusion_radius = 1;
+    return masu_bake_json_object(&occlusion, members) &&
+           masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius);
+}
+
+/* The density at a height, or how far one sees there: to where 0.02 of the contrast is left
+ * (Koschmieder 1924). */
+static bool read_fog(const masu_bake_json *scene, look *l) {
+    static const char *const members[] = {"color",   "density", "visibility", "height",
+                                          "falloff", "start",   NULL};
+    masu_bake_json fog = masu_bake_json_member(scene, "fog");
+    if (!fog.value) return true;
+    double visibility = 0;
+    l->fog_density = 0.01;
+    if (!masu_bake_json_object(&fog, members) ||
+        !masu_bake_json_vec3(&fog, "color", 0, RADIANCE_MAX, &l->fog_color) ||
+        !masu_bake_json_number(&fog, "density", 0, 1e6, &l->fog_density) ||
+        !masu_bake_json_number(&fog, "visibility", 1e-6, 1e9, &visibility) ||
+        !masu_bake_json_number(&fog, "height", -1e9, 1e9, &l->fog_height) ||
+        !masu_bake_json_number(&fog, "falloff", 0, 1e6, &l->fog_falloff) ||
+        !masu_bake_json_number(&fog, "start", 0, 1e9, &l->fog_start)) {
+        return false;
+    }
+    if (visibility > 0 && masu_bake_json_has(&fog, "density"))
+        return masu_bake_json_wrong(&fog, "give either \"density\" or \"visibility\"");
+    if (visibility > 0) l->fog_density = -log(0.02) / visibility;
+    return true;
+}
+
+static void add_environment(look *l, masu_bake_content *content) {
+    masu_blob_environment e = {.exposure = (float)l->exposure,
+                               .near_distance = (float)l->near,
+                               .fog_density = (float)l->fog_density,
+                               .fog_height = (float)l->fog_height,
+                               .fog_falloff = (float)l->fog_falloff,
+                               .fog_start = (float)l->fog_start};
+    to_floats(l->fog_color, e.fog_color);
     to_floats(l->sun_direction, e.sun_direction);
+    e.turbidity = (float)l->turbidity;
+    if (l->turbidity > 0) to_floats(l->ground, e.ground);
+    if (l->turbidity > 0 && !l->own_sun_color) l->sun_color = masu_bake_v3(0, 0, 0);
     to_floats(masu_bake_v3(l->sun_color.x * l->sun_intensity, l->sun_color.y * l->sun_intensity,
                            l->sun_color.z * l->sun_intensity),
               e.sun_color);
+    if (l->occlusion_radius > 0)
+        e.occlusion_radius = fmaxf((float)l->occlusion_radius, 1e-3f); /* as the blob's check rounds */
     to_floats(l->ambient, e.ambient);
     to_floats(l->zenith, e.sky_zenith);
     to_floats(l->horizon, e.sky_horizon);
@@ -219,7 +286,7 @@ bool masu_bake_read_look(const masu_bake_json *scene, const masu_bake_box *bound
                          masu_bake_content *content) {
     look l = default_look(bounds);
     if (!read_camera(scene, bounds, content, &l.near) || !read_sun(scene, bounds, &l, content) ||
-        !read_sky(scene, &l) ||
+        !read_sky(scene, &l) || !read_fog(scene, &l) || !read_occlusion(scene, &l) ||
         !masu_bake_json_vec3(scene, "ambient", 0, RADIANCE_MAX, &l.ambient) ||
         !masu_bake_json_number(scene, "exposure", 1e-6, 1e6, &l.exposure)) {
         return false;

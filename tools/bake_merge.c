@@ -245,6 +245,13 @@ const char *masu_bake_merge(masu_bake_content *piece, double cell) {
             put_together(&out, piece, b + i, next - i);
         }
         keep(&out, piece, (const uint32_t *)(void *)left.data, left.bytes / sizeof(uint32_t));
+        masu_bake_detach_lights(piece);
+        for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_LIGHTS); i++) {
+            masu_blob_light light = MASU_BAKE_LIGHTS(piece)[i];
+            const char *name = masu_bake_name_text(piece, light.name);
+            light.name = masu_bake_name(&out, name, strlen(name));
+            masu_bake_append(&out.section[MASU_BLOB_LIGHTS], &light, sizeof light);
+        }
         /* Materials keep their numbers, so they move as they are; their names do not. */
         for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MATERIALS); i++) {
             masu_blob_material m = MASU_BAKE_MATERIALS(piece)[i];
@@ -256,7 +263,8 @@ const char *masu_bake_merge(masu_bake_content *piece, double cell) {
             bool ours = kind == MASU_BLOB_VERTICES || kind == MASU_BLOB_TEXCOORDS ||
                         kind == MASU_BLOB_INDICES || kind == MASU_BLOB_PRIMITIVES ||
                         kind == MASU_BLOB_MESHES || kind == MASU_BLOB_INSTANCES ||
-                        kind == MASU_BLOB_MATERIALS || kind == MASU_BLOB_NAMES;
+                        kind == MASU_BLOB_MATERIALS || kind == MASU_BLOB_NAMES ||
+                        kind == MASU_BLOB_LIGHTS;
             if (ours) continue; /* what else a piece may hold stays */
             out.section[kind] = piece->section[kind];
             piece->section[kind] = (masu_bake_buffer){0};

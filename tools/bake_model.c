@@ -2,6 +2,7 @@
  *
  *   aiMesh      -> one or more primitives (bake_mesh.c filters and welds)
  *   aiNode with meshes -> an instance; nodes that show the same set of meshes share one masu mesh
+ *   aiLight, of glTF (KHR_lights_punctual) -> a light of the nearest node above that is an instance
  *   aiMaterial  -> factors and names of pictures, which bake_texture.c reads. glTF factors are linear; the colours of older formats (OBJ, AC3D)
  *                  were chosen on a screen and are decoded from sRGB. A specular exponent n becomes
  *                  the roughness (2 / (n + 2))^(1/4), at which GGX has the same lobe width.
@@ -28,6 +29,7 @@
 /* More nodes than any model has; a cycle among nodes ends here too. */
 #define NODES_MAX 4000000u
 #define ACC_MAX ((size_t)512 << 20)
+#define LIGHTS_MAX 4096u /* looked for among the nodes */
 #define NAMES_MAX 4 /* in one warning; the rest is counted */
 
 typedef struct range {
@@ -65,8 +67,9 @@ typedef struct model {
     masu_bake_buffer textures;
     loss losses[LOSSES];
     uint64_t triangles;
-    uint32_t texture_count, transparent, bad_nodes, skins, unmapped, turned;
-    bool full;
+    uint32_t texture_count, bad_nodes, skins, unmapped, turned;
+    uint32_t other_lights; /* neither points nor spots, or of no use */
+    bool full, gltf;
 } model;
 
 static void append_format(masu_bake_buffer *buffer, const char *format, ...) {
@@ -248,6 +251,7 @@ static masu_bake_maps convert_maps(model *m, const struct aiMaterial *from) {
         {MASU_BAKE_EMISSIVE, aiTextureType_EMISSIVE, 0},
         {MASU_BAKE_EMISSIVE, aiTextureType_EMISSION_COLOR, 0},
         {MASU_BAKE_OPACITY, aiTextureType_OPACITY, 0},
+        {MASU_BAKE_OCCLUSION, aiTextureType_AMBIENT_OCCLUSION, 0},
     };
     /* glTF has both in one picture: green and blue. */
     static const map_request packed[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_UNKNOWN, 1},
@@ -266,6 +270,9 @@ static masu_bake_maps convert_maps(model *m, const struct aiMaterial *from) {
     bool gltf = aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
     if (gltf || same_texture(from, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_METALNESS)) {
         for (size_t i = 0; i < 4; i++) take_map(m, from, &packed[i], &maps);
+        /* What Assimp calls a light map is glTF's occlusion; of other formats it is baked light. */
+        static const map_request lightmap = {MASU_BAKE_OCCLUSION, aiTextureType_LIGHTMAP, 0};
+        if (gltf) take_map(m, from, &lightmap, &maps);
     } else {
         for (size_t i = 0; i < 2; i++) take_map(m, from, &apart[i], &maps);
     }
@@ -291,9 +298,11 @@ static bool is_used(int type) {
     case aiTextureType_EMISSIVE:
     case aiTextureType_EMISSION_COLOR:
     case aiTextureType_OPACITY:
+    case aiTextureType_AMBIENT_OCCLUSION:
     case aiTextureType_UNKNOWN:
     case aiTextureType_DIFFUSE_ROUGHNESS:
-    case aiTextureType_METALNESS: return true;
+    case aiTextureType_METALNESS:
+    case aiTextureType_LIGHTMAP: return true;
     default: return false;
     }
 }
@@ -359,6 +368,11 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
     }
 }
 
+static bool is_gltf(const struct aiMaterial *from) {
+    struct aiString mode;
+    return aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
+}
+
 static void convert_shine(const struct aiMaterial *from, masu_blob_material *to) {
     double value;
     to->roughness = 1;
@@ -373,6 +387,16 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     to->metallic = 0;
     if (get_factor(from, KEY(AI_MATKEY_METALLIC_FACTOR), &value)) {
         to->metallic = clamped(value, 0, 1);
+    }
+    if (get_factor(from, KEY(AI_MATKEY_CLEARCOAT_FACTOR), &value)) to->coat = clamped(value, 0, 1);
+    if (to->coat > 0 && get_factor(from, KEY(AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR), &value)) {
+        to->coat_roughness = clamped(value, 0, 1);
+    }
+    /* glTF's KHR_materials_specular: a share of the usual reflectance. What has a glossiness too is of the
+     * older extension, and means a colour. */
+    if (get_factor(from, KEY(AI_MATKEY_SPECULAR_FACTOR), &value) && is_gltf(from) &&
+        !get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &(double){0})) {
+        to->specular = clamped(0.5 * value, 0, 1);
     }
 }
 
@@ -389,10 +413,11 @@ static uint32_t material_of(model *m, unsigned index) {
     convert_shine(from, &to);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
     masu_bake_maps maps = convert_maps(m, from);
-    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK &&
-        alpha * opacity < 0.999) {
-        m->transparent++;
+    /* One number under two names in some formats, so not their product. */
+    alpha = alpha < opacity ? alpha : opacity;
+    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK && alpha < 0.999) {
         maps.alpha = MASU_BAKE_ALPHA_BLEND;
+        to.opacity = clamped(alpha, 0, 1);
     }
     note_textures(m, from);
     struct aiString name = {0};
@@ -596,6 +621,7 @@ static uint32_t mesh_of(model *m, const unsigned *meshes, unsigned count) {
 typedef struct visit {
     const struct aiNode *node;
     masu_bake_affine parent; /* to world */
+    masu_bake_affine space;  /* to the object space of the parent instance; without one to world */
     uint32_t parent_instance;
 } visit;
 
@@ -608,11 +634,70 @@ static masu_bake_affine node_transform(const struct aiNode *node) {
     return a;
 }
 
+/* glTF gives intensities; a white matt surface has the luminance of the intensity over pi and the
+ * squared distance. A range that is not given stays 0 until the factor of the placement is known. */
+static bool convert_light(const struct aiLight *from, const struct aiNode *node,
+                          const masu_bake_affine *space, masu_blob_light *to) {
+    const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
+    masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y,
+                          (double)from->mPosition.z};
+    masu_bake_vec3 ahead = {(double)from->mDirection.x, (double)from->mDirection.y,
+                            (double)from->mDirection.z};
+    masu_bake_vec3 at = masu_bake_apply(space, own);
+    masu_bake_vec3 direction = masu_bake_sub(masu_bake_apply(space, masu_bake_mad(own, ahead, 1)), at);
+    if (from->mType != aiLightSource_POINT && from->mType != aiLightSource_SPOT) return false;
+    if (!masu_bake_sane(at)) return false;
+    to->position[0] = (float)at.x, to->position[1] = (float)at.y, to->position[2] = (float)at.z;
+    for (int k = 0; k < 3; k++) to->color[k] = clamped((double)color[k] / MASU_BAKE_PI, 0, 1e9);
+    to->radius = 0.01f;
+    const struct aiMetadata *about = node->mMetaData;
+    for (unsigned i = 0; about && about->mKeys && about->mValues && i < about->mNumProperties; i++) {
+        const struct aiMetadataEntry *e = &about->mValues[i];
+        if (string_length(&about->mKeys[i]) != 14 || !e->mData ||
+            memcmp(about->mKeys[i].data, "PBR_LightRange", 14) != 0) {
+            continue;
+        }
+        if (e->mType == AI_FLOAT) to->range = clamped((double)*(const float *)e->mData, 0, 1e9);
+    }
+    if (from->mType == aiLightSource_POINT) return true;
+    to->type = MASU_LIGHT_SPOT;
+    if (!masu_bake_normalize(&direction)) return false;
+    to->direction[0] = (float)direction.x;
+    to->direction[1] = (float)direction.y;
+    to->direction[2] = (float)direction.z;
+    to->outer = clamped((double)from->mAngleOuterCone, 0, MASU_BAKE_PI / 2);
+    to->inner = clamped((double)from->mAngleInnerCone, 0, (double)to->outer);
+    return true;
+}
+
+/* Assimp ties a light to the node of its name. */
+static void convert_lights(model *m, const struct aiNode *node, const masu_bake_affine *space,
+                           uint32_t instance) {
+    const struct aiScene *s = m->source;
+    int length = string_length(&node->mName);
+    if (!m->gltf || !s->mLights || length == 0) return;
+    for (unsigned i = 0; i < s->mNumLights && i < LIGHTS_MAX; i++) {
+        const struct aiLight *from = s->mLights[i];
+        if (!from || string_length(&from->mName) != length ||
+            memcmp(from->mName.data, node->mName.data, (size_t)length) != 0) {
+            continue;
+        }
+        masu_blob_light light = {.parent = instance};
+        if (!convert_light(from, node, space, &light)) {
+            m->other_lights++;
+            continue;
+        }
+        light.name = masu_bake_name(m->piece, from->mName.data, (size_t)length);
+        masu_bake_append(&m->piece->section[MASU_BLOB_LIGHTS], &light, sizeof light);
+    }
+}
+
 /* Depth first with a stack of our own: a deep chain of nodes must not use up the machine's. With
  * `convert`, the meshes of every node are converted; without, instances are made. */
 static bool walk(model *m, bool convert) {
     masu_bake_buffer stack = {0};
-    visit start = {m->source->mRootNode, masu_bake_identity(), MASU_BLOB_NONE};
+    visit start = {m->source->mRootNode, masu_bake_identity(), masu_bake_identity(),
+                   MASU_BLOB_NONE};
     masu_bake_append(&stack, &start, sizeof start);
     uint32_t visited = 0;
     while (stack.bytes && visited++ < NODES_MAX) {
@@ -622,6 +707,7 @@ static bool walk(model *m, bool convert) {
         if (!v.node) continue;
         masu_bake_affine own = node_transform(v.node);
         masu_bake_affine world = masu_bake_multiply(&v.parent, &own);
+        masu_bake_affine space = masu_bake_multiply(&v.space, &own);
         uint32_t instance = v.parent_instance;
         const unsigned *meshes = v.node->mMeshes;
         unsigned count = meshes ? v.node->mNumMeshes : 0;
@@ -635,16 +721,19 @@ static bool walk(model *m, bool convert) {
                 const struct aiString *name = &v.node->mName;
                 uint32_t text = masu_bake_name(m->piece, name->data, (size_t)string_length(name));
                 uint32_t made = masu_bake_instance(m->piece, &world, mesh, v.parent_instance, text);
-                if (made == MASU_BLOB_NONE)
+                if (made == MASU_BLOB_NONE) {
                     m->bad_nodes++;
-                else
+                } else {
                     instance = made;
+                    space = masu_bake_identity();
+                }
             }
+            convert_lights(m, v.node, &space, instance);
         }
         unsigned children = v.node->mChildren ? v.node->mNumChildren : 0;
         if (children > NODES_MAX) break;
         for (unsigned i = children; i > 0; i--) { /* reversed: the first child is popped first */
-            visit child = {v.node->mChildren[i - 1], world, instance};
+            visit child = {v.node->mChildren[i - 1], world, space, instance};
             masu_bake_append(&stack, &child, sizeof child);
         }
     }
@@ -696,8 +785,9 @@ static void report(model *m) {
                       "of one texel\n",
                       m->unmapped);
     }
-    if (m->transparent) {
-        append_format(w, "%u transparent materials are drawn opaque\n", m->transparent);
+    if (m->other_lights) {
+        append_format(w, "%u lights are neither points nor spots: there is nothing of them\n",
+                      m->other_lights);
     }
     if (m->skins || m->source->mNumAnimations) {
         masu_bake_append_text(w, "animation is not supported, the rest pose is used\n");
@@ -803,7 +893,12 @@ void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_ba
         masu_bake_append_text(error, why && *why ? why : "the importer gives no reason");
         return; /* this process ends now: nothing is worth releasing */
     }
-    model m = {
-        .source = scene, .path = path, .wanted = textures, .piece = piece, .warnings = warnings};
+    const char *dot = strrchr(path, '.');
+    model m = {.source = scene,
+               .path = path,
+               .wanted = textures,
+               .piece = piece,
+               .gltf = dot && (!strcmp(dot, ".gltf") || !strcmp(dot, ".glb")),
+               .warnings = warnings};
     convert(&m, error);
 }

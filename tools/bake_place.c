@@ -4,6 +4,7 @@
 #include "bake_file.h"
 #include "bake_groups.h"
 #include "bake_import.h"
+#include "bake_material.h"
 #include "bake_occluders.h"
 #include "bake_scene.h"
 #include "bake_shape.h"
@@ -13,12 +14,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ASSIMP_PREFIX "@assimp/"
-
 /* What a piece looks like in the scene with one set of overridden values: placed again with the
  * same values, it is the same meshes. */
 typedef struct guise {
-    masu_bake_override override;
+    masu_bake_overrides overrides;
     masu_bake_residence residence;
 } guise;
 
@@ -35,18 +34,6 @@ typedef struct shelf {
     masu_bake_buffer guises;
 } shelf;
 
-static char *resolve(const char *name, const char *directory, const char *models_directory) {
-    size_t prefix = strlen(ASSIMP_PREFIX);
-    if (strncmp(name, ASSIMP_PREFIX, prefix) == 0) {
-        return masu_bake_join(models_directory, name + prefix);
-    }
-    if (name[0] == '/' || strcmp(directory, ".") == 0) directory = NULL;
-    if (directory) return masu_bake_join(directory, name);
-    char *copy = masu_bake_allocate(strlen(name) + 1);
-    strcpy(copy, name);
-    return copy;
-}
-
 static shelf *add_shelf(shelf **shelves, shelf made) {
     shelf *s = masu_bake_allocate(sizeof *s);
     *s = made;
@@ -57,6 +44,9 @@ static shelf *add_shelf(shelf **shelves, shelf made) {
 static void release_shelves(shelf *s) {
     while (s) {
         shelf *next = s->next;
+        guise *guises = (guise *)(void *)s->guises.data;
+        for (size_t i = 0; i < s->guises.bytes / sizeof *guises; i++)
+            masu_bake_overrides_release(&guises[i].overrides);
         masu_bake_content_release(&s->piece);
         masu_bake_release(&s->guises);
         free(s->path);
@@ -225,107 +215,6 @@ static bool read_placement(const masu_bake_json *model, const masu_bake_content 
     return true;
 }
 
-static void store_color(masu_bake_vec3 v, float out[3]) {
-    out[0] = (float)v.x;
-    out[1] = (float)v.y;
-    out[2] = (float)v.z;
-}
-
-/* The members that name a picture, and what it stands for. */
-static const struct {
-    const char *member;
-    int map;
-    uint8_t channel;
-} map_members[] = {
-    {"base_color_map", MASU_BAKE_BASE, 0},     {"normal_map", MASU_BAKE_NORMAL, 0},
-    {"roughness_map", MASU_BAKE_ROUGHNESS, 0}, {"metallic_map", MASU_BAKE_METALLIC, 0},
-    {"emissive_map", MASU_BAKE_EMISSIVE, 0},   {"opacity_map", MASU_BAKE_OPACITY, 0},
-    {"surface_map", MASU_BAKE_ROUGHNESS, 1},   {"surface_map", MASU_BAKE_METALLIC, 2},
-};
-#define MAP_MEMBERS (sizeof map_members / sizeof *map_members)
-
-static bool has_map_member(const masu_bake_json *model) {
-    masu_bake_json at = masu_bake_json_member(model, "material");
-    for (size_t i = 0; i < MAP_MEMBERS; i++) {
-        if (at.value && masu_bake_json_has(&at, map_members[i].member)) return true;
-    }
-    return false;
-}
-
-static bool read_maps(const masu_bake_json *at, const char *directory,
-                      const masu_bake_request *request, masu_bake_content *content,
-                      masu_bake_override *out) {
-    static const char *const alphas[] = {"opaque", "mask", "blend"};
-    for (size_t i = 0; i < MAP_MEMBERS; i++) {
-        const char *name = NULL;
-        if (!masu_bake_json_string(at, map_members[i].member, &name)) return false;
-        if (!name || request->textures == MASU_BAKE_TEXTURES_OFF) continue;
-        int map = map_members[i].map;
-        if (out->map[map]) {
-            return masu_bake_json_wrong(at, "%s: there is another map for the same",
-                                        map_members[i].member);
-        }
-        char *path = resolve(name, directory, request->models_directory);
-        out->map[map] = true;
-        out->maps.image[map] = masu_bake_add_image(content, path, NULL, NULL);
-        out->maps.channel[map] = map_members[i].channel;
-        free(path);
-    }
-    const char *alpha = NULL;
-    double cutoff = 0.5;
-    if (!masu_bake_json_string(at, "alpha", &alpha) ||
-        !masu_bake_json_number(at, "alpha_cutoff", 0, 1, &cutoff)) {
-        return false;
-    }
-    for (uint8_t i = 0; i < 3 && alpha; i++) {
-        if (strcmp(alpha, alphas[i]) == 0) {
-            out->alpha = true;
-            out->maps.alpha = (uint8_t)(MASU_BAKE_ALPHA_OPAQUE + i);
-        }
-    }
-    out->cutoff = masu_bake_json_has(at, "alpha_cutoff");
-    out->maps.cutoff = (float)cutoff;
-    if (alpha && !out->alpha) {
-        masu_bake_json where = masu_bake_json_member(at, "alpha");
-        return masu_bake_json_wrong(&where, "expected \"opaque\", \"mask\" or \"blend\"");
-    }
-    return true;
-}
-
-static bool read_override(const masu_bake_json *model, const char *directory,
-                          const masu_bake_request *request, masu_bake_content *content,
-                          masu_bake_override *out) {
-    static const char *const members[] = {"base_color",   "roughness",
-                                          "metallic",     "emissive",
-                                          "alpha",        "base_color_map",
-                                          "normal_map",   "roughness_map",
-                                          "metallic_map", "emissive_map",
-                                          "opacity_map",  "surface_map",
-                                          "alpha_cutoff", NULL};
-    *out = (masu_bake_override){.value = masu_bake_default_material(), .maps = masu_bake_no_maps()};
-    masu_bake_json at = masu_bake_json_member(model, "material");
-    if (!at.value) return true;
-    masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
-    double roughness = 0, metallic = 0;
-    if (!masu_bake_json_object(&at, members) ||
-        !masu_bake_json_vec3(&at, "base_color", 0, 1, &color) ||
-        !masu_bake_json_number(&at, "roughness", 0, 1, &roughness) ||
-        !masu_bake_json_number(&at, "metallic", 0, 1, &metallic) ||
-        !masu_bake_json_vec3(&at, "emissive", 0, 65504, &emissive) ||
-        !read_maps(&at, directory, request, content, out)) {
-        return false;
-    }
-    out->base_color = masu_bake_json_has(&at, "base_color");
-    out->roughness = masu_bake_json_has(&at, "roughness");
-    out->metallic = masu_bake_json_has(&at, "metallic");
-    out->emissive = masu_bake_json_has(&at, "emissive");
-    store_color(color, out->value.base_color);
-    store_color(emissive, out->value.emissive);
-    out->value.roughness = (float)roughness;
-    out->value.metallic = (float)metallic;
-    return true;
-}
-
 /* Tags the instances from `first` on. */
 static bool read_group(const masu_bake_json *model, masu_bake_content *content, uint64_t first) {
     const char *path = NULL;
@@ -381,24 +270,16 @@ static bool read_occluder(const masu_bake_json *model, masu_bake_content *conten
     return true;
 }
 
-static bool same_override(const masu_bake_override *a, const masu_bake_override *b) {
-    const masu_blob_material *x = &a->value, *y = &b->value;
-    return a->base_color == b->base_color && a->roughness == b->roughness &&
-           a->metallic == b->metallic && a->emissive == b->emissive && a->alpha == b->alpha &&
-           a->cutoff == b->cutoff && memcmp(a->map, b->map, sizeof a->map) == 0 &&
-           memcmp(&a->maps, &b->maps, sizeof a->maps) == 0 &&
-           memcmp(x->base_color, y->base_color, sizeof x->base_color) == 0 &&
-           memcmp(x->emissive, y->emissive, sizeof x->emissive) == 0 &&
-           x->roughness == y->roughness && x->metallic == y->metallic;
-}
-
-/* The guise with these values, new if there is none: meshes are per guise, vertices shared. */
-static guise *guise_of(shelf *s, const masu_bake_override *override) {
+/* The guise with these values, new if there is none: meshes are per guise, vertices shared. Takes the
+ * values over. */
+static guise *guise_of(shelf *s, masu_bake_overrides *overrides) {
     guise *guises = (guise *)(void *)s->guises.data;
     for (size_t i = 0; i < s->guises.bytes / sizeof *guises; i++) {
-        if (same_override(&guises[i].override, override)) return &guises[i];
+        if (!masu_bake_overrides_equal(&guises[i].overrides, overrides)) continue;
+        masu_bake_overrides_release(overrides);
+        return &guises[i];
     }
-    guise made = {.override = *override, .residence = s->residence};
+    guise made = {.overrides = *overrides, .residence = s->residence};
     made.residence.has_meshes = false;
     return masu_bake_append(&s->guises, &made, sizeof made);
 }
@@ -406,17 +287,23 @@ static guise *guise_of(shelf *s, const masu_bake_override *override) {
 static bool place(const masu_bake_json *model, const char *directory,
                   const masu_bake_request *request, shelf *s, masu_bake_content *content) {
     masu_bake_affine placement;
-    masu_bake_override override;
+    masu_bake_overrides overrides;
     const char *name = NULL;
+    double lights = 1;
     if (!read_placement(model, &s->piece, &placement) ||
-        !read_override(model, directory, request, content, &override) ||
-        !masu_bake_json_string(model, "name", &name)) {
+        !masu_bake_json_string(model, "name", &name) ||
+        !masu_bake_json_number(model, "lights", 0, 1e9, &lights) ||
+        !masu_bake_read_overrides(model, directory, request, content, &overrides)) {
         return false;
     }
     uint64_t first = masu_bake_count(content, MASU_BLOB_INSTANCES);
-    guise *g = guise_of(s, &override);
+    guise *g = guise_of(s, &overrides);
     const char *problem =
-        masu_bake_place(content, &s->piece, &g->residence, &placement, &override, name);
+        masu_bake_place(content, &s->piece, &g->residence, &placement, &g->overrides, name);
+    if (!problem) {
+        problem =
+            masu_bake_place_lights(content, &s->piece, &placement, (uint32_t)first, lights, name);
+    }
     if (problem) return masu_bake_json_wrong(model, "gives %s", problem);
     s->residence = g->residence;
     return read_group(model, content, first) && read_occluder(model, content, first);
@@ -427,7 +314,8 @@ static bool read_model(const masu_bake_json *model, const char *directory,
                        masu_bake_content *content) {
     static const char *const members[] = {"file",   "mesh",     "name",  "group", "moving",
                                           "translate", "rotate",   "rotate_y", "scale", "fit",
-                                          "material",  "occluder", "merge",    NULL};
+                                          "material",  "materials", "occluder", "merge",
+                                          "lights",    NULL};
     const char *file = NULL;
     double merge = 0;
     if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file) ||
@@ -443,15 +331,15 @@ static bool read_model(const masu_bake_json *model, const char *directory,
     }
     if (file) {
         masu_bake_textures textures = request->textures;
-        if (textures == MASU_BAKE_TEXTURES_WANTED && has_map_member(model)) {
+        if (textures == MASU_BAKE_TEXTURES_WANTED && masu_bake_overrides_map(model)) {
             textures = MASU_BAKE_TEXTURES_FORCED;
         }
-        shelf *s = fetch(model, shelves, resolve(file, directory, request->models_directory), merge,
+        shelf *s = fetch(model, shelves, masu_bake_resolve(file, directory, request->models_directory), merge,
                          textures);
         return s && place(model, directory, request, s, content);
     }
     if (merge > 0) return masu_bake_json_wrong(model, "\"merge\" is for files");
-    bool mapped = has_map_member(model) && request->textures != MASU_BAKE_TEXTURES_OFF;
+    bool mapped = masu_bake_overrides_map(model) && request->textures != MASU_BAKE_TEXTURES_OFF;
     masu_bake_textures textures = mapped ? MASU_BAKE_TEXTURES_FORCED : MASU_BAKE_TEXTURES_OFF;
     for (shelf *s = *shelves; s; s = s->next) {
         if (s->shape && s->textures == textures && json_equal(s->shape, mesh.value))
@@ -480,11 +368,12 @@ bool masu_bake_bare_model(const masu_bake_request *request, masu_bake_content *c
     masu_bake_content piece = {0};
     masu_bake_residence residence = {0};
     masu_bake_affine identity = masu_bake_identity();
-    masu_bake_override none = {.base_color = false};
+    masu_bake_overrides none = {0};
     masu_cli_progress("importing %s", request->input);
     bool good = masu_bake_import(request->input, request->textures, &piece);
     if (good) {
         const char *problem = masu_bake_place(content, &piece, &residence, &identity, &none, NULL);
+        if (!problem) problem = masu_bake_place_lights(content, &piece, &identity, 0, 1, NULL);
         if (problem) masu_cli_error("%s: gives %s", request->input, problem);
         good = !problem;
     }

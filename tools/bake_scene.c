@@ -1,6 +1,7 @@
 /* bake_scene.c: a scene description; docs/scene.md is its reference. Members are read in an order
  * of their own, not the file's: models first, then the SDF's description, then the camera, whose
  * default frames both, and last the shader, which depends on whether there are models. */
+#include "bake_environment.h"
 #include "bake_scene.h"
 #include "bake_file.h"
 #include "bake_sdf.h"
@@ -138,9 +139,9 @@ static bool read_ambient_occlusion(const masu_bake_json *sdf, masu_bake_occlusio
 /* All of the SDF but its shader. `source` is left NULL without an SDF. */
 static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, masu_bake_box *bounds,
                      const char **source, masu_bake_occlusion *occlusion) {
-    static const char *const members[] = {
-        "source", "bounds",   "lipschitz", "max_distance", "params",
-        "anchored", "shadows", "ambient_occlusion", NULL};
+    static const char *const members[] = {"source", "bounds",   "lipschitz", "max_distance",
+                                          "params", "anchored", "shadows",   "ambient_occlusion",
+                                          NULL};
     masu_bake_json sdf = masu_bake_json_member(scene, "sdf");
     if (!sdf.value) return true;
     masu_bake_box box = masu_bake_box_empty();
@@ -151,8 +152,8 @@ static bool read_sdf(const masu_bake_json *scene, masu_bake_content *content, ma
         !masu_bake_json_number(&sdf, "lipschitz", 1e-3, 1e6, &lipschitz) ||
         !masu_bake_json_number(&sdf, "max_distance", 1e-3, 1e15, &max_distance) ||
         !masu_bake_json_boolean(&sdf, "anchored", &anchored) ||
-        !read_shadows(&sdf, max_distance, occlusion) ||
-        !read_ambient_occlusion(&sdf, occlusion) || !read_params(&sdf, content)) {
+        !read_shadows(&sdf, max_distance, occlusion) || !read_ambient_occlusion(&sdf, occlusion) ||
+        !read_params(&sdf, content)) {
         return false;
     }
     if (!*source) return masu_bake_json_wrong(&sdf, "needs \"source\", a GLSL or .sdf file");
@@ -198,9 +199,12 @@ static void make_detail(masu_bake_content *content, masu_bake_detail *detail) {
 
 static bool read_all(const masu_bake_json *scene, const char *directory,
                      const masu_bake_request *request, masu_bake_content *content) {
-    static const char *const members[] = {"models",   "camera", "sun",  "ambient",   "sky",
-                                          "exposure", "sdf",    "lods", "occluders", NULL};
+    static const char *const members[] = {"models",    "camera", "sun",      "ambient",
+                                          "sky",       "fog",    "exposure", "sdf",
+                                          "lods",      "occluders", "probes", "lights",
+                                          "ambient_occlusion", "environment", NULL};
     if (!masu_bake_json_object(scene, members) || !read_detail(scene, request->detail) ||
+        (request->probes && !masu_bake_read_probes(scene, request->probes)) ||
         !masu_bake_read_models(scene, directory, request, content)) {
         return false;
     }
@@ -209,8 +213,10 @@ static bool read_all(const masu_bake_json *scene, const char *directory,
     masu_bake_box bounds = masu_bake_bounds(content, &identity);
     const char *source = NULL;
     masu_bake_occlusion occlusion = {0};
-    if (!read_sdf(scene, content, &bounds, &source, &occlusion) ||
-        !masu_bake_read_look(scene, &bounds, content)) {
+    if (!masu_bake_read_lights(scene, content) ||
+        !read_sdf(scene, content, &bounds, &source, &occlusion) ||
+        !masu_bake_read_look(scene, &bounds, content) ||
+        !masu_bake_read_environment(scene, directory, content)) {
         return false;
     }
     if (!source && masu_bake_count(content, MASU_BLOB_INSTANCES) == 0) {
@@ -219,8 +225,8 @@ static bool read_all(const masu_bake_json *scene, const char *directory,
     if (!source) return true;
     char *path = NULL;
     if (source[0] != '/' && strcmp(directory, ".") != 0) path = masu_bake_join(directory, source);
-    bool good = masu_bake_compile_march(content, path ? path : source, &occlusion,
-                                        request->variants);
+    bool good =
+        masu_bake_compile_march(content, path ? path : source, &occlusion, request->variants);
     free(path);
     return good;
 }

@@ -3,6 +3,7 @@
  *
  *   bake_scene.c    the scene's JSON (docs/scene.md)
  *   bake_place.c    models and procedural meshes: import, fit, placement, material override
+ *   bake_lights.c   points and spots
  *   bake_look.c     camera, sun, sky, and their defaults */
 #ifndef MASU_BAKE_SCENE_H
 #define MASU_BAKE_SCENE_H
@@ -12,6 +13,7 @@
 #include "bake_detail.h"
 #include "bake_json.h"
 #include "bake_occluders.h"
+#include "bake_probes.h"
 
 /* What a scene asks to be made of its meshes, and what came of it. */
 typedef struct masu_bake_detail {
@@ -28,6 +30,7 @@ typedef struct masu_bake_request {
     bool variants;                /* with the marching variants for comparisons */
     const char *models_directory; /* what "@assimp/" stands for */
     masu_bake_detail *detail;     /* filled */
+    masu_bake_probe_settings *probes; /* what the scene says of them is filled in */
 } masu_bake_request;
 
 /* Every function here reports its own errors and returns false after one. */
@@ -37,6 +40,9 @@ bool masu_bake_bare_model(const masu_bake_request *request, masu_bake_content *c
 /* The scene's "models" array. `directory`: of the scene file, for relative names. */
 bool masu_bake_read_models(const masu_bake_json *scene, const char *directory,
                            const masu_bake_request *request, masu_bake_content *content);
+
+/* The scene's "lights" array, behind those that models have brought along. */
+bool masu_bake_read_lights(const masu_bake_json *scene, masu_bake_content *content);
 
 /* Camera keys and environment; defaults frame `bounds`, which may be empty. */
 bool masu_bake_read_look(const masu_bake_json *scene, const masu_bake_box *bounds,

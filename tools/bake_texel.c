@@ -73,29 +73,6 @@ void masu_texel_halve(const float *from, uint32_t width, uint32_t height, bool b
     }
 }
 
-double masu_texel_coverage(const float *rgba, size_t texels, float cutoff, float scale) {
-    size_t count = 0;
-    for (size_t i = 0; i < texels; i++) count += rgba[4 * i + 3] * scale >= cutoff;
-    return texels ? (double)count / (double)texels : 0;
-}
-
-float masu_texel_coverage_scale(const float *rgba, size_t texels, float cutoff, double wanted) {
-    /* Coverage rises with the scale, in steps. Halving ends at the step next to what is wanted; of
-     * its two sides the nearer one counts. */
-    float low = 1.0f / 16, high = 16;
-    for (int i = 0; i < 24; i++) {
-        float middle = sqrtf(low * high);
-        if (masu_texel_coverage(rgba, texels, cutoff, middle) < wanted) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    double below = wanted - masu_texel_coverage(rgba, texels, cutoff, low);
-    double above = masu_texel_coverage(rgba, texels, cutoff, high) - wanted;
-    return fabs(below) < fabs(above) ? low : high;
-}
-
 float masu_texel_rougher(float roughness, float mean_length) {
     double length = fmin(fmax((double)mean_length, 1e-3), 1), rough = (double)roughness;
     double alpha = rough * rough;
@@ -129,6 +106,10 @@ static void compress(uint32_t format, const uint8_t texels[64], unsigned char *o
         stb_compress_bc5_block(out, part);
         break;
     }
+}
+
+void masu_texel_alpha_block(const uint8_t alpha[16], unsigned char out[8]) {
+    stb_compress_bc4_block(out, alpha);
 }
 
 size_t masu_texel_blocks(uint32_t format, const uint8_t *rgba, uint32_t width, uint32_t height,

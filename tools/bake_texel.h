@@ -20,12 +20,6 @@ uint8_t masu_texel_to_unorm(float v);
  * cannot be seen does not bleed in. */
 void masu_texel_halve(const float *from, uint32_t width, uint32_t height, bool by_alpha, float *to);
 
-/* The part of the texels whose alpha reaches the cut-off, and by what to multiply alpha so that this
- * part becomes `wanted` (Castano, "Computing Alpha Mipmaps", 2010). Without, leaves thin out from
- * mip to mip. */
-double masu_texel_coverage(const float *rgba, size_t texels, float cutoff, float scale);
-float masu_texel_coverage_scale(const float *rgba, size_t texels, float cutoff, double wanted);
-
 /* How rough a surface of perceptual roughness `roughness` looks when its normals, whose mean has
  * this length, are no longer told apart: alpha^2 grows by twice the variance of the slopes, which is
  * (1 - length) / length for normals that scatter little (Toksvig, "Mipmapping normal maps", 2005). */
@@ -35,5 +29,8 @@ float masu_texel_rougher(float roughness, float mean_length);
  * written. Texels beyond the edge repeat the last. */
 size_t masu_texel_blocks(uint32_t format, const uint8_t *rgba, uint32_t width, uint32_t height,
                          unsigned char *out);
+
+/* One block of BC4, which is also the first half of one of BC3. */
+void masu_texel_alpha_block(const uint8_t alpha[16], unsigned char out[8]);
 
 #endif

@@ -7,9 +7,10 @@
  *
  * Colour is filtered as linear light and weighted by alpha; masks keep their coverage; normals are
  * added up as vectors, and what their mean lacks in length makes the surface rougher: in its roughness
- * map where that has the same size, in one made for it where there is none. */
+ * map, which is as large as the normals', or in one made for it where there is none. */
 #include "bake_texture.h"
 #include "bake_image.h"
+#include "bake_mask.h"
 #include "bake_texel.h"
 #include "cli.h"
 
@@ -43,7 +44,6 @@ typedef struct maker {
     texture *textures;
     uint32_t count, capacity;
     uint32_t *order;
-    uint32_t blends;
 } maker;
 
 static bool read_picture(maker *m, uint32_t image, masu_bake_picture *picture) {
@@ -75,11 +75,12 @@ static void begin(texture *t, uint32_t format, uint32_t width, uint32_t height) 
     while ((width > height ? width : height) >> t->mips) t->mips++;
 }
 
-static void append_blocks(texture *t, const uint8_t *bytes, uint32_t w, uint32_t h) {
+static unsigned char *append_blocks(texture *t, const uint8_t *bytes, uint32_t w, uint32_t h) {
     size_t blocks = (size_t)((w + 3) / 4) * ((h + 3) / 4);
     unsigned char *to =
         masu_bake_append(&t->blocks, NULL, blocks * masu_blob_block_bytes(t->format));
     masu_texel_blocks(t->format, bytes, w, h, to);
+    return to;
 }
 
 /* A level, and the next one in its place; `level` has room for the largest. */
@@ -89,11 +90,23 @@ static void step_down(float *level, float *scratch, uint32_t w, uint32_t h, bool
     memcpy(level, scratch, (size_t)nw * nh * 4 * sizeof *level);
 }
 
-static void encode_color(const float *level, size_t texels, float scale, uint8_t *bytes) {
+static void encode_color(const float *level, size_t texels, uint8_t *bytes) {
     for (size_t i = 0; i < texels; i++) {
         for (int k = 0; k < 3; k++) bytes[4 * i + k] = masu_texel_to_srgb(level[4 * i + k]);
-        bytes[4 * i + 3] = masu_texel_to_unorm(level[4 * i + 3] * scale);
+        bytes[4 * i + 3] = masu_texel_to_unorm(level[4 * i + 3]);
     }
+}
+
+/* The alpha of a mask's mip into its blocks; `wanted`: what mip 0 covers, which mip 0 says. */
+static void encode_mask(const texture *t, const float *level, uint32_t w, uint32_t h, uint32_t mip,
+                        double *wanted, uint8_t *scratch, unsigned char *blocks) {
+    uint8_t cutoff = masu_texel_to_unorm(t->wanted.cutoff);
+    float scale = 1;
+    if (mip && *wanted > 0 && *wanted < 1) {
+        scale = masu_mask_scale(level, w, h, cutoff, *wanted, scratch);
+    }
+    masu_mask_encode(level, w, h, cutoff, scale, scratch, blocks);
+    if (!mip) *wanted = masu_mask_coverage(scratch, w, h, cutoff);
 }
 
 static void encode_normal(const float *level, size_t texels, uint8_t *bytes) {
@@ -106,6 +119,8 @@ static void encode_normal(const float *level, size_t texels, uint8_t *bytes) {
     }
 }
 
+/* Roughness itself is averaged: the mean of alpha^2, which a variance is, drowns what is smooth, and the
+ * light of a mixture is further off (tests/unit/test_normal_filter.c). */
 static void encode_surface(const float *level, const float *normals, size_t texels, float roughness,
                            uint8_t *bytes) {
     for (size_t i = 0; i < texels; i++) {
@@ -126,22 +141,21 @@ static void finish(texture *t, float *level, float *normals) {
     float *scratch = allocate_level(t->width, t->height);
     uint8_t *bytes = masu_bake_allocate(texels * 4);
     bool by_alpha = t->format == MASU_TEXTURE_BC3_SRGB;
-    double wanted = masu_texel_coverage(level, texels, t->wanted.cutoff, 1);
+    double wanted = 1;
     uint32_t w = t->width, h = t->height;
     for (uint32_t mip = 0; mip < t->mips; mip++) {
         texels = (size_t)w * h;
         if (t->wanted.slot == MASU_SLOT_NORMAL) {
             encode_normal(level, texels, bytes);
-        } else if (t->wanted.slot == MASU_SLOT_SURFACE) {
+        } else if (t->wanted.slot == MASU_SLOT_SURFACE || t->wanted.slot == MASU_SLOT_OCCLUSION) {
             encode_surface(level, normals, texels, t->wanted.roughness, bytes);
         } else {
-            float scale = 1;
-            if (by_alpha && mip && wanted > 0 && wanted < 1) {
-                scale = masu_texel_coverage_scale(level, texels, t->wanted.cutoff, wanted);
-            }
-            encode_color(level, texels, scale, bytes);
+            encode_color(level, texels, bytes);
         }
-        append_blocks(t, bytes, w, h);
+        unsigned char *blocks = append_blocks(t, bytes, w, h);
+        if (t->alpha == MASU_BAKE_ALPHA_MASK && by_alpha) {
+            encode_mask(t, level, w, h, mip, &wanted, bytes, blocks);
+        }
         if (mip + 1 == t->mips) break;
         step_down(level, scratch, w, h, by_alpha);
         if (normals) step_down(normals, scratch, w, h, false);
@@ -155,20 +169,19 @@ static void finish(texture *t, float *level, float *normals) {
 
 /* ---- the three kinds ---- */
 
-/* What alpha is meant for, where the model does not say: nothing where hardly a texel is under the
- * cut-off; blending where a good part is neither here nor there; else a mask. */
+/* What alpha is meant for, where the model does not say: nothing where no texel is under the cut-off,
+ * else a mask. Never blending: it costs a draw for each thing, and an order that meshes of many leaves
+ * do not have. */
 static uint8_t judge_alpha(const float *level, size_t texels, float cutoff, uint8_t meant) {
-    size_t below = 0, between = 0, less = 0;
+    size_t below = 0, less = 0;
     for (size_t i = 0; i < texels; i++) {
         float a = level[4 * i + 3];
         less += a < 0.999f;
         below += a < cutoff;
-        between += a > 0.0625f && a < 0.9375f;
     }
     if (meant == MASU_BAKE_ALPHA_OPAQUE || !less) return MASU_BAKE_ALPHA_OPAQUE;
     if (meant != MASU_BAKE_ALPHA_AUTO) return meant;
-    if (!below) return MASU_BAKE_ALPHA_OPAQUE;
-    return between > texels * 3 / 10 ? MASU_BAKE_ALPHA_BLEND : MASU_BAKE_ALPHA_MASK;
+    return below ? MASU_BAKE_ALPHA_MASK : MASU_BAKE_ALPHA_OPAQUE;
 }
 
 /* Opacity as a picture: its alpha where that says something, else its brightness. */
@@ -212,10 +225,12 @@ static void make_color(maker *m, texture *t) {
     if (has_opacity) masu_bake_release(&opacity.rgba);
 }
 
-static float *normal_level(const masu_bake_picture *p, float scale) {
-    float *level = allocate_level(p->width, p->height);
-    for (size_t i = 0; i < (size_t)p->width * p->height; i++) {
-        const uint8_t *from = p->rgba.data + 4 * i;
+/* As normals of a map of this size. */
+static float *normal_level(const masu_bake_picture *p, float scale, uint32_t w, uint32_t h) {
+    float *level = allocate_level(w, h);
+    for (size_t i = 0; i < (size_t)w * h; i++) {
+        size_t x = i % w * p->width / w, y = i / w * p->height / h;
+        const uint8_t *from = p->rgba.data + 4 * (y * p->width + x);
         masu_bake_vec3 n = {(from[0] - 128) / 127.0 * (double)scale,
                             (from[1] - 128) / 127.0 * (double)scale, (from[2] - 128) / 127.0};
         if (n.z < 0 || !masu_bake_normalize(&n)) n = masu_bake_v3(0, 0, 1);
@@ -230,7 +245,7 @@ static float *normal_level(const masu_bake_picture *p, float scale) {
 static void make_normal(maker *m, texture *t) {
     masu_bake_picture p;
     if (!read_picture(m, t->wanted.image[0], &p)) return;
-    float *level = normal_level(&p, t->wanted.normal_scale);
+    float *level = normal_level(&p, t->wanted.normal_scale, p.width, p.height);
     begin(t, MASU_TEXTURE_BC5, p.width, p.height);
     finish(t, level, NULL);
     free(level);
@@ -244,6 +259,9 @@ static void make_surface(maker *m, texture *t) {
     if (has[0] || has[1] || has[2]) {
         const masu_bake_picture *size = has[0] ? &p[0] : has[1] ? &p[1] : &p[2];
         uint32_t w = size->width, h = size->height;
+        /* No smaller than the normals: else they would make it rougher where they are still seen. */
+        if (has[2] && w < p[2].width) w = p[2].width;
+        if (has[2] && h < p[2].height) h = p[2].height;
         float *level = allocate_level(w, h), *normals = NULL;
         for (uint32_t y = 0; y < h; y++) {
             for (uint32_t x = 0; x < w; x++) {
@@ -257,8 +275,8 @@ static void make_surface(maker *m, texture *t) {
                 to[2] = to[3] = 1;
             }
         }
-        if (has[2] && p[2].width == w && p[2].height == h) {
-            normals = normal_level(&p[2], t->wanted.normal_scale);
+        if (has[2]) {
+            normals = normal_level(&p[2], t->wanted.normal_scale, w, h);
             t->absolute = true;
         }
         begin(t, has[1] ? MASU_TEXTURE_BC5 : MASU_TEXTURE_BC4, w, h);
@@ -287,6 +305,7 @@ static uint32_t obtain(maker *m, const request *wanted) {
     masu_cli_progress("texture %u", m->count + 1);
     switch (wanted->slot) {
     case MASU_SLOT_NORMAL: make_normal(m, t); break;
+    case MASU_SLOT_OCCLUSION: /* one channel, as roughness alone */
     case MASU_SLOT_SURFACE: make_surface(m, t); break;
     default: make_color(m, t); break;
     }
@@ -325,6 +344,10 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
                 r.normal_scale = maps->normal_scale;
                 r.roughness = material->roughness;
             }
+            break;
+        case MASU_SLOT_OCCLUSION:
+            r.image[0] = maps->image[MASU_BAKE_OCCLUSION];
+            r.channel[0] = maps->channel[MASU_BAKE_OCCLUSION];
             break;
         default: r.image[0] = maps->image[MASU_BAKE_EMISSIVE]; break;
         }
@@ -424,20 +447,25 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
                   const uint32_t slots[MASU_SLOT_COUNT]) {
     masu_blob_texture_set set = {.wrap = {maps->wrap[0], maps->wrap[1]}};
     uint32_t flags = 0, layers = 0;
-    if (maps->alpha == MASU_BAKE_ALPHA_BLEND) flags |= MASU_MATERIAL_IS_BLEND;
+    /* What may be blended but is opaque all over is not. */
+    if (maps->alpha == MASU_BAKE_ALPHA_BLEND && (maps->additive || material->opacity < 0.999f))
+        flags |= MASU_MATERIAL_IS_BLEND;
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
         set.texture[slot] = MASU_BLOB_NONE;
         if (slots[slot] == MASU_BLOB_NONE) continue;
         const texture *t = &m->textures[slots[slot]];
         set.texture[slot] = t->array;
-        layers |= t->layer << 8 * slot;
+        if (slot == MASU_SLOT_OCCLUSION)
+            material->occlusion_layer = t->layer;
+        else
+            layers |= t->layer << 8 * slot;
         flags |= 1u << slot;
         if (slot == MASU_SLOT_BASE && t->format == MASU_TEXTURE_BC3_SRGB) {
-            flags |= MASU_MATERIAL_IS_MASK;
-            flags |= (uint32_t)masu_texel_to_unorm(maps->cutoff) << MASU_MATERIAL_CUTOFF_SHIFT;
             if (t->alpha == MASU_BAKE_ALPHA_BLEND) {
                 flags |= MASU_MATERIAL_IS_BLEND;
-                m->blends++;
+            } else {
+                flags |= MASU_MATERIAL_IS_MASK;
+                flags |= (uint32_t)masu_texel_to_unorm(maps->cutoff) << MASU_MATERIAL_CUTOFF_SHIFT;
             }
         }
         if (slot == MASU_SLOT_SURFACE && t->format == MASU_TEXTURE_BC5) {
@@ -450,6 +478,8 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         slots[MASU_SLOT_EMISSIVE] == MASU_BLOB_NONE) {
         memset(material->emissive, 0, sizeof material->emissive);
     }
+    if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
+    if (!(flags & MASU_MATERIAL_IS_BLEND)) material->opacity = 1;
     material->flags = flags;
     if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
     material->layers = layers;
@@ -490,10 +520,6 @@ bool masu_bake_make_textures(masu_bake_content *content, const char *directories
         write_arrays(&m, made);
         for (size_t i = 0; i < materials; i++) {
             point(&m, &MASU_BAKE_MATERIALS(content)[i], &MASU_BAKE_MAPS_OF(content)[i], slots[i]);
-        }
-        if (m.blends) {
-            masu_cli_warn("%u materials are meant to be blended; they are drawn as masks",
-                          m.blends);
         }
         if (!made) masu_bake_release(&content->section[MASU_BLOB_TEXCOORDS]);
     }

@@ -1,7 +1,9 @@
-/* bench_shade.c: see bench_shade.h. The names are those of light.comp. */
+/* bench_shade.c: see bench_shade.h. The names are those of the shaders. */
 #include "bench_shade.h"
 
 #include "shared/masu_shared.h"
+
+#include "split_sum.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,7 +18,7 @@ static double clamped(double x, double low, double high) {
 
 static double mix(double a, double b, double u) { return a + (b - a) * u; }
 
-/* ---- light.comp ------------------------------------------------------------------------------ */
+/* ---- sky.glsl -------------------------------------------------------------------------------- */
 
 static void sky(const masu_view *v, const double direction[3], double out[3]) {
     double u = sqrt(clamped(direction[1], 0, 1));
@@ -37,7 +39,45 @@ static double specular_lobe(const double n[3], const double h[3], double alpha, 
                       n[0] * h[1] - n[1] * h[0]};
     double k = alpha / (dot(sine, sine) + a * a);
     double g = n_l * sqrt(a2 + (1 - a2) * n_v * n_v) + n_v * sqrt(a2 + (1 - a2) * n_l * n_l);
-    return fmin(k * k * 0.5 / fmax(g, 1e-5), 65504);
+    return k * k * 0.5 / fmax(g, 1e-12);
+}
+
+/* ---- bsdf.glsl, without a coat --------------------------------------------------------------- */
+
+typedef struct albedo {
+    double white, weight;
+} albedo;
+
+static uint32_t row_of(double roughness) {
+    double at = (roughness - MASU_TABLE_SMOOTHEST) * (MASU_TABLE_ROWS - 1) /
+                (1 - MASU_TABLE_SMOOTHEST);
+    return (uint32_t)fmin(fmax(at, 0) + 0.5, MASU_TABLE_ROWS - 1);
+}
+
+static albedo albedo_of(uint32_t row, double cosine) {
+    double at = sqrt(cosine) * (MASU_TABLE_SIZE - 1), left = fmin(floor(at), MASU_TABLE_SIZE - 2);
+    const uint32_t *node = masu_split_sum + MASU_TABLE_LOSS + row * MASU_TABLE_SIZE + (uint32_t)left;
+    double lost = mix(node[0] & 0xFFFF, node[1] & 0xFFFF, at - left) / 65535;
+    return (albedo){1 - lost, mix(node[0] >> 16, node[1] >> 16, at - left) / 65535};
+}
+
+static albedo average_of(uint32_t row) {
+    float floats[2];
+    memcpy(floats, masu_split_sum + MASU_TABLE_AVERAGE + 2 * row, sizeof floats);
+    return (albedo){1 - (double)floats[0], (double)floats[1]};
+}
+
+static double lost(albedo a) { return fmax(1 - a.white, 0); }
+
+/* Colour of what leaves after more than one bounce. */
+static double rest_color(double f0, double f90, double average_lost) {
+    double f = f0 + (f90 - f0) / 21;
+    return f * f * (1 - average_lost) / (1 - f * average_lost);
+}
+
+/* What the dielectric's share returns before its light reaches the base colour. */
+static double matte(double f0, double f90, double rest, albedo a) {
+    return f0 * a.white + (f90 - f0) * a.weight + rest * lost(a);
 }
 
 /* As a texel of `steps` + 1 levels. */
@@ -46,42 +86,48 @@ static double stored(double x, double steps) { return rint(clamped(x, 0, 1) * st
 void masu_shade_surface(const masu_view *view, const double direction[3], const double n[3],
                         const double material[8], double out[3]) {
     const double *emissive = material + 4, *l = view->sun_direction;
-    double albedo[3], v[3], h[3], mirror_way[3], reflected[3];
+    double color[3], v[3], h[3], mirror_way[3], reflected[3];
     bool emits = emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
     for (int c = 0; c < 3; c++) {
-        double color = emits ? emissive[c] / 16 : material[c];
-        double root = stored(sqrt(clamped(color, 0, 1)), 255);
-        albedo[c] = root * root;
-        out[c] = 16 * albedo[c];
+        double given = emits ? emissive[c] / 16 : material[c];
+        double root = stored(sqrt(clamped(given, 0, 1)), 255);
+        color[c] = root * root;
+        out[c] = 16 * color[c];
     }
     if (emits) return;
     double roughness = stored(material[3], 255), metallic = stored(material[7], 15);
     for (int i = 0; i < 3; i++) v[i] = -direction[i];
-    double n_v = fmax(dot(n, v), 1e-4), n_l = dot(n, l);
-    double alpha = fmax(roughness, 0.045) * fmax(roughness, 0.045);
+    double n_v = clamped(dot(n, v), 1e-4, 1), n_l = clamped(dot(n, l), 0, 1);
+    double alpha = fmax(roughness, MASU_TABLE_SMOOTHEST), toward = 2 * dot(n, direction);
+    alpha *= alpha;
+    uint32_t row = row_of(roughness);
+    albedo seen = albedo_of(row, n_v), all = average_of(row), lit_by = albedo_of(row, n_l);
     double lobe = 0, f5 = 0, length = 0;
     for (int i = 0; i < 3; i++) {
         h[i] = l[i] + v[i];
         length += h[i] * h[i];
+        mirror_way[i] = direction[i] - toward * n[i];
     }
     length = sqrt(length);
     if (n_l > 0) {
         for (int i = 0; i < 3; i++) h[i] = length > 1e-30 ? h[i] / length : n[i];
         lobe = specular_lobe(n, h, alpha, n_l, n_v);
-        f5 = pow(clamped(1 - clamped(dot(v, h), 0, 1), 0, 1), 5);
+        f5 = pow(clamped(1 - length / 2, 0, 1), 5);
     }
-    double toward = 2 * dot(n, direction), edge = pow(1 - n_v, 5);
-    for (int i = 0; i < 3; i++) mirror_way[i] = direction[i] - toward * n[i];
     sky(view, mirror_way, reflected);
+    double brightest = fmax(color[0], fmax(color[1], color[2]));
+    double metal_f90 = fmin(50 * brightest, 1), f90 = mix(1, metal_f90, metallic);
+    double matte_rest = rest_color(0.04, 1, lost(all));
+    double below = (1 - metallic) * (1 - matte(0.04, 1, matte_rest, seen));
     for (int c = 0; c < 3; c++) {
-        double f0 = mix(0.04, albedo[c], metallic), diffuse = albedo[c] * (1 - metallic);
-        double lit = 0;
-        if (n_l > 0) {
-            double f = f0 + (1 - f0) * f5;
-            lit = view->sun_color[c] * n_l * (diffuse * (1 - f) + f * lobe);
-        }
-        double mirror = f0 + (fmax(1 - roughness, f0) - f0) * edge;
-        out[c] = lit + view->ambient[c] * diffuse +
+        double f0 = mix(0.04, color[c], metallic);
+        double metal_rest = rest_color(color[c], metal_f90, lost(all));
+        double rest = mix(matte_rest, metal_rest, metallic) * lost(seen);
+        double f = (f0 + (f90 - f0) * f5) * lobe + rest * lost(lit_by) / fmax(lost(all), 1e-6) +
+                   color[c] * below * (1 - matte(0.04, 1, matte_rest, lit_by)) /
+                       fmax(1 - matte(0.04, 1, matte_rest, all), 1e-6);
+        double mirror = f0 * seen.white + (f90 - f0) * seen.weight;
+        out[c] = view->sun_color[c] * f * n_l + view->ambient[c] * (rest + color[c] * below) +
                  mirror * mix(reflected[c], view->ambient[c], roughness);
     }
 }

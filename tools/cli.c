@@ -241,6 +241,19 @@ bool masu_cli_double(const masu_cli *cli, double minimum, double maximum, double
     return true;
 }
 
+bool masu_cli_sun(const masu_cli *cli, double out[2]) {
+    const char *text = cli->value;
+    char *end = NULL;
+    out[0] = strtod(text, &end);
+    bool good = end != text && *end == ',' && fabs(out[0]) <= 360.0;
+    text = good ? end + 1 : "";
+    out[1] = strtod(text, &end);
+    if (good && end != text && !*end && fabs(out[1]) <= 90.0) return true;
+    masu_cli_usage_error("%s: expected AZIMUTH,ELEVATION in degrees, at most 360 and 90, not \"%s\"",
+                         value_owner(cli), cli->value);
+    return false;
+}
+
 bool masu_cli_extent(const masu_cli *cli, uint32_t maximum, uint32_t *width, uint32_t *height) {
     const char *text = cli->value;
     unsigned long long size[2] = {0, 0};

@@ -98,6 +98,8 @@ int masu_cli_next(masu_cli *cli);
 /* Read cli->value. On false the mistake has been reported: return MASU_CLI_USAGE. */
 bool masu_cli_uint(const masu_cli *cli, uint32_t minimum, uint32_t maximum, uint32_t *out);
 bool masu_cli_double(const masu_cli *cli, double minimum, double maximum, double *out);
+/* Azimuth and elevation in degrees, "60,15". */
+bool masu_cli_sun(const masu_cli *cli, double out[2]);
 /* "1920x1080", each from 1 to maximum */
 bool masu_cli_extent(const masu_cli *cli, uint32_t maximum, uint32_t *width, uint32_t *height);
 /* one of the names; NULL ends the list */

@@ -13,6 +13,8 @@ extern const masu_cli_command masu_cmd_plan;
 extern const masu_cli_command masu_cmd_march_bench;
 extern const masu_cli_command masu_cmd_cull_bench;
 extern const masu_cli_command masu_cmd_draw_bench;
+extern const masu_cli_command masu_cmd_light_bench;
+extern const masu_cli_command masu_cmd_ao_bench;
 
 /* Options of every command that opens a device; ids from 900 on. */
 enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };

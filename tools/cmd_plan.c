@@ -112,6 +112,12 @@ static int print_text(const masu_session *s, const masu_plan_info *p, const char
                s->scene.texture_arrays, (unsigned long long)s->scene.texture_bytes,
                (unsigned long long)s->scene.texture_bytes_decoded);
     }
+    if (s->scene.environment_size) {
+        printf("sky: a picture, %u texels an edge, %u mips\n", s->scene.environment_size,
+               s->scene.environment_mips);
+    } else {
+        printf("sky: %s\n", s->scene.analytic_sky ? "follows from the sun" : "two colours");
+    }
     printf("output %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
     for (uint32_t r = 0; r < p->rung_count; r++) {
         const masu_plan_rung *rung = &p->rungs[r];

@@ -21,6 +21,9 @@ enum {
     OPTION_TIME_STEP,
     OPTION_STATS,
     OPTION_POISON,
+    OPTION_SUN,
+    OPTION_TURBIDITY,
+    OPTION_EXPOSURE,
     OPTION_SPLIT,
     OPTION_FLIGHT,
     OPTION_MARCH,
@@ -30,12 +33,16 @@ enum {
     OPTION_LOD_ERROR
 };
 
+#define PI 3.14159265358979323846
 #define FRAMES_MAX 100000u
 
 typedef struct render_options {
     const char *output, *stats;
     uint32_t frames, rung;
     double time, time_step;
+    double sun[2], turbidity; /* azimuth and elevation, degrees */
+    double exposure;          /* 0: the scene's */
+    bool own_sun;
 } render_options;
 
 /* One measured frame. */
@@ -182,10 +189,33 @@ static int save(masu_session *s, const render_options *o, uint32_t frame) {
     return MASU_CLI_OK;
 }
 
+/* The sun's place by angles as in scenes; a sky that follows from it. */
+static void set_light(const render_options *o, masu_light *light) {
+    double azimuth = o->sun[0] * (PI / 180.0), elevation = o->sun[1] * (PI / 180.0);
+    if (o->own_sun) {
+        light->sun_direction[0] = (float)(cos(elevation) * sin(azimuth));
+        light->sun_direction[1] = (float)sin(elevation);
+        light->sun_direction[2] = (float)(cos(elevation) * cos(azimuth));
+    }
+    if (o->exposure > 0.0) light->exposure = (float)o->exposure;
+    if (!(o->turbidity > 0.0)) return;
+    if (light->turbidity == 0.0f)
+        for (int c = 0; c < 3; c++) light->ground[c] = 0.2f, light->sun_color[c] = 0.0f;
+    light->turbidity = (float)o->turbidity;
+}
+
 static bool measure(masu_session *s, const render_options *o, uint32_t frame,
                     masu_vk_alloc_counts *counts, sample *out, masu_stats_info *stats, char *error,
                     size_t size) {
-    masu_frame_desc f = {.time = o->time + (double)frame * o->time_step,
+    masu_light light;
+    bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
+    if (own_light && masu_light_of(s->m, &light)) {
+        snprintf(error, size, "the scene has no light");
+        return false;
+    }
+    if (own_light) set_light(o, &light);
+    masu_frame_desc f = {.light = own_light ? &light : NULL,
+                         .time = o->time + (double)frame * o->time_step,
                          .time_step = (float)o->time_step,
                          .rung = o->rung};
     masu_commands commands;
@@ -300,6 +330,17 @@ static int run(masu_cli *cli) {
         case OPTION_LOD_ERROR:
             if (!masu_cli_double(cli, -1e9, 1e9, &lod_error)) return MASU_CLI_USAGE;
             continue;
+        case OPTION_SUN:
+            if (!masu_cli_sun(cli, o.sun)) return MASU_CLI_USAGE;
+            o.own_sun = true;
+            continue;
+        case OPTION_TURBIDITY:
+            if (!masu_cli_double(cli, 1.5, 10.0, &o.turbidity)) return MASU_CLI_USAGE;
+            d.desc.analytic_sky = 1;
+            continue;
+        case OPTION_EXPOSURE:
+            if (!masu_cli_double(cli, 1e-6, 1e6, &o.exposure)) return MASU_CLI_USAGE;
+            continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case MASU_CLI_ARGUMENT:
@@ -364,6 +405,11 @@ static const masu_cli_option options[] = {
      "how wrong a surface may be drawn by a coarser form of its mesh; below 0: none (default 1)",
      OPTION_LOD_ERROR, 0},
     {"casters", NULL, "cull for the sun too, for the numbers of --stats", OPTION_CASTERS, 0},
+    {"sun", "AZIMUTH,ELEVATION", "where the sun stands, degrees, instead of the scene's", OPTION_SUN,
+     0},
+    {"turbidity", "T", "a sky that follows from the sun: 1.5 (very clear) to 10 (hazy)",
+     OPTION_TURBIDITY, 0},
+    {"exposure", "E", "factor before the tone curve, instead of the scene's", OPTION_EXPOSURE, 0},
     {"anisotropy", "N",
      "samples of textures along the longer axis, where the device offers it (default 1)",
      OPTION_ANISOTROPY, 0},

@@ -233,6 +233,51 @@ static void make_disc(void) {
     save(&p, "disc.png");
 }
 
+/* Smoke: grey, alpha that fades to nothing at the rim, in lumps. */
+static void make_smoke(void) {
+    picture p = picture_of(64);
+    for (int y = 0; y < 64; y++) {
+        for (int x = 0; x < 64; x++) {
+            double u = (x - 31.5) / 31, v = (y - 31.5) / 31, r = sqrt(u * u + v * v);
+            double lumps =
+                0.5 + 0.25 * sin(u * 7 + 2 * sin(v * 5)) + 0.25 * sin(v * 9 + 3 * sin(u * 4));
+            double a = r < 1 ? (1 - r) * (1 - r) * (1 + 2 * r) * (0.4 + 0.6 * lumps) : 0;
+            set(&p, x, y, 0.8, 0.8, 0.85, a);
+        }
+    }
+    save(&p, "smoke.png");
+}
+
+/* Needles: alpha that is thin at any distance, 16 samples a texel; repeats without a seam. */
+static void make_needles(void) {
+    enum { SIZE = 128, FINE = 4 * SIZE };
+    picture p = picture_of(SIZE);
+    uint8_t *fine = calloc(FINE, FINE);
+    if (!fine) exit(1);
+    for (int n = 0; n < 60; n++) {
+        double x = noise(n, 1) * FINE, y = noise(n, 2) * FINE, turn = noise(n, 3) * 2 * PI;
+        for (int j = -90; j <= 90; j++) {
+            for (int i = -90; i <= 90; i++) {
+                double u = (i * cos(turn) + j * sin(turn)) / 90;
+                double v = (j * cos(turn) - i * sin(turn)) / 2.2;
+                if (u * u + v * v >= 1) continue;
+                fine[(size_t)((int)y + j + FINE) % FINE * FINE +
+                     (size_t)((int)x + i + FINE) % FINE] = 1;
+            }
+        }
+    }
+    for (int y = 0; y < SIZE; y++) {
+        for (int x = 0; x < SIZE; x++) {
+            int sum = 0;
+            for (int k = 0; k < 16; k++)
+                sum += fine[(size_t)(4 * y + k / 4) * FINE + (size_t)(4 * x + k % 4)];
+            set(&p, x, y, 0.1, 0.3, 0.1, sum / 16.0);
+        }
+    }
+    free(fine);
+    save(&p, "needles.png");
+}
+
 /* Normals that lean the same way everywhere: 30 degrees to the right, and 30 degrees up. */
 static void make_slopes(void) {
     picture right = picture_of(16), up = picture_of(16);
@@ -262,6 +307,8 @@ int main(int argc, char **argv) {
     make_gradient();
     make_large();
     make_disc();
+    make_needles();
+    make_smoke();
     make_slopes();
     return failed;
 }

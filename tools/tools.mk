@@ -1,4 +1,4 @@
-# tools.mk: the programs. masu is masu.c and one cmd_NAME.c per command, masu-bake is bake.c and
+# tools.mk: the programs. masu-meso is meso.c and meso_*.c. masu is masu.c and one cmd_NAME.c per command, masu-bake is bake.c and
 # bake_*.c, masu-sdfc is sdfc.c; the compiler itself, sdfc_*.c, is also part of masu-bake. cli*.c
 # belong to all.
 
@@ -9,7 +9,7 @@ $(BUILD)/bin/masu-sdfc: LIBS = -lm
 $(BUILD)/bin/masu-sdfc: $(call objects,tools/sdfc.c) $(SDFC_OBJECTS) $(CLI_OBJECTS)
 	$(link)
 
-$(BUILD)/bin/masu: LIBS = -lvulkan -ljansson -lm -ldl -lpthread
+$(BUILD)/bin/masu: LIBS = -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 $(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu.c tools/cmd_*.c)) $(CLI_OBJECTS)
 $(BUILD)/bin/masu: $(call objects,tools/bake_content.c tools/bake_groups.c) # a tree for cull-bench
 $(BUILD)/bin/masu: $(KEEP_LOADED) $(BUILD)/lib/libmasu-bench.a
@@ -22,16 +22,25 @@ $(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/bench_*.c tools/me
 # Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
 $(BUILD)/obj/tools/bake_image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
     sed 's/-I/-isystem /g; s/-fopenmp//g')
-BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer $$(pkg-config --libs MagickWand) -lm
+BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer -lembree3 $$(pkg-config --libs MagickWand) -lm -lpthread
 $(BUILD)/bin/masu-bake: LIBS = $(BAKE_LIBS)
-$(BUILD)/bin/masu-bake: $(call objects,$(wildcard tools/bake.c tools/bake_*.c)) $(CLI_OBJECTS) $(SDFC_OBJECTS)
+$(BUILD)/bin/masu-bake: $(call objects,$(wildcard tools/bake.c tools/bake_*.c) tools/probe_light.c) $(CLI_OBJECTS) $(SDFC_OBJECTS)
 $(BUILD)/bin/masu-bake: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+	$(link)
+
+# Embree traces the reliefs; a user of the patches and of what is made of them links MESO_OBJECTS.
+MESO_OBJECTS := $(call objects,$(wildcard tools/meso_*.c))
+MESO_LIBS := -lembree3 $(BAKE_LIBS)
+$(BUILD)/bin/masu-meso: LIBS = $(MESO_LIBS)
+$(BUILD)/bin/masu-meso: $(call objects,tools/meso.c $(wildcard tools/bake_*.c) tools/probe_light.c) $(MESO_OBJECTS)
+$(BUILD)/bin/masu-meso: $(CLI_OBJECTS) $(SDFC_OBJECTS)
+$(BUILD)/bin/masu-meso: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
 
 # Writes the scenes of whole worlds; reads models as masu-bake does.
 $(BUILD)/bin/masu-world: LIBS = $(BAKE_LIBS)
 $(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/world.c tools/world_*.c)) $(CLI_OBJECTS)
-$(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/bake_*.c)) $(SDFC_OBJECTS)
+$(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/bake_*.c) tools/probe_light.c) $(SDFC_OBJECTS)
 $(BUILD)/bin/masu-world: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
 
@@ -67,6 +76,12 @@ $(BUILD)/worlds/city/city.json: $(BUILD)/bin/masu-world
 $(BUILD)/worlds/forza/forza.json: $(BUILD)/bin/masu-world
 	@mkdir -p $(@D)
 	$(V)$(BUILD)/bin/masu-world forza $(@D) --torcs '$(TORCS)'
+FORZA_RELIEFS := $(foreach r,asphalt grass gravel,$(BUILD)/worlds/forza/$(r).json)
+$(FORZA_RELIEFS): $(BUILD)/worlds/forza/%.json: $(BUILD)/bin/masu-meso
+	@mkdir -p $(@D)
+	@echo "  MESO    $*"
+	$(V)cd $(@D) && $(abspath $(BUILD)/bin/masu-meso) --make $* -o $* --no-plots > /dev/null
+$(BUILD)/worlds/forza.masu: $(FORZA_RELIEFS)
 
 .PHONY: $(WORLDS:%=world-%)
 $(WORLDS:%=world-%): world-%: $(BUILD)/worlds/%.masu

@@ -95,16 +95,17 @@ static masu_bake_vec3 angles_of(masu_bake_vec3 ahead, masu_bake_vec3 up, masu_ba
     return masu_bake_v3(a.x * degrees, a.y * degrees, a.z * degrees);
 }
 
+/* more: members of the model, after a comma. */
 static void place(FILE *out, const char *file, const char *name, int group, masu_bake_vec3 angles,
-                  masu_bake_vec3 scale, masu_bake_vec3 at) {
+                  masu_bake_vec3 scale, masu_bake_vec3 at, const char *more) {
     fprintf(out, ",\n    {\"file\": \"%s\", \"name\": \"%s\", \"group\": \"cars/%d\", ", file, name,
             group);
     if (scale.x != 1 || scale.y != 1 || scale.z != 1) {
         fprintf(out, "\"scale\": [%.4f, %.4f, %.4f], ", scale.x, scale.y, scale.z);
     }
     fprintf(out,
-            "\"rotate\": [%.3f, %.3f, %.3f], \"translate\": [%.3f, %.3f, %.3f], \"merge\": 1000}",
-            angles.x, angles.y, angles.z, at.x, at.y, at.z);
+            "\"rotate\": [%.3f, %.3f, %.3f], \"translate\": [%.3f, %.3f, %.3f], \"merge\": 1000%s}",
+            angles.x, angles.y, angles.z, at.x, at.y, at.z, more);
 }
 
 static bool put(FILE *out, const char *torcs, const char *name, int index, const car *c,
@@ -135,7 +136,8 @@ static bool put(FILE *out, const char *torcs, const char *name, int index, const
     snprintf(file, sizeof file, "%s/cars/%s/%s.acc", torcs, name, name);
     snprintf(label, sizeof label, "car%d", index);
     place(out, file, label, index, angles, masu_bake_v3(1, 1, 1),
-          masu_bake_mad(ground, up, c->clearance));
+          masu_bake_mad(ground, up, c->clearance),
+          ",\n     \"material\": {\"roughness\": 0.35, \"coat\": 1, \"coat_roughness\": 0.05}");
     snprintf(file, sizeof file, "%s/wheels/%s/wheel0.acc", torcs, c->rim);
     masu_bake_vec3 size;
     if (!measure(file, &size)) return false;
@@ -148,7 +150,7 @@ static bool put(FILE *out, const char *torcs, const char *name, int index, const
         masu_bake_vec3 scale = {side * 2 * w->radius / size.x, 2 * w->radius / size.y,
                                 side * w->width / size.z};
         snprintf(label, sizeof label, "car%d/wheel%d", index, i);
-        place(out, file, label, index, angles, scale, middle);
+        place(out, file, label, index, angles, scale, middle, "");
     }
     return true;
 }

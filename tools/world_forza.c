@@ -6,6 +6,8 @@
  * The model does not start where the XML does; the offset was found by laying the path over the
  * road's triangles (99.5 % of points up to 4.5 m beside the middle then lie on them).
  *
+ *   grounds  road, grass and sand get the small reliefs asphalt, grass and gravel of masu-meso, whose files
+ *            are to lie beside the scene; their colours stay the track's
  *   camera   a lap at 50 m/s from 0 s on; then, for pictures, a look at the stands ("crowd") and one
  *            from above ("high"): their times are printed */
 #include "world.h"
@@ -196,13 +198,37 @@ static void key(FILE *out, double time, masu_bake_vec3 eye, masu_bake_vec3 at, c
             time, eye.x, eye.y, eye.z, at.x, at.y, at.z, end);
 }
 
+/* Of the track's pictures: how many metres one spans along u and v, mostly. A relief's period is a
+ * quarter of a metre. */
+static void grounds(FILE *out) {
+    static const struct {
+        const char *picture, *relief;
+        double u, v;
+    } rows[] = {{"Road.png", "asphalt", 35, 11},      {"GRAS2B.png", "grass", 10.5, 8.4},
+                {"RSGRAS_n.png", "grass", 15, 1},     {"SAND_n.png", "gravel", 8.8, 8.8},
+                {"RSSAND_n.png", "gravel", 5.3, 1},   {"SANDT_n.png", "gravel", 10, 6.2}};
+    fputs(",\n     \"materials\": [", out);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const char *r = rows[i].relief;
+        fprintf(out,
+                "%s\n      {\"match\": \"%s\", \"roughness\": 1, \"normal_map\": \"%s_normal.png\", "
+                "\"roughness_map\": \"%s_rough.png\",\n       \"occlusion_map\": \"%s_ao.png\", "
+                "\"meso\": \"%s.json\", \"detail\": [%g, %g]}",
+                i ? "," : "", rows[i].picture, r, r, r, r, 4 * rows[i].u,
+                4 * rows[i].v);
+    }
+    fputs("]", out);
+}
+
 static bool write_scene(const track *t, ground *g, const char *folder, const char *torcs) {
     FILE *out = masu_world_create(folder, "forza.json");
     if (!out) return false;
     fprintf(
         out,
-        "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 128}",
+        "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 128",
         torcs);
+    grounds(out);
+    fputs("}", out);
     if (!cars(t, g, torcs, out)) return fclose(out), false;
     fputs("\n  ],\n  \"camera\": {\n    \"fov_y\": 60,\n    \"near\": 0.2,\n    \"keys\": [\n",
           out);
@@ -219,10 +245,11 @@ static bool write_scene(const track *t, ground *g, const char *folder, const cha
     key(out, end + 10, high, middle, ",");
     key(out, end + 11, high, middle, "");
     fputs("    ]\n  },\n"
-          "  \"sun\": {\"azimuth\": 230, \"elevation\": 42, \"color\": [1, 0.95, 0.86], "
-          "\"intensity\": 1.3,\n"
+          "  \"sun\": {\"azimuth\": 230, \"elevation\": 42,\n"
           "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 300}},\n"
-          "  \"ambient\": [0.26, 0.29, 0.34],\n  \"lods\": 3,\n  \"occluders\": 4\n}\n",
+          "  \"sky\": {\"turbidity\": 3, \"ground\": [0.12, 0.13, 0.1]}, \"exposure\": 0.8,\n"
+          "  \"ambient_occlusion\": {\"radius\": 1.5},\n"
+          "  \"fog\": {\"visibility\": 8000, \"falloff\": 0.004},\n  \"lods\": 3,\n  \"occluders\": 4\n}\n",
           out);
     if (!masu_cli_quiet()) {
         printf("%s/forza.json: a lap of %.0f m; crowd at %.0f s, high at %.0f s\n", folder,

@@ -10,7 +10,7 @@
 float write_hit(uvec2 at, ray r, float t, bool known, uint part, float z_scale)
 {
     vec3 p = world_at(r.direction, t);
-    masu_surface s = masu_surface(vec3(0.5), 0.5, vec3(0.0), 0.0);
+    masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
     vec3 n;
     if (known) {
         n = masu_normalize(masu_sdf_flat_normal(part), -r.direction);

@@ -13,27 +13,36 @@
 #ifndef MASU_MAPS_GLSL
 #define MASU_MAPS_GLSL
 
+/* Flags of the material, layers of its maps, how much more often than its colour the others repeat: the
+ * push constants', or whoever includes this says. */
+#ifndef MASU_MAPS_FLAGS
+#define MASU_MAPS_FLAGS pc.index.z
+#define MASU_MAPS_LAYERS pc.index.w
+#define MASU_MAPS_DETAIL pc.param.yz
+#endif
+
 layout(constant_id = 0) const bool masked = false;
 
 layout(set = MASU_SET_TEXTURES, binding = 0) uniform sampler2DArray base_map;
 layout(set = MASU_SET_TEXTURES, binding = 1) uniform sampler2DArray normal_map;
 layout(set = MASU_SET_TEXTURES, binding = 2) uniform sampler2DArray surface_map;
 layout(set = MASU_SET_TEXTURES, binding = 3) uniform sampler2DArray emissive_map;
+layout(set = MASU_SET_TEXTURES, binding = 4) uniform sampler2DArray occlusion_map;
 
 float masu_layer(uint slot)
 {
-    return float(pc.index.w >> 8 * slot & 0xFFu);
+    return float(MASU_MAPS_LAYERS >> 8 * slot & 0xFFu);
 }
 
 float masu_cutoff()
 {
-    return float(pc.index.z >> MASU_MAP_CUTOFF_SHIFT & 0xFFu) / 255.0;
+    return float(MASU_MAPS_FLAGS >> MASU_MAP_CUTOFF_SHIFT & 0xFFu) / 255.0;
 }
 
 /* Base colour and alpha; white where there is no map. */
 vec4 masu_base(vec2 at)
 {
-    if ((pc.index.z & MASU_MAP_BASE) == 0u) {
+    if ((MASU_MAPS_FLAGS & MASU_MAP_BASE) == 0u) {
         return vec4(1.0);
     }
     return texture(base_map, vec3(at, masu_layer(0u)), pc.param.x);
@@ -45,18 +54,22 @@ float masu_sample_maps(vec2 at, inout masu_surface s)
     float bias = pc.param.x;
     vec4 base = masu_base(at);
     s.albedo *= base.rgb;
-    if ((pc.index.z & MASU_MAP_SURFACE) != 0u) {
-        vec2 surface = texture(surface_map, vec3(at, masu_layer(2u)), bias).rg;
+    if ((MASU_MAPS_FLAGS & MASU_MAP_SURFACE) != 0u) {
+        vec2 surface = texture(surface_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(2u)), bias).rg;
         s.roughness *= surface.r;
-        if ((pc.index.z & MASU_MAP_METAL) != 0u) {
+        if ((MASU_MAPS_FLAGS & MASU_MAP_METAL) != 0u) {
             s.metallic *= surface.g;
         }
     }
-    if ((pc.index.z & MASU_MAP_EMISSIVE) != 0u) {
+    if ((MASU_MAPS_FLAGS & MASU_MAP_EMISSIVE) != 0u) {
         vec3 glow = texture(emissive_map, vec3(at, masu_layer(3u)), bias).rgb;
         /* What glows is not lit (pack.glsl). A trace of light that filtering or a block brings from
          * a neighbouring texel must not put out the surface there. */
         s.emissive *= max(glow.r, max(glow.g, glow.b)) < 0.2 ? vec3(0.0) : glow;
+    }
+    if ((MASU_MAPS_FLAGS & MASU_MAP_OCCLUSION) != 0u) {
+        float layer = float(MASU_MAPS_FLAGS >> MASU_MAP_OCCLUSION_SHIFT);
+        s.occlusion *= texture(occlusion_map, vec3(at * MASU_MAPS_DETAIL, layer), bias).r;
     }
     return base.a;
 }
@@ -68,7 +81,7 @@ vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
 {
     vec3 view = masu_normalize(-rel, fallback);
     vec3 n = masu_normalize(normal, fallback);
-    if ((pc.index.z & MASU_MAP_NORMAL) == 0u) {
+    if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
         return n;
     }
     return masu_normalize(n + view * max(0.1 - dot(n, view), 0.0), fallback);
@@ -77,10 +90,10 @@ vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
 /* The normal of the map in world space, unnormalised, on the side of `normal`. */
 vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
 {
-    if ((pc.index.z & MASU_MAP_NORMAL) == 0u) {
+    if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
         return normal;
     }
-    vec2 xy = texture(normal_map, vec3(at, masu_layer(1u)), pc.param.x).rg;
+    vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), pc.param.x).rg;
     /* 128 / 255 is zero: an even number of steps has no middle. */
     xy = clamp((xy * 255.0 - 128.0) / 127.0, -1.0, 1.0);
     float z = sqrt(max(1.0 - dot(xy, xy), 0.0));

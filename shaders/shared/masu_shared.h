@@ -49,6 +49,30 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_SEEN 10 /* a word for each view and instance: not 0: visible when last asked */
 /* The sun's shadow map, where the plan has one. */
 #define MASU_BIND_SHADOW 11
+/* What lights: each where the plan has it. */
+#define MASU_BIND_TABLES 12      /* directional albedos of the specular lobe */
+#define MASU_BIND_SKY 13         /* the analytic sky of the frame */
+#define MASU_BIND_LIGHTS 14      /* points and spots of the frame */
+#define MASU_BIND_LIGHT_TILES 15 /* which of them reach a tile */
+#define MASU_BIND_PROBES 16
+
+/* Directional albedos of the specular lobe (shaders/brdf/tables.glsl, tools/make_split_sum.c). A table
+ * has TABLE_SIZE nodes over sqrt(N.V) from 0 to 1, and TABLE_ROWS rows over perceptual roughness from
+ * TABLE_SMOOTHEST to 1. In words, each two numbers of 16 bits from 0 to 1 unless said otherwise:
+ *   TABLE_LOSS           what a white lobe loses, weight of (1 - h.v)^5
+ *   TABLE_AVERAGE        of each row 2 floats: the averages of both
+ *   TABLE_COAT           a white lobe times the larger (1 - N.w)^5 of both directions w, the same times
+ *                        (1 - h.v)^5. From here on only scenes with clear coat have it
+ *   TABLE_COAT_AVERAGE   of each row 4 floats: the averages of both; a and b of the coat */
+#define MASU_TABLE_SIZE 64
+#define MASU_TABLE_ROWS 256
+#define MASU_TABLE_SMOOTHEST 0.045
+#define MASU_TABLE_LOSS 0
+#define MASU_TABLE_AVERAGE 16384
+#define MASU_TABLE_COAT 16896
+#define MASU_TABLE_COAT_AVERAGE 33280
+#define MASU_TABLE_WORDS 16896 /* without coat */
+#define MASU_TABLE_WORDS_ALL 34304
 
 /* The atlas of occluder depth: the camera's view, below it the sun's. */
 #define MASU_ATLAS_WIDTH 256
@@ -104,6 +128,11 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_TILE_ALL 0xFFFFFFFFu
 #define MASU_SDF_PARTS_MAX 4096
 
+/* Local lights. Their tiles are those of the SDF, of MASU_TILE pixels; a list is one word that says
+ * how many lights, or MASU_TILE_ALL where it would be longer, then their numbers, rising. */
+#define MASU_LOCAL_LIGHTS_MAX 4096
+#define MASU_TILE_LIGHTS_MAX 63
+
 /* An SDF that reaches further than ANCHOR_FROM metres from the origin along an axis is compiled so
  * that its space can be anchored elsewhere; it is where the eye is that far out, at multiples of
  * ANCHOR_GRID. Below, fp32 resolves 0.5 mm or better. */
@@ -119,6 +148,12 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_MARCH_STEPS_MAX 2048
 /* The same of a shadow ray. */
 #define MASU_SHADOW_STEPS_MAX 128
+
+/* Ambient occlusion in screen space: most slices of a texel, most samples on a side of one. */
+#define MASU_AO_SLICES_MAX 8
+#define MASU_AO_STEPS_MAX 16
+/* No sample is farther away than this share of the picture's height. */
+#define MASU_AO_REACH 0.25
 
 /* Most cascades of the sun's shadow map. */
 #define MASU_CASCADES_MAX 4
@@ -140,18 +175,37 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_COUNTER_OCCLUSION_TESTS 7
 /* After stage 2 of culling, of each view: */
 #define MASU_COUNTER_VISIBLE 8 /* instances, triangles */
-#define MASU_COUNTER_COUNT 18
+/* Of local lights: pairs of light and pixel that were looked at, those where something arrives; tiles
+ * that ask all lights. */
+#define MASU_COUNTER_LIGHT_TESTS 18
+#define MASU_COUNTER_LIGHT_SHADED 19
+#define MASU_COUNTER_LIGHT_TILES_FULL 20
+#define MASU_COUNTER_COUNT 21
 
-/* G-buffer material flags, two bits of the packed normal word. */
+/* Rows of the analytic sky's table. Row r is the view whose sine of elevation is t |t|, with t from
+ * -1 (down) to 1 (up); no row is the horizon itself, half of them lie above it. */
+#define MASU_SKY_ROWS 48
+/* Of each row: a term without direction, one with Rayleigh's phase function, one with the
+ * aerosol's, each a polynomial of the cosine of the azimuth from the sun. */
+#define MASU_SKY_TERMS 3
+#define MASU_SKY_ROW 9
+/* Of the lobe that stands for the aureole in the sky's irradiance: src/sky.c. */
+#define MASU_SKY_ROUND (1.0f / 3.0f)
+
+/* G-buffer material flags: two bits of the packed normal word. */
 #define MASU_SURFACE_EMISSIVE 1u
+#define MASU_SURFACE_MORE 2u /* the surface image holds the rest of it */
 
 /* Flags of a material with textures; src/blob.h has them too. */
 #define MASU_MAP_BASE 1u
 #define MASU_MAP_NORMAL 2u
 #define MASU_MAP_SURFACE 4u
 #define MASU_MAP_EMISSIVE 8u
-#define MASU_MAP_METAL 16u
+#define MASU_MAP_OCCLUSION 16u
+#define MASU_MAP_METAL 32u
+#define MASU_MAP_ADDITIVE 0x10000u
 #define MASU_MAP_CUTOFF_SHIFT 8
+#define MASU_MAP_OCCLUSION_SHIFT 24 /* 8 bits: the layer of the occlusion map */
 
 struct masu_frame_uniforms {
     masu_mat4 clip_from_rel; /* rel position -> clip; reverse-Z, no far plane, depth = near / view z */
@@ -162,9 +216,14 @@ struct masu_frame_uniforms {
     masu_vec4 forward;       /* xyz unit view direction; w near distance */
     masu_vec4 sun_direction; /* xyz unit vector towards the sun; w exposure (linear factor) */
     masu_vec4 sun_color;     /* rgb irradiance of the sun on a facing surface / pi; w unused */
-    masu_vec4 ambient;       /* rgb radiance of the constant ambient; w unused */
-    masu_vec4 sky_zenith;    /* rgb radiance straight up */
-    masu_vec4 sky_horizon;   /* rgb radiance at the horizon and below */
+    masu_vec4 ambient;       /* rgb radiance of the ambient light, its mean where it is a sky's */
+    masu_vec4 sky_zenith;    /* rgb radiance straight up; w texels along an edge of a sky's picture */
+    masu_vec4 sky_horizon;   /* rgb radiance at the horizon and below; w mips of that picture */
+    /* Irradiance / pi of the ambient light by the normal: shaders/light/ambient.glsl. */
+    masu_vec4 irradiance[9];
+    masu_vec4 fog;           /* rgb radiance of thick fog; w its density at its height, 1/m */
+    masu_vec4 air;           /* x height of the eye over the fog's; y 1/m by which it thins out upwards; z
+                                where it begins; w not 0: its colour is its own, else the sky's */
     /* The SDF's space: world minus the anchor, which is zero or a point near the eye that stays the
      * same while the eye moves by less than MASU_ANCHOR_GRID. */
     masu_vec4 anchor;        /* xyz; w unused */
@@ -181,6 +240,25 @@ struct masu_instance_data {
     masu_vec4 row0;
     masu_vec4 row1;
     masu_vec4 row2;
+};
+
+/* The analytic sky (src/sky.c), read by shaders/light/sky.glsl. Radiance of a term is 2 to the power of
+ * (c0 + c1 x + c2 x^2), x being the cosine of the azimuth from the sun: it is never negative. */
+struct masu_sky_uniforms {
+    masu_vec4 sun;  /* xyz unit vector towards the sun; w asymmetry of the aerosol's phase function */
+    masu_vec4 disc; /* rgb radiance of the sun's disc as drawn; w unused */
+    masu_vec4 azimuth; /* xy: x and z of the unit vector to below the sun; w not 0: this is the sky */
+    masu_vec4 rows[MASU_SKY_ROWS * MASU_SKY_ROW]; /* rgb log2 of radiance; w unused */
+};
+
+/* A point or spot of this frame, relative to its eye; shaders/light/lights.glsl says how it lights. */
+struct masu_local_light_data {
+    masu_vec4 position; /* xyz; w 1 / range^2 */
+    masu_vec4 color;    /* rgb radiant intensity / pi; w least squared distance */
+    /* xyz unit vector along the middle of a spot, away from it; w 1 - cos(outer). Points: 0 0 0 4 */
+    masu_vec4 axis;
+    masu_vec4 cone;  /* x 1 / (cos(inner) - cos(outer)), points 1; yz sine and cosine of outer, points 0 */
+    masu_vec4 bound; /* sphere around all that it lights: xyz, w radius, with room for rounding */
 };
 
 /* The sun's shadow map; an element of each array is a cascade as it was drawn, maybe some frames
@@ -203,9 +281,32 @@ struct masu_shadow_uniforms {
 struct masu_material_data {
     masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */
     masu_vec4 emissive;   /* rgb linear radiance, all zero: not emissive; w metallic 0..1 */
+    masu_vec4 more;       /* specular, coat, coat_roughness, opacity: each 0..1 */
 };
 
 /* Push constants of every pass. 48 bytes of the guaranteed 128. */
+/* A grid of light probes, the head of their buffer; src/blob.h has the same as masu_blob_probes. Then
+ * words: what the blob has of each probe, then of each the light of the frame. */
+#define MASU_PROBE_SUNS 16
+#define MASU_PROBE_SETS 26
+#define MASU_PROBE_SET_WORDS 14u
+/* The light of the frame at a probe: the first coefficient as halfs, r g, b and how far the probe is to
+ * be believed; then a word for each other one, 10 bits signed for r, g and b, in units of the first
+ * times the most that light can have of it, over 511. Half as many loads as halfs for all, and integers
+ * unpack in a third of the time where halfs have no instruction. The last two are padding: three loads
+ * of four words. They begin at a multiple of four words. */
+#define MASU_PROBE_LIT_WORDS 12u
+#define MASU_PROBE_MOST_1 1.25  /* a light from one direction has 1.155 in band 1 */
+#define MASU_PROBE_MOST_2 0.625 /* and 0.559 in band 2 */
+struct masu_probe_grid {
+    masu_vec4 origin;  /* xyz of the first probe; w metres that points are lifted along normals */
+    masu_vec4 spacing; /* xyz */
+    masu_uvec4 counts; /* xyz; w sets of the sky */
+    masu_uvec4 more;   /* x suns, y 1: a set of emission, z texels along the edge of a map */
+    masu_vec4 sun_direction[MASU_PROBE_SUNS];
+    masu_vec4 sun_inverse[4 * MASU_PROBE_SUNS]; /* rows of 16 */
+};
+
 struct masu_push {
     masu_uint render_width; /* valid sub-rectangle of the pass's input images, texels from (0,0) */
     masu_uint render_height;

@@ -7,6 +7,12 @@
  *   3.2); 4095 is 0
  *                   bits 26-29        metallic, 0..15
  *                   bits 30-31        MASU_SURFACE_* flags
+ *   surface, rgba8, where MASU_SURFACE_MORE is set (else: specular 0.5, no coat, no relief):
+ *                   r    specular
+ *                   g    clear coat, 4 bits, and its roughness, 4 bits; of a small relief, which has no
+ *                        coat: factor of the specular terms at grazing angles
+ *                   b    occlusion
+ *                   a    0: no small relief; else what its shadows leave of a light, (1 + 254 f) / 255
  *   depth, float:   near / view z; 0: nothing there
  *
  * 13 bits per axis leave a normal within 0.03 degrees. src/masu.c, masu_unpack_normal is the twin
@@ -24,7 +30,18 @@ struct masu_surface {
     float roughness; /* perceptual, 0..1 */
     vec3 emissive; /* linear radiance, 0..16; any above 0 replaces the lit surface */
     float metallic;
+    float specular;       /* reflectance of a dielectric at normal incidence / 0.08, 0..1 */
+    float coat;           /* clear coat, 0..1 */
+    float coat_roughness; /* perceptual, 0..1 */
+    float occlusion;      /* what of the ambient light its own relief lets through, 0..1 */
+    float shadow;         /* what the shadows of its relief leave of a light, 0..1; below 0: no relief */
+    float edge;           /* factor of the specular terms at grazing angles, 0..1 */
 };
+
+masu_surface masu_plain_surface(vec3 albedo, float roughness)
+{
+    return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0);
+}
 
 vec2 masu_oct_encode(vec3 n)
 {
@@ -68,6 +85,31 @@ uint masu_pack_normal(vec3 n, masu_surface s)
     uint metallic = uint(masu_sane(s.metallic, 0.0, 1.0) * 15.0 + 0.5);
     uint flags = masu_is_emissive(s) ? MASU_SURFACE_EMISSIVE : 0u;
     return q.x | q.y << 13 | metallic << 26 | flags << 30;
+}
+
+vec4 masu_pack_surface(masu_surface s)
+{
+    vec4 v = masu_sane(vec4(s.specular, s.coat, s.coat_roughness, s.occlusion), 0.0, 1.0);
+    float coat = floor(v.y * 15.0 + 0.5) * 16.0 + floor(v.z * 15.0 + 0.5);
+    if (!(s.shadow >= 0.0)) {
+        return vec4(v.x, coat / 255.0, v.w, 0.0);
+    }
+    vec2 relief = masu_sane(vec3(s.edge, s.shadow, 0.0), 0.0, 1.0).xy;
+    return vec4(v.x, relief.x, v.w, (1.0 + 254.0 * relief.y) / 255.0);
+}
+
+void masu_unpack_surface(vec4 texel, inout masu_surface s)
+{
+    s.specular = texel.r;
+    s.occlusion = texel.b;
+    s.shadow = (texel.a * 255.0 - 1.0) / 254.0;
+    if (texel.a > 0.0) {
+        s.edge = texel.g;
+    } else {
+        float coat = floor(texel.g * 255.0 + 0.5);
+        s.coat = floor(coat / 16.0) / 15.0;
+        s.coat_roughness = (coat - 16.0 * floor(coat / 16.0)) / 15.0;
+    }
 }
 
 vec3 masu_unpack_normal(uint texel)

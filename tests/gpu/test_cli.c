@@ -88,7 +88,8 @@ static int remove_dir(void **state) {
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
     static const char *const commands[] = {"",     "render",      "upscale",
-                                           "plan", "march-bench", "cull-bench", "draw-bench"};
+                                           "plan", "march-bench", "cull-bench", "draw-bench",
+                                           "light-bench"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(masu("%s --help", commands[i]), 0);
         assert_true(strlen(out_text) > 200);
@@ -229,6 +230,23 @@ static void plan_says_what_is_in_and_what_was_left_out(void **state) {
     assert_non_null(strstr(out_text, "\"left_out_bytes\""));
 }
 
+static void light_bench_compares_pictures_and_counts_lights(void **state) {
+    (void)state;
+    assert_int_equal(masu("light-bench %s --size 64x40 --repeat 1 --quiet --validate",
+                          scene_path("night")),
+                     0);
+    assert_non_null(strstr(out_text, "pictures are the same"));
+    assert_non_null(strstr(out_text, "   256 "));
+    assert_int_equal(masu("light-bench %s --size 16x16 --repeat 2 --json --quiet",
+                          scene_path("night")),
+                     0);
+    assert_non_null(strstr(out_text, "\"asked_per_pixel\""));
+    assert_int_equal(masu("light-bench"), 2);
+    said("no scene");
+    assert_int_equal(masu("light-bench %s", scene_path("spheres")), 1);
+    said("has no lights");
+}
+
 static void draw_bench_compares_pictures_and_counts_triangles(void **state) {
     (void)state;
     assert_int_equal(masu("draw-bench %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
@@ -316,6 +334,7 @@ int main(void) {
         cmocka_unit_test(an_unknown_device_lists_those_that_are_there),
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
         cmocka_unit_test(draw_bench_compares_pictures_and_counts_triangles),
+        cmocka_unit_test(light_bench_compares_pictures_and_counts_lights),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
         cmocka_unit_test(the_example_of_the_readme_draws),
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),

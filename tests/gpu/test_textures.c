@@ -5,7 +5,9 @@
 
 #include "blob.h"
 #include "image.h"
+#include "reference/brdf.h"
 #include "scene.h"
+#include "split_sum.h"
 #include "texture.h"
 
 #include <math.h>
@@ -350,17 +352,16 @@ static vec bent(int right, vec n) {
                 scaled(n, cos(3.14159265358979 / 6)));
 }
 
-/* light.comp in double: sun alone, no metal. */
+/* light.comp in double: sun alone, no metal. The model has its normal along z. */
 static double lit(vec n, vec v, vec l, double albedo, double roughness) {
-    double nl = dot(n, l), nv = fmax(dot(n, v), 1e-4);
-    if (nl <= 0) return 0;
-    vec h = unit(plus(l, v));
-    double nh = dot(n, h), vh = dot(v, h), alpha = roughness * roughness;
-    double f = 0.04 + 0.96 * pow(1 - vh, 5);
-    double d = nh * nh * (alpha * alpha - 1) + 1; /* GGX, times pi */
-    double g = nl * sqrt(alpha * alpha + (1 - alpha * alpha) * nv * nv) +
-               nv * sqrt(alpha * alpha + (1 - alpha * alpha) * nl * nl);
-    return nl * (albedo * (1 - f) + f * alpha * alpha / (d * d) * 0.5 / g);
+    brdf_surface surface = {{albedo, albedo, albedo}, roughness, 0, 0.5, 0, 0};
+    vec x = unit((vec){n.z, 0, -n.x}), y = {n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z,
+                                            n.x * x.y - n.y * x.x};
+    const double towards_v[3] = {dot(x, v), dot(y, v), dot(n, v)};
+    const double towards_l[3] = {dot(x, l), dot(y, l), dot(n, l)};
+    double out[3];
+    brdf_eval(masu_split_sum, &surface, towards_v, towards_l, out);
+    return out[0];
 }
 
 static void normal_maps_lean_as_their_pictures_say(void **state) {

@@ -326,6 +326,18 @@ scene '{"models": [{"file": "nodes.gltf"}, {"file": "nodes.gltf", "name": "b", "
     {"file": "nodes.gltf", "material": {"roughness": 0.5}}]}'
 accepts "$json" "${x[@]}"
 says stdout ' 3 vertices, 2 triangles (9 drawn), 2 meshes, 9 instances, 2 materials'
+# Those that a pattern names alone; the last word counts.
+scene '{"models": [{"file": "nodes.gltf", "material": {"coat": 1},
+    "materials": [{"match": "no such *", "coat": 0.5}]}, {"file": "nodes.gltf", "material": {"coat": 1}},
+    {"file": "nodes.gltf", "materials": [{"match": "pa?nt", "coat": 0.25}, {"match": "*", "coat": 1}]}]}'
+accepts "$json" "${x[@]}"
+says stdout ' 3 vertices, 3 triangles (9 drawn), 3 meshes, 9 instances, 1 materials'
+wrong ': models\[0\].materials\[0\]: needs "match"' \
+    "{\"models\": [{\"file\": \"nodes.gltf\", \"materials\": [{\"coat\": 1}]}]}"
+wrong ': models\[0\].material.detail: expected a number from 0.001 to 10000, or two' \
+    "{\"models\": [{\"file\": \"nodes.gltf\", \"material\": {\"detail\": [1, 2, 3]}}]}"
+wrong ': models\[0\].materials: expected an array' \
+    "{\"models\": [{\"file\": \"nodes.gltf\", \"materials\": {}}]}"
 scene '{"models": [{"file": "nodes.gltf", "rotate": [0, 0, 90],
     "fit": {"size": 26, "base": [1, 2, 3]}, "translate": [0, 0, 1]}]}'
 accepts "$json" "${x[@]}" --stats "$folder/stats.json"

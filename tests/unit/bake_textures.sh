@@ -74,7 +74,7 @@ bakes "$scene"
 [ "$(counts texels)" = 172 ] || fail "an opaque disc: $(counts texels) units of texels"
 quad "\"base_color_map\": \"$pictures/disc.png\", \"alpha\": \"blend\""
 bakes "$scene"
-warns 1 'meant to be blended'
+warns 0
 [ "$(counts texels)" = 343 ] || fail "a disc to blend: $(counts texels) units of texels"
 
 # Pictures of one size and format share an array; the same request is made once.
@@ -221,6 +221,10 @@ refuses 'expected "opaque"' '"alpha": "see-through"'
 refuses 'from 0 to 1' '"alpha_cutoff": 2'
 refuses 'another map' '"surface_map": "a.png", "roughness_map": "b.png"'
 refuses 'unknown key' '"colour_map": "a.png"'
+refuses 'from 0 to 1' '"opacity": 1.5'
+refuses 'expected "alpha" or "additive"' '"blend": "multiply"'
+refuses 'not transparent' '"alpha": "mask", "opacity": 0.5'
+refuses 'not transparent' '"alpha": "opaque", "blend": "additive"'
 
 [ $failures = 0 ] && echo "masu-bake: pictures as expected"
 [ $failures = 0 ]

@@ -13,6 +13,7 @@ make --no-print-directory install DESTDIR="$stage" PREFIX=$prefix
 sort > "$folder/expected" << END
 .$prefix/bin/masu
 .$prefix/bin/masu-bake
+.$prefix/bin/masu-meso
 .$prefix/bin/masu-sdfc
 .$prefix/include/masu.h
 .$prefix/lib/libmasu.a

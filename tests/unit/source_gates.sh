@@ -55,7 +55,7 @@ forbidden_functions() {
     nm "$1" | awk 'NF == 3 && $2 ~ /[A-TV-Z]/ { print $3 }' | sort -u > "$folder/has"
     comm -23 "$folder/needed" "$folder/has" | grep -vxE \
         -e '(__)?(mem(cpy|move|set|cmp|chr)|v?snprintf)(_chk)?|bcmp|str(len|cmp|ncmp|chr)' \
-        -e '(a?(sin|cos|tan)|atan2|exp2|log2|pow|f?abs|floor|ceil|round|trunc|f(min|max|mod))f?' \
+        -e '(a?(sin|cos|tan)|sincos|hypot|atan2|exp2?|log2|pow|f?abs|floor|ceil|round|trunc|f(min|max|mod))f?' \
         -e '(sqrt|ldexp|frexp|nearbyint|l?lrint)f?|__(isfinite|isinf|isnan)f?' \
         -e '_GLOBAL_OFFSET_TABLE_|__stack_chk_fail'
 }

@@ -63,8 +63,10 @@ static const masu_blob_occluder occluders[] = {
 };
 
 static const masu_blob_material materials[] = {
-    {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, 0, 0, 0},
-    {{0.0f, 0.0f, 0.0f}, 1.0f, {4.0f, 2.0f, 1.0f}, 0.0f, NAME_GLOW, 0, 0, 0},
+    {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, 0, 0, 0,
+     0.5f, 0.0f, 0.0f, 1.0f, MASU_BLOB_NONE, 0, {1.0f, 1.0f}},
+    {{0.0f, 0.0f, 0.0f}, 1.0f, {4.0f, 2.0f, 1.0f}, 0.0f, NAME_GLOW, 0, 0, 0,
+     0.5f, 0.0f, 0.0f, 1.0f, MASU_BLOB_NONE, 0, {1.0f, 1.0f}},
 };
 
 static const masu_blob_camera_key camera_keys[] = {
@@ -98,7 +100,14 @@ static const masu_blob_material mapped[] = {
      NAME_STEEL,
      7 | MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | 128 << MASU_MATERIAL_CUTOFF_SHIFT,
      0,
-     1},
+     1,
+     0.5f,
+     0.0f,
+     0.0f,
+     1.0f,
+     MASU_BLOB_NONE,
+     0,
+     {1.0f, 1.0f}},
     {{0.0f, 0.0f, 0.0f},
      1.0f,
      {4.0f, 2.0f, 1.0f},
@@ -106,7 +115,14 @@ static const masu_blob_material mapped[] = {
      NAME_GLOW,
      8 | MASU_MATERIAL_IS_BLEND,
      1,
-     0},
+     0,
+     0.5f,
+     0.0f,
+     0.0f,
+     1.0f,
+     MASU_BLOB_NONE,
+     0,
+     {1.0f, 1.0f}},
 };
 
 static const float texcoords[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {-3.5f, 2},   {0.5f, 0.5f},
@@ -119,12 +135,40 @@ static const masu_blob_texture textures[] = {
 };
 
 static const masu_blob_texture_set texture_sets[] = {
-    {{0, 1, 1, MASU_BLOB_NONE}, {0, 2}, {0}},
-    {{MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE, 2}, {1, 1}, {0}},
+    {{0, 1, 1, MASU_BLOB_NONE, MASU_BLOB_NONE}, {0, 2}, 0},
+    {{MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE, 2, MASU_BLOB_NONE}, {1, 1}, 0},
 };
 
 /* 7 blocks of 16 bytes twice, 2 + 1 + 1 of 16, 1 of 8 and padding. */
 static const unsigned char texels[19][16] = {{1, 2, 3}, {0xFF, 0, 0x5A}};
+
+static const masu_blob_meso meso[] = {
+    {.tilt = {0.5f, 0.0f, -0.25f}, .facet = 0.5f, .occlusion = {1.0f, 0.5f, 0.0f}, .alpha = 1.5f,
+     .offset = 1.0f, .specular = {1.0f, 0.0f, 0.0f}}};
+
+static const masu_blob_light lights[] = {
+    {{1.0f, 2.0f, 3.0f}, 8.0f, {1.0f, 0.5f, 0.25f}, 0.1f, {0.0f, 0.0f, 0.0f}, MASU_LIGHT_POINT, 0.0f,
+     0.0f, MASU_BLOB_NONE, NAME_GLOW},
+    {{0.0f, 1.0f, 0.0f}, 20.0f, {2.0f, 2.0f, 2.0f}, 0.05f, {0.0f, 0.0f, -1.0f}, MASU_LIGHT_SPOT, 0.4f,
+     0.8f, 1, MASU_BLOB_NONE}};
+
+static const masu_blob_probes probes[] = {{.origin = {-1.0f, 0.0f, 0.0f},
+                                           .bias = 0.5f,
+                                           .spacing = {2.0f, 2.0f, 2.0f},
+                                           .counts = {2, 1, 1},
+                                           .sky_sets = 1,
+                                           .suns = 1,
+                                           .visibility = 1,
+                                           .sun_direction = {{0.0f, 1.0f, 0.0f, 0.0f}},
+                                           .sun_inverse = {{1.0f}}}};
+
+/* Two sets and a map of 3 x 3 of each. */
+static const uint32_t probe_data[2 * (2 * MASU_PROBE_WORDS + 9)] = {0x3C003800u, 0x80000001u};
+
+static const masu_blob_environment_map environment_map[] = {
+    {8, 2, {0}, {{0.5f, 0.5f, 1.0f, 0.0f}, {0.1f, -0.1f, 0.0f, 0.0f}}}};
+
+static const uint32_t environment_texels[64 + 16] = {0x80000001u, 0xFFFFFFFFu};
 
 /* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
 static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
@@ -160,6 +204,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
                       (parts & SUPPORT_SDF ? 8u : 0u) + (parts & SUPPORT_SHADOW ? 1u : 0u) + 1;
     int detail = parts & SUPPORT_RASTER && parts & SUPPORT_DETAIL;
     if (detail) sections++;
+    int lighting = parts & SUPPORT_RASTER && parts & SUPPORT_LIGHTING;
+    if (lighting) sections += 6;
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
     uint32_t with_textures = SUPPORT_RASTER | SUPPORT_TEXTURES;
     if ((parts & with_textures) == with_textures) sections += 4;
@@ -220,6 +266,14 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_TEXELS, texels);
     }
     if (detail) ADD(MASU_BLOB_LODS, lods);
+    if (lighting) {
+        ADD(MASU_BLOB_MESO, meso);
+        ADD(MASU_BLOB_LIGHTS, lights);
+        ADD(MASU_BLOB_PROBES, probes);
+        ADD(MASU_BLOB_PROBE_DATA, probe_data);
+        ADD(MASU_BLOB_ENVIRONMENT_MAP, environment_map);
+        ADD(MASU_BLOB_ENVIRONMENT_TEXELS, environment_texels);
+    }
     support_blob_seal(blob->bytes, blob->size);
 }
 

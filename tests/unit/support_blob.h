@@ -15,6 +15,9 @@
  *   textures   0: BC3, 8 x 8, 4 mips, 2 layers   1: BC5, 6 x 3, 3 mips   2: BC1, 4 x 4, 1 mip
  *   sets       0: base 0, normal 1, surface 1    1: emissive 2
  *
+ *   meso       one, of no material                lights  0 point "glow"  1 spot, carried by instance 1
+ *   probes     2 x 1 x 1, sets 0 and 1            environment map: 8 texels, 2 mips
+ *
  * SUPPORT_DETAIL adds primitive 3, a triangle of the last square: the LOD of mesh 1. */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
@@ -33,10 +36,11 @@ enum {
     SUPPORT_SHADOW = 16, /* the sun's shadow map */
     SUPPORT_ALL = 31,
     SUPPORT_TEXTURES = 32, /* with SUPPORT_RASTER: "steel" has maps, and is a mask */
-    SUPPORT_DETAIL = 64 /* with SUPPORT_RASTER: a LOD. Not part of SUPPORT_ALL */
+    SUPPORT_DETAIL = 64, /* with SUPPORT_RASTER: a LOD. Not part of SUPPORT_ALL, nor is the next */
+    SUPPORT_LIGHTING = 128 /* with SUPPORT_RASTER: a small relief, lights, probes, a sky from a picture */
 };
 
-#define SUPPORT_BLOB_ROOM 8192u
+#define SUPPORT_BLOB_ROOM 16384u
 
 typedef struct support_blob {
     _Alignas(64) unsigned char bytes[SUPPORT_BLOB_ROOM];

@@ -74,11 +74,15 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].march_steps);
         SAME(rungs[r].frustum);
         SAME(rungs[r].occlusion);
+        SAME(rungs[r].ao);
+        SAME(rungs[r].ao_slices);
+        SAME(rungs[r].ao_steps);
         SAME(rungs[r].shadow_cascades);
         SAME(rungs[r].shadow_resolution);
         SAME(rungs[r].shadow_distance);
         for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) SAME(rungs[r].shadow_refresh[k]);
         SAME(rungs[r].lod_error);
+        SAME(rungs[r].light_tiles);
     }
     SAME(limits.vertices);
     SAME(limits.indices);
@@ -87,8 +91,10 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(limits.sdf_params);
     SAME(limits.shadow_cascades);
     SAME(limits.shadow_resolution);
+    SAME(limits.probes);
     SAME(limits.textures);
     SAME(limits.texture_bytes);
+    SAME(limits.transparents);
     SAME(vulkan.texture_compression_bc);
     SAME(vulkan.max_anisotropy);
     SAME(deny.compressed_textures);
@@ -107,6 +113,8 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.labels);
     SAME(debug.poison);
     SAME(debug.casters);
+    SAME(debug.ao_full);
+    SAME(debug.ao_nearest);
     SAME(deny.unified_memory);
     SAME(log);
     SAME(log_user);
@@ -115,7 +123,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
 }
 
 /* Defaults of the shadow map: what the scene has, drawn in every frame. */
-#define SHADOW 0, 0, 0.0f, {1, 1, 1, 1}
+#define SHADOW 0, 0, 0.0f, {1, 1, 1, 1}, MASU_AUTO
 
 static void every_zero_becomes_its_documented_default(void **state) {
     (void)state;
@@ -127,11 +135,11 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
     expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    SHADOW};
+                                    MASU_AUTO, 2, 8, SHADOW};
     expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    SHADOW};
+                                    MASU_AUTO, 2, 8, SHADOW};
     expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    SHADOW};
+                                    MASU_AUTO, 2, 8, SHADOW};
     masu_desc resolved = masu_desc_resolved(&zero);
     assert_same_desc(&resolved, &expected);
     resolved = masu_desc_resolved(NULL);
@@ -149,9 +157,9 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    SHADOW};
+                                    MASU_AUTO, 2, 8, SHADOW};
     given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    SHADOW};
+                                    MASU_AUTO, 2, 8, SHADOW};
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
 
@@ -185,16 +193,17 @@ static masu_desc full_desc(void) {
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
         d.rungs[r] =
             (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1,
-                        MASU_OFF, MASU_ON, 0.5f + (float)r, r % 5, 100 + r, (float)r, {r + 1, 2, 3, 4}};
+                        MASU_OFF, MASU_ON, 0.5f + (float)r, MASU_ON, r + 1, r + 2, r % 5, 100 + r,
+                        (float)r, {r + 1, 2, 3, 4}, MASU_OFF};
     }
-    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15, 16, 17};
+    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
     d.host_budget = 14;
     d.device_budget = 15;
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
         d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
     }
     d.readback = 3;
-    d.debug = (masu_debug){1, 2, 3, 4, 5};
+    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7};
     d.deny.unified_memory = 1;
     d.log = no_log;
     d.log_user = &allocator;
@@ -304,6 +313,11 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
     BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
     BAD("rungs[].occlusion", d.rungs[1].occlusion = (masu_switch)3);
+    BAD("rungs[].light_tiles", d.rungs[1].light_tiles = (masu_switch)3);
+    BAD("rungs[].ao", d.rungs[1].ao = (masu_switch)3);
+    BAD("rungs[].ao_slices", d.rungs[1].ao_slices = 9);
+    BAD("rungs[].ao_slices", d.rungs[0].ao_slices = UINT32_MAX);
+    BAD("rungs[].ao_steps", d.rungs[1].ao_steps = 17);
     BAD("rungs[].lod_error", d.rungs[1].lod_error = nan);
     BAD("rungs[].lod_error", d.rungs[0].lod_error = infinity);
     BAD("rungs[].lod_error", d.rungs[1].lod_error = -infinity);
@@ -414,9 +428,11 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.frames_in_flight = MASU_MAX_FLIGHT;
     d.readback = MASU_READBACK_ALL;
     d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1,
-                             MASU_ON, MASU_ON, 1e9f, 4,      8192,    1e30f,   {1, 64, 64, 64}};
+                             MASU_ON, MASU_ON, 1e9f, MASU_ON, 8, 16,
+                             4,       8192,    1e30f, {1, 64, 64, 64}, MASU_ON};
     d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256,
-                             MASU_OFF, MASU_OFF, -1e9f, 1,    16,       1e-30f,   {64, 0, 0, 0}};
+                             MASU_OFF, MASU_OFF, -1e9f, MASU_OFF, 1, 1,
+                             1,        16,       1e-30f, {64, 0, 0, 0}, MASU_OFF};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;
@@ -452,8 +468,11 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         {"limits.sdf_params", offsetof(masu_limits, sdf_params), 2},
         {"limits.shadow_cascades", offsetof(masu_limits, shadow_cascades), 3},
         {"limits.shadow_resolution", offsetof(masu_limits, shadow_resolution), 1024},
+        {"limits.probes", offsetof(masu_limits, probes), 6},
         {"limits.textures", offsetof(masu_limits, textures), 4},
         {"limits.texture_bytes", offsetof(masu_limits, texture_bytes), 1000},
+        {"limits.transparents", offsetof(masu_limits, transparents), 6},
+        {"limits.lights", offsetof(masu_limits, lights), 5},
     };
     static masu_frame_plan plan;
     assert_int_equal(sizeof(masu_limits), COUNT(rows) * sizeof(uint64_t));
@@ -463,6 +482,9 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         uint64_t limit = rows[i].needed;
         support_scene.shadow_cascades = 3;
         support_scene.shadow_resolution = 1024;
+        support_scene.transparents = 6, support_scene.transparent_sets = 1;
+        support_scene.probes = 6;
+        support_scene.lights = 5;
         memcpy((char *)&d.limits + rows[i].offset, &limit, sizeof limit);
         compile(&d, &plan); /* exactly enough */
         limit--;
@@ -471,6 +493,31 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         assert_int_equal(masu_compile(&d, 1, 1, &plan, &detail), MASU_ERROR_LIMIT);
         assert_int_equal(detail.needed, rows[i].needed);
         assert_int_equal(detail.given, limit);
+    }
+}
+
+/* Whatever the description allows: the recordings have a draw for each of them. */
+static void more_transparents_than_can_be_recorded_are_refused(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static const struct {
+        uint32_t transparents, sets;
+        const char *what; /* NULL: taken */
+    } rows[] = {{4096, 16, NULL},
+                {4097, 1, "limits.transparents"},
+                {UINT32_MAX, 1, "limits.transparents"},
+                {4096, 17, "transparents times their texture sets"},
+                {1, 64, NULL},
+                {1, 65, "transparent texture sets"}};
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        masu_desc d = scene_desc(RASTER, 640, 480);
+        support_scene.transparents = rows[i].transparents;
+        support_scene.transparent_sets = rows[i].sets;
+        if (rows[i].what) {
+            assert_refused(&d, MASU_ERROR_LIMIT, rows[i].what);
+        } else {
+            compile(&d, &plan);
+        }
     }
 }
 
@@ -559,6 +606,7 @@ int main(void) {
         cmocka_unit_test(the_extremes_of_each_range_are_accepted),
         cmocka_unit_test(refusals_say_what_was_given_and_what_is_allowed),
         cmocka_unit_test(a_scene_beyond_a_limit_is_refused_with_both_numbers),
+        cmocka_unit_test(more_transparents_than_can_be_recorded_are_refused),
         cmocka_unit_test(what_no_device_is_needed_for_is_refused_without_one),
         cmocka_unit_test(a_missing_vulkan_handle_is_named),
         cmocka_unit_test(every_result_has_its_text),

@@ -83,6 +83,7 @@ static uint64_t write_with(uint32_t kind) {
     uint32_t without = kind == MASU_BLOB_FRAGMENT_SPIRV ? SUPPORT_RASTER : 0;
     uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES
                     : kind == MASU_BLOB_LODS                                 ? SUPPORT_DETAIL
+                    : kind >= MASU_BLOB_MESO                                 ? SUPPORT_LIGHTING
                                                                              : 0;
     support_blob_write(&blob, (SUPPORT_ALL & ~without) | with);
     masu_blob_section *row = support_blob_row(&blob, (enum masu_blob_kind)kind);
@@ -108,6 +109,123 @@ static const struct {
              {MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V", 0}};
 
 static const float not_finite[] = {(float)NAN, (float)INFINITY, (float)-INFINITY};
+
+#define MATERIAL_OF AT(MATERIALS, masu_blob_material)
+#define MESO AT(MESO, masu_blob_meso)
+#define LIGHT AT(LIGHTS, masu_blob_light)
+#define PROBES AT(PROBES, masu_blob_probes)
+#define MAP AT(ENVIRONMENT_MAP, masu_blob_environment_map)
+
+/* As REFUSED, of a blob with all that lights. */
+#define LIT(what, element, ...)                                                                    \
+    do {                                                                                           \
+        support_blob_write(&blob, SUPPORT_ALL | SUPPORT_LIGHTING);                                 \
+        (void)(__VA_ARGS__);                                                                       \
+        assert_refused(what, element);                                                             \
+    } while (0)
+
+static void what_lights_a_scene_is_checked(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        float x = not_finite[i];
+        LIT("materials", 1, MATERIAL_OF[1].specular = x);
+        LIT("materials", 0, MATERIAL_OF[0].coat = x);
+        LIT("materials", 0, MATERIAL_OF[0].coat_roughness = x);
+        LIT("materials", 0, MATERIAL_OF[0].opacity = x);
+        LIT("meso", 0, MESO[0].tilt[2] = x);
+        LIT("meso", 0, MESO[0].roughness[0] = x);
+        LIT("meso", 0, MESO[0].occlusion[1] = x);
+        LIT("meso", 0, MESO[0].alpha = x);
+        LIT("lights", 1, LIGHT[1].position[2] = x);
+        LIT("lights", 0, LIGHT[0].range = x);
+        LIT("lights", 0, LIGHT[0].radius = x);
+        LIT("lights", 0, LIGHT[0].color[1] = x);
+        LIT("lights", 0, LIGHT[0].direction[0] = x);
+        LIT("lights", 1, LIGHT[1].inner = x);
+        LIT("lights", 1, LIGHT[1].outer = x);
+        LIT("probes", 0, PROBES[0].origin[0] = x);
+        LIT("probes", 0, PROBES[0].spacing[2] = x);
+        LIT("probes", 0, PROBES[0].bias = x);
+        LIT("probes", 0, PROBES[0].sun_direction[0][0] = x);
+        LIT("probes", 3, PROBES[0].sun_direction[3][1] = x);
+        LIT("probes", 2, PROBES[0].sun_inverse[2][15] = x);
+        LIT("environment map", 8, MAP[0].sh[8][2] = x);
+        LIT("environment", 0, SKY[0].turbidity = x);
+        LIT("environment", 0, SKY[0].ground[1] = x);
+        LIT("environment", 0, SKY[0].occlusion_radius = x);
+        LIT("environment", 0, SKY[0].fog_color[0] = x);
+        LIT("environment", 0, SKY[0].fog_density = x);
+        LIT("environment", 0, SKY[0].fog_height = x);
+        LIT("environment", 0, SKY[0].fog_falloff = x);
+        LIT("environment", 0, SKY[0].fog_start = x);
+    }
+    LIT("materials", 0, MATERIAL_OF[0].specular = 1.01f);
+    LIT("materials", 0, MATERIAL_OF[0].opacity = 0.5f); /* but not blended */
+    LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_ADDITIVE);
+    LIT("materials", 0, MATERIAL_OF[0].meso = 1);
+    LIT("meso", 0, MESO[0].alpha = 4.5f);
+    LIT("meso", 0, MESO[0].facet = 1.5f);
+    LIT("meso", 0, MESO[0].offset = -0.5f);
+    LIT("lights", 0, LIGHT[0].type = 2);
+    LIT("lights", 0, LIGHT[0].range = -1.0f);
+    LIT("lights", 0, LIGHT[0].range = 2e15f);
+    LIT("lights", 0, LIGHT[0].outer = 1.0f); /* of a point */
+    LIT("lights", 0, LIGHT[0].color[2] = 2e9f);
+    LIT("lights", 0, LIGHT[0].radius = 0.0f);
+    LIT("lights", 1, LIGHT[1].direction[2] = -0.5f);
+    LIT("lights", 1, LIGHT[1].outer = 0.3f); /* narrower than the inner */
+    LIT("lights", 1, LIGHT[1].outer = 3.2f);
+    LIT("lights", 1, LIGHT[1].inner = -0.1f);
+    LIT("lights", 1, LIGHT[1].parent = 3);
+    LIT("lights", 1, LIGHT[1].name = 1000);
+    LIT("probes", 0, PROBES[0].sky_sets = 0);
+    LIT("probes", 0, PROBES[0].sky_sets = 2);
+    LIT("probes", 0, PROBES[0].suns = 17);
+    LIT("probes", 0, PROBES[0].emissive = 2);
+    LIT("probes", 0, PROBES[0].visibility = 17);
+    LIT("probes", 0, PROBES[0].bias = -0.1f);
+    LIT("probe data", 74, PROBES[0].suns = 2);
+    LIT("probes", 0, PROBES[0].counts[1] = 0);
+    LIT("probes", 0, PROBES[0].counts[0] = UINT32_MAX);
+    LIT("probes", 0, PROBES[0].counts[0] = PROBES[0].counts[1] = 1u << 20);
+    LIT("probe data", 74, PROBES[0].counts[0] = 3);
+    LIT("probe data", 74, PROBES[0].visibility = 2);
+    LIT("probes", 0, PROBES[0].spacing[0] = 0.0f);
+    LIT("probe data", 3, AT(PROBE_DATA, uint32_t)[3] = 0x7C00u);
+    LIT("probe data", 4, AT(PROBE_DATA, uint32_t)[4] = 0xFE000000u);
+    LIT("probes", 0, support_blob_drop(&blob, MASU_BLOB_PROBE_DATA));
+    LIT("environment map", 0, MAP[0].size = 12);
+    LIT("environment map", 0, MAP[0].size = 4);
+    LIT("environment map", 0, MAP[0].mips = 3); /* of 2 texels */
+    LIT("environment map", 0, MAP[0].mips = 0);
+    LIT("environment texels", 80, MAP[0].size = 16);
+    LIT("environment map", 0, support_blob_drop(&blob, MASU_BLOB_ENVIRONMENT_TEXELS));
+    LIT("environment", 0, SKY[0].turbidity = 1.0f);
+    LIT("environment", 0, SKY[0].fog_density = -1.0f);
+    LIT("environment", 0, SKY[0].occlusion_radius = -1.0f);
+    support_blob_write(&blob, SUPPORT_ALL | SUPPORT_LIGHTING);
+    SKY[0].turbidity = 2.0f;
+    SKY[0].fog_density = 0.1f;
+    MATERIAL_OF[0].flags = MASU_MATERIAL_IS_BLEND | MASU_MATERIAL_IS_ADDITIVE;
+    MATERIAL_OF[0].opacity = 0.5f;
+    MATERIAL_OF[0].coat = 1.0f;
+    MATERIAL_OF[1].meso = 0;
+    masu_scene scene;
+    support_blob_seal(blob.bytes, blob.size);
+    assert_int_equal(masu_scene_bind(blob.bytes, blob.size, &scene, NULL), MASU_OK);
+    assert_int_equal(scene.surfaces, 2);
+    assert_int_equal(scene.coats, 1);
+    assert_int_equal(scene.blends, 1);
+    assert_int_equal(scene.meso, 1);
+    assert_int_equal(scene.lights, 2);
+    assert_int_equal(scene.probes, 2);
+    assert_int_equal(scene.probe_sets, 2);
+    assert_int_equal(scene.probe_words, 74);
+    assert_int_equal(scene.environment_size, 8);
+    assert_int_equal(scene.environment_mips, 2);
+    assert_int_equal(scene.analytic_sky, 1);
+    assert_int_equal(scene.fog, 1);
+}
 
 static void a_section_of_an_unknown_kind_is_refused(void **state) {
     (void)state;
@@ -671,6 +789,7 @@ int main(void) {
         cmocka_unit_test(a_section_that_appears_twice_is_refused),
         cmocka_unit_test(a_section_of_another_element_size_is_refused),
         cmocka_unit_test(a_section_with_too_few_or_too_many_elements_is_refused),
+        cmocka_unit_test(what_lights_a_scene_is_checked),
         cmocka_unit_test(a_section_outside_the_blob_is_refused),
         cmocka_unit_test(bytes_that_no_section_owns_are_refused),
         cmocka_unit_test(names_that_do_not_end_are_refused),

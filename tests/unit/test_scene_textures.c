@@ -151,8 +151,8 @@ static void a_texture_set_names_textures_of_the_right_kind(void **state) {
 
 static void a_material_asks_for_maps_that_are_there(void **state) {
     (void)state;
-    REFUSED("materials", 0, MATERIAL[0].flags |= 0x80);
-    REFUSED("materials", 0, MATERIAL[0].flags |= 0x10000);
+    REFUSED("materials", 0, MATERIAL[0].flags |= 0x20000);
+    REFUSED("materials", 0, MATERIAL[0].flags |= 0x10); /* its set has no occlusion map */
     REFUSED("materials", 0, MATERIAL[0].texture_set = 2);
     REFUSED("materials", 0, MATERIAL[0].texture_set = UINT32_MAX);
     REFUSED("materials", 0, MATERIAL[0].flags |= 8); /* its set has nothing that glows */
@@ -162,6 +162,7 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
     REFUSED("materials", 1, MATERIAL[1].layers = 0x1000000);
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_IS_MASK);
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_HAS_METAL);
+    REFUSED("texture sets", 0, SET[0].texture[4] = 1); /* BC5 is no occlusion */
     REFUSED("materials", 0, MATERIAL[0].flags = 0); /* but a layer */
     REFUSED("materials", 1, MATERIAL[1].flags = 0); /* but a set */
     REFUSED("materials", 1, MATERIAL[1].flags = MASU_MATERIAL_IS_MASK, MATERIAL[1].texture_set = 0);

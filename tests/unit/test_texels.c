@@ -90,53 +90,6 @@ static void what_cannot_be_seen_does_not_bleed_into_colour(void **state) {
     assert_float_equal(to[2], 0.75f, 1e-6f);
 }
 
-/* ---- Masks ----------------------------------------------------------------------------------- */
-
-/* Thin stripes: without scaling they are gone in the second mip. */
-static void masks_keep_their_coverage(void **state) {
-    (void)state;
-    double lost = 0, worst = 0;
-    for (int pattern = 0; pattern < 3; pattern++) {
-        uint64_t seed = 11;
-        for (uint32_t i = 0; i < TEXELS; i++) {
-            uint32_t x = i % SIDE, y = i / SIDE;
-            int there = pattern == 0   ? x % 4 == 0 && y % 2 == 0
-                        : pattern == 1 ? support_random_in(&seed, 0, 4) == 0
-                                       : (x - 32) * (x - 32) + (y - 32) * (y - 32) < 500;
-            level[4 * i + 3] = there ? 1.0f : 0.0f;
-        }
-        double wanted = masu_texel_coverage(level, TEXELS, 0.5f, 1.0f);
-        uint32_t side = SIDE;
-        while (side > 8) {
-            masu_texel_halve(level, side, side, true, next);
-            side /= 2;
-            memcpy(level, next, sizeof level);
-            size_t texels = (size_t)side * side;
-            double plain = masu_texel_coverage(level, texels, 0.5f, 1.0f);
-            float scale = masu_texel_coverage_scale(level, texels, 0.5f, wanted);
-            double kept = masu_texel_coverage(level, texels, 0.5f, scale);
-            if (fabs(plain - wanted) > lost) lost = fabs(plain - wanted);
-            /* A pattern that every texel has alike cannot have a part of them. */
-            if (pattern && fabs(kept - wanted) > worst) worst = fabs(kept - wanted);
-            assert_true(fabs(kept - wanted) <= fabs(plain - wanted) + 1e-9);
-        }
-    }
-    print_message("coverage off by %.3f as it was, %.3f kept\n", lost, worst);
-    assert_true(lost > 0.1); /* else there was nothing to keep */
-    assert_true(worst < 0.1);
-}
-
-static void a_mask_of_everything_or_nothing_stays_finite(void **state) {
-    (void)state;
-    for (int full = 0; full < 2; full++) {
-        for (uint32_t i = 0; i < 16; i++) level[4 * i + 3] = (float)full;
-        float scale = masu_texel_coverage_scale(level, 16, 0.5f, full);
-        assert_true(scale > 0.01f && scale < 100.0f);
-        assert_float_equal(masu_texel_coverage(level, 16, 0.5f, scale), full, 0);
-    }
-    assert_float_equal(masu_texel_coverage(level, 0, 0.5f, 1.0f), 0, 0);
-}
-
 /* ---- Roughness ------------------------------------------------------------------------------- */
 
 /* Slopes of variance s in both directions on top of a surface of slopes of variance a: together
@@ -375,8 +328,6 @@ int main(void) {
         cmocka_unit_test(every_mip_has_the_mean_of_the_picture),
         cmocka_unit_test(a_checker_becomes_grey_of_half_the_light),
         cmocka_unit_test(what_cannot_be_seen_does_not_bleed_into_colour),
-        cmocka_unit_test(masks_keep_their_coverage),
-        cmocka_unit_test(a_mask_of_everything_or_nothing_stays_finite),
         cmocka_unit_test(lost_normals_become_roughness),
         cmocka_unit_test(blocks_are_near_their_picture),
         cmocka_unit_test(blocks_decode_as_the_formats_say),

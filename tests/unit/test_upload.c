@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "support_bind.h"
+#include "split_sum.h"
 #include "support_renderer.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -25,8 +26,9 @@ static void assert_resident(const unsigned char *vertices, const unsigned char *
     masu_scene_view v = masu_scene_look(&scene);
     assert_memory_equal(vertices, v.vertices, 11 * sizeof *v.vertices);
     assert_memory_equal(indices, v.indices, 15 * sizeof *v.indices);
-    const float expected[2][8] = {{0.5f, 0.25f, 1.0f, 0.4f, 0.0f, 0.0f, 0.0f, 0.9f},
-                                  {0.0f, 0.0f, 0.0f, 1.0f, 4.0f, 2.0f, 1.0f, 0.0f}};
+    const float expected[2][12] = {
+        {0.5f, 0.25f, 1.0f, 0.4f, 0.0f, 0.0f, 0.0f, 0.9f, 0.5f, 0.0f, 0.0f, 1.0f},
+        {0.0f, 0.0f, 0.0f, 1.0f, 4.0f, 2.0f, 1.0f, 0.0f, 0.5f, 0.0f, 0.0f, 1.0f}};
     assert_memory_equal(materials, expected, sizeof expected);
     assert_int_equal(v.slot_count, 3);
     assert_memory_equal(slots, v.slots, 3 * sizeof *v.slots);
@@ -46,7 +48,7 @@ static void mapped_memory_is_loaded_at_once(void **state) {
 /* Every size of staging buffer, also such as cut a vertex, an index or a material in two. */
 static void chunks_of_any_size_add_up_to_the_scene(void **state) {
     (void)state;
-    static unsigned char copy[MASU_BUFFER_COUNT][1024];
+    static unsigned char copy[MASU_BUFFER_COUNT][4 * MASU_TABLE_WORDS];
     for (uint64_t staging = 5; staging <= 400; staging++) {
         masu_commands commands;
         uint32_t submitted = 0;
@@ -56,7 +58,8 @@ static void chunks_of_any_size_add_up_to_the_scene(void **state) {
             masu_chunk chunk = masu_load_chunk(&m.plan, submitted);
             assert_ptr_equal(commands.buffer, loads[submitted]);
             assert_true(chunk.bytes > 0 && chunk.bytes <= staging);
-            assert_true(chunk.buffer <= MASU_BUFFER_MATERIALS || chunk.buffer == MASU_BUFFER_SLOTS);
+            assert_true(chunk.buffer <= MASU_BUFFER_MATERIALS || chunk.buffer == MASU_BUFFER_SLOTS ||
+                        chunk.buffer == MASU_BUFFER_TABLES);
             assert_true(chunk.offset + chunk.bytes <= m.plan.buffers[chunk.buffer].bytes);
             memcpy(copy[chunk.buffer] + chunk.offset, slot_bytes(MASU_BUFFER_STAGING, 0),
                    (size_t)chunk.bytes);
@@ -68,7 +71,33 @@ static void chunks_of_any_size_add_up_to_the_scene(void **state) {
         assert_int_equal(submitted, m.load_count);
         assert_resident(copy[MASU_BUFFER_VERTICES], copy[MASU_BUFFER_INDICES],
                         copy[MASU_BUFFER_MATERIALS], copy[MASU_BUFFER_SLOTS]);
+        assert_memory_equal(copy[MASU_BUFFER_TABLES], masu_split_sum, 4 * MASU_TABLE_WORDS);
         assert_int_equal(masu_load_chunk(&m.plan, submitted).bytes, 0);
+    }
+}
+
+/* The grid of light probes, its data, and room that nothing but zeros comes to. */
+static void chunks_of_probes_add_up_to_grid_data_and_room(void **state) {
+    (void)state;
+    static unsigned char copy[4096];
+    for (uint64_t staging = 61; staging <= 2048; staging += 97) {
+        masu_commands commands;
+        uint32_t submitted = 0;
+        make_renderer(SUPPORT_ALL | SUPPORT_LIGHTING, staging);
+        masu_scene_view v = masu_scene_look(&scene);
+        uint64_t bytes = m.plan.buffers[MASU_BUFFER_PROBES].bytes, data = v.probe_words * 4;
+        assert_int_equal(v.probe_words, 74);
+        assert_int_equal(bytes, sizeof *v.probes + (76 + 2 * MASU_PROBE_LIT_WORDS) * 4);
+        memset(copy, NOISE, sizeof copy);
+        while (masu_load(&m, &commands) == MASU_INCOMPLETE) {
+            masu_chunk chunk = masu_load_chunk(&m.plan, submitted++);
+            if (chunk.buffer != MASU_BUFFER_PROBES) continue;
+            memcpy(copy + chunk.offset, slot_bytes(MASU_BUFFER_STAGING, 0), (size_t)chunk.bytes);
+        }
+        assert_memory_equal(copy, v.probes, sizeof *v.probes);
+        assert_memory_equal(copy + sizeof *v.probes, v.probe_data, (size_t)data);
+        for (uint64_t i = sizeof *v.probes + data; i < bytes; i++) assert_int_equal(copy[i], 0);
+        assert_int_equal(copy[bytes], NOISE);
     }
 }
 
@@ -235,6 +264,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mapped_memory_is_loaded_at_once),
         cmocka_unit_test(chunks_of_any_size_add_up_to_the_scene),
+        cmocka_unit_test(chunks_of_probes_add_up_to_grid_data_and_room),
         cmocka_unit_test(without_a_scene_there_is_nothing_to_load),
         cmocka_unit_test(the_blob_is_not_looked_at_after_loading),
         cmocka_unit_test(frames_take_their_slots_in_turn),

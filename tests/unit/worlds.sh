@@ -119,6 +119,10 @@ if [ -d $torcs/tracks/road/forza ] && [ -d $torcs/cars/p406 ]; then
         END { if (cars != 10 || wheels != 40 || turned != 20) print cars, wheels, turned }
     ' "$folder/forza/forza.json" > "$folder/wheels"
     [ ! -s "$folder/wheels" ] || fail "wheels: $(cat "$folder/wheels")"
+    for relief in asphalt grass gravel; do
+        "$(dirname "$bake")/masu-meso" --make $relief -o "$folder/forza/$relief" --size 32 --rays 24 \
+            --sky-rays 4 --no-plots > /dev/null || fail "masu-meso --make $relief"
+    done
     sed 's/"lods": 3/"lods": 0/' "$folder/forza/forza.json" > "$folder/forza/plain.json"
     "$bake" "$folder/forza/plain.json" -o "$folder/forza.masu" --stats "$folder/forza.stats" --quiet \
         2> /dev/null || fail "forza does not bake"

@@ -1,0 +1,171 @@
+/*
+ * ao.comp: how much of the light from everywhere reaches a surface past what the picture shows of its
+ * surroundings, at every second pixel of every second row. Polygons and SDF alike: it knows depths
+ * and normals alone. ao_upsample.comp makes full size of it.
+ *
+ * After Jimenez, Wu, Pesce and Jarabo, "Practical Realtime Strategies for Accurate Indirect
+ * Occlusion", 2016: the hemisphere is cut into slices that hold the direction to the eye; in each, on
+ * either side, the highest of some samples is the horizon, and what the cosine lets through between
+ * horizons is known in closed form. Here the same integral is taken over what is hidden: with alpha
+ * the elevation above the surface and gamma the angle from the eye to the normal n in the slice,
+ *
+ *   hidden(a0..a1) = |n_slice| (F(a0) - F(a1)),  4 F(a) = cos(2a - gamma) - 2a sin(gamma),
+ *
+ * which is their equation 7 with h = gamma + pi / 2 - alpha. Two changes pay, both measured against
+ * rays (docs/DESIGN.md):
+ *  - A sample hides what it adds to the horizon, weighted by its own distance (1 - t / radius: the
+ *    truth's rule). Theirs pulls the sample's direction towards the lowest horizon, by the distance.
+ *  - Elevation is measured from the pixel's own plane: the height above it over the way along the
+ *    slice. Samples are texels, so they lie beside the slice, and on a floor seen under a small angle
+ *    a neighbour half a texel aside stood "above" it: the error of the mean was -0.025 instead of
+ *    0.004.
+ * Something behind which there is air hides as if it were endless along the eye's ray; what limits it
+ * is its distance alone. An assumed thickness (arcs with an end, in a mask of 32 bits) gained nothing.
+ *
+ * The directions of the slices and the phases of the samples repeat every 4x4 texels, as the 16 points
+ * of a rank-1 lattice, so that a 4x4 mean has 16 times as many of both. Nothing depends on time:
+ * a camera at rest sees a picture at rest.
+ *
+ * param.x: radius, metres; param.y: most of it, as a share of the picture's height. index.x: slices;
+ * index.y: samples on either side of each; index.z: pixels per texel, 2, or 1 for comparison.
+ * Out: bits 0-9 seen part, bits 10-31 depth of the pixel (ao_texel.glsl).
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+#include "light/ao_texel.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
+layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
+layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D ao_image;
+
+/* Abramowitz and Stegun 4.4.45, within 7e-5 of acos for x in -1..1. */
+float fast_acos(float x)
+{
+    float a = abs(x);
+    float r = ((-0.0187293 * a + 0.0742610) * a - 0.2121144) * a + 1.5707288;
+    r *= sqrt(max(1.0 - a, 0.0));
+    return x < 0.0 ? 3.14159265 - r : r;
+}
+
+/* 4 F by the cosine of the elevation, its sine and itself; slice: cosine and sine of gamma. */
+float free_above(float c, float s, float a, vec2 slice)
+{
+    return (2.0 * c * c - 1.0) * slice.x + (2.0 * s * c - 2.0 * a) * slice.y;
+}
+
+struct surface_point {
+    vec3 place;  /* view space: right, down, away */
+    vec2 slope;  /* x / z and y / z of it */
+    vec3 normal;
+    vec3 eye;    /* towards it */
+    vec2 pixel;  /* in the middle of its pixel */
+};
+
+/* One side of a slice. way: along the slice, unit, this side's; screen: the same in pixels, unit;
+ * slice: cosine and sine of gamma on this side. */
+float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice, float length_n,
+                float reach, float phase)
+{
+    vec3 along = way * slice.x - p.eye * slice.y; /* in the slice and in the surface's plane */
+    float highest_c = 1.0;
+    float highest_f = slice.x;
+    float hidden = 0.0;
+    for (int i = 0; i < MASU_AO_STEPS_MAX; i++) {
+        if (uint(i) >= pc.index.y) {
+            break;
+        }
+        float share = (float(i) + phase) / float(pc.index.y);
+        vec2 at = floor(p.pixel + screen * max(share * share * reach, 1.0));
+        if (!(all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, lens.size)))) {
+            break; /* farther ones are outside as well */
+        }
+        float z = ao_view_z(texelFetch(depth_image, ivec2(at), 0).r);
+        vec3 to = ao_place(lens, at + 0.5, z) - p.place;
+        float high = dot(to, p.normal) / length_n;
+        float far = dot(to, along);
+        float distance = length(to);
+        float weight = 1.0 - distance / pc.param.x;
+        if (!(z < ao_farthest) || !(high > 0.0) || !(weight > 0.0)) {
+            continue;
+        }
+        /* Not beyond the direction to the eye: nothing that is seen stands in front of the surface. */
+        float c = max(far / max(length(vec2(far, high)), masu_tiny), -slice.y);
+        if (!(c < highest_c)) {
+            continue;
+        }
+        float f = free_above(c, sqrt(max(1.0 - c * c, 0.0)), fast_acos(c), slice);
+        hidden += weight * (highest_f - f);
+        highest_c = c;
+        highest_f = f;
+    }
+    return 0.25 * hidden * length_n;
+}
+
+float seen_from(surface_point p, ao_lens lens, uvec2 texel)
+{
+    /* Point k of the lattice; 5x + 4y runs over all 16 in any 4x4 texels. */
+    uint k = (5u * texel.x + 4u * texel.y) & 15u;
+    float turn = (float(k) + 0.5) / 16.0;
+    float phase = (float((7u * k) & 15u) + 0.5) / 16.0;
+    float reach = pc.param.x * lens.pixels.y / p.place.z;
+    if (!(reach > 1.0)) {
+        return 1.0; /* all that could hide something is in this pixel */
+    }
+    reach = min(reach, pc.param.y * lens.size.y);
+    /* Duff's frame (JCGT 6-1, 2017) about the direction to the eye, whose z is below 0. */
+    vec3 e = p.eye;
+    float a = 1.0 / (1.0 - e.z);
+    vec3 u = vec3(1.0 - e.x * e.x * a, -e.x * e.y * a, e.x);
+    vec3 v = vec3(e.x * e.y * a, e.y * e.y * a - 1.0, -e.y);
+    float hidden = 0.0;
+    for (int i = 0; i < MASU_AO_SLICES_MAX; i++) {
+        if (uint(i) >= pc.index.x) {
+            break;
+        }
+        float phi = 3.14159265 * (float(i) + turn) / float(pc.index.x);
+        vec3 way = u * cos(phi) + v * sin(phi);
+        vec2 screen = (way.xy - p.slope * way.z) * lens.pixels;
+        screen *= masu_rsqrt(dot(screen, screen));
+        vec2 in_slice = vec2(dot(p.normal, e), dot(p.normal, way));
+        float length_n = length(in_slice);
+        if (!(length_n > 1e-4)) {
+            continue; /* the slice lies in the surface: its share of the cosine is nothing */
+        }
+        in_slice /= length_n;
+        hidden += hidden_by(p, lens, way, screen, in_slice, length_n, reach, phase);
+        in_slice.y = -in_slice.y;
+        hidden += hidden_by(p, lens, -way, -screen, in_slice, length_n, reach, phase);
+    }
+    return 1.0 - hidden / float(pc.index.x);
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (all(lessThan(texel, uvec2(pc.output_width, pc.output_height)))) {
+        uvec2 size = uvec2(pc.render_width, pc.render_height);
+        uvec2 at = min(texel * pc.index.z, size - 1u);
+        float depth = texelFetch(depth_image, ivec2(at), 0).r;
+        uint packed = texelFetch(normal_image, ivec2(at), 0).r;
+        ao_lens lens = ao_lens_of(size);
+        surface_point p;
+        p.pixel = vec2(at) + 0.5;
+        float z = ao_view_z(depth);
+        bool there = z < ao_farthest && (masu_unpack_flags(packed) & MASU_SURFACE_EMISSIVE) == 0u;
+        p.place = ao_place(lens, p.pixel, there ? z : 1.0);
+        p.slope = ao_place(lens, p.pixel, 1.0).xy;
+        p.eye = -p.place * masu_rsqrt(dot(p.place, p.place));
+        p.normal = ao_view_normal(packed);
+        float seen = there ? seen_from(p, lens, texel) : 1.0;
+        MASU_STORE_UINT(ao_image, texel, uvec4(ao_pack(masu_sane(seen, 0.0, 1.0), there ? depth : 0.0)));
+    }
+    masu_count_end();
+}

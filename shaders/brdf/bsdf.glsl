@@ -1,0 +1,247 @@
+/*
+ * bsdf.glsl: how a surface scatters light; the one function for polygons, SDF hits and rays.
+ *
+ *   f = coat + through(v, l) * specular + rest + diffuse
+ *
+ *   specular  GGX with height-correlated Smith masking (Heitz, JCGT 3-2, 2014), alpha = roughness^2,
+ *             Schlick's Fresnel term from f0 to f90
+ *   rest      what that lobe loses, since it knows no second bounce: a product of what is lost of v and
+ *             of l (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017)
+ *   diffuse   gets what all of that leaves: again a product of what is left of v and of l (Kelemen and
+ *             Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001)
+ *   coat      the same lobe with f0 = 0.04; only with MASU_SURFACE
+ *
+ * Reciprocal, and what is white returns all light from every direction at every roughness, as exactly as
+ * the tables are (tables.glsl): the two products make up by construction for whatever the lobes lack.
+ *
+ * Metallic is a blend of two surfaces. A dielectric has f0 = 0.08 * specular and the base colour below;
+ * a metal has the base colour as f0 and nothing below. Below an f0 of 0.02, which no material has, f90
+ * falls too, so that specular 0 and black metals do not shine at grazing angles.
+ *
+ * The coat lets through = 1 - coat * (a + b * max(s(v), s(l))), s(w) = (1 - N.w)^5. The larger of both
+ * is symmetric, and exact for a mirror, where both are one; and since a and b stand outside of the
+ * integral, one table over N.v and the base's roughness serves all coats. a + b s is nowhere below what
+ * the coat reflects (make_split_sum.c), so that no more light leaves than came; what it exceeds that by
+ * goes to `rest` and `diffuse`. Rejected: 1 - F(h.v), which needs no table more but lets through more than is left
+ * where the base is rougher than its coat; the product of both directions' shares, which a mirror loses light by.
+ *
+ * All in fp32, finite for any bit pattern.
+ */
+#ifndef MASU_BSDF_GLSL
+#define MASU_BSDF_GLSL
+
+#include "brdf/tables.glsl"
+#include "shared/guard.glsl"
+#include "shared/pack.glsl"
+
+/* Of a direction, or on average over all: what comes back of a lobe whose Fresnel term is 1 (white), or
+ * Schlick's (1 - h.v)^5 (weight); what the coat returns. */
+struct masu_albedo {
+    float white;
+    float weight;
+    float coat;
+};
+
+struct masu_bsdf {
+    vec3 n, v;
+    float n_v;         /* 1e-4..1 */
+    float alpha;
+    uint row;
+    vec3 f0;
+    float f90;
+    float matte_f0;    /* of the dielectric's share: f0, */
+    float matte_slope; /* f90 - f0, */
+    float matte_rest;  /* factor of its `rest` */
+    masu_albedo seen;  /* of v */
+    vec3 rest;         /* what `rest` is to be multiplied by, of l; times pi */
+    vec3 diffuse;      /* the same of `diffuse` */
+    vec3 ambient;      /* of irradiance / pi */
+#ifdef MASU_SURFACE
+    float coat;
+    float coat_alpha;
+    uint coat_row;
+    vec2 coat_line;    /* a, b */
+#endif
+};
+
+/* Below 0.045 the square of alpha leaves what half floats can hold (Filament, section 4.4); the tables
+ * begin there. */
+float masu_alpha(float roughness)
+{
+    float r = max(roughness, MASU_TABLE_SMOOTHEST);
+    return r * r;
+}
+
+float masu_schlick(float cosine)
+{
+    float f = clamp(1.0 - cosine, 0.0, 1.0);
+    float f2 = f * f;
+    return f2 * f2 * f;
+}
+
+/* D * G2 / (4 NoL NoV), times pi. The sine form of D keeps its precision for smooth surfaces, where
+ * 1 - NoH^2 cancels (Filament, section 4.4.1). */
+float masu_ggx(vec3 n, vec3 h, float alpha, float n_l, float n_v)
+{
+    float n_h = clamp(dot(n, h), 0.0, 1.0);
+    vec3 sine = cross(n, h);
+    float a = n_h * alpha;
+    float k = alpha / (dot(sine, sine) + a * a);
+    float a2 = alpha * alpha;
+    float g = n_l * sqrt(a2 + (1.0 - a2) * n_v * n_v) + n_v * sqrt(a2 + (1.0 - a2) * n_l * n_l);
+    return k * k * 0.5 / max(g, 1e-12);
+}
+
+float masu_lost(masu_albedo a)
+{
+    return max(1.0 - a.white - a.coat, 0.0);
+}
+
+/* What the dielectric's share returns before its light reaches the base colour. */
+float masu_matte(masu_bsdf b, masu_albedo a)
+{
+    return a.coat + b.matte_f0 * a.white + b.matte_slope * a.weight + b.matte_rest * masu_lost(a);
+}
+
+/* From the tables' numbers, of a direction or averages. The base's: loss and B, X and XB; of the coat
+ * loss and B. */
+masu_albedo masu_albedo_from(masu_bsdf b, vec2 base, vec2 covered, vec2 coat)
+{
+#ifdef MASU_SURFACE
+    float through = 1.0 - b.coat * b.coat_line.x, less = b.coat * b.coat_line.y;
+    return masu_albedo(through * (1.0 - base.x) - less * covered.x,
+                       through * base.y - less * covered.y,
+                       b.coat * (0.04 * (1.0 - coat.x) + 0.96 * coat.y));
+#else
+    return masu_albedo(1.0 - base.x, base.y, 0.0);
+#endif
+}
+
+masu_albedo masu_albedo_of(masu_bsdf b, float cosine)
+{
+    vec2 base = masu_table(uint(MASU_TABLE_LOSS), b.row, cosine);
+    vec2 covered = vec2(0.0), coat = vec2(0.0);
+#ifdef MASU_SURFACE
+    if (b.coat > 0.0) {
+        covered = masu_table(uint(MASU_TABLE_COAT), b.row, cosine);
+        coat = masu_table(uint(MASU_TABLE_LOSS), b.coat_row, cosine);
+    }
+#endif
+    return masu_albedo_from(b, base, covered, coat);
+}
+
+/* Colour of what leaves after more than one bounce, as a factor of what is lost (Kulla and Conty; with
+ * the square of Hill, "A Multi-Faceted Exploration", part 4, 2018). lost: the average. */
+vec3 masu_rest_color(vec3 f0, float f90, float lost)
+{
+    vec3 f = f0 + (f90 - f0) * (1.0 / 21.0);
+    return f * f * (1.0 - lost) / (1.0 - f * lost);
+}
+
+/* n: the normal, unit; v: towards the viewer, unit. */
+masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
+{
+    masu_bsdf b;
+    float roughness = masu_sane(s.roughness, 0.0, 1.0);
+    float metallic = masu_sane(s.metallic, 0.0, 1.0);
+    float f0 = 0.08 * masu_sane(s.specular, 0.0, 1.0);
+    vec3 albedo = masu_sane(s.albedo, 0.0, 1.0);
+    b.n = n;
+    b.v = v;
+    b.n_v = masu_sane(dot(n, v), 1e-4, 1.0);
+    b.alpha = masu_alpha(roughness);
+    b.row = masu_row_of(roughness);
+
+    float metal_f90 = min(50.0 * max(albedo.r, max(albedo.g, albedo.b)), 1.0);
+    float matte_f90 = min(50.0 * f0, 1.0);
+#ifdef MASU_SURFACE
+    matte_f90 = max(min(matte_f90, masu_sane(s.edge, 0.0, 1.0)), f0);
+#endif
+    b.f0 = mix(vec3(f0), albedo, metallic);
+    b.f90 = mix(matte_f90, metal_f90, metallic);
+    b.matte_f0 = f0;
+    b.matte_slope = matte_f90 - f0;
+
+    vec2 base = masu_table_averages(uint(MASU_TABLE_AVERAGE), 2u, b.row, 0u);
+    vec2 covered = vec2(0.0), coat = vec2(0.0);
+#ifdef MASU_SURFACE
+    b.coat = masu_sane(s.coat, 0.0, 1.0);
+    float coat_roughness = masu_sane(s.coat_roughness, 0.0, 1.0);
+    b.coat_alpha = masu_alpha(coat_roughness);
+    b.coat_row = masu_row_of(coat_roughness);
+    b.coat_line = vec2(0.0);
+    if (b.coat > 0.0) {
+        covered = masu_table_averages(uint(MASU_TABLE_COAT_AVERAGE), 4u, b.row, 0u);
+        b.coat_line = masu_table_averages(uint(MASU_TABLE_COAT_AVERAGE), 4u, b.coat_row, 2u);
+        coat = masu_table_averages(uint(MASU_TABLE_AVERAGE), 2u, b.coat_row, 0u);
+    }
+#endif
+    float matte_rest = masu_rest_color(vec3(f0), matte_f90, base.x).r;
+    b.matte_rest = matte_rest;
+    masu_albedo all = masu_albedo_from(b, base, covered, coat);
+    b.seen = masu_albedo_of(b, b.n_v);
+
+    float lost = masu_lost(b.seen);
+    vec3 rest = mix(vec3(matte_rest), masu_rest_color(albedo, metal_f90, base.x), metallic) * lost;
+    vec3 below = albedo * ((1.0 - metallic) * (1.0 - masu_matte(b, b.seen)));
+    b.rest = rest / max(masu_lost(all), 1e-6);
+    b.diffuse = below / max(1.0 - masu_matte(b, all), 1e-6);
+    b.ambient = max(rest + below, vec3(0.0));
+    return b;
+}
+
+/* f * N.L * pi of light from l, unit: what is mirrored, after however many bounces, and what comes from
+ * below. */
+void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
+{
+    mirrored = vec3(0.0);
+    below = vec3(0.0);
+    float n_l = masu_sane(dot(b.n, l), 0.0, 1.0);
+    if (!(n_l > 0.0)) {
+        return;
+    }
+    vec3 sum = l + b.v;
+    vec3 h = masu_normalize(sum, b.n);
+    /* h.v is half of the sum's length: the same whichever of the two is called v, to the last bit. */
+    float s = masu_schlick(0.5 * sqrt(dot(sum, sum)));
+    vec3 specular = (b.f0 + (b.f90 - b.f0) * s) * masu_ggx(b.n, h, b.alpha, n_l, b.n_v);
+#ifdef MASU_SURFACE
+    if (b.coat > 0.0) {
+        float steep = masu_schlick(min(n_l, b.n_v));
+        specular *= max(1.0 - b.coat * (b.coat_line.x + b.coat_line.y * steep), 0.0);
+        specular += b.coat * (0.04 + 0.96 * s) * masu_ggx(b.n, h, b.coat_alpha, n_l, b.n_v);
+    }
+#endif
+    masu_albedo lit = masu_albedo_of(b, n_l);
+    mirrored = masu_sane((specular + b.rest * masu_lost(lit)) * n_l, 0.0, masu_huge);
+    below = masu_sane(b.diffuse * ((1.0 - masu_matte(b, lit)) * n_l), 0.0, masu_huge);
+}
+
+/* Both together. */
+vec3 masu_bsdf_eval(masu_bsdf b, vec3 l)
+{
+    vec3 mirrored;
+    vec3 below;
+    masu_bsdf_parts(b, l, mirrored, below);
+    return mirrored + below;
+}
+
+/* Of light from everywhere: the factor of irradiance / pi, */
+vec3 masu_bsdf_diffuse(masu_bsdf b)
+{
+    return b.ambient;
+}
+
+/* of what a lobe of the surface's roughness would gather around the mirror direction, */
+vec3 masu_bsdf_specular(masu_bsdf b)
+{
+    return b.f0 * b.seen.white + (b.f90 - b.f0) * b.seen.weight;
+}
+
+/* and of the same with the coat's roughness. The three of a white surface are 1 together. */
+float masu_bsdf_coat(masu_bsdf b)
+{
+    return b.seen.coat;
+}
+
+#endif

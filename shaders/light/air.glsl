@@ -1,0 +1,47 @@
+/*
+ * air.glsl: the fog of the frame: what it leaves of light that comes through it, and what it adds of
+ * its own. The colour that thick fog has is the scene's, or that of the sky at the horizon beneath the
+ * ray, with the wide part of the glow around the sun: there the sky passes into fog without an edge.
+ */
+#ifndef MASU_AIR_GLSL
+#define MASU_AIR_GLSL
+
+#include "light/fog.glsl"
+#include "light/shade.glsl"
+
+vec3 masu_air_color(vec3 direction)
+{
+    if (frame.air.w != 0.0) {
+        return frame.fog.rgb;
+    }
+    vec3 color = masu_sky(vec3(direction.x, 0.0, direction.z));
+    if (!masu_sky_is_analytic()) { /* that one has its glow in it */
+        float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
+        color += frame.sun_color.rgb * (0.05 * masu_pow(towards, 12.0));
+    }
+    return color;
+}
+
+float masu_air_depth(vec3 direction, float far)
+{
+    return masu_fog_depth(frame.fog.w, frame.air.y, frame.air.x, direction.y, frame.air.z, far);
+}
+
+float masu_air_depth_sky(vec3 direction)
+{
+    return masu_fog_depth_sky(frame.fog.w, frame.air.y, frame.air.x, direction.y, frame.air.z);
+}
+
+/* Of a share of light that comes through a layer of coverage `alpha` (1: all of what is seen). */
+vec3 masu_through_air(vec3 color, vec3 direction, float depth, float alpha)
+{
+    float left = masu_fog_left(depth);
+    return color * left + masu_air_color(direction) * ((1.0 - left) * alpha);
+}
+
+vec3 masu_through_air(vec3 color, vec3 direction, float depth)
+{
+    return masu_through_air(color, direction, depth, 1.0);
+}
+
+#endif

@@ -1,0 +1,80 @@
+/*
+ * lights.glsl: local lights, point and spot: what reaches a surface point of one of them, and which
+ * of them a pixel has to ask. No shadows: a wall in between hides nothing.
+ *
+ *   reaches = color * window * cone / max(d^2, radius^2)
+ *   window  = (1 - (d / range)^4)^2, 0 from the range on (Karis, Real Shading in Unreal Engine 4,
+ *             SIGGRAPH 2013): an inverse square that ends, so that a light is nobody's business
+ *             beyond its range
+ *   cone    = smoothstep between the outer and the inner angle. Of the angle a to the axis its
+ *             versine 1 - cos(a) = |l + axis|^2 / 2 is compared: cosines of narrow cones have no
+ *             digits left
+ *   color   is radiant intensity / pi, as the sun's is irradiance / pi: a white matt surface that
+ *             faces the light at distance d has the radiance color / d^2
+ *
+ * A tile's list (light_tiles.comp) leaves out only lights for which masu_light_reaches is false at
+ * every surface of the tile, and lists rise: a sum over the list has the same bits as one over all.
+ * Needs globals.glsl before it. Everything is finite for any bits.
+ */
+#ifndef MASU_LIGHTS_GLSL
+#define MASU_LIGHTS_GLSL
+
+#include "shared/guard.glsl"
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
+{
+    uvec4 masu_lights_header; /* x lights in view, y words of a tile's list */
+    masu_local_light_data masu_lights[];
+};
+
+/* Words: of each tile how many lights, or MASU_TILE_ALL, then their numbers. */
+#ifdef MASU_LIGHT_TILES_WRITTEN
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHT_TILES, std430) writeonly buffer LightTiles
+#else
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHT_TILES, std430) readonly buffer LightTiles
+#endif
+{
+    uint masu_light_tiles[];
+};
+
+uint masu_light_count()
+{
+    return min(masu_lights_header.x, uint(MASU_LOCAL_LIGHTS_MAX));
+}
+
+/* First word of the list of the tile that a pixel lies in. */
+uint masu_light_list(uvec2 tile, uvec2 size)
+{
+    uint columns = (size.x + uint(MASU_TILE) - 1u) / uint(MASU_TILE);
+    return (tile.y * columns + tile.x) * masu_lights_header.y;
+}
+
+/* View depth of what the depth image says; both passes ask here, so that they agree. */
+float masu_light_depth(float depth)
+{
+    precise float z = frame.forward.w * masu_rcp(depth);
+    return z;
+}
+
+/* l: unit vector towards the light. False: nothing arrives, and the other two are not to be used.
+ * rel: the point, relative to the eye. */
+bool masu_light_reaches(masu_local_light_data light, vec3 rel, out vec3 l, out vec3 color)
+{
+    vec3 to = light.position.xyz - rel;
+    float squared = dot(to, to);
+    float share = squared * light.position.w;
+    l = vec3(0.0, 1.0, 0.0);
+    color = vec3(0.0);
+    if (!(share < 1.0)) {
+        return false; /* NaN too */
+    }
+    l = to * masu_rsqrt(squared);
+    vec3 chord = l + light.axis.xyz;
+    float t = clamp((light.axis.w - 0.5 * dot(chord, chord)) * light.cone.x, 0.0, 1.0);
+    float window = 1.0 - share * share;
+    float strength = window * window * (t * t * (3.0 - 2.0 * t)) / max(squared, light.color.w);
+    color = light.color.rgb * strength;
+    return strength > 0.0 && masu_finite(color);
+}
+
+#endif

@@ -1,0 +1,173 @@
+/*
+ * probes.glsl: light probes. What a probe has is SH-9 of irradiance / pi under the light of this
+ * frame, which probes.comp sums up from what the baker has found (see the design notes); a point takes
+ * the eight around it. tools/probe_light.c does the same in C, and tests hold them together.
+ *
+ * Weights of the eight, multiplied:
+ *   trilinear, of the point moved off its surface by the grid's bias
+ *   wrapped cosine: a probe behind the surface knows of light that cannot come here
+ *   visibility: Chebyshev's bound by the mean and mean square of distances from the probe in that
+ *     direction (Donnelly and Lauritzen 2006; Majercik et al., JCGT 8-2, 2019)
+ *   0 for probes that are inside of things
+ * None is exactly 0, so that the sum can be divided by.
+ */
+#ifndef MASU_LIGHT_PROBES_GLSL
+#define MASU_LIGHT_PROBES_GLSL
+
+#include "shared/guard.glsl"
+
+#ifdef MASU_PROBES_WRITE
+#define MASU_PROBES_ACCESS
+#else
+#define MASU_PROBES_ACCESS readonly
+#endif
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PROBES, std430) MASU_PROBES_ACCESS buffer Probes
+{
+    masu_probe_grid probe_grid;
+    uint probe_words[];
+};
+#ifndef MASU_PROBES_WRITE
+/* The same, four words at a time: CPU drivers take as long for four as for one. */
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PROBES, std430) readonly buffer ProbeQuads
+{
+    masu_probe_grid probe_grid_again;
+    uvec4 probe_quads[];
+};
+#endif
+
+uint masu_probe_count() { return probe_grid.counts.x * probe_grid.counts.y * probe_grid.counts.z; }
+
+uint masu_probe_sets() { return probe_grid.counts.w + probe_grid.more.y + probe_grid.more.x; }
+
+uint masu_probe_map_words()
+{
+    uint side = probe_grid.more.z + 2u;
+    return probe_grid.more.z > 0u ? side * side : 0u;
+}
+
+/* The first word of maps, and of what probes.comp writes. */
+uint masu_probe_maps() { return masu_probe_count() * masu_probe_sets() * MASU_PROBE_SET_WORDS; }
+uint masu_probe_lit()
+{
+    return (masu_probe_maps() + masu_probe_count() * masu_probe_map_words() + 3u) & ~3u;
+}
+
+/* Real spherical harmonics of a unit direction from the second on (Ramamoorthi and Hanrahan 2001), as
+ * factors of the words' integers. Two vectors: an array that a loop indexes would be memory. */
+struct masu_probe_factors {
+    vec4 a, b;
+};
+
+const float masu_probe_first = 0.282095;
+
+masu_probe_factors masu_probe_basis(vec3 d)
+{
+    const float one = MASU_PROBE_MOST_1 / 511.0, two = MASU_PROBE_MOST_2 / 511.0;
+    masu_probe_factors f;
+    f.a = vec4(0.488603 * one * d.yzx, 1.092548 * two * d.x * d.y);
+    f.b = two * vec4(1.092548 * d.y * d.z, 0.315392 * (3.0 * d.z * d.z - 1.0),
+                     1.092548 * d.x * d.z, 0.546274 * (d.x * d.x - d.y * d.y));
+    return f;
+}
+
+/* Bilinear in the octahedral map of a probe, whose border repeats what lies across the edge. */
+vec2 masu_probe_distances(uint map, uint texels, vec3 d)
+{
+    uint side = texels + 2u;
+    vec2 at = d.xy / max(abs(d.x) + abs(d.y) + abs(d.z), 1e-6);
+    vec2 fold = 1.0 - abs(at.yx);
+    fold = vec2(at.x >= 0.0 ? fold.x : -fold.x, at.y >= 0.0 ? fold.y : -fold.y);
+    at = d.z < 0.0 ? fold : at;
+    vec2 uv = clamp((at * 0.5 + 0.5) * float(texels) + 0.5, vec2(0.0), vec2(float(side) - 1.0));
+    uvec2 low = min(uvec2(uv), uvec2(side - 2u));
+    vec2 f = uv - vec2(low);
+    uint word = map + low.y * side + low.x;
+    vec2 a = mix(unpackUnorm2x16(probe_words[word]), unpackUnorm2x16(probe_words[word + 1u]), f.x);
+    vec2 b = mix(unpackUnorm2x16(probe_words[word + side]),
+                 unpackUnorm2x16(probe_words[word + side + 1u]), f.x);
+    return mix(a, b, f.y) * vec2(1.5, 2.25);
+}
+
+float masu_probe_seen(uint map, uint texels, vec3 d, float distance)
+{
+    vec2 moments = masu_probe_distances(map, texels, d);
+    float beyond = distance - moments.x;
+    float variance = abs(moments.y - moments.x * moments.x) + 1e-4;
+    float bound = variance / (variance + beyond * beyond);
+    return beyond > 0.0 ? bound * bound * bound : 1.0;
+}
+
+#ifndef MASU_PROBES_WRITE
+vec3 masu_probe_integers(uint w)
+{
+    return vec3(ivec3(uvec3(w << 22, w << 12, w << 2)) >> 22);
+}
+
+/* Irradiance / pi of one probe by the normal. */
+vec3 masu_probe_irradiance(uint quad, masu_probe_factors f, out float valid)
+{
+    uvec4 a = probe_quads[quad], b = probe_quads[quad + 1u], c = probe_quads[quad + 2u];
+    vec2 rg = unpackHalf2x16(a.x);
+    vec2 ba = unpackHalf2x16(a.y);
+    vec3 sum = masu_probe_integers(a.z) * f.a.x + masu_probe_integers(a.w) * f.a.y +
+               masu_probe_integers(b.x) * f.a.z + masu_probe_integers(b.y) * f.a.w +
+               masu_probe_integers(b.z) * f.b.x + masu_probe_integers(b.w) * f.b.y +
+               masu_probe_integers(c.x) * f.b.z + masu_probe_integers(c.y) * f.b.w;
+    valid = ba.y;
+    return max(vec3(rg, ba.x) * (masu_probe_first + sum), vec3(0.0));
+}
+
+/* Irradiance / pi of a surface point with that normal; finite for any operands. w: how far the grid answers for it: 1 inside,
+ * falling to 0 within a cell around it. `from`: of the point, from the first probe. */
+vec4 masu_probe_light(vec3 from, vec3 normal)
+{
+    from = masu_sane(from, -1e15, 1e15);
+    normal = masu_sane(normal, -1.0, 1.0);
+    /* Once, not in the loop: nothing tells a compiler that the grid stays as it is. */
+    vec4 origin = probe_grid.origin;
+    vec3 spacing = probe_grid.spacing.xyz;
+    uvec4 counts = probe_grid.counts, more = probe_grid.more;
+    vec3 last = vec3(counts.xyz - 1u);
+    vec3 g = from / spacing;
+    vec3 beyond = max(-0.5 - g, g - last - 0.5);
+    float inside = clamp(1.0 - max(max(beyond.x, beyond.y), max(beyond.z, 0.0)), 0.0, 1.0);
+    if (!(inside > 0.0)) {
+        return vec4(0.0);
+    }
+    vec3 point = from + normal * origin.w;
+    vec3 cell = clamp(point / spacing, vec3(0.0), last);
+    uvec3 base = min(uvec3(cell), max(counts.xyz, uvec3(2u)) - 2u);
+    vec3 f = cell - vec3(base);
+    float diagonal = length(spacing);
+    uint count = counts.x * counts.y * counts.z, side = more.z + 2u;
+    uint map_words = more.z > 0u ? side * side : 0u;
+    uint maps = count * (counts.w + more.y + more.x) * MASU_PROBE_SET_WORDS;
+    uint lit = (maps + count * map_words + 3u) / 4u;
+    masu_probe_factors by_normal = masu_probe_basis(normal);
+    vec3 sum = vec3(0.0);
+    float total = 0.0;
+    for (uint corner = 0u; corner < 8u; corner++) {
+        uvec3 high = uvec3(corner, corner >> 1, corner >> 2) & 1u;
+        uvec3 at = min(base + high, counts.xyz - 1u);
+        vec3 t = max(mix(1.0 - f, f, vec3(high)), 1e-3);
+        vec3 to = vec3(at) * spacing - point;
+        float square = dot(to, to);
+        float distance = sqrt(max(square, 1e-12));
+        vec3 d = to / distance;
+        float facing = 0.5 + 0.5 * dot(d, normal);
+        float w = t.x * t.y * t.z * (facing * facing + 0.1);
+        uint probe = (at.z * counts.y + at.y) * counts.x + at.x;
+        if (map_words > 0u && square > 1e-12) {
+            w *= max(masu_probe_seen(maps + probe * map_words, more.z, -d, distance / diagonal), 1e-4);
+        }
+        float valid;
+        vec3 e = masu_probe_irradiance(lit + probe * (MASU_PROBE_LIT_WORDS / 4u), by_normal, valid);
+        w *= max(valid, 1e-4);
+        sum += w * e;
+        total += w;
+    }
+    return vec4(sum / max(total, 1e-20), inside);
+}
+#endif
+
+#endif

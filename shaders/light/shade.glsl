@@ -1,0 +1,89 @@
+/*
+ * shade.glsl: the light that leaves a surface towards the eye; for light.comp and transparents.frag.
+ *
+ *   radiance = sum of lights * f * N.L + ambient
+ *   f:        brdf/bsdf.glsl
+ *   ambient:  irradiance on what is below the surface's skin; on what is mirrored the sky in the mirror
+ *             direction, as blurred as the surface is rough
+ */
+#ifndef MASU_SHADE_GLSL
+#define MASU_SHADE_GLSL
+
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "brdf/bsdf.glsl"
+#ifdef MASU_SURFACE
+#include "brdf/meso.glsl"
+#endif
+#include "light/environment.glsl"
+#include "light/sky.glsl"
+#include "light/ambient.glsl"
+#ifdef MASU_PROBES
+#include "light/probes.glsl"
+#endif
+
+/* Light that leaves a surface: from below its skin, and mirrored by it. */
+struct masu_lit {
+    vec3 diffuse;
+    vec3 specular;
+    vec3 mirror; /* the part of the light from everywhere that is mirrored: what does not get below */
+};
+
+/* Of a light towards l, unit, that causes the irradiance color * pi on a facing surface. */
+void masu_add_light(inout masu_lit lit, masu_surface s, masu_bsdf b, vec3 l, vec3 color)
+{
+#ifdef MASU_SURFACE
+    if (s.shadow >= 0.0) {
+        color *= masu_meso_shadow(s.shadow, b.v, l);
+    }
+#endif
+    vec3 specular;
+    vec3 diffuse;
+    masu_bsdf_parts(b, l, specular, diffuse);
+    lit.specular += color * specular;
+    lit.diffuse += color * diffuse;
+}
+
+/* What comes from everywhere at a point relative to the eye: the open sky's, or as the probes around
+ * have it. Where less comes than the open sky sends, less is mirrored too: there is no saying from which
+ * side. */
+struct masu_around {
+    vec3 irradiance; /* / pi */
+    vec3 mirrored;   /* part of the open sky's light */
+};
+
+masu_around masu_ambient_at(vec3 rel, vec3 n)
+{
+    masu_around around = masu_around(masu_ambient(n), vec3(1.0));
+#ifdef MASU_PROBES
+    vec3 eye = (frame.eye_hi.xyz - probe_grid.origin.xyz) + frame.eye_lo.xyz;
+    vec4 probes = masu_probe_light(eye + rel, n);
+    vec3 open_sky = max(around.irradiance, vec3(1e-4));
+    around.irradiance = mix(around.irradiance, probes.rgb, probes.w);
+    around.mirrored = clamp(around.irradiance / open_sky, vec3(0.0), vec3(1.0));
+#endif
+    return around;
+}
+
+/* b: of s; rel: the point, relative to the eye; seen: how much arrives of the sun and of the ambient
+ * light. */
+masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen)
+{
+    masu_around around = masu_ambient_at(rel, b.n);
+    vec3 ambient = around.mirrored * (seen.y * s.occlusion);
+    vec3 mirrored = reflect(-b.v, b.n);
+    masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen.y * s.occlusion),
+                            vec3(0.0), masu_bsdf_specular(b));
+    lit.specular = lit.mirror * masu_ambient_mirror(mirrored, s.roughness) * ambient;
+#ifdef MASU_SURFACE
+    if (s.coat > 0.0) {
+        float coat = masu_bsdf_coat(b);
+        lit.mirror += coat;
+        lit.specular += coat * masu_ambient_mirror(mirrored, s.coat_roughness) * ambient;
+    }
+#endif
+    masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb * seen.x);
+    return lit;
+}
+
+#endif

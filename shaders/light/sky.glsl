@@ -1,0 +1,135 @@
+/*
+ * sky.glsl: what is seen where there is no surface: a gradient of two colours, or the analytic sky of
+ * src/sky.c. masu_sky_light is the twin of masu_sky_radiance there.
+ *
+ * Which of the two a renderer can show is a specialisation constant: without an analytic sky its code
+ * is compiled away, and the uniforms are a stand-in. With it, a frame may still have a gradient.
+ *
+ * A sky from a picture stands in the place of the gradient.
+ *
+ * After light/environment.glsl.
+ */
+#ifndef MASU_SKY_GLSL
+#define MASU_SKY_GLSL
+
+layout(constant_id = 1) const bool masu_has_sky = false;
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKY, std140) uniform Sky
+{
+    masu_sky_uniforms masu_sky_tables;
+};
+
+/* Zenith to horizon over the sine of elevation, the horizon's colour below it. */
+vec3 masu_sky_gradient(vec3 direction)
+{
+    float height = clamp(direction.y, 0.0, 1.0);
+    return mix(frame.sky_horizon.rgb, frame.sky_zenith.rgb, sqrt(height));
+}
+
+bool masu_sky_is_analytic()
+{
+    return masu_has_sky && masu_sky_tables.azimuth.w > 0.0;
+}
+
+/* The three terms at a sine of elevation and a cosine of azimuth from the sun. */
+void masu_sky_terms(float y, float x, out vec3 even, out vec3 air, out vec3 haze)
+{
+    float t = y < 0.0 ? -masu_sqrt(-y) : masu_sqrt(y);
+    float at = clamp((float(MASU_SKY_ROWS / 2) - 0.5) * (1.0 + t), 0.0, float(MASU_SKY_ROWS - 1));
+    int row = int(min(at, float(MASU_SKY_ROWS - 2)));
+    float part = at - float(row);
+    row *= MASU_SKY_ROW;
+    vec3 terms[MASU_SKY_TERMS];
+    for (int k = 0; k < MASU_SKY_TERMS; k++) {
+        int a = row + 3 * k;
+        int b = a + MASU_SKY_ROW;
+        vec3 low = masu_sky_tables.rows[a].rgb +
+                   x * (masu_sky_tables.rows[a + 1].rgb + x * masu_sky_tables.rows[a + 2].rgb);
+        vec3 high = masu_sky_tables.rows[b].rgb +
+                    x * (masu_sky_tables.rows[b + 1].rgb + x * masu_sky_tables.rows[b + 2].rgb);
+        vec3 power = min(low + part * (high - low), 32.0);
+        terms[k] = vec3(masu_exp2(power.r), masu_exp2(power.g), masu_exp2(power.b));
+    }
+    even = terms[0];
+    air = terms[1];
+    haze = terms[2];
+}
+
+/* Henyey and Greenstein's phase function. */
+float masu_haze_phase(float cosine, float g)
+{
+    float r = masu_rsqrt(max(1.0 + g * g - 2.0 * g * cosine, 1e-6));
+    return (1.0 - g * g) * 0.0795774715 * r * r * r;
+}
+
+/* Cosine of the azimuth between a direction and the sun; straight up and down it has none. */
+float masu_sky_azimuth(vec3 direction)
+{
+    float flat2 = dot(direction.xz, direction.xz);
+    float x = dot(direction.xz, masu_sky_tables.azimuth.xy) * masu_rsqrt(flat2);
+    return flat2 > 1e-12 ? clamp(x, -1.0, 1.0) : 0.0;
+}
+
+/* Radiance of the analytic sky towards a unit direction, without the sun's disc. */
+vec3 masu_sky_light(vec3 direction)
+{
+    vec3 d = masu_sane(direction, -1.0, 1.0);
+    float cosine = clamp(dot(d, masu_sky_tables.sun.xyz), -1.0, 1.0);
+    vec3 even;
+    vec3 air;
+    vec3 haze;
+    masu_sky_terms(d.y, masu_sky_azimuth(d), even, air, haze);
+    return even + 0.0596831037 * (1.0 + cosine * cosine) * air +
+           masu_haze_phase(cosine, masu_sky_tables.sun.w) * haze;
+}
+
+/* The same, blurred as by lobes whose bands 1 and 2 are a1 and a2: both phase functions exactly so, for
+ * their bands are powers; of the rest the elevation, by three looks, as far apart as is
+ * best (the lobe has long tails: its variance would ask for more). */
+vec3 masu_sky_blurred(vec3 direction, float a1, float a2)
+{
+    vec3 d = masu_sane(direction, -1.0, 1.0);
+    float cosine = clamp(dot(d, masu_sky_tables.sun.xyz), -1.0, 1.0);
+    float x = masu_sky_azimuth(d);
+    float air_phase = 0.0795774715 * (1.0 + a2 * (0.75 * cosine * cosine - 0.25));
+    float haze_phase = masu_haze_phase(cosine, masu_sky_tables.sun.w * a1);
+    float width = masu_sqrt((1.0 - a2) * (1.0 - 0.9 * d.y * d.y)) * 0.45;
+    vec3 sum = vec3(0.0);
+    for (int i = -1; i <= 1; i++) {
+        vec3 even;
+        vec3 air;
+        vec3 haze;
+        masu_sky_terms(clamp(d.y + float(i) * width, -1.0, 1.0), x, even, air, haze);
+        sum += even + air_phase * air + haze_phase * haze;
+    }
+    return sum * (1.0 / 3.0);
+}
+
+/* The sun as it is drawn. Of its true size it would be two pixels wide and bright enough to swamp the
+ * tone curve, so a soft glow says where the light comes from; around an analytic sky's disc there is
+ * its aureole already. */
+vec3 masu_sun_disc(vec3 direction)
+{
+    float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
+    if (masu_sky_is_analytic()) {
+        /* Of the horizon's near side nothing is seen. */
+        float above = smoothstep(-0.003, 0.003, direction.y);
+        float disc = smoothstep(0.99994, 0.99998, towards);
+        return masu_sky_tables.disc.rgb * (disc * above);
+    }
+    return frame.sun_color.rgb * (0.25 * masu_pow(towards, 350.0) + 0.05 * masu_pow(towards, 12.0));
+}
+
+/* Towards a unit direction, without the sun. */
+vec3 masu_sky(vec3 direction)
+{
+    if (masu_sky_is_analytic()) {
+        return masu_sky_light(direction);
+    }
+    if (masu_has_environment) {
+        return masu_environment(direction, 0.0);
+    }
+    return masu_sky_gradient(direction);
+}
+
+#endif

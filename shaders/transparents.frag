@@ -1,0 +1,102 @@
+/*
+ * transparents.frag: what a transparent surface adds to the lit picture, and in alpha what it takes of
+ * what is behind: blended as source + (1 - alpha) * picture.
+ *
+ * What a material's opacity lets through is neither of its colour nor mirrored by it, so the mirror is
+ * not made weaker by it: clear glass shines as black glass does, and lets through what it does not
+ * mirror. The alpha of a map is another thing: how much of the pixel the surface covers at all.
+ * Additive surfaces give what they scatter and take nothing.
+ *
+ * The depth is the latest image's, of polygons and the SDF alike; there is no depth attachment. With
+ * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define MASU_SURFACE /* any of them may have a coat */
+#include "shared/masu_shared.h"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "light/air.glsl"
+#include "light/shade.glsl"
+
+#ifdef MASU_SUN_MAP
+#define MASU_AT_SUN_MAP 1
+#include "light/sun_map.glsl"
+#endif
+
+layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly buffer Materials
+{
+    masu_material_data materials[];
+};
+
+layout(location = 0) in vec3 in_normal;
+layout(location = 1) in vec3 in_rel;
+layout(location = 2) flat in uvec3 in_thing; /* material, flags, layers */
+
+#ifdef MASU_TEXTURES
+layout(location = 3) in vec2 in_texcoord;
+layout(location = 4) flat in vec2 in_detail;
+#define MASU_MAPS_FLAGS in_thing.y
+#define MASU_MAPS_LAYERS in_thing.z
+#define MASU_MAPS_DETAIL in_detail
+#include "shared/maps.glsl"
+#endif
+
+layout(location = 0) out vec4 out_color;
+
+/* Sums of many layers stay below what a half holds. */
+const float brightest = 4096.0;
+
+void main()
+{
+    masu_material_data m = materials[in_thing.x];
+    masu_surface s = masu_plain_surface(m.base_color.rgb, m.base_color.w);
+    s.emissive = m.emissive.rgb;
+    s.metallic = m.emissive.w;
+    s.specular = m.more.x;
+    s.coat = m.more.y;
+    s.coat_roughness = m.more.z;
+    float opacity = m.more.w;
+    float cover = 1.0;
+    vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
+    vec3 n = masu_normalize(in_normal, -direction);
+#ifdef MASU_TEXTURES
+    /* Everything that takes derivatives comes before the discard. */
+    cover = masu_sample_maps(in_texcoord, s);
+    vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
+    n = masu_seen_normal(dot(n, in_rel) > 0.0 ? -bent : bent, in_rel, n);
+#else
+    n = dot(n, in_rel) > 0.0 ? -n : n;
+#endif
+    float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
+    if (!(gl_FragCoord.z >= nearest)) {
+        discard;
+    }
+    vec2 seen = vec2(1.0);
+#ifdef MASU_SUN_MAP
+    if (masu_finite(in_rel) && dot(n, frame.sun_direction.xyz) > 0.0) {
+        seen.x = masu_sun_seen(in_rel, n, dot(in_rel, frame.forward.xyz));
+    }
+#endif
+    bool additive = (in_thing.y & MASU_MAP_ADDITIVE) != 0u;
+    vec3 color;
+    float taken = opacity;
+    if (masu_is_emissive(s)) {
+        color = s.emissive * opacity;
+    } else {
+        masu_lit lit = masu_shade(s, masu_bsdf_make(s, n, -direction), in_rel, seen);
+        float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
+        color = lit.diffuse * opacity + (additive ? vec3(0.0) : lit.specular);
+        taken = 1.0 - (1.0 - opacity) * (1.0 - mirrored);
+    }
+    color *= cover;
+    taken = additive ? 0.0 : taken * cover;
+    if (foggy) {
+        color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), taken);
+    }
+    out_color = vec4(masu_sane(color, 0.0, brightest), masu_sane(taken, 0.0, 1.0));
+}

@@ -1,0 +1,38 @@
+/*
+ * transparents.vert: one transparent thing, which index.y of the push constants finds: six words in
+ * the buffer of drawn instances, written anew for each frame (src/transparents.c): instance, material,
+ * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/polygons.glsl"
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame
+{
+    masu_frame_uniforms frame;
+};
+
+#ifdef MASU_TEXTURES
+layout(location = 2) in vec2 texcoord;
+layout(location = 3) out vec2 out_texcoord;
+layout(location = 4) flat out vec2 out_detail;
+#endif
+
+layout(location = 0) out vec3 out_normal;
+layout(location = 1) out vec3 out_rel;
+layout(location = 2) flat out uvec3 out_thing; /* material, flags, layers */
+
+void main()
+{
+    masu_instance_data m = instances[drawn[pc.index.y]];
+    vec3 rel = masu_seen_from(m, frame.eye_hi.xyz, frame.eye_lo.xyz);
+    out_normal = masu_turned_normal(m);
+    out_rel = rel;
+    out_thing = uvec3(drawn[pc.index.y + 1u], drawn[pc.index.y + 2u], drawn[pc.index.y + 3u]);
+#ifdef MASU_TEXTURES
+    out_texcoord = texcoord;
+    out_detail = vec2(uintBitsToFloat(drawn[pc.index.y + 4u]), uintBitsToFloat(drawn[pc.index.y + 5u]));
+#endif
+    gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
+}

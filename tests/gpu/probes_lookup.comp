@@ -1,0 +1,21 @@
+/* probes_lookup.comp: shaders/light/probes.glsl at given points, for test_probes.c. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "light/probes.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_INSTANCES, std430) buffer Points
+{
+    vec4 points[]; /* position and how many, normal; the second becomes what was found */
+};
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < uint(points[0].w)) {
+        vec3 from = points[2u * i].xyz - probe_grid.origin.xyz;
+        points[2u * i + 1u] = masu_probe_light(from, points[2u * i + 1u].xyz);
+    }
+}

@@ -1,0 +1,45 @@
+/* lights.c: see lights.h. */
+#include "reference/lights.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Angle between two vectors by both of its legs: exact for small and for large ones. */
+static double angle_between(const double a[3], const double b[3]) {
+    double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    return atan2(sqrt(dot(c, c)), dot(a, b));
+}
+
+/* Share of a spot's light at an angle from its axis. The edges are angles; in between it goes by their
+ * cosines, and smoothly. */
+static double cone_share(const masu_ref_light *light, double angle) {
+    if (light->outer >= PI) return 1.0;
+    if (angle >= light->outer) return 0.0;
+    if (angle <= light->inner) return 1.0;
+    double t = (cos(angle) - cos(light->outer)) / (cos(light->inner) - cos(light->outer));
+    return t * t * (3.0 - 2.0 * t);
+}
+
+int masu_ref_light_reaches(const masu_ref_light *light, const double at[3], double l[3],
+                           double color[3]) {
+    double to[3], away[3], distance;
+    for (int k = 0; k < 3; k++) to[k] = light->position[k] - at[k];
+    distance = sqrt(dot(to, to));
+    for (int k = 0; k < 3; k++) {
+        l[k] = distance > 0.0 ? to[k] / distance : 0.0;
+        away[k] = -to[k];
+        color[k] = 0.0;
+    }
+    if (!(distance < light->range) || !(distance > 0.0)) return 0;
+    double window = 1.0 - pow(distance / light->range, 4.0);
+    double nearest = fmax(distance, light->radius);
+    double share = cone_share(light, angle_between(away, light->axis));
+    double strength = window * window * share / (nearest * nearest);
+    for (int k = 0; k < 3; k++) color[k] = light->color[k] * strength;
+    return strength > 0.0;
+}

@@ -1,0 +1,140 @@
+#!/bin/bash
+# Lights of a scene, from the file to the blob's section: of the scene's own text and of a glTF model.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+bin=${BUILD:-build}/bin
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# bakes MODELS LIGHTS
+bakes() {
+    printf '{"models": [%s], "lights": [%s]}' "$1" "$2" > "$folder/s.json"
+    "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" --stats "$folder/s.stats" --quiet \
+        2> "$folder/err" || fail "$2: is refused: $(cat "$folder/err")"
+}
+
+# word OFFSET BYTES FORMAT: one number of the blob
+word() { od -An -v -j "$1" -N "$2" -t "$3" "$folder/s.masu" | tr -s ' \n' ' '; }
+
+# The numbers of light N: 3 position, range, 3 colour, radius, 3 direction; type; inner, outer; parent
+light() {
+    local row count at=64
+    count=$(word 24 4 u4)
+    section=0
+    for ((row = 0; row < count; row++, at += 24)); do
+        [ "$(word $at 4 u4)" = " 35 " ] && section=$(word $((at + 8)) 8 u8)
+    done
+    [ "$section" != 0 ] || { echo none; return; }
+    at=$((section + 64 * $1))
+    floats=$(od -An -v -w4 -j $at -N 44 -t f4 "$folder/s.masu" | awk '{ printf "%.4g ", $1 }')
+    echo "$floats|$(word $((at + 44)) 4 u4)|$(od -An -v -w4 -j $((at + 48)) -N 8 -t f4 "$folder/s.masu" |
+        awk '{ printf "%.4g ", $1 }')|$(word $((at + 56)) 4 d4)"
+}
+
+# is N NUMBERS
+is() {
+    local found
+    found=$(light "$1")
+    [ "$found" = "$2" ] || fail "light $1 is $found, not $2"
+}
+
+# refuses PATTERN LIGHT
+refuses() {
+    printf '{"models": [%s], "lights": [%s]}' "$box" "$2" > "$folder/s.json"
+    rm -f "$folder/s.masu"
+    if "$bin/masu-bake" "$folder/s.json" -o "$folder/s.masu" 2> "$folder/err"; then
+        fail "$2: is accepted"
+    fi
+    [ "$(wc -l < "$folder/err")" = 1 ] || fail "$2: not one line: $(cat "$folder/err")"
+    grep -q -e "$1" "$folder/err" || fail "\"$1\" is not in: $(cat "$folder/err")"
+    [ ! -e "$folder/s.masu" ] || fail "$2: wrote its output"
+}
+
+box='{"mesh": {"box": {}}, "name": "car"}'
+point='"type": "point", "position": [1, 2, 3]'
+
+bakes "$box" ''
+is 0 none
+bakes "$box" "{$point}"
+is 0 '1 2 3 10 1 1 1 0.01 0 0 0 | 0 |0 0 | -1 '
+bakes "$box" "{$point, \"color\": [1, 0.5, 0], \"intensity\": 4, \"radius\": 0.2, \"range\": 7}"
+is 0 '1 2 3 7 4 2 0 0.2 0 0 0 | 0 |0 0 | -1 '
+bakes "$box" "{$point, \"intensity\": 4}, {\"type\": \"spot\", \"position\": [0, 0, 1],
+    \"direction\": [0, 3, -4], \"outer\": 90, \"inner\": 45, \"instance\": \"car\", \"name\": \"lamp\"}"
+is 0 '1 2 3 20 4 4 4 0.01 0 0 0 | 0 |0 0 | -1 '
+is 1 '0 0 1 10 1 1 1 0.01 0 0.6 -0.8 | 1 |0.7854 1.571 | 0 '
+grep -q -a lamp "$folder/s.masu" || fail "the name lamp is not in the blob"
+# Instances are sorted by mesh: the light goes with its own.
+bakes "{\"mesh\": {\"sphere\": {}}, \"name\": \"a\"}, $box, {\"mesh\": {\"sphere\": {}}, \"name\": \"b\"}" \
+    "{$point, \"instance\": \"b\"}, {$point, \"instance\": \"car\"}"
+is 0 '1 2 3 10 1 1 1 0.01 0 0 0 | 0 |0 0 | 1 '
+is 1 '1 2 3 10 1 1 1 0.01 0 0 0 | 0 |0 0 | 2 '
+bakes "$box" "{\"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [0, 0, 1], \"outer\": 0, \"range\": 0}"
+is 0 '0 0 0 0 1 1 1 0.01 0 0 1 | 1 |0 0 | -1 '
+
+refuses 'lights\[0\]: needs "type"' '{"position": [1, 2, 3]}'
+refuses 'lights\[0\].type: expected "point" or "spot"' '{"type": "sun", "position": [1, 2, 3]}'
+refuses 'lights\[1\]: needs "position"' "{$point}, {\"type\": \"point\"}"
+refuses 'lights\[0\].colour: unknown key' "{$point, \"colour\": [1, 1, 1]}"
+refuses 'color' "{$point, \"color\": [1, -1, 1]}"
+refuses 'range: expected a number from 0' "{$point, \"range\": -1}"
+refuses 'radius: expected a number from' "{$point, \"radius\": 0}"
+refuses 'above 1e+09' "{$point, \"color\": [1, 1, 1e6], \"intensity\": 1e6}"
+refuses 'a point has no "outer"' "{$point, \"outer\": 10}"
+refuses 'a spot needs a "direction"' '{"type": "spot", "position": [1, 2, 3]}'
+refuses 'outer: expected a number from 0 to 180' \
+    '{"type": "spot", "position": [1, 2, 3], "direction": [0, 1, 0], "outer": 181}'
+refuses 'inner: expected a number from 0 to 30' \
+    '{"type": "spot", "position": [1, 2, 3], "direction": [0, 1, 0], "outer": 30, "inner": 31}'
+refuses 'instance: no instance is called "bus"' "{$point, \"instance\": \"bus\"}"
+many="{$point}"
+for ((i = 0; i < 12; i++)); do many="$many, $many"; done
+bakes "$box" "$many"
+refuses '4097 lights' "$many, {$point}"
+
+# ---- glTF ----------------------------------------------------------------------------------------
+
+positions=AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA
+cat > "$folder/lamps.gltf" << END
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 3, 4]}],
+ "extensionsUsed": ["KHR_lights_punctual"],
+ "extensions": {"KHR_lights_punctual": {"lights": [
+    {"type": "point", "color": [1, 0.5, 0], "intensity": 31.415926535, "range": 5},
+    {"type": "spot", "intensity": 3.1415926535, "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.4}},
+    {"type": "directional", "intensity": 3}]}},
+ "nodes": [{"mesh": 0, "name": "body", "translation": [10, 0, 0], "children": [1]},
+           {"name": "mount", "translation": [0, 0, 2], "children": [2]},
+           {"name": "beam", "rotation": [0, 1, 0, 0], "translation": [1, 0, 0],
+            "extensions": {"KHR_lights_punctual": {"light": 1}}},
+           {"name": "bulb", "translation": [0, 3, 0],
+            "extensions": {"KHR_lights_punctual": {"light": 0}}},
+           {"name": "sky", "extensions": {"KHR_lights_punctual": {"light": 2}}}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                "min": [0, 0, 0], "max": [1, 1, 0]}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,$positions"}]}
+END
+# The beam is of the body, in its space; a half turn about y points it along +z.
+bakes '{"file": "lamps.gltf"}' ''
+grep -q '1 lights are neither points nor spots' "$folder/err" || fail "no word of the sun"
+is 1 '0 3 0 5 10 5 0 0.01 0 0 0 | 0 |0 0 | -1 '
+is 0 '1 0 2 10 1 1 1 0.01 0 0 1 | 1 |0.2 0.4 | 0 '
+# Placed: what stands alone moves, what is carried stays in its instance's space.
+bakes "$box, {\"file\": \"lamps.gltf\", \"name\": \"b\", \"scale\": 2, \"translate\": [0, 1, 0], \"lights\": 0.5}" ''
+is 1 '0 7 0 5 5 2.5 0 0.01 0 0 0 | 0 |0 0 | -1 '
+is 0 '1 0 2 7.071 0.5 0.5 0.5 0.01 0 0 1 | 1 |0.2 0.4 | 1 '
+grep -q -a b/beam "$folder/s.masu" || fail "the name b/beam is not in the blob"
+bakes '{"file": "lamps.gltf", "lights": 0}' ''
+is 0 none
+# Merged, nothing is left that could carry it.
+bakes '{"file": "lamps.gltf", "merge": 100}' ''
+is 0 '11 0 2 10 1 1 1 0.01 0 0 1 | 1 |0.2 0.4 | -1 '
+
+[ $failures = 0 ]

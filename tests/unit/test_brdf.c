@@ -1,0 +1,160 @@
+/* test_brdf.c: the surface model in double precision with the tables that the GPU gets: the tables
+ * against integrals made otherwise, the white furnace, reciprocity. tests/gpu/test_brdf.c then compares the
+ * shader with this model. */
+#include "reference/brdf.h"
+#include "shared/masu_shared.h"
+#include "split_sum.h"
+#include "support_random.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+enum { STEPS = 80, ROUGHNESSES = 33 };
+
+/* Degrees from the normal. */
+static const double angles[] = {0, 10, 25, 40, 50, 60, 68, 75, 80, 84, 87, 88.5, 89.3, 89.7, 89.9};
+enum { ANGLES = sizeof angles / sizeof *angles };
+
+static double cosine_of(double degrees) { return cos(degrees * 3.14159265358979323846 / 180); }
+
+/* Between the nodes too: roughnesses that are none of the rows', angles that are none of the columns'. */
+static void test_tables(void **state) {
+    (void)state;
+    static const char *const names[] = {"white", "weight of s", "covered", "covered, weight of s"};
+    double worst[BRDF_INTEGRALS] = {0}, at[BRDF_INTEGRALS][2] = {{0}};
+    for (int r = 0; r < 24; r++) {
+        double roughness = 0.02 + 0.98 * pow(r / 23.0, 1.5);
+        for (int a = 0; a < ANGLES; a++) {
+            double truth[BRDF_INTEGRALS], table[BRDF_INTEGRALS], mu = cosine_of(angles[a]);
+            brdf_integrals(roughness, mu, STEPS, truth);
+            brdf_looked_up(masu_split_sum, roughness, mu, table);
+            for (int k = 0; k < BRDF_INTEGRALS; k++) {
+                double off = fabs(table[k] - truth[k]);
+                if (off <= worst[k]) continue;
+                worst[k] = off;
+                at[k][0] = roughness;
+                at[k][1] = angles[a];
+            }
+        }
+    }
+    for (int k = 0; k < BRDF_INTEGRALS; k++) {
+        print_message("  %-22s off by %.5f at most, at roughness %.3f, %.1f degrees\n", names[k],
+                      worst[k], at[k][0], at[k][1]);
+        assert_true(worst[k] < 0.0075);
+    }
+}
+
+typedef struct material {
+    const char *name;
+    brdf_surface s;
+} material;
+
+#define WHITE                                                                                      \
+    { 1, 1, 1 }
+static const material materials[] = {
+    {"metal", {WHITE, 0, 1, 0.5, 0, 0}},
+    {"dielectric, specular 0", {WHITE, 0, 0, 0, 0, 0}},
+    {"dielectric, specular 0.5", {WHITE, 0, 0, 0.5, 0, 0}},
+    {"dielectric, specular 1", {WHITE, 0, 0, 1, 0, 0}},
+    {"half metal", {WHITE, 0, 0.5, 0.5, 0, 0}},
+    {"metal, coat 0.5 smooth", {WHITE, 0, 1, 0.5, 0.5, 0}},
+    {"metal, coat 1 smooth", {WHITE, 0, 1, 0.5, 1, 0}},
+    {"metal, coat 1 of 0.3", {WHITE, 0, 1, 0.5, 1, 0.3}},
+    {"metal, coat 1 of 1", {WHITE, 0, 1, 0.5, 1, 1}},
+    {"dielectric, coat 0.5", {WHITE, 0, 0, 0.5, 0.5, 0.1}},
+    {"dielectric, coat 1", {WHITE, 0, 0, 0.5, 1, 0.1}},
+    {"specular 0, coat 1 of 0.6", {WHITE, 0, 0, 0, 1, 0.6}},
+};
+enum { MATERIALS = sizeof materials / sizeof *materials };
+
+static void test_furnace(void **state) {
+    (void)state;
+    for (int i = 0; i < MATERIALS; i++) {
+        double low = 1e9, high = 0, at[2] = {0, 0};
+        for (int r = 0; r < ROUGHNESSES; r++) {
+            brdf_surface s = materials[i].s;
+            s.roughness = (double)r / (ROUGHNESSES - 1);
+            for (int a = 0; a < ANGLES; a++) {
+                double out[3];
+                brdf_furnace(masu_split_sum, &s, cosine_of(angles[a]), STEPS, out);
+                if (fabs(out[0] - 1) > fmax(high - 1, 1 - low))
+                    at[0] = s.roughness, at[1] = angles[a];
+                low = fmin(low, out[0]);
+                high = fmax(high, out[0]);
+            }
+        }
+        print_message("  %-26s %.4f to %.4f, farthest from 1 at roughness %.2f, %.1f degrees\n",
+                      materials[i].name, low, high, at[0], at[1]);
+        assert_true(low > 0.99 && high < 1.01);
+    }
+}
+
+static double random_unit(uint64_t *seed) {
+    return (double)(support_random(seed) >> 11) / 9007199254740992.0;
+}
+
+static brdf_surface any_surface(uint64_t *seed) {
+    brdf_surface s;
+    for (int k = 0; k < 3; k++) s.albedo[k] = random_unit(seed);
+    s.roughness = random_unit(seed);
+    s.metallic = random_unit(seed) < 0.5 ? 0 : random_unit(seed);
+    s.specular = random_unit(seed);
+    s.coat = random_unit(seed) < 0.5 ? 0 : random_unit(seed);
+    s.coat_roughness = random_unit(seed);
+    return s;
+}
+
+static void any_direction(uint64_t *seed, double out[3]) {
+    double z = random_unit(seed), phi = 6.283185307179586 * random_unit(seed);
+    z = fmax(z * z, 1e-3);
+    out[0] = sqrt(1 - z * z) * cos(phi);
+    out[1] = sqrt(1 - z * z) * sin(phi);
+    out[2] = z;
+}
+
+static void test_reciprocity(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    double worst = 0;
+    for (int i = 0; i < 20000; i++) {
+        brdf_surface s = any_surface(&seed);
+        double v[3], l[3], there[3], back[3];
+        any_direction(&seed, v);
+        any_direction(&seed, l);
+        brdf_eval(masu_split_sum, &s, v, l, there);
+        brdf_eval(masu_split_sum, &s, l, v, back);
+        for (int k = 0; k < 3; k++) {
+            double a = there[k] / l[2], b = back[k] / v[2];
+            worst = fmax(worst, fabs(a - b) / fmax(a, b));
+        }
+    }
+    print_message("  f(v, l) and f(l, v) differ by %.1e of themselves at most\n", worst);
+    assert_true(worst < 1e-9);
+}
+
+static void test_energy(void **state) {
+    (void)state;
+    uint64_t seed = 9;
+    double most = 0;
+    for (int i = 0; i < 500; i++) {
+        brdf_surface s = any_surface(&seed);
+        double out[3], mu = fmax(random_unit(&seed), 1.75e-3);
+        brdf_furnace(masu_split_sum, &s, mu * mu < 1.75e-3 ? mu : mu * mu, 48, out);
+        for (int k = 0; k < 3; k++) most = fmax(most, out[k]);
+    }
+    print_message("  coloured surfaces return %.4f at most\n", most);
+    assert_true(most < 1.01);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tables), cmocka_unit_test(test_furnace),
+        cmocka_unit_test(test_reciprocity), cmocka_unit_test(test_energy)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,320 @@
+/*
+ * test_environment.c: skies from pictures: what masu-bake reads and refuses, what a texel holds, and
+ * the blurred mips and the irradiance against integrals over the picture in double precision. The
+ * bounds are what was measured, rounded up.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "bake_environment.h"
+#include "image.h"
+#include "support_random.h"
+
+#define PI 3.14159265358979323846
+#define WIDE 256u
+#define HIGH 128u
+
+static char directory[] = "/tmp/masu_environment_XXXXXX";
+static char path[128];
+
+static int make_directory(void **state) {
+    (void)state;
+    return mkdtemp(directory) ? 0 : -1;
+}
+
+static int remove_directory(void **state) {
+    (void)state;
+    return rmdir(directory);
+}
+
+static const char *file_named(const char *name) {
+    (void)snprintf(path, sizeof path, "%s/%s", directory, name);
+    return path;
+}
+
+/* ---- Pictures -------------------------------------------------------------------------------- */
+
+static float pixels[WIDE * HIGH * 3];
+
+/* A sky brighter at the horizon, a darker patterned ground, a window of 8 degrees 30 times as bright. */
+static void paint(double window) {
+    for (uint32_t i = 0; i < WIDE * HIGH; i++) {
+        double polar = (i / WIDE + 0.5) / HIGH * PI, turn = (i % WIDE + 0.5) / WIDE * 2 * PI;
+        double up = cos(polar);
+        const double d[3] = {sin(polar) * cos(turn), up, sin(polar) * sin(turn)};
+        int inside = d[0] * 0.8 + d[1] * 0.6 > cos(8 * PI / 180);
+        for (uint32_t c = 0; c < 3; c++) {
+            double sky = 0.3 + 0.2 * c + 0.5 * exp(-6 * up);
+            double soil = 0.15 + (2.0 - c) * 0.05 * (1 + sin(8 * turn) * sin(polar));
+            pixels[3 * i + c] = (float)((up > 0 ? sky : soil) + (inside ? window : 0));
+        }
+    }
+}
+
+static masu_bake_panorama picture(double turn) {
+    return (masu_bake_panorama){
+        .width = WIDE, .height = HIGH, .rgb = pixels, .turn = turn, .factor = 1};
+}
+
+static const masu_blob_environment_map *bake(const masu_bake_panorama *p, uint32_t size,
+                                             masu_bake_content *content) {
+    memset(content, 0, sizeof *content);
+    masu_bake_add_environment(p, size, content);
+    return (const masu_blob_environment_map *)(const void *)
+        content->section[MASU_BLOB_ENVIRONMENT_MAP].data;
+}
+
+static const uint32_t *texels_of(const masu_bake_content *content) {
+    return (const uint32_t *)(const void *)content->section[MASU_BLOB_ENVIRONMENT_TEXELS].data;
+}
+
+static void forget(masu_bake_content *content) {
+    free(content->section[MASU_BLOB_ENVIRONMENT_MAP].data);
+    free(content->section[MASU_BLOB_ENVIRONMENT_TEXELS].data);
+}
+
+/* Average over a GGX lobe that is seen from above, weighted by the cosine. */
+static void integrate(const masu_bake_panorama *p, const double n[3], double roughness,
+                      double out[3]) {
+    double a2 = pow(roughness, 4), weight = 0;
+    const uint32_t rows = roughness < 0.35 ? 512 : 192, columns = 2 * rows;
+    out[0] = out[1] = out[2] = 0;
+    for (uint32_t y = 0; y < rows; y++) {
+        double up = cos(PI * (y + 0.5) / rows), flat = sqrt(1 - up * up);
+        for (uint32_t x = 0; x < columns; x++) {
+            double turn = 2 * PI * (x + 0.5) / columns, light[3];
+            const double d[3] = {flat * sin(turn), up, flat * cos(turn)};
+            double cosine = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
+            if (cosine <= 0) continue;
+            double k = (1 + cosine) / 2 * (a2 - 1) + 1, w = flat * cosine / (k * k);
+            weight += w;
+            masu_bake_panorama_at(p, d, light);
+            for (int c = 0; c < 3; c++) out[c] += w * light[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) out[c] /= weight;
+}
+
+/* RMS over directions and colours as a share of the picture's mean. */
+static double error_at(const masu_bake_panorama *p, const masu_blob_environment_map *map,
+                       const uint32_t *texels, double roughness) {
+    double square = 0, mean = 0;
+    const int looks = 30;
+    for (int i = 0; i < looks; i++) {
+        double y = 1 - (2 * i + 1.0) / looks, a = 2.399963 * i, flat = sqrt(1 - y * y);
+        const double n[3] = {flat * cos(a), y, flat * sin(a)};
+        double truth[3], got[3];
+        integrate(p, n, roughness, truth);
+        masu_bake_environment_at(map, texels, n, roughness, got);
+        for (int c = 0; c < 3; c++) {
+            square += pow(got[c] - truth[c], 2) / (3 * looks);
+            mean += truth[c] / (3 * looks);
+        }
+    }
+    return sqrt(square) / mean;
+}
+
+static void mips_are_the_picture_averaged_by_the_lobe(void **state) {
+    (void)state;
+    static const struct {
+        double window, between, at[2], rest;
+    } cases[] = {{0, 0, {0.006, 0.026}, 0.055}, {30, 0, {0.02, 0.06}, 0.22}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        masu_bake_content content;
+        paint(cases[i].window);
+        masu_bake_panorama p = picture(0.4);
+        const masu_blob_environment_map *map = bake(&p, 256, &content);
+        assert_int_equal(map->mips, 6);
+        for (uint32_t mip = 1; mip < map->mips; mip++) {
+            double r = (double)mip / (map->mips - 1);
+            double at = error_at(&p, map, texels_of(&content), r);
+            double between = error_at(&p, map, texels_of(&content), r - 0.1);
+            print_message("window %g: roughness %.1f off by %.4f of the mean, %.1f by %.4f\n",
+                          cases[i].window, r, at, r - 0.1, between);
+            assert_true(at <= cases[i].at[mip > 1]);
+            assert_true(between <= cases[i].rest);
+        }
+        forget(&content);
+    }
+}
+
+static void irradiance_is_that_of_the_picture(void **state) {
+    (void)state;
+    double errors[2];
+    for (int window = 0; window < 2; window++) {
+        masu_bake_content content;
+        double square = 0, mean = 0;
+        paint(30.0 * window);
+        masu_bake_panorama p = picture(-1);
+        const masu_blob_environment_map *map = bake(&p, 32, &content);
+        for (int i = 0; i < 40; i++) {
+            double y = 1 - (2 * i + 1.0) / 40, a = 2.399963 * i, flat = sqrt(1 - y * y);
+            const double n[3] = {flat * cos(a), y, flat * sin(a)};
+            const double basis[9] = {1,           n[0],        n[1],        n[2],
+                                     n[0] * n[1], n[1] * n[2], n[2] * n[0], 3 * y * y - 1,
+                                     n[0] * n[0] - n[2] * n[2]};
+            double truth[3];
+            integrate(&p, n, 1, truth); /* of roughness 1: the cosine alone */
+            for (int c = 0; c < 3; c++) {
+                double got = 0;
+                for (int k = 0; k < 9; k++) got += basis[k] * (double)map->sh[k][c];
+                square += pow(got - truth[c], 2) / 120;
+                mean += truth[c] / 120;
+            }
+        }
+        errors[window] = sqrt(square) / mean;
+        print_message("window %d: irradiance off by %.4f of the mean\n", 30 * window,
+                      errors[window]);
+        forget(&content);
+    }
+    assert_true(errors[0] <= 0.01);
+    assert_true(errors[1] <= 0.045); /* a window is nearly a point: order 2 has 8 % of that */
+}
+
+/* ---- Texels ---------------------------------------------------------------------------------- */
+
+static void texels_hold_nine_bits(void **state) {
+    (void)state;
+    uint64_t random = 3;
+    for (int i = 0; i < 100000; i++) {
+        double v[3], got[3], most = 0;
+        for (int c = 0; c < 3; c++) {
+            v[c] = ldexp((double)support_random_in(&random, 0, 1 << 20), (int)(random % 30) - 34);
+            most = fmax(most, v[c]);
+        }
+        masu_bake_unpack_9995(masu_bake_pack_9995(v), got);
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(got[c] - v[c]) <= most / 510 + ldexp(1, -25));
+        uint32_t word = (uint32_t)support_random(&random);
+        masu_bake_unpack_9995(word, got);
+        for (int c = 0; c < 3; c++) assert_true(got[c] >= 0 && got[c] <= 65408);
+        double again[3];
+        masu_bake_unpack_9995(masu_bake_pack_9995(got), again);
+        assert_memory_equal(got, again, sizeof got);
+    }
+}
+
+static void a_square_covers_all_directions(void **state) {
+    (void)state;
+    for (int i = 0; i < 1000; i++) {
+        double d[3];
+        masu_bake_octahedral((i % 33 + 0.5) / 33, (i / 33 + 0.5) / 33, d);
+        assert_true(fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1) < 1e-12);
+    }
+    double up[3], down[3];
+    masu_bake_octahedral(0.5, 0.5, up);
+    masu_bake_octahedral(0, 0, down);
+    assert_true(fabs(up[1] - 1) < 1e-12);
+    assert_true(fabs(down[1] + 1) < 1e-12);
+}
+
+/* The middle of the picture lies at the azimuth it is turned to; right of it the azimuth falls. */
+static void a_picture_is_turned_and_scaled(void **state) {
+    (void)state;
+    memset(pixels, 0, sizeof pixels);
+    for (uint32_t x = WIDE / 2; x < WIDE / 2 + 8; x++) pixels[3 * (HIGH / 2 * WIDE + x)] = 1;
+    masu_bake_panorama p = picture(PI / 2);
+    double light[3];
+    p.factor = 3;
+    masu_bake_panorama_at(&p, (const double[3]){1, -0.0123, 0.05}, light);
+    assert_true(light[0] > 2.5 && light[1] == 0);
+    masu_bake_panorama_at(&p, (const double[3]){1, -0.0123, -0.05}, light);
+    assert_true(light[0] == 0);
+}
+
+/* ---- Files ----------------------------------------------------------------------------------- */
+
+/* RGBE: 10x2 pixels of (0.5, 0.25, 2^-8), in runs or not. */
+static size_t write_rgbe(uint8_t *out, int runs) {
+    static const uint8_t pixel[4] = {128, 64, 1, 128};
+    const char *head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 10\n";
+    size_t n = strlen(head);
+    memcpy(out, head, n);
+    for (int row = 0; row < 2; row++) {
+        if (!runs) {
+            for (int i = 0; i < 40; i++) out[n++] = pixel[i % 4];
+            continue;
+        }
+        out[n++] = 2, out[n++] = 2, out[n++] = 0, out[n++] = 10;
+        for (int c = 0; c < 4; c++) {
+            out[n++] = 128 + 7, out[n++] = pixel[c];
+            out[n++] = 3;
+            for (int i = 0; i < 3; i++) out[n++] = pixel[c];
+        }
+    }
+    return n;
+}
+
+static int loads(const uint8_t *bytes, size_t n, masu_bake_panorama *p) {
+    char error[256];
+    assert_true(masu_file_write(file_named("a.hdr"), bytes, n, error, sizeof error));
+    int good = masu_bake_load_panorama(path, p);
+    unlink(path);
+    return good;
+}
+
+static void radiance_files_are_read_and_damaged_ones_refused(void **state) {
+    (void)state;
+    for (int runs = 0; runs < 2; runs++) {
+        uint8_t bytes[512], cut[512];
+        masu_bake_panorama p;
+        size_t n = write_rgbe(bytes, runs);
+        assert_true(loads(bytes, n, &p));
+        assert_int_equal(p.width, 10);
+        assert_int_equal(p.height, 2);
+        for (int i = 0; i < 20; i++) {
+            assert_true(p.rgb[3 * i] == 0.5f && p.rgb[3 * i + 1] == 0.25f);
+            assert_true(p.rgb[3 * i + 2] == 0.00390625f);
+        }
+        free(p.rgb);
+        for (size_t k = 0; k < n; k++) assert_false(loads(bytes, k, &p));
+        uint64_t random = 11;
+        for (int i = 0; i < 500; i++) { /* whatever a byte becomes: read or refused */
+            memcpy(cut, bytes, n);
+            cut[support_random(&random) % n] = (uint8_t)support_random(&random);
+            if (loads(cut, n, &p)) free(p.rgb);
+        }
+    }
+}
+
+static void pfm_files_are_read_and_what_is_no_light_refused(void **state) {
+    (void)state;
+    char error[256];
+    masu_bake_panorama p;
+    float rgb[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    assert_true(masu_image_save_pfm(file_named("a.pfm"), rgb, 2, 2, 3, error, sizeof error));
+    assert_true(masu_bake_load_panorama(path, &p));
+    assert_memory_equal(p.rgb, rgb, sizeof rgb);
+    free(p.rgb);
+    static const float bad[] = {-1, NAN, INFINITY};
+    for (int i = 0; i < 3; i++) {
+        rgb[7] = bad[i];
+        assert_true(masu_image_save_pfm(path, rgb, 2, 2, 3, error, sizeof error));
+        assert_false(masu_bake_load_panorama(path, &p));
+    }
+    unlink(path);
+    assert_false(masu_bake_load_panorama(file_named("a.exr"), &p));
+    assert_false(masu_bake_load_panorama(file_named("none.hdr"), &p));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mips_are_the_picture_averaged_by_the_lobe),
+        cmocka_unit_test(irradiance_is_that_of_the_picture),
+        cmocka_unit_test(texels_hold_nine_bits),
+        cmocka_unit_test(a_square_covers_all_directions),
+        cmocka_unit_test(a_picture_is_turned_and_scaled),
+        cmocka_unit_test(radiance_files_are_read_and_damaged_ones_refused),
+        cmocka_unit_test(pfm_files_are_read_and_what_is_no_light_refused),
+    };
+    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+}
