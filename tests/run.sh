@@ -13,6 +13,8 @@
 #
 # MASU_REQUIRE_DRIVERS=1   a driver that is not there, and a test that is skipped, is a failure
 # MASU_TEST_TIMEOUT=600    seconds for each program
+# MASU_TEST_JOBS=N         programs at a time; as many as there are processors unless told: most of a
+#                          program's time goes into compiling shaders, which one thread does
 #
 # A test runs in the root of the tree and sees BUILD, MASU_EXPECT_DIR and, with a driver,
 # MASU_TEST_DRIVER, MASU_DRIVER_INFO (one line: name and version), VK_DRIVER_FILES.
@@ -27,7 +29,7 @@ require=${MASU_REQUIRE_DRIVERS:-}
 [ "$require" != 0 ] || require=
 drivers=${DRIVERS:-system}
 [ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
-passed=0 failed=0 skipped=0 known=0
+jobs=${MASU_TEST_JOBS:-$(nproc)}
 
 export BUILD=$build MASU_EXPECT_DIR=tests/expect
 export CMOCKA_MESSAGE_OUTPUT=stdout
@@ -89,7 +91,8 @@ testcase() {
     printf '</testcase>\n'
 }
 
-# run KIND DRIVER PROGRAM: runs it, prints its line and what went wrong, adds to the counts
+# run KIND DRIVER PROGRAM: runs it, prints its line and what went wrong, leaves its counts in
+# $results/DRIVER/NAME.counts
 run() {
     local kind=$1 driver=$2 program=$3
     local name log rc start seconds word test verdict=ok trouble='' ended='' died='' fault
@@ -179,7 +182,16 @@ run() {
         printf '<system-out>%s</system-out>\n</testsuite>\n' "$(tail -n 200 "$log" | escaped)"
     } > "$results/$driver/$name.xml"
     rm "$results/$driver/$name.cases"
-    passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s)) known=$((known + k))
+    echo "$p $f $s $k" > "$results/$driver/$name.counts"
+}
+
+# start KIND DRIVER PROGRAM: run, beside at most $jobs - 1 others; what it prints comes in one piece
+start() {
+    while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do wait -n; done
+    {
+        text=$(run "$@")
+        printf '%s\n' "$text"
+    } &
 }
 
 # use DRIVER: sets the environment for it. 1: it is not there, and $reason says why. A name that is
@@ -210,34 +222,43 @@ use() {
 rm -rf "$results"
 mkdir -p "$results"
 
-for kind in unit script fuzz; do
+# The full checks build the tree anew and run this again: they have the machine to themselves, as
+# fuzzers have, which are told how long to run.
+for kind in unit script; do
     for program in ${programs[$kind]}; do
-        run $kind "$kind" "$program"
+        [[ $program == */full/* ]] || start $kind $kind "$program"
+    done
+done
+wait
+for kind in script fuzz; do
+    for program in ${programs[$kind]}; do
+        [[ $kind$program == script* && $program != */full/* ]] || run $kind $kind "$program"
     done
 done
 
 if [ "${programs[gpu]}" ]; then
     for driver in $drivers; do
-        # A shell for each driver: what one sets, the next does not see. The counts come back by a
-        # file.
+        # A shell for each driver: what one sets, the next does not see.
         (
             if use "$driver"; then
                 echo "  driver $driver: $MASU_DRIVER_INFO"
                 for program in ${programs[gpu]}; do
-                    run gpu "$driver" "$program"
+                    start gpu "$driver" "$program"
                 done
+                wait
             elif [ "$require" ]; then
                 echo "  FAIL  driver $driver: $reason"
-                failed=$((failed + 1))
+                mkdir -p "$results/$driver" && echo 0 1 0 0 > "$results/$driver/missing.counts"
             else
                 echo "  skip  driver $driver: $reason"
-                skipped=$((skipped + $(wc -w <<< "${programs[gpu]}")))
+                mkdir -p "$results/$driver" &&
+                    echo 0 0 "$(wc -w <<< "${programs[gpu]}")" 0 > "$results/$driver/missing.counts"
             fi
-            echo "$passed $failed $skipped $known" > "$results/counts"
         )
-        read -r passed failed skipped known < "$results/counts"
     done
 fi
+read -r passed failed skipped known < <(cat "$results"/*/*.counts 2> /dev/null |
+    awk '{ p += $1; f += $2; s += $3; k += $4 } END { print p + 0, f + 0, s + 0, k + 0 }')
 
 # One file for readers of JUnit, too.
 {

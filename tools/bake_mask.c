@@ -110,7 +110,7 @@ void masu_mask_encode(const float *level, uint32_t width, uint32_t height, uint8
 float masu_mask_scale(const float *level, uint32_t width, uint32_t height, uint8_t cutoff,
                       double wanted, uint8_t *alpha) {
     float low = 1 / LARGEST, high = LARGEST, best = 1;
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (int i = 0; i < HALVINGS; i++) {
         float middle = sqrtf(low * high);
         masu_mask_encode(level, width, height, cutoff, middle, alpha, NULL);
