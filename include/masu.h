@@ -162,7 +162,8 @@ typedef struct masu_scene {
     uint32_t textures;   /* pictures: layers of the texture arrays */
     uint32_t texture_arrays, texture_sets;
     uint32_t masks; /* 1: some material has an alpha mask */
-    uint32_t surfaces; /* materials with a specular factor, a coat, small relief or an occlusion map */
+    uint32_t surfaces; /* of those not blended: with a specular factor, a coat, small relief or
+                        * occlusion map */
     uint32_t coats;    /* materials with a clear coat */
     uint32_t meso;     /* small reliefs */
     uint32_t blends;   /* materials that are blended */

@@ -7,6 +7,10 @@
  * mirror. The alpha of a map is another thing: how much of the pixel the surface covers at all.
  * Additive surfaces give what they scatter and take nothing.
  *
+ * A thing that is not flat is drawn twice, first what is turned away from the eye, then what faces it:
+ * a ball is right in itself, whatever the order of its triangles. It goes by the normals, not by the
+ * winding, which files get wrong and negative scales turn. Each fragment is drawn once.
+ *
  * The depth is the latest image's, of polygons and the SDF alike; there is no depth attachment. With
  * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map.
  */
@@ -35,7 +39,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_rel;
-layout(location = 2) flat in uvec3 in_thing; /* material, flags, layers */
+layout(location = 2) flat in uvec4 in_thing; /* material, flags, layers; which instance */
 
 #ifdef MASU_TEXTURES
 layout(location = 3) in vec2 in_texcoord;
@@ -64,16 +68,18 @@ void main()
     float cover = 1.0;
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
+    bool away = dot(n, in_rel) > 0.0;
+    bool elsewhere = (in_thing.y & MASU_MAP_FAR_SIDE_FIRST) != 0u && away != (in_thing.w == 0u);
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
     cover = masu_sample_maps(in_texcoord, s);
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
-    n = masu_seen_normal(dot(n, in_rel) > 0.0 ? -bent : bent, in_rel, n);
+    n = masu_seen_normal(away ? -bent : bent, in_rel, n);
 #else
-    n = dot(n, in_rel) > 0.0 ? -n : n;
+    n = away ? -n : n;
 #endif
     float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
-    if (!(gl_FragCoord.z >= nearest)) {
+    if (elsewhere || !(gl_FragCoord.z >= nearest)) {
         discard;
     }
     vec2 seen = vec2(1.0);

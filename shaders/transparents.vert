@@ -1,7 +1,8 @@
 /*
  * transparents.vert: one transparent thing, which index.y of the push constants finds: six words in
  * the buffer of drawn instances, written anew for each frame (src/transparents.c): instance, material,
- * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along.
+ * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along. Of what is
+ * drawn twice the first instance is for what is turned away from the eye.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -21,7 +22,7 @@ layout(location = 4) flat out vec2 out_detail;
 
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
-layout(location = 2) flat out uvec3 out_thing; /* material, flags, layers */
+layout(location = 2) flat out uvec4 out_thing; /* material, flags, layers; which instance */
 
 void main()
 {
@@ -29,7 +30,8 @@ void main()
     vec3 rel = masu_seen_from(m, frame.eye_hi.xyz, frame.eye_lo.xyz);
     out_normal = masu_turned_normal(m);
     out_rel = rel;
-    out_thing = uvec3(drawn[pc.index.y + 1u], drawn[pc.index.y + 2u], drawn[pc.index.y + 3u]);
+    out_thing = uvec4(drawn[pc.index.y + 1u], drawn[pc.index.y + 2u], drawn[pc.index.y + 3u],
+                      uint(gl_InstanceIndex));
 #ifdef MASU_TEXTURES
     out_texcoord = texcoord;
     out_detail = vec2(uintBitsToFloat(drawn[pc.index.y + 4u]), uintBitsToFloat(drawn[pc.index.y + 5u]));

@@ -505,7 +505,7 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
     b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
     b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
     b[MASU_BUFFER_TABLES].count =
-        plan->needs.surface && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS;
+        plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS;
     b[MASU_BUFFER_TABLES].count +=
         masu_blob_environment_texels(s->environment_size, s->environment_mips);
     b[MASU_BUFFER_TABLES].bytes = b[MASU_BUFFER_TABLES].count * sizeof(uint32_t);

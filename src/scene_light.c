@@ -136,8 +136,9 @@ masu_result masu_check_lighting(reader *r) {
     return result ? result : check_environment(r);
 }
 
-/* More than albedo, normal, roughness, metallic and emissive. */
+/* More than albedo, normal, roughness, metallic and emissive. What is blended is in no G-buffer. */
 static int has_surface(const masu_blob_material *m) {
+    if (m->flags & MASU_MATERIAL_IS_BLEND) return 0;
     return m->specular != 0.5f || m->coat > 0.0f || m->meso != MASU_BLOB_NONE ||
            (m->flags & 1u << MASU_SLOT_OCCLUSION) != 0;
 }

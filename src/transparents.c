@@ -61,6 +61,12 @@ static void keep_primitive(masu_renderer *m, const masu_scene_view *v, uint32_t 
         .layers = material->layers,
         .detail = {material->detail[0], material->detail[1]},
         .column = column_of(m, material)};
+    int flat = 0;
+    for (uint32_t k = 0; k < 3; k++) flat |= !(p->aabb_min[k] < p->aabb_max[k]);
+    if (!flat) { /* transparents.frag says why */
+        t->flags |= MASU_MAP_FAR_SIDE_FIRST;
+        t->draw.instanceCount = 2;
+    }
     for (uint32_t k = 0; k < 3; k++) t->center[k] = 0.5f * p->aabb_min[k] + 0.5f * p->aabb_max[k];
 }
 
@@ -107,7 +113,7 @@ void masu_write_transparents(masu_renderer *m, uint32_t slot) {
         const masu_transparent *t = &m->transparents[k < seen ? order[k].thing : 0];
         for (uint32_t c = 0; c < columns; c++) {
             VkDrawIndexedIndirectCommand draw = t->draw;
-            draw.instanceCount = k < seen && c == t->column;
+            draw.instanceCount = k < seen && c == t->column ? t->draw.instanceCount : 0;
             *draws++ = draw;
         }
         uint32_t thing[MASU_TRANSPARENT_WORDS] = {t->instance, t->material, t->flags, t->layers};

@@ -23,6 +23,7 @@
 #include "bake_texture.h"
 #include "cli.h"
 #include "masu.h"
+#include "transparents.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -167,12 +168,28 @@ static bool is_scene(const char *path) {
     return length > 5 && strcmp(path + length - 5, ".json") == 0;
 }
 
-/* The reader that will meet the blob is its judge: nothing is written that it would refuse. */
+/* The reader that will meet the blob is its judge: nothing is written that it, or every renderer,
+ * would refuse. */
 static bool accepted(const char *input, const masu_bake_buffer *blob) {
     masu_scene scene;
     masu_detail detail = {0};
-    if (masu_scene_bind(blob->data, blob->bytes, &scene, &detail) == MASU_OK) return true;
-    masu_cli_error("%s: %s", input, detail.text);
+    if (masu_scene_bind(blob->data, blob->bytes, &scene, &detail) != MASU_OK)
+        return masu_cli_error("%s: %s", input, detail.text), false;
+    uint64_t draws = (uint64_t)scene.transparents * scene.transparent_sets;
+    if (scene.transparents > MASU_TRANSPARENTS_MAX) {
+        masu_cli_error("%s: %u blended things, at most %u", input, scene.transparents,
+                       MASU_TRANSPARENTS_MAX);
+        return false;
+    }
+    if (scene.transparent_sets > MASU_TRANSPARENT_SETS_MAX) {
+        masu_cli_error("%s: blended things use more than %u texture sets", input,
+                       MASU_TRANSPARENT_SETS_MAX);
+        return false;
+    }
+    if (draws <= MASU_TRANSPARENT_DRAWS_MAX) return true;
+    masu_cli_error("%s: %u blended things times %u texture sets are %llu, at most %u", input,
+                   scene.transparents, scene.transparent_sets, (unsigned long long)draws,
+                   MASU_TRANSPARENT_DRAWS_MAX);
     return false;
 }
 

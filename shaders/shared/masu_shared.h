@@ -204,6 +204,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_MAP_OCCLUSION 16u
 #define MASU_MAP_METAL 32u
 #define MASU_MAP_ADDITIVE 0x10000u
+#define MASU_MAP_FAR_SIDE_FIRST 0x20000u /* of a blended thing that is drawn twice */
 #define MASU_MAP_CUTOFF_SHIFT 8
 #define MASU_MAP_OCCLUSION_SHIFT 24 /* 8 bits: the layer of the occlusion map */
 

@@ -226,5 +226,19 @@ refuses 'expected "alpha" or "additive"' '"blend": "multiply"'
 refuses 'not transparent' '"alpha": "mask", "opacity": 0.5'
 refuses 'not transparent' '"alpha": "opaque", "blend": "additive"'
 
+# As many blended things as a renderer draws, and one more.
+pane='{"mesh": {"plane": {}}, "material": {"opacity": 0.5}}'
+panes=$pane
+for ((i = 0; i < 12; i++)); do panes="$panes, $panes"; done
+printf '{"models": [%s]}' "$panes" > "$scene"
+"$bake" "$scene" -o "$folder/y.masu" --quiet 2> "$folder/stderr" ||
+    fail "4096 panes: $(cat "$folder/stderr")"
+printf '{"models": [%s, %s]}' "$panes" "$pane" > "$scene"
+rm -f "$folder/y.masu"
+"$bake" "$scene" -o "$folder/y.masu" --quiet 2> "$folder/stderr" && fail "4097 panes: accepted"
+grep -q '4097 blended things, at most 4096' "$folder/stderr" || fail "$(cat "$folder/stderr")"
+[ "$(wc -l < "$folder/stderr")" = 1 ] || fail "4097 panes: not one line"
+[ ! -e "$folder/y.masu" ] || fail "4097 panes: wrote its output"
+
 [ $failures = 0 ] && echo "masu-bake: pictures as expected"
 [ $failures = 0 ]

@@ -213,8 +213,8 @@ static void what_lights_a_scene_is_checked(void **state) {
     masu_scene scene;
     support_blob_seal(blob.bytes, blob.size);
     assert_int_equal(masu_scene_bind(blob.bytes, blob.size, &scene, NULL), MASU_OK);
-    assert_int_equal(scene.surfaces, 2);
-    assert_int_equal(scene.coats, 1);
+    assert_int_equal(scene.surfaces, 1); /* what is blended is in no G-buffer, */
+    assert_int_equal(scene.coats, 1);    /* but has a coat */
     assert_int_equal(scene.blends, 1);
     assert_int_equal(scene.meso, 1);
     assert_int_equal(scene.lights, 2);
