@@ -33,7 +33,8 @@
  * THE VULKAN CONTRACT
  *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
  *    and sampled image. No optional feature is needed. What is missing is named in the detail.
- *    Of optional ones, textureCompressionBC and samplerAnisotropy serve textures (masu_vulkan).
+ *    Of optional ones, textureCompressionBC and samplerAnisotropy serve textures, rayQuery serves
+ *    reflections (masu_vulkan).
  *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
  *    to be submitted once; all frames and loads go to one and the same queue, in order. It starts
  *    with a full barrier against the frame before.
@@ -176,6 +177,15 @@ typedef struct masu_scene {
     uint32_t analytic_sky; /* 1: the sky follows from the sun */
     uint32_t fog;          /* 1: there is fog */
     float occlusion_radius; /* of ambient occlusion in screen space, metres; 0: none */
+    uint32_t reflections;   /* 1: reflections are traced: */
+    uint32_t trace_sdf;     /* 1: of the SDF too */
+    uint32_t trace_nodes, trace_triangles; /* of the trees that rays are traced through; 0: none */
+    uint32_t trace_instances;              /* that rays meet */
+    uint32_t trace_textures; /* small pictures of textures for them */
+    uint32_t trace_colors;   /* of these such as rays look up; the rest are means of roughness */
+    uint64_t trace_texels; /* 4 bytes each */
+    float specular_cutoff, glossiest; /* roughness from which they are not; the least of any surface */
+    float trace_distance;   /* longest ray, m */
     uint64_t texture_bytes;         /* of their texels as compressed blocks */
     uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
 } masu_scene;
@@ -251,6 +261,22 @@ typedef struct masu_rung {
     uint32_t shadow_refresh[MASU_MAX_CASCADES];
     masu_switch light_tiles; /* each pixel asks the local lights of its tile alone, which the picture
                                 does not show. AUTO: on, if the scene has any */
+    /* Traced reflections at half the render size, of scenes that ask for them. AUTO: on, if anything is
+     * glossy enough and the device has the storage buffers for it. */
+    masu_switch specular;
+    float specular_cutoff; /* perceptual roughness from which surfaces mirror the sky or the probes
+                              instead, 0..1; 0: the scene's. Both are blended from 3/4 of it on */
+    /* What is done to the traced rays, one per 2x2 pixels, before they are shown. AUTO: on. */
+    masu_switch specular_reuse;    /* each texel weighs the hits of its neighbours, too */
+    masu_switch specular_temporal; /* and what was seen in the frames before */
+    masu_switch specular_fine;     /* smooth surfaces: a mean over frames for each pixel, not each 2x2;
+                                      only with specular_temporal */
+    masu_switch specular_filter;   /* the mean over neighbours, as far as noise is left */
+    masu_switch specular_taa;      /* what still flickers is evened out; only with specular_temporal */
+    uint32_t specular_reuse_taps;  /* neighbours, at most 16; 0: 8 */
+    uint32_t specular_filter_taps; /* neighbours, at most 32; 0: 12 */
+    uint32_t specular_frames;      /* how far back the mean over frames reaches, in 1/60 s, at most 240;
+                                      0: 32 */
 } masu_rung;
 
 /* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
@@ -279,11 +305,16 @@ typedef struct masu_limits {
                               scene has more than 4096, nor more than 65536 times their sets */
     uint64_t lights; /* local ones: 80 bytes each per frame in flight, device, and 80 bytes each, host;
                         no scene has more than 4096 */
+    uint64_t trace_triangles; /* that rays meet: 16 bytes each, and for each about a quarter of a node of
+                                 48, device */
+    uint64_t trace_instances; /* that rays meet: 208 bytes each per frame in flight, device, and about 200
+                                 bytes each, host */
 } masu_limits;
 
 typedef struct masu_peak_info {
     uint64_t vertices, indices, materials, instances, sdf_params;
     uint64_t shadow_cascades, shadow_resolution, textures, texture_bytes, transparents, lights;
+    uint64_t trace_triangles, trace_instances;
     uint64_t host_bytes;   /* of the host block */
     uint64_t device_bytes; /* of all device blocks */
 } masu_peak_info;
@@ -300,7 +331,8 @@ typedef enum masu_role {
  * VK_NULL_HANDLE: masu_init makes the one allocation of that role itself. The memory type can change
  * the plan (what the host can write needs no staging buffer): query again with the blocks set. */
 typedef struct masu_device_block {
-    VkDeviceMemory memory;
+    VkDeviceMemory memory; /* of roles with device_address set in the query: allocated with
+                              VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT */
     VkDeviceSize offset; /* a multiple of masu_memory.roles[].alignment */
     VkDeviceSize bytes;
     void *mapped; /* host pointer to `offset`; required for roles with host_visible set in the query
@@ -348,6 +380,8 @@ typedef struct masu_vulkan {
                                         1/4 to 1/8 of the memory */
     float max_anisotropy; /* samplerAnisotropy is enabled: samples along the longer axis, 2 to
                              limits.maxSamplerAnisotropy; 0: it is not */
+    uint32_t ray_query; /* not 0: VK_KHR_ray_query, VK_KHR_acceleration_structure and buffer device
+                           addresses (the extension or 1.2) are enabled, each with its feature */
 } masu_vulkan;
 
 typedef struct masu_targets {
@@ -381,6 +415,9 @@ typedef struct masu_debug {
                          numbers in masu_stats */
     uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
     uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
+    uint32_t reference; /* not 0: reflections are traced at each pixel, summed up over frames of a
+                           resting scene, weighted exactly and not filtered: the truth after many frames.
+                           A cut begins a new sum */
 } masu_debug;
 
 /* Switches off what would be used where the device offers it: to test the other path, or around a
@@ -408,6 +445,13 @@ typedef struct masu_desc {
     uint64_t device_budget; /* bytes over all roles; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
     uint32_t analytic_sky; /* not 0: frames may have light.turbidity where the scene has none */
+    /* What finds the polygons that reflections show: ray queries of the device, or the library's own
+     * tree in a compute shader, which needs nothing of the device. Both find the same. AUTO:
+     * queries, if vulkan.ray_query says that they are there, the device is a discrete or integrated
+     * GPU, and its limits suffice: on a CPU they are slower than the own tree. ON: queries, or
+     * MASU_ERROR_DEVICE. OFF: the own tree. Without reflections of polygons nothing is asked.
+     * Queries take more memory, which is planned as all is: see masu_memory. */
+    masu_switch ray_query;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
     masu_debug debug;
     masu_deny deny;
@@ -426,6 +470,8 @@ typedef struct masu_role_need {
     uint32_t type_bits;    /* memory types that can serve it, most of them wished for */
     uint32_t type;         /* the one masu_init would take */
     uint32_t host_visible; /* 1: the block must be mapped */
+    uint32_t device_address; /* 1: the memory must be allocated with
+                                VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT */
 } masu_role_need;
 
 typedef struct masu_memory {
@@ -474,8 +520,9 @@ typedef struct masu_memory_row {
     uint64_t bytes;   /* total */
     uint64_t alignment;
     uint64_t offset; /* in its block */
-    uint32_t
-        transient; /* 1: lives from first_pass to last_pass only, may share its bytes with others */
+    /* 1: lives from first_pass to last_pass only, may share its bytes with others. A buffer that
+     * has it lives in masu_load alone: it shares them with any image that has it. */
+    uint32_t transient;
     uint32_t first_pass, last_pass; /* rows of masu_plan.passes */
 } masu_memory_row;
 
@@ -490,7 +537,7 @@ typedef struct masu_plan_pass {
     const char *name; /* also the shader's file name, the debug label and the timestamp's name */
     uint32_t active;  /* bit r: runs in rung r; 0: left out */
     const char *why;  /* why it is in or was left out */
-    const char *reads[8];
+    const char *reads[12];
     const char *writes[6];
     uint64_t pipeline_ns; /* time to build its pipeline in masu_init; 0 without a clock or before
                              masu_init */
@@ -539,7 +586,8 @@ typedef struct masu_commands {
 
 /* Copies the scene to the device. MASU_INCOMPLETE: submit commands->buffer, wait for it, call
  * again. MASU_OK: done; nothing to submit. On unified memory a scene without textures needs no
- * submit: the first call returns MASU_OK. */
+ * submit: the first call returns MASU_OK; but with ray queries, whose structures the device
+ * builds. */
 MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_commands *commands);
 
 typedef struct masu_camera {
@@ -693,6 +741,10 @@ typedef struct masu_stats_info {
     /* With debug.counters: pairs of a light and a pixel that were looked at, those of them where
      * something arrives; tiles of 16x16 that more than 63 lights reach: they look at all. */
     uint64_t light_tests, light_shaded, light_tiles_full;
+    /* The same of traced reflections: 8x8 texels that have any, rays, those that meet a polygon or the
+     * SDF first, nodes of trees visited, evaluations of the field. */
+    uint64_t specular_tiles, specular_rays, specular_hits, specular_sdf_hits;
+    uint64_t specular_nodes, specular_evals;
     uint32_t view_count;
     masu_view_stats views[MASU_MAX_VIEWS]; /* 0: the camera */
 } masu_stats_info;

@@ -181,6 +181,51 @@ static bool choose_device(masu_headless *host, char *error, size_t size) {
     return false;
 }
 
+/* What ray queries take on an instance of Vulkan 1.1, whose core has nothing of it. */
+static const char *const ray_extensions[] = {
+    VK_KHR_RAY_QUERY_EXTENSION_NAME,           VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME, VK_KHR_BUFFER_DEVICE_ADDRESS_EXTENSION_NAME,
+    VK_EXT_DESCRIPTOR_INDEXING_EXTENSION_NAME, VK_KHR_SPIRV_1_4_EXTENSION_NAME,
+    VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME};
+#define RAY_EXTENSIONS (sizeof ray_extensions / sizeof *ray_extensions)
+
+typedef struct ray_features {
+    VkPhysicalDeviceRayQueryFeaturesKHR query;
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure;
+    VkPhysicalDeviceBufferDeviceAddressFeatures address;
+} ray_features;
+
+/* Whether the device has all of it; `to` then asks for it. */
+static bool offers_rays(VkPhysicalDevice device, ray_features *to) {
+    uint32_t n = 0, found = 0;
+    if (vkEnumerateDeviceExtensionProperties(device, NULL, &n, NULL)) return false;
+    VkExtensionProperties *list = malloc((n + 1) * sizeof *list);
+    VkResult r = list ? vkEnumerateDeviceExtensionProperties(device, NULL, &n, list) : VK_NOT_READY;
+    for (uint32_t e = 0; e < RAY_EXTENSIONS && r == VK_SUCCESS; e++) {
+        for (uint32_t i = 0; i < n; i++)
+            found += !strcmp(list[i].extensionName, ray_extensions[e]);
+    }
+    free(list);
+    if (found < RAY_EXTENSIONS) return false;
+    memset(to, 0, sizeof *to);
+    to->query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
+    to->structure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+    to->address.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
+    to->query.pNext = &to->structure;
+    to->structure.pNext = &to->address;
+    VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                     .pNext = &to->query};
+    vkGetPhysicalDeviceFeatures2(device, &all);
+    bool has = to->query.rayQuery && to->structure.accelerationStructure &&
+               to->address.bufferDeviceAddress;
+    /* Of what else they offer, nothing is wanted. */
+    to->structure = (VkPhysicalDeviceAccelerationStructureFeaturesKHR){
+        .sType = to->structure.sType, .pNext = &to->address, .accelerationStructure = VK_TRUE};
+    to->address = (VkPhysicalDeviceBufferDeviceAddressFeatures){.sType = to->address.sType,
+                                                                .bufferDeviceAddress = VK_TRUE};
+    return has;
+}
+
 static bool create_device(masu_headless *host, char *error, size_t size) {
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -198,6 +243,13 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                .queueCreateInfoCount = 1,
                                .pQueueCreateInfos = &queue,
                                .pEnabledFeatures = &features};
+    ray_features rays;
+    host->ray_query = host->desc.ray_query && offers_rays(host->physical, &rays);
+    if (host->ray_query) {
+        info.pNext = &rays.query;
+        info.enabledExtensionCount = RAY_EXTENSIONS;
+        info.ppEnabledExtensionNames = ray_extensions;
+    }
     VkResult r = vkCreateDevice(host->physical, &info, host->desc.allocator, &host->device);
     if (r) return masu_headless_fail(error, size, "vkCreateDevice", r);
     vkGetDeviceQueue(host->device, host->family, 0, &host->queue);

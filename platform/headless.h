@@ -2,8 +2,8 @@
  * images, submits that wait.
  *
  * It is what a port's own host does, kept small: of optional features it enables those that serve
- * textures, where they are offered, and no extension but the validation layer's own and, for labels,
- * VK_EXT_debug_utils. Every wait has a timeout.
+ * textures, where they are offered, and no extension but the validation layer's own, for labels
+ * VK_EXT_debug_utils, and what ray queries take where they are asked for. Every wait has a timeout.
  * Functions that can fail return false and write one line without a newline to `error`. */
 #ifndef MASU_HEADLESS_H
 #define MASU_HEADLESS_H
@@ -24,6 +24,7 @@ typedef struct masu_headless_desc {
     bool validate;      /* Khronos validation with synchronisation validation */
     bool gpu_av;        /* Khronos validation with GPU-assisted shader checks instead */
     bool labels;        /* VK_EXT_debug_utils for names and labels; validation turns it on too */
+    bool ray_query;     /* ray queries, where they are offered */
     void (*message)(void *user,
                     const char *text); /* each validation warning or error; NULL: counted only */
     void *message_user;
@@ -49,6 +50,7 @@ typedef struct masu_headless {
     uint32_t messages;       /* validation warnings and errors so far */
     bool validating;         /* the layer is really there */
     bool labels;             /* VK_EXT_debug_utils is enabled */
+    bool ray_query;          /* so are VK_KHR_ray_query and what it takes */
     bool compressed;         /* textureCompressionBC is enabled */
     float most_anisotropy;   /* samplerAnisotropy is enabled: its limit; else 0 */
     bool lost;               /* a wait has timed out or the device is gone: nothing is waited for */

@@ -6,7 +6,10 @@
  * surfaces are more than albedo, roughness and metallic.
  *
  * Surfaces as light/shade.glsl has them; what the air takes and adds (light/air.glsl) only in scenes
- * with fog.
+ * with fog. What of the mirrored light is traced is left out.
+ *
+ * index.x: not 0: there are lists of lights; param.x: roughness from which nothing is traced; index.w: not
+ * 0: debug.reference.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -17,6 +20,7 @@
 #include "shared/store.glsl"
 #include "light/shade.glsl"
 #include "light/air.glsl"
+#include "specular/guide.glsl"
 #ifdef MASU_LIGHTS
 #include "light/lights.glsl"
 #endif
@@ -24,6 +28,7 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
+layout(constant_id = 4) const bool reflections = false; /* some are traced: param.x, index.w */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
@@ -121,7 +126,11 @@ void main()
                 masu_surface s = surface_at(ivec2(at), albedo, normal);
                 masu_bsdf b = masu_bsdf_make(s, masu_unpack_normal(normal), -direction);
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
-                masu_lit lit = masu_shade(s, b, rel, arriving(at));
+                vec2 kept = vec2(1.0);
+                if (reflections) {
+                    kept = masu_kept_mirrors(s, pc.param.x, pc.index.w != 0u);
+                }
+                masu_lit lit = masu_shade(s, b, rel, arriving(at), kept);
 #ifdef MASU_LIGHTS
                 add_lights(lit, s, b, at, ray * masu_light_depth(depth));
 #endif

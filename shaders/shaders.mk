@@ -9,7 +9,8 @@
 # include are embedded as text instead.
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
-    march_checkerboard.comp march_fragment.frag sdf_velocity.comp sdf_occlusion.comp
+    march_checkerboard.comp march_fragment.frag sdf_velocity.comp sdf_occlusion.comp \
+    specular_trace_sdf.comp
 
 SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag
@@ -50,10 +51,43 @@ SECOND_BUILDS += gbuffer_textured_frag:gbuffer.frag:MASU_TEXTURES
 SECOND_BUILDS += gbuffer_textured_velocity_vert:gbuffer.vert:MASU_TEXTURES+MASU_MOTION
 SECOND_BUILDS += gbuffer_textured_velocity_frag:gbuffer.frag:MASU_TEXTURES+MASU_MOTION
 
+SECOND_BUILDS += specular_guide_surface_comp:specular_guide.comp:MASU_SURFACE
+SECOND_BUILDS += specular_query_masks_comp:specular_query.comp:MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_rays_surface_comp:specular_rays.comp:MASU_SURFACE
+SECOND_BUILDS += specular_composite_surface_comp:specular_composite.comp:MASU_SURFACE
+SECOND_BUILDS += specular_composite_fine_comp:specular_composite.comp:MASU_FINE
+SECOND_BUILDS += specular_composite_fine_surface_comp:specular_composite.comp:MASU_FINE+MASU_SURFACE
+SECOND_BUILDS += specular_keep_steady_comp:specular_keep.comp:MASU_STEADY
+SECOND_BUILDS += specular_shade_sun_comp:specular_shade.comp:MASU_SUN_MAP
+SECOND_BUILDS += specular_shade_lights_comp:specular_shade.comp:MASU_LIGHTS
+SECOND_BUILDS += specular_shade_lights_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_SUN_MAP
+SECOND_BUILDS += specular_shade_probes_comp:specular_shade.comp:MASU_PROBES
+SECOND_BUILDS += specular_shade_probes_sun_comp:specular_shade.comp:MASU_PROBES+MASU_SUN_MAP
+SECOND_BUILDS += specular_shade_lights_probes_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES
+SECOND_BUILDS += specular_shade_lights_probes_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES+MASU_SUN_MAP
+SECOND_BUILDS += specular_trace_masks_comp:specular_trace.comp:MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_comp:specular_shade.comp:MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_sun_comp:specular_shade.comp:MASU_SUN_MAP+MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_lights_comp:specular_shade.comp:MASU_LIGHTS+MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_lights_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_SUN_MAP+MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_probes_comp:specular_shade.comp:MASU_PROBES+MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_probes_sun_comp:specular_shade.comp:MASU_PROBES+MASU_SUN_MAP+MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_lights_probes_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES+MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_textures_lights_probes_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES+MASU_SUN_MAP+MASU_TRACE_TEXTURES
+SECOND_BUILDS += specular_shade_sdf_comp:specular_shade.comp:MASU_NO_POLYGONS
+SECOND_BUILDS += specular_shade_sdf_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_SUN_MAP
+SECOND_BUILDS += specular_shade_sdf_lights_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS
+SECOND_BUILDS += specular_shade_sdf_lights_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_SUN_MAP
+SECOND_BUILDS += specular_shade_sdf_probes_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_PROBES
+SECOND_BUILDS += specular_shade_sdf_probes_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_PROBES+MASU_SUN_MAP
+SECOND_BUILDS += specular_shade_sdf_lights_probes_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_PROBES
+SECOND_BUILDS += specular_shade_sdf_lights_probes_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_PROBES+MASU_SUN_MAP
+SECOND_BUILDS += trace_rays_counted_comp:trace_rays.comp:MASU_TRACE_COUNTERS
+
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
 SPIRV_HEADERS += $(foreach b,$(SECOND_BUILDS),$(BUILD)/gen/$(firstword $(subst :, ,$(b))).spv.h)
-GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h
+GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
@@ -106,12 +140,12 @@ $(BUILD)/gen/scene_texts.list: force
 	@mkdir -p $(@D)
 	@echo '$(SCENE_TEXTS)' | cmp -s - $@ || echo '$(SCENE_TEXTS)' > $@
 
-# The tables of shaders/brdf. Objects wait for what is generated, so this program has none; it takes
-# 5 s, and minutes without -O2.
-$(BUILD)/tools/make_split_sum: tools/make_split_sum.c shaders/shared/masu_shared.h
+# The tables of shaders/brdf and the tile of shaders/noise. Objects wait for what is generated, so these
+# programs have none; the tables take 5 s, and minutes without -O2.
+$(BUILD)/tools/make_%: tools/make_%.c shaders/shared/masu_shared.h
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders $< -lm -o $@
-$(BUILD)/gen/split_sum.h: $(BUILD)/tools/make_split_sum
+$(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h: $(BUILD)/gen/%.h: $(BUILD)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"
 	$(V)$< > $@

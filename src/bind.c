@@ -58,7 +58,10 @@ static masu_result take_host_block(masu_renderer *m, uint32_t role, masu_detail 
 
 static masu_result allocate_block(masu_renderer *m, uint32_t role, masu_detail *detail) {
     const masu_block_plan *need = &m->plan.blocks[role];
+    VkMemoryAllocateFlagsInfo flags = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                       .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
     VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                 .pNext = need->address ? &flags : NULL,
                                  .allocationSize = need->bytes,
                                  .memoryTypeIndex = need->type};
     VkResult r = m->vk.AllocateMemory(m->vk.device, &info, m->vk.allocator, &m->memory[role]);

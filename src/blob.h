@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 6u
+#define MASU_BLOB_VERSION 7u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -66,7 +66,15 @@ enum masu_blob_kind {
     MASU_BLOB_PROBE_DATA = 37,
     MASU_BLOB_ENVIRONMENT_MAP = 38, /* at most one: a sky from a picture; these two come together */
     MASU_BLOB_ENVIRONMENT_TEXELS = 39,
-    MASU_BLOB_KIND_COUNT = 40
+    MASU_BLOB_REFLECTIONS = 44,    /* at most one: reflections are traced */
+    MASU_BLOB_TRACE_TEXTURES = 45, /* what rays see of the textures; these two come together */
+    MASU_BLOB_TRACE_TEXELS = 46,   /* uint32 */
+    MASU_BLOB_TRACE_SDF_SPIRV = 47, /* rays meet the SDF */
+    MASU_BLOB_TRACE_NODES = 40, /* what rays are traced through; these four come together */
+    MASU_BLOB_TRACE_TRIANGLES = 41,
+    MASU_BLOB_TRACE_MESHES = 42,    /* as many as meshes, in their order */
+    MASU_BLOB_TRACE_INSTANCES = 43, /* uint32, rising: those that rays meet */
+    MASU_BLOB_KIND_COUNT = 48
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -305,6 +313,76 @@ typedef struct masu_blob_texture_set {
     uint32_t reserved;
 } masu_blob_texture_set;
 
+/* Traced reflections; present with TRACE_NODES, TRACE_SDF_SPIRV or both. */
+typedef struct masu_blob_reflections {
+    float cutoff;    /* perceptual roughness from which nothing is traced, 0..1 */
+    float distance;  /* longest ray, metres, 1e-3..1e9 */
+    float glossiest; /* the least roughness of any surface or coat, 0..1 */
+    uint32_t reserved;
+} masu_blob_reflections;
+
+/* A picture that rays look up where they meet a surface: of a layer of TEXTURES, with a side of at most
+ * MASU_TRACE_TEXTURE_MAX texels. Texels are sqrt of linear red, green, blue, then alpha, 8 bits each, the first the
+ * lowest; mip after mip, row by row, each mip half as large, the last 1x1. Of roughness and metallic, as red and
+ * green, the last texel alone counts: their mean. Sorted by texture, then layer. */
+#define MASU_TRACE_TEXTURE_MAX 256u
+typedef struct masu_blob_trace_texture {
+    uint32_t texture, layer;
+    uint32_t width, height;
+    uint32_t first; /* of TRACE_TEXELS: where the one before ends */
+    uint32_t reserved;
+} masu_blob_trace_texture;
+
+/* Texels of all mips. */
+static inline uint64_t masu_blob_trace_texels(uint32_t width, uint32_t height) {
+    uint64_t texels = 0;
+    for (uint32_t m = 0; m < 9; m++) {
+        uint32_t w = width >> m ? width >> m : 1, h = height >> m ? height >> m : 1;
+        texels += (uint64_t)w * h;
+        if (w == 1 && h == 1) break;
+    }
+    return texels;
+}
+
+/* A tree over the triangles of a mesh, or over the instances of a frame (src/trace.h): boxes of up to
+ * four children. Child i reaches along axis k from origin[k] + low[k] 2^(e - 127) to origin[k] +
+ * high[k] 2^(e - 127), with byte i of low[k] and high[k] and e byte k of `packed`: a box around the child's
+ * own. Byte 3 of `packed` is the children's types, 2 bits each: 0 none, 1 a node, 2 a leaf of one item, 3 a
+ * leaf of two. First come the nodes, then the leaves. Nodes are side by side from `child`, items from
+ * `item`. */
+typedef struct masu_blob_trace_node {
+    float origin[3];
+    uint32_t packed;
+    uint32_t low[3];
+    uint32_t high[3];
+    uint32_t child; /* of TRACE_NODES, all meshes counted */
+    uint32_t item;  /* of TRACE_TRIANGLES, all meshes counted */
+} masu_blob_trace_node;
+
+typedef struct masu_blob_trace_triangle {
+    uint32_t vertex[3]; /* of VERTICES */
+    uint32_t primitive; /* of PRIMITIVES */
+} masu_blob_trace_triangle;
+
+/* No nodes: rays do not meet the mesh. A mesh's nodes are in the order of a depth-first walk that gives the
+ * children of a node the next free places when it gets to the node; so are the triangles. */
+typedef struct masu_blob_trace_mesh {
+    uint32_t first_node, node_count;
+    uint32_t first_triangle, triangle_count;
+    uint32_t depth; /* levels of nodes, at most MASU_TRACE_DEPTH_MAX */
+    uint32_t reserved;
+} masu_blob_trace_mesh;
+
+/* shaders/shared/masu_shared.h has these too. */
+#define MASU_TRACE_DEPTH_MAX 28u
+#define MASU_TRACE_NODES_MAX (1u << 24)
+#define MASU_TRACE_INSTANCES_MAX (1u << 20)
+#define MASU_TRACE_REACH 1e15f /* no corner of a box is farther out */
+
+static inline uint32_t masu_trace_type(const masu_blob_trace_node *node, uint32_t slot) {
+    return node->packed >> (24 + 2 * slot) & 3u;
+}
+
 /* Camera path: keys in rising time, linear in between (position and target), held at both ends. Up
  * is +Y. */
 typedef struct masu_blob_camera_key {
@@ -421,6 +499,11 @@ _Static_assert(sizeof(masu_blob_probes) == 1344, "blob probes");
 _Static_assert(sizeof(masu_blob_environment_map) == 160, "blob environment map");
 _Static_assert(sizeof(masu_blob_shadow) == 16, "blob shadow");
 _Static_assert(sizeof(masu_blob_sdf) == 48, "blob sdf");
+_Static_assert(sizeof(masu_blob_reflections) == 16, "blob reflections");
+_Static_assert(sizeof(masu_blob_trace_texture) == 24, "blob trace texture");
+_Static_assert(sizeof(masu_blob_trace_node) == 48, "blob trace node");
+_Static_assert(sizeof(masu_blob_trace_triangle) == 16, "blob trace triangle");
+_Static_assert(sizeof(masu_blob_trace_mesh) == 24, "blob trace mesh");
 _Static_assert(sizeof(masu_blob_sdf_param) == 16, "blob sdf parameter");
 
 #endif

@@ -180,7 +180,8 @@ static masu_result create_buffer(const masu_vk *vk, masu_frame_plan *plan, uint3
     VkMemoryRequirements need;
     vk->GetBufferMemoryRequirements(vk->device, objects->buffers[b], &need);
     buffer->memory_bytes = need.size;
-    buffer->alignment = need.alignment;
+    /* A plan may ask for more, both are powers of two. */
+    if (buffer->alignment < need.alignment) buffer->alignment = need.alignment;
     buffer->type_bits = need.memoryTypeBits;
     return MASU_OK;
 }
@@ -272,10 +273,26 @@ static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
         if (!buffer->bytes || buffer->role != role || b == MASU_BUFFER_POISON) continue;
+        block->address |= (buffer->usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
+        if (masu_is_of_loading(b)) continue; /* lay_images */
         buffer->offset = masu_align_up(block->bytes, buffer->alignment);
         block->bytes = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
     }
+}
+
+/* What only masu_load needs lies where the transient images of frames will. Returns where it ends,
+ * from `start` on. */
+static uint64_t lay_loading(masu_frame_plan *plan, uint64_t start, masu_block_plan *block) {
+    uint64_t end = start;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        masu_buffer_plan *buffer = &plan->buffers[b];
+        if (!buffer->bytes || !masu_is_of_loading(b)) continue;
+        buffer->offset = masu_align_up(end, buffer->alignment);
+        end = buffer->offset + buffer->memory_bytes;
+        add_to_block(block, buffer->alignment, buffer->type_bits);
+    }
+    return end;
 }
 
 /* Textures stay as long as the renderer: behind one another, apart from buffers by the granularity. */
@@ -323,9 +340,11 @@ static void lay_images(const masu_vk *vk, masu_frame_plan *plan, masu_block_plan
     for (uint32_t k = 0; k < n; k++) {
         plan->images[ids[k]].offset = plan->transient_offset + items[k].offset;
     }
+    uint64_t end = plan->transient_offset + plan->transient_aliased;
+    uint64_t loading = lay_loading(plan, plan->transient_offset, block);
     /* What follows (buffers of other roles on unified memory) must not share a granule with an
      * image. */
-    block->bytes = masu_align_up(plan->transient_offset + plan->transient_aliased, start_alignment);
+    block->bytes = masu_align_up(end > loading ? end : loading, start_alignment);
 }
 
 static void lay_out(const masu_vk *vk, masu_frame_plan *plan) {
@@ -368,7 +387,8 @@ static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu
         plan->buffers[MASU_BUFFER_VERTICES].bytes + plan->buffers[MASU_BUFFER_INDICES].bytes +
         plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes +
         plan->buffers[MASU_BUFFER_TEXCOORDS].bytes + plan->buffers[MASU_BUFFER_TABLES].bytes +
-        plan->buffers[MASU_BUFFER_PROBES].bytes;
+        plan->buffers[MASU_BUFFER_PROBES].bytes + plan->buffers[MASU_BUFFER_TRACE].bytes +
+        plan->buffers[MASU_BUFFER_RAY_INDICES].bytes;
     uint64_t textures = texture_staging(plan);
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
     plan->staged = resident && !plan->blocks[MASU_ROLE_DEVICE].host_visible;

@@ -8,37 +8,71 @@
 
 const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
     [MASU_IMAGE_ALBEDO] = {"albedo", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
-                           MASU_READBACK_ALBEDO},
+                           MASU_READBACK_ALBEDO, 0},
     [MASU_IMAGE_NORMAL] = {"normal", VK_FORMAT_R32_UINT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
-                           MASU_READBACK_NORMAL},
+                           MASU_READBACK_NORMAL, 0},
     [MASU_IMAGE_DEPTH] = {"depth", VK_FORMAT_D32_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_DEPTH,
-                          MASU_READBACK_DEPTH},
+                          MASU_READBACK_DEPTH, 0},
     [MASU_IMAGE_SCENE_DEPTH] = {"scene_depth", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_RENDER,
-                                MASU_CLASS_DEPTH, MASU_READBACK_DEPTH},
+                                MASU_CLASS_DEPTH, MASU_READBACK_DEPTH, 0},
     [MASU_IMAGE_OCCLUDERS] = {"occluders", VK_FORMAT_D32_SFLOAT, MASU_EXTENT_ATLAS,
-                              MASU_CLASS_OTHER, 0},
-    [MASU_IMAGE_CONE8] = {"cone8", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK8, MASU_CLASS_OTHER, 0},
-    [MASU_IMAGE_CONE4] = {"cone4", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK4, MASU_CLASS_OTHER, 0},
+                              MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_CONE8] = {"cone8", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK8, MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_CONE4] = {"cone4", VK_FORMAT_R32_SFLOAT, MASU_EXTENT_BLOCK4, MASU_CLASS_OTHER, 0, 0},
     [MASU_IMAGE_SURFACE] = {"surface", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
-                            0},
+                            0, 0},
     /* rgba16f: of the formats that hold a signed motion, the smallest that every device takes both
      * as colour attachment and as storage image. */
     [MASU_IMAGE_VELOCITY] = {"velocity", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER,
-                             MASU_CLASS_OTHER, MASU_READBACK_VELOCITY},
+                             MASU_CLASS_OTHER, MASU_READBACK_VELOCITY, 0},
     [MASU_IMAGE_SHADOW_MAP] = {"shadow_map", VK_FORMAT_D32_SFLOAT, MASU_EXTENT_SHADOW,
-                               MASU_CLASS_OTHER, MASU_READBACK_SHADOW_MAP},
-    [MASU_IMAGE_AO] = {"ao", VK_FORMAT_R32_UINT, MASU_EXTENT_HALF, MASU_CLASS_OTHER, 0},
+                               MASU_CLASS_OTHER, MASU_READBACK_SHADOW_MAP, 0},
+    [MASU_IMAGE_AO] = {"ao", VK_FORMAT_R32_UINT, MASU_EXTENT_HALF, MASU_CLASS_OTHER, 0, 0},
     [MASU_IMAGE_OCCLUSION] = {"occlusion", VK_FORMAT_R32_UINT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
-                              MASU_READBACK_OCCLUSION},
+                              MASU_READBACK_OCCLUSION, 0},
+    [MASU_IMAGE_SPECULAR_GUIDE] = {"specular_guide", VK_FORMAT_R32G32_UINT, MASU_EXTENT_TRACED,
+                                   MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_SPECULAR_RAY] = {"specular_ray", VK_FORMAT_R32G32_UINT, MASU_EXTENT_TRACED,
+                                 MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_SPECULAR_HIT] = {"specular_hit", VK_FORMAT_R32G32B32A32_UINT, MASU_EXTENT_TRACED,
+                                 MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_SPECULAR_LIGHT] = {"specular_light", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                   MASU_EXTENT_TRACED, MASU_CLASS_SPECULAR, 0, 0},
+    [MASU_IMAGE_SPECULAR_MOTION] = {"specular_motion", VK_FORMAT_R32_UINT, MASU_EXTENT_TRACED,
+                                    MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_SPECULAR_REUSED] = {"specular_reused", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                    MASU_EXTENT_TRACED, MASU_CLASS_SPECULAR, 0, 0},
+    [MASU_IMAGE_SPECULAR_MEAN] = {"specular_mean", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                  MASU_EXTENT_TRACED, MASU_CLASS_SPECULAR, 0, 0},
+    [MASU_IMAGE_SPECULAR_AGE] = {"specular_age", VK_FORMAT_R32G32_UINT, MASU_EXTENT_TRACED,
+                                 MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_SPECULAR_FINE] = {"specular_fine", VK_FORMAT_R32G32B32A32_UINT, MASU_EXTENT_TRACED,
+                                  MASU_CLASS_OTHER, 0, 0},
+    [MASU_IMAGE_SPECULAR_OLD_FINE] = {"specular_old_fine", VK_FORMAT_R32G32B32A32_UINT,
+                                      MASU_EXTENT_TRACED, MASU_CLASS_OTHER, 0, 1},
+    [MASU_IMAGE_SPECULAR_SMOOTH] = {"specular_smooth", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                    MASU_EXTENT_TRACED, MASU_CLASS_SPECULAR, 0, 0},
+    [MASU_IMAGE_SPECULAR_STEADY] = {"specular_steady", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                    MASU_EXTENT_TRACED, MASU_CLASS_SPECULAR, 0, 0},
+    [MASU_IMAGE_SPECULAR_OLD_GUIDE] = {"specular_old_guide", VK_FORMAT_R32G32_UINT,
+                                       MASU_EXTENT_TRACED, MASU_CLASS_OTHER, 0, 1},
+    [MASU_IMAGE_SPECULAR_OLD_MEAN] = {"specular_old_mean", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                      MASU_EXTENT_TRACED, MASU_CLASS_OTHER, 0, 1},
+    [MASU_IMAGE_SPECULAR_OLD_AGE] = {"specular_old_age", VK_FORMAT_R32_UINT, MASU_EXTENT_TRACED,
+                                     MASU_CLASS_OTHER, 0, 1},
+    [MASU_IMAGE_SPECULAR_OLD_STEADY] = {"specular_old_steady", VK_FORMAT_R16G16B16A16_SFLOAT,
+                                        MASU_EXTENT_TRACED, MASU_CLASS_OTHER, 0, 1},
+    [MASU_IMAGE_SPECULAR_SUM] = {"specular_sum", VK_FORMAT_R32G32B32A32_SFLOAT, MASU_EXTENT_TRACED,
+                                 MASU_CLASS_SPECULAR, 0, 1},
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
-                        MASU_READBACK_HDR},
-    [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
+                        MASU_READBACK_HDR, 0},
+    [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0, 0},
     [MASU_IMAGE_UPSCALED] = {"upscaled", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT,
-                             MASU_CLASS_COLOR, 0},
+                             MASU_CLASS_COLOR, 0, 0},
     [MASU_IMAGE_FINAL] = {"final", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR,
-                          0},
-    [MASU_IMAGE_SOURCE] = {"source", VK_FORMAT_UNDEFINED, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0},
-    [MASU_IMAGE_TARGET] = {"target", VK_FORMAT_UNDEFINED, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR, 0},
+                          0, 0},
+    [MASU_IMAGE_SOURCE] = {"source", VK_FORMAT_UNDEFINED, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0, 0},
+    [MASU_IMAGE_TARGET] = {"target", VK_FORMAT_UNDEFINED, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR, 0, 0},
 };
 
 static int decided(int runs, const char *yes, const char *no, const char **why) {
@@ -217,6 +251,82 @@ static int needs_shading(const masu_needs *n, const char **why) {
     return decided(n->scene, "a scene is lit", "no scene: a source image is upscaled", why);
 }
 
+static const char *no_specular(const masu_needs *n) {
+    return n->scene ? "nothing is glossy enough to trace, or rung.specular is off"
+                    : "no scene: a source image is upscaled";
+}
+
+static int needs_specular(const masu_needs *n, const char **why) {
+    return decided(n->specular, "reflections are traced", no_specular(n), why);
+}
+
+static int needs_specular_trace(const masu_needs *n, const char **why) {
+    return decided(n->specular && n->traced && !n->query, "polygons are reflected",
+                   !n->specular ? no_specular(n)
+                   : n->query   ? "specular_query does it"
+                                : "no instance is traced",
+                   why);
+}
+
+static int needs_specular_query(const masu_needs *n, const char **why) {
+    return decided(n->specular && n->query, "polygons are reflected, and the device has ray queries",
+                   !n->specular ? no_specular(n)
+                   : n->traced  ? "no ray queries, or desc.ray_query does not take them"
+                                : "no instance is traced",
+                   why);
+}
+
+static int needs_specular_trace_sdf(const masu_needs *n, const char **why) {
+    return decided(n->specular && n->traced_sdf, "the SDF is reflected",
+                   n->specular ? "no SDF is traced" : no_specular(n), why);
+}
+
+/* Why a filter of them does not run. */
+static const char *no_filter(const masu_needs *n, const char *off) {
+    return !n->specular    ? no_specular(n)
+           : n->accumulate ? "debug.reference: nothing is filtered"
+                           : off;
+}
+
+static int needs_specular_reuse(const masu_needs *n, const char **why) {
+    return decided(n->reuse, "a ray's hit tells its neighbours something, too",
+                   no_filter(n, "rung.specular_reuse is off"), why);
+}
+
+static int needs_specular_temporal(const masu_needs *n, const char **why) {
+    return decided(n->temporal, "the mean over frames",
+                   no_filter(n, "rung.specular_temporal is off"), why);
+}
+
+static int needs_specular_fine(const masu_needs *n, const char **why) {
+    return decided(n->fine, "smooth surfaces show more than a mean over 2x2 pixels has",
+                   no_filter(n, n->temporal ? "rung.specular_fine is off"
+                                            : "without specular_temporal nothing is kept"),
+                   why);
+}
+
+static int needs_specular_filter(const masu_needs *n, const char **why) {
+    return decided(n->filter, "the mean over neighbours, where noise is left",
+                   no_filter(n, "rung.specular_filter is off"), why);
+}
+
+static int needs_specular_taa(const masu_needs *n, const char **why) {
+    return decided(n->taa, "what flickers is evened out",
+                   no_filter(n, n->temporal ? "rung.specular_taa is off"
+                                            : "without specular_temporal nothing is kept"),
+                   why);
+}
+
+static int needs_specular_keep(const masu_needs *n, const char **why) {
+    return decided(n->temporal, "the next frame's specular_temporal reads it",
+                   no_filter(n, "rung.specular_temporal is off"), why);
+}
+
+static int needs_specular_accumulate(const masu_needs *n, const char **why) {
+    return decided(n->specular && n->accumulate, "debug.reference: for comparison",
+                   n->specular ? "debug.reference is off" : no_specular(n), why);
+}
+
 static int needs_transparents(const masu_needs *n, const char **why) {
     return decided(n->transparents, "some materials are blended",
                    n->scene ? "no material is blended" : "no scene: a source image is upscaled", why);
@@ -262,15 +372,47 @@ static void sdf_velocity_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = has_tiles(rung->march);
 }
 
-/* index.x: most SDF steps per shadow ray; index.y: not 0: every block of pixels gets all parts. */
+/* index.x: most SDF steps per shadow ray or reflected one; index.y: not 0: every block of pixels, or ray, gets
+ * all parts. */
 static void occlusion_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = rung->march_steps;
     push->index[1] = rung->march == MASU_MARCH_UNPRUNED;
 }
 
+/* param.x: roughness from which reflections are not traced. 0: none are. */
+static void specular_params(const masu_rung *rung, struct masu_push *push) {
+    push->param[0] = rung->specular == MASU_OFF ? 0.0f : rung->specular_cutoff;
+}
+
+/* index.x: neighbours. */
+static void reuse_params(const masu_rung *rung, struct masu_push *push) {
+    specular_params(rung, push);
+    push->index[0] = rung->specular_reuse_taps;
+}
+
+/* index.x: how far back the mean reaches, 1/60 s. */
+static void temporal_params(const masu_rung *rung, struct masu_push *push) {
+    specular_params(rung, push);
+    push->index[0] = rung->specular_frames;
+}
+
+/* index.x: not 0: smooth surfaces have a mean for each pixel. */
+static void composite_params(const masu_rung *rung, struct masu_push *push) {
+    specular_params(rung, push);
+    push->index[0] = rung->specular_fine != MASU_OFF && rung->specular_temporal != MASU_OFF;
+}
+
+/* index.x: neighbours; index.y: not 0: there is a mean over frames. */
+static void filter_params(const masu_rung *rung, struct masu_push *push) {
+    specular_params(rung, push);
+    push->index[0] = rung->specular_filter_taps;
+    push->index[1] = rung->specular_temporal != MASU_OFF;
+}
+
 /* index.x: not 0: tiles have lists of lights; else each pixel asks them all. */
 static void light_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = rung->light_tiles != MASU_OFF;
+    specular_params(rung, push);
 }
 
 /* index.x: slices; index.y: samples on either side of each; record.c has the rest. */
@@ -435,6 +577,108 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
          {MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
          {MASU_IMAGE_OCCLUSION, MASU_READ}, {MASU_IMAGE_SURFACE, MASU_READ},
          {MASU_RESOURCE_PROBES, MASU_READ_BUFFER}, {MASU_IMAGE_HDR, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_GUIDE] = {
+        "specular_guide", "reflections: the pixel of each 2x2 that is traced, tiles that have any",
+        MASU_PASS_COMPUTE, MASU_EXTENT_TRACED, needs_specular, specular_params,
+        {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
+         {MASU_IMAGE_SURFACE, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_WRITE_BUFFER}, {MASU_IMAGE_SPECULAR_GUIDE, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_RAYS] = {
+        "specular_rays", "a direction for each, as the surface scatters",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular, specular_params,
+        {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
+         {MASU_IMAGE_SURFACE, MASU_READ}, {MASU_IMAGE_SPECULAR_GUIDE, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_RAY, MASU_WRITE},
+         {MASU_IMAGE_SPECULAR_HIT, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_TRACE] = {
+        "specular_trace", "the polygon that each ray meets first",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_trace, NULL,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_RAY, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_HIT, MASU_UPDATE}}, 0},
+    [MASU_PASS_SPECULAR_STRUCTURE] = {
+        "specular_structure", "ray queries: the tree over the frame's instances",
+        MASU_PASS_BUILD, MASU_EXTENT_ONE, needs_specular_query, NULL,
+        {{MASU_RESOURCE_TOP_LEVEL, MASU_WRITE_STRUCTURE}}, 0},
+    [MASU_PASS_SPECULAR_QUERY] = {
+        "specular_query", "the polygon that each ray meets first, asked of the device",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_query, NULL,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_RAY, MASU_READ},
+         {MASU_RESOURCE_TOP_LEVEL, MASU_READ_STRUCTURE},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_HIT, MASU_UPDATE}}, 0},
+    [MASU_PASS_SPECULAR_TRACE_SDF] = {
+        "specular_trace_sdf", "the SDF, where it is nearer",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_trace_sdf, occlusion_params,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_RAY, MASU_READ},
+         {MASU_RESOURCE_SLOTS, MASU_READ_BUFFER},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_HIT, MASU_UPDATE}},
+        MASU_BLOB_TRACE_SDF_SPIRV},
+    [MASU_PASS_SPECULAR_SHADE] = {
+        "specular_shade", "the light that comes from there, the sky's where nothing is",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular, light_params,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ},
+         {MASU_IMAGE_SPECULAR_RAY, MASU_READ}, {MASU_IMAGE_SPECULAR_HIT, MASU_READ},
+         {MASU_IMAGE_VELOCITY, MASU_READ}, {MASU_IMAGE_SHADOW_MAP, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_RESOURCE_PROBES, MASU_READ_BUFFER},
+         {MASU_IMAGE_SPECULAR_LIGHT, MASU_WRITE}, {MASU_IMAGE_SPECULAR_MOTION, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_REUSE] = {
+        "specular_reuse", "with what the neighbours' rays have met, weighed by the texel's own lobe",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_reuse, reuse_params,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_RAY, MASU_READ},
+         {MASU_IMAGE_SPECULAR_LIGHT, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_REUSED, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_TEMPORAL] = {
+        "specular_temporal", "the mean over frames, found again by the motion of surface and mirrored thing",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_temporal, temporal_params,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_LATEST_SPECULAR, MASU_READ},
+         {MASU_IMAGE_SPECULAR_MOTION, MASU_READ}, {MASU_IMAGE_VELOCITY, MASU_READ},
+         {MASU_IMAGE_SPECULAR_OLD_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_OLD_MEAN, MASU_READ},
+         {MASU_IMAGE_SPECULAR_OLD_AGE, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER},
+         {MASU_IMAGE_SPECULAR_MEAN, MASU_WRITE}, {MASU_IMAGE_SPECULAR_AGE, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_FINE] = {
+        "specular_fine", "smooth surfaces: the mean over frames of each pixel's own rays",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_fine, temporal_params,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_LATEST_RAYS, MASU_READ},
+         {MASU_IMAGE_SPECULAR_MEAN, MASU_READ}, {MASU_IMAGE_SPECULAR_AGE, MASU_READ}, {MASU_IMAGE_VELOCITY, MASU_READ},
+         {MASU_IMAGE_SPECULAR_OLD_GUIDE, MASU_READ},
+         {MASU_IMAGE_SPECULAR_OLD_FINE, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_FINE, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_FILTER] = {
+        "specular_filter", "the mean over neighbours of the same surface, as far as noise is left",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_filter, filter_params,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_LATEST_SPECULAR, MASU_READ},
+         {MASU_IMAGE_SPECULAR_AGE, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_SMOOTH, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_TAA] = {
+        "specular_taa", "a second, short mean over frames of what is shown",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_taa, NULL,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_LATEST_SPECULAR, MASU_READ},
+         {MASU_IMAGE_SPECULAR_AGE, MASU_READ}, {MASU_IMAGE_SPECULAR_OLD_STEADY, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_STEADY, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_KEEP] = {
+        "specular_keep", "what the next frame reads of this one",
+        MASU_PASS_COMPUTE, MASU_EXTENT_TRACED, needs_specular_keep, NULL,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_MEAN, MASU_READ},
+         {MASU_IMAGE_SPECULAR_AGE, MASU_READ}, {MASU_LATEST_SPECULAR, MASU_READ},
+         {MASU_IMAGE_SPECULAR_OLD_GUIDE, MASU_WRITE}, {MASU_IMAGE_SPECULAR_OLD_MEAN, MASU_WRITE},
+         {MASU_IMAGE_SPECULAR_OLD_AGE, MASU_WRITE}, {MASU_IMAGE_SPECULAR_OLD_STEADY, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_KEEP_FINE] = {
+        "specular_keep_fine", "the same of the means of pixels",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_fine, NULL,
+        {{MASU_IMAGE_SPECULAR_FINE, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_OLD_FINE, MASU_WRITE}}, 0},
+    [MASU_PASS_SPECULAR_ACCUMULATE] = {
+        "specular_accumulate", "for comparison: the sum over frames, of every pixel",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_accumulate, NULL,
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_LIGHT, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_SUM, MASU_UPDATE}}, 0},
+    [MASU_PASS_SPECULAR_COMPOSITE] = {
+        "specular_composite", "what is reflected, at full size, added to what is lit",
+        MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular, composite_params,
+        {{MASU_IMAGE_ALBEDO, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ}, {MASU_LATEST_DEPTH, MASU_READ},
+         {MASU_IMAGE_SURFACE, MASU_READ}, {MASU_IMAGE_SPECULAR_GUIDE, MASU_READ},
+         {MASU_LATEST_SPECULAR, MASU_READ}, {MASU_IMAGE_SPECULAR_FINE, MASU_READ},
+         {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_HDR, MASU_UPDATE}}, 0},
     [MASU_PASS_TRANSPARENTS] = {
         "transparents", "glass, smoke: the farthest first, over what is lit",
         MASU_PASS_GRAPHICS, MASU_EXTENT_RENDER, needs_transparents, NULL,
@@ -482,7 +726,9 @@ int masu_access_binds(masu_access access, int writes) {
 }
 
 VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2D output) {
-    uint32_t block = extent == MASU_EXTENT_HALF     ? 2
+    uint32_t block = extent == MASU_EXTENT_HALF || extent == MASU_EXTENT_TRACED ||
+                             extent == MASU_EXTENT_GLOSSY
+                         ? 2
                      : extent == MASU_EXTENT_BLOCK8 ? 8
                      : extent == MASU_EXTENT_BLOCK4 ? 4
                      : extent == MASU_EXTENT_TILE   ? MASU_TILE

@@ -25,6 +25,23 @@ typedef enum masu_image_id {
     MASU_IMAGE_SHADOW_MAP,  /* depth along the sun, the cascades side by side */
     MASU_IMAGE_AO,          /* seen part of the ambient light at half size, and depth: ao_texel.glsl */
     MASU_IMAGE_OCCLUSION,   /* 2 x 16 bit unorm: seen part of the sun, of the ambient light */
+    MASU_IMAGE_SPECULAR_GUIDE,   /* of reflections, at half size: which pixel, its normal, depth */
+    MASU_IMAGE_SPECULAR_RAY,     /* direction, density */
+    MASU_IMAGE_SPECULAR_HIT,     /* what the ray meets */
+    MASU_IMAGE_SPECULAR_LIGHT,   /* radiance along it, distance */
+    MASU_IMAGE_SPECULAR_MOTION,  /* of what is seen in the mirror, pixels */
+    MASU_IMAGE_SPECULAR_REUSED,  /* the same, with the neighbours' rays */
+    MASU_IMAGE_SPECULAR_MEAN,    /* over frames: radiance, mean square of its luma */
+    MASU_IMAGE_SPECULAR_AGE,     /* how many frames, distance, motion of what is seen: filter.glsl */
+    MASU_IMAGE_SPECULAR_FINE,    /* of each of the 2x2 pixels: radiance over frames, smooth surfaces */
+    MASU_IMAGE_SPECULAR_SMOOTH,  /* over neighbours: radiance */
+    MASU_IMAGE_SPECULAR_STEADY,  /* what is shown: radiance */
+    MASU_IMAGE_SPECULAR_OLD_GUIDE, /* as the frame before has left them */
+    MASU_IMAGE_SPECULAR_OLD_MEAN,
+    MASU_IMAGE_SPECULAR_OLD_AGE,
+    MASU_IMAGE_SPECULAR_OLD_STEADY,
+    MASU_IMAGE_SPECULAR_OLD_FINE,
+    MASU_IMAGE_SPECULAR_SUM,     /* over frames, for comparison: radiance times weight, frames */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
     MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
@@ -38,27 +55,35 @@ typedef enum masu_image_id {
     MASU_RESOURCE_DRAWS,
     MASU_RESOURCE_PROBES,
     MASU_RESOURCE_LIGHT_TILES,
+    MASU_RESOURCE_SPECULAR_TILES,
+    MASU_RESOURCE_TOP_LEVEL, /* of ray queries */
     MASU_RESOURCE_END,
     /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row
      * has written. */
     MASU_LATEST_DEPTH = 64,
-    MASU_LATEST_COLOR
+    MASU_LATEST_COLOR,
+    MASU_LATEST_SPECULAR,
+    MASU_LATEST_RAYS /* specular_reused, where the rung has it, else specular_light */
 } masu_image_id;
 
 typedef enum masu_image_class {
     MASU_CLASS_OTHER,
     MASU_CLASS_DEPTH,
-    MASU_CLASS_COLOR
+    MASU_CLASS_COLOR,
+    MASU_CLASS_SPECULAR,
+    MASU_CLASS_COUNT
 } masu_image_class;
 /* Render and output size, and one texel per block of 8x8 or 4x4 render pixels. */
 typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
+    MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
     MASU_EXTENT_BLOCK8,
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
     MASU_EXTENT_TILES, /* the same, for active tiles only: indirect */
+    MASU_EXTENT_GLOSSY, /* one workgroup per tile of SPECULAR_TILES, 8x8 texels of TRACED: indirect */
     MASU_EXTENT_ONE,   /* one workgroup */
     MASU_EXTENT_ATLAS, /* of occluders */
     MASU_EXTENT_KEPT,    /* an invocation per instance and view */
@@ -73,6 +98,7 @@ typedef struct masu_image_row {
     masu_image_extent extent;
     masu_image_class class_of;
     uint32_t readback; /* masu_readback_bits that asks for it */
+    int kept;          /* the next frame reads what this one has left in it */
 } masu_image_row;
 
 typedef enum masu_usage {
@@ -80,6 +106,7 @@ typedef enum masu_usage {
     MASU_READ,        /* sampled */
     MASU_READ_BUFFER, /* storage buffer, or arguments of the row's indirect dispatch */
     MASU_READ_COPY,   /* transfer source */
+    MASU_READ_STRUCTURE, /* of ray queries: binding of set 0 */
     MASU_WRITE,       /* storage, whole sub-rectangle, earlier content is lost */
     MASU_UPDATE,      /* storage, some texels, the rest is kept */
     MASU_WRITE_COLOR, /* colour attachment, cleared first */
@@ -87,16 +114,18 @@ typedef enum masu_usage {
     MASU_WRITE_DEPTH, /* depth attachment, cleared to 0 (far) first */
     MASU_UPDATE_DEPTH, /* the same of a part of the image, the rest is kept */
     MASU_WRITE_BUFFER, /* storage buffer */
-    MASU_WRITE_COPY   /* transfer destination */
+    MASU_WRITE_COPY,   /* transfer destination */
+    MASU_WRITE_STRUCTURE /* built by the device, for ray queries */
 } masu_usage;
 
 typedef enum masu_pass_kind {
     MASU_PASS_GRAPHICS,
     MASU_PASS_COMPUTE,
-    MASU_PASS_TRANSFER
+    MASU_PASS_TRANSFER,
+    MASU_PASS_BUILD /* of a structure for ray queries: src/ray_query.c */
 } masu_pass_kind;
 
-#define MASU_PASS_ACCESSES 8u
+#define MASU_PASS_ACCESSES 12u
 
 typedef struct masu_access {
     uint8_t image; /* masu_image_id or a stand-in */
@@ -124,12 +153,21 @@ typedef struct masu_needs {
     int lights;        /* there are points and spots */
     int shadow;        /* polygons cast shadows of the sun: there is a shadow map */
     int transparents;  /* something is blended */
+    int reflections;   /* a rung traces some */
+    int traced;        /* there are polygons to trace */
+    int traced_sdf;    /* there is an SDF to trace */
+    int query;         /* polygons are found by ray queries of the device */
+    int steady;        /* a rung has taa, */
+    int finest;        /* fine */
     /* of one rung: */
     int upscale, sharpen, occlusion;
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receivers; /* and of cascades that every frame draws anew */
     int light_tiles; /* lights are sorted into tiles */
+    int specular;    /* reflections are traced */
+    int reuse, temporal, fine, filter, taa; /* what is done to them */
+    int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */
     masu_march march;
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
@@ -179,6 +217,22 @@ typedef enum masu_pass_id {
     MASU_PASS_AO_UPSAMPLE,
     MASU_PASS_LIGHT,
     MASU_PASS_LIGHT_OCCLUDED,
+    MASU_PASS_SPECULAR_GUIDE,
+    MASU_PASS_SPECULAR_RAYS,
+    MASU_PASS_SPECULAR_TRACE,
+    MASU_PASS_SPECULAR_STRUCTURE,
+    MASU_PASS_SPECULAR_QUERY,
+    MASU_PASS_SPECULAR_TRACE_SDF,
+    MASU_PASS_SPECULAR_SHADE,
+    MASU_PASS_SPECULAR_REUSE,
+    MASU_PASS_SPECULAR_TEMPORAL,
+    MASU_PASS_SPECULAR_FINE,
+    MASU_PASS_SPECULAR_FILTER,
+    MASU_PASS_SPECULAR_TAA,
+    MASU_PASS_SPECULAR_KEEP,
+    MASU_PASS_SPECULAR_KEEP_FINE,
+    MASU_PASS_SPECULAR_ACCUMULATE,
+    MASU_PASS_SPECULAR_COMPOSITE,
     MASU_PASS_TRANSPARENTS,
     MASU_PASS_READBACK,
     MASU_PASS_TONEMAP,

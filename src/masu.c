@@ -69,6 +69,14 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
         masu_arena_take(arena, "light names", s->lights, sizeof *to->light_names, 8);
     to->marks = masu_arena_take(arena, "instance marks", s->instances, sizeof *to->marks, 1);
     to->sky = masu_arena_take(arena, "sky", plan->needs.sky ? 1 : 0, sizeof *to->sky, 16);
+    uint64_t traced = plan->needs.traced ? s->trace_instances : 0;
+    uint64_t own = traced && !plan->needs.query ? masu_trace_top_bytes((uint32_t)traced) : 0;
+    to->trace_memory = masu_arena_take(arena, "traced instances", own, 1, 16);
+    to->traced = masu_arena_take(arena, "their numbers", traced, sizeof *to->traced, 4);
+    to->ray_live = masu_arena_take(arena, "their flags", plan->needs.query ? traced : 0,
+                                   sizeof *to->ray_live, 1);
+    to->ray_meshes = masu_arena_take(arena, "bottom levels", plan->needs.query ? s->meshes : 0,
+                                     sizeof *to->ray_meshes, 8);
     to->transparents =
         masu_arena_take(arena, "transparents", s->transparents, sizeof *to->transparents, 4);
     to->far_first = masu_arena_take(arena, "their order", 2 * (uint64_t)s->transparents,
@@ -87,12 +95,71 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
 /* ---- Plan and query -------------------------------------------------------------------------- */
 
 /* What set 0 shows to compute shaders: counters, tiles, slots, tables; lights and their tiles; light
- * probes; and draws, drawn, seen. */
+ * probes; draws, drawn, seen; and what is traced, its instances, vertices, texture coordinates and
+ * tiles. */
 #define PLAIN_BUFFERS 4u
 #define CULLING_BUFFERS 3u
+#define TRACE_BUFFERS 5u
 
 static uint32_t storage_buffers(const masu_frame_plan *plan) {
     return PLAIN_BUFFERS + (plan->needs.lights ? 2u : 0u) + (plan->needs.probes ? 1u : 0u);
+}
+
+/* The rungs as the host gave them, or the defaults, to be changed. */
+static void own_rungs(masu_desc *desc, const masu_frame_plan *plan) {
+    if (desc->rung_count) return;
+    desc->rung_count = plan->desc.rung_count;
+    memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
+}
+
+/* Rungs that leave reflections to us go without where there are too few. */
+static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan,
+                                 const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
+    uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
+    uint32_t needed = storage_buffers(plan) + TRACE_BUFFERS;
+    if (!plan->needs.reflections || has >= needed) return MASU_OK;
+    own_rungs(desc, plan);
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        if (desc->rungs[r].specular == MASU_ON) {
+            return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
+                             needed, has,
+                             "rungs[%u].specular needs %u storage buffers in a stage, the device "
+                             "has %u",
+                             r, needed, has);
+        }
+        desc->rungs[r].specular = MASU_OFF;
+    }
+    return MASU_OK;
+}
+
+/* Whether any rung still may trace. */
+static int desc_traces(const masu_desc *desc, const masu_frame_plan *plan) {
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        if (desc->rungs[r].specular != MASU_OFF) return 1;
+    }
+    return !desc->rung_count && plan->needs.reflections;
+}
+
+/* Whether the device's ray queries or our own tree finds what is reflected: the description is left
+ * with ON or OFF. */
+static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
+                                    masu_detail *detail) {
+    VkPhysicalDeviceType type = vk->properties.deviceType;
+    int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
+              type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    int forced = desc->ray_query == MASU_ON;
+    int wished = forced || (desc->ray_query == MASU_AUTO && desc->vulkan.ray_query && gpu);
+    desc->ray_query = MASU_OFF;
+    if (!wished || !plan->needs.traced || !desc_traces(desc, plan)) return MASU_OK;
+    if (!desc->vulkan.ray_query) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vulkan.ray_query", 1, 0,
+                         "ray_query is MASU_ON, but vulkan.ray_query says that the device was created "
+                         "without VK_KHR_ray_query");
+    }
+    masu_result result = masu_ray_check(&plan->scene, vk, detail);
+    if (result) return forced ? result : MASU_OK;
+    desc->ray_query = MASU_ON;
+    return MASU_OK;
 }
 
 /* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
@@ -107,11 +174,9 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
                          "has %u",
                          plain, has);
     }
+    if (plan->needs.reflections && desc_traces(desc, plan)) needed += TRACE_BUFFERS;
     if (!plan->occlusion || has >= needed) return MASU_OK;
-    if (!desc->rung_count) {
-        desc->rung_count = plan->desc.rung_count;
-        memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
-    }
+    own_rungs(desc, plan);
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].occlusion == MASU_ON) {
             return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
@@ -130,7 +195,9 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
                                 masu_detail *detail) {
     static const masu_buffer_id ids[] = {MASU_BUFFER_INSTANCES, MASU_BUFFER_DRAWN,
                                          MASU_BUFFER_DRAWS, MASU_BUFFER_SEEN,
-                                         MASU_BUFFER_PROBES,    MASU_BUFFER_LIGHT_TILES};
+                                         MASU_BUFFER_PROBES,    MASU_BUFFER_LIGHT_TILES,
+                                         MASU_BUFFER_TRACE,     MASU_BUFFER_TRACE_FRAME,
+                                         MASU_BUFFER_VERTICES,  MASU_BUFFER_TEXCOORDS};
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         const masu_buffer_plan *b = &plan->buffers[ids[i]];
         uint64_t bytes = b->stride ? b->stride : b->bytes;
@@ -170,7 +237,9 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     if (result) return result;
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_desc possible = *desc;
-    result = drop_occlusion(&possible, plan, limits, detail);
+    result = drop_specular(&possible, plan, limits, detail);
+    if (!result) result = drop_occlusion(&possible, plan, limits, detail);
+    if (!result) result = choose_ray_query(&possible, plan, vk, detail);
     if (result) return result;
     result = masu_compile(
         &possible,
@@ -178,6 +247,7 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
         limits->minStorageBufferOffsetAlignment ? limits->minStorageBufferOffsetAlignment : 1, plan,
         detail);
     if (result) return result;
+    masu_ray_sizes(plan, vk);
     result = check_ranges(plan, limits, detail);
     if (result) return result;
     VkExtent2D map = masu_plan_extent(plan, MASU_EXTENT_SHADOW, plan->desc.output);
@@ -242,6 +312,7 @@ void masu_plan_of(const masu_renderer *m, masu_plan_info *out) {
 static masu_result build(masu_renderer *m, masu_detail *detail) {
     masu_result result = masu_bind_memory(m, detail);
     if (!result) result = masu_make_views(m, detail);
+    if (!result) result = masu_ray_create(m, detail);
     if (!result) result = masu_make_pipelines(m, detail);
     if (!result) result = masu_record(m, detail);
     return result;
@@ -351,6 +422,7 @@ void masu_destroy(masu_renderer *m) {
         vk->DestroyImageView(device, m->plan.textures[i].view, vk->allocator);
     for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++)
         vk->DestroyImageView(device, m->views[i], vk->allocator);
+    masu_ray_destroy(m);
     masu_objects_destroy(vk, &m->plan, &m->objects);
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
         if (m->memory_owned[role])
@@ -391,6 +463,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         return result;
     }
     if (d->scene) {
+        masu_write_trace(m, slot, masu_is_cut(m, frame));
         masu_write_instances(m, slot, masu_is_cut(m, frame));
         int culls = d->rungs[frame->rung].frustum != MASU_OFF;
         for (uint32_t v = 0; v < m->plan.views; v++) masu_write_visible(m, slot, v, culls);
@@ -472,6 +545,12 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
         out->light_tests = counter(m, slot, MASU_COUNTER_LIGHT_TESTS);
         out->light_shaded = counter(m, slot, MASU_COUNTER_LIGHT_SHADED);
         out->light_tiles_full = counter(m, slot, MASU_COUNTER_LIGHT_TILES_FULL);
+        out->specular_tiles = counter(m, slot, MASU_COUNTER_SPECULAR_TILES);
+        out->specular_rays = counter(m, slot, MASU_COUNTER_SPECULAR_RAYS);
+        out->specular_hits = counter(m, slot, MASU_COUNTER_SPECULAR_HITS);
+        out->specular_sdf_hits = counter(m, slot, MASU_COUNTER_SPECULAR_SDF_HITS);
+        out->specular_nodes = counter(m, slot, MASU_COUNTER_SPECULAR_NODES);
+        out->specular_evals = counter(m, slot, MASU_COUNTER_SPECULAR_EVALS);
         if (m->plan.rungs[out->rung].active >> MASU_PASS_CULL & 1u) read_stage2(m, slot, out);
     }
     if (m->queries) read_times(m, slot, out);
@@ -491,6 +570,8 @@ void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
                             .texture_bytes = masu_scene_texture_bytes(&m->plan.desc),
                             .transparents = s->transparents,
                             .lights = s->lights,
+                            .trace_triangles = s->trace_triangles,
+                            .trace_instances = s->trace_instances,
                             .host_bytes = m->arena.used};
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++)
         out->device_bytes += m->plan.blocks[role].bytes;
@@ -560,6 +641,7 @@ uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint3
         if (n < capacity) {
             rows[n] = device_row(&m->plan, "buffer", p->name, p->role, p->count, p->memory_bytes,
                                  p->alignment, p->offset);
+            rows[n].transient = (uint32_t)masu_is_of_loading(b);
         }
         n++;
     }

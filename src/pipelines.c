@@ -50,6 +50,51 @@
 #include "rcas_comp.spv.h"
 #include "receivers_comp.spv.h"
 #include "shadow_comp.spv.h"
+#include "specular_accumulate_comp.spv.h"
+#include "specular_composite_comp.spv.h"
+#include "specular_composite_fine_comp.spv.h"
+#include "specular_composite_fine_surface_comp.spv.h"
+#include "specular_composite_surface_comp.spv.h"
+#include "specular_filter_comp.spv.h"
+#include "specular_fine_comp.spv.h"
+#include "specular_guide_comp.spv.h"
+#include "specular_guide_surface_comp.spv.h"
+#include "specular_keep_comp.spv.h"
+#include "specular_keep_fine_comp.spv.h"
+#include "specular_keep_steady_comp.spv.h"
+#include "specular_query_comp.spv.h"
+#include "specular_query_masks_comp.spv.h"
+#include "specular_rays_comp.spv.h"
+#include "specular_rays_surface_comp.spv.h"
+#include "specular_reuse_comp.spv.h"
+#include "specular_shade_comp.spv.h"
+#include "specular_shade_lights_comp.spv.h"
+#include "specular_shade_lights_probes_comp.spv.h"
+#include "specular_shade_lights_probes_sun_comp.spv.h"
+#include "specular_shade_lights_sun_comp.spv.h"
+#include "specular_shade_probes_comp.spv.h"
+#include "specular_shade_probes_sun_comp.spv.h"
+#include "specular_shade_sdf_comp.spv.h"
+#include "specular_shade_sdf_lights_comp.spv.h"
+#include "specular_shade_sdf_lights_probes_comp.spv.h"
+#include "specular_shade_sdf_lights_probes_sun_comp.spv.h"
+#include "specular_shade_sdf_lights_sun_comp.spv.h"
+#include "specular_shade_sdf_probes_comp.spv.h"
+#include "specular_shade_sdf_probes_sun_comp.spv.h"
+#include "specular_shade_sdf_sun_comp.spv.h"
+#include "specular_shade_sun_comp.spv.h"
+#include "specular_taa_comp.spv.h"
+#include "specular_temporal_comp.spv.h"
+#include "specular_shade_textures_comp.spv.h"
+#include "specular_shade_textures_lights_comp.spv.h"
+#include "specular_shade_textures_lights_probes_comp.spv.h"
+#include "specular_shade_textures_lights_probes_sun_comp.spv.h"
+#include "specular_shade_textures_lights_sun_comp.spv.h"
+#include "specular_shade_textures_probes_comp.spv.h"
+#include "specular_shade_textures_probes_sun_comp.spv.h"
+#include "specular_shade_textures_sun_comp.spv.h"
+#include "specular_trace_comp.spv.h"
+#include "specular_trace_masks_comp.spv.h"
 #include "tonemap_comp.spv.h"
 #include "transparents_frag.spv.h"
 #include "transparents_sun_frag.spv.h"
@@ -127,6 +172,66 @@ static spirv light_code(const masu_renderer *m, uint32_t pass) {
     return light_builds[build];
 }
 
+/* Those that look at surfaces; and what shades hits, by what it looks up. */
+static const spirv specular_guide_builds[] = {SPIRV(specular_guide_comp),
+                                              SPIRV(specular_guide_surface_comp)};
+static const spirv specular_rays_builds[] = {SPIRV(specular_rays_comp),
+                                             SPIRV(specular_rays_surface_comp)};
+static const spirv specular_composite_builds[] = {SPIRV(specular_composite_comp),
+                                                  SPIRV(specular_composite_surface_comp),
+                                                  SPIRV(specular_composite_fine_comp),
+                                                  SPIRV(specular_composite_fine_surface_comp)};
+
+static const spirv specular_keep_builds[] = {SPIRV(specular_keep_comp),
+                                             SPIRV(specular_keep_steady_comp)};
+
+
+static spirv specular_code(const masu_renderer *m, const spirv builds[2]) {
+    return builds[m->plan.needs.surface ? 1 : 0];
+}
+
+/* With holes of masks, or without. */
+static const spirv trace_builds[] = {SPIRV(specular_trace_comp), SPIRV(specular_trace_masks_comp)};
+static const spirv query_builds[] = {SPIRV(specular_query_comp), SPIRV(specular_query_masks_comp)};
+
+enum { SHADE_SUN = 1, SHADE_LIGHTS = 2, SHADE_PROBES = 4, SHADE_TEXTURES = 8, SHADE_BUILDS = 16 };
+static const spirv shade_builds[SHADE_BUILDS] = {
+    SPIRV(specular_shade_comp),
+    SPIRV(specular_shade_sun_comp),
+    SPIRV(specular_shade_lights_comp),
+    SPIRV(specular_shade_lights_sun_comp),
+    SPIRV(specular_shade_probes_comp),
+    SPIRV(specular_shade_probes_sun_comp),
+    SPIRV(specular_shade_lights_probes_comp),
+    SPIRV(specular_shade_lights_probes_sun_comp),
+    SPIRV(specular_shade_textures_comp),
+    SPIRV(specular_shade_textures_sun_comp),
+    SPIRV(specular_shade_textures_lights_comp),
+    SPIRV(specular_shade_textures_lights_sun_comp),
+    SPIRV(specular_shade_textures_probes_comp),
+    SPIRV(specular_shade_textures_probes_sun_comp),
+    SPIRV(specular_shade_textures_lights_probes_comp),
+    SPIRV(specular_shade_textures_lights_probes_sun_comp)};
+
+/* The same where rays meet nothing but the SDF. */
+static const spirv shade_sdf_builds[SHADE_TEXTURES] = {
+    SPIRV(specular_shade_sdf_comp),
+    SPIRV(specular_shade_sdf_sun_comp),
+    SPIRV(specular_shade_sdf_lights_comp),
+    SPIRV(specular_shade_sdf_lights_sun_comp),
+    SPIRV(specular_shade_sdf_probes_comp),
+    SPIRV(specular_shade_sdf_probes_sun_comp),
+    SPIRV(specular_shade_sdf_lights_probes_comp),
+    SPIRV(specular_shade_sdf_lights_probes_sun_comp)};
+
+static spirv shade_code(const masu_renderer *m) {
+    const spirv *builds = m->plan.needs.traced ? shade_builds : shade_sdf_builds;
+    return builds[(m->plan.needs.shadow ? SHADE_SUN : 0) |
+                        (m->plan.needs.lights ? SHADE_LIGHTS : 0) |
+                        (m->plan.scene.trace_colors ? SHADE_TEXTURES : 0) |
+                        (m->plan.needs.probes ? SHADE_PROBES : 0)];
+}
+
 static uint32_t gbuffer_build(const masu_renderer *m) {
     return (m->plan.needs.velocity ? GBUFFER_VELOCITY : 0u) |
            (m->plan.needs.surface ? GBUFFER_SURFACE : 0u);
@@ -152,6 +257,29 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
         return (spirv){masu_spv_ao_upsample_comp, sizeof masu_spv_ao_upsample_comp};
     case MASU_PASS_LIGHT:
     case MASU_PASS_LIGHT_OCCLUDED: return light_code(m, pass);
+    case MASU_PASS_SPECULAR_GUIDE: return specular_code(m, specular_guide_builds);
+    case MASU_PASS_SPECULAR_RAYS: return specular_code(m, specular_rays_builds);
+    case MASU_PASS_SPECULAR_COMPOSITE: 
+        return specular_code(m, specular_composite_builds + (m->plan.needs.finest ? 2 : 0));
+    case MASU_PASS_SPECULAR_TRACE:
+        return trace_builds[masu_ray_masks(&m->plan.scene)];
+    case MASU_PASS_SPECULAR_QUERY: return query_builds[masu_ray_masks(&m->plan.scene)];
+    case MASU_PASS_SPECULAR_SHADE: return shade_code(m);
+    case MASU_PASS_SPECULAR_REUSE:
+        return (spirv){masu_spv_specular_reuse_comp, sizeof masu_spv_specular_reuse_comp};
+    case MASU_PASS_SPECULAR_TEMPORAL:
+        return (spirv){masu_spv_specular_temporal_comp, sizeof masu_spv_specular_temporal_comp};
+    case MASU_PASS_SPECULAR_FINE:
+        return (spirv){masu_spv_specular_fine_comp, sizeof masu_spv_specular_fine_comp};
+    case MASU_PASS_SPECULAR_KEEP_FINE:
+        return (spirv){masu_spv_specular_keep_fine_comp, sizeof masu_spv_specular_keep_fine_comp};
+    case MASU_PASS_SPECULAR_FILTER:
+        return (spirv){masu_spv_specular_filter_comp, sizeof masu_spv_specular_filter_comp};
+    case MASU_PASS_SPECULAR_TAA:
+        return (spirv){masu_spv_specular_taa_comp, sizeof masu_spv_specular_taa_comp};
+    case MASU_PASS_SPECULAR_KEEP: return specular_keep_builds[m->plan.needs.steady ? 1 : 0];
+    case MASU_PASS_SPECULAR_ACCUMULATE:
+        return (spirv){masu_spv_specular_accumulate_comp, sizeof masu_spv_specular_accumulate_comp};
     case MASU_PASS_TONEMAP: return (spirv){masu_spv_tonemap_comp, sizeof masu_spv_tonemap_comp};
     case MASU_PASS_EASU: return (spirv){masu_spv_easu_comp, sizeof masu_spv_easu_comp};
     case MASU_PASS_RCAS: return (spirv){masu_spv_rcas_comp, sizeof masu_spv_rcas_comp};
@@ -201,8 +329,14 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
                 {MASU_BIND_SKY, 1, 1, compute | fragment},
                 {MASU_BIND_PROBES, 0, m->plan.needs.probes, compute},
                 {MASU_BIND_LIGHTS, 0, m->plan.needs.lights, compute},
-                {MASU_BIND_LIGHT_TILES, 0, m->plan.needs.lights, compute}};
-    VkDescriptorSetLayoutBinding bindings[sizeof rows / sizeof *rows];
+                {MASU_BIND_LIGHT_TILES, 0, m->plan.needs.lights, compute},
+                {MASU_BIND_TRACE, 0, m->plan.needs.reflections, compute},
+                {MASU_BIND_TRACE_FRAME, 0, m->plan.needs.traced, compute},
+                {MASU_BIND_TRACE_VERTICES, 0, m->plan.needs.traced, compute},
+                {MASU_BIND_TRACE_TEXCOORDS, 0, m->plan.needs.traced && m->plan.scene.trace_colors,
+                 compute},
+                {MASU_BIND_SPECULAR_TILES, 0, m->plan.needs.reflections, compute}};
+    VkDescriptorSetLayoutBinding bindings[sizeof rows / sizeof *rows + 1];
     uint32_t count = 0;
     for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (!rows[i].needed) continue;
@@ -210,6 +344,10 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
             rows[i].binding,
             rows[i].uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
             1, rows[i].stages, NULL};
+    }
+    if (m->plan.needs.query) {
+        bindings[count++] = (VkDescriptorSetLayoutBinding){
+            MASU_BIND_TOP_LEVEL, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, compute, NULL};
     }
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -308,12 +446,14 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
     /* Whether counters are kept; whether the sky may be the analytic one; whether there is fog; whether
      * the sky is from a picture. */
     const VkBool32 constants[] = {m->plan.desc.debug.counters != 0, m->plan.needs.sky != 0,
-                                  m->plan.scene.fog != 0, m->plan.needs.environment != 0};
+                                  m->plan.scene.fog != 0, m->plan.needs.environment != 0,
+                                  m->plan.needs.reflections != 0};
     const VkSpecializationMapEntry entries[] = {{0, 0, sizeof *constants},
                                                 {1, sizeof *constants, sizeof *constants},
                                                 {2, 2 * sizeof *constants, sizeof *constants},
-                                                {3, 3 * sizeof *constants, sizeof *constants}};
-    VkSpecializationInfo special = {4, entries, sizeof constants, constants};
+                                                {3, 3 * sizeof *constants, sizeof *constants},
+                                                {4, 4 * sizeof *constants, sizeof *constants}};
+    VkSpecializationInfo special = {5, entries, sizeof constants, constants};
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -622,7 +762,8 @@ masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
     if (!result) result = make_texture_layout(m, detail);
     if (!result) result = make_samplers(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
-        if (masu_passes[p].kind == MASU_PASS_TRANSFER) continue;
+        if (masu_passes[p].kind == MASU_PASS_TRANSFER || masu_passes[p].kind == MASU_PASS_BUILD)
+            continue;
         result = make_pass_layout(m, p, detail);
         if (result || !m->layouts[p]) continue;
         int graphics = masu_passes[p].kind == MASU_PASS_GRAPHICS;

@@ -5,18 +5,31 @@
 #include "error.h"
 #include "lights.h"
 #include "lod.h"
+#include "ray_query.h"
+#include "specular.h"
 #include "transparents.h"
 
 #include <math.h>
 #include <string.h>
 
 uint32_t masu_format_bytes(VkFormat format) {
-    return format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
+    switch (format) {
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R32G32_UINT: return 8;
+    case VK_FORMAT_R32G32B32A32_UINT:
+    case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
+    default: return 4;
+    }
 }
 
 /* Of ambient occlusion: where more samples stop to pay (docs/DESIGN.md). */
 #define MASU_AO_SLICES 2
 #define MASU_AO_STEPS 8
+
+/* Of reflections: neighbours of the two filters, and how far back the mean over frames reaches. */
+#define MASU_REUSE_TAPS 8
+#define MASU_FILTER_TAPS 12
+#define MASU_SPECULAR_FRAMES 32
 
 /* ---- Defaults -------------------------------------------------------------------------------- */
 
@@ -40,6 +53,11 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         if (d.rungs[r].ao_slices == 0) d.rungs[r].ao_slices = MASU_AO_SLICES;
         if (d.rungs[r].ao_steps == 0) d.rungs[r].ao_steps = MASU_AO_STEPS;
         if (d.rungs[r].lod_error == 0.0f) d.rungs[r].lod_error = MASU_LOD_PIXELS;
+        if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
+            d.rungs[r].specular_cutoff = d.scene->specular_cutoff;
+        if (d.rungs[r].specular_reuse_taps == 0) d.rungs[r].specular_reuse_taps = MASU_REUSE_TAPS;
+        if (d.rungs[r].specular_filter_taps == 0) d.rungs[r].specular_filter_taps = MASU_FILTER_TAPS;
+        if (d.rungs[r].specular_frames == 0) d.rungs[r].specular_frames = MASU_SPECULAR_FRAMES;
     }
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
@@ -99,15 +117,36 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
         return bad_range(detail, "rungs[].shadow_refresh", rung->shadow_refresh[k], 0,
                          MASU_MAX_REFRESH);
     }
+    if (!(rung->specular_cutoff >= 0.0f && rung->specular_cutoff <= 1.0f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].specular_cutoff", 0, 0,
+                         "rungs[%u].specular_cutoff is %g, allowed are 0 to 1", r,
+                         (double)rung->specular_cutoff);
+    }
     if (rung->ao_slices > MASU_AO_SLICES_MAX)
         return bad_range(detail, "rungs[].ao_slices", rung->ao_slices, 0, MASU_AO_SLICES_MAX);
     if (rung->ao_steps > MASU_AO_STEPS_MAX)
         return bad_range(detail, "rungs[].ao_steps", rung->ao_steps, 0, MASU_AO_STEPS_MAX);
+    const struct {
+        const char *name;
+        uint32_t value, most;
+    } counts[] = {{"rungs[].specular_reuse_taps", rung->specular_reuse_taps, MASU_REUSE_TAPS_MAX},
+                  {"rungs[].specular_filter_taps", rung->specular_filter_taps, MASU_FILTER_TAPS_MAX},
+                  {"rungs[].specular_frames", rung->specular_frames, MASU_SPECULAR_FRAMES_MAX}};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        if (counts[i].value > counts[i].most)
+            return bad_range(detail, counts[i].name, counts[i].value, 0, counts[i].most);
+    }
     const masu_switch switches[] = {rung->upscale,   rung->sharpen,     rung->frustum,
-                                    rung->occlusion, rung->light_tiles, rung->ao};
+                                    rung->occlusion, rung->light_tiles, rung->ao,
+                                    rung->specular,  rung->specular_reuse,
+                                    rung->specular_temporal, rung->specular_filter,
+                                    rung->specular_taa, rung->specular_fine};
     static const char *const names[] = {"rungs[].upscale",   "rungs[].sharpen",
                                         "rungs[].frustum",   "rungs[].occlusion",
-                                        "rungs[].light_tiles", "rungs[].ao"};
+                                        "rungs[].light_tiles", "rungs[].ao",
+                                        "rungs[].specular",  "rungs[].specular_reuse",
+                                        "rungs[].specular_temporal", "rungs[].specular_filter",
+                                        "rungs[].specular_taa", "rungs[].specular_fine"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if ((unsigned)switches[i] <= MASU_ON) continue;
         return bad_range(detail, names[i], (unsigned)switches[i], MASU_AUTO, MASU_ON);
@@ -202,6 +241,8 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
                          "vulkan.max_anisotropy is %g, allowed are 0 and 1 to 64",
                          (double)d->vulkan.max_anisotropy);
     }
+    if ((unsigned)d->ray_query > MASU_ON)
+        return bad_range(detail, "ray_query", (unsigned)d->ray_query, MASU_AUTO, MASU_ON);
     if (d->readback & ~(uint32_t)MASU_READBACK_ALL) {
         return bad_range(detail, "readback", d->readback, 0, MASU_READBACK_ALL);
     }
@@ -254,6 +295,8 @@ static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
                 {"limits.texture_bytes", d->limits.texture_bytes, masu_scene_texture_bytes(d)},
                 {"limits.lights", d->limits.lights, s->lights},
                 {"limits.transparents", d->limits.transparents, s->transparents},
+                {"limits.trace_triangles", d->limits.trace_triangles, s->trace_triangles},
+                {"limits.trace_instances", d->limits.trace_instances, s->trace_instances},
                 {"limits.transparents", MASU_TRANSPARENTS_MAX, s->transparents},
                 {"transparent texture sets", MASU_TRANSPARENT_SETS_MAX, s->transparent_sets},
                 {"transparents times their texture sets", MASU_TRANSPARENT_DRAWS_MAX,
@@ -302,6 +345,8 @@ VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent exten
                             VkExtent2D render) {
     uint32_t columns = cascade_columns(plan);
     if (extent == MASU_EXTENT_HALF && plan->desc.debug.ao_full) return render;
+    int traced = extent == MASU_EXTENT_TRACED || extent == MASU_EXTENT_GLOSSY;
+    if (traced && plan->desc.debug.reference) return render;
     if (extent != MASU_EXTENT_SHADOW) return masu_extent_of(extent, render, plan->desc.output);
     return (VkExtent2D){columns * plan->cascade_size,
                         (plan->cascades + columns - 1) / columns * plan->cascade_size};
@@ -342,10 +387,10 @@ static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
 
 /* Which concrete image an access of the table means in this rung, or NONE if there is no such image
  * in this plan. */
-static masu_image_id resolve(uint8_t image, masu_image_id latest_depth,
-                             masu_image_id latest_color) {
-    if (image == MASU_LATEST_DEPTH) return latest_depth;
-    if (image == MASU_LATEST_COLOR) return latest_color;
+static masu_image_id resolve(uint8_t image, const masu_image_id latest[MASU_CLASS_COUNT]) {
+    if (image == MASU_LATEST_DEPTH) return latest[MASU_CLASS_DEPTH];
+    if (image == MASU_LATEST_COLOR) return latest[MASU_CLASS_COLOR];
+    if (image == MASU_LATEST_SPECULAR) return latest[MASU_CLASS_SPECULAR];
     return (masu_image_id)image;
 }
 
@@ -353,7 +398,12 @@ static int keeps_access(const masu_frame_plan *plan, masu_pass_id pass, masu_ima
     if (image == MASU_IMAGE_NONE) return 0;
     if (image == MASU_IMAGE_VELOCITY && !plan->needs.velocity) return 0;
     if (image == MASU_IMAGE_SURFACE && !plan->needs.surface) return 0;
-    if (pass == MASU_PASS_TRANSPARENTS && image == MASU_IMAGE_SHADOW_MAP) return plan->needs.shadow;
+    if (image == MASU_IMAGE_SPECULAR_OLD_STEADY && !plan->needs.steady) return 0;
+    if (image == MASU_IMAGE_SPECULAR_FINE && !plan->needs.finest) return 0;
+    if (pass != MASU_PASS_SHADOW && pass != MASU_PASS_READBACK && !masu_is_cascade(pass) &&
+        image == MASU_IMAGE_SHADOW_MAP) {
+        return plan->needs.shadow;
+    }
     /* It asks which pixels are polygons; without polygons nobody has written that depth. */
     if (pass == MASU_PASS_SDF_VELOCITY && image == MASU_IMAGE_DEPTH) return plan->needs.raster;
     if (pass == MASU_PASS_READBACK && image == MASU_IMAGE_OCCLUSION && !plan->needs.sdf_occlusion &&
@@ -368,8 +418,8 @@ static int keeps_access(const masu_frame_plan *plan, masu_pass_id pass, masu_ima
 
 static void compile_rung(masu_frame_plan *plan, uint32_t r) {
     masu_rung_plan *rp = &plan->rungs[r];
-    masu_image_id depth = MASU_IMAGE_NONE;
-    masu_image_id color = plan->needs.scene ? MASU_IMAGE_NONE : MASU_IMAGE_SOURCE;
+    masu_image_id latest[MASU_CLASS_COUNT] = {MASU_IMAGE_NONE};
+    if (!plan->needs.scene) latest[MASU_CLASS_COLOR] = MASU_IMAGE_SOURCE;
     int last_color_pass = -1, last_color_access = 0;
     for (int p = 0; p < MASU_PASS_COUNT; p++) {
         const masu_pass_row *row = &masu_passes[p];
@@ -379,7 +429,10 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         if (!runs) continue;
         rp->active |= MASU_PASS_BIT(p);
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
-            masu_image_id image = resolve(row->access[a].image, depth, color);
+            masu_image_id image = resolve(row->access[a].image, latest);
+            if (row->access[a].image == MASU_LATEST_RAYS) {
+                image = plan->needs.reuse ? MASU_IMAGE_SPECULAR_REUSED : MASU_IMAGE_SPECULAR_LIGHT;
+            }
             if (image == (masu_image_id)MASU_RESOURCE_DRAWS && !plan->needs.occlusion) {
                 continue; /* the host has written them */
             }
@@ -391,9 +444,8 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
                 (masu_access){(uint8_t)image, row->access[a].usage};
             if (!masu_usage_writes((masu_usage)row->access[a].usage)) continue;
             if (image > MASU_IMAGE_COUNT) continue;
-            if (masu_images[image].class_of == MASU_CLASS_DEPTH) depth = image;
+            latest[masu_images[image].class_of] = image;
             if (masu_images[image].class_of == MASU_CLASS_COLOR) {
-                color = image;
                 last_color_pass = p;
                 last_color_access = (int)rp->access_count[p] - 1;
             }
@@ -420,6 +472,8 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     case MASU_READ_BUFFER:
     case MASU_WRITE_BUFFER:
+    case MASU_READ_STRUCTURE:
+    case MASU_WRITE_STRUCTURE:
     case MASU_USE_NONE: break;
     }
     return 0;
@@ -437,6 +491,7 @@ static void gather_images(masu_frame_plan *plan) {
                 masu_image_plan *image = &plan->images[id];
                 VkExtent2D render = {rp->render_width, rp->render_height};
                 VkExtent2D size = masu_plan_extent(plan, masu_images[id].extent, render);
+                image->persistent |= masu_images[id].kept;
                 if (!image->used) image->first = p;
                 if (image->first > p) image->first = p;
                 if (image->last < p) image->last = p;
@@ -496,6 +551,30 @@ static void size_light_buffers(masu_frame_plan *plan, uint64_t storage_alignment
     tiles->bytes = tiles->count * sizeof(uint32_t);
 }
 
+/* The scene that rays meet: what stays, and of each frame in flight what moves. */
+static void size_trace_buffers(masu_frame_plan *plan, uint64_t storage_alignment) {
+    masu_buffer_plan *b = plan->buffers;
+    const masu_scene *s = plan->desc.scene;
+    b[MASU_BUFFER_TRACE].count = masu_trace_scene_bytes(s) / 16;
+    b[MASU_BUFFER_TRACE].bytes = 16 * b[MASU_BUFFER_TRACE].count;
+    if (plan->needs.traced) {
+        b[MASU_BUFFER_TRACE_FRAME].count = s->trace_instances;
+        b[MASU_BUFFER_TRACE_FRAME].stride =
+            masu_align_up(masu_trace_slot_bytes(s, plan->needs.query), storage_alignment);
+        b[MASU_BUFFER_TRACE_FRAME].bytes =
+            plan->desc.frames_in_flight * b[MASU_BUFFER_TRACE_FRAME].stride;
+    }
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
+        VkExtent2D traced = masu_plan_extent(plan, MASU_EXTENT_TRACED, render);
+        uint64_t words = MASU_TILES_HEADER + (uint64_t)((traced.width + MASU_GROUP - 1) / MASU_GROUP) *
+                                                 ((traced.height + MASU_GROUP - 1) / MASU_GROUP);
+        if (words > b[MASU_BUFFER_SPECULAR_TILES].count) b[MASU_BUFFER_SPECULAR_TILES].count = words;
+    }
+    b[MASU_BUFFER_SPECULAR_TILES].bytes =
+        b[MASU_BUFFER_SPECULAR_TILES].count * sizeof(uint32_t);
+}
+
 /* What only a scene needs. Returns the bytes of one readback slot that its counters take. */
 static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                                    uint64_t storage_alignment) {
@@ -536,6 +615,7 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
         if (words > b[MASU_BUFFER_TILES].count) b[MASU_BUFFER_TILES].count = words;
     }
     b[MASU_BUFFER_TILES].bytes = b[MASU_BUFFER_TILES].count * sizeof(uint32_t);
+    if (plan->needs.reflections) size_trace_buffers(plan, storage_alignment);
     if (s->lights) size_light_buffers(plan, storage_alignment);
     if (s->instances) {
         b[MASU_BUFFER_INSTANCES].count *= halves;
@@ -637,6 +717,17 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     b[MASU_BUFFER_SKY] = (masu_buffer_plan){.name = "sky uniforms",
                                             .role = MASU_ROLE_UPLOAD,
                                             .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
+    b[MASU_BUFFER_TRACE] = (masu_buffer_plan){.name = "traced scene", .usage = storage | dst};
+    b[MASU_BUFFER_TRACE_FRAME] = (masu_buffer_plan){
+        .name = "traced instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
+    b[MASU_BUFFER_SPECULAR_TILES] =
+        (masu_buffer_plan){.name = "specular tiles",
+                           .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
+    masu_ray_buffers(plan);
+    if (plan->needs.traced) {
+        b[MASU_BUFFER_VERTICES].usage |= storage;
+        if (s->trace_colors) b[MASU_BUFFER_TEXCOORDS].usage |= storage;
+    }
     b[MASU_BUFFER_LIGHTS] =
         (masu_buffer_plan){.name = "lights", .role = MASU_ROLE_UPLOAD, .usage = storage};
     b[MASU_BUFFER_LIGHT_TILES] = (masu_buffer_plan){.name = "light tiles", .usage = storage};
@@ -680,6 +771,36 @@ static int wants_ao(const masu_desc *d) {
     return 0;
 }
 
+/* The same of traced reflections. */
+static int rung_has_specular(const masu_desc *d, uint32_t r) {
+    return d->scene && d->scene->reflections && d->rungs[r].specular != MASU_OFF &&
+           d->scene->glossiest < d->rungs[r].specular_cutoff;
+}
+
+static int rung_has_taa(const masu_desc *d, uint32_t r) {
+    return rung_has_specular(d, r) && !d->debug.reference &&
+           d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_taa != MASU_OFF;
+}
+
+static int rung_has_fine(const masu_desc *d, uint32_t r) {
+    return rung_has_specular(d, r) && !d->debug.reference &&
+           d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_fine != MASU_OFF;
+}
+
+static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r)) {
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (has(d, r)) return 1;
+    }
+    return 0;
+}
+
+static int wants_specular(const masu_desc *d) {
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (rung_has_specular(d, r)) return 1;
+    }
+    return 0;
+}
+
 masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                          uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail) {
     memset(plan, 0, sizeof *plan);
@@ -712,8 +833,17 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .environment = d->scene && d->scene->environment_size,
                                .sky = d->scene && (d->scene->analytic_sky || d->analytic_sky),
                                .readback = d->readback,
-                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0,
+                               .reflections = wants_specular(d),
+                               .traced = wants_specular(d) && d->scene->trace_instances,
+                               .traced_sdf = wants_specular(d) && d->scene->trace_sdf,
+                               .query = wants_specular(d) && d->scene->trace_instances &&
+                                        d->ray_query == MASU_ON,
+                               .accumulate = d->debug.reference != 0,
+                               .steady = wants(d, rung_has_taa),
+                               .finest = wants(d, rung_has_fine),
+                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d),
                                .blit = !d->targets.storage};
+    if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
     most_shadow(d, &plan->cascades, &plan->cascade_size);
     /* The sun's: each cascade, else all of the scene. */
     uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
@@ -754,6 +884,13 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         }
         resolve_switches(d, rp, &d->rungs[r], &plan->needs);
         plan->needs.ao = rung_has_ao(d, r);
+        plan->needs.specular = rung_has_specular(d, r);
+        int filtered = plan->needs.specular && !plan->needs.accumulate;
+        plan->needs.reuse = filtered && d->rungs[r].specular_reuse != MASU_OFF;
+        plan->needs.temporal = filtered && d->rungs[r].specular_temporal != MASU_OFF;
+        plan->needs.filter = filtered && d->rungs[r].specular_filter != MASU_OFF;
+        plan->needs.taa = rung_has_taa(d, r);
+        plan->needs.fine = rung_has_fine(d, r);
         plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
         plan->needs.unculled = d->scene && (d->scene->most_primitives > MASU_CULL_ROUNDS ||
                                             d->scene->most_instances > 64 * MASU_CULL_ROUNDS);
@@ -791,6 +928,8 @@ static const char *image_name(uint8_t image) {
     if (image == MASU_RESOURCE_DRAWS) return "draws";
     if (image == MASU_RESOURCE_PROBES) return "light probes";
     if (image == MASU_RESOURCE_LIGHT_TILES) return "light tiles";
+    if (image == MASU_RESOURCE_SPECULAR_TILES) return "specular tiles";
+    if (image == MASU_RESOURCE_TOP_LEVEL) return "top level";
     return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL;
 }
 
@@ -803,7 +942,7 @@ void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_m
         const masu_block_plan *b = &plan->blocks[r];
         if (!b->bytes) continue;
         out->roles[r] = (masu_role_need){b->bytes, b->alignment, b->type_bits, b->type,
-                                         (uint32_t)b->host_visible};
+                                         (uint32_t)b->host_visible, (uint32_t)b->address};
         out->device_bytes += b->bytes;
     }
     out->transient_unaliased = plan->transient_unaliased;
@@ -851,7 +990,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
                 const char *name = image_name(rp->access[p][a].image);
                 if (masu_usage_writes((masu_usage)rp->access[p][a].usage)) {
                     if (writes < 6) pass->writes[writes++] = name;
-                } else if (reads < 8) {
+                } else if (reads < 12) {
                     pass->reads[reads++] = name;
                 }
             }

@@ -53,6 +53,16 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_SKY,       /* one masu_sky_uniforms per frame in flight */
     MASU_BUFFER_LIGHTS,    /* per frame in flight: local lights that may be seen to light something */
     MASU_BUFFER_LIGHT_TILES, /* lists of them by tile; masu_shared.h has the layout */
+    MASU_BUFFER_TRACE,       /* what rays meet: nodes, triangles, materials, texels */
+    MASU_BUFFER_TRACE_FRAME, /* per frame in flight: the top level over instances, and these */
+    MASU_BUFFER_SPECULAR_TILES, /* tiles that trace reflections */
+    /* Of ray queries (src/ray_query.h): */
+    MASU_BUFFER_BOTTOM_LEVELS, /* a structure for each traced mesh */
+    MASU_BUFFER_TOP_LEVEL,     /* over the instances of the frame */
+    MASU_BUFFER_TOP_SCRATCH,   /* what its build needs */
+    MASU_BUFFER_RAY_INSTANCES, /* per frame in flight: what it is built of */
+    MASU_BUFFER_RAY_INDICES,   /* what bottom levels are built of; masu_load alone needs it, and */
+    MASU_BUFFER_RAY_SCRATCH,   /* what their builds need: both lie where transient images will */
     MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
     MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
     MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
@@ -74,7 +84,13 @@ typedef struct masu_block_plan {
     uint64_t bytes, alignment;
     uint32_t type_bits, type;
     int host_visible; /* mapped for the renderer's whole life */
+    int address;      /* a buffer in it is known to the device by its address */
 } masu_block_plan;
+
+/* Whether a buffer is there while a scene is loaded, and no longer. */
+static inline int masu_is_of_loading(uint32_t buffer) {
+    return buffer == MASU_BUFFER_RAY_INDICES || buffer == MASU_BUFFER_RAY_SCRATCH;
+}
 
 #define MASU_READBACK_IMAGES 7u
 #define MASU_DRAW_BYTES 20u /* of a VkDrawIndexedIndirectCommand */

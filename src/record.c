@@ -73,6 +73,14 @@ static image_state state_of(masu_usage usage, masu_pass_kind kind) {
     case MASU_WRITE_COPY:
         return (image_state){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1};
+    case MASU_READ_STRUCTURE:
+        return (image_state){1, shader, VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR,
+                             VK_IMAGE_LAYOUT_UNDEFINED, 0};
+    case MASU_WRITE_STRUCTURE:
+        return (image_state){1, VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+                             VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR |
+                                 VK_ACCESS_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
+                             VK_IMAGE_LAYOUT_UNDEFINED, 1};
     case MASU_USE_NONE: break;
     }
     return (image_state){0, 0, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0};
@@ -233,6 +241,19 @@ static void ao_push(const recorder *rec, uint32_t pass, struct masu_push *push) 
     push->index[1] = plan->desc.debug.ao_nearest != 0;
 }
 
+static int is_specular(uint32_t pass) {
+    return pass >= MASU_PASS_SPECULAR_GUIDE && pass <= MASU_PASS_SPECULAR_COMPOSITE;
+}
+
+/* Of what reflections are traced: index.z pixels along an edge of a traced texel, index.w 1: of every
+ * pixel, for comparison. */
+static void specular_push(const recorder *rec, struct masu_push *push) {
+    push->index[2] = rec->m->plan.desc.debug.reference ? 1 : 2;
+    push->index[3] = rec->m->plan.needs.accumulate != 0;
+    push->render_width = rec->rp->render_width;
+    push->render_height = rec->rp->render_height;
+}
+
 static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     struct masu_push push = push_constants(rec, pass);
@@ -242,6 +263,9 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     if (culling || pass == MASU_PASS_RECEIVERS)
         push.index[0] = (uint32_t)rec->m->plan.drawn.header;
     if (pass == MASU_PASS_AO || pass == MASU_PASS_AO_UPSAMPLE) ao_push(rec, pass, &push);
+    if (is_specular(pass)) specular_push(rec, &push);
+    if (pass == MASU_PASS_LIGHT || pass == MASU_PASS_LIGHT_OCCLUDED)
+        push.index[3] = rec->m->plan.needs.accumulate != 0;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
     if (rec->m->plan.needs.scene) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
@@ -252,6 +276,10 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
     if (extent == MASU_EXTENT_TILES) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TILES], 0);
+        return;
+    }
+    if (extent == MASU_EXTENT_GLOSSY) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SPECULAR_TILES], 0);
         return;
     }
     if (extent == MASU_EXTENT_PROBES) {
@@ -561,20 +589,22 @@ static void record_prologue(recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_POISON], 0, VK_WHOLE_SIZE,
                             poison_word(m->plan.desc.debug.poison));
     }
-    if (m->plan.buffers[MASU_BUFFER_TILES].bytes) {
+    static const masu_buffer_id tiles[] = {MASU_BUFFER_TILES, MASU_BUFFER_SPECULAR_TILES};
+    int tiled = 0;
+    for (uint32_t t = 0; t < sizeof tiles / sizeof *tiles; t++) {
+        if (!m->plan.buffers[tiles[t]].bytes) continue;
         /* Arguments of the indirect dispatch: no tile yet, one row, one layer. */
         static const uint32_t arguments[3] = {0, 1, 1};
-        for (uint32_t i = 0; i < 3; i++) {
-            m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_TILES], 4 * i, 4,
-                                arguments[i]);
-        }
+        tiled = 1;
+        for (uint32_t i = 0; i < 3; i++)
+            m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[tiles[t]], 4 * i, 4, arguments[i]);
     }
     int receivers = (int)(rec->rp->active >> MASU_PASS_RECEIVERS & 1u);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
                             m->plan.receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
-    if (counters || receivers || m->plan.buffers[MASU_BUFFER_TILES].bytes ||
+    if (counters || receivers || tiled ||
         m->plan.buffers[MASU_BUFFER_POISON].bytes) {
         memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
@@ -591,7 +621,7 @@ static void record_prologue(recorder *rec) {
 static void find_persistent(recorder *rec) {
     int all = rec->variant + 1 == rec->rp->variants;
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
-        if (!rec->m->plan.images[i].persistent || all) continue;
+        if (!rec->m->plan.images[i].persistent || (all && !masu_images[i].kept)) continue;
         rec->states[i] = state_of(MASU_READ, MASU_PASS_COMPUTE);
     }
 }
@@ -660,6 +690,8 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
             if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets[p]);
             if (p == MASU_PASS_READBACK) record_readback(rec, p);
             if (p == MASU_PASS_PRESENT) record_present(rec, p);
+            if (masu_passes[p].kind == MASU_PASS_BUILD)
+                masu_ray_record_top(rec->m, rec->cmd, rec->flight);
             if (masu_passes[p].kind == MASU_PASS_COMPUTE) record_compute(rec, p, sets[p]);
             end_label(rec);
         }
@@ -677,13 +709,14 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4 * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 13 * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 18 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
          MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan.scene.texture_sets},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets}};
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
+        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, flights}}; /* the last: ray queries alone */
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = flights + sets + m->plan.scene.texture_sets,
-                                       .poolSizeCount = sizeof sizes / sizeof *sizes,
+                                       .poolSizeCount = m->plan.needs.query ? 5 : 4,
                                        .pPoolSizes = sizes};
     VkResult r =
         m->vk.CreateDescriptorPool(m->vk.device, &info, m->vk.allocator, &m->descriptor_pool);
@@ -725,7 +758,13 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
         {MASU_BIND_TABLES, MASU_BUFFER_TABLES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
         {MASU_BIND_LIGHTS, MASU_BUFFER_LIGHTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_LIGHT_TILES, MASU_BUFFER_LIGHT_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
+        {MASU_BIND_LIGHT_TILES, MASU_BUFFER_LIGHT_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_TRACE, MASU_BUFFER_TRACE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_TRACE_FRAME, MASU_BUFFER_TRACE_FRAME, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_TRACE_VERTICES, MASU_BUFFER_VERTICES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_TRACE_TEXCOORDS, MASU_BUFFER_TEXCOORDS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_SPECULAR_TILES, MASU_BUFFER_SPECULAR_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+         0}};
     for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;
@@ -736,6 +775,11 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
             const masu_buffer_plan *b = &m->plan.buffers[id];
             if (!b->bytes) continue; /* no pass of this plan looks at it */
             if (rows[i].previous && !m->plan.needs.velocity) continue;
+            if (rows[i].binding >= MASU_BIND_TRACE && !m->plan.needs.reflections) continue;
+            if (rows[i].binding == MASU_BIND_TRACE_TEXCOORDS && !m->plan.scene.trace_colors) continue;
+            int polygons = rows[i].binding >= MASU_BIND_TRACE_FRAME &&
+                           rows[i].binding <= MASU_BIND_TRACE_TEXCOORDS;
+            if (polygons && !m->plan.needs.traced) continue;
             if (rows[i].binding == MASU_BIND_DRAWS && !m->plan.occlusion) continue;
             int halves = m->plan.needs.velocity && (id == MASU_BUFFER_FRAME || id == MASU_BUFFER_INSTANCES);
             uint64_t bytes = b->stride ? b->stride : b->bytes;
@@ -754,6 +798,7 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
                                           .pBufferInfo = &buffer};
             m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
         }
+        if (m->plan.needs.query) masu_ray_bind(m, m->global_sets[f]);
     }
     return MASU_OK;
 }
@@ -885,13 +930,31 @@ static void record_textures(masu_renderer *m, VkCommandBuffer cmd, masu_texture_
     }
 }
 
+/* The images that the first frame finds as if another had left them; what is in them is not looked
+ * at. */
+static void record_kept(masu_renderer *m, VkCommandBuffer cmd) {
+    image_state rest = state_of(MASU_READ, MASU_PASS_COMPUTE);
+    recorder rec = {.m = m, .cmd = cmd};
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (!m->plan.images[i].used || !masu_images[i].kept) continue;
+        VkImageMemoryBarrier b =
+            image_barrier(&rec, (masu_image_id)i, 0, &rest, VK_IMAGE_LAYOUT_UNDEFINED);
+        m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0, NULL, 0,
+                                 NULL, 1, &b);
+    }
+}
+
 static masu_result record_load(masu_renderer *m, uint32_t index, masu_texture_cursor *next,
                                masu_detail *detail) {
     VkCommandBuffer cmd = m->loads[index];
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
-    if (index < masu_buffer_chunks(&m->plan)) {
+    if (masu_keeps_images(&m->plan) && index + 1 == m->load_count) {
+        record_kept(m, cmd);
+    } else if (masu_is_build_chunk(&m->plan, index, m->load_count)) {
+        masu_ray_record_bottoms(m, cmd);
+    } else if (index < masu_buffer_chunks(&m->plan)) {
         masu_chunk chunk = masu_load_chunk(&m->plan, index);
         VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
         m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING],

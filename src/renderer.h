@@ -12,6 +12,8 @@
  *   upload.c    scene -> device, frame uniforms, instance transforms
  *   transparents.c  what is blended, in the order of its distance
  *   lights.c    points and spots: what the host sets, which of them may be seen to light something
+ *   specular.c  what reflections are traced through
+ *   ray_query.c the same for ray queries of the device
  *   shadow.c    cascades of the sun's shadow map: where they lie, when they are drawn anew
  *
  * Everything of fixed size is a member; what depends on the scene are pointers into the same host
@@ -25,10 +27,13 @@
 #include "cull.h"
 #include "device_memory.h"
 #include "plan.h"
+#include "ray_query.h"
 #include "scene.h"
 #include "shadow.h"
 #include "sky.h"
+#include "specular.h"
 #include "texture.h"
+#include "trace.h"
 #include "transparents.h"
 #include "vk.h"
 
@@ -165,6 +170,20 @@ struct masu_renderer {
     masu_local_light_state *lights;
     uint64_t *light_names; /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_lights[MASU_MAX_FLIGHT]; /* in view */
+    /* specular.c */
+    masu_trace_top trace; /* in trace_memory */
+    void *trace_memory;
+    uint32_t *traced;     /* [traced instance]: instance */
+    double anchor[3];     /* of the frame at hand */
+    uint64_t trace_versions;              /* so many times something has changed */
+    uint64_t slot_trace[MASU_MAX_FLIGHT]; /* as of which the slot is */
+    /* ray_query.c */
+    masu_ray_mesh *ray_meshes; /* [mesh]; of no length without ray queries */
+    VkAccelerationStructureKHR ray_top;
+    uint8_t *ray_live; /* [traced instance]: it is not left out */
+    double ray_anchor[3];
+    int traced_before;       /* the frame before has kept what it traced, */
+    uint32_t traced_size[2]; /* at this render size */
     /* shadow.c */
     masu_cascade cascades[MASU_CASCADES_MAX]; /* as drawn last */
     double shadow_distance;                    /* view depth where shadows end in this frame */
@@ -186,6 +205,10 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail);
  * them, then those of textures. */
 uint32_t masu_load_chunks(const masu_frame_plan *plan);
 uint32_t masu_buffer_chunks(const masu_frame_plan *plan);
+/* Whether frames leave images to each other: then the last chunk puts them into their layout. */
+int masu_keeps_images(const masu_frame_plan *plan);
+/* Whether a chunk of so many is that in which structures of ray queries are built. */
+int masu_is_build_chunk(const masu_frame_plan *plan, uint32_t index, uint32_t chunks);
 /* One chunk: `bytes` of `buffer`, which has `whole`, from `offset`. */
 typedef struct masu_chunk {
     masu_buffer_id buffer;
@@ -233,6 +256,14 @@ void masu_write_commands(masu_renderer *m, const masu_scene_view *v);
 void masu_move_box(masu_renderer *m, uint32_t instance);
 /* Writes which instances a view draws to a slot. culls 0: all of them. */
 void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls);
+
+/* Copies what rays meet from the blob. */
+void masu_keep_trace(masu_renderer *m, const masu_scene_view *v);
+/* Writes of a frame what reflections ask of it, and where traced things are measured from. */
+void masu_write_reflections(masu_renderer *m, const masu_frame_desc *frame, const double eye[3],
+                            struct masu_frame_uniforms *u);
+/* Writes traced instances to a slot, before masu_write_instances. */
+void masu_write_trace(masu_renderer *m, uint32_t slot, int cut);
 
 /* Copies what is blended from the blob. */
 void masu_keep_transparents(masu_renderer *m, const masu_scene_view *v);

@@ -48,6 +48,10 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V"),
     CODE(MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V"),
     CODE(MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V"),
+    CODE(MASU_BLOB_TRACE_SDF_SPIRV, "specular_trace_sdf SPIR-V"),
+    [MASU_BLOB_REFLECTIONS] = {"reflections", sizeof(masu_blob_reflections), 1, 0},
+    [MASU_BLOB_TRACE_TEXTURES] = {"trace textures", sizeof(masu_blob_trace_texture), MANY, 0},
+    [MASU_BLOB_TRACE_TEXELS] = {"trace texels", sizeof(uint32_t), MANY, 0},
     [MASU_BLOB_SLOTS] = {"slots", sizeof(float), 65536, 0},
     [MASU_BLOB_GROUPS] = {"groups", sizeof(masu_blob_group), MANY, 0},
     [MASU_BLOB_GROUP_ITEMS] = {"group items", sizeof(uint32_t), MANY, 0},
@@ -64,6 +68,10 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_PROBE_DATA] = {"probe data", sizeof(uint32_t), MANY, 0},
     [MASU_BLOB_ENVIRONMENT_MAP] = {"environment map", sizeof(masu_blob_environment_map), 1, 0},
     [MASU_BLOB_ENVIRONMENT_TEXELS] = {"environment texels", sizeof(uint32_t), MANY, 0},
+    [MASU_BLOB_TRACE_NODES] = {"trace nodes", sizeof(masu_blob_trace_node), MASU_TRACE_NODES_MAX, 0},
+    [MASU_BLOB_TRACE_TRIANGLES] = {"trace triangles", sizeof(masu_blob_trace_triangle), MANY / 4, 0},
+    [MASU_BLOB_TRACE_MESHES] = {"trace meshes", sizeof(masu_blob_trace_mesh), MANY, 0},
+    [MASU_BLOB_TRACE_INSTANCES] = {"trace instances", sizeof(uint32_t), MASU_TRACE_INSTANCES_MAX, 0},
 };
 
 /* ---- Header and sections --------------------------------------------------------------------- */
@@ -119,7 +127,7 @@ static masu_result read_sections(reader *r, uint64_t given) {
     for (uint32_t i = 0; i < h.section_count; i++) {
         masu_blob_section s;
         memcpy(&s, r->bytes + sizeof h + i * sizeof s, sizeof s);
-        if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT)
+        if (s.kind == 0 || s.kind >= MASU_BLOB_KIND_COUNT || !rules[s.kind].stride)
             return bad(r, "section", i, "unknown kind");
         if (start[s.kind]) return bad(r, "section", i, "appears twice");
         if (s.stride != rules[s.kind].stride) return bad(r, "section", i, "element size is wrong");
@@ -168,6 +176,13 @@ static masu_result read_sections(reader *r, uint64_t given) {
                                 .probe_words = r->counts[MASU_BLOB_PROBE_DATA],
                                 .environment_map = start[MASU_BLOB_ENVIRONMENT_MAP],
                                 .environment_texels = start[MASU_BLOB_ENVIRONMENT_TEXELS],
+                                .reflections = start[MASU_BLOB_REFLECTIONS],
+                                .trace_textures = start[MASU_BLOB_TRACE_TEXTURES],
+                                .trace_texels = start[MASU_BLOB_TRACE_TEXELS],
+                                .trace_nodes = start[MASU_BLOB_TRACE_NODES],
+                                .trace_triangles = start[MASU_BLOB_TRACE_TRIANGLES],
+                                .trace_meshes = start[MASU_BLOB_TRACE_MESHES],
+                                .trace_instances = start[MASU_BLOB_TRACE_INSTANCES],
                                 .names = start[MASU_BLOB_NAMES],
                                 .name_bytes = r->counts[MASU_BLOB_NAMES]};
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
@@ -720,6 +735,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     if (!result) result = masu_check_lighting(&r);
     if (!result) result = check_textures(&r);
     if (!result) result = check_sdf(&r);
+    if (!result) result = masu_check_trace(&r);
     if (result) return result;
     *out = (masu_scene){.blob = blob,
                         .blob_bytes = blob_bytes,
@@ -756,6 +772,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
         if (r.view.materials[i].flags & MASU_MATERIAL_IS_MASK) out->masks = 1;
     }
     masu_look_at_lighting(&r, out);
+    masu_look_at_trace(&r, out);
     look_at_draws(&r, out);
     return MASU_OK;
 }

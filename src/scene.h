@@ -41,6 +41,13 @@ typedef struct masu_scene_view {
     uint64_t probe_words;
     const masu_blob_environment_map *environment_map; /* NULL: none */
     const uint32_t *environment_texels;
+    const masu_blob_reflections *reflections; /* NULL: none */
+    const masu_blob_trace_texture *trace_textures;
+    const uint32_t *trace_texels;
+    const masu_blob_trace_node *trace_nodes; /* NULL: no rays; nor are the next three */
+    const masu_blob_trace_triangle *trace_triangles;
+    const masu_blob_trace_mesh *trace_meshes;
+    const uint32_t *trace_instances;
     struct {
         const uint32_t *words; /* NULL: none */
         uint64_t count;

@@ -1,4 +1,5 @@
-/* scene_reader.h: what checks a blob: scene.c, and scene_light.c for what lights it. */
+/* scene_reader.h: what checks a blob: scene.c, scene_light.c for what lights it, and
+ * scene_trace.c for what rays are traced through. */
 #ifndef MASU_SCENE_READER_H
 #define MASU_SCENE_READER_H
 
@@ -46,5 +47,9 @@ static inline int name_ok(const reader *r, uint32_t name) {
  * textures have passed. */
 masu_result masu_check_lighting(reader *r);
 void masu_look_at_lighting(const reader *r, masu_scene *out);
+
+/* What rays are traced through. After geometry has passed. */
+masu_result masu_check_trace(reader *r);
+void masu_look_at_trace(const reader *r, masu_scene *out);
 
 #endif

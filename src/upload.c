@@ -15,7 +15,8 @@
 static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDICES,
                                           MASU_BUFFER_TEXCOORDS, MASU_BUFFER_MATERIALS,
                                           MASU_BUFFER_SLOTS, MASU_BUFFER_TABLES,
-                                          MASU_BUFFER_PROBES};
+                                          MASU_BUFFER_PROBES, MASU_BUFFER_TRACE,
+                                          MASU_BUFFER_RAY_INDICES};
 
 #define RESIDENT_COUNT (sizeof resident / sizeof *resident)
 
@@ -28,12 +29,25 @@ uint32_t masu_buffer_chunks(const masu_frame_plan *plan) {
     return chunks;
 }
 
+int masu_keeps_images(const masu_frame_plan *plan) {
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (plan->images[i].used && masu_images[i].kept) return 1;
+    }
+    return 0;
+}
+
 uint32_t masu_load_chunks(const masu_frame_plan *plan) {
-    uint32_t chunks = masu_buffer_chunks(plan);
+    uint32_t chunks = masu_buffer_chunks(plan) + (masu_keeps_images(plan) ? 1 : 0);
+    if (plan->needs.query) chunks++;
     if (!plan->scene.texture_arrays) return chunks;
     masu_scene_view v = masu_scene_look(&plan->scene);
     return chunks + masu_texture_chunks(v.textures, plan->scene.texture_arrays, plan->compressed,
                                         plan->buffers[MASU_BUFFER_STAGING].bytes);
+}
+
+/* Behind all that is copied. */
+int masu_is_build_chunk(const masu_frame_plan *plan, uint32_t index, uint32_t chunks) {
+    return plan->needs.query && index + 1 + (masu_keeps_images(plan) ? 1 : 0) == chunks;
 }
 
 masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
@@ -107,7 +121,8 @@ static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned ch
     }
 }
 
-static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
+static void write_resident(const masu_renderer *m, const masu_scene_view *v, masu_chunk chunk,
+                           unsigned char *to) {
     if (chunk.buffer == MASU_BUFFER_VERTICES) {
         memcpy(to, (const unsigned char *)v->vertices + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_INDICES) {
@@ -126,6 +141,10 @@ static void write_resident(const masu_scene_view *v, masu_chunk chunk, unsigned 
         }
     } else if (chunk.buffer == MASU_BUFFER_PROBES) {
         write_probes(v, chunk, to);
+    } else if (chunk.buffer == MASU_BUFFER_TRACE) {
+        masu_trace_write(&m->plan.scene, v, chunk.offset, chunk.bytes, to);
+    } else if (chunk.buffer == MASU_BUFFER_RAY_INDICES) {
+        masu_ray_write_indices(v, chunk.offset, chunk.bytes, to);
     } else if (chunk.buffer == MASU_BUFFER_MATERIALS) {
         /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy
          * the part. */
@@ -159,14 +178,18 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
         for (size_t i = 0; i < RESIDENT_COUNT; i++) {
             uint64_t bytes = m->plan.buffers[resident[i]].bytes;
             masu_chunk all = {resident[i], 0, bytes, bytes};
-            if (all.bytes) write_resident(&v, all, masu_buffer_pointer(m, resident[i], 0));
+            if (all.bytes) write_resident(m, &v, all, masu_buffer_pointer(m, resident[i], 0));
         }
     }
     if (m->load_next < m->load_count) {
         masu_scene_view v = masu_scene_look(m->plan.desc.scene);
         unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0);
-        if (m->load_next < masu_buffer_chunks(&m->plan)) {
-            write_resident(&v, masu_load_chunk(&m->plan, m->load_next), to);
+        if (masu_keeps_images(&m->plan) && m->load_next + 1 == m->load_count) {
+            /* Nothing to copy: the images that frames leave to each other get their layout. */
+        } else if (masu_is_build_chunk(&m->plan, m->load_next, m->load_count)) {
+            /* Nor here: structures of ray queries are built. */
+        } else if (m->load_next < masu_buffer_chunks(&m->plan)) {
+            write_resident(m, &v, masu_load_chunk(&m->plan, m->load_next), to);
         } else {
             write_textures(m, &v, to);
         }
@@ -211,6 +234,7 @@ void masu_keep_scene(masu_renderer *m) {
     masu_keep_visible(m, &v);
     masu_keep_occluders(m, &v);
     masu_keep_transparents(m, &v);
+    masu_keep_trace(m, &v);
     if (scene->camera_keys)
         memcpy(m->camera_keys, v.camera_keys, scene->camera_keys * sizeof *v.camera_keys);
     if (scene->sdf_params)
@@ -440,6 +464,7 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     }
     write_anchor(m, &camera, &u);
     masu_write_sky(m, &light, slot, &u);
+    masu_write_reflections(m, f, camera.position, &u);
     u.eye_hi[3] = (float)f->time;
     u.eye_lo[3] = f->time_step;
     unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);
@@ -447,7 +472,7 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     m->drawn = m->plan.needs.shadow ? masu_write_shadow(m, f, slot, &u, camera.position) : 0;
     masu_set_views(m, &u, camera.position, f->rung);
     masu_write_lights(m, slot, &u, camera.position,
-                      m->plan.desc.rungs[f->rung].frustum != MASU_OFF);
+                      m->plan.desc.rungs[f->rung].frustum != MASU_OFF && !m->plan.needs.reflections);
     if (m->plan.needs.velocity) {
         uint64_t half = m->plan.buffers[MASU_BUFFER_FRAME].stride / 2;
         memcpy(to + half, masu_is_cut(m, f) ? &u : m->previous, sizeof u);

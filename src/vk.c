@@ -95,6 +95,39 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
     return MASU_OK;
 }
 
+/* Where the host says that they are there: a driver that then does not know one is at fault. */
+static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
+    if (!desc->vulkan.ray_query || desc->ray_query == MASU_OFF) return MASU_OK;
+#define MASU_VK_LOAD_RAYS(name)                                                                    \
+    vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(vk->device, "vk" #name);
+    MASU_VK_RAYS(MASU_VK_LOAD_RAYS)
+#undef MASU_VK_LOAD_RAYS
+    /* Of a device that has enabled the feature of 1.2 instead of the extension. */
+    if (!vk->GetBufferDeviceAddressKHR) {
+        vk->GetBufferDeviceAddressKHR = (PFN_vkGetBufferDeviceAddressKHR)vk->GetDeviceProcAddr(
+            vk->device, "vkGetBufferDeviceAddress");
+    }
+#define MASU_VK_CHECK_RAYS(name)                                                                   \
+    if (!vk->name) {                                                                               \
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vk" #name, 1, 0,                              \
+                         "vulkan.ray_query is set, but the device knows no vk" #name);             \
+    }
+    MASU_VK_RAYS(MASU_VK_CHECK_RAYS)
+#undef MASU_VK_CHECK_RAYS
+    PFN_vkGetPhysicalDeviceProperties2 get = (PFN_vkGetPhysicalDeviceProperties2)
+        desc->vulkan.get_instance_proc_addr(vk->instance, "vkGetPhysicalDeviceProperties2");
+    if (!get) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vkGetPhysicalDeviceProperties2", 1, 0,
+                         "the host's get_instance_proc_addr knows no vkGetPhysicalDeviceProperties2");
+    }
+    vk->rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vk->rays};
+    get(vk->physical, &properties);
+    vk->rays.pNext = NULL;
+    return MASU_OK;
+}
+
 masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
     const masu_vulkan *host = &desc->vulkan;
     memset(vk, 0, sizeof *vk);
@@ -150,5 +183,6 @@ masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail
                          host->queue_family, listed);
     }
     vk->queue_family = list[host->queue_family];
-    return check_floor(desc, vk, detail);
+    masu_result result = check_floor(desc, vk, detail);
+    return result ? result : load_rays(desc, vk, detail);
 }

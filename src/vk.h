@@ -2,7 +2,8 @@
  *
  * One table per renderer: no global loader that could collide with the host's, and a test can put
  * its own wrappers in between. Every function is Vulkan 1.0 core but the debug labels, which are
- * NULL where the extension is off. */
+ * NULL where the extension is off, and those of ray queries, which are NULL where the host does not
+ * offer them or the description does not want them. */
 #ifndef MASU_VK_H
 #define MASU_VK_H
 
@@ -84,11 +85,21 @@
     X(CmdEndDebugUtilsLabelEXT)                                                                    \
     X(SetDebugUtilsObjectNameEXT)
 
+/* All of them or none. */
+#define MASU_VK_RAYS(X)                                                                            \
+    X(CmdBuildAccelerationStructuresKHR)                                                           \
+    X(CreateAccelerationStructureKHR)                                                              \
+    X(DestroyAccelerationStructureKHR)                                                             \
+    X(GetAccelerationStructureBuildSizesKHR)                                                       \
+    X(GetAccelerationStructureDeviceAddressKHR)                                                    \
+    X(GetBufferDeviceAddressKHR)
+
 typedef struct masu_vk {
 #define MASU_VK_MEMBER(name) PFN_vk##name name;
     MASU_VK_INSTANCE(MASU_VK_MEMBER)
     MASU_VK_DEVICE(MASU_VK_MEMBER)
     MASU_VK_OPTIONAL(MASU_VK_MEMBER)
+    MASU_VK_RAYS(MASU_VK_MEMBER)
 #undef MASU_VK_MEMBER
     VkInstance instance;
     VkPhysicalDevice physical;
@@ -97,6 +108,7 @@ typedef struct masu_vk {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     VkQueueFamilyProperties queue_family;
+    VkPhysicalDeviceAccelerationStructurePropertiesKHR rays; /* where the functions are there */
 } masu_vk;
 
 /* Loads the table and checks the device floor: API version, queue family, formats, limits. */

@@ -46,10 +46,14 @@ $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 # Rays as the truth of ambient occlusion.
 $(BUILD)/tests/gpu/test_ao: LIBS += -lembree3
 
+# Rays as the truth of rays.
+$(BUILD)/tests/gpu/test_trace: LIBS += -lembree3
+
 # What masu-bake makes of meshes, tested apart from its command line.
 BAKE_OBJECTS := $(call objects,$(wildcard tools/bake_*.c) tools/probe_light.c) $(SDFC_OBJECTS) $(CLI_OBJECTS)
-$(BUILD)/tests/unit/test_bake_detail $(BUILD)/tests/unit/test_probes: LIBS = -lcmocka $(BAKE_LIBS)
-$(BUILD)/tests/unit/test_bake_detail $(BUILD)/tests/unit/test_probes: $(BAKE_OBJECTS)
+BAKE_TESTS := $(addprefix $(BUILD)/tests/unit/test_,bake_detail probes trace_textures)
+$(BAKE_TESTS): LIBS = -lcmocka $(BAKE_LIBS)
+$(BAKE_TESTS): $(BAKE_OBJECTS)
 
 # Light probes as the tools know them, beside what the GPU makes of them.
 $(BUILD)/tests/gpu/test_probes: $(call objects,tools/probe_light.c)
@@ -75,13 +79,13 @@ $(BUILD)/stiff/%.truth.c: tests/stiff/%.sdf $(BUILD)/bin/masu-sdfc
 	@mkdir -p $(@D)
 	$(V)$(BUILD)/bin/masu-sdfc $< --c $@ --quiet
 
-$(BUILD)/tests/gpu/test_stiff: | $(STIFF) $(STIFF:.masu=.truth.so)
+$(BUILD)/tests/gpu/test_stiff $(BUILD)/tests/gpu/test_specular_sdf: | $(STIFF) $(STIFF:.masu=.truth.so)
 
 # ---- Fuzzing. Seeds are whole files; without any, a fuzzer starts from nothing. ------------------
 
 # A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
 # one.
-FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods)
+FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace)
 FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(call objects,tests/fuzz/seed_scene.c tests/unit/support_blob.c)
@@ -92,6 +96,8 @@ $(BUILD)/tests/fuzz/textures.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 33
 $(BUILD)/tests/fuzz/lods.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 65
+$(BUILD)/tests/fuzz/trace.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 257
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 
 # Every feature in a few lines, and a scene.

@@ -10,6 +10,7 @@
  *   bake_image.c, bake_texel.c, bake_texture.c   pictures to texels, mips, blocks
  *   bake_trace.c, bake_path.c                 rays and paths of light through the scene
  *   bake_probes.c, bake_probe_report.c        light probes, and what they are off by
+ *   bake_bvh.c, bake_trace_texture.c          trees for rays of reflections, and pictures for them
  *   bake_sdf.c                                the scene's march shader, by the shader tools
  *   bake_blob.c, bake_file.c                  bytes, and files that are written whole
  *
@@ -21,6 +22,7 @@
 #include "bake_process.h"
 #include "bake_scene.h"
 #include "bake_texture.h"
+#include "bake_trace_texture.h"
 #include "cli.h"
 #include "masu.h"
 #include "transparents.h"
@@ -95,9 +97,18 @@ static json_t *detail_json(const masu_bake_detail *d) {
                      (json_int_t)d->occluders.too_small);
 }
 
+static json_t *reflections_json(const masu_bake_bvh_report *r) {
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:f}", "meshes",
+                     (json_int_t)r->meshes, "instances", (json_int_t)r->instances, "nodes",
+                     (json_int_t)r->nodes, "triangles", (json_int_t)r->triangles, "bytes",
+                     (json_int_t)r->bytes, "depth", (json_int_t)r->depth, "without_area",
+                     (json_int_t)r->flat, "too_small", (json_int_t)r->small, "sah_cost", r->cost,
+                     "seconds", r->seconds);
+}
+
 static bool write_stats(const char *path, const masu_bake_request *request,
                         const masu_bake_content *content, const masu_bake_buffer *blob,
-                        double started) {
+                        const masu_bake_bvh_report *bvh, double started) {
     const char *input = request->input;
     masu_blob_header header;
     memcpy(&header, blob->data, sizeof header);
@@ -126,6 +137,8 @@ static bool write_stats(const char *path, const masu_bake_request *request,
                   (json_int_t)t.drawn_triangles, "warnings", (json_int_t)masu_cli_warnings(),
                   "bounds", bounds, "sections", sections, "detail", detail_json(request->detail),
                   "seconds", now() - started, "peak_bytes", (json_int_t)peak_memory());
+    if (root && request->reflections->wanted)
+        json_object_set_new(root, "reflections", reflections_json(bvh));
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
     json_decref(root);
     if (!text) { /* the input's name is not UTF-8 */
@@ -224,19 +237,24 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
     bool good = is_scene(request->input) ? masu_bake_read_scene(request, content)
                                          : masu_bake_bare_model(request, content);
     if (!good) return false;
+    content->pictures_wanted = request->reflections->wanted;
+    content->picture_side = request->reflections->texture_size;
     good = masu_bake_make_textures(content, request->texture_path);
     if (!good) return false;
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
     masu_bake_sort_occluders(content);
     masu_bake_drop_occluders(content);
+    masu_bake_bvh_report bvh;
+    if (!masu_bake_make_bvh(content, request->reflections, &bvh)) return false;
+    masu_bake_trace_textures(content);
     if (!add_probes(request->probes, report, content)) return false;
     if (!output) return true;
     masu_bake_buffer blob = {0};
     masu_bake_make_blob(content, &blob);
     masu_cli_progress("writing %s", output);
     good = accepted(request->input, &blob) && masu_bake_write_file(output, blob.data, blob.bytes) &&
-           (!stats || write_stats(stats, request, content, &blob, started));
+           (!stats || write_stats(stats, request, content, &blob, &bvh, started));
     masu_cli_progress_clear();
     if (good && !masu_cli_quiet()) print_summary(output, content, blob.bytes);
     masu_bake_release(&blob);
@@ -246,8 +264,10 @@ static bool bake(const masu_bake_request *request, const char *output, const cha
 static int run(masu_cli *cli) {
     masu_bake_detail detail = {.levels = 0};
     masu_bake_probe_settings probes = masu_bake_probe_defaults();
+    masu_bake_reflections reflections = {0};
     masu_bake_request request = {
-        .models_directory = ASSIMP_MODELS, .detail = &detail, .probes = &probes};
+        .models_directory = ASSIMP_MODELS, .detail = &detail, .probes = &probes,
+        .reflections = &reflections};
     bool report = false;
     const char *output = NULL, *stats = NULL;
     for (;;) {

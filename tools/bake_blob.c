@@ -62,6 +62,7 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = "update_previous_spirv",
         [MASU_BLOB_VELOCITY_SPIRV] = "velocity_spirv",
         [MASU_BLOB_OCCLUSION_SPIRV] = "occlusion_spirv",
+        [MASU_BLOB_TRACE_SDF_SPIRV] = "specular_trace_sdf_spirv",
         [MASU_BLOB_SHADOW] = "shadow",
         [MASU_BLOB_SLOTS] = "slots",
         [MASU_BLOB_GROUPS] = "groups",
@@ -76,6 +77,13 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_TEXELS] = "texels",
         [MASU_BLOB_PROBES] = "probes",
         [MASU_BLOB_PROBE_DATA] = "probe_data",
+        [MASU_BLOB_TRACE_NODES] = "trace_nodes",
+        [MASU_BLOB_TRACE_TRIANGLES] = "trace_triangles",
+        [MASU_BLOB_TRACE_MESHES] = "trace_meshes",
+        [MASU_BLOB_TRACE_INSTANCES] = "trace_instances",
+        [MASU_BLOB_REFLECTIONS] = "reflections",
+        [MASU_BLOB_TRACE_TEXTURES] = "trace_textures",
+        [MASU_BLOB_TRACE_TEXELS] = "trace_texels",
     };
     return names[kind];
 }

@@ -29,6 +29,7 @@ static bool range_ok(uint32_t first, uint32_t count, uint64_t total) {
 
 static const char *check_sections(const masu_bake_content *c) {
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        if (!masu_bake_stride(kind)) continue; /* no such section */
         if (c->section[kind].bytes % masu_bake_stride(kind))
             return "a section with half an element";
         if (masu_bake_count(c, kind) > INT32_MAX) return "a section of 2^31 elements or more";

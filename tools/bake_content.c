@@ -31,6 +31,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_VELOCITY_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_OCCLUSION_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_TRACE_SDF_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_SHADOW] = sizeof(masu_blob_shadow),
     [MASU_BLOB_SLOTS] = sizeof(float),
     [MASU_BLOB_GROUPS] = sizeof(masu_blob_group),
@@ -48,6 +49,13 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_PROBE_DATA] = sizeof(uint32_t),
     [MASU_BLOB_ENVIRONMENT_MAP] = sizeof(masu_blob_environment_map),
     [MASU_BLOB_ENVIRONMENT_TEXELS] = sizeof(uint32_t),
+    [MASU_BLOB_TRACE_NODES] = sizeof(masu_blob_trace_node),
+    [MASU_BLOB_TRACE_TRIANGLES] = sizeof(masu_blob_trace_triangle),
+    [MASU_BLOB_TRACE_MESHES] = sizeof(masu_blob_trace_mesh),
+    [MASU_BLOB_TRACE_INSTANCES] = sizeof(uint32_t),
+    [MASU_BLOB_REFLECTIONS] = sizeof(masu_blob_reflections),
+    [MASU_BLOB_TRACE_TEXTURES] = sizeof(masu_blob_trace_texture),
+    [MASU_BLOB_TRACE_TEXELS] = sizeof(uint32_t),
 };
 
 /* ---- arrays ---- */
@@ -107,6 +115,9 @@ void masu_bake_content_release(masu_bake_content *content) {
     masu_bake_release(&content->images);
     masu_bake_release(&content->image_text);
     masu_bake_release(&content->image_data);
+    masu_bake_release(&content->traced);
+    masu_bake_release(&content->pictures);
+    masu_bake_release(&content->picture_texels);
 }
 
 /* ---- names ---- */
@@ -467,6 +478,14 @@ void masu_bake_sort_instances(masu_bake_content *content) {
         sorted[place[i]] = moved;
     }
     if (count) memcpy(instances, sorted, count * sizeof *sorted);
+    if (content->traced.bytes) {
+        masu_bake_buffer traced = {0};
+        masu_bake_append(&traced, NULL, count);
+        for (size_t i = 0; i < content->traced.bytes; i++)
+            traced.data[place[i]] = content->traced.data[i];
+        masu_bake_release(&content->traced);
+        content->traced = traced;
+    }
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_LIGHTS); i++) {
         masu_blob_light *light = &MASU_BAKE_LIGHTS(content)[i];
         if (light->parent != MASU_BLOB_NONE) light->parent = place[light->parent];

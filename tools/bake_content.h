@@ -36,6 +36,13 @@ typedef struct masu_bake_content {
     masu_bake_buffer images;     /* masu_bake_image */
     masu_bake_buffer image_text; /* their names, each with its NUL */
     masu_bake_buffer image_data; /* files that lie inside a model */
+    float sdf_glossiest;         /* least roughness of the SDF's surfaces */
+    masu_bake_buffer traced;     /* what the scene says of the first so many instances: bake_bvh.h */
+    /* Small pictures of the textures, where rays are traced: bake_trace_texture.h. */
+    masu_bake_buffer pictures;       /* masu_bake_trace_row */
+    masu_bake_buffer picture_texels; /* uint32_t */
+    uint32_t picture_side;           /* texels along the longer side; 0: of colours none are kept */
+    bool pictures_wanted;
 } masu_bake_content;
 
 /* A picture: a file, or `data_bytes` of one at `data` of image_data; its name is then made up. */

@@ -306,7 +306,8 @@ static bool place(const masu_bake_json *model, const char *directory,
     }
     if (problem) return masu_bake_json_wrong(model, "gives %s", problem);
     s->residence = g->residence;
-    return read_group(model, content, first) && read_occluder(model, content, first);
+    return read_group(model, content, first) && read_occluder(model, content, first) &&
+           masu_bake_read_traced(model, content, first);
 }
 
 static bool read_model(const masu_bake_json *model, const char *directory,
@@ -315,7 +316,7 @@ static bool read_model(const masu_bake_json *model, const char *directory,
     static const char *const members[] = {"file",   "mesh",     "name",  "group", "moving",
                                           "translate", "rotate",   "rotate_y", "scale", "fit",
                                           "material",  "materials", "occluder", "merge",
-                                          "lights",    NULL};
+                                          "lights",    "traced",   NULL};
     const char *file = NULL;
     double merge = 0;
     if (!masu_bake_json_object(model, members) || !masu_bake_json_string(model, "file", &file) ||

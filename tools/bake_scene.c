@@ -202,9 +202,11 @@ static bool read_all(const masu_bake_json *scene, const char *directory,
     static const char *const members[] = {"models",    "camera", "sun",      "ambient",
                                           "sky",       "fog",    "exposure", "sdf",
                                           "lods",      "occluders", "probes", "lights",
-                                          "ambient_occlusion", "environment", NULL};
+                                          "ambient_occlusion", "environment", "reflections",
+                                          NULL};
     if (!masu_bake_json_object(scene, members) || !read_detail(scene, request->detail) ||
         (request->probes && !masu_bake_read_probes(scene, request->probes)) ||
+        !masu_bake_read_reflections(scene, request->reflections) ||
         !masu_bake_read_models(scene, directory, request, content)) {
         return false;
     }
@@ -226,7 +228,8 @@ static bool read_all(const masu_bake_json *scene, const char *directory,
     char *path = NULL;
     if (source[0] != '/' && strcmp(directory, ".") != 0) path = masu_bake_join(directory, source);
     bool good =
-        masu_bake_compile_march(content, path ? path : source, &occlusion, request->variants);
+        masu_bake_compile_march(content, path ? path : source, &occlusion,
+                                request->reflections->wanted, request->variants);
     free(path);
     return good;
 }

@@ -8,6 +8,7 @@
 #ifndef MASU_BAKE_SCENE_H
 #define MASU_BAKE_SCENE_H
 
+#include "bake_bvh.h"
 #include "bake_content.h"
 #include "bake_import.h"
 #include "bake_detail.h"
@@ -30,6 +31,7 @@ typedef struct masu_bake_request {
     bool variants;                /* with the marching variants for comparisons */
     const char *models_directory; /* what "@assimp/" stands for */
     masu_bake_detail *detail;     /* filled */
+    masu_bake_reflections *reflections; /* filled in */
     masu_bake_probe_settings *probes; /* what the scene says of them is filled in */
 } masu_bake_request;
 

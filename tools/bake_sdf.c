@@ -105,6 +105,7 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
                      scene->slot_count ? scene->slots : &no_slot,
                      (scene->slot_count ? scene->slot_count : 1) * sizeof(float));
     *dynamic = scene->dynamic;
+    content->sdf_glossiest = (float)scene->glossiest;
 }
 
 /* `scene` is the caller's to release, whatever is returned. */
@@ -303,14 +304,24 @@ static char *include_option(const char *directory) {
     return option;
 }
 
-enum { ALWAYS, UPDATED, DYNAMIC, VARIANT, WITHOUT_RASTER, OCCLUSION };
+enum {
+    ALWAYS,
+    UPDATED,
+    DYNAMIC,
+    VARIANT,
+    WITHOUT_RASTER,
+    OCCLUSION,
+    REFLECTED_STILL,
+    REFLECTED_DYNAMIC
+};
 
 /* The shaders that are compiled together with the scene's field, and the sections they go to. */
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
     int when; /* always; with slots that change, or with time; with --variants, and then only
-                 without polygons; with shadows or ambient occlusion */
+                 without polygons; with shadows or ambient occlusion; with reflections and slots that
+                 change not, or do */
 } scene_shaders[] = {
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
     {"update.comp", "-DMASU_MOTION=1", "before.raw", "before.spv", MASU_BLOB_UPDATE_PREVIOUS_SPIRV,
@@ -326,13 +337,19 @@ static const struct {
      VARIANT},
     {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
      WITHOUT_RASTER},
-    {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION}};
+    {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION},
+    {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
+     REFLECTED_STILL},
+    {"specular_trace_sdf.comp", "-DMASU_MOTION=1", "mirror.raw", "mirror.spv",
+     MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC}};
 
-static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool variants,
-                   bool has_raster) {
+static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool reflected,
+                   bool variants, bool has_raster) {
     if (when == UPDATED) return dynamic || anchored;
     if (when == DYNAMIC) return dynamic;
     if (when == OCCLUSION) return occlusion;
+    if (when == REFLECTED_STILL) return reflected && !dynamic;
+    if (when == REFLECTED_DYNAMIC) return reflected && dynamic;
     if (when == WITHOUT_RASTER) return variants && !has_raster;
     return when == ALWAYS || variants;
 }
@@ -362,7 +379,8 @@ static bool try_blocks(const masu_sdfc_result *scene, const char *directory, cha
 }
 
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool variants) {
+                             const masu_bake_occlusion *occlusion, bool reflected,
+                             bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
@@ -376,7 +394,7 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
-        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, variants, has_raster))
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, reflected, variants, has_raster))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),

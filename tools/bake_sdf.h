@@ -23,10 +23,10 @@ typedef struct masu_bake_occlusion {
 
 /* Reads the scene's GLSL and fills MARCH_SPIRV. The content's instances and SDF parameters are
  * complete: they decide how the shader is compiled. A .sdf brings its own parameters, which are
- * added. Reports errors under the GLSL's own name and
- * lines. */
+ * added. reflected: rays of reflections meet it. Reports errors under the GLSL's own name and lines. */
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool variants);
+                             const masu_bake_occlusion *occlusion, bool reflected,
+                             bool variants);
 
 /* Whether a source is a file in the language of docs/sdf.md. */
 bool masu_bake_is_sdf(const char *path);

@@ -12,6 +12,7 @@
 #include "bake_image.h"
 #include "bake_mask.h"
 #include "bake_texel.h"
+#include "bake_trace_texture.h"
 #include "cli.h"
 
 #include <stdlib.h>
@@ -33,6 +34,9 @@ typedef struct texture {
     uint8_t alpha; /* what AUTO came to */
     bool absolute; /* roughness has the material's factor in it already */
     masu_bake_buffer blocks;
+    bool traced; /* it keeps a picture for rays */
+    uint32_t traced_side;
+    masu_bake_trace_picture picture;
     uint32_t array, layer;
 } texture;
 
@@ -135,6 +139,20 @@ static void encode_surface(const float *level, const float *normals, size_t texe
     }
 }
 
+/* What rays see of a mip; `bytes`: what it was encoded as, of masks their alpha. Nothing of normals and
+ * occlusion, nor of what is blended, which rays pass by. */
+static void keep_picture(texture *t, const float *level, const uint8_t *bytes, uint32_t w,
+                         uint32_t h, uint32_t mip) {
+    bool mask = t->format == MASU_TEXTURE_BC3_SRGB;
+    if (!t->traced) return;
+    if (t->wanted.slot == MASU_SLOT_SURFACE) {
+        masu_bake_trace_surface(&t->picture, bytes, (size_t)w * h, mip == 0, mip + 1 == t->mips);
+    } else if (t->wanted.slot == MASU_SLOT_EMISSIVE ||
+               (t->wanted.slot == MASU_SLOT_BASE && !(mask && t->alpha == MASU_BAKE_ALPHA_BLEND))) {
+        masu_bake_trace_colors(&t->picture, t->traced_side, level, w, h, mask ? bytes : NULL);
+    }
+}
+
 /* All mips of `level`, which is used up; `normals`, of the same size, may be NULL. */
 static void finish(texture *t, float *level, float *normals) {
     size_t texels = (size_t)t->width * t->height;
@@ -156,6 +174,7 @@ static void finish(texture *t, float *level, float *normals) {
         if (t->alpha == MASU_BAKE_ALPHA_MASK && by_alpha) {
             encode_mask(t, level, w, h, mip, &wanted, bytes, blocks);
         }
+        keep_picture(t, level, bytes, w, h, mip);
         if (mip + 1 == t->mips) break;
         step_down(level, scratch, w, h, by_alpha);
         if (normals) step_down(normals, scratch, w, h, false);
@@ -301,7 +320,9 @@ static uint32_t obtain(maker *m, const request *wanted) {
         m->textures = grown;
     }
     texture *t = &m->textures[m->count];
-    *t = (texture){.wanted = *wanted};
+    *t = (texture){.wanted = *wanted,
+                   .traced = m->content->pictures_wanted,
+                   .traced_side = m->content->picture_side};
     masu_cli_progress("texture %u", m->count + 1);
     switch (wanted->slot) {
     case MASU_SLOT_NORMAL: make_normal(m, t); break;
@@ -426,6 +447,7 @@ static void write_arrays(maker *m, uint32_t made) {
         }
         MASU_BAKE_ARRAY(c, MASU_BLOB_TEXTURES, masu_blob_texture)[t->array].layers++;
         masu_bake_append(texels, t->blocks.data, t->blocks.bytes);
+        masu_bake_trace_keep(c, t->array, t->layer, &t->picture);
     }
     masu_bake_append(texels, NULL, (size_t)(-texels->bytes % MASU_BLOB_ALIGN));
 }
@@ -487,7 +509,10 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
 }
 
 static void forget(maker *m) {
-    for (uint32_t i = 0; i < m->count; i++) masu_bake_release(&m->textures[i].blocks);
+    for (uint32_t i = 0; i < m->count; i++) {
+        masu_bake_release(&m->textures[i].blocks);
+        masu_bake_release(&m->textures[i].picture.texels);
+    }
     m->count = 0;
 }
 

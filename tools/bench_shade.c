@@ -20,7 +20,7 @@ static double mix(double a, double b, double u) { return a + (b - a) * u; }
 
 /* ---- sky.glsl -------------------------------------------------------------------------------- */
 
-static void sky(const masu_view *v, const double direction[3], double out[3]) {
+void masu_shade_open_sky(const masu_view *v, const double direction[3], double out[3]) {
     double u = sqrt(clamped(direction[1], 0, 1));
     for (int c = 0; c < 3; c++) out[c] = mix(v->sky_horizon[c], v->sky_zenith[c], u);
 }
@@ -28,7 +28,7 @@ static void sky(const masu_view *v, const double direction[3], double out[3]) {
 void masu_shade_sky(const masu_view *v, const double direction[3], double out[3]) {
     double towards = clamped(dot(direction, v->sun_direction), 0, 1);
     double glow = 0.25 * pow(towards, 350) + 0.05 * pow(towards, 12);
-    sky(v, direction, out);
+    masu_shade_open_sky(v, direction, out);
     for (int c = 0; c < 3; c++) out[c] += v->sun_color[c] * glow;
 }
 
@@ -83,19 +83,17 @@ static double matte(double f0, double f90, double rest, albedo a) {
 /* As a texel of `steps` + 1 levels. */
 static double stored(double x, double steps) { return rint(clamped(x, 0, 1) * steps) / steps; }
 
-void masu_shade_surface(const masu_view *view, const double direction[3], const double n[3],
-                        const double material[8], double out[3]) {
-    const double *emissive = material + 4, *l = view->sun_direction;
-    double color[3], v[3], h[3], mirror_way[3], reflected[3];
-    bool emits = emissive[0] > 0 || emissive[1] > 0 || emissive[2] > 0;
-    for (int c = 0; c < 3; c++) {
-        double given = emits ? emissive[c] / 16 : material[c];
-        double root = stored(sqrt(clamped(given, 0, 1)), 255);
-        color[c] = root * root;
-        out[c] = 16 * color[c];
-    }
-    if (emits) return;
-    double roughness = stored(material[3], 255), metallic = stored(material[7], 15);
+bool masu_shade_emits(const double material[8]) {
+    return material[4] > 0 || material[5] > 0 || material[6] > 0;
+}
+
+void masu_shade_exact(const masu_view *view, const double direction[3], const double n[3],
+                      const double material[8], double lit[3], double mirrored[3]) {
+    const double *color = material, *l = view->sun_direction;
+    double v[3], h[3], mirror_way[3], reflected[3];
+    for (int c = 0; c < 3; c++) lit[c] = material[4 + c], mirrored[c] = 0;
+    if (masu_shade_emits(material)) return;
+    double roughness = material[3], metallic = material[7];
     for (int i = 0; i < 3; i++) v[i] = -direction[i];
     double n_v = clamped(dot(n, v), 1e-4, 1), n_l = clamped(dot(n, l), 0, 1);
     double alpha = fmax(roughness, MASU_TABLE_SMOOTHEST), toward = 2 * dot(n, direction);
@@ -114,7 +112,7 @@ void masu_shade_surface(const masu_view *view, const double direction[3], const 
         lobe = specular_lobe(n, h, alpha, n_l, n_v);
         f5 = pow(clamped(1 - length / 2, 0, 1), 5);
     }
-    sky(view, mirror_way, reflected);
+    masu_shade_open_sky(view, mirror_way, reflected);
     double brightest = fmax(color[0], fmax(color[1], color[2]));
     double metal_f90 = fmin(50 * brightest, 1), f90 = mix(1, metal_f90, metallic);
     double matte_rest = rest_color(0.04, 1, lost(all));
@@ -127,9 +125,24 @@ void masu_shade_surface(const masu_view *view, const double direction[3], const 
                    color[c] * below * (1 - matte(0.04, 1, matte_rest, lit_by)) /
                        fmax(1 - matte(0.04, 1, matte_rest, all), 1e-6);
         double mirror = f0 * seen.white + (f90 - f0) * seen.weight;
-        out[c] = view->sun_color[c] * f * n_l + view->ambient[c] * (rest + color[c] * below) +
-                 mirror * mix(reflected[c], view->ambient[c], roughness);
+        lit[c] = view->sun_color[c] * f * n_l + view->ambient[c] * (rest + color[c] * below);
+        mirrored[c] = mirror * mix(reflected[c], view->ambient[c], roughness);
     }
+}
+
+void masu_shade_surface(const masu_view *view, const double direction[3], const double n[3],
+                        const double material[8], double out[3]) {
+    double rounded[8] = {0}, mirrored[3];
+    bool emits = masu_shade_emits(material);
+    for (int c = 0; c < 3; c++) {
+        double given = emits ? material[4 + c] / 16 : material[c];
+        double root = stored(sqrt(clamped(given, 0, 1)), 255);
+        rounded[emits ? 4 + c : c] = emits ? 16 * root * root : root * root;
+    }
+    rounded[3] = stored(material[3], 255);
+    rounded[7] = stored(material[7], 15);
+    masu_shade_exact(view, direction, n, rounded, out, mirrored);
+    for (int c = 0; c < 3; c++) out[c] += mirrored[c];
 }
 
 void masu_shade_texel(const masu_view *view, const double direction[3], const uint8_t albedo[4],

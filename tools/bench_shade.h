@@ -18,6 +18,13 @@ void masu_shade_sky(const masu_view *view, const double direction[3], double out
 /* material: as masu_truth.material gives it. */
 void masu_shade_surface(const masu_view *view, const double direction[3], const double normal[3],
                         const double material[8], double out[3]);
+/* The sky alone, without the glow around the sun: what surfaces mirror. */
+void masu_shade_open_sky(const masu_view *view, const double direction[3], double out[3]);
+/* A surface without the rounding, in two parts: what it mirrors of the open sky, by the lobe's albedo, and
+ * the rest, sun and ambient light. What emits does nothing else. */
+bool masu_shade_emits(const double material[8]);
+void masu_shade_exact(const masu_view *view, const double direction[3], const double normal[3],
+                      const double material[8], double lit[3], double mirrored[3]);
 /* A texel of MASU_READBACK_ALBEDO and one of _NORMAL, as light.comp reads them. */
 void masu_shade_texel(const masu_view *view, const double direction[3], const uint8_t albedo[4],
                       uint32_t normal, double out[3]);

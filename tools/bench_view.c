@@ -43,19 +43,12 @@ static bool look(const masu_camera *c, masu_view *v) {
     return true;
 }
 
-bool masu_view_of(const masu_scene *scene, const masu_camera *camera, double time, uint32_t width,
-                  uint32_t height, masu_view *out, char *error, size_t error_size) {
+bool masu_view_seen(const masu_scene *scene, const masu_camera *camera, uint32_t width,
+                    uint32_t height, masu_view *out, char *error, size_t error_size) {
     memset(out, 0, sizeof *out);
     masu_scene_view blob = masu_scene_look(scene);
-    if (!blob.sdf || blob.sdf->has_raster) {
-        snprintf(error, error_size, "%s",
-                 blob.sdf ? "the scene has polygons, which the truth does not know"
-                          : "the scene has no SDF");
-        return false;
-    }
     out->width = width;
     out->height = height;
-    out->time = (double)(float)time; /* as the shaders see it */
     if (!look(camera, out)) {
         snprintf(error, error_size, "the camera looks nowhere");
         return false;
@@ -70,6 +63,20 @@ bool masu_view_of(const masu_scene *scene, const masu_camera *camera, double tim
     widen(e->sky_zenith, out->sky_zenith);
     widen(e->sky_horizon, out->sky_horizon);
     out->exposure = (double)e->exposure;
+    return true;
+}
+
+bool masu_view_of(const masu_scene *scene, const masu_camera *camera, double time, uint32_t width,
+                  uint32_t height, masu_view *out, char *error, size_t error_size) {
+    masu_scene_view blob = masu_scene_look(scene);
+    if (!blob.sdf || blob.sdf->has_raster) {
+        snprintf(error, error_size, "%s",
+                 blob.sdf ? "the scene has polygons, which the truth does not know"
+                          : "the scene has no SDF");
+        return false;
+    }
+    if (!masu_view_seen(scene, camera, width, height, out, error, error_size)) return false;
+    out->time = (double)(float)time; /* as the shaders see it */
     widen(blob.sdf->bounds_min, out->sdf_min);
     widen(blob.sdf->bounds_max, out->sdf_max);
     out->max_distance = (double)blob.sdf->max_distance;

@@ -25,6 +25,10 @@ typedef struct masu_view {
 bool masu_view_of(const masu_scene *scene, const masu_camera *camera, double time, uint32_t width,
                   uint32_t height, masu_view *out, char *error, size_t error_size);
 
+/* The same of any scene, without its SDF: time, parameters, bounds and max_distance are 0. */
+bool masu_view_seen(const masu_scene *scene, const masu_camera *camera, uint32_t width,
+                    uint32_t height, masu_view *out, char *error, size_t error_size);
+
 /* The ray through the centre of pixel (x, y). */
 typedef struct masu_view_ray {
     double direction[3]; /* unit */

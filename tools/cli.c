@@ -99,7 +99,8 @@ static void print_option(const masu_cli_option *option) {
     enum { COLUMN = 26 };
     char letter[5] = "    ";
     if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
-    int width = printf("  %s--%s%s%s", letter, option->name, option->value ? " " : "",
+    bool apart = option->value && option->value[0] != '[';
+    int width = printf("  %s--%s%s%s", letter, option->name, apart ? " " : "",
                        option->value ? option->value : "");
     if (width >= COLUMN) {
         putchar('\n');
@@ -154,7 +155,9 @@ static int leave(masu_cli *cli, int exit_code) {
 
 /* `attached` is the value that came in the same word, or NULL. */
 static int take_option(masu_cli *cli, const masu_cli_option *option, const char *attached) {
-    if (option->value) {
+    if (option->value && option->value[0] == '[') {
+        cli->value = attached;
+    } else if (option->value) {
         if (!attached && cli->next >= cli->argc) {
             return leave(cli,
                          masu_cli_usage_error("%s needs a value: %s", cli->option, option->value));

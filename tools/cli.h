@@ -1,6 +1,7 @@
 /* cli.h: the command line of every Masu program, so that all of them read and speak alike.
  *
  *   --name VALUE, --name=VALUE, -n VALUE, -nVALUE
+ *                a value that may be left out only as --name=VALUE;
  *                before or after the arguments; `--` ends the options
  *   -h, --help, --version, --quiet
  *                in every program and subcommand, handled here
@@ -54,7 +55,8 @@ typedef struct masu_cli masu_cli;
 
 typedef struct masu_cli_option {
     const char *name;  /* long name without dashes; NULL ends the list */
-    const char *value; /* what the help calls the value, "FILE"; NULL: a switch, which takes none */
+    const char *value; /* what the help calls the value, "FILE"; NULL: a switch, which takes none;
+                          "[=N]": one that may be left out, --name=N */
     const char *help;  /* may hold '\n': the following lines are indented */
     int id;            /* > 0; what masu_cli_next returns */
     char letter;       /* -o as a short form of --output; 0: none */
@@ -79,7 +81,7 @@ typedef struct masu_cli_program {
 struct masu_cli {
     const masu_cli_program *program;
     const masu_cli_command *command;
-    const char *value;  /* of the option or argument that masu_cli_next returned */
+    const char *value;  /* of the option or argument that masu_cli_next returned; NULL: left out */
     const char *option; /* that option as written, "--size"; for messages */
     int exit_code;      /* after MASU_CLI_EXIT */
     int argc, next;     /* what is left of the command line */

@@ -15,6 +15,8 @@ extern const masu_cli_command masu_cmd_cull_bench;
 extern const masu_cli_command masu_cmd_draw_bench;
 extern const masu_cli_command masu_cmd_light_bench;
 extern const masu_cli_command masu_cmd_ao_bench;
+extern const masu_cli_command masu_cmd_specular_bench;
+extern const masu_cli_command masu_cmd_trace_bench;
 
 /* Options of every command that opens a device; ids from 900 on. */
 enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };
@@ -32,6 +34,17 @@ enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };
 
 /* Handles one of them; false if the id is another's. */
 bool masu_device_option(masu_cli *cli, int id, masu_headless_desc *host);
+
+/* --rays WAY: what finds the polygons in reflections. A device is asked for ray queries unless it
+ * is `compute`; a session begins with auto. */
+bool masu_rays_option(masu_cli *cli, masu_session_desc *d);
+#define MASU_RAYS_OPTION(id)                                                                       \
+    {                                                                                              \
+        "rays", "WAY",                                                                             \
+            "what finds polygons in reflections: compute; query, which takes a device with ray\n"  \
+            "queries; auto, which takes them on GPUs (default auto)",                              \
+            id, 0                                                                                  \
+    }
 
 /* --size WxH: what a PNG may hold, 16384 a side and 64 Mi pixels; said before the work is done. */
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size);

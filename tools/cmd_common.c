@@ -16,6 +16,16 @@ bool masu_device_option(masu_cli *cli, int id, masu_headless_desc *host) {
     }
 }
 
+bool masu_rays_option(masu_cli *cli, masu_session_desc *d) {
+    static const char *const ways[] = {"auto", "compute", "query", NULL};
+    static const masu_switch switches[] = {MASU_AUTO, MASU_OFF, MASU_ON};
+    uint32_t way = 0;
+    if (!masu_cli_choice(cli, ways, &way)) return false;
+    d->desc.ray_query = switches[way];
+    d->host.ray_query = switches[way] != MASU_OFF;
+    return true;
+}
+
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {
     if (!masu_cli_extent(cli, MASU_IMAGE_SIDE_MAX, &size->width, &size->height)) return false;
     if ((uint64_t)size->width * size->height <= MASU_IMAGE_PIXELS_MAX) return true;

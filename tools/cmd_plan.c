@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT };
+enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT, OPTION_RAYS };
 
 static const char *format_name(VkFormat format) {
     switch (format) {
@@ -194,7 +194,8 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
 }
 
 static int run(masu_cli *cli) {
-    masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}}};
+    masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
+                           .host = {.ray_query = true}};
     bool json = false;
     for (;;) {
         int id = masu_cli_next(cli);
@@ -208,6 +209,9 @@ static int run(masu_cli *cli) {
                 return MASU_CLI_USAGE;
             continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
+        case OPTION_RAYS:
+            if (!masu_rays_option(cli, &d)) return MASU_CLI_USAGE;
+            continue;
         case OPTION_JSON: json = true; continue;
         case MASU_CLI_ARGUMENT:
             if (d.scene_path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
@@ -238,6 +242,7 @@ static const masu_cli_option options[] = {
     {"json", NULL, "print JSON", OPTION_JSON, 0},
     {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
     {"split-memory", NULL, "one block per memory role, even on unified memory", OPTION_SPLIT, 0},
+    MASU_RAYS_OPTION(OPTION_RAYS),
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
 

@@ -30,15 +30,19 @@ enum {
     OPTION_CULL,
     OPTION_CASTERS,
     OPTION_ANISOTROPY,
-    OPTION_LOD_ERROR
+    OPTION_LOD_ERROR,
+    OPTION_REFERENCE,
+    OPTION_RAYS
 };
 
 #define PI 3.14159265358979323846
 #define FRAMES_MAX 100000u
+#define REFERENCE_RAYS 1024u /* per pixel: below it the truth's own noise is seen */
 
 typedef struct render_options {
     const char *output, *stats;
     uint32_t frames, rung;
+    uint32_t rays; /* per pixel of the reference, a frame each; 0: no reference */
     double time, time_step;
     double sun[2], turbidity; /* azimuth and elevation, degrees */
     double exposure;          /* 0: the scene's */
@@ -127,14 +131,19 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
         (double)plan.rungs[o->rung].render_width * (double)plan.rungs[o->rung].render_height;
     json_object_set_new(
         root, "counts",
-        json_pack("{s:I, s:I, s:I, s:I, s:f, s:I, s:I, s:f, s:f, s:I}", "draws", (json_int_t)last->draws,
+        json_pack("{s:I, s:I, s:I, s:I, s:f, s:I, s:I, s:f, s:f, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "draws", (json_int_t)last->draws,
                   "triangles", (json_int_t)last->triangles, "sdf_evals",
                   (json_int_t)last->sdf_evals, "sdf_hits", (json_int_t)last->sdf_hits,
                   "sdf_evals_per_pixel", (double)last->sdf_evals / pixels, "sdf_unconverged",
                   (json_int_t)last->sdf_unconverged, "replaced", (json_int_t)last->replaced,
                   "shadow_evals_per_pixel", (double)last->shadow_evals / pixels,
                   "occlusion_evals_per_pixel", (double)last->occlusion_evals / pixels,
-                  "shadow_unconverged", (json_int_t)last->shadow_unconverged));
+                  "shadow_unconverged", (json_int_t)last->shadow_unconverged, "specular_tiles",
+                  (json_int_t)last->specular_tiles, "specular_rays", (json_int_t)last->specular_rays,
+                  "specular_hits", (json_int_t)last->specular_hits, "specular_sdf_hits",
+                  (json_int_t)last->specular_sdf_hits, "specular_nodes",
+                  (json_int_t)last->specular_nodes, "specular_evals",
+                  (json_int_t)last->specular_evals));
     json_t *views = json_array();
     for (uint32_t v = 0; v < last->view_count; v++) {
         const masu_view_stats *view = &last->views[v];
@@ -217,7 +226,8 @@ static bool measure(masu_session *s, const render_options *o, uint32_t frame,
     masu_frame_desc f = {.light = own_light ? &light : NULL,
                          .time = o->time + (double)frame * o->time_step,
                          .time_step = (float)o->time_step,
-                         .rung = o->rung};
+                         .rung = o->rung,
+                         .cut = o->rays && !frame}; /* the sum begins with the first one that counts */
     masu_commands commands;
     uint64_t callbacks = counts->allocations + counts->reallocations;
     uint64_t thread = masu_allocs_of_thread();
@@ -242,6 +252,19 @@ static bool measure(masu_session *s, const render_options *o, uint32_t frame,
     return true;
 }
 
+/* What the reference is made of; a scene that traces nothing has none, and its picture is the truth. */
+static void report_rays(const masu_session *s, const render_options *o, const masu_stats_info *stats) {
+    masu_plan_info plan;
+    masu_plan_of(s->m, &plan);
+    const masu_plan_rung *r = &plan.rungs[o->rung];
+    double pixels = (double)r->render_width * (double)r->render_height;
+    if (!stats->specular_rays) masu_cli_warn("nothing in the picture traces reflections");
+    if (masu_cli_quiet()) return;
+    masu_cli_progress_clear();
+    fprintf(stderr, "masu: reference: %u rays per pixel that mirrors, %.1f %% of the picture\n", o->rays,
+            100.0 * (double)stats->specular_rays / pixels);
+}
+
 /* With statistics a first frame is drawn and not counted: drivers compile at the first use of a
  * pipeline. */
 static int render_frames(masu_session *s, const render_options *o, const char *scene,
@@ -256,7 +279,7 @@ static int render_frames(masu_session *s, const render_options *o, const char *s
         code = masu_cli_error("%s", error);
     }
     for (uint32_t i = 0; i < o->frames && !code; i++) {
-        masu_cli_progress("frame %u of %u", i + 1, o->frames);
+        masu_cli_progress(o->rays ? "ray %u of %u of each pixel" : "frame %u of %u", i + 1, o->frames);
         if (!measure(s, o, i, counts, &samples[i], &stats, error, sizeof error)) {
             code = masu_cli_error("%s", error);
         } else if (o->output) {
@@ -265,6 +288,7 @@ static int render_frames(masu_session *s, const render_options *o, const char *s
     }
     if (!code && o->stats)
         code = write_stats(s, o, scene, samples, o->frames, &stats, stats.timed != 0);
+    if (!code && o->rays) report_rays(s, o, &stats);
     free(samples);
     return code;
 }
@@ -274,6 +298,8 @@ static int check(const masu_session_desc *d, const render_options *o) {
     if (!o->output && !o->stats)
         return masu_cli_usage_error("neither --output nor --stats is given");
     uint32_t rungs = masu_desc_resolved(&d->desc).rung_count;
+    if (o->rays && strchr(o->output ? o->output : "", '#'))
+        return masu_cli_usage_error("--reference makes one picture: --output %s names many", o->output);
     if (o->rung >= rungs)
         return masu_cli_usage_error("--rung %u does not exist, there are 0 to %u", o->rung,
                                     rungs - 1);
@@ -281,13 +307,15 @@ static int check(const masu_session_desc *d, const render_options *o) {
 }
 
 static int run(masu_cli *cli) {
-    masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}}};
+    masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
+                           .host = {.ray_query = true}};
     render_options o = {.frames = 1, .time_step = 1.0 / 60.0};
     static const char *const marches[] = {"auto",         "plain",     "fragment", "seed",
                                           "cone8",        "cones",     "checkerboard",
                                           "unpruned",     NULL};
     static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
     uint32_t poison = 0, march = MASU_MARCH_AUTO, cull = 0, casters = 0;
+    bool frames = false, step = false;
     double lod_error = 0.0;
     for (;;) {
         int id = masu_cli_next(cli);
@@ -300,6 +328,11 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_FRAMES:
             if (!masu_cli_uint(cli, 1, FRAMES_MAX, &o.frames)) return MASU_CLI_USAGE;
+            frames = true;
+            continue;
+        case OPTION_REFERENCE:
+            o.rays = REFERENCE_RAYS;
+            if (cli->value && !masu_cli_uint(cli, 1, FRAMES_MAX, &o.rays)) return MASU_CLI_USAGE;
             continue;
         case OPTION_RUNG:
             if (!masu_cli_uint(cli, 0, MASU_MAX_RUNGS - 1, &o.rung)) return MASU_CLI_USAGE;
@@ -309,6 +342,7 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_TIME_STEP:
             if (!masu_cli_double(cli, 0.0, 1e6, &o.time_step)) return MASU_CLI_USAGE;
+            step = true;
             continue;
         case OPTION_FLIGHT:
             if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight))
@@ -343,6 +377,9 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
+        case OPTION_RAYS:
+            if (!masu_rays_option(cli, &d)) return MASU_CLI_USAGE;
+            continue;
         case MASU_CLI_ARGUMENT:
             if (d.scene_path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
             d.scene_path = cli->value;
@@ -359,13 +396,18 @@ static int run(masu_cli *cli) {
         d.desc.rungs[r].occlusion = cull % 2 ? MASU_OFF : MASU_ON;
         d.desc.rungs[r].lod_error = (float)lod_error;
     }
+    if (o.rays && (frames || step)) {
+        return masu_cli_usage_error("--reference draws one moment, a frame for each ray: no %s",
+                                    frames ? "--frames" : "--time-step");
+    }
+    if (o.rays) o.frames = o.rays, o.time_step = 0.0;
     int code = check(&d, &o);
     if (code) return code;
     masu_vk_alloc_counts counts;
     VkAllocationCallbacks allocator = masu_vk_alloc_callbacks(&counts);
     d.desc.debug =
-        (masu_debug){.timestamps = o.stats != NULL, .counters = o.stats != NULL, .poison = poison,
-                     .casters = casters};
+        (masu_debug){.timestamps = o.stats != NULL, .counters = o.stats != NULL || o.rays,
+                     .poison = poison, .casters = casters, .reference = o.rays != 0};
     d.host.allocator = o.stats ? &allocator : NULL;
     d.host.message = masu_print_message;
     static masu_session s;
@@ -389,6 +431,10 @@ static const masu_cli_option options[] = {
      "output size in pixels, at most 16384 a side and 64 Mi in all\n(default 1920x1080)",
      OPTION_SIZE, 0},
     {"frames", "N", "frames to draw along the scene's camera path (default 1)", OPTION_FRAMES, 0},
+    {"reference", "[=N]",
+     "the truth of reflections, at one moment: N unfiltered rays from each pixel\n"
+     "(default 1024; 64 for what 64 rays look like), each weighted by the exact lobe", OPTION_REFERENCE,
+     0},
     {"rung", "R", "quality: 0 native, 1 at 0.8, 2 at 0.4 of the size and upscaled (default 0)",
      OPTION_RUNG, 0},
     {"time", "SECONDS", "time of the first frame (default 0)", OPTION_TIME, 0},
@@ -418,6 +464,7 @@ static const masu_cli_option options[] = {
      "fill all transient images with NaN before each frame (the picture must not change)",
      OPTION_POISON, 0},
     {"split-memory", NULL, "one block per memory role, even on unified memory", OPTION_SPLIT, 0},
+    MASU_RAYS_OPTION(OPTION_RAYS),
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
 

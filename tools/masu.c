@@ -11,7 +11,9 @@ int main(int argc, char **argv) {
     static const masu_cli_command *const commands[] = {&masu_cmd_render, &masu_cmd_upscale,
                                                        &masu_cmd_plan, &masu_cmd_march_bench,
                                                        &masu_cmd_cull_bench, &masu_cmd_draw_bench,
-                                                       &masu_cmd_light_bench, &masu_cmd_ao_bench, NULL};
+                                                       &masu_cmd_light_bench, &masu_cmd_ao_bench,
+                                                       &masu_cmd_specular_bench,
+                                                       &masu_cmd_trace_bench, NULL};
     static const masu_cli_program program = {
         .name = "masu",
         .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),

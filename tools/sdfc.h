@@ -65,6 +65,7 @@ typedef struct masu_sdfc_result {
     uint32_t slot_count;
     bool dynamic;  /* slots depend on parameters or time */
     bool anchored; /* slots depend on the anchor */
+    double glossiest; /* least roughness that a part which does not shine may have; 1: all do */
 } masu_sdfc_result;
 
 typedef struct masu_sdfc_options {

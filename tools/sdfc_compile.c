@@ -65,6 +65,21 @@ static void fill_part(const sdfc *c, int i, masu_sdfc_part *out) {
     }
 }
 
+/* Expressions that are no constants may have any value. */
+static double least_roughness(const sdfc *c) {
+    double least = 1;
+    for (int i = 0; i < c->part_count; i++) {
+        const int *value = c->materials[c->parts[i].material].value;
+        bool shines = false;
+        for (int k = 4; k < 7; k++)
+            shines = shines || (sdfc_constant(c, value[k]) && c->exprs[value[k]].value > 0);
+        if (shines) continue;
+        double roughness = sdfc_constant(c, value[3]) ? c->exprs[value[3]].value : 0;
+        least = fmin(least, fmax(roughness, 0));
+    }
+    return least;
+}
+
 static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->parts = sdfc_take(c, (size_t)c->part_count, sizeof *out->parts);
     for (int i = 0; i < c->part_count; i++) fill_part(c, i, &out->parts[i]);
@@ -82,6 +97,7 @@ static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->material_count = (uint32_t)c->material_count;
     out->param_count = (uint32_t)c->param_count;
     out->slot_count = c->slot_count;
+    out->glossiest = least_roughness(c);
     out->anchored = c->place_count > 0;
     for (int i = 0; i < c->dynamic_count; i++) {
         const sdfc_expr *e = &c->exprs[c->dynamic_slots[2 * i + 1]];

@@ -243,17 +243,22 @@ static bool write_scene(const track *t, ground *g, const char *folder, const cha
     key(out, end, crowd, stands, ",");
     key(out, end + 1, crowd, stands, ",");
     key(out, end + 10, high, middle, ",");
-    key(out, end + 11, high, middle, "");
+    /* Behind the third car of the grid. */
+    masu_bake_vec3 near = beside(t, 10, -0.4, 1.2), car = beside(t, 12, -3.2, 0.5);
+    key(out, end + 11, high, middle, ",");
+    key(out, end + 20, near, car, ",");
+    key(out, end + 21, near, car, "");
     fputs("    ]\n  },\n"
           "  \"sun\": {\"azimuth\": 230, \"elevation\": 42,\n"
           "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 300}},\n"
           "  \"sky\": {\"turbidity\": 3, \"ground\": [0.12, 0.13, 0.1]}, \"exposure\": 0.8,\n"
-          "  \"ambient_occlusion\": {\"radius\": 1.5},\n"
+          "  \"ambient_occlusion\": {\"radius\": 1.5}, \"reflections\": {\"cutoff\": 0.4},\n"
           "  \"fog\": {\"visibility\": 8000, \"falloff\": 0.004},\n  \"lods\": 3,\n  \"occluders\": 4\n}\n",
           out);
     if (!masu_cli_quiet()) {
-        printf("%s/forza.json: a lap of %.0f m; crowd at %.0f s, high at %.0f s\n", folder,
-               t->points[t->count - 1].along, end, end + 10);
+        printf("%s/forza.json: a lap of %.0f m; crowd at %.0f s, high at %.0f s, cars at %.0f s\n",
+               folder,
+               t->points[t->count - 1].along, end, end + 10, end + 20);
     }
     return masu_world_close(out, folder, "forza.json");
 }

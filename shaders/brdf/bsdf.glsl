@@ -30,6 +30,7 @@
 #ifndef MASU_BSDF_GLSL
 #define MASU_BSDF_GLSL
 
+#include "brdf/ggx.glsl"
 #include "brdf/tables.glsl"
 #include "shared/guard.glsl"
 #include "shared/pack.glsl"
@@ -64,14 +65,6 @@ struct masu_bsdf {
 #endif
 };
 
-/* Below 0.045 the square of alpha leaves what half floats can hold (Filament, section 4.4); the tables
- * begin there. */
-float masu_alpha(float roughness)
-{
-    float r = max(roughness, MASU_TABLE_SMOOTHEST);
-    return r * r;
-}
-
 float masu_schlick(float cosine)
 {
     float f = clamp(1.0 - cosine, 0.0, 1.0);
@@ -79,17 +72,12 @@ float masu_schlick(float cosine)
     return f2 * f2 * f;
 }
 
-/* D * G2 / (4 NoL NoV), times pi. The sine form of D keeps its precision for smooth surfaces, where
- * 1 - NoH^2 cancels (Filament, section 4.4.1). */
+/* D * G2 / (4 NoL NoV), times pi. */
 float masu_ggx(vec3 n, vec3 h, float alpha, float n_l, float n_v)
 {
-    float n_h = clamp(dot(n, h), 0.0, 1.0);
     vec3 sine = cross(n, h);
-    float a = n_h * alpha;
-    float k = alpha / (dot(sine, sine) + a * a);
-    float a2 = alpha * alpha;
-    float g = n_l * sqrt(a2 + (1.0 - a2) * n_v * n_v) + n_v * sqrt(a2 + (1.0 - a2) * n_l * n_l);
-    return k * k * 0.5 / max(g, 1e-12);
+    float k = masu_ggx_peak(clamp(dot(n, h), 0.0, 1.0), dot(sine, sine), alpha);
+    return k * k * 0.5 / masu_ggx_masking(alpha, n_l, n_v);
 }
 
 float masu_lost(masu_albedo a)

@@ -32,6 +32,17 @@ float masu_air_depth_sky(vec3 direction)
     return masu_fog_depth_sky(frame.fog.w, frame.air.y, frame.air.x, direction.y, frame.air.z);
 }
 
+/* The same along a ray that begins at a point relative to the eye; far below 0: it ends in the sky. */
+float masu_air_depth_from(vec3 point, vec3 direction, float far)
+{
+    float start = max(frame.air.z - masu_sqrt(dot(point, point)), 0.0);
+    float height = frame.air.x + point.y;
+    if (far < 0.0) {
+        return masu_fog_depth_sky(frame.fog.w, frame.air.y, height, direction.y, start);
+    }
+    return masu_fog_depth(frame.fog.w, frame.air.y, height, direction.y, start, far);
+}
+
 /* Of a share of light that comes through a layer of coverage `alpha` (1: all of what is seen). */
 vec3 masu_through_air(vec3 color, vec3 direction, float depth, float alpha)
 {

@@ -66,20 +66,25 @@ masu_around masu_ambient_at(vec3 rel, vec3 n)
 }
 
 /* b: of s; rel: the point, relative to the eye; seen: how much arrives of the sun and of the ambient
- * light. */
-masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen)
+ * light; kept: share of the light from everywhere that the base mirrors, and that its coat does: the rest
+ * is traced (specular_composite.comp). */
+masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, vec2 kept)
 {
     masu_around around = masu_ambient_at(rel, b.n);
     vec3 ambient = around.mirrored * (seen.y * s.occlusion);
     vec3 mirrored = reflect(-b.v, b.n);
     masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen.y * s.occlusion),
                             vec3(0.0), masu_bsdf_specular(b));
-    lit.specular = lit.mirror * masu_ambient_mirror(mirrored, s.roughness) * ambient;
+    if (kept.x > 0.0) {
+        lit.specular = kept.x * lit.mirror * masu_ambient_mirror(mirrored, s.roughness) * ambient;
+    }
 #ifdef MASU_SURFACE
     if (s.coat > 0.0) {
         float coat = masu_bsdf_coat(b);
         lit.mirror += coat;
-        lit.specular += coat * masu_ambient_mirror(mirrored, s.coat_roughness) * ambient;
+        if (kept.y > 0.0) {
+            lit.specular += kept.y * coat * masu_ambient_mirror(mirrored, s.coat_roughness) * ambient;
+        }
     }
 #endif
     masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb * seen.x);

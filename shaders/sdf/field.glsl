@@ -105,10 +105,25 @@ uint masu_part_count();
  * a tile: MASU_OWN_PARTS words. */
 shared uint masu_own_parts[MASU_OWN_PARTS];
 
+#ifdef MASU_OWN_PARTS_HALVES
+/* Each word holds two numbers; those of an invocation are its own, and an even count from an even one on. */
+uint masu_part_at(uint i)
+{
+    uint at = masu_list_first + i;
+    return masu_list_count == MASU_TILE_ALL ? i : masu_own_parts[at >> 1] >> 16u * (at & 1u) & 0xFFFFu;
+}
+
+void masu_own_part_write(uint at, uint part)
+{
+    uint other = masu_own_parts[at >> 1] & 0xFFFFu << 16u * (~at & 1u);
+    masu_own_parts[at >> 1] = other | part << 16u * (at & 1u);
+}
+#else
 uint masu_part_at(uint i)
 {
     return masu_list_count == MASU_TILE_ALL ? i : masu_own_parts[masu_list_first + i];
 }
+#endif
 #else
 uint masu_part_at(uint i)
 {
@@ -188,7 +203,8 @@ struct ray {
     float start, limit;
 };
 
-/* Read once: lavapipe would load and check each word of them again at every sample. */
+/* Read once: lavapipe would load and check each word of them again at every sample. Rays that do not begin at
+ * the eye put their own beginning here (reflected.glsl). */
 vec3 eye_hi = frame.sdf_eye_hi.xyz;
 vec3 eye_lo = frame.sdf_eye_lo.xyz;
 float safe_step = frame.sdf_min.w;
@@ -239,8 +255,8 @@ void clip_to_box(inout ray r, vec3 low, vec3 high)
 {
     vec3 d = mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
     vec3 inverse = 1.0 / d;
-    vec3 a = (low - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
-    vec3 b = (high - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz) * inverse;
+    vec3 a = (low - eye_hi - eye_lo) * inverse;
+    vec3 b = (high - eye_hi - eye_lo) * inverse;
     a = clamp(a, vec3(-masu_huge), vec3(masu_huge));
     b = clamp(b, vec3(-masu_huge), vec3(masu_huge));
     vec3 enter = min(a, b);

@@ -16,6 +16,10 @@
 
 #include "sdf/field.glsl"
 
+#ifndef MASU_MARCH_STEPS
+#define MASU_MARCH_STEPS pc.index.x
+#endif
+
 /* Direction and width of a pixel's ray. */
 ray ray_through(uvec2 at, uvec2 size, out float z_scale)
 {
@@ -249,7 +253,7 @@ void march_step(inout march_state m, ray r, float f)
     m.best_t = better ? m.t : m.best_t;
     m.best_f = better ? f : m.best_f;
     m.steps++;
-    bool spent = !hit && !gone && m.steps >= pc.index.x;
+    bool spent = !hit && !gone && m.steps >= MASU_MARCH_STEPS;
     if (spent) {
         masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
     }

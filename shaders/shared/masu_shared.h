@@ -55,6 +55,13 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_LIGHTS 14      /* points and spots of the frame */
 #define MASU_BIND_LIGHT_TILES 15 /* which of them reach a tile */
 #define MASU_BIND_PROBES 16
+/* What rays are traced against, and the tiles that trace any: where the plan has reflections. */
+#define MASU_BIND_TRACE 17           /* nodes, triangles, materials, texels: of the scene */
+#define MASU_BIND_TRACE_FRAME 18     /* top level, instances: of the frame */
+#define MASU_BIND_TRACE_VERTICES 19
+#define MASU_BIND_TRACE_TEXCOORDS 20
+#define MASU_BIND_SPECULAR_TILES 21
+#define MASU_BIND_TOP_LEVEL 22 /* of ray queries */
 
 /* Directional albedos of the specular lobe (shaders/brdf/tables.glsl, tools/make_split_sum.c). A table
  * has TABLE_SIZE nodes over sqrt(N.V) from 0 to 1, and TABLE_ROWS rows over perceptual roughness from
@@ -73,6 +80,11 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_TABLE_COAT_AVERAGE 33280
 #define MASU_TABLE_WORDS 16896 /* without coat */
 #define MASU_TABLE_WORDS_ALL 34304
+
+/* The tile of blue noise (shaders/noise/sequence.glsl, tools/make_blue_noise.c): a square of words, row
+ * after row. */
+#define MASU_BLUE_NOISE_SIZE 64
+#define MASU_BLUE_NOISE_WORDS 4096
 
 /* The atlas of occluder depth: the camera's view, below it the sun's. */
 #define MASU_ATLAS_WIDTH 256
@@ -133,6 +145,9 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_LOCAL_LIGHTS_MAX 4096
 #define MASU_TILE_LIGHTS_MAX 63
 
+/* Tiles with pixels whose reflections are traced, in uints: 0..2 arguments of the indirect dispatch (tiles, 1, 1),
+ * then from TILES_HEADER on the numbers of the tiles, in no particular order. */
+
 /* An SDF that reaches further than ANCHOR_FROM metres from the origin along an axis is compiled so
  * that its space can be anchored elsewhere; it is where the eye is that far out, at multiples of
  * ANCHOR_GRID. Below, fp32 resolves 0.5 mm or better. */
@@ -148,12 +163,32 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_MARCH_STEPS_MAX 2048
 /* The same of a shadow ray. */
 #define MASU_SHADOW_STEPS_MAX 128
+/* And of a reflected one. */
+#define MASU_REFLECTED_STEPS_MAX 256
 
 /* Ambient occlusion in screen space: most slices of a texel, most samples on a side of one. */
 #define MASU_AO_SLICES_MAX 8
 #define MASU_AO_STEPS_MAX 16
 /* No sample is farther away than this share of the picture's height. */
 #define MASU_AO_REACH 0.25
+
+/* Reflections: most neighbours of specular_reuse, of specular_filter; how far back a mean over frames may
+ * reach, 1/60 s. */
+#define MASU_REUSE_TAPS_MAX 16
+#define MASU_FILTER_TAPS_MAX 32
+#define MASU_SPECULAR_FRAMES_MAX 240
+
+/* Rays through triangles: shaders/trace/bvh.glsl, src/trace.h, src/blob.h. All buffers are uvec4:
+ *   static    header: first triangle, nodes, triangles, 0; from 1 on the nodes, NODE_UVEC4 each; triangles
+ *   frame     header: first record, nodes, records, 0; from 1 on the nodes; records, RECORD_UVEC4 each
+ *   vertices  as the blob has them: position, normal
+ * The walk keeps a word for each level of the tree over instances and of one mesh's. A ray that has looked at
+ * VISITS nodes hits nothing. */
+#define MASU_TRACE_NODE_UVEC4 3
+#define MASU_TRACE_RECORD_UVEC4 4
+#define MASU_TRACE_TOP_DEPTH 20
+#define MASU_TRACE_STACK 48
+#define MASU_TRACE_VISITS 4096
 
 /* Most cascades of the sun's shadow map. */
 #define MASU_CASCADES_MAX 4
@@ -180,7 +215,14 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_COUNTER_LIGHT_TESTS 18
 #define MASU_COUNTER_LIGHT_SHADED 19
 #define MASU_COUNTER_LIGHT_TILES_FULL 20
-#define MASU_COUNTER_COUNT 21
+/* Of reflections: tiles that trace, rays, those that hit a polygon, the SDF, nodes visited. */
+#define MASU_COUNTER_SPECULAR_TILES 21
+#define MASU_COUNTER_SPECULAR_RAYS 22
+#define MASU_COUNTER_SPECULAR_HITS 23
+#define MASU_COUNTER_SPECULAR_SDF_HITS 24
+#define MASU_COUNTER_SPECULAR_NODES 25
+#define MASU_COUNTER_SPECULAR_EVALS 26
+#define MASU_COUNTER_COUNT 27
 
 /* Rows of the analytic sky's table. Row r is the view whose sine of elevation is t |t|, with t from
  * -1 (down) to 1 (up); no row is the horizon itself, half of them lie above it. */
@@ -233,6 +275,12 @@ struct masu_frame_uniforms {
     masu_vec4 sdf_min;       /* xyz lower corner of the SDF's bounds, in its space; w 1 / Lipschitz
                                 constant */
     masu_vec4 sdf_max;       /* xyz upper corner; w longest ray, world units */
+    /* x number of the frame, modulo 2^32; y and z render size of the frame before, 0: nothing of it counts;
+     * w unused */
+    masu_uvec4 history;
+    /* xyz anchor that traced geometry is relative to; w longest ray */
+    masu_vec4 trace_anchor;
+    masu_vec4 trace_eye; /* xyz eye minus that anchor; w unused */
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
 };
 
@@ -283,6 +331,19 @@ struct masu_material_data {
     masu_vec4 base_color; /* rgb linear albedo; w perceptual roughness 0..1 */
     masu_vec4 emissive;   /* rgb linear radiance, all zero: not emissive; w metallic 0..1 */
     masu_vec4 more;       /* specular, coat, coat_roughness, opacity: each 0..1 */
+};
+
+/* What rays know of a material. */
+#define MASU_TRACE_NONE 0xFFFFFFFFu
+#define MASU_TRACE_HOLES 0x80000000u /* in the word of a triangle's material: it may have holes */
+#define MASU_TRACE_NOISE_WORDS 4096u
+struct masu_trace_material {
+    masu_vec4 base_color; /* as in masu_material_data: rgb; w roughness */
+    masu_vec4 emissive;   /* rgb; w metallic */
+    masu_vec4 more;       /* specular, coat, coat_roughness, opacity */
+    /* x picture of the base colour, y of what shines, or TRACE_NONE; z flags of the material; w wrap along u
+     * and v: 2 bits each, of blob.h's texture sets */
+    masu_uvec4 maps;
 };
 
 /* Push constants of every pass. 48 bytes of the guaranteed 128. */

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define COMPUTE_BUFFERS_MAX 4u
+#define COMPUTE_BUFFERS_MAX 5u
 
 typedef struct compute_buffer {
     uint32_t binding;

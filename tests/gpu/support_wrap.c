@@ -50,6 +50,7 @@ static void unmade(uint64_t n) {
     }
 
 #define CREATES(X)                                                                                 \
+    X(AccelerationStructureKHR, VkAccelerationStructureCreateInfoKHR, VkAccelerationStructureKHR)  \
     X(Buffer, VkBufferCreateInfo, VkBuffer)                                                        \
     X(CommandPool, VkCommandPoolCreateInfo, VkCommandPool)                                         \
     X(DescriptorPool, VkDescriptorPoolCreateInfo, VkDescriptorPool)                                \

@@ -89,7 +89,7 @@ static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
     static const char *const commands[] = {"",     "render",      "upscale",
                                            "plan", "march-bench", "cull-bench", "draw-bench",
-                                           "light-bench"};
+                                           "light-bench", "trace-bench"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(masu("%s --help", commands[i]), 0);
         assert_true(strlen(out_text) > 200);
@@ -114,6 +114,12 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     said("size");
     assert_int_equal(masu("render %s -o %s/x.png --bogus", scene, dir), 2);
     said("--bogus");
+    assert_int_equal(masu("render %s -o %s/x.png --reference=0", scene, dir), 2);
+    said("reference");
+    assert_int_equal(masu("render %s -o %s/x.png --reference --frames 2", scene, dir), 2);
+    said("--frames");
+    assert_int_equal(masu("render %s -o %s/#.png --reference", scene, dir), 2);
+    said("many");
     assert_int_equal(masu("render %s -o %s/x.png --frames 0", scene, dir), 2);
     said("frames");
     assert_int_equal(masu("upscale a.png b.png"), 2);
@@ -230,6 +236,23 @@ static void plan_says_what_is_in_and_what_was_left_out(void **state) {
     assert_non_null(strstr(out_text, "\"left_out_bytes\""));
 }
 
+/* Ray queries where the device has them, else one line; the own tree anywhere. */
+static void rays_choose_what_finds_polygons(void **state) {
+    (void)state;
+    assert_int_equal(masu("plan %s --size 64x64 --rays compute", scene_path("mirrors")), 0);
+    assert_non_null(strstr(out_text, "specular_query ---    left out"));
+    assert_null(strstr(out_text, "bottom levels          buffer"));
+    int code = masu("plan %s --size 64x64 --rays query", scene_path("mirrors"));
+    if (code == 0) {
+        assert_non_null(strstr(out_text, "bottom levels          buffer"));
+        assert_non_null(strstr(out_text, "top level              buffer"));
+    } else {
+        assert_int_equal(code, 1);
+        assert_non_null(strstr(err_text, "ray_query is MASU_ON, but vulkan.ray_query says"));
+    }
+    assert_int_equal(masu("plan %s --rays sometimes", scene_path("mirrors")), 2);
+}
+
 static void light_bench_compares_pictures_and_counts_lights(void **state) {
     (void)state;
     assert_int_equal(masu("light-bench %s --size 64x40 --repeat 1 --quiet --validate",
@@ -245,6 +268,32 @@ static void light_bench_compares_pictures_and_counts_lights(void **state) {
     said("no scene");
     assert_int_equal(masu("light-bench %s", scene_path("spheres")), 1);
     said("has no lights");
+}
+
+static void trace_bench_agrees_with_embree(void **state) {
+    (void)state;
+    static const char *const flat[] = {"", "--flat"};
+    for (int i = 0; i < 2; i++) {
+        unsigned rays = 0, mismatches = 9;
+        assert_int_equal(masu("trace-bench %s --size 96x64 --repeat 2 --quiet --validate --csv - %s",
+                              scene_path("test_trace"), flat[i]),
+                         0);
+        assert_int_equal(strncmp(out_text, "scene,kind,backend,rays,mrays_s,embree_mrays_s,ratio,"
+                                           "mismatches,hits,given_up,", 78), 0);
+        const char *row = strstr(out_text, "primary,compute,");
+        assert_non_null(row);
+        assert_int_equal(sscanf(row, "primary,compute,%u,%*f,%*f,%*f,%u", &rays, &mismatches), 2);
+        assert_int_equal(rays, 96 * 64);
+        assert_true(mismatches < 10);
+        row = strstr(out_text, "specular,compute,");
+        assert_non_null(row);
+        assert_int_equal(sscanf(row, "specular,compute,%u,%*f,%*f,%*f,%u", &rays, &mismatches), 2);
+        assert_true(rays > 1000 && mismatches < 10);
+    }
+    assert_int_equal(masu("trace-bench"), 2);
+    said("no scene");
+    assert_int_equal(masu("trace-bench %s", scene_path("night")), 1);
+    said("nothing is traced");
 }
 
 static void draw_bench_compares_pictures_and_counts_triangles(void **state) {
@@ -334,8 +383,10 @@ int main(void) {
         cmocka_unit_test(an_unknown_device_lists_those_that_are_there),
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
         cmocka_unit_test(draw_bench_compares_pictures_and_counts_triangles),
+        cmocka_unit_test(trace_bench_agrees_with_embree),
         cmocka_unit_test(light_bench_compares_pictures_and_counts_lights),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
+        cmocka_unit_test(rays_choose_what_finds_polygons),
         cmocka_unit_test(the_example_of_the_readme_draws),
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
     };

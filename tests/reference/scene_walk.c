@@ -97,6 +97,13 @@ static void read_sections(walker *w) {
         texels = v->textures[i].offset + count_blocks(&v->textures[i]);
     }
     read_section(w, v->texels, texels, 1, "texels");
+    read_section(w, v->trace_nodes, s->trace_nodes, sizeof *v->trace_nodes, "trace nodes");
+    read_section(w, v->trace_triangles, s->trace_triangles, sizeof *v->trace_triangles,
+                 "trace triangles");
+    read_section(w, v->trace_meshes, v->trace_meshes ? s->meshes : 0, sizeof *v->trace_meshes,
+                 "trace meshes");
+    read_section(w, v->trace_instances, s->trace_instances, sizeof *v->trace_instances,
+                 "trace instances");
 }
 
 /* ---- Textures -------------------------------------------------------------------------------- */
@@ -423,6 +430,7 @@ static const struct {
     [MASU_BLOB_CHECKERBOARD_SPIRV] = {1, 1u << MASU_MARCH_CHECKERBOARD},
     [MASU_BLOB_FRAGMENT_SPIRV] = {1, 1u << MASU_MARCH_FRAGMENT},
     [MASU_BLOB_OCCLUSION_SPIRV] = {1, 0},
+    [MASU_BLOB_TRACE_SDF_SPIRV] = {1, 0},
 };
 
 static void read_code(walker *w) {
@@ -448,6 +456,8 @@ static void read_code(walker *w) {
            "update SPIR-V");
     expect(w, w->scene->sdf_occlusion == (w->view.code[MASU_BLOB_OCCLUSION_SPIRV].words != NULL),
            "sdf_occlusion");
+    expect(w, w->scene->trace_sdf == (w->view.code[MASU_BLOB_TRACE_SDF_SPIRV].words != NULL),
+           "trace_sdf");
 }
 
 static void read_sdf(walker *w) {

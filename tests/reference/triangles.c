@@ -41,8 +41,10 @@ static void gather(const masu_scene *scene, const masu_scene_view *v, masu_ref_t
                 masu_ref_triangle *t = &out->triangles[out->count++];
                 double *corner[3] = {t->a, t->b, t->c};
                 t->instance = i;
+                t->primitive = mesh->first_primitive + p;
                 for (uint32_t c = 0; c < 3; c++) {
                     uint32_t index = v->indices[prim->first_index + k + c];
+                    t->vertex[c] = prim->first_vertex + index;
                     place(v->instances[i].transform,
                           v->vertices[prim->first_vertex + index].position, corner[c]);
                 }

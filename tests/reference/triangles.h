@@ -8,7 +8,8 @@
 
 typedef struct masu_ref_triangle {
     double a[3], b[3], c[3];
-    uint32_t instance;
+    uint32_t instance, primitive;
+    uint32_t vertex[3]; /* of the blob */
 } masu_ref_triangle;
 
 typedef struct masu_ref_node {

@@ -170,6 +170,22 @@ static const masu_blob_environment_map environment_map[] = {
 
 static const uint32_t environment_texels[64 + 16] = {0x80000001u, 0xFFFFFFFFu};
 
+#define NODE_SCALE (128u | 128u << 8 | 128u << 16)
+
+static const masu_blob_trace_node trace_nodes[] = {
+    {{-1, 0, -1}, NODE_SCALE | 1u << 24 | 2u << 26, {0, 0, 0}, {0x0101, 0x0101, 0x0101}, 1, 0},
+    {{-1, 0, -1}, NODE_SCALE | 3u << 24, {0, 0, 0}, {1, 1, 1}, 2, 1},
+    {{-2, -2, 0}, NODE_SCALE | 2u << 24, {0, 0, 0}, {2, 2, 1}, 3, 3},
+};
+
+static const masu_blob_trace_triangle trace_triangles[] = {
+    {{0, 1, 2}, 0}, {{4, 5, 6}, 1}, {{0, 2, 3}, 0}, {{7, 8, 9}, 2}};
+
+static const masu_blob_trace_mesh trace_meshes[] = {{0, 2, 0, 3, 2, 0}, {2, 1, 3, 1, 1, 0}};
+
+static const masu_blob_reflections reflections[] = {{0.5f, 100.0f, 0.25f, 0}};
+static const uint32_t trace_instances[] = {1, 2};
+
 /* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
 static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
 
@@ -209,6 +225,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
     uint32_t with_textures = SUPPORT_RASTER | SUPPORT_TEXTURES;
     if ((parts & with_textures) == with_textures) sections += 4;
+    int trace = parts & SUPPORT_RASTER && parts & SUPPORT_TRACE;
+    if (trace) sections += 5;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -273,6 +291,13 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_PROBE_DATA, probe_data);
         ADD(MASU_BLOB_ENVIRONMENT_MAP, environment_map);
         ADD(MASU_BLOB_ENVIRONMENT_TEXELS, environment_texels);
+    }
+    if (trace) {
+        ADD(MASU_BLOB_TRACE_NODES, trace_nodes);
+        ADD(MASU_BLOB_TRACE_TRIANGLES, trace_triangles);
+        ADD(MASU_BLOB_TRACE_MESHES, trace_meshes);
+        ADD(MASU_BLOB_TRACE_INSTANCES, trace_instances);
+        ADD(MASU_BLOB_REFLECTIONS, reflections);
     }
     support_blob_seal(blob->bytes, blob->size);
 }

@@ -18,6 +18,9 @@
  *   meso       one, of no material                lights  0 point "glow"  1 spot, carried by instance 1
  *   probes     2 x 1 x 1, sets 0 and 1            environment map: 8 texels, 2 mips
  *
+ *   trees      nodes 0, 1: mesh 0, depth 2: 0 has node 1 and triangle 0, 1 has triangles 1 and 2 in one leaf
+ *              node 2: mesh 1: a leaf of one triangle       traced: instances 1 and 2
+ *
  * SUPPORT_DETAIL adds primitive 3, a triangle of the last square: the LOD of mesh 1. */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
@@ -37,6 +40,7 @@ enum {
     SUPPORT_ALL = 31,
     SUPPORT_TEXTURES = 32, /* with SUPPORT_RASTER: "steel" has maps, and is a mask */
     SUPPORT_DETAIL = 64, /* with SUPPORT_RASTER: a LOD. Not part of SUPPORT_ALL, nor is the next */
+    SUPPORT_TRACE = 256, /* with SUPPORT_RASTER: trees for rays. Not part of SUPPORT_ALL */
     SUPPORT_LIGHTING = 128 /* with SUPPORT_RASTER: a small relief, lights, probes, a sky from a picture */
 };
 

@@ -83,6 +83,16 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) SAME(rungs[r].shadow_refresh[k]);
         SAME(rungs[r].lod_error);
         SAME(rungs[r].light_tiles);
+        SAME(rungs[r].specular);
+        SAME(rungs[r].specular_cutoff);
+        SAME(rungs[r].specular_reuse);
+        SAME(rungs[r].specular_temporal);
+        SAME(rungs[r].specular_fine);
+        SAME(rungs[r].specular_filter);
+        SAME(rungs[r].specular_taa);
+        SAME(rungs[r].specular_reuse_taps);
+        SAME(rungs[r].specular_filter_taps);
+        SAME(rungs[r].specular_frames);
     }
     SAME(limits.vertices);
     SAME(limits.indices);
@@ -95,8 +105,13 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(limits.textures);
     SAME(limits.texture_bytes);
     SAME(limits.transparents);
+    SAME(limits.lights);
+    SAME(limits.trace_triangles);
+    SAME(limits.trace_instances);
     SAME(vulkan.texture_compression_bc);
     SAME(vulkan.max_anisotropy);
+    SAME(vulkan.ray_query);
+    SAME(ray_query);
     SAME(deny.compressed_textures);
     SAME(host_budget);
     SAME(device_budget);
@@ -115,6 +130,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.casters);
     SAME(debug.ao_full);
     SAME(debug.ao_nearest);
+    SAME(debug.reference);
     SAME(deny.unified_memory);
     SAME(log);
     SAME(log_user);
@@ -122,8 +138,18 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(clock_user);
 }
 
-/* Defaults of the shadow map: what the scene has, drawn in every frame. */
-#define SHADOW 0, 0, 0.0f, {1, 1, 1, 1}, MASU_AUTO
+static masu_rung default_rung(float scale, float sharpness) {
+    return (masu_rung){.scale = scale,
+                       .sharpness = sharpness,
+                       .march_steps = 2048,
+                       .lod_error = 1.0f,
+                       .ao_slices = 2,
+                       .ao_steps = 8,
+                       .shadow_refresh = {1, 1, 1, 1},
+                       .specular_reuse_taps = 8,
+                       .specular_filter_taps = 12,
+                       .specular_frames = 32};
+}
 
 static void every_zero_becomes_its_documented_default(void **state) {
     (void)state;
@@ -134,12 +160,9 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
-    expected.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    MASU_AUTO, 2, 8, SHADOW};
-    expected.rungs[1] = (masu_rung){0.8f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    MASU_AUTO, 2, 8, SHADOW};
-    expected.rungs[2] = (masu_rung){0.4f, MASU_AUTO, MASU_AUTO, 0.2f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    MASU_AUTO, 2, 8, SHADOW};
+    expected.rungs[0] = default_rung(1.0f, 0.0f);
+    expected.rungs[1] = default_rung(0.8f, 0.2f);
+    expected.rungs[2] = default_rung(0.4f, 0.2f);
     masu_desc resolved = masu_desc_resolved(&zero);
     assert_same_desc(&resolved, &expected);
     resolved = masu_desc_resolved(NULL);
@@ -156,10 +179,8 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.frames_in_flight = 2;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    given.rungs[0] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 0.0f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    MASU_AUTO, 2, 8, SHADOW};
-    given.rungs[1] = (masu_rung){1.0f, MASU_AUTO, MASU_AUTO, 1.5f, MASU_MARCH_AUTO, 2048, MASU_AUTO, MASU_AUTO, 1.0f,
-                                    MASU_AUTO, 2, 8, SHADOW};
+    given.rungs[0] = default_rung(1.0f, 0.0f);
+    given.rungs[1] = default_rung(1.0f, 1.5f);
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
 
@@ -183,7 +204,7 @@ static masu_desc full_desc(void) {
     d.vulkan = (masu_vulkan){
         no_function, FAKE(VkInstance, 1), FAKE(VkPhysicalDevice, 2), FAKE(VkDevice, 3),
         1,           &allocator,          FAKE(VkPipelineCache, 4),  1,
-        4.0f};
+        4.0f, 1};
     d.source = (masu_source){FAKE(VkImageView, 5), 6, 7};
     d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
     d.targets.storage = 8;
@@ -194,16 +215,17 @@ static masu_desc full_desc(void) {
         d.rungs[r] =
             (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1,
                         MASU_OFF, MASU_ON, 0.5f + (float)r, MASU_ON, r + 1, r + 2, r % 5, 100 + r,
-                        (float)r, {r + 1, 2, 3, 4}, MASU_OFF};
+                        (float)r, {r + 1, 2, 3, 4}, MASU_OFF, MASU_ON, 0.25f, MASU_ON, MASU_OFF,
+                        MASU_ON, MASU_OFF, MASU_ON, r + 1, r + 2, r + 3};
     }
-    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
+    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22};
     d.host_budget = 14;
     d.device_budget = 15;
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
         d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
     }
     d.readback = 3;
-    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7};
+    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8};
     d.deny.unified_memory = 1;
     d.log = no_log;
     d.log_user = &allocator;
@@ -318,6 +340,14 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].ao_slices", d.rungs[1].ao_slices = 9);
     BAD("rungs[].ao_slices", d.rungs[0].ao_slices = UINT32_MAX);
     BAD("rungs[].ao_steps", d.rungs[1].ao_steps = 17);
+    BAD("rungs[].specular_reuse", d.rungs[1].specular_reuse = (masu_switch)3);
+    BAD("rungs[].specular_temporal", d.rungs[1].specular_temporal = (masu_switch)3);
+    BAD("rungs[].specular_fine", d.rungs[1].specular_fine = (masu_switch)3);
+    BAD("rungs[].specular_filter", d.rungs[1].specular_filter = (masu_switch)-1);
+    BAD("rungs[].specular_taa", d.rungs[0].specular_taa = (masu_switch)3);
+    BAD("rungs[].specular_reuse_taps", d.rungs[1].specular_reuse_taps = 17);
+    BAD("rungs[].specular_filter_taps", d.rungs[1].specular_filter_taps = 33);
+    BAD("rungs[].specular_frames", d.rungs[1].specular_frames = 241);
     BAD("rungs[].lod_error", d.rungs[1].lod_error = nan);
     BAD("rungs[].lod_error", d.rungs[0].lod_error = infinity);
     BAD("rungs[].lod_error", d.rungs[1].lod_error = -infinity);
@@ -325,6 +355,10 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].shadow_cascades", d.rungs[1].shadow_cascades = 5);
     BAD("rungs[].shadow_resolution", d.rungs[1].shadow_resolution = 15);
     BAD("rungs[].shadow_resolution", d.rungs[1].shadow_resolution = 8193);
+    BAD("rungs[].specular", d.rungs[1].specular = (masu_switch)3);
+    BAD("rungs[].specular_cutoff", d.rungs[1].specular_cutoff = -0.01f);
+    BAD("rungs[].specular_cutoff", d.rungs[1].specular_cutoff = 1.01f);
+    BAD("rungs[].specular_cutoff", d.rungs[1].specular_cutoff = nan);
     BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = -1.0f);
     BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = nan);
     BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = infinity);
@@ -429,10 +463,14 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.readback = MASU_READBACK_ALL;
     d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1,
                              MASU_ON, MASU_ON, 1e9f, MASU_ON, 8, 16,
-                             4,       8192,    1e30f, {1, 64, 64, 64}, MASU_ON};
+                             4,       8192,    1e30f, {1, 64, 64, 64}, MASU_ON,
+                             MASU_ON, 1.0f, MASU_ON, MASU_ON, MASU_ON, MASU_ON, MASU_ON,
+                             1, 1, 1};
     d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256,
                              MASU_OFF, MASU_OFF, -1e9f, MASU_OFF, 1, 1,
-                             1,        16,       1e-30f, {64, 0, 0, 0}, MASU_OFF};
+                             1,        16,       1e-30f, {64, 0, 0, 0}, MASU_OFF,
+                             MASU_OFF, 1e-30f, MASU_OFF, MASU_OFF, MASU_OFF, MASU_OFF, MASU_OFF,
+                             1, 1, 1};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;
@@ -473,6 +511,8 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         {"limits.texture_bytes", offsetof(masu_limits, texture_bytes), 1000},
         {"limits.transparents", offsetof(masu_limits, transparents), 6},
         {"limits.lights", offsetof(masu_limits, lights), 5},
+        {"limits.trace_triangles", offsetof(masu_limits, trace_triangles), 12},
+        {"limits.trace_instances", offsetof(masu_limits, trace_instances), 2},
     };
     static masu_frame_plan plan;
     assert_int_equal(sizeof(masu_limits), COUNT(rows) * sizeof(uint64_t));
@@ -485,6 +525,8 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         support_scene.transparents = 6, support_scene.transparent_sets = 1;
         support_scene.probes = 6;
         support_scene.lights = 5;
+        support_scene.trace_triangles = 12;
+        support_scene.trace_instances = 2;
         memcpy((char *)&d.limits + rows[i].offset, &limit, sizeof limit);
         compile(&d, &plan); /* exactly enough */
         limit--;

@@ -19,6 +19,7 @@
 
 #include "blob.h"
 #include "plan.h"
+#include "ray_query.h"
 #include "support_desc.h"
 #include "support_random.h"
 
@@ -41,7 +42,7 @@ static const char *usage_text(uint8_t usage) {
         [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_WRITE_COLOR] = "c",
         [MASU_WRITE_DEPTH] = "d",   [MASU_WRITE_COPY] = "to", [MASU_READ_BUFFER] = "rb",
         [MASU_WRITE_BUFFER] = "wb", [MASU_UPDATE_DEPTH] = "ud",
-        [MASU_BLEND_COLOR] = "b",
+        [MASU_BLEND_COLOR] = "b",   [MASU_READ_STRUCTURE] = "rs", [MASU_WRITE_STRUCTURE] = "ws",
     };
     return texts[usage];
 }
@@ -51,12 +52,14 @@ static const char *resource_text(uint8_t resource) {
     if (resource == MASU_RESOURCE_SLOTS) return "slots";
     if (resource == MASU_RESOURCE_PROBES) return "probes";
     if (resource == MASU_RESOURCE_LIGHT_TILES) return "lights";
+    if (resource == MASU_RESOURCE_SPECULAR_TILES) return "glossy";
+    if (resource == MASU_RESOURCE_TOP_LEVEL) return "top";
     assert_in_range(resource, 1, MASU_IMAGE_COUNT - 1);
     return masu_images[resource].name;
 }
 
 static const char *frame_text(const masu_frame_plan *plan, uint32_t rung) {
-    static char text[1024];
+    static char text[8192];
     size_t at = 0;
     const masu_rung_plan *rp = &plan->rungs[rung];
     text[0] = '\0';
@@ -640,6 +643,8 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
     assert_frame(&d, 0, expected);
 }
 
+#define BIT(resource) ((uint64_t)1 << (resource))
+
 /* Over everything that shapes a frame: the properties that no frame may lack. */
 static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void **state) {
     (void)state;
@@ -664,19 +669,19 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         d.targets.storage = storage;
         compile(&d, &plan);
         const masu_rung_plan *rp = &plan.rungs[0];
-        uint32_t writers = 0, written = 1u << MASU_IMAGE_SOURCE;
-        written |= 1u << MASU_RESOURCE_SLOTS; /* uploaded once */
+        uint32_t writers = 0;
+        uint64_t written = BIT(MASU_IMAGE_SOURCE) | BIT(MASU_RESOURCE_SLOTS); /* uploaded once */
         int last_pass = -1;
         for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
             if (rp->active & MASU_PASS_BIT(p)) last_pass = (int)p;
             for (uint32_t a = 0; a < rp->access_count[p]; a++) {
                 uint32_t image = rp->access[p][a].image, writes;
                 writes = (uint32_t)masu_usage_writes((masu_usage)rp->access[p][a].usage);
-                if (!writes && !(written & 1u << image)) {
+                if (!writes && !(written & BIT(image))) {
                     fail_msg("case %u: %s reads %s, which nothing has written", c,
                              masu_passes[p].name, resource_text((uint8_t)image));
                 }
-                if (writes) written |= 1u << image;
+                if (writes) written |= BIT(image);
                 if (image != MASU_IMAGE_TARGET) continue;
                 writers++;
                 assert_true(writes);
@@ -687,7 +692,7 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         assert_true(last_pass >= 0);
         assert_int_equal(rp->access[last_pass][rp->access_count[last_pass] - 1].image,
                          MASU_IMAGE_TARGET);
-        assert_true(source || (written & 1u << MASU_IMAGE_HDR));
+        assert_true(source || (written & BIT(MASU_IMAGE_HDR)));
     }
 }
 
@@ -961,6 +966,10 @@ static void readback_slots_hold_the_counters_and_then_the_images(void **state) {
 
 /* ---- Export ---------------------------------------------------------------------------------- */
 
+/* Of a texel of reflections: guide, ray, hit, light, motion; reused, mean, age, fine, smooth, steady; what
+ * is kept of guide, mean, age, fine, steady; sum. */
+enum { SPECULAR_BYTES = 8 + 8 + 16 + 8 + 4 + 8 + 8 + 8 + 16 + 8 + 8 + 8 + 8 + 4 + 16 + 8 + 16 };
+
 static void the_public_plan_tells_what_was_compiled(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1009,8 +1018,9 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].last_pass, image->last);
     }
     /* scene_depth, surface, occlusion and final, cone8, cone4, ao: 4 bytes each per texel; velocity 8; the
-     * atlas */
-    assert_int_equal(info.left_out_bytes, 4 * (6 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384));
+     * atlas; SPECULAR_BYTES at half size */
+    assert_int_equal(info.left_out_bytes, 4 * (6 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
+                                              SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
 }
@@ -1024,12 +1034,13 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     44 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384));
+                     44 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
+                         SPECULAR_BYTES * 500 * 250);
     d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, ldr, upscaled, final, velocity */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 28 * 100 * 100 + 4 * (50 * 50 + 256 * 384));
+    assert_int_equal(info.left_out_bytes, 28 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
@@ -1037,9 +1048,9 @@ static void the_public_memory_sums_the_blocks(void **state) {
     static masu_frame_plan plan;
     masu_memory memory;
     memset(&plan, 0, sizeof plan);
-    plan.blocks[MASU_ROLE_DEVICE] = (masu_block_plan){1000, 256, 6, 1, 0};
-    plan.blocks[MASU_ROLE_READBACK] = (masu_block_plan){24, 16, 4, 2, 1};
-    plan.blocks[MASU_ROLE_UPLOAD] = (masu_block_plan){0, 8, 2, 3, 1}; /* not used */
+    plan.blocks[MASU_ROLE_DEVICE] = (masu_block_plan){1000, 256, 6, 1, 0, 1};
+    plan.blocks[MASU_ROLE_READBACK] = (masu_block_plan){24, 16, 4, 2, 1, 0};
+    plan.blocks[MASU_ROLE_UPLOAD] = (masu_block_plan){0, 8, 2, 3, 1, 0}; /* not used */
     plan.transient_unaliased = 900, plan.transient_aliased = 600, plan.transient_lower_bound = 500;
     masu_memory_export(&plan, 777, &memory);
     assert_int_equal(memory.host_bytes, 777);
@@ -1050,6 +1061,8 @@ static void the_public_memory_sums_the_blocks(void **state) {
     assert_int_equal(memory.roles[MASU_ROLE_DEVICE].type_bits, 6);
     assert_int_equal(memory.roles[MASU_ROLE_DEVICE].type, 1);
     assert_int_equal(memory.roles[MASU_ROLE_DEVICE].host_visible, 0);
+    assert_int_equal(memory.roles[MASU_ROLE_DEVICE].device_address, 1);
+    assert_int_equal(memory.roles[MASU_ROLE_READBACK].device_address, 0);
     assert_int_equal(memory.roles[MASU_ROLE_UPLOAD].bytes, 0);
     assert_int_equal(memory.roles[MASU_ROLE_UPLOAD].alignment, 0);
     assert_int_equal(memory.roles[MASU_ROLE_UPLOAD].host_visible, 0);
@@ -1110,6 +1123,79 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
     assert_memory_equal(plan.images, dark.images, sizeof dark.images);
 }
 
+/* ---- Reflections: who finds polygons ---------------------------------------------------------- */
+
+/* AUTO is the device's kind, of which nothing is known here: the renderer puts ON or OFF in its place. */
+static void ray_queries_stand_in_for_the_own_tree(void **state) {
+    (void)state;
+    static masu_frame_plan plan, with;
+    masu_desc d = scene_desc(RASTER, 100, 50);
+    support_scene.reflections = 1;
+    support_scene.specular_cutoff = 0.5f;
+    support_scene.trace_nodes = 9;
+    support_scene.trace_triangles = 20;
+    support_scene.trace_instances = 3;
+    d.rung_count = 2;
+    d.rungs[1].specular = MASU_OFF;
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), "specular_trace(r:specular_guide r:specular_ray "
+                                                 "rb:glossy u:specular_hit)"));
+    assert_null(strstr(frame_text(&plan, 0), "specular_query"));
+    d.ray_query = MASU_ON;
+    compile(&d, &with);
+    assert_non_null(strstr(frame_text(&with, 0),
+                           "specular_structure(ws:top) specular_query(r:specular_guide "
+                           "r:specular_ray rs:top rb:glossy u:specular_hit)"));
+    assert_null(strstr(frame_text(&with, 0), "specular_trace"));
+    assert_null(strstr(frame_text(&with, 1), "specular_"));
+    assert_string_equal(with.why[MASU_PASS_SPECULAR_TRACE], "specular_query does it");
+    assert_string_equal(plan.why[MASU_PASS_SPECULAR_QUERY],
+                        "no ray queries, or desc.ray_query does not take them");
+    /* Nodes of 48 bytes and the tree over instances go. */
+    assert_int_equal(plan.buffers[MASU_BUFFER_TRACE].bytes - with.buffers[MASU_BUFFER_TRACE].bytes,
+                     9 * 48);
+    assert_int_equal(with.buffers[MASU_BUFFER_TRACE_FRAME].stride,
+                     masu_align_up(16 + 3 * 6 * 16, 64));
+    VkBufferUsageFlags input = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                               VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    assert_int_equal(with.buffers[MASU_BUFFER_VERTICES].usage,
+                     plan.buffers[MASU_BUFFER_VERTICES].usage | input);
+    assert_int_equal(plan.buffers[MASU_BUFFER_VERTICES].usage & input, 0);
+    support_scene.trace_instances = 0; /* nothing to ask about: as without */
+    compile(&d, &with);
+    assert_null(strstr(frame_text(&with, 0), "specular_query"));
+    assert_string_equal(with.why[MASU_PASS_SPECULAR_QUERY], "no instance is traced");
+    d.ray_query = (masu_switch)(MASU_ON + 1);
+    masu_detail detail;
+    assert_int_equal(masu_compile(&d, 256, 64, &with, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "ray_query");
+}
+
+/* What the custom index of an instance can say, or the device takes, whichever is less. */
+static void ray_queries_have_limits(void **state) {
+    (void)state;
+    masu_scene s = {.trace_triangles = 1u << 24, .trace_instances = 7};
+    masu_detail detail;
+    masu_vk vk;
+    memset(&vk, 0, sizeof vk);
+    vk.rays.maxPrimitiveCount = 1u << 29;
+    vk.rays.maxInstanceCount = 7;
+    assert_int_equal(masu_ray_check(&s, &vk, &detail), MASU_OK);
+    s.trace_triangles++;
+    assert_int_equal(masu_ray_check(&s, &vk, &detail), MASU_ERROR_DEVICE);
+    assert_string_equal(detail.text, "ray_query: the scene traces 16777217 triangles, possible are "
+                                     "16777216");
+    s.trace_triangles = 1000;
+    vk.rays.maxPrimitiveCount = 999;
+    assert_int_equal(masu_ray_check(&s, &vk, &detail), MASU_ERROR_DEVICE);
+    assert_int_equal(detail.needed, 1000);
+    assert_int_equal(detail.given, 999);
+    vk.rays.maxPrimitiveCount = 1000;
+    s.trace_instances = 8;
+    assert_int_equal(masu_ray_check(&s, &vk, &detail), MASU_ERROR_DEVICE);
+    assert_string_equal(detail.what, "maxInstanceCount");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_row_of_the_table_fits_what_is_derived_from_it),
@@ -1152,6 +1238,8 @@ int main(void) {
         cmocka_unit_test(bytes_left_out_are_counted_at_the_size_of_the_plan),
         cmocka_unit_test(the_public_memory_sums_the_blocks),
         cmocka_unit_test(lights_add_a_pass_and_two_buffers),
+        cmocka_unit_test(ray_queries_stand_in_for_the_own_tree),
+        cmocka_unit_test(ray_queries_have_limits),
     };
     return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
 }

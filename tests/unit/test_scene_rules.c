@@ -83,6 +83,7 @@ static uint64_t write_with(uint32_t kind) {
     uint32_t without = kind == MASU_BLOB_FRAGMENT_SPIRV ? SUPPORT_RASTER : 0;
     uint32_t with = kind >= MASU_BLOB_TEXCOORDS && kind <= MASU_BLOB_TEXELS ? SUPPORT_TEXTURES
                     : kind == MASU_BLOB_LODS                                 ? SUPPORT_DETAIL
+                    : kind >= MASU_BLOB_TRACE_NODES                          ? SUPPORT_TRACE
                     : kind >= MASU_BLOB_MESO                                 ? SUPPORT_LIGHTING
                                                                              : 0;
     support_blob_write(&blob, (SUPPORT_ALL & ~without) | with);
@@ -233,6 +234,109 @@ static void a_section_of_an_unknown_kind_is_refused(void **state) {
     REFUSED("section", 1, ROW(INDICES)->kind = MASU_BLOB_KIND_COUNT);
     assert_non_null(strstr(detail.text, "unknown kind"));
     REFUSED("section", 1, ROW(INDICES)->kind = UINT32_MAX);
+    REFUSED("section", 1, ROW(INDICES)->kind = MASU_BLOB_KIND_COUNT);
+}
+
+/* As REFUSED, of a blob with trees for rays. */
+#define TRACED(what, element, ...)                                                                 \
+    do {                                                                                           \
+        support_blob_write(&blob, SUPPORT_ALL | SUPPORT_TRACE);                                    \
+        (void)(__VA_ARGS__);                                                                       \
+        assert_refused(what, element);                                                             \
+    } while (0)
+#define NODE AT(TRACE_NODES, masu_blob_trace_node)
+#define TRIANGLE AT(TRACE_TRIANGLES, masu_blob_trace_triangle)
+#define TREE AT(TRACE_MESHES, masu_blob_trace_mesh)
+#define TRACE AT(TRACE_INSTANCES, uint32_t)
+#define MIRRORS AT(REFLECTIONS, masu_blob_reflections)
+
+/* A chain of nodes as deep as is allowed, or one deeper: one leaf at its end. */
+static masu_result bind_chain(uint32_t depth) {
+    masu_scene scene;
+    support_blob_write(&blob, SUPPORT_ALL | SUPPORT_TRACE);
+    masu_blob_section *row = support_blob_row(&blob, MASU_BLOB_TRACE_NODES);
+    size_t from = (size_t)row->offset, old = 3 * sizeof(masu_blob_trace_node);
+    size_t bytes = (depth + 1) * sizeof(masu_blob_trace_node);
+    memmove(blob.bytes + from + bytes, blob.bytes + from + old, blob.size - from - old);
+    blob.size += bytes - old;
+    row->count = depth + 1;
+    masu_blob_trace_node second = NODE[2];
+    for (uint32_t i = 0; i < depth; i++) {
+        NODE[i] = NODE[1];
+        NODE[i].packed = (NODE[1].packed & 0xFFFFFFu) | (i + 1 < depth ? 1u : 3u) << 24;
+        NODE[i].child = i + 1;
+        NODE[i].item = 0;
+    }
+    NODE[depth] = second;
+    NODE[depth].item = 2;
+    for (uint32_t kind = MASU_BLOB_TRACE_TRIANGLES; kind <= MASU_BLOB_REFLECTIONS; kind++)
+        support_blob_row(&blob, (enum masu_blob_kind)kind)->offset += bytes - old;
+    TRIANGLE[2] = TRIANGLE[3];
+    ROW(TRACE_TRIANGLES)->count = 3;
+    TREE[0] = (masu_blob_trace_mesh){0, depth, 0, 2, depth, 0};
+    TREE[1] = (masu_blob_trace_mesh){depth, 1, 2, 1, 1, 0};
+    support_blob_seal(blob.bytes, blob.size);
+    return masu_scene_bind(blob.bytes, blob.size, &scene, &detail);
+}
+
+static void what_rays_are_traced_through_is_checked(void **state) {
+    (void)state;
+    for (uint32_t kind = MASU_BLOB_TRACE_NODES; kind <= MASU_BLOB_TRACE_INSTANCES; kind++)
+        TRACED("trace nodes", 0, support_blob_drop(&blob, (enum masu_blob_kind)kind));
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) TRACED("trace nodes", 1, NODE[1].origin[k] = not_finite[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        TRACED("reflections", 0, MIRRORS->cutoff = not_finite[i]);
+        TRACED("reflections", 0, MIRRORS->glossiest = not_finite[i]);
+        TRACED("reflections", 0, MIRRORS->distance = not_finite[i]);
+    }
+    TRACED("reflections", 0, MIRRORS->cutoff = 1.01f);
+    TRACED("reflections", 0, MIRRORS->glossiest = -0.01f);
+    TRACED("reflections", 0, MIRRORS->distance = 0.0f);
+    TRACED("reflections", 0, support_blob_drop(&blob, MASU_BLOB_REFLECTIONS));
+    TRACED("trace nodes", 0, NODE[0].origin[2] = 2e15f);
+    TRACED("trace nodes", 0, NODE[0].packed &= ~0xFFu);         /* a scale of a denormal */
+    TRACED("trace nodes", 2, NODE[2].packed |= 0xFFu << 8);     /* of infinity */
+    TRACED("trace nodes", 2, NODE[2].packed = 0x02ABAB80u);     /* 2^44 */
+    TRACED("trace nodes", 0, NODE[0].child = 0);                /* itself */
+    TRACED("trace nodes", 0, NODE[0].child = 2);                /* another mesh's */
+    TRACED("trace nodes", 0, NODE[0].child = 0xFFFFFFFFu);
+    TRACED("trace nodes", 0, NODE[0].item = 1);
+    TRACED("trace nodes", 1, NODE[1].item = 0);                 /* a triangle twice */
+    TRACED("trace nodes", 1, NODE[1].packed |= 1u << 26);       /* a node behind a leaf */
+    TRACED("trace nodes", 1, NODE[1].packed |= 2u << 28);       /* a leaf behind nothing */
+    TRACED("trace meshes", 0, NODE[1].packed |= 2u << 26);      /* more than there are */
+    TRACED("trace meshes", 0, NODE[1].packed &= 0xFFFFFFu);     /* fewer */
+    TRACED("trace nodes", 0, NODE[0].packed &= ~(1u << 24));    /* a leaf behind nothing */
+    TRACED("trace meshes", 0, TREE[0].depth = 1);
+    TRACED("trace meshes", 0, TREE[0].depth = 3);
+    TRACED("trace meshes", 0, TREE[0].triangle_count = 4);
+    TRACED("trace meshes", 0, TREE[0].first_triangle = 1);
+    TRACED("trace meshes", 0, TREE[0].first_node = 1);
+    TRACED("trace meshes", 0, TREE[0].node_count = 0);
+    TRACED("trace meshes", 1, TREE[1].node_count = 2);
+    TRACED("trace meshes", 1, TREE[1].node_count = 0xFFFFFFFFu);
+    TRACED("trace meshes", 1, TREE[1].triangle_count = 0xFFFFFFFFu);
+    TRACED("trace meshes", 1, TREE[1].first_node = 0);
+    TRACED("trace triangles", 2, TRIANGLE[2].primitive = 2);
+    TRACED("trace triangles", 3, TRIANGLE[3].primitive = 0xFFFFFFFFu);
+    TRACED("trace triangles", 1, TRIANGLE[1].vertex[2] = 0);
+    TRACED("trace triangles", 3, TRIANGLE[3].vertex[0] = 11);
+    TRACED("trace instances", 1, TRACE[0] = 2);
+    TRACED("trace instances", 1, TRACE[1] = 1);
+    TRACED("trace instances", 1, TRACE[1] = 3);
+    TRACED("trace instances", 1, (TREE[1] = (masu_blob_trace_mesh){0}, ROW(TRACE_NODES)->count = 2,
+                                  ROW(TRACE_TRIANGLES)->count = 3));
+    support_blob_write(&blob, SUPPORT_ALL | SUPPORT_TRACE);
+    masu_scene scene;
+    assert_int_equal(masu_scene_bind(blob.bytes, blob.size, &scene, NULL), MASU_OK);
+    assert_int_equal(scene.trace_nodes, 3);
+    assert_int_equal(scene.trace_triangles, 4);
+    assert_int_equal(scene.trace_instances, 2);
+    assert_int_equal(bind_chain(MASU_TRACE_DEPTH_MAX), MASU_OK);
+    assert_int_equal(bind_chain(MASU_TRACE_DEPTH_MAX + 1), MASU_ERROR_SCENE);
+    assert_non_null(strstr(detail.text, "too deep"));
 }
 
 static void a_section_that_appears_twice_is_refused(void **state) {
@@ -242,7 +346,7 @@ static void a_section_that_appears_twice_is_refused(void **state) {
 
 static void a_section_of_another_element_size_is_refused(void **state) {
     (void)state;
-    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+    for (uint32_t kind = 1; kind <= MASU_BLOB_REFLECTIONS; kind++) {
         for (int change = 0; change < 3; change++) {
             uint64_t index = write_with(kind);
             uint32_t *stride = &support_blob_row(&blob, (enum masu_blob_kind)kind)->stride;
@@ -254,7 +358,7 @@ static void a_section_of_another_element_size_is_refused(void **state) {
 
 static void a_section_with_too_few_or_too_many_elements_is_refused(void **state) {
     (void)state;
-    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+    for (uint32_t kind = 1; kind <= MASU_BLOB_REFLECTIONS; kind++) {
         static const uint64_t counts[] = {0, 0x80000000u, (uint64_t)1 << 60, UINT64_MAX};
         for (size_t i = 0; i < COUNT(counts); i++) {
             uint64_t index = write_with(kind);
@@ -790,6 +894,7 @@ int main(void) {
         cmocka_unit_test(a_section_of_another_element_size_is_refused),
         cmocka_unit_test(a_section_with_too_few_or_too_many_elements_is_refused),
         cmocka_unit_test(what_lights_a_scene_is_checked),
+        cmocka_unit_test(what_rays_are_traced_through_is_checked),
         cmocka_unit_test(a_section_outside_the_blob_is_refused),
         cmocka_unit_test(bytes_that_no_section_owns_are_refused),
         cmocka_unit_test(names_that_do_not_end_are_refused),

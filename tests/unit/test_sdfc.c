@@ -603,6 +603,37 @@ static void the_same_text_gives_the_same_result(void **state) {
 
 /* ---- mistakes in the text ---- */
 
+static void the_least_roughness_of_what_is_lit_is_known(void **state) {
+    (void)state;
+    static const struct {
+        const char *material;
+        double least;
+    } cases[] = {{"roughness 0.2", 0.2},
+                 {"albedo 0.3", 0.5},
+                 {"roughness 1 - 0.25 * 2", 0.5},
+                 {"roughness p", 0},
+                 {"roughness 1 - time", 0},
+                 {"roughness -3", 0},
+                 {"roughness 7", 1},
+                 {"roughness 0.1; emissive (0, 2, 0)", 1},
+                 {"roughness 0.1; emissive (0, p, 0)", 0.1},
+                 {"roughness 0.1; emissive (0, p, 1)", 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[256], error[256];
+        masu_sdfc_result result;
+        int n = snprintf(text, sizeof text,
+                         "param p = 0.9 [0, 1]; material unused { roughness 0 }"
+                         "material m { %s } part a : m = sphere(1);",
+                         cases[i].material);
+        masu_sdfc_options options = {.pairs = UINT32_MAX};
+        if (!masu_sdfc_compile_with(text, (size_t)n, "x.sdf", &options, &result, error, sizeof error))
+            fail_msg("%s: %s", cases[i].material, error);
+        if (fabs(result.glossiest - cases[i].least) > 1e-12)
+            fail_msg("%s: %g", cases[i].material, result.glossiest);
+        masu_sdfc_release(&result);
+    }
+}
+
 static void mistakes_name_their_place(void **state) {
     (void)state;
     static const struct {
@@ -750,6 +781,7 @@ int main(void) {
         cmocka_unit_test(parts_of_one_form_share_its_code),
         cmocka_unit_test(the_box_of_the_parts_follows_the_parameters),
         cmocka_unit_test(the_same_text_gives_the_same_result),
+        cmocka_unit_test(the_least_roughness_of_what_is_lit_is_known),
         cmocka_unit_test(mistakes_name_their_place),
         cmocka_unit_test(depth_is_limited),
         cmocka_unit_test(size_is_limited),

@@ -1,0 +1,41 @@
+/*
+ * fine.glsl: means over frames of single pixels, four to a traced texel: a word each in the order of the
+ * guide's numbers, three numbers of 9 bits that share an exponent of 5 (as VK_FORMAT_E5B9G9R9); all bits:
+ * the pixel has none.
+ */
+#ifndef MASU_SPECULAR_FINE_GLSL
+#define MASU_SPECULAR_FINE_GLSL
+
+#include "specular/ray.glsl"
+
+const uint masu_fine_none = 0xFFFFFFFFu;
+
+/* Roughness up to which a surface is a mirror (brdf/vndf.glsl). */
+const float masu_fine_mirror = 0.05;
+
+/* How much of a pixel's light its own mean is, the rest that of the texels around: a lobe this wide
+ * blurs what it mirrors by more than two pixels. */
+float masu_fine_share(float roughness)
+{
+    return 1.0 - smoothstep(0.22, 0.35, roughness);
+}
+
+/* dither, 0..1: which share of the way to the next step is rounded up. A mean to which each frame adds a
+ * little would else stop short of the truth by half a step over that little. */
+uint masu_pack_fine(vec3 color, float dither)
+{
+    vec3 c = masu_sane(color, 0.0, 32000.0);
+    float most = max(max(c.r, c.g), max(c.b, 1.0 / 65536.0));
+    /* One more than the exponent needs, so that rounding up stays within 9 bits. */
+    int e = clamp(int(floatBitsToUint(most * 1.004) >> 23) - 127 + 1, -15, 15);
+    float scale = uintBitsToFloat(uint(127 + 9 - e) << 23);
+    uvec3 m = min(uvec3(c * scale + dither), uvec3(511u));
+    return m.r | m.g << 9 | m.b << 18 | uint(e + 15) << 27;
+}
+
+vec3 masu_unpack_fine(uint word)
+{
+    return masu_unpack_shared(word);
+}
+
+#endif

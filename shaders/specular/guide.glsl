@@ -1,0 +1,93 @@
+/*
+ * guide.glsl: what the passes of reflections know of a traced texel, and of the pixel it stands for.
+ *
+ * The guide, rg32ui, is the G-buffer at half size. A texel stands for one pixel of its 2x2, another one
+ * in each frame, so that after four frames all have been asked (pixel (k + frame) of a fixed order):
+ *   x  bits 0-25  octahedral normal, as in the G-buffer
+ *      bits 26-31 roughness of the lobe that is traced, 0..63
+ *   y  depth, its two lowest bits replaced by the number of the pixel; 0: nothing is traced here. What
+ *      other images hold of such a texel is not defined
+ */
+#ifndef MASU_SPECULAR_GUIDE_GLSL
+#define MASU_SPECULAR_GUIDE_GLSL
+
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+
+struct masu_guide {
+    vec3 normal;
+    float roughness;
+    float depth;
+    uint pixel; /* x + 2 y within its 2x2 */
+    bool there;
+};
+
+masu_guide masu_unpack_guide(uvec2 texel)
+{
+    masu_guide g;
+    g.normal = masu_unpack_normal(texel.x);
+    g.roughness = float(texel.x >> 26) / 63.0;
+    g.depth = uintBitsToFloat(texel.y & ~3u);
+    g.pixel = texel.y & 3u;
+    g.there = texel.y > 3u && masu_finite(g.depth) && g.depth > 0.0;
+    return g;
+}
+
+uvec2 masu_pack_guide(uint packed_normal, float roughness, float depth, uint pixel)
+{
+    uint rough = uint(masu_sane(roughness, 0.0, 1.0) * 63.0 + 0.5);
+    return uvec2((packed_normal & 0x3FFFFFFu) | rough << 26,
+                 (floatBitsToUint(depth) & ~3u) | pixel);
+}
+
+/* Which pixel of its 2x2 a texel stands for in a frame. Neighbours take different ones. */
+uint masu_guide_pixel(uvec2 texel, uint number)
+{
+    const uint order = 0x1Eu | 0x00u; /* 2, 3, 1, 0 in pairs of bits: diagonals follow each other */
+    uint k = (number + texel.x + 2u * texel.y) & 3u;
+    return (order >> (2u * k)) & 3u;
+}
+
+/* Pixel of the render size. across: pixels along an edge of a texel, 1 or 2. */
+uvec2 masu_guide_place(uvec2 texel, uint pixel, uint across)
+{
+    return across == 1u ? texel : 2u * texel + uvec2(pixel & 1u, pixel >> 1);
+}
+
+/* Share of what a lobe mirrors that is traced; the rest is the sky's or the probes'. */
+float masu_traced_share(float roughness, float cutoff)
+{
+    float from = 0.75 * cutoff;
+    float x = clamp((roughness - from) / max(cutoff - from, 1e-6), 0.0, 1.0);
+    return cutoff > 0.0 ? 1.0 - x * x * (3.0 - 2.0 * x) : 0.0;
+}
+
+/* The lobe that is traced: the coat's where there is one, which lies on top and is the smoother one. */
+float masu_traced_roughness(masu_surface s)
+{
+    return s.coat > 0.0 ? s.coat_roughness : s.roughness;
+}
+
+/* Whether any of what a surface mirrors is. both: the base too, below a coat that may be too rough itself. */
+bool masu_is_traced(masu_surface s, float cutoff, bool both)
+{
+    float roughness = masu_traced_roughness(s);
+    return masu_traced_share(both ? min(roughness, s.roughness) : roughness, cutoff) > 0.0;
+}
+
+/* Share of the sky's light in the mirror that the light pass still has to add: of the base, of the coat.
+ * The reference traces both lobes. */
+vec2 masu_kept_mirrors(masu_surface s, float cutoff, bool both)
+{
+    float base = s.coat > 0.0 && !both ? 0.0 : masu_traced_share(s.roughness, cutoff);
+    return 1.0 - vec2(base, masu_traced_share(s.coat_roughness, cutoff));
+}
+
+/* Point under the middle of a pixel, relative to the eye. */
+vec3 masu_guide_point(uvec2 pixel, float depth)
+{
+    uvec2 size = uvec2(pc.render_width, pc.render_height);
+    return masu_pixel_ray(pixel, size) * (frame.forward.w * masu_rcp(depth));
+}
+
+#endif

@@ -1,0 +1,73 @@
+/*
+ * ray.glsl: the ray of a traced texel and what it meets, as images hold them.
+ *
+ *   specular_ray, rg32ui   x  direction, octahedral, 16 + 16 bits
+ *                          y  density per steradian, a float; with debug.reference what the radiance is to
+ *                             be multiplied by, three numbers that share an exponent (9 bits each and 5)
+ *   specular_hit, rgba32ui x  distance, a float; below 0: nothing is met
+ *                          of a polygon  y number of the traced instance, z of the triangle, w barycentric
+ *                             coordinates of its second and third corner, 16 bits each
+ *                          of the SDF    y bit 31 set, then where the point was in the frame before minus where
+ *                             it is, three times 8 bits with a sign that share an exponent of 7; z normal
+ *                             as in the G-buffer, w albedo (sqrt) or radiance as there, roughness, 8 bits each
+ */
+#ifndef MASU_SPECULAR_RAY_GLSL
+#define MASU_SPECULAR_RAY_GLSL
+
+#include "shared/pack.glsl"
+
+#define MASU_HIT_SDF 0x80000000u /* bit of y; there are fewer instances */
+
+uint masu_pack_direction(vec3 d)
+{
+    vec2 p = masu_sane(vec4(masu_oct_encode(d), 0.0, 0.0), -1.0, 1.0).xy;
+    return packSnorm2x16(p);
+}
+
+vec3 masu_unpack_direction(uint word)
+{
+    return masu_oct_decode(unpackSnorm2x16(word));
+}
+
+/* Three numbers of 0 to 65280 with one exponent (VK_FORMAT_E5B9G9R9's), rounded up with probability of what
+ * is cut off, `chance` being even over 0..1: the mean of many is exact, as that of a mirror's, which are all
+ * alike, would not be. The largest stays a step below what the exponent can hold, for that. */
+uint masu_pack_shared(vec3 v, float chance)
+{
+    vec3 c = masu_sane(v, 0.0, 65280.0);
+    float most = max(max(c.r, c.g), max(c.b, 1.0 / 65536.0)) * (512.0 / 511.0);
+    int e = int(floatBitsToUint(most) >> 23) - 127 + 1;
+    e = clamp(e, -15, 16);
+    float scale = uintBitsToFloat(uint(127 + 9 - e) << 23);
+    uvec3 m = min(uvec3(c * scale + chance), uvec3(511u));
+    return m.r | m.g << 9 | m.b << 18 | uint(e + 15) << 27;
+}
+
+vec3 masu_unpack_shared(uint word)
+{
+    float scale = uintBitsToFloat(((word >> 27) + 127u - 24u) << 23);
+    return vec3(word & 511u, word >> 9 & 511u, word >> 18 & 511u) * scale;
+}
+
+/* A move as y of a hit of the SDF: within 1/127 of its longest coordinate, up to 2^63; shorter than 2^-63 is 0. */
+uint masu_pack_sdf_motion(vec3 v)
+{
+    vec3 c = masu_sane(v, -9e18, 9e18);
+    float most = max(abs(c.x), max(abs(c.y), abs(c.z)));
+    int e = int(floatBitsToUint(most) >> 23) - 126; /* most < 2^e */
+    if (e < -62) {
+        return MASU_HIT_SDF;
+    }
+    ivec3 m = ivec3(round(clamp(c * uintBitsToFloat(uint(127 + 7 - e) << 23), vec3(-127.0), vec3(127.0))));
+    uvec3 bits = uvec3(m) & 255u;
+    return MASU_HIT_SDF | bits.x | bits.y << 8 | bits.z << 16 | uint(e + 63) << 24;
+}
+
+vec3 masu_unpack_sdf_motion(uint word)
+{
+    int e = int(word >> 24 & 127u) - 63;
+    ivec3 m = ivec3(word << 24, word << 16, word << 8) >> 24;
+    return vec3(m) * uintBitsToFloat(uint(127 - 7 + e) << 23);
+}
+
+#endif

@@ -1,0 +1,150 @@
+/*
+ * specular_composite.comp: reflections at full size, added to what is lit: radiance from the four traced
+ * texels around a pixel, times how much the pixel's surface mirrors of it (the lobe's directional albedo,
+ * brdf/tables.glsl: the split sum). light.comp has left out as much of the sky's (masu_kept_mirrors).
+ *
+ * The joint bilateral upsampling: bilinear weights, times how near a texel's surface point lies to the
+ * pixel's plane and how alike the normals are. Where all four are something else the nearest to the
+ * plane is taken, and where none of them is traced, what light.comp would have taken.
+ *
+ * Of smooth surfaces each pixel has its own mean (MASU_FINE, specular_fine.comp), where there is one.
+ *
+ * param.x: roughness from which nothing is traced. index.w: 1: the mean of the reference instead, which
+ * is weighted already. index.x: not 0: there are means of pixels.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+#include "light/environment.glsl"
+#include "light/sky.glsl"
+#include "light/ambient.glsl"
+#include "light/air.glsl"
+#include "brdf/bsdf.glsl"
+#include "specular/fine.glsl"
+#include "specular/guide.glsl"
+#include "specular/surface.glsl"
+#include "specular/tiles.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
+
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE) uniform usampler2D guide_image;
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE + 1) uniform sampler2D specular_image;
+#ifdef MASU_FINE
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE + 2) uniform usampler2D fine_image;
+#define MASU_AT_HDR (MASU_AFTER_SURFACE + 3)
+#else
+#define MASU_AT_HDR (MASU_AFTER_SURFACE + 2)
+#endif
+layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
+
+/* Radiance that a pixel's lobe gathers; a: 0 where no texel knows. most: of any channel of those that count. */
+vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
+{
+    vec2 place = (vec2(at) - 0.5) * 0.5; /* a texel's middle is that of its four pixels */
+    vec2 corner = floor(place);
+    vec2 part = place - corner;
+    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    float z = frame.forward.w * masu_rcp(depth);
+    /* A texel is two pixels wide: what lies off the plane by half of that is another surface. */
+    float tolerance = z * frame.up.w * 2.0 / float(pc.render_height);
+    vec4 sum = vec4(0.0);
+    vec4 nearest = vec4(0.0);
+    float least = 1e30;
+    most = 0.0;
+    for (int k = 0; k < 4; k++) {
+        ivec2 off = ivec2(k & 1, k >> 1);
+        ivec2 texel = clamp(ivec2(corner) + off, ivec2(0), last);
+        masu_guide g = masu_unpack_guide(texelFetch(guide_image, texel, 0).rg);
+        if (!g.there) {
+            continue;
+        }
+        vec3 color = masu_sane(texelFetch(specular_image, texel, 0).rgb, 0.0, 65504.0);
+        vec3 other = masu_guide_point(masu_guide_place(uvec2(texel), g.pixel, 2u), g.depth);
+        float away = abs(dot(other - point, n)) / tolerance;
+        float alike = max(dot(g.normal, n), 0.0);
+        alike *= alike;
+        alike *= alike;
+        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) *
+                         mix(1.0 - part.y, part.y, float(off.y));
+        float weight = (bilinear + 1e-3) * alike * masu_exp2(-away * away);
+        float cost = away + 4.0 * (1.0 - alike);
+        sum += weight * vec4(color, 1.0);
+        most = max(most, weight > 1e-4 ? max(color.r, max(color.g, color.b)) : 0.0);
+        if (cost < least) {
+            least = cost;
+            nearest = vec4(color, 1.0);
+        }
+    }
+    return sum.a > 1e-3 ? vec4(sum.rgb / sum.a, 1.0) : nearest;
+}
+
+void pixel(uvec2 at, uvec2 texel, uint number)
+{
+    masu_pixel p = masu_pixel_at(at);
+    float roughness = masu_traced_roughness(p.surface);
+    if (!(p.depth > 0.0) || !masu_is_traced(p.surface, pc.param.x, pc.index.w != 0u)) {
+        return;
+    }
+    vec4 lit = imageLoad(hdr_image, ivec2(at));
+    vec3 point = masu_guide_point(at, p.depth);
+    vec3 mirrored;
+    if (pc.index.w != 0u) {
+        vec4 sum = texelFetch(specular_image, ivec2(texel), 0);
+        mirrored = sum.rgb / max(sum.a, 1.0);
+    } else {
+        vec3 n = masu_unpack_normal(p.normal);
+        vec3 v = -masu_normalize(point, frame.forward.xyz);
+        masu_bsdf b = masu_bsdf_make(p.surface, n, v);
+        vec3 mirrors = p.surface.coat > 0.0 ? vec3(masu_bsdf_coat(b)) : masu_bsdf_specular(b);
+        float most;
+        vec4 light = gathered(at, point, n, p.depth, most);
+        if (!(light.a > 0.0)) {
+            light.rgb = masu_ambient_mirror(reflect(-v, n), roughness);
+        }
+#ifdef MASU_FINE
+        float fine = pc.index.x != 0u ? masu_fine_share(roughness) : 0.0;
+        if (fine > 0.0) {
+            uint word = texelFetch(fine_image, ivec2(texel), 0)[number];
+            if (word != masu_fine_none) {
+                /* What the texels' means do not show even half as bright is noise of few rays; a mirror has
+                 * none. */
+                vec3 own = masu_unpack_fine(word);
+                float bright = max(own.r, max(own.g, own.b));
+                float limit = roughness > masu_fine_mirror && most > 0.0 ? 2.0 * most + 0.01 : bright;
+                own *= min(1.0, limit / max(bright, 1e-9));
+                light.rgb = mix(light.rgb, own, fine);
+            }
+        }
+#endif
+        mirrored = masu_traced_share(roughness, pc.param.x) * mirrors * light.rgb;
+    }
+    if (foggy) { /* what it adds itself, light.comp has added */
+        vec3 direction = masu_normalize(point, frame.forward.xyz);
+        mirrored *= masu_fog_left(masu_air_depth(direction, length(point)));
+    }
+    lit.rgb += mirrored;
+    MASU_STORE_HALF(hdr_image, at, lit);
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 texel = masu_specular_texel();
+    uvec2 size = uvec2(pc.render_width, pc.render_height);
+    for (uint k = 0u; k < 4u; k++) {
+        if (k >= pc.index.z * pc.index.z) {
+            break;
+        }
+        uvec2 at = masu_guide_place(texel, k, pc.index.z);
+        if (all(lessThan(at, size))) {
+            pixel(at, texel, k);
+        }
+    }
+    masu_count_end();
+}

@@ -1,0 +1,123 @@
+/*
+ * specular_filter.comp: the mean over neighbours of the same surface, as far as noise is left. Facts: a
+ * neighbour counts by how near it lies to the plane, how its normal leans, and how far its luma is off,
+ * measured in deviations of what the mean over frames still has of noise: its variance divided by the frames
+ * in it (Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017). So the filter goes away by
+ * itself as the mean becomes better.
+ *
+ * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
+ * and not by the frame: what it leaves does not flicker.
+ *
+ * index.x: neighbours; index.y: not 0: there is a mean over frames.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+#include "noise/sequence.glsl"
+#include "specular/filter.glsl"
+#include "specular/tiles.glsl"
+#include "trace/scene.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform usampler2D guide_image;
+layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D light_image;
+layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D age_image;
+layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D smooth_image;
+
+const float widest = 12.0; /* texels */
+const float luma_width = 2.0; /* deviations */
+
+/* Deviation of the luma of a texel, from its 3x3: where no mean over frames tells, or too few frames. */
+float spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
+{
+    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    float sum = 0.0;
+    float squares = 0.0;
+    float count = 0.0;
+    for (int k = 0; k < 9; k++) {
+        ivec2 at = texel + ivec2(k % 3 - 1, k / 3 - 1);
+        if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
+            continue;
+        }
+        masu_guide o = masu_unpack_guide(texelFetch(guide_image, at, 0).rg);
+        if (!o.there || !masu_same_plane(masu_specular_point(uvec2(at), o) - point, g.normal, width)) {
+            continue;
+        }
+        float y = masu_luma(masu_tamed(texelFetch(light_image, at, 0).rgb));
+        sum += y;
+        squares += y * y;
+        count += 1.0;
+    }
+    count = max(count, 1.0);
+    return masu_sqrt(squares / count - (sum / count) * (sum / count));
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 texel = masu_specular_texel();
+    if (masu_specular_inside(texel)) {
+        masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
+        vec4 result = vec4(0.0);
+        if (g.there) {
+            vec4 own = texelFetch(light_image, ivec2(texel), 0);
+            vec3 color = masu_tamed(own.rgb);
+            result = vec4(color, 1.0);
+            if (g.roughness > masu_mirror_roughness) {
+                vec3 point = masu_specular_point(texel, g);
+                float width = masu_texel_width(g);
+                float y = masu_luma(color);
+                float far = masu_sane(own.a, 0.0, 65504.0);
+                float frames = 1.0;
+                if (pc.index.y != 0u) {
+                    uint age = texelFetch(age_image, ivec2(texel), 0).r;
+                    far = masu_age_far(age);
+                    frames = max(masu_age_frames(age), 1.0);
+                }
+                float sigma;
+                if (pc.index.y != 0u && frames > 4.0) {
+                    sigma = masu_sqrt(masu_sane(own.a, 0.0, 65504.0) - y * y) *
+                            masu_rsqrt(min(frames, 2.0 / masu_time_share(32.0)));
+                } else {
+                    sigma = spread_around(ivec2(texel), g, point, width);
+                }
+                float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, point);
+                float radius = masu_specular_reach(g, point, far, curvature);
+                radius = clamp(radius * (1.0 + 2.0 / frames), 1.0, widest);
+                float turn = float(masu_trace_noise(masu_noise_index(texel.x, texel.y, 3u)) & 0xFFFFu) / 65536.0;
+                ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+                vec4 sum = vec4(color, 1.0);
+                for (uint k = 0u; k < uint(MASU_FILTER_TAPS_MAX); k++) {
+                    if (k >= pc.index.x) {
+                        break;
+                    }
+                    float share = (float(k) + 0.5) / float(pc.index.x);
+                    float r = max(radius * sqrt(share), 1.0);
+                    float angle = 2.3999632 * float(k) + 6.2831853 * turn;
+                    ivec2 at = ivec2(texel) + ivec2(round(r * vec2(cos(angle), sin(angle))));
+                    if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
+                        continue;
+                    }
+                    masu_guide o = masu_unpack_guide(texelFetch(guide_image, at, 0).rg);
+                    if (!o.there || abs(o.roughness - g.roughness) > 0.1) {
+                        continue;
+                    }
+                    float off = dot(masu_specular_point(uvec2(at), o) - point, g.normal) / max(width, 1e-9);
+                    vec3 other = masu_tamed(texelFetch(light_image, at, 0).rgb);
+                    float luma = abs(masu_luma(other) - y) / (luma_width * sigma + 1e-4);
+                    float alike = masu_pow(max(dot(o.normal, g.normal), 0.0), 64.0);
+                    float weight = alike * masu_exp2(-2.0 * off * off - luma - 2.0 * share);
+                    sum += weight * vec4(other, 1.0);
+                }
+                result.rgb = sum.rgb / sum.a;
+            }
+        }
+        MASU_STORE_HALF(smooth_image, texel, result);
+    }
+    masu_count_end();
+}

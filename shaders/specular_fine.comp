@@ -1,0 +1,155 @@
+/*
+ * specular_fine.comp: what smooth surfaces mirror is as sharp as the picture, and a mean over a texel's 2x2
+ * pixels blurs it. Here each of the four has its own: the pixel that the texel has traced in this frame
+ * takes its ray in, the others keep what they had, found again where specular_temporal has found the
+ * texel's. A mirror's ray has no noise and replaces the mean. A texel on an outline stands for another
+ * surface in each frame, and finds nothing; its pixels keep what lay where they were all the same, until
+ * their own turn.
+ *
+ * index.x: how far back the mean reaches, 1/60 s.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+#include "noise/sequence.glsl"
+#include "specular/filter.glsl"
+#include "specular/fine.glsl"
+#include "specular/tiles.glsl"
+#include "trace/scene.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform usampler2D guide_image;
+layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D light_image;
+layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D mean_image;
+layout(set = MASU_SET_PASS, binding = 3) uniform usampler2D age_image;
+layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D velocity_image;
+layout(set = MASU_SET_PASS, binding = 5) uniform usampler2D old_guide_image;
+layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_fine_image;
+layout(set = MASU_SET_PASS, binding = 7, rgba32ui) uniform writeonly uimage2D fine_image;
+
+/* a: 0: nothing is there. at: pixel of the frame before. */
+vec4 old_pixel(ivec2 at, masu_guide g)
+{
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.history.yz)))) {
+        return vec4(0.0);
+    }
+    ivec2 texel = at >> 1;
+    masu_guide o = masu_unpack_guide(texelFetch(old_guide_image, texel, 0).rg);
+    if (!o.there || abs(o.roughness - g.roughness) > 0.1 || dot(o.normal, g.normal) < 0.7 ||
+        abs(o.depth - g.depth) > 0.1 * g.depth) {
+        return vec4(0.0);
+    }
+    uint word = texelFetch(old_fine_image, texel, 0)[(at.x & 1) + 2 * (at.y & 1)];
+    return word == masu_fine_none ? vec4(0.0) : vec4(masu_unpack_fine(word), 1.0);
+}
+
+/* Where a pixel's own surface was, whatever the texel there stood for: to the nearest pixel, since between two
+ * lies the outline. */
+vec4 own_way(uvec2 pixel)
+{
+    if (frame.history.yz != uvec2(pc.render_width, pc.render_height) ||
+        any(greaterThanEqual(pixel, frame.history.yz))) {
+        return vec4(0.0);
+    }
+    vec4 velocity = texelFetch(velocity_image, ivec2(pixel), 0);
+    ivec2 at = ivec2(pixel) + ivec2(round(masu_sane(velocity, -32768.0, 32768.0).xy));
+    if (!(velocity.w > 0.0) || any(lessThan(at, ivec2(0))) ||
+        any(greaterThanEqual(at, ivec2(frame.history.yz))) ||
+        !masu_unpack_guide(texelFetch(old_guide_image, at >> 1, 0).rg).there) {
+        return vec4(0.0);
+    }
+    uint word = texelFetch(old_fine_image, at >> 1, 0)[(at.x & 1) + 2 * (at.y & 1)];
+    return word == masu_fine_none ? vec4(0.0) : vec4(masu_unpack_fine(word), 1.0);
+}
+
+vec4 look(uvec2 pixel, vec2 moved, masu_guide g)
+{
+    vec2 scale = vec2(frame.history.yz) / vec2(pc.render_width, pc.render_height);
+    vec2 place = (vec2(pixel) + 0.5 + moved) * scale - 0.5;
+    place = masu_sane(vec4(place, 0.0, 0.0), -2.0, 32768.0).xy;
+    vec2 whole = round(place);
+    if (all(lessThan(abs(place - whole), vec2(4e-3)))) {
+        return old_pixel(ivec2(whole), g);
+    }
+    vec2 corner = floor(place);
+    vec2 part = place - corner;
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < 4; k++) {
+        ivec2 off = ivec2(k & 1, k >> 1);
+        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
+        sum += bilinear * old_pixel(ivec2(corner) + off, g);
+    }
+    return sum.a > 0.2 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
+}
+
+/* What few rays meet and much light comes from is noise in so few of them: no brighter than what the means
+ * of the eight texels around show. */
+vec3 without_sparks(ivec2 texel, vec3 color)
+{
+    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    float sum = 0.0;
+    float squares = 0.0;
+    float count = 0.0;
+    for (int k = 0; k < 9; k++) {
+        ivec2 at = texel + ivec2(k % 3 - 1, k / 3 - 1);
+        if (k == 4 || any(lessThan(at, ivec2(0))) || any(greaterThan(at, last)) ||
+            !masu_unpack_guide(texelFetch(guide_image, at, 0).rg).there) {
+            continue;
+        }
+        float y = masu_luma(masu_tamed(texelFetch(mean_image, at, 0).rgb));
+        sum += y;
+        squares += y * y;
+        count += 1.0;
+    }
+    if (!(count > 0.0)) {
+        return color;
+    }
+    float mean = sum / max(count, 1.0);
+    float most = mean + 2.5 * masu_sqrt(squares / max(count, 1.0) - mean * mean) + 0.1 * mean;
+    float y = masu_luma(color);
+    return y > most ? color * (most / max(y, 1e-9)) : color;
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 texel = masu_specular_texel();
+    if (masu_specular_inside(texel)) {
+        masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
+        uvec4 words = uvec4(masu_fine_none);
+        if (g.there && masu_fine_share(g.roughness) > 0.0) {
+            vec3 color = masu_tamed(texelFetch(light_image, ivec2(texel), 0).rgb);
+            uvec2 age = texelFetch(age_image, ivec2(texel), 0).rg;
+            bool known = frame.history.y != 0u && age.y != masu_unmoved;
+            vec2 moved = known ? unpackHalf2x16(age.y) : vec2(0.0);
+            /* Each fourth frame is this pixel's. What it has from before the first round is of another
+             * surface, maybe. */
+            float own = max((masu_age_frames(age.x) - 4.0) * 0.25, 0.0);
+            float share = max(1.0 / (own + 1.0), masu_time_share(max(float(pc.index.x) * 0.25, 1.0)));
+            if (g.roughness > masu_mirror_roughness) {
+                color = without_sparks(ivec2(texel), color);
+            } else {
+                share = 1.0;
+            }
+            vec2 noise = masu_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
+            for (uint k = 0u; k < 4u; k++) {
+                uvec2 pixel = masu_guide_place(texel, k, 2u);
+                vec4 old = known ? look(pixel, moved, g) : vec4(0.0);
+                if (!(old.a > 0.0)) {
+                    old = own_way(pixel);
+                }
+                if (k == g.pixel) {
+                    old = vec4(old.a > 0.0 ? mix(old.rgb, color, share) : color, 1.0);
+                }
+                words[k] = old.a > 0.0 ? masu_pack_fine(old.rgb, noise.x) : masu_fine_none;
+            }
+        }
+        MASU_STORE_UINT(fine_image, texel, words);
+    }
+    masu_count_end();
+}

@@ -1,0 +1,68 @@
+/*
+ * specular_guide.comp: which pixel of each 2x2 is traced in this frame, and the list of 8x8 texels in
+ * which any is. Only surfaces smoother than param.x are; the passes behind this one run for the listed
+ * tiles alone.
+ *
+ * A pixel that is not glossy is replaced by another one of its 2x2 that is: a rod one pixel wide would
+ * else be traced in every fourth frame only.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+#include "specular/guide.glsl"
+#include "specular/surface.glsl"
+#define MASU_SPECULAR_TILES_ACCESS
+#include "specular/tiles.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE, rg32ui) uniform writeonly uimage2D
+    guide_image;
+
+shared uint any_glossy;
+
+void main()
+{
+    masu_count_begin();
+    if (gl_LocalInvocationIndex == 0u) {
+        any_glossy = 0u;
+    }
+    barrier();
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    uvec2 size = uvec2(pc.render_width, pc.render_height);
+    if (masu_specular_inside(texel)) {
+        uvec2 guide = uvec2(0u);
+        uint first = pc.index.z == 1u ? 0u : masu_guide_pixel(texel, frame.history.x);
+        for (uint k = 0u; k < 4u; k++) {
+            if (k >= pc.index.z * pc.index.z) {
+                break;
+            }
+            uint pixel = first ^ k;
+            uvec2 at = masu_guide_place(texel, pixel, pc.index.z);
+            if (any(greaterThanEqual(at, size))) {
+                continue;
+            }
+            masu_pixel p = masu_pixel_at(at);
+            if (p.depth > 0.0 && masu_is_traced(p.surface, pc.param.x, pc.index.w != 0u)) {
+                guide = masu_pack_guide(p.normal, masu_traced_roughness(p.surface), p.depth, pixel);
+                break;
+            }
+        }
+        if (guide.y > 3u) {
+            any_glossy = 1u;
+        }
+        MASU_STORE_UINT(guide_image, texel, uvec4(guide, 0u, 0u));
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u && any_glossy != 0u) {
+        uint slot = atomicAdd(specular_tiles[0], 1u);
+        specular_tiles[uint(MASU_TILES_HEADER) + slot] =
+            gl_WorkGroupID.y * masu_specular_columns() + gl_WorkGroupID.x;
+        masu_count(MASU_COUNTER_SPECULAR_TILES, 1u);
+    }
+    masu_count_end();
+}

@@ -1,0 +1,111 @@
+/*
+ * specular_rays.comp: one ray for each traced texel, drawn where its pixel's lobe of visible normals
+ * reflects to (brdf/vndf.glsl), by noise that is blue over texels and even over frames
+ * (noise/sequence.glsl).
+ *
+ * With debug.reference (index.w) also what the ray's radiance is worth, by the lobes themselves and not
+ * their albedo: a surface with a coat has two, which take turns; the density is that of both. (Of the same
+ * sequence another number must not choose: its steps are those of the first, and each lobe would be asked
+ * in one and the same half of its directions.) A mirror's rays all go one way, which has no density: there
+ * each ray stands for its own lobe alone.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+#include "brdf/vndf.glsl"
+#include "noise/sequence.glsl"
+#include "specular/guide.glsl"
+#include "specular/lobes.glsl"
+#include "specular/ray.glsl"
+#include "specular/surface.glsl"
+#include "specular/tiles.glsl"
+#include "trace/scene.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE) uniform usampler2D guide_image;
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE + 1, rg32ui) uniform writeonly uimage2D
+    ray_image;
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE + 2, rgba32ui) uniform writeonly uimage2D
+    hit_image;
+
+uint noise_at(uvec2 texel, uint key)
+{
+    return masu_trace_noise(masu_noise_index(texel.x, texel.y, key));
+}
+
+/* What a ray towards l is worth. turn: 0: there is no coat, 1: it is the base's ray, 2: the coat's. */
+vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
+{
+    vec3 base;
+    float coat;
+    masu_lobes(b, l, base, coat);
+    vec3 local = masu_axes_in(f, l);
+    vec2 share = vec2(masu_traced_share(s.roughness, pc.param.x),
+                      masu_traced_share(s.coat_roughness, pc.param.x));
+    float pdf = masu_vndf_pdf(v, local, b.alpha);
+#ifdef MASU_SURFACE
+    if (turn != 0u) {
+        vec2 both = 0.5 * vec2(pdf, masu_vndf_pdf(v, local, b.coat_alpha));
+        pdf = both.x + both.y;
+        if (!(min(b.alpha, b.coat_alpha) > masu_mirror_alpha)) {
+            bool of_base = turn == 1u;
+            pdf = of_base ? both.x : both.y;
+            share *= of_base ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+        }
+    }
+#endif
+    return (base * share.x + coat * share.y) / max(3.14159265 * pdf, 1e-9);
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 texel = masu_specular_texel();
+    if (masu_specular_inside(texel)) {
+        masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
+        uvec2 ray = uvec2(0u);
+        if (g.there) {
+            uvec2 at = masu_guide_place(texel, g.pixel, pc.index.z);
+            masu_pixel p = masu_pixel_at(at);
+            vec3 n = masu_unpack_normal(p.normal);
+            vec3 toward = masu_pixel_ray(at, uvec2(pc.render_width, pc.render_height));
+            vec3 v = -masu_normalize(toward, frame.forward.xyz);
+            masu_axes f = masu_axes_of(n);
+            vec3 v_local = masu_axes_in(f, v);
+            uint number = frame.history.x;
+            vec2 u = masu_noise2(noise_at(texel, 0u), number);
+            float alpha = masu_alpha(masu_traced_roughness(p.surface));
+            uint turn = 0u;
+            masu_bsdf b;
+            if (pc.index.w != 0u) {
+                b = masu_bsdf_make(p.surface, n, v);
+                if (p.surface.coat > 0.0) {
+                    turn = 1u + ((number + noise_at(texel, 1u)) & 1u);
+                    alpha = turn == 1u ? b.alpha : alpha;
+                }
+            }
+            masu_vndf_ray r = masu_vndf_reflect(v_local, alpha, u);
+            vec3 l = masu_axes_out(f, r.l);
+            bool above = r.l.z > 0.0;
+            /* What would go below the surface is mirrored back up; it is worth nothing to the reference,
+             * and to the filters little. */
+            vec3 kept = above ? l : l - 2.0 * dot(l, n) * n;
+            ray.x = masu_pack_direction(kept);
+            ray.y = floatBitsToUint(masu_sane(r.pdf, 1e-6, 1e9));
+            if (pc.index.w != 0u) {
+                uint bits = masu_hash(masu_hash(number) ^ noise_at(texel, 2u));
+                ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn) : vec3(0.0),
+                                         float(bits >> 8) * (1.0 / 16777216.0));
+            }
+            masu_count(MASU_COUNTER_SPECULAR_RAYS, 1u);
+        }
+        MASU_STORE_UINT(ray_image, texel, uvec4(ray, 0u, 0u));
+        MASU_STORE_UINT(hit_image, texel, uvec4(floatBitsToUint(-1.0), 0u, 0u, 0u));
+    }
+    masu_count_end();
+}

@@ -1,0 +1,280 @@
+/*
+ * specular_temporal.comp: the mean of a texel's light over frames. What was seen there is looked for in the
+ * frame before in two places: where the surface was (velocity), and where the thing that it mirrors was seen
+ * in it (specular_motion; its mean over 3x3 texels, since each texel's ray has met something else). A mirror
+ * needs the second, a rough surface, whose lobe sees a bit of everything, the first.
+ *
+ * A place counts as far as its surface lies in the plane in which this one was, and leans alike. What is
+ * found may be of a surface that saw something else then. The test: means over the same 3x3 texels, then and
+ * now, may differ by what the noise of nine rays explains, and what goes beyond makes the history forget
+ * (after the weight of "Gran Turismo 7", which has exp(-|Y - mean| / sigma)). A clamp to the present 3x3
+ * alone would cut off what few rays meet and much light comes from; it is for what is left, and as wide as
+ * the history's own noise.
+ *
+ * index.x: how far back the mean reaches, 1/60 s.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+#include "shared/motion.glsl"
+#include "specular/filter.glsl"
+#include "specular/tiles.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform usampler2D guide_image;
+layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D light_image;
+layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D motion_image;
+layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D velocity_image;
+layout(set = MASU_SET_PASS, binding = 4) uniform usampler2D old_guide_image;
+layout(set = MASU_SET_PASS, binding = 5) uniform sampler2D old_mean_image;
+layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_age_image;
+layout(set = MASU_SET_PASS, binding = 7, rgba16f) uniform writeonly image2D mean_image;
+layout(set = MASU_SET_PASS, binding = 8, rg32ui) uniform writeonly uimage2D age_image;
+
+/* Deviations of a mean over 3x3 that are still noise, and how fast the history forgets beyond. */
+const float surprise = 3.0;
+const float forget = 0.5;
+/* Half the width of the clamp, in deviations. */
+const float clamp_width = 2.0;
+
+/* The texel in the present frame, and its surface as the frame before saw it. */
+struct here {
+    ivec2 texel;
+    masu_guide g;
+    vec3 point;
+    vec3 was;    /* relative to the eye of then */
+    float width; /* of a texel, of the coarser of both frames */
+};
+
+struct past {
+    vec4 mean;
+    float age;
+    float weight; /* 0..1: how much of it is of this surface */
+    vec2 place;   /* texels of the frame before */
+};
+
+struct present {
+    vec3 mean, sigma; /* YCoCg, of 3x3 */
+    vec2 motion;
+    float motions;
+    float far;
+};
+
+vec3 old_point(ivec2 texel, masu_guide o)
+{
+    vec2 size = vec2(frame.history.yz);
+    vec2 ndc = (vec2(masu_guide_place(uvec2(texel), o.pixel, 2u)) + 0.5) / size * 2.0 - 1.0;
+    float z = previous.forward.w * masu_rcp(o.depth);
+    return (previous.forward.xyz + previous.right.xyz * ndc.x - previous.up.xyz * ndc.y) * z;
+}
+
+ivec2 old_last()
+{
+    return (ivec2(frame.history.yz) + 1) / 2 - 1;
+}
+
+/* moved: pixels of this frame's render size. */
+past look(here h, vec2 moved)
+{
+    past p;
+    p.mean = vec4(0.0);
+    p.age = 0.0;
+    p.weight = 0.0;
+    vec2 scale = vec2(frame.history.yz) / vec2(pc.render_width, pc.render_height);
+    p.place = (2.0 * vec2(h.texel) + 1.0 + moved) * scale * 0.5 - 0.5;
+    p.place = clamp(masu_sane(vec4(p.place, 0.0, 0.0), -2.0, 32768.0).xy, vec2(-2.0), vec2(32768.0));
+    /* What rests stays where it is to the bit: a thousandth of a texel would blur it in a thousand frames. */
+    vec2 whole = round(p.place);
+    if (all(lessThan(abs(p.place - whole), vec2(2e-3)))) {
+        p.place = whole;
+    }
+    vec2 corner = floor(p.place);
+    vec2 part = p.place - corner;
+    ivec2 last = old_last();
+    for (int k = 0; k < 4; k++) {
+        ivec2 off = ivec2(k & 1, k >> 1);
+        ivec2 at = ivec2(corner) + off;
+        float bilinear = mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
+        if (!(bilinear > 0.0) || any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
+            continue;
+        }
+        masu_guide o = masu_unpack_guide(texelFetch(old_guide_image, at, 0).rg);
+        vec4 mean = texelFetch(old_mean_image, at, 0);
+        if (!o.there || !(mean.a >= 0.0) || !masu_finite(mean) || abs(o.roughness - h.g.roughness) > 0.1 ||
+            dot(o.normal, h.g.normal) < 0.8 ||
+            !masu_same_plane(old_point(at, o) - h.was, h.g.normal, h.width)) {
+            continue;
+        }
+        p.mean += bilinear * mean;
+        p.age += bilinear * masu_age_frames(texelFetch(old_age_image, at, 0).r);
+        p.weight += bilinear;
+    }
+    float scale_up = masu_rcp(p.weight);
+    p.mean *= scale_up;
+    p.age *= scale_up;
+    /* A corner of one texel is not much to go by. */
+    p.weight = p.weight > 0.05 ? p.weight : 0.0;
+    return p;
+}
+
+present gather(here h)
+{
+    present r;
+    vec3 sum = vec3(0.0);
+    vec3 squares = vec3(0.0);
+    float count = 0.0;
+    float nearness = 0.0;
+    r.motion = vec2(0.0);
+    r.motions = 0.0;
+    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    for (int k = 0; k < 9; k++) {
+        ivec2 at = h.texel + ivec2(k % 3 - 1, k / 3 - 1);
+        if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
+            continue;
+        }
+        masu_guide o = masu_unpack_guide(texelFetch(guide_image, at, 0).rg);
+        if (!o.there || dot(o.normal, h.g.normal) < 0.7 ||
+            !masu_same_plane(masu_specular_point(uvec2(at), o) - h.point, h.g.normal, h.width)) {
+            continue;
+        }
+        vec4 light = texelFetch(light_image, at, 0);
+        vec3 c = masu_ycocg(masu_tamed(light.rgb));
+        sum += c;
+        squares += c * c;
+        count += 1.0;
+        nearness += masu_rcp(max(masu_sane(light.a, 0.0, 65504.0), 1e-4));
+        uint moved = texelFetch(motion_image, at, 0).r;
+        if (moved != masu_unmoved) {
+            r.motion += masu_sane(vec4(unpackHalf2x16(moved), 0.0, 0.0), -65504.0, 65504.0).xy;
+            r.motions += 1.0;
+        }
+    }
+    count = max(count, 1.0);
+    r.mean = sum / count;
+    r.sigma = sqrt(max(squares / count - r.mean * r.mean, 0.0));
+    r.motion /= max(r.motions, 1.0);
+    r.far = count / max(nearness, 1e-9);
+    return r;
+}
+
+/* Of the 3x3 texels around a place of the frame before: x mean luma, y variance of one frame's. Below 0:
+ * nothing is there. */
+vec2 past_luma(vec2 place)
+{
+    ivec2 middle = ivec2(round(place));
+    ivec2 last = old_last();
+    float sum = 0.0;
+    float spread = 0.0;
+    float count = 0.0;
+    for (int k = 0; k < 9; k++) {
+        ivec2 at = middle + ivec2(k % 3 - 1, k / 3 - 1);
+        if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
+            continue;
+        }
+        vec4 mean = texelFetch(old_mean_image, at, 0);
+        if (!(mean.a >= 0.0) || !masu_finite(mean)) {
+            continue;
+        }
+        float y = masu_luma(mean.rgb);
+        sum += y;
+        spread += max(mean.a - y * y, 0.0);
+        count += 1.0;
+    }
+    return count > 0.0 ? vec2(sum, spread) / count : vec2(-1.0);
+}
+
+/* How far a history is from what is seen, in deviations of the noise in that. */
+float distance_of(past p, present now)
+{
+    vec2 then = past_luma(p.place);
+    if (!(then.x >= 0.0)) {
+        return 0.0;
+    }
+    /* Nine rays, of which neighbours share some. */
+    float noise = sqrt(max(then.y, 0.0) / 4.0) + 0.02 * then.x + 1e-3;
+    return abs(then.x - now.mean.x) / noise;
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 texel = masu_specular_texel();
+    if (masu_specular_inside(texel)) {
+        here h;
+        h.texel = ivec2(texel);
+        h.g = masu_unpack_guide(texelFetch(guide_image, h.texel, 0).rg);
+        vec4 mean = vec4(0.0);
+        uvec2 age = uvec2(0u, masu_unmoved);
+        if (h.g.there) {
+            vec2 size = vec2(pc.render_width, pc.render_height);
+            uvec2 pixel = masu_guide_place(texel, h.g.pixel, 2u);
+            h.point = masu_specular_point(texel, h.g);
+            h.width = masu_texel_width(h.g);
+            vec4 light = texelFetch(light_image, h.texel, 0);
+            vec3 color = masu_tamed(light.rgb);
+            float y = masu_luma(color);
+            vec4 sample_mean = vec4(color, y * y);
+            present now = gather(h);
+            mean = sample_mean;
+            float frames = 1.0;
+            vec4 velocity = texelFetch(velocity_image, ivec2(pixel), 0);
+            if (frame.history.y != 0u && velocity.w > 0.0 && masu_finite(velocity)) {
+                vec2 ndc = (vec2(pixel) + 0.5 + velocity.xy) / size * 2.0 - 1.0;
+                float z = frame.forward.w * masu_rcp(h.g.depth) * (1.0 + velocity.z);
+                h.was = (previous.forward.xyz + previous.right.xyz * ndc.x - previous.up.xyz * ndc.y) * z;
+                h.width *= max(1.0, size.y / float(frame.history.z));
+                past a = look(h, velocity.xy);
+                past b = a;
+                bool apart = now.motions > 0.0 && any(greaterThan(abs(now.motion - velocity.xy), vec2(2e-3)));
+                float surface = 1.0;
+                float off_a = a.weight > 0.0 ? distance_of(a, now) : 0.0;
+                float off_b = off_a;
+                if (apart) {
+                    b = look(h, now.motion);
+                    off_b = b.weight > 0.0 ? distance_of(b, now) : 0.0;
+                    float rough = smoothstep(0.2, 0.8, h.g.roughness);
+                    surface = a.weight * rough * masu_exp2(-min(off_a, 60.0));
+                    float mirrored = b.weight * (1.0 - rough) * masu_exp2(-min(off_b, 60.0));
+                    float both = surface + mirrored;
+                    surface = both > 1e-20 ? surface / both : (b.weight > 0.0 ? 0.0 : 1.0);
+                }
+                float weight = mix(b.weight, a.weight, surface);
+                if (weight > 0.0) {
+                    vec4 history = mix(b.mean, a.mean, surface);
+                    float old_y = masu_luma(history.rgb);
+                    float old_sigma = masu_sqrt(history.a - old_y * old_y);
+                    float off = mix(off_b, off_a, surface);
+                    float trust = masu_exp2(-forget * max(off - surprise, 0.0));
+                    frames = mix(b.age, a.age, surface) * trust;
+                    /* The clamp, along the line to the present mean. */
+                    vec3 wide = clamp_width * max(now.sigma, vec3(old_sigma)) + 1e-3 + 0.02 * now.mean.x;
+                    vec3 from = masu_ycocg(history.rgb) - now.mean;
+                    vec3 times = abs(from) / wide;
+                    float most = max(times.x, max(times.y, times.z));
+                    if (most > 1.0) {
+                        history.rgb = max(masu_from_ycocg(now.mean + from / most), vec3(0.0));
+                        float new_y = masu_luma(history.rgb);
+                        history.a = new_y * new_y + old_sigma * old_sigma;
+                        frames = frames / most;
+                    }
+                    float reach = h.g.roughness > masu_mirror_roughness ? float(pc.index.x) : 4.0;
+                    float share = max(1.0 / (frames + 1.0), masu_time_share(reach));
+                    mean = mix(history, sample_mean, share);
+                    frames += 1.0;
+                    vec2 motion = mix(now.motion, velocity.xy, surface);
+                    age.y = packHalf2x16(clamp(motion, vec2(-60000.0), vec2(60000.0)));
+                }
+            }
+            age.x = masu_pack_age(frames, now.far);
+        }
+        mean = vec4(masu_tamed(mean.rgb), masu_sane(mean.a, 0.0, 65504.0));
+        MASU_STORE_HALF(mean_image, texel, mean);
+        MASU_STORE_UINT(age_image, texel, uvec4(age, 0u, 0u));
+    }
+    masu_count_end();
+}

@@ -1,0 +1,94 @@
+/*
+ * texels.glsl: the small pictures of textures that rays look up: bilinear in the mip that fits. After
+ * trace/scene.glsl.
+ *
+ * A picture: x first texel, counted in words; y width, height in the upper half; then mip after mip, each half
+ * as large. Texels are gamma 2 and alpha, 8 bits each.
+ */
+#ifndef MASU_TRACE_TEXELS_GLSL
+#define MASU_TRACE_TEXELS_GLSL
+
+#ifdef MASU_TRACE_TEXTURES
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430) readonly buffer TraceTexcoords
+{
+    vec2 masu_trace_texcoords[];
+};
+
+/* wrap: 0 repeat, 1 clamp, 2 mirror. */
+int masu_trace_wrap(int i, int size, uint wrap)
+{
+    if (wrap == 1u) {
+        return clamp(i, 0, size - 1);
+    }
+    int period = wrap == 2u ? 2 * size : size;
+    int k = i - period * int(floor(float(i) / float(period)));
+    k = clamp(k, 0, period - 1); /* what the division rounded */
+    return k < size ? k : period - 1 - k;
+}
+
+vec4 masu_trace_texel(uint word)
+{
+    uint at = masu_trace_static[masu_trace_static[0].w].z + (word >> 2);
+    return unpackUnorm4x8(masu_trace_static[at][word & 3u]);
+}
+
+/* lod: 0 the largest. rgb linear, a alpha. */
+vec4 masu_trace_picture(uint picture, vec2 uv, float lod, uint wrap)
+{
+    uvec4 about = masu_trace_static[masu_trace_static[masu_trace_static[0].w].y + picture];
+    ivec2 size = ivec2(about.y & 0xFFFFu, about.y >> 16);
+    uint first = about.x;
+    int level = int(masu_sane(lod + 0.5, 0.0, 8.0));
+    for (int m = 0; m < 8; m++) {
+        if (m >= level || (size.x <= 1 && size.y <= 1)) {
+            break;
+        }
+        first += uint(size.x * size.y);
+        size = max(size >> 1, ivec2(1));
+    }
+    vec2 at = masu_sane(vec4(uv, 0.0, 0.0), -32768.0, 32768.0).xy * vec2(size) - 0.5;
+    vec2 corner = floor(at);
+    vec2 part = at - corner;
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < 4; k++) {
+        ivec2 off = ivec2(k & 1, k >> 1);
+        int x = masu_trace_wrap(int(corner.x) + off.x, size.x, wrap & 3u);
+        int y = masu_trace_wrap(int(corner.y) + off.y, size.y, wrap >> 2 & 3u);
+        vec4 texel = masu_trace_texel(first + uint(y * size.x + x));
+        texel.rgb *= texel.rgb;
+        sum += texel * mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
+    }
+    return sum;
+}
+
+/* The same of what is as wide as 2^width times the picture. */
+vec4 masu_trace_sized(uint picture, vec2 uv, float width, uint wrap)
+{
+    uint size = masu_trace_static[masu_trace_static[masu_trace_static[0].w].y + picture].y;
+    float side = float(max(size & 0xFFFFu, size >> 16));
+    return masu_trace_picture(picture, uv, width + masu_log2(side), wrap);
+}
+
+vec2 masu_trace_uv(uvec3 vertices, vec2 b)
+{
+    vec2 a = masu_trace_texcoords[vertices.x];
+    return a + (masu_trace_texcoords[vertices.y] - a) * b.x + (masu_trace_texcoords[vertices.z] - a) * b.y;
+}
+
+/* Masks: whether the surface is there at all. By the largest mip: what its coverage is, a ray that is one
+ * among many finds by itself. */
+bool masu_trace_opaque(uint triangle, vec2 b)
+{
+    uvec4 about = masu_trace_static[masu_trace_static[0].x + triangle];
+    if ((about.w & MASU_TRACE_HOLES) == 0u) {
+        return true;
+    }
+    uint at = masu_trace_static[masu_trace_static[0].w].x + 4u * (about.w & ~MASU_TRACE_HOLES);
+    uvec4 maps = masu_trace_static[at + 3u];
+    float alpha = masu_trace_picture(maps.x, masu_trace_uv(about.xyz, b), 0.0, maps.w).a;
+    return alpha >= float(maps.z >> MASU_MAP_CUTOFF_SHIFT & 255u) / 255.0;
+}
+#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics) masu_trace_opaque(triangle, barycentrics)
+#endif
+
+#endif

@@ -1,0 +1,244 @@
+/* test_specular_filters.c: the filters of reflections (shaders/specular_reuse.comp and those behind it): nearer
+ * to the truth than each fewer of them, at rest and in motion; a world of one colour stays it, whatever it is
+ * made of; nothing that is not finite lives on; the frame rate, another render size and a cut. */
+#include "support_shadow.h"
+
+#include "bench_specular.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 96, H = 54, PIXELS = W * H, RAYS = 64, TRUTH = 192, FRAMES = 24 };
+
+static masu_session s, full;
+static float truth[3 * PIXELS], picture[3 * PIXELS], other[3 * PIXELS];
+static uint8_t classes[PIXELS];
+static char error[1024];
+
+/* ---- Scenes ---------------------------------------------------------------------------------- */
+
+/* A checker of four, spheres from a mirror to a rough one, a box that moves, one that shines. */
+#define BALL(x, roughness)                                                                           \
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.6, \"subdivisions\": 4}}, \"translate\": [" x ", 0.6, 0],"    \
+    "\"material\": {\"base_color\": [0.9, 0.85, 0.8], \"roughness\": " roughness ", \"metallic\": 1}},"
+#define TILE(x, z, color)                                                                            \
+    "{\"mesh\": {\"plane\": {\"size_x\": 4, \"size_z\": 4}}, \"translate\": [" x ", 0, " z "],"             \
+    "\"material\": {\"base_color\": [" color "], \"roughness\": 0.3}},"
+static const char spheres[] =
+    "{\"models\": [" TILE("-2", "-2", "0.7, 0.7, 0.7") TILE("2", "-2", "0.1, 0.1, 0.1")
+        TILE("-2", "2", "0.1, 0.1, 0.1") TILE("2", "2", "0.7, 0.7, 0.7")
+            BALL("-1.4", "0") BALL("0", "0.12") BALL("1.4", "0.35")
+    "{\"name\": \"moving\", \"mesh\": {\"box\": {\"size\": [0.6, 0.6, 0.6]}}, \"translate\": [0, 0.5, 1.5],"
+    "\"material\": {\"base_color\": [0.9, 0.8, 0.1], \"roughness\": 0.7}},"
+    "{\"mesh\": {\"box\": {\"size\": [0.3, 1.6, 0.3]}}, \"translate\": [-2.6, 0.8, 1.2],"
+    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [4, 3, 2], \"roughness\": 1}}],"
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"time\": 0, \"position\": [0, 2.2, 5],"
+    "\"target\": [0, 0.5, 0]}, {\"time\": 4, \"position\": [2, 1.8, 4.6], \"target\": [0, 0.5, 0]}]},"
+    "\"sun\": {\"azimuth\": 40, \"elevation\": 45, \"intensity\": 2},"
+    "\"ambient\": [0.3, 0.33, 0.4], \"sky\": {\"zenith\": [0.25, 0.4, 0.8], \"horizon\": [0.7, 0.75, 0.85]},"
+    "\"reflections\": {\"cutoff\": 0.5}}";
+
+/* White spheres under a white sky, no sun: all light that arrives leaves again. */
+#define WHITE(x, roughness)                                                                          \
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [" x ", 0, 0],"        \
+    "\"material\": {\"base_color\": [1, 1, 1], \"roughness\": " roughness ", \"metallic\": 1}}"
+static const char furnace[] =
+    "{\"models\": [" WHITE("-2.2", "0") "," WHITE("-1.1", "0.1") "," WHITE("0", "0.2") ","
+        WHITE("1.1", "0.3") "," WHITE("2.2", "0.36") "],"
+    "\"camera\": {\"fov_y\": 35, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 6], \"target\": [0, 0, 0]}]},"
+    "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
+    "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
+
+static int make_scenes(void **state) {
+    if (shadow_folder(state)) return 1;
+    shadow_bake("filters", spheres);
+    shadow_bake("furnace", furnace);
+    return 0;
+}
+
+static masu_session_desc desc_of(const char *name) {
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s.masu", shadow_dir(), name);
+    masu_session_desc d = test_desc(NULL, W, H);
+    d.scene_path = path;
+    d.desc.readback =
+        MASU_READBACK_HDR | MASU_READBACK_DEPTH | MASU_READBACK_NORMAL | MASU_READBACK_ALBEDO;
+    d.desc.rung_count = 1;
+    return d;
+}
+
+static masu_specular_run run_of(masu_specular_motion motion) {
+    masu_specular_run run = {.frames = FRAMES,
+                             .after = 8,
+                             .motion = motion,
+                             .time = 0.8,
+                             .step = 1.0f / 60.0f,
+                             .object = masu_instance_find(s.m, "moving"),
+                             .rows = {1, 0, 0, 0, 0, 1, 0, 0.5f, 0, 0, 1, 1.5f},
+                             .distance = 1};
+    return run;
+}
+
+static double error_of(const masu_specular_run *run) {
+    assert_ok(masu_specular_draw(&s, run, picture, NULL, NULL, error, sizeof error));
+    return masu_specular_compare(picture, truth, classes, PIXELS).value[MASU_SPECULAR_ALL];
+}
+
+/* The truth of the scene of spheres, and what 64 rays of each pixel are off by. */
+static double find_truth(void) {
+    masu_session_desc d = desc_of("filters");
+    masu_specular_run run = {.frames = RAYS, .time = 0.8};
+    d.desc.debug.reference = 1;
+    open_session(&full, &d);
+    assert_ok(masu_specular_draw(&full, &run, other, NULL, NULL, error, sizeof error));
+    assert_true(masu_specular_classes(&full, 0.5f, classes));
+    run.frames = TRUTH;
+    assert_ok(masu_specular_draw(&full, &run, truth, NULL, NULL, error, sizeof error));
+    close_session(&full);
+    return masu_specular_compare(other, truth, classes, PIXELS).value[MASU_SPECULAR_ALL];
+}
+
+/* ---- Tests ----------------------------------------------------------------------------------- */
+
+static void a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each(void **state) {
+    (void)state;
+    enum { ALL, NONE, NO_TEMPORAL };
+    masu_session_desc d = desc_of("filters");
+    double rays = find_truth(), flicker;
+    d.desc.rung_count = 3;
+    d.desc.rungs[NONE] = (masu_rung){.specular_reuse = MASU_OFF,
+                                     .specular_temporal = MASU_OFF,
+                                     .specular_filter = MASU_OFF};
+    d.desc.rungs[NO_TEMPORAL] = (masu_rung){.specular_temporal = MASU_OFF};
+    open_session(&s, &d);
+    masu_specular_run run = run_of(MASU_SPECULAR_REST);
+    double rest = error_of(&run);
+    run.rung = NONE;
+    double none = error_of(&run);
+    run.rung = NO_TEMPORAL;
+    double still = error_of(&run);
+    run = run_of(MASU_SPECULAR_CAMERA);
+    double camera = error_of(&run);
+    run = run_of(MASU_SPECULAR_OBJECT);
+    double object = error_of(&run);
+    run = run_of(MASU_SPECULAR_JUMP);
+    double jump = error_of(&run);
+    run = run_of(MASU_SPECULAR_REST);
+    run.frames = 40;
+    assert_ok(masu_specular_draw(&s, &run, NULL, classes, &flicker, error, sizeof error));
+    close_session(&s);
+    printf("relMSE: %d rays %.4f, none %.4f, without temporal %.4f, all %.4f, camera %.4f, object %.4f, "
+           "jump %.4f; flicker %.3f\n",
+           RAYS, rays, none, still, rest, camera, object, jump, flicker);
+    assert_true(rest < 0.25 * none && rest < 0.5 * still && still < none);
+    assert_true(rest <= rays && camera <= rays && object <= rays && jump <= rays);
+    /* The box is a tenth of the picture here, and what lies beside it has just come into view. */
+    assert_true(camera <= 2 * rest && object <= 4 * rest && jump <= 4 * rest);
+    assert_true(flicker <= 0.5);
+}
+
+static void a_white_world_stays_white(void **state) {
+    (void)state;
+    masu_session_desc d = desc_of("furnace");
+    open_session(&s, &d);
+    masu_specular_run run = {.frames = 12, .step = 1.0f / 60.0f};
+    assert_ok(masu_specular_draw(&s, &run, picture, NULL, NULL, error, sizeof error));
+    assert_true(masu_specular_classes(&s, 0.5f, classes));
+    close_session(&s);
+    double worst = 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        if (classes[i] == 0xFF) continue;
+        count++;
+        for (int k = 0; k < 3; k++)
+            worst = fmax(worst, fabs((double)picture[3 * i + (uint32_t)k] / 0.5 - 1));
+    }
+    printf("%u pixels, off by at most %.4f\n", count, worst);
+    assert_true(count > 300);
+    assert_true(worst < 0.01);
+}
+
+/* Where nothing has been traced the images hold anything: a texel without a guide must not be looked at. */
+static void what_other_images_left_behind_is_not_seen(void **state) {
+    (void)state;
+    masu_specular_run run;
+    for (uint32_t poison = 0; poison < 3; poison++) {
+        masu_session_desc d = desc_of("filters");
+        d.desc.debug.poison = poison;
+        open_session(&s, &d);
+        run = run_of(MASU_SPECULAR_CAMERA);
+        run.frames = 6;
+        assert_ok(masu_specular_draw(&s, &run, poison ? picture : other, NULL, NULL, error, sizeof error));
+        close_session(&s);
+        for (uint32_t i = 0; poison && i < 3 * PIXELS; i++)
+            assert_true(isfinite(picture[i]) && picture[i] == other[i]);
+    }
+}
+
+/* Eight frames of 1/60 s forget a box that has jumped as far as four of 1/30 s: what is left is the difference
+ * from the same frames without a jump, which have the same noise. */
+static void the_frame_rate_does_not_change_what_is_remembered(void **state) {
+    (void)state;
+    double left[2];
+    masu_session_desc d = desc_of("filters");
+    for (int slow = 0; slow < 2; slow++) {
+        open_session(&s, &d);
+        masu_specular_run run = run_of(MASU_SPECULAR_JUMP);
+        run.step = slow ? 1.0f / 30.0f : 1.0f / 60.0f;
+        run.frames = 32;
+        run.after = slow ? 4 : 8;
+        assert_ok(masu_specular_draw(&s, &run, picture, NULL, NULL, error, sizeof error));
+        close_session(&s);
+        open_session(&s, &d);
+        run = run_of(MASU_SPECULAR_REST);
+        run.step = slow ? 1.0f / 30.0f : 1.0f / 60.0f;
+        run.frames = slow ? 36 : 40;
+        assert_ok(masu_specular_draw(&s, &run, other, NULL, NULL, error, sizeof error));
+        close_session(&s);
+        left[slow] = masu_specular_compare(picture, other, classes, PIXELS).value[MASU_SPECULAR_ROUGH];
+    }
+    printf("left after 8/60 s: %.6f at 60 Hz, %.6f at 30 Hz\n", left[0], left[1]);
+    assert_true(left[0] > 0 && left[1] < 2 * left[0] && left[0] < 2 * left[1]);
+}
+
+/* The history is found again at another render size, and not after a cut. */
+static void another_render_size_keeps_the_history_and_a_cut_does_not(void **state) {
+    (void)state;
+    double errors[3];
+    masu_session_desc d = desc_of("filters");
+    d.desc.rung_count = 2;
+    d.desc.rungs[0] = (masu_rung){.specular_reuse = MASU_OFF, .specular_filter = MASU_OFF};
+    d.desc.rungs[1] = d.desc.rungs[0];
+    d.desc.rungs[1].scale = 0.75f;
+    for (int way = 0; way < 3; way++) { /* the same size, another one, another one and a cut */
+        open_session(&s, &d);
+        masu_camera camera;
+        masu_commands commands;
+        assert_int_equal(masu_camera_at(s.m, 0.8, &camera), MASU_OK);
+        for (uint32_t k = 0; k < 17; k++) {
+            masu_frame_desc f = {.camera = &camera,
+                                 .time_step = 1.0f / 60.0f,
+                                 .rung = way && k < 16,
+                                 .cut = k == 0 || (way == 2 && k == 16)};
+            draw(&s, &f, &commands, NULL);
+        }
+        assert_true(masu_specular_read(&s, picture));
+        errors[way] = masu_specular_compare(picture, truth, classes, PIXELS).value[MASU_SPECULAR_ROUGH];
+        close_session(&s);
+    }
+    printf("same size %.4f, another %.4f, cut %.4f\n", errors[0], errors[1], errors[2]);
+    assert_true(errors[0] < 0.8 * errors[2] && errors[1] < 0.8 * errors[2]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each),
+        cmocka_unit_test(the_frame_rate_does_not_change_what_is_remembered),
+        cmocka_unit_test(another_render_size_keeps_the_history_and_a_cut_does_not),
+        cmocka_unit_test(a_white_world_stays_white),
+        cmocka_unit_test(what_other_images_left_behind_is_not_seen),
+    };
+    return cmocka_run_group_tests_name("specular_filters", tests, make_scenes, shadow_folder_away);
+}

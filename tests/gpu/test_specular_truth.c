@@ -1,0 +1,502 @@
+/* test_specular_truth.c: the reference of reflections (debug.reference, masu render --reference) against an
+ * independent tracer in double precision (tests/reference/specular.h) and in the white furnace; what the
+ * plan and the tiles leave out is not traced; odd materials give finite pixels.
+ *
+ * Both truths are noisy. What a pixel mirrors is the frame's radiance less what the sun and the ambient
+ * light give it, by formula. Standard errors are those of independent rays, for the GPU's too, which are
+ * more even than that. Pixels are told apart by their material, and the mean of each material must lie
+ * within 3 standard errors, and 0.2 % for what images round: 9 bits of a ray's worth, halves of its light. */
+#include "reference/specular.h"
+#include "bench_shade.h"
+#include "image.h"
+#include "scene.h"
+#include "support_shadow.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 64, H = 48, RAYS = 512, MATERIALS = 16, PIXELS = 192 /* of a material, at most */ };
+
+static masu_session s;
+static uint32_t slot;
+
+/* SwiftShader takes ten times as long for a frame as lavapipe. */
+static uint32_t frames_of(uint32_t frames) {
+    const char *driver = getenv("MASU_TEST_DRIVER");
+    if (!driver || !strstr(driver, "swiftshader")) return frames;
+    return frames / 8 > 48 ? frames / 8 : 48;
+}
+
+static float half(uint16_t h) {
+    int exponent = h >> 10 & 31, mantissa = h & 1023;
+    if (exponent == 31) return NAN;
+    float v =
+        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
+    return h & 0x8000 ? -v : v;
+}
+
+/* ---- Scenes ---------------------------------------------------------------------------------- */
+
+#define METAL(r) "\"material\": {\"base_color\": [0.9, 0.7, 0.5], \"roughness\": " #r ", \"metallic\": 1}"
+#define VIEW                                                                                       \
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 1.7, 4.4], "        \
+    "\"target\": [0, 0.45, 0]}]}, \"reflections\": {\"cutoff\": 0.6}"
+#define SKY "\"sky\": {\"zenith\": [0.25, 0.4, 0.8], \"horizon\": [0.7, 0.75, 0.85]}, "
+
+/* Round and flat ones that see each other, matt things and one that shines, without a sun: its highlight on
+ * one as smooth as 0.05 seen in another is so rare and bright that no number of rays here would settle it. */
+static const char round_ones[] =
+    "{\"models\": ["
+    "{\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, " METAL(0.2) "}, "
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [-1.15, 0.5, 0], " METAL(0.05) "}, "
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [0, 0.5, 0], \"material\": "
+    "{\"base_color\": [0.5, 0.8, 0.9], \"roughness\": 0.2, \"metallic\": 1}}, "
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [1.15, 0.5, 0], " METAL(0.4) "}, "
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.35, \"subdivisions\": 4}}, \"translate\": [-0.6, 0.35, 1.2], \"material\": "
+    "{\"base_color\": [0.05, 0.1, 0.05], \"roughness\": 0.1}}, "
+    "{\"mesh\": {\"box\": {\"size\": [0.6, 0.5, 0.3]}}, \"translate\": [0.7, 0.25, 1.2], \"rotate\": [0, 25, 0], \"material\": "
+    "{\"base_color\": [0.3, 0.02, 0.02], \"roughness\": 0.3}}, "
+    "{\"mesh\": {\"box\": {\"size\": [0.5, 1.4, 0.3]}}, \"translate\": [-0.6, 0.7, -1.3], \"material\": "
+    "{\"base_color\": [0.1, 0.2, 0.7], \"roughness\": 1}}, "
+    "{\"mesh\": {\"box\": {\"size\": [0.5, 1.2, 0.3]}}, \"translate\": [0.7, 0.9, -1.5], \"material\": "
+    "{\"base_color\": [0, 0, 0], \"emissive\": [3, 2, 1]}}], "
+    "\"sun\": {\"intensity\": 0}, \"ambient\": [0.3, 0.33, 0.4], " SKY VIEW "}";
+
+/* Things lit by the sun, all matt, in glossy ones that do not see each other. */
+static const char sunny[] =
+    "{\"models\": ["
+    "{\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, \"material\": "
+    "{\"base_color\": [0.02, 0.02, 0.02], \"roughness\": 0.1}}, "
+    "{\"mesh\": {\"box\": {\"size\": [0.6, 1, 0.6]}}, \"translate\": [-1.1, 0.5, 0], \"rotate\": [0, 30, 0], \"material\": "
+    "{\"base_color\": [0.8, 0.3, 0.1], \"roughness\": 1}}, "
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.5, \"subdivisions\": 4}}, \"translate\": [0.1, 0.6, 0], \"scale\": 1.2, \"material\": "
+    "{\"base_color\": [0.7, 0.7, 0.7], \"roughness\": 0.9}}, "
+    "{\"mesh\": {\"plane\": {\"size_x\": 1.4, \"size_z\": 1.2}}, \"translate\": [1.3, 0.7, 0.2], \"rotate\": [62, -35, 0], \"material\": "
+    "{\"base_color\": [0.9, 0.9, 0.9], \"roughness\": 0.4, \"metallic\": 0.6}}], "
+    "\"sun\": {\"azimuth\": 40, \"elevation\": 40, \"intensity\": 2}, \"ambient\": [0.3, 0.33, 0.4], " SKY VIEW "}";
+
+static const char *path_of(const char *name) {
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s.masu", shadow_dir(), name);
+    return path;
+}
+
+static void open_scene(const char *name, uint32_t width, uint32_t height, const masu_rung *rung,
+                       uint32_t reference) {
+    masu_session_desc d = test_desc(NULL, width, height);
+    d.scene_path = path_of(name);
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL |
+                      MASU_READBACK_HDR;
+    d.desc.rung_count = 1;
+    d.desc.debug.reference = reference;
+    if (rung) d.desc.rungs[0] = *rung;
+    open_session(&s, &d);
+}
+
+static void draw_frames(uint32_t frames, const masu_light *light) {
+    for (uint32_t i = 0; i < frames; i++) {
+        masu_frame_desc frame = {.light = light};
+        masu_commands commands;
+        draw(&s, &frame, &commands, NULL);
+        slot = commands.slot;
+    }
+}
+
+static const void *image(masu_readback_bits which) {
+    masu_readback_image out;
+    assert_int_equal(masu_readback(s.m, slot, which, &out), MASU_OK);
+    return out.pixels;
+}
+
+static masu_stats_info stats_of(void) {
+    masu_stats_info stats;
+    assert_int_equal(masu_stats(s.m, slot, &stats), MASU_OK);
+    return stats;
+}
+
+/* ---- Against the tracer ---------------------------------------------------------------------- */
+
+typedef struct group {
+    uint32_t key, pixels, values, far; /* far: values that are 4 of their standard errors off */
+    double gpu, cpu, error2; /* sums over pixels, of the mean of colours */
+    double square;           /* sum of (difference / its standard error)^2 */
+    double worst;            /* of those */
+} group;
+
+static group groups[MATERIALS];
+
+static group *group_of(uint32_t key) {
+    for (uint32_t i = 0; i < MATERIALS; i++) {
+        if (groups[i].pixels && groups[i].key != key) continue;
+        groups[i].key = key;
+        return &groups[i];
+    }
+    fail_msg("more materials than %d", MATERIALS);
+    return NULL;
+}
+
+/* The frame drawn last against rays; `off` times the roughness, which must be seen if it is not 1. */
+static void compare(const char *name, const masu_ref_mirror *m, const double coat[2], uint32_t frames,
+                    uint32_t rays, double off) {
+    const float *depth = image(MASU_READBACK_DEPTH);
+    const uint8_t *albedo = image(MASU_READBACK_ALBEDO);
+    const uint32_t *normal = image(MASU_READBACK_NORMAL);
+    const uint16_t *hdr = image(MASU_READBACK_HDR);
+    memset(groups, 0, sizeof groups);
+    for (uint32_t k = 0; k < W * H; k++) {
+        uint32_t i = k * 1009 % (W * H); /* all over the picture, for what shows in many */
+        masu_ref_surface surface;
+        double lit[3], mirrored[3], mean = 0, truth = 0, error2 = 0;
+        if (!masu_ref_surface_of(m, i % W, i / W, depth[i], &albedo[4 * i], normal[i], &surface))
+            continue;
+        if (surface.look[3] >= 0.45) continue; /* traced in part, or not at all */
+        uint32_t key;
+        memcpy(&key, &albedo[4 * i], sizeof key);
+        group *g = group_of(key ^ (normal[i] >> 26 & 15) << 20);
+        if (g->pixels == PIXELS) continue;
+        masu_shade_exact(&m->view, surface.direction, surface.normal, surface.look, lit, mirrored);
+        surface.look[3] *= off;
+        surface.coat = coat[0];
+        surface.coat_roughness = coat[1] * off;
+        masu_ref_estimate e = masu_ref_mirrored(m, &surface, rays, i + 1);
+        for (int c = 0; c < 3; c++) {
+            double gpu = (double)half(hdr[4 * i + c]) - lit[c];
+            double rounded = 0.002 * e.mean[c] + 0.0005 * lit[c];
+            double se2 = e.variance[c] / rays + e.variance[c] / frames + rounded * rounded;
+            double z2 = (gpu - e.mean[c]) * (gpu - e.mean[c]) / se2;
+            assert_true(isfinite(gpu));
+            mean += gpu / 3;
+            truth += e.mean[c] / 3;
+            error2 += e.variance[c] * (1.0 / rays + 1.0 / frames) / 3; /* colours go together */
+            g->square += fmin(z2, 16); /* a pixel on an edge, for which the two find another neighbour */
+            g->far += z2 > 16;
+            g->worst = fmax(g->worst, sqrt(z2));
+            g->values++;
+        }
+        g->pixels++;
+        g->gpu += mean;
+        g->cpu += truth;
+        g->error2 += error2;
+    }
+    for (uint32_t i = 0; i < MATERIALS && groups[i].pixels; i++) {
+        const group *g = &groups[i];
+        double n = g->pixels, d = (g->gpu - g->cpu) / n, se = sqrt(g->error2) / n;
+        print_message("  %s, roughness %.3f, %3u pixels: %.5f against %.5f (%+.2f %%, %+.1f standard errors);"
+                      " of a pixel %.2f, at most %.1f\n",
+                      name, (g->key >> 24) / 255.0, g->pixels, g->gpu / n, g->cpu / n,
+                      100 * d / (g->cpu / n), d / se, sqrt(g->square / g->values), g->worst);
+    }
+}
+
+static double worst_group(double *chi, double *far) {
+    double worst = 0;
+    *chi = *far = 0;
+    for (uint32_t i = 0; i < MATERIALS && groups[i].pixels; i++) {
+        const group *g = &groups[i];
+        double n = g->pixels, d = fabs(g->gpu - g->cpu) / n, se = sqrt(g->error2) / n;
+        worst = fmax(worst, d / (3 * se + 0.002 * g->cpu / n));
+        *chi = fmax(*chi, g->square / g->values);
+        *far = fmax(*far, (double)g->far / g->values);
+    }
+    return worst;
+}
+
+/* coat: of all that mirrors, and its roughness. */
+static void tracer(const char *name, const char *json, uint32_t materials, const double coat[2],
+                   uint32_t frames) {
+    masu_ref_mirror m;
+    masu_camera camera;
+    char error[ERROR_SIZE];
+    double chi, far, worst;
+    shadow_bake(name, json);
+    open_scene(name, W, H, NULL, 1);
+    assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
+    draw_frames(frames, NULL);
+    assert_int_equal(stats_of().replaced, 0);
+    masu_scene scene;
+    masu_detail detail;
+    uint8_t *blob = NULL;
+    size_t bytes = 0;
+    assert_ok(masu_file_read(path_of(name), 1u << 30, &blob, &bytes, error, sizeof error));
+    assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
+    assert_ok(masu_ref_mirror_open(&scene, &camera, W, H, &m, error, sizeof error));
+    compare(name, &m, coat, frames, RAYS, 1);
+    worst = worst_group(&chi, &far);
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < MATERIALS && groups[i].pixels; i++) {
+        found++;
+        assert_true(fabs(groups[i].gpu / groups[i].cpu - 1) < 0.01);
+    }
+    assert_int_equal(found, materials);
+    assert_true(worst < 1);
+    assert_true(chi < 1.2);
+    assert_true(far < 0.02);
+    /* And lobes half as rough again are told apart. */
+    compare("half as rough again", &m, coat, frames, RAYS / 4, 1.5);
+    worst = worst_group(&chi, &far);
+    assert_true(worst > 1 || chi > 1.5);
+    masu_ref_mirror_close(&m);
+    free(blob);
+    close_session(&s);
+}
+
+static void round_ones_agree_with_the_tracer(void **state) {
+    (void)state;
+    tracer("round", round_ones, 6, (const double[]){0, 0}, frames_of(1024));
+}
+
+static void sunny_ones_agree_with_the_tracer(void **state) {
+    (void)state;
+    tracer("sunny", sunny, 2, (const double[]){0, 0}, frames_of(192));
+}
+
+/* One that has a coat and nothing beside it, so that none is seen in another: without sun and ambient light,
+ * of which a coat takes its share from what is below. */
+#define COATED(roughness)                                                                          \
+    "{\"models\": [{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 5}}, \"translate\": "    \
+    "[0, 0.6, 0], \"material\": {\"base_color\": [0.9, 0.5, 0.2], \"metallic\": 1, "                 \
+    "\"roughness\": 0.4, \"coat\": 1, \"coat_roughness\": " #roughness "}}, "                        \
+    "{\"mesh\": {\"box\": {\"size\": [2, 1, 0.3]}}, \"translate\": [-2, 2, 3], \"material\": "       \
+    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 3, 4]}}, "                                      \
+    "{\"mesh\": {\"box\": {\"size\": [0.3, 2, 1]}}, \"translate\": [2, 0.5, 1], \"material\": "      \
+    "{\"base_color\": [0, 0, 0], \"emissive\": [2, 0.5, 0.5]}}], "                                 \
+    "\"sun\": {\"intensity\": 0}, \"ambient\": [0, 0, 0], " SKY VIEW "}"
+
+static void coats_agree_with_the_tracer(void **state) {
+    (void)state;
+    tracer("coat", COATED(0.2), 1, (const double[]){1, 0.2}, frames_of(192));
+    tracer("mirror-coat", COATED(0), 1, (const double[]){1, 0}, frames_of(192));
+}
+
+/* ---- The white furnace ----------------------------------------------------------------------- */
+
+#define BALL(x, y, rest)                                                                           \
+    "{\"mesh\": {\"sphere\": {\"radius\": 0.42, \"subdivisions\": 4}}, \"translate\": [" #x ", " #y  \
+    ", 0], \"material\": {\"base_color\": [1, 1, 1], " rest "}}"
+
+/* From the left: smoother to rougher; then coats, of which the last but one is rougher than the cut-off and
+ * what lies below it, and the last the other way round. */
+#define BALLS                                                                                      \
+    BALL(-2, 1, "\"metallic\": 1, \"roughness\": 0")                                               \
+    ", " BALL(-1, 1, "\"metallic\": 1, \"roughness\": 1e-4") ", "                                  \
+    BALL(0, 1, "\"metallic\": 1, \"roughness\": 0.2") ", "                                         \
+    BALL(1, 1, "\"metallic\": 1, \"roughness\": 0.4") ", "                                         \
+    BALL(2, 1, "\"metallic\": 1, \"roughness\": 0.7") ", "                                         \
+    BALL(-2, 0, "\"metallic\": 1, \"roughness\": 1") ", "                                          \
+    BALL(-1, 0, "\"metallic\": 0, \"roughness\": 0") ", "                                          \
+    BALL(0, 0, "\"metallic\": 0, \"roughness\": 0.2") ", "                                         \
+    BALL(1, 0, "\"metallic\": 0, \"roughness\": 0.5") ", "                                         \
+    BALL(2, 0, "\"metallic\": 0, \"roughness\": 1") ", "                                           \
+    BALL(-2, -1, "\"metallic\": 1, \"roughness\": 0.3, \"coat\": 1, \"coat_roughness\": 0") ", "   \
+    BALL(-1, -1, "\"metallic\": 0, \"roughness\": 0.2, \"coat\": 0.5, \"coat_roughness\": 0.3") ", " \
+    BALL(0, -1, "\"metallic\": 1, \"roughness\": 0.1, \"coat\": 1, \"coat_roughness\": 0.4") ", "  \
+    BALL(1, -1, "\"metallic\": 1, \"roughness\": 0.1, \"coat\": 1, \"coat_roughness\": 0.9") ", "  \
+    BALL(2, -1, "\"metallic\": 1, \"roughness\": 0.9, \"coat\": 1, \"coat_roughness\": 0.1")
+#define BALLS_SEEN                                                                                 \
+    "\"camera\": {\"fov_y\": 30, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 6.4], "          \
+    "\"target\": [0, 0, 0]}]}"
+
+static const char furnace[] =
+    "{\"models\": [" BALLS "], \"sun\": {\"intensity\": 0}, \"ambient\": [1, 1, 1], "
+    "\"sky\": {\"zenith\": [1, 1, 1], \"horizon\": [1, 1, 1]}, " BALLS_SEEN ", "
+    "\"reflections\": {\"cutoff\": 0.6}}";
+
+static uint32_t ball_of(uint32_t x, uint32_t y) {
+    double px = ((x + 0.5) / 100 * 2 - 1) * tan(15 * 3.14159265358979 / 180) * 100 / 60 * 6.4;
+    double py = -((y + 0.5) / 60 * 2 - 1) * tan(15 * 3.14159265358979 / 180) * 6.4;
+    return (uint32_t)(rint(px) + 2) + 5 * (uint32_t)(1 - rint(py));
+}
+
+/* All that is white returns all of the light; of each ball the mean, and any pixel. */
+static void furnace_with(const char *how, uint32_t reference, uint32_t frames, double of_pixel) {
+    static double sum[15], low[15], high[15];
+    static uint32_t pixels[15];
+    double worst = 0, worst_pixel = 0;
+    open_scene("furnace", 100, 60, NULL, reference);
+    draw_frames(frames, NULL);
+    const uint16_t *hdr = image(MASU_READBACK_HDR);
+    const float *depth = image(MASU_READBACK_DEPTH);
+    for (int b = 0; b < 15; b++) sum[b] = high[b] = 0, low[b] = 1e9, pixels[b] = 0;
+    for (uint32_t i = 0; i < 100 * 60; i++) {
+        if (!(depth[i] > 0.0f)) continue;
+        uint32_t b = ball_of(i % 100, i / 100);
+        assert_true(b < 15);
+        for (int c = 0; c < 3; c++) {
+            double x = (double)half(hdr[4 * i + c]);
+            assert_true(isfinite(x));
+            sum[b] += x / 3;
+            low[b] = fmin(low[b], x);
+            high[b] = fmax(high[b], x);
+        }
+        pixels[b]++;
+    }
+    assert_int_equal(stats_of().replaced, 0);
+    close_session(&s);
+    for (int b = 0; b < 15; b++) {
+        print_message("  furnace, %s, ball %2d: %u pixels, mean %.4f, %.4f to %.4f\n", how, b, pixels[b],
+                      sum[b] / pixels[b], low[b], high[b]);
+        assert_true(pixels[b] > 80);
+        worst = fmax(worst, fabs(sum[b] / pixels[b] - 1));
+        worst_pixel = fmax(worst_pixel, fmax(1 - low[b], high[b] - 1));
+    }
+    assert_true(worst < 0.01);
+    assert_true(worst_pixel < of_pixel);
+}
+
+static void all_light_comes_back_in_the_white_furnace(void **state) {
+    (void)state;
+    shadow_bake("furnace", furnace);
+    uint32_t frames = frames_of(128);
+    furnace_with("reference", 1, frames, 0.05 * 128.0 / frames);
+    furnace_with("frames", 0, 2, 0.01);
+}
+
+/* ---- What is left out ------------------------------------------------------------------------ */
+
+/* Seen from the front: a matt wall, before it two plates, each before a quarter of it. */
+static const char plates[] =
+    "{\"models\": [{\"mesh\": {\"box\": {\"size\": [40, 40, 0.1]}}, \"translate\": [0, 0, -1], \"material\": "
+    "{\"base_color\": [0.4, 0.4, 0.4], \"roughness\": 0.9}}, "
+    "{\"mesh\": {\"box\": {\"size\": [10, 10, 0.1]}}, \"translate\": [-5, 5, 0], \"material\": "
+    "{\"base_color\": [0.4, 0.4, 0.4], \"roughness\": 0.1}}, "
+    "{\"mesh\": {\"box\": {\"size\": [10, 10, 0.1]}}, \"translate\": [5, -5, 0], \"material\": "
+    "{\"base_color\": [0.4, 0.4, 0.4], \"roughness\": 0.3}}], "
+    "\"camera\": {\"fov_y\": 60, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 5], \"target\": [0, 0, 0]}]}, "
+    "\"reflections\": {\"cutoff\": 0.5}}";
+
+static void only_tiles_that_mirror_are_traced(void **state) {
+    (void)state;
+    static const struct {
+        masu_rung rung;
+        uint32_t reference, tiles, rays; /* of 64 tiles of 64 texels; with a reference of 256 */
+    } cases[] = {{{.scale = 1}, 0, 32, 32 * 64},
+                 {{.scale = 1, .specular_cutoff = 0.2f}, 0, 16, 16 * 64},
+                 {{.scale = 1, .specular_cutoff = 0.05f}, 0, 0, 0},
+                 {{.scale = 1, .specular = MASU_OFF}, 0, 0, 0},
+                 {{.scale = 1, .specular_cutoff = 1}, 0, 64, 64 * 64},
+                 {{.scale = 1, .specular_cutoff = 0.2f}, 1, 64, 64 * 64}};
+    shadow_bake("plates", plates);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        open_scene("plates", 128, 128, &cases[i].rung, cases[i].reference);
+        draw_frames(2, NULL);
+        masu_stats_info stats = stats_of();
+        print_message("  cut-off %.2f: %u tiles, %u rays\n", (double)cases[i].rung.specular_cutoff,
+                      (uint32_t)stats.specular_tiles, (uint32_t)stats.specular_rays);
+        assert_int_equal(stats.specular_tiles, cases[i].tiles);
+        assert_int_equal(stats.specular_rays, cases[i].rays);
+        assert_true(stats.specular_hits <= stats.specular_rays);
+        assert_true(!stats.specular_rays == !stats.specular_nodes);
+        close_session(&s);
+    }
+}
+
+/* ---- Odd materials and light ----------------------------------------------------------------- */
+
+static const char bright[] =
+    "{\"models\": [" BALLS ", {\"mesh\": {\"box\": {\"size\": [8, 0.2, 8]}}, \"translate\": [0, 3, 0], "
+    "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [65504, 65504, 1]}}], "
+    "\"sun\": {\"intensity\": 1000}, \"ambient\": [1, 1, 1], " BALLS_SEEN ", "
+    "\"reflections\": {\"cutoff\": 1}}";
+
+/* Under light that leaves the range of halves, and from memory full of NaN and Inf. */
+static void pixels_are_finite(void **state) {
+    (void)state;
+    static uint16_t pictures[3][4 * 100 * 60];
+    shadow_bake("bright", bright);
+    for (uint32_t reference = 0; reference < 2; reference++) {
+        for (uint32_t poison = 0; poison < 3; poison++) {
+            masu_session_desc d = test_desc(NULL, 100, 60);
+            d.scene_path = path_of("bright");
+            d.desc.readback = MASU_READBACK_HDR;
+            d.desc.rung_count = 1;
+            d.desc.debug.reference = reference;
+            d.desc.debug.poison = poison;
+            open_session(&s, &d);
+            draw_frames(3, NULL);
+            const uint16_t *hdr = image(MASU_READBACK_HDR);
+            for (uint32_t i = 0; i < 4 * 100 * 60; i++) {
+                assert_true(isfinite(half(hdr[i])) && half(hdr[i]) >= 0.0f);
+                pictures[poison][i] = hdr[i];
+            }
+            close_session(&s);
+            assert_memory_equal(pictures[poison], pictures[0], sizeof pictures[0]);
+        }
+    }
+}
+
+static const masu_memory_row *row_of(const char *name) {
+    static masu_memory_row rows[256];
+    uint32_t count = masu_memory_report(s.m, rows, 256);
+    assert_true(count <= 256);
+    for (uint32_t i = 0; i < count; i++)
+        if (!strcmp(rows[i].name, name) && !strcmp(rows[i].kind, "buffer")) return &rows[i];
+    fail_msg("no buffer %s", name);
+    return NULL;
+}
+
+/* A blob with a NaN is refused; here it gets past, into the memory of the device, where the raster and the
+ * rays have their materials. */
+static void materials_of_nan_give_finite_pixels(void **state) {
+    (void)state;
+    static const uint32_t bits[] = {0x7FC00000u, 0x7F800000u, 0xFF800000u, 0x00000001u, 0xC2C80000u};
+    char error[ERROR_SIZE];
+    shadow_bake("bright", bright);
+    for (uint32_t reference = 0; reference < 2; reference++) {
+        masu_session_desc d = test_desc(NULL, 100, 60);
+        d.scene_path = path_of("bright");
+        d.desc.readback = MASU_READBACK_HDR;
+        d.desc.rung_count = 1;
+        d.desc.debug.reference = reference;
+        d.no_renderer = true;
+        open_session(&s, &d);
+        assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
+        const masu_role_need *need = &s.need.roles[MASU_ROLE_DEVICE];
+        assert_true(need->host_visible); /* the drivers of the tests have one kind of memory */
+        VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                     .allocationSize = need->bytes,
+                                     .memoryTypeIndex = need->type};
+        VkDeviceMemory memory;
+        void *mapped = NULL;
+        assert_int_equal(vkAllocateMemory(s.host.device, &info, NULL, &memory), VK_SUCCESS);
+        assert_int_equal(vkMapMemory(s.host.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
+        s.desc.device_blocks[MASU_ROLE_DEVICE] =
+            (masu_device_block){memory, 0, need->bytes, mapped, need->type};
+        assert_ok(masu_session_start(&s, error, sizeof error));
+        uint32_t *raster = (uint32_t *)(void *)((unsigned char *)mapped + row_of("materials")->offset);
+        uint32_t *traced = (uint32_t *)(void *)((unsigned char *)mapped + row_of("traced scene")->offset);
+        traced += 4 * (size_t)traced[4 * traced[3]]; /* shaders/trace/scene.glsl */
+        uint32_t materials = s.scene.materials, given;
+        memcpy(&given, &raster[3], sizeof given);
+        assert_int_equal(traced[3], given); /* a roughness: the right place */
+        for (size_t b = 0; b < sizeof bits / sizeof *bits; b++) {
+            for (uint32_t i = 0; i < 12 * materials; i++) { /* each material another of its numbers, some all */
+                uint32_t m = i / 12, k = i % 12;
+                if (k != 3 && m % 4 && (m + b) % 12 != k) continue;
+                raster[i] = traced[16 * m + k] = bits[b];
+            }
+            draw_frames(2, NULL);
+            const uint16_t *hdr = image(MASU_READBACK_HDR);
+            for (uint32_t i = 0; i < 4 * 100 * 60; i++)
+                assert_true(isfinite(half(hdr[i])) && half(hdr[i]) >= 0.0f);
+        }
+        masu_destroy(s.m);
+        s.m = NULL;
+        vkFreeMemory(s.host.device, memory, NULL);
+        close_session(&s);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_ones_agree_with_the_tracer),
+        cmocka_unit_test(sunny_ones_agree_with_the_tracer),
+        cmocka_unit_test(coats_agree_with_the_tracer),
+        cmocka_unit_test(all_light_comes_back_in_the_white_furnace),
+        cmocka_unit_test(only_tiles_that_mirror_are_traced),
+        cmocka_unit_test(pixels_are_finite),
+        cmocka_unit_test(materials_of_nan_give_finite_pixels),
+    };
+    return cmocka_run_group_tests(tests, shadow_folder, shadow_folder_away);
+}

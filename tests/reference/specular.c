@@ -1,0 +1,284 @@
+/* specular.c: see specular.h. */
+#include "specular.h"
+
+#include "bench_shade.h"
+#include "scene.h"
+#include "shared/masu_shared.h"
+#include "split_sum.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static double unit(double v[3]) {
+    double length = sqrt(dot(v, v));
+    for (int k = 0; k < 3; k++) v[k] /= length > 0 ? length : 1;
+    return length;
+}
+
+/* ---- The scene ------------------------------------------------------------------------------- */
+
+/* Of a vertex, object space. */
+static void decode(const int16_t packed[2], double n[3]) {
+    double x = fmax(packed[0] / 32767.0, -1), y = fmax(packed[1] / 32767.0, -1);
+    n[2] = 1 - fabs(x) - fabs(y);
+    n[0] = n[2] >= 0 ? x : (1 - fabs(y)) * (x >= 0 ? 1 : -1);
+    n[1] = n[2] >= 0 ? y : (1 - fabs(x)) * (y >= 0 ? 1 : -1);
+    (void)unit(n);
+}
+
+/* By the inverse of the matrix, transposed; up to its determinant, whose sign counts. */
+static void stand(const float t[12], double n[3]) {
+    double row[3][3], out[3], c[3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) row[i][k] = (double)t[4 * i + k];
+    for (int i = 0; i < 3; i++) {
+        cross(row[(i + 1) % 3], row[(i + 2) % 3], c);
+        out[i] = dot(c, n);
+    }
+    cross(row[1], row[2], c);
+    double sign = dot(c, row[0]) < 0 ? -1 : 1;
+    for (int k = 0; k < 3; k++) n[k] = sign * out[k];
+    (void)unit(n);
+}
+
+static const char *unknown(const masu_scene *scene, const masu_scene_view *v) {
+    if (scene->sdf) return "an SDF";
+    if (scene->textures) return "textures";
+    if (scene->meso) return "small reliefs";
+    for (uint32_t i = 0; i < scene->materials; i++)
+        if (v->materials[i].specular < 0.5f || v->materials[i].specular > 0.5f)
+            return "specular factors";
+    if (scene->lights) return "local lights";
+    if (scene->probes) return "light probes";
+    if (scene->shadow_cascades) return "shadows";
+    if (scene->environment_size || v->environment->turbidity > 0) return "a sky of more than two colours";
+    if (scene->fog) return "fog";
+    return v->reflections ? NULL : "no reflections";
+}
+
+bool masu_ref_mirror_open(const masu_scene *scene, const masu_camera *camera, uint32_t width,
+                          uint32_t height, masu_ref_mirror *m, char *error, size_t error_size) {
+    memset(m, 0, sizeof *m);
+    masu_scene_view v = masu_scene_look(scene);
+    const char *what = unknown(scene, &v);
+    if (what) {
+        snprintf(error, error_size, "the scene has %s, which this truth does not know", what);
+        return false;
+    }
+    if (!masu_view_seen(scene, camera, width, height, &m->view, error, error_size)) return false;
+    m->reach = (double)v.reflections->distance;
+    bool good = masu_ref_triangles_open(scene, &m->world) != 0;
+    if (good) {
+        m->normals = malloc((m->world.count + 1) * sizeof *m->normals);
+        m->looks = malloc((m->world.count + 1) * sizeof *m->looks);
+    }
+    if (!m->normals || !m->looks) {
+        masu_ref_mirror_close(m);
+        snprintf(error, error_size, "no memory for %u triangles", (unsigned)scene->triangles);
+        return false;
+    }
+    for (uint32_t i = 0; i < m->world.count; i++) {
+        const masu_ref_triangle *t = &m->world.triangles[i];
+        const masu_blob_material *look = &v.materials[v.primitives[t->primitive].material];
+        double given[8] = {(double)look->base_color[0], (double)look->base_color[1],
+                           (double)look->base_color[2], (double)look->roughness,
+                           (double)look->emissive[0],   (double)look->emissive[1],
+                           (double)look->emissive[2],   (double)look->metallic};
+        memcpy(m->looks[i], given, sizeof given);
+        for (int c = 0; c < 3; c++) {
+            decode(v.vertices[t->vertex[c]].normal, m->normals[i][c]);
+            stand(v.instances[t->instance].transform, m->normals[i][c]);
+        }
+    }
+    return true;
+}
+
+void masu_ref_mirror_close(masu_ref_mirror *m) {
+    masu_ref_triangles_close(&m->world);
+    free(m->normals);
+    free(m->looks);
+    memset(m, 0, sizeof *m);
+}
+
+/* ---- One ray --------------------------------------------------------------------------------- */
+
+/* Shares of the corners at a point of a triangle. */
+static void shares(const masu_ref_triangle *t, const double p[3], double out[3]) {
+    double e[3], f[3], g[3], n[3], c[3];
+    for (int k = 0; k < 3; k++) {
+        e[k] = t->b[k] - t->a[k];
+        f[k] = t->c[k] - t->a[k];
+        g[k] = p[k] - t->a[k];
+    }
+    cross(e, f, n);
+    double area = dot(n, n);
+    cross(g, f, c);
+    out[1] = dot(c, n) / area;
+    cross(e, g, c);
+    out[2] = dot(c, n) / area;
+    out[0] = 1 - out[1] - out[2];
+}
+
+bool masu_ref_seen(const masu_ref_mirror *m, const double from[3], const double direction[3],
+                   double out[3]) {
+    double t, p[3], share[3], n[3] = {0, 0, 0}, flat[3], back[3], mirrored[3];
+    int64_t hit = masu_ref_hit(&m->world, from, direction, 0, m->reach, &t);
+    masu_shade_open_sky(&m->view, direction, out);
+    if (hit < 0) return false;
+    const masu_ref_triangle *triangle = &m->world.triangles[hit];
+    for (int k = 0; k < 3; k++) p[k] = from[k] + t * direction[k], back[k] = -direction[k];
+    shares(triangle, p, share);
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 3; k++) n[k] += share[c] * m->normals[hit][c][k];
+    (void)unit(n);
+    /* Both sides are lit: the vertices' normal on the side that is seen; what of it still points away is
+     * taken off. */
+    if (!masu_ref_normal(triangle, n, flat)) return false;
+    if (dot(flat, back) < 0)
+        for (int k = 0; k < 3; k++) n[k] = -n[k];
+    double away = -dot(n, back);
+    if (away > 0) {
+        for (int k = 0; k < 3; k++) n[k] += away * back[k];
+        (void)unit(n);
+    }
+    masu_shade_exact(&m->view, direction, n, m->looks[hit], out, mirrored);
+    for (int k = 0; k < 3; k++) out[k] += mirrored[k];
+    return true;
+}
+
+/* ---- A pixel --------------------------------------------------------------------------------- */
+
+bool masu_ref_surface_of(const masu_ref_mirror *m, uint32_t x, uint32_t y, float depth,
+                         const uint8_t albedo[4], uint32_t normal, masu_ref_surface *s) {
+    float unpacked[3];
+    memset(s, 0, sizeof *s);
+    if (!(depth > 0.0f) || (normal >> 30 & 1u)) return false;
+    masu_view_ray ray = masu_view_ray_at(&m->view, x, y);
+    double z = m->view.near_distance / (double)depth;
+    masu_unpack_normal(normal, unpacked);
+    for (int k = 0; k < 3; k++) {
+        s->direction[k] = ray.direction[k];
+        s->normal[k] = (double)unpacked[k];
+        s->at[k] = m->view.eye[k] + ray.direction[k] * ray.z_scale * z;
+        s->look[k] = (albedo[k] / 255.0) * (albedo[k] / 255.0);
+    }
+    (void)unit(s->normal);
+    s->width = z * 2 * m->view.tan_y / m->view.height;
+    s->look[3] = albedo[3] / 255.0;
+    s->look[7] = (normal >> 26 & 15) / 15.0;
+    return true;
+}
+
+static double random_of(uint64_t *state) { /* splitmix64; within 0..1 */
+    uint64_t z = *state += UINT64_C(0x9E3779B97F4A7C15);
+    z = (z ^ z >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ z >> 27) * UINT64_C(0x94D049BB133111EB);
+    return ((double)((z ^ z >> 31) >> 12) + 0.5) * 0x1p-52;
+}
+
+/* Smith's Lambda of GGX. */
+static double lambda(double alpha, double cosine) {
+    double tan2 = (1 - cosine * cosine) / (cosine * cosine);
+    return 0.5 * (sqrt(1 + alpha * alpha * tan2) - 1);
+}
+
+typedef struct lobe {
+    double alpha, tan2, n_h, n_l, n_v;
+} lobe;
+
+static double alpha_of(double roughness) {
+    double r = fmax(roughness, MASU_TABLE_SMOOTHEST);
+    return r * r;
+}
+
+/* Density of the half vectors that are drawn: D (N.h). Beckmann's form of GGX's D: with the tangent. */
+static double density(const lobe *x) {
+    double a2 = x->alpha * x->alpha, c2 = x->n_h * x->n_h, k = a2 + x->tan2;
+    return a2 / (3.14159265358979323846 * c2 * c2 * k * k) * x->n_h;
+}
+
+/* D G2 / (4 (N.v) (N.l)) times N.l. */
+static double value(const lobe *x) {
+    double g2 = 1 / (1 + lambda(x->alpha, x->n_l) + lambda(x->alpha, x->n_v));
+    return density(x) / x->n_h * g2 / (4 * x->n_v);
+}
+
+/* What of the base's light a coat lets through: by the table, as bsdf.glsl defines it. */
+static double through_of(const masu_ref_surface *s, double n_l, double n_v) {
+    double row = (s->coat_roughness - MASU_TABLE_SMOOTHEST) * (MASU_TABLE_ROWS - 1) /
+                 (1 - MASU_TABLE_SMOOTHEST);
+    uint32_t at = (uint32_t)fmin(fmax(row, 0) + 0.5, MASU_TABLE_ROWS - 1);
+    float line[2];
+    memcpy(line, masu_split_sum + MASU_TABLE_COAT_AVERAGE + 4 * at + 2, sizeof line);
+    double steep = pow(1 - fmin(fmin(n_l, n_v), 1), 5);
+    return fmax(1 - s->coat * ((double)line[0] + (double)line[1] * steep), 0);
+}
+
+/* A half vector from the base's distribution or from the coat's, by turns of chance; the lobes over the
+ * density of l by both, which is that of h over 4 h.v. (Walter et al., "Microfacet Models for Refraction",
+ * EGSR 2007, sections 5.2 and 5.3; the masking of both directions together: Heitz, JCGT 3-2, 2014, section
+ * 5.3.) Without a coat D cancels. */
+masu_ref_estimate masu_ref_mirrored(const masu_ref_mirror *m, const masu_ref_surface *s,
+                                    uint32_t rays, uint64_t seed) {
+    masu_ref_estimate e;
+    double sum[3] = {0}, square[3] = {0}, tangent[3] = {1, 0, 0}, across[3], v[3], from[3];
+    double far = 0, brightest = 0;
+    uint64_t state = seed * UINT64_C(0xD1342543DE82EF95) + 1;
+    if (fabs(s->normal[0]) > 0.8) tangent[0] = 0, tangent[1] = 1;
+    cross(s->normal, tangent, across);
+    (void)unit(across);
+    cross(across, s->normal, tangent);
+    for (int k = 0; k < 3; k++) {
+        v[k] = -s->direction[k];
+        far = fmax(far, fmax(fabs(s->at[k]), fabs(s->at[k] - m->view.eye[k])));
+        brightest = fmax(brightest, s->look[k]);
+    }
+    for (int k = 0; k < 3; k++)
+        from[k] = s->at[k] + s->normal[k] * (0.125 * s->width + 9.6e-7 * far);
+    double n_v = fmax(dot(s->normal, v), 1e-4);
+    double metallic = s->look[7], f90 = 1 + (fmin(50 * brightest, 1) - 1) * metallic;
+    for (uint32_t i = 0; i < rays; i++) {
+        lobe base = {.alpha = alpha_of(s->look[3]), .n_v = n_v}, coat = base;
+        coat.alpha = alpha_of(s->coat_roughness);
+        double drawn = s->coat > 0 && random_of(&state) < 0.5 ? coat.alpha : base.alpha;
+        double u = random_of(&state), phi = 6.283185307179586 * random_of(&state), light[3];
+        double tan2 = drawn * drawn * u / (1 - u), n_h = 1 / sqrt(1 + tan2), r = n_h * sqrt(tan2);
+        double h[3], l[3];
+        for (int k = 0; k < 3; k++)
+            h[k] = n_h * s->normal[k] + r * (cos(phi) * tangent[k] + sin(phi) * across[k]);
+        double h_v = dot(h, v);
+        for (int k = 0; k < 3; k++) l[k] = 2 * h_v * h[k] - v[k];
+        double n_l = dot(s->normal, l);
+        if (!(h_v > 0 && n_l > 0)) continue;
+        base.tan2 = coat.tan2 = tan2, base.n_h = coat.n_h = n_h, base.n_l = coat.n_l = n_l;
+        double pdf = density(&base), worth = value(&base), coated = 0, steep = pow(fmax(1 - h_v, 0), 5);
+        if (s->coat > 0) {
+            pdf = 0.5 * (pdf + density(&coat));
+            worth *= through_of(s, n_l, n_v);
+            coated = s->coat * (0.04 + 0.96 * steep) * value(&coat);
+        }
+        (void)masu_ref_seen(m, from, l, light);
+        for (int k = 0; k < 3; k++) {
+            double f0 = 0.04 + (s->look[k] - 0.04) * metallic;
+            double x = (worth * (f0 + (f90 - f0) * steep) + coated) * 4 * h_v / pdf * light[k];
+            sum[k] += x;
+            square[k] += x * x;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        e.mean[k] = sum[k] / rays;
+        e.variance[k] = fmax(square[k] / rays - e.mean[k] * e.mean[k], 0);
+    }
+    return e;
+}
