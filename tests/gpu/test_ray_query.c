@@ -153,7 +153,11 @@ static masu_session_desc ray_desc_of(const char *scene, masu_switch way) {
     d.host.ray_query = true;
     d.desc.ray_query = way;
     d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = 1.0f, .specular = MASU_ON, .shadow_resolution = 64};
+    /* Without the images of pixels, that of hits is the one of its format: tap_create_image. */
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f,
+                                  .specular = MASU_ON,
+                                  .specular_fine = MASU_OFF,
+                                  .shadow_resolution = 64};
     return d;
 }
 
