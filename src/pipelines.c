@@ -300,6 +300,28 @@ static uint64_t now(const masu_renderer *m) {
     return m->plan.desc.clock_ns ? m->plan.desc.clock_ns(m->plan.desc.clock_user) : 0;
 }
 
+/* Constants 0 to 4 of all shaders, of which each has those it declares: of compute shaders whether counters
+ * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
+ * whether the sky is from a picture; whether reflections are traced. */
+enum { SPECIAL_COUNT = 5 };
+
+static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
+                                       VkBool32 constants[SPECIAL_COUNT]) {
+    static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
+        {0, 0, sizeof *constants},
+        {1, sizeof *constants, sizeof *constants},
+        {2, 2 * sizeof *constants, sizeof *constants},
+        {3, 3 * sizeof *constants, sizeof *constants},
+        {4, 4 * sizeof *constants, sizeof *constants}};
+    constants[0] = first;
+    constants[1] = m->plan.needs.sky != 0;
+    constants[2] = m->plan.scene.fog != 0;
+    constants[3] = m->plan.needs.environment != 0;
+    constants[4] = m->plan.needs.reflections != 0;
+    return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
+                                  constants};
+}
+
 /* ---- Layouts --------------------------------------------------------------------------------- */
 
 /* What a plan has no buffer for takes no binding: devices need to have no more than four storage buffers
@@ -443,17 +465,8 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
     VkShaderModule module = VK_NULL_HANDLE;
     masu_result result = make_module(m, compute_code(m, pass), &module, detail);
     if (result) return result;
-    /* Whether counters are kept; whether the sky may be the analytic one; whether there is fog; whether
-     * the sky is from a picture. */
-    const VkBool32 constants[] = {m->plan.desc.debug.counters != 0, m->plan.needs.sky != 0,
-                                  m->plan.scene.fog != 0, m->plan.needs.environment != 0,
-                                  m->plan.needs.reflections != 0};
-    const VkSpecializationMapEntry entries[] = {{0, 0, sizeof *constants},
-                                                {1, sizeof *constants, sizeof *constants},
-                                                {2, 2 * sizeof *constants, sizeof *constants},
-                                                {3, 3 * sizeof *constants, sizeof *constants},
-                                                {4, 4 * sizeof *constants, sizeof *constants}};
-    VkSpecializationInfo special = {5, entries, sizeof constants, constants};
+    VkBool32 constants[SPECIAL_COUNT];
+    VkSpecializationInfo special = specialise(m, m->plan.desc.debug.counters != 0, constants);
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -544,14 +557,8 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
     int polygons = draws_polygons(pass);                 /* else what the vertex shader makes up */
     int boxes = pass == MASU_PASS_OCCLUDERS;             /* no colour; else one triangle, no depth */
     int blends = pass == MASU_PASS_TRANSPARENTS;         /* no depth */
-    /* Whether masks are cut; the rest as in make_compute. */
-    const VkBool32 constants[] = {masked, m->plan.needs.sky != 0, m->plan.scene.fog != 0,
-                                  m->plan.needs.environment != 0};
-    const VkSpecializationMapEntry entries[] = {{0, 0, sizeof *constants},
-                                                {1, sizeof *constants, sizeof *constants},
-                                                {2, 2 * sizeof *constants, sizeof *constants},
-                                                {3, 3 * sizeof *constants, sizeof *constants}};
-    VkSpecializationInfo special = {4, entries, sizeof constants, constants};
+    VkBool32 constants[SPECIAL_COUNT];
+    VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
     for (uint32_t i = 0; i < 2; i++) {
         stages[i] = (VkPipelineShaderStageCreateInfo){

@@ -43,7 +43,7 @@ uvec2 masu_pack_guide(uint packed_normal, float roughness, float depth, uint pix
 /* Which pixel of its 2x2 a texel stands for in a frame. Neighbours take different ones. */
 uint masu_guide_pixel(uvec2 texel, uint number)
 {
-    const uint order = 0x1Eu | 0x00u; /* 2, 3, 1, 0 in pairs of bits: diagonals follow each other */
+    const uint order = 0x1Eu; /* 2, 3, 1, 0 in pairs of bits: round the square */
     uint k = (number + texel.x + 2u * texel.y) & 3u;
     return (order >> (2u * k)) & 3u;
 }
