@@ -34,14 +34,15 @@
  *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
  *    and sampled image. No optional feature is needed. What is missing is named in the detail.
  *    Of optional ones, textureCompressionBC and samplerAnisotropy serve textures, rayQuery serves
- *    reflections (masu_vulkan).
+ *    reflections, shaderFloat16 upscaling (masu_vulkan).
  *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
  *    to be submitted once; all frames and loads go to one and the same queue, in order. It starts
  *    with a full barrier against the frame before.
  *  - Target images: an array of views of host images, all `output` large. Storage targets
- *    (targets.storage != 0) must be VK_FORMAT_R8G8B8A8_UNORM with VK_IMAGE_USAGE_STORAGE_BIT; Masu
- *    writes them directly. Other targets (a swapchain's BGRA images, say) must have
- *    VK_IMAGE_USAGE_TRANSFER_DST_BIT and are filled by a blit, which costs one more image. Layout
+ *    (targets.storage != 0) must be VK_FORMAT_R8G8B8A8_UNORM, or VK_FORMAT_R16G16B16A16_SFLOAT, with
+ *    VK_IMAGE_USAGE_STORAGE_BIT; Masu writes them directly. Other targets (a swapchain's BGRA
+ *    images, say) must have VK_IMAGE_USAGE_TRANSFER_DST_BIT and are filled by a blit, sRGB formats by
+ *    a copy, which costs one more image. Layout
  *    on entry: anything (contents are discarded). Layout on exit: targets.final_layout. The submit
  *    must wait for the image to be available (swapchain semaphore) at
  *    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT; writes are made available to all later commands and, with
@@ -147,6 +148,8 @@ typedef struct masu_scene {
     uint32_t lod_draws, lod_instances; /* draws of those; instances, counted for each form */
     uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
     uint32_t groups, group_items; /* what is culled together; instances in groups */
+    uint32_t metered;    /* 1: it asks for a metered exposure, */
+    float brighten, darken; /* that adapts as fast, 1/s; 0: the default */
     uint32_t sdf;        /* 1: the scene has an SDF */
     uint32_t sdf_params; /* run-time parameters of it */
     uint32_t sdf_parts, sdf_slots;
@@ -228,13 +231,37 @@ typedef enum masu_march {
     MASU_MARCH_UNPRUNED = 7      /* as AUTO, every tile with all parts */
 } masu_march;
 
+/* How the picture is upscaled. */
+typedef enum masu_easu {
+    MASU_EASU_AUTO = 0,    /* FULL */
+    MASU_EASU_FULL = 1,    /* FSR1's EASU, as AMD has published it */
+    MASU_EASU_FAST = 2,    /* edges looked at once instead of four times; and where the four texels around
+                              a pixel differ by at most 1/255, it is their bilinear mean, which is within
+                              1/255 of FULL. README and docs/DESIGN.md have the errors elsewhere */
+    MASU_EASU_BILINEAR = 3 /* the four texels around: for comparison */
+} masu_easu;
+
+/* Anti-aliasing of what is shown, before it is upscaled. SMAA 1x in four settings: from what contrast on
+ * there is an edge (0.15, 0.1, 0.1, 0.05), how far its ends are looked for (8, 16, 32, 64 pixels), from
+ * HIGH on diagonals and corners too. FXAA is one pass that looks at the nearest pixels alone. Both blend
+ * light, not encoded values. A picture without edges costs SMAA its first pass. */
+typedef enum masu_aa {
+    MASU_AA_AUTO = 0, /* OFF */
+    MASU_AA_OFF = 1,
+    MASU_AA_FXAA = 2,
+    MASU_AA_SMAA_LOW = 3,
+    MASU_AA_SMAA_MEDIUM = 4,
+    MASU_AA_SMAA_HIGH = 5,
+    MASU_AA_SMAA_ULTRA = 6
+} masu_aa;
+
 /* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen
  * freshly every frame. */
 typedef struct masu_rung {
     float scale; /* render size / output size per axis, 0 < scale <= 1; 0: 1.0. Ignored with a
                     source image */
-    masu_switch upscale; /* EASU. AUTO: when the render size differs from the output size */
-    masu_switch sharpen; /* RCAS. AUTO: when EASU runs */
+    masu_switch upscale; /* AUTO: when the render size differs from the output size */
+    masu_switch sharpen; /* RCAS. AUTO: when EASU runs, full or fast */
     float sharpness;     /* RCAS strength in stops, 0..64: 0 is sharpest, each stop halves it (AMD's
                              definition) */
     masu_march march;
@@ -277,6 +304,12 @@ typedef struct masu_rung {
     uint32_t specular_filter_taps; /* neighbours, at most 32; 0: 12 */
     uint32_t specular_frames;      /* how far back the mean over frames reaches, in 1/60 s, at most 240;
                                       0: 32 */
+    masu_easu easu; /* how it is upscaled, where it is */
+    masu_aa aa; /* SMAA of n pixels of the render size takes 4.5 n bytes more on the device, FXAA 4 n,
+                   which other images may share but for the last 0.5 n */
+    masu_switch fuse; /* EASU (full) and RCAS in one pass where both run: the same picture, without the
+                         image between them, for 1.13 times the upscaling. With deep_color
+                          there are two all the same. AUTO: off */
 } masu_rung;
 
 /* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
@@ -382,25 +415,73 @@ typedef struct masu_vulkan {
                              limits.maxSamplerAnisotropy; 0: it is not */
     uint32_t ray_query; /* not 0: VK_KHR_ray_query, VK_KHR_acceleration_structure and buffer device
                            addresses (the extension or 1.2) are enabled, each with its feature */
+    uint32_t shader_float16; /* not 0: shaderFloat16 of VK_KHR_shader_float16_int8 (or 1.2) is enabled */
 } masu_vulkan;
+
+/* What the numbers in a target mean. White is what a radiance of 1 times the exposure becomes without
+ * a tone curve. */
+typedef enum masu_encoding {
+    MASU_ENCODING_AUTO = 0,   /* SRGB; LINEAR for targets of floats */
+    MASU_ENCODING_SRGB = 1,   /* IEC 61966-2-1: 0 to 1, 1 is white. Any format */
+    MASU_ENCODING_LINEAR = 2, /* scRGB: linear, primaries of sRGB, 1 is 80 nits, more is brighter.
+                                 VK_FORMAT_R16G16B16A16_SFLOAT */
+    MASU_ENCODING_PQ = 3      /* HDR10: primaries of BT.2020, SMPTE ST 2084 of nits. Formats of 10 or 16
+                                 bits */
+} masu_encoding;
 
 typedef struct masu_targets {
     const VkImage *images;    /* `count` images of the output size */
     const VkImageView *views; /* one per image; needed for storage targets, else may be NULL */
     uint32_t count;           /* 1..8 */
-    VkFormat format;          /* UNORM: the picture is encoded already, an sRGB format would do it
-                                 twice. 0: VK_FORMAT_R8G8B8A8_UNORM */
+    /* 8 bits (R8G8B8A8, B8G8R8A8, A8B8G8R8, each UNORM or SRGB: the same bytes), 10 bits
+     * (A2B10G10R10, A2R10G10B10), 5 and 6 (R5G6B5, B5G6R5), 16 (R16G16B16A16, UNORM or SFLOAT). 0:
+     * VK_FORMAT_R8G8B8A8_UNORM. Without a scene: UNORM only */
+    VkFormat format;
     uint32_t storage;         /* not 0: written directly as storage images; 0: filled by a blit */
     VkImageLayout
         final_layout; /* VK_IMAGE_LAYOUT_UNDEFINED (0): VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL */
+    masu_encoding encoding; /* with a scene */
+    /* Of LINEAR and PQ, nits, 1..10000: white, and what the display shows at most, which bends the
+     * neutral curve. 0: 80 and 203 (BT.2408); 1000, or white where that is more */
+    float white, peak;
 } masu_targets;
 
-/* Upscaling only, without a scene: the host's image is the input of EASU and RCAS. */
+/* How radiance times exposure becomes what is shown. ACES and NEUTRAL end at white; with LINEAR and PQ
+ * NEUTRAL ends at the peak. */
+typedef enum masu_tone {
+    MASU_TONE_AUTO = 0, /* ACES */
+    MASU_TONE_NONE = 1, /* what it is, cut off at white; with LINEAR and PQ at 10000 nits */
+    MASU_TONE_ACES = 2, /* filmic: a fit of the ACES reference rendering (Narkowicz 2016) */
+    MASU_TONE_NEUTRAL = 3 /* colours as they are up to 0.76 of the most, then towards white (Khronos PBR
+                             Neutral) */
+} masu_tone;
+
+/* Exposure that follows the picture: light.exposure times 0.18 / the mean of its luminance, which is
+ * that of logarithms, without the darkest and the brightest pixels, black ones, and any that are not
+ * finite. It adapts by time_step, at once in the first frame and after a cut. */
+typedef struct masu_exposure {
+    masu_switch metered; /* OFF: light.exposure alone, no pass and no memory for it. AUTO: as the scene
+                            says */
+    /* How fast, 1/s, up to 1e6: the share of the way that is left falls by e in 1 / speed. 0: the
+     * scene's, else 1 (the picture has become darker) and 3 (brighter): as eyes, quicker to light */
+    float brighten, darken;
+    float low, high;   /* shares of the counted pixels left out, 0..1, less than 1 in sum; below 0: none;
+                          0: 0.1 of the dark and 0.1 of the bright */
+    float least, most; /* bounds of the metered factor, 1e-9..1e9; 0: 1/1024 and 1024 */
+} masu_exposure;
+
+/* Without a scene: the host's image is the input of anti-aliasing, where the rung asks for it, EASU and
+ * RCAS. What is sampled is taken as display-encoded colour of 0..1; NaN, infinities and what is below 0
+ * count as 0, what is above 1 as 1. So of an image in an sRGB format the view must be UNORM: an sRGB view
+ * gives linear numbers, which are filtered as they are and not encoded again. What is anti-aliased has 8
+ * bits a channel from there on. */
 typedef struct masu_source {
     VkImageView view; /* VK_NULL_HANDLE: none. Sampled, layout
                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL on entry and exit */
     uint32_t width,
         height; /* valid texels from (0,0); a larger image is fine: nothing outside is read */
+    VkFormat format; /* of the view; 0: not told. 8-bit UNORM colour is then known to be just that, which
+                        spares a tenth of the work; the result is the same */
 } masu_source;
 
 typedef struct masu_debug {
@@ -415,9 +496,12 @@ typedef struct masu_debug {
                          numbers in masu_stats */
     uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
     uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
+    uint32_t no_bias; /* not 0: rungs of fewer pixels take the mips of these: for comparison */
     uint32_t reference; /* not 0: reflections are traced at each pixel, summed up over frames of a
                            resting scene, weighted exactly and not filtered: the truth after many frames.
                            A cut begins a new sum */
+    float mip_bias; /* added to the level of detail of textures, -16..16; below 0: finer. What many places in a
+                       pixel are averaged over wants finer ones; log2 of the size undoes a rung's own */
 } masu_debug;
 
 /* Switches off what would be used where the device offers it: to test the other path, or around a
@@ -452,6 +536,21 @@ typedef struct masu_desc {
      * MASU_ERROR_DEVICE. OFF: the own tree. Without reflections of polygons nothing is asked.
      * Queries take more memory, which is planned as all is: see masu_memory. */
     masu_switch ray_query;
+    /* What weighs the texels of rungs with MASU_EASU_FAST: floats of 16 bits, or of 32. AUTO: 16, if
+     * vulkan.shader_float16 says that they are there and the device is a discrete or integrated GPU: CPUs
+     * emulate them. ON: 16, or MASU_ERROR_DEVICE. OFF: 32. */
+    masu_switch half_floats;
+    masu_exposure exposure;
+    masu_tone tone;
+    /* Slow ramps without bands: the pass that writes the target rounds each pixel up or down, by a
+     * pattern that depends on place and frame number alone, so that the mean is right. What is a step
+     * of the target stays one: 0 and 1 do. AUTO: off for storage targets, which tools read back and
+     * compare, on for others of at most 8 bits. Nothing happens without a scene, or beyond 10 bits. In
+     * rungs that upscale it takes deep_color: what 8 bits have lost before EASU does not come back. */
+    masu_switch dither;
+    /* 16-bit floats between tone curve and target, twice the bytes of those images. AUTO: on for
+     * targets of more than 8 bits, which take it. ON with 8 bits: not as storage targets. */
+    masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
     masu_debug debug;
     masu_deny deny;
@@ -587,7 +686,7 @@ typedef struct masu_commands {
 /* Copies the scene to the device. MASU_INCOMPLETE: submit commands->buffer, wait for it, call
  * again. MASU_OK: done; nothing to submit. On unified memory a scene without textures needs no
  * submit: the first call returns MASU_OK; but with ray queries, whose structures the device
- * builds. */
+ * builds. Without a scene there is nothing to copy but the table of SMAA, where a rung has it. */
 MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_commands *commands);
 
 typedef struct masu_camera {
@@ -596,6 +695,12 @@ typedef struct masu_camera {
     float up[3];         /* not parallel to forward; all zero: +Y */
     float fov_y;         /* vertical field of view, radians, 0.001 .. 3.1 */
     float near_distance; /* metres, > 0; 0: the scene's. There is no far plane */
+    /* Pixels of the render size, right and down, -1..1: by how much beside its own middle each pixel
+     * looks. The projection is shifted and nothing turned, so that all pixels move alike. The mean of
+     * frames with places all over a pixel is what a larger picture made smaller shows. Velocities
+     * hold its change from frame to frame, too; cascades that are not drawn in every frame are drawn
+     * again whenever its size changes. */
+    float jitter[2];
 } masu_camera;
 
 typedef struct masu_light {
@@ -603,7 +708,7 @@ typedef struct masu_light {
     float sun_color[3];     /* irradiance on a facing surface / pi */
     float ambient[3];       /* radiance */
     float sky_zenith[3], sky_horizon[3];
-    float exposure; /* linear factor before the tone curve; 0: 1 */
+    float exposure; /* linear factor before the tone curve; 0: 1. Metered: times that factor */
     /* 0: the two colours and the ambient light above. 1.5 (very clear) to 10 (hazy): the sky follows
      * from the sun, and with it the ambient light; a sun colour of all zero then is the sun's behind
      * that air, which sets too. Takes a scene with such a sky or desc.analytic_sky. Computed anew,
@@ -745,6 +850,11 @@ typedef struct masu_stats_info {
      * SDF first, nodes of trees visited, evaluations of the field. */
     uint64_t specular_tiles, specular_rays, specular_hits, specular_sdf_hits;
     uint64_t specular_nodes, specular_evals;
+    /* The same of rungs[].easu FAST: blocks of 8x8 output pixels that are flat and were not filtered. Of
+     * scenes; without one 0. */
+    uint64_t easu_tiles_early;
+    uint64_t smaa_tiles; /* with debug.counters: 16x16 pixels that SMAA has blended */
+    float exposure; /* factor before the tone curve, where it is metered and with debug.counters; else 0 */
     uint32_t view_count;
     masu_view_stats views[MASU_MAX_VIEWS]; /* 0: the camera */
 } masu_stats_info;

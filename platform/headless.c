@@ -195,18 +195,32 @@ typedef struct ray_features {
     VkPhysicalDeviceBufferDeviceAddressFeatures address;
 } ray_features;
 
-/* Whether the device has all of it; `to` then asks for it. */
-static bool offers_rays(VkPhysicalDevice device, ray_features *to) {
+static bool has_extensions(VkPhysicalDevice device, const char *const *names, uint32_t count) {
     uint32_t n = 0, found = 0;
     if (vkEnumerateDeviceExtensionProperties(device, NULL, &n, NULL)) return false;
     VkExtensionProperties *list = malloc((n + 1) * sizeof *list);
     VkResult r = list ? vkEnumerateDeviceExtensionProperties(device, NULL, &n, list) : VK_NOT_READY;
-    for (uint32_t e = 0; e < RAY_EXTENSIONS && r == VK_SUCCESS; e++) {
-        for (uint32_t i = 0; i < n; i++)
-            found += !strcmp(list[i].extensionName, ray_extensions[e]);
+    for (uint32_t e = 0; e < count && r == VK_SUCCESS; e++) {
+        for (uint32_t i = 0; i < n; i++) found += !strcmp(list[i].extensionName, names[e]);
     }
     free(list);
-    if (found < RAY_EXTENSIONS) return false;
+    return found == count;
+}
+
+static bool offers_halves(VkPhysicalDevice device) {
+    static const char *const name[] = {VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME};
+    VkPhysicalDeviceShaderFloat16Int8Features halves = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES};
+    VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                     .pNext = &halves};
+    if (!has_extensions(device, name, 1)) return false;
+    vkGetPhysicalDeviceFeatures2(device, &all);
+    return halves.shaderFloat16;
+}
+
+/* Whether the device has all of it; `to` then asks for it. */
+static bool offers_rays(VkPhysicalDevice device, ray_features *to) {
+    if (!has_extensions(device, ray_extensions, RAY_EXTENSIONS)) return false;
     memset(to, 0, sizeof *to);
     to->query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
     to->structure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
@@ -243,13 +257,24 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                .queueCreateInfoCount = 1,
                                .pQueueCreateInfos = &queue,
                                .pEnabledFeatures = &features};
+    const char *names[RAY_EXTENSIONS + 1];
+    VkPhysicalDeviceShaderFloat16Int8Features halves = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES};
     ray_features rays;
     host->ray_query = host->desc.ray_query && offers_rays(host->physical, &rays);
     if (host->ray_query) {
         info.pNext = &rays.query;
         info.enabledExtensionCount = RAY_EXTENSIONS;
-        info.ppEnabledExtensionNames = ray_extensions;
+        memcpy(names, ray_extensions, sizeof ray_extensions);
     }
+    host->float16 = offers_halves(host->physical);
+    if (host->float16) {
+        halves.shaderFloat16 = VK_TRUE;
+        halves.pNext = (void *)info.pNext;
+        info.pNext = &halves;
+        names[info.enabledExtensionCount++] = VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME;
+    }
+    info.ppEnabledExtensionNames = names;
     VkResult r = vkCreateDevice(host->physical, &info, host->desc.allocator, &host->device);
     if (r) return masu_headless_fail(error, size, "vkCreateDevice", r);
     vkGetDeviceQueue(host->device, host->family, 0, &host->queue);

@@ -2,7 +2,7 @@
  * images, submits that wait.
  *
  * It is what a port's own host does, kept small: of optional features it enables those that serve
- * textures, where they are offered, and no extension but the validation layer's own, for labels
+ * textures and 16-bit floats, where they are offered, and no other extension but the validation layer's own, for labels
  * VK_EXT_debug_utils, and what ray queries take where they are asked for. Every wait has a timeout.
  * Functions that can fail return false and write one line without a newline to `error`. */
 #ifndef MASU_HEADLESS_H
@@ -52,6 +52,7 @@ typedef struct masu_headless {
     bool labels;             /* VK_EXT_debug_utils is enabled */
     bool ray_query;          /* so are VK_KHR_ray_query and what it takes */
     bool compressed;         /* textureCompressionBC is enabled */
+    bool float16;            /* shaderFloat16 is enabled, and VK_KHR_shader_float16_int8 */
     float most_anisotropy;   /* samplerAnisotropy is enabled: its limit; else 0 */
     bool lost;               /* a wait has timed out or the device is gone: nothing is waited for */
     char first_message[512]; /* of the validation layer */
@@ -90,13 +91,13 @@ typedef struct masu_headless_target {
     uint32_t width, height;
 } masu_headless_target;
 
-/* format is a 4-byte colour format. storage: VK_IMAGE_USAGE_STORAGE_BIT, else
+/* format is one that masu_targets takes. storage: VK_IMAGE_USAGE_STORAGE_BIT and _SAMPLED_BIT, else
  * VK_IMAGE_USAGE_TRANSFER_DST_BIT. */
 bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height,
                                  VkFormat format, bool storage, masu_headless_target *target,
                                  char *error, size_t error_size);
 /* Copies a finished frame out of the image, which is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL. The
- * pixels lie at target->mapped, width * 4 bytes a row, until the next call. */
+ * pixels lie at target->mapped, row after row without a gap, until the next call. */
 bool masu_headless_target_read(masu_headless *host, masu_headless_target *target, char *error,
                                size_t error_size);
 void masu_headless_target_destroy(masu_headless *host, masu_headless_target *target);
@@ -113,6 +114,11 @@ bool masu_headless_source_create(masu_headless *host, const uint8_t *rgba, uint3
                                  uint32_t height, uint32_t image_width, uint32_t image_height,
                                  uint32_t beyond, masu_headless_source *source, char *error,
                                  size_t error_size);
+/* The same of another format, of 4 or 8 bytes. */
+bool masu_headless_source_of(masu_headless *host, VkFormat format, const void *texels,
+                             uint32_t width, uint32_t height, uint32_t image_width,
+                             uint32_t image_height, uint32_t beyond, masu_headless_source *source,
+                             char *error, size_t error_size);
 void masu_headless_source_destroy(masu_headless *host, masu_headless_source *source);
 
 #endif

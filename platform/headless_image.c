@@ -121,6 +121,16 @@ static bool record_copy(masu_headless *host, masu_headless_target *t, char *erro
     return r ? masu_headless_fail(error, size, "vkEndCommandBuffer", r) : true;
 }
 
+static uint64_t texel_bytes(VkFormat format) {
+    switch (format) {
+    case VK_FORMAT_R5G6B5_UNORM_PACK16:
+    case VK_FORMAT_B5G6R5_UNORM_PACK16: return 2;
+    case VK_FORMAT_R16G16B16A16_UNORM:
+    case VK_FORMAT_R16G16B16A16_SFLOAT: return 8;
+    default: return 4;
+    }
+}
+
 bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t height,
                                  VkFormat format, bool storage, masu_headless_target *t,
                                  char *error, size_t error_size) {
@@ -129,11 +139,12 @@ bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t h
     t->height = height;
     VkImageUsageFlags usage =
         VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-        (storage ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        (storage ? VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT
+                 : VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     void *mapped = NULL;
     if (!make_image(host, width, height, format, usage, &t->image, &t->view, &t->memory, error,
                     error_size) ||
-        !make_buffer(host, (uint64_t)width * height * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        !make_buffer(host, texel_bytes(format) * width * height, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                      &t->buffer, &t->buffer_memory, &mapped, error, error_size) ||
         !record_copy(host, t, error, error_size)) {
         masu_headless_target_destroy(host, t);
@@ -193,23 +204,32 @@ bool masu_headless_source_create(masu_headless *host, const uint8_t *rgba, uint3
                                  uint32_t height, uint32_t image_width, uint32_t image_height,
                                  uint32_t beyond, masu_headless_source *source, char *error,
                                  size_t error_size) {
+    return masu_headless_source_of(host, VK_FORMAT_R8G8B8A8_UNORM, rgba, width, height, image_width,
+                                   image_height, beyond, source, error, error_size);
+}
+
+bool masu_headless_source_of(masu_headless *host, VkFormat format, const void *texels,
+                             uint32_t width, uint32_t height, uint32_t image_width,
+                             uint32_t image_height, uint32_t beyond, masu_headless_source *source,
+                             char *error, size_t error_size) {
+    size_t texel = (size_t)texel_bytes(format);
+    uint64_t bytes = (uint64_t)texel * image_width * image_height;
     memset(source, 0, sizeof *source);
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     void *mapped = NULL;
     bool made =
-        make_image(host, image_width, image_height, VK_FORMAT_R8G8B8A8_UNORM,
+        make_image(host, image_width, image_height, format,
                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, &source->image,
                    &source->view, &source->memory, error, error_size) &&
-        make_buffer(host, (uint64_t)image_width * image_height * 4,
-                    VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &buffer, &memory, &mapped, error, error_size);
+        make_buffer(host, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &buffer, &memory, &mapped, error,
+                    error_size);
     if (made) {
         uint8_t *to = mapped;
-        for (uint64_t i = 0; i < (uint64_t)image_width * image_height; i++)
-            memcpy(to + 4 * i, &beyond, 4);
+        for (uint64_t i = 0; i < bytes / 4; i++) memcpy(to + 4 * i, &beyond, 4);
         for (uint32_t y = 0; y < height; y++) {
-            memcpy(to + (size_t)4 * image_width * y, rgba + (size_t)4 * width * y,
-                   (size_t)4 * width);
+            memcpy(to + texel * image_width * y, (const uint8_t *)texels + texel * width * y,
+                   texel * width);
         }
         made = upload(host, source->image, buffer, image_width, image_height, error, error_size);
     }

@@ -37,7 +37,7 @@ layout(set = MASU_SET_PASS, binding = 3, r32ui) uniform uimage2D occlusion_image
 /* Along the ray through the middle of a pixel, as long as makes its view z 1: masu_pixel_ray in steps. */
 vec3 ray_at(ao_lens lens, uvec2 pixel)
 {
-    vec2 ndc = (vec2(pixel) + 0.5) / lens.size * 2.0 - 1.0;
+    vec2 ndc = masu_ndc(vec2(pixel) + 0.5, lens.size);
     return frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
 }
 

@@ -75,8 +75,8 @@ void clear_depth(uvec2 corner, uvec2 size)
  * stops a tenth of a pixel before a surface. */
 void tile_planes(uvec2 corner, uvec2 size, out vec3 planes[4])
 {
-    vec2 low = (vec2(corner) - 0.5) / vec2(size) * 2.0 - 1.0;
-    vec2 high = (vec2(corner + uint(MASU_TILE)) + 0.5) / vec2(size) * 2.0 - 1.0;
+    vec2 low = masu_ndc(vec2(corner) - 0.5, vec2(size));
+    vec2 high = masu_ndc(vec2(corner + uint(MASU_TILE)) + 0.5, vec2(size));
     vec3 f = frame.forward.xyz;
     vec3 right = frame.right.xyz;
     vec3 down = -frame.up.xyz;
@@ -129,7 +129,7 @@ bool flat_parts_seen(uvec2 corner, uvec2 size)
     bool seen = false;
     for (int i = 0; i < 4; i++) {
         vec2 at = vec2(corner) + vec2(i & 1, i >> 1) * float(MASU_TILE);
-        vec2 ndc = at / vec2(size) * 2.0 - 1.0;
+        vec2 ndc = masu_ndc(at, vec2(size));
         vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
         uint part;
         seen = seen || masu_sdf_flat(world_at(through, 0.0), through, 0.0, part) < 1e30;

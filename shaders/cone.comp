@@ -47,7 +47,7 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
         vec2 size = vec2(pc.render_width, pc.render_height);
-        vec2 ndc = (vec2(at) + 0.5) * float(MASU_CONE_BLOCK) / size * 2.0 - 1.0;
+        vec2 ndc = masu_ndc((vec2(at) + 0.5) * float(MASU_CONE_BLOCK), size);
         vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
         ray r;
         r.direction = through / length(through);

@@ -54,8 +54,8 @@ piece make_piece(uvec2 corner, uvec2 size)
 {
     piece p;
     vec2 tangent = vec2(frame.right.w, frame.up.w);
-    p.low = (vec2(corner) / vec2(size) * 2.0 - 1.0) * tangent;
-    p.high = (vec2(corner + uint(MASU_TILE)) / vec2(size) * 2.0 - 1.0) * tangent;
+    p.low = masu_ndc(vec2(corner), vec2(size)) * tangent;
+    p.high = masu_ndc(vec2(corner + uint(MASU_TILE)), vec2(size)) * tangent;
     p.low_unit = 1.0 / sqrt(1.0 + p.low * p.low);
     p.high_unit = 1.0 / sqrt(1.0 + p.high * p.high);
     p.z_near = uintBitsToFloat(nearest);

@@ -55,7 +55,7 @@ struct block {
 block block_of(uvec2 corner, uvec2 size)
 {
     block b;
-    vec2 ndc = (vec2(corner) + 0.5 * float(MASU_GROUP)) / vec2(size) * 2.0 - 1.0;
+    vec2 ndc = masu_ndc(vec2(corner) + 0.5 * float(MASU_GROUP), vec2(size));
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
     b.middle = through / length(through);
     float pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));

@@ -26,6 +26,9 @@ SECOND_BUILDS += gbuffer_surface_frag:gbuffer.frag:MASU_SURFACE
 SECOND_BUILDS += gbuffer_velocity_surface_frag:gbuffer.frag:MASU_MOTION+MASU_SURFACE
 SECOND_BUILDS += gbuffer_textured_surface_frag:gbuffer.frag:MASU_TEXTURES+MASU_SURFACE
 SECOND_BUILDS += gbuffer_textured_velocity_surface_frag:gbuffer.frag:MASU_TEXTURES+MASU_MOTION+MASU_SURFACE
+SECOND_BUILDS += tonemap_deep_comp:tonemap.comp:MASU_DEEP
+SECOND_BUILDS += tonemap_metered_comp:tonemap.comp:MASU_METERED
+SECOND_BUILDS += tonemap_deep_metered_comp:tonemap.comp:MASU_DEEP+MASU_METERED
 SECOND_BUILDS += light_surface_comp:light.comp:MASU_SURFACE
 SECOND_BUILDS += light_probes_comp:light.comp:MASU_PROBES
 SECOND_BUILDS += light_probes_surface_comp:light.comp:MASU_PROBES+MASU_SURFACE
@@ -82,12 +85,40 @@ SECOND_BUILDS += specular_shade_sdf_probes_comp:specular_shade.comp:MASU_NO_POLY
 SECOND_BUILDS += specular_shade_sdf_probes_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_PROBES+MASU_SUN_MAP
 SECOND_BUILDS += specular_shade_sdf_lights_probes_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_PROBES
 SECOND_BUILDS += specular_shade_sdf_lights_probes_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_PROBES+MASU_SUN_MAP
+SECOND_BUILDS += easu_bytes_comp:easu.comp:MASU_BYTES
+SECOND_BUILDS += easu_scene_comp:easu.comp:MASU_BYTES+MASU_OUTPUT
+SECOND_BUILDS += easu_deep_comp:easu.comp:MASU_OUTPUT+MASU_DEEP
+SECOND_BUILDS += rcas_scene_comp:rcas.comp:MASU_BYTES+MASU_OUTPUT
+SECOND_BUILDS += rcas_deep_comp:rcas.comp:MASU_OUTPUT+MASU_DEEP
+SECOND_BUILDS += fsr1_scene_comp:fsr1.comp:MASU_BYTES+MASU_OUTPUT
+SECOND_BUILDS += easu_fast_bytes_comp:easu_fast.comp:MASU_BYTES
+SECOND_BUILDS += easu_fast_bytes_counted_comp:easu_fast.comp:MASU_BYTES+MASU_COUNTED
+SECOND_BUILDS += easu_fast_scene_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT
+SECOND_BUILDS += easu_fast_deep_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP
+SECOND_BUILDS += easu_fast_scene_counted_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT+MASU_COUNTED
+SECOND_BUILDS += easu_fast_deep_counted_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP+MASU_COUNTED
+SECOND_BUILDS += easu_fast_half_comp:easu_fast.comp:MASU_HALF
+SECOND_BUILDS += easu_fast_bytes_half_comp:easu_fast.comp:MASU_BYTES+MASU_HALF
+SECOND_BUILDS += easu_fast_scene_half_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT+MASU_HALF
+SECOND_BUILDS += easu_fast_deep_half_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP+MASU_HALF
+SECOND_BUILDS += easu_fast_scene_half_counted_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT+MASU_HALF+MASU_COUNTED
+SECOND_BUILDS += easu_fast_deep_half_counted_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP+MASU_HALF+MASU_COUNTED
+SECOND_BUILDS += bilinear_scene_comp:bilinear.comp:MASU_OUTPUT
+SECOND_BUILDS += bilinear_deep_comp:bilinear.comp:MASU_OUTPUT+MASU_DEEP
+SECOND_BUILDS += fxaa_scene_comp:fxaa.comp:MASU_OUTPUT
+SECOND_BUILDS += fxaa_deep_comp:fxaa.comp:MASU_OUTPUT+MASU_DEEP
+SECOND_BUILDS += smaa_edges_scene_comp:smaa_edges.comp:MASU_OUTPUT
+SECOND_BUILDS += smaa_edges_deep_comp:smaa_edges.comp:MASU_OUTPUT+MASU_DEEP
+SECOND_BUILDS += smaa_blend_scene_comp:smaa_blend.comp:MASU_OUTPUT
+SECOND_BUILDS += smaa_blend_deep_comp:smaa_blend.comp:MASU_OUTPUT+MASU_DEEP
+SECOND_BUILDS += fsr1_bytes_comp:fsr1.comp:MASU_BYTES
+SECOND_BUILDS += rcas_bytes_comp:rcas.comp:MASU_BYTES
 SECOND_BUILDS += trace_rays_counted_comp:trace_rays.comp:MASU_TRACE_COUNTERS
 
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
 SPIRV_HEADERS += $(foreach b,$(SECOND_BUILDS),$(BUILD)/gen/$(firstword $(subst :, ,$(b))).spv.h)
-GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h
+GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
@@ -145,7 +176,8 @@ $(BUILD)/gen/scene_texts.list: force
 $(BUILD)/tools/make_%: tools/make_%.c shaders/shared/masu_shared.h
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders $< -lm -o $@
-$(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h: $(BUILD)/gen/%.h: $(BUILD)/tools/make_%
+$(BUILD)/tools/make_smaa_area: tools/smaa_tables.h
+$(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h: $(BUILD)/gen/%.h: $(BUILD)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"
 	$(V)$< > $@

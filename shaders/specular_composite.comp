@@ -108,15 +108,16 @@ void pixel(uvec2 at, uvec2 texel, uint number)
             light.rgb = masu_ambient_mirror(reflect(-v, n), roughness);
         }
 #ifdef MASU_FINE
-        float fine = pc.index.x != 0u ? masu_fine_share(roughness) : 0.0;
+        masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
+        float fine = pc.index.x != 0u ? masu_fine_share(g, roughness) : 0.0;
         if (fine > 0.0) {
             uint word = texelFetch(fine_image, ivec2(texel), 0)[number];
             if (word != masu_fine_none) {
-                /* What the texels' means do not show even half as bright is noise of few rays; a mirror has
-                 * none. */
+                /* What the texels' means do not show even half as bright is noise of few rays; a narrow lobe has
+                 * little. */
                 vec3 own = masu_unpack_fine(word);
                 float bright = max(own.r, max(own.g, own.b));
-                float limit = roughness > masu_fine_mirror && most > 0.0 ? 2.0 * most + 0.01 : bright;
+                float limit = roughness > masu_fine_narrow && most > 0.0 && !g.mixed ? 2.0 * most + 0.01 : bright;
                 own *= min(1.0, limit / max(bright, 1e-9));
                 light.rgb = mix(light.rgb, own, fine);
             }

@@ -1,10 +1,12 @@
 /*
  * specular_fine.comp: what smooth surfaces mirror is as sharp as the picture, and a mean over a texel's 2x2
- * pixels blurs it. Here each of the four has its own: the pixel that the texel has traced in this frame
- * takes its ray in, the others keep what they had, found again where specular_temporal has found the
- * texel's. A mirror's ray has no noise and replaces the mean. A texel on an outline stands for another
- * surface in each frame, and finds nothing; its pixels keep what lay where they were all the same, until
- * their own turn.
+ * pixels blurs it; and where the four are not one surface there is nothing a mean over them could be of.
+ * Here each has its own: the pixel that the texel has traced in this frame takes its ray in, the others keep
+ * what they had, found again where specular_temporal has found the texel's, or else where their own surface
+ * was. A mirror's ray has no noise and replaces the mean.
+ *
+ * In motion the four are up to four frames old, and what is reflected has moved by another amount for each:
+ * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3 rays.
  *
  * index.x: how far back the mean reaches, 1/60 s.
  */
@@ -30,7 +32,8 @@ layout(set = MASU_SET_PASS, binding = 3) uniform usampler2D age_image;
 layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D velocity_image;
 layout(set = MASU_SET_PASS, binding = 5) uniform usampler2D old_guide_image;
 layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_fine_image;
-layout(set = MASU_SET_PASS, binding = 7, rgba32ui) uniform writeonly uimage2D fine_image;
+layout(set = MASU_SET_PASS, binding = 7) uniform usampler2D normal_image;
+layout(set = MASU_SET_PASS, binding = 8, rgba32ui) uniform writeonly uimage2D fine_image;
 
 /* a: 0: nothing is there. at: pixel of the frame before. */
 vec4 old_pixel(ivec2 at, masu_guide g)
@@ -48,6 +51,14 @@ vec4 old_pixel(ivec2 at, masu_guide g)
     return word == masu_fine_none ? vec4(0.0) : vec4(masu_unpack_fine(word), 1.0);
 }
 
+/* Whether a texel of the frame before can have held a surface of this normal: if it was not one surface, there is
+ * no telling. */
+bool was_it(ivec2 texel, vec3 normal)
+{
+    masu_guide o = masu_unpack_guide(texelFetch(old_guide_image, texel, 0).rg);
+    return o.there && (o.mixed || dot(o.normal, normal) > 0.8);
+}
+
 /* Where a pixel's own surface was, whatever the texel there stood for: to the nearest pixel, since between two
  * lies the outline. */
 vec4 own_way(uvec2 pixel)
@@ -60,7 +71,7 @@ vec4 own_way(uvec2 pixel)
     ivec2 at = ivec2(pixel) + ivec2(round(masu_sane(velocity, -32768.0, 32768.0).xy));
     if (!(velocity.w > 0.0) || any(lessThan(at, ivec2(0))) ||
         any(greaterThanEqual(at, ivec2(frame.history.yz))) ||
-        !masu_unpack_guide(texelFetch(old_guide_image, at >> 1, 0).rg).there) {
+        !was_it(at >> 1, masu_unpack_normal(texelFetch(normal_image, ivec2(pixel), 0).r))) {
         return vec4(0.0);
     }
     uint word = texelFetch(old_fine_image, at >> 1, 0)[(at.x & 1) + 2 * (at.y & 1)];
@@ -88,8 +99,9 @@ vec4 look(uvec2 pixel, vec2 moved, masu_guide g)
 }
 
 /* What few rays meet and much light comes from is noise in so few of them: no brighter than what the means
- * of the eight texels around show. */
-vec3 without_sparks(ivec2 texel, vec3 color)
+ * of the eight texels around show, nor than four times what the pixel has. A highlight that is there comes up
+ * all the same, by four times with each ray. */
+vec3 without_sparks(ivec2 texel, vec3 color, vec4 old)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float sum = 0.0;
@@ -111,8 +123,27 @@ vec3 without_sparks(ivec2 texel, vec3 color)
     }
     float mean = sum / max(count, 1.0);
     float most = mean + 2.5 * masu_sqrt(squares / max(count, 1.0) - mean * mean) + 0.1 * mean;
+    if (old.a > 0.0) {
+        most = min(most, 4.0 * masu_luma(old.rgb) + mean);
+    }
     float y = masu_luma(color);
     return y > most ? color * (most / max(y, 1e-9)) : color;
+}
+
+/* Of the rays of the 3x3 texels. */
+void colors_around(ivec2 texel, out vec3 least, out vec3 most)
+{
+    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    least = vec3(masu_most_radiance);
+    most = vec3(0.0);
+    for (int k = 0; k < 9; k++) {
+        ivec2 at = clamp(texel + ivec2(k % 3 - 1, k / 3 - 1), ivec2(0), last);
+        if (masu_unpack_guide(texelFetch(guide_image, at, 0).rg).there) {
+            vec3 c = masu_tamed(texelFetch(light_image, at, 0).rgb);
+            least = min(least, c);
+            most = max(most, c);
+        }
+    }
 }
 
 void main()
@@ -122,7 +153,7 @@ void main()
     if (masu_specular_inside(texel)) {
         masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
         uvec4 words = uvec4(masu_fine_none);
-        if (g.there && masu_fine_share(g.roughness) > 0.0) {
+        if (g.there && masu_fine_share(g, g.roughness) > 0.0) {
             vec3 color = masu_tamed(texelFetch(light_image, ivec2(texel), 0).rgb);
             uvec2 age = texelFetch(age_image, ivec2(texel), 0).rg;
             bool known = frame.history.y != 0u && age.y != masu_unmoved;
@@ -130,20 +161,31 @@ void main()
             /* Each fourth frame is this pixel's. What it has from before the first round is of another
              * surface, maybe. */
             float own = max((masu_age_frames(age.x) - 4.0) * 0.25, 0.0);
-            float share = max(1.0 / (own + 1.0), masu_time_share(max(float(pc.index.x) * 0.25, 1.0)));
-            if (g.roughness > masu_mirror_roughness) {
-                color = without_sparks(ivec2(texel), color);
-            } else {
+            /* A ray a quarter as often: the mean of a surface that has no other reaches back four times as far. */
+            float reach = max(float(pc.index.x) * (g.mixed ? 1.0 : 0.25), 1.0);
+            bool moving = any(greaterThan(abs(moved), vec2(0.05)));
+            vec3 least = vec3(0.0);
+            vec3 most = vec3(masu_most_radiance);
+            if (moving) {
+                colors_around(ivec2(texel), least, most);
+                own = min(own, g.mixed ? 4.0 : 100.0 * g.roughness * g.roughness);
+            }
+            float share = max(1.0 / (own + 1.0), masu_time_share(reach));
+            if (!(g.roughness > masu_mirror_roughness)) {
                 share = 1.0;
             }
-            vec2 noise = masu_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
+            vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
             for (uint k = 0u; k < 4u; k++) {
                 uvec2 pixel = masu_guide_place(texel, k, 2u);
-                vec4 old = known ? look(pixel, moved, g) : vec4(0.0);
+                vec4 old = known && !g.mixed ? look(pixel, moved, g) : vec4(0.0);
                 if (!(old.a > 0.0)) {
                     old = own_way(pixel);
                 }
+                old.rgb = clamp(old.rgb, least, most);
                 if (k == g.pixel) {
+                    if (g.roughness > masu_fine_narrow) {
+                        color = without_sparks(ivec2(texel), color, old);
+                    }
                     old = vec4(old.a > 0.0 ? mix(old.rgb, color, share) : color, 1.0);
                 }
                 words[k] = old.a > 0.0 ? masu_pack_fine(old.rgb, noise.x) : masu_fine_none;

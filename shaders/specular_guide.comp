@@ -18,12 +18,36 @@
 #define MASU_SPECULAR_TILES_ACCESS
 #include "specular/tiles.glsl"
 
+/* Cosine of the angle by which normals within a texel may differ. */
+const float alike = 0.98;
+
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE, rg32ui) uniform writeonly uimage2D
     guide_image;
 
 shared uint any_glossy;
+
+/* Whether any other of the four pixels is another surface than the one that the texel stands for, or leans so
+ * much that it mirrors something else: a mean over the texel would be one of different things, and begin anew
+ * with each turn. */
+bool is_mixed(uvec2 texel, uint pixel, masu_pixel p, uvec2 at)
+{
+    uvec2 last = uvec2(pc.render_width, pc.render_height) - 1u;
+    vec3 n = masu_unpack_normal(p.normal);
+    vec3 point = masu_guide_point(at, p.depth);
+    float width = length(point) * frame.up.w * 2.0 / float(pc.render_height);
+    for (uint k = 1u; k < 4u; k++) {
+        uvec2 other = min(masu_guide_place(texel, pixel ^ k, 2u), last);
+        masu_pixel o = masu_pixel_at(other);
+        if (!(o.depth > 0.0) || dot(masu_unpack_normal(o.normal), n) < alike ||
+            abs(masu_traced_roughness(o.surface) - masu_traced_roughness(p.surface)) > 0.1 ||
+            abs(dot(masu_guide_point(other, o.depth) - point, n)) > 2.0 * width) {
+            return true;
+        }
+    }
+    return false;
+}
 
 void main()
 {
@@ -48,11 +72,12 @@ void main()
             }
             masu_pixel p = masu_pixel_at(at);
             if (p.depth > 0.0 && masu_is_traced(p.surface, pc.param.x, pc.index.w != 0u)) {
-                guide = masu_pack_guide(p.normal, masu_traced_roughness(p.surface), p.depth, pixel);
+                guide = masu_pack_guide(p.normal, masu_traced_roughness(p.surface), p.depth, pixel,
+                                        pc.index.z == 2u && is_mixed(texel, pixel, p, at));
                 break;
             }
         }
-        if (guide.y > 3u) {
+        if (guide.y > 7u) {
             any_glossy = 1u;
         }
         MASU_STORE_UINT(guide_image, texel, uvec4(guide, 0u, 0u));

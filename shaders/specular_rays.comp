@@ -78,7 +78,8 @@ void main()
             masu_axes f = masu_axes_of(n);
             vec3 v_local = masu_axes_in(f, v);
             uint number = frame.history.x;
-            vec2 u = masu_noise2(noise_at(texel, 0u), number);
+            uint word = noise_at(texel, 0u);
+            vec2 u = pc.index.z == 1u ? masu_noise2(word, number) : masu_turn_noise2(word, number);
             float alpha = masu_alpha(masu_traced_roughness(p.surface));
             uint turn = 0u;
             masu_bsdf b;

@@ -185,7 +185,7 @@ uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
     /* Where the surface was, seen from the eye of then and of now. */
     vec3 eyes = (previous.eye_hi.xyz - frame.eye_hi.xyz) + (previous.eye_lo.xyz - frame.eye_lo.xyz);
     float z = frame.forward.w * masu_rcp(g.depth) * (1.0 + moved.z);
-    vec2 ndc = (vec2(at) + 0.5 + moved.xy) / size * 2.0 - 1.0;
+    vec2 ndc = (vec2(at) + 0.5 + moved.xy) / size * 2.0 - 1.0 + previous.jitter.xy;
     vec3 was = (previous.forward.xyz + previous.right.xyz * ndc.x - previous.up.xyz * ndc.y) * z;
     vec3 shift = was + eyes - point;
     vec3 along = masu_normalize(point, frame.forward.xyz);

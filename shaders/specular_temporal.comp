@@ -33,12 +33,17 @@ layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D velocity_image;
 layout(set = MASU_SET_PASS, binding = 4) uniform usampler2D old_guide_image;
 layout(set = MASU_SET_PASS, binding = 5) uniform sampler2D old_mean_image;
 layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_age_image;
-layout(set = MASU_SET_PASS, binding = 7, rgba16f) uniform writeonly image2D mean_image;
-layout(set = MASU_SET_PASS, binding = 8, rg32ui) uniform writeonly uimage2D age_image;
+layout(set = MASU_SET_PASS, binding = 7) uniform sampler2D ray_image;
+layout(set = MASU_SET_PASS, binding = 8, rgba16f) uniform writeonly image2D mean_image;
+layout(set = MASU_SET_PASS, binding = 9, rg32ui) uniform writeonly uimage2D age_image;
 
 /* Deviations of a mean over 3x3 that are still noise, and how fast the history forgets beyond. */
 const float surprise = 3.0;
 const float forget = 0.5;
+/* Frames in a mean from which on it takes the texel's own rays alone. What neighbours have met (specular_reuse)
+ * is seen from here without asking what lies between, which no number of frames makes right; it is for the first
+ * few. */
+const float reuse_until = 8.0;
 /* Half the width of the clamp, in deviations. */
 const float clamp_width = 2.0;
 
@@ -68,7 +73,8 @@ struct present {
 vec3 old_point(ivec2 texel, masu_guide o)
 {
     vec2 size = vec2(frame.history.yz);
-    vec2 ndc = (vec2(masu_guide_place(uvec2(texel), o.pixel, 2u)) + 0.5) / size * 2.0 - 1.0;
+    vec2 ndc = (vec2(masu_guide_place(uvec2(texel), o.pixel, 2u)) + 0.5) / size * 2.0 - 1.0 +
+               previous.jitter.xy;
     float z = previous.forward.w * masu_rcp(o.depth);
     return (previous.forward.xyz + previous.right.xyz * ndc.x - previous.up.xyz * ndc.y) * z;
 }
@@ -200,6 +206,20 @@ float distance_of(past p, present now)
     return abs(then.x - now.mean.x) / noise;
 }
 
+/* Frames for which a texel that is no one surface has been such a one. Its mean begins anew with each turn, the
+ * means of its pixels do not (specular_fine). */
+float turns(here h, vec2 moved)
+{
+    vec2 scale = vec2(frame.history.yz) / vec2(pc.render_width, pc.render_height);
+    vec2 place = (2.0 * vec2(h.texel) + 1.0 + moved) * scale * 0.5;
+    ivec2 at = ivec2(floor(masu_sane(vec4(place, 0.0, 0.0), -2.0, 32768.0).xy));
+    if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, old_last())) ||
+        !masu_unpack_guide(texelFetch(old_guide_image, at, 0).rg).there) {
+        return 0.0;
+    }
+    return masu_age_frames(texelFetch(old_age_image, at, 0).r);
+}
+
 void main()
 {
     masu_count_begin();
@@ -224,7 +244,7 @@ void main()
             float frames = 1.0;
             vec4 velocity = texelFetch(velocity_image, ivec2(pixel), 0);
             if (frame.history.y != 0u && velocity.w > 0.0 && masu_finite(velocity)) {
-                vec2 ndc = (vec2(pixel) + 0.5 + velocity.xy) / size * 2.0 - 1.0;
+                vec2 ndc = (vec2(pixel) + 0.5 + velocity.xy) / size * 2.0 - 1.0 + previous.jitter.xy;
                 float z = frame.forward.w * masu_rcp(h.g.depth) * (1.0 + velocity.z);
                 h.was = (previous.forward.xyz + previous.right.xyz * ndc.x - previous.up.xyz * ndc.y) * z;
                 h.width *= max(1.0, size.y / float(frame.history.z));
@@ -244,7 +264,10 @@ void main()
                     surface = both > 1e-20 ? surface / both : (b.weight > 0.0 ? 0.0 : 1.0);
                 }
                 float weight = mix(b.weight, a.weight, surface);
-                if (weight > 0.0) {
+                if (h.g.mixed) {
+                    frames = 1.0 + turns(h, velocity.xy);
+                    age.y = packHalf2x16(clamp(velocity.xy, vec2(-60000.0), vec2(60000.0)));
+                } else if (weight > 0.0) {
                     vec4 history = mix(b.mean, a.mean, surface);
                     float old_y = masu_luma(history.rgb);
                     float old_sigma = masu_sqrt(history.a - old_y * old_y);
@@ -264,7 +287,10 @@ void main()
                     }
                     float reach = h.g.roughness > masu_mirror_roughness ? float(pc.index.x) : 4.0;
                     float share = max(1.0 / (frames + 1.0), masu_time_share(reach));
-                    mean = mix(history, sample_mean, share);
+                    float alone = smoothstep(0.0, reuse_until, frames);
+                    color = mix(color, masu_tamed(texelFetch(ray_image, h.texel, 0).rgb), alone);
+                    y = masu_luma(color);
+                    mean = mix(history, vec4(color, y * y), share);
                     frames += 1.0;
                     vec2 motion = mix(now.motion, velocity.xy, surface);
                     age.y = packHalf2x16(clamp(motion, vec2(-60000.0), vec2(60000.0)));

@@ -1,31 +1,53 @@
 /*
- * tonemap.comp: exposure, a filmic curve, sRGB encoding. FSR1 wants what comes out here:
- * display-encoded, 0..1.
+ * tonemap.comp: exposure, a tone curve, encoding. FSR1 wants what comes out here: display-encoded,
+ * 0..1.
  *
- * Curve: K. Narkowicz's rational fit of the ACES reference rendering transform ("ACES Filmic Tone
- * Mapping Curve", 2016). It reaches 1 near x = 8.1 and would run past it: the store clamps.
+ * shaders/shared/tone.glsl has the curves and encodings; output.glsl says why targets beyond white have
+ * another one. Push constants: param.x = white, nits; param.y = the most that is shown, in whites.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_OUTPUT
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
-#include "shared/globals.glsl"
-#include "shared/store.glsl"
+#include "shared/output.glsl"
+
+layout(constant_id = 5) const uint tone = 2;
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D hdr_image;
-layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform writeonly image2D ldr_image;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly image2D ldr_image;
 
-vec3 curve(vec3 x)
+#ifdef MASU_METERED
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buffer Exposure
 {
-    return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+    float metered_exposure;
+};
+#endif
+
+float exposure()
+{
+#ifdef MASU_METERED
+    return metered_exposure;
+#else
+    return frame.sun_direction.w;
+#endif
 }
 
-/* IEC 61966-2-1, linear to encoded. */
-float encode(float x)
+vec3 curve(vec3 x, float most)
 {
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * masu_pow(x, 1.0 / 2.4) - 0.055;
+    return tone == 1u ? x : tone == 2u ? masu_tone_filmic(x) : masu_tone_neutral(x, most);
+}
+
+vec3 encoded(vec3 y)
+{
+    if (masu_encoding == MASU_OUTPUT_SRGB) {
+        return vec3(masu_srgb_encode(y.r), masu_srgb_encode(y.g), masu_srgb_encode(y.b));
+    }
+    vec3 nits = y * pc.param.x;
+    nits = masu_encoding == MASU_OUTPUT_PQ ? masu_bt2020(nits) : nits;
+    return vec3(masu_pq_encode(nits.r), masu_pq_encode(nits.g), masu_pq_encode(nits.b));
 }
 
 void main()
@@ -34,12 +56,17 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
         vec3 hdr = texelFetch(hdr_image, ivec2(at), 0).rgb;
-        /* Layers that add up to more than a half holds are bright, not broken. */
-        hdr = mix(hdr, vec3(65504.0), equal(floatBitsToUint(hdr), uvec3(masu_exponent_mask)));
-        /* 1e4 is far past white, and keeps the squares of the curve in range. */
-        vec3 x = masu_sane(hdr * frame.sun_direction.w, 0.0, 1e4);
-        vec3 y = curve(x);
-        MASU_STORE_UNORM(ldr_image, at, vec4(encode(y.r), encode(y.g), encode(y.b), 1.0));
+        vec3 y = curve(masu_exposed(hdr, exposure()), max(pc.param.y, 1.0));
+#ifdef MASU_DEEP
+        if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* not through PQ and back */
+            vec3 white = min(y * pc.param.x, 1e4) * (1.0 / 80.0);
+            MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(white), 1.0));
+        } else {
+            MASU_STORE_COLOR(ldr_image, at, encoded(y));
+        }
+#else
+        MASU_STORE_COLOR(ldr_image, at, encoded(y));
+#endif
     }
     masu_count_end();
 }

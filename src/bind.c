@@ -143,7 +143,7 @@ masu_result masu_make_views(masu_renderer *m, masu_detail *detail) {
             .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
             .image = m->objects.images[i],
             .viewType = VK_IMAGE_VIEW_TYPE_2D,
-            .format = masu_images[i].format,
+            .format = masu_plan_format(&m->plan, i),
             .subresourceRange = {.aspectMask =
                                      depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                                  .levelCount = 1,

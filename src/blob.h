@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 7u
+#define MASU_BLOB_VERSION 8u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -398,9 +398,9 @@ typedef struct masu_blob_environment {
     float sun_color[3];     /* irradiance on a facing surface / pi */
     float near_distance;    /* metres, > 0; there is no far plane */
     float ambient[3];
-    float reserved0;
+    float metered;          /* 1: exposure is times what the picture asks for; 0: it is not */
     float sky_zenith[3];
-    float reserved1;
+    float brighten; /* how fast that adapts, 0..1e6 1/s: when it is too dark, */
     float sky_horizon[3];
     float turbidity; /* 0: the two colours above; 1.5..10: an analytic sky */
     float ground[3]; /* albedo of what lies below the analytic sky, 0..1 */
@@ -410,7 +410,7 @@ typedef struct masu_blob_environment {
     float fog_height;   /* m */
     float fog_falloff;  /* >= 0, 1/m: the density falls by e over 1 / fog_falloff metres of height */
     float fog_start;    /* >= 0, m: nearer than this it is clear */
-    float reserved2;
+    float darken;       /* and too bright; 0: the default */
 } masu_blob_environment;
 
 /* The sun's shadow map: of scenes that have instances too. Where it is absent nothing that has

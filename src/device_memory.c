@@ -192,7 +192,7 @@ static masu_result create_image(const masu_vk *vk, masu_frame_plan *plan, uint32
     if (!image->used) return MASU_OK;
     VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                               .imageType = VK_IMAGE_TYPE_2D,
-                              .format = masu_images[i].format,
+                              .format = masu_plan_format(plan, i),
                               .extent = {image->width, image->height, 1},
                               .mipLevels = 1,
                               .arrayLayers = 1,
@@ -388,7 +388,7 @@ static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu
         plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes +
         plan->buffers[MASU_BUFFER_TEXCOORDS].bytes + plan->buffers[MASU_BUFFER_TABLES].bytes +
         plan->buffers[MASU_BUFFER_PROBES].bytes + plan->buffers[MASU_BUFFER_TRACE].bytes +
-        plan->buffers[MASU_BUFFER_RAY_INDICES].bytes;
+        plan->buffers[MASU_BUFFER_RAY_INDICES].bytes + plan->buffers[MASU_BUFFER_SMAA_AREA].bytes;
     uint64_t textures = texture_staging(plan);
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
     plan->staged = resident && !plan->blocks[MASU_ROLE_DEVICE].host_visible;

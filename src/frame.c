@@ -67,6 +67,8 @@ const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
     [MASU_IMAGE_HDR] = {"hdr", VK_FORMAT_R16G16B16A16_SFLOAT, MASU_EXTENT_RENDER, MASU_CLASS_OTHER,
                         MASU_READBACK_HDR, 0},
     [MASU_IMAGE_LDR] = {"ldr", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR, 0, 0},
+    [MASU_IMAGE_SMOOTH] = {"smooth", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_RENDER, MASU_CLASS_COLOR,
+                           0, 0},
     [MASU_IMAGE_UPSCALED] = {"upscaled", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT,
                              MASU_CLASS_COLOR, 0, 0},
     [MASU_IMAGE_FINAL] = {"final", VK_FORMAT_R8G8B8A8_UNORM, MASU_EXTENT_OUTPUT, MASU_CLASS_COLOR,
@@ -337,14 +339,50 @@ static int needs_readback(const masu_needs *n, const char **why) {
                    "desc.readback asks for no image", why);
 }
 
+static int needs_upscale(const masu_needs *n, masu_easu way, const char **why) {
+    return decided(n->upscale && !n->fused && n->easu == way,
+                   "render size differs from output size, or rung.upscale is on",
+                   n->fused     ? "fsr1 does it"
+                   : n->upscale ? "rung.easu asks for another way"
+                                : "render size is output size",
+                   why);
+}
+
+static int needs_fxaa(const masu_needs *n, const char **why) {
+    return decided(n->fxaa, "rung.aa asks for it", "rung.aa does not ask for it", why);
+}
+
+static int needs_smaa(const masu_needs *n, const char **why) {
+    return decided(n->smaa, "rung.aa asks for it", "rung.aa does not ask for it", why);
+}
+
+static int needs_meter(const masu_needs *n, const char **why) {
+    return decided(n->metered, "the exposure follows the picture",
+                   n->scene ? "the exposure is given" : "no scene: a source image is upscaled", why);
+}
+
 static int needs_easu(const masu_needs *n, const char **why) {
-    return decided(n->upscale, "render size differs from output size, or rung.upscale is on",
-                   "render size is output size", why);
+    return needs_upscale(n, MASU_EASU_FULL, why);
+}
+
+static int needs_easu_fast(const masu_needs *n, const char **why) {
+    return needs_upscale(n, MASU_EASU_FAST, why);
+}
+
+static int needs_bilinear(const masu_needs *n, const char **why) {
+    return needs_upscale(n, MASU_EASU_BILINEAR, why);
+}
+
+static int needs_fsr1(const masu_needs *n, const char **why) {
+    return decided(n->fused, "rung.fuse is on: what is upscaled is sharpened",
+                   n->upscale && n->sharpen ? "rung.fuse is not on, or rung.easu is not full"
+                                            : "render size is output size, or rung.sharpen is off",
+                   why);
 }
 
 static int needs_rcas(const masu_needs *n, const char **why) {
-    return decided(n->sharpen, "sharpens what EASU made, or rung.sharpen is on",
-                   "nothing was upscaled, or rung.sharpen is off", why);
+    return decided(n->sharpen && !n->fused, "sharpens what EASU made, or rung.sharpen is on",
+                   n->fused ? "fsr1 does it" : "nothing was upscaled, or rung.sharpen is off", why);
 }
 
 static int needs_present(const masu_needs *n, const char **why) {
@@ -419,6 +457,21 @@ static void light_params(const masu_rung *rung, struct masu_push *push) {
 static void ao_params(const masu_rung *rung, struct masu_push *push) {
     push->index[0] = rung->ao_slices;
     push->index[1] = rung->ao_steps;
+}
+
+/* param.x: threshold of luma in the steps of smaa/color.glsl. */
+static void smaa_edges_params(const masu_rung *rung, struct masu_push *push) {
+    static const float thresholds[] = {0.15f, 0.1f, 0.1f, 0.05f};
+    push->param[0] = 2550000.0f * thresholds[rung->aa - MASU_AA_SMAA_LOW];
+}
+
+/* index.x: steps of a search; index.y: of one along a diagonal; param.x: not 0: corners. */
+static void smaa_blend_params(const masu_rung *rung, struct masu_push *push) {
+    static const uint32_t steps[] = {4, 8, 16, MASU_SMAA_STEPS_MAX};
+    static const uint32_t diagonal_steps[] = {0, 0, 8, MASU_SMAA_DIAGONAL_STEPS_MAX};
+    push->index[0] = steps[rung->aa - MASU_AA_SMAA_LOW];
+    push->index[1] = diagonal_steps[rung->aa - MASU_AA_SMAA_LOW];
+    push->param[0] = rung->aa >= MASU_AA_SMAA_HIGH ? 1.0f : 0.0f;
 }
 
 /* param.x: RCAS lobe scale. One stop halves the strength (AMD: con = exp2(-sharpness)). */
@@ -632,16 +685,16 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
         {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_LATEST_SPECULAR, MASU_READ},
          {MASU_IMAGE_SPECULAR_MOTION, MASU_READ}, {MASU_IMAGE_VELOCITY, MASU_READ},
          {MASU_IMAGE_SPECULAR_OLD_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_OLD_MEAN, MASU_READ},
-         {MASU_IMAGE_SPECULAR_OLD_AGE, MASU_READ},
+         {MASU_IMAGE_SPECULAR_OLD_AGE, MASU_READ}, {MASU_IMAGE_SPECULAR_LIGHT, MASU_READ},
          {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER},
          {MASU_IMAGE_SPECULAR_MEAN, MASU_WRITE}, {MASU_IMAGE_SPECULAR_AGE, MASU_WRITE}}, 0},
     [MASU_PASS_SPECULAR_FINE] = {
         "specular_fine", "smooth surfaces: the mean over frames of each pixel's own rays",
         MASU_PASS_COMPUTE, MASU_EXTENT_GLOSSY, needs_specular_fine, temporal_params,
-        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_LATEST_RAYS, MASU_READ},
+        {{MASU_IMAGE_SPECULAR_GUIDE, MASU_READ}, {MASU_IMAGE_SPECULAR_LIGHT, MASU_READ},
          {MASU_IMAGE_SPECULAR_MEAN, MASU_READ}, {MASU_IMAGE_SPECULAR_AGE, MASU_READ}, {MASU_IMAGE_VELOCITY, MASU_READ},
          {MASU_IMAGE_SPECULAR_OLD_GUIDE, MASU_READ},
-         {MASU_IMAGE_SPECULAR_OLD_FINE, MASU_READ},
+         {MASU_IMAGE_SPECULAR_OLD_FINE, MASU_READ}, {MASU_IMAGE_NORMAL, MASU_READ},
          {MASU_RESOURCE_SPECULAR_TILES, MASU_READ_BUFFER}, {MASU_IMAGE_SPECULAR_FINE, MASU_WRITE}}, 0},
     [MASU_PASS_SPECULAR_FILTER] = {
         "specular_filter", "the mean over neighbours of the same surface, as far as noise is left",
@@ -691,20 +744,55 @@ const masu_pass_row masu_passes[MASU_PASS_COUNT] = {
          {MASU_LATEST_DEPTH, MASU_READ_COPY}, {MASU_IMAGE_HDR, MASU_READ_COPY},
          {MASU_IMAGE_VELOCITY, MASU_READ_COPY}, {MASU_IMAGE_OCCLUSION, MASU_READ_COPY},
          {MASU_IMAGE_SHADOW_MAP, MASU_READ_COPY}}, 0},
+    [MASU_PASS_METER] = {
+        "meter", "how many pixels of each luminance the picture has",
+        MASU_PASS_COMPUTE, MASU_EXTENT_BLOCK4, needs_meter, NULL,
+        {{MASU_IMAGE_HDR, MASU_READ}, {MASU_RESOURCE_EXPOSURE, MASU_WRITE_BUFFER}}, 0},
+    [MASU_PASS_EXPOSE] = {
+        "expose", "the exposure that they ask for, as far as time lets it adapt",
+        MASU_PASS_COMPUTE, MASU_EXTENT_ONE, needs_meter, NULL,
+        {{MASU_RESOURCE_EXPOSURE, MASU_WRITE_BUFFER}}, 0},
     [MASU_PASS_TONEMAP] = {
-        "tonemap", "exposure, tone curve, sRGB encoding",
+        "tonemap", "exposure, tone curve, encoding",
         MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_shading, NULL,
-        {{MASU_IMAGE_HDR, MASU_READ}, {MASU_IMAGE_LDR, MASU_WRITE}}, 0},
+        {{MASU_RESOURCE_EXPOSURE, MASU_READ_BUFFER}, {MASU_IMAGE_HDR, MASU_READ},
+         {MASU_IMAGE_LDR, MASU_WRITE}}, 0},
+    [MASU_PASS_FXAA] = {
+        "fxaa", "edges blurred along their direction",
+        MASU_PASS_COMPUTE, MASU_EXTENT_RENDER, needs_fxaa, NULL,
+        {{MASU_UNSMOOTHED, MASU_READ}, {MASU_IMAGE_SMOOTH, MASU_WRITE}}, 0},
+    [MASU_PASS_SMAA_EDGES] = {
+        "smaa_edges", "SMAA: edges of luma, list of tiles that have any, a copy of the picture",
+        MASU_PASS_COMPUTE, MASU_EXTENT_TILE, needs_smaa, smaa_edges_params,
+        {{MASU_UNSMOOTHED, MASU_READ}, {MASU_RESOURCE_SMAA_TILES, MASU_WRITE_BUFFER},
+         {MASU_IMAGE_SMOOTH, MASU_WRITE}}, 0},
+    [MASU_PASS_SMAA_BLEND] = {
+        "smaa_blend", "SMAA: lines behind the edges, what they cover; pixels blended by it",
+        MASU_PASS_COMPUTE, MASU_EXTENT_EDGED, needs_smaa, smaa_blend_params,
+        {{MASU_UNSMOOTHED, MASU_READ}, {MASU_RESOURCE_SMAA_TILES, MASU_READ_BUFFER},
+         {MASU_IMAGE_SMOOTH, MASU_UPDATE}}, 0},
     [MASU_PASS_EASU] = {
         "easu", "FSR1 edge-adaptive spatial upsampling",
         MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_easu, NULL,
         {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_UPSCALED, MASU_WRITE}}, 0},
+    [MASU_PASS_EASU_FAST] = {
+        "easu_fast", "the same for less: flat places left out, edges looked at once",
+        MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_easu_fast, NULL,
+        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_UPSCALED, MASU_WRITE}}, 0},
+    [MASU_PASS_BILINEAR] = {
+        "bilinear", "upsampling by the four texels around, for comparison",
+        MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_bilinear, NULL,
+        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_UPSCALED, MASU_WRITE}}, 0},
+    [MASU_PASS_FSR1] = {
+        "fsr1", "EASU and RCAS in one",
+        MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_fsr1, rcas_params,
+        {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_FINAL, MASU_WRITE}}, 0},
     [MASU_PASS_RCAS] = {
         "rcas", "FSR1 robust contrast-adaptive sharpening",
         MASU_PASS_COMPUTE, MASU_EXTENT_OUTPUT, needs_rcas, rcas_params,
         {{MASU_LATEST_COLOR, MASU_READ}, {MASU_IMAGE_FINAL, MASU_WRITE}}, 0},
     [MASU_PASS_PRESENT] = {
-        "present", "blit to a target that is no storage image",
+        "present", "blit or copy to a target that is no storage image",
         MASU_PASS_TRANSFER, MASU_EXTENT_OUTPUT, needs_present, NULL,
         {{MASU_LATEST_COLOR, MASU_READ_COPY}, {MASU_IMAGE_TARGET, MASU_WRITE_COPY}}, 0},
     /* clang-format on */
@@ -731,7 +819,7 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
                          ? 2
                      : extent == MASU_EXTENT_BLOCK8 ? 8
                      : extent == MASU_EXTENT_BLOCK4 ? 4
-                     : extent == MASU_EXTENT_TILE   ? MASU_TILE
+                     : extent == MASU_EXTENT_TILE || extent == MASU_EXTENT_EDGED ? MASU_TILE
                                                     : 1;
     if (extent == MASU_EXTENT_ATLAS)
         return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};

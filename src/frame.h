@@ -44,6 +44,7 @@ typedef enum masu_image_id {
     MASU_IMAGE_SPECULAR_SUM,     /* over frames, for comparison: radiance times weight, frames */
     MASU_IMAGE_HDR,         /* linear radiance */
     MASU_IMAGE_LDR,         /* display-encoded colour, render size */
+    MASU_IMAGE_SMOOTH,      /* the same or the host's input, anti-aliased */
     MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
     MASU_IMAGE_FINAL,       /* what a blit takes to a target that is no storage image */
     MASU_IMAGE_SOURCE,      /* the host's input, upscaling only */
@@ -57,13 +58,16 @@ typedef enum masu_image_id {
     MASU_RESOURCE_LIGHT_TILES,
     MASU_RESOURCE_SPECULAR_TILES,
     MASU_RESOURCE_TOP_LEVEL, /* of ray queries */
+    MASU_RESOURCE_SMAA_TILES,
+    MASU_RESOURCE_EXPOSURE,
     MASU_RESOURCE_END,
     /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row
      * has written. */
     MASU_LATEST_DEPTH = 64,
     MASU_LATEST_COLOR,
     MASU_LATEST_SPECULAR,
-    MASU_LATEST_RAYS /* specular_reused, where the rung has it, else specular_light */
+    MASU_LATEST_RAYS, /* specular_reused, where the rung has it, else specular_light */
+    MASU_UNSMOOTHED /* ldr, without a scene source */
 } masu_image_id;
 
 typedef enum masu_image_class {
@@ -83,6 +87,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_BLOCK4,
     MASU_EXTENT_TILE,  /* one workgroup per tile of 16x16 */
     MASU_EXTENT_TILES, /* the same, for active tiles only: indirect */
+    MASU_EXTENT_EDGED, /* one workgroup per tile of SMAA_TILES: indirect */
     MASU_EXTENT_GLOSSY, /* one workgroup per tile of SPECULAR_TILES, 8x8 texels of TRACED: indirect */
     MASU_EXTENT_ONE,   /* one workgroup */
     MASU_EXTENT_ATLAS, /* of occluders */
@@ -159,8 +164,12 @@ typedef struct masu_needs {
     int query;         /* polygons are found by ray queries of the device */
     int steady;        /* a rung has taa, */
     int finest;        /* fine */
+    int smoothing;     /* smaa */
+    int metered;       /* the exposure follows the picture */
     /* of one rung: */
     int upscale, sharpen, occlusion;
+    int fxaa, smaa; /* at most one of them */
+    int fused;     /* upscale and sharpen in one pass */
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receivers; /* and of cascades that every frame draws anew */
@@ -169,6 +178,7 @@ typedef struct masu_needs {
     int reuse, temporal, fine, filter, taa; /* what is done to them */
     int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */
     masu_march march;
+    masu_easu easu; /* never AUTO */
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
 
@@ -235,8 +245,16 @@ typedef enum masu_pass_id {
     MASU_PASS_SPECULAR_COMPOSITE,
     MASU_PASS_TRANSPARENTS,
     MASU_PASS_READBACK,
+    MASU_PASS_METER,
+    MASU_PASS_EXPOSE,
     MASU_PASS_TONEMAP,
+    MASU_PASS_FXAA,
+    MASU_PASS_SMAA_EDGES,
+    MASU_PASS_SMAA_BLEND,
     MASU_PASS_EASU,
+    MASU_PASS_EASU_FAST,
+    MASU_PASS_BILINEAR,
+    MASU_PASS_FSR1,
     MASU_PASS_RCAS,
     MASU_PASS_PRESENT,
     MASU_PASS_COUNT

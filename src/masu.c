@@ -95,14 +95,15 @@ static masu_result check_host(const masu_frame_plan *plan, uint64_t needed, masu
 /* ---- Plan and query -------------------------------------------------------------------------- */
 
 /* What set 0 shows to compute shaders: counters, tiles, slots, tables; lights and their tiles; light
- * probes; draws, drawn, seen; and what is traced, its instances, vertices, texture coordinates and
+ * probes; of SMAA areas and tiles; the metered exposure; draws, drawn, seen; and what is traced, its instances, vertices, texture coordinates and
  * tiles. */
 #define PLAIN_BUFFERS 4u
 #define CULLING_BUFFERS 3u
 #define TRACE_BUFFERS 5u
 
 static uint32_t storage_buffers(const masu_frame_plan *plan) {
-    return PLAIN_BUFFERS + (plan->needs.lights ? 2u : 0u) + (plan->needs.probes ? 1u : 0u);
+    return PLAIN_BUFFERS + (plan->needs.lights ? 2u : 0u) + (plan->needs.probes ? 1u : 0u) +
+           (plan->needs.smoothing ? 2u : 0u) + (plan->needs.metered ? 1u : 0u);
 }
 
 /* The rungs as the host gave them, or the defaults, to be changed. */
@@ -162,6 +163,23 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     return MASU_OK;
 }
 
+/* Whether fast EASU weighs texels in 16 bits: the description is left with ON or OFF. */
+static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
+    VkPhysicalDeviceType type = vk->properties.deviceType;
+    int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
+              type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    int forced = desc->half_floats == MASU_ON, used = 0;
+    for (uint32_t r = 0; r < desc->rung_count; r++) used |= desc->rungs[r].easu == MASU_EASU_FAST;
+    if (used && forced && !desc->vulkan.shader_float16) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vulkan.shader_float16", 1, 0,
+                         "half_floats is MASU_ON, but vulkan.shader_float16 says that the device was "
+                         "created without shaderFloat16");
+    }
+    int wished = forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && gpu);
+    desc->half_floats = used && wished ? MASU_ON : MASU_OFF;
+    return MASU_OK;
+}
+
 /* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
  * without it where there are no more. */
 static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
@@ -170,8 +188,8 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
     uint32_t plain = storage_buffers(plan), needed = plain + CULLING_BUFFERS;
     if (has < plain) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain, has,
-                         "the scene's lights or probes need %u storage buffers in a stage, the device "
-                         "has %u",
+                         "the scene's lights, probes or metered exposure, or SMAA, need %u storage buffers in a stage, the "
+                         "device has %u",
                          plain, has);
     }
     if (plan->needs.reflections && desc_traces(desc, plan)) needed += TRACE_BUFFERS;
@@ -197,6 +215,7 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
                                          MASU_BUFFER_DRAWS, MASU_BUFFER_SEEN,
                                          MASU_BUFFER_PROBES,    MASU_BUFFER_LIGHT_TILES,
                                          MASU_BUFFER_TRACE,     MASU_BUFFER_TRACE_FRAME,
+                                         MASU_BUFFER_SMAA_TILES,
                                          MASU_BUFFER_VERTICES,  MASU_BUFFER_TEXCOORDS};
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         const masu_buffer_plan *b = &plan->buffers[ids[i]];
@@ -240,6 +259,7 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     result = drop_specular(&possible, plan, limits, detail);
     if (!result) result = drop_occlusion(&possible, plan, limits, detail);
     if (!result) result = choose_ray_query(&possible, plan, vk, detail);
+    if (!result) result = choose_half_floats(&possible, vk, detail);
     if (result) return result;
     result = masu_compile(
         &possible,
@@ -534,6 +554,8 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     out->draws = out->views[0].draws;
     out->triangles = out->views[0].triangles;
     out->transparents = m->slot_transparents[slot];
+    if (m->plan.desc.debug.counters && m->plan.needs.smoothing)
+        out->smaa_tiles = counter(m, slot, MASU_COUNTER_SMAA_TILES);
     if (m->plan.desc.debug.counters && m->plan.needs.scene) {
         out->sdf_evals = counter(m, slot, MASU_COUNTER_SDF_EVALS);
         out->sdf_hits = counter(m, slot, MASU_COUNTER_SDF_HITS);
@@ -551,6 +573,9 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
         out->specular_sdf_hits = counter(m, slot, MASU_COUNTER_SPECULAR_SDF_HITS);
         out->specular_nodes = counter(m, slot, MASU_COUNTER_SPECULAR_NODES);
         out->specular_evals = counter(m, slot, MASU_COUNTER_SPECULAR_EVALS);
+        out->easu_tiles_early = counter(m, slot, MASU_COUNTER_EASU_TILES_EARLY);
+        uint32_t exposure = (uint32_t)counter(m, slot, MASU_COUNTER_EXPOSURE);
+        memcpy(&out->exposure, &exposure, sizeof exposure);
         if (m->plan.rungs[out->rung].active >> MASU_PASS_CULL & 1u) read_stage2(m, slot, out);
     }
     if (m->queries) read_times(m, slot, out);

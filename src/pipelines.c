@@ -8,13 +8,38 @@
 
 #include "ao_comp.spv.h"
 #include "ao_upsample_comp.spv.h"
+#include "bilinear_comp.spv.h"
+#include "bilinear_deep_comp.spv.h"
+#include "bilinear_scene_comp.spv.h"
 #include "cascade_frag.spv.h"
 #include "cascade_masked_vert.spv.h"
 #include "cascade_vert.spv.h"
 #include "compact_comp.spv.h"
 #include "cull_comp.spv.h"
+#include "easu_bytes_comp.spv.h"
 #include "easu_comp.spv.h"
+#include "easu_deep_comp.spv.h"
+#include "easu_fast_bytes_comp.spv.h"
+#include "easu_fast_bytes_half_comp.spv.h"
+#include "easu_fast_comp.spv.h"
+#include "easu_fast_deep_comp.spv.h"
+#include "easu_fast_deep_counted_comp.spv.h"
+#include "easu_fast_deep_half_comp.spv.h"
+#include "easu_fast_deep_half_counted_comp.spv.h"
+#include "easu_fast_half_comp.spv.h"
+#include "easu_fast_scene_comp.spv.h"
+#include "easu_fast_scene_counted_comp.spv.h"
+#include "easu_fast_scene_half_comp.spv.h"
+#include "easu_fast_scene_half_counted_comp.spv.h"
+#include "easu_scene_comp.spv.h"
+#include "expose_comp.spv.h"
+#include "fsr1_bytes_comp.spv.h"
+#include "fsr1_comp.spv.h"
+#include "fsr1_scene_comp.spv.h"
 #include "fullscreen_vert.spv.h"
+#include "fxaa_comp.spv.h"
+#include "fxaa_deep_comp.spv.h"
+#include "fxaa_scene_comp.spv.h"
 #include "gbuffer_frag.spv.h"
 #include "gbuffer_surface_frag.spv.h"
 #include "gbuffer_textured_frag.spv.h"
@@ -44,12 +69,22 @@
 #include "light_probes_surface_comp.spv.h"
 #include "light_surface_comp.spv.h"
 #include "light_tiles_comp.spv.h"
+#include "meter_comp.spv.h"
 #include "occluders_frag.spv.h"
 #include "occluders_vert.spv.h"
 #include "probes_comp.spv.h"
+#include "rcas_bytes_comp.spv.h"
 #include "rcas_comp.spv.h"
+#include "rcas_deep_comp.spv.h"
+#include "rcas_scene_comp.spv.h"
 #include "receivers_comp.spv.h"
 #include "shadow_comp.spv.h"
+#include "smaa_blend_comp.spv.h"
+#include "smaa_blend_deep_comp.spv.h"
+#include "smaa_blend_scene_comp.spv.h"
+#include "smaa_edges_comp.spv.h"
+#include "smaa_edges_deep_comp.spv.h"
+#include "smaa_edges_scene_comp.spv.h"
 #include "specular_accumulate_comp.spv.h"
 #include "specular_composite_comp.spv.h"
 #include "specular_composite_fine_comp.spv.h"
@@ -83,8 +118,6 @@
 #include "specular_shade_sdf_probes_sun_comp.spv.h"
 #include "specular_shade_sdf_sun_comp.spv.h"
 #include "specular_shade_sun_comp.spv.h"
-#include "specular_taa_comp.spv.h"
-#include "specular_temporal_comp.spv.h"
 #include "specular_shade_textures_comp.spv.h"
 #include "specular_shade_textures_lights_comp.spv.h"
 #include "specular_shade_textures_lights_probes_comp.spv.h"
@@ -93,9 +126,14 @@
 #include "specular_shade_textures_probes_comp.spv.h"
 #include "specular_shade_textures_probes_sun_comp.spv.h"
 #include "specular_shade_textures_sun_comp.spv.h"
+#include "specular_taa_comp.spv.h"
+#include "specular_temporal_comp.spv.h"
 #include "specular_trace_comp.spv.h"
 #include "specular_trace_masks_comp.spv.h"
 #include "tonemap_comp.spv.h"
+#include "tonemap_deep_comp.spv.h"
+#include "tonemap_deep_metered_comp.spv.h"
+#include "tonemap_metered_comp.spv.h"
 #include "transparents_frag.spv.h"
 #include "transparents_sun_frag.spv.h"
 #include "transparents_textured_frag.spv.h"
@@ -237,6 +275,71 @@ static uint32_t gbuffer_build(const masu_renderer *m) {
            (m->plan.needs.surface ? GBUFFER_SURFACE : 0u);
 }
 
+/* Of display-encoded colour: of a source image in any format; in 8 bits; of a scene in 8 bits; in 16-bit
+ * floats. */
+enum { COLOR_SOURCE, COLOR_BYTES, COLOR_SCENE, COLOR_DEEP, COLOR_BUILDS };
+static const spirv easu_builds[COLOR_BUILDS] = {SPIRV(easu_comp), SPIRV(easu_bytes_comp),
+                                                SPIRV(easu_scene_comp), SPIRV(easu_deep_comp)};
+static const spirv rcas_builds[COLOR_BUILDS] = {SPIRV(rcas_comp), SPIRV(rcas_bytes_comp),
+                                                SPIRV(rcas_scene_comp), SPIRV(rcas_deep_comp)};
+/* Not in floats: what it has between the two is 8 bits. */
+static const spirv fsr1_builds[COLOR_DEEP] = {SPIRV(fsr1_comp), SPIRV(fsr1_bytes_comp),
+                                              SPIRV(fsr1_scene_comp)};
+/* The same in halves; of scenes each with counters, too. */
+static const spirv easu_fast_builds[2][COLOR_BUILDS + 2] = {
+    {SPIRV(easu_fast_comp), SPIRV(easu_fast_bytes_comp), SPIRV(easu_fast_scene_comp),
+     SPIRV(easu_fast_deep_comp), SPIRV(easu_fast_scene_counted_comp),
+     SPIRV(easu_fast_deep_counted_comp)},
+    {SPIRV(easu_fast_half_comp), SPIRV(easu_fast_bytes_half_comp), SPIRV(easu_fast_scene_half_comp),
+     SPIRV(easu_fast_deep_half_comp), SPIRV(easu_fast_scene_half_counted_comp),
+     SPIRV(easu_fast_deep_half_counted_comp)}};
+
+/* Of what does not ask whether its source has 8 bits. */
+static const spirv bilinear_builds[] = {SPIRV(bilinear_comp), SPIRV(bilinear_scene_comp),
+                                        SPIRV(bilinear_deep_comp)};
+static const spirv fxaa_builds[] = {SPIRV(fxaa_comp), SPIRV(fxaa_scene_comp), SPIRV(fxaa_deep_comp)};
+static const spirv smaa_edges_builds[] = {SPIRV(smaa_edges_comp), SPIRV(smaa_edges_scene_comp),
+                                          SPIRV(smaa_edges_deep_comp)};
+static const spirv smaa_blend_builds[] = {SPIRV(smaa_blend_comp), SPIRV(smaa_blend_scene_comp),
+                                          SPIRV(smaa_blend_deep_comp)};
+static const spirv tonemap_builds[] = {SPIRV(tonemap_comp), SPIRV(tonemap_deep_comp),
+                                       SPIRV(tonemap_metered_comp),
+                                       SPIRV(tonemap_deep_metered_comp)};
+
+/* Whether all that a pass samples, in any rung, is colour of 8 bits. */
+static int reads_bytes(const masu_renderer *m, uint32_t pass) {
+    for (uint32_t r = 0; r < m->plan.desc.rung_count; r++) {
+        const masu_rung_plan *rp = &m->plan.rungs[r];
+        if (!(rp->active & MASU_PASS_BIT(pass))) continue;
+        for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+            masu_access access = rp->access[pass][a];
+            if (access.usage != MASU_READ) continue;
+            VkFormat format = access.image == MASU_IMAGE_SOURCE ? m->plan.desc.source.format
+                                                                : masu_plan_format(&m->plan, access.image);
+            if (format != VK_FORMAT_R8G8B8A8_UNORM && format != VK_FORMAT_B8G8R8A8_UNORM &&
+                format != VK_FORMAT_A8B8G8R8_UNORM_PACK32)
+                return 0;
+        }
+    }
+    return 1;
+}
+
+static uint32_t color_build(const masu_renderer *m) {
+    return !m->plan.needs.scene ? 0 : m->plan.deep ? 2 : 1;
+}
+
+static uint32_t color_bytes_build(const masu_renderer *m, uint32_t pass) {
+    if (m->plan.needs.scene) return m->plan.deep ? COLOR_DEEP : COLOR_SCENE;
+    return reads_bytes(m, pass) ? COLOR_BYTES : COLOR_SOURCE;
+}
+
+static spirv easu_fast_code(const masu_renderer *m) {
+    uint32_t build = color_bytes_build(m, MASU_PASS_EASU_FAST);
+    /* Without a scene there are no counters. */
+    if (m->plan.desc.debug.counters && m->plan.needs.scene) build += COLOR_BUILDS - COLOR_SCENE;
+    return easu_fast_builds[m->plan.desc.half_floats == MASU_ON][build];
+}
+
 /* Compute code by pass: the scene's own where the row names a section of the blob. */
 static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     if (masu_passes[pass].code) return scene_code(m, pass);
@@ -280,9 +383,18 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     case MASU_PASS_SPECULAR_KEEP: return specular_keep_builds[m->plan.needs.steady ? 1 : 0];
     case MASU_PASS_SPECULAR_ACCUMULATE:
         return (spirv){masu_spv_specular_accumulate_comp, sizeof masu_spv_specular_accumulate_comp};
-    case MASU_PASS_TONEMAP: return (spirv){masu_spv_tonemap_comp, sizeof masu_spv_tonemap_comp};
-    case MASU_PASS_EASU: return (spirv){masu_spv_easu_comp, sizeof masu_spv_easu_comp};
-    case MASU_PASS_RCAS: return (spirv){masu_spv_rcas_comp, sizeof masu_spv_rcas_comp};
+    case MASU_PASS_METER: return (spirv){masu_spv_meter_comp, sizeof masu_spv_meter_comp};
+    case MASU_PASS_EXPOSE: return (spirv){masu_spv_expose_comp, sizeof masu_spv_expose_comp};
+    case MASU_PASS_TONEMAP:
+        return tonemap_builds[(m->plan.deep ? 1 : 0) | (m->plan.needs.metered ? 2 : 0)];
+    case MASU_PASS_FXAA: return fxaa_builds[color_build(m)];
+    case MASU_PASS_SMAA_EDGES: return smaa_edges_builds[color_build(m)];
+    case MASU_PASS_SMAA_BLEND: return smaa_blend_builds[color_build(m)];
+    case MASU_PASS_EASU: return easu_builds[color_bytes_build(m, pass)];
+    case MASU_PASS_EASU_FAST: return easu_fast_code(m);
+    case MASU_PASS_BILINEAR: return bilinear_builds[color_build(m)];
+    case MASU_PASS_FSR1: return fsr1_builds[color_bytes_build(m, pass)];
+    case MASU_PASS_RCAS: return rcas_builds[color_bytes_build(m, pass)];
     default: return (spirv){NULL, 0};
     }
 }
@@ -300,10 +412,11 @@ static uint64_t now(const masu_renderer *m) {
     return m->plan.desc.clock_ns ? m->plan.desc.clock_ns(m->plan.desc.clock_user) : 0;
 }
 
-/* Constants 0 to 4 of all shaders, of which each has those it declares: of compute shaders whether counters
+/* Constants 0 to 7 of all shaders, of which each has those it declares: of compute shaders whether counters
  * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
- * whether the sky is from a picture; whether reflections are traced. */
-enum { SPECIAL_COUNT = 5 };
+ * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
+ * encoding; whether the last pass rounds to its steps or changes the order of its channels. */
+enum { SPECIAL_COUNT = 8 };
 
 static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -312,12 +425,21 @@ static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
         {1, sizeof *constants, sizeof *constants},
         {2, 2 * sizeof *constants, sizeof *constants},
         {3, 3 * sizeof *constants, sizeof *constants},
-        {4, 4 * sizeof *constants, sizeof *constants}};
+        {4, 4 * sizeof *constants, sizeof *constants},
+        {5, 5 * sizeof *constants, sizeof *constants},
+        {6, 6 * sizeof *constants, sizeof *constants},
+        {7, 7 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan.needs.sky != 0;
     constants[2] = m->plan.scene.fog != 0;
     constants[3] = m->plan.needs.environment != 0;
     constants[4] = m->plan.needs.reflections != 0;
+    constants[5] = (uint32_t)m->plan.desc.tone;
+    masu_encoding encoding = m->plan.desc.targets.encoding;
+    constants[6] = encoding == MASU_ENCODING_LINEAR ? MASU_OUTPUT_LINEAR
+                   : encoding == MASU_ENCODING_PQ   ? MASU_OUTPUT_PQ
+                                                    : MASU_OUTPUT_SRGB;
+    constants[7] = m->plan.output.steps[0] || (m->plan.output.flags & MASU_OUTPUT_SWAP);
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -357,7 +479,10 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
                 {MASU_BIND_TRACE_VERTICES, 0, m->plan.needs.traced, compute},
                 {MASU_BIND_TRACE_TEXCOORDS, 0, m->plan.needs.traced && m->plan.scene.trace_colors,
                  compute},
-                {MASU_BIND_SPECULAR_TILES, 0, m->plan.needs.reflections, compute}};
+                {MASU_BIND_SPECULAR_TILES, 0, m->plan.needs.reflections, compute},
+                {MASU_BIND_SMAA_AREA, 0, m->plan.needs.smoothing, compute},
+                {MASU_BIND_SMAA_TILES, 0, m->plan.needs.smoothing, compute},
+                {MASU_BIND_EXPOSURE, 0, m->plan.needs.metered, compute}};
     VkDescriptorSetLayoutBinding bindings[sizeof rows / sizeof *rows + 1];
     uint32_t count = 0;
     for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -5,6 +5,7 @@
 #include "error.h"
 #include "lights.h"
 #include "lod.h"
+#include "output.h"
 #include "ray_query.h"
 #include "specular.h"
 #include "transparents.h"
@@ -63,6 +64,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
         d.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     }
+    masu_output_defaults(&d);
     return d;
 }
 
@@ -97,6 +99,9 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
     }
     if ((unsigned)rung->march > MASU_MARCH_UNPRUNED) {
         return bad_range(detail, "rungs[].march", (unsigned)rung->march, 0, MASU_MARCH_UNPRUNED);
+    }
+    if ((unsigned)rung->easu > MASU_EASU_BILINEAR) {
+        return bad_range(detail, "rungs[].easu", (unsigned)rung->easu, 0, MASU_EASU_BILINEAR);
     }
     if (rung->shadow_cascades > MASU_MAX_CASCADES) {
         return bad_range(detail, "rungs[].shadow_cascades", rung->shadow_cascades, 0,
@@ -136,36 +141,26 @@ static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detai
         if (counts[i].value > counts[i].most)
             return bad_range(detail, counts[i].name, counts[i].value, 0, counts[i].most);
     }
+    if ((unsigned)rung->aa > MASU_AA_SMAA_ULTRA)
+        return bad_range(detail, "rungs[].aa", (unsigned)rung->aa, 0, MASU_AA_SMAA_ULTRA);
     const masu_switch switches[] = {rung->upscale,   rung->sharpen,     rung->frustum,
                                     rung->occlusion, rung->light_tiles, rung->ao,
                                     rung->specular,  rung->specular_reuse,
                                     rung->specular_temporal, rung->specular_filter,
-                                    rung->specular_taa, rung->specular_fine};
+                                    rung->specular_taa, rung->specular_fine,
+                                    rung->fuse};
     static const char *const names[] = {"rungs[].upscale",   "rungs[].sharpen",
                                         "rungs[].frustum",   "rungs[].occlusion",
                                         "rungs[].light_tiles", "rungs[].ao",
                                         "rungs[].specular",  "rungs[].specular_reuse",
                                         "rungs[].specular_temporal", "rungs[].specular_filter",
-                                        "rungs[].specular_taa", "rungs[].specular_fine"};
+                                        "rungs[].specular_taa", "rungs[].specular_fine",
+                                        "rungs[].fuse"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if ((unsigned)switches[i] <= MASU_ON) continue;
         return bad_range(detail, names[i], (unsigned)switches[i], MASU_AUTO, MASU_ON);
     }
     return MASU_OK;
-}
-
-/* Formats that hold display-encoded colour as it is. An sRGB format would encode it a second time,
- * integer formats cannot be blitted to. */
-static int blit_format(VkFormat format) {
-    static const VkFormat formats[] = {
-        VK_FORMAT_R8G8B8A8_UNORM,           VK_FORMAT_B8G8R8A8_UNORM,
-        VK_FORMAT_A8B8G8R8_UNORM_PACK32,    VK_FORMAT_A2B10G10R10_UNORM_PACK32,
-        VK_FORMAT_A2R10G10B10_UNORM_PACK32, VK_FORMAT_R5G6B5_UNORM_PACK16,
-        VK_FORMAT_B5G6R5_UNORM_PACK16,      VK_FORMAT_R16G16B16A16_UNORM};
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-        if (formats[i] == format) return 1;
-    }
-    return 0;
 }
 
 static int final_layout_known(VkImageLayout layout) {
@@ -199,20 +194,6 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
                              i);
         }
     }
-    if (t->storage && t->format != VK_FORMAT_R8G8B8A8_UNORM) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.format", VK_FORMAT_R8G8B8A8_UNORM,
-                         (uint64_t)t->format,
-                         "storage targets must be VK_FORMAT_R8G8B8A8_UNORM (37), given is %d; set "
-                         "targets.storage to 0 to have it blitted",
-                         (int)t->format);
-    }
-    if (!blit_format(t->format)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.format", VK_FORMAT_B8G8R8A8_UNORM,
-                         (uint64_t)t->format,
-                         "targets.format %d: what is drawn is encoded already; use a UNORM colour "
-                         "format, such as VK_FORMAT_B8G8R8A8_UNORM (44)",
-                         (int)t->format);
-    }
     if (!final_layout_known(t->final_layout)) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.final_layout",
                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, (uint64_t)t->final_layout,
@@ -241,6 +222,13 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
                          "vulkan.max_anisotropy is %g, allowed are 0 and 1 to 64",
                          (double)d->vulkan.max_anisotropy);
     }
+    if (!(fabsf(d->debug.mip_bias) <= 16.0f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "debug.mip_bias", 0, 0,
+                         "debug.mip_bias is %g levels, allowed are -16 to 16",
+                         (double)d->debug.mip_bias);
+    }
+    if ((unsigned)d->half_floats > MASU_ON)
+        return bad_range(detail, "half_floats", (unsigned)d->half_floats, MASU_AUTO, MASU_ON);
     if ((unsigned)d->ray_query > MASU_ON)
         return bad_range(detail, "ray_query", (unsigned)d->ray_query, MASU_AUTO, MASU_ON);
     if (d->readback & ~(uint32_t)MASU_READBACK_ALL) {
@@ -250,7 +238,7 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
         masu_result result = check_rung(d, r, detail);
         if (result) return result;
     }
-    return MASU_OK;
+    return masu_output_check(d, detail);
 }
 
 static uint32_t least(uint32_t wish, uint32_t has) { return wish && wish < has ? wish : has; }
@@ -324,9 +312,17 @@ static void resolve_switches(const masu_desc *d, masu_rung_plan *rp, const masu_
                              masu_needs *needs) {
     int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
     needs->upscale = rung->upscale == MASU_ON || !same;
-    needs->sharpen = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && needs->upscale);
+    needs->easu = rung->easu == MASU_EASU_AUTO ? MASU_EASU_FULL : rung->easu;
+    int plain = needs->easu == MASU_EASU_BILINEAR; /* what it blurs, RCAS would not bring back */
+    needs->sharpen =
+        rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && needs->upscale && !plain);
+    needs->fxaa = rung->aa == MASU_AA_FXAA;
+    needs->smaa = rung->aa >= MASU_AA_SMAA_LOW;
+    needs->fused = needs->upscale && needs->sharpen && needs->easu == MASU_EASU_FULL &&
+                   rung->fuse == MASU_ON && !(d->scene && d->deep_color == MASU_ON);
     /* Upscaling only, at ratio 1, with everything off: something has to write the target. */
-    if (!needs->scene && !needs->upscale && !needs->sharpen) needs->upscale = 1;
+    int writes = needs->scene || needs->upscale || needs->sharpen || needs->fxaa || needs->smaa;
+    if (!writes) needs->upscale = 1;
 }
 
 /* ---- The shadow map -------------------------------------------------------------------------- */
@@ -433,10 +429,13 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
             if (row->access[a].image == MASU_LATEST_RAYS) {
                 image = plan->needs.reuse ? MASU_IMAGE_SPECULAR_REUSED : MASU_IMAGE_SPECULAR_LIGHT;
             }
+            if (row->access[a].image == MASU_UNSMOOTHED)
+                image = plan->needs.scene ? MASU_IMAGE_LDR : MASU_IMAGE_SOURCE;
             if (image == (masu_image_id)MASU_RESOURCE_DRAWS && !plan->needs.occlusion) {
                 continue; /* the host has written them */
             }
             if (image == MASU_RESOURCE_PROBES && !plan->needs.probes) continue;
+            if (image == (masu_image_id)MASU_RESOURCE_EXPOSURE && !plan->needs.metered) continue;
             if (image == (masu_image_id)MASU_RESOURCE_LIGHT_TILES && !plan->needs.light_tiles)
                 continue;
             if (image < MASU_IMAGE_COUNT && !keeps_access(plan, (masu_pass_id)p, image)) continue;
@@ -451,9 +450,14 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
             }
         }
     }
-    /* The last colour pass writes the target itself (a blit, where there is one, does so anyway). */
-    if (last_color_pass >= 0) {
-        rp->access[last_color_pass][last_color_access].image = MASU_IMAGE_TARGET;
+    /* The last colour pass writes the target itself (a blit, where there is one, does so anyway), and so do
+     * those before it whose image it only completes. */
+    if (last_color_pass < 0) return;
+    uint8_t last = rp->access[last_color_pass][last_color_access].image;
+    for (int p = 0; p <= last_color_pass; p++) {
+        for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+            if (rp->access[p][a].image == last) rp->access[p][a].image = MASU_IMAGE_TARGET;
+        }
     }
 }
 
@@ -575,14 +579,37 @@ static void size_trace_buffers(masu_frame_plan *plan, uint64_t storage_alignment
         b[MASU_BUFFER_SPECULAR_TILES].count * sizeof(uint32_t);
 }
 
+/* Returns the bytes of one readback slot that counters take. */
+static uint64_t size_counters(masu_frame_plan *plan) {
+    masu_buffer_plan *counters = &plan->buffers[MASU_BUFFER_COUNTERS];
+    counters->count = 2 * MASU_COUNTER_COUNT;
+    counters->bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
+    return plan->desc.debug.counters ? masu_align_up(counters->bytes, 16) : 0;
+}
+
+static int has_smaa(const masu_rung *rung) { return rung->aa >= MASU_AA_SMAA_LOW; }
+
+static void size_smaa_buffers(masu_frame_plan *plan) {
+    masu_buffer_plan *area = &plan->buffers[MASU_BUFFER_SMAA_AREA];
+    masu_buffer_plan *tiles = &plan->buffers[MASU_BUFFER_SMAA_TILES];
+    area->count = MASU_SMAA_AREA_WORDS;
+    area->bytes = area->count * sizeof(uint32_t);
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
+        VkExtent2D grid = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
+        uint64_t words =
+            MASU_TILES_HEADER + (uint64_t)grid.width * grid.height * (1 + MASU_SMAA_WORDS);
+        if (has_smaa(&plan->desc.rungs[r]) && words > tiles->count) tiles->count = words;
+    }
+    tiles->bytes = tiles->count * sizeof(uint32_t);
+}
+
 /* What only a scene needs. Returns the bytes of one readback slot that its counters take. */
 static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
                                    uint64_t storage_alignment) {
     masu_buffer_plan *b = plan->buffers;
     const masu_scene *s = plan->desc.scene;
     uint64_t flights = plan->desc.frames_in_flight;
-    b[MASU_BUFFER_COUNTERS].count = 2 * MASU_COUNTER_COUNT;
-    b[MASU_BUFFER_COUNTERS].bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
     b[MASU_BUFFER_TABLES].count =
         plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS;
     b[MASU_BUFFER_TABLES].count +=
@@ -643,7 +670,7 @@ static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_align
             masu_align_up(b[MASU_BUFFER_DRAWN].count * sizeof(uint32_t), storage_alignment);
         b[MASU_BUFFER_DRAWN].bytes = flights * b[MASU_BUFFER_DRAWN].stride;
     }
-    return plan->desc.debug.counters ? masu_align_up(b[MASU_BUFFER_COUNTERS].bytes, 16) : 0;
+    return size_counters(plan);
 }
 
 /* Images of a readback slot from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer.
@@ -656,7 +683,7 @@ static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
         for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
             if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
             uint64_t v = (uint64_t)plan->images[id].width * plan->images[id].height *
-                         masu_format_bytes(masu_images[id].format);
+                         masu_format_bytes(masu_plan_format(plan, id));
             if (v > bytes) bytes = v;
         }
         slot = masu_align_up(slot + bytes, 16);
@@ -706,6 +733,11 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
             (masu_align_up(s->probe_words, 4) + (uint64_t)s->probes * MASU_PROBE_LIT_WORDS) *
                 sizeof(uint32_t);
     }
+    b[MASU_BUFFER_EXPOSURE] = (masu_buffer_plan){
+        .name = "exposure",
+        .usage = storage | dst,
+        .count = plan->needs.metered ? MASU_EXPOSURE_HEADER + MASU_EXPOSURE_BINS : 0};
+    b[MASU_BUFFER_EXPOSURE].bytes = b[MASU_BUFFER_EXPOSURE].count * sizeof(uint32_t);
     b[MASU_BUFFER_TILES] = (masu_buffer_plan){
         .name = "tiles", .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
     b[MASU_BUFFER_FRAME] = (masu_buffer_plan){.name = "frame uniforms",
@@ -722,6 +754,10 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         .name = "traced instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
     b[MASU_BUFFER_SPECULAR_TILES] =
         (masu_buffer_plan){.name = "specular tiles",
+                           .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
+    b[MASU_BUFFER_SMAA_AREA] = (masu_buffer_plan){.name = "SMAA areas", .usage = storage | dst};
+    b[MASU_BUFFER_SMAA_TILES] =
+        (masu_buffer_plan){.name = "SMAA tiles",
                            .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
     masu_ray_buffers(plan);
     if (plan->needs.traced) {
@@ -749,6 +785,10 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     b[MASU_BUFFER_POISON] = (masu_buffer_plan){.name = "poison", .usage = dst};
     uint64_t slot = 0;
     if (s) slot = size_scene_buffers(plan, uniform_alignment, storage_alignment);
+    if (plan->needs.smoothing) {
+        slot = size_counters(plan);
+        size_smaa_buffers(plan);
+    }
     if (plan->desc.debug.timestamps) {
         plan->readback_times = slot;
         slot = masu_align_up(slot + (MASU_PASS_COUNT + 1) * sizeof(uint64_t), 16);
@@ -841,8 +881,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .accumulate = d->debug.reference != 0,
                                .steady = wants(d, rung_has_taa),
                                .finest = wants(d, rung_has_fine),
+                               .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d),
                                .blit = !d->targets.storage};
+    for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= has_smaa(&d->rungs[r]);
+    masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
     most_shadow(d, &plan->cascades, &plan->cascade_size);
     /* The sun's: each cascade, else all of the scene. */
@@ -930,6 +973,8 @@ static const char *image_name(uint8_t image) {
     if (image == MASU_RESOURCE_LIGHT_TILES) return "light tiles";
     if (image == MASU_RESOURCE_SPECULAR_TILES) return "specular tiles";
     if (image == MASU_RESOURCE_TOP_LEVEL) return "top level";
+    if (image == MASU_RESOURCE_SMAA_TILES) return "SMAA tiles";
+    if (image == MASU_RESOURCE_EXPOSURE) return "exposure";
     return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL;
 }
 
@@ -962,7 +1007,7 @@ static uint64_t left_out_bytes(const masu_frame_plan *plan) {
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (plan->images[i].used) continue;
         VkExtent2D size = masu_plan_extent(plan, masu_images[i].extent, render);
-        bytes += (uint64_t)size.width * size.height * masu_format_bytes(masu_images[i].format);
+        bytes += (uint64_t)size.width * size.height * masu_format_bytes(masu_plan_format(plan, i));
     }
     return bytes;
 }
@@ -1004,9 +1049,9 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         const masu_image_plan *image = &plan->images[i];
         out->images[out->image_count++] =
-            (masu_plan_image){masu_images[i].name, masu_images[i].format, image->width,
-                              image->height,       (uint32_t)image->used, image->bytes,
-                              image->offset,       image->first,          image->last};
+            (masu_plan_image){masu_images[i].name, masu_plan_format(plan, i), image->width,
+                              image->height,       (uint32_t)image->used,     image->bytes,
+                              image->offset,       image->first,              image->last};
     }
     out->left_out_bytes = left_out_bytes(plan);
 }

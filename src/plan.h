@@ -42,6 +42,7 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_SLOTS,     /* of the SDF: its parts as data */
     MASU_BUFFER_TABLES,    /* directional albedos; masu_shared.h has the layout; then the texels of a sky
                               from a picture, if it is from one */
+    MASU_BUFFER_EXPOSURE,  /* that the picture asks for, and what it is made of; outlives frames */
     MASU_BUFFER_PROBES,    /* light probes: what was baked, then the light of the frame */
     MASU_BUFFER_TILES,     /* of the SDF: which parts matter where; masu_shared.h has the layout */
     MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
@@ -56,6 +57,8 @@ typedef enum masu_buffer_id {
     MASU_BUFFER_TRACE,       /* what rays meet: nodes, triangles, materials, texels */
     MASU_BUFFER_TRACE_FRAME, /* per frame in flight: the top level over instances, and these */
     MASU_BUFFER_SPECULAR_TILES, /* tiles that trace reflections */
+    MASU_BUFFER_SMAA_AREA,  /* of SMAA: its table, */
+    MASU_BUFFER_SMAA_TILES, /* tiles with edges, and these; masu_shared.h has both layouts */
     /* Of ray queries (src/ray_query.h): */
     MASU_BUFFER_BOTTOM_LEVELS, /* a structure for each traced mesh */
     MASU_BUFFER_TOP_LEVEL,     /* over the instances of the frame */
@@ -142,6 +145,12 @@ typedef struct masu_frame_plan {
     uint32_t views;     /* that instances are culled for: the camera, the cascades */
     int occlusion;      /* a rung has stage 2 of culling */
     int lods;           /* a rung draws coarser forms of meshes */
+    int deep;           /* colour between tone curve and target is of 16-bit floats */
+    int copies;         /* targets are filled by a copy of bytes, not by a blit */
+    struct masu_output_plan {
+        uint32_t steps[3]; /* of red, green, blue: what passes round to; 0: they do not */
+        uint32_t flags;    /* MASU_OUTPUT_*, of the pass that comes last */
+    } output;
     uint32_t draws, listed; /* draws of a view; words of its lists: a list for each form */
     masu_drawn_plan drawn;
     uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
@@ -169,6 +178,9 @@ VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent exten
                             VkExtent2D render);
 /* Bytes of the scene's texels as this description has them on the device. */
 uint64_t masu_scene_texture_bytes(const masu_desc *desc);
+
+/* The format of an image in this plan. */
+VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);

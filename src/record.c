@@ -15,6 +15,7 @@
 #include "renderer.h"
 
 #include "error.h"
+#include "output.h"
 #include "shared/masu_shared.h"
 
 #include <math.h>
@@ -213,7 +214,12 @@ static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
     push.render_height = input.height;
     push.output_width = output.width;
     push.output_height = output.height;
+    if (pass >= MASU_PASS_EASU && pass <= MASU_PASS_FSR1) { /* see upscale/place.glsl */
+        push.param[2] = (float)input.width * (1.0f / (float)output.width);
+        push.param[3] = (float)input.height * (1.0f / (float)output.height);
+    }
     if (masu_passes[pass].params) masu_passes[pass].params(&d->rungs[rec->rung], &push);
+    masu_output_push(&rec->m->plan, rec->rp, pass, &push);
     return push;
 }
 
@@ -254,6 +260,11 @@ static void specular_push(const recorder *rec, struct masu_push *push) {
     push->render_height = rec->rp->render_height;
 }
 
+/* Set 0 is a scene's, but for what SMAA has in it. */
+static int has_global_sets(const masu_frame_plan *plan) {
+    return plan->needs.scene || plan->needs.smoothing;
+}
+
 static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     struct masu_push push = push_constants(rec, pass);
@@ -267,7 +278,7 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     if (pass == MASU_PASS_LIGHT || pass == MASU_PASS_LIGHT_OCCLUDED)
         push.index[3] = rec->m->plan.needs.accumulate != 0;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
-    if (rec->m->plan.needs.scene) {
+    if (has_global_sets(&rec->m->plan)) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
                                   1, &rec->m->global_sets[rec->flight], 0, NULL);
     }
@@ -282,6 +293,10 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SPECULAR_TILES], 0);
         return;
     }
+    if (extent == MASU_EXTENT_EDGED) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SMAA_TILES], 0);
+        return;
+    }
     if (extent == MASU_EXTENT_PROBES) {
         vk->CmdDispatch(rec->cmd, (rec->m->plan.scene.probes + 63) / 64, 1, 1);
         return;
@@ -292,6 +307,7 @@ static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     }
     /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
     uint32_t group = extent == MASU_EXTENT_TILE || extent == MASU_EXTENT_ONE ? 1 : MASU_GROUP;
+    if (pass == MASU_PASS_FSR1) group = MASU_FSR1_BLOCK;
     vk->CmdDispatch(rec->cmd, (push.output_width + group - 1) / group,
                     (push.output_height + group - 1) / group, 1);
 }
@@ -375,6 +391,11 @@ static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct ma
     }
 }
 
+static float mip_bias(const recorder *rec) {
+    const masu_desc *d = &rec->m->plan.desc;
+    return (d->debug.no_bias ? 0.0f : log2f(d->rungs[rec->rung].scale)) + d->debug.mip_bias;
+}
+
 /* index[0] of the push constants: a draw's material, of a cascade its number. */
 static void record_polygons(recorder *rec, uint32_t pass) {
     struct masu_push push;
@@ -385,7 +406,7 @@ static void record_polygons(recorder *rec, uint32_t pass) {
         push.index[0] = pass - MASU_PASS_CASCADE_0;
     } else { /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what
               * EASU gets blurred it cannot bring back. */
-        push.param[0] = log2f(rec->m->plan.desc.rungs[rec->rung].scale);
+        push.param[0] = mip_bias(rec);
     }
     uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
     for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep, push);
@@ -404,7 +425,7 @@ static void record_transparents(recorder *rec, VkDescriptorSet set) {
     memset(&push, 0, sizeof push);
     push.output_width = push.render_width = rec->rp->render_width;
     push.output_height = push.render_height = rec->rp->render_height;
-    push.param[0] = log2f(m->plan.desc.rungs[rec->rung].scale);
+    push.param[0] = mip_bias(rec);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
                         m->pipelines[MASU_PASS_TRANSPARENTS]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 2,
@@ -536,6 +557,17 @@ static void record_readback(recorder *rec, uint32_t pass) {
 static void record_present(recorder *rec, uint32_t pass) {
     const VkExtent2D size = rec->m->plan.desc.output;
     masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
+    if (rec->m->plan.copies) {
+        VkImageCopy copy = {
+            .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+            .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+            .extent = {size.width, size.height, 1}};
+        rec->m->vk.CmdCopyImage(rec->cmd, image_handle(rec, from),
+                                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                image_handle(rec, MASU_IMAGE_TARGET),
+                                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+        return;
+    }
     VkImageBlit blit = {
         .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
         .srcOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}},
@@ -577,7 +609,7 @@ static uint32_t poison_word(uint32_t kind) { return kind == 2 ? 0x7C007C00u : 0x
 
 static void record_prologue(recorder *rec) {
     const masu_renderer *m = rec->m;
-    int counters = m->plan.desc.debug.counters && m->plan.needs.scene;
+    int counters = m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes;
     memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                    VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -589,7 +621,8 @@ static void record_prologue(recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_POISON], 0, VK_WHOLE_SIZE,
                             poison_word(m->plan.desc.debug.poison));
     }
-    static const masu_buffer_id tiles[] = {MASU_BUFFER_TILES, MASU_BUFFER_SPECULAR_TILES};
+    static const masu_buffer_id tiles[] = {MASU_BUFFER_TILES, MASU_BUFFER_SPECULAR_TILES,
+                                           MASU_BUFFER_SMAA_TILES};
     int tiled = 0;
     for (uint32_t t = 0; t < sizeof tiles / sizeof *tiles; t++) {
         if (!m->plan.buffers[tiles[t]].bytes) continue;
@@ -599,12 +632,16 @@ static void record_prologue(recorder *rec) {
         for (uint32_t i = 0; i < 3; i++)
             m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[tiles[t]], 4 * i, 4, arguments[i]);
     }
+    if (m->plan.needs.metered) { /* the bins; what the frame before has left stays */
+        m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
+                            MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
+    }
     int receivers = (int)(rec->rp->active >> MASU_PASS_RECEIVERS & 1u);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
                             m->plan.receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
-    if (counters || receivers || tiled ||
+    if (counters || receivers || tiled || m->plan.needs.metered ||
         m->plan.buffers[MASU_BUFFER_POISON].bytes) {
         memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
@@ -642,7 +679,7 @@ static void leave_persistent(recorder *rec) {
 static void record_epilogue(recorder *rec) {
     const masu_renderer *m = rec->m;
     const masu_buffer_plan *readback = &m->plan.buffers[MASU_BUFFER_READBACK];
-    if (m->plan.desc.debug.counters && m->plan.needs.scene) {
+    if (m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes) {
         memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                        VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
         VkBufferCopy copy = {0, rec->flight * readback->stride,
@@ -709,7 +746,7 @@ static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
     uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
     VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4 * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 18 * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 20 * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
          MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan.scene.texture_sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
@@ -763,9 +800,11 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
         {MASU_BIND_TRACE_FRAME, MASU_BUFFER_TRACE_FRAME, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
         {MASU_BIND_TRACE_VERTICES, MASU_BUFFER_VERTICES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
         {MASU_BIND_TRACE_TEXCOORDS, MASU_BUFFER_TEXCOORDS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SPECULAR_TILES, MASU_BUFFER_SPECULAR_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-         0}};
-    for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && m->plan.needs.scene; f++) {
+        {MASU_BIND_SPECULAR_TILES, MASU_BUFFER_SPECULAR_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_SMAA_AREA, MASU_BUFFER_SMAA_AREA, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_SMAA_TILES, MASU_BUFFER_SMAA_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
+        {MASU_BIND_EXPOSURE, MASU_BUFFER_EXPOSURE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
+    for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && has_global_sets(&m->plan); f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -775,7 +814,8 @@ static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
             const masu_buffer_plan *b = &m->plan.buffers[id];
             if (!b->bytes) continue; /* no pass of this plan looks at it */
             if (rows[i].previous && !m->plan.needs.velocity) continue;
-            if (rows[i].binding >= MASU_BIND_TRACE && !m->plan.needs.reflections) continue;
+            int traces = rows[i].binding >= MASU_BIND_TRACE && rows[i].binding <= MASU_BIND_TOP_LEVEL;
+            if (traces && !m->plan.needs.reflections) continue;
             if (rows[i].binding == MASU_BIND_TRACE_TEXCOORDS && !m->plan.scene.trace_colors) continue;
             int polygons = rows[i].binding >= MASU_BIND_TRACE_FRAME &&
                            rows[i].binding <= MASU_BIND_TRACE_TEXCOORDS;

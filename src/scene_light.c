@@ -90,6 +90,10 @@ static masu_result check_environment(reader *r) {
         return bad(r, "environment", 0,
                    "turbidity is not 0 or 1.5 to 10, or the ground not 0 to 1");
     }
+    if (e->metered != 0.0f && e->metered != 1.0f)
+        return bad(r, "environment", 0, "metered is not 0 or 1");
+    if (!within(&e->brighten, 1, 0.0f, 1e6f) || !within(&e->darken, 1, 0.0f, 1e6f))
+        return bad(r, "environment", 0, "a speed of the exposure is out of range");
     if (e->occlusion_radius != 0.0f && !within(&e->occlusion_radius, 1, 1e-3f, 1e6f))
         return bad(r, "environment", 0, "occlusion radius is not 0 or 0.001 to 1e6 m");
     if (!within(e->fog_color, 3, 0.0f, 1e9f) || !within(&e->fog_density, 1, 0.0f, 1e6f) ||
@@ -193,4 +197,7 @@ void masu_look_at_lighting(const reader *r, masu_scene *out) {
     out->analytic_sky = r->view.environment->turbidity > 0.0f;
     out->fog = r->view.environment->fog_density > 0.0f;
     out->occlusion_radius = r->view.environment->occlusion_radius;
+    out->metered = r->view.environment->metered != 0.0f;
+    out->brighten = r->view.environment->brighten;
+    out->darken = r->view.environment->darken;
 }

@@ -126,7 +126,8 @@ static masu_shadow_view shadow_view(const masu_renderer *m, const struct masu_fr
                                     const double eye[3]) {
     masu_shadow_view v;
     memset(&v, 0, sizeof v);
-    double x = (double)u->right[3], y = (double)u->up[3], length = 0.0;
+    double x = (double)u->right[3] * (1.0 + fabs((double)u->jitter[0]));
+    double y = (double)u->up[3] * (1.0 + fabs((double)u->jitter[1])), length = 0.0;
     v.tan2 = x * x + y * y;
     v.near_distance = (double)u->forward[3];
     memcpy(v.casters, m->casters, sizeof v.casters);

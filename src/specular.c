@@ -217,7 +217,6 @@ void masu_write_reflections(masu_renderer *m, const masu_frame_desc *f, const do
         m->anchor[k] = anchor[k];
     }
     u->trace_anchor[3] = m->plan.scene.trace_distance;
-    u->history[0] = (uint32_t)m->frame;
     if (!masu_is_cut(m, f) && m->traced_before) {
         u->history[1] = m->traced_size[0];
         u->history[2] = m->traced_size[1];

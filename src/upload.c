@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "shared/masu_shared.h"
+#include "smaa_area.h"
 #include "split_sum.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ static const masu_buffer_id resident[] = {MASU_BUFFER_VERTICES, MASU_BUFFER_INDI
                                           MASU_BUFFER_TEXCOORDS, MASU_BUFFER_MATERIALS,
                                           MASU_BUFFER_SLOTS, MASU_BUFFER_TABLES,
                                           MASU_BUFFER_PROBES, MASU_BUFFER_TRACE,
-                                          MASU_BUFFER_RAY_INDICES};
+                                          MASU_BUFFER_RAY_INDICES, MASU_BUFFER_SMAA_AREA};
 
 #define RESIDENT_COUNT (sizeof resident / sizeof *resident)
 
@@ -131,6 +132,8 @@ static void write_resident(const masu_renderer *m, const masu_scene_view *v, mas
         memcpy(to, (const unsigned char *)v->texcoords + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_TABLES) {
         write_tables(v, chunk, to);
+    } else if (chunk.buffer == MASU_BUFFER_SMAA_AREA) {
+        memcpy(to, (const unsigned char *)masu_smaa_area + chunk.offset, (size_t)chunk.bytes);
     } else if (chunk.buffer == MASU_BUFFER_SLOTS) {
         /* The buffer may hold two sets; both begin as the blob has them. */
         uint64_t size = v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
@@ -173,16 +176,17 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     if (!m || !commands) return MASU_ERROR_ARGUMENT;
     memset(commands, 0, sizeof *commands);
     if (m->loaded) return MASU_OK;
-    if (!m->load_next && !m->plan.staged && m->plan.desc.scene) {
-        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+    masu_scene_view v = {0}; /* without a scene there may still be tables */
+    if (m->plan.desc.scene) v = masu_scene_look(m->plan.desc.scene);
+    if (!m->load_next && !m->plan.staged) {
         for (size_t i = 0; i < RESIDENT_COUNT; i++) {
             uint64_t bytes = m->plan.buffers[resident[i]].bytes;
             masu_chunk all = {resident[i], 0, bytes, bytes};
+            if (!m->plan.desc.scene && resident[i] != MASU_BUFFER_SMAA_AREA) continue;
             if (all.bytes) write_resident(m, &v, all, masu_buffer_pointer(m, resident[i], 0));
         }
     }
     if (m->load_next < m->load_count) {
-        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
         unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0);
         if (masu_keeps_images(&m->plan) && m->load_next + 1 == m->load_count) {
             /* Nothing to copy: the images that frames leave to each other get their layout. */
@@ -197,7 +201,6 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
         return MASU_INCOMPLETE;
     }
     if (m->plan.desc.scene) {
-        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
         masu_write_commands(m, &v);
         masu_write_occluders(m, &v);
     }
@@ -351,7 +354,7 @@ static masu_result bad_camera(masu_detail *detail, const char *what, const char 
     return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s %s", what, problem);
 }
 
-static masu_result write_camera(masu_renderer *m, const masu_camera *c,
+static masu_result write_camera(masu_renderer *m, const masu_camera *c, uint32_t rung,
                                 struct masu_frame_uniforms *u, masu_detail *detail) {
     float forward[3], right[3], up[3], wish[3] = {0.0f, 1.0f, 0.0f};
     for (uint32_t i = 0; i < 3; i++) {
@@ -378,6 +381,11 @@ static masu_result write_camera(masu_renderer *m, const masu_camera *c,
     if (!(c->fov_y >= 0.001f && c->fov_y <= 3.1f)) {
         return bad_camera(detail, "camera.fov_y", "is not 0.001 to 3.1 radians");
     }
+    if (!(fabsf(c->jitter[0]) <= 1.0f && fabsf(c->jitter[1]) <= 1.0f))
+        return bad_camera(detail, "camera.jitter", "is not -1 to 1 pixels");
+    const masu_rung_plan *rp = &m->plan.rungs[rung];
+    u->jitter[0] = 2.0f * c->jitter[0] / (float)rp->render_width;
+    u->jitter[1] = 2.0f * c->jitter[1] / (float)rp->render_height;
     double tan_y = tan((double)c->fov_y * 0.5);
     double tan_x = tan_y * (double)m->plan.desc.output.width / (double)m->plan.desc.output.height;
     memset(u->clip_from_rel, 0, sizeof u->clip_from_rel);
@@ -391,8 +399,10 @@ static masu_result write_camera(masu_renderer *m, const masu_camera *c,
         /* Reverse-Z with an infinite far plane: depth = near / view z, so that fp32 resolution is
          * relative at any distance (view z comes back as near / depth). Vulkan's clip y points
          * down. */
-        u->clip_from_rel[i * 4 + 0] = (float)((double)right[i] / tan_x);
-        u->clip_from_rel[i * 4 + 1] = (float)(-(double)up[i] / tan_y);
+        u->clip_from_rel[i * 4 + 0] =
+            (float)((double)right[i] / tan_x - (double)u->jitter[0] * (double)forward[i]);
+        u->clip_from_rel[i * 4 + 1] =
+            (float)(-(double)up[i] / tan_y - (double)u->jitter[1] * (double)forward[i]);
         u->clip_from_rel[i * 4 + 3] = forward[i];
     }
     u->clip_from_rel[14] = near_distance;
@@ -444,7 +454,7 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "camera", 1, 0,
                          "camera is NULL and the scene has no camera path");
     }
-    masu_result result = write_camera(m, &camera, &u, detail);
+    masu_result result = write_camera(m, &camera, f->rung, &u, detail);
     masu_light light;
     if (!result) result = masu_write_light(m, f->light, camera.position[1], &u, &light, detail);
     if (result) return result;
@@ -465,6 +475,8 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     write_anchor(m, &camera, &u);
     masu_write_sky(m, &light, slot, &u);
     masu_write_reflections(m, f, camera.position, &u);
+    u.history[0] = (uint32_t)m->frame;
+    u.history[3] = (uint32_t)masu_is_cut(m, f);
     u.eye_hi[3] = (float)f->time;
     u.eye_lo[3] = f->time_step;
     unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);

@@ -99,7 +99,8 @@ static outline outline_of(const masu_renderer *m, const sun_box *b,
     for (uint32_t i = 0; i < 5; i++) {
         double rel[3], x = i & 1 ? 1.0 : -1.0, y = i & 2 ? 1.0 : -1.0;
         for (uint32_t k = 0; k < 3; k++) {
-            double corner = (double)u->forward[k] + x * (double)u->right[k] + y * (double)u->up[k];
+            double corner = (double)u->forward[k] + (x + (double)u->jitter[0]) * (double)u->right[k] +
+                            (y - (double)u->jitter[1]) * (double)u->up[k];
             rel[k] = eye[k] - b->center[k] + (i < 4 ? depth * corner : 0.0);
         }
         o.at[i][0] = along(b->axis[0], rel);
@@ -220,8 +221,9 @@ static void set_lods(masu_renderer *m, const struct masu_frame_uniforms *u, cons
     float x = 0.5f * (float)rp->render_width / u->right[3];
     float y = 0.5f * (float)rp->render_height / u->up[3];
     m->lod_view.pixels = x > y ? x : y;
-    m->lod_view.widest = 1.0 / sqrt(1.0 + (double)u->right[3] * (double)u->right[3] +
-                                    (double)u->up[3] * (double)u->up[3]);
+    double side = (double)u->right[3] * (1.0 + fabs((double)u->jitter[0]));
+    double edge = (double)u->up[3] * (1.0 + fabs((double)u->jitter[1]));
+    m->lod_view.widest = 1.0 / sqrt(1.0 + side * side + edge * edge);
     m->lod_view.threshold = m->plan.desc.rungs[rung].lod_error;
     for (uint32_t k = 0; k < 3; k++) {
         m->lod_view.eye[k] = eye[k];
@@ -245,6 +247,7 @@ void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const
     v->margin = step * (across > down ? across : down);
     v->eye[3] = 1.0f;
     v->near_distance = u->forward[3];
-    v->blind =
-        1.001f * u->forward[3] * sqrtf(1.0f + u->right[3] * u->right[3] + u->up[3] * u->up[3]);
+    float side = u->right[3] * (1.0f + fabsf(u->jitter[0]));
+    float edge = u->up[3] * (1.0f + fabsf(u->jitter[1]));
+    v->blind = 1.001f * u->forward[3] * sqrtf(1.0f + side * side + edge * edge);
 }

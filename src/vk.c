@@ -3,6 +3,7 @@
 #include "vk.h"
 
 #include "error.h"
+#include "output.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>
@@ -63,12 +64,14 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
     VkFormatProperties target_properties;
     memset(&target_properties, 0, sizeof target_properties);
     vk->GetPhysicalDeviceFormatProperties(vk->physical, target, &target_properties);
-    if (!desc->targets.storage &&
-        !(target_properties.optimalTilingFeatures & VK_FORMAT_FEATURE_BLIT_DST_BIT)) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "targets.format",
-                         VK_FORMAT_FEATURE_BLIT_DST_BIT, target_properties.optimalTilingFeatures,
-                         "device '%s' cannot blit to targets.format %d", vk->properties.deviceName,
-                         (int)target);
+    /* sRGB formats are copied to; every format that is there may be. */
+    VkFormatFeatureFlags into = masu_output_copies(desc) ? VK_FORMAT_FEATURE_TRANSFER_DST_BIT
+                                                         : VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    if (!desc->targets.storage && !(target_properties.optimalTilingFeatures & into)) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "targets.format", into,
+                         target_properties.optimalTilingFeatures,
+                         "device '%s' cannot blit or copy to targets.format %d",
+                         vk->properties.deviceName, (int)target);
     }
     if (desc->debug.timestamps && vk->queue_family.timestampValidBits == 0) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "debug.timestamps", 1, 0,

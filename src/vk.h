@@ -31,6 +31,7 @@
     X(CmdBlitImage)                                                                                \
     X(CmdCopyBuffer)                                                                               \
     X(CmdCopyBufferToImage)                                                                        \
+    X(CmdCopyImage)                                                                                \
     X(CmdCopyImageToBuffer)                                                                        \
     X(CmdCopyQueryPoolResults)                                                                     \
     X(CmdDispatch)                                                                                 \

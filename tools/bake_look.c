@@ -110,6 +110,8 @@ typedef struct look {
     double occlusion_radius;
     masu_bake_vec3 sun_direction, sun_color, ambient, zenith, horizon;
     masu_bake_vec3 fog_color;
+    double brighten, darken; /* of the exposure, 1/s; 0: the renderer's default */
+    bool metered;
     double sun_intensity, exposure, near, fog_density, fog_height, fog_falloff, fog_start;
     double turbidity; /* 0: the two colours */
     masu_bake_vec3 ground;
@@ -235,6 +237,19 @@ static bool read_occlusion(const masu_bake_json *scene, look *l) {
            masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius);
 }
 
+/* A number is the exposure; an object asks for a metered one. */
+static bool read_exposure(const masu_bake_json *scene, look *l) {
+    static const char *const members[] = {"factor", "brighten", "darken", NULL};
+    masu_bake_json exposure = masu_bake_json_member(scene, "exposure");
+    if (!exposure.value || !json_is_object(exposure.value))
+        return masu_bake_json_number(scene, "exposure", 1e-6, 1e6, &l->exposure);
+    l->metered = true;
+    return masu_bake_json_object(&exposure, members) &&
+           masu_bake_json_number(&exposure, "factor", 1e-6, 1e6, &l->exposure) &&
+           masu_bake_json_number(&exposure, "brighten", 1e-6, 1e6, &l->brighten) &&
+           masu_bake_json_number(&exposure, "darken", 1e-6, 1e6, &l->darken);
+}
+
 /* The density at a height, or how far one sees there: to where 0.02 of the contrast is left
  * (Koschmieder 1924). */
 static bool read_fog(const masu_bake_json *scene, look *l) {
@@ -261,6 +276,9 @@ static bool read_fog(const masu_bake_json *scene, look *l) {
 
 static void add_environment(look *l, masu_bake_content *content) {
     masu_blob_environment e = {.exposure = (float)l->exposure,
+                               .metered = l->metered ? 1.0f : 0.0f,
+                               .brighten = (float)l->brighten,
+                               .darken = (float)l->darken,
                                .near_distance = (float)l->near,
                                .fog_density = (float)l->fog_density,
                                .fog_height = (float)l->fog_height,
@@ -288,7 +306,7 @@ bool masu_bake_read_look(const masu_bake_json *scene, const masu_bake_box *bound
     if (!read_camera(scene, bounds, content, &l.near) || !read_sun(scene, bounds, &l, content) ||
         !read_sky(scene, &l) || !read_fog(scene, &l) || !read_occlusion(scene, &l) ||
         !masu_bake_json_vec3(scene, "ambient", 0, RADIANCE_MAX, &l.ambient) ||
-        !masu_bake_json_number(scene, "exposure", 1e-6, 1e6, &l.exposure)) {
+        !read_exposure(scene, &l)) {
         return false;
     }
     add_environment(&l, content);

@@ -17,6 +17,8 @@ extern const masu_cli_command masu_cmd_light_bench;
 extern const masu_cli_command masu_cmd_ao_bench;
 extern const masu_cli_command masu_cmd_specular_bench;
 extern const masu_cli_command masu_cmd_trace_bench;
+extern const masu_cli_command masu_cmd_bench_image;
+extern const masu_cli_command masu_cmd_image_error;
 
 /* Options of every command that opens a device; ids from 900 on. */
 enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };
@@ -45,6 +47,10 @@ bool masu_rays_option(masu_cli *cli, masu_session_desc *d);
             "queries; auto, which takes them on GPUs (default auto)",                              \
             id, 0                                                                                  \
     }
+
+/* --aa WAY. A preset of SMAA alone where `smaa`. */
+bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa);
+#define MASU_AA_WAYS "off, fxaa (one pass), or SMAA at low, medium, high, ultra"
 
 /* --size WxH: what a PNG may hold, 16384 a side and 64 Mi pixels; said before the work is done. */
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size);

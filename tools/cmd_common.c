@@ -26,6 +26,14 @@ bool masu_rays_option(masu_cli *cli, masu_session_desc *d) {
     return true;
 }
 
+bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa) {
+    static const char *const names[] = {"off", "fxaa", "low", "medium", "high", "ultra", NULL};
+    uint32_t first = smaa ? 2 : 0, way = 0;
+    if (!masu_cli_choice(cli, names + first, &way)) return false;
+    *aa = (masu_aa)(MASU_AA_OFF + first + way);
+    return true;
+}
+
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {
     if (!masu_cli_extent(cli, MASU_IMAGE_SIDE_MAX, &size->width, &size->height)) return false;
     if ((uint64_t)size->width * size->height <= MASU_IMAGE_PIXELS_MAX) return true;

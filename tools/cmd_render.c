@@ -3,6 +3,7 @@
 #include "cmd.h"
 
 #include "alloc_count.h"
+#include "bench_picture.h"
 #include "clock.h"
 #include "image.h"
 
@@ -24,6 +25,8 @@ enum {
     OPTION_SUN,
     OPTION_TURBIDITY,
     OPTION_EXPOSURE,
+    OPTION_TONE,
+    OPTION_DITHER,
     OPTION_SPLIT,
     OPTION_FLIGHT,
     OPTION_MARCH,
@@ -32,7 +35,9 @@ enum {
     OPTION_ANISOTROPY,
     OPTION_LOD_ERROR,
     OPTION_REFERENCE,
-    OPTION_RAYS
+    OPTION_TRUTH,
+    OPTION_RAYS,
+    OPTION_AA
 };
 
 #define PI 3.14159265358979323846
@@ -43,6 +48,7 @@ typedef struct render_options {
     const char *output, *stats;
     uint32_t frames, rung;
     uint32_t rays; /* per pixel of the reference, a frame each; 0: no reference */
+    uint32_t positions; /* of each pixel in the truth; 0: no truth */
     double time, time_step;
     double sun[2], turbidity; /* azimuth and elevation, degrees */
     double exposure;          /* 0: the scene's */
@@ -127,15 +133,18 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
         json_object_set_new(root, "timestamps_plausible", json_boolean(plausible(samples, n)));
     }
     json_object_set_new(root, "passes", passes);
+    if (last->exposure > 0.0f) json_object_set_new(root, "exposure", json_real((double)last->exposure));
     double pixels =
         (double)plan.rungs[o->rung].render_width * (double)plan.rungs[o->rung].render_height;
     json_object_set_new(
         root, "counts",
-        json_pack("{s:I, s:I, s:I, s:I, s:f, s:I, s:I, s:f, s:f, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "draws", (json_int_t)last->draws,
+        json_pack("{s:I, s:I, s:I, s:I, s:I, s:f, s:I, s:I, s:I, s:f, s:f, s:I, s:I, s:I, s:I, s:I, s:I, s:I}",
+                  "smaa_tiles", (json_int_t)last->smaa_tiles, "draws", (json_int_t)last->draws,
                   "triangles", (json_int_t)last->triangles, "sdf_evals",
                   (json_int_t)last->sdf_evals, "sdf_hits", (json_int_t)last->sdf_hits,
                   "sdf_evals_per_pixel", (double)last->sdf_evals / pixels, "sdf_unconverged",
                   (json_int_t)last->sdf_unconverged, "replaced", (json_int_t)last->replaced,
+                  "easu_tiles_early", (json_int_t)last->easu_tiles_early,
                   "shadow_evals_per_pixel", (double)last->shadow_evals / pixels,
                   "occlusion_evals_per_pixel", (double)last->occlusion_evals / pixels,
                   "shadow_unconverged", (json_int_t)last->shadow_unconverged, "specular_tiles",
@@ -265,6 +274,35 @@ static void report_rays(const masu_session *s, const render_options *o, const ma
             100.0 * (double)stats->specular_rays / pixels);
 }
 
+static void positions_progress(uint32_t done, uint32_t of) {
+    masu_cli_progress("position %u of %u of each pixel", done + 1, of);
+}
+
+/* The picture without shortcuts. */
+static int render_truth(masu_session *s, const render_options *o) {
+    masu_light light;
+    char error[1024];
+    bool own_light = o->own_sun || o->turbidity > 0.0 || o->exposure > 0.0;
+    if (own_light && masu_light_of(s->m, &light)) return masu_cli_error("the scene has no light");
+    if (own_light) set_light(o, &light);
+    VkExtent2D size = s->desc.output;
+    uint8_t *rgba = malloc(4 * (size_t)size.width * size.height);
+    if (!rgba) return masu_cli_error("no memory for a picture of %ux%u", size.width, size.height);
+    masu_frame_desc frame = {.light = own_light ? &light : NULL, .time = o->time};
+    uint32_t rays = o->rays ? o->rays : MASU_PICTURE_RAYS;
+    bool good = masu_picture_truth(s, &frame, o->positions, rays, rgba, positions_progress, error,
+                                   sizeof error) &&
+                masu_image_save_png(o->output, rgba, size.width, size.height, 0, error, sizeof error);
+    free(rgba);
+    if (!good) return masu_cli_error("%s", error);
+    if (masu_cli_quiet()) return MASU_CLI_OK;
+    masu_cli_progress_clear();
+    fprintf(stderr, "masu: truth: %u positions of each pixel, %u frame%s each\n", o->positions,
+            masu_picture_frames(s, o->positions, rays),
+            masu_picture_frames(s, o->positions, rays) == 1 ? "" : "s");
+    return MASU_CLI_OK;
+}
+
 /* With statistics a first frame is drawn and not counted: drivers compile at the first use of a
  * pipeline. */
 static int render_frames(masu_session *s, const render_options *o, const char *scene,
@@ -298,12 +336,23 @@ static int check(const masu_session_desc *d, const render_options *o) {
     if (!o->output && !o->stats)
         return masu_cli_usage_error("neither --output nor --stats is given");
     uint32_t rungs = masu_desc_resolved(&d->desc).rung_count;
-    if (o->rays && strchr(o->output ? o->output : "", '#'))
-        return masu_cli_usage_error("--reference makes one picture: --output %s names many", o->output);
+    if ((o->rays || o->positions) && strchr(o->output ? o->output : "", '#')) {
+        return masu_cli_usage_error("%s makes one picture: --output %s names many",
+                                    o->positions ? "--truth" : "--reference", o->output);
+    }
+    if (o->positions && !o->output) return masu_cli_usage_error("--truth needs --output");
     if (o->rung >= rungs)
         return masu_cli_usage_error("--rung %u does not exist, there are 0 to %u", o->rung,
                                     rungs - 1);
     return MASU_CLI_OK;
+}
+
+/* "auto": metered; "fixed": the scene's factor; a number: that factor. */
+static bool read_exposure(masu_cli *cli, masu_desc *desc, render_options *o) {
+    int metered = !strcmp(cli->value, "auto");
+    desc->exposure.metered = metered ? MASU_ON : MASU_OFF;
+    o->exposure = 0;
+    return metered || !strcmp(cli->value, "fixed") || masu_cli_double(cli, 1e-6, 1e6, &o->exposure);
 }
 
 static int run(masu_cli *cli) {
@@ -313,16 +362,22 @@ static int run(masu_cli *cli) {
     static const char *const marches[] = {"auto",         "plain",     "fragment", "seed",
                                           "cone8",        "cones",     "checkerboard",
                                           "unpruned",     NULL};
+    static const char *const tones[] = {"auto", "none", "aces", "neutral", NULL};
     static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
-    uint32_t poison = 0, march = MASU_MARCH_AUTO, cull = 0, casters = 0;
+    uint32_t poison = 0, march = MASU_MARCH_AUTO, cull = 0, tone = 0, casters = 0;
+    masu_aa aa = MASU_AA_AUTO;
     bool frames = false, step = false;
+    const char *own = NULL; /* an option about what --truth has its own mind of */
     double lod_error = 0.0;
     for (;;) {
         int id = masu_cli_next(cli);
         if (masu_device_option(cli, id, &d.host)) continue;
         switch (id) {
         case OPTION_OUTPUT: o.output = cli->value; continue;
-        case OPTION_STATS: o.stats = cli->value; continue;
+        case OPTION_STATS:
+            o.stats = cli->value;
+            own = "--stats";
+            continue;
         case OPTION_SIZE:
             if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
             continue;
@@ -334,7 +389,13 @@ static int run(masu_cli *cli) {
             o.rays = REFERENCE_RAYS;
             if (cli->value && !masu_cli_uint(cli, 1, FRAMES_MAX, &o.rays)) return MASU_CLI_USAGE;
             continue;
+        case OPTION_TRUTH:
+            o.positions = MASU_PICTURE_POSITIONS;
+            if (cli->value && !masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, &o.positions))
+                return MASU_CLI_USAGE;
+            continue;
         case OPTION_RUNG:
+            own = "--rung";
             if (!masu_cli_uint(cli, 0, MASU_MAX_RUNGS - 1, &o.rung)) return MASU_CLI_USAGE;
             continue;
         case OPTION_TIME:
@@ -349,19 +410,23 @@ static int run(masu_cli *cli) {
                 return MASU_CLI_USAGE;
             continue;
         case OPTION_MARCH:
+            own = "--march";
             if (!masu_cli_choice(cli, marches, &march)) return MASU_CLI_USAGE;
             continue;
         case OPTION_CULL:
+            own = "--cull";
             if (!masu_cli_choice(cli, stages, &cull)) return MASU_CLI_USAGE;
             continue;
         case OPTION_CASTERS: casters = 1; continue;
         case OPTION_ANISOTROPY: {
             double most = 0;
+            own = "--anisotropy";
             if (!masu_cli_double(cli, 1.0, 64.0, &most)) return MASU_CLI_USAGE;
             d.desc.vulkan.max_anisotropy = (float)most;
             continue;
         }
         case OPTION_LOD_ERROR:
+            own = "--lod-error";
             if (!masu_cli_double(cli, -1e9, 1e9, &lod_error)) return MASU_CLI_USAGE;
             continue;
         case OPTION_SUN:
@@ -373,8 +438,17 @@ static int run(masu_cli *cli) {
             d.desc.analytic_sky = 1;
             continue;
         case OPTION_EXPOSURE:
-            if (!masu_cli_double(cli, 1e-6, 1e6, &o.exposure)) return MASU_CLI_USAGE;
+            if (!read_exposure(cli, &d.desc, &o)) return MASU_CLI_USAGE;
             continue;
+        case OPTION_AA:
+            own = "--aa";
+            if (!masu_aa_option(cli, false, &aa)) return MASU_CLI_USAGE;
+            continue;
+        case OPTION_TONE:
+            if (!masu_cli_choice(cli, tones, &tone)) return MASU_CLI_USAGE;
+            d.desc.tone = (masu_tone)tone;
+            continue;
+        case OPTION_DITHER: d.desc.dither = MASU_ON; continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case OPTION_RAYS:
@@ -395,9 +469,13 @@ static int run(masu_cli *cli) {
         d.desc.rungs[r].frustum = cull < 2 ? MASU_ON : MASU_OFF;
         d.desc.rungs[r].occlusion = cull % 2 ? MASU_OFF : MASU_ON;
         d.desc.rungs[r].lod_error = (float)lod_error;
+        d.desc.rungs[r].aa = aa;
     }
-    if (o.rays && (frames || step)) {
-        return masu_cli_usage_error("--reference draws one moment, a frame for each ray: no %s",
+    if (o.positions && own)
+        return masu_cli_usage_error("--truth takes everything at its most exact: no %s", own);
+    if ((o.rays || o.positions) && (frames || step)) {
+        return masu_cli_usage_error("%s draws one moment: no %s",
+                                    o.positions ? "--truth" : "--reference, a frame for each ray,",
                                     frames ? "--frames" : "--time-step");
     }
     if (o.rays) o.frames = o.rays, o.time_step = 0.0;
@@ -413,12 +491,14 @@ static int run(masu_cli *cli) {
     static masu_session s;
     char error[1024];
     masu_cli_progress("building pipelines");
-    if (!masu_session_open(&d, &s, error, sizeof error)) return masu_cli_error("%s", error);
+    bool open = o.positions ? masu_picture_open(&d, o.positions, &s, error, sizeof error)
+                            : masu_session_open(&d, &s, error, sizeof error);
+    if (!open) return masu_cli_error("%s", error);
     if (!masu_cli_quiet()) {
         masu_cli_progress_clear();
         fprintf(stderr, "masu: %s\n", s.host.driver);
     }
-    code = render_frames(&s, &o, d.scene_path, &counts);
+    code = o.positions ? render_truth(&s, &o) : render_frames(&s, &o, d.scene_path, &counts);
     code = masu_finish_validation(&s.host, code);
     masu_session_close(&s);
     return code;
@@ -435,8 +515,13 @@ static const masu_cli_option options[] = {
      "the truth of reflections, at one moment: N unfiltered rays from each pixel\n"
      "(default 1024; 64 for what 64 rays look like), each weighted by the exact lobe", OPTION_REFERENCE,
      0},
+    {"truth", "[=N]",
+     "what the picture would be with no shortcut: the mean of N places in each pixel (default\n"
+     "64), each at full size and at the most exact; reflections by 1024 rays in all, or --reference=N",
+     OPTION_TRUTH, 0},
     {"rung", "R", "quality: 0 native, 1 at 0.8, 2 at 0.4 of the size and upscaled (default 0)",
      OPTION_RUNG, 0},
+    {"aa", "WAY", "anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
     {"time", "SECONDS", "time of the first frame (default 0)", OPTION_TIME, 0},
     {"time-step", "SECONDS", "between frames (default 1/60)", OPTION_TIME_STEP, 0},
     {"stats", "FILE.json", "times, counts, memory, allocations of the frames; - for stdout",
@@ -455,7 +540,11 @@ static const masu_cli_option options[] = {
      0},
     {"turbidity", "T", "a sky that follows from the sun: 1.5 (very clear) to 10 (hazy)",
      OPTION_TURBIDITY, 0},
-    {"exposure", "E", "factor before the tone curve, instead of the scene's", OPTION_EXPOSURE, 0},
+    {"exposure", "E",
+     "factor before the tone curve, instead of the scene's; auto: metered; fixed: the scene's factor,\n"
+     "not metered even where the scene asks for it", OPTION_EXPOSURE, 0},
+    {"tone", "CURVE", "none, aces (filmic) or neutral (default aces)", OPTION_TONE, 0},
+    {"dither", NULL, "round to 8 bits with a pattern instead of bands", OPTION_DITHER, 0},
     {"anisotropy", "N",
      "samples of textures along the longer axis, where the device offers it (default 1)",
      OPTION_ANISOTROPY, 0},

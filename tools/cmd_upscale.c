@@ -1,4 +1,5 @@
-/* cmd_upscale.c: `masu upscale`: FSR1 on a PNG, by exactly the passes that a frame ends with. */
+/* cmd_upscale.c: `masu upscale`: anti-aliasing and FSR1 on a PNG, by exactly the passes that a frame ends
+ * with. */
 #include "cmd.h"
 
 #include "image.h"
@@ -7,7 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_OUTPUT = 1, OPTION_SIZE, OPTION_SHARPNESS, OPTION_NO_RCAS };
+enum {
+    OPTION_OUTPUT = 1,
+    OPTION_SIZE,
+    OPTION_SHARPNESS,
+    OPTION_NO_RCAS,
+    OPTION_EASU,
+    OPTION_AA,
+    OPTION_SMAA
+};
 
 /* Runs the passes over `rgba` and leaves the result in the session's target. */
 static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_t width,
@@ -27,7 +36,8 @@ static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_
                  height, most);
     } else if (masu_headless_source_create(&s.host, rgba, width, height, width, height, 0, &source,
                                            error, size)) {
-        s.desc.source = (masu_source){source.view, width, height};
+        s.desc.source = (masu_source){source.view, width, height,
+                                       VK_FORMAT_R8G8B8A8_UNORM};
         masu_frame_desc frame = {0};
         masu_commands commands;
         done = masu_session_start(&s, error, size) &&
@@ -74,10 +84,15 @@ static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *i
     return done;
 }
 
-static int upscale_file(const masu_session_desc *d, const char *from, const char *to) {
+static int upscale_file(const masu_session_desc *given, const char *from, const char *to) {
     struct masu_image image;
     char error[1024];
+    masu_session_desc copy = *given, *d = &copy;
     if (!masu_image_load_png(from, &image, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!d->desc.output.width) d->desc.output = (VkExtent2D){image.width, image.height};
+    masu_rung *rung = &d->desc.rungs[0];
+    int same = d->desc.output.width == image.width && d->desc.output.height == image.height;
+    if (rung->aa > MASU_AA_OFF && same) rung->upscale = rung->sharpen = MASU_OFF;
     uint32_t width = d->desc.output.width, height = d->desc.output.height;
     uint8_t *out = malloc((size_t)width * height * 4);
     int code = MASU_CLI_OK;
@@ -94,6 +109,18 @@ static int upscale_file(const masu_session_desc *d, const char *from, const char
     free(out);
     masu_image_free(&image);
     return code;
+}
+
+static bool easu_of(const char *name, masu_easu *easu) {
+    static const char *const names[] = {[MASU_EASU_FULL] = "full",
+                                        [MASU_EASU_FAST] = "fast",
+                                        [MASU_EASU_BILINEAR] = "bilinear"};
+    for (int i = MASU_EASU_FULL; i <= MASU_EASU_BILINEAR; i++) {
+        if (strcmp(name, names[i])) continue;
+        *easu = (masu_easu)i;
+        return true;
+    }
+    return false;
 }
 
 static int run(masu_cli *cli) {
@@ -115,7 +142,16 @@ static int run(masu_cli *cli) {
         case OPTION_SHARPNESS:
             if (!masu_cli_double(cli, 0.0, 64.0, &stops)) return MASU_CLI_USAGE;
             continue;
+        case OPTION_AA:
+        case OPTION_SMAA:
+            if (!masu_aa_option(cli, id == OPTION_SMAA, &rung->aa)) return MASU_CLI_USAGE;
+            continue;
         case OPTION_NO_RCAS: rung->sharpen = MASU_OFF; continue;
+        case OPTION_EASU:
+            if (!easu_of(cli->value, &rung->easu))
+                return masu_cli_usage_error("--easu is full, fast or bilinear, not '%s'",
+                                            cli->value);
+            continue;
         case MASU_CLI_ARGUMENT:
             if (files[0] && files[1])
                 return masu_cli_usage_error("one input and one output: '%s'", cli->value);
@@ -128,7 +164,8 @@ static int run(masu_cli *cli) {
     }
     if (!files[0] || !files[1])
         return masu_cli_usage_error("an input and an output file are needed");
-    if (!d.desc.output.width) return masu_cli_usage_error("--size WxH is needed");
+    if (!d.desc.output.width && rung->aa <= MASU_AA_OFF)
+        return masu_cli_usage_error("--size WxH is needed");
     rung->sharpness = (float)stops;
     d.host.message = masu_print_message;
     return upscale_file(&d, files[0], files[1]);
@@ -138,17 +175,23 @@ static const masu_cli_option options[] = {
     {"size", "WxH", "output size in pixels, at most 16384 a side and 64 Mi in all", OPTION_SIZE, 0},
     {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)",
      OPTION_SHARPNESS, 0},
+    {"aa", "WAY", "first anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
+    {"smaa", "PRESET", "the same: low, medium, high, ultra", OPTION_SMAA, 0},
     {"no-rcas", NULL, "EASU alone", OPTION_NO_RCAS, 0},
+    {"easu", "WAY", "full (default), fast: edges looked at once, or bilinear: for comparison",
+     OPTION_EASU, 0},
     {"output", "FILE.png", "the output, instead of the second argument", OPTION_OUTPUT, 'o'},
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
 
 const masu_cli_command masu_cmd_upscale = {
     .name = "upscale",
-    .arguments = "IN.png OUT.png --size WxH [options]",
-    .summary = "upscale a picture by FSR1 (EASU, RCAS)",
+    .arguments = "IN.png OUT.png --size WxH|--aa WAY [options]",
+    .summary = "upscale a picture by FSR1 (EASU, RCAS), smooth its edges by SMAA",
     .options = options,
     .details = "The picture is taken as it is: already display-encoded (sRGB), as FSR1 wants it. "
                "Alpha goes through the\n"
-               "same passes as a picture of its own.\n",
+               "same passes as a picture of its own. With --aa and no other --size than the picture's "
+               "own, there is\n"
+               "anti-aliasing alone.\n",
     .run = run};

@@ -13,7 +13,9 @@ int main(int argc, char **argv) {
                                                        &masu_cmd_cull_bench, &masu_cmd_draw_bench,
                                                        &masu_cmd_light_bench, &masu_cmd_ao_bench,
                                                        &masu_cmd_specular_bench,
-                                                       &masu_cmd_trace_bench, NULL};
+                                                       &masu_cmd_trace_bench,
+                                                       &masu_cmd_bench_image,
+                                                       &masu_cmd_image_error, NULL};
     static const masu_cli_program program = {
         .name = "masu",
         .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),

@@ -25,7 +25,7 @@ ao_lens ao_lens_of(uvec2 size)
     lens.size = vec2(size);
     lens.scale = 2.0 * tangent / lens.size;
     lens.pixels = 0.5 * lens.size / tangent;
-    lens.corner = -tangent;
+    lens.corner = tangent * (frame.jitter.xy - 1.0);
     return lens;
 }
 

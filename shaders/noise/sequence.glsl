@@ -37,13 +37,28 @@ uint masu_noise_index(uint x, uint y, uint key)
     return ((y + (shift >> 16)) & mask) * uint(MASU_BLUE_NOISE_SIZE) + ((x + shift) & mask);
 }
 
+vec2 masu_unit2(uint x, uint y)
+{
+    float u = x >> 8, v = y >> 8;
+    return vec2(u * (1.0 / 16777216.0), v * (1.0 / 16777216.0));
+}
+
 /* noise_word: the tile's; frame: 0, 1, 2 ... and round again after 2^32. Below 1. */
 vec2 masu_noise2(uint noise_word, uint frame)
 {
     uint x = (noise_word << 16) + frame * 0xC13FA9A9u; /* 2^32 / g */
     uint y = (noise_word & 0xFFFF0000u) + frame * 0x91E10DA5u; /* 2^32 / g^2 */
-    float u = x >> 8, v = y >> 8;
-    return vec2(u * (1.0 / 16777216.0), v * (1.0 / 16777216.0));
+    return masu_unit2(x, y);
+}
+
+/* Where pixels take turns, and each has every fourth frame. Every fourth of R2's points lies within a strip: 4/g is
+ * 3.02. These are multiples of (1 + 1/g) / 4 and (1 + 1/g^2) / 4, of which every fourth is R2, and all of them
+ * are as even as R2. */
+vec2 masu_turn_noise2(uint noise_word, uint frame)
+{
+    uint x = (noise_word << 16) + frame * 0x704FEA6Au;
+    uint y = (noise_word & 0xFFFF0000u) + frame * 0x64784369u;
+    return masu_unit2(x, y);
 }
 
 #endif

@@ -16,12 +16,20 @@ layout(push_constant) uniform Push
     masu_push pc;
 };
 
+/* Where a place in the picture, in pixels, lies between the sides of the unshifted one, -1 and 1: what the
+ * camera's vectors are to be weighted with. Every ray starts with it; what is drawn gets the same shift
+ * by clip_from_rel. */
+vec2 masu_ndc(vec2 pixels, vec2 size)
+{
+    return pixels / size * 2.0 - 1.0 + frame.jitter.xy;
+}
+
 /* Vector from the eye through the centre of a pixel, as long as makes its view z 1: eye + ray * z
  * is the point at view depth z. The half texel matters: without it the march and the raster look at
  * different places. */
 vec3 masu_pixel_ray(uvec2 at, uvec2 size)
 {
-    vec2 ndc = (vec2(at) + 0.5) / vec2(size) * 2.0 - 1.0;
+    vec2 ndc = masu_ndc(vec2(at) + 0.5, vec2(size));
     return frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
 }
 

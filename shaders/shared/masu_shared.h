@@ -28,6 +28,9 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  * (128). */
 #define MASU_GROUP 8
 
+/* Pixels along an edge of what a workgroup of fsr1.comp makes. */
+#define MASU_FSR1_BLOCK 32
+
 /* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/frame.c. Set 2, of
  * gbuffer and the cascades: the textures of what is drawn, one binding per slot of blob.h's texture sets. With
  * three sets of the four that every device has, and 4 sampled images of 16 in a stage. */
@@ -62,6 +65,10 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_TRACE_TEXCOORDS 20
 #define MASU_BIND_SPECULAR_TILES 21
 #define MASU_BIND_TOP_LEVEL 22 /* of ray queries */
+/* Of SMAA: where the plan has it. */
+#define MASU_BIND_SMAA_AREA 23
+#define MASU_BIND_SMAA_TILES 24
+#define MASU_BIND_EXPOSURE 25 /* where it is metered */
 
 /* Directional albedos of the specular lobe (shaders/brdf/tables.glsl, tools/make_split_sum.c). A table
  * has TABLE_SIZE nodes over sqrt(N.V) from 0 to 1, and TABLE_ROWS rows over perceptual roughness from
@@ -148,6 +155,25 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* Tiles with pixels whose reflections are traced, in uints: 0..2 arguments of the indirect dispatch (tiles, 1, 1),
  * then from TILES_HEADER on the numbers of the tiles, in no particular order. */
 
+/* SMAA (shaders/smaa): tiles of MASU_TILE pixels with an edge in or beside them, in uints:
+ *   0..2                 arguments of the indirect dispatch: tiles, 1, 1
+ *   TILES_HEADER + k     number of the k-th tile, in no particular order
+ *   TILES_HEADER + tiles of every tile SMAA_WORDS: a word for each row of pixels, then for each column.
+ *                        Bits 0..15 of a row: the edge above each pixel, 16..31 that to the left of
+ *                        it; of a column the other way round
+ * The table of areas (tools/make_smaa_area.c), each texel two bytes: of straight edges 4x4 patterns, by the
+ * code of the left end, then that of the right one; of each STRAIGHT rows (root of the distance to the
+ * right) of STRAIGHT words, a texel and the one right of it; then of diagonals 4x4 patterns of DIAGONAL rows
+ * of DIAGONAL texels, two to a word. */
+#define MASU_SMAA_WORDS 32
+#define MASU_SMAA_STRAIGHT 10
+#define MASU_SMAA_STRAIGHT_WORDS 1600
+#define MASU_SMAA_DIAGONAL 17
+#define MASU_SMAA_AREA_WORDS 3912
+/* Longest searches: twice as many pixels along an edge, as many along a diagonal. */
+#define MASU_SMAA_STEPS_MAX 32
+#define MASU_SMAA_DIAGONAL_STEPS_MAX 16
+
 /* An SDF that reaches further than ANCHOR_FROM metres from the origin along an axis is compiled so
  * that its space can be anchored elsewhere; it is where the eye is that far out, at multiples of
  * ANCHOR_GRID. Below, fp32 resolves 0.5 mm or better. */
@@ -222,7 +248,29 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_COUNTER_SPECULAR_SDF_HITS 24
 #define MASU_COUNTER_SPECULAR_NODES 25
 #define MASU_COUNTER_SPECULAR_EVALS 26
-#define MASU_COUNTER_COUNT 27
+/* Of easu_fast: blocks of GROUP x GROUP pixels all of which left early. */
+#define MASU_COUNTER_EASU_TILES_EARLY 27
+/* Tiles that SMAA blends. */
+#define MASU_COUNTER_SMAA_TILES 28
+/* The metered exposure, a float. */
+#define MASU_COUNTER_EXPOSURE 29
+#define MASU_COUNTER_COUNT 30
+
+/* The metered exposure: its buffer is EXPOSURE_HEADER words (0: factor before the tone curve; 1: log2 of
+ * the metered part), then a word for each bin of luminance: how many pixels. A bin is an eighth of an
+ * octave from 2^EXPOSURE_LOG2 on, along the bits of the float; what is darker is in none. */
+#define MASU_EXPOSURE_HEADER 4
+#define MASU_EXPOSURE_BINS 256
+#define MASU_EXPOSURE_LOG2 (-16)
+#define MASU_EXPOSURE_KEY 0.18 /* what the mean is brought to: a grey card */
+
+/* Encodings of the target, and flags of the pass that writes it: shaders/shared/output.glsl. */
+#define MASU_OUTPUT_SRGB 0u
+#define MASU_OUTPUT_LINEAR 1u
+#define MASU_OUTPUT_PQ 2u
+#define MASU_OUTPUT_LAST 1u
+#define MASU_OUTPUT_DITHER 2u
+#define MASU_OUTPUT_SWAP 4u /* red and blue change places */
 
 /* Rows of the analytic sky's table. Row r is the view whose sine of elevation is t |t|, with t from
  * -1 (down) to 1 (up); no row is the horizon itself, half of them lie above it. */
@@ -276,11 +324,13 @@ struct masu_frame_uniforms {
                                 constant */
     masu_vec4 sdf_max;       /* xyz upper corner; w longest ray, world units */
     /* x number of the frame, modulo 2^32; y and z render size of the frame before, 0: nothing of it counts;
-     * w unused */
+     * w not 0: a cut, the exposure adapts at once */
     masu_uvec4 history;
     /* xyz anchor that traced geometry is relative to; w longest ray */
     masu_vec4 trace_anchor;
     masu_vec4 trace_eye; /* xyz eye minus that anchor; w unused */
+    /* xy what camera.jitter adds to a place in the picture, whose sides are -1 and 1; zw unused */
+    masu_vec4 jitter;
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
 };
 

@@ -20,9 +20,9 @@ const uint masu_unmoved = 0xFFFFFFFFu; /* there is no telling how it has moved *
 /* Squares of luma have to fit into halfs. */
 const float masu_most_radiance = 250.0;
 
-/* A step of the guide's 63 above 0.045: what is smoother is a mirror (brdf/vndf.glsl), whose rays hold no
- * noise. A mean over neighbours would only blur it. */
-const float masu_mirror_roughness = 0.05;
+/* Half a step of the guide's 63: mirrors have 0 there. Their rays hold no noise, and a mean over neighbours
+ * would only blur them. */
+const float masu_mirror_roughness = 0.5 / 63.0;
 
 vec3 masu_tamed(vec3 radiance)
 {

@@ -6,18 +6,19 @@
 #ifndef MASU_SPECULAR_FINE_GLSL
 #define MASU_SPECULAR_FINE_GLSL
 
+#include "specular/guide.glsl"
 #include "specular/ray.glsl"
 
 const uint masu_fine_none = 0xFFFFFFFFu;
 
-/* Roughness up to which a surface is a mirror (brdf/vndf.glsl). */
-const float masu_fine_mirror = 0.05;
+/* Roughness up to which a lobe meets so much of one thing that few rays show it. */
+const float masu_fine_narrow = 0.08;
 
 /* How much of a pixel's light its own mean is, the rest that of the texels around: a lobe this wide
- * blurs what it mirrors by more than two pixels. */
-float masu_fine_share(float roughness)
+ * blurs what it mirrors by more than two pixels. Where the four are not one surface it is all. */
+float masu_fine_share(masu_guide g, float roughness)
 {
-    return 1.0 - smoothstep(0.22, 0.35, roughness);
+    return g.mixed ? 1.0 : 1.0 - smoothstep(0.1, 0.25, roughness);
 }
 
 /* dither, 0..1: which share of the way to the next step is rounded up. A mean to which each frame adds a

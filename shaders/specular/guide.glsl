@@ -4,9 +4,11 @@
  * The guide, rg32ui, is the G-buffer at half size. A texel stands for one pixel of its 2x2, another one
  * in each frame, so that after four frames all have been asked (pixel (k + frame) of a fixed order):
  *   x  bits 0-25  octahedral normal, as in the G-buffer
- *      bits 26-31 roughness of the lobe that is traced, 0..63
- *   y  depth, its two lowest bits replaced by the number of the pixel; 0: nothing is traced here. What
- *      other images hold of such a texel is not defined
+ *      bits 26-31 roughness of the lobe that is traced, 0..63; 0: it is a mirror (brdf/vndf.glsl), which
+ *                 0.05 must not become by rounding: its rays hold noise
+ *   y  depth, its three lowest bits replaced: two by the number of the pixel, the third is set where the four
+ *      pixels are not one surface; 0: nothing is traced here. What other images hold of such a texel is not
+ *      defined
  */
 #ifndef MASU_SPECULAR_GUIDE_GLSL
 #define MASU_SPECULAR_GUIDE_GLSL
@@ -19,6 +21,7 @@ struct masu_guide {
     float roughness;
     float depth;
     uint pixel; /* x + 2 y within its 2x2 */
+    bool mixed; /* another pixel of the four lies on another surface, or leans another way */
     bool there;
 };
 
@@ -27,17 +30,18 @@ masu_guide masu_unpack_guide(uvec2 texel)
     masu_guide g;
     g.normal = masu_unpack_normal(texel.x);
     g.roughness = float(texel.x >> 26) / 63.0;
-    g.depth = uintBitsToFloat(texel.y & ~3u);
+    g.depth = uintBitsToFloat(texel.y & ~7u);
     g.pixel = texel.y & 3u;
-    g.there = texel.y > 3u && masu_finite(g.depth) && g.depth > 0.0;
+    g.mixed = (texel.y & 4u) != 0u;
+    g.there = texel.y > 7u && masu_finite(g.depth) && g.depth > 0.0;
     return g;
 }
 
-uvec2 masu_pack_guide(uint packed_normal, float roughness, float depth, uint pixel)
+uvec2 masu_pack_guide(uint packed_normal, float roughness, float depth, uint pixel, bool mixed)
 {
-    uint rough = uint(masu_sane(roughness, 0.0, 1.0) * 63.0 + 0.5);
+    uint rough = roughness > MASU_TABLE_SMOOTHEST ? uint(masu_sane(roughness, 0.0, 1.0) * 63.0 + 0.5) : 0u;
     return uvec2((packed_normal & 0x3FFFFFFu) | rough << 26,
-                 (floatBitsToUint(depth) & ~3u) | pixel);
+                 (floatBitsToUint(depth) & ~7u) | pixel | (mixed ? 4u : 0u));
 }
 
 /* Which pixel of its 2x2 a texel stands for in a frame. Neighbours take different ones. */

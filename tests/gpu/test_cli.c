@@ -5,6 +5,7 @@
 #include "image.h"
 #include "reference/fsr1.h"
 #include "reference/patterns.h"
+#include "reference/smaa.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -89,7 +90,7 @@ static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
     static const char *const commands[] = {"",     "render",      "upscale",
                                            "plan", "march-bench", "cull-bench", "draw-bench",
-                                           "light-bench", "trace-bench"};
+                                           "light-bench", "trace-bench", "bench-image"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(masu("%s --help", commands[i]), 0);
         assert_true(strlen(out_text) > 200);
@@ -97,6 +98,35 @@ static void help_and_version_are_there_for_every_command(void **state) {
     }
     assert_int_equal(masu("--version"), 0);
     assert_non_null(strstr(out_text, "0.1.0"));
+}
+
+/* Times are not looked at: a line for each case, with numbers that add up. */
+static void bench_image_has_a_line_for_each_case(void **state) {
+    (void)state;
+    static const char *const names[] = {"easu+rcas", "easu", "easu-fast+rcas", "easu-fast",
+                                        "bilinear",  "gather"};
+    assert_int_equal(masu("bench-image --from 32x24 --size 64x48 --runs 2 --csv -"), 0);
+    assert_non_null(strstr(out_text, "case,driver,ms_min,ms_median,ratio,"));
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char start[64];
+        double least, median, ratio, gpu;
+        snprintf(start, sizeof start, "\n%s,\"", names[i]);
+        const char *row = strstr(out_text, start);
+        assert_non_null(row);
+        row = strchr(row + strlen(start), '"');
+        assert_int_equal(sscanf(row, "\",%lf,%lf,%lf,%lf", &least, &median, &ratio, &gpu), 4);
+        assert_true(least > 0 && median >= least && ratio > 0 && (i || ratio == 1));
+    }
+    assert_int_equal(masu("bench-image --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
+    assert_non_null(strstr(out_text, "| easu |"));
+    assert_non_null(strstr(out_text, "| bilinear |"));
+    assert_null(strstr(out_text, "| gather |"));
+    assert_int_equal(masu("bench-image --only easu,bicubic"), 2);
+    said("bicubic");
+    assert_int_equal(masu("bench-image --runs 0"), 2);
+    said("runs");
+    assert_int_equal(masu("bench-image %s/none.png", dir), 1);
+    said("none.png");
 }
 
 static void wrong_command_lines_are_exit_code_2(void **state) {
@@ -122,10 +152,24 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     said("many");
     assert_int_equal(masu("render %s -o %s/x.png --frames 0", scene, dir), 2);
     said("frames");
+    assert_int_equal(masu("render %s -o %s/x.png --exposure bright", scene, dir), 2);
+    said("exposure");
+    assert_int_equal(masu("render %s -o %s/x.png --exposure 0", scene, dir), 2);
+    said("exposure");
+    assert_int_equal(masu("render %s -o %s/x.png --tone film", scene, dir), 2);
+    said("tone");
     assert_int_equal(masu("upscale a.png b.png"), 2);
     said("--size");
+    assert_int_equal(masu("upscale a.png b.png --smaa fxaa"), 2);
+    said("smaa");
+    assert_int_equal(masu("upscale a.png b.png --aa off"), 2);
+    said("--size");
+    assert_int_equal(masu("render %s -o %s/x.png --aa most", scene, dir), 2);
+    said("--aa");
     assert_int_equal(masu("upscale a.png --size 4x4"), 2);
     said("output");
+    assert_int_equal(masu("upscale a.png b.png --size 4x4 --easu slow"), 2);
+    said("'slow'");
     assert_int_equal(masu("paint"), 2);
     said("paint");
     assert_false(exists("x.png"));
@@ -221,6 +265,13 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (!strstr(out_text, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
     }
+    assert_null(strstr(out_text, "\"exposure\"")); /* nothing is metered */
+    assert_int_equal(masu("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
+                          "--dither --validate --quiet",
+                          scene, dir),
+                     0);
+    assert_non_null(strstr(out_text, "\"exposure\""));
+    assert_non_null(strstr(out_text, "\"meter\""));
     assert_int_equal(masu("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, dir),
                      0);
     assert_true(exists("f-000.png") && exists("f-001.png") && !exists("f-002.png"));
@@ -358,6 +409,40 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     assert_true(sums[0] > 2 * sums[1] && sums[1] > 0);
 }
 
+/* At its own size a picture is smoothed and nothing else; both spellings, and as part of upscaling. */
+static void upscale_smooths_edges(void **state) {
+    (void)state;
+    enum { W = 50, H = 38, BYTES = W * H * 4 };
+    static uint8_t in[BYTES], want[BYTES], edges[2 * W * H], weights[BYTES];
+    static float rgb[W * H * 3], smooth[W * H * 3];
+    static const char *const ways[] = {"--aa high", "--smaa high", "--size 50x38 --smaa high"};
+    char name[256], error[ERROR_SIZE];
+    struct masu_image image;
+    masu_pattern_fill(MASU_PATTERN_HARD_EDGES, 1, W, H, in);
+    snprintf(name, sizeof name, "%s/edges.png", dir);
+    assert_ok(masu_image_save_png(name, in, W, H, 0, error, sizeof error));
+    struct masu_ref_image from = {rgb, W, H, 0};
+    struct masu_ref_smaa with = masu_ref_smaa_preset(2);
+    masu_ref_from_rgba8(in, W, H, 0, rgb);
+    masu_ref_smaa_edges(&from, &with, edges);
+    masu_ref_smaa_weights(edges, W, H, &with, weights);
+    masu_ref_smaa_blend(&from, weights, smooth);
+    masu_ref_to_rgba8(smooth, W, H, want);
+    assert_true(max_difference(in, want, BYTES) > 20);
+    snprintf(name, sizeof name, "%s/smooth.png", dir);
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(masu("upscale %s/edges.png %s %s", dir, name, ways[i]), 0);
+        assert_ok(masu_image_load_png(name, &image, error, sizeof error));
+        assert_true(image.width == W && image.height == H);
+        assert_true(max_difference(image.rgba, want, BYTES) <= 2);
+        masu_image_free(&image);
+    }
+    assert_int_equal(masu("upscale %s/edges.png %s --aa fxaa --size 100x76", dir, name), 0);
+    assert_ok(masu_image_load_png(name, &image, error, sizeof error));
+    assert_true(image.width == 2 * W && image.height == 2 * H);
+    masu_image_free(&image);
+}
+
 static void the_example_of_the_readme_draws(void **state) {
     (void)state;
     char command[1024], error[ERROR_SIZE];
@@ -377,6 +462,7 @@ static void the_example_of_the_readme_draws(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_and_version_are_there_for_every_command),
+        cmocka_unit_test(bench_image_has_a_line_for_each_case),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
         cmocka_unit_test(bad_scene_files_are_named_with_their_fault),
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing),
@@ -389,6 +475,7 @@ int main(void) {
         cmocka_unit_test(rays_choose_what_finds_polygons),
         cmocka_unit_test(the_example_of_the_readme_draws),
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
+        cmocka_unit_test(upscale_smooths_edges),
     };
     return cmocka_run_group_tests_name("cli", tests, make_dir, remove_dir);
 }

@@ -159,7 +159,7 @@ static beginning beginning_of(const stage *s, uint32_t i) {
     float n[3];
     pixel_of(i, &x, &y);
     masu_view_ray ray = masu_view_ray_at(&s->view, x, y);
-    b.z = s->view.near_distance / (double)as_float(own.guide[2 * i + 1] & ~3u);
+    b.z = s->view.near_distance / (double)as_float(own.guide[2 * i + 1] & ~7u);
     b.pixel = 2 * s->view.tan_y / s->view.height;
     double most = b.z * ray.z_scale;
     masu_unpack_normal(own.guide[2 * i] & 0x3FFFFFF, n);
@@ -195,7 +195,7 @@ static void make_rays(const stage *s, double rough, double inside, uint32_t ever
         if (seen.kind != MASU_TRUTH_HIT) continue;
         float depth = (float)(s->view.near_distance * ray.z_scale / (seen.t + inside));
         own.guide[2 * i] = pack_normal(seen.normal) | (uint32_t)(63 * rough) << 26;
-        own.guide[2 * i + 1] = (as_word(depth) & ~3u) | k;
+        own.guide[2 * i + 1] = (as_word(depth) & ~7u) | k;
         double d[3], along = dot(ray.direction, seen.normal), up = 0;
         for (int c = 0; c < 3; c++) {
             d[c] = ray.direction[c] - 2 * along * seen.normal[c] + rough * (2 * unit() - 1);
@@ -240,7 +240,7 @@ static figures compare(const stage *s) {
     figures f = {0};
     uint32_t both = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
-        if (own.guide[2 * i + 1] <= 3) {
+        if (own.guide[2 * i + 1] <= 7) {
             assert_memory_equal(own.hit + 4 * i, own.before + 4 * i, 16);
             continue;
         }
@@ -382,7 +382,7 @@ static void who_begins_in_a_solid_has_met_it(void **unused) {
     trace(&s, false);
     uint32_t inside = 0, met = 0, at_once = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
-        if (own.guide[2 * i + 1] <= 3 || as_float(own.before[4 * i]) >= 0) continue;
+        if (own.guide[2 * i + 1] <= 7 || as_float(own.before[4 * i]) >= 0) continue;
         beginning b = beginning_of(&s, i);
         for (int k = 0; k < 3; k++) b.point[k] += b.normal[k] * b.lift;
         if (!(s.truth.step(s.view.params, 0, b.point) < -b.z * b.pixel)) continue;

@@ -205,6 +205,61 @@ static float tap_weight(const struct kernel *k, float off_x, float off_y)
     return base * window;
 }
 
+/* Luma of all twelve; weights of f, g, j, k. */
+static struct edge edge_of(const float l[TAP_COUNT], const float w[4], enum masu_ref_math math)
+{
+    struct edge edge = { 0.0f, 0.0f, 0.0f };
+    add_edge(&edge, w[0], l[B], l[E], l[F], l[G], l[J], math);
+    add_edge(&edge, w[1], l[C], l[F], l[G], l[H], l[K], math);
+    add_edge(&edge, w[2], l[F], l[I], l[J], l[K], l[N], math);
+    add_edge(&edge, w[3], l[G], l[J], l[K], l[L], l[O], math);
+    return edge;
+}
+
+/* ---- The fast form: shaders/upscale/easu_fast.glsl ---- */
+
+static float weighted(const float w[4], float f, float g, float j, float k)
+{
+    return w[0] * f + w[1] * g + w[2] * j + w[3] * k;
+}
+
+/* Half a step of 8 bits of grey in twice the luma: where there is less, no edge is looked for. */
+static float fast_straightness(float before, float centre, float after)
+{
+    float largest = high(fabsf(after - centre), fabsf(centre - before)) + 1.0f / 256.0f;
+    float ratio = low(fabsf(after - before) * approximate_rcp(largest, MASU_REF_FAST), 1.0f);
+    return ratio * ratio;
+}
+
+static struct edge fast_edge_of(const float l[TAP_COUNT], const float w[4])
+{
+    float left = weighted(w, l[E], l[F], l[I], l[J]);
+    float right = weighted(w, l[G], l[H], l[K], l[L]);
+    float above = weighted(w, l[B], l[C], l[F], l[G]);
+    float below = weighted(w, l[J], l[K], l[N], l[O]);
+    float centre = weighted(w, l[F], l[G], l[J], l[K]);
+    struct edge edge = { right - left, below - above,
+                         fast_straightness(left, centre, right)
+                             + fast_straightness(above, centre, below) };
+    if (edge.dir_x * edge.dir_x + edge.dir_y * edge.dir_y < 1.0f / 32768.0f) {
+        edge.dir_x = edge.dir_y = 0.0f; /* then kernel_of takes (1, 0) */
+    }
+    return edge;
+}
+
+/* The four around differ by no more than a step of 8 bits. */
+static int is_flat(float colour[TAP_COUNT][3])
+{
+    for (int c = 0; c < 3; c++) {
+        float least = low(low(colour[F][c], colour[G][c]), low(colour[J][c], colour[K][c]));
+        float most = high(high(colour[F][c], colour[G][c]), high(colour[J][c], colour[K][c]));
+        if (!(most - least < 1.02f / 255.0f)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 void masu_ref_easu_pixel(const struct masu_ref_image *in, uint32_t out_width, uint32_t out_height,
                          uint32_t x, uint32_t y, enum masu_ref_math math, float rgb[3])
 {
@@ -225,12 +280,17 @@ void masu_ref_easu_pixel(const struct masu_ref_image *in, uint32_t out_width, ui
 
     float q_x = 1.0f - p_x;
     float q_y = 1.0f - p_y;
-    struct edge edge = { 0.0f, 0.0f, 0.0f };
-    add_edge(&edge, q_x * q_y, luma[B], luma[E], luma[F], luma[G], luma[J], math);
-    add_edge(&edge, p_x * q_y, luma[C], luma[F], luma[G], luma[H], luma[K], math);
-    add_edge(&edge, q_x * p_y, luma[F], luma[I], luma[J], luma[K], luma[N], math);
-    add_edge(&edge, p_x * p_y, luma[G], luma[J], luma[K], luma[L], luma[O], math);
-
+    if (math == MASU_REF_FAST && is_flat(colour)) {
+        for (int c = 0; c < 3; c++) {
+            float above = colour[F][c] + p_x * (colour[G][c] - colour[F][c]);
+            float below = colour[J][c] + p_x * (colour[K][c] - colour[J][c]);
+            rgb[c] = above + p_y * (below - above);
+        }
+        return;
+    }
+    float weights[4] = { q_x * q_y, p_x * q_y, q_x * p_y, p_x * p_y };
+    struct edge edge = math == MASU_REF_FAST ? fast_edge_of(luma, weights)
+                                             : edge_of(luma, weights, math);
     struct kernel kernel = kernel_of(edge, math);
     float sum[3] = { 0.0f, 0.0f, 0.0f };
     float weight_sum = 0.0f;
@@ -253,12 +313,48 @@ void masu_ref_easu_pixel(const struct masu_ref_image *in, uint32_t out_width, ui
     }
 }
 
+int masu_ref_easu_leaves_early(const struct masu_ref_image *in, uint32_t out_width,
+                               uint32_t out_height, uint32_t x, uint32_t y)
+{
+    int f_x = (int)floorf(source_position(x, in->width, out_width));
+    int f_y = (int)floorf(source_position(y, in->height, out_height));
+    float colour[TAP_COUNT][3];
+    fetch(in, f_x, f_y, colour[F]);
+    fetch(in, f_x + 1, f_y, colour[G]);
+    fetch(in, f_x, f_y + 1, colour[J]);
+    fetch(in, f_x + 1, f_y + 1, colour[K]);
+    return is_flat(colour);
+}
+
 void masu_ref_easu(const struct masu_ref_image *in, uint32_t out_width, uint32_t out_height,
                    enum masu_ref_math math, float *out)
 {
     for (uint32_t y = 0; y < out_height; y++) {
         for (uint32_t x = 0; x < out_width; x++, out += 3) {
             masu_ref_easu_pixel(in, out_width, out_height, x, y, math, out);
+        }
+    }
+}
+
+void masu_ref_bilinear(const struct masu_ref_image *in, uint32_t out_width, uint32_t out_height,
+                       float *out)
+{
+    for (uint32_t y = 0; y < out_height; y++) {
+        for (uint32_t x = 0; x < out_width; x++, out += 3) {
+            float p_x = source_position(x, in->width, out_width);
+            float p_y = source_position(y, in->height, out_height);
+            float f_x = floorf(p_x), f_y = floorf(p_y);
+            float four[4][3];
+            for (int i = 0; i < 4; i++) {
+                fetch(in, (int)f_x + i % 2, (int)f_y + i / 2, four[i]);
+            }
+            p_x -= f_x;
+            p_y -= f_y;
+            for (int c = 0; c < 3; c++) {
+                float above = four[0][c] + p_x * (four[1][c] - four[0][c]);
+                float below = four[2][c] + p_x * (four[3][c] - four[2][c]);
+                out[c] = above + p_y * (below - above);
+            }
         }
     }
 }

@@ -19,7 +19,8 @@
 
 enum masu_ref_math {
     MASU_REF_BIT_TRICK, /* AMD's result: reciprocals from integer subtraction of float bits */
-    MASU_REF_EXACT      /* the same formulas with true divisions: NOT what the GPU computes */
+    MASU_REF_EXACT,     /* the same formulas with true divisions: NOT what the GPU computes */
+    MASU_REF_FAST       /* bit tricks, less work: shaders/upscale/easu.glsl */
 };
 
 /* A readable rectangle of a possibly larger picture: texel (x,y) is rgb[(y * stride + x) * 3].
@@ -34,9 +35,17 @@ struct masu_ref_image {
 void masu_ref_easu_pixel(const struct masu_ref_image *in, uint32_t out_width, uint32_t out_height,
                          uint32_t x, uint32_t y, enum masu_ref_math math, float rgb[3]);
 
+/* Whether MASU_REF_FAST takes the bilinear mean there. */
+int masu_ref_easu_leaves_early(const struct masu_ref_image *in, uint32_t out_width,
+                               uint32_t out_height, uint32_t x, uint32_t y);
+
 /* All of them; out holds out_width * out_height * 3 floats, tightly packed. */
 void masu_ref_easu(const struct masu_ref_image *in, uint32_t out_width, uint32_t out_height,
                    enum masu_ref_math math, float *out);
+
+/* The four texels around, weighted by how near they are. Same output. */
+void masu_ref_bilinear(const struct masu_ref_image *in, uint32_t out_width, uint32_t out_height,
+                       float *out);
 
 /* RCAS at unchanged size. strength = exp2(-stops): 1 is the sharpest, 0 copies. The result is
  * clamped to [0,1], as a UNORM target does. out holds in->width * in->height * 3 floats. */

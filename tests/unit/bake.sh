@@ -179,6 +179,8 @@ wrong ': sun.shadows.size: unknown key' \
 wrong ': sun.shadows: expected an object, found true' \
     "{\"models\": [$sphere}], \"sun\": {\"shadows\": true}}"
 wrong ': exposure: expected a number' "{\"models\": [$sphere}], \"exposure\": 0}"
+wrong ': exposure.darken: expected a number' "{\"models\": [$sphere}], \"exposure\": {\"darken\": -1}}"
+wrong ': exposure.speed: unknown key' "{\"models\": [$sphere}], \"exposure\": {\"speed\": 1}}"
 wrong ': sdf: needs "bounds"' '{"sdf": {"source": "good.glsl"}}'
 wrong ': sdf.bounds: the first corner must be the lower' \
     '{"sdf": {"source": "good.glsl", "bounds": [[0,0,0],[1,0,1]]}}'

@@ -42,7 +42,7 @@ masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height) {
 
 masu_desc source_desc(uint32_t width, uint32_t height) {
     masu_desc d = desc_of(1920, 1080);
-    d.source = (masu_source){FAKE(VkImageView, 64), width, height};
+    d.source = (masu_source){FAKE(VkImageView, 64), width, height, VK_FORMAT_UNDEFINED};
     d.rung_count = 1;
     return d;
 }

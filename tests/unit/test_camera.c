@@ -147,6 +147,8 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
             c.forward[k] = random_float(&random, -3.0f, 3.0f);
             c.up[k] = random_float(&random, -3.0f, 3.0f);
         }
+        for (int k = 0; k < 2 && n % 2; k++) c.jitter[k] = random_float(&random, -1.0f, 1.0f);
+        double left = 2.0 * (double)c.jitter[0] / 1280.0, above = 2.0 * (double)c.jitter[1] / 720.0;
         double forward[3], wish[3], right[3], up[3], clip[4];
         unit3(c.forward, forward);
         unit3(c.up, wish);
@@ -167,10 +169,12 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
             }
             project(&u, rel, clip);
             assert_near(clip[3], z, 1e-5 * z + 1e-5);
-            assert_near(clip[0] / clip[3], x, 2e-5);
-            assert_near(clip[1] / clip[3], -y, 2e-5); /* down is positive */
+            assert_near(clip[0] / clip[3], x - left, 2e-5);
+            assert_near(clip[1] / clip[3], -y - above, 2e-5); /* down is positive */
             assert_near(clip[2] / clip[3], (double)c.near_distance / z, 1e-5);
         }
+        assert_near((double)u.jitter[0], left, 1e-6);
+        assert_near((double)u.jitter[1], above, 1e-6);
         for (int k = 0; k < 3; k++) { /* what the march makes its rays of */
             assert_near((double)u.right[k], right[k] * tan_x, 1e-5);
             assert_near((double)u.up[k], up[k] * tan_y, 1e-5);

@@ -55,6 +55,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(source.view);
     SAME(source.width);
     SAME(source.height);
+    SAME(source.format);
     SAME(output.width);
     SAME(output.height);
     SAME(targets.images);
@@ -63,11 +64,26 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(targets.format);
     SAME(targets.storage);
     SAME(targets.final_layout);
+    SAME(targets.encoding);
+    SAME(targets.white);
+    SAME(targets.peak);
+    SAME(tone);
+    SAME(dither);
+    SAME(deep_color);
+    SAME(exposure.metered);
+    SAME(exposure.brighten);
+    SAME(exposure.darken);
+    SAME(exposure.low);
+    SAME(exposure.high);
+    SAME(exposure.least);
+    SAME(exposure.most);
     SAME(frames_in_flight);
     SAME(rung_count);
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
         SAME(rungs[r].scale);
         SAME(rungs[r].upscale);
+        SAME(rungs[r].easu);
+        SAME(rungs[r].fuse);
         SAME(rungs[r].sharpen);
         SAME(rungs[r].sharpness);
         SAME(rungs[r].march);
@@ -93,6 +109,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].specular_reuse_taps);
         SAME(rungs[r].specular_filter_taps);
         SAME(rungs[r].specular_frames);
+        SAME(rungs[r].aa);
     }
     SAME(limits.vertices);
     SAME(limits.indices);
@@ -111,7 +128,9 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(vulkan.texture_compression_bc);
     SAME(vulkan.max_anisotropy);
     SAME(vulkan.ray_query);
+    SAME(vulkan.shader_float16);
     SAME(ray_query);
+    SAME(half_floats);
     SAME(deny.compressed_textures);
     SAME(host_budget);
     SAME(device_budget);
@@ -130,7 +149,9 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.casters);
     SAME(debug.ao_full);
     SAME(debug.ao_nearest);
+    SAME(debug.no_bias);
     SAME(debug.reference);
+    SAME(debug.mip_bias);
     SAME(deny.unified_memory);
     SAME(log);
     SAME(log_user);
@@ -151,6 +172,9 @@ static masu_rung default_rung(float scale, float sharpness) {
                        .specular_frames = 32};
 }
 
+/* Without a scene nothing more of the output is known. */
+static void default_output(masu_desc *d) { d->tone = MASU_TONE_ACES; }
+
 static void every_zero_becomes_its_documented_default(void **state) {
     (void)state;
     masu_desc zero, expected;
@@ -158,6 +182,7 @@ static void every_zero_becomes_its_documented_default(void **state) {
     memset(&expected, 0, sizeof expected);
     expected.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     expected.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    default_output(&expected);
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
     expected.rungs[0] = default_rung(1.0f, 0.0f);
@@ -179,6 +204,7 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.frames_in_flight = 2;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    default_output(&given);
     given.rungs[0] = default_rung(1.0f, 0.0f);
     given.rungs[1] = default_rung(1.0f, 1.5f);
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
@@ -204,11 +230,17 @@ static masu_desc full_desc(void) {
     d.vulkan = (masu_vulkan){
         no_function, FAKE(VkInstance, 1), FAKE(VkPhysicalDevice, 2), FAKE(VkDevice, 3),
         1,           &allocator,          FAKE(VkPipelineCache, 4),  1,
-        4.0f, 1};
-    d.source = (masu_source){FAKE(VkImageView, 5), 6, 7};
+        4.0f,        1,                   1};
+    d.source = (masu_source){FAKE(VkImageView, 5), 6, 7, VK_FORMAT_R8G8B8A8_UNORM};
     d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
     d.targets.storage = 8;
     d.targets.final_layout = VK_IMAGE_LAYOUT_GENERAL;
+    d.targets.encoding = MASU_ENCODING_PQ;
+    d.targets.white = 100, d.targets.peak = 600;
+    d.tone = MASU_TONE_NEUTRAL;
+    d.dither = MASU_ON;
+    d.deep_color = MASU_ON;
+    d.exposure = (masu_exposure){MASU_ON, 2, 4, 0.2f, 0.3f, 0.25f, 4};
     d.frames_in_flight = 3;
     d.rung_count = MASU_MAX_RUNGS;
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
@@ -216,7 +248,8 @@ static masu_desc full_desc(void) {
             (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1,
                         MASU_OFF, MASU_ON, 0.5f + (float)r, MASU_ON, r + 1, r + 2, r % 5, 100 + r,
                         (float)r, {r + 1, 2, 3, 4}, MASU_OFF, MASU_ON, 0.25f, MASU_ON, MASU_OFF,
-                        MASU_ON, MASU_OFF, MASU_ON, r + 1, r + 2, r + 3};
+                         MASU_ON, MASU_OFF, MASU_ON, r + 1, r + 2, r + 3, (masu_easu)(r % 4),
+                         (masu_aa)(r % 7), MASU_ON};
     }
     d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22};
     d.host_budget = 14;
@@ -225,13 +258,66 @@ static masu_desc full_desc(void) {
         d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
     }
     d.readback = 3;
-    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8};
+    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, 9, 10.0f};
     d.deny.unified_memory = 1;
     d.log = no_log;
     d.log_user = &allocator;
     d.clock_ns = no_clock;
     d.clock_user = &allocator;
     return d;
+}
+
+/* What follows from the target and the scene. */
+static void output_follows_from_target_and_scene(void **state) {
+    (void)state;
+    static const struct {
+        VkFormat format;
+        uint32_t storage;
+        masu_switch dither, deep;
+        masu_encoding encoding;
+    } rows[] = {
+        {VK_FORMAT_R8G8B8A8_UNORM, 1, MASU_OFF, MASU_OFF, MASU_ENCODING_SRGB},
+        {VK_FORMAT_R8G8B8A8_UNORM, 0, MASU_ON, MASU_OFF, MASU_ENCODING_SRGB},
+        {VK_FORMAT_B8G8R8A8_SRGB, 0, MASU_ON, MASU_OFF, MASU_ENCODING_SRGB},
+        {VK_FORMAT_R5G6B5_UNORM_PACK16, 0, MASU_ON, MASU_OFF, MASU_ENCODING_SRGB},
+        {VK_FORMAT_A2B10G10R10_UNORM_PACK32, 0, MASU_OFF, MASU_ON, MASU_ENCODING_SRGB},
+        {VK_FORMAT_R16G16B16A16_SFLOAT, 1, MASU_OFF, MASU_ON, MASU_ENCODING_LINEAR}};
+    static masu_frame_plan plan;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        masu_desc d = scene_desc(RASTER, 64, 64);
+        d.targets.format = rows[i].format, d.targets.storage = rows[i].storage;
+        masu_desc resolved = masu_desc_resolved(&d);
+        assert_int_equal(resolved.dither, rows[i].dither);
+        assert_int_equal(resolved.deep_color, rows[i].deep);
+        assert_int_equal(resolved.targets.encoding, rows[i].encoding);
+        compile(&d, &plan);
+        int deep = rows[i].deep == MASU_ON;
+        VkFormat wanted = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
+        assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_LDR), wanted);
+        assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_UPSCALED), wanted);
+        assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_ALBEDO), VK_FORMAT_R8G8B8A8_UNORM);
+        assert_int_equal(plan.copies, rows[i].format == VK_FORMAT_B8G8R8A8_SRGB);
+    }
+    support_scene.metered = 1, support_scene.brighten = 7;
+    masu_desc d = scene_desc(RASTER, 64, 64);
+    support_scene.metered = 1, support_scene.brighten = 7;
+    masu_desc resolved = masu_desc_resolved(&d);
+    assert_int_equal(resolved.exposure.metered, MASU_ON);
+    assert_true(resolved.exposure.brighten == 7 && resolved.exposure.darken == 3);
+    d.exposure.metered = MASU_OFF;
+    assert_int_equal(masu_desc_resolved(&d).exposure.metered, MASU_OFF);
+    /* Resolved before the scene is known, and again with it. */
+    masu_desc early = scene_desc(RASTER, 64, 64);
+    support_scene.metered = 1;
+    early.targets.storage = 0;
+    early.scene = NULL;
+    early = masu_desc_resolved(&early);
+    early.scene = &support_scene;
+    early = masu_desc_resolved(&early);
+    assert_int_equal(early.exposure.metered, MASU_ON);
+    assert_int_equal(early.dither, MASU_ON);
+    assert_int_equal(early.targets.encoding, MASU_ENCODING_SRGB);
+    assert_true(early.exposure.most == 1024 && early.targets.white == 80);
 }
 
 static void what_is_given_stays_as_it_is(void **state) {
@@ -280,6 +366,8 @@ static void a_bad_count_is_named(void **state) {
     BAD("targets.count", d.targets.count = 0);
     BAD("targets.count", d.targets.count = MASU_MAX_TARGETS + 1);
     BAD("readback", d.readback = MASU_READBACK_ALL + 1);
+    BAD("debug.mip_bias", d.debug.mip_bias = -16.1f);
+    BAD("debug.mip_bias", d.debug.mip_bias = nanf(""));
     BAD("readback", d.readback = UINT32_MAX);
 }
 
@@ -305,7 +393,7 @@ static void a_storage_target_of_another_format_is_named(void **state) {
 static void scene_and_source_exclude_each_other(void **state) {
     (void)state;
     BAD("scene", d.scene = NULL);
-    BAD("source.view", d.source = (masu_source){FAKE(VkImageView, 1), 64, 64});
+    BAD("source.view", d.source = (masu_source){FAKE(VkImageView, 1), 64, 64, VK_FORMAT_UNDEFINED});
 }
 
 static void a_bad_source_is_named(void **state) {
@@ -332,6 +420,10 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].march", d.rungs[1].march = (masu_march)(MASU_MARCH_UNPRUNED + 1));
     BAD("rungs[].march", d.rungs[0].march = (masu_march)-1);
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)3);
+    BAD("rungs[].easu", d.rungs[1].easu = (masu_easu)(MASU_EASU_BILINEAR + 1));
+    BAD("rungs[].easu", d.rungs[0].easu = (masu_easu)-1);
+    BAD("rungs[].fuse", d.rungs[1].fuse = (masu_switch)3);
+    BAD("half_floats", d.half_floats = (masu_switch)3);
     BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
     BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
     BAD("rungs[].occlusion", d.rungs[1].occlusion = (masu_switch)3);
@@ -348,6 +440,8 @@ static void a_bad_rung_is_named(void **state) {
     BAD("rungs[].specular_reuse_taps", d.rungs[1].specular_reuse_taps = 17);
     BAD("rungs[].specular_filter_taps", d.rungs[1].specular_filter_taps = 33);
     BAD("rungs[].specular_frames", d.rungs[1].specular_frames = 241);
+    BAD("rungs[].aa", d.rungs[0].aa = (masu_aa)(MASU_AA_SMAA_ULTRA + 1));
+    BAD("rungs[].aa", d.rungs[1].aa = (masu_aa)-1);
     BAD("rungs[].lod_error", d.rungs[1].lod_error = nan);
     BAD("rungs[].lod_error", d.rungs[0].lod_error = infinity);
     BAD("rungs[].lod_error", d.rungs[1].lod_error = -infinity);
@@ -465,12 +559,12 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
                              MASU_ON, MASU_ON, 1e9f, MASU_ON, 8, 16,
                              4,       8192,    1e30f, {1, 64, 64, 64}, MASU_ON,
                              MASU_ON, 1.0f, MASU_ON, MASU_ON, MASU_ON, MASU_ON, MASU_ON,
-                             1, 1, 1};
+                              1, 1, 1, MASU_EASU_FULL, MASU_AA_SMAA_ULTRA, MASU_ON};
     d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256,
                              MASU_OFF, MASU_OFF, -1e9f, MASU_OFF, 1, 1,
                              1,        16,       1e-30f, {64, 0, 0, 0}, MASU_OFF,
                              MASU_OFF, 1e-30f, MASU_OFF, MASU_OFF, MASU_OFF, MASU_OFF, MASU_OFF,
-                             1, 1, 1};
+                              1, 1, 1, MASU_EASU_BILINEAR, MASU_AA_OFF, MASU_OFF};
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;
@@ -603,7 +697,7 @@ static void a_missing_vulkan_handle_is_named(void **state) {
         if (missing == 2) d.vulkan.physical_device = NULL;
         if (missing == 3) d.vulkan.device = NULL;
         d.scene = NULL;
-        d.source = (masu_source){FAKE(VkImageView, 1), 64, 64};
+        d.source = (masu_source){FAKE(VkImageView, 1), 64, 64, VK_FORMAT_UNDEFINED};
         assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_ARGUMENT);
         assert_string_equal(detail.what, names[missing]);
     }
@@ -632,6 +726,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_zero_becomes_its_documented_default),
         cmocka_unit_test(zeros_inside_given_rungs_become_defaults_too),
+        cmocka_unit_test(output_follows_from_target_and_scene),
         cmocka_unit_test(what_is_given_stays_as_it_is),
         cmocka_unit_test(an_absurd_number_of_rungs_is_resolved_without_harm),
         cmocka_unit_test(a_bad_size_is_named),

@@ -18,6 +18,7 @@
 #include <cmocka.h>
 
 #include "blob.h"
+#include "output.h"
 #include "plan.h"
 #include "ray_query.h"
 #include "support_desc.h"
@@ -54,6 +55,8 @@ static const char *resource_text(uint8_t resource) {
     if (resource == MASU_RESOURCE_LIGHT_TILES) return "lights";
     if (resource == MASU_RESOURCE_SPECULAR_TILES) return "glossy";
     if (resource == MASU_RESOURCE_TOP_LEVEL) return "top";
+    if (resource == MASU_RESOURCE_SMAA_TILES) return "edges";
+    if (resource == MASU_RESOURCE_EXPOSURE) return "exposure";
     assert_in_range(resource, 1, MASU_IMAGE_COUNT - 1);
     return masu_images[resource].name;
 }
@@ -113,7 +116,7 @@ static void every_row_of_the_table_fits_what_is_derived_from_it(void **state) {
                 reads++;
             }
         }
-        assert_true(reads <= 8 && writes <= 6 && reads + writes > 0);
+        assert_true(reads <= 9 && writes <= 6 && reads + writes > 0);
     }
     for (uint32_t i = 1; i < MASU_IMAGE_COUNT; i++) {
         assert_non_null(masu_images[i].name);
@@ -412,6 +415,67 @@ static void switches_force_upscaling_and_sharpening_on_and_off(void **state) {
     }
 }
 
+static void upscaling_and_sharpening_are_one_pass_where_asked(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(SDF, 1920, 1080);
+    d.rung_count = 5;
+    for (uint32_t r = 0; r < 5; r++) d.rungs[r] = (masu_rung){.scale = 0.5f, .fuse = MASU_ON};
+    d.rungs[1].sharpen = MASU_OFF;
+    d.rungs[2].easu = MASU_EASU_FAST;
+    d.rungs[3].scale = 1.0f;
+    d.rungs[3].sharpen = MASU_ON;
+    d.rungs[4].fuse = MASU_AUTO;
+    static const char *const ends[] = {
+        "tonemap(r:hdr w:ldr) fsr1(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) easu(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) easu_fast(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:ldr) rcas(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+    };
+    for (uint32_t r = 0; r < 5; r++) {
+        char expected[512];
+        (void)snprintf(expected, sizeof expected, MARCH_ALONE LIGHT_SDF "%s", ends[r]);
+        assert_frame(&d, r, expected);
+    }
+    d.rung_count = 1;
+    compile(&d, &plan);
+    assert_false(plan.images[MASU_IMAGE_UPSCALED].used);
+    assert_string_equal(why_of(&d, MASU_PASS_EASU), "fsr1 does it");
+    assert_string_equal(why_of(&d, MASU_PASS_RCAS), "fsr1 does it");
+    d.targets.storage = 0;
+    assert_frame(&d, 0, MARCH_ALONE LIGHT_SDF
+                 "tonemap(r:hdr w:ldr) fsr1(r:ldr w:final) present(from:final to:target)");
+}
+
+/* Bilinear is the plain base: nothing sharpens it unasked. */
+static void a_rung_says_how_it_is_upscaled(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(SDF, 1920, 1080);
+    d.rung_count = 5;
+    d.rungs[0] = (masu_rung){.scale = 0.5f, .easu = MASU_EASU_FULL};
+    d.rungs[1] = (masu_rung){.scale = 0.5f, .easu = MASU_EASU_FAST};
+    d.rungs[2] = (masu_rung){.scale = 0.5f, .easu = MASU_EASU_BILINEAR};
+    d.rungs[3] = (masu_rung){.scale = 0.5f, .easu = MASU_EASU_BILINEAR, .sharpen = MASU_ON};
+    d.rungs[4] = (masu_rung){.easu = MASU_EASU_FAST}; /* nothing to upscale */
+    static const char *const ends[] = {
+        "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:ldr) easu_fast(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:ldr) bilinear(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) bilinear(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:target)",
+    };
+    for (uint32_t r = 0; r < 5; r++) {
+        char expected[512];
+        (void)snprintf(expected, sizeof expected, MARCH_ALONE LIGHT_SDF "%s", ends[r]);
+        assert_frame(&d, r, expected);
+    }
+    d.rung_count = 1;
+    assert_string_equal(why_of(&d, MASU_PASS_EASU_FAST), "rung.easu asks for another way");
+    d.rungs[0].scale = 1.0f;
+    assert_string_equal(why_of(&d, MASU_PASS_BILINEAR), "render size is output size");
+}
+
 static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 1920, 1080);
@@ -432,6 +496,48 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     d.targets.views = support_views;
     d.targets.format = VK_FORMAT_UNDEFINED;
     assert_string_equal(why_of(&d, MASU_PASS_PRESENT), "the last pass writes the target itself");
+}
+
+/* Exposure that follows the picture: two passes before tonemap, which reads what they leave. */
+static void a_metered_exposure_is_two_passes(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER, 1920, 1080);
+    assert_string_equal(why_of(&d, MASU_PASS_METER), "the exposure is given");
+    d.exposure.metered = MASU_ON;
+    assert_frame(&d, 0,
+                 GBUFFER LIGHT_RASTER "meter(r:hdr wb:exposure) expose(wb:exposure) "
+                                      "tonemap(rb:exposure r:hdr w:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_EXPOSE), "the exposure follows the picture");
+    d = source_desc(640, 360); /* nothing is exposed there */
+    d.exposure.metered = MASU_ON;
+    assert_string_equal(why_of(&d, MASU_PASS_METER), "no scene: a source image is upscaled");
+}
+
+/* The pass that comes last in its rung rounds and dithers, and no other. */
+static void the_last_pass_of_a_rung_makes_the_output(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static const uint32_t last[] = {MASU_PASS_TONEMAP, MASU_PASS_RCAS, MASU_PASS_EASU};
+    for (uint32_t storage = 0; storage < 2; storage++) {
+        masu_desc d = scene_desc(RASTER, 1920, 1080);
+        d.targets.storage = storage;
+        d.dither = MASU_ON;
+        d.rung_count = 3;
+        d.rungs[0] = (masu_rung){.scale = 1};
+        d.rungs[1] = (masu_rung){.scale = 0.5f};
+        d.rungs[2] = (masu_rung){.scale = 0.5f, .sharpen = MASU_OFF};
+        compile(&d, &plan);
+        for (uint32_t r = 0; r < 3; r++) {
+            for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+                struct masu_push push;
+                memset(&push, 0, sizeof push);
+                masu_output_push(&plan, &plan.rungs[r], p, &push);
+                if (!(plan.rungs[r].active & MASU_PASS_BIT(p))) continue;
+                assert_int_equal(push.index[3], p == last[r] ? MASU_OUTPUT_LAST | MASU_OUTPUT_DITHER : 0);
+                assert_int_equal(push.index[2], p == last[r] ? 255u | 255u << 10 | 255u << 20 : 0);
+            }
+        }
+    }
 }
 
 static void the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it(void **state) {
@@ -659,12 +765,15 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         if (parts & SDF) support_scene.sdf_march = 0xFF, support_scene.sdf_dynamic = dynamic;
         d.rungs[0].upscale = (masu_switch)((n /= 4) % 3);
         d.rungs[0].sharpen = (masu_switch)((n /= 3) % 3);
+        d.rungs[0].easu = (masu_easu)(c % 4);
+        d.rungs[0].fuse = (masu_switch)(c % 3);
         uint32_t size = (n /= 3) % 3, source = n / 3;
         d.rungs[0].scale = size ? 0.5f : 1.0f;
         if (d.rungs[0].upscale == MASU_OFF && size) continue; /* refused */
         if (source) {
             d.scene = NULL;
-            d.source = (masu_source){FAKE(VkImageView, 1), size ? 320 : 640, size ? 240 : 480};
+            d.source = (masu_source){FAKE(VkImageView, 1), size ? 320 : 640, size ? 240 : 480,
+                                     VK_FORMAT_UNDEFINED};
         }
         d.targets.storage = storage;
         compile(&d, &plan);
@@ -1017,9 +1126,9 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth, surface, occlusion and final, cone8, cone4, ao: 4 bytes each per texel; velocity 8; the
-     * atlas; SPECULAR_BYTES at half size */
-    assert_int_equal(info.left_out_bytes, 4 * (6 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
+    /* scene_depth, surface, occlusion, smooth and final, cone8, cone4, ao: 4 bytes each per texel; velocity
+     * 8; the atlas; SPECULAR_BYTES at half size */
+    assert_int_equal(info.left_out_bytes, 4 * (7 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
                                               SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
@@ -1034,13 +1143,13 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     44 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
+                     48 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
                          SPECULAR_BYTES * 500 * 250);
-    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, ldr, upscaled, final, velocity */
+    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, ldr, smooth, upscaled, final, velocity */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 28 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
+    assert_int_equal(info.left_out_bytes, 32 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
@@ -1121,6 +1230,72 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
     dark.desc.rungs[0].light_tiles = MASU_OFF;
     assert_memory_equal(plan.buffers, dark.buffers, sizeof dark.buffers);
     assert_memory_equal(plan.images, dark.images, sizeof dark.images);
+}
+
+/* ---- Anti-aliasing --------------------------------------------------------------------------- */
+
+#define EDGES(from, to) "smaa_edges(r:" from " wb:edges w:" to ") smaa_blend(r:" from " rb:edges u:" to ")"
+
+/* It stands between what makes the picture and what makes it larger; where nothing follows, both of its
+ * passes write the target. */
+static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER, 640, 480);
+    d.rung_count = 4;
+    d.rungs[0] = (masu_rung){.aa = MASU_AA_SMAA_LOW};
+    d.rungs[1] = (masu_rung){.scale = 0.5f, .aa = MASU_AA_SMAA_ULTRA};
+    d.rungs[2] = (masu_rung){.aa = MASU_AA_FXAA};
+    d.rungs[3] = (masu_rung){.aa = MASU_AA_AUTO};
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "target"));
+    assert_frame(&d, 1, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "smooth")
+                        " easu(r:smooth w:upscaled) rcas(r:upscaled w:target)");
+    assert_frame(&d, 2, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) fxaa(r:ldr w:target)");
+    assert_frame(&d, 3, GBUFFER LIGHT_RASTER TONEMAP);
+    assert_string_equal(why_of(&d, MASU_PASS_SMAA_BLEND), "rung.aa asks for it");
+    d.targets.storage = 0;
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "smooth")
+                        " present(from:smooth to:target)");
+    d = source_desc(320, 240); /* shown at 1920x1080 */
+    d.rungs[0].aa = MASU_AA_SMAA_HIGH;
+    assert_frame(&d, 0, EDGES("source", "smooth") " easu(r:smooth w:upscaled) rcas(r:upscaled w:target)");
+    d = source_desc(1920, 1080);
+    d.rungs[0].aa = MASU_AA_SMAA_HIGH;
+    assert_frame(&d, 0, EDGES("source", "target"));
+    d.rungs[0].aa = MASU_AA_FXAA;
+    assert_frame(&d, 0, "fxaa(r:source w:target)");
+    d.rungs[0].aa = MASU_AA_OFF;
+    assert_frame(&d, 0, "easu(r:source w:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_SMAA_EDGES), "rung.aa does not ask for it");
+}
+
+/* A rung without has none of its memory; the largest rung with it counts. */
+static void only_smaa_has_tables_and_tiles(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER, 640, 480);
+    d.rung_count = 3;
+    d.rungs[0].aa = MASU_AA_OFF;
+    d.rungs[1] = (masu_rung){.scale = 0.5f, .aa = MASU_AA_FXAA};
+    d.rungs[2].aa = MASU_AA_AUTO;
+    compile(&d, &plan);
+    assert_false(plan.needs.smoothing);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SMAA_AREA].bytes, 0);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SMAA_TILES].bytes, 0);
+    assert_int_equal(plan.images[MASU_IMAGE_SMOOTH].width, 320);
+    d.rungs[1].aa = MASU_AA_SMAA_MEDIUM;
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SMAA_AREA].bytes, 4 * MASU_SMAA_AREA_WORDS);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SMAA_TILES].bytes, 4 * (8 + 20 * 15 * 33));
+    assert_int_equal(plan.images[MASU_IMAGE_SMOOTH].width, 320);
+    assert_int_equal(plan.images[MASU_IMAGE_SMOOTH].height, 240);
+    d = source_desc(17, 16);
+    d.debug.counters = 1;
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_COUNTERS].bytes, 0);
+    d.rungs[0].aa = MASU_AA_SMAA_LOW;
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SMAA_TILES].bytes, 4 * (8 + 2 * 33));
+    assert_int_equal(plan.buffers[MASU_BUFFER_COUNTERS].bytes, 8 * MASU_COUNTER_COUNT);
 }
 
 /* ---- Reflections: who finds polygons ---------------------------------------------------------- */
@@ -1216,7 +1391,11 @@ int main(void) {
         cmocka_unit_test(a_source_image_alone_is_upscaled_and_sharpened),
         cmocka_unit_test(a_source_image_of_the_output_size_is_written_all_the_same),
         cmocka_unit_test(switches_force_upscaling_and_sharpening_on_and_off),
+        cmocka_unit_test(a_rung_says_how_it_is_upscaled),
+        cmocka_unit_test(upscaling_and_sharpening_are_one_pass_where_asked),
         cmocka_unit_test(a_target_that_is_no_storage_image_is_blitted_to),
+        cmocka_unit_test(a_metered_exposure_is_two_passes),
+        cmocka_unit_test(the_last_pass_of_a_rung_makes_the_output),
         cmocka_unit_test(the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it),
         cmocka_unit_test(readback_copies_what_is_asked_for),
         cmocka_unit_test(velocities_keep_the_frame_before_and_nothing_else_does),
@@ -1236,6 +1415,8 @@ int main(void) {
         cmocka_unit_test(readback_slots_hold_the_counters_and_then_the_images),
         cmocka_unit_test(the_public_plan_tells_what_was_compiled),
         cmocka_unit_test(bytes_left_out_are_counted_at_the_size_of_the_plan),
+        cmocka_unit_test(anti_aliasing_reads_what_is_shown_and_hands_it_on),
+        cmocka_unit_test(only_smaa_has_tables_and_tiles),
         cmocka_unit_test(the_public_memory_sums_the_blocks),
         cmocka_unit_test(lights_add_a_pass_and_two_buffers),
         cmocka_unit_test(ray_queries_stand_in_for_the_own_tree),

@@ -154,6 +154,9 @@ static void what_lights_a_scene_is_checked(void **state) {
         LIT("environment", 0, SKY[0].turbidity = x);
         LIT("environment", 0, SKY[0].ground[1] = x);
         LIT("environment", 0, SKY[0].occlusion_radius = x);
+        LIT("environment", 0, SKY[0].metered = x);
+        LIT("environment", 0, SKY[0].brighten = x);
+        LIT("environment", 0, SKY[0].darken = x);
         LIT("environment", 0, SKY[0].fog_color[0] = x);
         LIT("environment", 0, SKY[0].fog_density = x);
         LIT("environment", 0, SKY[0].fog_height = x);
@@ -709,6 +712,9 @@ static void an_environment_out_of_range_is_refused(void **state) {
         REFUSED("environment", 0, SKY->near_distance = bad[i]);
     }
     REFUSED("environment", 0, SKY->exposure = 0.0f);
+    REFUSED("environment", 0, SKY->metered = 0.5f);
+    REFUSED("environment", 0, SKY->brighten = 2e6f);
+    REFUSED("environment", 0, SKY->darken = -1.0f);
     REFUSED("environment", 0, SKY->near_distance = 0.0f);
 }
 

@@ -84,8 +84,17 @@ static vec2 by_r2_blue(uint32_t texel, uint32_t frame) {
     return masu_noise2(masu_blue_noise[texel], frame);
 }
 
+/* What a pixel of a 2x2 gets that takes turns: every fourth. */
+static vec2 by_turns(uint32_t texel, uint32_t frame) {
+    return masu_turn_noise2(masu_blue_noise[texel], frame);
+}
+
+static vec2 by_turns_fourth(uint32_t texel, uint32_t frame) { return by_turns(texel, 4 * frame); }
+
+static vec2 by_r2_fourth(uint32_t texel, uint32_t frame) { return by_r2_blue(texel, 4 * frame); }
+
 typedef vec2 sequence(uint32_t texel, uint32_t frame);
-enum { WHITE, SOBOL, SOBOL_BLUE, R2_WHITE, R2_BLUE, KINDS };
+enum { WHITE, SOBOL, SOBOL_BLUE, R2_WHITE, R2_BLUE, TURNS, TURNS_FOURTH, R2_FOURTH, KINDS };
 static const struct {
     const char *name;
     sequence *next;
@@ -93,7 +102,10 @@ static const struct {
                   {"Sobol, Owen per pixel", by_sobol},
                   {"Sobol, Owen, blue shift", by_sobol_blue},
                   {"R2, white shift", by_r2_white},
-                  {"R2, blue shift", by_r2_blue}};
+                  {"R2, blue shift", by_r2_blue},
+                  {"turns, blue shift", by_turns},
+                  {"turns, every fourth", by_turns_fourth},
+                  {"R2, every fourth", by_r2_fourth}};
 
 /* ---- What is integrated ---------------------------------------------------------------------- */
 
@@ -183,6 +195,12 @@ static void error_over_frames(void **state) {
         assert_true(off[1][R2_BLUE][i] < 1.2 * off[1][SOBOL][i]);
     }
     assert_true(off[1][R2_BLUE][6] < 0.45 * off[1][WHITE][6]);
+    for (int i = 2; i < 7; i++) {
+        assert_true(off[1][TURNS][i] < 1.4 * off[1][R2_BLUE][i]);
+        assert_true(off[1][TURNS_FOURTH][i] < 1.25 * off[1][R2_BLUE][i]);
+    }
+    /* Why the other one exists. */
+    assert_true(off[1][R2_FOURTH][3] > 1.5 * off[1][TURNS_FOURTH][3]);
 }
 
 /* The same after the pixels of the tile are filtered: (1 4 6 4 1)^2 / 256. */

@@ -52,6 +52,7 @@ static const layout layouts[] = {
       MEMBER(masu_frame_uniforms, sdf_min),
       MEMBER(masu_frame_uniforms, sdf_max), MEMBER(masu_frame_uniforms, history),
       MEMBER(masu_frame_uniforms, trace_anchor), MEMBER(masu_frame_uniforms, trace_eye),
+      MEMBER(masu_frame_uniforms, jitter),
       MEMBER(masu_frame_uniforms, sdf_params)}},
     {STRUCT(masu_instance_data),
      1,

@@ -1,0 +1,41 @@
+/*
+ * bilinear.comp: the plain upscale that others are compared with: of the display-encoded colour of
+ * the four texels around a pixel, weighted by how near they are. One invocation for each output
+ * pixel.
+ *
+ * Push constants: render_* = valid corner of the input, output_* = size to write, param.zw = input
+ * size * (1 / output size).
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/output.glsl"
+#include "upscale/place.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly image2D target;
+
+vec3 fetch(ivec2 at)
+{
+    ivec2 last = max(ivec2(pc.render_width, pc.render_height) - 1, 0);
+    return masu_sane_unit(texelFetch(source, clamp(at, ivec2(0), last), 0).rgb);
+}
+
+void main()
+{
+    uvec2 to = uvec2(pc.output_width, pc.output_height);
+    uvec2 at = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(at, to))) {
+        return;
+    }
+    masu_place place = masu_place_of(at, pc.param.zw);
+    ivec2 f = place.texel;
+    vec3 here = fetch(f), under = fetch(f + ivec2(0, 1));
+    /* In differences: of four equal texels it is that texel, to the bit. */
+    vec3 above = here + place.p.x * (fetch(f + ivec2(1, 0)) - here);
+    vec3 below = under + place.p.x * (fetch(f + ivec2(1, 1)) - under);
+    vec3 result = above + place.p.y * (below - above);
+    MASU_STORE_COLOR(target, at, result);
+}

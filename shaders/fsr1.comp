@@ -1,0 +1,91 @@
+/*
+ * fsr1.comp: EASU and RCAS in one pass, bit for bit what easu.comp and rcas.comp make of it in two.
+ * A workgroup of GROUP x GROUP upscales its block of pixels and a border of one to shared memory,
+ * as 8 bits, and sharpens from there: the image between the passes, 8 bytes of traffic for each
+ * output pixel, is not needed, and (BLOCK + 2)^2 / BLOCK^2 = 1.13 times the pixels are upscaled.
+ *
+ * Push constants: as easu.comp, and param.x as rcas.comp.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/output.glsl"
+#include "shared/unorm8.glsl"
+#include "upscale/easu.glsl"
+#include "upscale/place.glsl"
+#include "upscale/rcas.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly image2D target;
+
+const int block = MASU_FSR1_BLOCK;
+const int side = block + 2;
+const int group = MASU_GROUP * MASU_GROUP;
+shared uint upscaled[side * side]; /* 8 bits a channel: 4.6 KB of the 16 that every device has */
+
+vec3 fetch(ivec2 at)
+{
+    ivec2 last = max(ivec2(pc.render_width, pc.render_height) - 1, 0);
+    return masu_fetched_unorm8(texelFetch(source, clamp(at, ivec2(0), last), 0).rgb);
+}
+
+vec3 easu(uvec2 at)
+{
+    masu_place place = masu_place_of(at, pc.param.zw);
+    ivec2 f = place.texel;
+    masu_taps t;
+    t.b = fetch(f + ivec2(0, -1));
+    t.c = fetch(f + ivec2(1, -1));
+    t.e = fetch(f + ivec2(-1, 0));
+    t.f = fetch(f);
+    t.g = fetch(f + ivec2(1, 0));
+    t.h = fetch(f + ivec2(2, 0));
+    t.i = fetch(f + ivec2(-1, 1));
+    t.j = fetch(f + ivec2(0, 1));
+    t.k = fetch(f + ivec2(1, 1));
+    t.l = fetch(f + ivec2(2, 1));
+    t.n = fetch(f + ivec2(0, 2));
+    t.o = fetch(f + ivec2(1, 2));
+    return masu_easu(t, masu_edge_of(t, place.p), place.p);
+}
+
+vec3 upscaled_at(int i)
+{
+    uvec3 bytes = uvec3(upscaled[i], upscaled[i] >> 8, upscaled[i] >> 16) & 255u;
+    precise vec3 whole = vec3(bytes);
+    precise vec3 tail = whole * (1.0 / 16711680.0); /* unorm8.glsl */
+    precise vec3 exact = whole * (257.0 / 65536.0) + tail;
+    return exact;
+}
+
+void main()
+{
+    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    ivec2 first = ivec2(gl_WorkGroupID.xy) * block;
+    int own = int(gl_LocalInvocationIndex);
+    for (int round = 0; round < (side * side + group - 1) / group; round++) {
+        int i = min(round * group + own, side * side - 1);
+        ivec2 at = first - 1 + ivec2(i % side, i / side);
+        /* RCAS repeats the edge of the picture. A store to 8 bits rounds to nearest. */
+        uvec3 bytes = uvec3(roundEven(easu(uvec2(clamp(at, ivec2(0), last))) * 255.0));
+        if (round * group + own < side * side) {
+            upscaled[i] = bytes.r | bytes.g << 8 | bytes.b << 16;
+        }
+    }
+    barrier();
+    float strength = masu_sane(pc.param.x, 0.0, 1.0);
+    for (int round = 0; round < block * block / group; round++) {
+        int i = round * group + own;
+        ivec2 at = ivec2(i % block, i / block);
+        int centre = (at.y + 1) * side + at.x + 1;
+        at += first;
+        if (all(lessThanEqual(at, last))) {
+            vec3 sharpened =
+                masu_rcas(upscaled_at(centre - side), upscaled_at(centre - 1), upscaled_at(centre),
+                          upscaled_at(centre + 1), upscaled_at(centre + side), strength);
+            MASU_STORE_COLOR(target, at, sharpened);
+        }
+    }
+}

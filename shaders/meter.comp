@@ -1,0 +1,49 @@
+/*
+ * meter.comp: how many pixels of the picture have which luminance. An invocation looks at 4x4 pixels, a
+ * workgroup counts in shared memory and adds what it has to the buffer. Integers alone: the sums do not
+ * depend on who comes first.
+ *
+ * Push constants: render_* = the picture, output_* = invocations.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/globals.glsl"
+#include "shared/tone.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D hdr_image;
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) buffer Exposure
+{
+    uint header[MASU_EXPOSURE_HEADER];
+    uint bins[MASU_EXPOSURE_BINS];
+};
+
+shared uint counts[MASU_EXPOSURE_BINS];
+
+void main()
+{
+    for (uint k = 0u; k < uint(MASU_EXPOSURE_BINS); k += 64u) {
+        counts[k + gl_LocalInvocationIndex] = 0u;
+    }
+    barrier();
+    ivec2 from = 4 * ivec2(gl_GlobalInvocationID.xy);
+    for (int k = 0; k < 16; k++) {
+        ivec2 at = from + ivec2(k & 3, k >> 2);
+        if (all(lessThan(at, ivec2(pc.render_width, pc.render_height)))) {
+            uint bin = masu_luminance_bin(texelFetch(hdr_image, at, 0).rgb);
+            if (bin < uint(MASU_EXPOSURE_BINS)) {
+                atomicAdd(counts[bin], 1u);
+            }
+        }
+    }
+    barrier();
+    for (uint k = 0u; k < uint(MASU_EXPOSURE_BINS); k += 64u) {
+        uint n = counts[k + gl_LocalInvocationIndex];
+        if (n > 0u) {
+            atomicAdd(bins[k + gl_LocalInvocationIndex], n);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+/*
+ * output.glsl: how colour passes store what they make. Compute; a source of set 0 only where
+ * MASU_OUTPUT says that the picture is a scene's.
+ *
+ * Between tone curve and target the picture is display-encoded, as EASU and RCAS want it: sRGB in
+ * 0..1; for targets that go beyond white, SMPTE ST 2084 of nits, in 0..1 too. The pass that comes last
+ * in its rung (index.w of the push constants) stores what the target wants: in linear encoding it
+ * decodes, else it rounds to the target's steps, where index.z says so. Nothing before it does: EASU
+ * and RCAS would sharpen the noise.
+ *
+ * Dither: a step s of the target is taken with the share of the pixels that lies between: floor(v s +
+ * u), u evenly in 0..1. Its mean is v, and a v that is a step stays one whatever u is: 0 and 1 do.
+ * (Triangular noise has a variance that does not depend on v, but is there in black and white too.)
+ * u is R2 over the pixels (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
+ * 2018), plus the golden ratio for each frame: of integers, so that all drivers have one pattern.
+ *
+ * MASU_OUTPUT: of a scene. MASU_DEEP: images are rgba16f, else rgba8.
+ */
+#ifndef MASU_OUTPUT_GLSL
+#define MASU_OUTPUT_GLSL
+
+#include "shared/masu_shared.h"
+#include "shared/store.glsl"
+
+#ifdef MASU_DEEP
+#define MASU_COLOR_FORMAT rgba16f
+#else
+#define MASU_COLOR_FORMAT rgba8
+#endif
+
+#ifdef MASU_OUTPUT
+#include "shared/globals.glsl"
+#include "shared/tone.glsl"
+
+layout(constant_id = 6) const uint masu_encoding = MASU_OUTPUT_SRGB;
+layout(constant_id = 7) const bool masu_finishes = true; /* false: what comes last rounds and swaps nothing */
+
+bool masu_is_last()
+{
+    return (pc.index.w & MASU_OUTPUT_LAST) != 0u;
+}
+
+/* To the steps of the target; 0: as it is. */
+float masu_rounded(float v, uint steps, uint noise)
+{
+    bool dither = (pc.index.w & MASU_OUTPUT_DITHER) != 0u;
+    float u = dither ? float(noise >> 8) * (1.0 / 16777216.0) : 0.5;
+    float s = float(max(steps, 1u));
+    precise float scaled = masu_sane(v, 0.0, 1.0) * s;
+    /* A step that came back from 8 bits or a half may lie an ulp below itself. */
+    float near = floor(scaled + 0.5);
+    float down = abs(scaled - near) < 1e-3 ? near : floor(scaled + u);
+    return steps == 0u ? v : min(down, s) / s;
+}
+
+vec3 masu_stepped(vec3 v, uvec2 at)
+{
+    uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + frame.history.x * 0x9E3779B9u;
+    uint steps = pc.index.z;
+    /* A third apart: what one channel has too much, the others have too little. */
+    return vec3(masu_rounded(v.r, steps & 1023u, noise),
+                masu_rounded(v.g, steps >> 10 & 1023u, noise + 0x55555555u),
+                masu_rounded(v.b, steps >> 20 & 1023u, noise + 0xAAAAAAAAu));
+}
+
+/* What to store of display-encoded colour. */
+vec3 masu_output(vec3 v, uvec2 at)
+{
+    if (!masu_is_last()) {
+        return v;
+    }
+    if (masu_encoding == MASU_OUTPUT_LINEAR) {
+        return vec3(masu_pq_decode(v.r), masu_pq_decode(v.g), masu_pq_decode(v.b)) * (1.0 / 80.0);
+    }
+    if (!masu_finishes) {
+        return v;
+    }
+    vec3 stepped = pc.index.z != 0u ? masu_stepped(v, at) : v;
+    return (pc.index.w & MASU_OUTPUT_SWAP) != 0u ? stepped.bgr : stepped;
+}
+
+#ifdef MASU_DEEP
+/* v of at least 0 and less than 65504 rounded to what a half holds: some drivers cut off the rest, and a
+ * step of 10 bits less half of one is no longer that step. Below 2^-14 halves are finer than needed. */
+vec3 masu_nearest_half(vec3 v)
+{
+    uvec3 bits = floatBitsToUint(v) + 0xFFFu + (floatBitsToUint(v) >> 13 & 1u);
+    return uintBitsToFloat(bits & 0xFFFFE000u);
+}
+
+#define MASU_STORE_COLOR(img, p, v)                                                                \
+    MASU_STORE_HALF(img, p, vec4(masu_nearest_half(masu_output(v, uvec2(p))), 1.0))
+#else
+#define MASU_STORE_COLOR(img, p, v) MASU_STORE_UNORM(img, p, vec4(masu_output(v, uvec2(p)), 1.0))
+#endif
+
+#else /* a source image: as it is */
+
+#ifndef MASU_GLOBALS_GLSL
+layout(push_constant) uniform Push
+{
+    masu_push pc;
+};
+#endif
+
+#define MASU_STORE_COLOR(img, p, v) MASU_STORE_UNORM(img, p, vec4((v), 1.0))
+#endif
+
+#endif

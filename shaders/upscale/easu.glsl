@@ -1,0 +1,146 @@
+/*
+ * easu.glsl: the arithmetic of FSR1's edge-adaptive upscale (AMD, ffx_fsr1 v1.0.2, fp32 path),
+ * approximate reciprocals included. The scalar judge is tests/reference/fsr1.c.
+ */
+#ifndef MASU_EASU_GLSL
+#define MASU_EASU_GLSL
+
+/* These two are specification, not optimisation: a true reciprocal changes hard edges by 16/255 and
+ * binary noise by 70/255. They are finite for every operand met here, 0 included. */
+float approximate_rcp(float a)
+{
+    return uintBitsToFloat(0x7EF07EBBu - floatBitsToUint(a));
+}
+
+float approximate_rsqrt(float a)
+{
+    return uintBitsToFloat(0x5F347D74u - (floatBitsToUint(a) >> 1));
+}
+
+/* Twice the luma, cheaply. */
+float luma(vec3 c)
+{
+    precise float red_green = c.r * 0.5 + c.g;
+    precise float all_three = c.b * 0.5 + red_green;
+    return all_three;
+}
+
+/* How straight the luma runs through three texels in a row: 1 = monotonic, 0 = a reversal. For
+ * equal lumas 0 times the finite "reciprocal of 0" is 0: an exact division would need a guard. */
+float straightness(float before, float centre, float after)
+{
+    precise float largest = max(abs(after - centre), abs(centre - before));
+    precise float ratio = min(abs(after - before) * approximate_rcp(largest), 1.0);
+    precise float squared = ratio * ratio;
+    return squared;
+}
+
+/* Adds one of the four centres: xy gradient, z straightness of both axes. */
+vec3 add_edge(vec3 edge, float weight, float above, float left, float centre, float right,
+              float below)
+{
+    precise float x = edge.x + (right - left) * weight;
+    precise float z = edge.z + straightness(left, centre, right) * weight;
+    precise float y = edge.y + (below - above) * weight;
+    z = z + straightness(above, centre, below) * weight;
+    return vec3(x, y, z);
+}
+
+struct masu_kernel {
+    vec2 dir;   /* unit vector across the edge */
+    vec2 scale; /* shortens the kernel across the edge, lengthens it along */
+    float lobe; /* strength of the window */
+    float clip; /* squared distance where the window ends */
+};
+
+masu_kernel kernel_of(vec3 edge)
+{
+    precise float x = edge.x;
+    precise float y = edge.y;
+    precise float square = x * x + y * y;
+    bool none = square < 1.0 / 32768.0;
+    precise float unit = none ? 1.0 : approximate_rsqrt(square);
+    x = (none ? 1.0 : x) * unit;
+    y = y * unit;
+
+    precise float len = edge.z * 0.5;
+    len = len * len;
+
+    precise float square_unit = x * x + y * y;
+    precise float stretch = square_unit * approximate_rcp(max(abs(x), abs(y)));
+    precise float longer = 1.0 + (stretch - 1.0) * len;
+    precise float shorter = 1.0 + -0.5 * len;
+    precise float lobe = 0.5 + (0.25 - 0.04 - 0.5) * len;
+    return masu_kernel(vec2(x, y), vec2(longer, shorter), lobe, approximate_rcp(lobe));
+}
+
+/* Adds one tap to rgb = weighted colour, a = weight. The weight is a polynomial stand-in for a
+ * windowed sinc, of the squared distance in the kernel's own axes. */
+vec4 add_tap(vec4 sum, masu_kernel k, vec2 offset, vec3 colour)
+{
+    precise float x = (offset.x * k.dir.x + offset.y * k.dir.y) * k.scale.x;
+    precise float y = (offset.x * -k.dir.y + offset.y * k.dir.x) * k.scale.y;
+    precise float distance = min(x * x + y * y, k.clip);
+    precise float base = 0.4 * distance + -1.0;
+    base = 1.5625 * (base * base) + -0.5625;
+    precise float window = k.lobe * distance + -1.0;
+    precise float weight = base * (window * window);
+    precise vec3 weighted = sum.rgb + colour * weight;
+    precise float weights = sum.a + weight;
+    return vec4(weighted, weights);
+}
+
+/* The twelve texels around a pixel; f is at floor(p).
+ *   b c
+ * e f g h
+ * i j k l
+ *   n o    */
+struct masu_taps {
+    vec3 b, c, e, f, g, h, i, j, k, l, n, o;
+};
+
+/* Weights of f, g, j, k. */
+vec4 centres_of(vec2 p)
+{
+    precise vec2 q = 1.0 - p;
+    precise vec4 weights = vec4(q.x * q.y, p.x * q.y, q.x * p.y, p.x * p.y);
+    return weights;
+}
+
+vec3 masu_edge_of(masu_taps t, vec2 p)
+{
+    float f = luma(t.f), g = luma(t.g), j = luma(t.j), k = luma(t.k);
+    float b = luma(t.b), c = luma(t.c), e = luma(t.e), h = luma(t.h);
+    float i = luma(t.i), l = luma(t.l), n = luma(t.n), o = luma(t.o);
+    vec4 w = centres_of(p);
+    vec3 edge = vec3(0.0);
+    edge = add_edge(edge, w.x, b, e, f, g, j);
+    edge = add_edge(edge, w.y, c, f, g, h, k);
+    edge = add_edge(edge, w.z, f, i, j, k, n);
+    return add_edge(edge, w.w, g, j, k, l, o);
+}
+
+/* The clamp removes ringing, and makes a flat area come out exactly as it went in. */
+vec3 masu_easu(masu_taps t, vec3 edge, vec2 p)
+{
+    masu_kernel shape = kernel_of(edge);
+    vec4 sum = vec4(0.0);
+    sum = add_tap(sum, shape, vec2(0.0, -1.0) - p, t.b);
+    sum = add_tap(sum, shape, vec2(1.0, -1.0) - p, t.c);
+    sum = add_tap(sum, shape, vec2(-1.0, 1.0) - p, t.i);
+    sum = add_tap(sum, shape, vec2(0.0, 1.0) - p, t.j);
+    sum = add_tap(sum, shape, vec2(0.0, 0.0) - p, t.f);
+    sum = add_tap(sum, shape, vec2(-1.0, 0.0) - p, t.e);
+    sum = add_tap(sum, shape, vec2(1.0, 1.0) - p, t.k);
+    sum = add_tap(sum, shape, vec2(2.0, 1.0) - p, t.l);
+    sum = add_tap(sum, shape, vec2(2.0, 0.0) - p, t.h);
+    sum = add_tap(sum, shape, vec2(1.0, 0.0) - p, t.g);
+    sum = add_tap(sum, shape, vec2(1.0, 2.0) - p, t.o);
+    sum = add_tap(sum, shape, vec2(0.0, 2.0) - p, t.n);
+    vec3 least = min(min(t.f, t.g), min(t.j, t.k));
+    vec3 most = max(max(t.f, t.g), max(t.j, t.k));
+    precise vec3 mean = sum.rgb * (1.0 / sum.a); /* the four centres keep the sum well above 0 */
+    return min(most, max(least, mean));
+}
+
+#endif

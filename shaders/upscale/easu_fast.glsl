@@ -1,0 +1,144 @@
+/*
+ * easu_fast.glsl: an edge-adaptive upscale after FSR1's EASU (easu.glsl), for about half of its
+ * arithmetic. The scalar judge is MASU_REF_FAST of tests/reference/fsr1.c. What differs:
+ * - Where the four texels around a pixel differ by at most a step of 8 bits, it is their bilinear
+ *   mean. Both that and what EASU gives lie between the least and the most of the four (EASU's
+ *   clamp), so they differ by a step at most. The other eight texels are not read: they can turn
+ *   and stretch the kernel, but not lead it out of that range.
+ * - How straight an edge is is asked once, of the luma that bilinear filtering gives at the pixel
+ *   and one texel beside it, instead of at each of the four texels. The gradient is the same number
+ *   in both: the mean of four differences is the difference of two means.
+ * - Three equal lumas are not asked which of them differs in the last bit: a small number under the
+ *   fraction makes that continuous. So nothing has to be exact: fetches are taken as they come, the
+ *   compiler may fuse, and taps lie at whole steps from the first instead of each being turned.
+ *
+ * With MASU_HALF the taps are weighted and summed in 16-bit floats. What decides (flat or not, the
+ * edge) stays in 32: a half of a quotient of small differences would be noise.
+ */
+#ifndef MASU_EASU_FAST_GLSL
+#define MASU_EASU_FAST_GLSL
+
+#ifdef MASU_HALF
+#define real float16_t
+#define real2 f16vec2
+#define real3 f16vec3
+#define real4 f16vec4
+#else
+#define real float
+#define real2 vec2
+#define real3 vec3
+#define real4 vec4
+#endif
+
+/* Half a step of 8 bits of grey, in twice the luma. */
+const float masu_least_contrast = 1.0 / 256.0;
+
+/* The twelve texels around a pixel; f is at floor(p).
+ *   b c
+ * e f g h
+ * i j k l
+ *   n o    */
+struct masu_taps {
+    vec3 b, c, e, f, g, h, i, j, k, l, n, o;
+};
+
+/* AMD's approximations (ffx_fsr1 v1.0.2): finite for every operand met here, 0 included. */
+float approximate_rcp(float a)
+{
+    return uintBitsToFloat(0x7EF07EBBu - floatBitsToUint(a));
+}
+
+float approximate_rsqrt(float a)
+{
+    return uintBitsToFloat(0x5F347D74u - (floatBitsToUint(a) >> 1));
+}
+
+/* Twice the luma, cheaply. */
+float luma(vec3 c)
+{
+    return c.b * 0.5 + (c.r * 0.5 + c.g);
+}
+
+/* 1.02: as c/255 is rounded, and for inputs of more bits. */
+bool masu_flat(vec3 least, vec3 most)
+{
+    return all(lessThan(most - least, vec3(1.02 / 255.0)));
+}
+
+vec4 masu_centres(vec2 p)
+{
+    vec2 q = 1.0 - p;
+    return vec4(q.x * q.y, p.x * q.y, q.x * p.y, p.x * p.y);
+}
+
+/* In differences: of four equal texels it is that texel, to the bit. Were a constant half way
+ * between two steps of 8 bits to fall to either, RCAS would make a pattern of it. */
+vec3 masu_bilinear(masu_taps t, vec2 p)
+{
+    vec3 above = t.f + p.x * (t.g - t.f);
+    vec3 below = t.j + p.x * (t.k - t.j);
+    return above + p.y * (below - above);
+}
+
+float straightness(float before, float centre, float after)
+{
+    float largest = max(abs(after - centre), abs(centre - before)) + masu_least_contrast;
+    float ratio = min(abs(after - before) * approximate_rcp(largest), 1.0);
+    return ratio * ratio;
+}
+
+real4 add_tap(real4 sum, real2 v, real lobe, real clip, vec3 colour)
+{
+    real distance = min(v.x * v.x + v.y * v.y, clip);
+    real base = real(0.4) * distance - real(1.0);
+    real window = lobe * distance - real(1.0);
+    real weight = (real(1.5625) * base * base - real(0.5625)) * (window * window);
+    return sum + real4(real3(colour), real(1.0)) * weight;
+}
+
+vec3 masu_easu_fast(masu_taps t, vec2 p, vec3 least, vec3 most)
+{
+    vec4 w = masu_centres(p);
+    vec4 fgjk = vec4(luma(t.f), luma(t.g), luma(t.j), luma(t.k));
+    float above = dot(w, vec4(luma(t.b), luma(t.c), fgjk.xy));
+    float below = dot(w, vec4(fgjk.zw, luma(t.n), luma(t.o)));
+    float left = dot(w, vec4(luma(t.e), fgjk.x, luma(t.i), fgjk.z));
+    float right = dot(w, vec4(fgjk.y, luma(t.h), fgjk.w, luma(t.l)));
+    float centre = dot(w, fgjk);
+
+    vec2 dir = vec2(right - left, below - above);
+    float square = dot(dir, dir);
+    bool none = square < 1.0 / 32768.0;
+    dir = none ? vec2(1.0, 0.0) : dir * approximate_rsqrt(square);
+    float len = 0.5 * (straightness(left, centre, right) + straightness(above, centre, below));
+    len = len * len;
+    float stretch = dot(dir, dir) * approximate_rcp(max(abs(dir.x), abs(dir.y)));
+    vec2 scale = vec2(1.0 + (stretch - 1.0) * len, 1.0 - 0.5 * len);
+    real lobe = real(0.5 - 0.29 * len);
+    real clip = real(approximate_rcp(0.5 - 0.29 * len));
+
+    /* A step to the right and one down in the kernel's axes; from there to each tap. */
+    real2 x = real2(vec2(dir.x, -dir.y) * scale);
+    real2 y = real2(vec2(dir.y, dir.x) * scale);
+    real2 f = -real(p.x) * x - real(p.y) * y;
+    real2 g = f + x;
+    real2 j = f + y;
+    real2 k = g + y;
+    real4 sum = real4(0.0);
+    sum = add_tap(sum, f - y, lobe, clip, t.b);
+    sum = add_tap(sum, g - y, lobe, clip, t.c);
+    sum = add_tap(sum, f - x, lobe, clip, t.e);
+    sum = add_tap(sum, f, lobe, clip, t.f);
+    sum = add_tap(sum, g, lobe, clip, t.g);
+    sum = add_tap(sum, g + x, lobe, clip, t.h);
+    sum = add_tap(sum, j - x, lobe, clip, t.i);
+    sum = add_tap(sum, j, lobe, clip, t.j);
+    sum = add_tap(sum, k, lobe, clip, t.k);
+    sum = add_tap(sum, k + x, lobe, clip, t.l);
+    sum = add_tap(sum, j + y, lobe, clip, t.n);
+    sum = add_tap(sum, k + y, lobe, clip, t.o);
+    vec3 mean = vec3(sum.rgb) * (1.0 / float(sum.a)); /* the four keep the sum well above 0 */
+    return min(most, max(least, mean));
+}
+
+#endif

@@ -1,0 +1,258 @@
+/* test_truth.c: a shifted projection moves polygons, SDF and velocities by one and the same part
+ * of a pixel; the truth of a picture with an edge in it is the area that the edge leaves of each
+ * pixel; and the table of errors is made. The scene's box and SDF share an edge at x = -0.013 on
+ * the plane z = -5, glowing before black: the box above y = 0, the SDF below. */
+#include "support.h"
+
+#include "bench_picture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE = 96, PIXELS = SIZE * SIZE, PLACES = 64 };
+
+#define EDGE -0.013 /* the camera is on the glowing side, and sees no other face */
+#define AWAY 5.0
+#define FOV 0.7
+
+static uint8_t picture[4 * PIXELS];
+
+/* The camera rolled by an angle, and with it the edge. */
+static masu_camera rolled(double angle) {
+    return (masu_camera){.forward = {0, 0, -1},
+                         .up = {(float)sin(angle), (float)cos(angle), 0},
+                         .fov_y = (float)FOV,
+                         .near_distance = 0.1f};
+}
+
+/* x and y on the plane of the edge, affine in pixels: a[0] px + a[1] py + a[2]. */
+static void plane_of(double angle, double x[3], double y[3]) {
+    double step = 2 * AWAY * tan(FOV / 2) / SIZE;
+    x[0] = step * cos(angle), x[1] = -step * sin(angle);
+    y[0] = -step * sin(angle), y[1] = -step * cos(angle);
+    x[2] = -SIZE / 2 * (x[0] + x[1]) - EDGE; /* from the edge */
+    y[2] = -SIZE / 2 * (y[0] + y[1]);
+}
+
+static double at(const double a[3], double px, double py) { return a[0] * px + a[1] * py + a[2]; }
+
+static double positive_square(double v) { return v > 0 ? v * v : 0; }
+
+/* Share of the pixel whose corner is (px, py) where a is above 0. */
+static double share(const double a[3], double px, double py) {
+    double n[2] = {fabs(a[0]), fabs(a[1])};
+    double least = at(a, px, py) + fmin(a[0], 0) + fmin(a[1], 0); /* of its four corners */
+    double most = least + n[0] + n[1];
+    if (!(fmin(n[0], n[1]) > 1e-6 * fmax(n[0], n[1])))
+        return fmin(fmax(most / fmax(n[0], n[1]), 0), 1);
+    double sum = positive_square(most) - positive_square(most - n[0]) -
+                 positive_square(most - n[1]) + positive_square(least);
+    return sum / (2 * n[0] * n[1]);
+}
+
+static void open_truth(masu_session *s) {
+    char error[ERROR_SIZE];
+    masu_session_desc d = test_desc("test_truth", SIZE, SIZE);
+    assert_ok(masu_picture_open(&d, PLACES, s, error, sizeof error));
+}
+
+/* ---- Tests ----------------------------------------------------------------------------------- */
+
+static void places_are_even(void **state) {
+    (void)state;
+    for (uint32_t n = 1; n <= 256; n *= 4) {
+        uint8_t across[256] = {0}, down[256] = {0};
+        for (uint32_t i = 0; i < n; i++) {
+            float place[2];
+            masu_picture_place(i, n, place);
+            assert_true(fabsf(place[0]) < 0.5f && fabsf(place[1]) < 0.5f);
+            across[(uint32_t)((place[0] + 0.5f) * (float)n)]++;
+            down[(uint32_t)((place[1] + 0.5f) * (float)n)]++;
+        }
+        for (uint32_t i = 0; i < n; i++) assert_true(across[i] == 1 && down[i] == 1);
+    }
+    float far[2]; /* of numbers that are no power of two as well */
+    for (uint32_t i = 0; i < 4095; i++) {
+        masu_picture_place(i, 4095, far);
+        assert_true(fabsf(far[0]) <= 0.5f && fabsf(far[1]) <= 0.5f);
+    }
+}
+
+static void eight_bits_come_back(void **state) {
+    (void)state;
+    for (uint32_t v = 0; v < 256; v++)
+        assert_int_equal(masu_picture_encoded(masu_picture_decoded((uint8_t)v)), v);
+    assert_int_equal(masu_picture_encoded(2.0f), 255);
+    assert_int_equal(masu_picture_encoded(nanf("")), 0);
+}
+
+/* Lit pixels of the box's half, and of the SDF's; rows that count. */
+static void count_lit(const double y[3], double lit[2], double all[2]) {
+    lit[0] = lit[1] = all[0] = all[1] = 0;
+    double pixel = hypot(y[0], y[1]);
+    for (uint32_t p = 0; p < PIXELS; p++) {
+        double v = at(y, p % SIZE + 0.5, p / SIZE + 0.5);
+        if (fabs(v) < 3 * pixel) continue;
+        all[v < 0]++;
+        lit[v < 0] += picture[4 * p + 1] > 64;
+    }
+}
+
+/* An edge that leans by one pixel in 8 crosses the pixels' centres at as many places as there are
+ * rows: the number of lit pixels tells where it is to some hundredths of a pixel. */
+static void a_jitter_moves_all_alike(void **state) {
+    (void)state;
+    static const float jitters[][2] = {{0.6f, 0}, {-0.35f, 0}, {0, 0.6f}, {0, -1.0f}, {1.0f, 0.3f}};
+    masu_session s;
+    masu_session_desc d = test_desc("test_truth", SIZE, SIZE);
+    d.desc.rung_count = 1;
+    open_session(&s, &d);
+    for (size_t i = 0; i < sizeof jitters / sizeof *jitters; i++) {
+        double angle = 0.1235 + (jitters[i][0] != 0.0f ? 0.0 : acos(0.0)), x[3], y[3];
+        plane_of(angle, x, y);
+        masu_camera camera = rolled(angle);
+        masu_frame_desc f = {.camera = &camera, .cut = 1};
+        masu_commands commands;
+        double still[2], moved[2], all[2];
+        draw(&s, &f, &commands, picture);
+        count_lit(y, still, all);
+        memcpy(camera.jitter, jitters[i], sizeof camera.jitter);
+        draw(&s, &f, &commands, picture);
+        count_lit(y, moved, all);
+        /* Pixels by which the edge has come nearer to the dark side, and what the jitter says. */
+        double want =
+            ((double)jitters[i][0] * x[0] + (double)jitters[i][1] * x[1]) / hypot(x[0], x[1]);
+        for (int half = 0; half < 2; half++) {
+            double length = all[half] / SIZE; /* of the edge, about: what it sweeps has that side */
+            double got = (moved[half] - still[half]) / (length / fabs(cos(0.1235)));
+            if (fabs(got - want) > 0.1)
+                fail_msg("jitter %g,%g, %s: edge moved by %g pixels, expected %g",
+                         (double)jitters[i][0], (double)jitters[i][1], half ? "SDF" : "box", got,
+                         want);
+        }
+    }
+    close_session(&s);
+}
+
+static float half_float(uint16_t bits) {
+    float value = bits & 0x7C00u
+                      ? ldexpf((float)((bits & 0x3FFu) | 0x400u), (int)(bits >> 10 & 31u) - 25)
+                      : ldexpf((float)(bits & 0x3FFu), -24);
+    return bits & 0x8000u ? -value : value;
+}
+
+static void velocities_hold_the_jitter(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = test_desc("test_truth", SIZE, SIZE);
+    d.desc.rung_count = 1;
+    d.desc.readback = MASU_READBACK_VELOCITY;
+    open_session(&s, &d);
+    masu_camera camera = rolled(0.3);
+    masu_frame_desc f = {.camera = &camera};
+    masu_commands commands;
+    masu_readback_image image;
+    draw(&s, &f, &commands, NULL);
+    camera.jitter[0] = 0.5f, camera.jitter[1] = -0.25f;
+    draw(&s, &f, &commands, NULL);
+    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
+    for (uint32_t p = 0; p < PIXELS; p++) {
+        uint16_t v[4];
+        memcpy(v, (const uint8_t *)image.pixels + image.row_bytes * (p / SIZE) + 8 * (p % SIZE),
+               sizeof v);
+        assert_true(half_float(v[3]) == 1.0f);
+        assert_true(fabsf(half_float(v[0]) - 0.5f) < 2e-3f);
+        assert_true(fabsf(half_float(v[1]) + 0.25f) < 2e-3f);
+    }
+    camera.jitter[0] = 1.01f;
+    assert_int_equal(masu_frame(s.m, &f, &commands), MASU_ERROR_ARGUMENT);
+    camera.jitter[0] = nanf("");
+    assert_int_equal(masu_frame(s.m, &f, &commands), MASU_ERROR_ARGUMENT);
+    close_session(&s);
+}
+
+/* Along an axis 64 places are right to half of a 64th, along others to four of them at worst. On
+ * top the picture's 8 bits, at half of a step on either side, and what the raster snaps. */
+static void an_edge_is_as_wide_as_it_covers(void **state) {
+    (void)state;
+    static const double angles[] = {0, 0.12, 0.5, 0.785398, 1.570796};
+    masu_session s;
+    open_truth(&s);
+    /* Steps of the raster, 64ths of a pixel: a vertex is moved by up to one. */
+    double grid = ldexp(64.0, -(int)s.host.properties.limits.subPixelPrecisionBits);
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
+        char error[ERROR_SIZE];
+        double x[3], y[3], worst[2] = {0, 0}, sum[2] = {0, 0}, count[2] = {0, 0}, white = 0;
+        plane_of(angles[i], x, y);
+        masu_camera camera = rolled(angles[i]);
+        masu_frame_desc f = {.camera = &camera};
+        assert_ok(masu_picture_truth(&s, &f, PLACES, 1, picture, NULL, error, sizeof error));
+        for (uint32_t p = 0; p < PIXELS; p++)
+            white = fmax(white, (double)masu_picture_decoded(picture[4 * p + 1]));
+        assert_true(white > 0.2 && white < 0.9);
+        for (uint32_t p = 0; p < PIXELS; p++) {
+            double v = at(y, p % SIZE + 0.5, p / SIZE + 0.5);
+            double covered = share(x, p % SIZE, p / SIZE);
+            if (fabs(v) < 3 * hypot(y[0], y[1])) continue;
+            double off = (double)masu_picture_decoded(picture[4 * p + 1]) / white - covered;
+            worst[v < 0] = fmax(worst[v < 0], fabs(off));
+            if (covered > 1e-6 && covered < 1 - 1e-6) sum[v < 0] += off * off, count[v < 0]++;
+        }
+        int axis = i == 0 || i == 4;
+        for (int half = 0; half < 2; half++) {
+            double rms = sqrt(sum[half] / fmax(count[half], 1));
+            print_message("  angle %.2f, %s: worst %.2f/64, rms %.2f/64 of %g pixels\n", angles[i],
+                          half ? "SDF" : "box", 64 * worst[half], 64 * rms, count[half]);
+            assert_true(count[half] > SIZE / 4);
+            double snapped = half ? 0.0 : grid;
+            assert_true(64 * worst[half] < (axis ? 1.5 : 5.0) + snapped);
+            assert_true(64 * rms < (axis ? 1.5 : 2.5) + snapped);
+        }
+    }
+    close_session(&s);
+}
+
+/* masu image-error: a row for each chain, and what is smaller is farther from the truth. */
+static void the_table_is_made(void **state) {
+    (void)state;
+    char command[2048], line[4096], path[] = "/tmp/masu-truth-XXXXXX";
+    const char *build = getenv("BUILD");
+    int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    snprintf(command, sizeof command,
+             "%s/bin/masu image-error %s --size 96x64 --positions 4 --runs 1 --scales 1,0.8,0.4 "
+             "--csv %s "
+             "--validate >/dev/null 2>&1",
+             build ? build : "build", scene_path("test_truth"), path);
+    assert_int_equal(system(command), 0);
+    FILE *f = fopen(path, "r");
+    assert_non_null(f);
+    double whole = -1, small = -1, flip, scale;
+    uint32_t rows = 0;
+    char name[64];
+    while (fgets(line, sizeof line, f)) {
+        if (sscanf(line, "test_truth,%lf,%63[^,],%*u,%*u,%lf", &scale, name, &flip) != 3) continue;
+        rows++;
+        assert_true(flip >= 0 && flip < 0.5);
+        if (!strcmp(name, "none")) whole = flip;
+        if (!strcmp(name, "bilinear") && scale < 0.5) small = flip;
+    }
+    fclose(f);
+    remove(path);
+    assert_true(rows >= 24);
+    assert_true(whole > 0 && small > whole);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(places_are_even),
+        cmocka_unit_test(eight_bits_come_back),
+        cmocka_unit_test(a_jitter_moves_all_alike),
+        cmocka_unit_test(velocities_hold_the_jitter),
+        cmocka_unit_test(an_edge_is_as_wide_as_it_covers),
+        cmocka_unit_test(the_table_is_made),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
