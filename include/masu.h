@@ -513,6 +513,101 @@ typedef struct masu_deny {
                                      compressed */
 } masu_deny;
 
+/* ---- The governor ---------------------------------------------------------------------------- */
+
+typedef enum masu_governor_mode {
+    MASU_GOVERNOR_OFF = 0,  /* the host gives each frame's rung */
+    MASU_GOVERNOR_ON = 1,   /* MASU_RUNG_AUTO: a rung that is expected to keep the target */
+    MASU_GOVERNOR_FIXED = 2 /* MASU_RUNG_AUTO: `rung`; times are followed all the same */
+} masu_governor_mode;
+
+/* Chooses rungs by the times of frames. Rungs are taken to be in falling quality: the lowest number
+ * that fits is best. Times come from two timestamps around each frame, from masu_frame_wall, or
+ * both, which is best: a timer that lies is then found out. All zero: there is none, and it costs
+ * nothing. */
+typedef struct masu_governor_desc {
+    masu_governor_mode mode;
+    float target_ms; /* a frame's time on the GPU, 1..1000 ms; 0: 16.67 */
+    float headroom;  /* part of the target that a better rung has to leave free besides a margin for
+                        the noise that is measured, 0..0.5; 0: 0.02. Below 0: none */
+    uint32_t best_rung;  /* the lowest number it may choose */
+    uint32_t worst_rung; /* the highest; 0: the last rung */
+    uint32_t rung;       /* of MASU_GOVERNOR_FIXED */
+    uint32_t wall_only;  /* not 0: no timestamps for it, as where the device has none */
+    uint32_t dwell; /* frames: a rung is chosen to last so long, and no better one before, 1..600;
+                       0: 24 */
+    float costs[MASU_MAX_RUNGS]; /* a first guess of what the part of a frame that depends on the
+                                    rung costs, beside other rungs; 0: scale^2 */
+} masu_governor_desc;
+
+#define MASU_GOVERNOR_REASONS(X)                                                                   \
+    X(MASU_GOVERNOR_REASON_NONE, 0, "there is no governor")                                        \
+    X(MASU_GOVERNOR_REASON_START, 1, "no frame has been measured yet")                             \
+    X(MASU_GOVERNOR_REASON_HOLD, 2, "the rung fits, and no better one does")                       \
+    X(MASU_GOVERNOR_REASON_BEST, 3, "the best rung fits")                                          \
+    X(MASU_GOVERNOR_REASON_WAIT, 4, "a better rung fits, but the last change is too recent")       \
+    X(MASU_GOVERNOR_REASON_DOWN, 5, "the rung before was expected to miss the target")             \
+    X(MASU_GOVERNOR_REASON_JUMP, 6, "the load has jumped: the rung before would miss the target")  \
+    X(MASU_GOVERNOR_REASON_PANIC, 7, "two frames in a row have missed the target")                 \
+    X(MASU_GOVERNOR_REASON_UP, 8, "this better rung is expected to keep the target")               \
+    X(MASU_GOVERNOR_REASON_WORST, 9, "no rung keeps the target: the cheapest")                     \
+    X(MASU_GOVERNOR_REASON_FUTILE, 10, "no rung keeps the target; cheaper ones save nothing")         \
+    X(MASU_GOVERNOR_REASON_BLIND, 11, "no frame has been measured for long: the rung stays")       \
+    X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
+    X(MASU_GOVERNOR_REASON_HOST, 13, "the host has chosen the rung")
+
+/* Why the rung is what it is. */
+typedef enum masu_governor_reason {
+#define MASU_GOVERNOR_REASON_ENUM(name, value, text) name = value,
+    MASU_GOVERNOR_REASONS(MASU_GOVERNOR_REASON_ENUM)
+#undef MASU_GOVERNOR_REASON_ENUM
+        MASU_GOVERNOR_REASON_FORCE_32 = 0x7FFFFFFF
+} masu_governor_reason;
+
+/* What times are taken from at the moment. */
+typedef enum masu_governor_source {
+    MASU_GOVERNOR_SOURCE_NONE = 0, /* nothing that is believed */
+    MASU_GOVERNOR_SOURCE_GPU = 1,  /* timestamps, checked against the wall where it is known */
+    MASU_GOVERNOR_SOURCE_WALL = 2  /* the host's clock: there are no timestamps, or they lie */
+} masu_governor_source;
+
+/* Why the rung cannot move to where it should be. */
+typedef enum masu_governor_lock {
+    MASU_GOVERNOR_FREE = 0,
+    MASU_GOVERNOR_LOCKED_FIXED = 1,  /* there is one rung to choose from */
+    MASU_GOVERNOR_LOCKED_WORST = 2,  /* over the target at the cheapest rung */
+    MASU_GOVERNOR_LOCKED_FUTILE = 3, /* over the target, and rungs hardly differ in time */
+    MASU_GOVERNOR_LOCKED_BLIND = 4   /* there are no samples to go by */
+} masu_governor_lock;
+
+/* What the governor knows, and what it has done. */
+typedef struct masu_governor_info {
+    masu_governor_mode mode;
+    uint32_t rung; /* of the frame that was handed out last */
+    masu_governor_reason reason;
+    const char *reason_text; /* in English, never NULL */
+    masu_governor_lock locked;
+    masu_governor_source source;
+    uint32_t rung_count;
+    float predicted_ms[MASU_MAX_RUNGS]; /* of a frame like the last at each rung; 0: not known */
+    float target_ms;
+    float fixed_ms;  /* the model: fixed + load * cost of the rung */
+    float load_ms;   /* at cost 1 */
+    float slope_ms;  /* how load_ms changes in a frame */
+    float noise;     /* of one frame's time, standard deviation / time */
+    float overhead_ms; /* wall time that timestamps do not show; part of the predictions */
+    float unit; /* GPU times are multiplied by this: not 1 where the clock's unit is wrong */
+    float start_delay_ms; /* pacing: a frame of this rung that is submitted so long after its interval
+                             of target_ms has begun is expected to end within it. Waiting so long
+                             before input is read makes it that much fresher */
+    uint64_t samples, rejected; /* used; left out as no frame's time */
+    uint64_t missed;  /* of the used ones: longer than the target */
+    uint64_t changes; /* of the rung */
+} masu_governor_info;
+
+/* In English, without a newline. Never NULL. */
+MASU_API const char *masu_governor_reason_string(masu_governor_reason reason);
+
 typedef struct masu_desc {
     masu_vulkan vulkan;
     const masu_scene
@@ -552,6 +647,7 @@ typedef struct masu_desc {
      * targets of more than 8 bits, which take it. ON with 8 bits: not as storage targets. */
     masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
+    masu_governor_desc governor;
     masu_debug debug;
     masu_deny deny;
     masu_log_fn log; /* NULL: silent */
@@ -725,12 +821,14 @@ typedef struct masu_light {
     float fog_start;    /* metres from the eye, 0..1e9; nearer it is clear */
 } masu_light;
 
+#define MASU_RUNG_AUTO UINT32_MAX
+
 typedef struct masu_frame_desc {
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
     double time;     /* seconds since the start, -1e15..1e15: animation of SDF and camera path */
     float time_step; /* seconds since the frame before; 0 is fine, within +-1e15 */
-    uint32_t rung;   /* 0 .. rung_count-1 */
+    uint32_t rung;   /* 0 .. rung_count-1, or MASU_RUNG_AUTO: the governor's */
     uint32_t target; /* 0 .. targets.count-1 */
     uint32_t cut;    /* not 0: what is seen has nothing to do with the frame before (a camera cut):
                         nothing has moved. The first frame is one anyway. "Before" is the frame that
@@ -744,11 +842,18 @@ typedef struct masu_frame_desc {
 
 /* Writes this frame's uniforms and hands out the command buffer to submit. Call when the slot is
  * free: the frame that came frames_in_flight frames before has finished on the GPU. Costs no
- * allocation and no recording. MASU_ERROR_ARGUMENT: a rung, target, camera, light or parameter that
- * is out of range or not finite; nothing has been written and the frame number has not moved.
+ * allocation and no recording. commands->rung is the rung that it is drawn at. MASU_ERROR_ARGUMENT: a
+ * rung, target, camera, light or parameter that is out of range or not finite, or MASU_RUNG_AUTO
+ * without a governor; nothing has been written and the frame number has not moved.
  * MASU_ERROR_STATE: masu_load has not finished. */
 MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
                                               masu_commands *commands);
+
+/* For the governor: how long the slot's last frame took by the host's clock, ms: from its submit, or
+ * from the end of the frame before if that was later, to its fence. To be called, if at all, after the
+ * fence has been waited for and before the slot is used again. A time of the whole interval between
+ * frames will not do where the display makes the host wait. Values that are none are left out. */
+MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
 
 /* Why the last masu_load, masu_frame, masu_instance_set_transform, masu_local_light_get or _set
  * failed. */
@@ -830,7 +935,7 @@ typedef struct masu_stats_info {
     uint32_t pass_count;
     const char *pass_names[MASU_MAX_PASSES];
     uint64_t pass_ns[MASU_MAX_PASSES]; /* with debug.timestamps; passes that did not run have 0 */
-    uint64_t gpu_ns;                   /* first to last timestamp */
+    uint64_t gpu_ns; /* first to last timestamp; with debug.timestamps or a governor */
     uint32_t timed;                    /* 1: the times above were read */
     uint64_t sdf_evals;       /* of the field by the march; with debug.counters, as the next six */
     uint64_t sdf_hits;        /* pixels whose nearest surface is the SDF */
@@ -857,6 +962,7 @@ typedef struct masu_stats_info {
     float exposure; /* factor before the tone curve, where it is metered and with debug.counters; else 0 */
     uint32_t view_count;
     masu_view_stats views[MASU_MAX_VIEWS]; /* 0: the camera */
+    masu_governor_info governor; /* as of the frame that was handed out last, whatever the slot */
 } masu_stats_info;
 
 /* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for,

@@ -81,6 +81,9 @@ static void layout_host(masu_arena *arena, const masu_frame_plan *plan, masu_ren
         masu_arena_take(arena, "transparents", s->transparents, sizeof *to->transparents, 4);
     to->far_first = masu_arena_take(arena, "their order", 2 * (uint64_t)s->transparents,
                                     sizeof *to->far_first, 4);
+    to->governor = masu_arena_take(arena, "governor", d->governor.mode ? 1 : 0,
+                                   sizeof *to->governor, 8);
+    if (!d->governor.mode) to->governor = NULL;
     if (m) *m = r;
 }
 
@@ -238,6 +241,35 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
     return MASU_OK;
 }
 
+static masu_result bad_governor(masu_detail *detail, const char *what, double given, double low,
+                                double high) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is %g, allowed are %g to %g", what,
+                     given, low, high);
+}
+
+static masu_result check_governor(const masu_desc *desc, uint32_t rungs, masu_detail *detail) {
+    const masu_governor_desc *g = &desc->governor;
+    if ((unsigned)g->mode > MASU_GOVERNOR_FIXED)
+        return bad_governor(detail, "governor.mode", (unsigned)g->mode, 0, MASU_GOVERNOR_FIXED);
+    if (g->mode == MASU_GOVERNOR_OFF) return MASU_OK;
+    if (g->target_ms != 0.0f && !(g->target_ms >= 1.0f && g->target_ms <= 1000.0f))
+        return bad_governor(detail, "governor.target_ms", (double)g->target_ms, 1, 1000);
+    if (!(g->headroom <= 0.5f && g->headroom >= -1.0f))
+        return bad_governor(detail, "governor.headroom", (double)g->headroom, -1, 0.5);
+    if (g->worst_rung >= rungs)
+        return bad_governor(detail, "governor.worst_rung", g->worst_rung, 0, rungs - 1);
+    if (g->best_rung > (g->worst_rung ? g->worst_rung : rungs - 1))
+        return bad_governor(detail, "governor.best_rung", g->best_rung, 0,
+                            g->worst_rung ? g->worst_rung : rungs - 1);
+    if (g->rung >= rungs) return bad_governor(detail, "governor.rung", g->rung, 0, rungs - 1);
+    if (g->dwell > 600) return bad_governor(detail, "governor.dwell", g->dwell, 0, 600);
+    for (uint32_t r = 0; r < rungs; r++) {
+        if (!(g->costs[r] >= 0.0f && g->costs[r] <= 1e6f))
+            return bad_governor(detail, "governor.costs", (double)g->costs[r], 0, 1e6);
+    }
+    return MASU_OK;
+}
+
 /* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys
  * them. */
 static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan *plan,
@@ -252,10 +284,12 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     }
     masu_result result =
         masu_compile(desc, 1, 1, plan, detail); /* pure checks come before the first Vulkan call */
+    if (!result) result = check_governor(desc, plan->desc.rung_count, detail);
     if (!result) result = masu_vk_load(desc, vk, detail);
     if (result) return result;
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_desc possible = *desc;
+    if (vk->queue_family.timestampValidBits == 0) possible.governor.wall_only = 1;
     result = drop_specular(&possible, plan, limits, detail);
     if (!result) result = drop_occlusion(&possible, plan, limits, detail);
     if (!result) result = choose_ray_query(&possible, plan, vk, detail);
@@ -338,6 +372,17 @@ static masu_result build(masu_renderer *m, masu_detail *detail) {
     return result;
 }
 
+/* Rungs of a source image have no scale: what they cost has to be learnt. */
+static void start_governor(masu_renderer *m) {
+    const masu_desc *d = &m->plan.desc;
+    masu_governor_rung rungs[MASU_MAX_RUNGS];
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        rungs[r].scale = d->source.view ? 1.0 : (double)d->rungs[r].scale;
+        rungs[r].cost = (double)d->governor.costs[r];
+    }
+    masu_governor_init(m->governor, &d->governor, rungs, d->rung_count);
+}
+
 static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes,
                         masu_renderer **out, masu_detail *detail) {
     masu_vk vk;
@@ -376,6 +421,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     m->objects = objects;
     m->load_count = masu_load_chunks(&m->plan);
     for (uint32_t f = 0; f < MASU_MAX_FLIGHT; f++) m->slot_frame[f] = UINT64_MAX;
+    if (m->governor) start_governor(m);
     masu_keep_scene(m);
     result = build(m, detail);
     if (result) {
@@ -459,7 +505,11 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
         return masu_fail(&m->error, MASU_ERROR_STATE, "masu_load", 1, 0,
                          "masu_frame was called before masu_load had returned MASU_OK");
     }
-    if (frame->rung >= d->rung_count) {
+    if (frame->rung == MASU_RUNG_AUTO && !m->governor) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
+                         "rung is MASU_RUNG_AUTO, but governor.mode is MASU_GOVERNOR_OFF");
+    }
+    if (frame->rung >= d->rung_count && frame->rung != MASU_RUNG_AUTO) {
         return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
                          "rung %u does not exist, the last one is %u", frame->rung,
                          d->rung_count - 1);
@@ -472,16 +522,52 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     return MASU_OK;
 }
 
-masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
-    if (!m || !frame || !commands) return MASU_ERROR_ARGUMENT;
-    const masu_desc *d = &m->plan.desc;
-    uint32_t slot = (uint32_t)(m->frame % d->frames_in_flight);
-    masu_result result = check_frame(m, frame);
-    if (!result && d->scene) result = masu_write_frame(m, frame, slot, &m->error);
-    if (result) {
-        masu_log(d, MASU_LOG_ERROR, m->error.text);
-        return result;
+static uint64_t stamp_ns(const masu_renderer *m, uint32_t slot, uint32_t from, uint32_t to) {
+    const uint64_t *stamps =
+        (const uint64_t *)(const void *)(masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
+                                         m->plan.readback_times);
+    uint32_t bits = m->vk.queue_family.timestampValidBits;
+    uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
+    /* The counter may wrap between two stamps: the difference under the mask is right all the same. */
+    return (uint64_t)((double)((stamps[to] - stamps[from]) & mask) *
+                      (double)m->vk.properties.limits.timestampPeriod);
+}
+
+/* Whether the time of a pass does not depend on the render size. */
+static int is_fixed_pass(uint32_t pass) {
+    switch (masu_passes[pass].extent) {
+    case MASU_EXTENT_OUTPUT:
+    case MASU_EXTENT_ONE:
+    case MASU_EXTENT_ATLAS:
+    case MASU_EXTENT_KEPT:
+    case MASU_EXTENT_BATCHES:
+    case MASU_EXTENT_PROBES:
+    case MASU_EXTENT_SHADOW: return 1;
+    default: return pass == MASU_PASS_PRESENT;
     }
+}
+
+/* What is known of the frame that the slot has held. */
+static void tell_governor(masu_renderer *m, uint32_t slot) {
+    uint32_t stamps = masu_stamps(&m->plan.desc);
+    masu_governor_sample sample = {.frame = m->slot_frame[slot],
+                                   .rung = m->slot_rung[slot],
+                                   .wall_ms = m->slot_wall[slot]};
+    if (sample.frame == UINT64_MAX) return;
+    if (stamps) sample.gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;
+    for (uint32_t p = 0; p + 2 <= stamps && stamps > 2; p++) {
+        if (is_fixed_pass(p) && m->plan.rungs[sample.rung].active & MASU_PASS_BIT(p))
+            sample.fixed_ms += (double)stamp_ns(m, slot, p, p + 1) * 1e-6;
+    }
+    m->slot_wall[slot] = 0.0;
+    masu_governor_sample_in(m->governor, &sample);
+}
+
+static masu_result draw_frame(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
+                              masu_commands *commands) {
+    const masu_desc *d = &m->plan.desc;
+    masu_result result = d->scene ? masu_write_frame(m, frame, slot, &m->error) : MASU_OK;
+    if (result) return result;
     if (d->scene) {
         masu_write_trace(m, slot, masu_is_cut(m, frame));
         masu_write_instances(m, slot, masu_is_cut(m, frame));
@@ -502,6 +588,35 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     return MASU_OK;
 }
 
+static masu_result governed_frame(masu_renderer *m, const masu_frame_desc *frame, uint32_t slot,
+                                  masu_commands *commands) {
+    masu_frame_desc chosen = *frame;
+    uint64_t number = m->frame;
+    tell_governor(m, slot);
+    if (frame->rung == MASU_RUNG_AUTO) chosen.rung = masu_governor_pick(m->governor, number);
+    masu_result result = draw_frame(m, &chosen, slot, commands);
+    if (result) return result;
+    if (frame->rung != MASU_RUNG_AUTO) masu_governor_override(m->governor, number, frame->rung);
+    if (frame->cut) masu_governor_cut(m->governor, number);
+    return MASU_OK;
+}
+
+masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
+    if (!m || !frame || !commands) return MASU_ERROR_ARGUMENT;
+    uint32_t slot = (uint32_t)(m->frame % m->plan.desc.frames_in_flight);
+    masu_result result = check_frame(m, frame);
+    if (!result) {
+        result = m->governor ? governed_frame(m, frame, slot, commands)
+                             : draw_frame(m, frame, slot, commands);
+    }
+    if (result) masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
+    return result;
+}
+
+void masu_frame_wall(masu_renderer *m, uint32_t slot, double wall_ms) {
+    if (slot < m->plan.desc.frames_in_flight) m->slot_wall[slot] = wall_ms;
+}
+
 const masu_detail *masu_last_error(const masu_renderer *m) { return &m->error; }
 
 /* ---- Looking --------------------------------------------------------------------------------- */
@@ -513,19 +628,12 @@ static uint64_t counter(const masu_renderer *m, uint32_t slot, uint32_t index) {
 }
 
 static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
-    const uint64_t *stamps =
-        (const uint64_t *)(const void *)(masu_buffer_pointer(m, MASU_BUFFER_READBACK, slot) +
-                                         m->plan.readback_times);
-    uint32_t bits = m->vk.queue_family.timestampValidBits;
-    uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
-    double period = (double)m->vk.properties.limits.timestampPeriod;
-    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!(m->plan.rungs[out->rung].active & MASU_PASS_BIT(p))) continue;
-        /* The counter may wrap between two stamps: the difference under the mask is right all the
-         * same. */
-        out->pass_ns[p] = (uint64_t)((double)((stamps[p + 1] - stamps[p]) & mask) * period);
+    uint32_t stamps = masu_stamps(&m->plan.desc);
+    for (uint32_t p = 0; p + 1 < stamps && stamps > 2; p++) {
+        if (m->plan.rungs[out->rung].active & MASU_PASS_BIT(p))
+            out->pass_ns[p] = stamp_ns(m, slot, p, p + 1);
     }
-    out->gpu_ns = (uint64_t)((double)((stamps[MASU_PASS_COUNT] - stamps[0]) & mask) * period);
+    out->gpu_ns = stamp_ns(m, slot, 0, stamps - 1);
     out->timed = 1;
 }
 
@@ -545,6 +653,8 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     out->frame = m->slot_frame[slot];
     out->pass_count = MASU_PASS_COUNT;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) out->pass_names[p] = masu_passes[p].name;
+    if (m->governor) masu_governor_report(m->governor, &out->governor);
+    else out->governor.reason_text = masu_governor_reason_string(MASU_GOVERNOR_REASON_NONE);
     if (out->frame == UINT64_MAX) return MASU_INCOMPLETE;
     out->rung = m->slot_rung[slot];
     out->view_count = m->plan.needs.raster ? m->plan.views : 0;

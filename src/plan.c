@@ -3,6 +3,7 @@
 
 #include "blob.h"
 #include "error.h"
+#include "governor.h"
 #include "lights.h"
 #include "lod.h"
 #include "output.h"
@@ -60,6 +61,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         if (d.rungs[r].specular_filter_taps == 0) d.rungs[r].specular_filter_taps = MASU_FILTER_TAPS;
         if (d.rungs[r].specular_frames == 0) d.rungs[r].specular_frames = MASU_SPECULAR_FRAMES;
     }
+    masu_governor_defaults(&d.governor, d.rung_count);
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
         d.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
@@ -789,9 +791,9 @@ static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         slot = size_counters(plan);
         size_smaa_buffers(plan);
     }
-    if (plan->desc.debug.timestamps) {
+    if (masu_stamps(&plan->desc)) {
         plan->readback_times = slot;
-        slot = masu_align_up(slot + (MASU_PASS_COUNT + 1) * sizeof(uint64_t), 16);
+        slot = masu_align_up(slot + masu_stamps(&plan->desc) * sizeof(uint64_t), 16);
     }
     slot = lay_readback_images(plan, slot);
     b[MASU_BUFFER_READBACK].stride = slot;

@@ -11,6 +11,13 @@
 #include "frame.h"
 #include "masu.h"
 
+/* Timestamps of a frame: one before the first pass and one after each; of the governor the first and
+ * the last alone; or none. */
+static inline uint32_t masu_stamps(const masu_desc *d) {
+    if (d->debug.timestamps) return MASU_PASS_COUNT + 1;
+    return d->governor.mode && !d->governor.wall_only ? 2 : 0;
+}
+
 typedef struct masu_image_plan {
     int used;
     int persistent; /* its content outlives the frame: it shares its bytes with nothing */

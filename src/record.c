@@ -597,6 +597,13 @@ static void end_label(const recorder *rec) {
  * time would mean little. */
 static void timestamp(recorder *rec, uint32_t index) {
     if (!rec->m->queries) return;
+    if (!rec->m->plan.desc.debug.timestamps) { /* the governor's two cost no barrier */
+        if (index != 0 && index != MASU_PASS_COUNT) return;
+        rec->m->vk.CmdWriteTimestamp(rec->cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
+                                     rec->m->queries,
+                                     rec->flight * (MASU_PASS_COUNT + 1) + (index ? 1 : 0));
+        return;
+    }
     memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                    VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -690,7 +697,8 @@ static void record_epilogue(recorder *rec) {
     if (m->queries) {
         /* Copied by the GPU, so that masu_stats is a read of memory and no call into the driver. */
         m->vk.CmdCopyQueryPoolResults(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1),
-                                      MASU_PASS_COUNT + 1, m->objects.buffers[MASU_BUFFER_READBACK],
+                                      masu_stamps(&m->plan.desc),
+                                      m->objects.buffers[MASU_BUFFER_READBACK],
                                       rec->flight * readback->stride + m->plan.readback_times,
                                       sizeof(uint64_t),
                                       VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
@@ -1022,7 +1030,7 @@ static masu_result make_command_buffers(masu_renderer *m, uint32_t frames, masu_
 }
 
 static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
-    if (!m->plan.desc.debug.timestamps) return MASU_OK;
+    if (!masu_stamps(&m->plan.desc)) return MASU_OK;
     VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                   .queryCount =

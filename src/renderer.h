@@ -26,6 +26,7 @@
 #include "blob.h"
 #include "cull.h"
 #include "device_memory.h"
+#include "governor.h"
 #include "plan.h"
 #include "ray_query.h"
 #include "scene.h"
@@ -193,6 +194,8 @@ struct masu_renderer {
     uint64_t frame;
     uint64_t slot_frame[MASU_MAX_FLIGHT]; /* UINT64_MAX: not used yet */
     uint32_t slot_rung[MASU_MAX_FLIGHT];
+    masu_governor *governor; /* of no length where the description asks for none */
+    double slot_wall[MASU_MAX_FLIGHT]; /* ms; 0: the host has not said */
     uint32_t drawn; /* bit per cascade that the frame at hand draws */
 };
 

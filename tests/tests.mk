@@ -8,6 +8,7 @@
 #                             which tests/fuzz/seed_NAME.c writes where no file will do
 #   tests/unit/support*.c     linked to every program of the folder, as is tests/gpu/support*.c
 #   tests/reference/*.c       linked to everything
+#   tests/plant/*.c           simulated GPUs for the governor; linked to its test and to `masu plant`
 #   tests/stiff/NAME.json     a scene with NAME.sdf beside it, baked to $(BUILD)/stiff for test_stiff,
 #                             with its truth in double precision
 
@@ -42,6 +43,10 @@ $(BUILD)/tests/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(FUZZ_MAIN) $(TEST_LIBS)
 	$(link)
 $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
+
+# The governor and its rivals on simulated GPUs.
+$(BUILD)/lib/libmasu-plant.a: $(call objects,$(wildcard tests/plant/*.c))
+$(BUILD)/tests/unit/test_governor: $(BUILD)/lib/libmasu-plant.a
 
 # Rays as the truth of ambient occlusion.
 $(BUILD)/tests/gpu/test_ao: LIBS += -lembree3

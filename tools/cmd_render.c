@@ -37,7 +37,9 @@ enum {
     OPTION_REFERENCE,
     OPTION_TRUTH,
     OPTION_RAYS,
-    OPTION_AA
+    OPTION_AA,
+    OPTION_TARGET,
+    OPTION_TIMES
 };
 
 #define PI 3.14159265358979323846
@@ -45,7 +47,8 @@ enum {
 #define REFERENCE_RAYS 1024u /* per pixel: below it the truth's own noise is seen */
 
 typedef struct render_options {
-    const char *output, *stats;
+    const char *output, *stats, *times;
+    double target_ms; /* of the governor; 0: there is none */
     uint32_t frames, rung;
     uint32_t rays; /* per pixel of the reference, a frame each; 0: no reference */
     uint32_t positions; /* of each pixel in the truth; 0: no truth */
@@ -58,6 +61,8 @@ typedef struct render_options {
 /* One measured frame. */
 typedef struct sample {
     double wall_ms, gpu_ms;
+    uint32_t rung;
+    const char *reason; /* of the governor */
     double pass_ms[MASU_MAX_PASSES];
     uint64_t library_allocs, driver_allocs, driver_callbacks;
 } sample;
@@ -96,15 +101,30 @@ static bool plausible(const sample *samples, uint32_t n) {
     return 2 * good > n;
 }
 
+static json_t *governor_json(const masu_governor_info *g) {
+    static const char *const sources[] = {"none", "timestamps", "wall"};
+    json_t *predicted = json_array();
+    for (uint32_t r = 0; r < g->rung_count; r++)
+        json_array_append_new(predicted, json_real((double)g->predicted_ms[r]));
+    return json_pack("{s:f, s:I, s:I, s:I, s:I, s:i, s:s, s:i, s:s, s:f, s:f, s:f, s:f, s:o}",
+                     "target_ms", (double)g->target_ms, "samples", (json_int_t)g->samples, "rejected",
+                     (json_int_t)g->rejected, "missed", (json_int_t)g->missed, "changes",
+                     (json_int_t)g->changes, "rung", (int)g->rung, "reason", g->reason_text, "locked",
+                     (int)g->locked, "source", sources[g->source], "fixed_ms", (double)g->fixed_ms,
+                     "load_ms", (double)g->load_ms, "noise", (double)g->noise, "start_delay_ms",
+                     (double)g->start_delay_ms, "predicted_ms", predicted);
+}
+
 static int write_stats(const masu_session *s, const render_options *o, const char *scene,
                        const sample *samples, uint32_t n, const masu_stats_info *last, bool timed) {
     double *scratch = malloc(n * sizeof *scratch);
     if (!scratch) return masu_cli_error("no memory for %u samples", n);
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
+    uint32_t rung = last->rung;
     json_t *passes = json_array();
     for (uint32_t p = 0; p < last->pass_count; p++) {
-        if (!(plan.passes[p].active & 1u << o->rung)) continue;
+        if (!(plan.passes[p].active & 1u << rung)) continue;
         json_t *row = json_pack("{s:s, s:f}", "name", last->pass_names[p], "pipeline_ms",
                                 (double)plan.passes[p].pipeline_ns / 1e6);
         if (timed) {
@@ -122,8 +142,8 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
     json_t *root = json_pack("{s:s, s:o, s:{s:i, s:i}, s:{s:i, s:i}, s:i, s:i, s:o}", "scene",
                              scene, "device", masu_json_device(&s->host), "output", "width",
                              (int)s->desc.output.width, "height", (int)s->desc.output.height,
-                             "render", "width", (int)plan.rungs[o->rung].render_width, "height",
-                             (int)plan.rungs[o->rung].render_height, "rung", (int)o->rung,
+                             "render", "width", (int)plan.rungs[rung].render_width, "height",
+                             (int)plan.rungs[rung].render_height, "rung", (int)rung,
                              "frames_measured", (int)n, "memory", masu_json_memory(&plan.memory));
     json_object_set_new(root, "wall_ms",
                         times_json(samples, n, offsetof(sample, wall_ms), scratch));
@@ -135,7 +155,8 @@ static int write_stats(const masu_session *s, const render_options *o, const cha
     json_object_set_new(root, "passes", passes);
     if (last->exposure > 0.0f) json_object_set_new(root, "exposure", json_real((double)last->exposure));
     double pixels =
-        (double)plan.rungs[o->rung].render_width * (double)plan.rungs[o->rung].render_height;
+        (double)plan.rungs[rung].render_width * (double)plan.rungs[rung].render_height;
+    if (o->target_ms > 0.0) json_object_set_new(root, "governor", governor_json(&last->governor));
     json_object_set_new(
         root, "counts",
         json_pack("{s:I, s:I, s:I, s:I, s:I, s:f, s:I, s:I, s:I, s:f, s:f, s:I, s:I, s:I, s:I, s:I, s:I, s:I}",
@@ -235,7 +256,7 @@ static bool measure(masu_session *s, const render_options *o, uint32_t frame,
     masu_frame_desc f = {.light = own_light ? &light : NULL,
                          .time = o->time + (double)frame * o->time_step,
                          .time_step = (float)o->time_step,
-                         .rung = o->rung,
+                         .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
                          .cut = o->rays && !frame}; /* the sum begins with the first one that counts */
     masu_commands commands;
     uint64_t callbacks = counts->allocations + counts->reallocations;
@@ -246,16 +267,20 @@ static bool measure(masu_session *s, const render_options *o, uint32_t frame,
         return false;
     }
     out->library_allocs = masu_allocs_of_thread() - thread;
-    uint64_t process = masu_allocs_of_process();
+    uint64_t process = masu_allocs_of_process(), submitted = masu_clock_ns(NULL);
     if (!masu_headless_submit(&s->host, commands.buffer, commands.slot, error, size) ||
         !masu_headless_wait(&s->host, commands.slot, error, size)) {
         return false;
     }
-    out->wall_ms = (double)(masu_clock_ns(NULL) - start) / 1e6;
+    uint64_t end = masu_clock_ns(NULL);
+    out->wall_ms = (double)(end - start) / 1e6;
+    masu_frame_wall(s->m, commands.slot, (double)(end - submitted) / 1e6);
     out->driver_allocs = masu_allocs_of_process() - process;
     out->driver_callbacks = counts->allocations + counts->reallocations - callbacks;
     (void)masu_stats(s->m, commands.slot, stats);
     out->gpu_ms = (double)stats->gpu_ns / 1e6;
+    out->rung = commands.rung;
+    out->reason = stats->governor.reason_text;
     for (uint32_t p = 0; p < stats->pass_count; p++)
         out->pass_ms[p] = (double)stats->pass_ns[p] / 1e6;
     return true;
@@ -303,6 +328,46 @@ static int render_truth(masu_session *s, const render_options *o) {
     return MASU_CLI_OK;
 }
 
+static int write_times(const masu_session *s, const render_options *o, const sample *samples) {
+    FILE *f = fopen(o->times, "w");
+    if (!f) return masu_cli_error("%s: cannot be written", o->times);
+    fprintf(f, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n");
+    for (uint32_t i = 0; i < o->frames; i++) {
+        fprintf(f, "%" PRIu32 ",%.4f,%" PRIu32 ",%.4f,%.4f,%.4f,\"%s\"\n", i,
+                o->time + i * o->time_step, samples[i].rung,
+                (double)s->desc.rungs[samples[i].rung].scale, samples[i].gpu_ms, samples[i].wall_ms,
+                samples[i].reason);
+    }
+    return fclose(f) ? masu_cli_error("%s: cannot be written", o->times) : MASU_CLI_OK;
+}
+
+static void report_governor(const masu_session *s, const render_options *o, const sample *samples,
+                            const masu_governor_info *g) {
+    static const char *const sources[] = {"nothing", "timestamps", "the wall clock"};
+    double scale = 0.0;
+    uint32_t over = 0;
+    for (uint32_t i = 0; i < o->frames; i++) {
+        scale += (double)s->desc.rungs[samples[i].rung].scale / o->frames;
+        over += samples[i].wall_ms > o->target_ms;
+    }
+    if (masu_cli_quiet()) return;
+    masu_cli_progress_clear();
+    printf("governor: target %.2f ms, %" PRIu32 " of %" PRIu32 " frames over it by the wall, %" PRIu64
+           " changes, mean scale %.3f\n",
+           o->target_ms, over, o->frames, g->changes, scale);
+    printf("  times from %s; model: %.2f ms fixed, %.2f ms that follow the rung, noise %.1f %%\n",
+           sources[g->source], (double)g->fixed_ms, (double)g->load_ms, 100.0 * (double)g->noise);
+    for (uint32_t r = 0; r < g->rung_count; r++) {
+        uint32_t frames = 0;
+        for (uint32_t i = 0; i < o->frames; i++) frames += samples[i].rung == r;
+        printf("  rung %" PRIu32 ", scale %.3f: %5" PRIu32 " frames, now predicted %.2f ms%s\n", r,
+               (double)s->desc.rungs[r].scale, frames, (double)g->predicted_ms[r],
+               r == g->rung ? " <" : "");
+    }
+    printf("  last: rung %" PRIu32 ": %s%s\n", g->rung, g->reason_text,
+           g->locked ? " (it cannot move to where it should be)" : "");
+}
+
 /* With statistics a first frame is drawn and not counted: drivers compile at the first use of a
  * pipeline. */
 static int render_frames(masu_session *s, const render_options *o, const char *scene,
@@ -327,14 +392,18 @@ static int render_frames(masu_session *s, const render_options *o, const char *s
     if (!code && o->stats)
         code = write_stats(s, o, scene, samples, o->frames, &stats, stats.timed != 0);
     if (!code && o->rays) report_rays(s, o, &stats);
+    if (!code && o->times) code = write_times(s, o, samples);
+    if (!code && o->target_ms > 0.0) report_governor(s, o, samples, &stats.governor);
     free(samples);
     return code;
 }
 
 static int check(const masu_session_desc *d, const render_options *o) {
     if (!d->scene_path) return masu_cli_usage_error("no scene is given");
-    if (!o->output && !o->stats)
-        return masu_cli_usage_error("neither --output nor --stats is given");
+    if (!o->output && !o->stats && !o->times && !(o->target_ms > 0.0))
+        return masu_cli_usage_error("none of --output, --stats, --times, --target-ms is given");
+    if (o->target_ms > 0.0 && o->rays)
+        return masu_cli_usage_error("--target-ms and --reference do not go together");
     uint32_t rungs = masu_desc_resolved(&d->desc).rung_count;
     if ((o->rays || o->positions) && strchr(o->output ? o->output : "", '#')) {
         return masu_cli_usage_error("%s makes one picture: --output %s names many",
@@ -355,6 +424,15 @@ static bool read_exposure(masu_cli *cli, masu_desc *desc, render_options *o) {
     return metered || !strcmp(cli->value, "fixed") || masu_cli_double(cli, 1e-6, 1e6, &o->exposure);
 }
 
+/* Eight rungs from the full size to 0.4 of it, each 13 % smaller than the one before. */
+static void make_ladder(masu_desc *d) {
+    d->rung_count = MASU_MAX_RUNGS;
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        double scale = pow(0.4, r / (double)(d->rung_count - 1));
+        d->rungs[r] = (masu_rung){.scale = (float)scale, .sharpness = r ? 0.2f : 0.0f};
+    }
+}
+
 static int run(masu_cli *cli) {
     masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
                            .host = {.ray_query = true}};
@@ -366,7 +444,7 @@ static int run(masu_cli *cli) {
     static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
     uint32_t poison = 0, march = MASU_MARCH_AUTO, cull = 0, tone = 0, casters = 0;
     masu_aa aa = MASU_AA_AUTO;
-    bool frames = false, step = false;
+    bool frames = false, step = false, fixed = false;
     const char *own = NULL; /* an option about what --truth has its own mind of */
     double lod_error = 0.0;
     for (;;) {
@@ -397,6 +475,7 @@ static int run(masu_cli *cli) {
         case OPTION_RUNG:
             own = "--rung";
             if (!masu_cli_uint(cli, 0, MASU_MAX_RUNGS - 1, &o.rung)) return MASU_CLI_USAGE;
+            fixed = true;
             continue;
         case OPTION_TIME:
             if (!masu_cli_double(cli, -1e9, 1e9, &o.time)) return MASU_CLI_USAGE;
@@ -449,6 +528,11 @@ static int run(masu_cli *cli) {
             d.desc.tone = (masu_tone)tone;
             continue;
         case OPTION_DITHER: d.desc.dither = MASU_ON; continue;
+        case OPTION_TIMES: o.times = cli->value; continue;
+        case OPTION_TARGET:
+            if (!masu_cli_double(cli, 1.0, 1000.0, &o.target_ms)) return MASU_CLI_USAGE;
+            make_ladder(&d.desc);
+            continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
         case OPTION_RAYS:
@@ -462,6 +546,12 @@ static int run(masu_cli *cli) {
         default: break;
         }
         break;
+    }
+    if (o.target_ms > 0.0) {
+        d.desc.governor =
+            (masu_governor_desc){.mode = fixed ? MASU_GOVERNOR_FIXED : MASU_GOVERNOR_ON,
+                                 .target_ms = (float)o.target_ms,
+                                 .rung = o.rung};
     }
     d.desc = masu_desc_resolved(&d.desc); /* the default rungs, to change one knob of them */
     for (uint32_t r = 0; r < d.desc.rung_count; r++) {
@@ -522,6 +612,10 @@ static const masu_cli_option options[] = {
     {"rung", "R", "quality: 0 native, 1 at 0.8, 2 at 0.4 of the size and upscaled (default 0)",
      OPTION_RUNG, 0},
     {"aa", "WAY", "anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
+    {"target-ms", "MS",
+     "let the governor choose among eight rungs, 1 to 0.4 of the size, for frames of so long,\n"
+     "or follow --rung of these; prints what it has seen and done", OPTION_TARGET, 0},
+    {"times", "FILE.csv", "time, rung and reason of every frame", OPTION_TIMES, 0},
     {"time", "SECONDS", "time of the first frame (default 0)", OPTION_TIME, 0},
     {"time-step", "SECONDS", "between frames (default 1/60)", OPTION_TIME_STEP, 0},
     {"stats", "FILE.json", "times, counts, memory, allocations of the frames; - for stdout",

@@ -12,7 +12,7 @@ $(BUILD)/bin/masu-sdfc: $(call objects,tools/sdfc.c) $(SDFC_OBJECTS) $(CLI_OBJEC
 $(BUILD)/bin/masu: LIBS = -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 $(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu.c tools/cmd_*.c)) $(CLI_OBJECTS)
 $(BUILD)/bin/masu: $(call objects,tools/bake_content.c tools/bake_groups.c) # a tree for cull-bench
-$(BUILD)/bin/masu: $(KEEP_LOADED) $(BUILD)/lib/libmasu-bench.a
+$(BUILD)/bin/masu: $(KEEP_LOADED) $(BUILD)/lib/libmasu-bench.a $(BUILD)/lib/libmasu-plant.a
 $(BUILD)/bin/masu: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 	$(link)
 

@@ -277,6 +277,28 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     assert_true(exists("f-000.png") && exists("f-001.png") && !exists("f-002.png"));
 }
 
+/* A target of a second fits whatever the machine does. */
+static void the_governor_reports_what_it_has_done(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_sphere_sdf");
+    assert_int_equal(masu("render %s --target-ms 1000 --frames 12 --size 32x24 --times %s/t.csv "
+                          "--stats %s/g.json",
+                          scene, dir, dir),
+                     0);
+    assert_non_null(strstr(out_text, "governor: target 1000.00 ms, 0 of 12 frames over it"));
+    assert_non_null(strstr(out_text, "rung 0, scale 1.000:    12 frames"));
+    assert_non_null(strstr(out_text, "rung 7, scale 0.400:     0 frames"));
+    read_text("t.csv", out_text, sizeof out_text);
+    assert_non_null(strstr(out_text, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n0,0.0000,0,1.0000,"));
+    assert_non_null(strstr(out_text, "the best rung fits"));
+    read_text("g.json", out_text, sizeof out_text);
+    assert_non_null(strstr(out_text, "\"predicted_ms\""));
+    assert_int_equal(masu("render %s --target-ms 5 --rung 3 --frames 5 --size 32x24", scene), 0);
+    assert_non_null(strstr(out_text, "rung 3, scale 0.675:     5 frames"));
+    assert_non_null(strstr(out_text, "the rung is fixed"));
+    assert_int_equal(masu("render %s --target-ms 0.016", scene), 2);
+}
+
 static void plan_says_what_is_in_and_what_was_left_out(void **state) {
     (void)state;
     assert_int_equal(masu("plan %s --size 64x64", scene_path("test_sphere_mesh")), 0);
@@ -472,6 +494,7 @@ int main(void) {
         cmocka_unit_test(trace_bench_agrees_with_embree),
         cmocka_unit_test(light_bench_compares_pictures_and_counts_lights),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
+        cmocka_unit_test(the_governor_reports_what_it_has_done),
         cmocka_unit_test(rays_choose_what_finds_polygons),
         cmocka_unit_test(the_example_of_the_readme_draws),
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),

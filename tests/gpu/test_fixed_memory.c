@@ -19,6 +19,7 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
     d.host.validate = validate;
     d.desc.debug.timestamps = 1;
+    d.desc.governor.mode = MASU_GOVERNOR_ON;
     d.desc.readback = MASU_READBACK_DEPTH;
     d.desc.rung_count = 3;
     for (uint32_t r = 0; r < 3; r++) { /* the last two draw their cascades by turns, if any */
@@ -33,7 +34,8 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     masu_instance box = masu_instance_find(s.m, instance);
     assert_int_not_equal(box.id, 0);
     for (uint32_t i = 0; i < 300; i++) {
-        masu_frame_desc frame = {.rung = (i * 7 + i / 3) % 3, .time = 0.01 * i};
+        masu_frame_desc frame = {.rung = i % 50 < 25 ? (i * 7 + i / 3) % 3 : MASU_RUNG_AUTO,
+                                 .time = 0.01 * i};
         masu_commands commands;
         masu_stats_info stats;
         masu_readback_image depth;
@@ -46,6 +48,7 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
             assert_int_equal(masu_readback(s.m, i % 2, MASU_READBACK_DEPTH, &depth), MASU_OK);
             assert_int_equal(stats.frame, i - 2);
         }
+        masu_frame_wall(s.m, i % 2, 1.0 + i % 40);
         assert_int_equal(masu_camera_at(s.m, frame.time, &camera), MASU_OK);
         assert_int_equal(masu_instance_set_transform(s.m, box, rows), MASU_OK);
         assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_OK);
