@@ -294,10 +294,10 @@ typedef struct masu_rung {
     float specular_cutoff; /* perceptual roughness from which surfaces mirror the sky or the probes
                               instead, 0..1; 0: the scene's. Both are blended from 3/4 of it on */
     /* What is done to the traced rays, one per 2x2 pixels, before they are shown. AUTO: on. */
-    masu_switch specular_reuse;    /* each texel weighs the hits of its neighbours, too */
+    masu_switch specular_reuse;    /* each texel weighs the hits of its neighbours, too, while its mean is young */
     masu_switch specular_temporal; /* and what was seen in the frames before */
-    masu_switch specular_fine;     /* smooth surfaces: a mean over frames for each pixel, not each 2x2;
-                                      only with specular_temporal */
+    masu_switch specular_fine;     /* smooth surfaces, and 2x2 pixels that are not one surface: a mean over
+                                      frames for each pixel; only with specular_temporal */
     masu_switch specular_filter;   /* the mean over neighbours, as far as noise is left */
     masu_switch specular_taa;      /* what still flickers is evened out; only with specular_temporal */
     uint32_t specular_reuse_taps;  /* neighbours, at most 16; 0: 8 */
@@ -644,7 +644,8 @@ typedef struct masu_desc {
      * rungs that upscale it takes deep_color: what 8 bits have lost before EASU does not come back. */
     masu_switch dither;
     /* 16-bit floats between tone curve and target, twice the bytes of those images. AUTO: on for
-     * targets of more than 8 bits, which take it. ON with 8 bits: not as storage targets. */
+     * targets of more than 8 bits, which take it. ON with 8 bits: neither as storage targets nor in
+     * an SRGB format, which gets a copy of bytes. */
     masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
     masu_governor_desc governor;

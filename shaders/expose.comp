@@ -61,7 +61,7 @@ void main()
         weight += inside;
         sum += inside * middle(k);
     }
-    bool cut = frame.history.w != 0u;
+    bool cut = (frame.history.w & uint(MASU_HISTORY_CUT)) != 0u;
     float before = masu_sane(adapted, -126.0, 126.0);
     float wanted = cut ? 0.0 : before;
     if (weight > 0.0) {

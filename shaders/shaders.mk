@@ -92,6 +92,7 @@ SECOND_BUILDS += rcas_scene_comp:rcas.comp:MASU_BYTES+MASU_OUTPUT
 SECOND_BUILDS += rcas_deep_comp:rcas.comp:MASU_OUTPUT+MASU_DEEP
 SECOND_BUILDS += fsr1_scene_comp:fsr1.comp:MASU_BYTES+MASU_OUTPUT
 SECOND_BUILDS += easu_fast_bytes_comp:easu_fast.comp:MASU_BYTES
+SECOND_BUILDS += easu_fast_counted_comp:easu_fast.comp:MASU_COUNTED
 SECOND_BUILDS += easu_fast_bytes_counted_comp:easu_fast.comp:MASU_BYTES+MASU_COUNTED
 SECOND_BUILDS += easu_fast_scene_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT
 SECOND_BUILDS += easu_fast_deep_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP

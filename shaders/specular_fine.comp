@@ -35,6 +35,12 @@ layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_fine_image;
 layout(set = MASU_SET_PASS, binding = 7) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = 8, rgba32ui) uniform writeonly uimage2D fine_image;
 
+/* Whether the frame before has kept means of pixels. A rung without them keeps the rest of the history alone. */
+bool has_old()
+{
+    return frame.history.y != 0u && (frame.history.w & uint(MASU_HISTORY_NO_FINE)) == 0u;
+}
+
 /* a: 0: nothing is there. at: pixel of the frame before. */
 vec4 old_pixel(ivec2 at, masu_guide g)
 {
@@ -63,7 +69,7 @@ bool was_it(ivec2 texel, vec3 normal)
  * lies the outline. */
 vec4 own_way(uvec2 pixel)
 {
-    if (frame.history.yz != uvec2(pc.render_width, pc.render_height) ||
+    if (!has_old() || frame.history.yz != uvec2(pc.render_width, pc.render_height) ||
         any(greaterThanEqual(pixel, frame.history.yz))) {
         return vec4(0.0);
     }
@@ -160,7 +166,7 @@ void main()
             vec2 moved = known ? unpackHalf2x16(age.y) : vec2(0.0);
             /* Each fourth frame is this pixel's. What it has from before the first round is of another
              * surface, maybe. */
-            float own = max((masu_age_frames(age.x) - 4.0) * 0.25, 0.0);
+            float own = max(floor((masu_age_frames(age.x) - 0.9) * 0.25), 0.0);
             /* A ray a quarter as often: the mean of a surface that has no other reaches back four times as far. */
             float reach = max(float(pc.index.x) * (g.mixed ? 1.0 : 0.25), 1.0);
             bool moving = any(greaterThan(abs(moved), vec2(0.05)));
@@ -177,7 +183,7 @@ void main()
             vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
             for (uint k = 0u; k < 4u; k++) {
                 uvec2 pixel = masu_guide_place(texel, k, 2u);
-                vec4 old = known && !g.mixed ? look(pixel, moved, g) : vec4(0.0);
+                vec4 old = known && has_old() && !g.mixed ? look(pixel, moved, g) : vec4(0.0);
                 if (!(old.a > 0.0)) {
                     old = own_way(pixel);
                 }

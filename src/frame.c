@@ -140,12 +140,13 @@ static int needs_update_previous(const masu_needs *n, const char **why) {
 }
 
 static int needs_velocity(const masu_needs *n, const char **why) {
-    return decided(n->velocity && !n->sdf, "desc.readback asks for velocities",
+    return decided(n->velocity && !n->sdf, "reflections or desc.readback ask for velocities",
                    no_velocity(n, "sdf_velocity does it"), why);
 }
 
 static int needs_sdf_velocity(const masu_needs *n, const char **why) {
-    return decided(n->velocity && n->sdf, "desc.readback asks for velocities, the scene has an SDF",
+    return decided(n->velocity && n->sdf,
+                   "reflections or desc.readback ask for velocities, the scene has an SDF",
                    no_velocity(n, "the scene has no SDF"), why);
 }
 

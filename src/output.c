@@ -124,6 +124,11 @@ static masu_result check_targets(const masu_desc *d, masu_detail *detail) {
                    "storage targets of 8 bits are written in 8 bits; targets.storage 0 has them "
                    "filled by a blit");
     }
+    if (d->deep_color == MASU_ON && f->srgb) {
+        return bad(detail, "deep_color", MASU_OFF, (unsigned)d->deep_color,
+                   "a target of an SRGB format gets a copy of bytes; the UNORM format of the same bits is "
+                   "filled by a blit");
+    }
     int needs_deep = (floats && t->storage) || t->encoding != MASU_ENCODING_SRGB;
     if (d->deep_color == MASU_OFF && needs_deep) {
         return bad(detail, "deep_color", MASU_ON, (unsigned)d->deep_color,

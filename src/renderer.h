@@ -184,7 +184,8 @@ struct masu_renderer {
     uint8_t *ray_live; /* [traced instance]: it is not left out */
     double ray_anchor[3];
     int traced_before;       /* the frame before has kept what it traced, */
-    uint32_t traced_size[2]; /* at this render size */
+    uint32_t traced_size[2]; /* at this render size; */
+    int fine_before;         /* and means of pixels */
     /* shadow.c */
     masu_cascade cascades[MASU_CASCADES_MAX]; /* as drawn last */
     double shadow_distance;                    /* view depth where shadows end in this frame */

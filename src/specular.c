@@ -221,7 +221,9 @@ void masu_write_reflections(masu_renderer *m, const masu_frame_desc *f, const do
         u->history[1] = m->traced_size[0];
         u->history[2] = m->traced_size[1];
     }
+    if (!m->fine_before) u->history[3] |= MASU_HISTORY_NO_FINE;
     /* Of the frame before counts what it has kept. */
+    m->fine_before = (rp->active & MASU_PASS_BIT(MASU_PASS_SPECULAR_KEEP_FINE)) != 0;
     m->traced_before =
         (rp->active & (MASU_PASS_BIT(MASU_PASS_SPECULAR_KEEP) |
                        MASU_PASS_BIT(MASU_PASS_SPECULAR_ACCUMULATE))) != 0;

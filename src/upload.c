@@ -476,7 +476,7 @@ masu_result masu_write_frame(masu_renderer *m, const masu_frame_desc *f, uint32_
     masu_write_sky(m, &light, slot, &u);
     masu_write_reflections(m, f, camera.position, &u);
     u.history[0] = (uint32_t)m->frame;
-    u.history[3] = (uint32_t)masu_is_cut(m, f);
+    if (masu_is_cut(m, f)) u.history[3] |= MASU_HISTORY_CUT;
     u.eye_hi[3] = (float)f->time;
     u.eye_lo[3] = f->time_step;
     unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_FRAME, slot);

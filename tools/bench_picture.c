@@ -100,7 +100,7 @@ bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t 
     }
     own.camera = &camera;
     own.rung = 0;
-    own.time_step = 0.0f;
+    own.time_step = MASU_PICTURE_STEP;
     bool good = true;
     for (uint32_t i = 0; i < positions && good; i++) {
         if (progress) progress(i, positions);

@@ -22,6 +22,9 @@
 
 #define MASU_PICTURE_POSITIONS 64u /* of a pixel, unless said otherwise */
 #define MASU_PICTURE_POSITIONS_MAX 4096u
+/* Seconds between frames that sum up rays at one moment: a metered exposure is then that of the last sum, and
+ * not of the first ray's noise. */
+#define MASU_PICTURE_STEP 1000.0f
 #define MASU_PICTURE_RAYS 1024u /* of reflections from a pixel, all positions together */
 
 /* Position i of n, i < n, from the middle of the pixel: -0.5..0.5 to the right and down.

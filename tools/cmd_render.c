@@ -255,7 +255,7 @@ static bool measure(masu_session *s, const render_options *o, uint32_t frame,
     if (own_light) set_light(o, &light);
     masu_frame_desc f = {.light = own_light ? &light : NULL,
                          .time = o->time + (double)frame * o->time_step,
-                         .time_step = (float)o->time_step,
+                         .time_step = o->rays ? MASU_PICTURE_STEP : (float)o->time_step,
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
                          .cut = o->rays && !frame}; /* the sum begins with the first one that counts */
     masu_commands commands;
@@ -528,8 +528,12 @@ static int run(masu_cli *cli) {
             d.desc.tone = (masu_tone)tone;
             continue;
         case OPTION_DITHER: d.desc.dither = MASU_ON; continue;
-        case OPTION_TIMES: o.times = cli->value; continue;
+        case OPTION_TIMES:
+            o.times = cli->value;
+            own = "--times";
+            continue;
         case OPTION_TARGET:
+            own = "--target-ms";
             if (!masu_cli_double(cli, 1.0, 1000.0, &o.target_ms)) return MASU_CLI_USAGE;
             make_ladder(&d.desc);
             continue;

@@ -126,12 +126,14 @@ static bool sum_up(bench *b, uint32_t frames, float *rgb, const char *what) {
     return masu_specular_draw(&b->full, &run, rgb, NULL, NULL, b->error, sizeof b->error);
 }
 
-/* From the file, if there is one of the right size, else by rays, and into the file. */
+/* From the file, if there is one, else by rays, and into the file. One of another size is of another picture,
+ * or none at all, and is not written over. */
 static bool find_truth(bench *b) {
     size_t floats = 3 * (size_t)b->pixels;
     FILE *f = b->o->truth ? fopen(b->o->truth, "rb") : NULL;
     bool found = f && fread(b->truth, sizeof *b->truth, floats, f) == floats && fgetc(f) == EOF;
     if (f) fclose(f);
+    if (f && !found) return failed(b, "the file of the truth is not one of this size");
     if (!sum_up(b, b->o->rays, b->unfiltered, "unfiltered")) return false;
     if (!masu_specular_classes(&b->full, b->s.scene.specular_cutoff, b->classes))
         return failed(b, "no readback");

@@ -225,6 +225,10 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_SHADOW_BIAS 1.25
 #define MASU_SHADOW_STEEPEST 4.0
 
+/* Of a frame and the one before. */
+#define MASU_HISTORY_CUT 1u     /* a cut: the exposure adapts at once */
+#define MASU_HISTORY_NO_FINE 2u /* the frame before has kept no means of pixels: what is there is older */
+
 /* Counters, uint32 pairs (low, high). Reset by each frame, read back by masu_stats. */
 #define MASU_COUNTER_SDF_EVALS 0
 #define MASU_COUNTER_SDF_HITS 1
@@ -324,7 +328,7 @@ struct masu_frame_uniforms {
                                 constant */
     masu_vec4 sdf_max;       /* xyz upper corner; w longest ray, world units */
     /* x number of the frame, modulo 2^32; y and z render size of the frame before, 0: nothing of it counts;
-     * w not 0: a cut, the exposure adapts at once */
+     * w bits of MASU_HISTORY_* */
     masu_uvec4 history;
     /* xyz anchor that traced geometry is relative to; w longest ray */
     masu_vec4 trace_anchor;

@@ -233,6 +233,7 @@ static void what_no_target_can_be_is_refused(void **state) {
     REFUSED("targets.peak", t->white = 500, t->peak = 400);
     REFUSED("targets.peak", t->peak = 1e5f);
     REFUSED("deep_color", s.desc.deep_color = MASU_ON);
+    REFUSED("deep_color", s.desc.deep_color = MASU_ON, t->storage = 0, t->format = VK_FORMAT_B8G8R8A8_SRGB);
     REFUSED("deep_color", s.desc.deep_color = MASU_OFF, t->format = VK_FORMAT_R16G16B16A16_SFLOAT);
     REFUSED("deep_color", s.desc.deep_color = (masu_switch)3);
     REFUSED("dither", s.desc.dither = (masu_switch)3);
@@ -484,6 +485,52 @@ static void deeper_colour_is_nearer_to_the_truth(void **state) {
     assert_true(bytes[0] < bytes[1]);
 }
 
+/* ---- Whatever comes last --------------------------------------------------------------------- */
+
+/* Each pass that can come last, in 8 bits and in floats; and into a target whose blue comes first. */
+static void every_chain_makes_the_same_output(void **state) {
+    (void)state;
+    enum { SIDE = 96, CHAINS = 8, KINDS = 3 };
+    static const masu_rung chains[CHAINS] = {
+        {.aa = MASU_AA_OFF},
+        {.aa = MASU_AA_FXAA},
+        {.aa = MASU_AA_SMAA_HIGH},
+        {.scale = 0.5f, .aa = MASU_AA_SMAA_ULTRA, .easu = MASU_EASU_FULL, .sharpen = MASU_OFF},
+        {.scale = 0.5f, .aa = MASU_AA_FXAA, .easu = MASU_EASU_FAST},
+        {.scale = 0.5f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF},
+        {.scale = 0.5f, .easu = MASU_EASU_BILINEAR},
+        {.scale = 0.5f, .easu = MASU_EASU_FULL, .fuse = MASU_ON}};
+    static uint8_t rgba[KINDS][CHAINS][4 * SIDE * SIDE];
+    for (int kind = 0; kind < KINDS; kind++) {
+        masu_session_desc d = test_desc("test_both", SIDE, SIDE);
+        d.desc.rung_count = CHAINS;
+        memcpy(d.desc.rungs, chains, sizeof chains);
+        d.desc.targets.storage = 0;
+        d.desc.dither = MASU_OFF;
+        d.desc.deep_color = kind == 1 ? MASU_ON : MASU_OFF;
+        if (kind == 2) d.desc.targets.format = VK_FORMAT_B8G8R8A8_SRGB;
+        open_session(&s, &d);
+        for (uint32_t r = 0; r < CHAINS; r++) {
+            masu_commands commands;
+            masu_frame_desc frame = {.rung = r, .cut = 1};
+            draw(&s, &frame, &commands, rgba[kind][r]);
+        }
+        close_session(&s);
+    }
+    for (uint32_t r = 0; r < CHAINS; r++) {
+        double sum = 0;
+        for (uint32_t k = 0; k < 4 * SIDE * SIDE; k++) {
+            double off = (double)rgba[0][r][k] - (double)rgba[1][r][k];
+            sum += off * off / (4 * SIDE * SIDE);
+            uint32_t swapped = k % 4 == 3 ? k : k / 4 * 4 + 2 - k % 4;
+            assert_int_equal(rgba[0][r][k], rgba[2][r][swapped]);
+        }
+        print_message("chain %u: 8 bits between passes, rms %.3f of 255 beside floats\n", r, sqrt(sum));
+        assert_true(sqrt(sum) < 2.5);
+        if (r) assert_true(memcmp(rgba[0][r], rgba[0][0], sizeof rgba[0][0]) != 0);
+    }
+}
+
 /* ---- Hostile pictures ------------------------------------------------------------------------ */
 
 enum { IN_W = 24, IN_H = 16, OUT_W = 48, OUT_H = 32 };
@@ -500,7 +547,7 @@ static void upscale(const uint16_t *halves, uint8_t *out) {
     masu_renderer *m;
     masu_commands commands;
     masu_frame_desc frame = {0};
-    d.source = (masu_source){source.view, IN_W, IN_H};
+    d.source = (masu_source){.view = source.view, .width = IN_W, .height = IN_H};
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.sharpen = MASU_ON};
     if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
@@ -556,6 +603,7 @@ int main(void) {
         cmocka_unit_test(upscaled_pictures_are_dithered_in_deep_colour),
         cmocka_unit_test(dither_is_the_reference_and_depends_on_the_frame_alone),
         cmocka_unit_test(deeper_colour_is_nearer_to_the_truth),
+        cmocka_unit_test(every_chain_makes_the_same_output),
         cmocka_unit_test(a_broken_pixel_stays_in_its_footprint),
     };
     return cmocka_run_group_tests_name("output", tests, NULL, NULL);

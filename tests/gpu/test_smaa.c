@@ -46,7 +46,7 @@ static void run_view(VkImageView view, uint32_t width, uint32_t height, const ma
     d.output = (VkExtent2D){out_width, out_height};
     d.targets.images = &target.image;
     d.targets.views = &target.view;
-    d.source = (masu_source){view, width, height};
+    d.source = (masu_source){.view = view, .width = width, .height = height};
     d.rung_count = count;
     memcpy(d.rungs, rungs, count * sizeof *rungs);
     d.debug.counters = 1;
@@ -462,6 +462,7 @@ static void a_scene_is_smoothed_as_its_picture_is(void **state) {
     for (uint32_t storage = 0; storage < 2; storage++) {
         masu_session_desc d = test_desc("test_both", WIDTH, HEIGHT);
         d.desc.targets.storage = storage;
+        d.desc.dither = MASU_OFF; /* the judge has none */
         d.desc.debug.poison = 1;
         d.desc.rung_count = 5;
         d.desc.rungs[0].aa = MASU_AA_OFF;

@@ -51,8 +51,34 @@ static const char furnace[] =
     "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.5, 0.5, 0.5],"
     "\"sky\": {\"zenith\": [0.5, 0.5, 0.5], \"horizon\": [0.5, 0.5, 0.5]}, \"reflections\": {\"cutoff\": 0.5}}";
 
+/* A fence of square bars seen edge on, whose faces are a pixel wide and look left and right by turns; one
+ * side of the world is warm and bright. */
+enum { BARS = 36 };
+static void make_fence(char *text, size_t size) {
+    size_t at = (size_t)snprintf(text, size, "{\"models\": [");
+    for (int i = 0; i < BARS; i++) {
+        at += (size_t)snprintf(
+            text + at, size - at,
+            "{\"mesh\": {\"box\": {\"size\": [0.084, 2.2, 0.084]}}, \"rotate\": [0, 45, 0],"
+            "\"translate\": [%.4f, 0, 0],"
+            "\"material\": {\"base_color\": [0.9, 0.9, 0.9], \"roughness\": 0.32, \"metallic\": 1}},",
+            0.119 * (i - BARS / 2));
+    }
+    snprintf(text + at, size - at,
+             "{\"mesh\": {\"box\": {\"size\": [0.2, 6, 6]}}, \"translate\": [-4.5, 0, 2],"
+             "\"material\": {\"base_color\": [0, 0, 0], \"emissive\": [2, 1.2, 0.5], \"roughness\": 1}}],"
+             "\"camera\": {\"fov_y\": 30, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 6],"
+             "\"target\": [0, 0, 0]}]},"
+             "\"sun\": {\"azimuth\": 0, \"elevation\": 45, \"intensity\": 0}, \"ambient\": [0.2, 0.2, 0.2],"
+             "\"sky\": {\"zenith\": [0.1, 0.2, 0.5], \"horizon\": [0.3, 0.3, 0.35]},"
+             "\"reflections\": {\"cutoff\": 0.5, \"smallest\": 0}}");
+}
+
 static int make_scenes(void **state) {
+    static char fence[16384];
     if (shadow_folder(state)) return 1;
+    make_fence(fence, sizeof fence);
+    shadow_bake("fence", fence);
     shadow_bake("filters", spheres);
     shadow_bake("furnace", furnace);
     return 0;
@@ -137,6 +163,27 @@ static void a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each(v
     /* The box is a tenth of the picture here, and what lies beside it has just come into view. */
     assert_true(camera <= 2 * rest && object <= 4 * rest && jump <= 4 * rest);
     assert_true(flicker <= 0.5);
+}
+
+/* Where the pixels of a 2x2 are different surfaces each has a mean of its own; without those the means of the
+ * 2x2 begin anew in each frame. */
+static void faces_as_narrow_as_a_pixel_come_to_rest(void **state) {
+    (void)state;
+    masu_session_desc d = desc_of("fence");
+    double flicker[2];
+    d.desc.rung_count = 2;
+    d.desc.rungs[1] = (masu_rung){.specular_fine = MASU_OFF};
+    open_session(&s, &d);
+    for (uint32_t r = 0; r < 2; r++) {
+        masu_specular_run run = {.frames = 1, .rung = r};
+        assert_ok(masu_specular_draw(&s, &run, picture, NULL, NULL, error, sizeof error));
+        assert_true(masu_specular_classes(&s, 0.5f, classes));
+        run = (masu_specular_run){.frames = 32, .step = 1.0f / 60.0f, .rung = r};
+        assert_ok(masu_specular_draw(&s, &run, NULL, classes, &flicker[r], error, sizeof error));
+    }
+    close_session(&s);
+    printf("fence: flicker %.3f, without means of pixels %.3f\n", flicker[0], flicker[1]);
+    assert_true(flicker[0] < 0.3 * flicker[1] && flicker[0] < 1.2);
 }
 
 static void a_white_world_stays_white(void **state) {
@@ -232,11 +279,42 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
     assert_true(errors[0] < 0.8 * errors[2] && errors[1] < 0.8 * errors[2]);
 }
 
+/* A rung without means of pixels does not keep them: the next one that has them must not take older ones for
+ * those of the frame before. Two histories that differ, cut off; what follows is the same to the bit. */
+static void means_of_pixels_are_not_taken_up_after_a_rung_without(void **state) {
+    (void)state;
+    masu_session_desc d = desc_of("filters");
+    d.desc.rung_count = 2;
+    d.desc.rungs[1] = (masu_rung){.specular_fine = MASU_OFF};
+    for (int way = 0; way < 2; way++) {
+        open_session(&s, &d);
+        masu_camera camera;
+        masu_light light;
+        masu_commands commands;
+        assert_int_equal(masu_camera_at(s.m, 0.8, &camera), MASU_OK);
+        for (uint32_t k = 0; k < 12; k++) {
+            assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+            for (int c = 0; way && k < 4 && c < 3; c++) light.sky_zenith[c] = light.sky_horizon[c] = 20;
+            masu_frame_desc f = {.camera = &camera,
+                                 .light = &light,
+                                 .time_step = 1.0f / 60.0f,
+                                 .rung = k >= 4 && k < 11,
+                                 .cut = k == 0 || k == 4};
+            draw(&s, &f, &commands, NULL);
+        }
+        assert_true(masu_specular_read(&s, way ? picture : other));
+        close_session(&s);
+    }
+    for (uint32_t i = 0; i < 3 * PIXELS; i++) assert_true(picture[i] == other[i]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_for_four_pixels_and_the_filters_are_worth_many_rays_for_each),
         cmocka_unit_test(the_frame_rate_does_not_change_what_is_remembered),
         cmocka_unit_test(another_render_size_keeps_the_history_and_a_cut_does_not),
+        cmocka_unit_test(faces_as_narrow_as_a_pixel_come_to_rest),
+        cmocka_unit_test(means_of_pixels_are_not_taken_up_after_a_rung_without),
         cmocka_unit_test(a_white_world_stays_white),
         cmocka_unit_test(what_other_images_left_behind_is_not_seen),
     };

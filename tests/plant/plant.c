@@ -304,7 +304,9 @@ bool plant_trace_read(const char *path, plant_trace *out, char *error, size_t si
     snprintf(out->name, sizeof out->name, "%.*s", (int)strcspn(name, "."), name);
     bool head = true, good = true;
     double sums[PLANT_TRACE_RUNGS] = {0};
+    uint32_t number = 0;
     while (good && fgets(line, sizeof line, file)) {
+        number++;
         if (line[0] == '#') continue;
         char *at = line + strcspn(line, ",");
         uint32_t n = 0;
@@ -330,9 +332,13 @@ bool plant_trace_read(const char *path, plant_trace *out, char *error, size_t si
         head = false;
     }
     fclose(file);
-    if (!good || out->columns < 2 || out->frames < 2) {
+    if (!good || out->columns < 2) {
         snprintf(error, size, "%s: line %u is no row of at least 2 and at most %u times", path,
-                 out->frames + 1, PLANT_TRACE_RUNGS);
+                 number, PLANT_TRACE_RUNGS);
+        return false;
+    }
+    if (out->frames < 2) {
+        snprintf(error, size, "%s: at least 2 frames are needed, it has %u", path, out->frames);
         return false;
     }
     out->budget_ms = 0.5 * (sums[0] + sums[out->columns - 1]) / out->frames;
