@@ -148,6 +148,16 @@ stiff: all scenes $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the marc
 fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 	+$(V)$(more) config=fuzz CC=clang fuzz-$(FUZZ)
 
+# Hours on a CPU driver. docs/report is not kept: each machine has its own.
+.PHONY: report
+REPORT ?= engine city mirrors textures night
+REPORT_ARGS ?= --size 640x360
+report: $(BUILD)/bin/masu $(REPORT:%=$(BUILD)/scenes/%.masu) ## error against run time: docs/report/SCENE/index.html: REPORT='engine city' REPORT_ARGS=
+	$(V)mkdir -p docs/report
+	$(V)for s in $(REPORT); do \
+	    $(BUILD)/bin/masu bench $(BUILD)/scenes/$$s.masu --out docs/report/$$s $(REPORT_ARGS) || exit 1; \
+	done
+
 coverage: ## run the tests with gcov and print the lines executed of each file of src/
 	+$(V)$(more) config=coverage check-built
 	$(V)cd build/coverage && gcov -n -r -s $(CURDIR) obj/src/*.gcda | awk -F "'" \

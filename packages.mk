@@ -22,7 +22,7 @@ PACKAGES_test := libcmocka-dev vulkan-validationlayers g++
 # to build everything a second time with the other compiler (make check FULL=1), and for `make fuzz`
 PACKAGES_full := clang
 
-# for the plots of masu-meso, which goes without. Never installed by itself
+# for the plots of masu-meso and masu bench, which go without. Never installed by itself
 PACKAGES_plots := gnuplot-nox
 
 # for who works on Masu: `make format`, `make compdb`. Never installed by itself

@@ -54,6 +54,9 @@ $(BUILD)/tests/gpu/test_ao: LIBS += -lembree3
 # Rays as the truth of rays.
 $(BUILD)/tests/gpu/test_trace: LIBS += -lembree3
 
+# The folder of masu bench.
+$(BUILD)/tests/gpu/test_bench: LIBS += -ljansson
+
 # What masu-bake makes of meshes, tested apart from its command line.
 BAKE_OBJECTS := $(call objects,$(wildcard tools/bake_*.c) tools/probe_light.c) $(SDFC_OBJECTS) $(CLI_OBJECTS)
 BAKE_TESTS := $(addprefix $(BUILD)/tests/unit/test_,bake_detail probes trace_textures)

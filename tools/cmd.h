@@ -10,6 +10,7 @@
 extern const masu_cli_command masu_cmd_render;
 extern const masu_cli_command masu_cmd_upscale;
 extern const masu_cli_command masu_cmd_plan;
+extern const masu_cli_command masu_cmd_bench;
 extern const masu_cli_command masu_cmd_march_bench;
 extern const masu_cli_command masu_cmd_cull_bench;
 extern const masu_cli_command masu_cmd_draw_bench;

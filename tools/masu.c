@@ -9,7 +9,8 @@
 
 int main(int argc, char **argv) {
     static const masu_cli_command *const commands[] = {&masu_cmd_render, &masu_cmd_upscale,
-                                                       &masu_cmd_plan, &masu_cmd_march_bench,
+                                                       &masu_cmd_plan, &masu_cmd_bench,
+                                                       &masu_cmd_march_bench,
                                                        &masu_cmd_cull_bench, &masu_cmd_draw_bench,
                                                        &masu_cmd_light_bench, &masu_cmd_ao_bench,
                                                        &masu_cmd_specular_bench,

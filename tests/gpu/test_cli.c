@@ -89,7 +89,7 @@ static int remove_dir(void **state) {
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
     static const char *const commands[] = {"",     "render",      "upscale",
-                                           "plan", "march-bench", "cull-bench", "draw-bench",
+                                           "plan", "bench", "march-bench", "cull-bench", "draw-bench",
                                            "light-bench", "trace-bench", "bench-image"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(masu("%s --help", commands[i]), 0);

@@ -1,0 +1,358 @@
+/* test_bench.c: `masu bench` as a stranger runs it: what lies in the folder, that a run which was
+ * stopped goes on where it was, that shards together are the whole, and what is refused. Times are
+ * only looked at for being times. */
+#include "support.h"
+
+#include "bench_ladder.h"
+#include "bench_sweep.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char dir[] = "/tmp/masu-test-XXXXXX";
+static char out_text[1 << 16], err_text[1 << 16];
+
+static char *read_text(const char *name) {
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *f = fopen(path, "rb");
+    if (!f) fail_msg("there is no %s", path);
+    fseek(f, 0, SEEK_END);
+    size_t n = (size_t)ftell(f);
+    rewind(f);
+    char *text = malloc(n + 1);
+    assert_non_null(text);
+    assert_int_equal(fread(text, 1, n, f), n);
+    text[n] = 0;
+    fclose(f);
+    return text;
+}
+
+static int shell(const char *command) {
+    int status = system(command);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+/* `masu bench ARGUMENTS`; %s in them is the scratch folder, unless said otherwise. */
+static int bench(const char *format, ...) {
+    char arguments[2048], command[4096];
+    const char *build = getenv("BUILD");
+    va_list args;
+    va_start(args, format);
+    vsnprintf(arguments, sizeof arguments, format, args);
+    va_end(args);
+    snprintf(command, sizeof command, "%s/bin/masu bench %s >%s/out 2>%s/err </dev/null",
+             build ? build : "build", arguments, dir, dir);
+    int code = shell(command);
+    char *out = read_text("out"), *err = read_text("err");
+    snprintf(out_text, sizeof out_text, "%s", out);
+    snprintf(err_text, sizeof err_text, "%s", err);
+    free(out);
+    free(err);
+    return code;
+}
+
+static void said(const char *part) {
+    if (!strstr(err_text, part)) fail_msg("'%s' is not in: %s", part, err_text);
+    assert_ptr_equal(strchr(err_text, '\n'), err_text + strlen(err_text) - 1);
+}
+
+static bool exists(const char *name) {
+    char path[512];
+    struct stat st;
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    return !stat(path, &st);
+}
+
+static masu_row *rows_of(const char *folder, uint32_t *count) {
+    char path[256], error[512];
+    snprintf(path, sizeof path, "%s/%s", dir, folder);
+    masu_row *rows = masu_sweep_rows(path, count, error, sizeof error);
+    if (!rows) fail_msg("%s", error);
+    return rows;
+}
+
+static int make_dir(void **state) {
+    (void)state;
+    return mkdtemp(dir) ? 0 : 1;
+}
+
+static int remove_dir(void **state) {
+    (void)state;
+    char command[300];
+    snprintf(command, sizeof command, "rm -rf %s", dir);
+    return system(command);
+}
+
+/* ---- Well-formed ----------------------------------------------------------------------------- */
+
+/* Tags close in the order in which they were opened, values of attributes are quoted, and no '<' or
+ * lone '&' stands elsewhere: what XML asks for, but for names. */
+static void check_markup(const char *name) {
+    char *text = read_text(name), stack[64][32];
+    uint32_t depth = 0, elements = 0;
+    for (const char *c = text; *c;) {
+        if (*c == '&' && strcspn(c, ";") > 8) fail_msg("%s: a lone &", name);
+        if (*c != '<') {
+            c++;
+            continue;
+        }
+        if (c[1] == '!' ||
+            c[1] == '?') { /* comments have no '>' inside, as we and gnuplot write them */
+            const char *end = strncmp(c, "<!--", 4) ? strchr(c, '>') : strstr(c, "-->");
+            assert_non_null(end);
+            c = end + 1;
+            continue;
+        }
+        bool closes = c[1] == '/', empty = false, quoted = false;
+        char tag[32] = "";
+        size_t n = strcspn(c + 1 + closes, " />\n\t");
+        if (n == 0 || n >= sizeof tag) fail_msg("%s: no tag: %.40s", name, c);
+        memcpy(tag, c + 1 + closes, n);
+        char quote = 0;
+        for (c++; *c && (quoted || *c != '>'); c++) {
+            if (!quoted && (*c == '"' || *c == '\'')) {
+                quote = *c;
+                quoted = true;
+            } else if (quoted && *c == quote) {
+                quoted = false;
+            } else if (*c == '<') {
+                fail_msg("%s: '<' inside <%s", name, tag);
+            }
+        }
+        assert_true(*c == '>');
+        empty = c[-1] == '/';
+        c++;
+        elements++;
+        if (closes) {
+            if (!depth || strcmp(stack[depth - 1], tag) != 0)
+                fail_msg("%s: </%s> closes <%s>", name, tag, depth ? stack[depth - 1] : "nothing");
+            depth--;
+        } else if (!empty) {
+            assert_true(depth < 64);
+            memcpy(stack[depth++], tag, sizeof tag);
+        }
+    }
+    if (depth) fail_msg("%s: <%s> is left open", name, stack[depth - 1]);
+    assert_true(elements > 20);
+    free(text);
+}
+
+/* ---- Tests ----------------------------------------------------------------------------------- */
+
+#define SMALL "--quick --size 64x36"
+
+static void check_rows(const char *folder, uint32_t least) {
+    uint32_t count;
+    masu_row *rows = rows_of(folder, &count);
+    assert_true(count >= least);
+    assert_string_equal(rows[0].setting, "base");
+    assert_true(rows[0].ratio > 0.999 && rows[0].ratio < 1.001);
+    for (uint32_t i = 0; i < count; i++) {
+        const masu_row *r = &rows[i];
+        char name[300];
+        snprintf(name, sizeof name, "%s/pictures/%s.png", folder, r->setting);
+        assert_true(exists(name));
+        assert_true(r->wall_min > 0 && r->wall_p50 >= r->wall_min && r->wall_p99 >= r->wall_p50);
+        assert_true(fabs(r->least_ratio - r->wall_min / r->base_wall_min) < 1e-6 * r->least_ratio);
+        assert_true(r->ratio > 0 && r->plausible >= 0 && r->plausible <= 1);
+        assert_true(r->flip > 0 && r->flip <= r->flip_p99 && r->rmse > 0 && r->ssim < 1);
+        assert_true(fabs(r->psnr_db - 20 * log10(255 / r->rmse)) < 1e-4);
+        assert_true(r->device_bytes > 0 && r->render_width <= 64 && r->render_height <= 36);
+        assert_non_null(masu_rows_find(rows, count, r->parent));
+        for (uint32_t k = 0; k < i; k++) assert_string_not_equal(rows[k].setting, r->setting);
+    }
+    /* A scene at rest without reflections does not flicker; fewer pixels are further from the
+     * truth. */
+    const masu_row *least_pixels = masu_rows_find(rows, count, "scale=0.4");
+    assert_non_null(least_pixels);
+    assert_true(least_pixels->flip > rows[0].flip && least_pixels->rmse > rows[0].rmse);
+    assert_true(rows[0].flicker >= 0 && rows[0].flicker <= 0);
+    free(rows);
+}
+
+/* The rungs of ladder.json are those of the rows, each with all knobs. */
+static void check_ladder(const char *folder) {
+    uint32_t count, rungs[MASU_SETTINGS_MOST];
+    masu_ladder_point points[MASU_SETTINGS_MOST];
+    masu_row *rows = rows_of(folder, &count);
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s/ladder.json", dir, folder);
+    json_t *root = json_load_file(path, 0, NULL);
+    assert_non_null(root);
+    const json_t *list = json_object_get(root, "rungs");
+    bool stamps = !strcmp(json_string_value(json_object_get(root, "clock")), "timestamps");
+    assert_true(count <= MASU_SETTINGS_MOST);
+    for (uint32_t i = 0; i < count; i++)
+        points[i] = (masu_ladder_point){stamps ? rows[i].gpu_ratio : rows[i].ratio, rows[i].flip};
+    uint32_t n = masu_ladder_rungs(points, count, MASU_LADDER_APART, MASU_MAX_RUNGS, rungs);
+    assert_true(n >= 1);
+    assert_int_equal(json_array_size(list), n);
+    double before = HUGE_VAL;
+    for (uint32_t i = 0; i < n; i++) {
+        const json_t *rung = json_array_get(list, i), *knobs = json_object_get(rung, "knobs");
+        const masu_row *row = &rows[rungs[i]];
+        double ratio = json_number_value(json_object_get(rung, "ratio"));
+        assert_string_equal(json_string_value(json_object_get(rung, "setting")), row->setting);
+        assert_true(fabs(json_number_value(json_object_get(rung, "flip")) - row->flip) < 1e-9);
+        assert_true(before >= MASU_LADDER_APART * ratio && ratio > 0);
+        before = ratio;
+        for (uint32_t k = 0; masu_knob_name(k); k++)
+            assert_non_null(json_object_get(knobs, masu_knob_name(k)));
+        double scale = json_number_value(json_object_get(knobs, "scale"));
+        assert_true(fabs(floor(64 * scale + 0.5) - row->render_width) <= 1);
+    }
+    json_decref(root);
+    free(rows);
+}
+
+static void a_folder_has_rows_rungs_and_a_page(void **state) {
+    (void)state;
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), dir), 0);
+    check_rows("whole", 10);
+    check_ladder("whole");
+    check_markup("whole/index.html");
+    if (exists("whole/plots/front.svg")) {
+        check_markup("whole/plots/front.svg");
+        check_markup("whole/plots/techniques.svg");
+    } else {
+        assert_non_null(strstr(err_text, "no gnuplot"));
+    }
+    char *page = read_text("whole/index.html");
+    assert_non_null(strstr(page, "data:image/png;base64,iVBOR"));
+    assert_null(strstr(page, "src=\"h")); /* nothing from elsewhere */
+    assert_non_null(strstr(page, "The ladder"));
+    free(page);
+    /* The scene has an SDF and polygons, and no shadow map or reflections. */
+    char *json = read_text("whole/sweep.json");
+    assert_non_null(strstr(json, "march_steps=64"));
+    assert_non_null(strstr(json, "the scene has no shadow map"));
+    assert_non_null(strstr(json, "no reflections are traced"));
+    free(json);
+}
+
+/* The folder of the test before, with its last rows cut off, one of them in the middle. */
+static void a_run_that_was_stopped_goes_on(void **state) {
+    (void)state;
+    uint32_t before, after;
+    masu_row *old = rows_of("whole", &before);
+    char path[256];
+    snprintf(path, sizeof path, "%s/whole/results.csv", dir);
+    char *text = read_text("whole/results.csv"), *cut = text + strlen(text) - 1;
+    for (int lines = 0; lines < 3; cut -= lines < 3) lines += *cut == '\n';
+    assert_int_equal(truncate(path, cut - text - 20), 0);
+    free(text);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), dir), 0);
+    assert_non_null(strstr(out_text, "3 settings measured"));
+    masu_row *rows = rows_of("whole", &after);
+    assert_int_equal(after, before);
+    for (uint32_t i = 0; i < after; i++) {
+        assert_string_equal(rows[i].setting, old[i].setting);
+        assert_true(fabs(rows[i].flip - old[i].flip) <= 0); /* pictures are the same in every run */
+    }
+    check_rows("whole", 10);
+    free(rows);
+    free(old);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), dir), 0);
+    assert_non_null(strstr(out_text, " 0 settings measured"));
+    assert_int_equal(bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), dir),
+                     1);
+    said("another sweep");
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_truth"), dir), 1);
+    said("another sweep");
+}
+
+static void shards_together_are_the_whole(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    uint32_t whole, merged, part;
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(bench("%s " SMALL
+                               " --shard %d/2 --truth %s/whole/truth.png --out %s/part%d",
+                               scene, i, dir, dir, i),
+                         0);
+        assert_false(exists(i ? "part1/index.html" : "part0/index.html"));
+    }
+    assert_int_equal(bench("--merge %s/part1 %s/part0 --out %s/merged", dir, dir, dir), 0);
+    masu_row *a = rows_of("whole", &whole), *b = rows_of("merged", &merged);
+    free(rows_of("part1", &part));
+    assert_int_equal(merged, whole);
+    assert_int_equal(part, whole / 2);
+    for (uint32_t i = 0; i < whole; i++) {
+        assert_string_equal(a[i].setting, b[i].setting);
+        assert_string_equal(a[i].parent, b[i].parent);
+        assert_true(fabs(a[i].flip - b[i].flip) <= 0 && fabs(a[i].rmse - b[i].rmse) <= 0);
+        assert_true(fabs(a[i].device_bytes - b[i].device_bytes) <= 0);
+    }
+    free(a);
+    free(b);
+    check_rows("merged", 10);
+    check_ladder("merged");
+    check_markup("merged/index.html");
+    /* What is merged into itself stays; what is not of the same sweep is refused. */
+    assert_int_equal(bench("--merge %s/merged --out %s/merged --quiet", dir, dir), 0);
+    assert_string_equal(out_text, "");
+    assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, dir), 0);
+    assert_int_equal(bench("--merge %s/merged %s/other --out %s/both", dir, dir, dir), 1);
+    said("another sweep");
+    assert_int_equal(bench("--merge %s/none --out %s/both2", dir, dir), 1);
+    said("sweep.json");
+}
+
+/* Slow cascades and what a scene remembers. */
+static void slow_shadows_are_timed_over_their_whole_period(void **state) {
+    (void)state;
+    assert_int_equal(bench("%s " SMALL " --runs 1 --shard 8/13 --validate --out %s/slow",
+                           scene_path("test_shadows"), dir),
+                     0);
+    uint32_t count;
+    masu_row *rows = rows_of("slow", &count);
+    assert_int_equal(count, 1);
+    assert_string_equal(rows[0].setting, "shadow_refresh=1-2-4-8");
+    assert_true(rows[0].wall_min > 0);
+    free(rows);
+}
+
+static void wrong_command_lines_are_exit_code_2(void **state) {
+    (void)state;
+    assert_int_equal(bench("--help"), 0);
+    assert_non_null(strstr(out_text, "--shard"));
+    assert_int_equal(bench("--out %s/x", dir), 2);
+    said("no scene");
+    assert_int_equal(bench("--merge --out %s/x", dir), 2);
+    said("no folder");
+    assert_int_equal(bench("a.masu"), 2);
+    said("--out");
+    assert_int_equal(bench("a.masu b.masu --out %s/x", dir), 2);
+    said("b.masu");
+    static const char *const shards[] = {"2/2", "1", "/", "1/", "-1/2", "0/0", "1/2x"};
+    for (size_t i = 0; i < sizeof shards / sizeof *shards; i++) {
+        assert_int_equal(bench("a.masu --out %s/x --shard %s", dir, shards[i]), 2);
+        said("shard");
+    }
+    assert_int_equal(bench("a.masu --out %s/x --runs 0", dir), 2);
+    said("runs");
+    assert_int_equal(bench("%s/none.masu --out %s/x --quick", dir, dir), 1);
+    said("none.masu");
+    assert_false(exists("x"));
+    assert_int_equal(bench("%s --out %s/no/such --quick", scene_path("test_both"), dir), 1);
+    said("no/such");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_folder_has_rows_rungs_and_a_page),
+        cmocka_unit_test(a_run_that_was_stopped_goes_on),
+        cmocka_unit_test(shards_together_are_the_whole),
+        cmocka_unit_test(slow_shadows_are_timed_over_their_whole_period),
+        cmocka_unit_test(wrong_command_lines_are_exit_code_2),
+    };
+    return cmocka_run_group_tests(tests, make_dir, remove_dir);
+}

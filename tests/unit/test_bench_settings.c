@@ -1,0 +1,170 @@
+/* test_bench_settings.c: the settings of `masu bench`: each has one name, a parent that comes
+ * before it and differs from it; what a scene has no use for is dropped with a reason, and
+ * nothing else. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "bench_settings.h"
+
+#include <string.h>
+
+static masu_setting settings[MASU_SETTINGS_MOST];
+
+static uint32_t find(uint32_t count, const char *id) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (!settings[i].dropped[0] && !strcmp(settings[i].id, id)) return i;
+    }
+    return count;
+}
+
+static void check_names(uint32_t count) {
+    static const char good[] = "abcdefghijklmnopqrstuvwxyz0123456789_.=+-"; /* of file names */
+    assert_string_equal(settings[0].id, "base");
+    for (uint32_t i = 0; i < count; i++) {
+        const masu_setting *s = &settings[i];
+        if (s->dropped[0]) continue;
+        assert_int_equal(find(count, s->id), i);
+        assert_true(find(count, s->parent) < i || i == 0);
+        assert_int_equal(strspn(s->id, good), strlen(s->id));
+        assert_true(strlen(s->id) + 1 < MASU_SETTING_ID);
+        assert_true(s->rung.scale >= 0.4f && s->rung.scale <= 1.0f);
+    }
+}
+
+static const masu_scene everything = {
+    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1};
+
+static masu_plan_info plan_with(const char *const *passes, uint32_t count) {
+    masu_plan_info plan;
+    memset(&plan, 0, sizeof plan);
+    plan.pass_count = count;
+    for (uint32_t p = 0; p < count; p++)
+        plan.passes[p] = (masu_plan_pass){.name = passes[p], .active = 1};
+    return plan;
+}
+
+static void names_are_unique_and_parents_come_first(void **state) {
+    (void)state;
+    static const char *const passes[] = {"ao", "specular_guide", "cascade_0"};
+    const masu_plan_info plan = plan_with(passes, 3);
+    uint32_t few = masu_settings_make(true, settings);
+    masu_settings_fit(settings, few, &everything, &plan);
+    check_names(few);
+    uint32_t all = masu_settings_make(false, settings);
+    masu_settings_fit(settings, all, &everything, &plan);
+    check_names(all);
+    assert_true(few >= 8 && few < all && all <= MASU_SETTINGS_MOST);
+    uint32_t scales = 0;
+    for (uint32_t i = 0; i < all; i++) scales += !strcmp(settings[i].technique, "scale");
+    assert_int_equal(scales, 10); /* 15/16 to 7/16, and 0.4 */
+    assert_true(find(all, "scale=0.4") < all);
+    assert_true(find(all, "scale=0.5+easu=fast") < all);
+    assert_true(find(all, "shadow_refresh=1-2-4-8") < all);
+}
+
+static void check_dropped(const char *id, uint32_t count, const char *why) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (strcmp(settings[i].id, id) != 0 || !settings[i].dropped[0]) continue;
+        if (!strstr(settings[i].dropped, why)) fail_msg("%s: %s", id, settings[i].dropped);
+        return;
+    }
+    fail_msg("%s is not dropped", id);
+}
+
+static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
+    (void)state;
+    static const masu_scene scene;
+    const masu_plan_info plan = plan_with(NULL, 0);
+    uint32_t count = masu_settings_make(false, settings);
+    masu_settings_fit(settings, count, &scene, &plan);
+    check_names(count);
+    check_dropped("march_steps=64", count, "no SDF");
+    check_dropped("ao=off", count, "no ambient occlusion");
+    check_dropped("specular=off", count, "no reflections");
+    check_dropped("shadow_refresh=4-4-4-4", count, "no shadow map");
+    check_dropped("lod_error=3", count, "no coarser forms");
+    check_dropped("occlusion=off", count, "no occluders");
+    check_dropped("frustum=off", count, "no polygons");
+    check_dropped("light_tiles=off", count, "no local lights");
+    /* What is left of the bundles: the cheap one at 0.4 has fast EASU and no RCAS, the middle one
+     * FXAA, which is there already at full size. */
+    assert_true(find(count, "scale=0.4+easu=fast+sharpen=off") < count);
+    assert_true(find(count, "scale=0.75+aa=fxaa") < count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (settings[i].dropped[0]) continue;
+        const masu_rung *r = &settings[i].rung;
+        assert_true(!r->march_steps && !r->ao && !r->specular && !r->shadow_refresh[0]);
+        if (r->scale >= 1.0f) assert_int_equal(r->easu, MASU_EASU_AUTO);
+    }
+}
+
+static void a_scene_of_everything_keeps_everything(void **state) {
+    (void)state;
+    static const char *const passes[] = {"ao", "specular_guide", "cascade_0"};
+    const masu_plan_info plan = plan_with(passes, 3);
+    uint32_t count = masu_settings_make(false, settings), dropped = 0;
+    masu_settings_fit(settings, count, &everything, &plan);
+    check_names(count);
+    for (uint32_t i = 0; i < count; i++) dropped += settings[i].dropped[0] != 0;
+    /* SMAA HIGH at 1 and 0.5 is a technique and a bundle; so is no sharpening, which at 1 is
+     * nothing. */
+    assert_int_equal(dropped, 4);
+    check_dropped("sharpen=off", count, "nothing is sharpened");
+    check_dropped("scale=0.5+sharpen=off", count, "there already");
+    check_dropped("aa=smaa-high", count, "there already");
+    check_dropped("scale=0.5+aa=smaa-high", count, "there already");
+}
+
+static void plans_are_compared_by_passes_sizes_and_bytes(void **state) {
+    (void)state;
+    static const char *const passes[] = {"gbuffer", "light"};
+    const masu_plan_info a = plan_with(passes, 2);
+    masu_plan_info b = a;
+    assert_true(masu_settings_same_plan(&a, &b));
+    b.passes[1].active = 0;
+    assert_false(masu_settings_same_plan(&a, &b));
+    b = a;
+    b.memory.device_bytes++;
+    assert_false(masu_settings_same_plan(&a, &b));
+    b = a;
+    b.rungs[0].render_height++;
+    assert_false(masu_settings_same_plan(&a, &b));
+}
+
+static void knobs_are_printed_as_json(void **state) {
+    (void)state;
+    const masu_rung rung = {
+        .scale = 0.5f, .aa = MASU_AA_FXAA, .ao_steps = 4, .shadow_refresh = {1, 2, 4, 8}};
+    uint32_t seen = 0;
+    for (uint32_t k = 0; masu_knob_name(k); k++) {
+        static const char *const wanted[][2] = {{"scale", "0.5"},
+                                                {"aa", "\"fxaa\""},
+                                                {"ao_steps", "4"},
+                                                {"easu", "\"auto\""},
+                                                {"shadow_refresh", "[1, 2, 4, 8]"}};
+        char text[64];
+        masu_knob_json(k, &rung, text, sizeof text);
+        for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+            if (strcmp(masu_knob_name(k), wanted[i][0]) != 0) continue;
+            assert_string_equal(text, wanted[i][1]);
+            seen++;
+        }
+    }
+    assert_int_equal(seen, 5);
+    assert_int_equal(masu_setting_period(&rung), 8);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_are_unique_and_parents_come_first),
+        cmocka_unit_test(a_scene_of_nothing_leaves_what_is_done_to_pictures),
+        cmocka_unit_test(a_scene_of_everything_keeps_everything),
+        cmocka_unit_test(plans_are_compared_by_passes_sizes_and_bytes),
+        cmocka_unit_test(knobs_are_printed_as_json),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

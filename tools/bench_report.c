@@ -1,0 +1,418 @@
+/* bench_report.c: see bench_report.h. The page is XHTML: strict enough to be checked by a
+ * machine. */
+#include "bench_report.h"
+
+#include "bench_ladder.h"
+#include "bench_plot.h"
+#include "bench_sweep.h"
+#include "bench_sweep_files.h"
+#include "image.h"
+#include "metric_flip.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct report {
+    const char *folder;
+    masu_report_result *out;
+    json_t *sweep; /* sweep.json */
+    masu_row *rows;
+    uint32_t count, rung_count, front_count;
+    double *ratios; /* of the clock that the ladder goes by */
+    uint32_t *front, *rungs;
+    VkExtent2D size;
+    FILE *page;
+    char *error;
+    size_t error_size;
+} report;
+
+static bool failed(report *r, const char *text) {
+    snprintf(r->error, r->error_size, "%.2000s: %s", r->folder, text);
+    return false;
+}
+
+/* ---- Reading --------------------------------------------------------------------------------- */
+
+static double number_of(const report *r, const char *key) {
+    return json_number_value(json_object_get(r->sweep, key));
+}
+
+static const char *text_of(const json_t *from, const char *key) {
+    const char *text = json_string_value(json_object_get(from, key));
+    return text ? text : "";
+}
+
+static const json_t *setting_of(const report *r, const char *id) {
+    json_t *one;
+    size_t i;
+    json_array_foreach(json_object_get(r->sweep, "settings"), i, one) {
+        if (!strcmp(text_of(one, "setting"), id)) return one;
+    }
+    return NULL;
+}
+
+/* Rows that sweep.json does not know are of no use: what their knobs are is not known. */
+static bool read_all(report *r) {
+    char path[4096];
+    uint32_t kept = 0;
+    if (!masu_sweep_path(r->folder, "sweep.json", path)) return failed(r, "the path is too long");
+    r->sweep = json_load_file(path, 0, NULL);
+    if (!r->sweep) return failed(r, "sweep.json cannot be read");
+    r->rows = masu_sweep_rows(r->folder, &r->count, r->error, r->error_size);
+    if (!r->rows) return false;
+    for (uint32_t i = 0; i < r->count; i++) {
+        if (setting_of(r, r->rows[i].setting)) r->rows[kept++] = r->rows[i];
+    }
+    r->count = kept;
+    r->size = (VkExtent2D){(uint32_t)number_of(r, "width"), (uint32_t)number_of(r, "height")};
+    r->out->rows = kept;
+    r->out->settings = (uint32_t)json_array_size(json_object_get(r->sweep, "settings"));
+    uint64_t pixels = (uint64_t)r->size.width * r->size.height;
+    if (!kept) return failed(r, "no setting has been measured");
+    return (pixels && pixels <= MASU_IMAGE_PIXELS_MAX) || failed(r, "sweep.json has no size");
+}
+
+static double least_ratio(const report *r, const masu_row *row) {
+    return r->out->by_timestamps ? row->gpu_least_ratio : row->least_ratio;
+}
+
+/* Timestamps count where all of them fit the wall clock; times of two clocks are never mixed. */
+static bool find_ladder(report *r) {
+    masu_ladder_point *points = calloc(r->count, sizeof *points);
+    r->ratios = calloc(r->count, sizeof *r->ratios);
+    r->front = calloc(r->count, sizeof *r->front);
+    r->rungs = calloc(r->count, sizeof *r->rungs);
+    bool good = points && r->ratios && r->front && r->rungs;
+    bool stamps = true;
+    for (uint32_t i = 0; i < r->count; i++) stamps = stamps && r->rows[i].plausible >= 0.9;
+    for (uint32_t i = 0; i < r->count && good; i++) {
+        r->ratios[i] = stamps ? r->rows[i].gpu_ratio : r->rows[i].ratio;
+        points[i] = (masu_ladder_point){r->ratios[i], r->rows[i].flip};
+        /* Culling switched off is quicker by chance alone. */
+        const json_t *same = json_object_get(setting_of(r, r->rows[i].setting), "same_picture");
+        if (json_is_true(same)) points[i].time = 0.0;
+    }
+    if (good) {
+        r->front_count = masu_ladder_front(points, r->count, r->front);
+        r->rung_count =
+            masu_ladder_rungs(points, r->count, MASU_LADDER_APART, MASU_MAX_RUNGS, r->rungs);
+    }
+    free(points);
+    r->out->by_timestamps = stamps;
+    r->out->rungs = r->rung_count;
+    for (uint32_t i = 0; i < r->count && good; i++)
+        r->out->unsteady += !(fabs(least_ratio(r, &r->rows[i]) / r->ratios[i] - 1.0) <= 0.1);
+    return good || failed(r, "out of memory");
+}
+
+/* ---- ladder.json ----------------------------------------------------------------------------- */
+
+static bool write_ladder(report *r) {
+    char path[4096];
+    json_t *rungs = json_array();
+    for (uint32_t i = 0; i < r->rung_count; i++) {
+        const masu_row *row = &r->rows[r->rungs[i]];
+        json_t *knobs = json_object_get(setting_of(r, row->setting), "knobs");
+        json_array_append_new(
+            rungs, json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:O}", "setting", row->setting,
+                             "ratio", r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms",
+                             row->gpu_min, "flip", row->flip, "rmse", row->rmse, "knobs", knobs));
+    }
+    json_t *root = json_pack(
+        "{s:s, s:s, s:s, s:i, s:i, s:f, s:s, s:s, s:o}", "scene", text_of(r->sweep, "scene"),
+        "hash", text_of(r->sweep, "hash"), "driver", text_of(r->sweep, "driver"), "width",
+        (int)r->size.width, "height", (int)r->size.height, "time", number_of(r, "time"), "clock",
+        r->out->by_timestamps ? "timestamps" : "wall", "error", "flip", "rungs", rungs);
+    char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
+    bool good = text && masu_sweep_path(r->folder, "ladder.json", path);
+    if (!good) failed(r, "out of memory");
+    good = good && masu_file_write(path, text, strlen(text), r->error, r->error_size);
+    free(text);
+    json_decref(root);
+    return good;
+}
+
+/* ---- The page -------------------------------------------------------------------------------- */
+
+static void put(report *r, const char *text) {
+    for (; *text; text++) {
+        switch (*text) {
+        case '&': fputs("&amp;", r->page); break;
+        case '<': fputs("&lt;", r->page); break;
+        case '>': fputs("&gt;", r->page); break;
+        case '"': fputs("&quot;", r->page); break;
+        default: fputc((unsigned char)*text < 32 ? ' ' : *text, r->page); break;
+        }
+    }
+}
+
+static void put_base64(FILE *f, const uint8_t *bytes, size_t count) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < count; i += 3) {
+        uint32_t left = count - i < 3 ? (uint32_t)(count - i) : 3, v = 0;
+        for (uint32_t k = 0; k < 3; k++) v = v << 8 | (k < left ? bytes[i + k] : 0);
+        for (uint32_t k = 0; k < 4; k++) fputc(k <= left ? digits[v >> (18 - 6 * k) & 63] : '=', f);
+    }
+}
+
+static bool put_image(report *r, const char *path, const char *type, const char *text) {
+    uint8_t *bytes = NULL;
+    size_t count = 0;
+    if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, r->error, r->error_size))
+        return false;
+    fprintf(r->page, "<img alt=\"");
+    put(r, text);
+    fprintf(r->page, "\" src=\"data:%s;base64,", type);
+    put_base64(r->page, bytes, count);
+    fprintf(r->page, "\"/>");
+    free(bytes);
+    return true;
+}
+
+/* The map of FLIP, white where it is 1, beside the picture that it was made of. */
+static bool make_map(report *r, const char *setting, char path[4096]) {
+    size_t pixels = (size_t)r->size.width * r->size.height;
+    uint8_t *truth = malloc(4 * pixels), *shown = malloc(4 * pixels);
+    float *map = malloc(sizeof *map * pixels);
+    masu_flip flip;
+    bool good = (truth && shown && map) || failed(r, "out of memory");
+    good = good && masu_sweep_path(r->folder, "truth.png", path) &&
+           masu_sweep_load(path, r->size, truth, r->error, r->error_size) &&
+           masu_sweep_picture(r->folder, setting, "", path) &&
+           masu_sweep_load(path, r->size, shown, r->error, r->error_size);
+    good = good && (masu_metric_flip(truth, shown, r->size.width, r->size.height, 0, map, &flip) ||
+                    failed(r, "out of memory"));
+    for (size_t i = 0; i < pixels && good; i++) {
+        memset(shown + 4 * i, (int)(255.0f * fminf(map[i], 1.0f) + 0.5f), 3);
+        shown[4 * i + 3] = 255;
+    }
+    good =
+        good && masu_sweep_picture(r->folder, setting, ".flip", path) &&
+        masu_image_save_png(path, shown, r->size.width, r->size.height, 0, r->error, r->error_size);
+    free(truth);
+    free(shown);
+    free(map);
+    return good;
+}
+
+static const char head[] =
+    "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n"
+    "<meta charset=\"utf-8\"/>\n"
+    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<style>\n"
+    "body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em;\n"
+    "       color: #222; background: #fff; }\n"
+    "table { border-collapse: collapse; font-size: 13px; }\n"
+    ".wide { overflow-x: auto; }\n"
+    "th, td { padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd;\n"
+    "         white-space: nowrap; }\n"
+    "th { border-bottom: 2px solid #888; }\n"
+    "td:first-child, th:first-child { text-align: left; }\n"
+    "img { max-width: 100%; }\n"
+    ".pair img { width: 49%; image-rendering: pixelated; }\n"
+    ".rung td { background: #fff3e6; }\n"
+    "</style>\n<title>masu bench: ";
+
+static void put_head(report *r) {
+    FILE *f = r->page;
+    fputs(head, f);
+    put(r, text_of(r->sweep, "scene"));
+    fputs("</title>\n</head>\n<body>\n<h1>Error against run time: ", f);
+    put(r, text_of(r->sweep, "scene"));
+    fprintf(f, "</h1>\n<p>%ux%u at %.6g s; ", r->size.width, r->size.height, number_of(r, "time"));
+    put(r, text_of(r->sweep, "driver"));
+    fprintf(f, "; scene %s.</p>\n", text_of(r->sweep, "hash"));
+    fprintf(
+        f,
+        "<p>The truth is the mean of %.0f full renders at places all over each pixel, with "
+        "nothing left out for speed (masu render --truth). A picture is that of the last of up "
+        "to %.0f frames in motion. Errors: RMSE and flicker of 255; FLIP of 0 to 1, its mean "
+        "and 99th percentile; flicker is the mean difference of successive frames at rest. "
+        "Times: %.0f runs of each setting in turns with the base setting, the first round "
+        "dropped; the ratio is the median of the rounds' own, and beside it that of the least "
+        "times "
+        "of the two: where they differ by much, the machine was busy. They differ by more than a "
+        "tenth in %u rows of %u. This page goes by %s.</p>\n",
+        number_of(r, "positions"), number_of(r, "frames"), number_of(r, "runs"), r->out->unsteady,
+        r->out->rows,
+        r->out->by_timestamps ? "the device's timestamps, which fit the wall clock"
+                              : "the wall clock: not all timestamps fit it");
+    if (r->out->rows < r->out->settings)
+        fprintf(f, "<p><b>%u of %u settings have been measured.</b></p>\n", r->out->rows,
+                r->out->settings);
+}
+
+static void put_columns(FILE *f) {
+    fputs("<tr><th>setting</th><th>render size</th><th>ratio</th><th>of the least</th>"
+          "<th>wall ms</th><th>p50</th>"
+          "<th>p95</th><th>p99</th><th>gpu ms</th><th>MiB</th><th>FLIP</th><th>p99</th>"
+          "<th>RMSE</th><th>PSNR</th><th>SSIM</th><th>flicker</th></tr>\n",
+          f);
+}
+
+static void put_row(report *r, uint32_t i, const char *label, bool marked) {
+    const masu_row *row = &r->rows[i];
+    FILE *f = r->page;
+    fprintf(f, "<tr%s><td>%s", marked ? " class=\"rung\"" : "", label);
+    put(r, row->setting);
+    fprintf(f, "</td><td>%.0fx%.0f</td><td>%.3f</td><td>%.3f</td>", row->render_width,
+            row->render_height, r->ratios[i], least_ratio(r, row));
+    fprintf(f, "<td>%.2f</td><td>%.2f</td><td>%.2f</td><td>%.2f</td><td>%.2f%s</td>", row->wall_min,
+            row->wall_p50, row->wall_p95, row->wall_p99, row->gpu_min,
+            row->plausible < 0.9 ? " (?)" : "");
+    fprintf(f,
+            "<td>%.1f</td><td>%.4f</td><td>%.4f</td><td>%.2f</td><td>%.2f</td><td>%.4f</td>"
+            "<td>%.3f</td></tr>\n",
+            row->device_bytes / 1048576.0, row->flip, row->flip_p99, row->rmse, row->psnr_db,
+            row->ssim, row->flicker);
+}
+
+static void put_ladder(report *r) {
+    FILE *f = r->page;
+    fputs(
+        "<h2>The ladder</h2>\n<p>Of the Pareto front, in falling quality; neighbours are at least "
+        "4 % apart in time. ladder.json has all knobs of each.</p>\n<div class=\"wide\"><table>\n",
+        f);
+    put_columns(f);
+    for (uint32_t i = 0; i < r->rung_count; i++) {
+        char label[16];
+        snprintf(label, sizeof label, "%u: ", i);
+        put_row(r, r->rungs[i], label, false);
+    }
+    fputs("</table></div>\n", f);
+}
+
+static bool put_plots(report *r) {
+    static const char *const names[][2] = {{"plots/front.svg", "error against time, all settings"},
+                                           {"plots/techniques.svg", "what each technique does"}};
+    char path[4096];
+    for (size_t i = 0; i < 2 && r->out->plots; i++) {
+        fputs("<p>", r->page);
+        if (!masu_sweep_path(r->folder, names[i][0], path) ||
+            !put_image(r, path, "image/svg+xml", names[i][1])) {
+            return false;
+        }
+        fputs("</p>\n", r->page);
+    }
+    return true;
+}
+
+/* What one knob changes, beside the setting that differs by it alone. */
+static void put_techniques(report *r) {
+    FILE *f = r->page;
+    fputs(
+        "<h2>Techniques</h2>\n<p>Each beside the setting that differs by it alone: its time as a "
+        "part of that one's, and how much FLIP, RMSE and device memory it adds.</p>\n"
+        "<div class=\"wide\"><table>\n<tr><th>technique</th><th>from</th><th>time</th><th>FLIP</th>"
+        "<th>RMSE</th><th>KiB</th></tr>\n",
+        f);
+    for (uint32_t i = 0; i < r->count; i++) {
+        const masu_row *row = &r->rows[i], *parent = masu_rows_find(r->rows, r->count, row->parent);
+        if (!parent || parent == row) continue;
+        fputs("<tr><td>", f);
+        put(r, row->setting);
+        fputs("</td><td>", f);
+        put(r, row->parent);
+        fprintf(f, "</td><td>%.3f</td><td>%+.4f</td><td>%+.2f</td><td>%+.0f</td></tr>\n",
+                r->ratios[i] / r->ratios[parent - r->rows], row->flip - parent->flip,
+                row->rmse - parent->rmse, (row->device_bytes - parent->device_bytes) / 1024.0);
+    }
+    fputs("</table></div>\n", f);
+}
+
+static bool is_rung(const report *r, uint32_t row) {
+    for (uint32_t i = 0; i < r->rung_count; i++) {
+        if (r->rungs[i] == row) return true;
+    }
+    return false;
+}
+
+static void put_all(report *r) {
+    json_t *one;
+    size_t k;
+    fputs("<h2>All settings</h2>\n<div class=\"wide\"><table>\n", r->page);
+    put_columns(r->page);
+    for (uint32_t i = 0; i < r->count; i++) put_row(r, i, "", is_rung(r, i));
+    fputs("</table></div>\n<h2>Left out</h2>\n<div class=\"wide\"><table>\n"
+          "<tr><th>setting</th><th>why</th></tr>\n",
+          r->page);
+    json_array_foreach(json_object_get(r->sweep, "dropped"), k, one) {
+        fputs("<tr><td>", r->page);
+        put(r, text_of(one, "setting"));
+        fputs("</td><td>", r->page);
+        put(r, text_of(one, "why"));
+        fputs("</td></tr>\n", r->page);
+    }
+    fputs("</table></div>\n", r->page);
+}
+
+static bool put_pictures(report *r) {
+    char path[4096];
+    fputs("<h2>Pictures</h2>\n<h3>The truth</h3>\n<p class=\"pair\">", r->page);
+    if (!masu_sweep_path(r->folder, "truth.png", path) || !put_image(r, path, "image/png", "truth"))
+        return false;
+    fputs("</p>\n", r->page);
+    for (uint32_t i = 0; i < r->rung_count; i++) {
+        const masu_row *row = &r->rows[r->rungs[i]];
+        fprintf(r->page, "<h3>Rung %u: ", i);
+        put(r, row->setting);
+        fprintf(r->page,
+                "</h3>\n<p>%.3f of the base's time, FLIP %.4f; beside it the map of FLIP."
+                "</p>\n<p class=\"pair\">",
+                r->ratios[r->rungs[i]], row->flip);
+        if (!masu_sweep_picture(r->folder, row->setting, "", path) ||
+            !put_image(r, path, "image/png", row->setting) || !make_map(r, row->setting, path) ||
+            !put_image(r, path, "image/png", "map of FLIP")) {
+            return false;
+        }
+        fputs("</p>\n", r->page);
+    }
+    return true;
+}
+
+static bool write_page(report *r) {
+    char path[4096], *text = NULL;
+    size_t bytes = 0;
+    r->page = open_memstream(&text, &bytes);
+    if (!r->page || !masu_sweep_path(r->folder, "index.html", path))
+        return failed(r, "out of memory");
+    put_head(r);
+    put_ladder(r);
+    bool good = put_plots(r);
+    put_techniques(r);
+    good = good && put_pictures(r);
+    put_all(r);
+    fputs("</body>\n</html>\n", r->page);
+    bool whole = !fclose(r->page);
+    if (good && !whole) good = failed(r, "out of memory");
+    good = good && masu_file_write(path, text, bytes, r->error, r->error_size);
+    free(text);
+    return good;
+}
+
+bool masu_report_write(const char *folder, masu_report_result *out, char *error,
+                       size_t error_size) {
+    report r = {.folder = folder, .out = out, .error = error, .error_size = error_size};
+    memset(out, 0, sizeof *out);
+    bool good = read_all(&r) && find_ladder(&r) && write_ladder(&r);
+    if (good) {
+        masu_plot plot = {.folder = folder,
+                          .title = text_of(r.sweep, "scene"),
+                          .clock = out->by_timestamps ? "timestamps" : "wall clock",
+                          .rows = r.rows,
+                          .ratios = r.ratios,
+                          .row_count = r.count,
+                          .rungs = r.rungs,
+                          .front = r.front,
+                          .rung_count = r.rung_count,
+                          .front_count = r.front_count};
+        good = masu_plot_draw(&plot, &out->plots, error, error_size) && write_page(&r);
+    }
+    json_decref(r.sweep);
+    free(r.rows);
+    free(r.ratios);
+    free(r.front);
+    free(r.rungs);
+    return good;
+}

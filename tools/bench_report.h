@@ -1,0 +1,21 @@
+/* bench_report.h: what `masu bench` makes of its rows: ladder.json, plots, and one page that
+ * needs no other file.
+ *
+ * Everything is read from the folder (bench_sweep.h), so that parts of a sweep that were merged,
+ * or a folder from elsewhere, give the same. Needs no device. */
+#ifndef MASU_BENCH_REPORT_H
+#define MASU_BENCH_REPORT_H
+
+#include "bench_table.h"
+
+typedef struct masu_report_result {
+    uint32_t rows, settings, rungs; /* rows there are of settings there should be */
+    uint32_t unsteady;  /* rows whose ratios of rounds and of least times differ by more than 0.1 */
+    bool plots;         /* gnuplot has drawn them */
+    bool by_timestamps; /* times of the ladder; else the wall clock's */
+} masu_report_result;
+
+/* Writes ladder.json, plots/ and index.html. False: `error` holds one line. */
+bool masu_report_write(const char *folder, masu_report_result *out, char *error, size_t error_size);
+
+#endif

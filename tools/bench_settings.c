@@ -1,0 +1,361 @@
+/* bench_settings.c: see bench_settings.h. */
+#include "bench_settings.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- Knobs ----------------------------------------------------------------------------------- */
+
+typedef enum knob_kind { SCALAR, NUMBER, WORD, REFRESH } knob_kind;
+
+/* What a scene must have for a knob to change anything. */
+typedef enum use {
+    ALWAYS,
+    SDF,
+    AO,
+    SPECULAR,
+    SHADOWS,
+    LODS,
+    OCCLUDERS,
+    POLYGONS,
+    LIGHTS,
+    UPSCALED,
+    SHARPENED,
+    SHARPEN
+} use;
+
+typedef struct knob {
+    const char *name;
+    size_t offset;
+    knob_kind kind;
+    use use;
+    const char *const *words; /* of a WORD */
+} knob;
+
+static const char *const switches[] = {"auto", "off", "on"};
+static const char *const easus[] = {"auto", "full", "fast", "bilinear"};
+static const char *const aas[] = {"auto",        "off",       "fxaa",      "smaa-low",
+                                  "smaa-medium", "smaa-high", "smaa-ultra"};
+static const char *const marches[] = {"auto",  "plain", "fragment",     "seed",
+                                      "cone8", "cones", "checkerboard", "unpruned"};
+
+#define AT(field) #field, offsetof(masu_rung, field)
+static const knob knobs[] = {
+    {AT(scale), SCALAR, ALWAYS, NULL},
+    {AT(upscale), WORD, UPSCALED, switches},
+    {AT(easu), WORD, UPSCALED, easus},
+    {AT(sharpen), WORD, SHARPEN, switches},
+    {AT(sharpness), SCALAR, SHARPENED, NULL},
+    {AT(fuse), WORD, UPSCALED, switches},
+    {AT(aa), WORD, ALWAYS, aas},
+    {AT(march), WORD, SDF, marches},
+    {AT(march_steps), NUMBER, SDF, NULL},
+    {AT(frustum), WORD, POLYGONS, switches},
+    {AT(occlusion), WORD, OCCLUDERS, switches},
+    {AT(lod_error), SCALAR, LODS, NULL},
+    {AT(ao), WORD, AO, switches},
+    {AT(ao_slices), NUMBER, AO, NULL},
+    {AT(ao_steps), NUMBER, AO, NULL},
+    {AT(shadow_cascades), NUMBER, SHADOWS, NULL},
+    {AT(shadow_resolution), NUMBER, SHADOWS, NULL},
+    {AT(shadow_distance), SCALAR, SHADOWS, NULL},
+    {AT(shadow_refresh), REFRESH, SHADOWS, NULL},
+    {AT(light_tiles), WORD, LIGHTS, switches},
+    {AT(specular), WORD, SPECULAR, switches},
+    {AT(specular_cutoff), SCALAR, SPECULAR, NULL},
+    {AT(specular_reuse), WORD, SPECULAR, switches},
+    {AT(specular_temporal), WORD, SPECULAR, switches},
+    {AT(specular_fine), WORD, SPECULAR, switches},
+    {AT(specular_filter), WORD, SPECULAR, switches},
+    {AT(specular_taa), WORD, SPECULAR, switches},
+    {AT(specular_reuse_taps), NUMBER, SPECULAR, NULL},
+    {AT(specular_filter_taps), NUMBER, SPECULAR, NULL},
+    {AT(specular_frames), NUMBER, SPECULAR, NULL},
+};
+
+enum { KNOBS = sizeof knobs / sizeof *knobs };
+
+/* AMD's own choice for its "quality" pictures, and that of the library's own rungs. */
+static const masu_rung base_rung = {.scale = 1.0f, .sharpness = 0.2f};
+
+static size_t knob_bytes(const knob *k) { return k->kind == REFRESH ? 4 * MASU_MAX_CASCADES : 4; }
+
+static uint32_t word_of(const knob *k, const masu_rung *rung) {
+    uint32_t value;
+    memcpy(&value, (const char *)rung + k->offset, sizeof value);
+    return value;
+}
+
+static double scalar_of(const knob *k, const masu_rung *rung) {
+    float value;
+    memcpy(&value, (const char *)rung + k->offset, sizeof value);
+    return (double)value;
+}
+
+static void knob_text(const knob *k, const masu_rung *rung, char *out, size_t size) {
+    const uint32_t *r = rung->shadow_refresh;
+    switch (k->kind) {
+    case SCALAR: snprintf(out, size, "%.4g", scalar_of(k, rung)); break;
+    case NUMBER: snprintf(out, size, "%u", word_of(k, rung)); break;
+    case WORD: snprintf(out, size, "%s", k->words[word_of(k, rung)]); break;
+    case REFRESH: snprintf(out, size, "%u-%u-%u-%u", r[0], r[1], r[2], r[3]); break;
+    }
+}
+
+const char *masu_knob_name(uint32_t i) { return i < KNOBS ? knobs[i].name : NULL; }
+
+void masu_knob_json(uint32_t i, const masu_rung *rung, char *out, size_t size) {
+    const knob *k = &knobs[i];
+    const uint32_t *r = rung->shadow_refresh;
+    char text[64];
+    knob_text(k, rung, text, sizeof text);
+    switch (k->kind) {
+    case WORD: snprintf(out, size, "\"%s\"", text); break;
+    case REFRESH: snprintf(out, size, "[%u, %u, %u, %u]", r[0], r[1], r[2], r[3]); break;
+    default: snprintf(out, size, "%s", text); break;
+    }
+}
+
+static bool differs(const knob *k, const masu_rung *a, const masu_rung *b) {
+    return memcmp((const char *)a + k->offset, (const char *)b + k->offset, knob_bytes(k)) != 0;
+}
+
+uint32_t masu_setting_period(const masu_rung *rung) {
+    uint32_t most = 1;
+    for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
+        if (rung->shadow_refresh[k] > most) most = rung->shadow_refresh[k];
+    }
+    return most;
+}
+
+static void name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
+    size_t used = 0;
+    snprintf(out, MASU_SETTING_ID, "base");
+    for (uint32_t i = 0; i < KNOBS; i++) {
+        char text[64];
+        if (!differs(&knobs[i], rung, &base_rung) || used >= MASU_SETTING_ID) continue;
+        knob_text(&knobs[i], rung, text, sizeof text);
+        used += (size_t)snprintf(out + used, MASU_SETTING_ID - used, "%s%s=%s", used ? "+" : "",
+                                 knobs[i].name, text);
+    }
+}
+
+/* ---- Settings -------------------------------------------------------------------------------- */
+
+/* One knob, or a few that make one technique. Fields that are 0 are the base's. At which render
+ * sizes: the output's, half of it, and in `masu bench --quick`. */
+enum { WHOLE = 1, HALF = 2, QUICK = 4, STRUCTURAL = 8, SAME = 16 };
+
+typedef struct technique {
+    const char *name;
+    uint32_t when;
+    masu_rung rung;
+} technique;
+
+#define EACH(a, b, c, d) .shadow_refresh = {a, b, c, d}
+static const technique techniques[] = {
+    {"aa", WHOLE | HALF | QUICK | STRUCTURAL, {.aa = MASU_AA_FXAA}},
+    {"aa", WHOLE | HALF | STRUCTURAL, {.aa = MASU_AA_SMAA_LOW}},
+    {"aa", WHOLE | STRUCTURAL, {.aa = MASU_AA_SMAA_MEDIUM}},
+    {"aa", WHOLE | HALF | STRUCTURAL, {.aa = MASU_AA_SMAA_HIGH}},
+    {"aa", WHOLE | STRUCTURAL, {.aa = MASU_AA_SMAA_ULTRA}},
+    {"sharpen", WHOLE | STRUCTURAL, {.sharpen = MASU_ON}},
+    {"sharpen", HALF | QUICK | STRUCTURAL, {.sharpen = MASU_OFF}},
+    {"sharpness", HALF, {.sharpness = 1.0f}},
+    {"sharpness", HALF, {.sharpness = 2.0f}},
+    {"easu", HALF | QUICK | STRUCTURAL, {.easu = MASU_EASU_FAST}},
+    {"easu", HALF | STRUCTURAL, {.easu = MASU_EASU_BILINEAR}},
+    {"fuse", HALF | STRUCTURAL, {.fuse = MASU_ON}},
+    {"march_steps", WHOLE, {.march_steps = 32}},
+    {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
+    {"march_steps", WHOLE, {.march_steps = 128}},
+    {"march_steps", WHOLE, {.march_steps = 512}},
+    {"ao", WHOLE | HALF | QUICK | STRUCTURAL, {.ao = MASU_OFF}},
+    {"ao samples", WHOLE, {.ao_slices = 1, .ao_steps = 4}},
+    {"ao samples", WHOLE | HALF, {.ao_slices = 1}},
+    {"ao samples", WHOLE, {.ao_steps = 4}},
+    {"ao samples", WHOLE, {.ao_slices = 4}},
+    {"specular", WHOLE | HALF | QUICK | STRUCTURAL, {.specular = MASU_OFF}},
+    {"specular_reuse", WHOLE | STRUCTURAL, {.specular_reuse = MASU_OFF}},
+    {"specular_temporal", WHOLE | STRUCTURAL, {.specular_temporal = MASU_OFF}},
+    {"specular_fine", WHOLE | STRUCTURAL, {.specular_fine = MASU_OFF}},
+    {"specular_filter", WHOLE | STRUCTURAL, {.specular_filter = MASU_OFF}},
+    {"specular_taa", WHOLE | STRUCTURAL, {.specular_taa = MASU_OFF}},
+    {"specular taps", WHOLE, {.specular_reuse_taps = 4}},
+    {"specular taps", WHOLE, {.specular_filter_taps = 6}},
+    {"specular taps", WHOLE, {.specular_reuse_taps = 16, .specular_filter_taps = 24}},
+    {"shadow_refresh", WHOLE | HALF | QUICK, {EACH(1, 2, 4, 8)}},
+    {"shadow_refresh", WHOLE, {EACH(4, 4, 4, 4)}},
+    {"shadow_resolution", WHOLE | STRUCTURAL, {.shadow_resolution = 512}},
+    {"shadow_cascades", WHOLE | STRUCTURAL, {.shadow_cascades = 2}},
+    {"lod_error", WHOLE, {.lod_error = -1.0f}},
+    {"lod_error", WHOLE, {.lod_error = 3.0f}},
+    {"frustum", WHOLE | SAME, {.frustum = MASU_OFF}},
+    {"occlusion", WHOLE | STRUCTURAL | SAME, {.occlusion = MASU_OFF}},
+    {"light_tiles", WHOLE | STRUCTURAL | SAME, {.light_tiles = MASU_OFF}},
+};
+
+/* What a port might choose together. The plain one, nothing but the base, is at every size. */
+static const technique bundles[] = {
+    {"full", 0, {.aa = MASU_AA_SMAA_HIGH}},
+    {"soft", 0, {.sharpen = MASU_OFF}}, /* what a mean over each pixel is, RCAS leads away from */
+    {"middle",
+     0,
+     {.aa = MASU_AA_FXAA,
+      .ao_slices = 1,
+      .ao_steps = 4,
+      .specular_reuse_taps = 4,
+      .specular_filter_taps = 6,
+      EACH(1, 2, 4, 8)}},
+    {"cheap",
+     QUICK,
+     {.easu = MASU_EASU_FAST,
+      .sharpen = MASU_OFF,
+      .march_steps = 128,
+      .lod_error = 2.0f,
+      .ao = MASU_OFF,
+      .specular = MASU_OFF,
+      EACH(2, 4, 8, 8)}},
+};
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+typedef struct list {
+    masu_setting *out;
+    uint32_t count;
+} list;
+
+/* The knobs of `turned` that are not 0 on top of the base at that scale. */
+static masu_rung rung_of(const masu_rung *turned, float scale) {
+    masu_rung rung = base_rung;
+    static const masu_rung zero;
+    for (uint32_t i = 0; i < KNOBS; i++) {
+        if (differs(&knobs[i], turned, &zero)) {
+            memcpy((char *)&rung + knobs[i].offset, (const char *)turned + knobs[i].offset,
+                   knob_bytes(&knobs[i]));
+        }
+    }
+    rung.scale = scale;
+    return rung;
+}
+
+static void add(list *l, const technique *t, float scale, const masu_rung *parent) {
+    if (l->count == MASU_SETTINGS_MOST) return;
+    masu_setting *s = &l->out[l->count++];
+    memset(s, 0, sizeof *s);
+    s->rung = rung_of(&t->rung, scale);
+    s->structural = (t->when & STRUCTURAL) != 0;
+    s->same_picture = (t->when & SAME) != 0;
+    snprintf(s->technique, sizeof s->technique, "%s", t->name);
+    name(&s->rung, s->id);
+    name(parent, s->parent);
+}
+
+uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
+    static const float quick_scales[] = {1.0f, 0.75f, 0.5f, 0.4f};
+    static const float bundle_scales[] = {1.0f, 0.875f, 0.75f, 0.625f, 0.5f, 0.4f};
+    const technique base = {.name = "base"}, scale = {.name = "scale"};
+    const masu_rung half = rung_of(&base.rung, 0.5f);
+    list l = {out, 0};
+    add(&l, &base, 1.0f, &base_rung);
+    if (quick) {
+        for (uint32_t i = 1; i < COUNT(quick_scales); i++)
+            add(&l, &scale, quick_scales[i], &base_rung);
+    } else {
+        for (int i = 15; i >= 7; i--) add(&l, &scale, (float)i / 16.0f, &base_rung);
+        add(&l, &scale, 0.4f, &base_rung);
+    }
+    for (size_t t = 0; t < COUNT(techniques); t++) {
+        const technique *one = &techniques[t];
+        if (quick && !(one->when & QUICK)) continue;
+        if (one->when & WHOLE) add(&l, one, 1.0f, &base_rung);
+        if (one->when & HALF) add(&l, one, 0.5f, &half);
+    }
+    for (size_t b = 0; b < COUNT(bundles); b++) {
+        if (quick && !(bundles[b].when & QUICK)) continue;
+        const float *scales = quick ? quick_scales : bundle_scales;
+        for (size_t i = 0; i < (quick ? COUNT(quick_scales) : COUNT(bundle_scales)); i++) {
+            const masu_rung plain = rung_of(&base.rung, scales[i]);
+            add(&l, &bundles[b], scales[i], &plain);
+        }
+    }
+    return l.count;
+}
+
+/* ---- What a scene has use for ---------------------------------------------------------------- */
+
+static bool has_pass(const masu_plan_info *plan, const char *start) {
+    for (uint32_t p = 0; p < plan->pass_count; p++) {
+        if (plan->passes[p].active && !strncmp(plan->passes[p].name, start, strlen(start)))
+            return true;
+    }
+    return false;
+}
+
+/* Why the knob has no effect, or NULL. */
+static const char *useless(const knob *k, const masu_rung *rung, const masu_scene *scene,
+                           const masu_plan_info *base) {
+    bool upscaled = rung->scale < 1.0f || rung->upscale == MASU_ON;
+    bool by_default = upscaled && rung->easu != MASU_EASU_BILINEAR;
+    bool sharpened = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && by_default);
+    switch (k->use) {
+    case SDF: return scene->sdf ? NULL : "the scene has no SDF";
+    case AO: return has_pass(base, "ao") ? NULL : "the scene asks for no ambient occlusion";
+    case SPECULAR: return has_pass(base, "specular_") ? NULL : "no reflections are traced";
+    case SHADOWS: return has_pass(base, "cascade_") ? NULL : "the scene has no shadow map";
+    case LODS: return scene->lods ? NULL : "the scene's meshes have no coarser forms";
+    case OCCLUDERS: return scene->placed_occluders ? NULL : "the scene has no occluders";
+    case POLYGONS: return scene->instances ? NULL : "the scene has no polygons";
+    case LIGHTS: return scene->lights ? NULL : "the scene has no local lights";
+    case UPSCALED: return upscaled ? NULL : "nothing is upscaled";
+    case SHARPEN: return by_default || rung->sharpen == MASU_ON ? NULL : "nothing is sharpened";
+    case SHARPENED: return sharpened ? NULL : "nothing is sharpened";
+    default: return NULL;
+    }
+}
+
+static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t count,
+                         char old[][MASU_SETTING_ID]) {
+    for (uint32_t k = 0; k < count; k++) {
+        if (strcmp(s->parent, old[k]) != 0) continue;
+        memcpy(s->parent, all[k].id, sizeof s->parent);
+        return;
+    }
+}
+
+void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene *scene,
+                       const masu_plan_info *base) {
+    static char old[MASU_SETTINGS_MOST][MASU_SETTING_ID];
+    for (uint32_t i = 0; i < count; i++) {
+        masu_setting *s = &settings[i];
+        const char *why = NULL;
+        memcpy(old[i], s->id, sizeof old[i]);
+        for (uint32_t k = 0; k < KNOBS; k++) {
+            const char *no = useless(&knobs[k], &s->rung, scene, base);
+            if (!no || !differs(&knobs[k], &s->rung, &base_rung)) continue;
+            memcpy((char *)&s->rung + knobs[k].offset, (const char *)&base_rung + knobs[k].offset,
+                   knob_bytes(&knobs[k]));
+            why = why ? why : no;
+        }
+        char fitted[MASU_SETTING_ID];
+        name(&s->rung, fitted);
+        refit_parent(s, settings, i, old);
+        for (uint32_t k = 0; k < i && !s->dropped[0]; k++) {
+            if (strcmp(settings[k].id, fitted) != 0 || settings[k].dropped[0]) continue;
+            snprintf(s->dropped, sizeof s->dropped, "%s", why ? why : "it is there already");
+        }
+        /* What is dropped keeps the name that says what it was to be. */
+        if (!s->dropped[0]) memcpy(s->id, fitted, sizeof s->id);
+    }
+}
+
+bool masu_settings_same_plan(const masu_plan_info *a, const masu_plan_info *b) {
+    bool same = a->pass_count == b->pass_count &&
+                a->memory.device_bytes == b->memory.device_bytes &&
+                a->rungs[0].render_width == b->rungs[0].render_width &&
+                a->rungs[0].render_height == b->rungs[0].render_height &&
+                a->rungs[0].dispatches == b->rungs[0].dispatches;
+    for (uint32_t p = 0; p < a->pass_count && same; p++)
+        same = a->passes[p].active == b->passes[p].active;
+    return same;
+}

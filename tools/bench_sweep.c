@@ -1,0 +1,445 @@
+/* bench_sweep.c: see bench_sweep.h. */
+#include "bench_sweep.h"
+
+#include "bench_picture.h"
+#include "bench_sweep_files.h"
+#include "blob.h"
+#include "clock.h"
+#include "image.h"
+#include "metric_flip.h"
+#include "metric_image.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* At rest before flicker is measured, over how many differences; not timed before each turn. */
+enum { SETTLE_FRAMES = 8, FLICKER_FRAMES = 8, WARM_FRAMES = 2, BATCH = MASU_MAX_RUNGS - 1 };
+
+typedef struct samples {
+    double wall[MASU_SWEEP_RUNS_MAX], gpu[MASU_SWEEP_RUNS_MAX];
+    uint32_t count, plausible;
+} samples;
+
+typedef struct sweep {
+    const masu_sweep_desc *d;
+    masu_sweep_result *out;
+    masu_session s;
+    bool opened, remembers; /* frames depend on those before, whatever the setting */
+    masu_setting settings[MASU_SETTINGS_MOST];
+    uint64_t bytes[MASU_SETTINGS_MOST];
+    uint32_t setting_count, pixels;
+    uint8_t *truth, *before;
+    float *map;
+    samples samples[MASU_MAX_RUNGS];
+    uint64_t hash, start;
+    uint32_t pending; /* still to be measured when the run began */
+    char driver[1024];
+    char *error;
+    size_t error_size;
+} sweep;
+
+static bool failed(sweep *w, const char *text) {
+    snprintf(w->error, w->error_size, "%s: %s", w->d->scene_path, text);
+    return false;
+}
+
+static masu_session_desc session_of(const sweep *w) {
+    masu_session_desc d;
+    memset(&d, 0, sizeof d);
+    d.scene_path = w->d->scene_path;
+    d.host = w->d->host;
+    d.desc.output = w->d->size;
+    d.desc.targets.storage = 1;
+    d.desc.vulkan.max_anisotropy = 1.0f;
+    return d;
+}
+
+static void close_session(sweep *w) {
+    if (!w->opened) return;
+    masu_session_close(&w->s);
+    w->out->messages += w->s.host.messages;
+    w->opened = false;
+}
+
+/* ---- What is measured ------------------------------------------------------------------------ */
+
+static bool plan_of(sweep *w, const masu_rung *rung, masu_plan_info *plan) {
+    masu_desc d = w->s.desc;
+    d.rung_count = 1;
+    d.rungs[0] = *rung;
+    return masu_plan(&d, plan, &w->s.detail) == MASU_OK;
+}
+
+/* Plans are kept for parents: 160 of some kilobytes. */
+static bool fit_settings(sweep *w, masu_plan_info *plans) {
+    if (!plan_of(w, &w->settings[0].rung, &plans[0])) return failed(w, w->s.detail.text);
+    masu_settings_fit(w->settings, w->setting_count, &w->s.scene, &plans[0]);
+    for (uint32_t i = 0; i < w->setting_count; i++) {
+        masu_setting *s = &w->settings[i];
+        if (s->dropped[0]) continue;
+        if (!plan_of(w, &s->rung, &plans[i])) {
+            snprintf(s->dropped, sizeof s->dropped, "%.150s", w->s.detail.text);
+            continue;
+        }
+        w->bytes[i] = plans[i].memory.device_bytes;
+        for (uint32_t k = 0; k < i && s->structural; k++) {
+            if (!strcmp(w->settings[k].id, s->parent) && !w->settings[k].dropped[0] &&
+                masu_settings_same_plan(&plans[k], &plans[i])) {
+                snprintf(s->dropped, sizeof s->dropped, "the same passes and bytes as its parent");
+            }
+        }
+        w->settings[i].structural = 0; /* answered */
+    }
+    return true;
+}
+
+static bool plan_settings(sweep *w) {
+    masu_session_desc d = session_of(w);
+    d.no_renderer = true;
+    if (!masu_session_open(&d, &w->s, w->error, w->error_size)) return false;
+    w->opened = true;
+    masu_blob_header header;
+    memcpy(&header, w->s.blob, sizeof header);
+    w->hash = header.hash;
+    w->remembers = w->s.scene.reflections || w->s.scene.metered;
+    snprintf(w->driver, sizeof w->driver, "%s", w->s.host.driver);
+    w->setting_count = masu_settings_make(w->d->quick, w->settings);
+    masu_plan_info *plans = calloc(w->setting_count, sizeof *plans);
+    bool good = plans ? fit_settings(w, plans) : failed(w, "out of memory");
+    free(plans);
+    close_session(w);
+    for (uint32_t i = 0; i < w->setting_count; i++) {
+        w->out->dropped += w->settings[i].dropped[0] != 0;
+        w->out->settings += !w->settings[i].dropped[0];
+    }
+    return good;
+}
+
+/* ---- The truth ------------------------------------------------------------------------------- */
+
+static void (*show)(const char *text); /* masu_picture_truth's callback carries nothing */
+
+static void progress(uint32_t done, uint32_t of) {
+    char text[64];
+    snprintf(text, sizeof text, "truth: position %u of %u", done + 1, of);
+    if (show) show(text);
+}
+
+static bool draw_truth(sweep *w) {
+    masu_session_desc d = session_of(w);
+    if (!masu_picture_open(&d, w->d->positions, &w->s, w->error, w->error_size)) return false;
+    w->opened = true;
+    masu_frame_desc frame = {.time = w->d->time};
+    show = w->d->progress;
+    bool good = masu_picture_truth(&w->s, &frame, w->d->positions, w->d->rays, w->truth, progress,
+                                   w->error, w->error_size);
+    close_session(w);
+    return good;
+}
+
+/* The folder has its own, for the report, wherever it came from. */
+static bool find_truth(sweep *w) {
+    char own[4096];
+    VkExtent2D size = w->d->size;
+    if (!masu_sweep_path(w->d->folder, "truth.png", own)) return failed(w, "the path is too long");
+    const char *from = w->d->truth_path ? w->d->truth_path : own;
+    FILE *f = fopen(from, "rb");
+    if (f) {
+        fclose(f);
+        if (!masu_sweep_load(from, size, w->truth, w->error, w->error_size)) return false;
+    } else if (!draw_truth(w) || !masu_image_save_png(from, w->truth, size.width, size.height, 0,
+                                                      w->error, w->error_size)) {
+        return false;
+    }
+    return from == own ||
+           masu_image_save_png(own, w->truth, size.width, size.height, 0, w->error, w->error_size);
+}
+
+/* ---- Pictures -------------------------------------------------------------------------------- */
+
+static bool draw(sweep *w, uint32_t rung, double time, bool cut, masu_commands *commands) {
+    masu_camera camera;
+    if (masu_camera_at(w->s.m, time, &camera)) return failed(w, "the scene has no camera");
+    masu_frame_desc frame = {
+        .camera = &camera, .time = time, .time_step = 1.0f / 60.0f, .rung = rung, .cut = cut};
+    return masu_session_frame(&w->s, &frame, true, commands, w->error, w->error_size);
+}
+
+static bool read_back(sweep *w) {
+    return masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size);
+}
+
+/* Up to the time of the truth. Of the first cascade that is slow the last frame is one before it is
+ * due, the worst there is: cascade k is drawn in frames n with n + k divisible by its pace. */
+static bool move(sweep *w, uint32_t rung, const masu_rung *knobs, uint64_t *next) {
+    uint32_t period = masu_setting_period(knobs);
+    bool remembers = w->remembers || period > 1;
+    uint32_t frames = remembers ? w->d->frames : 1;
+    masu_commands commands;
+    if (period > 1 && frames < period) frames = period;
+    while (period > 1 && (*next + frames) % period) frames++;
+    for (uint32_t k = 0; k < frames; k++) {
+        double time = w->d->time - (double)(frames - 1 - k) / 60.0;
+        if (!draw(w, rung, time, k == 0, &commands)) return false;
+    }
+    *next = commands.frame + 1;
+    return read_back(w);
+}
+
+/* Mean absolute difference of successive frames at rest, of 255. */
+static bool flicker(sweep *w, uint32_t rung, uint64_t *next, double *out) {
+    uint32_t settle = w->remembers ? SETTLE_FRAMES : 1, frames = w->remembers ? FLICKER_FRAMES : 1;
+    size_t bytes = 4 * (size_t)w->pixels;
+    masu_commands commands;
+    double sum = 0.0;
+    for (uint32_t k = 0; k < settle; k++) {
+        if (!draw(w, rung, w->d->time, false, &commands)) return false;
+    }
+    if (!read_back(w)) return false;
+    memcpy(w->before, w->s.targets[0].mapped, bytes);
+    for (uint32_t k = 0; k < frames; k++) {
+        if (!draw(w, rung, w->d->time, false, &commands) || !read_back(w)) return false;
+        const uint8_t *shown = w->s.targets[0].mapped;
+        uint64_t apart = 0;
+        for (size_t i = 0; i < bytes; i++) apart += (uint64_t)abs(shown[i] - w->before[i]);
+        sum += (double)apart / (3.0 * w->pixels); /* alpha is 255 in all */
+        memcpy(w->before, shown, bytes);
+    }
+    *next = commands.frame + 1;
+    *out = sum / frames;
+    return true;
+}
+
+static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *next, masu_row *row) {
+    VkExtent2D size = w->d->size;
+    masu_flip flip;
+    char path[4096];
+    if (!move(w, rung, &s->rung, next)) return false;
+    const uint8_t *shown = w->s.targets[0].mapped;
+    if (!masu_metric_flip(w->truth, shown, size.width, size.height, 0, w->map, &flip))
+        return failed(w, "out of memory");
+    double rmse = masu_metric_rmse(w->truth, shown, size.width, size.height);
+    row->rmse = 255.0 * rmse;
+    row->psnr_db = masu_metric_psnr(rmse);
+    row->ssim = masu_metric_ssim(w->truth, shown, size.width, size.height);
+    row->flip = flip.mean;
+    row->flip_p99 = flip.p99;
+    if (!masu_sweep_picture(w->d->folder, s->id, "", path))
+        return failed(w, "the path is too long");
+    return masu_image_save_png(path, shown, size.width, size.height, 0, w->error, w->error_size) &&
+           flicker(w, rung, next, &row->flicker);
+}
+
+/* ---- Times ----------------------------------------------------------------------------------- */
+
+static bool sample(sweep *w, uint32_t rung, const masu_rung *knobs, bool kept) {
+    uint32_t period = masu_setting_period(knobs);
+    uint32_t warm = w->remembers ? WARM_FRAMES : period > 1 ? 1 : 0;
+    double wall = 0.0, gpu = 0.0;
+    samples *to = &w->samples[rung];
+    masu_commands commands;
+    masu_stats_info stats;
+    for (uint32_t k = 0; k < warm; k++) {
+        if (!draw(w, rung, w->d->time, k == 0, &commands)) return false;
+    }
+    for (uint32_t k = 0; k < period; k++) {
+        uint64_t start = masu_clock_ns(NULL);
+        if (!draw(w, rung, w->d->time, !warm, &commands)) return false;
+        wall += (double)(masu_clock_ns(NULL) - start) / 1e6;
+        if (!masu_stats(w->s.m, commands.slot, &stats) && stats.timed)
+            gpu += (double)stats.gpu_ns / 1e6;
+    }
+    if (!kept) return true;
+    to->wall[to->count] = wall / period;
+    to->gpu[to->count++] = gpu / period;
+    to->plausible += gpu >= 0.5 * wall && gpu <= 1.05 * wall;
+    return true;
+}
+
+static int by_value(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The nearest one that is there, of a sorted list. */
+static double at(const double *sorted, uint32_t n, double share) {
+    return sorted[(uint32_t)(share * (double)(n - 1) + 0.5)];
+}
+
+static void sort(samples *s) {
+    qsort(s->wall, s->count, sizeof *s->wall, by_value);
+    qsort(s->gpu, s->count, sizeof *s->gpu, by_value);
+}
+
+/* Before the samples are sorted: sample k of both is of the same round. */
+static double median_of_rounds(const double *base, const double *own, uint32_t n) {
+    static double ratios[MASU_SWEEP_RUNS_MAX];
+    for (uint32_t k = 0; k < n; k++) {
+        if (!(base[k] > 0.0)) return (double)NAN;
+        ratios[k] = own[k] / base[k];
+    }
+    qsort(ratios, n, sizeof *ratios, by_value);
+    return at(ratios, n, 0.5);
+}
+
+static void times(const samples *base, const samples *s, masu_row *row) {
+    row->wall_min = s->wall[0];
+    row->wall_p50 = at(s->wall, s->count, 0.5);
+    row->wall_p95 = at(s->wall, s->count, 0.95);
+    row->wall_p99 = at(s->wall, s->count, 0.99);
+    row->gpu_min = s->gpu[0];
+    row->gpu_p50 = at(s->gpu, s->count, 0.5);
+    row->plausible = (double)s->plausible / s->count;
+    row->base_wall_min = base->wall[0];
+    row->base_gpu_min = base->gpu[0];
+    row->least_ratio = s->wall[0] / base->wall[0];
+    row->gpu_least_ratio = base->gpu[0] > 0.0 ? s->gpu[0] / base->gpu[0] : (double)NAN;
+}
+
+/* ---- Batches --------------------------------------------------------------------------------- */
+
+/* Rung 0 is the base; it has a row of its own only where it is one of those asked for. */
+typedef struct batch {
+    uint32_t of[MASU_MAX_RUNGS]; /* settings; [0] is 0 */
+    uint32_t count;
+    bool base_too;
+    masu_row rows[MASU_MAX_RUNGS];
+} batch;
+
+static void say(sweep *w, const char *what) {
+    uint32_t done = w->out->measured, left = w->pending - done;
+    double seconds = (double)(masu_clock_ns(NULL) - w->start) / 1e9;
+    char text[MASU_SETTING_ID + 128];
+    if (!w->d->progress) return;
+    if (done) {
+        snprintf(text, sizeof text, "%u of %u settings measured, about %.0f s left; %s", done,
+                 w->pending, seconds / done * left, what);
+    } else {
+        snprintf(text, sizeof text, "%u settings to measure; %s", left, what);
+    }
+    w->d->progress(text);
+}
+
+static bool open_batch(sweep *w, const batch *b) {
+    masu_session_desc d = session_of(w);
+    d.desc.debug.timestamps = 1;
+    d.desc.rung_count = b->count;
+    for (uint32_t k = 0; k < b->count; k++) d.desc.rungs[k] = w->settings[b->of[k]].rung;
+    say(w, "building pipelines");
+    w->opened = masu_session_open(&d, &w->s, w->error, w->error_size);
+    return w->opened;
+}
+
+static bool draw_batch(sweep *w, batch *b) {
+    masu_plan_info plan;
+    uint64_t next = 0;
+    masu_plan_of(w->s.m, &plan);
+    for (uint32_t k = 0; k < b->count; k++) {
+        const masu_setting *s = &w->settings[b->of[k]];
+        masu_row *row = &b->rows[k];
+        memset(row, 0, sizeof *row);
+        snprintf(row->setting, sizeof row->setting, "%s", s->id);
+        snprintf(row->parent, sizeof row->parent, "%s", s->parent);
+        snprintf(row->technique, sizeof row->technique, "%s", s->technique);
+        row->render_width = plan.rungs[k].render_width;
+        row->render_height = plan.rungs[k].render_height;
+        row->passes = plan.rungs[k].dispatches;
+        row->device_bytes = (double)w->bytes[b->of[k]];
+        if (!k && !b->base_too) continue;
+        say(w, s->id);
+        if (!compare(w, k, s, &next, row)) return false;
+    }
+    return true;
+}
+
+static bool time_batch(sweep *w, batch *b) {
+    for (uint32_t k = 0; k < b->count; k++) w->samples[k].count = w->samples[k].plausible = 0;
+    for (uint32_t run = 0; run <= w->d->runs; run++) {
+        char text[64];
+        snprintf(text, sizeof text, "timing, run %u of %u", run, w->d->runs);
+        say(w, text);
+        for (uint32_t k = 0; k < b->count; k++) {
+            if (!sample(w, k, &w->settings[b->of[k]].rung, run > 0)) return false;
+        }
+    }
+    for (uint32_t k = 0; k < b->count; k++) {
+        const samples *base = &w->samples[0], *own = &w->samples[k];
+        b->rows[k].ratio = median_of_rounds(base->wall, own->wall, own->count);
+        b->rows[k].gpu_ratio = median_of_rounds(base->gpu, own->gpu, own->count);
+    }
+    for (uint32_t k = 0; k < b->count; k++) sort(&w->samples[k]);
+    for (uint32_t k = 0; k < b->count; k++) times(&w->samples[0], &w->samples[k], &b->rows[k]);
+    return true;
+}
+
+static bool run_batch(sweep *w, batch *b) {
+    bool good = open_batch(w, b) && draw_batch(w, b) && time_batch(w, b);
+    close_session(w);
+    for (uint32_t k = b->base_too ? 0 : 1; k < b->count && good; k++) {
+        good = masu_sweep_append(w->d->folder, &b->rows[k], w->error, w->error_size);
+        w->out->measured += good;
+    }
+    return good;
+}
+
+/* The base belongs to the first shard, like all others by its number among those measured. */
+static uint32_t mine(const sweep *w, const masu_row *rows, uint32_t count, uint32_t *list) {
+    uint32_t n = 0, number = 0;
+    for (uint32_t i = 0; i < w->setting_count; i++) {
+        if (w->settings[i].dropped[0]) continue;
+        if (number++ % w->d->shards != w->d->shard) continue;
+        if (masu_rows_find(rows, count, w->settings[i].id)) {
+            w->out->there++;
+        } else {
+            list[n++] = i;
+        }
+    }
+    return n;
+}
+
+static bool measure(sweep *w) {
+    static batch b;
+    uint32_t list[MASU_SETTINGS_MOST], count = 0;
+    masu_row *rows = masu_sweep_resume(w->d->folder, &count, w->error, w->error_size);
+    if (!rows) return false;
+    w->pending = mine(w, rows, count, list);
+    free(rows);
+    if (!w->pending) return true;
+    if (!find_truth(w)) return false;
+    w->start = masu_clock_ns(NULL);
+    for (uint32_t i = 0; i < w->pending;) {
+        b.base_too = list[i] == 0;
+        i += b.base_too;
+        b.of[0] = 0;
+        for (b.count = 1; b.count <= BATCH && i < w->pending; i++) b.of[b.count++] = list[i];
+        if (!run_batch(w, &b)) return false;
+    }
+    return true;
+}
+
+bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
+                    size_t error_size) {
+    static sweep w;
+    memset(&w, 0, sizeof w);
+    memset(out, 0, sizeof *out);
+    w.d = desc;
+    w.out = out;
+    w.error = error;
+    w.error_size = error_size;
+    w.pixels = desc->size.width * desc->size.height;
+    w.truth = malloc(4 * (size_t)w.pixels);
+    w.before = malloc(4 * (size_t)w.pixels);
+    w.map = malloc(sizeof *w.map * w.pixels);
+    bool good = (w.truth && w.before && w.map) || failed(&w, "out of memory");
+    good =
+        good && plan_settings(&w) &&
+        masu_sweep_begin(desc, w.driver, w.hash, w.settings, w.setting_count, error, error_size) &&
+        measure(&w);
+    close_session(&w);
+    free(w.truth);
+    free(w.before);
+    free(w.map);
+    return good;
+}

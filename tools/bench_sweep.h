@@ -1,0 +1,67 @@
+/* bench_sweep.h: `masu bench`'s measuring: every setting of one scene, its picture beside the truth
+ * and its time beside the base setting's.
+ *
+ * HOW. Settings are measured by sevens: a renderer has eight rungs, of which the first is always
+ * the base setting. All of its rungs take turns, the first round is dropped, and a setting's time
+ * is given beside the base's of the same renderer: what the machine does meanwhile hits both. A
+ * sample is a frame of the scene at rest, waited for, with a full barrier around each pass; where
+ * a cascade of the shadow map is drawn in each n-th frame only it is the mean of n frames. Where
+ * frames depend on those before, each turn begins with frames that are not timed. Both clocks are
+ * kept: the wall's from masu_frame to the fence, and the device's timestamps; a sample whose
+ * timestamps are not 0.5 to 1.05 of the wall is not plausible (Mesa 22.3's lavapipe gets them
+ * wrong).
+ *
+ * The picture is that of a scene in motion, which has followed its camera's path for so many frames
+ * up to the time of the truth, where anything depends on frames before: old shadows and trails of
+ * reflections are errors too. Flicker is what then changes from frame to frame of the scene at
+ * rest.
+ *
+ * THE FOLDER. sweep.json: what is measured, and how; a run is only resumed if it is the same.
+ * results.csv: a row as soon as it is known. pictures/SETTING.png. truth.png. All is written whole
+ * or not at all, but for the last row. */
+#ifndef MASU_BENCH_SWEEP_H
+#define MASU_BENCH_SWEEP_H
+
+#include "bench_settings.h"
+#include "session.h"
+
+typedef struct masu_sweep_desc {
+    const char *scene_path, *folder;
+    const char *truth_path; /* NULL: truth.png in the folder. Read if it is there, else written */
+    VkExtent2D size;
+    double time;
+    uint32_t positions, rays; /* of the truth */
+    uint32_t frames;          /* in motion before a picture is taken */
+    uint32_t runs;            /* timed ones of each setting, at least 1 */
+    uint32_t shard, shards;   /* settings shard, shard + shards, ... */
+    bool quick;
+    masu_headless_desc host;
+    void (*progress)(const char *text); /* or NULL */
+} masu_sweep_desc;
+
+#define MASU_SWEEP_RUNS_MAX 999u
+
+typedef struct masu_sweep_result {
+    uint32_t settings, dropped; /* settings: to be measured, in all shards */
+    uint32_t measured, there;   /* now, and already in the folder */
+    uint32_t messages;          /* of the validation layer */
+} masu_sweep_result;
+
+/* False: `error` holds one line. What has been measured until then stays in the folder. */
+bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
+                    size_t error_size);
+
+/* The rows and pictures of folders that hold parts of the same sweep, into one. */
+bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t part_count,
+                      char *error, size_t error_size);
+
+/* The rows of a folder. NULL: `error` says why; a folder without rows has none and is no error.
+ * Freed by free(). */
+masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size_t error_size);
+
+/* FOLDER/NAME, or FOLDER/pictures/NAME. False: too long. */
+bool masu_sweep_path(const char *folder, const char *name, char out[4096]);
+bool masu_sweep_picture(const char *folder, const char *setting, const char *suffix,
+                        char out[4096]);
+
+#endif

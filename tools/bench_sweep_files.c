@@ -1,0 +1,269 @@
+/* bench_sweep_files.c: see bench_sweep_files.h. */
+#include "bench_sweep_files.h"
+
+#include "image.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define TEXT_MAX ((size_t)64 << 20)
+
+static bool fail(char *error, size_t size, const char *subject, const char *text) {
+    snprintf(error, size, "%.2000s: %.500s", subject, text);
+    return false;
+}
+
+bool masu_sweep_path(const char *folder, const char *name, char out[4096]) {
+    return snprintf(out, 4096, "%s/%s", folder, name) < 4096;
+}
+
+bool masu_sweep_picture(const char *folder, const char *setting, const char *suffix,
+                        char out[4096]) {
+    return snprintf(out, 4096, "%s/pictures/%s%s.png", folder, setting, suffix) < 4096;
+}
+
+bool masu_sweep_load(const char *path, VkExtent2D size, uint8_t *rgba, char *error,
+                     size_t error_size) {
+    struct masu_image image;
+    if (!masu_image_load_png(path, &image, error, error_size)) return false;
+    bool fits = image.width == size.width && image.height == size.height;
+    if (fits) {
+        memcpy(rgba, image.rgba, 4 * (size_t)size.width * size.height);
+    } else {
+        snprintf(error, error_size, "%.500s is %ux%u, needed is %ux%u", path, image.width,
+                 image.height, size.width, size.height);
+    }
+    masu_image_free(&image);
+    return fits;
+}
+
+/* ---- sweep.json ------------------------------------------------------------------------------ */
+
+/* Whole files as text, NULL where there is none or it cannot be read. */
+static char *read_text(const char *path) {
+    uint8_t *bytes = NULL;
+    size_t count = 0;
+    if (!masu_file_read(path, TEXT_MAX, &bytes, &count, NULL, 0)) return NULL;
+    char *text = malloc(count + 1);
+    if (text) {
+        if (count) memcpy(text, bytes, count);
+        text[count] = 0;
+    }
+    free(bytes);
+    return text;
+}
+
+static json_t *knobs_json(const masu_rung *rung) {
+    json_t *knobs = json_object();
+    for (uint32_t k = 0; masu_knob_name(k); k++) {
+        char text[64];
+        masu_knob_json(k, rung, text, sizeof text);
+        json_object_set_new(knobs, masu_knob_name(k), json_loads(text, JSON_DECODE_ANY, NULL));
+    }
+    return knobs;
+}
+
+/* Everything that two parts of one sweep must have in common; what shard it is, is not in it. */
+static char *describe(const masu_sweep_desc *d, const char *driver, uint64_t hash,
+                      const masu_setting *settings, uint32_t count) {
+    char hex[32];
+    const char *last = strrchr(d->scene_path, '/');
+    json_t *there = json_array(), *dropped = json_array();
+    snprintf(hex, sizeof hex, "%016llx", (unsigned long long)hash);
+    for (uint32_t i = 0; i < count; i++) {
+        const masu_setting *s = &settings[i];
+        if (s->dropped[0]) {
+            json_array_append_new(dropped,
+                                  json_pack("{s:s, s:s}", "setting", s->id, "why", s->dropped));
+        } else {
+            json_array_append_new(there,
+                                  json_pack("{s:s, s:s, s:s, s:b, s:o}", "setting", s->id, "parent",
+                                            s->parent, "technique", s->technique, "same_picture",
+                                            (int)s->same_picture, "knobs", knobs_json(&s->rung)));
+        }
+    }
+    json_t *root =
+        json_pack("{s:s, s:s, s:s, s:i, s:i, s:f, s:i, s:i, s:i, s:i, s:b, s:o, s:o}", "scene",
+                  last ? last + 1 : d->scene_path, "hash", hex, "driver", driver, "width",
+                  (int)d->size.width, "height", (int)d->size.height, "time", d->time, "positions",
+                  (int)d->positions, "rays", (int)d->rays, "frames", (int)d->frames, "runs",
+                  (int)d->runs, "quick", d->quick, "settings", there, "dropped", dropped);
+    char *text = root ? json_dumps(root, JSON_INDENT(1)) : NULL;
+    json_decref(root);
+    return text;
+}
+
+static bool make_folder(const char *path, char *error, size_t error_size) {
+    if (!mkdir(path, 0777) || errno == EEXIST) return true;
+    return fail(error, error_size, path, strerror(errno));
+}
+
+static bool begin_with(const char *folder, const char *text, char *error, size_t error_size) {
+    char json[4096], csv[4096], pictures[4096];
+    if (!masu_sweep_path(folder, "pictures", pictures) ||
+        !masu_sweep_path(folder, "results.csv", csv) ||
+        !masu_sweep_path(folder, "sweep.json", json)) {
+        return fail(error, error_size, folder, "the path is too long");
+    }
+    if (!make_folder(folder, error, error_size) || !make_folder(pictures, error, error_size))
+        return false;
+    char *old = read_text(json);
+    bool same = old && !strcmp(old, text), other = old && !same;
+    free(old);
+    if (other) {
+        return fail(error, error_size, folder,
+                    "holds another sweep (scene, size, time, runs, driver or settings differ, see "
+                    "sweep.json): give another folder");
+    }
+    return same || masu_file_write(json, text, strlen(text), error, error_size);
+}
+
+bool masu_sweep_begin(const masu_sweep_desc *d, const char *driver, uint64_t hash,
+                      const masu_setting *settings, uint32_t count, char *error,
+                      size_t error_size) {
+    char *text = describe(d, driver, hash, settings, count);
+    if (!text) return fail(error, error_size, d->folder, "no memory for sweep.json");
+    bool good = begin_with(d->folder, text, error, error_size);
+    free(text);
+    return good;
+}
+
+/* ---- results.csv ----------------------------------------------------------------------------- */
+
+masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size_t error_size) {
+    char path[4096], why[256];
+    *count = 0;
+    if (!masu_sweep_path(folder, "results.csv", path)) {
+        fail(error, error_size, folder, "the path is too long");
+        return NULL;
+    }
+    char *text = read_text(path);
+    masu_row *rows = text ? masu_rows_read(text, count, why, sizeof why) : calloc(1, sizeof *rows);
+    if (!rows) fail(error, error_size, path, text ? why : "out of memory");
+    free(text);
+    return rows;
+}
+
+static bool write_rows(const char *folder, const masu_row *rows, uint32_t count, char *error,
+                       size_t error_size) {
+    char path[4096], *text = NULL;
+    size_t bytes = 0;
+    if (!masu_sweep_path(folder, "results.csv", path))
+        return fail(error, error_size, folder, "the path is too long");
+    FILE *f = open_memstream(&text, &bytes);
+    bool good = f && masu_rows_header(f) > 0;
+    for (uint32_t i = 0; i < count && good; i++) good = masu_rows_write(f, &rows[i]) > 0;
+    good = (!f || !fclose(f)) && good;
+    if (good) {
+        good = masu_file_write(path, text, bytes, error, error_size);
+    } else {
+        fail(error, error_size, path, "out of memory");
+    }
+    free(text);
+    return good;
+}
+
+masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size) {
+    masu_row *rows = masu_sweep_rows(folder, count, error, error_size);
+    if (rows && !write_rows(folder, rows, *count, error, error_size)) {
+        free(rows);
+        return NULL;
+    }
+    return rows;
+}
+
+bool masu_sweep_append(const char *folder, const masu_row *row, char *error, size_t error_size) {
+    char path[4096];
+    if (!masu_sweep_path(folder, "results.csv", path))
+        return fail(error, error_size, folder, "the path is too long");
+    FILE *f = fopen(path, "a");
+    if (!f) return fail(error, error_size, path, strerror(errno));
+    bool good = masu_rows_write(f, row) > 0;
+    good = !fclose(f) && good;
+    return good || fail(error, error_size, path, "cannot be written");
+}
+
+/* ---- Merging --------------------------------------------------------------------------------- */
+
+static bool copy(const char *from, const char *to, char *error, size_t error_size) {
+    uint8_t *bytes = NULL;
+    size_t count = 0;
+    bool good =
+        masu_file_read(from, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size) &&
+        masu_file_write(to, bytes, count, error, error_size);
+    free(bytes);
+    return good;
+}
+
+static bool exists(const char *path) {
+    struct stat st;
+    return !stat(path, &st);
+}
+
+/* Rows that `all` has not got yet, with their pictures, and the truth. */
+static bool merge_part(const char *folder, const char *part, masu_row *all, uint32_t *count,
+                       char *error, size_t error_size) {
+    char from[4096], to[4096];
+    uint32_t n = 0;
+    masu_row *rows = masu_sweep_rows(part, &n, error, error_size);
+    bool good = rows != NULL;
+    for (uint32_t i = 0; i < n && good; i++) {
+        if (masu_rows_find(all, *count, rows[i].setting)) continue;
+        if (*count == MASU_SETTINGS_MOST)
+            good = fail(error, error_size, part, "more settings than there are");
+        good = good && masu_sweep_picture(part, rows[i].setting, "", from) &&
+               masu_sweep_picture(folder, rows[i].setting, "", to) &&
+               (!strcmp(from, to) || copy(from, to, error, error_size));
+        if (good) all[(*count)++] = rows[i];
+    }
+    free(rows);
+    good = good && masu_sweep_path(part, "truth.png", from) &&
+           masu_sweep_path(folder, "truth.png", to);
+    return good && (exists(to) || !exists(from) || copy(from, to, error, error_size));
+}
+
+/* The same order whatever the parts: that of sweep.json. */
+static uint32_t in_order(const char *text, const masu_row *all, uint32_t count, masu_row *out) {
+    json_t *root = json_loads(text, 0, NULL), *one;
+    uint32_t n = 0;
+    size_t i;
+    json_array_foreach(json_object_get(root, "settings"), i, one) {
+        const char *id = json_string_value(json_object_get(one, "setting"));
+        const masu_row *row = id ? masu_rows_find(all, count, id) : NULL;
+        if (row && n < MASU_SETTINGS_MOST) out[n++] = *row;
+    }
+    json_decref(root);
+    return n;
+}
+
+bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t part_count,
+                      char *error, size_t error_size) {
+    static masu_row all[MASU_SETTINGS_MOST], ordered[MASU_SETTINGS_MOST];
+    uint32_t count = 0;
+    bool good = true;
+    char *text = NULL, path[4096];
+    for (uint32_t i = 0; i < part_count && good; i++) {
+        good = masu_sweep_path(parts[i], "sweep.json", path);
+        char *own = good ? read_text(path) : NULL;
+        if (!own) {
+            good = fail(error, error_size, parts[i], "has no sweep.json: no folder of masu bench");
+        } else if (text && strcmp(text, own) != 0) {
+            good = fail(error, error_size, parts[i], "is of another sweep than the first part");
+        }
+        if (!good || text) {
+            free(own);
+        } else {
+            text = own;
+            good = begin_with(folder, text, error, error_size);
+        }
+        good = good && merge_part(folder, parts[i], all, &count, error, error_size);
+    }
+    good = good && merge_part(folder, folder, all, &count, error, error_size);
+    good =
+        good && write_rows(folder, ordered, in_order(text, all, count, ordered), error, error_size);
+    free(text);
+    return good;
+}

@@ -1,0 +1,194 @@
+/* cmd_bench.c: `masu bench`: every quality level of a scene, a measured error beside a measured
+ * time: the command line of bench_sweep.h, which measures, and bench_report.h, which makes rungs,
+ * plots and a page of it. */
+#include "cmd.h"
+
+#include "bench_picture.h"
+#include "bench_report.h"
+#include "bench_sweep.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    OPTION_OUT = 1,
+    OPTION_SIZE,
+    OPTION_TIME,
+    OPTION_TRUTH,
+    OPTION_POSITIONS,
+    OPTION_REFERENCE,
+    OPTION_FRAMES,
+    OPTION_RUNS,
+    OPTION_SHARD,
+    OPTION_MERGE,
+    OPTION_QUICK
+};
+
+enum { PARTS_MOST = 64 };
+
+typedef struct options {
+    masu_sweep_desc sweep;
+    const char *arguments[PARTS_MOST];
+    uint32_t count;
+    bool merge, sized, placed, ran, framed;
+} options;
+
+static void progress(const char *text) { masu_cli_progress("%s", text); }
+
+static int report(const options *o) {
+    masu_report_result result;
+    char error[4096];
+    masu_cli_progress("writing the report");
+    if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
+        return masu_cli_error("%s", error);
+    masu_cli_progress_clear();
+    if (result.unsteady > result.rows / 10) {
+        masu_cli_warn("the machine was busy: times of %u of %u settings contradict themselves",
+                      result.unsteady, result.rows);
+    }
+    if (!result.plots) masu_cli_warn("no gnuplot: there are no plots");
+    if (masu_cli_quiet()) return MASU_CLI_OK;
+    printf("%s: %u of %u settings, %u rungs by %s; see %s/index.html\n", o->sweep.folder,
+           result.rows, result.settings, result.rungs,
+           result.by_timestamps ? "timestamps" : "the wall clock", o->sweep.folder);
+    return MASU_CLI_OK;
+}
+
+static int merge(const options *o) {
+    char error[4096];
+    if (!masu_sweep_merge(o->sweep.folder, o->arguments, o->count, error, sizeof error))
+        return masu_cli_error("%s", error);
+    return report(o);
+}
+
+static int sweep(options *o) {
+    masu_sweep_result result;
+    char error[4096];
+    o->sweep.scene_path = o->arguments[0];
+    o->sweep.progress = progress;
+    if (o->sweep.quick) {
+        if (!o->sized) o->sweep.size = (VkExtent2D){128, 72};
+        if (!o->placed) o->sweep.positions = 4;
+        if (!o->ran) o->sweep.runs = 2;
+        if (!o->framed) o->sweep.frames = 8;
+    }
+    bool good = masu_sweep_run(&o->sweep, &result, error, sizeof error);
+    masu_cli_progress_clear();
+    if (!good) return masu_cli_error("%s", error);
+    if (!masu_cli_quiet()) {
+        printf("%s: %u settings measured, %u were there; of %u, and %u that the scene has no use "
+               "for\n",
+               o->sweep.folder, result.measured, result.there, result.settings, result.dropped);
+    }
+    int code = MASU_CLI_OK;
+    if (o->sweep.shards == 1) code = report(o);
+    if (result.messages)
+        code = masu_cli_error("the validation layer has reported %u messages", result.messages);
+    return code;
+}
+
+/* "0/4" */
+static bool read_shard(const masu_cli *cli, masu_sweep_desc *d) {
+    char *end;
+    const char *text = cli->value;
+    unsigned long shard = strtoul(text, &end, 10);
+    if (end == text || *end != '/' || *text == '-') goto bad;
+    const char *of = end + 1;
+    unsigned long shards = strtoul(of, &end, 10);
+    if (end == of || *end || *of == '-' || shards < 1 || shards > 1000 || shard >= shards) goto bad;
+    d->shard = (uint32_t)shard;
+    d->shards = (uint32_t)shards;
+    return true;
+bad:
+    masu_cli_usage_error("%s '%s': I/N, with I from 0 to N - 1 and N up to 1000", cli->option,
+                         text);
+    return false;
+}
+
+static bool read_option(const masu_cli *cli, int id, options *o) {
+    masu_sweep_desc *d = &o->sweep;
+    switch (id) {
+    case OPTION_OUT: d->folder = cli->value; return true;
+    case OPTION_SIZE: o->sized = true; return masu_output_size(cli, &d->size);
+    case OPTION_TIME: return masu_cli_double(cli, -1e9, 1e9, &d->time);
+    case OPTION_TRUTH: d->truth_path = cli->value; return true;
+    case OPTION_POSITIONS:
+        o->placed = true;
+        return masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, &d->positions);
+    case OPTION_REFERENCE: return masu_cli_uint(cli, 1, 1000000, &d->rays);
+    case OPTION_FRAMES: o->framed = true; return masu_cli_uint(cli, 1, 10000, &d->frames);
+    case OPTION_RUNS: o->ran = true; return masu_cli_uint(cli, 1, MASU_SWEEP_RUNS_MAX, &d->runs);
+    case OPTION_SHARD: return read_shard(cli, d);
+    case OPTION_MERGE: o->merge = true; return true;
+    case OPTION_QUICK: d->quick = true; return true;
+    case MASU_CLI_ARGUMENT:
+        if (o->count == PARTS_MOST) {
+            masu_cli_usage_error("more than %d folders", PARTS_MOST);
+            return false;
+        }
+        o->arguments[o->count++] = cli->value;
+        return true;
+    default: return false;
+    }
+}
+
+static int run(masu_cli *cli) {
+    static options o;
+    o = (options){.sweep = {.size = {640, 360},
+                            .time = 1.0,
+                            .positions = MASU_PICTURE_POSITIONS,
+                            .rays = MASU_PICTURE_RAYS,
+                            .frames = 32,
+                            .runs = 9,
+                            .shards = 1,
+                            .host = {.message = masu_print_message}}};
+    for (;;) {
+        int id = masu_cli_next(cli);
+        if (id == MASU_CLI_EXIT) return cli->exit_code;
+        if (id == MASU_CLI_END) break;
+        if (masu_device_option(cli, id, &o.sweep.host)) continue;
+        if (!read_option(cli, id, &o)) return MASU_CLI_USAGE;
+    }
+    if (!o.count)
+        return masu_cli_usage_error(o.merge ? "no folder to merge is given" : "no scene is given");
+    if (!o.sweep.folder) return masu_cli_usage_error("--out is missing");
+    if (o.merge) return merge(&o);
+    if (o.count > 1) return masu_cli_usage_error("one scene at a time: '%s'", o.arguments[1]);
+    return sweep(&o);
+}
+
+static const masu_cli_option list[] = {
+    {"out", "DIR", "folder of the results; one with a part of the same sweep is gone on with",
+     OPTION_OUT, 'o'},
+    {"size", "WxH", "output size (default 640x360)", OPTION_SIZE, 0},
+    {"time", "SECONDS", "of the scene and its camera (default 1)", OPTION_TIME, 0},
+    {"truth", "FILE.png", "read the truth from there, or write it there (default DIR/truth.png)",
+     OPTION_TRUTH, 0},
+    {"positions", "N", "places in each pixel that the truth is the mean of (default 64)",
+     OPTION_POSITIONS, 0},
+    {"reference", "N", "rays of reflections from each of its pixels, in all (default 1024)",
+     OPTION_REFERENCE, 0},
+    {"frames", "N",
+     "in motion before a picture is taken, where one depends on those before\n"
+     "(default 32)",
+     OPTION_FRAMES, 0},
+    {"runs", "N", "timed frames of each setting (default 9)", OPTION_RUNS, 0},
+    {"shard", "I/N", "measure each N-th setting alone, from the I-th on, 0 to N - 1; no report",
+     OPTION_SHARD, 0},
+    {"merge", NULL, "join DIR... of shards in --out, and write the report", OPTION_MERGE, 0},
+    {"quick", NULL, "few settings, 128x72, 4 positions, 8 frames, 2 runs: a test", OPTION_QUICK, 0},
+    MASU_DEVICE_OPTIONS,
+    {NULL, NULL, NULL, 0, 0}};
+
+const masu_cli_command masu_cmd_bench = {
+    .name = "bench",
+    .arguments = "SCENE.masu --out DIR [options], or --merge DIR... --out DIR",
+    .summary = "measure each quality level: error against run time, and the rungs worth having",
+    .options = list,
+    .details =
+        "Into DIR: results.csv, a row per setting; ladder.json, the rungs of the Pareto front;\n"
+        "index.html, one page with tables, plots and pictures; plots/ if there is gnuplot.\n"
+        "A setting's time is that of frames at rest, in turns with the base setting (all\n"
+        "defaults, no upscaling); its picture is the last of some frames in motion.\n",
+    .run = run};
