@@ -12,7 +12,8 @@
 # to $BUILD/test-results/.
 #
 # MASU_REQUIRE_DRIVERS=1   a driver that is not there, and a test that is skipped, is a failure
-# MASU_TEST_TIMEOUT=600    seconds for each program
+# MASU_TEST_TIMEOUT=600    seconds for each program; three times as many for tests/full, which builds the
+#                          tree anew
 # MASU_TEST_JOBS=N         programs at a time; as many as there are processors unless told: most of a
 #                          program's time goes into compiling shaders, which one thread does
 #
@@ -103,10 +104,12 @@ run() {
     local seeds=SEEDS_$name
     # shellcheck disable=SC2206
     [ "$kind" != fuzz ] || arguments=(${!seeds:-})
+    local limit=$timeout
+    [[ $program != */full/* ]] || limit=$((3 * timeout))
 
     start=${EPOCHREALTIME/./}
     # What bash says of a program that dies is said better below.
-    { timeout -k 10 "$timeout" "$program" "${arguments[@]}" &> "$log" < /dev/null; } 2> /dev/null
+    { timeout -k 10 "$limit" "$program" "${arguments[@]}" &> "$log" < /dev/null; } 2> /dev/null
     rc=$?
     seconds=$(((${EPOCHREALTIME/./} - start) / 10000))
     seconds=$((seconds / 100)).$(printf %02d $((seconds % 100)))
@@ -147,7 +150,7 @@ run() {
 
     # Programs fail in more ways than their tests do.
     if [ $rc = 124 ] || [ $rc = 137 ]; then
-        trouble="timed out after $timeout s"
+        trouble="timed out after $limit s"
     elif [ -z "$ended" ]; then
         trouble="ended early with exit code $rc"
     elif [ ${#tests[@]} = 1 ]; then

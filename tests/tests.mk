@@ -69,6 +69,10 @@ $(BUILD)/tests/gpu/test_probes: $(call objects,tools/probe_light.c)
 $(BUILD)/tests/unit/test_environment: LIBS = -lcmocka $(BAKE_LIBS)
 $(BUILD)/tests/unit/test_environment: $(BAKE_OBJECTS)
 
+# Suites of masu conform, without a device.
+$(BUILD)/tests/unit/test_conform: LIBS += -ljansson
+$(BUILD)/tests/unit/test_conform: $(call objects,tools/conform_suite.c tools/conform_report.c)
+
 # What masu-meso measures and fits.
 $(BUILD)/tests/unit/test_meso: LIBS = -lcmocka $(MESO_LIBS)
 $(BUILD)/tests/unit/test_meso: $(MESO_OBJECTS) $(BAKE_OBJECTS)

@@ -21,6 +21,7 @@ extern const masu_cli_command masu_cmd_trace_bench;
 extern const masu_cli_command masu_cmd_bench_image;
 extern const masu_cli_command masu_cmd_image_error;
 extern const masu_cli_command masu_cmd_plant;
+extern const masu_cli_command masu_cmd_conform;
 
 /* Options of every command that opens a device; ids from 900 on. */
 enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };

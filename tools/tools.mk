@@ -1,4 +1,5 @@
-# tools.mk: the programs. masu-meso is meso.c and meso_*.c. masu is masu.c and one cmd_NAME.c per command, masu-bake is bake.c and
+# tools.mk: the programs. masu-meso is meso.c and meso_*.c. masu is masu.c and one cmd_NAME.c per command, with
+# conform_*.c behind one of them, masu-bake is bake.c and
 # bake_*.c, masu-sdfc is sdfc.c; the compiler itself, sdfc_*.c, is also part of masu-bake. cli*.c
 # belong to all.
 
@@ -10,7 +11,7 @@ $(BUILD)/bin/masu-sdfc: $(call objects,tools/sdfc.c) $(SDFC_OBJECTS) $(CLI_OBJEC
 	$(link)
 
 $(BUILD)/bin/masu: LIBS = -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
-$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu.c tools/cmd_*.c)) $(CLI_OBJECTS)
+$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu.c tools/cmd_*.c tools/conform_*.c)) $(CLI_OBJECTS)
 $(BUILD)/bin/masu: $(call objects,tools/bake_content.c tools/bake_groups.c) # a tree for cull-bench
 $(BUILD)/bin/masu: $(KEEP_LOADED) $(BUILD)/lib/libmasu-bench.a $(BUILD)/lib/libmasu-plant.a
 $(BUILD)/bin/masu: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a

@@ -90,7 +90,8 @@ static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
     static const char *const commands[] = {"",     "render",      "upscale",
                                            "plan", "bench", "march-bench", "cull-bench", "draw-bench",
-                                           "light-bench", "trace-bench", "bench-image"};
+                                           "light-bench", "trace-bench", "bench-image",
+                                           "conform"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(masu("%s --help", commands[i]), 0);
         assert_true(strlen(out_text) > 200);
