@@ -66,7 +66,6 @@ typedef enum masu_image_id {
     MASU_LATEST_DEPTH = 64,
     MASU_LATEST_COLOR,
     MASU_LATEST_SPECULAR,
-    MASU_LATEST_RAYS, /* specular_reused, where the rung has it, else specular_light */
     MASU_UNSMOOTHED /* ldr, without a scene source */
 } masu_image_id;
 

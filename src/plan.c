@@ -428,9 +428,6 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         rp->active |= MASU_PASS_BIT(p);
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_image_id image = resolve(row->access[a].image, latest);
-            if (row->access[a].image == MASU_LATEST_RAYS) {
-                image = plan->needs.reuse ? MASU_IMAGE_SPECULAR_REUSED : MASU_IMAGE_SPECULAR_LIGHT;
-            }
             if (row->access[a].image == MASU_UNSMOOTHED)
                 image = plan->needs.scene ? MASU_IMAGE_LDR : MASU_IMAGE_SOURCE;
             if (image == (masu_image_id)MASU_RESOURCE_DRAWS && !plan->needs.occlusion) {
