@@ -16,11 +16,13 @@ PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
 # to bake the world forza: the data of TORCS
 PACKAGES_worlds := torcs-data
 
-# to run the tests; g++, and pkgconf from above, look at what is installed as a C++ or a C user would
-PACKAGES_test := libcmocka-dev vulkan-validationlayers g++
+# to run the tests; g++, and pkgconf from above, look at what is installed as a C++ or a C user would;
+# ImageMagick measures pictures beside us
+PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick
 
-# to build everything a second time with the other compiler (make check FULL=1), and for `make fuzz`
-PACKAGES_full := clang
+# to build everything a second time with the other compiler (make check FULL=1), and for `make fuzz`;
+# and another measure of SSIM
+PACKAGES_full := clang python3-skimage
 
 # for the plots of masu-meso and masu bench, which go without. Never installed by itself
 PACKAGES_plots := gnuplot-nox

@@ -79,14 +79,26 @@ bool masu_headless_run(masu_headless *host, VkCommandBuffer commands, char *erro
 /* Writes the one line about a Vulkan call that failed. Returns false, for `return`. */
 bool masu_headless_fail(char *error, size_t error_size, const char *call, VkResult r);
 
+/* A buffer that the host sees, in cached memory where there is such a type: reading write-combined
+ * memory is slow. */
+typedef struct masu_headless_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    void *mapped;
+} masu_headless_buffer;
+
+/* What has been made when it fails is destroyed by the call below, as is a zeroed struct. */
+bool masu_headless_buffer_create(masu_headless *host, uint64_t bytes, VkBufferUsageFlags usage,
+                                 masu_headless_buffer *buffer, char *error, size_t error_size);
+void masu_headless_buffer_destroy(masu_headless *host, masu_headless_buffer *buffer);
+
 /* An image the renderer draws into, and the way back to the host. */
 typedef struct masu_headless_target {
     VkImage image;
     VkImageView view;
     VkDeviceMemory memory;
-    VkBuffer buffer;
-    VkDeviceMemory buffer_memory;
-    const uint8_t *mapped;
+    masu_headless_buffer buffer;
+    const uint8_t *mapped; /* what the buffer holds */
     VkCommandBuffer copy;
     uint32_t width, height;
 } masu_headless_target;

@@ -24,27 +24,33 @@ static bool allocate(masu_headless *host, VkMemoryRequirements need, VkMemoryPro
     return r ? masu_headless_fail(error, size, "vkAllocateMemory", r) : true;
 }
 
-static bool make_buffer(masu_headless *host, uint64_t bytes, VkBufferUsageFlags usage,
-                        VkBuffer *buffer, VkDeviceMemory *memory, void **mapped, char *error,
-                        size_t size) {
+bool masu_headless_buffer_create(masu_headless *host, uint64_t bytes, VkBufferUsageFlags usage,
+                                 masu_headless_buffer *b, char *error, size_t size) {
     VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = bytes, .usage = usage};
-    VkResult r = vkCreateBuffer(host->device, &info, host->desc.allocator, buffer);
+    memset(b, 0, sizeof *b);
+    VkResult r = vkCreateBuffer(host->device, &info, host->desc.allocator, &b->buffer);
     if (r) return masu_headless_fail(error, size, "vkCreateBuffer", r);
     VkMemoryRequirements need;
-    vkGetBufferMemoryRequirements(host->device, *buffer, &need);
+    vkGetBufferMemoryRequirements(host->device, b->buffer, &need);
     VkMemoryPropertyFlags visible =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    /* Reading write-combined memory is slow: cached if there is such a type. */
     char ignored[128];
-    if (!allocate(host, need, visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, memory, ignored,
+    if (!allocate(host, need, visible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, &b->memory, ignored,
                   sizeof ignored) &&
-        !allocate(host, need, visible, memory, error, size)) {
+        !allocate(host, need, visible, &b->memory, error, size)) {
         return false;
     }
-    r = vkBindBufferMemory(host->device, *buffer, *memory, 0);
-    if (!r) r = vkMapMemory(host->device, *memory, 0, VK_WHOLE_SIZE, 0, mapped);
+    r = vkBindBufferMemory(host->device, b->buffer, b->memory, 0);
+    if (!r) r = vkMapMemory(host->device, b->memory, 0, VK_WHOLE_SIZE, 0, &b->mapped);
     return r ? masu_headless_fail(error, size, "vkMapMemory", r) : true;
+}
+
+void masu_headless_buffer_destroy(masu_headless *host, masu_headless_buffer *b) {
+    if (!host->device) return;
+    vkDestroyBuffer(host->device, b->buffer, host->desc.allocator);
+    vkFreeMemory(host->device, b->memory, host->desc.allocator);
+    memset(b, 0, sizeof *b);
 }
 
 static bool make_image(masu_headless *host, uint32_t width, uint32_t height, VkFormat format,
@@ -110,8 +116,8 @@ static bool record_copy(masu_headless *host, masu_headless_target *t, char *erro
     vkCmdPipelineBarrier(t->copy, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                          VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &before, 0, NULL, 0, NULL);
     VkBufferImageCopy copy = whole(t->width, t->height);
-    vkCmdCopyImageToBuffer(t->copy, t->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, t->buffer, 1,
-                           &copy);
+    vkCmdCopyImageToBuffer(t->copy, t->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                           t->buffer.buffer, 1, &copy);
     VkMemoryBarrier after = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                              .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
                              .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
@@ -141,16 +147,16 @@ bool masu_headless_target_create(masu_headless *host, uint32_t width, uint32_t h
         VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
         (storage ? VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT
                  : VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    void *mapped = NULL;
     if (!make_image(host, width, height, format, usage, &t->image, &t->view, &t->memory, error,
                     error_size) ||
-        !make_buffer(host, texel_bytes(format) * width * height, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                     &t->buffer, &t->buffer_memory, &mapped, error, error_size) ||
+        !masu_headless_buffer_create(host, texel_bytes(format) * width * height,
+                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT, &t->buffer, error,
+                                     error_size) ||
         !record_copy(host, t, error, error_size)) {
         masu_headless_target_destroy(host, t);
         return false;
     }
-    t->mapped = mapped;
+    t->mapped = t->buffer.mapped;
     return true;
 }
 
@@ -162,8 +168,7 @@ bool masu_headless_target_read(masu_headless *host, masu_headless_target *t, cha
 void masu_headless_target_destroy(masu_headless *host, masu_headless_target *t) {
     if (!host->device) return;
     if (t->copy) vkFreeCommandBuffers(host->device, host->pool, 1, &t->copy);
-    vkDestroyBuffer(host->device, t->buffer, host->desc.allocator);
-    vkFreeMemory(host->device, t->buffer_memory, host->desc.allocator);
+    masu_headless_buffer_destroy(host, &t->buffer);
     vkDestroyImageView(host->device, t->view, host->desc.allocator);
     vkDestroyImage(host->device, t->image, host->desc.allocator);
     vkFreeMemory(host->device, t->memory, host->desc.allocator);
@@ -215,26 +220,24 @@ bool masu_headless_source_of(masu_headless *host, VkFormat format, const void *t
     size_t texel = (size_t)texel_bytes(format);
     uint64_t bytes = (uint64_t)texel * image_width * image_height;
     memset(source, 0, sizeof *source);
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    void *mapped = NULL;
+    masu_headless_buffer buffer;
+    memset(&buffer, 0, sizeof buffer);
     bool made =
         make_image(host, image_width, image_height, format,
                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, &source->image,
                    &source->view, &source->memory, error, error_size) &&
-        make_buffer(host, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &buffer, &memory, &mapped, error,
-                    error_size);
+        masu_headless_buffer_create(host, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &buffer, error,
+                                    error_size);
     if (made) {
-        uint8_t *to = mapped;
+        uint8_t *to = buffer.mapped;
         for (uint64_t i = 0; i < bytes / 4; i++) memcpy(to + 4 * i, &beyond, 4);
         for (uint32_t y = 0; y < height; y++) {
             memcpy(to + texel * image_width * y, (const uint8_t *)texels + texel * width * y,
                    texel * width);
         }
-        made = upload(host, source->image, buffer, image_width, image_height, error, error_size);
+        made = upload(host, source->image, buffer.buffer, image_width, image_height, error, error_size);
     }
-    vkDestroyBuffer(host->device, buffer, host->desc.allocator);
-    vkFreeMemory(host->device, memory, host->desc.allocator);
+    masu_headless_buffer_destroy(host, &buffer);
     if (!made) masu_headless_source_destroy(host, source);
     return made;
 }

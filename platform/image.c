@@ -219,20 +219,44 @@ static bool write_beside_and_rename(const char *path, const char *target, const 
     return good;
 }
 
+/* What stands in the way before anything is tried. */
+static bool may_write(const char *path, bool *exists, bool *special, char *error,
+                      size_t error_size) {
+    struct stat info;
+    *exists = stat(path, &info) == 0;
+    *special = *exists && !S_ISREG(info.st_mode);
+    if (*exists && S_ISDIR(info.st_mode))
+        return fail(error, error_size, "%s: cannot write: it is a directory", path);
+    /* Renaming over a read-only file would succeed; its owner meant it to stay. */
+    if (*exists && access(path, W_OK) != 0)
+        return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
+    return true;
+}
+
+bool masu_file_writable(const char *path, char *error, size_t error_size) {
+    bool exists, special;
+    if (!may_write(path, &exists, &special, error, error_size)) return false;
+    if (special) return true;
+    char *resolved = exists ? realpath(path, NULL) : NULL;
+    const char *target = resolved ? resolved : path;
+    size_t name_size = strlen(target) + 48;
+    char *name = malloc(name_size);
+    int file = name ? create_beside(target, name, name_size) : -1;
+    int why = name ? errno : ENOMEM;
+    if (file >= 0) {
+        (void)close(file);
+        (void)unlink(name);
+    }
+    free(name);
+    free(resolved);
+    return file >= 0 || fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
+}
+
 bool masu_file_write(const char *path, const void *bytes, size_t count, char *error,
                      size_t error_size) {
-    struct stat info;
-    bool exists = stat(path, &info) == 0;
-    if (exists && S_ISDIR(info.st_mode)) {
-        return fail(error, error_size, "%s: cannot write: it is a directory", path);
-    }
-    if (exists && !S_ISREG(info.st_mode)) {
-        return write_straight(path, bytes, count, error, error_size);
-    }
-    /* Renaming over a read-only file would succeed; its owner meant it to stay. */
-    if (exists && access(path, W_OK) != 0) {
-        return fail(error, error_size, "%s: cannot write: %s", path, strerror(errno));
-    }
+    bool exists, special;
+    if (!may_write(path, &exists, &special, error, error_size)) return false;
+    if (special) return write_straight(path, bytes, count, error, error_size);
     char *resolved = exists ? realpath(path, NULL) : NULL;
     bool good =
         write_beside_and_rename(path, resolved ? resolved : path, bytes, count, error, error_size);

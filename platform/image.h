@@ -50,6 +50,9 @@ bool masu_image_load_pfm(const char *path, struct masu_image *image, char *error
 bool masu_image_save_pfm(const char *path, const float *values, uint32_t width, uint32_t height,
                          uint32_t channels, char *error, size_t error_size);
 
+/* Whether a file could be written there at present; leaves nothing behind. */
+bool masu_file_writable(const char *path, char *error, size_t error_size);
+
 /* What the save functions end with, for other files (statistics, baked scenes). */
 bool masu_file_write(const char *path, const void *bytes, size_t count, char *error,
                      size_t error_size);

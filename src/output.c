@@ -151,6 +151,7 @@ masu_result masu_output_check(const masu_desc *d, masu_detail *detail) {
     if (!(e->darken > 0.0f && e->darken <= 1e6f))
         return bad_float(detail, "exposure.darken", e->darken, "allowed are 0 to 1e6 per second");
     float low = e->low < 0.0f ? 0.0f : e->low, high = e->high < 0.0f ? 0.0f : e->high;
+    if (!(high < 1.0f)) return bad_float(detail, "exposure.high", e->high, "allowed are below 1");
     if (!(low + high < 1.0f))
         return bad_float(detail, "exposure.low", e->low, "with exposure.high it is less than 1");
     if (!(e->least >= 1e-9f && e->least <= 1e9f))

@@ -13,34 +13,6 @@
 
 #define COUNTER_BYTES (2 * MASU_COUNTER_COUNT * sizeof(uint32_t))
 
-static bool make_counters(masu_bench_chain *c, char *error, size_t error_size) {
-    const masu_headless *host = c->host;
-    VkMemoryPropertyFlags wanted =
-        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                               .size = COUNTER_BYTES,
-                               .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-    VkMemoryRequirements needs;
-    uint32_t type = 0;
-    void *mapped;
-    CHECK(vkCreateBuffer(host->device, &info, NULL, &c->counters));
-    vkGetBufferMemoryRequirements(host->device, c->counters, &needs);
-    while (type < host->memory.memoryTypeCount &&
-           (!(needs.memoryTypeBits & 1u << type) ||
-            (host->memory.memoryTypes[type].propertyFlags & wanted) != wanted)) {
-        type++;
-    }
-    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                     .allocationSize = needs.size,
-                                     .memoryTypeIndex = type};
-    CHECK(vkAllocateMemory(host->device, &allocate, NULL, &c->counters_memory));
-    CHECK(vkBindBufferMemory(host->device, c->counters, c->counters_memory, 0));
-    CHECK(vkMapMemory(host->device, c->counters_memory, 0, VK_WHOLE_SIZE, 0, &mapped));
-    c->counted = mapped;
-    memset(mapped, 0, COUNTER_BYTES);
-    return true;
-}
-
 static bool make_layouts(masu_bench_chain *c, char *error, size_t error_size) {
     VkDevice device = c->host->device;
     VkSamplerCreateInfo sampler = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
@@ -113,7 +85,7 @@ static bool make_sets(masu_bench_chain *c, uint32_t stages, const VkDescriptorIm
                                             .descriptorSetCount = 1,
                                             .pSetLayouts = &c->empty};
     CHECK(vkAllocateDescriptorSets(device, &allocate, &c->counters_set));
-    VkDescriptorBufferInfo buffer = {c->counters, 0, VK_WHOLE_SIZE};
+    VkDescriptorBufferInfo buffer = {c->counters.buffer, 0, VK_WHOLE_SIZE};
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = c->counters_set,
                                   .dstBinding = MASU_BIND_COUNTERS,
@@ -211,7 +183,11 @@ static bool build(masu_bench_chain *c, const masu_bench_stage *stages,
         !masu_headless_target_create(c->host, target->width, target->height,
                                      VK_FORMAT_R8G8B8A8_UNORM, true, &c->middle, error, error_size))
         return false;
-    if (!make_counters(c, error, error_size) || !make_layouts(c, error, error_size)) return false;
+    if (!masu_headless_buffer_create(c->host, COUNTER_BYTES, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                     &c->counters, error, error_size) ||
+        !make_layouts(c, error, error_size)) {
+        return false;
+    }
     VkDescriptorImageInfo reads[MASU_BENCH_STAGES], writes[MASU_BENCH_STAGES];
     for (uint32_t i = 0; i < count; i++) {
         if (!make_pipeline(c, &stages[i], counting, &c->pipelines[i], error, error_size))
@@ -249,8 +225,7 @@ void masu_bench_chain_close(masu_bench_chain *c) {
     vkDestroyDescriptorSetLayout(device, c->images, NULL);
     vkDestroyDescriptorSetLayout(device, c->empty, NULL);
     vkDestroySampler(device, c->sampler, NULL);
-    vkDestroyBuffer(device, c->counters, NULL);
-    vkFreeMemory(device, c->counters_memory, NULL);
+    masu_headless_buffer_destroy(c->host, &c->counters);
     if (c->middle.image) masu_headless_target_destroy(c->host, &c->middle);
     memset(c, 0, sizeof *c);
 }
@@ -258,7 +233,7 @@ void masu_bench_chain_close(masu_bench_chain *c) {
 bool masu_bench_chain_run(masu_bench_chain *c, double *wall, double *gpu, char *error,
                           size_t error_size) {
     uint64_t stamps[2] = {0, 0};
-    memset(c->counted, 0, COUNTER_BYTES);
+    memset(c->counters.mapped, 0, COUNTER_BYTES);
     uint64_t from = masu_clock_ns(NULL);
     if (!masu_headless_run(c->host, c->commands, error, error_size)) return false;
     *wall = (double)(masu_clock_ns(NULL) - from) * 1e-9;
@@ -271,5 +246,6 @@ bool masu_bench_chain_run(masu_bench_chain *c, double *wall, double *gpu, char *
 }
 
 uint64_t masu_bench_chain_count(const masu_bench_chain *c, uint32_t counter) {
-    return c->counted[2 * counter] | (uint64_t)c->counted[2 * counter + 1] << 32;
+    const uint32_t *counted = c->counters.mapped; /* pairs of words: low, high */
+    return counted[2 * counter] | (uint64_t)counted[2 * counter + 1] << 32;
 }

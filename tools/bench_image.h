@@ -29,9 +29,7 @@ typedef struct masu_bench_chain {
     VkPipeline pipelines[MASU_BENCH_STAGES];
     VkDescriptorPool pool;
     VkDescriptorSet counters_set, sets[MASU_BENCH_STAGES];
-    VkBuffer counters;
-    VkDeviceMemory counters_memory;
-    uint32_t *counted; /* pairs of words: low, high */
+    masu_headless_buffer counters;
     VkQueryPool queries;
     VkCommandBuffer commands;
 } masu_bench_chain;

@@ -65,10 +65,7 @@ void masu_bench_rays_normal(const masu_bench_rays *rays, const masu_bench_hit *h
 /* The compute program and its buffers, with room for `most` rays. */
 typedef struct masu_bench_gpu {
     masu_headless *host;
-    VkBuffer buffer[5];
-    VkDeviceMemory memory[5];
-    void *mapped[5];
-    uint64_t bytes[5];
+    masu_headless_buffer buffer[5];
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkPipeline pipeline[2]; /* 1: that counts */

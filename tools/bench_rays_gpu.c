@@ -16,33 +16,6 @@ enum { STATIC, FRAME, VERTICES, RAYS, HITS, BUFFERS };
         if (r != VK_SUCCESS) return masu_headless_fail(error, error_size, #call, r);               \
     } while (0)
 
-static bool make_buffer(masu_bench_gpu *g, uint32_t i, uint64_t bytes, char *error,
-                        size_t error_size) {
-    const masu_headless *host = g->host;
-    VkMemoryPropertyFlags wanted =
-        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                               .size = bytes,
-                               .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-    VkMemoryRequirements needs;
-    uint32_t type = 0;
-    g->bytes[i] = bytes;
-    CHECK(vkCreateBuffer(host->device, &info, NULL, &g->buffer[i]));
-    vkGetBufferMemoryRequirements(host->device, g->buffer[i], &needs);
-    while (type < host->memory.memoryTypeCount &&
-           (!(needs.memoryTypeBits & 1u << type) ||
-            (host->memory.memoryTypes[type].propertyFlags & wanted) != wanted)) {
-        type++;
-    }
-    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                     .allocationSize = needs.size,
-                                     .memoryTypeIndex = type};
-    CHECK(vkAllocateMemory(host->device, &allocate, NULL, &g->memory[i]));
-    CHECK(vkBindBufferMemory(host->device, g->buffer[i], g->memory[i], 0));
-    CHECK(vkMapMemory(host->device, g->memory[i], 0, VK_WHOLE_SIZE, 0, &g->mapped[i]));
-    return true;
-}
-
 static bool make_pipelines(masu_bench_gpu *g, char *error, size_t error_size) {
     VkDevice device = g->host->device;
     VkDescriptorSetLayoutBinding bindings[BUFFERS];
@@ -103,7 +76,7 @@ static bool make_set(masu_bench_gpu *g, char *error, size_t error_size) {
                                             .pSetLayouts = &g->set_layout};
     CHECK(vkAllocateDescriptorSets(device, &allocate, &g->set));
     for (uint32_t i = 0; i < BUFFERS; i++) {
-        VkDescriptorBufferInfo info = {g->buffer[i], 0, VK_WHOLE_SIZE};
+        VkDescriptorBufferInfo info = {g->buffer[i].buffer, 0, VK_WHOLE_SIZE};
         VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                       .dstSet = g->set,
                                       .dstBinding = i,
@@ -125,16 +98,19 @@ bool masu_bench_gpu_open(masu_headless *host, const masu_bench_rays *rays, uint3
         (uint64_t)rays->scene.vertices * sizeof(masu_blob_vertex),
         (uint64_t)most * sizeof(masu_bench_ray), (uint64_t)most * sizeof(masu_bench_hit)};
     for (uint32_t i = 0; i < BUFFERS; i++) {
-        if (!make_buffer(g, i, bytes[i], error, error_size)) return false;
+        if (!masu_headless_buffer_create(host, bytes[i], VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                         &g->buffer[i], error, error_size)) {
+            return false;
+        }
     }
-    unsigned char *out = g->mapped[STATIC];
+    unsigned char *out = g->buffer[STATIC].mapped;
     memcpy(out, layout.header, sizeof layout.header);
     memcpy(out + layout.nodes, rays->view.trace_nodes,
            rays->scene.trace_nodes * sizeof *rays->view.trace_nodes);
     memcpy(out + layout.triangles, rays->view.trace_triangles,
            rays->scene.trace_triangles * sizeof *rays->view.trace_triangles);
-    masu_trace_top_write(&rays->top, g->mapped[FRAME]);
-    memcpy(g->mapped[VERTICES], rays->view.vertices, bytes[VERTICES]);
+    masu_trace_top_write(&rays->top, g->buffer[FRAME].mapped);
+    memcpy(g->buffer[VERTICES].mapped, rays->view.vertices, bytes[VERTICES]);
     return make_pipelines(g, error, error_size) && make_set(g, error, error_size);
 }
 
@@ -146,15 +122,12 @@ void masu_bench_gpu_close(masu_bench_gpu *g) {
     for (uint32_t i = 0; i < 2; i++) vkDestroyPipeline(device, g->pipeline[i], NULL);
     vkDestroyPipelineLayout(device, g->layout, NULL);
     vkDestroyDescriptorSetLayout(device, g->set_layout, NULL);
-    for (uint32_t i = 0; i < BUFFERS; i++) {
-        vkDestroyBuffer(device, g->buffer[i], NULL);
-        vkFreeMemory(device, g->memory[i], NULL);
-    }
+    for (uint32_t i = 0; i < BUFFERS; i++) masu_headless_buffer_destroy(g->host, &g->buffer[i]);
     memset(g, 0, sizeof *g);
 }
 
 void masu_bench_gpu_rays(masu_bench_gpu *g, const masu_bench_ray *in, uint32_t count) {
-    memcpy(g->mapped[RAYS], in, count * sizeof *in);
+    memcpy(g->buffer[RAYS].mapped, in, count * sizeof *in);
 }
 
 bool masu_bench_gpu_trace(masu_bench_gpu *g, uint32_t count, bool counted, double *seconds,
@@ -187,4 +160,4 @@ bool masu_bench_gpu_trace(masu_bench_gpu *g, uint32_t count, bool counted, doubl
     return good;
 }
 
-const masu_bench_hit *masu_bench_gpu_hits(const masu_bench_gpu *g) { return g->mapped[HITS]; }
+const masu_bench_hit *masu_bench_gpu_hits(const masu_bench_gpu *g) { return g->buffer[HITS].mapped; }

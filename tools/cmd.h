@@ -20,6 +20,7 @@ extern const masu_cli_command masu_cmd_specular_bench;
 extern const masu_cli_command masu_cmd_trace_bench;
 extern const masu_cli_command masu_cmd_bench_image;
 extern const masu_cli_command masu_cmd_image_error;
+extern const masu_cli_command masu_cmd_compare;
 extern const masu_cli_command masu_cmd_plant;
 extern const masu_cli_command masu_cmd_conform;
 
@@ -57,6 +58,10 @@ bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa);
 
 /* --size WxH: what a PNG may hold, 16384 a side and 64 Mi pixels; said before the work is done. */
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size);
+
+/* A file that will be written: whether it can be is found out before the work is done. "-" may mean
+ * stdout. On false the mistake has been reported: return cli->exit_code. */
+bool masu_output_file(masu_cli *cli, const char **path);
 
 /* Validation messages go to stderr as warnings; at the end they are a failure. */
 void masu_print_message(void *user, const char *text);

@@ -356,8 +356,9 @@ static bool wanted(const options *o, const char *name) {
     return !o->only || listed(o->only, name, strlen(name));
 }
 
-/* The first of the list that is no case; NULL: all are. */
+/* The first of the list that is no case, as which an empty list counts; NULL: all are. */
 static const char *unknown(const char *list) {
+    if (!*list) return list;
     for (const char *at = list; *at; at += strcspn(at, ","), at += *at == ',') {
         bool known = false;
         for (uint32_t i = 0; i < CASES && !known; i++)
@@ -421,9 +422,13 @@ static int run(masu_cli *cli) {
         case OPTION_RUNS:
             if (!masu_cli_uint(cli, 1, RUNS_MOST, &o.runs)) return MASU_CLI_USAGE;
             continue;
-        case OPTION_CSV: o.csv = cli->value; continue;
+        case OPTION_CSV:
+            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            continue;
         case OPTION_ONLY: o.only = cli->value; continue;
-        case OPTION_OUTPUT: o.output = cli->value; continue;
+        case OPTION_OUTPUT:
+            if (!masu_output_file(cli, &o.output)) return cli->exit_code;
+            continue;
         case MASU_CLI_ARGUMENT:
             if (o.path) return masu_cli_usage_error("one picture at a time: '%s'", cli->value);
             o.path = cli->value;

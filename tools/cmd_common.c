@@ -42,6 +42,14 @@ bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {
     return false;
 }
 
+bool masu_output_file(masu_cli *cli, const char **path) {
+    char error[4096];
+    *path = cli->value;
+    if (!strcmp(cli->value, "-") || masu_file_writable(cli->value, error, sizeof error)) return true;
+    cli->exit_code = masu_cli_error("%s", error);
+    return false;
+}
+
 void masu_print_message(void *user, const char *text) {
     (void)user;
     masu_cli_warn("validation: %s", text);

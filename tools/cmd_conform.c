@@ -193,8 +193,12 @@ static int run(masu_cli *cli) {
             parts = "--fraction";
             continue;
         case OPTION_REPLAY: o.replay = cli->value; continue;
-        case OPTION_JUNIT: o.junit = cli->value; continue;
-        case OPTION_CSV: o.csv = cli->value; continue;
+        case OPTION_JUNIT:
+            if (!masu_output_file(cli, &o.junit)) return cli->exit_code;
+            continue;
+        case OPTION_CSV:
+            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            continue;
         case OPTION_IMAGES: o.images = cli->value; continue;
         case OPTION_RUNS:
             if (!masu_cli_uint(cli, 1, 999, &o.runs)) return MASU_CLI_USAGE;

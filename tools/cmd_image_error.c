@@ -431,7 +431,9 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_ONLY: o.only = cli->value; continue;
         case OPTION_IMAGES: o.images = cli->value; continue;
-        case OPTION_CSV: o.csv = cli->value; continue;
+        case OPTION_CSV:
+            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            continue;
         case OPTION_RAYS:
             if (!masu_rays_option(cli, &rays)) return MASU_CLI_USAGE;
             o.ray_query = rays.desc.ray_query;

@@ -336,7 +336,9 @@ static int run(masu_cli *cli) {
             if (!masu_cli_extent(cli, 16384, &o.bench.width, &o.bench.height))
                 return MASU_CLI_USAGE;
             continue;
-        case OPTION_CSV: o.csv = cli->value; continue;
+        case OPTION_CSV:
+            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            continue;
         case OPTION_RUNS:
             if (!masu_cli_uint(cli, 0, 10000, &o.bench.runs)) return MASU_CLI_USAGE;
             if (o.bench.runs && o.bench.runs < 9)

@@ -30,7 +30,7 @@ static void join(char *out, size_t size, const char *const *names, size_t n) {
 static double mib(uint64_t bytes) { return (double)bytes / (1024.0 * 1024.0); }
 
 static void print_passes(const masu_plan_info *p) {
-    printf("\npasses\n  %-9s %-6s %-44s %s\n", "", "rungs", "reads -> writes", "why");
+    printf("\npasses\n  %-19s %-6s %-44s %s\n", "", "rungs", "reads -> writes", "why");
     for (uint32_t i = 0; i < p->pass_count; i++) {
         const masu_plan_pass *pass = &p->passes[i];
         char reads[128], writes[128], both[300], rungs[16] = "";
@@ -40,26 +40,26 @@ static void print_passes(const masu_plan_info *p) {
                  writes);
         for (uint32_t r = 0; r < p->rung_count; r++)
             rungs[r] = pass->active & 1u << r ? (char)('0' + r) : '-';
-        printf("  %-9s %-6s %-44s %s\n", pass->name, rungs, pass->active ? both : "left out",
+        printf("  %-19s %-6s %-44s %s\n", pass->name, rungs, pass->active ? both : "left out",
                pass->why);
     }
 }
 
 static void print_images(const masu_plan_info *p) {
-    printf("\nimages, alive from pass to pass; equal bytes are shared\n  %-12s %-20s %-11s %10s  "
+    printf("\nimages, alive from pass to pass; equal bytes are shared\n  %-19s %-20s %-11s %10s  "
            "%-22s %s\n",
            "", "format", "extent", "bytes", "at", "alive");
     for (uint32_t i = 0; i < p->image_count; i++) {
         const masu_plan_image *image = &p->images[i];
         if (!image->used) {
-            printf("  %-12s %-20s left out\n", image->name, format_name(image->format));
+            printf("  %-19s %-20s left out\n", image->name, format_name(image->format));
             continue;
         }
         char extent[32], at[48];
         snprintf(extent, sizeof extent, "%ux%u", image->width, image->height);
         snprintf(at, sizeof at, "%llu-%llu", (unsigned long long)image->offset,
                  (unsigned long long)(image->offset + image->bytes));
-        printf("  %-12s %-20s %-11s %10llu  %-22s %s..%s\n", image->name,
+        printf("  %-19s %-20s %-11s %10llu  %-22s %s..%s\n", image->name,
                format_name(image->format), extent, (unsigned long long)image->bytes, at,
                p->passes[image->first_pass].name, p->passes[image->last_pass].name);
     }
@@ -69,7 +69,7 @@ static void print_pipelines(const masu_plan_info *p) {
     printf("\npipelines, time to build\n");
     for (uint32_t i = 0; i < p->pass_count; i++) {
         if (p->passes[i].pipeline_ns) {
-            printf("  %-9s %8.1f ms\n", p->passes[i].name, (double)p->passes[i].pipeline_ns / 1e6);
+            printf("  %-19s %8.1f ms\n", p->passes[i].name, (double)p->passes[i].pipeline_ns / 1e6);
         }
     }
 }

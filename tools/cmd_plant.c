@@ -217,7 +217,9 @@ static int run(masu_cli *cli) {
         case OPTION_TIME_STEP:
             if (!masu_cli_double(cli, 0.0, 1e6, &record.time_step)) return MASU_CLI_USAGE;
             continue;
-        case OPTION_CSV: o.csv = cli->value; continue;
+        case OPTION_CSV:
+            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            continue;
         case OPTION_PLOTS: o.plots = cli->value; continue;
         case OPTION_PLANT: o.plant = cli->value; continue;
         case OPTION_SEEDS:

@@ -303,7 +303,9 @@ static int run(masu_cli *cli) {
         case OPTION_SIZE:
             if (!masu_output_size(cli, &o.size)) return MASU_CLI_USAGE;
             continue;
-        case OPTION_CSV: o.csv = cli->value; continue;
+        case OPTION_CSV:
+            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            continue;
         case OPTION_FRAMES:
             if (!masu_cli_uint(cli, 1, 10000, &o.frames)) return MASU_CLI_USAGE;
             continue;

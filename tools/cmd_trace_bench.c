@@ -257,7 +257,9 @@ static int run(masu_cli *cli) {
             if (!masu_cli_double(cli, 0, 1, &o.roughness)) return MASU_CLI_USAGE;
             continue;
         case OPTION_FLAT: o.flat = true; continue;
-        case OPTION_CSV: o.csv = cli->value; continue;
+        case OPTION_CSV:
+            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            continue;
         case MASU_CLI_ARGUMENT:
             if (o.path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
             o.path = cli->value;

@@ -135,7 +135,9 @@ static int run(masu_cli *cli) {
         int id = masu_cli_next(cli);
         if (masu_device_option(cli, id, &d.host)) continue;
         switch (id) {
-        case OPTION_OUTPUT: files[1] = cli->value; continue;
+        case OPTION_OUTPUT:
+            if (!masu_output_file(cli, &files[1])) return cli->exit_code;
+            continue;
         case OPTION_SIZE:
             if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
             continue;

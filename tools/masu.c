@@ -16,7 +16,8 @@ int main(int argc, char **argv) {
                                                        &masu_cmd_specular_bench,
                                                        &masu_cmd_trace_bench,
                                                        &masu_cmd_bench_image,
-                                                       &masu_cmd_image_error, &masu_cmd_plant,
+                                                       &masu_cmd_image_error, &masu_cmd_compare,
+                                                       &masu_cmd_plant,
                                                        &masu_cmd_conform, NULL};
     static const masu_cli_program program = {
         .name = "masu",

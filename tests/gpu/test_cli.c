@@ -1,6 +1,7 @@
 /* test_cli.c: the program `masu` as a stranger runs it: what it makes, and what it says when it
  * cannot. */
 #include "support.h"
+#include "support_cli.h"
 
 #include "image.h"
 #include "reference/fsr1.h"
@@ -11,78 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-static char dir[] = "/tmp/masu-test-XXXXXX";
-static char out_text[1 << 16], err_text[1 << 16];
-
-static void read_text(const char *name, char *text, size_t size) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    size_t n = fread(text, 1, size - 1, f);
-    text[n] = 0;
-    fclose(f);
-}
-
-/* Runs `masu ARGUMENTS` in a shell; %s in them is the scratch folder. Returns the exit code, fills
- * out_text and err_text. */
-static int masu(const char *format, ...) {
-    char arguments[2048], command[4096];
-    const char *build = getenv("BUILD");
-    va_list args;
-    va_start(args, format);
-    vsnprintf(arguments, sizeof arguments, format, args);
-    va_end(args);
-    snprintf(command, sizeof command, "%s/bin/masu %s >%s/out 2>%s/err </dev/null",
-             build ? build : "build", arguments, dir, dir);
-    int status = system(command);
-    assert_true(WIFEXITED(status));
-    read_text("out", out_text, sizeof out_text);
-    read_text("err", err_text, sizeof err_text);
-    return WEXITSTATUS(status);
-}
-
-/* The last run must have failed with one line on stderr, beginning "masu ", that holds `part`. */
-static void said(const char *part) {
-    size_t n = strlen(err_text);
-    if (!n || strchr(err_text, '\n') != err_text + n - 1) fail_msg("not one line: '%s'", err_text);
-    if (strncmp(err_text, "masu", 4))
-        fail_msg("does not begin with the program's name: %s", err_text);
-    if (!strstr(err_text, part)) fail_msg("'%s' is not in: %s", part, err_text);
-    assert_string_equal(out_text, "");
-}
-
-static void write_bytes(const char *name, const void *bytes, size_t n) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(bytes, 1, n, f), n);
-    fclose(f);
-}
-
-static bool exists(const char *name) {
-    char path[256];
-    struct stat st;
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    return stat(path, &st) == 0;
-}
-
-static int make_dir(void **state) {
-    (void)state;
-    return mkdtemp(dir) ? 0 : 1;
-}
-
-static int remove_dir(void **state) {
-    (void)state;
-    char command[300];
-    snprintf(command, sizeof command, "rm -rf %s", dir);
-    return system(command);
-}
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
 
@@ -93,12 +22,12 @@ static void help_and_version_are_there_for_every_command(void **state) {
                                            "light-bench", "trace-bench", "bench-image",
                                            "conform"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
-        assert_int_equal(masu("%s --help", commands[i]), 0);
-        assert_true(strlen(out_text) > 200);
-        assert_string_equal(err_text, "");
+        assert_int_equal(cli_run("%s --help", commands[i]), 0);
+        assert_true(strlen(cli_out) > 200);
+        assert_string_equal(cli_err, "");
     }
-    assert_int_equal(masu("--version"), 0);
-    assert_non_null(strstr(out_text, "0.1.0"));
+    assert_int_equal(cli_run("--version"), 0);
+    assert_non_null(strstr(cli_out, "0.1.0"));
 }
 
 /* Times are not looked at: a line for each case, with numbers that add up. */
@@ -106,74 +35,78 @@ static void bench_image_has_a_line_for_each_case(void **state) {
     (void)state;
     static const char *const names[] = {"easu+rcas", "easu", "easu-fast+rcas", "easu-fast",
                                         "bilinear",  "gather"};
-    assert_int_equal(masu("bench-image --from 32x24 --size 64x48 --runs 2 --csv -"), 0);
-    assert_non_null(strstr(out_text, "case,driver,ms_min,ms_median,ratio,"));
+    assert_int_equal(cli_run("bench-image --from 32x24 --size 64x48 --runs 2 --csv -"), 0);
+    assert_non_null(strstr(cli_out, "case,driver,ms_min,ms_median,ratio,"));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char start[64];
         double least, median, ratio, gpu;
         snprintf(start, sizeof start, "\n%s,\"", names[i]);
-        const char *row = strstr(out_text, start);
+        const char *row = strstr(cli_out, start);
         assert_non_null(row);
         row = strchr(row + strlen(start), '"');
         assert_int_equal(sscanf(row, "\",%lf,%lf,%lf,%lf", &least, &median, &ratio, &gpu), 4);
         assert_true(least > 0 && median >= least && ratio > 0 && (i || ratio == 1));
     }
-    assert_int_equal(masu("bench-image --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
-    assert_non_null(strstr(out_text, "| easu |"));
-    assert_non_null(strstr(out_text, "| bilinear |"));
-    assert_null(strstr(out_text, "| gather |"));
-    assert_int_equal(masu("bench-image --only easu,bicubic"), 2);
-    said("bicubic");
-    assert_int_equal(masu("bench-image --runs 0"), 2);
-    said("runs");
-    assert_int_equal(masu("bench-image %s/none.png", dir), 1);
-    said("none.png");
+    assert_int_equal(cli_run("bench-image --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
+    assert_non_null(strstr(cli_out, "| easu |"));
+    assert_non_null(strstr(cli_out, "| bilinear |"));
+    assert_null(strstr(cli_out, "| gather |"));
+    assert_int_equal(cli_run("bench-image --only easu,bicubic"), 2);
+    cli_complained("bicubic");
+    assert_int_equal(cli_run("bench-image --only="), 2);
+    cli_complained("only");
+    assert_int_equal(cli_run("bench-image --csv %s/none/x.csv", cli_dir), 1);
+    cli_complained("cannot write");
+    assert_int_equal(cli_run("bench-image --runs 0"), 2);
+    cli_complained("runs");
+    assert_int_equal(cli_run("bench-image %s/none.png", cli_dir), 1);
+    cli_complained("none.png");
 }
 
 static void wrong_command_lines_are_exit_code_2(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    assert_int_equal(masu("render"), 2);
-    said("no scene");
-    assert_int_equal(masu("render %s", scene), 2);
-    said("--output");
-    assert_int_equal(masu("render %s -o %s/x.png --rung 3", scene, dir), 2);
-    said("rung 3");
-    assert_int_equal(masu("render %s -o %s/x.png --size 0x9", scene, dir), 2);
-    said("size");
-    assert_int_equal(masu("render %s -o %s/x.png --size 99999x9", scene, dir), 2);
-    said("size");
-    assert_int_equal(masu("render %s -o %s/x.png --bogus", scene, dir), 2);
-    said("--bogus");
-    assert_int_equal(masu("render %s -o %s/x.png --reference=0", scene, dir), 2);
-    said("reference");
-    assert_int_equal(masu("render %s -o %s/x.png --reference --frames 2", scene, dir), 2);
-    said("--frames");
-    assert_int_equal(masu("render %s -o %s/#.png --reference", scene, dir), 2);
-    said("many");
-    assert_int_equal(masu("render %s -o %s/x.png --frames 0", scene, dir), 2);
-    said("frames");
-    assert_int_equal(masu("render %s -o %s/x.png --exposure bright", scene, dir), 2);
-    said("exposure");
-    assert_int_equal(masu("render %s -o %s/x.png --exposure 0", scene, dir), 2);
-    said("exposure");
-    assert_int_equal(masu("render %s -o %s/x.png --tone film", scene, dir), 2);
-    said("tone");
-    assert_int_equal(masu("upscale a.png b.png"), 2);
-    said("--size");
-    assert_int_equal(masu("upscale a.png b.png --smaa fxaa"), 2);
-    said("smaa");
-    assert_int_equal(masu("upscale a.png b.png --aa off"), 2);
-    said("--size");
-    assert_int_equal(masu("render %s -o %s/x.png --aa most", scene, dir), 2);
-    said("--aa");
-    assert_int_equal(masu("upscale a.png --size 4x4"), 2);
-    said("output");
-    assert_int_equal(masu("upscale a.png b.png --size 4x4 --easu slow"), 2);
-    said("'slow'");
-    assert_int_equal(masu("paint"), 2);
-    said("paint");
-    assert_false(exists("x.png"));
+    assert_int_equal(cli_run("render"), 2);
+    cli_complained("no scene");
+    assert_int_equal(cli_run("render %s", scene), 2);
+    cli_complained("--output");
+    assert_int_equal(cli_run("render %s -o %s/x.png --rung 3", scene, cli_dir), 2);
+    cli_complained("rung 3");
+    assert_int_equal(cli_run("render %s -o %s/x.png --size 0x9", scene, cli_dir), 2);
+    cli_complained("size");
+    assert_int_equal(cli_run("render %s -o %s/x.png --size 99999x9", scene, cli_dir), 2);
+    cli_complained("size");
+    assert_int_equal(cli_run("render %s -o %s/x.png --bogus", scene, cli_dir), 2);
+    cli_complained("--bogus");
+    assert_int_equal(cli_run("render %s -o %s/x.png --reference=0", scene, cli_dir), 2);
+    cli_complained("reference");
+    assert_int_equal(cli_run("render %s -o %s/x.png --reference --frames 2", scene, cli_dir), 2);
+    cli_complained("--frames");
+    assert_int_equal(cli_run("render %s -o %s/#.png --reference", scene, cli_dir), 2);
+    cli_complained("many");
+    assert_int_equal(cli_run("render %s -o %s/x.png --frames 0", scene, cli_dir), 2);
+    cli_complained("frames");
+    assert_int_equal(cli_run("render %s -o %s/x.png --exposure bright", scene, cli_dir), 2);
+    cli_complained("exposure");
+    assert_int_equal(cli_run("render %s -o %s/x.png --exposure 0", scene, cli_dir), 2);
+    cli_complained("exposure");
+    assert_int_equal(cli_run("render %s -o %s/x.png --tone film", scene, cli_dir), 2);
+    cli_complained("tone");
+    assert_int_equal(cli_run("upscale a.png b.png"), 2);
+    cli_complained("--size");
+    assert_int_equal(cli_run("upscale a.png b.png --smaa fxaa"), 2);
+    cli_complained("smaa");
+    assert_int_equal(cli_run("upscale a.png b.png --aa off"), 2);
+    cli_complained("--size");
+    assert_int_equal(cli_run("render %s -o %s/x.png --aa most", scene, cli_dir), 2);
+    cli_complained("--aa");
+    assert_int_equal(cli_run("upscale a.png --size 4x4"), 2);
+    cli_complained("output");
+    assert_int_equal(cli_run("upscale a.png b.png --size 4x4 --easu slow"), 2);
+    cli_complained("'slow'");
+    assert_int_equal(cli_run("paint"), 2);
+    cli_complained("paint");
+    assert_false(cli_exists("x.png"));
 }
 
 static void bad_scene_files_are_named_with_their_fault(void **state) {
@@ -184,58 +117,58 @@ static void bad_scene_files_are_named_with_their_fault(void **state) {
     size_t n = fread(blob, 1, sizeof blob, f);
     fclose(f);
     assert_true(n > 1000 && n < sizeof blob);
-    assert_int_equal(masu("render %s/none.masu -o %s/x.png", dir, dir), 1);
-    said("none.masu");
-    assert_int_equal(masu("render %s -o %s/x.png", dir, dir), 1);
-    said(dir);
-    write_bytes("empty.masu", blob, 0);
-    assert_int_equal(masu("render %s/empty.masu -o %s/x.png", dir, dir), 1);
-    said("empty.masu");
-    write_bytes("cut.masu", blob, n - 100);
-    assert_int_equal(masu("render %s/cut.masu -o %s/x.png", dir, dir), 1);
-    said("truncated");
+    assert_int_equal(cli_run("render %s/none.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    cli_complained("none.masu");
+    assert_int_equal(cli_run("render %s -o %s/x.png", cli_dir, cli_dir), 1);
+    cli_complained(cli_dir);
+    cli_write("empty.masu", blob, 0);
+    assert_int_equal(cli_run("render %s/empty.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    cli_complained("empty.masu");
+    cli_write("cut.masu", blob, n - 100);
+    assert_int_equal(cli_run("render %s/cut.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    cli_complained("truncated");
     blob[4] ^= 0x40; /* version */
-    write_bytes("version.masu", blob, n);
-    assert_int_equal(masu("plan %s/version.masu", dir), 1);
-    said("version");
+    cli_write("version.masu", blob, n);
+    assert_int_equal(cli_run("plan %s/version.masu", cli_dir), 1);
+    cli_complained("version");
     blob[4] ^= 0x40;
     blob[n / 2] ^= 1;
-    write_bytes("damaged.masu", blob, n);
-    assert_int_equal(masu("render %s/damaged.masu -o %s/x.png", dir, dir), 1);
-    said("damaged");
-    write_bytes("text.masu",
+    cli_write("damaged.masu", blob, n);
+    assert_int_equal(cli_run("render %s/damaged.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    cli_complained("damaged");
+    cli_write("text.masu",
                 "not a scene, but long enough to hold the header of one, and a bit more", 70);
-    assert_int_equal(masu("render %s/text.masu -o %s/x.png", dir, dir), 1);
-    said("not a Masu scene");
-    assert_false(exists("x.png"));
+    assert_int_equal(cli_run("render %s/text.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    cli_complained("not a Masu scene");
+    assert_false(cli_exists("x.png"));
 }
 
 static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    assert_int_equal(masu("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, dir),
+    assert_int_equal(cli_run("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, cli_dir),
                      1);
-    said("folder.png");
-    write_bytes("old.png", "old", 3);
-    assert_int_equal(masu("upscale %s/none.png %s/old.png --size 8x8", dir, dir), 1);
-    said("none.png");
+    cli_complained("folder.png");
+    cli_write("old.png", "old", 3);
+    assert_int_equal(cli_run("upscale %s/none.png %s/old.png --size 8x8", cli_dir, cli_dir), 1);
+    cli_complained("none.png");
     char text[16];
-    read_text("old.png", text, sizeof text);
+    cli_take("old.png", text, sizeof text);
     assert_string_equal(text, "old");
-    assert_int_equal(masu("render %s -o /dev/full --size 16x16 --quiet", scene), 1);
-    said("/dev/full");
-    assert_int_equal(masu("render %s --stats /dev/full --size 16x16 --quiet", scene), 1);
-    said("/dev/full");
+    assert_int_equal(cli_run("render %s -o /dev/full --size 16x16 --quiet", scene), 1);
+    cli_complained("/dev/full");
+    assert_int_equal(cli_run("render %s --stats /dev/full --size 16x16 --quiet", scene), 1);
+    cli_complained("/dev/full");
 }
 
 static void an_unknown_device_lists_those_that_are_there(void **state) {
     (void)state;
-    assert_int_equal(masu("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), dir),
+    assert_int_equal(cli_run("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), cli_dir),
                      1);
-    said("nonesuch");
-    assert_non_null(strstr(err_text, "0 '"));
+    cli_complained("nonesuch");
+    assert_non_null(strstr(cli_err, "0 '"));
     assert_int_equal(
-        masu("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), dir),
+        cli_run("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), cli_dir),
         0);
 }
 
@@ -243,13 +176,13 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     (void)state;
     const char *scene = scene_path("test_both");
     assert_int_equal(
-        masu("render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet",
-             scene, dir, dir),
+        cli_run("render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet",
+             scene, cli_dir, cli_dir),
         0);
-    assert_string_equal(err_text, "");
+    assert_string_equal(cli_err, "");
     struct masu_image image;
     char path[256], error[ERROR_SIZE];
-    snprintf(path, sizeof path, "%s/a.png", dir);
+    snprintf(path, sizeof path, "%s/a.png", cli_dir);
     assert_ok(masu_image_load_png(path, &image, error, sizeof error));
     assert_int_equal(image.width, 64);
     assert_int_equal(image.height, 48);
@@ -262,86 +195,86 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
                                        "\"sdf_evals\"",
                                        "\"timestamps_plausible\"",
                                        "\"median\""};
-    read_text("a.json", out_text, sizeof out_text);
+    cli_take("a.json", cli_out, sizeof cli_out);
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (!strstr(out_text, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
+        if (!strstr(cli_out, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
     }
-    assert_null(strstr(out_text, "\"exposure\"")); /* nothing is metered */
-    assert_int_equal(masu("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
+    assert_null(strstr(cli_out, "\"exposure\"")); /* nothing is metered */
+    assert_int_equal(cli_run("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
                           "--dither --validate --quiet",
-                          scene, dir),
+                          scene, cli_dir),
                      0);
-    assert_non_null(strstr(out_text, "\"exposure\""));
-    assert_non_null(strstr(out_text, "\"meter\""));
-    assert_int_equal(masu("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, dir),
+    assert_non_null(strstr(cli_out, "\"exposure\""));
+    assert_non_null(strstr(cli_out, "\"meter\""));
+    assert_int_equal(cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, cli_dir),
                      0);
-    assert_true(exists("f-000.png") && exists("f-001.png") && !exists("f-002.png"));
+    assert_true(cli_exists("f-000.png") && cli_exists("f-001.png") && !cli_exists("f-002.png"));
 }
 
 /* A target of a second fits whatever the machine does. */
 static void the_governor_reports_what_it_has_done(void **state) {
     (void)state;
     const char *scene = scene_path("test_sphere_sdf");
-    assert_int_equal(masu("render %s --target-ms 1000 --frames 12 --size 32x24 --times %s/t.csv "
+    assert_int_equal(cli_run("render %s --target-ms 1000 --frames 12 --size 32x24 --times %s/t.csv "
                           "--stats %s/g.json",
-                          scene, dir, dir),
+                          scene, cli_dir, cli_dir),
                      0);
-    assert_non_null(strstr(out_text, "governor: target 1000.00 ms, 0 of 12 frames over it"));
-    assert_non_null(strstr(out_text, "rung 0, scale 1.000:    12 frames"));
-    assert_non_null(strstr(out_text, "rung 7, scale 0.400:     0 frames"));
-    read_text("t.csv", out_text, sizeof out_text);
-    assert_non_null(strstr(out_text, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n0,0.0000,0,1.0000,"));
-    assert_non_null(strstr(out_text, "the best rung fits"));
-    read_text("g.json", out_text, sizeof out_text);
-    assert_non_null(strstr(out_text, "\"predicted_ms\""));
-    assert_int_equal(masu("render %s --target-ms 5 --rung 3 --frames 5 --size 32x24", scene), 0);
-    assert_non_null(strstr(out_text, "rung 3, scale 0.675:     5 frames"));
-    assert_non_null(strstr(out_text, "the rung is fixed"));
-    assert_int_equal(masu("render %s --target-ms 0.016", scene), 2);
+    assert_non_null(strstr(cli_out, "governor: target 1000.00 ms, 0 of 12 frames over it"));
+    assert_non_null(strstr(cli_out, "rung 0, scale 1.000:    12 frames"));
+    assert_non_null(strstr(cli_out, "rung 7, scale 0.400:     0 frames"));
+    cli_take("t.csv", cli_out, sizeof cli_out);
+    assert_non_null(strstr(cli_out, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n0,0.0000,0,1.0000,"));
+    assert_non_null(strstr(cli_out, "the best rung fits"));
+    cli_take("g.json", cli_out, sizeof cli_out);
+    assert_non_null(strstr(cli_out, "\"predicted_ms\""));
+    assert_int_equal(cli_run("render %s --target-ms 5 --rung 3 --frames 5 --size 32x24", scene), 0);
+    assert_non_null(strstr(cli_out, "rung 3, scale 0.675:     5 frames"));
+    assert_non_null(strstr(cli_out, "the rung is fixed"));
+    assert_int_equal(cli_run("render %s --target-ms 0.016", scene), 2);
 }
 
 static void plan_says_what_is_in_and_what_was_left_out(void **state) {
     (void)state;
-    assert_int_equal(masu("plan %s --size 64x64", scene_path("test_sphere_mesh")), 0);
-    assert_non_null(strstr(out_text, "the scene has no SDF"));
-    assert_non_null(strstr(out_text, "lower bound"));
-    assert_int_equal(masu("plan %s --size 64x64 --json", scene_path("test_sphere_sdf")), 0);
-    assert_non_null(strstr(out_text, "no instances; the march writes every pixel"));
-    assert_non_null(strstr(out_text, "\"left_out_bytes\""));
+    assert_int_equal(cli_run("plan %s --size 64x64", scene_path("test_sphere_mesh")), 0);
+    assert_non_null(strstr(cli_out, "the scene has no SDF"));
+    assert_non_null(strstr(cli_out, "lower bound"));
+    assert_int_equal(cli_run("plan %s --size 64x64 --json", scene_path("test_sphere_sdf")), 0);
+    assert_non_null(strstr(cli_out, "no instances; the march writes every pixel"));
+    assert_non_null(strstr(cli_out, "\"left_out_bytes\""));
 }
 
 /* Ray queries where the device has them, else one line; the own tree anywhere. */
 static void rays_choose_what_finds_polygons(void **state) {
     (void)state;
-    assert_int_equal(masu("plan %s --size 64x64 --rays compute", scene_path("mirrors")), 0);
-    assert_non_null(strstr(out_text, "specular_query ---    left out"));
-    assert_null(strstr(out_text, "bottom levels          buffer"));
-    int code = masu("plan %s --size 64x64 --rays query", scene_path("mirrors"));
+    assert_int_equal(cli_run("plan %s --size 64x64 --rays compute", scene_path("mirrors")), 0);
+    assert_non_null(strstr(cli_out, "specular_query      ---    left out"));
+    assert_null(strstr(cli_out, "bottom levels          buffer"));
+    int code = cli_run("plan %s --size 64x64 --rays query", scene_path("mirrors"));
     if (code == 0) {
-        assert_non_null(strstr(out_text, "bottom levels          buffer"));
-        assert_non_null(strstr(out_text, "top level              buffer"));
+        assert_non_null(strstr(cli_out, "bottom levels          buffer"));
+        assert_non_null(strstr(cli_out, "top level              buffer"));
     } else {
         assert_int_equal(code, 1);
-        assert_non_null(strstr(err_text, "ray_query is MASU_ON, but vulkan.ray_query says"));
+        assert_non_null(strstr(cli_err, "ray_query is MASU_ON, but vulkan.ray_query says"));
     }
-    assert_int_equal(masu("plan %s --rays sometimes", scene_path("mirrors")), 2);
+    assert_int_equal(cli_run("plan %s --rays sometimes", scene_path("mirrors")), 2);
 }
 
 static void light_bench_compares_pictures_and_counts_lights(void **state) {
     (void)state;
-    assert_int_equal(masu("light-bench %s --size 64x40 --repeat 1 --quiet --validate",
+    assert_int_equal(cli_run("light-bench %s --size 64x40 --repeat 1 --quiet --validate",
                           scene_path("night")),
                      0);
-    assert_non_null(strstr(out_text, "pictures are the same"));
-    assert_non_null(strstr(out_text, "   256 "));
-    assert_int_equal(masu("light-bench %s --size 16x16 --repeat 2 --json --quiet",
+    assert_non_null(strstr(cli_out, "pictures are the same"));
+    assert_non_null(strstr(cli_out, "   256 "));
+    assert_int_equal(cli_run("light-bench %s --size 16x16 --repeat 2 --json --quiet",
                           scene_path("night")),
                      0);
-    assert_non_null(strstr(out_text, "\"asked_per_pixel\""));
-    assert_int_equal(masu("light-bench"), 2);
-    said("no scene");
-    assert_int_equal(masu("light-bench %s", scene_path("spheres")), 1);
-    said("has no lights");
+    assert_non_null(strstr(cli_out, "\"asked_per_pixel\""));
+    assert_int_equal(cli_run("light-bench"), 2);
+    cli_complained("no scene");
+    assert_int_equal(cli_run("light-bench %s", scene_path("spheres")), 1);
+    cli_complained("has no lights");
 }
 
 static void trace_bench_agrees_with_embree(void **state) {
@@ -349,44 +282,44 @@ static void trace_bench_agrees_with_embree(void **state) {
     static const char *const flat[] = {"", "--flat"};
     for (int i = 0; i < 2; i++) {
         unsigned rays = 0, mismatches = 9;
-        assert_int_equal(masu("trace-bench %s --size 96x64 --repeat 2 --quiet --validate --csv - %s",
+        assert_int_equal(cli_run("trace-bench %s --size 96x64 --repeat 2 --quiet --validate --csv - %s",
                               scene_path("test_trace"), flat[i]),
                          0);
-        assert_int_equal(strncmp(out_text, "scene,kind,backend,rays,mrays_s,embree_mrays_s,ratio,"
+        assert_int_equal(strncmp(cli_out, "scene,kind,backend,rays,mrays_s,embree_mrays_s,ratio,"
                                            "mismatches,hits,given_up,", 78), 0);
-        const char *row = strstr(out_text, "primary,compute,");
+        const char *row = strstr(cli_out, "primary,compute,");
         assert_non_null(row);
         assert_int_equal(sscanf(row, "primary,compute,%u,%*f,%*f,%*f,%u", &rays, &mismatches), 2);
         assert_int_equal(rays, 96 * 64);
         assert_true(mismatches < 10);
-        row = strstr(out_text, "specular,compute,");
+        row = strstr(cli_out, "specular,compute,");
         assert_non_null(row);
         assert_int_equal(sscanf(row, "specular,compute,%u,%*f,%*f,%*f,%u", &rays, &mismatches), 2);
         assert_true(rays > 1000 && mismatches < 10);
     }
-    assert_int_equal(masu("trace-bench"), 2);
-    said("no scene");
-    assert_int_equal(masu("trace-bench %s", scene_path("night")), 1);
-    said("nothing is traced");
+    assert_int_equal(cli_run("trace-bench"), 2);
+    cli_complained("no scene");
+    assert_int_equal(cli_run("trace-bench %s", scene_path("night")), 1);
+    cli_complained("nothing is traced");
 }
 
 static void draw_bench_compares_pictures_and_counts_triangles(void **state) {
     (void)state;
-    assert_int_equal(masu("draw-bench %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
+    assert_int_equal(cli_run("draw-bench %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
                           scene_path("test_town")),
                      0);
-    assert_non_null(strstr(out_text, "4 frames, least of 1"));
-    assert_non_null(strstr(out_text, "pictures: 0 of 4 frames differ"));
-    assert_non_null(strstr(out_text, "1.00x  5042\n")); /* neither stage: all of the town */
-    assert_int_equal(masu("draw-bench %s --size 64x40 --frames 2 --repeat 2 --json --quiet",
+    assert_non_null(strstr(cli_out, "4 frames, least of 1"));
+    assert_non_null(strstr(cli_out, "pictures: 0 of 4 frames differ"));
+    assert_non_null(strstr(cli_out, "1.00x  5042\n")); /* neither stage: all of the town */
+    assert_int_equal(cli_run("draw-bench %s --size 64x40 --frames 2 --repeat 2 --json --quiet",
                           scene_path("test_shadows")),
                      0);
-    assert_non_null(strstr(out_text, "\"different_frames\": 0"));
-    assert_non_null(strstr(out_text, "\"triangles_stage1\""));
-    assert_int_equal(masu("draw-bench"), 2);
-    said("no scene");
-    assert_int_equal(masu("draw-bench %s", scene_path("spheres")), 1);
-    said("has no instances");
+    assert_non_null(strstr(cli_out, "\"different_frames\": 0"));
+    assert_non_null(strstr(cli_out, "\"triangles_stage1\""));
+    assert_int_equal(cli_run("draw-bench"), 2);
+    cli_complained("no scene");
+    assert_int_equal(cli_run("draw-bench %s", scene_path("spheres")), 1);
+    cli_complained("has no instances");
 }
 
 static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void **state) {
@@ -398,12 +331,12 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     struct masu_image image;
     masu_pattern_fill(MASU_PATTERN_PHOTO, 1, IW, IH, in);
     for (uint32_t i = 0; i < IW * IH; i++) in[4 * i + 3] = (uint8_t)(i % IW * 6);
-    snprintf(from, sizeof from, "%s/in.png", dir);
+    snprintf(from, sizeof from, "%s/in.png", cli_dir);
     assert_ok(masu_image_save_png(from, in, IW, IH, 0, error, sizeof error));
     assert_int_equal(
-        masu("upscale %s %s/up.png --size %ux%u --no-rcas", from, dir, (unsigned)OW, (unsigned)OH),
+        cli_run("upscale %s %s/up.png --size %ux%u --no-rcas", from, cli_dir, (unsigned)OW, (unsigned)OH),
         0);
-    snprintf(from, sizeof from, "%s/up.png", dir);
+    snprintf(from, sizeof from, "%s/up.png", cli_dir);
     assert_ok(masu_image_load_png(from, &image, error, sizeof error));
     masu_ref_from_rgba8(in, IW, IH, 0, rgb);
     for (uint32_t i = 0; i < IW * IH * 3; i++) alpha[i] = (float)in[i / 3 * 4 + 3] / 255.0f;
@@ -420,7 +353,7 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     static const char *const stops[] = {"0", "2"};
     for (size_t i = 0; i < 2; i++) {
         assert_int_equal(
-            masu("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", dir, dir, stops[i]), 0);
+            cli_run("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", cli_dir, cli_dir, stops[i]), 0);
         assert_ok(masu_image_load_png(from, &image, error, sizeof error));
         memcpy(sharp[i], image.rgba, sizeof sharp[i]);
         masu_image_free(&image);
@@ -442,7 +375,7 @@ static void upscale_smooths_edges(void **state) {
     char name[256], error[ERROR_SIZE];
     struct masu_image image;
     masu_pattern_fill(MASU_PATTERN_HARD_EDGES, 1, W, H, in);
-    snprintf(name, sizeof name, "%s/edges.png", dir);
+    snprintf(name, sizeof name, "%s/edges.png", cli_dir);
     assert_ok(masu_image_save_png(name, in, W, H, 0, error, sizeof error));
     struct masu_ref_image from = {rgb, W, H, 0};
     struct masu_ref_smaa with = masu_ref_smaa_preset(2);
@@ -452,15 +385,15 @@ static void upscale_smooths_edges(void **state) {
     masu_ref_smaa_blend(&from, weights, smooth);
     masu_ref_to_rgba8(smooth, W, H, want);
     assert_true(max_difference(in, want, BYTES) > 20);
-    snprintf(name, sizeof name, "%s/smooth.png", dir);
+    snprintf(name, sizeof name, "%s/smooth.png", cli_dir);
     for (size_t i = 0; i < 3; i++) {
-        assert_int_equal(masu("upscale %s/edges.png %s %s", dir, name, ways[i]), 0);
+        assert_int_equal(cli_run("upscale %s/edges.png %s %s", cli_dir, name, ways[i]), 0);
         assert_ok(masu_image_load_png(name, &image, error, sizeof error));
         assert_true(image.width == W && image.height == H);
         assert_true(max_difference(image.rgba, want, BYTES) <= 2);
         masu_image_free(&image);
     }
-    assert_int_equal(masu("upscale %s/edges.png %s --aa fxaa --size 100x76", dir, name), 0);
+    assert_int_equal(cli_run("upscale %s/edges.png %s --aa fxaa --size 100x76", cli_dir, name), 0);
     assert_ok(masu_image_load_png(name, &image, error, sizeof error));
     assert_true(image.width == 2 * W && image.height == 2 * H);
     masu_image_free(&image);
@@ -472,11 +405,11 @@ static void the_example_of_the_readme_draws(void **state) {
     const char *build = getenv("BUILD");
     struct masu_image image;
     snprintf(command, sizeof command, "%s/examples/minimal %s %s/example.png >%s/out",
-             build ? build : "build", scene_path("test_both"), dir, dir);
+             build ? build : "build", scene_path("test_both"), cli_dir, cli_dir);
     assert_int_equal(system(command), 0);
-    read_text("out", out_text, sizeof out_text);
-    assert_non_null(strstr(out_text, "bytes host"));
-    snprintf(command, sizeof command, "%s/example.png", dir);
+    cli_take("out", cli_out, sizeof cli_out);
+    assert_non_null(strstr(cli_out, "bytes host"));
+    snprintf(command, sizeof command, "%s/example.png", cli_dir);
     assert_ok(masu_image_load_png(command, &image, error, sizeof error));
     assert_int_equal(image.width, 1280);
     masu_image_free(&image);
@@ -501,5 +434,5 @@ int main(void) {
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
         cmocka_unit_test(upscale_smooths_edges),
     };
-    return cmocka_run_group_tests_name("cli", tests, make_dir, remove_dir);
+    return cmocka_run_group_tests_name("cli", tests, cli_make_dir, cli_remove_dir);
 }

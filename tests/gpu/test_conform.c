@@ -1,81 +1,36 @@
 /* test_conform.c: `masu conform` as a stranger runs it: a part of the smoke suite passes, what is
  * planted is found and can be replayed, and what is no suite is refused in one line. */
 #include "support.h"
+#include "support_cli.h"
 
 #include "image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-
-static char dir[] = "/tmp/masu-test-XXXXXX";
-static char out_text[1 << 16], err_text[1 << 16];
-
-static void read_text(const char *name, char *text, size_t size) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    text[fread(text, 1, size - 1, f)] = 0;
-    fclose(f);
-}
 
 static void write_suite(const char *cases) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/suite.json", dir);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    fprintf(f,
-            "{\"format\": 1, \"defaults\": {\"scene\": \"test_both\", \"size\": [32, 24],"
-            " \"budget\": {\"allocations\": 0}}, \"cases\": [%s]}",
-            cases);
-    fclose(f);
+    char text[4096];
+    int n = snprintf(text, sizeof text,
+                     "{\"format\": 1, \"defaults\": {\"scene\": \"test_both\", \"size\": [32, 24],"
+                     " \"budget\": {\"allocations\": 0}}, \"cases\": [%s]}",
+                     cases);
+    cli_write("suite.json", text, (size_t)n);
 }
 
-/* Runs `masu conform ARGUMENTS`; fills out_text and err_text. */
+/* Runs `masu conform ARGUMENTS`. */
 static int conform(const char *format, ...) {
-    char arguments[1024], command[4096];
+    char command[256];
     const char *build = getenv("BUILD");
     va_list args;
-    build = build ? build : "build";
+    snprintf(command, sizeof command, "conform --scenes %s/scenes", build ? build : "build");
     va_start(args, format);
-    vsnprintf(arguments, sizeof arguments, format, args);
+    int code = cli_run_list(command, format, args);
     va_end(args);
-    snprintf(command, sizeof command,
-             "%s/bin/masu conform --scenes %s/scenes %s >%s/out 2>%s/err </dev/null", build, build,
-             arguments, dir, dir);
-    int status = system(command);
-    assert_true(WIFEXITED(status));
-    read_text("out", out_text, sizeof out_text);
-    read_text("err", err_text, sizeof err_text);
-    return WEXITSTATUS(status);
+    return code;
 }
 
-static int planted(const char *more) { return conform("--suite %s/suite.json %s", dir, more); }
-
-static void said(const char *part) {
-    if (!strstr(out_text, part)) fail_msg("'%s' is not in:\n%s%s", part, out_text, err_text);
-}
-
-static void complained(const char *part) {
-    size_t n = strlen(err_text);
-    if (!n || strchr(err_text, '\n') != err_text + n - 1) fail_msg("not one line: '%s'", err_text);
-    if (!strstr(err_text, part)) fail_msg("'%s' is not in: %s", part, err_text);
-    assert_string_equal(out_text, "");
-}
-
-static int make_dir(void **state) {
-    (void)state;
-    return mkdtemp(dir) ? 0 : 1;
-}
-
-static int remove_dir(void **state) {
-    (void)state;
-    char command[300];
-    snprintf(command, sizeof command, "rm -rf %s", dir);
-    return system(command);
-}
+static int planted(const char *more) { return conform("--suite %s/suite.json %s", cli_dir, more); }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
 
@@ -85,14 +40,14 @@ static void a_part_of_the_smoke_suite_passes(void **state) {
     const char *driver = getenv("MASU_TEST_DRIVER");
     int part = !driver || !strcmp(driver, "system") ? 0 : !strcmp(driver, "lavapipe-25") ? 3 : 7;
     int code = conform("--suite suites/smoke.json --fraction %d,9", part);
-    if (code) fail_msg("exit code %d\n%s%s", code, out_text, err_text);
-    said("0 resource errors, 0 failed");
-    assert_string_equal(err_text, "");
+    if (code) fail_msg("exit code %d\n%s%s", code, cli_out, cli_err);
+    cli_said("0 resource errors, 0 failed");
+    assert_string_equal(cli_err, "");
 }
 
 /* The value in the only row's column. */
 static double column(const char *name) {
-    const char *head = out_text, *row = strchr(out_text, '\n') + 1;
+    const char *head = cli_out, *row = strchr(cli_out, '\n') + 1;
     for (; strncmp(head, name, strlen(name)) || head[strlen(name)] != ',';
          head = strchr(head, ',') + 1)
         row = strchr(row, ',') + 1;
@@ -114,18 +69,18 @@ static void budgets_hold_to_the_byte(void **state) {
                      names[i], bytes[i] - less);
             write_suite(cases);
             assert_int_equal(planted(""), less);
-            said(less ? "resource error   a " : "pass             a ");
-            said(less ? "1 resource error, 0 failed" : "1 case: 1 passed");
+            cli_said(less ? "resource error   a " : "pass             a ");
+            cli_said(less ? "1 resource error, 0 failed" : "1 case: 1 passed");
             if (!less) continue;
-            said(names[i][0] == 'h' ? "host_budget" : "device_budget");
-            said("replay: masu conform");
+            cli_said(names[i][0] == 'h' ? "host_budget" : "device_budget");
+            cli_said("replay: masu conform");
         }
     }
 }
 
 /* The line below the verdict, and the token. */
 static void take_failure(char *why, char *token, size_t size) {
-    const char *line = strstr(out_text, "\n    "), *mark = strstr(out_text, "--replay ");
+    const char *line = strstr(cli_out, "\n    "), *mark = strstr(cli_out, "--replay ");
     assert_true(line && mark);
     snprintf(why, size, "%.*s", (int)strcspn(line + 1, "\n"), line + 1);
     snprintf(token, size, "%.*s", (int)strcspn(mark + 9, "\n"), mark + 9);
@@ -143,25 +98,25 @@ static void a_failure_is_replayed_by_its_token(void **state) {
         "{\"name\": \"near\", \"rung\": {\"occlusion\": \"off\"}, \"error\": {\"against\": "
         "\"good\", "
         "\"pixels\": 0}}");
-    snprintf(more, sizeof more, "--junit %s/out.xml", dir);
+    snprintf(more, sizeof more, "--junit %s/out.xml", cli_dir);
     assert_int_equal(planted(more), 1);
-    said("5 cases: 2 passed, 0 quality warnings, 0 not supported, 0 resource errors, 3 failed");
-    said("fail             other");
-    said("pass             near");
-    read_text("out.xml", xml, sizeof xml);
+    cli_said("5 cases: 2 passed, 0 quality warnings, 0 not supported, 0 resource errors, 3 failed");
+    cli_said("fail             other");
+    cli_said("pass             near");
+    cli_take("out.xml", xml, sizeof xml);
     assert_non_null(strstr(xml, "tests=\"5\" failures=\"3\" errors=\"0\" skipped=\"0\""));
     assert_non_null(strstr(xml, "name=\"far &lt;&amp;&gt; &apos;off&apos; (33x25)\""));
     take_failure(why[0], token[0], sizeof why[0]);
     assert_non_null(strstr(why[0], "flip is 0."));
     snprintf(more, sizeof more, "--replay %s", token[0]);
     assert_int_equal(planted(more), 1);
-    said("1 case: 0 passed");
+    cli_said("1 case: 0 passed");
     take_failure(why[1], token[1], sizeof why[1]);
     assert_string_equal(why[0], why[1]); /* the same error to ten digits */
     assert_string_equal(token[0], token[1]);
     write_suite("{\"name\": \"good\"}");
     assert_int_equal(planted(more), 2);
-    complained("the token is of suite");
+    cli_complained("the token is of suite");
 }
 
 static void what_is_planted_has_its_verdict(void **state) {
@@ -176,19 +131,19 @@ static void what_is_planted_has_its_verdict(void **state) {
                 " \"told\": {\"fixed_ms\": 1, \"load_ms\": 100}, \"settles\": [0, 1]}},"
                 "{\"name\": \"rays\", \"needs\": [\"ray-query\"]}");
     assert_int_equal(planted("--rays compute"), 1);
-    said("fail             count");
-    said("triangles is 12, the limit is 3");
-    said("fail             least");
-    said("specular_rays is 0, needed is 1");
-    said("quality warning  warns");
-    said("fail             scene");
-    said("none.masu");
-    said("fail             march");
-    said("fail             settles");
-    said("after 60 frames the rung is");
-    said("not supported    rays");
-    said("the device has no ray-query");
-    said("7 cases: 0 passed, 1 quality warning, 1 not supported, 0 resource errors, 5 failed");
+    cli_said("fail             count");
+    cli_said("triangles is 12, the limit is 3");
+    cli_said("fail             least");
+    cli_said("specular_rays is 0, needed is 1");
+    cli_said("quality warning  warns");
+    cli_said("fail             scene");
+    cli_said("none.masu");
+    cli_said("fail             march");
+    cli_said("fail             settles");
+    cli_said("after 60 frames the rung is");
+    cli_said("not supported    rays");
+    cli_said("the device has no ray-query");
+    cli_said("7 cases: 0 passed, 1 quality warning, 1 not supported, 0 resource errors, 5 failed");
     assert_int_equal(planted("--rays compute --case warns"), 0); /* neither of these is a failure */
     assert_int_equal(planted("--rays compute --case rays"), 0);
 }
@@ -200,47 +155,47 @@ static void time_is_a_ratio_to_the_calibration(void **state) {
     assert_true(column("ms_ratio") > 0.0);
     write_suite("{\"name\": \"a\", \"budget\": {\"ms_ratio\": {\"warn\": 1e-9}}}");
     assert_int_equal(planted("--runs 1"), 0);
-    said("ms_ratio is ");
+    cli_said("ms_ratio is ");
 }
 
 static void parts_and_lists(void **state) {
     (void)state;
     assert_int_equal(conform("--list --case 'memory.*'"), 0);
-    said("memory.both");
-    assert_null(strstr(out_text, "march."));
+    cli_said("memory.both");
+    assert_null(strstr(cli_out, "march."));
     assert_int_equal(conform("--list --case 'memory.*' --fraction 1,2"), 0);
-    assert_null(strstr(out_text, "64x48"));
+    assert_null(strstr(cli_out, "64x48"));
     assert_int_equal(conform("--list --suite suites/full.json"), 0);
     assert_int_equal(conform("--case nonesuch"), 2);
-    complained("nonesuch");
+    cli_complained("nonesuch");
     static const char *const bad[] = {"4,4", "1", "-1,4", "1,2,3", "0,0", "a,b"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(conform("--fraction=%s", bad[i]), 2);
-        complained("I,N");
+        cli_complained("I,N");
     }
     assert_int_equal(conform("--replay here"), 2);
-    complained("is no token");
+    cli_complained("is no token");
     assert_int_equal(conform("--replay here --case x"), 2);
-    complained("--replay names one case");
+    cli_complained("--replay names one case");
     assert_int_equal(conform("suites/smoke.json"), 2);
-    complained("--suite");
+    cli_complained("--suite");
 }
 
 static void what_is_no_suite_is_refused_in_one_line(void **state) {
     (void)state;
-    assert_int_equal(conform("--suite %s/none.json", dir), 1);
-    complained("none.json");
+    assert_int_equal(conform("--suite %s/none.json", cli_dir), 1);
+    cli_complained("none.json");
     write_suite("{\"name\": \"a\", \"rung\": {\"scale\": 2}}");
     assert_int_equal(planted(""), 1);
-    complained("suite.json: case 'a': rung.scale: needed is a number from 0.01 to 1, given is 2");
+    cli_complained("suite.json: case 'a': rung.scale: needed is a number from 0.01 to 1, given is 2");
     write_suite("{\"name\": \"a\"");
     assert_int_equal(planted(""), 1);
-    complained("suite.json:1:");
+    cli_complained("suite.json:1:");
     write_suite("{\"name\": \"a\"}");
     assert_int_equal(planted("--device nonesuch"), 1);
-    complained("nonesuch");
+    cli_complained("nonesuch");
     assert_int_equal(planted("--junit /dev/full --quiet"), 1);
-    complained("/dev/full");
+    cli_complained("/dev/full");
 }
 
 int main(void) {
@@ -253,5 +208,5 @@ int main(void) {
         cmocka_unit_test(parts_and_lists),
         cmocka_unit_test(what_is_no_suite_is_refused_in_one_line),
     };
-    return cmocka_run_group_tests_name("conform", tests, make_dir, remove_dir);
+    return cmocka_run_group_tests_name("conform", tests, cli_make_dir, cli_remove_dir);
 }

@@ -242,6 +242,8 @@ static void what_no_target_can_be_is_refused(void **state) {
     REFUSED("exposure.brighten", s.desc.exposure.brighten = -1);
     REFUSED("exposure.darken", s.desc.exposure.darken = INFINITY);
     REFUSED("exposure.low", s.desc.exposure.low = 0.5f, s.desc.exposure.high = 0.5f);
+    REFUSED("exposure.high", s.desc.exposure.high = (float)NAN);
+    REFUSED("exposure.high", s.desc.exposure.high = 1.0f);
     REFUSED("exposure.least", s.desc.exposure.least = -1);
     REFUSED("exposure.most", s.desc.exposure.most = 1e-9f);
 #undef REFUSED

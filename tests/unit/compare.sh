@@ -1,0 +1,112 @@
+#!/bin/bash
+# masu compare beside other people's programs: RMSE and PSNR by ImageMagick, SSIM by scikit-image
+# (of Debian; where one is missing, its part is left out, but never with MASU_REQUIRE_DRIVERS).
+# Known answers, the map, and what is refused.
+set -u
+masu=${BUILD:-build}/bin/masu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failed=0
+required=${MASU_REQUIRE_DRIVERS:-}
+
+fail() {
+    echo "$1"
+    failed=1
+}
+
+# near WHAT OURS THEIRS SLACK
+near() {
+    awk -v a="$2" -v b="$3" -v slack="$4" 'BEGIN { d = a - b; exit !(a != "" && b != "" &&
+        (d < 0 ? -d : d) <= slack) }' || fail "$1: ours $2, theirs $3"
+}
+
+value() { sed -n "s/^ *\"$1\": \([^,]*\),*$/\1/p" "$2"; }
+
+# refuses CODE TEXT ARGUMENTS...
+refuses() {
+    local out code
+    out=$("$masu" compare "${@:3}" 2>&1 > /dev/null)
+    code=$?
+    [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "compare ${*:3}: exit code $code, $out"
+}
+
+# A picture with slants, gradients and colour, and changed ones: blurred, brighter, other noise.
+# Written here, so that no library that the other side uses has a hand in it.
+awk -v w=101 -v h=67 -v out="$folder" 'BEGIN {
+    for (k = 0; k < 4; k++) {
+        file = out "/" k ".ppm"
+        printf "P3\n%d %d\n255\n", w, h > file
+        seed = 7
+        for (y = 0; y < h; y++) for (x = 0; x < w; x++) {
+            seed = (seed * 16807) % 2147483647
+            noise = seed / 2147483647 - 0.5
+            edge = (3 * x + 2 * y) % 59 < 23
+            r = 40 + 150 * edge + 60 * x / w
+            g = 200 * y / h + 30 * ((x * y) % 17 < 5)
+            b = 120 + 100 * sin(x * y / 90)
+            if (k == 1) { r = r * 0.9 + 12; g = g * 0.9 + 20; b = b * 0.95 + 5 }
+            if (k == 2) { r += 40 * noise; g -= 60 * noise; b += 25 * noise }
+            if (k == 3) { r = 0.5 * r + 0.5 * g; g = 0.5 * g + 0.5 * b }
+            printf "%d %d %d\n", c(r), c(g), c(b) > file
+        }
+        close(file)
+    }
+}
+function c(v) { v = int(v + 0.5); return v < 0 ? 0 : v > 255 ? 255 : v }'
+
+magick=$(command -v convert)
+[ -n "$magick" ] || {
+    [ -n "$required" ] && fail 'ImageMagick is missing'
+    echo 'no ImageMagick: nothing to compare with'
+    exit $failed
+}
+for k in 0 1 2 3; do convert "$folder/$k.ppm" "PNG24:$folder/$k.png"; done
+
+for k in 1 2 3; do
+    "$masu" compare "$folder/0.png" "$folder/$k.png" --json "$folder/$k.json" || fail "compare 0 $k"
+    near "PSNR of $k" "$(value psnr_db "$folder/$k.json")" \
+        "$(compare -metric PSNR "$folder/0.png" "$folder/$k.png" null: 2>&1)" 1e-3
+    near "RMSE of $k" "$(value rmse "$folder/$k.json")" \
+        "$(compare -metric RMSE "$folder/0.png" "$folder/$k.png" null: 2>&1 |
+            sed 's/.*(\(.*\))/\1/' | awk '{ print 255 * $1 }')" 1e-2
+done
+
+# scikit-image weighs as the paper does if told so; both leave out windows that reach over the edge.
+cat > "$folder/ssim.py" << 'END'
+import sys
+import numpy
+from skimage.io import imread
+from skimage.metrics import structural_similarity
+luma = [imread(path)[..., :3] @ numpy.array([0.2126, 0.7152, 0.0722]) for path in sys.argv[1:3]]
+print(structural_similarity(*luma, data_range=255, gaussian_weights=True, sigma=1.5,
+                            use_sample_covariance=False))
+END
+if /usr/bin/python3 -c 'import skimage' 2> /dev/null; then
+    for k in 1 2 3; do
+        near "SSIM of $k" "$(value ssim "$folder/$k.json")" \
+            "$(/usr/bin/python3 "$folder/ssim.py" "$folder/0.png" "$folder/$k.png")" 1e-6
+    done
+elif [ -n "$required" ]; then
+    fail 'scikit-image is missing'
+fi
+
+# Nothing and everything.
+"$masu" compare "$folder/0.png" "$folder/0.png" --json "$folder/same.json" --map "$folder/map.png" ||
+    fail 'compare 0 0'
+[ "$(value rmse "$folder/same.json")$(value psnr_db "$folder/same.json")$(value flip "$folder/same.json")" = \
+    '0.0null0.0' ] || fail 'equal pictures differ'
+[ "$(convert "$folder/map.png" -format '%[fx:maxima]' info:)" = 0 ] || fail 'the map of equal pictures is not black'
+convert -size 32x32 xc:black "PNG24:$folder/black.png"
+convert -size 32x32 xc:white "PNG24:$folder/white.png"
+"$masu" compare "$folder/black.png" "$folder/white.png" --json "$folder/all.json" --map "$folder/map.png"
+near 'RMSE of black and white' "$(value rmse "$folder/all.json")" 255 1e-9
+[ "$(convert "$folder/map.png" -format '%[fx:minima>0.9]' info:)" = 1 ] || fail 'black and white are alike in the map'
+
+refuses 1 '32x32, but' "$folder/0.png" "$folder/black.png"
+refuses 1 'none.png' "$folder/0.png" "$folder/none.png"
+refuses 1 '0.ppm' "$folder/0.ppm" "$folder/0.png"
+refuses 2 'needed' "$folder/0.png"
+refuses 2 'one reference' "$folder/0.png" "$folder/1.png" "$folder/2.png"
+refuses 2 'ppd' "$folder/0.png" "$folder/1.png" --ppd 0
+refuses 1 'none' "$folder/0.png" "$folder/1.png" --map "$folder/none/map.png"
+exit $failed
