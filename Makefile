@@ -158,6 +158,21 @@ report: $(BUILD)/bin/masu $(REPORT:%=$(BUILD)/scenes/%.masu) ## error against ru
 	    $(BUILD)/bin/masu bench $(BUILD)/scenes/$$s.masu --out docs/report/$$s $(REPORT_ARGS) || exit 1; \
 	done
 
+# Classes of scenes, and the folder that each one's ladder was measured into; folders that are not
+# there are left out. A class without one has the ladder of the nearest class.
+.PHONY: ladders
+LADDERS ?= polygons=textures world=city sdf=city_shadows both=engine polygons-traced=mirrors \
+    world-traced=forza both-traced=wet_city
+LADDER_FOLDER ?= docs/report
+ladders: $(BUILD)/bin/masu ## write src/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
+	$(V)files=; for l in $(LADDERS); do \
+	    f=$(LADDER_FOLDER)/$${l#*=}/ladder.json; \
+	    if [ -f "$$f" ]; then files="$$files $${l%%=*}=$$f"; else echo "masu: there is no $$f"; fi; \
+	done; \
+	[ "$$files" ] || { echo "masu: no ladder to take; see make report" >&2; exit 1; }; \
+	$(BUILD)/bin/masu ladder --c $$files > $(BUILD)/ladder_tables.h && \
+	{ cmp -s $(BUILD)/ladder_tables.h src/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/ladder_tables.h; }
+
 coverage: ## run the tests with gcov and print the lines executed of each file of src/
 	+$(V)$(more) config=coverage check-built
 	$(V)cd build/coverage && gcov -n -r -s $(CURDIR) obj/src/*.gcda | awk -F "'" \

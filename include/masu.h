@@ -204,6 +204,26 @@ MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t bl
 /* Number of the SDF parameter `name`, or -1. Looks at the blob, which must still be readable. */
 MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name);
 
+/* Scenes by what their frames are made of: quality ladders are measured for each (masu_desc.ladder). A
+ * world is of polygons alone and has both coarser forms of meshes and occluders. */
+typedef enum masu_scene_class {
+    MASU_SCENE_POLYGONS = 0,
+    MASU_SCENE_WORLD = 1,
+    MASU_SCENE_SDF = 2,
+    MASU_SCENE_BOTH = 3,            /* polygons and an SDF */
+    MASU_SCENE_POLYGONS_TRACED = 4, /* the same four with traced reflections */
+    MASU_SCENE_WORLD_TRACED = 5,
+    MASU_SCENE_SDF_TRACED = 6,
+    MASU_SCENE_BOTH_TRACED = 7,
+    MASU_SCENE_CLASSES = 8
+} masu_scene_class;
+
+/* NULL: MASU_SCENE_POLYGONS. */
+MASU_API masu_scene_class masu_scene_class_of(const masu_scene *scene);
+
+/* "world-traced". Never NULL. */
+MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
+
 /* ---- Description ----------------------------------------------------------------------------- */
 
 #define MASU_MAX_RUNGS 8u
@@ -537,7 +557,8 @@ typedef struct masu_governor_desc {
     uint32_t dwell; /* frames: a rung is chosen to last so long, and no better one before, 1..600;
                        0: 24 */
     float costs[MASU_MAX_RUNGS]; /* a first guess of what the part of a frame that depends on the
-                                    rung costs, beside other rungs; 0: scale^2 */
+                                    rung costs, beside other rungs; 0: that of masu_desc.ladder,
+                                    else scale^2 */
 } masu_governor_desc;
 
 #define MASU_GOVERNOR_REASONS(X)                                                                   \
@@ -616,9 +637,15 @@ typedef struct masu_desc {
     VkExtent2D output; /* pixels, 1..16384 and within the device's maxImageDimension2D */
     masu_targets targets;
     uint32_t frames_in_flight; /* 1..3; 0: 2 */
-    uint32_t rung_count; /* 0: three rungs: scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS at
-                            sharpness 0.2) */
+    uint32_t rung_count; /* 0: as `ladder` says */
     masu_rung rungs[MASU_MAX_RUNGS]; /* in falling quality by convention; any order works */
+    /* The rungs where rung_count is 0. ON: up to eight that were measured beforehand for the scene's
+     * class (masu_ladder_of), with their flips, and their times as those governor.costs that are 0.
+     * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS at sharpness
+     * 0.2). AUTO: ON with a governor, else OFF. */
+    masu_switch ladder;
+    float flips[MASU_MAX_RUNGS]; /* error of each rung, mean FLIP, 0..1; 0: unknown. Decides nothing: the
+                                    plan says it again */
     masu_limits limits;
     uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes over all roles; 0: none */
@@ -707,6 +734,13 @@ MASU_API void masu_destroy(masu_renderer *renderer);
 /* The description with every default filled in, as masu_init uses it. Needs no device. */
 MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
 
+/* Fills rung_count, rungs, flips and governor.costs with the measured ladder of the scene's class, or of
+ * the nearest class that was measured: to be changed and given to masu_init. What the scene lacks, rungs
+ * that turn it change nothing by. `from` may be NULL: scene, size, driver and date of the measurement.
+ * MASU_ERROR_ARGUMENT: a NULL pointer. */
+MASU_API MASU_MUST_USE masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc,
+                                                  const char **from);
+
 /* One row of the memory plan. */
 typedef struct masu_memory_row {
     const char *name;
@@ -752,6 +786,8 @@ typedef struct masu_plan_rung {
     uint32_t render_width, render_height;
     uint32_t dispatches; /* per frame; a graphics or transfer pass counts as one */
     uint32_t barriers;   /* per frame; 0 from masu_plan: they are counted while recording */
+    /* As given in governor.costs and flips, or by the measured ladder; 0: unknown. */
+    float ratio, flip; /* time beside other rungs; error */
 } masu_plan_rung;
 
 typedef struct masu_plan_info {

@@ -109,11 +109,13 @@ static uint32_t storage_buffers(const masu_frame_plan *plan) {
            (plan->needs.smoothing ? 2u : 0u) + (plan->needs.metered ? 1u : 0u);
 }
 
-/* The rungs as the host gave them, or the defaults, to be changed. */
+/* The rungs as the host gave them, or those that the plan chose, to be looked at and changed. */
 static void own_rungs(masu_desc *desc, const masu_frame_plan *plan) {
     if (desc->rung_count) return;
     desc->rung_count = plan->desc.rung_count;
     memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
+    memcpy(desc->flips, plan->desc.flips, sizeof desc->flips);
+    memcpy(desc->governor.costs, plan->desc.governor.costs, sizeof desc->governor.costs);
 }
 
 /* Rungs that leave reflections to us go without where there are too few. */
@@ -122,7 +124,6 @@ static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan,
     uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
     uint32_t needed = storage_buffers(plan) + TRACE_BUFFERS;
     if (!plan->needs.reflections || has >= needed) return MASU_OK;
-    own_rungs(desc, plan);
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].specular == MASU_ON) {
             return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
@@ -137,11 +138,11 @@ static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan,
 }
 
 /* Whether any rung still may trace. */
-static int desc_traces(const masu_desc *desc, const masu_frame_plan *plan) {
+static int desc_traces(const masu_desc *desc) {
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].specular != MASU_OFF) return 1;
     }
-    return !desc->rung_count && plan->needs.reflections;
+    return 0;
 }
 
 /* Whether the device's ray queries or our own tree finds what is reflected: the description is left
@@ -154,7 +155,7 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     int forced = desc->ray_query == MASU_ON;
     int wished = forced || (desc->ray_query == MASU_AUTO && desc->vulkan.ray_query && gpu);
     desc->ray_query = MASU_OFF;
-    if (!wished || !plan->needs.traced || !desc_traces(desc, plan)) return MASU_OK;
+    if (!wished || !plan->needs.traced || !desc_traces(desc)) return MASU_OK;
     if (!desc->vulkan.ray_query) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "vulkan.ray_query", 1, 0,
                          "ray_query is MASU_ON, but vulkan.ray_query says that the device was created "
@@ -195,9 +196,8 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
                          "device has %u",
                          plain, has);
     }
-    if (plan->needs.reflections && desc_traces(desc, plan)) needed += TRACE_BUFFERS;
+    if (plan->needs.reflections && desc_traces(desc)) needed += TRACE_BUFFERS;
     if (!plan->occlusion || has >= needed) return MASU_OK;
-    own_rungs(desc, plan);
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].occlusion == MASU_ON) {
             return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
@@ -251,6 +251,10 @@ static masu_result check_governor(const masu_desc *desc, uint32_t rungs, masu_de
     const masu_governor_desc *g = &desc->governor;
     if ((unsigned)g->mode > MASU_GOVERNOR_FIXED)
         return bad_governor(detail, "governor.mode", (unsigned)g->mode, 0, MASU_GOVERNOR_FIXED);
+    for (uint32_t r = 0; r < rungs; r++) { /* also told by the plan, without a governor */
+        if (!(g->costs[r] >= 0.0f && g->costs[r] <= 1e6f))
+            return bad_governor(detail, "governor.costs", (double)g->costs[r], 0, 1e6);
+    }
     if (g->mode == MASU_GOVERNOR_OFF) return MASU_OK;
     if (g->target_ms != 0.0f && !(g->target_ms >= 1.0f && g->target_ms <= 1000.0f))
         return bad_governor(detail, "governor.target_ms", (double)g->target_ms, 1, 1000);
@@ -263,10 +267,6 @@ static masu_result check_governor(const masu_desc *desc, uint32_t rungs, masu_de
                             g->worst_rung ? g->worst_rung : rungs - 1);
     if (g->rung >= rungs) return bad_governor(detail, "governor.rung", g->rung, 0, rungs - 1);
     if (g->dwell > 600) return bad_governor(detail, "governor.dwell", g->dwell, 0, 600);
-    for (uint32_t r = 0; r < rungs; r++) {
-        if (!(g->costs[r] >= 0.0f && g->costs[r] <= 1e6f))
-            return bad_governor(detail, "governor.costs", (double)g->costs[r], 0, 1e6);
-    }
     return MASU_OK;
 }
 
@@ -289,6 +289,7 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     if (result) return result;
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_desc possible = *desc;
+    own_rungs(&possible, plan);
     if (vk->queue_family.timestampValidBits == 0) possible.governor.wall_only = 1;
     result = drop_specular(&possible, plan, limits, detail);
     if (!result) result = drop_occlusion(&possible, plan, limits, detail);

@@ -4,6 +4,7 @@
 #include "blob.h"
 #include "error.h"
 #include "governor.h"
+#include "ladder.h"
 #include "lights.h"
 #include "lod.h"
 #include "output.h"
@@ -40,6 +41,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     memset(&d, 0, sizeof d);
     if (desc) d = *desc;
     if (d.frames_in_flight == 0) d.frames_in_flight = 2;
+    masu_ladder_defaults(&d);
     if (d.rung_count == 0) {
         d.rung_count = 3;
         d.rungs[0] = (masu_rung){.scale = 1.0f};
@@ -228,6 +230,13 @@ static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "debug.mip_bias", 0, 0,
                          "debug.mip_bias is %g levels, allowed are -16 to 16",
                          (double)d->debug.mip_bias);
+    }
+    if ((unsigned)d->ladder > MASU_ON)
+        return bad_range(detail, "ladder", (unsigned)d->ladder, MASU_AUTO, MASU_ON);
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (d->flips[r] >= 0.0f && d->flips[r] <= 1.0f) continue;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "flips", 0, 0,
+                         "flips[%u] is %g, allowed are 0 to 1", r, (double)d->flips[r]);
     }
     if ((unsigned)d->half_floats > MASU_ON)
         return bad_range(detail, "half_floats", (unsigned)d->half_floats, MASU_AUTO, MASU_ON);
@@ -1044,6 +1053,8 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
         out->rungs[r].render_width = plan->rungs[r].render_width;
         out->rungs[r].render_height = plan->rungs[r].render_height;
         out->rungs[r].barriers = plan->rungs[r].barriers;
+        out->rungs[r].ratio = plan->desc.governor.costs[r];
+        out->rungs[r].flip = plan->desc.flips[r];
     }
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         const masu_image_plan *image = &plan->images[i];

@@ -73,6 +73,9 @@ $(BUILD)/tests/unit/test_environment: $(BAKE_OBJECTS)
 $(BUILD)/tests/unit/test_conform: LIBS += -ljansson
 $(BUILD)/tests/unit/test_conform: $(call objects,tools/conform_suite.c tools/conform_report.c)
 
+# Ladders as masu bench writes them.
+$(BUILD)/tests/unit/test_ladder: LIBS += -ljansson
+
 # What masu-meso measures and fits.
 $(BUILD)/tests/unit/test_meso: LIBS = -lcmocka $(MESO_LIBS)
 $(BUILD)/tests/unit/test_meso: $(MESO_OBJECTS) $(BAKE_OBJECTS)

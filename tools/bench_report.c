@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 typedef struct report {
     const char *folder;
@@ -120,8 +121,12 @@ static bool write_ladder(report *r) {
                              "ratio", r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms",
                              row->gpu_min, "flip", row->flip, "rmse", row->rmse, "knobs", knobs));
     }
+    char date[32] = "unknown";
+    time_t seconds = time(NULL);
+    struct tm utc;
+    if (gmtime_r(&seconds, &utc)) strftime(date, sizeof date, "%Y-%m-%d", &utc);
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:i, s:i, s:f, s:s, s:s, s:o}", "scene", text_of(r->sweep, "scene"),
+        "{s:s, s:s, s:s, s:s, s:i, s:i, s:f, s:s, s:s, s:o}", "date", date, "scene", text_of(r->sweep, "scene"),
         "hash", text_of(r->sweep, "hash"), "driver", text_of(r->sweep, "driver"), "width",
         (int)r->size.width, "height", (int)r->size.height, "time", number_of(r, "time"), "clock",
         r->out->by_timestamps ? "timestamps" : "wall", "error", "flip", "rungs", rungs);

@@ -4,120 +4,22 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- Knobs ----------------------------------------------------------------------------------- */
-
-typedef enum knob_kind { SCALAR, NUMBER, WORD, REFRESH } knob_kind;
-
-/* What a scene must have for a knob to change anything. */
-typedef enum use {
-    ALWAYS,
-    SDF,
-    AO,
-    SPECULAR,
-    SHADOWS,
-    LODS,
-    OCCLUDERS,
-    POLYGONS,
-    LIGHTS,
-    UPSCALED,
-    SHARPENED,
-    SHARPEN
-} use;
-
-typedef struct knob {
-    const char *name;
-    size_t offset;
-    knob_kind kind;
-    use use;
-    const char *const *words; /* of a WORD */
-} knob;
-
-static const char *const switches[] = {"auto", "off", "on"};
-static const char *const easus[] = {"auto", "full", "fast", "bilinear"};
-static const char *const aas[] = {"auto",        "off",       "fxaa",      "smaa-low",
-                                  "smaa-medium", "smaa-high", "smaa-ultra"};
-static const char *const marches[] = {"auto",  "plain", "fragment",     "seed",
-                                      "cone8", "cones", "checkerboard", "unpruned"};
-
-#define AT(field) #field, offsetof(masu_rung, field)
-static const knob knobs[] = {
-    {AT(scale), SCALAR, ALWAYS, NULL},
-    {AT(upscale), WORD, UPSCALED, switches},
-    {AT(easu), WORD, UPSCALED, easus},
-    {AT(sharpen), WORD, SHARPEN, switches},
-    {AT(sharpness), SCALAR, SHARPENED, NULL},
-    {AT(fuse), WORD, UPSCALED, switches},
-    {AT(aa), WORD, ALWAYS, aas},
-    {AT(march), WORD, SDF, marches},
-    {AT(march_steps), NUMBER, SDF, NULL},
-    {AT(frustum), WORD, POLYGONS, switches},
-    {AT(occlusion), WORD, OCCLUDERS, switches},
-    {AT(lod_error), SCALAR, LODS, NULL},
-    {AT(ao), WORD, AO, switches},
-    {AT(ao_slices), NUMBER, AO, NULL},
-    {AT(ao_steps), NUMBER, AO, NULL},
-    {AT(shadow_cascades), NUMBER, SHADOWS, NULL},
-    {AT(shadow_resolution), NUMBER, SHADOWS, NULL},
-    {AT(shadow_distance), SCALAR, SHADOWS, NULL},
-    {AT(shadow_refresh), REFRESH, SHADOWS, NULL},
-    {AT(light_tiles), WORD, LIGHTS, switches},
-    {AT(specular), WORD, SPECULAR, switches},
-    {AT(specular_cutoff), SCALAR, SPECULAR, NULL},
-    {AT(specular_reuse), WORD, SPECULAR, switches},
-    {AT(specular_temporal), WORD, SPECULAR, switches},
-    {AT(specular_fine), WORD, SPECULAR, switches},
-    {AT(specular_filter), WORD, SPECULAR, switches},
-    {AT(specular_taa), WORD, SPECULAR, switches},
-    {AT(specular_reuse_taps), NUMBER, SPECULAR, NULL},
-    {AT(specular_filter_taps), NUMBER, SPECULAR, NULL},
-    {AT(specular_frames), NUMBER, SPECULAR, NULL},
-};
-
-enum { KNOBS = sizeof knobs / sizeof *knobs };
+/* ---- Names ----------------------------------------------------------------------------------- */
 
 /* AMD's own choice for its "quality" pictures, and that of the library's own rungs. */
 static const masu_rung base_rung = {.scale = 1.0f, .sharpness = 0.2f};
 
-static size_t knob_bytes(const knob *k) { return k->kind == REFRESH ? 4 * MASU_MAX_CASCADES : 4; }
-
-static uint32_t word_of(const knob *k, const masu_rung *rung) {
-    uint32_t value;
-    memcpy(&value, (const char *)rung + k->offset, sizeof value);
-    return value;
-}
-
-static double scalar_of(const knob *k, const masu_rung *rung) {
-    float value;
-    memcpy(&value, (const char *)rung + k->offset, sizeof value);
-    return (double)value;
-}
-
-static void knob_text(const knob *k, const masu_rung *rung, char *out, size_t size) {
+/* Short: it is part of file names. */
+static void knob_text(const masu_knob *k, const masu_rung *rung, char *out, size_t size) {
     const uint32_t *r = rung->shadow_refresh;
     switch (k->kind) {
-    case SCALAR: snprintf(out, size, "%.4g", scalar_of(k, rung)); break;
-    case NUMBER: snprintf(out, size, "%u", word_of(k, rung)); break;
-    case WORD: snprintf(out, size, "%s", k->words[word_of(k, rung)]); break;
-    case REFRESH: snprintf(out, size, "%u-%u-%u-%u", r[0], r[1], r[2], r[3]); break;
+    case MASU_KNOB_SCALAR: snprintf(out, size, "%.4g", masu_knob_scalar(k, rung)); break;
+    case MASU_KNOB_NUMBER: snprintf(out, size, "%u", masu_knob_number(k, rung)); break;
+    case MASU_KNOB_WORD:
+        snprintf(out, size, "%s", k->words->words[masu_knob_number(k, rung)]);
+        break;
+    case MASU_KNOB_REFRESH: snprintf(out, size, "%u-%u-%u-%u", r[0], r[1], r[2], r[3]); break;
     }
-}
-
-const char *masu_knob_name(uint32_t i) { return i < KNOBS ? knobs[i].name : NULL; }
-
-void masu_knob_json(uint32_t i, const masu_rung *rung, char *out, size_t size) {
-    const knob *k = &knobs[i];
-    const uint32_t *r = rung->shadow_refresh;
-    char text[64];
-    knob_text(k, rung, text, sizeof text);
-    switch (k->kind) {
-    case WORD: snprintf(out, size, "\"%s\"", text); break;
-    case REFRESH: snprintf(out, size, "[%u, %u, %u, %u]", r[0], r[1], r[2], r[3]); break;
-    default: snprintf(out, size, "%s", text); break;
-    }
-}
-
-static bool differs(const knob *k, const masu_rung *a, const masu_rung *b) {
-    return memcmp((const char *)a + k->offset, (const char *)b + k->offset, knob_bytes(k)) != 0;
 }
 
 uint32_t masu_setting_period(const masu_rung *rung) {
@@ -131,12 +33,12 @@ uint32_t masu_setting_period(const masu_rung *rung) {
 static void name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
     size_t used = 0;
     snprintf(out, MASU_SETTING_ID, "base");
-    for (uint32_t i = 0; i < KNOBS; i++) {
+    for (uint32_t i = 0; i < MASU_KNOBS; i++) {
         char text[64];
-        if (!differs(&knobs[i], rung, &base_rung) || used >= MASU_SETTING_ID) continue;
-        knob_text(&knobs[i], rung, text, sizeof text);
+        if (!masu_knob_differs(&masu_knobs[i], rung, &base_rung) || used >= MASU_SETTING_ID) continue;
+        knob_text(&masu_knobs[i], rung, text, sizeof text);
         used += (size_t)snprintf(out + used, MASU_SETTING_ID - used, "%s%s=%s", used ? "+" : "",
-                                 knobs[i].name, text);
+                                 masu_knobs[i].name, text);
     }
 }
 
@@ -229,10 +131,9 @@ typedef struct list {
 static masu_rung rung_of(const masu_rung *turned, float scale) {
     masu_rung rung = base_rung;
     static const masu_rung zero;
-    for (uint32_t i = 0; i < KNOBS; i++) {
-        if (differs(&knobs[i], turned, &zero)) {
-            memcpy((char *)&rung + knobs[i].offset, (const char *)turned + knobs[i].offset,
-                   knob_bytes(&knobs[i]));
+    for (uint32_t i = 0; i < MASU_KNOBS; i++) {
+        if (masu_knob_differs(&masu_knobs[i], turned, &zero)) {
+            masu_knob_copy(&masu_knobs[i], &rung, turned);
         }
     }
     rung.scale = scale;
@@ -293,23 +194,23 @@ static bool has_pass(const masu_plan_info *plan, const char *start) {
 }
 
 /* Why the knob has no effect, or NULL. */
-static const char *useless(const knob *k, const masu_rung *rung, const masu_scene *scene,
+static const char *useless(const masu_knob *k, const masu_rung *rung, const masu_scene *scene,
                            const masu_plan_info *base) {
     bool upscaled = rung->scale < 1.0f || rung->upscale == MASU_ON;
     bool by_default = upscaled && rung->easu != MASU_EASU_BILINEAR;
     bool sharpened = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && by_default);
     switch (k->use) {
-    case SDF: return scene->sdf ? NULL : "the scene has no SDF";
-    case AO: return has_pass(base, "ao") ? NULL : "the scene asks for no ambient occlusion";
-    case SPECULAR: return has_pass(base, "specular_") ? NULL : "no reflections are traced";
-    case SHADOWS: return has_pass(base, "cascade_") ? NULL : "the scene has no shadow map";
-    case LODS: return scene->lods ? NULL : "the scene's meshes have no coarser forms";
-    case OCCLUDERS: return scene->placed_occluders ? NULL : "the scene has no occluders";
-    case POLYGONS: return scene->instances ? NULL : "the scene has no polygons";
-    case LIGHTS: return scene->lights ? NULL : "the scene has no local lights";
-    case UPSCALED: return upscaled ? NULL : "nothing is upscaled";
-    case SHARPEN: return by_default || rung->sharpen == MASU_ON ? NULL : "nothing is sharpened";
-    case SHARPENED: return sharpened ? NULL : "nothing is sharpened";
+    case MASU_USE_SDF: return scene->sdf ? NULL : "the scene has no SDF";
+    case MASU_USE_AO: return has_pass(base, "ao") ? NULL : "the scene asks for no ambient occlusion";
+    case MASU_USE_SPECULAR: return has_pass(base, "specular_") ? NULL : "no reflections are traced";
+    case MASU_USE_SHADOWS: return has_pass(base, "cascade_") ? NULL : "the scene has no shadow map";
+    case MASU_USE_LODS: return scene->lods ? NULL : "the scene's meshes have no coarser forms";
+    case MASU_USE_OCCLUDERS: return scene->placed_occluders ? NULL : "the scene has no occluders";
+    case MASU_USE_POLYGONS: return scene->instances ? NULL : "the scene has no polygons";
+    case MASU_USE_LIGHTS: return scene->lights ? NULL : "the scene has no local lights";
+    case MASU_USE_UPSCALED: return upscaled ? NULL : "nothing is upscaled";
+    case MASU_USE_SHARPEN: return by_default || rung->sharpen == MASU_ON ? NULL : "nothing is sharpened";
+    case MASU_USE_SHARPENED: return sharpened ? NULL : "nothing is sharpened";
     default: return NULL;
     }
 }
@@ -330,11 +231,10 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
         masu_setting *s = &settings[i];
         const char *why = NULL;
         memcpy(old[i], s->id, sizeof old[i]);
-        for (uint32_t k = 0; k < KNOBS; k++) {
-            const char *no = useless(&knobs[k], &s->rung, scene, base);
-            if (!no || !differs(&knobs[k], &s->rung, &base_rung)) continue;
-            memcpy((char *)&s->rung + knobs[k].offset, (const char *)&base_rung + knobs[k].offset,
-                   knob_bytes(&knobs[k]));
+        for (uint32_t k = 0; k < MASU_KNOBS; k++) {
+            const char *no = useless(&masu_knobs[k], &s->rung, scene, base);
+            if (!no || !masu_knob_differs(&masu_knobs[k], &s->rung, &base_rung)) continue;
+            masu_knob_copy(&masu_knobs[k], &s->rung, &base_rung);
             why = why ? why : no;
         }
         char fitted[MASU_SETTING_ID];

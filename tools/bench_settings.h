@@ -1,4 +1,4 @@
-/* bench_settings.h: the settings that `masu bench` measures: a table of knobs, one of techniques,
+/* bench_settings.h: the settings that `masu bench` measures: a table of techniques,
  * and bundles of them over all render sizes.
  *
  * A setting is named by the knobs that differ from the base, so that its name is the same whatever
@@ -6,6 +6,7 @@
 #ifndef MASU_BENCH_SETTINGS_H
 #define MASU_BENCH_SETTINGS_H
 
+#include "bench_knobs.h"
 #include "bench_table.h"
 
 #include "masu.h"
@@ -33,11 +34,6 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
 
 /* The plans of one rung each have the same passes, sizes and bytes. */
 bool masu_settings_same_plan(const masu_plan_info *a, const masu_plan_info *b);
-
-/* Every knob, "scale" first: its name, and its value as JSON text (a number, "auto", [1, 2, 1, 1]).
- * NULL: there are no more. */
-const char *masu_knob_name(uint32_t knob);
-void masu_knob_json(uint32_t knob, const masu_rung *rung, char *out, size_t size);
 
 /* Frames after which the slowest cascade has been drawn again. */
 uint32_t masu_setting_period(const masu_rung *rung);

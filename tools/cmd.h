@@ -23,6 +23,7 @@ extern const masu_cli_command masu_cmd_image_error;
 extern const masu_cli_command masu_cmd_compare;
 extern const masu_cli_command masu_cmd_plant;
 extern const masu_cli_command masu_cmd_conform;
+extern const masu_cli_command masu_cmd_ladder;
 
 /* Options of every command that opens a device; ids from 900 on. */
 enum { MASU_OPTION_DEVICE = 900, MASU_OPTION_VALIDATE, MASU_OPTION_GPU_AV };
@@ -55,6 +56,10 @@ bool masu_rays_option(masu_cli *cli, masu_session_desc *d);
 /* --aa WAY. A preset of SMAA alone where `smaa`. */
 bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa);
 #define MASU_AA_WAYS "off, fxaa (one pass), or SMAA at low, medium, high, ultra"
+
+/* --ladder FILE|auto|off; NULL: it was not given. Sets the ladder, or the rungs out of a file; returns
+ * an exit code. */
+int masu_ladder_option(const char *given, masu_desc *desc);
 
 /* --size WxH: what a PNG may hold, 16384 a side and 64 Mi pixels; said before the work is done. */
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size);

@@ -1,6 +1,7 @@
 /* cmd_common.c: see cmd.h. */
 #include "cmd.h"
 
+#include "bench_ladder_file.h"
 #include "image.h"
 
 #include <stdio.h>
@@ -32,6 +33,16 @@ bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa) {
     if (!masu_cli_choice(cli, names + first, &way)) return false;
     *aa = (masu_aa)(MASU_AA_OFF + first + way);
     return true;
+}
+
+int masu_ladder_option(const char *given, masu_desc *desc) {
+    static masu_ladder_file file;
+    char error[1024];
+    desc->ladder = !given ? MASU_AUTO : strcmp(given, "auto") ? MASU_OFF : MASU_ON;
+    if (!given || !strcmp(given, "auto") || !strcmp(given, "off")) return MASU_CLI_OK;
+    if (!masu_ladder_read(given, &file, error, sizeof error)) return masu_cli_error("%s", error);
+    masu_ladder_give(&file, desc);
+    return MASU_CLI_OK;
 }
 
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT, OPTION_RAYS };
+enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT, OPTION_RAYS, OPTION_LADDER };
 
 static const char *format_name(VkFormat format) {
     switch (format) {
@@ -30,7 +30,8 @@ static void join(char *out, size_t size, const char *const *names, size_t n) {
 static double mib(uint64_t bytes) { return (double)bytes / (1024.0 * 1024.0); }
 
 static void print_passes(const masu_plan_info *p) {
-    printf("\npasses\n  %-19s %-6s %-44s %s\n", "", "rungs", "reads -> writes", "why");
+    int width = p->rung_count > 6 ? (int)p->rung_count : 6; /* of the column */
+    printf("\npasses\n  %-19s %-*s %-44s %s\n", "", width, "rungs", "reads -> writes", "why");
     for (uint32_t i = 0; i < p->pass_count; i++) {
         const masu_plan_pass *pass = &p->passes[i];
         char reads[128], writes[128], both[300], rungs[16] = "";
@@ -40,7 +41,7 @@ static void print_passes(const masu_plan_info *p) {
                  writes);
         for (uint32_t r = 0; r < p->rung_count; r++)
             rungs[r] = pass->active & 1u << r ? (char)('0' + r) : '-';
-        printf("  %-19s %-6s %-44s %s\n", pass->name, rungs, pass->active ? both : "left out",
+        printf("  %-19s %-*s %-44s %s\n", pass->name, width, rungs, pass->active ? both : "left out",
                pass->why);
     }
 }
@@ -118,11 +119,19 @@ static int print_text(const masu_session *s, const masu_plan_info *p, const char
     } else {
         printf("sky: %s\n", s->scene.analytic_sky ? "follows from the sun" : "two colours");
     }
-    printf("output %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
+    printf("class: %s", masu_scene_class_name(masu_scene_class_of(&s->scene)));
+    masu_desc ladder;
+    const char *from;
+    if (s->desc.ladder == MASU_ON && !masu_ladder_of(&s->scene, &ladder, &from))
+        printf("; its ladder is that of %s", from);
+    printf("\noutput %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
     for (uint32_t r = 0; r < p->rung_count; r++) {
         const masu_plan_rung *rung = &p->rungs[r];
-        printf("  %u  renders %ux%u, %u passes, %u barriers\n", r, rung->render_width,
+        printf("  %u  renders %ux%u, %u passes, %u barriers", r, rung->render_width,
                rung->render_height, rung->dispatches, rung->barriers);
+        if (rung->ratio > 0.0f) printf(", time %.3f", (double)rung->ratio);
+        if (rung->flip > 0.0f) printf(", FLIP %.4f", (double)rung->flip);
+        printf("\n");
     }
     print_passes(p);
     print_images(p);
@@ -182,11 +191,15 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
     }
     for (uint32_t r = 0; r < p->rung_count; r++) {
         json_array_append_new(
-            rungs, json_pack("{s:i, s:i, s:i, s:i}", "render_width", (int)p->rungs[r].render_width,
-                             "render_height", (int)p->rungs[r].render_height, "passes",
-                             (int)p->rungs[r].dispatches, "barriers", (int)p->rungs[r].barriers));
+            rungs, json_pack("{s:i, s:i, s:i, s:i, s:f, s:f}", "render_width",
+                             (int)p->rungs[r].render_width, "render_height",
+                             (int)p->rungs[r].render_height, "passes", (int)p->rungs[r].dispatches,
+                             "barriers", (int)p->rungs[r].barriers, "ratio",
+                             (double)p->rungs[r].ratio, "flip", (double)p->rungs[r].flip));
     }
-    json_t *root = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:o}", "scene", scene, "device",
+    json_t *root = json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:o}", "scene", scene,
+                             "class", masu_scene_class_name(masu_scene_class_of(&s->scene)),
+                             "device",
                              masu_json_device(&s->host), "rungs", rungs, "passes", passes, "images",
                              images, "memory", masu_json_memory(&p->memory), "left_out_bytes",
                              (json_int_t)p->left_out_bytes, "rows", rows_json(s));
@@ -196,6 +209,7 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
 static int run(masu_cli *cli) {
     masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
                            .host = {.ray_query = true}};
+    const char *ladder = NULL;
     bool json = false;
     for (;;) {
         int id = masu_cli_next(cli);
@@ -213,6 +227,7 @@ static int run(masu_cli *cli) {
             if (!masu_rays_option(cli, &d)) return MASU_CLI_USAGE;
             continue;
         case OPTION_JSON: json = true; continue;
+        case OPTION_LADDER: ladder = cli->value; continue;
         case MASU_CLI_ARGUMENT:
             if (d.scene_path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
             d.scene_path = cli->value;
@@ -223,13 +238,15 @@ static int run(masu_cli *cli) {
         break;
     }
     if (!d.scene_path) return masu_cli_usage_error("no scene is given");
+    int code = masu_ladder_option(ladder, &d.desc);
+    if (code) return code;
     d.host.message = masu_print_message;
     static masu_session s;
     char error[1024];
     if (!masu_session_open(&d, &s, error, sizeof error)) return masu_cli_error("%s", error);
     masu_plan_info plan;
     masu_plan_of(s.m, &plan);
-    int code = json ? print_json(&s, &plan, d.scene_path) : print_text(&s, &plan, d.scene_path);
+    code = json ? print_json(&s, &plan, d.scene_path) : print_text(&s, &plan, d.scene_path);
     code = masu_finish_validation(&s.host, code);
     masu_session_close(&s);
     return code;
@@ -240,6 +257,9 @@ static const masu_cli_option options[] = {
      "output size in pixels, at most 16384 a side and 64 Mi in all\n(default 1920x1080)",
      OPTION_SIZE, 0},
     {"json", NULL, "print JSON", OPTION_JSON, 0},
+    {"ladder", "FILE|auto|off",
+     "the rungs: those of a ladder.json of masu bench; auto, those measured for scenes of this\n"
+     "class; off, 1, 0.8 and 0.4 of the size (default off)", OPTION_LADDER, 0},
     {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
     {"split-memory", NULL, "one block per memory role, even on unified memory", OPTION_SPLIT, 0},
     MASU_RAYS_OPTION(OPTION_RAYS),

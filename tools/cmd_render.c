@@ -39,6 +39,7 @@ enum {
     OPTION_RAYS,
     OPTION_AA,
     OPTION_TARGET,
+    OPTION_LADDER,
     OPTION_TIMES
 };
 
@@ -404,15 +405,11 @@ static int check(const masu_session_desc *d, const render_options *o) {
         return masu_cli_usage_error("none of --output, --stats, --times, --target-ms is given");
     if (o->target_ms > 0.0 && o->rays)
         return masu_cli_usage_error("--target-ms and --reference do not go together");
-    uint32_t rungs = masu_desc_resolved(&d->desc).rung_count;
     if ((o->rays || o->positions) && strchr(o->output ? o->output : "", '#')) {
         return masu_cli_usage_error("%s makes one picture: --output %s names many",
                                     o->positions ? "--truth" : "--reference", o->output);
     }
     if (o->positions && !o->output) return masu_cli_usage_error("--truth needs --output");
-    if (o->rung >= rungs)
-        return masu_cli_usage_error("--rung %u does not exist, there are 0 to %u", o->rung,
-                                    rungs - 1);
     return MASU_CLI_OK;
 }
 
@@ -424,6 +421,14 @@ static bool read_exposure(masu_cli *cli, masu_desc *desc, render_options *o) {
     return metered || !strcmp(cli->value, "fixed") || masu_cli_double(cli, 1e-6, 1e6, &o->exposure);
 }
 
+/* Options that turn one knob of every rung; those that are not given leave it as the ladder has it. */
+typedef struct turned {
+    bool march_given, cull_given, lod_given, aa_given;
+    uint32_t march, cull;
+    double lod_error;
+    masu_aa aa;
+} turned;
+
 /* Eight rungs from the full size to 0.4 of it, each 13 % smaller than the one before. */
 static void make_ladder(masu_desc *d) {
     d->rung_count = MASU_MAX_RUNGS;
@@ -431,6 +436,42 @@ static void make_ladder(masu_desc *d) {
         double scale = pow(0.4, r / (double)(d->rung_count - 1));
         d->rungs[r] = (masu_rung){.scale = (float)scale, .sharpness = r ? 0.2f : 0.0f};
     }
+}
+
+/* The scene is known by now, and with it its ladder. */
+static void turn(masu_desc *d, const turned *t) {
+    *d = masu_desc_resolved(d);
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        masu_rung *rung = &d->rungs[r];
+        if (t->march_given) rung->march = (masu_march)t->march;
+        if (t->cull_given) rung->frustum = t->cull < 2 ? MASU_ON : MASU_OFF;
+        if (t->cull_given) rung->occlusion = t->cull % 2 ? MASU_OFF : MASU_ON;
+        if (t->lod_given) rung->lod_error = (float)t->lod_error;
+        if (t->aa_given) rung->aa = t->aa;
+    }
+}
+
+/* True: s is open, and its rungs are as the command line has them. */
+static bool open_rungs(masu_session_desc *d, const render_options *o, const turned *t,
+                       masu_session *s, int *code) {
+    char error[1024];
+    *code = MASU_CLI_FAILURE;
+    d->no_renderer = true;
+    if (!masu_session_open(d, s, error, sizeof error)) {
+        *code = masu_cli_error("%s", error);
+        return false;
+    }
+    turn(&s->desc, t);
+    if (o->rung >= s->desc.rung_count) {
+        *code = masu_cli_usage_error("--rung %u does not exist, there are 0 to %u", o->rung,
+                                     s->desc.rung_count - 1);
+    } else if (masu_session_start(s, error, sizeof error)) {
+        return true;
+    } else {
+        *code = masu_cli_error("%s", error);
+    }
+    masu_session_close(s);
+    return false;
 }
 
 static int run(masu_cli *cli) {
@@ -442,11 +483,11 @@ static int run(masu_cli *cli) {
                                           "unpruned",     NULL};
     static const char *const tones[] = {"auto", "none", "aces", "neutral", NULL};
     static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
-    uint32_t poison = 0, march = MASU_MARCH_AUTO, cull = 0, tone = 0, casters = 0;
-    masu_aa aa = MASU_AA_AUTO;
+    uint32_t poison = 0, tone = 0, casters = 0;
+    turned knobs = {0};
+    const char *ladder = NULL;
     bool frames = false, step = false, fixed = false;
     const char *own = NULL; /* an option about what --truth has its own mind of */
-    double lod_error = 0.0;
     for (;;) {
         int id = masu_cli_next(cli);
         if (masu_device_option(cli, id, &d.host)) continue;
@@ -490,11 +531,13 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_MARCH:
             own = "--march";
-            if (!masu_cli_choice(cli, marches, &march)) return MASU_CLI_USAGE;
+            if (!masu_cli_choice(cli, marches, &knobs.march)) return MASU_CLI_USAGE;
+            knobs.march_given = true;
             continue;
         case OPTION_CULL:
             own = "--cull";
-            if (!masu_cli_choice(cli, stages, &cull)) return MASU_CLI_USAGE;
+            if (!masu_cli_choice(cli, stages, &knobs.cull)) return MASU_CLI_USAGE;
+            knobs.cull_given = true;
             continue;
         case OPTION_CASTERS: casters = 1; continue;
         case OPTION_ANISOTROPY: {
@@ -506,7 +549,8 @@ static int run(masu_cli *cli) {
         }
         case OPTION_LOD_ERROR:
             own = "--lod-error";
-            if (!masu_cli_double(cli, -1e9, 1e9, &lod_error)) return MASU_CLI_USAGE;
+            if (!masu_cli_double(cli, -1e9, 1e9, &knobs.lod_error)) return MASU_CLI_USAGE;
+            knobs.lod_given = true;
             continue;
         case OPTION_SUN:
             if (!masu_cli_sun(cli, o.sun)) return MASU_CLI_USAGE;
@@ -521,7 +565,8 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_AA:
             own = "--aa";
-            if (!masu_aa_option(cli, false, &aa)) return MASU_CLI_USAGE;
+            if (!masu_aa_option(cli, false, &knobs.aa)) return MASU_CLI_USAGE;
+            knobs.aa_given = true;
             continue;
         case OPTION_TONE:
             if (!masu_cli_choice(cli, tones, &tone)) return MASU_CLI_USAGE;
@@ -535,7 +580,10 @@ static int run(masu_cli *cli) {
         case OPTION_TARGET:
             own = "--target-ms";
             if (!masu_cli_double(cli, 1.0, 1000.0, &o.target_ms)) return MASU_CLI_USAGE;
-            make_ladder(&d.desc);
+            continue;
+        case OPTION_LADDER:
+            own = "--ladder";
+            ladder = cli->value;
             continue;
         case OPTION_POISON: poison = 1; continue;
         case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
@@ -557,14 +605,6 @@ static int run(masu_cli *cli) {
                                  .target_ms = (float)o.target_ms,
                                  .rung = o.rung};
     }
-    d.desc = masu_desc_resolved(&d.desc); /* the default rungs, to change one knob of them */
-    for (uint32_t r = 0; r < d.desc.rung_count; r++) {
-        d.desc.rungs[r].march = (masu_march)march;
-        d.desc.rungs[r].frustum = cull < 2 ? MASU_ON : MASU_OFF;
-        d.desc.rungs[r].occlusion = cull % 2 ? MASU_OFF : MASU_ON;
-        d.desc.rungs[r].lod_error = (float)lod_error;
-        d.desc.rungs[r].aa = aa;
-    }
     if (o.positions && own)
         return masu_cli_usage_error("--truth takes everything at its most exact: no %s", own);
     if ((o.rays || o.positions) && (frames || step)) {
@@ -574,7 +614,9 @@ static int run(masu_cli *cli) {
     }
     if (o.rays) o.frames = o.rays, o.time_step = 0.0;
     int code = check(&d, &o);
+    if (!code) code = masu_ladder_option(ladder, &d.desc);
     if (code) return code;
+    if (d.desc.ladder == MASU_OFF && o.target_ms > 0.0 && !d.desc.rung_count) make_ladder(&d.desc);
     masu_vk_alloc_counts counts;
     VkAllocationCallbacks allocator = masu_vk_alloc_callbacks(&counts);
     d.desc.debug =
@@ -585,9 +627,9 @@ static int run(masu_cli *cli) {
     static masu_session s;
     char error[1024];
     masu_cli_progress("building pipelines");
-    bool open = o.positions ? masu_picture_open(&d, o.positions, &s, error, sizeof error)
-                            : masu_session_open(&d, &s, error, sizeof error);
-    if (!open) return masu_cli_error("%s", error);
+    if (o.positions && !masu_picture_open(&d, o.positions, &s, error, sizeof error))
+        return masu_cli_error("%s", error);
+    if (!o.positions && !open_rungs(&d, &o, &knobs, &s, &code)) return code;
     if (!masu_cli_quiet()) {
         masu_cli_progress_clear();
         fprintf(stderr, "masu: %s\n", s.host.driver);
@@ -613,12 +655,16 @@ static const masu_cli_option options[] = {
      "what the picture would be with no shortcut: the mean of N places in each pixel (default\n"
      "64), each at full size and at the most exact; reflections by 1024 rays in all, or --reference=N",
      OPTION_TRUTH, 0},
-    {"rung", "R", "quality: 0 native, 1 at 0.8, 2 at 0.4 of the size and upscaled (default 0)",
+    {"rung", "R", "quality: a rung of the ladder, 0 the best (default 0)",
      OPTION_RUNG, 0},
     {"aa", "WAY", "anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
     {"target-ms", "MS",
-     "let the governor choose among eight rungs, 1 to 0.4 of the size, for frames of so long,\n"
-     "or follow --rung of these; prints what it has seen and done", OPTION_TARGET, 0},
+     "let the governor choose among the rungs of the ladder, for frames of so long, or follow\n"
+     "--rung of these; prints what it has seen and done", OPTION_TARGET, 0},
+    {"ladder", "FILE|auto|off",
+     "the rungs: those of a ladder.json of masu bench; auto, those measured for scenes of this\n"
+     "class; off, sizes alone: 1, 0.8 and 0.4, with --target-ms eight from 1 to 0.4\n"
+     "(default: auto with --target-ms, else off)", OPTION_LADDER, 0},
     {"times", "FILE.csv", "time, rung and reason of every frame", OPTION_TIMES, 0},
     {"time", "SECONDS", "time of the first frame (default 0)", OPTION_TIME, 0},
     {"time-step", "SECONDS", "between frames (default 1/60)", OPTION_TIME_STEP, 0},

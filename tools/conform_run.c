@@ -113,6 +113,7 @@ static masu_session_desc describe(const masu_conform *c, const masu_case *of, co
     d.desc.targets.storage = 1;
     d.desc.frames_in_flight = w->flight ? w->flight : of->flight;
     d.desc.ray_query = c->ray_query;
+    d.desc.ladder = of->measured ? MASU_ON : MASU_OFF;
     d.desc.rung_count = of->rung_count;
     memcpy(d.desc.rungs, of->rungs, sizeof d.desc.rungs);
     for (uint32_t r = 0; r < of->rung_count && w->unculled; r++)
@@ -312,6 +313,8 @@ static void run_governed(masu_conform *c, const masu_case *of, masu_conform_resu
     masu_stats_info stats;
     masu_commands commands;
     uint32_t last = 0;
+    const masu_desc is = masu_desc_resolved(&s->desc); /* with the rungs of a measured ladder */
+    uint32_t worst = of->measured && !g->worst ? is.rung_count - 1 : g->worst;
     memset(&stats, 0, sizeof stats);
     for (uint32_t i = 0; i < g->frames; i++) {
         masu_frame_desc frame = frame_at(of, i);
@@ -320,15 +323,14 @@ static void run_governed(masu_conform *c, const masu_case *of, masu_conform_resu
         if (!submit(s, &frame, r, &commands) || !wait(s, commands.slot, r)) return;
         double wall = (double)(masu_clock_ns(NULL) - start) / 1e6;
         last = commands.rung;
-        if (last < g->best || last > g->worst) {
+        if (last < g->best || last > worst) {
             find(r, MASU_VERDICT_FAIL, "frame %u is of rung %u, allowed are %u to %u", i, last,
-                 g->best, g->worst);
+                 g->best, worst);
             return;
         }
-        double scale = (double)of->rungs[last].scale;
-        if (scale == 0.0) scale = 1.0;
-        masu_frame_wall(s->m, commands.slot,
-                        g->told ? g->fixed_ms + g->load_ms * scale * scale : wall);
+        double scale = (double)is.rungs[last].scale, ratio = (double)is.governor.costs[last];
+        double cost = of->measured && ratio > 0.0 ? ratio : scale * scale;
+        masu_frame_wall(s->m, commands.slot, g->told ? g->fixed_ms + g->load_ms * cost : wall);
         if (masu_stats(s->m, commands.slot, &stats)) {
             find(r, MASU_VERDICT_FAIL, "there are no statistics of frame %u", i);
             return;

@@ -261,8 +261,10 @@ static bool read_rung(const place *at, const json_t *value, masu_rung *rung) {
 
 static bool read_ladder(const place *at, const json_t *value, masu_case *c) {
     size_t n = json_array_size(value);
+    c->measured = json_is_string(value) && !strcmp(json_string_value(value), "auto");
+    if (c->measured) return true;
     if (!json_is_array(value) || !n || n > MASU_MAX_RUNGS) {
-        return wrong(at, "ladder", "needed is an array of 1 to %u rungs, given are %zu",
+        return wrong(at, "ladder", "needed is 'auto' or an array of 1 to %u rungs, given are %zu",
                      MASU_MAX_RUNGS, n);
     }
     memset(c->rungs, 0, sizeof c->rungs);
@@ -423,6 +425,7 @@ static bool read_key(const place *at, const char *key, const json_t *value, masu
     if (!strcmp(key, "rung")) {
         memset(c->rungs, 0, sizeof c->rungs);
         c->rung_count = 1;
+        c->measured = false;
         return read_rung(at, value, &c->rungs[0]);
     }
     if (!strcmp(key, "ladder")) return read_ladder(at, value, c);
@@ -458,7 +461,7 @@ static bool check_case(const place *at, masu_case *c) {
                               : "needed is a limit beside 'against', given is none");
     }
     masu_governed *g = &c->governed;
-    if (!g->on && c->rung_count > 1)
+    if (!g->on && (c->measured || c->rung_count > 1))
         return wrong(at, "ladder", "needed is 'governed', for something to choose from it");
     if (!g->on) return true;
     if (c->against || c->same || masu_bound_is_set(&c->bounds[MASU_MEASURE_MS_RATIO])) {
@@ -466,8 +469,17 @@ static bool check_case(const place *at, masu_case *c) {
                      "needed is a picture of one rung for error, same and ms_ratio, "
                      "which a governed case has not");
     }
+    if (c->measured) { /* as long as it is: that is known when the scene is */
+        memset(c->rungs, 0, sizeof c->rungs);
+        c->rung_count = 0;
+        if (g->worst && g->best > g->worst) {
+            return wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u", g->best,
+                         MASU_MAX_RUNGS - 1, g->worst);
+        }
+        return true;
+    }
     if (c->rung_count ==
-        1) { /* eight rungs from the full size to 0.4, as masu render --target-ms */
+        1) { /* eight rungs from the full size to 0.4, as masu render --target-ms --ladder off */
         masu_rung first = c->rungs[0];
         c->rung_count = MASU_MAX_RUNGS;
         for (uint32_t r = 0; r < c->rung_count; r++) {

@@ -112,9 +112,11 @@ typedef struct masu_governed {
     bool on;
     double target_ms;
     uint32_t frames;
-    uint32_t best, worst;     /* rungs it may choose */
+    uint32_t best, worst;     /* rungs it may choose; worst 0: to the end of a measured ladder */
     bool told;                /* the governor is told times that follow from the next two, */
-    double fixed_ms, load_ms; /* fixed + load * scale^2, and not those of the clock */
+    /* fixed + load * the ladder's time of the rung, if it is a measured one, else scale^2: and not those
+     * of the clock */
+    double fixed_ms, load_ms;
     int32_t settles[2];       /* the last rung lies between these; -1: anywhere */
 } masu_governed;
 
@@ -123,7 +125,8 @@ typedef struct masu_case {
     uint32_t width, height;
     double time, move; /* of the first frame, and by how much each goes on, s */
     uint32_t frames;
-    uint32_t rung_count; /* the ladder; without `governed` one */
+    uint32_t rung_count; /* the ladder; without `governed` one; 0: */
+    bool measured;       /* the ladder that was measured for the scene's class */
     masu_rung rungs[MASU_MAX_RUNGS];
     masu_governed governed;
     bool validate;

@@ -18,7 +18,7 @@ int main(int argc, char **argv) {
                                                        &masu_cmd_bench_image,
                                                        &masu_cmd_image_error, &masu_cmd_compare,
                                                        &masu_cmd_plant,
-                                                       &masu_cmd_conform, NULL};
+                                                       &masu_cmd_conform, &masu_cmd_ladder, NULL};
     static const masu_cli_program program = {
         .name = "masu",
         .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),

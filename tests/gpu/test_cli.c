@@ -215,7 +215,7 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
 static void the_governor_reports_what_it_has_done(void **state) {
     (void)state;
     const char *scene = scene_path("test_sphere_sdf");
-    assert_int_equal(cli_run("render %s --target-ms 1000 --frames 12 --size 32x24 --times %s/t.csv "
+    assert_int_equal(cli_run("render %s --target-ms 1000 --ladder off --frames 12 --size 32x24 --times %s/t.csv "
                           "--stats %s/g.json",
                           scene, cli_dir, cli_dir),
                      0);
@@ -227,10 +227,73 @@ static void the_governor_reports_what_it_has_done(void **state) {
     assert_non_null(strstr(cli_out, "the best rung fits"));
     cli_take("g.json", cli_out, sizeof cli_out);
     assert_non_null(strstr(cli_out, "\"predicted_ms\""));
-    assert_int_equal(cli_run("render %s --target-ms 5 --rung 3 --frames 5 --size 32x24", scene), 0);
+    assert_int_equal(cli_run("render %s --target-ms 5 --ladder off --rung 3 --frames 5 --size 32x24", scene), 0);
     assert_non_null(strstr(cli_out, "rung 3, scale 0.675:     5 frames"));
     assert_non_null(strstr(cli_out, "the rung is fixed"));
     assert_int_equal(cli_run("render %s --target-ms 0.016", scene), 2);
+}
+
+/* A ladder.json as masu bench writes it, of two rungs. */
+static void write_ladder(const char *name, const char *second_ratio) {
+    char text[2048];
+    snprintf(text, sizeof text,
+             "{\"scene\": \"a.masu\", \"hash\": \"0\", \"driver\": \"D\", \"date\": \"2026-01-02\", "
+             "\"width\": 32, \"height\": 24, \"time\": 0.0, \"clock\": \"wall\", \"error\": \"flip\", "
+             "\"rungs\": [{\"setting\": \"base\", \"ratio\": 1, \"wall_ms\": 2, \"gpu_ms\": 2, "
+             "\"flip\": 0.1, \"rmse\": 3, \"knobs\": {\"scale\": 1, \"aa\": \"smaa-low\"}}, "
+             "{\"setting\": \"scale=0.5\", \"ratio\": %s, \"wall_ms\": 1, \"gpu_ms\": 1, "
+             "\"flip\": 0.25, \"rmse\": 5, \"knobs\": {\"scale\": 0.5, \"march_steps\": 64, "
+             "\"shadow_refresh\": [1, 2, 4, 8]}}]}",
+             second_ratio);
+    cli_write(name, text, strlen(text));
+}
+
+static void ladders_are_read_shown_and_built_in(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    write_ladder("l.json", "0.5");
+    write_ladder("bad.json", "1.5");
+    write_ladder("near.json", "0.99");
+    assert_int_equal(cli_run("ladder %s/l.json", cli_dir), 0);
+    assert_non_null(strstr(cli_out, "a.masu at 32x24, by wall, 2026-01-02"));
+    assert_non_null(strstr(cli_out, "     1  0.500  0.2500    5.00  scale=0.5"));
+    assert_int_equal(cli_run("ladder %s/bad.json", cli_dir), 1);
+    cli_complained("rungs[1]: ratio: needed is less than that of the rung before, 1, given is 1.5");
+    assert_int_equal(cli_run("ladder"), 2);
+    cli_complained("no ladder");
+    /* As tables of the library. */
+    assert_int_equal(cli_run("ladder --c both=%s/l.json", cli_dir), 0);
+    assert_non_null(strstr(cli_out, "[MASU_SCENE_BOTH] ="));
+    assert_non_null(strstr(cli_out, "{.scale = 1.0f, .aa = MASU_AA_SMAA_LOW},"));
+    assert_non_null(strstr(cli_out, "{.scale = 0.5f, .march_steps = 64, .shadow_refresh = {1, 2, 4, 8}},"));
+    assert_non_null(strstr(cli_out, ".ratios = {1.0f, 0.5f},"));
+    assert_non_null(strstr(cli_out, ".flips = {0.1f, 0.25f},"));
+    assert_int_equal(cli_run("ladder --c %s/l.json", cli_dir), 2);
+    cli_complained("--c takes CLASS=FILE");
+    assert_int_equal(cli_run("ladder --c many=%s/l.json", cli_dir), 2);
+    cli_complained("--c takes CLASS=FILE");
+    assert_int_equal(cli_run("ladder --c sdf=%s/l.json sdf=%s/l.json", cli_dir, cli_dir), 2);
+    cli_complained("two ladders of one class");
+    assert_int_equal(cli_run("ladder --c sdf=%s/near.json", cli_dir), 1);
+    cli_complained("needed is 1.04 times less than the rung before, 1, given is 0.99");
+    /* In programs. */
+    assert_int_equal(cli_run("plan %s --size 32x24 --ladder %s/l.json", scene, cli_dir), 0);
+    assert_non_null(strstr(cli_out, "1  renders 16x12, "));
+    assert_non_null(strstr(cli_out, "time 0.500, FLIP 0.2500"));
+    assert_int_equal(cli_run("plan %s --size 32x24 --ladder auto", scene), 0);
+    assert_non_null(strstr(cli_out, "class: both; its ladder is that of "));
+    assert_int_equal(cli_run("render %s --target-ms 1000 --frames 3 --size 32x24 --ladder %s/l.json",
+                          scene, cli_dir),
+                     0);
+    assert_non_null(strstr(cli_out, "rung 1, scale 0.500:     0 frames"));
+    assert_null(strstr(cli_out, "rung 2"));
+    assert_int_equal(cli_run("render %s -o %s/l.png --rung 1 --size 32x24 --ladder auto", scene, cli_dir), 0);
+    assert_int_equal(cli_run("render %s -o %s/l.png --rung 2 --size 32x24 --ladder %s/l.json --quiet",
+                          scene, cli_dir, cli_dir),
+                     2);
+    cli_complained("--rung 2 does not exist, there are 0 to 1");
+    assert_int_equal(cli_run("render %s -o %s/l.png --size 32x24 --ladder %s/bad.json", scene, cli_dir, cli_dir), 1);
+    cli_complained("bad.json: rungs[1]: ratio");
 }
 
 static void plan_says_what_is_in_and_what_was_left_out(void **state) {
@@ -427,6 +490,7 @@ int main(void) {
         cmocka_unit_test(draw_bench_compares_pictures_and_counts_triangles),
         cmocka_unit_test(trace_bench_agrees_with_embree),
         cmocka_unit_test(light_bench_compares_pictures_and_counts_lights),
+        cmocka_unit_test(ladders_are_read_shown_and_built_in),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
         cmocka_unit_test(the_governor_reports_what_it_has_done),
         cmocka_unit_test(rays_choose_what_finds_polygons),

@@ -95,6 +95,10 @@ static void a_whole_case_is_read(void **state) {
     assert_true(d->rungs[0].scale == 1.0f && fabsf(d->rungs[7].scale - 0.4f) < 1e-6f);
     assert_int_equal(d->rungs[7].march_steps, 99);
     masu_suite_free(&suite);
+    assert_true(parse("{\"format\": 1, \"cases\": [{\"name\": \"m\", \"scene\": \"city\", \"size\": [8, 8],"
+                      " \"ladder\": \"auto\", \"governed\": {\"target_ms\": 5}}]}"));
+    assert_true(suite.cases[0].measured && !suite.cases[0].rung_count);
+    masu_suite_free(&suite);
 }
 
 static void what_is_no_suite_is_refused(void **state) {
@@ -168,7 +172,12 @@ static void a_bad_case_is_named_with_its_key(void **state) {
         {"\"governed\": {\"target_ms\": 9}, \"same\": [\"again\"]",
          "one rung for error, same and ms_ratio"},
         {"\"ladder\": [{}, {}]", "ladder: needed is 'governed'"},
-        {"\"ladder\": []", "ladder: needed is an array of 1 to 8 rungs, given are 0"},
+        {"\"ladder\": \"auto\"", "ladder: needed is 'governed'"},
+        {"\"ladder\": \"best\"", "ladder: needed is 'auto' or an array of 1 to 8 rungs"},
+        {"\"ladder\": \"auto\", \"governed\": {\"target_ms\": 9, \"worst_rung\": 1, "
+         "\"best_rung\": 2}",
+         "governed.worst_rung: needed is 2 to 7, given is 1"},
+        {"\"ladder\": []", "ladder: needed is 'auto' or an array of 1 to 8 rungs, given are 0"},
         {"\"ladder\": [{},{},{},{},{},{},{},{},{}]", "given are 9"},
         {"\"sizes\": [[1, 2]]", "sizes: given is 'size' as well"},
     };

@@ -110,7 +110,10 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(rungs[r].specular_filter_taps);
         SAME(rungs[r].specular_frames);
         SAME(rungs[r].aa);
+        SAME(flips[r]);
+        SAME(governor.costs[r]);
     }
+    SAME(ladder);
     SAME(limits.vertices);
     SAME(limits.indices);
     SAME(limits.materials);
@@ -185,6 +188,7 @@ static void every_zero_becomes_its_documented_default(void **state) {
     default_output(&expected);
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
+    expected.ladder = MASU_OFF;
     expected.rungs[0] = default_rung(1.0f, 0.0f);
     expected.rungs[1] = default_rung(0.8f, 0.2f);
     expected.rungs[2] = default_rung(0.4f, 0.2f);
@@ -202,6 +206,7 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.rungs[1] = (masu_rung){.sharpness = 1.5f};
     masu_desc expected = masu_desc_resolved(&given);
     given.frames_in_flight = 2;
+    given.ladder = MASU_OFF;
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     default_output(&given);
@@ -243,7 +248,10 @@ static masu_desc full_desc(void) {
     d.exposure = (masu_exposure){MASU_ON, 2, 4, 0.2f, 0.3f, 0.25f, 4};
     d.frames_in_flight = 3;
     d.rung_count = MASU_MAX_RUNGS;
+    d.ladder = MASU_ON;
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
+        d.flips[r] = 0.1f * (float)r;
+        d.governor.costs[r] = 1.0f + (float)r;
         d.rungs[r] =
             (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1,
                         MASU_OFF, MASU_ON, 0.5f + (float)r, MASU_ON, r + 1, r + 2, r % 5, 100 + r,

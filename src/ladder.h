@@ -1,0 +1,28 @@
+/* ladder.h: quality ladders that were measured beforehand, one per class of scenes. Constant tables
+ * (ladder_tables.h, which `make ladders` writes) and pure functions of their arguments: nothing is
+ * owned, nothing fails. */
+#ifndef MASU_LADDER_H
+#define MASU_LADDER_H
+
+#include "masu.h"
+
+/* A class without a measurement has a count of 0. */
+typedef struct masu_ladder {
+    const char *from; /* scene, size, driver and date of the measurement */
+    uint32_t count;
+    masu_rung rungs[MASU_MAX_RUNGS];
+    float ratios[MASU_MAX_RUNGS]; /* a frame's time / that of the base setting; falling */
+    float flips[MASU_MAX_RUNGS];  /* mean FLIP against the truth; rising */
+} masu_ladder;
+
+/* The class's own; never NULL. */
+const masu_ladder *masu_ladder_of_class(masu_scene_class scene_class);
+
+/* That of the scene's class, or of the nearest class that has one; NULL: no class has. */
+const masu_ladder *masu_ladder_for(const masu_scene *scene);
+
+/* Decides desc->ladder, and fills rungs, flips and those costs that are 0 where the ladder is
+ * taken. */
+void masu_ladder_defaults(masu_desc *desc);
+
+#endif

@@ -1,0 +1,191 @@
+/* test_ladder.c: renderers with the ladder that was measured for their class of scenes: each of its
+ * rungs is drawn, as it would be if a host had given it; memory is planned once for all of them; and
+ * nothing is made after masu_init. Times are given by the test, so that every driver decides alike. */
+#include "support.h"
+#include "support_wrap.h"
+
+#include "alloc_count.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 64, H = 48, BYTES = W * H * 4 };
+
+/* Polygons and an SDF; shadows; traced reflections of both. */
+static const char *const scenes[] = {"test_both", "test_shadows", "test_reflections"};
+enum { SCENES = sizeof scenes / sizeof *scenes };
+
+static masu_session_desc ladder_desc(const char *scene) {
+    masu_session_desc d = test_desc(scene, W, H);
+    d.desc.governor.mode = MASU_GOVERNOR_ON; /* and with it the ladder */
+    d.desc.governor.wall_only = 1;
+    return d;
+}
+
+/* What the session's renderer has made of no rungs. */
+static uint32_t rungs_of(const masu_session *s, masu_plan_info *plan) {
+    masu_desc ladder = {0};
+    assert_int_equal(masu_ladder_of(&s->scene, &ladder, NULL), MASU_OK);
+    masu_plan_of(s->m, plan);
+    assert_int_equal(plan->rung_count, ladder.rung_count);
+    for (uint32_t r = 0; r < plan->rung_count; r++) {
+        assert_true(plan->rungs[r].ratio == ladder.governor.costs[r]);
+        assert_true(plan->rungs[r].flip == ladder.flips[r]);
+        assert_true(
+            abs((int)(W * ladder.rungs[r].scale + 0.5f) - (int)plan->rungs[r].render_width) <= 1);
+    }
+    return plan->rung_count;
+}
+
+/* A frame that takes `load` ms at cost 1. */
+static uint32_t step(masu_session *s, const masu_plan_info *plan, uint32_t rung, uint32_t i,
+                     double load, uint64_t *heap) {
+    masu_frame_desc f = {.rung = rung, .time = 0.01 * i};
+    masu_commands c;
+    char error[ERROR_SIZE];
+    uint64_t before = masu_allocs_of_thread();
+    assert_int_equal(masu_frame(s->m, &f, &c), MASU_OK);
+    *heap += masu_allocs_of_thread() - before;
+    assert_ok(masu_headless_submit(&s->host, c.buffer, c.slot, error, sizeof error));
+    assert_ok(masu_headless_wait(&s->host, c.slot, error, sizeof error));
+    masu_frame_wall(s->m, c.slot,
+                    load * (double)plan->rungs[c.rung].ratio * (1.0 + 0.001 * (i % 3)));
+    return c.rung;
+}
+
+static void go_through(const char *scene, bool validate) {
+    masu_session_desc d = ladder_desc(scene);
+    masu_session s;
+    masu_plan_info plan;
+    uint64_t heap = 0;
+    uint32_t drawn = 0, i = 0, rung = 99;
+    wrap_reset();
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    d.host.validate = validate;
+    open_session(&s, &d);
+    uint32_t count = rungs_of(&s, &plan);
+    uint64_t setup = wrap.setup_calls;
+    int64_t live = wrap.live;
+    for (uint32_t k = 0; k < 30; k++) /* everything fits */
+        rung = step(&s, &plan, MASU_RUNG_AUTO, i++, 8.0 / (double)plan.rungs[0].ratio, &heap);
+    assert_int_equal(rung, 0);
+    for (uint32_t r = 1; r < count; r++) { /* the rung before is just too slow, this one fits */
+        double load = 1.02 * 16.67 / (double)plan.rungs[r - 1].ratio;
+        for (uint32_t k = 0; k < 12; k++)
+            drawn |= 1u << step(&s, &plan, MASU_RUNG_AUTO, i++, load, &heap);
+    }
+    for (uint32_t k = 0; k < 30; k++) /* nothing fits */
+        rung = step(&s, &plan, MASU_RUNG_AUTO, i++, 100.0 / (double)plan.rungs[count - 1].ratio,
+                    &heap);
+    assert_int_equal(rung, count - 1);
+    uint32_t by_itself = 0;
+    for (uint32_t r = 0; r < count; r++) by_itself += drawn >> r & 1;
+    assert_true(by_itself >= 2);
+    for (uint32_t r = 0; r < 2 * count; r++)
+        assert_int_equal(step(&s, &plan, r % count, i++, 16.0, &heap), r % count);
+    assert_int_equal(wrap.setup_calls, setup);
+    assert_int_equal(wrap.live, live);
+    if (masu_alloc_counting() && !validate) assert_int_equal(heap, 0);
+    print_message("%s: %u of %u rungs by the governor\n", scene, by_itself, count);
+    close_session(&s);
+    assert_int_equal(wrap.live, 0);
+}
+
+static void every_rung_is_drawn_and_nothing_is_made(void **state) {
+    (void)state;
+    for (uint32_t i = 0; i < SCENES; i++) go_through(scenes[i], i % 2);
+}
+
+/* Frames of the same number after a cut each, so that nothing of other rungs is seen. */
+static void draw_all(masu_session *s, uint32_t count, uint8_t *pixels) {
+    for (uint32_t r = 0; r < count; r++) {
+        masu_frame_desc f = {.rung = r, .time = 0.5, .cut = 1};
+        masu_commands c;
+        draw(s, &f, &c, pixels + r * BYTES);
+    }
+}
+
+static void a_rung_is_the_picture_of_that_rung_given_by_hand(void **state) {
+    (void)state;
+    static uint8_t baked[MASU_MAX_RUNGS * BYTES], given[MASU_MAX_RUNGS * BYTES];
+    for (uint32_t i = 0; i < SCENES; i++) {
+        masu_session_desc d = ladder_desc(scenes[i]);
+        masu_session s;
+        masu_plan_info plan;
+        open_session(&s, &d);
+        uint32_t count = rungs_of(&s, &plan);
+        masu_desc own = {0};
+        assert_int_equal(masu_ladder_of(&s.scene, &own, NULL), MASU_OK);
+        draw_all(&s, count, baked);
+        close_session(&s);
+        d = test_desc(scenes[i], W, H);
+        d.desc.rung_count = count;
+        memcpy(d.desc.rungs, own.rungs, sizeof own.rungs);
+        open_session(&s, &d);
+        draw_all(&s, count, given);
+        close_session(&s);
+        assert_int_equal(max_difference(baked, given, count * BYTES), 0);
+        /* The best and the cheapest are two pictures, and neither is empty. */
+        uint8_t *last = baked + (count - 1) * BYTES;
+        assert_true(count > 1 && max_difference(baked, last, BYTES) > 8);
+        /* And alone, where no rung has anything to share with. */
+        for (uint32_t r = 0; r < count && !i; r += count - 1) {
+            d.desc.rung_count = 1;
+            d.desc.rungs[0] = own.rungs[r];
+            open_session(&s, &d);
+            draw_all(&s, 1, given);
+            close_session(&s);
+            assert_int_equal(max_difference(baked + r * BYTES, given, BYTES), 0);
+        }
+    }
+}
+
+/* Eight rungs take what one takes, if they are alike; and what the largest takes, if not. */
+static void memory_is_planned_once_for_all_rungs(void **state) {
+    (void)state;
+    for (uint32_t i = 0; i + 1 < SCENES; i++) {
+        masu_session_desc d = ladder_desc(scenes[i]);
+        masu_session s;
+        masu_memory need, one, eight;
+        masu_desc own = {0};
+        d.no_renderer = true;
+        open_session(&s, &d);
+        assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
+        void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
+        masu_renderer *m = NULL;
+        masu_peak_info peaks;
+        assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, NULL), MASU_OK);
+        masu_peaks(m, &peaks);
+        assert_int_equal(peaks.host_bytes, need.host_bytes);
+        assert_int_equal(peaks.device_bytes, need.device_bytes);
+        masu_destroy(m);
+        free(block);
+        assert_int_equal(masu_ladder_of(&s.scene, &own, NULL), MASU_OK);
+        masu_desc q = s.desc;
+        uint64_t most = 0;
+        for (uint32_t r = 0; r < own.rung_count; r++) {
+            q.rung_count = 1;
+            q.rungs[0] = own.rungs[r];
+            assert_int_equal(masu_memory_query(&q, &one, NULL), MASU_OK);
+            q.rung_count = MASU_MAX_RUNGS;
+            for (uint32_t k = 1; k < MASU_MAX_RUNGS; k++) q.rungs[k] = own.rungs[r];
+            assert_int_equal(masu_memory_query(&q, &eight, NULL), MASU_OK);
+            assert_int_equal(eight.device_bytes, one.device_bytes);
+            assert_int_equal(eight.transient_aliased, one.transient_aliased);
+            if (one.transient_lower_bound > most) most = one.transient_lower_bound;
+        }
+        /* No less than the largest rung needs, and far from the sum. */
+        assert_true(need.transient_lower_bound >= most);
+        assert_true(need.transient_aliased <= need.transient_unaliased);
+        close_session(&s);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_rung_is_drawn_and_nothing_is_made),
+        cmocka_unit_test(a_rung_is_the_picture_of_that_rung_given_by_hand),
+        cmocka_unit_test(memory_is_planned_once_for_all_rungs),
+    };
+    return cmocka_run_group_tests_name("ladder", tests, NULL, NULL);
+}
