@@ -148,20 +148,30 @@ stiff: all scenes $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the marc
 fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 	+$(V)$(more) config=fuzz CC=clang fuzz-$(FUZZ)
 
-# Hours on a CPU driver. docs/report is not kept: each machine has its own.
+# An hour on a CPU driver. Of docs/report are kept: ladders.txt, and of each scene the page, the rows, the ladder,
+# what was measured.
+# Those of a scene alone: REPORT_ARGS_NAME; there the time of forza's path at which a car is near, and
+# fewer rays for the truth where a frame takes long.
 .PHONY: report
-REPORT ?= engine city mirrors textures night
-REPORT_ARGS ?= --size 640x360
-report: $(BUILD)/bin/masu $(REPORT:%=$(BUILD)/scenes/%.masu) ## error against run time: docs/report/SCENE/index.html: REPORT='engine city' REPORT_ARGS=
+REPORT ?= engine mirrors wet_city worlds/city forza textures city_shadows
+REPORT_ARGS ?= --size 320x180
+REPORT_ARGS_forza ?= --time 146.5 --reference 256
+REPORT_ARGS_wet_city ?= --reference 256
+# A name is that of a scene or of a world; where both have it, the scene's: worlds/city is the other. The
+# folder march has the scenes with all ways to march, and beside them what depth is compared with.
+report_file = $(BUILD)/$(if $(findstring /,$(1)),,$(if $(wildcard scenes/$(1).json),scenes/,worlds/))$(1)
+report_truth = $(patsubst %,$(BUILD)/%.truth.so,$(filter march/%,$(REPORT)))
+report: $(BUILD)/bin/masu $(foreach s,$(REPORT),$(call report_file,$(s)).masu) $(report_truth) ## error against run time: docs/report/SCENE/index.html: REPORT='engine worlds/city' REPORT_ARGS=
 	$(V)mkdir -p docs/report
-	$(V)for s in $(REPORT); do \
-	    $(BUILD)/bin/masu bench $(BUILD)/scenes/$$s.masu --out docs/report/$$s $(REPORT_ARGS) || exit 1; \
-	done
+	$(V)$(foreach s,$(REPORT),$(BUILD)/bin/masu bench $(call report_file,$(s)).masu \
+	    --out docs/report/$(subst /,-,$(s)) $(REPORT_ARGS) \
+	    $(REPORT_ARGS_$(subst /,-,$(s))) &&) true
+	$(V)$(BUILD)/bin/masu ladder docs/report/*/ladder.json > docs/report/ladders.txt
 
 # Classes of scenes, and the folder that each one's ladder was measured into; folders that are not
 # there are left out. A class without one has the ladder of the nearest class.
 .PHONY: ladders
-LADDERS ?= polygons=textures world=city sdf=city_shadows both=engine polygons-traced=mirrors \
+LADDERS ?= polygons=textures world=worlds-city sdf=city_shadows both=engine polygons-traced=mirrors \
     world-traced=forza both-traced=wet_city
 LADDER_FOLDER ?= docs/report
 ladders: $(BUILD)/bin/masu ## write src/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'

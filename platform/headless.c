@@ -250,6 +250,10 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
     vkGetPhysicalDeviceFeatures(host->physical, &offered);
     VkPhysicalDeviceFeatures features = {.samplerAnisotropy = offered.samplerAnisotropy,
                                          .textureCompressionBC = offered.textureCompressionBC};
+    host->stores = host->desc.stores && offered.vertexPipelineStoresAndAtomics &&
+                   offered.fragmentStoresAndAtomics;
+    features.vertexPipelineStoresAndAtomics = host->stores;
+    features.fragmentStoresAndAtomics = host->stores;
     host->compressed = offered.textureCompressionBC;
     host->most_anisotropy =
         offered.samplerAnisotropy ? host->properties.limits.maxSamplerAnisotropy : 0.0f;

@@ -25,6 +25,7 @@ typedef struct masu_headless_desc {
     bool gpu_av;        /* Khronos validation with GPU-assisted shader checks instead */
     bool labels;        /* VK_EXT_debug_utils for names and labels; validation turns it on too */
     bool ray_query;     /* ray queries, where they are offered */
+    bool stores;        /* stores and atomics of vertex and fragment shaders, where they are offered */
     void (*message)(void *user,
                     const char *text); /* each validation warning or error; NULL: counted only */
     void *message_user;
@@ -51,6 +52,7 @@ typedef struct masu_headless {
     bool validating;         /* the layer is really there */
     bool labels;             /* VK_EXT_debug_utils is enabled */
     bool ray_query;          /* so are VK_KHR_ray_query and what it takes */
+    bool stores;             /* so are vertexPipelineStoresAndAtomics, fragmentStoresAndAtomics */
     bool compressed;         /* textureCompressionBC is enabled */
     bool float16;            /* shaderFloat16 is enabled, and VK_KHR_shader_float16_int8 */
     float most_anisotropy;   /* samplerAnisotropy is enabled: its limit; else 0 */

@@ -55,7 +55,11 @@ $(BUILD)/tests/gpu/test_ao: LIBS += -lembree3
 $(BUILD)/tests/gpu/test_trace: LIBS += -lembree3
 
 # The folder of masu bench.
-$(BUILD)/tests/gpu/test_bench: LIBS += -ljansson
+$(BUILD)/tests/gpu/test_bench $(BUILD)/tests/unit/test_bench_against: LIBS += -ljansson
+$(BUILD)/tests/gpu/test_bench: | $(BUILD)/stiff/blend.masu $(BUILD)/stiff/blend.truth.so
+
+# Ladders of the model sheet.
+$(BUILD)/tests/gpu/test_model $(BUILD)/tests/unit/test_model: LIBS += -ljansson
 
 # What masu-bake makes of meshes, tested apart from its command line.
 BAKE_OBJECTS := $(call objects,$(wildcard tools/bake_*.c) tools/probe_light.c) $(SDFC_OBJECTS) $(CLI_OBJECTS)

@@ -44,8 +44,19 @@ static uint32_t remove_at(uint32_t *list, uint32_t count, uint32_t at) {
     return count - 1;
 }
 
-uint32_t masu_ladder_rungs(const masu_ladder_point *points, uint32_t n, double apart, uint32_t most,
-                           uint32_t *out) {
+/* Of a list in falling quality; the quickest stays. */
+static uint32_t keep_better(const masu_ladder_point *points, double better, uint32_t *list,
+                            uint32_t count) {
+    uint32_t first = count - 1;
+    for (uint32_t i = count - 1; i-- > 0;) {
+        if (better * points[list[i]].error <= points[list[first]].error) list[--first] = list[i];
+    }
+    for (uint32_t i = first; i < count; i++) list[i - first] = list[i];
+    return count - first;
+}
+
+uint32_t masu_ladder_rungs(const masu_ladder_point *points, uint32_t n, double apart, double better,
+                           uint32_t most, uint32_t *out) {
     uint32_t count = masu_ladder_front(points, n, out);
     if (!count || !most) return 0;
     for (uint32_t i = 0; i < count / 2; i++) { /* falling quality */
@@ -53,6 +64,7 @@ uint32_t masu_ladder_rungs(const masu_ladder_point *points, uint32_t n, double a
         out[i] = out[count - 1 - i];
         out[count - 1 - i] = first;
     }
+    count = keep_better(points, better, out, count);
     uint32_t quickest = out[count - 1], kept = 1;
     for (uint32_t i = 1; i < count; i++) {
         if (points[out[kept - 1]].time >= apart * points[out[i]].time) out[kept++] = out[i];

@@ -14,6 +14,13 @@
  * of 2 to 5 %, and a measured minimum is hardly steadier. */
 #define MASU_LADDER_APART 1.04
 
+/* Less than that much better in error than what is quicker is no reason to take longer: noise of
+ * reflections alone makes more. */
+#define MASU_LADDER_BETTER 1.01
+
+/* Mean difference of successive frames at rest, of 255, by which a rung may be worse than the base. */
+#define MASU_LADDER_FLICKER 0.5
+
 typedef struct masu_ladder_point {
     double time, error; /* in any units; less is better */
 } masu_ladder_point;
@@ -25,10 +32,12 @@ bool masu_ladder_dominates(masu_ladder_point a, masu_ladder_point b);
  * the first. `out` has room for n. Returns how many there are. */
 uint32_t masu_ladder_front(const masu_ladder_point *points, uint32_t n, uint32_t *out);
 
-/* Of the front, in falling quality (falling time, rising error), at most `most` points, each at
- * least `apart` times as long as the next. The best is always one; the quickest is, if it is that
- * far from the best. Between them those go first that leave the least gap. `out` has room for n. */
-uint32_t masu_ladder_rungs(const masu_ladder_point *points, uint32_t n, double apart, uint32_t most,
-                           uint32_t *out);
+/* Of the front, without the points of which a quicker one that stays has less than `better` times the
+ * error, in falling quality (falling time, rising error): at most `most` points, each at least
+ * `apart` times as long as the next. Of what that leaves the best is always one; the quickest is, if it
+ * is that far from the best. Between them those go first that leave the least gap. `out` has room
+ * for n. */
+uint32_t masu_ladder_rungs(const masu_ladder_point *points, uint32_t n, double apart, double better,
+                           uint32_t most, uint32_t *out);
 
 #endif

@@ -126,7 +126,7 @@ static bool wrong(const place *at, const char *format, ...) {
     return false;
 }
 
-/* Texts go into comments and constants of C: what could end those becomes '?'. */
+/* Texts go into comments and constants of C: what could end those, or begin a trigraph, becomes a dot. */
 static bool read_text(const place *at, const json_t *object, const char *key, char *out,
                       size_t size) {
     char is[80];
@@ -135,7 +135,7 @@ static bool read_text(const place *at, const json_t *object, const char *key, ch
         return wrong(at, "%s: needed is a text, given is %s", key, given(value, is, sizeof is));
     snprintf(out, size, "%s", json_string_value(value));
     for (char *c = out; *c; c++) {
-        if (*c < ' ' || *c == 127 || strchr("\"\\*?", *c)) *c = '?';
+        if (*c < ' ' || *c == 127 || strchr("\"\\*?", *c)) *c = '.';
     }
     return true;
 }

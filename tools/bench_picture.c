@@ -1,6 +1,8 @@
 /* bench_picture.c: see bench_picture.h. */
 #include "bench_picture.h"
 
+#include "bench_specular.h"
+#include "image.h"
 #include "shared/masu_shared.h"
 
 #include <math.h>
@@ -78,9 +80,27 @@ static bool draw_position(masu_session *s, masu_frame_desc frame, uint32_t frame
     return masu_headless_target_read(&s->host, &s->targets[0], error, error_size);
 }
 
+static bool add_radiance(masu_session *s, size_t pixels, float *one, float *sum, char *error,
+                         size_t error_size) {
+    if (!masu_specular_read(s, one)) {
+        snprintf(error, error_size, "no radiance is read back");
+        return false;
+    }
+    for (size_t i = 0; i < 3 * pixels; i++) sum[i] += one[i];
+    return true;
+}
+
 bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
                         uint32_t rays, uint8_t *rgba, void (*progress)(uint32_t done, uint32_t of),
                         char *error, size_t error_size) {
+    return masu_picture_truth_hdr(s, frame, positions, rays, rgba, NULL, progress, error,
+                                  error_size);
+}
+
+bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
+                            uint32_t rays, uint8_t *rgba, float *radiance,
+                            void (*progress)(uint32_t done, uint32_t of), char *error,
+                            size_t error_size) {
     size_t pixels = (size_t)s->desc.output.width * s->desc.output.height;
     uint32_t frames = masu_picture_frames(s, positions, rays);
     masu_frame_desc own = *frame;
@@ -93,11 +113,12 @@ bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t 
         return false;
     }
     for (uint32_t v = 0; v < 256; v++) decoded[v] = masu_picture_decoded((uint8_t)v);
-    float *sum = calloc(3 * pixels, sizeof *sum);
+    float *sum = calloc(3 * pixels * (radiance ? 2 : 1), sizeof *sum), *one = sum + 3 * pixels;
     if (!sum) {
         snprintf(error, error_size, "out of memory");
         return false;
     }
+    if (radiance) memset(radiance, 0, 3 * pixels * sizeof *radiance);
     own.camera = &camera;
     own.rung = 0;
     own.time_step = MASU_PICTURE_STEP;
@@ -110,7 +131,9 @@ bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t 
         for (size_t p = 0; p < pixels && good; p++) {
             for (size_t k = 0; k < 3; k++) sum[3 * p + k] += decoded[from[4 * p + k]];
         }
+        good = good && (!radiance || add_radiance(s, pixels, one, radiance, error, error_size));
     }
+    for (size_t i = 0; i < 3 * pixels && good && radiance; i++) radiance[i] /= (float)positions;
     for (size_t p = 0; p < pixels && good; p++) {
         for (size_t k = 0; k < 3; k++)
             rgba[4 * p + k] = masu_picture_encoded(sum[3 * p + k] / (float)positions);
@@ -118,4 +141,39 @@ bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t 
     }
     free(sum);
     return good;
+}
+
+bool masu_picture_load(const char *path, VkExtent2D size, uint8_t *rgba, char *error,
+                       size_t error_size) {
+    struct masu_image image;
+    if (!masu_image_load_png(path, &image, error, error_size)) return false;
+    bool fits = image.width == size.width && image.height == size.height;
+    if (fits) {
+        memcpy(rgba, image.rgba, 4 * (size_t)size.width * size.height);
+    } else {
+        snprintf(error, error_size, "%.500s is %ux%u, needed is %ux%u", path, image.width,
+                 image.height, size.width, size.height);
+    }
+    masu_image_free(&image);
+    return fits;
+}
+
+bool masu_picture_find(const masu_session_desc *d, masu_picture_want *t, uint8_t *rgba, char *error,
+                       size_t error_size) {
+    static masu_session s; /* may not move, and is large */
+    VkExtent2D size = d->desc.output;
+    t->messages = 0;
+    FILE *f = t->path ? fopen(t->path, "rb") : NULL;
+    if (f) {
+        fclose(f);
+        return masu_picture_load(t->path, size, rgba, error, error_size);
+    }
+    if (!masu_picture_open(d, t->positions, &s, error, error_size)) return false;
+    masu_frame_desc frame = {.time = t->time};
+    bool good =
+        masu_picture_truth(&s, &frame, t->positions, t->rays, rgba, t->progress, error, error_size);
+    masu_session_close(&s);
+    t->messages = s.host.messages;
+    return good && (!t->path || masu_image_save_png(t->path, rgba, size.width, size.height, 0,
+                                                    error, error_size));
 }

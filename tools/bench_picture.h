@@ -51,6 +51,30 @@ bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t 
                         uint32_t rays, uint8_t *rgba, void (*progress)(uint32_t done, uint32_t of),
                         char *error, size_t error_size);
 
+/* The same, and the mean of radiance before exposure and tone curve, 3 floats a pixel, if `radiance`
+ * is not NULL. The session reads back MASU_READBACK_HDR then. */
+bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
+                            uint32_t rays, uint8_t *rgba, float *radiance,
+                            void (*progress)(uint32_t done, uint32_t of), char *error,
+                            size_t error_size);
+
+/* A truth that is read from a file, if there is one, else drawn, and written there. */
+typedef struct masu_picture_want {
+    const char *path; /* NULL: none */
+    double time;
+    uint32_t positions, rays;
+    void (*progress)(uint32_t done, uint32_t of); /* or NULL */
+    uint32_t messages;                            /* out: of the validation layer */
+} masu_picture_want;
+
+/* With a session of its own, as masu_picture_open makes it of `d`. rgba: of d->desc.output. */
+bool masu_picture_find(const masu_session_desc *d, masu_picture_want *truth, uint8_t *rgba,
+                       char *error, size_t error_size);
+
+/* A PNG of that size. rgba: 4 * width * height bytes. */
+bool masu_picture_load(const char *path, VkExtent2D size, uint8_t *rgba, char *error,
+                       size_t error_size);
+
 /* Mean of display light, and back: 8 bits of sRGB to 0..1, and to the nearest 8 bits. */
 float masu_picture_decoded(uint8_t encoded);
 uint8_t masu_picture_encoded(float linear);

@@ -3,6 +3,8 @@
 #include "bench_report.h"
 
 #include "bench_ladder.h"
+#include "bench_machine.h"
+#include "bench_picture.h"
 #include "bench_plot.h"
 #include "bench_sweep.h"
 #include "bench_sweep_files.h"
@@ -13,7 +15,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 typedef struct report {
     const char *folder;
@@ -79,6 +80,12 @@ static double least_ratio(const report *r, const masu_row *row) {
     return r->out->by_timestamps ? row->gpu_least_ratio : row->least_ratio;
 }
 
+/* An error that one picture does not show: such a setting is no rung, however near its pictures are. */
+static bool flickers(const report *r, const masu_row *row) {
+    const masu_row *base = masu_rows_find(r->rows, r->count, "base");
+    return row->flicker > MASU_LADDER_FLICKER + (base ? base->flicker : 0.0);
+}
+
 /* Timestamps count where all of them fit the wall clock; times of two clocks are never mixed. */
 static bool find_ladder(report *r) {
     masu_ladder_point *points = calloc(r->count, sizeof *points);
@@ -93,12 +100,13 @@ static bool find_ladder(report *r) {
         points[i] = (masu_ladder_point){r->ratios[i], r->rows[i].flip};
         /* Culling switched off is quicker by chance alone. */
         const json_t *same = json_object_get(setting_of(r, r->rows[i].setting), "same_picture");
-        if (json_is_true(same)) points[i].time = 0.0;
+        if (json_is_true(same) || flickers(r, &r->rows[i])) points[i].time = 0.0;
     }
     if (good) {
         r->front_count = masu_ladder_front(points, r->count, r->front);
         r->rung_count =
-            masu_ladder_rungs(points, r->count, MASU_LADDER_APART, MASU_MAX_RUNGS, r->rungs);
+            masu_ladder_rungs(points, r->count, MASU_LADDER_APART, MASU_LADDER_BETTER,
+                              MASU_MAX_RUNGS, r->rungs);
     }
     free(points);
     r->out->by_timestamps = stamps;
@@ -121,10 +129,10 @@ static bool write_ladder(report *r) {
                              "ratio", r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms",
                              row->gpu_min, "flip", row->flip, "rmse", row->rmse, "knobs", knobs));
     }
-    char date[32] = "unknown";
-    time_t seconds = time(NULL);
-    struct tm utc;
-    if (gmtime_r(&seconds, &utc)) strftime(date, sizeof date, "%Y-%m-%d", &utc);
+    char date[32] = "unknown"; /* of the last run that added rows */
+    masu_machine machine;
+    for (uint32_t i = 0; masu_machine_read(r->folder, i, &machine); i++)
+        snprintf(date, sizeof date, "%.10s", machine.date);
     json_t *root = json_pack(
         "{s:s, s:s, s:s, s:s, s:i, s:i, s:f, s:s, s:s, s:o}", "date", date, "scene", text_of(r->sweep, "scene"),
         "hash", text_of(r->sweep, "hash"), "driver", text_of(r->sweep, "driver"), "width",
@@ -176,7 +184,21 @@ static bool put_image(report *r, const char *path, const char *type, const char 
     return true;
 }
 
-/* The map of FLIP, white where it is 1, beside the picture that it was made of. */
+/* Black, violet, red, orange, white, by the square root: most of what is to be seen is below 0.1. In
+ * 33 steps, of which a PNG is a third as large. */
+static void heat(float value, uint8_t rgba[4]) {
+    static const float ramp[5][3] = {
+        {0, 0, 0}, {70, 20, 120}, {190, 45, 90}, {250, 150, 40}, {255, 250, 220}};
+    float at = 0.125f * roundf(32.0f * sqrtf(fminf(fmaxf(value, 0.0f), 1.0f)));
+    int low = at < 3.0f ? (int)at : 3;
+    for (int k = 0; k < 3; k++) {
+        float mixed = ramp[low][k] + (at - (float)low) * (ramp[low + 1][k] - ramp[low][k]);
+        rgba[k] = (uint8_t)(mixed + 0.5f);
+    }
+    rgba[3] = 255;
+}
+
+/* Beside the picture that it was made of. */
 static bool make_map(report *r, const char *setting, char path[4096]) {
     size_t pixels = (size_t)r->size.width * r->size.height;
     uint8_t *truth = malloc(4 * pixels), *shown = malloc(4 * pixels);
@@ -184,15 +206,12 @@ static bool make_map(report *r, const char *setting, char path[4096]) {
     masu_flip flip;
     bool good = (truth && shown && map) || failed(r, "out of memory");
     good = good && masu_sweep_path(r->folder, "truth.png", path) &&
-           masu_sweep_load(path, r->size, truth, r->error, r->error_size) &&
+           masu_picture_load(path, r->size, truth, r->error, r->error_size) &&
            masu_sweep_picture(r->folder, setting, "", path) &&
-           masu_sweep_load(path, r->size, shown, r->error, r->error_size);
+           masu_picture_load(path, r->size, shown, r->error, r->error_size);
     good = good && (masu_metric_flip(truth, shown, r->size.width, r->size.height, 0, map, &flip) ||
                     failed(r, "out of memory"));
-    for (size_t i = 0; i < pixels && good; i++) {
-        memset(shown + 4 * i, (int)(255.0f * fminf(map[i], 1.0f) + 0.5f), 3);
-        shown[4 * i + 3] = 255;
-    }
+    for (size_t i = 0; i < pixels && good; i++) heat(map[i], shown + 4 * i);
     good =
         good && masu_sweep_picture(r->folder, setting, ".flip", path) &&
         masu_image_save_png(path, shown, r->size.width, r->size.height, 0, r->error, r->error_size);
@@ -208,9 +227,9 @@ static const char head[] =
     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<style>\n"
     "body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em;\n"
     "       color: #222; background: #fff; }\n"
-    "table { border-collapse: collapse; font-size: 13px; }\n"
+    "table { border-collapse: collapse; font-size: 12px; }\n"
     ".wide { overflow-x: auto; }\n"
-    "th, td { padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd;\n"
+    "th, td { padding: 2px 6px; text-align: right; border-bottom: 1px solid #ddd;\n"
     "         white-space: nowrap; }\n"
     "th { border-bottom: 2px solid #888; }\n"
     "td:first-child, th:first-child { text-align: left; }\n"
@@ -218,6 +237,59 @@ static const char head[] =
     ".pair img { width: 49%; image-rendering: pixelated; }\n"
     ".rung td { background: #fff3e6; }\n"
     "</style>\n<title>masu bench: ";
+
+/* On what and when: one line for each run that added rows. */
+static void put_machines(report *r) {
+    masu_machine m;
+    fputs("<p>", r->page);
+    for (uint32_t i = 0; masu_machine_read(r->folder, i, &m); i++) {
+        fputs(i ? "<br/>\n" : "", r->page);
+        put(r, m.date);
+        fputs(": ", r->page);
+        put(r, m.cpu);
+        fprintf(r->page, ", %u thread%s; ", m.threads, m.threads == 1 ? "" : "s");
+        put(r, m.driver);
+        fputs("; Masu ", r->page);
+        put(r, m.masu);
+    }
+    fputs("</p>\n", r->page);
+}
+
+/* What one must know to read the tables, in eight lines. */
+static void put_note(report *r) {
+    FILE *f = r->page;
+    fprintf(f, "<ul>\n<li>The <b>base</b> is every knob at its default at full size; a setting is "
+               "named by the knobs that differ. Ratios are times by the base's.</li>\n");
+    fprintf(f,
+            "<li>The <b>truth</b> is the mean of %.0f full renders at places all over each pixel, "
+            "with nothing left out for speed (masu render --truth). A picture is the last of up to "
+            "%.0f frames in motion.</li>\n",
+            number_of(r, "positions"), number_of(r, "frames"));
+    fputs("<li><b>FLIP</b> is what a viewer notices who flips between picture and truth at 67 "
+          "pixels per degree: 0 nothing, 1 all; mean and 99th percentile. HDR-FLIP is the worst of "
+          "it over all exposures, before the tone curve.</li>\n"
+          "<li><b>RMSE</b> and flicker are of 255; flicker is the mean difference of successive "
+          "frames at rest.</li>\n<li><b>hit/miss</b> and <b>depth</b> are of surfaces, beside ",
+          f);
+    put(r, text_of(r->sweep, "depth"));
+    fputs(" at the same size: pixels where one of the two sees sky, and how far apart the others "
+          "are in widths of a pixel there. <b>relMSE</b> is of pixels that trace reflections, "
+          "against many rays. A dash: the setting has no such value.</li>\n",
+          f);
+    fprintf(f,
+            "<li><b>Times</b>: %.0f runs of each setting in turns with the base, the first round "
+            "dropped; the ratio is the median of the rounds' own, beside it that of the least "
+            "times. Where they differ by much, the machine was busy: by more than a tenth in %u "
+            "rows of %u.</li>\n",
+            number_of(r, "runs"), r->out->unsteady, r->out->rows);
+    fprintf(f, "<li>The ladder goes by %s.</li>\n",
+            r->out->by_timestamps ? "the device's timestamps, which fit the wall clock"
+                                  : "the wall clock: not all timestamps fit it");
+    fputs("<li><b>Look for</b> the rung whose error you can bear, and what it saves; then for the "
+          "technique that saves most for the least FLIP. A lead of less than 0.001 is "
+          "noise where reflections are traced.</li>\n</ul>\n",
+          f);
+}
 
 static void put_head(report *r) {
     FILE *f = r->page;
@@ -228,62 +300,102 @@ static void put_head(report *r) {
     fprintf(f, "</h1>\n<p>%ux%u at %.6g s; ", r->size.width, r->size.height, number_of(r, "time"));
     put(r, text_of(r->sweep, "driver"));
     fprintf(f, "; scene %s.</p>\n", text_of(r->sweep, "hash"));
-    fprintf(
-        f,
-        "<p>The truth is the mean of %.0f full renders at places all over each pixel, with "
-        "nothing left out for speed (masu render --truth). A picture is that of the last of up "
-        "to %.0f frames in motion. Errors: RMSE and flicker of 255; FLIP of 0 to 1, its mean "
-        "and 99th percentile; flicker is the mean difference of successive frames at rest. "
-        "Times: %.0f runs of each setting in turns with the base setting, the first round "
-        "dropped; the ratio is the median of the rounds' own, and beside it that of the least "
-        "times "
-        "of the two: where they differ by much, the machine was busy. They differ by more than a "
-        "tenth in %u rows of %u. This page goes by %s.</p>\n",
-        number_of(r, "positions"), number_of(r, "frames"), number_of(r, "runs"), r->out->unsteady,
-        r->out->rows,
-        r->out->by_timestamps ? "the device's timestamps, which fit the wall clock"
-                              : "the wall clock: not all timestamps fit it");
+    put_machines(r);
+    put_note(r);
     if (r->out->rows < r->out->settings)
         fprintf(f, "<p><b>%u of %u settings have been measured.</b></p>\n", r->out->rows,
                 r->out->settings);
 }
 
-static void put_columns(FILE *f) {
-    fputs("<tr><th>setting</th><th>render size</th><th>ratio</th><th>of the least</th>"
-          "<th>wall ms</th><th>p50</th>"
-          "<th>p95</th><th>p99</th><th>gpu ms</th><th>MiB</th><th>FLIP</th><th>p99</th>"
-          "<th>RMSE</th><th>PSNR</th><th>SSIM</th><th>flicker</th></tr>\n",
-          f);
+/* Columns of the long table; those of the short one are marked. */
+static const struct {
+    const char *name, *format;
+    bool brief;
+} columns[] = {{"ratio", "%.3f", true},
+               {"FLIP", "%.4f", true},
+               {"p99", "%.4f", true},
+               {"HDR-FLIP", "%.4f", false},
+               {"RMSE", "%.2f", true},
+               {"PSNR", "%.2f", true},
+               {"SSIM", "%.4f", true},
+               {"flicker", "%.3f", true},
+               {"hit/miss %", "%.3f", false},
+               {"depth px", "%.4f", false},
+               {"p99", "%.4f", false},
+               {"relMSE", "%.4f", false},
+               {"ratio of the least", "%.3f", false},
+               {"wall ms", "%.2f", true},
+               {"p50", "%.2f", false},
+               {"p95", "%.2f", false},
+               {"p99", "%.2f", false},
+               {"gpu ms", "%.2f", true},
+               {"MiB", "%.1f", true}};
+
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static void put_columns(FILE *f, bool brief) {
+    fputs("<tr><th>setting</th><th>render size</th>", f);
+    for (size_t k = 0; k < COLUMNS; k++) {
+        if (!brief || columns[k].brief) fprintf(f, "<th>%s</th>", columns[k].name);
+    }
+    fputs("</tr>\n", f);
 }
 
-static void put_row(report *r, uint32_t i, const char *label, bool marked) {
+/* What a setting has no value of is a dash. */
+static void put_cell(FILE *f, const char *format, double value) {
+    char text[64];
+    if (isnan(value)) {
+        snprintf(text, sizeof text, "-");
+    } else {
+        snprintf(text, sizeof text, format, value);
+    }
+    fprintf(f, "<td>%s</td>", text);
+}
+
+static void put_row(report *r, uint32_t i, const char *label, bool brief, bool marked) {
     const masu_row *row = &r->rows[i];
     FILE *f = r->page;
     fprintf(f, "<tr%s><td>%s", marked ? " class=\"rung\"" : "", label);
     put(r, row->setting);
-    fprintf(f, "</td><td>%.0fx%.0f</td><td>%.3f</td><td>%.3f</td>", row->render_width,
-            row->render_height, r->ratios[i], least_ratio(r, row));
-    fprintf(f, "<td>%.2f</td><td>%.2f</td><td>%.2f</td><td>%.2f</td><td>%.2f%s</td>", row->wall_min,
-            row->wall_p50, row->wall_p95, row->wall_p99, row->gpu_min,
-            row->plausible < 0.9 ? " (?)" : "");
-    fprintf(f,
-            "<td>%.1f</td><td>%.4f</td><td>%.4f</td><td>%.2f</td><td>%.2f</td><td>%.4f</td>"
-            "<td>%.3f</td></tr>\n",
-            row->device_bytes / 1048576.0, row->flip, row->flip_p99, row->rmse, row->psnr_db,
-            row->ssim, row->flicker);
+    fprintf(f, "</td><td>%.0fx%.0f</td>", row->render_width, row->render_height);
+    const double values[COLUMNS] = {r->ratios[i],
+                                    row->flip,
+                                    row->flip_p99,
+                                    row->hdr_flip,
+                                    row->rmse,
+                                    row->psnr_db,
+                                    row->ssim,
+                                    row->flicker,
+                                    row->hitmiss_pct,
+                                    row->depth_mean_px,
+                                    row->depth_p99_px,
+                                    row->specular_relmse,
+                                    least_ratio(r, row),
+                                    row->wall_min,
+                                    row->wall_p50,
+                                    row->wall_p95,
+                                    row->wall_p99,
+                                    row->gpu_min,
+                                    row->device_bytes / 1048576.0};
+    for (size_t k = 0; k < COLUMNS; k++) {
+        bool doubted = !strcmp(columns[k].name, "gpu ms") && row->plausible < 0.9;
+        if (!brief || columns[k].brief)
+            put_cell(f, doubted ? "%.2f (?)" : columns[k].format, values[k]);
+    }
+    fputs("</tr>\n", f);
 }
 
 static void put_ladder(report *r) {
     FILE *f = r->page;
     fputs(
         "<h2>The ladder</h2>\n<p>Of the Pareto front, in falling quality; neighbours are at least "
-        "4 % apart in time. ladder.json has all knobs of each.</p>\n<div class=\"wide\"><table>\n",
+        "4 % apart in time. ladder.json has all knobs of each; all columns are below.</p>\n<div class=\"wide\"><table>\n",
         f);
-    put_columns(f);
+    put_columns(f, true);
     for (uint32_t i = 0; i < r->rung_count; i++) {
         char label[16];
         snprintf(label, sizeof label, "%u: ", i);
-        put_row(r, r->rungs[i], label, false);
+        put_row(r, r->rungs[i], label, true, false);
     }
     fputs("</table></div>\n", f);
 }
@@ -337,8 +449,8 @@ static void put_all(report *r) {
     json_t *one;
     size_t k;
     fputs("<h2>All settings</h2>\n<div class=\"wide\"><table>\n", r->page);
-    put_columns(r->page);
-    for (uint32_t i = 0; i < r->count; i++) put_row(r, i, "", is_rung(r, i));
+    put_columns(r->page, false);
+    for (uint32_t i = 0; i < r->count; i++) put_row(r, i, "", false, is_rung(r, i));
     fputs("</table></div>\n<h2>Left out</h2>\n<div class=\"wide\"><table>\n"
           "<tr><th>setting</th><th>why</th></tr>\n",
           r->page);
@@ -352,6 +464,18 @@ static void put_all(report *r) {
     fputs("</table></div>\n", r->page);
 }
 
+/* The model sheet, which `masu bench` leaves in the folder as a part of a page. */
+static void put_model(report *r) {
+    char path[4096];
+    uint8_t *bytes = NULL;
+    size_t count = 0;
+    if (!masu_sweep_path(r->folder, "model.xhtml", path) ||
+        !masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, NULL, 0))
+        return;
+    fwrite(bytes, 1, count, r->page);
+    free(bytes);
+}
+
 static bool put_pictures(report *r) {
     char path[4096];
     fputs("<h2>Pictures</h2>\n<h3>The truth</h3>\n<p class=\"pair\">", r->page);
@@ -363,7 +487,8 @@ static bool put_pictures(report *r) {
         fprintf(r->page, "<h3>Rung %u: ", i);
         put(r, row->setting);
         fprintf(r->page,
-                "</h3>\n<p>%.3f of the base's time, FLIP %.4f; beside it the map of FLIP."
+                "</h3>\n<p>%.3f of the base's time, FLIP %.4f; beside it the map of FLIP: "
+                "violet 0.06, red 0.25, orange 0.56, white 1."
                 "</p>\n<p class=\"pair\">",
                 r->ratios[r->rungs[i]], row->flip);
         if (!masu_sweep_picture(r->folder, row->setting, "", path) ||
@@ -386,6 +511,7 @@ static bool write_page(report *r) {
     put_ladder(r);
     bool good = put_plots(r);
     put_techniques(r);
+    put_model(r);
     good = good && put_pictures(r);
     put_all(r);
     fputs("</body>\n</html>\n", r->page);

@@ -1,8 +1,12 @@
 /* bench_settings.c: see bench_settings.h. */
 #include "bench_settings.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /* ---- Names ----------------------------------------------------------------------------------- */
 
@@ -30,7 +34,7 @@ uint32_t masu_setting_period(const masu_rung *rung) {
     return most;
 }
 
-static void name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
+void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
     size_t used = 0;
     snprintf(out, MASU_SETTING_ID, "base");
     for (uint32_t i = 0; i < MASU_KNOBS; i++) {
@@ -42,11 +46,90 @@ static void name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
     }
 }
 
+/* ---- Names read ------------------------------------------------------------------------------- */
+
+/* The knob whose name `text` begins with, up to its '='. */
+static const masu_knob *knob_at(const char *text) {
+    for (uint32_t i = 0; i < MASU_KNOBS; i++) {
+        size_t n = strlen(masu_knobs[i].name);
+        if (!strncmp(text, masu_knobs[i].name, n) && text[n] == '=') return &masu_knobs[i];
+    }
+    return NULL;
+}
+
+static const char *read_word(const char *text, const masu_knob *k, uint32_t *out) {
+    size_t n = strcspn(text, "+");
+    for (uint32_t i = 0; i < k->words->count; i++) {
+        if (strlen(k->words->words[i]) != n || strncmp(k->words->words[i], text, n) != 0) continue;
+        *out = i;
+        return text + n;
+    }
+    return NULL;
+}
+
+/* strtoul takes signs and spaces as well. */
+static const char *read_number(const char *text, uint32_t *out) {
+    char *end;
+    if (*text < '0' || *text > '9') return NULL;
+    unsigned long value = strtoul(text, &end, 10);
+    *out = (uint32_t)value;
+    return value <= UINT32_MAX ? end : NULL;
+}
+
+/* A value's end, or NULL. "1e+09" is one number: a '+' ends a value only where a number does. */
+static const char *read_value(const char *text, const masu_knob *k, masu_rung *rung) {
+    uint32_t values[MASU_MAX_CASCADES] = {0};
+    const char *end = text;
+    char *after;
+    float scalar;
+    switch (k->kind) {
+    case MASU_KNOB_SCALAR:
+        scalar = strtof(text, &after);
+        if (after == text || !isfinite(scalar) || !strchr("-.0123456789", *text)) return NULL;
+        memcpy(values, &scalar, sizeof scalar);
+        end = after;
+        break;
+    case MASU_KNOB_NUMBER: end = read_number(text, values); break;
+    case MASU_KNOB_WORD: end = read_word(text, k, values); break;
+    case MASU_KNOB_REFRESH:
+        for (uint32_t i = 0; i < MASU_MAX_CASCADES && end; i++) {
+            if (i && *end++ != '-') return NULL;
+            end = read_number(end, &values[i]);
+        }
+        break;
+    }
+    if (end) memcpy((char *)rung + k->offset, values, masu_knob_bytes(k));
+    return end;
+}
+
+bool masu_setting_parse(const char *text, masu_rung *out, char *error, size_t error_size) {
+    uint64_t seen = 0;
+    *out = base_rung;
+    if (!strcmp(text, "base")) return true;
+    for (const char *at = text;;) {
+        const masu_knob *k = knob_at(at);
+        const char *end = k ? read_value(at + strlen(k->name) + 1, k, out) : NULL;
+        int n = (int)strcspn(at, "+");
+        uint64_t bit = k ? 1ull << (k - masu_knobs) : 0;
+        if (!end || (*end && *end != '+') || (seen & bit)) {
+            snprintf(error, error_size, "setting '%.150s': '%.*s' %s", text, n < 60 ? n : 60, at,
+                     !k           ? "is no knob with a value"
+                     : seen & bit ? "comes twice"
+                                  : "has no value of that knob");
+            return false;
+        }
+        if (!*end) return true;
+        seen |= bit;
+        at = end + 1;
+    }
+}
+
 /* ---- Settings -------------------------------------------------------------------------------- */
 
-/* One knob, or a few that make one technique. Fields that are 0 are the base's. At which render
- * sizes: the output's, half of it, and in `masu bench --quick`. */
-enum { WHOLE = 1, HALF = 2, QUICK = 4, STRUCTURAL = 8, SAME = 16 };
+/* One knob, or a few that make one technique. Fields that are 0 are the base's; shadow_distance is
+ * a part of the scene's. At which render sizes: the output's, half of it, and in `masu bench
+ * --quick`. Bundles are at a few sizes, with SIXTEENTHS at all. */
+enum { WHOLE = 1, HALF = 2, QUICK = 4, STRUCTURAL = 8, SAME = 16, SIXTEENTHS = 32 };
 
 typedef struct technique {
     const char *name;
@@ -72,6 +155,10 @@ static const technique techniques[] = {
     {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
     {"march_steps", WHOLE, {.march_steps = 128}},
     {"march_steps", WHOLE, {.march_steps = 512}},
+    {"march", WHOLE, {.march = MASU_MARCH_PLAIN}},
+    {"march", WHOLE, {.march = MASU_MARCH_SEED}},
+    {"march", WHOLE, {.march = MASU_MARCH_CONE8}},
+    {"march", WHOLE, {.march = MASU_MARCH_CHECKERBOARD}},
     {"ao", WHOLE | HALF | QUICK | STRUCTURAL, {.ao = MASU_OFF}},
     {"ao samples", WHOLE, {.ao_slices = 1, .ao_steps = 4}},
     {"ao samples", WHOLE | HALF, {.ao_slices = 1}},
@@ -86,10 +173,15 @@ static const technique techniques[] = {
     {"specular taps", WHOLE, {.specular_reuse_taps = 4}},
     {"specular taps", WHOLE, {.specular_filter_taps = 6}},
     {"specular taps", WHOLE, {.specular_reuse_taps = 16, .specular_filter_taps = 24}},
+    {"specular_cutoff", WHOLE, {.specular_cutoff = 0.25f}},
+    {"specular_cutoff", WHOLE, {.specular_cutoff = 0.5f}},
+    {"specular_frames", WHOLE, {.specular_frames = 16}},
+    {"specular_frames", WHOLE, {.specular_frames = 64}},
     {"shadow_refresh", WHOLE | HALF | QUICK, {EACH(1, 2, 4, 8)}},
     {"shadow_refresh", WHOLE, {EACH(4, 4, 4, 4)}},
     {"shadow_resolution", WHOLE | STRUCTURAL, {.shadow_resolution = 512}},
     {"shadow_cascades", WHOLE | STRUCTURAL, {.shadow_cascades = 2}},
+    {"shadow_distance", WHOLE, {.shadow_distance = 0.5f}},
     {"lod_error", WHOLE, {.lod_error = -1.0f}},
     {"lod_error", WHOLE, {.lod_error = 3.0f}},
     {"frustum", WHOLE | SAME, {.frustum = MASU_OFF}},
@@ -100,7 +192,10 @@ static const technique techniques[] = {
 /* What a port might choose together. The plain one, nothing but the base, is at every size. */
 static const technique bundles[] = {
     {"full", 0, {.aa = MASU_AA_SMAA_HIGH}},
-    {"soft", 0, {.sharpen = MASU_OFF}}, /* what a mean over each pixel is, RCAS leads away from */
+    /* What a mean over each pixel is, RCAS leads away from: most rungs are of this kind. */
+    {"soft", SIXTEENTHS, {.sharpen = MASU_OFF}},
+    {"soft aa", 0, {.sharpen = MASU_OFF, .aa = MASU_AA_SMAA_HIGH}},
+    {"soft steps", 0, {.sharpen = MASU_OFF, .march_steps = 128}},
     {"middle",
      0,
      {.aa = MASU_AA_FXAA,
@@ -119,8 +214,6 @@ static const technique bundles[] = {
       .specular = MASU_OFF,
       EACH(2, 4, 8, 8)}},
 };
-
-#define COUNT(array) (sizeof(array) / sizeof *(array))
 
 typedef struct list {
     masu_setting *out;
@@ -148,8 +241,14 @@ static void add(list *l, const technique *t, float scale, const masu_rung *paren
     s->structural = (t->when & STRUCTURAL) != 0;
     s->same_picture = (t->when & SAME) != 0;
     snprintf(s->technique, sizeof s->technique, "%s", t->name);
-    name(&s->rung, s->id);
-    name(parent, s->parent);
+    masu_setting_name(&s->rung, s->id);
+    masu_setting_name(parent, s->parent);
+}
+
+static void add_bundle(list *l, const technique *t, float scale) {
+    const technique base = {.name = "base"};
+    const masu_rung plain = rung_of(&base.rung, scale);
+    add(l, t, scale, &plain);
 }
 
 uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
@@ -173,12 +272,14 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
         if (one->when & HALF) add(&l, one, 0.5f, &half);
     }
     for (size_t b = 0; b < COUNT(bundles); b++) {
-        if (quick && !(bundles[b].when & QUICK)) continue;
+        const technique *one = &bundles[b];
+        if (quick && !(one->when & QUICK)) continue;
         const float *scales = quick ? quick_scales : bundle_scales;
-        for (size_t i = 0; i < (quick ? COUNT(quick_scales) : COUNT(bundle_scales)); i++) {
-            const masu_rung plain = rung_of(&base.rung, scales[i]);
-            add(&l, &bundles[b], scales[i], &plain);
-        }
+        for (size_t i = 0; i < (quick ? COUNT(quick_scales) : COUNT(bundle_scales)); i++)
+            add_bundle(&l, one, scales[i]);
+        /* Those that are not eighths: bundle_scales has the others. */
+        for (int i = 15; i >= 7 && one->when & SIXTEENTHS; i -= 2)
+            add_bundle(&l, one, (float)i / 16.0f);
     }
     return l.count;
 }
@@ -224,6 +325,15 @@ static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t coun
     }
 }
 
+/* Values that only a scene can give a meaning. */
+static void scene_values(masu_rung *rung, const masu_scene *scene, const char **why) {
+    if (scene->shadow_distance > 0.0f) rung->shadow_distance *= scene->shadow_distance;
+    if (!(fabsf(rung->specular_cutoff - scene->specular_cutoff) > 1e-6f)) {
+        if (rung->specular_cutoff > 0.0f) *why = "it is the scene's own";
+        rung->specular_cutoff = 0.0f;
+    }
+}
+
 void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene *scene,
                        const masu_plan_info *base) {
     static char old[MASU_SETTINGS_MOST][MASU_SETTING_ID];
@@ -231,6 +341,7 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
         masu_setting *s = &settings[i];
         const char *why = NULL;
         memcpy(old[i], s->id, sizeof old[i]);
+        scene_values(&s->rung, scene, &why);
         for (uint32_t k = 0; k < MASU_KNOBS; k++) {
             const char *no = useless(&masu_knobs[k], &s->rung, scene, base);
             if (!no || !masu_knob_differs(&masu_knobs[k], &s->rung, &base_rung)) continue;
@@ -238,7 +349,7 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
             why = why ? why : no;
         }
         char fitted[MASU_SETTING_ID];
-        name(&s->rung, fitted);
+        masu_setting_name(&s->rung, fitted);
         refit_parent(s, settings, i, old);
         for (uint32_t k = 0; k < i && !s->dropped[0]; k++) {
             if (strcmp(settings[k].id, fitted) != 0 || settings[k].dropped[0]) continue;

@@ -35,6 +35,13 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
 /* The plans of one rung each have the same passes, sizes and bytes. */
 bool masu_settings_same_plan(const masu_plan_info *a, const masu_plan_info *b);
 
+/* The knobs that differ from the base, "scale=0.5+sharpen=off", in the table's order; "base": none. */
+void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]);
+
+/* The other way round, knobs in any order. False: `error` says in one line which part is no knob with
+ * a value, or comes twice. Whether a renderer takes the values is masu_init's to say. */
+bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t error_size);
+
 /* Frames after which the slowest cascade has been drawn again. */
 uint32_t masu_setting_period(const masu_rung *rung);
 

@@ -1,7 +1,11 @@
 /* bench_sweep.c: see bench_sweep.h. */
 #include "bench_sweep.h"
 
+#include "bench_depth.h"
+#include "bench_machine.h"
+#include "bench_motion.h"
 #include "bench_picture.h"
+#include "bench_radiance.h"
 #include "bench_sweep_files.h"
 #include "blob.h"
 #include "clock.h"
@@ -17,22 +21,20 @@
 /* At rest before flicker is measured, over how many differences; not timed before each turn. */
 enum { SETTLE_FRAMES = 8, FLICKER_FRAMES = 8, WARM_FRAMES = 2, BATCH = MASU_MAX_RUNGS - 1 };
 
-typedef struct samples {
-    double wall[MASU_SWEEP_RUNS_MAX], gpu[MASU_SWEEP_RUNS_MAX];
-    uint32_t count, plausible;
-} samples;
-
 typedef struct sweep {
     const masu_sweep_desc *d;
     masu_sweep_result *out;
     masu_session s;
-    bool opened, remembers; /* frames depend on those before, whatever the setting */
+    masu_motion motion;
+    masu_depth_bench *depth; /* NULL: the scene has no surfaces */
+    masu_radiance_bench *radiance;
+    bool opened, surfaces, depth_truth;
     masu_setting settings[MASU_SETTINGS_MOST];
     uint64_t bytes[MASU_SETTINGS_MOST];
     uint32_t setting_count, pixels;
     uint8_t *truth, *before;
-    float *map;
-    samples samples[MASU_MAX_RUNGS];
+    float *map, *true_radiance; /* of the truth, 3 a pixel */
+    masu_samples samples[MASU_MAX_RUNGS];
     uint64_t hash, start;
     uint32_t pending; /* still to be measured when the run began */
     char driver[1024];
@@ -103,7 +105,10 @@ static bool plan_settings(sweep *w) {
     masu_blob_header header;
     memcpy(&header, w->s.blob, sizeof header);
     w->hash = header.hash;
-    w->remembers = w->s.scene.reflections || w->s.scene.metered;
+    w->motion =
+        (masu_motion){w->d->time, w->d->frames, w->s.scene.reflections || w->s.scene.metered};
+    w->surfaces = w->s.scene.sdf || w->s.scene.instances;
+    w->depth_truth = masu_depth_has_truth(w->d->scene_path, &w->s.scene);
     snprintf(w->driver, sizeof w->driver, "%s", w->s.host.driver);
     w->setting_count = masu_settings_make(w->d->quick, w->settings);
     masu_plan_info *plans = calloc(w->setting_count, sizeof *plans);
@@ -127,80 +132,94 @@ static void progress(uint32_t done, uint32_t of) {
     if (show) show(text);
 }
 
-static bool draw_truth(sweep *w) {
+static bool draw_truth(sweep *w, uint8_t *rgba) {
     masu_session_desc d = session_of(w);
+    d.desc.readback = MASU_READBACK_HDR;
     if (!masu_picture_open(&d, w->d->positions, &w->s, w->error, w->error_size)) return false;
     w->opened = true;
     masu_frame_desc frame = {.time = w->d->time};
     show = w->d->progress;
-    bool good = masu_picture_truth(&w->s, &frame, w->d->positions, w->d->rays, w->truth, progress,
-                                   w->error, w->error_size);
+    bool good = masu_picture_truth_hdr(&w->s, &frame, w->d->positions, w->d->rays, rgba,
+                                       w->true_radiance, progress, w->error, w->error_size);
     close_session(w);
     return good;
 }
 
-/* The folder has its own, for the report, wherever it came from. */
+static bool exists(const char *path) {
+    FILE *f = fopen(path, "rb");
+    if (f) fclose(f);
+    return f != NULL;
+}
+
+/* Beside the truth's picture: TRUTH.png, TRUTH.pfm, TRUTH.specular.pfm. */
+static bool beside(const char *picture, const char *suffix, char out[4096]) {
+    size_t n = strlen(picture);
+    if (n > 4 && !strcmp(picture + n - 4, ".png")) n -= 4;
+    return snprintf(out, 4096, "%.*s%s", (int)n, picture, suffix) < 4096;
+}
+
+static bool load_radiance(sweep *w, const char *path) {
+    struct masu_image image;
+    VkExtent2D size = w->d->size;
+    if (!masu_image_load_pfm(path, &image, w->error, w->error_size)) return false;
+    bool fits = image.width == size.width && image.height == size.height && image.channels == 3;
+    if (fits) memcpy(w->true_radiance, image.values, 3 * sizeof(float) * w->pixels);
+    masu_image_free(&image);
+    return fits || failed(w, "the truth's radiance is of another size");
+}
+
+/* Both of them, or both are drawn: a picture that is there stays, whatever is drawn beside it. */
+static bool read_or_draw(sweep *w, const char *picture, const char *radiance) {
+    VkExtent2D size = w->d->size;
+    bool there = exists(picture);
+    if (there && exists(radiance)) {
+        return masu_picture_load(picture, size, w->truth, w->error, w->error_size) &&
+               load_radiance(w, radiance);
+    }
+    return draw_truth(w, w->truth) &&
+           (there ? masu_picture_load(picture, size, w->truth, w->error, w->error_size)
+                  : masu_image_save_png(picture, w->truth, size.width, size.height, 0, w->error,
+                                        w->error_size)) &&
+           masu_image_save_pfm(radiance, w->true_radiance, size.width, size.height, 3, w->error,
+                               w->error_size);
+}
+
+/* The folder has its own picture, for the report, wherever it came from. */
 static bool find_truth(sweep *w) {
-    char own[4096];
+    char own[4096], radiance[4096];
     VkExtent2D size = w->d->size;
     if (!masu_sweep_path(w->d->folder, "truth.png", own)) return failed(w, "the path is too long");
     const char *from = w->d->truth_path ? w->d->truth_path : own;
-    FILE *f = fopen(from, "rb");
-    if (f) {
-        fclose(f);
-        if (!masu_sweep_load(from, size, w->truth, w->error, w->error_size)) return false;
-    } else if (!draw_truth(w) || !masu_image_save_png(from, w->truth, size.width, size.height, 0,
-                                                      w->error, w->error_size)) {
-        return false;
-    }
-    return from == own ||
-           masu_image_save_png(own, w->truth, size.width, size.height, 0, w->error, w->error_size);
+    if (!beside(from, ".pfm", radiance)) return failed(w, "the path is too long");
+    return read_or_draw(w, from, radiance) &&
+           (from == own || masu_image_save_png(own, w->truth, size.width, size.height, 0, w->error,
+                                               w->error_size));
 }
 
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
-static bool draw(sweep *w, uint32_t rung, double time, bool cut, masu_commands *commands) {
-    masu_camera camera;
-    if (masu_camera_at(w->s.m, time, &camera)) return failed(w, "the scene has no camera");
-    masu_frame_desc frame = {
-        .camera = &camera, .time = time, .time_step = 1.0f / 60.0f, .rung = rung, .cut = cut};
-    return masu_session_frame(&w->s, &frame, true, commands, w->error, w->error_size);
+static bool draw(sweep *w, uint32_t rung, bool cut, masu_commands *commands) {
+    return masu_motion_frame(&w->s, rung, w->d->time, cut, commands, w->error, w->error_size);
 }
 
 static bool read_back(sweep *w) {
     return masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size);
 }
 
-/* Up to the time of the truth. Of the first cascade that is slow the last frame is one before it is
- * due, the worst there is: cascade k is drawn in frames n with n + k divisible by its pace. */
-static bool move(sweep *w, uint32_t rung, const masu_rung *knobs, uint64_t *next) {
-    uint32_t period = masu_setting_period(knobs);
-    bool remembers = w->remembers || period > 1;
-    uint32_t frames = remembers ? w->d->frames : 1;
-    masu_commands commands;
-    if (period > 1 && frames < period) frames = period;
-    while (period > 1 && (*next + frames) % period) frames++;
-    for (uint32_t k = 0; k < frames; k++) {
-        double time = w->d->time - (double)(frames - 1 - k) / 60.0;
-        if (!draw(w, rung, time, k == 0, &commands)) return false;
-    }
-    *next = commands.frame + 1;
-    return read_back(w);
-}
-
 /* Mean absolute difference of successive frames at rest, of 255. */
 static bool flicker(sweep *w, uint32_t rung, uint64_t *next, double *out) {
-    uint32_t settle = w->remembers ? SETTLE_FRAMES : 1, frames = w->remembers ? FLICKER_FRAMES : 1;
+    uint32_t settle = w->motion.remembers ? SETTLE_FRAMES : 1,
+             frames = w->motion.remembers ? FLICKER_FRAMES : 1;
     size_t bytes = 4 * (size_t)w->pixels;
     masu_commands commands;
     double sum = 0.0;
     for (uint32_t k = 0; k < settle; k++) {
-        if (!draw(w, rung, w->d->time, false, &commands)) return false;
+        if (!draw(w, rung, false, &commands)) return false;
     }
     if (!read_back(w)) return false;
     memcpy(w->before, w->s.targets[0].mapped, bytes);
     for (uint32_t k = 0; k < frames; k++) {
-        if (!draw(w, rung, w->d->time, false, &commands) || !read_back(w)) return false;
+        if (!draw(w, rung, false, &commands) || !read_back(w)) return false;
         const uint8_t *shown = w->s.targets[0].mapped;
         uint64_t apart = 0;
         for (size_t i = 0; i < bytes; i++) apart += (uint64_t)abs(shown[i] - w->before[i]);
@@ -216,7 +235,10 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
     VkExtent2D size = w->d->size;
     masu_flip flip;
     char path[4096];
-    if (!move(w, rung, &s->rung, next)) return false;
+    if (!masu_motion_draw(&w->s, &w->motion, rung, &s->rung, next, w->error, w->error_size) ||
+        !read_back(w)) {
+        return false;
+    }
     const uint8_t *shown = w->s.targets[0].mapped;
     if (!masu_metric_flip(w->truth, shown, size.width, size.height, 0, w->map, &flip))
         return failed(w, "out of memory");
@@ -236,61 +258,31 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
 
 static bool sample(sweep *w, uint32_t rung, const masu_rung *knobs, bool kept) {
     uint32_t period = masu_setting_period(knobs);
-    uint32_t warm = w->remembers ? WARM_FRAMES : period > 1 ? 1 : 0;
+    uint32_t warm = w->motion.remembers ? WARM_FRAMES : period > 1 ? 1 : 0;
     double wall = 0.0, gpu = 0.0;
-    samples *to = &w->samples[rung];
     masu_commands commands;
     masu_stats_info stats;
     for (uint32_t k = 0; k < warm; k++) {
-        if (!draw(w, rung, w->d->time, k == 0, &commands)) return false;
+        if (!draw(w, rung, k == 0, &commands)) return false;
     }
     for (uint32_t k = 0; k < period; k++) {
         uint64_t start = masu_clock_ns(NULL);
-        if (!draw(w, rung, w->d->time, !warm, &commands)) return false;
+        if (!draw(w, rung, !warm, &commands)) return false;
         wall += (double)(masu_clock_ns(NULL) - start) / 1e6;
         if (!masu_stats(w->s.m, commands.slot, &stats) && stats.timed)
             gpu += (double)stats.gpu_ns / 1e6;
     }
-    if (!kept) return true;
-    to->wall[to->count] = wall / period;
-    to->gpu[to->count++] = gpu / period;
-    to->plausible += gpu >= 0.5 * wall && gpu <= 1.05 * wall;
+    if (kept) masu_samples_add(&w->samples[rung], wall, gpu, period);
     return true;
 }
 
-static int by_value(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The nearest one that is there, of a sorted list. */
-static double at(const double *sorted, uint32_t n, double share) {
-    return sorted[(uint32_t)(share * (double)(n - 1) + 0.5)];
-}
-
-static void sort(samples *s) {
-    qsort(s->wall, s->count, sizeof *s->wall, by_value);
-    qsort(s->gpu, s->count, sizeof *s->gpu, by_value);
-}
-
-/* Before the samples are sorted: sample k of both is of the same round. */
-static double median_of_rounds(const double *base, const double *own, uint32_t n) {
-    static double ratios[MASU_SWEEP_RUNS_MAX];
-    for (uint32_t k = 0; k < n; k++) {
-        if (!(base[k] > 0.0)) return (double)NAN;
-        ratios[k] = own[k] / base[k];
-    }
-    qsort(ratios, n, sizeof *ratios, by_value);
-    return at(ratios, n, 0.5);
-}
-
-static void times(const samples *base, const samples *s, masu_row *row) {
+static void times(const masu_samples *base, const masu_samples *s, masu_row *row) {
     row->wall_min = s->wall[0];
-    row->wall_p50 = at(s->wall, s->count, 0.5);
-    row->wall_p95 = at(s->wall, s->count, 0.95);
-    row->wall_p99 = at(s->wall, s->count, 0.99);
+    row->wall_p50 = masu_samples_at(s->wall, s->count, 0.5);
+    row->wall_p95 = masu_samples_at(s->wall, s->count, 0.95);
+    row->wall_p99 = masu_samples_at(s->wall, s->count, 0.99);
     row->gpu_min = s->gpu[0];
-    row->gpu_p50 = at(s->gpu, s->count, 0.5);
+    row->gpu_p50 = masu_samples_at(s->gpu, s->count, 0.5);
     row->plausible = (double)s->plausible / s->count;
     row->base_wall_min = base->wall[0];
     row->base_gpu_min = base->gpu[0];
@@ -347,9 +339,26 @@ static bool draw_batch(sweep *w, batch *b) {
         row->render_height = plan.rungs[k].render_height;
         row->passes = plan.rungs[k].dispatches;
         row->device_bytes = (double)w->bytes[b->of[k]];
-        if (!k && !b->base_too) continue;
+        if ((!k && !b->base_too) || w->motion.remembers) continue;
         say(w, s->id);
         if (!compare(w, k, s, &next, row)) return false;
+    }
+    return true;
+}
+
+/* The noise of reflections goes by the number of the frame. So each picture is that of a renderer of its
+ * own: settings then differ by their knobs alone, and a row does not depend on what batch, shard or resumed
+ * run it is in. */
+static bool draw_alone(sweep *w, batch *b) {
+    for (uint32_t k = b->base_too ? 0 : 1; k < b->count && w->motion.remembers; k++) {
+        const batch one = {.of = {b->of[k]}, .count = 1};
+        const masu_setting *s = &w->settings[b->of[k]];
+        uint64_t next = 0;
+        bool good = open_batch(w, &one);
+        if (good) say(w, s->id);
+        good = good && compare(w, 0, s, &next, &b->rows[k]);
+        close_session(w);
+        if (!good) return false;
     }
     return true;
 }
@@ -365,18 +374,51 @@ static bool time_batch(sweep *w, batch *b) {
         }
     }
     for (uint32_t k = 0; k < b->count; k++) {
-        const samples *base = &w->samples[0], *own = &w->samples[k];
-        b->rows[k].ratio = median_of_rounds(base->wall, own->wall, own->count);
-        b->rows[k].gpu_ratio = median_of_rounds(base->gpu, own->gpu, own->count);
+        const masu_samples *base = &w->samples[0], *own = &w->samples[k];
+        b->rows[k].ratio = masu_samples_ratio(base->wall, own->wall, own->count);
+        b->rows[k].gpu_ratio = masu_samples_ratio(base->gpu, own->gpu, own->count);
     }
-    for (uint32_t k = 0; k < b->count; k++) sort(&w->samples[k]);
+    for (uint32_t k = 0; k < b->count; k++) masu_samples_sort(&w->samples[k]);
     for (uint32_t k = 0; k < b->count; k++) times(&w->samples[0], &w->samples[k], &b->rows[k]);
+    return true;
+}
+
+/* With sessions of its own: what is timed copies nothing for a reader. */
+static bool look_behind(sweep *w, batch *b) {
+    masu_rung rungs[MASU_MAX_RUNGS];
+    masu_depth_error depth[MASU_MAX_RUNGS];
+    masu_radiance_error radiance[MASU_MAX_RUNGS];
+    for (uint32_t k = 0; k < b->count; k++) {
+        rungs[k] = w->settings[b->of[k]].rung;
+        depth[k] = (masu_depth_error){(double)NAN, (double)NAN, (double)NAN};
+    }
+    say(w, "surfaces");
+    if (w->depth &&
+        !masu_depth_measure(w->depth, rungs, b->count, depth, w->error, w->error_size)) {
+        return false;
+    }
+    say(w, "radiance");
+    if (!masu_radiance_measure(w->radiance, rungs, b->count, radiance, w->error, w->error_size))
+        return false;
+    for (uint32_t k = 0; k < b->count; k++) {
+        b->rows[k].hitmiss_pct = depth[k].hitmiss_pct;
+        b->rows[k].depth_mean_px = depth[k].mean_px;
+        b->rows[k].depth_p99_px = depth[k].p99_px;
+        b->rows[k].hdr_flip = radiance[k].hdr_flip;
+        b->rows[k].specular_relmse = radiance[k].specular_relmse;
+    }
     return true;
 }
 
 static bool run_batch(sweep *w, batch *b) {
     bool good = open_batch(w, b) && draw_batch(w, b) && time_batch(w, b);
     close_session(w);
+    good = good && draw_alone(w, b) && look_behind(w, b);
+    if (good && !w->out->measured) { /* of runs that add rows alone */
+        masu_machine machine;
+        masu_machine_here(w->driver, &machine);
+        good = masu_machine_append(w->d->folder, &machine, w->error, w->error_size);
+    }
     for (uint32_t k = b->base_too ? 0 : 1; k < b->count && good; k++) {
         good = masu_sweep_append(w->d->folder, &b->rows[k], w->error, w->error_size);
         w->out->measured += good;
@@ -399,6 +441,33 @@ static uint32_t mine(const sweep *w, const masu_row *rows, uint32_t count, uint3
     return n;
 }
 
+static bool open_behind(sweep *w) {
+    const masu_session_desc d = session_of(w);
+    char own[4096], reflections[4096];
+    const char *from = w->d->truth_path ? w->d->truth_path : own;
+    if (!masu_sweep_path(w->d->folder, "truth.png", own) ||
+        !beside(from, ".specular.pfm", reflections)) {
+        return failed(w, "the path is too long");
+    }
+    const masu_radiance_desc radiance = {.session = d,
+                                         .motion = w->motion,
+                                         .truth = w->true_radiance,
+                                         .reflections = reflections,
+                                         .rays = w->d->rays,
+                                         .progress = w->d->progress};
+    w->radiance = masu_radiance_open(&radiance, w->error, w->error_size);
+    if (w->radiance && w->surfaces)
+        w->depth = masu_depth_open(&d, w->d->time, w->depth_truth, w->error, w->error_size);
+    return w->radiance && (!w->surfaces || w->depth);
+}
+
+static void close_behind(sweep *w) {
+    if (w->depth) w->out->messages += masu_depth_messages(w->depth);
+    if (w->radiance) w->out->messages += masu_radiance_messages(w->radiance);
+    masu_depth_close(w->depth);
+    masu_radiance_close(w->radiance);
+}
+
 static bool measure(sweep *w) {
     static batch b;
     uint32_t list[MASU_SETTINGS_MOST], count = 0;
@@ -407,7 +476,7 @@ static bool measure(sweep *w) {
     w->pending = mine(w, rows, count, list);
     free(rows);
     if (!w->pending) return true;
-    if (!find_truth(w)) return false;
+    if (!find_truth(w) || !open_behind(w)) return false;
     w->start = masu_clock_ns(NULL);
     for (uint32_t i = 0; i < w->pending;) {
         b.base_too = list[i] == 0;
@@ -432,14 +501,22 @@ bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *e
     w.truth = malloc(4 * (size_t)w.pixels);
     w.before = malloc(4 * (size_t)w.pixels);
     w.map = malloc(sizeof *w.map * w.pixels);
-    bool good = (w.truth && w.before && w.map) || failed(&w, "out of memory");
-    good =
-        good && plan_settings(&w) &&
-        masu_sweep_begin(desc, w.driver, w.hash, w.settings, w.setting_count, error, error_size) &&
-        measure(&w);
+    w.true_radiance = malloc(3 * sizeof *w.true_radiance * w.pixels);
+    bool good = (w.truth && w.before && w.map && w.true_radiance) || failed(&w, "out of memory");
+    good = good && plan_settings(&w);
+    const masu_sweep_about about = {.driver = w.driver,
+                                    .depth = !w.surfaces     ? "nothing: there are no surfaces"
+                                             : w.depth_truth ? "the field in double precision"
+                                                             : "the most exact rung",
+                                    .hash = w.hash,
+                                    .settings = w.settings,
+                                    .count = w.setting_count};
+    good = good && masu_sweep_begin(desc, &about, error, error_size) && measure(&w);
+    close_behind(&w);
     close_session(&w);
     free(w.truth);
     free(w.before);
     free(w.map);
+    free(w.true_radiance);
     return good;
 }

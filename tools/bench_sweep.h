@@ -13,21 +13,29 @@
  *
  * The picture is that of a scene in motion, which has followed its camera's path for so many frames
  * up to the time of the truth, where anything depends on frames before: old shadows and trails of
- * reflections are errors too. Flicker is what then changes from frame to frame of the scene at
- * rest.
+ * reflections are errors too. There each setting has a renderer of its own, since the noise of
+ * reflections goes by the number of the frame. Flicker is what then changes from frame to frame of
+ * the scene at rest.
+ *
+ * What a picture does not show (surfaces, radiance, reflections) comes from sessions of their own
+ * that read it back: bench_depth.h, bench_radiance.h.
  *
  * THE FOLDER. sweep.json: what is measured, and how; a run is only resumed if it is the same.
- * results.csv: a row as soon as it is known. pictures/SETTING.png. truth.png. All is written whole
- * or not at all, but for the last row. */
+ * machine.json: on what and when, see bench_machine.h.
+ * results.csv: a row as soon as it is known. pictures/SETTING.png. truth.png; its radiance in
+ * truth.pfm, the reference of reflections in truth.specular.pfm. All is written whole or not at all,
+ * but for the last row. */
 #ifndef MASU_BENCH_SWEEP_H
 #define MASU_BENCH_SWEEP_H
 
+#include "bench_samples.h"
 #include "bench_settings.h"
 #include "session.h"
 
 typedef struct masu_sweep_desc {
     const char *scene_path, *folder;
-    const char *truth_path; /* NULL: truth.png in the folder. Read if it is there, else written */
+    /* NULL: truth.png in the folder. Read if it is there, else written; so are the .pfm beside it. */
+    const char *truth_path;
     VkExtent2D size;
     double time;
     uint32_t positions, rays; /* of the truth */
@@ -39,7 +47,7 @@ typedef struct masu_sweep_desc {
     void (*progress)(const char *text); /* or NULL */
 } masu_sweep_desc;
 
-#define MASU_SWEEP_RUNS_MAX 999u
+#define MASU_SWEEP_RUNS_MAX MASU_SAMPLES_MAX
 
 typedef struct masu_sweep_result {
     uint32_t settings, dropped; /* settings: to be measured, in all shards */

@@ -1,6 +1,7 @@
 /* bench_sweep_files.c: see bench_sweep_files.h. */
 #include "bench_sweep_files.h"
 
+#include "bench_machine.h"
 #include "image.h"
 
 #include <errno.h>
@@ -23,21 +24,6 @@ bool masu_sweep_path(const char *folder, const char *name, char out[4096]) {
 bool masu_sweep_picture(const char *folder, const char *setting, const char *suffix,
                         char out[4096]) {
     return snprintf(out, 4096, "%s/pictures/%s%s.png", folder, setting, suffix) < 4096;
-}
-
-bool masu_sweep_load(const char *path, VkExtent2D size, uint8_t *rgba, char *error,
-                     size_t error_size) {
-    struct masu_image image;
-    if (!masu_image_load_png(path, &image, error, error_size)) return false;
-    bool fits = image.width == size.width && image.height == size.height;
-    if (fits) {
-        memcpy(rgba, image.rgba, 4 * (size_t)size.width * size.height);
-    } else {
-        snprintf(error, error_size, "%.500s is %ux%u, needed is %ux%u", path, image.width,
-                 image.height, size.width, size.height);
-    }
-    masu_image_free(&image);
-    return fits;
 }
 
 /* ---- sweep.json ------------------------------------------------------------------------------ */
@@ -67,14 +53,13 @@ static json_t *knobs_json(const masu_rung *rung) {
 }
 
 /* Everything that two parts of one sweep must have in common; what shard it is, is not in it. */
-static char *describe(const masu_sweep_desc *d, const char *driver, uint64_t hash,
-                      const masu_setting *settings, uint32_t count) {
+static char *describe(const masu_sweep_desc *d, const masu_sweep_about *about) {
     char hex[32];
     const char *last = strrchr(d->scene_path, '/');
     json_t *there = json_array(), *dropped = json_array();
-    snprintf(hex, sizeof hex, "%016llx", (unsigned long long)hash);
-    for (uint32_t i = 0; i < count; i++) {
-        const masu_setting *s = &settings[i];
+    snprintf(hex, sizeof hex, "%016llx", (unsigned long long)about->hash);
+    for (uint32_t i = 0; i < about->count; i++) {
+        const masu_setting *s = &about->settings[i];
         if (s->dropped[0]) {
             json_array_append_new(dropped,
                                   json_pack("{s:s, s:s}", "setting", s->id, "why", s->dropped));
@@ -85,12 +70,12 @@ static char *describe(const masu_sweep_desc *d, const char *driver, uint64_t has
                                             (int)s->same_picture, "knobs", knobs_json(&s->rung)));
         }
     }
-    json_t *root =
-        json_pack("{s:s, s:s, s:s, s:i, s:i, s:f, s:i, s:i, s:i, s:i, s:b, s:o, s:o}", "scene",
-                  last ? last + 1 : d->scene_path, "hash", hex, "driver", driver, "width",
-                  (int)d->size.width, "height", (int)d->size.height, "time", d->time, "positions",
-                  (int)d->positions, "rays", (int)d->rays, "frames", (int)d->frames, "runs",
-                  (int)d->runs, "quick", d->quick, "settings", there, "dropped", dropped);
+    json_t *root = json_pack(
+        "{s:s, s:s, s:s, s:s, s:i, s:i, s:f, s:i, s:i, s:i, s:i, s:b, s:o, s:o}", "scene",
+        last ? last + 1 : d->scene_path, "hash", hex, "driver", about->driver, "depth",
+        about->depth, "width", (int)d->size.width, "height", (int)d->size.height, "time", d->time,
+        "positions", (int)d->positions, "rays", (int)d->rays, "frames", (int)d->frames, "runs",
+        (int)d->runs, "quick", d->quick, "settings", there, "dropped", dropped);
     char *text = root ? json_dumps(root, JSON_INDENT(1)) : NULL;
     json_decref(root);
     return text;
@@ -121,10 +106,9 @@ static bool begin_with(const char *folder, const char *text, char *error, size_t
     return same || masu_file_write(json, text, strlen(text), error, error_size);
 }
 
-bool masu_sweep_begin(const masu_sweep_desc *d, const char *driver, uint64_t hash,
-                      const masu_setting *settings, uint32_t count, char *error,
+bool masu_sweep_begin(const masu_sweep_desc *d, const masu_sweep_about *about, char *error,
                       size_t error_size) {
-    char *text = describe(d, driver, hash, settings, count);
+    char *text = describe(d, about);
     if (!text) return fail(error, error_size, d->folder, "no memory for sweep.json");
     bool good = begin_with(d->folder, text, error, error_size);
     free(text);
@@ -203,7 +187,7 @@ static bool exists(const char *path) {
     return !stat(path, &st);
 }
 
-/* Rows that `all` has not got yet, with their pictures, and the truth. */
+/* Rows that `all` has not got yet, with their pictures, and what there is of the truth. */
 static bool merge_part(const char *folder, const char *part, masu_row *all, uint32_t *count,
                        char *error, size_t error_size) {
     char from[4096], to[4096];
@@ -220,9 +204,12 @@ static bool merge_part(const char *folder, const char *part, masu_row *all, uint
         if (good) all[(*count)++] = rows[i];
     }
     free(rows);
-    good = good && masu_sweep_path(part, "truth.png", from) &&
-           masu_sweep_path(folder, "truth.png", to);
-    return good && (exists(to) || !exists(from) || copy(from, to, error, error_size));
+    static const char *const truths[] = {"truth.png", "truth.pfm", "truth.specular.pfm"};
+    for (size_t i = 0; i < sizeof truths / sizeof *truths && good; i++) {
+        good = masu_sweep_path(part, truths[i], from) && masu_sweep_path(folder, truths[i], to) &&
+               (exists(to) || !exists(from) || copy(from, to, error, error_size));
+    }
+    return good;
 }
 
 /* The same order whatever the parts: that of sweep.json. */
@@ -259,7 +246,8 @@ bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t par
             text = own;
             good = begin_with(folder, text, error, error_size);
         }
-        good = good && merge_part(folder, parts[i], all, &count, error, error_size);
+        good = good && merge_part(folder, parts[i], all, &count, error, error_size) &&
+               masu_machine_merge(folder, parts[i], error, error_size);
     }
     good = good && merge_part(folder, folder, all, &count, error, error_size);
     good =

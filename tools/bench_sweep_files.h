@@ -6,18 +6,23 @@
 
 #include "bench_sweep.h"
 
+/* What sweep.json says besides the description. */
+typedef struct masu_sweep_about {
+    const char *driver;
+    const char *depth; /* what surfaces are compared with */
+    uint64_t hash;     /* of the scene */
+    const masu_setting *settings;
+    uint32_t count;
+} masu_sweep_about;
+
 /* Makes the folder and writes sweep.json. If there is one already it must say the same. */
-bool masu_sweep_begin(const masu_sweep_desc *desc, const char *driver, uint64_t hash,
-                      const masu_setting *settings, uint32_t count, char *error, size_t error_size);
+bool masu_sweep_begin(const masu_sweep_desc *desc, const masu_sweep_about *about, char *error,
+                      size_t error_size);
 
 /* The rows that are there, and results.csv without what was torn. Freed by free(). */
 masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size);
 
 /* On the disk when it returns. */
 bool masu_sweep_append(const char *folder, const masu_row *row, char *error, size_t error_size);
-
-/* A PNG of that size. rgba: 4 * width * height bytes. */
-bool masu_sweep_load(const char *path, VkExtent2D size, uint8_t *rgba, char *error,
-                     size_t error_size);
 
 #endif

@@ -28,11 +28,16 @@
     X(wall_min)                                                                                    \
     X(wall_p50)                                                                                    \
     X(wall_p95)                                                                                    \
-    X(wall_p99)               /* ms, masu_frame to fence */                                        \
-        X(gpu_min) X(gpu_p50) /* ms, first to last timestamp */                                    \
-        X(plausible)          /* share of the samples whose timestamps fit the wall clock */       \
+    X(wall_p99) /* ms, masu_frame to fence */                                                      \
+    X(gpu_min)                                                                                     \
+    X(gpu_p50)       /* ms, first to last timestamp */                                             \
+        X(plausible) /* share of the samples whose timestamps fit the wall clock */                \
         X(base_wall_min) X(base_gpu_min) X(ratio) X(gpu_ratio) X(least_ratio) X(gpu_least_ratio)   \
-            X(rmse) X(psnr_db) X(ssim) X(flip) X(flip_p99) X(flicker) /* rmse, flicker: of 255 */
+            X(rmse) X(psnr_db) X(ssim) X(flip) X(flip_p99) X(flicker) /* rmse, flicker: of 255 */  \
+        X(hdr_flip)    /* nan: upscaled, or something is done to the image after the tone curve */ \
+        X(hitmiss_pct) /* bench_depth.h; nan: the scene has no surfaces */                         \
+        X(depth_mean_px) X(depth_p99_px)                                                           \
+            X(specular_relmse) /* of pixels that trace; nan: upscaled, or the scene traces none */
 
 typedef struct masu_row {
 #define MASU_ROW_TEXT(name) char name[MASU_SETTING_ID];

@@ -11,6 +11,7 @@ extern const masu_cli_command masu_cmd_render;
 extern const masu_cli_command masu_cmd_upscale;
 extern const masu_cli_command masu_cmd_plan;
 extern const masu_cli_command masu_cmd_bench;
+extern const masu_cli_command masu_cmd_model;
 extern const masu_cli_command masu_cmd_march_bench;
 extern const masu_cli_command masu_cmd_cull_bench;
 extern const masu_cli_command masu_cmd_draw_bench;
@@ -21,6 +22,7 @@ extern const masu_cli_command masu_cmd_trace_bench;
 extern const masu_cli_command masu_cmd_bench_image;
 extern const masu_cli_command masu_cmd_image_error;
 extern const masu_cli_command masu_cmd_compare;
+extern const masu_cli_command masu_cmd_whole_bench;
 extern const masu_cli_command masu_cmd_plant;
 extern const masu_cli_command masu_cmd_conform;
 extern const masu_cli_command masu_cmd_ladder;
@@ -64,9 +66,10 @@ int masu_ladder_option(const char *given, masu_desc *desc);
 /* --size WxH: what a PNG may hold, 16384 a side and 64 Mi pixels; said before the work is done. */
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size);
 
-/* A file that will be written: whether it can be is found out before the work is done. "-" may mean
- * stdout. On false the mistake has been reported: return cli->exit_code. */
+/* A file that will be written: whether it can be is found out before the work is done. On false the
+ * mistake has been reported: return cli->exit_code. The second takes "-", too: stdout. */
 bool masu_output_file(masu_cli *cli, const char **path);
+bool masu_output_file_or_stdout(masu_cli *cli, const char **path);
 
 /* Validation messages go to stderr as warnings; at the end they are a failure. */
 void masu_print_message(void *user, const char *text);

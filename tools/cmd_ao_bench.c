@@ -434,7 +434,7 @@ static int run(masu_cli *cli) {
             if (!masu_output_size(cli, &o.size)) return MASU_CLI_USAGE;
             continue;
         case OPTION_CSV:
-            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
             continue;
         case OPTION_RUNS:
             if (!masu_cli_uint(cli, 1, 10000, &o.runs)) return MASU_CLI_USAGE;

@@ -3,9 +3,11 @@
  * plots and a page of it. */
 #include "cmd.h"
 
+#include "bench_against.h"
 #include "bench_picture.h"
 #include "bench_report.h"
 #include "bench_sweep.h"
+#include "model_write.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,26 +24,53 @@ enum {
     OPTION_RUNS,
     OPTION_SHARD,
     OPTION_MERGE,
-    OPTION_QUICK
+    OPTION_QUICK,
+    OPTION_AGAINST,
+    OPTION_CSV
 };
 
 enum { PARTS_MOST = 64 };
 
 typedef struct options {
     masu_sweep_desc sweep;
-    const char *arguments[PARTS_MOST];
+    const char *arguments[PARTS_MOST], *against, *csv;
     uint32_t count;
     bool merge, sized, placed, ran, framed;
 } options;
 
 static void progress(const char *text) { masu_cli_progress("%s", text); }
 
+/* The model sheet of the ladder, which the report has made: the page is then written once more. */
+static void model(const options *o) {
+    char error[4096];
+    masu_model_desc d = {.scene_path = o->arguments[0],
+                         .size = {1920, 1080},
+                         .drawn = masu_count_size(o->sweep.size),
+                         .time = o->sweep.time,
+                         .host = {.device = o->sweep.host.device},
+                         .progress = progress};
+    if (masu_model_write(&d, o->sweep.folder, error, sizeof error)) return;
+    masu_cli_warn("there is no model sheet: %s", error);
+}
+
 static int report(const options *o) {
+    /* A sheet of another ladder does not stay. */
+    static const char *const sheets[] = {"model.csv", MASU_MODEL_FRAGMENT};
+    char path[4096];
+    for (size_t i = 0; i < 2; i++) {
+        if (masu_sweep_path(o->sweep.folder, sheets[i], path)) (void)remove(path);
+    }
     masu_report_result result;
     char error[4096];
     masu_cli_progress("writing the report");
     if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
         return masu_cli_error("%s", error);
+    if (!o->merge) {
+        model(o);
+        masu_cli_progress("writing the report");
+        if (!masu_report_write(o->sweep.folder, &result, error, sizeof error))
+            return masu_cli_error("%s", error);
+    }
     masu_cli_progress_clear();
     if (result.unsteady > result.rows / 10) {
         masu_cli_warn("the machine was busy: times of %u of %u settings contradict themselves",
@@ -60,6 +89,21 @@ static int merge(const options *o) {
     if (!masu_sweep_merge(o->sweep.folder, o->arguments, o->count, error, sizeof error))
         return masu_cli_error("%s", error);
     return report(o);
+}
+
+static int against(const options *o) {
+    masu_against result;
+    char error[8192];
+    if (o->count != 1) return masu_cli_usage_error("--against needs one folder besides its own");
+    if (!masu_against_compare(o->arguments[0], o->against, &result, error, sizeof error))
+        return masu_cli_error("%s", error);
+    bool to_file = o->csv && strcmp(o->csv, "-") != 0;
+    FILE *f = to_file ? fopen(o->csv, "w") : stdout;
+    if (!f) return masu_cli_error("%s: cannot be written", o->csv);
+    bool good = masu_against_print(f, &result, o->csv != NULL) >= 0;
+    if (to_file) good = !fclose(f) && good;
+    return good ? MASU_CLI_OK
+                : masu_cli_error("%s: cannot be written", to_file ? o->csv : "output");
 }
 
 static int sweep(options *o) {
@@ -122,6 +166,8 @@ static bool read_option(const masu_cli *cli, int id, options *o) {
     case OPTION_SHARD: return read_shard(cli, d);
     case OPTION_MERGE: o->merge = true; return true;
     case OPTION_QUICK: d->quick = true; return true;
+    case OPTION_AGAINST: o->against = cli->value; return true;
+    case OPTION_CSV: o->csv = cli->value; return true;
     case MASU_CLI_ARGUMENT:
         if (o->count == PARTS_MOST) {
             masu_cli_usage_error("more than %d folders", PARTS_MOST);
@@ -150,6 +196,8 @@ static int run(masu_cli *cli) {
         if (masu_device_option(cli, id, &o.sweep.host)) continue;
         if (!read_option(cli, id, &o)) return MASU_CLI_USAGE;
     }
+    if (o.against) return against(&o);
+    if (o.csv) return masu_cli_usage_error("--csv is of --against");
     if (!o.count)
         return masu_cli_usage_error(o.merge ? "no folder to merge is given" : "no scene is given");
     if (!o.sweep.folder) return masu_cli_usage_error("--out is missing");
@@ -177,18 +225,26 @@ static const masu_cli_option list[] = {
     {"shard", "I/N", "measure each N-th setting alone, from the I-th on, 0 to N - 1; no report",
      OPTION_SHARD, 0},
     {"merge", NULL, "join DIR... of shards in --out, and write the report", OPTION_MERGE, 0},
+    {"against", "DIR2",
+     "compare each rung of the folder DIR with the same setting there: error and\n"
+     "time ratio of the two, and the worst",
+     OPTION_AGAINST, 0},
+    {"csv", "FILE", "of --against: write it as CSV, - is standard output", OPTION_CSV, 0},
     {"quick", NULL, "few settings, 128x72, 4 positions, 8 frames, 2 runs: a test", OPTION_QUICK, 0},
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
 
 const masu_cli_command masu_cmd_bench = {
     .name = "bench",
-    .arguments = "SCENE.masu --out DIR [options], or --merge DIR... --out DIR",
+    .arguments =
+        "SCENE.masu --out DIR [options], or --merge DIR... --out DIR, or DIR --against DIR2",
     .summary = "measure each quality level: error against run time, and the rungs worth having",
     .options = list,
     .details =
         "Into DIR: results.csv, a row per setting; ladder.json, the rungs of the Pareto front;\n"
-        "index.html, one page with tables, plots and pictures; plots/ if there is gnuplot.\n"
-        "A setting's time is that of frames at rest, in turns with the base setting (all\n"
-        "defaults, no upscaling); its picture is the last of some frames in motion.\n",
+        "index.html, one page with tables, plots and pictures; plots/ if there is gnuplot;\n"
+        "model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu model), computed.\n"
+        "Where NAME.truth.so lies beside NAME.masu (code, as trusted as this program), surfaces are\n"
+        "compared with it. A setting's time is that of frames at rest, in turns with the base\n"
+        "setting (all defaults, no upscaling); its picture is the last of some frames in motion.\n",
     .run = run};

@@ -423,7 +423,7 @@ static int run(masu_cli *cli) {
             if (!masu_cli_uint(cli, 1, RUNS_MOST, &o.runs)) return MASU_CLI_USAGE;
             continue;
         case OPTION_CSV:
-            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
             continue;
         case OPTION_ONLY: o.only = cli->value; continue;
         case OPTION_OUTPUT:

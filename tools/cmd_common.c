@@ -56,9 +56,14 @@ bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {
 bool masu_output_file(masu_cli *cli, const char **path) {
     char error[4096];
     *path = cli->value;
-    if (!strcmp(cli->value, "-") || masu_file_writable(cli->value, error, sizeof error)) return true;
+    if (masu_file_writable(cli->value, error, sizeof error)) return true;
     cli->exit_code = masu_cli_error("%s", error);
     return false;
+}
+
+bool masu_output_file_or_stdout(masu_cli *cli, const char **path) {
+    *path = cli->value;
+    return !strcmp(cli->value, "-") || masu_output_file(cli, path);
 }
 
 void masu_print_message(void *user, const char *text) {

@@ -88,7 +88,7 @@ static int run(masu_cli *cli) {
             if (!masu_output_file(cli, &map)) return cli->exit_code;
             continue;
         case OPTION_JSON:
-            if (!masu_output_file(cli, &json)) return cli->exit_code;
+            if (!masu_output_file_or_stdout(cli, &json)) return cli->exit_code;
             continue;
         case OPTION_PPD:
             if (!masu_cli_double(cli, 1.0, 1000.0, &ppd)) return MASU_CLI_USAGE;

@@ -194,10 +194,10 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_REPLAY: o.replay = cli->value; continue;
         case OPTION_JUNIT:
-            if (!masu_output_file(cli, &o.junit)) return cli->exit_code;
+            if (!masu_output_file_or_stdout(cli, &o.junit)) return cli->exit_code;
             continue;
         case OPTION_CSV:
-            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
             continue;
         case OPTION_IMAGES: o.images = cli->value; continue;
         case OPTION_RUNS:

@@ -138,38 +138,17 @@ static void progress(uint32_t done, uint32_t of) {
     masu_cli_progress("truth: position %u of %u", done + 1, of);
 }
 
-static bool draw_truth(bench *b) {
-    static masu_session s;
-    masu_session_desc d = session_of(b->o);
-    if (!masu_picture_open(&d, b->o->positions, &s, b->error, sizeof b->error)) return false;
-    masu_frame_desc frame = {.time = b->o->time};
-    bool good = masu_picture_truth(&s, &frame, b->o->positions, b->o->rays, b->truth, progress,
-                                   b->error, sizeof b->error);
-    close_session(b, &s);
-    return good;
-}
-
-/* From the file, if it is there; else drawn, and written there. */
 static bool find_truth(bench *b) {
-    const char *path = b->o->truth;
-    FILE *f = path ? fopen(path, "rb") : NULL;
-    if (!f) {
-        return draw_truth(b) &&
-               (!path || masu_image_save_png(path, b->truth, b->o->size.width, b->o->size.height, 0,
-                                             b->error, sizeof b->error));
-    }
-    fclose(f);
-    struct masu_image image;
-    if (!masu_image_load_png(path, &image, b->error, sizeof b->error)) return false;
-    bool fits = image.width == b->o->size.width && image.height == b->o->size.height;
-    if (fits) {
-        memcpy(b->truth, image.rgba, 4 * (size_t)b->pixels);
-    } else {
-        snprintf(b->error, sizeof b->error, "%s is %ux%u, needed is %ux%u", path, image.width,
-                 image.height, b->o->size.width, b->o->size.height);
-    }
-    masu_image_free(&image);
-    return fits;
+    const options *o = b->o;
+    masu_session_desc d = session_of(o);
+    masu_picture_want truth = {.path = o->truth,
+                               .time = o->time,
+                               .positions = o->positions,
+                               .rays = o->rays,
+                               .progress = progress};
+    bool good = masu_picture_find(&d, &truth, b->truth, b->error, sizeof b->error);
+    b->messages += truth.messages;
+    return good;
 }
 
 /* ---- Chains ---------------------------------------------------------------------------------- */

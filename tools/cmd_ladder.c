@@ -32,12 +32,14 @@ static int check_baked(const char *path, const masu_ladder_file *l) {
     for (uint32_t r = 0; r < l->count; r++) {
         const masu_rung *rung = &l->rungs[r];
         const char *why =
-            rung->march != MASU_MARCH_AUTO ? "march takes a blob baked with --variants"
-            : rung->specular == MASU_ON    ? "specular on takes a device with the buffers"
-            : rung->occlusion == MASU_ON   ? "occlusion on takes a device with the buffers"
+            rung->march != MASU_MARCH_AUTO ? "march takes a blob baked with --variants, which not all are"
+            : rung->specular == MASU_ON    ? "specular on is an error where buffers are few"
+            : rung->occlusion == MASU_ON   ? "occlusion on is an error where buffers are few"
             : rung->upscale == MASU_OFF    ? "upscale off takes the whole size"
+            : rung->shadow_distance > 0.0f ? "shadow_distance is in metres of its own scene"
+            : rung->specular_cutoff > 0.0f ? "specular_cutoff is for materials of its own scene"
                                            : NULL;
-        if (why) return masu_cli_error("%s: rungs[%u]: %s, and not every one has", path, r, why);
+        if (why) return masu_cli_error("%s: rungs[%u]: %s", path, r, why);
         if (r && l->ratios[r - 1] < MASU_LADDER_APART * l->ratios[r] * (1.0 - 1e-6)) {
             return masu_cli_error("%s: rungs[%u]: ratio: needed is %.2f times less than the rung "
                                   "before, %.6g, given is %.6g",

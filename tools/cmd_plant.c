@@ -218,7 +218,7 @@ static int run(masu_cli *cli) {
             if (!masu_cli_double(cli, 0.0, 1e6, &record.time_step)) return MASU_CLI_USAGE;
             continue;
         case OPTION_CSV:
-            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
             continue;
         case OPTION_PLOTS: o.plots = cli->value; continue;
         case OPTION_PLANT: o.plant = cli->value; continue;

@@ -258,7 +258,7 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_FLAT: o.flat = true; continue;
         case OPTION_CSV:
-            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
+            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
             continue;
         case MASU_CLI_ARGUMENT:
             if (o.path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);

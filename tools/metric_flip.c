@@ -221,7 +221,13 @@ static void magnitude(double *x, const double *y, size_t n) {
     for (size_t i = 0; i < n; i++) x[i] = hypot(x[i], y[i]);
 }
 
-static void look(const uint8_t *rgba, size2 s, const bank *b, double *work, double *out) {
+/* One of the two: 4 bytes a pixel of sRGB, or 3 doubles of linear light. */
+typedef struct picture {
+    const uint8_t *rgba;
+    const double *rgb;
+} picture;
+
+static void look(picture from, size2 s, const bank *b, double *work, double *out) {
     size_t n = (size_t)s.width * s.height;
     double *p[WORK_PLANES], *o[LAB_PLANES], linear[256];
     for (size_t i = 0; i < WORK_PLANES; i++) p[i] = work + i * n;
@@ -229,7 +235,8 @@ static void look(const uint8_t *rgba, size2 s, const bank *b, double *work, doub
     for (int i = 0; i < 256; i++) linear[i] = decode((uint8_t)i);
     for (size_t i = 0; i < n; i++) {
         double rgb[3], xyz[3], ycc[3];
-        for (size_t c = 0; c < 3; c++) rgb[c] = linear[rgba[4 * i + c]];
+        for (size_t c = 0; c < 3; c++)
+            rgb[c] = from.rgba ? linear[from.rgba[4 * i + c]] : from.rgb[3 * i + c];
         relative_xyz(rgb, xyz);
         opponent(xyz, ycc);
         p[YY][i] = ycc[0];
@@ -267,7 +274,7 @@ static int compare(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
-static void summarise(double *errors, size_t n, float *map, masu_flip *out) {
+void masu_flip_summarise(double *errors, size_t n, float *map, masu_flip *out) {
     double sum = 0.0;
     for (size_t i = 0; i < n; i++) {
         sum += errors[i];
@@ -279,22 +286,23 @@ static void summarise(double *errors, size_t n, float *map, masu_flip *out) {
     out->max = errors[n - 1];
 }
 
-bool masu_metric_flip(const uint8_t *reference, const uint8_t *test, uint32_t width,
-                      uint32_t height, double ppd, float *map, masu_flip *out) {
-    size2 s = {width, height};
-    size_t n = (size_t)width * height;
+/* errors: one a pixel. NULL: they go where the block that is returned begins. NULL is returned if
+ * there is no memory. */
+static double *measure(picture reference, picture test, size2 s, double ppd, double *errors) {
+    size_t n = (size_t)s.width * s.height;
     bank *b = malloc(sizeof *b);
     double *planes = malloc((WORK_PLANES + 2 * LAB_PLANES) * n * sizeof *planes);
     if (!b || !planes || !n) {
         free(b);
         free(planes);
-        return false;
+        return NULL;
     }
     make_bank(ppd > 0.0 ? ppd : MASU_FLIP_PPD, b);
     double *of[2] = {planes + WORK_PLANES * n, planes + (WORK_PLANES + LAB_PLANES) * n};
     look(reference, s, b, planes, of[0]);
     look(test, s, b, planes, of[1]);
     double most = largest_distance();
+    if (!errors) errors = planes;
     for (size_t i = 0; i < n; i++) {
         double u[LAB_PLANES], v[LAB_PLANES];
         for (size_t k = 0; k < LAB_PLANES; k++) {
@@ -303,10 +311,25 @@ bool masu_metric_flip(const uint8_t *reference, const uint8_t *test, uint32_t wi
         }
         double color = redistributed(pow(hyab(u, v), 0.7), most);
         double feature = fmax(fabs(u[EDGE] - v[EDGE]), fabs(u[POINT] - v[POINT]));
-        planes[i] = pow(color, 1 - sqrt(feature * sqrt(0.5)));
+        errors[i] = pow(color, 1 - sqrt(feature * sqrt(0.5)));
     }
-    summarise(planes, n, map, out);
-    free(planes);
     free(b);
-    return true;
+    return planes;
+}
+
+bool masu_metric_flip(const uint8_t *reference, const uint8_t *test, uint32_t width,
+                      uint32_t height, double ppd, float *map, masu_flip *out) {
+    double *errors = measure((picture){reference, NULL}, (picture){test, NULL},
+                             (size2){width, height}, ppd, NULL);
+    if (errors) masu_flip_summarise(errors, (size_t)width * height, map, out);
+    free(errors);
+    return errors != NULL;
+}
+
+bool masu_metric_flip_linear(const double *reference, const double *test, uint32_t width,
+                             uint32_t height, double ppd, double *errors) {
+    double *planes = measure((picture){NULL, reference}, (picture){NULL, test},
+                             (size2){width, height}, ppd, errors);
+    free(planes);
+    return planes != NULL;
 }

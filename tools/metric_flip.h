@@ -11,6 +11,7 @@
 #define MASU_METRIC_FLIP_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* The paper's default viewer: 0.7 m before a 0.7 m wide screen of 3840 pixels. */
@@ -24,5 +25,12 @@ typedef struct masu_flip {
  * 0: MASU_FLIP_PPD. map: width * height errors, or NULL. False: no memory. */
 bool masu_metric_flip(const uint8_t *reference, const uint8_t *test, uint32_t width,
                       uint32_t height, double ppd, float *map, masu_flip *out);
+
+/* The same of linear light, 3 doubles a pixel, each 0..1. errors: width * height. */
+bool masu_metric_flip_linear(const double *reference, const double *test, uint32_t width,
+                             uint32_t height, double ppd, double *errors);
+
+/* What n errors, at least one, come to; sorts them. map: as they were, or NULL. */
+void masu_flip_summarise(double *errors, size_t n, float *map, masu_flip *out);
 
 #endif

@@ -87,7 +87,7 @@ static void add_to(masu_class_test *t, moments m[2], int class, bool wrong, bool
 bool masu_march_errors_of(const masu_march_sample *samples, uint64_t count,
                           masu_march_errors *out) {
     memset(out, 0, sizeof *out);
-    double *angles = malloc((count ? count : 1) * sizeof *angles);
+    double *angles = malloc(2 * (count ? count : 1) * sizeof *angles), *depths = angles + count;
     if (!angles) return false;
     moments checker[2] = {{0}}, border[2] = {{0}};
     uint64_t mismatch = 0, off = 0;
@@ -103,6 +103,7 @@ bool masu_march_errors_of(const masu_march_sample *samples, uint64_t count,
         if (both) {
             depth += error;
             out->depth_max_px = fmax(out->depth_max_px, error);
+            depths[out->hits] = error;
             angles[out->hits++] = s->normal_angle;
             angle += s->normal_angle;
         }
@@ -117,6 +118,8 @@ bool masu_march_errors_of(const masu_march_sample *samples, uint64_t count,
         qsort(angles, out->hits, sizeof *angles, compare);
         out->depth_off_pct = 100.0 * (double)off / hits;
         out->depth_mean_px = depth / hits;
+        qsort(depths, out->hits, sizeof *depths, compare);
+        out->depth_p99_px = depths[(size_t)(0.99 * (hits - 1) + 0.5)];
         out->normal_mean = angle / hits;
         out->normal_p99 = angles[(size_t)(0.99 * (hits - 1) + 0.5)];
         out->normal_max = angles[out->hits - 1];

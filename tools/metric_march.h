@@ -29,13 +29,13 @@ typedef struct masu_class_test {
 } masu_class_test;
 
 typedef struct masu_march_errors {
-    uint64_t samples, hits;                     /* hits: rendered and true */
-    double hitmiss_pct;                         /* of all samples: one hits, the other does not */
-    double depth_off_pct;                       /* of hits: distance off by more than 1 % */
-    double depth_mean_px, depth_max_px;         /* |t - truth| in widths of the pixel there */
-    double normal_mean, normal_p99, normal_max; /* degrees */
-    masu_class_test checker;                    /* class 0: x + y even (phase 1) */
-    masu_class_test border;                     /* class 0: the rim of a 16x16 tile */
+    uint64_t samples, hits; /* hits: rendered and true */
+    double hitmiss_pct;     /* of all samples: one hits, the other does not */
+    double depth_off_pct;   /* of hits: distance off by more than 1 % */
+    double depth_mean_px, depth_p99_px, depth_max_px; /* |t - truth|, widths of the pixel there */
+    double normal_mean, normal_p99, normal_max;       /* degrees */
+    masu_class_test checker;                          /* class 0: x + y even (phase 1) */
+    masu_class_test border;                           /* class 0: the rim of a 16x16 tile */
 } masu_march_errors;
 
 /* A sample is wrong if hit and miss differ or the distance is off by more than 1 %. False: no

@@ -19,6 +19,7 @@ $(BUILD)/bin/masu: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 
 # What masu measures with, for the tests too.
 $(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/bench_*.c tools/metric_*.c))
+$(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/model_*.c tools/spirv*.c))
 
 # Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
 $(BUILD)/obj/tools/bake_image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
@@ -120,3 +121,22 @@ $(BUILD)/march/%.truth.c: scenes/%.sdf $(BUILD)/bin/masu-sdfc
 MARCH_ARGS ?= --size 960x540
 march-bench: $(BUILD)/bin/masu $(MARCH_SCENES) $(MARCH_SCENES:.masu=.truth.so) ## measure the ways to march the SDF: MARCH_ARGS='--size 960x540 --csv FILE'
 	$(V)$(BUILD)/bin/masu march-bench $(MARCH_SCENES) $(MARCH_ARGS)
+
+# For masu whole-bench: scenes with the plain march; WHOLE: folders and names below $(BUILD). The worlds are
+# measured if they are baked (make worlds). Forza is seen beside a car.
+$(BUILD)/march/engine.masu: scenes/engine.json scenes/engine.glsl $(BUILD)/bin/masu-bake
+	@mkdir -p $(@D)
+	@echo "  BAKE    $< --variants"
+	$(V)$(BUILD)/bin/masu-bake $< -o $@ --variants --quiet
+
+.PHONY: whole-bench
+WHOLE ?= march/engine march/city march/wet_city scenes/mirrors \
+    $(patsubst $(BUILD)/%.masu,%,$(wildcard $(WORLDS:%=$(BUILD)/worlds/%.masu)))
+WHOLE_ARGS ?= --size 640x360
+whole-bench: $(BUILD)/bin/masu $(WHOLE:%=$(BUILD)/%.masu) ## whole frames against a plain renderer, on scenes and worlds: WHOLE='march/city' WHOLE_ARGS=
+	$(V)mkdir -p $(BUILD)/whole
+	$(V)for s in $(WHOLE); do \
+	    time=1; [ $$s != worlds/forza ] || time=146.5; to=$(BUILD)/whole/$$(echo $$s | tr / -); \
+	    $(BUILD)/bin/masu whole-bench $(BUILD)/$$s.masu --time $$time --truth $$to.truth.png \
+	        --csv $$to.csv $(WHOLE_ARGS) || exit 1; \
+	done

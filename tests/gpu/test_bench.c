@@ -2,6 +2,7 @@
  * stopped goes on where it was, that shards together are the whole, and what is refused. Times are
  * only looked at for being times. */
 #include "support.h"
+#include "support_cli.h"
 
 #include "bench_ladder.h"
 #include "bench_sweep.h"
@@ -11,84 +12,29 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-static char dir[] = "/tmp/masu-test-XXXXXX";
-static char out_text[1 << 16], err_text[1 << 16];
-
-static char *read_text(const char *name) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "rb");
-    if (!f) fail_msg("there is no %s", path);
-    fseek(f, 0, SEEK_END);
-    size_t n = (size_t)ftell(f);
-    rewind(f);
-    char *text = malloc(n + 1);
-    assert_non_null(text);
-    assert_int_equal(fread(text, 1, n, f), n);
-    text[n] = 0;
-    fclose(f);
-    return text;
-}
-
-static int shell(const char *command) {
-    int status = system(command);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-/* `masu bench ARGUMENTS`; %s in them is the scratch folder, unless said otherwise. */
+/* `masu bench ARGUMENTS`. */
 static int bench(const char *format, ...) {
-    char arguments[2048], command[4096];
-    const char *build = getenv("BUILD");
     va_list args;
     va_start(args, format);
-    vsnprintf(arguments, sizeof arguments, format, args);
+    int code = cli_run_list("bench", format, args);
     va_end(args);
-    snprintf(command, sizeof command, "%s/bin/masu bench %s >%s/out 2>%s/err </dev/null",
-             build ? build : "build", arguments, dir, dir);
-    int code = shell(command);
-    char *out = read_text("out"), *err = read_text("err");
-    snprintf(out_text, sizeof out_text, "%s", out);
-    snprintf(err_text, sizeof err_text, "%s", err);
-    free(out);
-    free(err);
     return code;
 }
 
+/* One line on stderr: a complaint or a warning. */
 static void said(const char *part) {
-    if (!strstr(err_text, part)) fail_msg("'%s' is not in: %s", part, err_text);
-    assert_ptr_equal(strchr(err_text, '\n'), err_text + strlen(err_text) - 1);
-}
-
-static bool exists(const char *name) {
-    char path[512];
-    struct stat st;
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    return !stat(path, &st);
+    if (!strstr(cli_err, part)) fail_msg("'%s' is not in: %s", part, cli_err);
+    assert_ptr_equal(strchr(cli_err, '\n'), cli_err + strlen(cli_err) - 1);
 }
 
 static masu_row *rows_of(const char *folder, uint32_t *count) {
     char path[256], error[512];
-    snprintf(path, sizeof path, "%s/%s", dir, folder);
+    snprintf(path, sizeof path, "%s/%s", cli_dir, folder);
     masu_row *rows = masu_sweep_rows(path, count, error, sizeof error);
     if (!rows) fail_msg("%s", error);
     return rows;
-}
-
-static int make_dir(void **state) {
-    (void)state;
-    return mkdtemp(dir) ? 0 : 1;
-}
-
-static int remove_dir(void **state) {
-    (void)state;
-    char command[300];
-    snprintf(command, sizeof command, "rm -rf %s", dir);
-    return system(command);
 }
 
 /* ---- Well-formed ----------------------------------------------------------------------------- */
@@ -96,7 +42,7 @@ static int remove_dir(void **state) {
 /* Tags close in the order in which they were opened, values of attributes are quoted, and no '<' or
  * lone '&' stands elsewhere: what XML asks for, but for names. */
 static void check_markup(const char *name) {
-    char *text = read_text(name), stack[64][32];
+    char *text = cli_read(name), stack[64][32];
     uint32_t depth = 0, elements = 0;
     for (const char *c = text; *c;) {
         if (*c == '&' && strcspn(c, ";") > 8) fail_msg("%s: a lone &", name);
@@ -149,6 +95,28 @@ static void check_markup(const char *name) {
 
 #define SMALL "--quick --size 64x36"
 
+/* Finite where it is promised, NaN where there is none. */
+static void there_is(double value, bool wanted, const char *what, const masu_row *row) {
+    if (wanted != (isfinite(value) && value >= 0))
+        fail_msg("%s: %s is %g", row->setting, what, value);
+    if (!wanted) assert_true(isnan(value));
+}
+
+static void check_columns(const masu_row *rows, uint32_t count, bool surfaces, bool traced) {
+    for (uint32_t i = 0; i < count; i++) {
+        const masu_row *r = &rows[i];
+        bool whole = r->render_width >= 64 && r->render_height >= 36;
+        bool after = strstr(r->setting, "aa=") || strstr(r->setting, "sharpen=on");
+        there_is(r->hitmiss_pct, surfaces, "hit/miss", r);
+        there_is(r->depth_mean_px, surfaces, "depth", r);
+        there_is(r->depth_p99_px, surfaces, "p99 of depth", r);
+        there_is(r->hdr_flip, whole && !after, "HDR-FLIP", r);
+        there_is(r->specular_relmse, whole && traced, "relMSE", r);
+        if (surfaces) assert_true(r->hitmiss_pct <= 100);
+        if (whole && !after) assert_true(r->hdr_flip > 0 && r->hdr_flip <= 1);
+    }
+}
+
 static void check_rows(const char *folder, uint32_t least) {
     uint32_t count;
     masu_row *rows = rows_of(folder, &count);
@@ -159,7 +127,7 @@ static void check_rows(const char *folder, uint32_t least) {
         const masu_row *r = &rows[i];
         char name[300];
         snprintf(name, sizeof name, "%s/pictures/%s.png", folder, r->setting);
-        assert_true(exists(name));
+        assert_true(cli_exists(name));
         assert_true(r->wall_min > 0 && r->wall_p50 >= r->wall_min && r->wall_p99 >= r->wall_p50);
         assert_true(fabs(r->least_ratio - r->wall_min / r->base_wall_min) < 1e-6 * r->least_ratio);
         assert_true(r->ratio > 0 && r->plausible >= 0 && r->plausible <= 1);
@@ -184,7 +152,7 @@ static void check_ladder(const char *folder) {
     masu_ladder_point points[MASU_SETTINGS_MOST];
     masu_row *rows = rows_of(folder, &count);
     char path[256];
-    snprintf(path, sizeof path, "%s/%s/ladder.json", dir, folder);
+    snprintf(path, sizeof path, "%s/%s/ladder.json", cli_dir, folder);
     json_t *root = json_load_file(path, 0, NULL);
     assert_non_null(root);
     const json_t *list = json_object_get(root, "rungs");
@@ -192,7 +160,11 @@ static void check_ladder(const char *folder) {
     assert_true(count <= MASU_SETTINGS_MOST);
     for (uint32_t i = 0; i < count; i++)
         points[i] = (masu_ladder_point){stamps ? rows[i].gpu_ratio : rows[i].ratio, rows[i].flip};
-    uint32_t n = masu_ladder_rungs(points, count, MASU_LADDER_APART, MASU_MAX_RUNGS, rungs);
+    for (uint32_t i = 0; i < count; i++) {
+        if (rows[i].flicker > rows[0].flicker + MASU_LADDER_FLICKER) points[i].time = 0.0;
+    }
+    uint32_t n = masu_ladder_rungs(points, count, MASU_LADDER_APART, MASU_LADDER_BETTER,
+                                   MASU_MAX_RUNGS, rungs);
     assert_true(n >= 1);
     assert_int_equal(json_array_size(list), n);
     double before = HUGE_VAL;
@@ -215,27 +187,139 @@ static void check_ladder(const char *folder) {
 
 static void a_folder_has_rows_rungs_and_a_page(void **state) {
     (void)state;
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), dir), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), cli_dir), 0);
     check_rows("whole", 10);
     check_ladder("whole");
     check_markup("whole/index.html");
-    if (exists("whole/plots/front.svg")) {
+    uint32_t count;
+    masu_row *rows = rows_of("whole", &count);
+    check_columns(rows, count, true, false);
+    /* The same march: its surfaces are those of the most exact rung. Few steps miss some. */
+    const masu_row *few = masu_rows_find(rows, count, "march_steps=64");
+    assert_non_null(few);
+    assert_true(rows[0].hitmiss_pct <= 0 && rows[0].depth_mean_px <= 0);
+    assert_true(few->hitmiss_pct > 0 && few->hitmiss_pct < 5 && few->depth_mean_px > 0);
+    free(rows);
+    if (cli_exists("whole/plots/front.svg")) {
         check_markup("whole/plots/front.svg");
         check_markup("whole/plots/techniques.svg");
     } else {
-        assert_non_null(strstr(err_text, "no gnuplot"));
+        assert_non_null(strstr(cli_err, "no gnuplot"));
     }
-    char *page = read_text("whole/index.html");
+    char *page = cli_read("whole/index.html");
     assert_non_null(strstr(page, "data:image/png;base64,iVBOR"));
     assert_null(strstr(page, "src=\"h")); /* nothing from elsewhere */
     assert_non_null(strstr(page, "The ladder"));
+    static const char *const parts[] = {"HDR-FLIP",   "hit/miss", "relMSE",
+                                        "<td>-</td>", "Masu 0.",  " UTC: "};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        if (!strstr(page, parts[i])) fail_msg("the page has no %s", parts[i]);
+    }
+    const char *sheet = strstr(page, "<section id=\"model\">");
+    assert_non_null(sheet);
+    assert_non_null(strstr(sheet, "<caption>COMPUTED"));
+    assert_true(sheet < strstr(page, "<h2>Pictures"));
     free(page);
     /* The scene has an SDF and polygons, and no shadow map or reflections. */
-    char *json = read_text("whole/sweep.json");
+    char *json = cli_read("whole/sweep.json");
     assert_non_null(strstr(json, "march_steps=64"));
     assert_non_null(strstr(json, "the scene has no shadow map"));
     assert_non_null(strstr(json, "no reflections are traced"));
+    assert_non_null(strstr(json, "the most exact rung"));
     free(json);
+}
+
+/* The folder of the test before, against itself. What it says is test_bench_against's. */
+static void two_folders_are_compared(void **state) {
+    (void)state;
+    char *text;
+    assert_int_equal(bench("%s/whole --against %s/whole", cli_dir, cli_dir), 0);
+    assert_non_null(strstr(cli_out, "worst: FLIP +0.00 %"));
+    assert_non_null(strstr(cli_out, ", 0 without a row"));
+    assert_int_equal(bench("%s/whole --against %s/whole --csv %s/csv", cli_dir, cli_dir, cli_dir), 0);
+    assert_string_equal(cli_out, "");
+    text = cli_read("csv");
+    assert_int_equal(strncmp(text, "rung,setting,", 13), 0);
+    free(text);
+    assert_int_equal(bench("%s/whole --against %s/none", cli_dir, cli_dir), 1);
+    said("sweep.json");
+    assert_int_equal(bench("--against %s/whole", cli_dir), 2);
+    said("--against");
+    assert_int_equal(bench("a.masu --csv %s/csv --out %s/x", cli_dir, cli_dir), 2);
+    said("--csv");
+}
+
+static void reflections_have_an_error_of_their_own(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_reflections");
+    uint32_t count, again;
+    /* The base, no reflections, and the same at half size are those with numbers 0, 10 and 11. */
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(bench("%s " SMALL " --reference 16 --runs 1 --shard %d/16 --validate"
+                               " --truth %s/mirror.png --out %s/mirror%d",
+                               scene, i ? 9 + i : 0, cli_dir, cli_dir, i),
+                         0);
+    }
+    assert_true(cli_exists("mirror.pfm") && cli_exists("mirror.specular.pfm"));
+    assert_int_equal(
+        bench("--merge %s/mirror0 %s/mirror1 %s/mirror2 --out %s/mirrors", cli_dir, cli_dir, cli_dir, cli_dir), 0);
+    masu_row *rows = rows_of("mirrors", &count);
+    assert_int_equal(count, 3);
+    check_columns(rows, count, true, true);
+    const masu_row *none = masu_rows_find(rows, count, "specular=off");
+    assert_non_null(none);
+    /* Mirrors of no roughness: a ray is exact. Without them what they show is missing. */
+    assert_true(rows[0].specular_relmse < 1e-4 && none->specular_relmse > 0.01);
+    assert_true(none->hdr_flip > rows[0].hdr_flip);
+    /* What was drawn first, read again from the files beside the truth. */
+    assert_int_equal(bench("%s " SMALL " --reference 16 --runs 1 --shard 0/16"
+                           " --truth %s/mirror.png --out %s/again",
+                           scene, cli_dir, cli_dir),
+                     0);
+    masu_row *read = rows_of("again", &again);
+    assert_int_equal(again, 1);
+    assert_true(fabs(read[0].specular_relmse - rows[0].specular_relmse) <= 0);
+    assert_true(fabs(read[0].hdr_flip - rows[0].hdr_flip) <= 0);
+    free(read);
+    free(rows);
+}
+
+/* Scenes baked with all ways to march have rows of them; others name why not, and go on. The field
+ * in double precision lies beside the one here. */
+static void ways_to_march_and_what_depth_is_compared_with(void **state) {
+    (void)state;
+    char path[512];
+    const char *build = getenv("BUILD");
+    snprintf(path, sizeof path, "%s/stiff/blend.masu", build ? build : "build");
+    assert_int_equal(bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/few",
+                           scene_path("test_both"), cli_dir),
+                     0);
+    char *text = cli_read("few/sweep.json");
+    json_t *root = json_loads(text, 0, NULL);
+    assert_non_null(root);
+    json_t *one;
+    size_t i;
+    uint32_t named = 0;
+    json_array_foreach(json_object_get(root, "dropped"), i, one) {
+        if (strncmp(json_string_value(json_object_get(one, "setting")), "march=", 6)) continue;
+        assert_non_null(strstr(json_string_value(json_object_get(one, "why")), "--variants"));
+        named++;
+    }
+    assert_int_equal(named, 3); /* plain, seed, checkerboard; every blob has code for cone8 */
+    json_decref(root);
+    free(text);
+    assert_int_equal(
+        bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/exact", path, cli_dir), 0);
+    text = cli_read("exact/sweep.json");
+    assert_non_null(strstr(text, "double precision"));
+    free(text);
+    uint32_t count;
+    masu_row *rows = rows_of("exact", &count);
+    assert_int_equal(count, 1);
+    /* Not 0: it is another march, of another arithmetic. Small: both are right. */
+    assert_true(rows[0].depth_mean_px > 0 && rows[0].depth_mean_px < 0.1);
+    assert_true(rows[0].hitmiss_pct < 1);
+    free(rows);
 }
 
 /* The folder of the test before, with its last rows cut off, one of them in the middle. */
@@ -244,13 +328,13 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     uint32_t before, after;
     masu_row *old = rows_of("whole", &before);
     char path[256];
-    snprintf(path, sizeof path, "%s/whole/results.csv", dir);
-    char *text = read_text("whole/results.csv"), *cut = text + strlen(text) - 1;
+    snprintf(path, sizeof path, "%s/whole/results.csv", cli_dir);
+    char *text = cli_read("whole/results.csv"), *cut = text + strlen(text) - 1;
     for (int lines = 0; lines < 3; cut -= lines < 3) lines += *cut == '\n';
     assert_int_equal(truncate(path, cut - text - 20), 0);
     free(text);
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), dir), 0);
-    assert_non_null(strstr(out_text, "3 settings measured"));
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), cli_dir), 0);
+    assert_non_null(strstr(cli_out, "3 settings measured"));
     masu_row *rows = rows_of("whole", &after);
     assert_int_equal(after, before);
     for (uint32_t i = 0; i < after; i++) {
@@ -260,12 +344,12 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     check_rows("whole", 10);
     free(rows);
     free(old);
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), dir), 0);
-    assert_non_null(strstr(out_text, " 0 settings measured"));
-    assert_int_equal(bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), dir),
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), cli_dir), 0);
+    assert_non_null(strstr(cli_out, " 0 settings measured"));
+    assert_int_equal(bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), cli_dir),
                      1);
     said("another sweep");
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_truth"), dir), 1);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_truth"), cli_dir), 1);
     said("another sweep");
 }
 
@@ -276,11 +360,11 @@ static void shards_together_are_the_whole(void **state) {
     for (int i = 0; i < 2; i++) {
         assert_int_equal(bench("%s " SMALL
                                " --shard %d/2 --truth %s/whole/truth.png --out %s/part%d",
-                               scene, i, dir, dir, i),
+                               scene, i, cli_dir, cli_dir, i),
                          0);
-        assert_false(exists(i ? "part1/index.html" : "part0/index.html"));
+        assert_false(cli_exists(i ? "part1/index.html" : "part0/index.html"));
     }
-    assert_int_equal(bench("--merge %s/part1 %s/part0 --out %s/merged", dir, dir, dir), 0);
+    assert_int_equal(bench("--merge %s/part1 %s/part0 --out %s/merged", cli_dir, cli_dir, cli_dir), 0);
     masu_row *a = rows_of("whole", &whole), *b = rows_of("merged", &merged);
     free(rows_of("part1", &part));
     assert_int_equal(merged, whole);
@@ -294,15 +378,16 @@ static void shards_together_are_the_whole(void **state) {
     free(a);
     free(b);
     check_rows("merged", 10);
+    assert_true(cli_exists("merged/truth.png") && cli_exists("merged/machine.json"));
     check_ladder("merged");
     check_markup("merged/index.html");
     /* What is merged into itself stays; what is not of the same sweep is refused. */
-    assert_int_equal(bench("--merge %s/merged --out %s/merged --quiet", dir, dir), 0);
-    assert_string_equal(out_text, "");
-    assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, dir), 0);
-    assert_int_equal(bench("--merge %s/merged %s/other --out %s/both", dir, dir, dir), 1);
+    assert_int_equal(bench("--merge %s/merged --out %s/merged --quiet", cli_dir, cli_dir), 0);
+    assert_string_equal(cli_out, "");
+    assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, cli_dir), 0);
+    assert_int_equal(bench("--merge %s/merged %s/other --out %s/both", cli_dir, cli_dir, cli_dir), 1);
     said("another sweep");
-    assert_int_equal(bench("--merge %s/none --out %s/both2", dir, dir), 1);
+    assert_int_equal(bench("--merge %s/none --out %s/both2", cli_dir, cli_dir), 1);
     said("sweep.json");
 }
 
@@ -310,7 +395,7 @@ static void shards_together_are_the_whole(void **state) {
 static void slow_shadows_are_timed_over_their_whole_period(void **state) {
     (void)state;
     assert_int_equal(bench("%s " SMALL " --runs 1 --shard 8/13 --validate --out %s/slow",
-                           scene_path("test_shadows"), dir),
+                           scene_path("test_shadows"), cli_dir),
                      0);
     uint32_t count;
     masu_row *rows = rows_of("slow", &count);
@@ -323,36 +408,39 @@ static void slow_shadows_are_timed_over_their_whole_period(void **state) {
 static void wrong_command_lines_are_exit_code_2(void **state) {
     (void)state;
     assert_int_equal(bench("--help"), 0);
-    assert_non_null(strstr(out_text, "--shard"));
-    assert_int_equal(bench("--out %s/x", dir), 2);
+    assert_non_null(strstr(cli_out, "--shard"));
+    assert_int_equal(bench("--out %s/x", cli_dir), 2);
     said("no scene");
-    assert_int_equal(bench("--merge --out %s/x", dir), 2);
+    assert_int_equal(bench("--merge --out %s/x", cli_dir), 2);
     said("no folder");
     assert_int_equal(bench("a.masu"), 2);
     said("--out");
-    assert_int_equal(bench("a.masu b.masu --out %s/x", dir), 2);
+    assert_int_equal(bench("a.masu b.masu --out %s/x", cli_dir), 2);
     said("b.masu");
     static const char *const shards[] = {"2/2", "1", "/", "1/", "-1/2", "0/0", "1/2x"};
     for (size_t i = 0; i < sizeof shards / sizeof *shards; i++) {
-        assert_int_equal(bench("a.masu --out %s/x --shard %s", dir, shards[i]), 2);
+        assert_int_equal(bench("a.masu --out %s/x --shard %s", cli_dir, shards[i]), 2);
         said("shard");
     }
-    assert_int_equal(bench("a.masu --out %s/x --runs 0", dir), 2);
+    assert_int_equal(bench("a.masu --out %s/x --runs 0", cli_dir), 2);
     said("runs");
-    assert_int_equal(bench("%s/none.masu --out %s/x --quick", dir, dir), 1);
+    assert_int_equal(bench("%s/none.masu --out %s/x --quick", cli_dir, cli_dir), 1);
     said("none.masu");
-    assert_false(exists("x"));
-    assert_int_equal(bench("%s --out %s/no/such --quick", scene_path("test_both"), dir), 1);
+    assert_false(cli_exists("x"));
+    assert_int_equal(bench("%s --out %s/no/such --quick", scene_path("test_both"), cli_dir), 1);
     said("no/such");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_folder_has_rows_rungs_and_a_page),
+        cmocka_unit_test(two_folders_are_compared),
         cmocka_unit_test(a_run_that_was_stopped_goes_on),
         cmocka_unit_test(shards_together_are_the_whole),
         cmocka_unit_test(slow_shadows_are_timed_over_their_whole_period),
+        cmocka_unit_test(reflections_have_an_error_of_their_own),
+        cmocka_unit_test(ways_to_march_and_what_depth_is_compared_with),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
     };
-    return cmocka_run_group_tests(tests, make_dir, remove_dir);
+    return cmocka_run_group_tests(tests, cli_make_dir, cli_remove_dir);
 }

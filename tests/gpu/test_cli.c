@@ -234,7 +234,7 @@ static void the_governor_reports_what_it_has_done(void **state) {
 }
 
 /* A ladder.json as masu bench writes it, of two rungs. */
-static void write_ladder(const char *name, const char *second_ratio) {
+static void write_ladder(const char *name, const char *second_ratio, const char *knob) {
     char text[2048];
     snprintf(text, sizeof text,
              "{\"scene\": \"a.masu\", \"hash\": \"0\", \"driver\": \"D\", \"date\": \"2026-01-02\", "
@@ -243,17 +243,17 @@ static void write_ladder(const char *name, const char *second_ratio) {
              "\"flip\": 0.1, \"rmse\": 3, \"knobs\": {\"scale\": 1, \"aa\": \"smaa-low\"}}, "
              "{\"setting\": \"scale=0.5\", \"ratio\": %s, \"wall_ms\": 1, \"gpu_ms\": 1, "
              "\"flip\": 0.25, \"rmse\": 5, \"knobs\": {\"scale\": 0.5, \"march_steps\": 64, "
-             "\"shadow_refresh\": [1, 2, 4, 8]}}]}",
-             second_ratio);
+             "\"shadow_refresh\": [1, 2, 4, 8]%s}}]}",
+             second_ratio, knob);
     cli_write(name, text, strlen(text));
 }
 
 static void ladders_are_read_shown_and_built_in(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    write_ladder("l.json", "0.5");
-    write_ladder("bad.json", "1.5");
-    write_ladder("near.json", "0.99");
+    write_ladder("l.json", "0.5", "");
+    write_ladder("bad.json", "1.5", "");
+    write_ladder("near.json", "0.99", "");
     assert_int_equal(cli_run("ladder %s/l.json", cli_dir), 0);
     assert_non_null(strstr(cli_out, "a.masu at 32x24, by wall, 2026-01-02"));
     assert_non_null(strstr(cli_out, "     1  0.500  0.2500    5.00  scale=0.5"));
@@ -274,6 +274,18 @@ static void ladders_are_read_shown_and_built_in(void **state) {
     cli_complained("--c takes CLASS=FILE");
     assert_int_equal(cli_run("ladder --c sdf=%s/l.json sdf=%s/l.json", cli_dir, cli_dir), 2);
     cli_complained("two ladders of one class");
+    /* What not every scene of a class, or device, can do. */
+    static const char *const refused[] = {"march\": \"plain", "specular\": \"on", "occlusion\": \"on",
+                                          "upscale\": \"off"};
+    for (size_t i = 0; i < 6; i++) {
+        char knob[64];
+        snprintf(knob, sizeof knob, i < 4 ? ", \"%s\"" : ", \"%s\": 0.25",
+                 i < 4 ? refused[i] : i == 4 ? "shadow_distance" : "specular_cutoff");
+        write_ladder("refused.json", "0.5", knob);
+        assert_int_equal(cli_run("ladder %s/refused.json", cli_dir), 0);
+        assert_int_equal(cli_run("ladder --c sdf=%s/refused.json", cli_dir), 1);
+        cli_complained("rungs[1]: ");
+    }
     assert_int_equal(cli_run("ladder --c sdf=%s/near.json", cli_dir), 1);
     cli_complained("needed is 1.04 times less than the rung before, 1, given is 0.99");
     /* In programs. */

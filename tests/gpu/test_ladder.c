@@ -77,7 +77,9 @@ static void go_through(const char *scene, bool validate) {
     for (uint32_t k = 0; k < 30; k++) /* nothing fits */
         rung = step(&s, &plan, MASU_RUNG_AUTO, i++, 100.0 / (double)plan.rungs[count - 1].ratio,
                     &heap);
-    assert_int_equal(rung, count - 1);
+    /* Rungs that save less than 5 % are not worth their loss. */
+    assert_true(plan.rungs[rung].ratio <= 1.06f * plan.rungs[count - 1].ratio);
+    if (count > 2) assert_true(rung >= count - 2);
     uint32_t by_itself = 0;
     for (uint32_t r = 0; r < count; r++) by_itself += drawn >> r & 1;
     assert_true(by_itself >= 2);

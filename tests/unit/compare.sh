@@ -1,6 +1,7 @@
 #!/bin/bash
 # masu compare beside other people's programs: RMSE and PSNR by ImageMagick, SSIM by scikit-image
-# (of Debian; where one is missing, its part is left out, but never with MASU_REQUIRE_DRIVERS).
+# (of Debian; without ImageMagick, which makes the pictures, nothing is compared, without scikit-image
+# no SSIM; with MASU_REQUIRE_DRIVERS both must be there).
 # Known answers, the map, and what is refused.
 set -u
 masu=${BUILD:-build}/bin/masu

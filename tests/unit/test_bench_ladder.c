@@ -81,7 +81,7 @@ static void rungs_fall_in_time_and_rise_in_error(void **state) {
         masu_ladder_point p[POINTS];
         uint32_t front[POINTS], rungs[POINTS], n = cloud(seed, p);
         uint32_t all = masu_ladder_front(p, n, front);
-        uint32_t count = masu_ladder_rungs(p, n, MASU_LADDER_APART, MOST, rungs);
+        uint32_t count = masu_ladder_rungs(p, n, MASU_LADDER_APART, 1.0, MOST, rungs);
         assert_true(count <= MOST && count <= all && (count > 0) == (all > 0));
         if (count > longest) longest = count;
         if (!count) continue;
@@ -107,7 +107,7 @@ static void nothing_is_left_out_without_need(void **state) {
         masu_ladder_point p[POINTS];
         uint32_t front[POINTS], rungs[POINTS], n = cloud(seed, p);
         uint32_t all = masu_ladder_front(p, n, front);
-        assert_int_equal(masu_ladder_rungs(p, n, 1.0, POINTS, rungs), all);
+        assert_int_equal(masu_ladder_rungs(p, n, 1.0, 1.0, POINTS, rungs), all);
         for (uint32_t i = 0; i < all; i++) assert_int_equal(rungs[i], front[all - 1 - i]);
     }
 }
@@ -116,14 +116,43 @@ static void the_nearest_neighbours_go_first(void **state) {
     (void)state;
     const masu_ladder_point p[] = {{8, 0.1}, {4, 0.2}, {3.8, 0.25}, {2, 0.3}, {1, 0.4}};
     uint32_t rungs[5];
-    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 4, rungs), 4);
+    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1.0, 4, rungs), 4);
     const uint32_t wanted[] = {0, 1, 3, 4}; /* 4 / 2 is less than 8 / 3.8: so 3.8 goes */
     assert_memory_equal(rungs, wanted, sizeof wanted);
-    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 2, rungs), 2);
+    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1.0, 2, rungs), 2);
     assert_true(rungs[0] == 0 && rungs[1] == 4);
-    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1, rungs), 1);
+    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1.0, 1, rungs), 1);
     assert_int_equal(rungs[0], 0);
-    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 0, rungs), 0);
+    assert_int_equal(masu_ladder_rungs(p, 5, MASU_LADDER_APART, 1.0, 0, rungs), 0);
+}
+
+/* By the definition: of all kept, each is better by that than every quicker one; what went has a quicker
+ * one that is hardly worse. */
+static void hardly_better_is_no_reason_to_take_longer(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed <= CLOUDS; seed++) {
+        masu_ladder_point p[POINTS];
+        uint32_t front[POINTS], rungs[POINTS], n = POINTS;
+        uint64_t r = seed;
+        for (uint32_t i = 0; i < n; i++) {
+            p[i].time = 1 + (double)(support_random(&r) % 1000) / 100;
+            p[i].error = 1 / p[i].time + (double)(support_random(&r) % 1000) / 1e5;
+        }
+        uint32_t all = masu_ladder_front(p, n, front);
+        uint32_t kept = masu_ladder_rungs(p, n, 1.0, 1.05, POINTS, rungs);
+        assert_true(kept <= all && rungs[kept - 1] == front[0]);
+        for (uint32_t i = 1; i < kept; i++)
+            assert_true(1.05 * p[rungs[i - 1]].error <= p[rungs[i]].error);
+        for (uint32_t f = 0; f < all; f++) {
+            bool stays = false, hardly = false;
+            for (uint32_t i = 0; i < kept; i++) {
+                stays = stays || rungs[i] == front[f];
+                hardly = hardly || (p[rungs[i]].time < p[front[f]].time &&
+                                    1.05 * p[front[f]].error > p[rungs[i]].error);
+            }
+            assert_true(stays != hardly);
+        }
+    }
 }
 
 static void ties_single_points_and_none(void **state) {
@@ -138,9 +167,9 @@ static void ties_single_points_and_none(void **state) {
     assert_int_equal(out[0], 1);
     assert_int_equal(masu_ladder_front(error, 2, out), 1);
     assert_int_equal(out[0], 1);
-    assert_int_equal(masu_ladder_rungs(&zero, 1, MASU_LADDER_APART, MOST, out), 1);
-    assert_int_equal(masu_ladder_rungs(none, 3, MASU_LADDER_APART, MOST, out), 0);
-    assert_int_equal(masu_ladder_rungs(none, 0, MASU_LADDER_APART, MOST, out), 0);
+    assert_int_equal(masu_ladder_rungs(&zero, 1, MASU_LADDER_APART, 1.0, MOST, out), 1);
+    assert_int_equal(masu_ladder_rungs(none, 3, MASU_LADDER_APART, 1.0, MOST, out), 0);
+    assert_int_equal(masu_ladder_rungs(none, 0, MASU_LADDER_APART, 1.0, MOST, out), 0);
     assert_false(masu_ladder_dominates(equal[0], equal[1]));
     assert_false(masu_ladder_dominates(none[0], zero));
 }
@@ -154,7 +183,7 @@ static masu_row random_row(uint64_t *state, uint32_t i) {
     snprintf(row.parent, sizeof row.parent, "base");
     snprintf(row.technique, sizeof row.technique, "ao");
     double *number = &row.render_width;
-    for (; number <= &row.flicker; number++)
+    for (; number <= &row.specular_relmse; number++)
         *number = ldexp((double)support_random_in(state, 1, 1000000000), (int)(i % 40) - 60);
     if (i % 5 == 0) row.psnr_db = HUGE_VAL;
     if (i % 7 == 0) row.gpu_ratio = (double)NAN;
@@ -194,7 +223,7 @@ static void rows_come_back_as_they_were_written(void **state) {
         assert_string_equal(read[i].parent, "base");
         assert_string_equal(read[i].technique, "ao");
         const double *a = &rows[i].render_width, *b = &read[i].render_width;
-        for (; a <= &rows[i].flicker; a++, b++) same_number(*a, *b);
+        for (; a <= &rows[i].specular_relmse; a++, b++) same_number(*a, *b);
         masu_rows_write(f, &read[i]);
     }
     assert_ptr_equal(masu_rows_find(read, count, rows[9].setting), &read[9]);
@@ -250,6 +279,7 @@ int main(void) {
         cmocka_unit_test(rungs_fall_in_time_and_rise_in_error),
         cmocka_unit_test(nothing_is_left_out_without_need),
         cmocka_unit_test(the_nearest_neighbours_go_first),
+        cmocka_unit_test(hardly_better_is_no_reason_to_take_longer),
         cmocka_unit_test(ties_single_points_and_none),
         cmocka_unit_test(rows_come_back_as_they_were_written),
         cmocka_unit_test(what_is_no_table_is_refused),

@@ -36,7 +36,7 @@ static void check_names(uint32_t count) {
 }
 
 static const masu_scene everything = {
-    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1};
+    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1, .shadow_distance = 80};
 
 static masu_plan_info plan_with(const char *const *passes, uint32_t count) {
     masu_plan_info plan;
@@ -90,6 +90,10 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     check_dropped("occlusion=off", count, "no occluders");
     check_dropped("frustum=off", count, "no polygons");
     check_dropped("light_tiles=off", count, "no local lights");
+    check_dropped("march=seed", count, "no SDF");
+    check_dropped("shadow_distance=0.5", count, "no shadow map");
+    check_dropped("specular_cutoff=0.25", count, "no reflections");
+    check_dropped("specular_frames=64", count, "no reflections");
     /* What is left of the bundles: the cheap one at 0.4 has fast EASU and no RCAS, the middle one
      * FXAA, which is there already at full size. */
     assert_true(find(count, "scale=0.4+easu=fast+sharpen=off") < count);
@@ -110,13 +114,45 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     masu_settings_fit(settings, count, &everything, &plan);
     check_names(count);
     for (uint32_t i = 0; i < count; i++) dropped += settings[i].dropped[0] != 0;
-    /* SMAA HIGH at 1 and 0.5 is a technique and a bundle; so is no sharpening, which at 1 is
-     * nothing. */
-    assert_int_equal(dropped, 4);
+    /* SMAA HIGH at 1 and 0.5 is a technique and a bundle; so is no sharpening, nothing at 1:
+     * there the soft bundles are their other knob alone. */
+    assert_int_equal(dropped, 6);
     check_dropped("sharpen=off", count, "nothing is sharpened");
     check_dropped("scale=0.5+sharpen=off", count, "there already");
     check_dropped("aa=smaa-high", count, "there already");
     check_dropped("scale=0.5+aa=smaa-high", count, "there already");
+    check_dropped("sharpen=off+aa=smaa-high", count, "nothing is sharpened");
+    check_dropped("sharpen=off+march_steps=128", count, "nothing is sharpened");
+    if (count - dropped > 110) fail_msg("%u settings", count - dropped);
+    static const char *const there[] = {"march=plain",
+                                        "march=seed",
+                                        "march=cone8",
+                                        "march=checkerboard",
+                                        "specular_cutoff=0.25",
+                                        "specular_cutoff=0.5",
+                                        "specular_frames=16",
+                                        "specular_frames=64",
+                                        "scale=0.9375+sharpen=off",
+                                        "scale=0.4375+sharpen=off",
+                                        "scale=0.4+sharpen=off+aa=smaa-high",
+                                        "scale=0.625+sharpen=off+march_steps=128"};
+    for (size_t i = 0; i < sizeof there / sizeof *there; i++)
+        assert_true(find(count, there[i]) < count);
+    uint32_t half = find(count, "shadow_distance=40"); /* of the scene's 80 */
+    assert_true(half < count && settings[half].rung.shadow_distance > 39.99f &&
+                settings[half].rung.shadow_distance < 40.01f);
+}
+
+static void a_cutoff_that_is_the_scenes_own_is_the_base(void **state) {
+    (void)state;
+    static const char *const passes[] = {"specular_guide"};
+    const masu_plan_info plan = plan_with(passes, 1);
+    const masu_scene scene = {.specular_cutoff = 0.5f};
+    uint32_t count = masu_settings_make(false, settings);
+    masu_settings_fit(settings, count, &scene, &plan);
+    check_names(count);
+    check_dropped("specular_cutoff=0.5", count, "the scene's own");
+    assert_true(find(count, "specular_cutoff=0.25") < count);
 }
 
 static void plans_are_compared_by_passes_sizes_and_bytes(void **state) {
@@ -158,13 +194,66 @@ static void knobs_are_printed_as_json(void **state) {
     assert_int_equal(masu_setting_period(&rung), 8);
 }
 
+/* Names lead back to the rung, of every setting that is measured. */
+static void names_are_read_again(void **state) {
+    (void)state;
+    char error[256], name[MASU_SETTING_ID];
+    masu_rung rung;
+    uint32_t count = masu_settings_make(false, settings);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!masu_setting_parse(settings[i].id, &rung, error, sizeof error)) fail_msg("%s", error);
+        if (memcmp(&rung, &settings[i].rung, sizeof rung) != 0)
+            fail_msg("%s is another rung", settings[i].id);
+        masu_setting_name(&rung, name);
+        assert_string_equal(name, settings[i].id);
+    }
+    /* In any order; values of all kinds. */
+    assert_true(masu_setting_parse("ao_steps=3+lod_error=-1+shadow_refresh=1-2-4-8+scale=0.625+"
+                                   "shadow_distance=1e+09+march=cone8",
+                                   &rung, error, sizeof error));
+    masu_setting_name(&rung, name);
+    assert_string_equal(name, "scale=0.625+march=cone8+lod_error=-1+ao_steps=3+"
+                              "shadow_distance=1e+09+shadow_refresh=1-2-4-8");
+}
+
+static void names_that_are_none_are_refused(void **state) {
+    (void)state;
+    static const char *const bad[][2] = {{"", "''"},
+                                         {"scale", "'scale'"},
+                                         {"scale=", "'scale='"},
+                                         {"scale=half", "'scale=half'"},
+                                         {"scale=nan", "'scale=nan'"},
+                                         {"scale=inf", "'scale=inf'"},
+                                         {"scale=0.5x", "'scale=0.5x'"},
+                                         {"scale=0.5+", "''"},
+                                         {"scale=0.5+scale=0.4", "'scale=0.4' comes twice"},
+                                         {"aa=smaa", "'aa=smaa'"},
+                                         {"aa=smaa-high2", "'aa=smaa-high2'"},
+                                         {"base+aa=fxaa", "'base'"},
+                                         {"speed=3", "'speed=3'"},
+                                         {"ao_steps=-1", "'ao_steps=-1'"},
+                                         {"ao_steps=99999999999", "'ao_steps=99999999999'"},
+                                         {"shadow_refresh=1-2-4", "'shadow_refresh=1-2-4'"}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char error[256] = "";
+        masu_rung rung;
+        if (masu_setting_parse(bad[i][0], &rung, error, sizeof error))
+            fail_msg("'%s' is taken", bad[i][0]);
+        if (!strstr(error, bad[i][1]) || strchr(error, '\n'))
+            fail_msg("'%s': %s", bad[i][0], error);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_are_unique_and_parents_come_first),
         cmocka_unit_test(a_scene_of_nothing_leaves_what_is_done_to_pictures),
         cmocka_unit_test(a_scene_of_everything_keeps_everything),
+        cmocka_unit_test(a_cutoff_that_is_the_scenes_own_is_the_base),
         cmocka_unit_test(plans_are_compared_by_passes_sizes_and_bytes),
         cmocka_unit_test(knobs_are_printed_as_json),
+        cmocka_unit_test(names_are_read_again),
+        cmocka_unit_test(names_that_are_none_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "metric_flip.h"
+#include "metric_hdr_flip.h"
 #include "metric_image.h"
 #include "metric_march.h"
 #include "support_random.h"
@@ -159,14 +160,20 @@ static double distance_of(color a, color b) {
            sqrt((a.c[1] - b.c[1]) * (a.c[1] - b.c[1]) + (a.c[2] - b.c[2]) * (a.c[2] - b.c[2]));
 }
 
-static color opponent_at(const uint8_t *rgba, int width, int height, int x, int y) {
+static color decoded(const uint8_t *rgba) {
+    color o;
+    for (int i = 0; i < 3; i++) {
+        double v = rgba[i] / 255.0;
+        o.c[i] = v > 0.04045 ? pow((v + 0.055) / 1.055, 2.4) : v / 12.92;
+    }
+    return o;
+}
+
+static color opponent_at(const color *linear, int width, int height, int x, int y) {
     color rgb, o;
     x = x < 0 ? 0 : x >= width ? width - 1 : x;
     y = y < 0 ? 0 : y >= height ? height - 1 : y;
-    for (int i = 0; i < 3; i++) {
-        double v = rgba[4 * (y * width + x) + i] / 255.0;
-        rgb.c[i] = v > 0.04045 ? pow((v + 0.055) / 1.055, 2.4) : v / 12.92;
-    }
+    rgb = linear[y * width + x];
     color s = xyz_of(rgb);
     o.c[0] = 116 * s.c[1] - 16;
     o.c[1] = 500 * (s.c[0] / white[0] - s.c[1]);
@@ -181,7 +188,7 @@ static double sensitivity(int channel, double degrees_squared) {
     return 34.1 * sqrt(PI / 0.04) * exp(-z / 0.04) + 13.5 * sqrt(PI / 0.025) * exp(-z / 0.025);
 }
 
-static color seen_at(const uint8_t *rgba, int width, int height, int x, int y, double ppd) {
+static color seen_at(const color *rgba, int width, int height, int x, int y, double ppd) {
     int r = (int)ceil(3 * sqrt(0.04 / (2 * PI * PI)) * ppd);
     color sum = {{0, 0, 0}}, weight = {{0, 0, 0}}, xyz;
     for (int j = -r; j <= r; j++) {
@@ -202,7 +209,7 @@ static color seen_at(const uint8_t *rgba, int width, int height, int x, int y, d
     return hunt_of(rgb_of(xyz));
 }
 
-static double feature_at(const uint8_t *rgba, int width, int height, int x, int y, double ppd,
+static double feature_at(const color *rgba, int width, int height, int x, int y, double ppd,
                          int order) {
     double sigma = 0.5 * 0.082 * ppd, found[2] = {0, 0}, up = 0, down = 0;
     int r = (int)ceil(3 * sigma);
@@ -232,7 +239,7 @@ static double spread_out(double distance) {
     return 0.95 + (e - 0.4 * most) / (0.6 * most) * 0.05;
 }
 
-static double slow_flip(const uint8_t *a, const uint8_t *b, int width, int height, int x, int y,
+static double slow_flip(const color *a, const color *b, int width, int height, int x, int y,
                         double ppd) {
     double e = spread_out(
         distance_of(seen_at(a, width, height, x, y, ppd), seen_at(b, width, height, x, y, ppd)));
@@ -248,6 +255,7 @@ static void flip_agrees_with_a_slow_form(void **state) {
     (void)state;
     enum { W = 19, H = 14 };
     static uint8_t a[W * H * 4], b[W * H * 4];
+    static color u[W * H], v[W * H];
     static float map[W * H];
     static const double ppds[] = {0, 23.5};
     for (uint64_t seed = 1; seed <= 2; seed++) {
@@ -261,7 +269,11 @@ static void flip_agrees_with_a_slow_form(void **state) {
                 if (b[i] > 20) b[i] = a[i];
             assert_true(masu_metric_flip(a, b, W, H, ppds[p], map, &flip));
             for (int i = 0; i < W * H; i++) {
-                double wanted = slow_flip(a, b, W, H, i % W, i / W, ppd);
+                u[i] = decoded(a + 4 * i);
+                v[i] = decoded(b + 4 * i);
+            }
+            for (int i = 0; i < W * H; i++) {
+                double wanted = slow_flip(u, v, W, H, i % W, i / W, ppd);
                 near((double)map[i], wanted, 2e-5); /* the slow form's matrix has 7 digits */
                 mean += wanted / (W * H);
                 most = fmax(most, wanted);
@@ -318,6 +330,126 @@ static void flip_grows_with_the_error_and_is_the_same_both_ways(void **state) {
     near(ab.max, 0, 0);
 }
 
+/* ---- HDR-FLIP -------------------------------------------------------------------------------- */
+
+/* The paper's curve as its author has it: 0.6 first, then his five numbers. */
+static double slow_tone(double x) {
+    double v = 0.6 * x, y = v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14);
+    return y < 0 ? 0 : y > 1 ? 1 : y;
+}
+
+/* What it shows at 0.85, found by bisection. */
+static double slow_bright(void) {
+    double low = 0, high = 10;
+    for (int i = 0; i < 200; i++)
+        *(slow_tone((low + high) / 2) < 0.85 ? &low : &high) = (low + high) / 2;
+    return low;
+}
+
+static void the_tone_curve_by_hand(void **state) {
+    (void)state;
+    near(masu_hdr_flip_tone(0), 0, 0);
+    /* 0.6: 0.6 * (1.506 + 0.03) / (0.6 * (1.458 + 0.59) + 0.14) = 0.9216 / 1.3688 */
+    near(masu_hdr_flip_tone(1), 0.9216 / 1.3688, 1e-12);
+    near(masu_hdr_flip_tone(1e40), 1, 0);
+    for (double x = 1e-4; x < 1e4; x *= 1.7) near(masu_hdr_flip_tone(x), slow_tone(x), 1e-12);
+}
+
+static void exposures_by_hand(void **state) {
+    (void)state;
+    /* Luminances 8, 1, 1 and 0.25: three stops from the brightest to the median. */
+    const float grey[] = {8, 8, 8, 1, 1, 1, 1, 1, 1, 0.25f, 0.25f, 0.25f};
+    masu_exposures r;
+    assert_true(masu_hdr_flip_exposures(grey, 4, &r));
+    near(r.first, log2(slow_bright() / 8), 1e-9);
+    near(r.last, log2(slow_bright() / 1), 1e-9);
+    assert_int_equal(r.count, 3);
+    /* Green alone counts for 0.7152, and of an even number the median is between two. */
+    const float two[] = {0, 1, 0, 0, 4, 0};
+    assert_true(masu_hdr_flip_exposures(two, 2, &r));
+    near(r.first, log2(slow_bright() / (4 * 0.7152)), 1e-6);
+    near(r.last, log2(slow_bright() / (2.5 * 0.7152)), 1e-6);
+    assert_int_equal(r.count, 2);
+    const float flat[] = {3, 3, 3, 3, 3, 3}, black[] = {0, 0, 0, -1, (float)NAN, 0};
+    assert_true(masu_hdr_flip_exposures(flat, 2, &r));
+    near(r.last, r.first, 0);
+    assert_int_equal(r.count, 2);
+    assert_true(masu_hdr_flip_exposures(black, 2, &r));
+    near(r.first, 0, 0);
+    near(r.last, 0, 0);
+    /* Black in most of it: 20 stops, no more. */
+    const float night[] = {0, 0, 0, 0, 0, 0, 1, 1, 1};
+    assert_true(masu_hdr_flip_exposures(night, 3, &r));
+    near(r.last - r.first, 20, 1e-9);
+    assert_int_equal(r.count, 20);
+}
+
+static void hdr_flip_agrees_with_a_slow_form(void **state) {
+    (void)state;
+    enum { W = 13, H = 9 };
+    static float a[3 * W * H], b[3 * W * H], map[W * H];
+    static color u[W * H], v[W * H];
+    static double worst[W * H];
+    uint64_t seed = 11;
+    masu_flip flip;
+    masu_exposures r;
+    for (int i = 0; i < 3 * W * H; i++) { /* nine stops; one value in six differs */
+        a[i] = ldexpf((float)support_random_in(&seed, 1, 1000) / 1000, (int)(i / 3 % 9) - 5);
+        b[i] = support_random_in(&seed, 0, 5) ? a[i] : 2 * a[i];
+    }
+    assert_true(masu_hdr_flip_exposures(a, W * H, &r));
+    assert_true(r.count > 2 && r.count < 9);
+    assert_true(masu_metric_hdr_flip(a, b, W, H, 23.5, map, &flip));
+    for (uint32_t k = 0; k < r.count; k++) {
+        double scale = pow(2, r.first + k * (r.last - r.first) / (r.count - 1));
+        for (int i = 0; i < W * H; i++) {
+            for (int c = 0; c < 3; c++) {
+                u[i].c[c] = slow_tone(scale * (double)a[3 * i + c]);
+                v[i].c[c] = slow_tone(scale * (double)b[3 * i + c]);
+            }
+        }
+        for (int i = 0; i < W * H; i++)
+            worst[i] = fmax(worst[i], slow_flip(u, v, W, H, i % W, i / W, 23.5));
+    }
+    double mean = 0;
+    for (int i = 0; i < W * H; i++) {
+        near((double)map[i], worst[i], 2e-5);
+        mean += worst[i] / (W * H);
+    }
+    near(flip.mean, mean, 1e-5);
+    assert_true(mean > 0.05);
+    assert_true(masu_metric_hdr_flip(a, a, W, H, 23.5, map, &flip));
+    near(flip.max, 0, 0);
+}
+
+/* Flat pictures, so that nothing but the curve and FLIP of greys is left: 1 and 2 at the only
+ * exposure there is, which shows 1 at 0.85. */
+static void hdr_flip_of_flat_pictures_by_hand(void **state) {
+    (void)state;
+    enum { W = 16, H = 12 };
+    static float a[3 * W * H], b[3 * W * H];
+    masu_flip flip;
+    for (int i = 0; i < 3 * W * H; i++) {
+        a[i] = 1;
+        b[i] = 2;
+    }
+    double y[2] = {0.85, slow_tone(2 * slow_bright())};
+    double apart = 116 * (cbrt(y[1]) - cbrt(y[0])); /* lightness */
+    assert_true(masu_metric_hdr_flip(a, b, W, H, 0, NULL, &flip));
+    near(flip.mean, spread_out(apart), 1e-6);
+    near(flip.max, flip.mean, 1e-9);
+    /* An error in the dark, which the exposure for the brightest alone would hide. */
+    for (int i = 0; i < 3 * W * H; i++) {
+        a[i] = b[i] = i < 3 * W ? 1000 : 0.01f;
+        if (i >= 3 * W * (H - 3)) b[i] = 0.02f;
+    }
+    assert_true(masu_metric_hdr_flip(a, b, W, H, 0, NULL, &flip));
+    assert_true(flip.max > spread_out(apart) / 2);
+    for (int i = 0; i < 3 * W * H; i++) b[i] = (float)NAN; /* is black */
+    assert_true(masu_metric_hdr_flip(a, b, W, H, 0, NULL, &flip));
+    assert_true(flip.mean > 0.5 && flip.max <= 1);
+}
+
 /* ---- March errors ---------------------------------------------------------------------------- */
 
 static void march_errors_by_hand(void **state) {
@@ -338,6 +470,7 @@ static void march_errors_by_hand(void **state) {
     near(e.depth_off_pct, 100.0 / 3, 1e-12);
     near(e.depth_mean_px, (0 + 0.5 + 20) / 3, 1e-9);
     near(e.depth_max_px, 20, 1e-9);
+    near(e.depth_p99_px, 20, 1e-9); /* of three the third */
     near(e.normal_mean, 4, 1e-12);
     near(e.normal_max, 8, 1e-12);
     /* Even: (1,1) right, (4,4) wrong. Odd: one miss, one far, two right. */
@@ -411,6 +544,22 @@ static void a_planted_pattern_is_found_and_chance_is_not(void **state) {
     free(samples);
 }
 
+/* Of 201 the p99 is that with the number 198 of 0 to 200, whatever their order. */
+static void the_99th_percentile_of_depth_leaves_out_the_worst(void **state) {
+    (void)state;
+    enum { N = 201 };
+    static masu_march_sample samples[N];
+    masu_march_errors e;
+    for (uint32_t i = 0; i < N; i++) {
+        double apart = 0.01 * (i * 37 % N); /* 0 to 2 m, each once; a pixel is 0.1 m there */
+        samples[i] = (masu_march_sample){i, 0, 10 + (i % 2 ? apart : -apart), 10, 0.01, 0};
+    }
+    assert_true(masu_march_errors_of(samples, N, &e));
+    near(e.depth_p99_px, 19.8, 1e-9);
+    near(e.depth_max_px, 20, 1e-9);
+    near(e.depth_mean_px, 10, 1e-9);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rmse_and_psnr_by_hand),
@@ -419,8 +568,13 @@ int main(void) {
         cmocka_unit_test(flip_agrees_with_a_slow_form),
         cmocka_unit_test(flip_of_flat_pictures_by_hand),
         cmocka_unit_test(flip_grows_with_the_error_and_is_the_same_both_ways),
+        cmocka_unit_test(the_tone_curve_by_hand),
+        cmocka_unit_test(exposures_by_hand),
+        cmocka_unit_test(hdr_flip_agrees_with_a_slow_form),
+        cmocka_unit_test(hdr_flip_of_flat_pictures_by_hand),
         cmocka_unit_test(march_errors_by_hand),
         cmocka_unit_test(class_tests_by_hand),
+        cmocka_unit_test(the_99th_percentile_of_depth_leaves_out_the_worst),
         cmocka_unit_test(a_planted_pattern_is_found_and_chance_is_not),
     };
     return cmocka_run_group_tests_name("metrics", tests, NULL, NULL);

@@ -1,0 +1,17 @@
+/* tally.comp: a loop of as many rounds as the invocation's number says, for test_model. */
+#version 450
+
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 1) buffer Values {
+    float values[];
+};
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    float x = values[i];
+    for (uint k = 0u; k < i; k++) { /* a comparison, a fused product, a step */
+        x = x * 0.5 + 1.0;
+    }
+    values[i] = x;
+}

@@ -1,0 +1,272 @@
+/* test_model.c: what the model sheet counts and computes, without a device: costs of
+ * instructions on modules made for it and on EASU's, counters put into every kind of shader,
+ * rows and sums of a sheet whose counts are given, rungs out of JSON. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "bench_settings.h"
+#include "model_sheet.h"
+#include "model_write.h"
+#include "spirv_cost.h"
+#include "spirv_tally.h"
+#include "support_spirv.h"
+
+#include "bilinear_comp.spv.h"
+#include "easu_bytes_comp.spv.h"
+#include "gbuffer_textured_frag.spv.h"
+#include "gbuffer_vert.spv.h"
+#include "rcas_bytes_comp.spv.h"
+#include "specular_trace_comp.spv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- Costs ----------------------------------------------------------------------------------- */
+
+static masu_spirv_cost cost_of_source(const char *body) {
+    char path[] = "/tmp/masu_model_XXXXXX";
+    spirv_module m;
+    int handle = mkstemp(path);
+    FILE *f = handle >= 0 ? fdopen(handle, "w") : NULL;
+    assert_non_null(f);
+    fprintf(f,
+            "#version 450\nlayout(set = 0, binding = 0) buffer B { vec4 a, b, c; mat3 m; uvec4 u; "
+            "ivec4 i; };\nvoid main() { %s }\n",
+            body);
+    assert_int_equal(fclose(f), 0);
+    int good = spirv_compile(path, "-S comp", &m);
+    remove(path);
+    if (!good) fail_msg("does not compile: %s", body);
+    masu_spirv_cost cost = masu_spirv_cost_straight(&m);
+    spirv_free(&m);
+    return cost;
+}
+
+/* Each by hand: components, then what one of them takes. */
+static void test_costs(void **state) {
+    static const struct {
+        const char *body;
+        uint32_t plain, weighted;
+    } cases[] = {
+        {"a = b;", 0, 0},
+        {"a = b + c;", 4, 4},
+        {"a = -b;", 0, 0},
+        {"a = fma(a, b, c);", 4, 8},
+        {"a.xyz = sqrt(b.xyz);", 3, 12},
+        {"a.x = b.x / c.x;", 1, 5},
+        {"a.x = dot(b.xyz, c.xyz);", 5, 5},
+        {"a.x = dot(b, c);", 7, 7},
+        {"a.xyz = m * b.xyz;", 15, 15},
+        {"a.xyz = b.xyz * m;", 15, 15},
+        {"m = m * m;", 45, 45},
+        {"a.xyz = cross(b.xyz, c.xyz);", 9, 9},
+        {"a.xyz = normalize(b.xyz);", 9, 12},
+        {"a.x = length(b.xyz);", 6, 9},
+        {"a = clamp(b, 0.0, 1.0);", 4, 8},
+        {"a.x = pow(b.x, c.x);", 1, 9},
+        {"u.x = u.y * u.z;", 1, 4},
+        {"u.x = u.y / u.z;", 1, 20},
+        {"i.xy = i.zw + i.xy;", 2, 2},
+        {"a = vec4(u);", 4, 4},
+        {"a.x = uintBitsToFloat(u.x);", 0, 0},
+        {"a = mix(b, c, a);", 4, 8},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        masu_spirv_cost cost = cost_of_source(cases[k].body);
+        if (cost.plain != cases[k].plain || cost.weighted != cases[k].weighted)
+            fail_msg("%s: %u, %u instead of %u, %u", cases[k].body, cost.plain, cost.weighted,
+                     cases[k].plain, cases[k].weighted);
+    }
+}
+
+static masu_spirv_cost straight(const uint32_t *words, size_t bytes) {
+    spirv_module m;
+    assert_true(spirv_from_words(words, bytes / 4, &m));
+    masu_spirv_cost cost = masu_spirv_cost_straight(&m);
+    spirv_free(&m);
+    return cost;
+}
+
+/* EASU has been counted by hand as 794, without what finds and bounds the pixel. */
+static void test_easu(void **state) {
+    (void)state;
+    masu_spirv_cost easu = straight(masu_spv_easu_bytes_comp, sizeof masu_spv_easu_bytes_comp);
+    masu_spirv_cost rcas = straight(masu_spv_rcas_bytes_comp, sizeof masu_spv_rcas_bytes_comp);
+    masu_spirv_cost bilinear = straight(masu_spv_bilinear_comp, sizeof masu_spv_bilinear_comp);
+    assert_in_range(easu.plain, 794, 794 + 40);
+    assert_in_range(rcas.plain, 175, 175 + 40);
+    assert_in_range(bilinear.plain, 81, 81 + 40);
+    assert_true(easu.weighted >= easu.plain);
+}
+
+/* ---- Counters -------------------------------------------------------------------------------- */
+
+static bool counts_of(const masu_tally *t, masu_tally_kind kind, uint32_t set, uint32_t binding) {
+    for (uint32_t n = 2; n < t->count; n++) {
+        const masu_tally_number *one = &t->numbers[n];
+        if (one->kind == kind && one->set == set && one->binding == binding) return true;
+    }
+    return false;
+}
+
+static masu_tally tally(const uint32_t *words, size_t bytes) {
+    char path[] = "/tmp/masu_model_XXXXXX", command[200];
+    masu_tally t;
+    spirv_module m;
+    assert_true(masu_tally_make(words, bytes / 4, 3, 0, &t));
+    assert_true(spirv_from_words(t.words, t.word_count, &m));
+    spirv_free(&m);
+    int handle = mkstemp(path);
+    FILE *f = handle >= 0 ? fdopen(handle, "wb") : NULL;
+    assert_non_null(f);
+    assert_int_equal(fwrite(t.words, 4, t.word_count, f), t.word_count);
+    assert_int_equal(fclose(f), 0);
+    snprintf(command, sizeof command, "spirv-val --target-env vulkan1.1 %s", path);
+    int code = system(command);
+    remove(path);
+    assert_int_equal(code, 0);
+    free(t.words);
+    return t;
+}
+
+static void test_counters(void **state) {
+    (void)state;
+    masu_tally easu = tally(masu_spv_easu_bytes_comp, sizeof masu_spv_easu_bytes_comp);
+    assert_int_equal(easu.model, 5);
+    assert_true(counts_of(&easu, MASU_TALLY_FETCHED, MASU_SET_PASS, 0));
+    assert_true(counts_of(&easu, MASU_TALLY_WRITTEN, MASU_SET_PASS, 1));
+    masu_tally vertex = tally(masu_spv_gbuffer_vert, sizeof masu_spv_gbuffer_vert);
+    assert_int_equal(vertex.model, 0);
+    assert_true(counts_of(&vertex, MASU_TALLY_LOADED, MASU_SET_GLOBAL, MASU_BIND_INSTANCES));
+    masu_tally fragment =
+        tally(masu_spv_gbuffer_textured_frag, sizeof masu_spv_gbuffer_textured_frag);
+    assert_int_equal(fragment.model, 4);
+    assert_true(fragment.late); /* masks are cut */
+    masu_tally trace = tally(masu_spv_specular_trace_comp, sizeof masu_spv_specular_trace_comp);
+    assert_true(counts_of(&trace, MASU_TALLY_LOADED, MASU_SET_GLOBAL, MASU_BIND_TRACE));
+    static const uint32_t none[] = {0x07230203, 0x10300, 0, 8, 0};
+    masu_tally t;
+    assert_false(masu_tally_make(none, 5, 3, 0, &t));
+    assert_false(masu_tally_make(none, 1, 3, 0, &t));
+}
+
+/* ---- The sheet ------------------------------------------------------------------------------- */
+
+/* A picture from elsewhere, upscaled from half to full size and sharpened; drawn at half of
+ * that. */
+static void plan_upscaling(uint32_t width, uint32_t height, masu_frame_plan *plan) {
+    masu_desc d = {
+        .source = {.width = width / 2, .height = height / 2, .format = VK_FORMAT_R8G8B8A8_UNORM},
+        .output = {width, height},
+        .targets = {.storage = 1, .count = 1},
+        .rung_count = 1};
+    static VkImage image;
+    static VkImageView view;
+    masu_detail detail;
+    memset(&image, 1, sizeof image);
+    memset(&view, 1, sizeof view);
+    d.source.view = view;
+    d.targets.images = &image;
+    d.targets.views = &view;
+    if (masu_compile(&d, 256, 64, plan, &detail)) fail_msg("refused: %s", detail.text);
+}
+
+static void count_of(masu_pass_count *c, double pixels, double plain, double weighted,
+                     double fetched) {
+    *c = (masu_pass_count){.invocations = pixels,
+                           .plain = plain * pixels,
+                           .weighted = weighted * pixels,
+                           .most = plain,
+                           .number_count = 2,
+                           .numbers = {{MASU_TALLY_FETCHED, MASU_SET_PASS, 0, fetched * pixels},
+                                       {MASU_TALLY_WRITTEN, MASU_SET_PASS, 1, pixels}}};
+}
+
+static void assert_near(double given, double wanted) {
+    if (fabs(given - wanted) > 1e-9 * fabs(wanted))
+        fail_msg("%.12g instead of %.12g", given, wanted);
+}
+
+static void test_sheet(void **state) {
+    static masu_count count;
+    static masu_model m;
+    const double p = 960.0 * 540.0, P = 4.0 * p, n = p; /* n: half of P's sides */
+    (void)state;
+    plan_upscaling(960, 540, &count.drawn);
+    plan_upscaling(1920, 1080, &count.sheet);
+    count.rung_count = 1;
+    count_of(&count.passes[0][MASU_PASS_EASU], p, 800.0, 850.0, 12.0);
+    count_of(&count.passes[0][MASU_PASS_RCAS], p, 100.0, 150.0, 5.0);
+    masu_model_make(&count, &m);
+    const masu_model_row *easu = &m.rungs[0].rows[MASU_PASS_EASU];
+    const masu_model_row *rcas = &m.rungs[0].rows[MASU_PASS_RCAS];
+    assert_true(easu->runs && rcas->runs && !m.rungs[0].rows[MASU_PASS_LIGHT].runs);
+    assert_near(easu->bytes, 4.0 * n + 4.0 * P);
+    assert_near(rcas->bytes, 8.0 * P);
+    assert_near(easu->weighted, 850.0 * P);
+    assert_int_equal(easu->bytes_sure, MASU_MODEL_EXACT);
+    assert_int_equal(easu->weighted_sure, MASU_MODEL_EXACT);
+    /* Xe80: 850 operations of 2.07 M pixels at 1.66 TFLOPS are 1.06 ms, 8 bytes at 68 GB/s 0.24. */
+    bool by_bytes;
+    assert_near(masu_model_floor(easu, 0, &by_bytes), 850.0 * P / 1.66e9);
+    assert_false(by_bytes);
+    assert_near(masu_model_realistic(easu, 0), 2.5 * 850.0 * P / 1.66e9);
+    assert_near(masu_model_floor(rcas, 0, &by_bytes), 8.0 * P / 68e6);
+    assert_true(by_bytes);
+    assert_near(masu_model_realistic(rcas, 0), 1.3 * 8.0 * P / 68e6);
+    assert_near(m.rungs[0].sum.bytes, easu->bytes + rcas->bytes);
+    assert_near(m.rungs[0].floor[0], 850.0 * P / 1.66e9 + 8.0 * P / 68e6);
+    assert_int_equal(m.chosen[0][0], 0);  /* Xe80 */
+    assert_int_equal(m.chosen[4][0], -1); /* 850 and 150 operations of 2 M pixels at 0.15 TFLOPS */
+    assert_int_equal(m.chosen[4][1], -1);
+    /* Pixels that go their own way, and texels that were never asked for. */
+    count.passes[0][MASU_PASS_EASU].most = 900.0;
+    count.passes[0][MASU_PASS_RCAS].numbers[0].amount = 0.25 * p;
+    masu_model_make(&count, &m);
+    assert_int_equal(easu->weighted_sure, MASU_MODEL_MEASURED);
+    assert_int_equal(rcas->bytes_sure, MASU_MODEL_MEASURED);
+    assert_near(rcas->bytes, 4.0 * (0.25 * P + P));
+}
+
+static void test_says_computed(void **state) {
+    static masu_model m;
+    char *text = NULL;
+    size_t bytes = 0;
+    (void)state;
+    m.rung_count = 1;
+    m.rungs[0].measured = 0.5;
+    snprintf(m.rungs[0].name, sizeof m.rungs[0].name, "a<b>&c");
+    m.rungs[0].rows[MASU_PASS_TONEMAP].runs = m.rungs[0].sum.runs = true;
+    bool (*const writers[])(const masu_model *, FILE *) = {masu_model_print, masu_model_csv,
+                                                           masu_model_xhtml};
+    for (size_t w = 0; w < 3; w++) {
+        FILE *f = open_memstream(&text, &bytes);
+        assert_non_null(f);
+        assert_true(writers[w](&m, f));
+        assert_int_equal(fclose(f), 0);
+        assert_non_null(strstr(text, "COMPUTED"));
+        assert_non_null(strstr(text, "tonemap"));
+        if (w == 2) {
+            assert_null(strstr(text, "a<b"));
+            assert_non_null(strstr(text, "a&lt;b&gt;&amp;c"));
+            assert_int_equal(strncmp(text, "<section", 8), 0);
+        }
+        free(text);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_costs),         cmocka_unit_test(test_easu),
+        cmocka_unit_test(test_counters),      cmocka_unit_test(test_sheet),
+        cmocka_unit_test(test_says_computed)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
