@@ -47,6 +47,18 @@ static const masu_rung exact_rung = {.scale = 1.0f,
                                      .ao_slices = MASU_AO_SLICES_MAX,
                                      .ao_steps = MASU_AO_STEPS_MAX};
 
+masu_session_desc masu_picture_session(const char *scene_path, VkExtent2D size,
+                                       const masu_headless_desc *host) {
+    masu_session_desc d;
+    memset(&d, 0, sizeof d);
+    d.scene_path = scene_path;
+    d.host = *host;
+    d.desc.output = size;
+    d.desc.targets.storage = 1;
+    d.desc.vulkan.max_anisotropy = 1.0f;
+    return d;
+}
+
 bool masu_picture_open(const masu_session_desc *d, uint32_t positions, masu_session *s, char *error,
                        size_t error_size) {
     masu_session_desc own = *d;

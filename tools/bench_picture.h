@@ -58,6 +58,11 @@ bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint3
                             void (*progress)(uint32_t done, uint32_t of), char *error,
                             size_t error_size);
 
+/* A session of a scene whose pictures are compared with the truth: a storage target, textures without
+ * anisotropy, which a CPU driver has at forty times the price. */
+masu_session_desc masu_picture_session(const char *scene_path, VkExtent2D size,
+                                       const masu_headless_desc *host);
+
 /* A truth that is read from a file, if there is one, else drawn, and written there. */
 typedef struct masu_picture_want {
     const char *path; /* NULL: none */

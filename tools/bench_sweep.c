@@ -48,14 +48,7 @@ static bool failed(sweep *w, const char *text) {
 }
 
 static masu_session_desc session_of(const sweep *w) {
-    masu_session_desc d;
-    memset(&d, 0, sizeof d);
-    d.scene_path = w->d->scene_path;
-    d.host = w->d->host;
-    d.desc.output = w->d->size;
-    d.desc.targets.storage = 1;
-    d.desc.vulkan.max_anisotropy = 1.0f;
-    return d;
+    return masu_picture_session(w->d->scene_path, w->d->size, &w->d->host);
 }
 
 static void close_session(sweep *w) {

@@ -75,14 +75,7 @@ masu_rung masu_whole_plain(const masu_scene *scene, const char **march) {
 }
 
 static masu_session_desc session_of(const whole *w) {
-    masu_session_desc d;
-    memset(&d, 0, sizeof d);
-    d.scene_path = w->d->scene_path;
-    d.host = w->d->host;
-    d.desc.output = w->d->size;
-    d.desc.targets.storage = 1;
-    d.desc.vulkan.max_anisotropy = 1.0f;
-    return d;
+    return masu_picture_session(w->d->scene_path, w->d->size, &w->d->host);
 }
 
 /* samples: what the mips of a plain one are for. */

@@ -63,6 +63,40 @@ bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa);
  * an exit code. */
 int masu_ladder_option(const char *given, masu_desc *desc);
 
+/* What commands that compare pictures with the truth have in common; ids from 910 on. `time` is the
+ * default, as text. */
+enum {
+    MASU_OPTION_SIZE = 910,
+    MASU_OPTION_TIME,
+    MASU_OPTION_TRUTH,
+    MASU_OPTION_POSITIONS,
+    MASU_OPTION_REFERENCE
+};
+#define MASU_TRUTH_OPTIONS(time)                                                                   \
+    {"size", "WxH", "output size (default 640x360)", MASU_OPTION_SIZE, 0},                         \
+        {"time", "SECONDS", "of the scene and its camera (default " time ")", MASU_OPTION_TIME,    \
+         0},                                                                                       \
+        {"truth", "FILE.png", "read the truth from there, or write it there", MASU_OPTION_TRUTH,   \
+         0},                                                                                       \
+        {"positions", "N", "places in each pixel that the truth is the mean of (default 64)",      \
+         MASU_OPTION_POSITIONS, 0},                                                                \
+    {                                                                                              \
+        "reference", "N", "rays of reflections from each of its pixels, in all (default 1024)",    \
+            MASU_OPTION_REFERENCE, 0                                                               \
+    }
+
+/* Where they go. */
+typedef struct masu_truth_places {
+    VkExtent2D *size;
+    double *time;
+    const char **path;
+    uint32_t *positions, *rays;
+} masu_truth_places;
+
+/* 1: it was one of them; 0: the id is another's; -1: a mistake, which has been reported: return
+ * MASU_CLI_USAGE. */
+int masu_truth_option(const masu_cli *cli, int id, const masu_truth_places *to);
+
 /* --size WxH: what a PNG may hold, 16384 a side and 64 Mi pixels; said before the work is done. */
 bool masu_output_size(const masu_cli *cli, VkExtent2D *size);
 

@@ -15,11 +15,6 @@
 
 enum {
     OPTION_OUT = 1,
-    OPTION_SIZE,
-    OPTION_TIME,
-    OPTION_TRUTH,
-    OPTION_POSITIONS,
-    OPTION_REFERENCE,
     OPTION_FRAMES,
     OPTION_RUNS,
     OPTION_SHARD,
@@ -35,7 +30,7 @@ typedef struct options {
     masu_sweep_desc sweep;
     const char *arguments[PARTS_MOST], *against, *csv;
     uint32_t count;
-    bool merge, sized, placed, ran, framed;
+    bool merge;
 } options;
 
 static void progress(const char *text) { masu_cli_progress("%s", text); }
@@ -111,12 +106,11 @@ static int sweep(options *o) {
     char error[4096];
     o->sweep.scene_path = o->arguments[0];
     o->sweep.progress = progress;
-    if (o->sweep.quick) {
-        if (!o->sized) o->sweep.size = (VkExtent2D){128, 72};
-        if (!o->placed) o->sweep.positions = 4;
-        if (!o->ran) o->sweep.runs = 2;
-        if (!o->framed) o->sweep.frames = 8;
-    }
+    masu_sweep_desc *d = &o->sweep; /* what has not been given is 0 */
+    if (!d->size.width) d->size = d->quick ? (VkExtent2D){128, 72} : (VkExtent2D){640, 360};
+    if (!d->positions) d->positions = d->quick ? 4 : MASU_PICTURE_POSITIONS;
+    if (!d->runs) d->runs = d->quick ? 2 : 9;
+    if (!d->frames) d->frames = d->quick ? 8 : 32;
     bool good = masu_sweep_run(&o->sweep, &result, error, sizeof error);
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
@@ -154,15 +148,8 @@ static bool read_option(const masu_cli *cli, int id, options *o) {
     masu_sweep_desc *d = &o->sweep;
     switch (id) {
     case OPTION_OUT: d->folder = cli->value; return true;
-    case OPTION_SIZE: o->sized = true; return masu_output_size(cli, &d->size);
-    case OPTION_TIME: return masu_cli_double(cli, -1e9, 1e9, &d->time);
-    case OPTION_TRUTH: d->truth_path = cli->value; return true;
-    case OPTION_POSITIONS:
-        o->placed = true;
-        return masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, &d->positions);
-    case OPTION_REFERENCE: return masu_cli_uint(cli, 1, 1000000, &d->rays);
-    case OPTION_FRAMES: o->framed = true; return masu_cli_uint(cli, 1, 10000, &d->frames);
-    case OPTION_RUNS: o->ran = true; return masu_cli_uint(cli, 1, MASU_SWEEP_RUNS_MAX, &d->runs);
+    case OPTION_FRAMES: return masu_cli_uint(cli, 1, 10000, &d->frames);
+    case OPTION_RUNS: return masu_cli_uint(cli, 1, MASU_SWEEP_RUNS_MAX, &d->runs);
     case OPTION_SHARD: return read_shard(cli, d);
     case OPTION_MERGE: o->merge = true; return true;
     case OPTION_QUICK: d->quick = true; return true;
@@ -181,12 +168,10 @@ static bool read_option(const masu_cli *cli, int id, options *o) {
 
 static int run(masu_cli *cli) {
     static options o;
-    o = (options){.sweep = {.size = {640, 360},
-                            .time = 1.0,
-                            .positions = MASU_PICTURE_POSITIONS,
+    masu_sweep_desc *d = &o.sweep;
+    const masu_truth_places truth = {&d->size, &d->time, &d->truth_path, &d->positions, &d->rays};
+    o = (options){.sweep = {.time = 1.0,
                             .rays = MASU_PICTURE_RAYS,
-                            .frames = 32,
-                            .runs = 9,
                             .shards = 1,
                             .host = {.message = masu_print_message}}};
     for (;;) {
@@ -194,6 +179,9 @@ static int run(masu_cli *cli) {
         if (id == MASU_CLI_EXIT) return cli->exit_code;
         if (id == MASU_CLI_END) break;
         if (masu_device_option(cli, id, &o.sweep.host)) continue;
+        int read = masu_truth_option(cli, id, &truth);
+        if (read < 0) return MASU_CLI_USAGE;
+        if (read) continue;
         if (!read_option(cli, id, &o)) return MASU_CLI_USAGE;
     }
     if (o.against) return against(&o);
@@ -209,14 +197,7 @@ static int run(masu_cli *cli) {
 static const masu_cli_option list[] = {
     {"out", "DIR", "folder of the results; one with a part of the same sweep is gone on with",
      OPTION_OUT, 'o'},
-    {"size", "WxH", "output size (default 640x360)", OPTION_SIZE, 0},
-    {"time", "SECONDS", "of the scene and its camera (default 1)", OPTION_TIME, 0},
-    {"truth", "FILE.png", "read the truth from there, or write it there (default DIR/truth.png)",
-     OPTION_TRUTH, 0},
-    {"positions", "N", "places in each pixel that the truth is the mean of (default 64)",
-     OPTION_POSITIONS, 0},
-    {"reference", "N", "rays of reflections from each of its pixels, in all (default 1024)",
-     OPTION_REFERENCE, 0},
+    MASU_TRUTH_OPTIONS("1"),
     {"frames", "N",
      "in motion before a picture is taken, where one depends on those before\n"
      "(default 32)",
@@ -241,6 +222,7 @@ const masu_cli_command masu_cmd_bench = {
     .summary = "measure each quality level: error against run time, and the rungs worth having",
     .options = list,
     .details =
+        "--truth is DIR/truth.png unless it is given.\n"
         "Into DIR: results.csv, a row per setting; ladder.json, the rungs of the Pareto front;\n"
         "index.html, one page with tables, plots and pictures; plots/ if there is gnuplot;\n"
         "model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu model), computed.\n"

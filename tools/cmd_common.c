@@ -2,6 +2,7 @@
 #include "cmd.h"
 
 #include "bench_ladder_file.h"
+#include "bench_picture.h"
 #include "image.h"
 
 #include <stdio.h>
@@ -51,6 +52,21 @@ bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {
     masu_cli_usage_error("%s %s: more than %u pixels", cli->option, cli->value,
                          MASU_IMAGE_PIXELS_MAX);
     return false;
+}
+
+int masu_truth_option(const masu_cli *cli, int id, const masu_truth_places *to) {
+    bool good = true;
+    switch (id) {
+    case MASU_OPTION_SIZE: good = masu_output_size(cli, to->size); break;
+    case MASU_OPTION_TIME: good = masu_cli_double(cli, -1e9, 1e9, to->time); break;
+    case MASU_OPTION_TRUTH: *to->path = cli->value; break;
+    case MASU_OPTION_POSITIONS:
+        good = masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, to->positions);
+        break;
+    case MASU_OPTION_REFERENCE: good = masu_cli_uint(cli, 1, 1000000, to->rays); break;
+    default: return 0;
+    }
+    return good ? 1 : -1;
 }
 
 bool masu_output_file(masu_cli *cli, const char **path) {

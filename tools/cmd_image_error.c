@@ -20,12 +20,7 @@
 #include <string.h>
 
 enum {
-    OPTION_SIZE = 1,
-    OPTION_TIME,
-    OPTION_TRUTH,
-    OPTION_POSITIONS,
-    OPTION_REFERENCE,
-    OPTION_FRAMES,
+    OPTION_FRAMES = 1,
     OPTION_RUNS,
     OPTION_SCALES,
     OPTION_ONLY,
@@ -117,12 +112,7 @@ static bool failed(bench *b, const char *text) {
 /* ---- The truth ------------------------------------------------------------------------------- */
 
 static masu_session_desc session_of(const options *o) {
-    masu_session_desc d;
-    memset(&d, 0, sizeof d);
-    d.scene_path = o->path;
-    d.host = o->host;
-    d.desc.output = o->size;
-    d.desc.targets.storage = 1;
+    masu_session_desc d = masu_picture_session(o->path, o->size, &o->host);
     d.desc.ray_query = o->ray_query;
     d.desc.vulkan.max_anisotropy = (float)o->anisotropy; /* of the chains: the truth takes none */
     return d;
@@ -375,24 +365,14 @@ static int run(masu_cli *cli) {
                  .scales = {1.0, 0.8, 0.5, 0.4},
                  .scale_count = 4,
                  .host = {.message = masu_print_message, .ray_query = true}};
+    const masu_truth_places truth = {&o.size, &o.time, &o.truth, &o.positions, &o.rays};
     for (;;) {
         int id = masu_cli_next(cli);
         if (masu_device_option(cli, id, &o.host)) continue;
+        int read = masu_truth_option(cli, id, &truth);
+        if (read < 0) return MASU_CLI_USAGE;
+        if (read) continue;
         switch (id) {
-        case OPTION_SIZE:
-            if (!masu_output_size(cli, &o.size)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_TIME:
-            if (!masu_cli_double(cli, -1e9, 1e9, &o.time)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_TRUTH: o.truth = cli->value; continue;
-        case OPTION_POSITIONS:
-            if (!masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, &o.positions))
-                return MASU_CLI_USAGE;
-            continue;
-        case OPTION_REFERENCE:
-            if (!masu_cli_uint(cli, 1, 1000000, &o.rays)) return MASU_CLI_USAGE;
-            continue;
         case OPTION_FRAMES:
             if (!masu_cli_uint(cli, 1, 10000, &o.frames)) return MASU_CLI_USAGE;
             continue;
@@ -432,13 +412,7 @@ static int run(masu_cli *cli) {
 }
 
 static const masu_cli_option list[] = {
-    {"size", "WxH", "output size (default 640x360)", OPTION_SIZE, 0},
-    {"time", "SECONDS", "of the scene and its camera (default 0)", OPTION_TIME, 0},
-    {"truth", "FILE.png", "read the truth from there, or write it there", OPTION_TRUTH, 0},
-    {"positions", "N", "places in each pixel that the truth is the mean of (default 64)",
-     OPTION_POSITIONS, 0},
-    {"reference", "N", "rays of reflections from each of its pixels, in all (default 1024)",
-     OPTION_REFERENCE, 0},
+    MASU_TRUTH_OPTIONS("0"),
     {"frames", "N", "at rest, before a picture with reflections is taken (default 32)",
      OPTION_FRAMES, 0},
     {"ppd", "N",

@@ -12,12 +12,7 @@
 #include <string.h>
 
 enum {
-    OPTION_SIZE = 1,
-    OPTION_TIME,
-    OPTION_TRUTH,
-    OPTION_POSITIONS,
-    OPTION_REFERENCE,
-    OPTION_FRAMES,
+    OPTION_FRAMES = 1,
     OPTION_RUNS,
     OPTION_MOST,
     OPTION_CURVE,
@@ -233,11 +228,6 @@ static int add_ladder(options *o) {
 static bool read_option(const masu_cli *cli, int id, options *o) {
     masu_whole_desc *d = &o->whole;
     switch (id) {
-    case OPTION_SIZE: return masu_output_size(cli, &d->size);
-    case OPTION_TIME: return masu_cli_double(cli, -1e9, 1e9, &d->time);
-    case OPTION_TRUTH: d->truth_path = cli->value; return true;
-    case OPTION_POSITIONS: return masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, &d->positions);
-    case OPTION_REFERENCE: return masu_cli_uint(cli, 1, 1000000, &d->rays);
     case OPTION_FRAMES: return masu_cli_uint(cli, 1, 10000, &d->frames);
     case OPTION_RUNS: return masu_cli_uint(cli, 0, MASU_SAMPLES_MAX, &d->runs);
     case OPTION_MOST: return masu_cli_uint(cli, 1, MASU_WHOLE_SAMPLES, &d->most);
@@ -266,6 +256,8 @@ static int run(masu_cli *cli) {
                                         "scale=0.5+sharpen=off",
                                         "scale=0.5+sharpen=off+aa=smaa-high"};
     static options o;
+    masu_whole_desc *d = &o.whole;
+    const masu_truth_places truth = {&d->size, &d->time, &d->truth_path, &d->positions, &d->rays};
     o = (options){.whole = {.size = {640, 360},
                             .time = 1.0,
                             .positions = MASU_PICTURE_POSITIONS,
@@ -281,6 +273,9 @@ static int run(masu_cli *cli) {
         if (id == MASU_CLI_EXIT) return cli->exit_code;
         if (id == MASU_CLI_END) break;
         if (masu_device_option(cli, id, &o.whole.host)) continue;
+        int read = masu_truth_option(cli, id, &truth);
+        if (read < 0) return MASU_CLI_USAGE;
+        if (read) continue;
         if (id == OPTION_CSV) {
             if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
             continue;
@@ -300,13 +295,7 @@ static int run(masu_cli *cli) {
 }
 
 static const masu_cli_option list[] = {
-    {"size", "WxH", "output size (default 640x360)", OPTION_SIZE, 0},
-    {"time", "SECONDS", "of the scene and its camera (default 1)", OPTION_TIME, 0},
-    {"truth", "FILE.png", "read the truth from there, or write it there", OPTION_TRUTH, 0},
-    {"positions", "N", "places in each pixel that the truth is the mean of (default 64)",
-     OPTION_POSITIONS, 0},
-    {"reference", "N", "rays of reflections from each of its pixels, in all (default 1024)",
-     OPTION_REFERENCE, 0},
+    MASU_TRUTH_OPTIONS("1"),
     {"frames", "N", "in motion before a picture is taken (default 32)", OPTION_FRAMES, 0},
     {"runs", "N", "timed frames of each, in motion and at rest; 0: none (default 9)", OPTION_RUNS,
      0},
