@@ -102,8 +102,14 @@ static bool add_radiance(masu_session *s, size_t pixels, float *one, float *sum,
     return true;
 }
 
+static void say_position(uint32_t i, uint32_t of, void (*progress)(const char *text)) {
+    char text[64];
+    snprintf(text, sizeof text, "truth: position %u of %u", i + 1, of);
+    if (progress) progress(text);
+}
+
 bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
-                        uint32_t rays, uint8_t *rgba, void (*progress)(uint32_t done, uint32_t of),
+                        uint32_t rays, uint8_t *rgba, void (*progress)(const char *text),
                         char *error, size_t error_size) {
     return masu_picture_truth_hdr(s, frame, positions, rays, rgba, NULL, progress, error,
                                   error_size);
@@ -111,7 +117,7 @@ bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t 
 
 bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
                             uint32_t rays, uint8_t *rgba, float *radiance,
-                            void (*progress)(uint32_t done, uint32_t of), char *error,
+                            void (*progress)(const char *text), char *error,
                             size_t error_size) {
     size_t pixels = (size_t)s->desc.output.width * s->desc.output.height;
     uint32_t frames = masu_picture_frames(s, positions, rays);
@@ -136,7 +142,7 @@ bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint3
     own.time_step = MASU_PICTURE_STEP;
     bool good = true;
     for (uint32_t i = 0; i < positions && good; i++) {
-        if (progress) progress(i, positions);
+        say_position(i, positions, progress);
         masu_picture_place(i, positions, camera.jitter);
         good = draw_position(s, own, frames, error, error_size);
         const uint8_t *from = s->targets[0].mapped;

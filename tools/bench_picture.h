@@ -48,14 +48,14 @@ uint32_t masu_picture_frames(const masu_session *s, uint32_t positions, uint32_t
  * NULL. The session is one of masu_picture_open for as many positions, with storage targets of 8
  * bits. */
 bool masu_picture_truth(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
-                        uint32_t rays, uint8_t *rgba, void (*progress)(uint32_t done, uint32_t of),
+                        uint32_t rays, uint8_t *rgba, void (*progress)(const char *text),
                         char *error, size_t error_size);
 
 /* The same, and the mean of radiance before exposure and tone curve, 3 floats a pixel, if `radiance`
  * is not NULL. The session reads back MASU_READBACK_HDR then. */
 bool masu_picture_truth_hdr(masu_session *s, const masu_frame_desc *frame, uint32_t positions,
                             uint32_t rays, uint8_t *rgba, float *radiance,
-                            void (*progress)(uint32_t done, uint32_t of), char *error,
+                            void (*progress)(const char *text), char *error,
                             size_t error_size);
 
 /* A session of a scene whose pictures are compared with the truth: a storage target, textures without
@@ -68,7 +68,7 @@ typedef struct masu_picture_want {
     const char *path; /* NULL: none */
     double time;
     uint32_t positions, rays;
-    void (*progress)(uint32_t done, uint32_t of); /* or NULL */
+    void (*progress)(const char *text); /* or NULL */
     uint32_t messages;                            /* out: of the validation layer */
 } masu_picture_want;
 

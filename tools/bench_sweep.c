@@ -117,23 +117,14 @@ static bool plan_settings(sweep *w) {
 
 /* ---- The truth ------------------------------------------------------------------------------- */
 
-static void (*show)(const char *text); /* masu_picture_truth's callback carries nothing */
-
-static void progress(uint32_t done, uint32_t of) {
-    char text[64];
-    snprintf(text, sizeof text, "truth: position %u of %u", done + 1, of);
-    if (show) show(text);
-}
-
 static bool draw_truth(sweep *w, uint8_t *rgba) {
     masu_session_desc d = session_of(w);
     d.desc.readback = MASU_READBACK_HDR;
     if (!masu_picture_open(&d, w->d->positions, &w->s, w->error, w->error_size)) return false;
     w->opened = true;
     masu_frame_desc frame = {.time = w->d->time};
-    show = w->d->progress;
     bool good = masu_picture_truth_hdr(&w->s, &frame, w->d->positions, w->d->rays, rgba,
-                                       w->true_radiance, progress, w->error, w->error_size);
+                                       w->true_radiance, w->d->progress, w->error, w->error_size);
     close_session(w);
     return good;
 }

@@ -439,22 +439,13 @@ static bool count_all(whole *w) {
 
 /* ---- All ------------------------------------------------------------------------------------- */
 
-static void (*show)(const char *text); /* masu_picture_truth's callback carries nothing */
-
-static void progress(uint32_t done, uint32_t of) {
-    char text[64];
-    snprintf(text, sizeof text, "truth: position %u of %u", done + 1, of);
-    if (show) show(text);
-}
-
 static bool find_truth(whole *w) {
     masu_session_desc d = session_of(w);
     masu_picture_want want = {.path = w->d->truth_path,
                               .time = w->d->time,
                               .positions = w->d->positions,
                               .rays = w->d->rays,
-                              .progress = progress};
-    show = w->d->progress;
+                              .progress = w->d->progress};
     bool good = masu_picture_find(&d, &want, w->truth, w->error, w->error_size);
     w->out->messages += want.messages;
     return good && save(w, "truth", w->truth);

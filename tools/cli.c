@@ -28,6 +28,8 @@ static struct {
 
 /* ---- messages ---- */
 
+void masu_cli_progress_text(const char *text) { masu_cli_progress("%s", text); }
+
 void masu_cli_progress_clear(void) {
     if (!state.progress_shown) return;
     fputs("\r\033[K", stderr);

@@ -119,6 +119,7 @@ uint32_t masu_cli_warnings(void); /* how many so far */
 
 /* What is going on now: replaced by the next one, wiped by any message and at the end. */
 void masu_cli_progress(const char *format, ...) MASU_CLI_PRINTF(1, 2);
+void masu_cli_progress_text(const char *text); /* as a callback */
 void masu_cli_progress_clear(void);
 
 bool masu_cli_quiet(void); /* --quiet has been read */

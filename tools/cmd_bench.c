@@ -33,8 +33,6 @@ typedef struct options {
     bool merge;
 } options;
 
-static void progress(const char *text) { masu_cli_progress("%s", text); }
-
 /* The model sheet of the ladder, which the report has made: the page is then written once more. */
 static void model(const options *o) {
     char error[4096];
@@ -43,7 +41,7 @@ static void model(const options *o) {
                          .drawn = masu_count_size(o->sweep.size),
                          .time = o->sweep.time,
                          .host = {.device = o->sweep.host.device},
-                         .progress = progress};
+                         .progress = masu_cli_progress_text};
     if (masu_model_write(&d, o->sweep.folder, error, sizeof error)) return;
     masu_cli_warn("there is no model sheet: %s", error);
 }
@@ -105,7 +103,7 @@ static int sweep(options *o) {
     masu_sweep_result result;
     char error[4096];
     o->sweep.scene_path = o->arguments[0];
-    o->sweep.progress = progress;
+    o->sweep.progress = masu_cli_progress_text;
     masu_sweep_desc *d = &o->sweep; /* what has not been given is 0 */
     if (!d->size.width) d->size = d->quick ? (VkExtent2D){128, 72} : (VkExtent2D){640, 360};
     if (!d->positions) d->positions = d->quick ? 4 : MASU_PICTURE_POSITIONS;

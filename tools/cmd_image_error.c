@@ -124,10 +124,6 @@ static void close_session(bench *b, masu_session *s) {
     masu_session_close(s);
 }
 
-static void progress(uint32_t done, uint32_t of) {
-    masu_cli_progress("truth: position %u of %u", done + 1, of);
-}
-
 static bool find_truth(bench *b) {
     const options *o = b->o;
     masu_session_desc d = session_of(o);
@@ -135,7 +131,7 @@ static bool find_truth(bench *b) {
                                .time = o->time,
                                .positions = o->positions,
                                .rays = o->rays,
-                               .progress = progress};
+                               .progress = masu_cli_progress_text};
     bool good = masu_picture_find(&d, &truth, b->truth, b->error, sizeof b->error);
     b->messages += truth.messages;
     return good;

@@ -272,8 +272,6 @@ static void print_summary(const summary *s) {
 
 /* ---- The command ----------------------------------------------------------------------------- */
 
-static void progress(const char *text) { masu_cli_progress("%s", text); }
-
 static int run_scenes(bench_options *o, FILE *csv) {
     static masu_bench b;
     summary s;
@@ -282,7 +280,7 @@ static int run_scenes(bench_options *o, FILE *csv) {
     fputs(columns, csv);
     for (uint32_t i = 0; i < o->scene_count; i++) {
         o->bench.scene_path = o->scenes[i];
-        if (!masu_bench_run(&o->bench, &b, progress, error, sizeof error))
+        if (!masu_bench_run(&o->bench, &b, masu_cli_progress_text, error, sizeof error))
             return masu_cli_error("%s", error);
         masu_cli_progress_clear();
         print_scene(o, &b);

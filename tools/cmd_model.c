@@ -23,8 +23,6 @@ typedef struct options {
     bool own_rungs;
 } options;
 
-static void progress(const char *text) { masu_cli_progress("%s", text); }
-
 static int model(const options *o) {
     masu_model *m = malloc(sizeof *m);
     uint32_t messages = 0;
@@ -66,7 +64,7 @@ static int run(masu_cli *cli) {
     options o = {.d = {.size = {1920, 1080},
                        .time = 1.0,
                        .host = {.message = masu_print_message},
-                       .progress = progress}};
+                       .progress = masu_cli_progress_text}};
     for (;;) {
         int id = masu_cli_next(cli);
         if (id == MASU_CLI_EXIT) return cli->exit_code;

@@ -300,10 +300,6 @@ static void report_rays(const masu_session *s, const render_options *o, const ma
             100.0 * (double)stats->specular_rays / pixels);
 }
 
-static void positions_progress(uint32_t done, uint32_t of) {
-    masu_cli_progress("position %u of %u of each pixel", done + 1, of);
-}
-
 /* The picture without shortcuts. */
 static int render_truth(masu_session *s, const render_options *o) {
     masu_light light;
@@ -316,7 +312,7 @@ static int render_truth(masu_session *s, const render_options *o) {
     if (!rgba) return masu_cli_error("no memory for a picture of %ux%u", size.width, size.height);
     masu_frame_desc frame = {.light = own_light ? &light : NULL, .time = o->time};
     uint32_t rays = o->rays ? o->rays : MASU_PICTURE_RAYS;
-    bool good = masu_picture_truth(s, &frame, o->positions, rays, rgba, positions_progress, error,
+    bool good = masu_picture_truth(s, &frame, o->positions, rays, rgba, masu_cli_progress_text, error,
                                    sizeof error) &&
                 masu_image_save_png(o->output, rgba, size.width, size.height, 0, error, sizeof error);
     free(rgba);

@@ -32,8 +32,6 @@ typedef struct options {
     const char *csv, *ladder;
 } options;
 
-static void progress(const char *text) { masu_cli_progress("%s", text); }
-
 /* ---- Tables ---------------------------------------------------------------------------------- */
 
 static void print_errors(const masu_whole_entry *e) {
@@ -267,7 +265,7 @@ static int run(masu_cli *cli) {
                             .most = 64,
                             .rungs = o.rungs,
                             .host = {.message = masu_print_message},
-                            .progress = progress}};
+                            .progress = masu_cli_progress_text}};
     for (;;) {
         int id = masu_cli_next(cli);
         if (id == MASU_CLI_EXIT) return cli->exit_code;

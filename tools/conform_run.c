@@ -467,10 +467,6 @@ static void draw_ways(masu_conform *c, const masu_case *of, const uint8_t *pictu
     }
 }
 
-static void truth_progress(uint32_t done, uint32_t of) {
-    masu_cli_progress("truth: position %u of %u", done + 1, of);
-}
-
 static bool same_truth(const masu_case *a, const masu_case *b) {
     return !strcmp(a->scene, b->scene) && a->width == b->width && a->height == b->height &&
            a->positions == b->positions && a->rays == b->rays &&
@@ -496,7 +492,7 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
         return NULL;
     }
     masu_frame_desc frame = frame_at(of, of->frames - 1);
-    bool good = masu_picture_truth(s, &frame, of->positions, of->rays, rgba, truth_progress, error,
+    bool good = masu_picture_truth(s, &frame, of->positions, of->rays, rgba, masu_cli_progress_text, error,
                                    sizeof error);
     close_session(c, r);
     masu_truth_picture *more =
