@@ -60,9 +60,12 @@ END
     apt-get -qq update >&2 || fail "apt-get update failed"
 }
 
-# fetch PACKAGE...: the .deb files to the current folder
+# fetch PACKAGE...: the .deb files to the current folder. What the system has installed does not
+# count: apt would ask for that very version, which may come from a suite that is not listed here
+# (a security update), and find no source for it.
 fetch() {
-    apt-get -qq download "$@" >&2 || fail "apt-get could not download: $*"
+    apt-get -qq -o Dir::State::status=/dev/null -o Acquire::Retries=3 download "$@" >&2 ||
+        fail "apt-get could not download: $*"
 }
 
 # icd SOURCE LIBRARY TARGET: copies an ICD file, with LIBRARY as the absolute path of the driver
