@@ -161,12 +161,23 @@ REPORT_ARGS_wet_city ?= --reference 256
 # folder march has the scenes with all ways to march, and beside them what depth is compared with.
 report_file = $(BUILD)/$(if $(findstring /,$(1)),,$(if $(wildcard scenes/$(1).json),scenes/,worlds/))$(1)
 report_truth = $(patsubst %,$(BUILD)/%.truth.so,$(filter march/%,$(REPORT)))
-report: $(BUILD)/bin/masu $(foreach s,$(REPORT),$(call report_file,$(s)).masu) $(report_truth) ## error against run time: docs/report/SCENE/index.html: REPORT='engine worlds/city' REPORT_ARGS=
+report_needs = $(BUILD)/bin/masu $(foreach s,$(REPORT),$(call report_file,$(s)).masu) $(report_truth)
+report_bench = $(BUILD)/bin/masu bench $(call report_file,$(1)).masu $(REPORT_ARGS) \
+    $(REPORT_ARGS_$(subst /,-,$(1)))
+report: $(report_needs) ## error against run time: docs/report/SCENE/index.html: REPORT='engine worlds/city' REPORT_ARGS=
 	$(V)mkdir -p docs/report
-	$(V)$(foreach s,$(REPORT),$(BUILD)/bin/masu bench $(call report_file,$(s)).masu \
-	    --out docs/report/$(subst /,-,$(s)) $(REPORT_ARGS) \
-	    $(REPORT_ARGS_$(subst /,-,$(s))) &&) true
+	$(V)$(foreach s,$(REPORT),$(call report_bench,$(s)) --out docs/report/$(subst /,-,$(s)) &&) true
 	$(V)$(BUILD)/bin/masu ladder docs/report/*/ladder.json > docs/report/ladders.txt
+
+# Whether the rungs hold on this machine, today. Of each scene what docs/report has is not touched.
+.PHONY: report-again
+report-again: $(report_needs) ## measure the rungs of docs/report again, and compare error and time ratio: REPORT=
+	$(V)mkdir -p $(BUILD)/again
+	$(V)$(foreach s,$(subst /,-,$(REPORT)),rm -rf $(BUILD)/again/$(s) &&) true
+	$(V)$(foreach s,$(REPORT),$(call report_bench,$(s)) --rungs-of docs/report/$(subst /,-,$(s)) \
+	    --out $(BUILD)/again/$(subst /,-,$(s)) &&) true
+	$(V)$(foreach s,$(subst /,-,$(REPORT)),echo $(s): && \
+	    $(BUILD)/bin/masu bench docs/report/$(s) --against $(BUILD)/again/$(s) &&) true
 
 # Classes of scenes, and the folder that each one's ladder was measured into; folders that are not
 # there are left out. A class without one has the ladder of the nearest class.

@@ -71,17 +71,37 @@ static bool save(const char *path, json_t *list, char *error, size_t error_size)
     return good;
 }
 
+static const char *day_of(const json_t *run) {
+    const char *date = json_string_value(json_object_get(run, "date"));
+    return date ? date : "";
+}
+
+static bool same_but_time(const json_t *a, const json_t *b) {
+    static const char *const keys[] = {"cpu", "threads", "driver", "masu"};
+    bool same = !strncmp(day_of(a), day_of(b), 10);
+    for (size_t i = 0; i < sizeof keys / sizeof *keys && same; i++)
+        same = json_equal(json_object_get(a, keys[i]), json_object_get(b, keys[i]));
+    return same;
+}
+
 bool masu_machine_append(const char *folder, const masu_machine *m, char *error,
                          size_t error_size) {
     char path[4096];
     json_t *list = load(folder, path, error, error_size);
     if (!list) return false;
-    json_array_append_new(list, json_pack("{s:s, s:i, s:s, s:s, s:s}", "cpu", m->cpu, "threads",
-                                          (int)m->threads, "driver", m->driver, "masu", m->masu,
-                                          "date", m->date));
-    bool good = save(path, list, error, error_size);
+    json_t *run = json_pack("{s:s, s:i, s:s, s:s, s:s}", "cpu", m->cpu, "threads", (int)m->threads,
+                            "driver", m->driver, "masu", m->masu, "date", m->date);
+    size_t count = json_array_size(list);
+    bool there = count && same_but_time(json_array_get(list, count - 1), run);
+    json_array_append_new(list, run);
+    bool good = there || save(path, list, error, error_size);
     json_decref(list);
     return good;
+}
+
+void masu_machine_forget(const char *folder) {
+    char path[4096];
+    if (masu_sweep_path(folder, "machine.json", path)) (void)remove(path);
 }
 
 static bool among(const json_t *list, const json_t *one) {

@@ -23,9 +23,13 @@ void masu_machine_here(const char *driver, masu_machine *out);
 /* The CPU's name out of the text of /proc/cpuinfo. False: it has none; out is "unknown". */
 bool masu_machine_cpu(const char *cpuinfo, char *out, size_t size);
 
-/* Appends to FOLDER/machine.json, or begins it. What is no such file is an error. */
+/* Appends to FOLDER/machine.json, or begins it; not what is the last one's but for the time of day. What is
+ * no such file is an error. */
 bool masu_machine_append(const char *folder, const masu_machine *machine, char *error,
                          size_t error_size);
+
+/* Of a folder that has no row left. */
+void masu_machine_forget(const char *folder);
 
 /* Those of `part` that FOLDER does not have. A part without the file adds nothing. */
 bool masu_machine_merge(const char *folder, const char *part, char *error, size_t error_size);

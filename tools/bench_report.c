@@ -23,6 +23,7 @@ typedef struct report {
     masu_row *rows;
     uint32_t count, rung_count, front_count;
     double *ratios; /* of the clock that the ladder goes by */
+    masu_ladder_point *points;
     uint32_t *front, *rungs;
     VkExtent2D size;
     FILE *page;
@@ -86,34 +87,34 @@ static bool flickers(const report *r, const masu_row *row) {
     return row->flicker > MASU_LADDER_FLICKER + (base ? base->flicker : 0.0);
 }
 
+static void find_rungs(report *r) {
+    r->front_count = masu_ladder_front(r->points, r->count, r->front);
+    r->rung_count = masu_ladder_rungs(r->points, r->count, MASU_LADDER_APART, MASU_LADDER_BETTER,
+                                      MASU_MAX_RUNGS, r->rungs);
+}
+
 /* Timestamps count where all of them fit the wall clock; times of two clocks are never mixed. */
 static bool find_ladder(report *r) {
-    masu_ladder_point *points = calloc(r->count, sizeof *points);
+    r->points = calloc(r->count, sizeof *r->points);
     r->ratios = calloc(r->count, sizeof *r->ratios);
     r->front = calloc(r->count, sizeof *r->front);
     r->rungs = calloc(r->count, sizeof *r->rungs);
-    bool good = points && r->ratios && r->front && r->rungs;
+    if (!r->points || !r->ratios || !r->front || !r->rungs) return failed(r, "out of memory");
     bool stamps = true;
     for (uint32_t i = 0; i < r->count; i++) stamps = stamps && r->rows[i].plausible >= 0.9;
-    for (uint32_t i = 0; i < r->count && good; i++) {
+    for (uint32_t i = 0; i < r->count; i++) {
         r->ratios[i] = stamps ? r->rows[i].gpu_ratio : r->rows[i].ratio;
-        points[i] = (masu_ladder_point){r->ratios[i], r->rows[i].flip};
+        r->points[i] = (masu_ladder_point){r->ratios[i], r->rows[i].flip};
         /* Culling switched off is quicker by chance alone. */
         const json_t *same = json_object_get(setting_of(r, r->rows[i].setting), "same_picture");
-        if (json_is_true(same) || flickers(r, &r->rows[i])) points[i].time = 0.0;
+        if (json_is_true(same) || flickers(r, &r->rows[i])) r->points[i].time = 0.0;
     }
-    if (good) {
-        r->front_count = masu_ladder_front(points, r->count, r->front);
-        r->rung_count =
-            masu_ladder_rungs(points, r->count, MASU_LADDER_APART, MASU_LADDER_BETTER,
-                              MASU_MAX_RUNGS, r->rungs);
-    }
-    free(points);
+    find_rungs(r);
     r->out->by_timestamps = stamps;
     r->out->rungs = r->rung_count;
-    for (uint32_t i = 0; i < r->count && good; i++)
+    for (uint32_t i = 0; i < r->count; i++)
         r->out->unsteady += !(fabs(least_ratio(r, &r->rows[i]) / r->ratios[i] - 1.0) <= 0.1);
-    return good || failed(r, "out of memory");
+    return true;
 }
 
 /* ---- ladder.json ----------------------------------------------------------------------------- */
@@ -282,6 +283,10 @@ static void put_note(report *r) {
             "times. Where they differ by much, the machine was busy: by more than a tenth in %u "
             "rows of %u.</li>\n",
             number_of(r, "runs"), r->out->unsteady, r->out->rows);
+    fputs("<li>What looks best of many noisy times is lucky, too: so the rungs were timed again, by "
+          "themselves and for longer, where there is a steady.csv; its times are those of their "
+          "rows.</li>\n",
+          f);
     fprintf(f, "<li>The ladder goes by %s.</li>\n",
             r->out->by_timestamps ? "the device's timestamps, which fit the wall clock"
                                   : "the wall clock: not all timestamps fit it");
@@ -522,6 +527,57 @@ static bool write_page(report *r) {
     return good;
 }
 
+static void release(report *r) {
+    json_decref(r->sweep);
+    free(r->rows);
+    free(r->ratios);
+    free(r->points);
+    free(r->front);
+    free(r->rungs);
+}
+
+bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, size_t error_size) {
+    masu_report_result result = {0};
+    report r = {.folder = folder, .out = &result, .error = error, .error_size = error_size};
+    memset(out, 0, sizeof *out);
+    bool good = read_all(&r) && find_ladder(&r);
+    for (uint32_t i = 0; i < r.rung_count && good; i++)
+        memcpy(out->id[out->count++], r.rows[r.rungs[i]].setting, MASU_SETTING_ID);
+    release(&r);
+    return good;
+}
+
+/* Each round leaves out what it has found; without an end there would be at most count of them. */
+static void find_unsteady(report *r, const masu_row *steady, uint32_t steady_count,
+                          masu_setting_list *out) {
+    const uint32_t most = MASU_MAX_RUNGS - 1;
+    for (;;) {
+        uint32_t before = out->count;
+        for (uint32_t i = 0; i < r->rung_count && out->count < most; i++) {
+            const char *id = r->rows[r->rungs[i]].setting;
+            if (!strcmp(id, "base") || masu_rows_find(steady, steady_count, id)) continue;
+            memcpy(out->id[out->count++], id, MASU_SETTING_ID);
+            r->points[r->rungs[i]].time = 0.0;
+        }
+        if (out->count == before) return;
+        find_rungs(r);
+    }
+}
+
+bool masu_report_unsteady(const char *folder, masu_setting_list *out, char *error,
+                          size_t error_size) {
+    masu_report_result result = {0};
+    report r = {.folder = folder, .out = &result, .error = error, .error_size = error_size};
+    uint32_t count = 0;
+    memset(out, 0, sizeof *out);
+    bool good = read_all(&r) && find_ladder(&r);
+    masu_row *steady = good ? masu_sweep_steady_rows(folder, &count, error, error_size) : NULL;
+    if (steady) find_unsteady(&r, steady, count, out);
+    free(steady);
+    release(&r);
+    return good && steady;
+}
+
 bool masu_report_write(const char *folder, masu_report_result *out, char *error,
                        size_t error_size) {
     report r = {.folder = folder, .out = out, .error = error, .error_size = error_size};
@@ -540,10 +596,6 @@ bool masu_report_write(const char *folder, masu_report_result *out, char *error,
                           .front_count = r.front_count};
         good = masu_plot_draw(&plot, &out->plots, error, error_size) && write_page(&r);
     }
-    json_decref(r.sweep);
-    free(r.rows);
-    free(r.ratios);
-    free(r.front);
-    free(r.rungs);
+    release(&r);
     return good;
 }

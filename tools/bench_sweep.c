@@ -347,15 +347,21 @@ static bool draw_alone(sweep *w, batch *b) {
     return true;
 }
 
-static bool time_batch(sweep *w, batch *b) {
+/* As many rounds as asked for, and more until so many seconds have gone. */
+static bool time_batch(sweep *w, batch *b, double seconds) {
+    uint64_t start = masu_clock_ns(NULL);
+    double gone = 0.0;
     for (uint32_t k = 0; k < b->count; k++) w->samples[k].count = w->samples[k].plausible = 0;
-    for (uint32_t run = 0; run <= w->d->runs; run++) {
+    for (uint32_t run = 0; run <= w->d->runs || (gone < seconds && run <= MASU_SWEEP_RUNS_MAX);
+         run++) {
         char text[64];
-        snprintf(text, sizeof text, "timing, run %u of %u", run, w->d->runs);
+        snprintf(text, sizeof text, "timing, run %u of %s%u", run, seconds > 0.0 ? "at least " : "",
+                 w->d->runs);
         say(w, text);
         for (uint32_t k = 0; k < b->count; k++) {
             if (!sample(w, k, &w->settings[b->of[k]].rung, run > 0)) return false;
         }
+        gone = (double)(masu_clock_ns(NULL) - start) / 1e9;
     }
     for (uint32_t k = 0; k < b->count; k++) {
         const masu_samples *base = &w->samples[0], *own = &w->samples[k];
@@ -395,7 +401,7 @@ static bool look_behind(sweep *w, batch *b) {
 }
 
 static bool run_batch(sweep *w, batch *b) {
-    bool good = open_batch(w, b) && draw_batch(w, b) && time_batch(w, b);
+    bool good = open_batch(w, b) && draw_batch(w, b) && time_batch(w, b, 0.0);
     close_session(w);
     good = good && draw_alone(w, b) && look_behind(w, b);
     if (good && !w->out->measured) { /* of runs that add rows alone */
@@ -404,17 +410,30 @@ static bool run_batch(sweep *w, batch *b) {
         good = masu_machine_append(w->d->folder, &machine, w->error, w->error_size);
     }
     for (uint32_t k = b->base_too ? 0 : 1; k < b->count && good; k++) {
-        good = masu_sweep_append(w->d->folder, &b->rows[k], w->error, w->error_size);
+        good = masu_sweep_append(w->d->folder, MASU_SWEEP_RESULTS, &b->rows[k], w->error,
+                                 w->error_size);
         w->out->measured += good;
     }
     return good;
+}
+
+static bool listed(const masu_setting_list *list, const char *id) {
+    for (uint32_t i = 0; i < list->count; i++) {
+        if (!strcmp(list->id[i], id)) return true;
+    }
+    return false;
+}
+
+/* The base always is: the flicker of the others is judged by its own. */
+static bool asked_for(const masu_setting_list *only, uint32_t number, const char *id) {
+    return !only || !only->count || !number || listed(only, id);
 }
 
 /* The base belongs to the first shard, like all others by its number among those measured. */
 static uint32_t mine(const sweep *w, const masu_row *rows, uint32_t count, uint32_t *list) {
     uint32_t n = 0, number = 0;
     for (uint32_t i = 0; i < w->setting_count; i++) {
-        if (w->settings[i].dropped[0]) continue;
+        if (w->settings[i].dropped[0] || !asked_for(w->d->only, i, w->settings[i].id)) continue;
         if (number++ % w->d->shards != w->d->shard) continue;
         if (masu_rows_find(rows, count, w->settings[i].id)) {
             w->out->there++;
@@ -452,13 +471,33 @@ static void close_behind(sweep *w) {
     masu_radiance_close(w->radiance);
 }
 
+static bool known(sweep *w) {
+    const masu_setting_list *only = w->d->only;
+    char text[MASU_SETTING_ID + 64];
+    for (uint32_t i = 0; only && i < only->count; i++) {
+        bool there = false;
+        for (uint32_t k = 0; k < w->setting_count && !there; k++)
+            there = !w->settings[k].dropped[0] && !strcmp(w->settings[k].id, only->id[i]);
+        snprintf(text, sizeof text, "%s is none of its settings", only->id[i]);
+        if (!there) return failed(w, text);
+    }
+    return true;
+}
+
 static bool measure(sweep *w) {
     static batch b;
-    uint32_t list[MASU_SETTINGS_MOST], count = 0;
-    masu_row *rows = masu_sweep_resume(w->d->folder, &count, w->error, w->error_size);
+    uint32_t list[MASU_SETTINGS_MOST], count = 0, again_count = 0;
+    masu_row *rows = masu_sweep_resume(w->d->folder, MASU_SWEEP_RESULTS, &count, w->error,
+                                       w->error_size);
     if (!rows) return false;
-    w->pending = mine(w, rows, count, list);
+    /* Before what has lost its picture gets a new one. */
+    masu_row *again = masu_sweep_resume(w->d->folder, MASU_SWEEP_STEADY, &again_count, w->error,
+                                        w->error_size);
+    if (again && !count) masu_machine_forget(w->d->folder);
+    w->pending = again ? mine(w, rows, count, list) : 0;
     free(rows);
+    free(again);
+    if (!again) return false;
     if (!w->pending) return true;
     if (!find_truth(w) || !open_behind(w)) return false;
     w->start = masu_clock_ns(NULL);
@@ -472,30 +511,107 @@ static bool measure(sweep *w) {
     return true;
 }
 
+/* ---- Rungs again ----------------------------------------------------------------------------- */
+
+/* Those of the list that have a row, but none in steady.csv yet, by number. */
+static uint32_t unsteady(const sweep *w, const masu_setting_list *list, const masu_row *rows,
+                         uint32_t count, const masu_row *there, uint32_t there_count,
+                         uint32_t *out) {
+    uint32_t n = 0;
+    for (uint32_t i = 1; i < w->setting_count; i++) {
+        const char *id = w->settings[i].id;
+        if (w->settings[i].dropped[0]) continue; /* its name may be another's */
+        if (listed(list, id) && masu_rows_find(rows, count, id) &&
+            !masu_rows_find(there, there_count, id)) {
+            out[n++] = i;
+        }
+    }
+    return n;
+}
+
+static bool steady_batch(sweep *w, batch *b, const masu_row *rows, uint32_t count) {
+    for (uint32_t k = 0; k < b->count; k++) {
+        const masu_row *row = masu_rows_find(rows, count, w->settings[b->of[k]].id);
+        if (row) b->rows[k] = *row;
+    }
+    bool good = open_batch(w, b) && time_batch(w, b, w->d->steady);
+    close_session(w);
+    if (good && !w->out->measured) {
+        masu_machine machine;
+        masu_machine_here(w->driver, &machine);
+        good = masu_machine_append(w->d->folder, &machine, w->error, w->error_size);
+    }
+    for (uint32_t k = 1; k < b->count && good; k++) {
+        good = masu_sweep_append(w->d->folder, MASU_SWEEP_STEADY, &b->rows[k], w->error,
+                                 w->error_size);
+        w->out->measured += good;
+    }
+    return good;
+}
+
+static bool steady(sweep *w, const masu_setting_list *list) {
+    static batch b;
+    uint32_t of[MASU_SETTINGS_MOST], count = 0, there_count = 0;
+    masu_row *rows = masu_sweep_rows(w->d->folder, &count, w->error, w->error_size);
+    masu_row *there = masu_sweep_resume(w->d->folder, MASU_SWEEP_STEADY, &there_count, w->error,
+                                        w->error_size);
+    bool good = rows && there;
+    w->pending = good ? unsteady(w, list, rows, count, there, there_count, of) : 0;
+    w->start = masu_clock_ns(NULL);
+    for (uint32_t i = 0; i < w->pending && good;) {
+        b.of[0] = 0;
+        for (b.count = 1; b.count <= BATCH && i < w->pending; i++) b.of[b.count++] = of[i];
+        good = steady_batch(w, &b, rows, count);
+    }
+    free(rows);
+    free(there);
+    return good;
+}
+
+/* ---- Whole ----------------------------------------------------------------------------------- */
+
+static void begin(sweep *w, const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
+                  size_t error_size) {
+    memset(w, 0, sizeof *w);
+    memset(out, 0, sizeof *out);
+    w->d = desc;
+    w->out = out;
+    w->error = error;
+    w->error_size = error_size;
+    w->pixels = desc->size.width * desc->size.height;
+}
+
+static bool begin_folder(sweep *w) {
+    const masu_sweep_about about = {.driver = w->driver,
+                                    .depth = !w->surfaces     ? "nothing: there are no surfaces"
+                                             : w->depth_truth ? "the field in double precision"
+                                                              : "the most exact rung",
+                                    .hash = w->hash,
+                                    .settings = w->settings,
+                                    .count = w->setting_count};
+    return masu_sweep_begin(w->d, &about, w->error, w->error_size);
+}
+
+bool masu_sweep_steady(const masu_sweep_desc *desc, const masu_setting_list *list,
+                       masu_sweep_result *out, char *error, size_t error_size) {
+    static sweep w;
+    begin(&w, desc, out, error, error_size);
+    bool good = plan_settings(&w) && begin_folder(&w) && steady(&w, list);
+    close_session(&w);
+    return good;
+}
+
 bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
                     size_t error_size) {
     static sweep w;
-    memset(&w, 0, sizeof w);
-    memset(out, 0, sizeof *out);
-    w.d = desc;
-    w.out = out;
-    w.error = error;
-    w.error_size = error_size;
-    w.pixels = desc->size.width * desc->size.height;
+    begin(&w, desc, out, error, error_size);
     w.truth = malloc(4 * (size_t)w.pixels);
     w.before = malloc(4 * (size_t)w.pixels);
     w.map = malloc(sizeof *w.map * w.pixels);
     w.true_radiance = malloc(3 * sizeof *w.true_radiance * w.pixels);
     bool good = (w.truth && w.before && w.map && w.true_radiance) || failed(&w, "out of memory");
     good = good && plan_settings(&w);
-    const masu_sweep_about about = {.driver = w.driver,
-                                    .depth = !w.surfaces     ? "nothing: there are no surfaces"
-                                             : w.depth_truth ? "the field in double precision"
-                                                             : "the most exact rung",
-                                    .hash = w.hash,
-                                    .settings = w.settings,
-                                    .count = w.setting_count};
-    good = good && masu_sweep_begin(desc, &about, error, error_size) && measure(&w);
+    good = good && known(&w) && begin_folder(&w) && measure(&w);
     close_behind(&w);
     close_session(&w);
     free(w.truth);

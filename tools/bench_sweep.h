@@ -17,20 +17,33 @@
  * reflections goes by the number of the frame. Flicker is what then changes from frame to frame of
  * the scene at rest.
  *
+ * The rungs of the ladder are the settings that look best for their time, and of a hundred noisy times the
+ * luckiest look best. So they are timed again, longer (masu_sweep_steady), and it is those times that
+ * their rows then have.
+ *
  * What a picture does not show (surfaces, radiance, reflections) comes from sessions of their own
  * that read it back: bench_depth.h, bench_radiance.h.
  *
  * THE FOLDER. sweep.json: what is measured, and how; a run is only resumed if it is the same.
  * machine.json: on what and when, see bench_machine.h.
- * results.csv: a row as soon as it is known. pictures/SETTING.png. truth.png; its radiance in
- * truth.pfm, the reference of reflections in truth.specular.pfm. All is written whole or not at all,
- * but for the last row. */
+ * results.csv: a row as soon as it is known. steady.csv: rows of rungs, with the times measured
+ * again. pictures/SETTING.png. truth.png; its radiance in truth.pfm, the reference of reflections in
+ * truth.specular.pfm. All is written whole or not at all, but for the last row. */
 #ifndef MASU_BENCH_SWEEP_H
 #define MASU_BENCH_SWEEP_H
 
 #include "bench_samples.h"
 #include "bench_settings.h"
 #include "session.h"
+
+#define MASU_SWEEP_RESULTS "results.csv"
+#define MASU_SWEEP_STEADY "steady.csv"
+
+/* Names of settings, as the rungs of a ladder. */
+typedef struct masu_setting_list {
+    char id[MASU_MAX_RUNGS][MASU_SETTING_ID];
+    uint32_t count;
+} masu_setting_list;
 
 typedef struct masu_sweep_desc {
     const char *scene_path, *folder;
@@ -41,7 +54,9 @@ typedef struct masu_sweep_desc {
     uint32_t positions, rays; /* of the truth */
     uint32_t frames;          /* in motion before a picture is taken */
     uint32_t runs;            /* timed ones of each setting, at least 1 */
+    double steady;            /* seconds that seven rungs are timed again, see masu_sweep_steady */
     uint32_t shard, shards;   /* settings shard, shard + shards, ... */
+    const masu_setting_list *only; /* NULL or empty: all settings; else these and the base */
     bool quick;
     masu_headless_desc host;
     void (*progress)(const char *text); /* or NULL */
@@ -59,13 +74,23 @@ typedef struct masu_sweep_result {
 bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *error,
                     size_t error_size);
 
+/* Times those settings again that have a row, but no times of this kind yet: by sevens, with the base,
+ * for desc->steady seconds or desc->runs rounds, whichever is more. out->measured: how many. */
+bool masu_sweep_steady(const masu_sweep_desc *desc, const masu_setting_list *list,
+                       masu_sweep_result *out, char *error, size_t error_size);
+
 /* The rows and pictures of folders that hold parts of the same sweep, into one. */
 bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t part_count,
                       char *error, size_t error_size);
 
-/* The rows of a folder. NULL: `error` says why; a folder without rows has none and is no error.
+/* The rows of a folder, with the steady times of those that have them. NULL: `error` says why; a folder
+ * without rows has none and is no error.
  * Freed by free(). */
 masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size_t error_size);
+
+/* Those of steady.csv alone. */
+masu_row *masu_sweep_steady_rows(const char *folder, uint32_t *count, char *error,
+                                 size_t error_size);
 
 /* FOLDER/NAME, or FOLDER/pictures/NAME. False: too long. */
 bool masu_sweep_path(const char *folder, const char *name, char out[4096]);

@@ -115,12 +115,13 @@ bool masu_sweep_begin(const masu_sweep_desc *d, const masu_sweep_about *about, c
     return good;
 }
 
-/* ---- results.csv ----------------------------------------------------------------------------- */
+/* ---- results.csv, steady.csv ----------------------------------------------------------------- */
 
-masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size_t error_size) {
+static masu_row *rows_of(const char *folder, const char *name, uint32_t *count, char *error,
+                         size_t error_size) {
     char path[4096], why[256];
     *count = 0;
-    if (!masu_sweep_path(folder, "results.csv", path)) {
+    if (!masu_sweep_path(folder, name, path)) {
         fail(error, error_size, folder, "the path is too long");
         return NULL;
     }
@@ -131,11 +132,33 @@ masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size
     return rows;
 }
 
-static bool write_rows(const char *folder, const masu_row *rows, uint32_t count, char *error,
-                       size_t error_size) {
+masu_row *masu_sweep_steady_rows(const char *folder, uint32_t *count, char *error,
+                                 size_t error_size) {
+    return rows_of(folder, MASU_SWEEP_STEADY, count, error, error_size);
+}
+
+masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size_t error_size) {
+    uint32_t again_count = 0;
+    masu_row *rows = rows_of(folder, MASU_SWEEP_RESULTS, count, error, error_size);
+    masu_row *again =
+        rows ? masu_sweep_steady_rows(folder, &again_count, error, error_size) : NULL;
+    if (!again) {
+        free(rows);
+        return NULL;
+    }
+    for (uint32_t i = 0; i < *count; i++) {
+        const masu_row *row = masu_rows_find(again, again_count, rows[i].setting);
+        if (row) rows[i] = *row;
+    }
+    free(again);
+    return rows;
+}
+
+static bool write_rows(const char *folder, const char *name, const masu_row *rows, uint32_t count,
+                       char *error, size_t error_size) {
     char path[4096], *text = NULL;
     size_t bytes = 0;
-    if (!masu_sweep_path(folder, "results.csv", path))
+    if (!masu_sweep_path(folder, name, path))
         return fail(error, error_size, folder, "the path is too long");
     FILE *f = open_memstream(&text, &bytes);
     bool good = f && masu_rows_header(f) > 0;
@@ -150,22 +173,44 @@ static bool write_rows(const char *folder, const masu_row *rows, uint32_t count,
     return good;
 }
 
-masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size) {
-    masu_row *rows = masu_sweep_rows(folder, count, error, error_size);
-    if (rows && !write_rows(folder, rows, *count, error, error_size)) {
+static bool exists(const char *path) {
+    struct stat st;
+    return !stat(path, &st);
+}
+
+/* A clone of the project has the rows of its reports, but not their pictures. */
+static uint32_t keep_drawn(const char *folder, masu_row *rows, uint32_t count) {
+    char path[4096];
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (masu_sweep_picture(folder, rows[i].setting, "", path) && exists(path))
+            rows[kept++] = rows[i];
+    }
+    return kept;
+}
+
+masu_row *masu_sweep_resume(const char *folder, const char *name, uint32_t *count, char *error,
+                            size_t error_size) {
+    char path[4096];
+    masu_row *rows = rows_of(folder, name, count, error, error_size);
+    if (!rows || !masu_sweep_path(folder, name, path) || !exists(path)) return rows;
+    *count = keep_drawn(folder, rows, *count);
+    if (!write_rows(folder, name, rows, *count, error, error_size)) {
         free(rows);
         return NULL;
     }
     return rows;
 }
 
-bool masu_sweep_append(const char *folder, const masu_row *row, char *error, size_t error_size) {
+bool masu_sweep_append(const char *folder, const char *name, const masu_row *row, char *error,
+                       size_t error_size) {
     char path[4096];
-    if (!masu_sweep_path(folder, "results.csv", path))
+    if (!masu_sweep_path(folder, name, path))
         return fail(error, error_size, folder, "the path is too long");
     FILE *f = fopen(path, "a");
     if (!f) return fail(error, error_size, path, strerror(errno));
-    bool good = masu_rows_write(f, row) > 0;
+    bool good = !fseek(f, 0, SEEK_END) && (ftell(f) > 0 || masu_rows_header(f) > 0) &&
+                masu_rows_write(f, row) > 0;
     good = !fclose(f) && good;
     return good || fail(error, error_size, path, "cannot be written");
 }
@@ -180,11 +225,6 @@ static bool copy(const char *from, const char *to, char *error, size_t error_siz
         masu_file_write(to, bytes, count, error, error_size);
     free(bytes);
     return good;
-}
-
-static bool exists(const char *path) {
-    struct stat st;
-    return !stat(path, &st);
 }
 
 /* Rows that `all` has not got yet, with their pictures, and what there is of the truth. */
@@ -251,7 +291,8 @@ bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t par
     }
     good = good && merge_part(folder, folder, all, &count, error, error_size);
     good =
-        good && write_rows(folder, ordered, in_order(text, all, count, ordered), error, error_size);
+        good && write_rows(folder, MASU_SWEEP_RESULTS, ordered,
+                           in_order(text, all, count, ordered), error, error_size);
     free(text);
     return good;
 }

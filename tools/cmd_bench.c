@@ -20,6 +20,8 @@ enum {
     OPTION_SHARD,
     OPTION_MERGE,
     OPTION_QUICK,
+    OPTION_STEADY,
+    OPTION_RUNGS_OF,
     OPTION_AGAINST,
     OPTION_CSV
 };
@@ -28,9 +30,10 @@ enum { PARTS_MOST = 64 };
 
 typedef struct options {
     masu_sweep_desc sweep;
-    const char *arguments[PARTS_MOST], *against, *csv;
+    masu_setting_list only;
+    const char *arguments[PARTS_MOST], *against, *rungs_of, *csv;
     uint32_t count;
-    bool merge;
+    bool merge, steady; /* --steady is given */
 } options;
 
 /* The model sheet of the ladder, which the report has made: the page is then written once more. */
@@ -99,9 +102,29 @@ static int against(const options *o) {
                 : masu_cli_error("%s: cannot be written", to_file ? o->csv : "output");
 }
 
+/* The rungs again, and those that have come up in place of what was not as quick as it looked. */
+static bool steady(options *o, uint32_t *messages, char *error, size_t error_size) {
+    for (;;) {
+        static masu_setting_list list;
+        masu_sweep_result result;
+        list = o->only;
+        if (!list.count && !masu_report_unsteady(o->sweep.folder, &list, error, error_size))
+            return false;
+        if (!list.count) return true;
+        if (!masu_sweep_steady(&o->sweep, &list, &result, error, error_size)) return false;
+        *messages += result.messages;
+        if (!result.measured) return true; /* the list is the whole of --rungs-of */
+    }
+}
+
 static int sweep(options *o) {
     masu_sweep_result result;
     char error[4096];
+    if (o->rungs_of) {
+        if (!masu_report_rungs(o->rungs_of, &o->only, error, sizeof error))
+            return masu_cli_error("%s", error);
+        o->sweep.only = &o->only;
+    }
     o->sweep.scene_path = o->arguments[0];
     o->sweep.progress = masu_cli_progress_text;
     masu_sweep_desc *d = &o->sweep; /* what has not been given is 0 */
@@ -109,7 +132,10 @@ static int sweep(options *o) {
     if (!d->positions) d->positions = d->quick ? 4 : MASU_PICTURE_POSITIONS;
     if (!d->runs) d->runs = d->quick ? 2 : 9;
     if (!d->frames) d->frames = d->quick ? 8 : 32;
+    if (!o->steady) d->steady = d->quick ? 0.0 : 60.0;
     bool good = masu_sweep_run(&o->sweep, &result, error, sizeof error);
+    if (good && d->shards == 1 && d->steady > 0.0)
+        good = steady(o, &result.messages, error, sizeof error);
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
     if (!masu_cli_quiet()) {
@@ -150,6 +176,8 @@ static bool read_option(const masu_cli *cli, int id, options *o) {
     case OPTION_RUNS: return masu_cli_uint(cli, 1, MASU_SWEEP_RUNS_MAX, &d->runs);
     case OPTION_SHARD: return read_shard(cli, d);
     case OPTION_MERGE: o->merge = true; return true;
+    case OPTION_STEADY: o->steady = true; return masu_cli_double(cli, 0.0, 3600.0, &d->steady);
+    case OPTION_RUNGS_OF: o->rungs_of = cli->value; return true;
     case OPTION_QUICK: d->quick = true; return true;
     case OPTION_AGAINST: o->against = cli->value; return true;
     case OPTION_CSV: o->csv = cli->value; return true;
@@ -182,6 +210,8 @@ static int run(masu_cli *cli) {
         if (read) continue;
         if (!read_option(cli, id, &o)) return MASU_CLI_USAGE;
     }
+    if (o.rungs_of && (o.against || o.merge))
+        return masu_cli_usage_error("--rungs-of is of measuring: not with --against or --merge");
     if (o.against) return against(&o);
     if (o.csv) return masu_cli_usage_error("--csv is of --against");
     if (!o.count)
@@ -201,6 +231,14 @@ static const masu_cli_option list[] = {
      "(default 32)",
      OPTION_FRAMES, 0},
     {"runs", "N", "timed frames of each setting (default 9)", OPTION_RUNS, 0},
+    {"steady", "SECONDS",
+     "that each seven rungs of the ladder are timed again when all is\n"
+     "measured; 0: not at all (default 60)",
+     OPTION_STEADY, 0},
+    {"rungs-of", "DIR2",
+     "measure the base and the rungs of that folder's ladder alone: to see\n"
+     "on another day whether they hold (--against)",
+     OPTION_RUNGS_OF, 0},
     {"shard", "I/N", "measure each N-th setting alone, from the I-th on, 0 to N - 1; no report",
      OPTION_SHARD, 0},
     {"merge", NULL, "join DIR... of shards in --out, and write the report", OPTION_MERGE, 0},
@@ -209,7 +247,9 @@ static const masu_cli_option list[] = {
      "time ratio of the two, and the worst",
      OPTION_AGAINST, 0},
     {"csv", "FILE", "of --against: write it as CSV, - is standard output", OPTION_CSV, 0},
-    {"quick", NULL, "few settings, 128x72, 4 positions, 8 frames, 2 runs: a test", OPTION_QUICK, 0},
+    {"quick", NULL,
+     "few settings, 128x72, 4 positions, 8 frames, 2 runs, no rungs again: a test",
+     OPTION_QUICK, 0},
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
 
@@ -221,8 +261,9 @@ const masu_cli_command masu_cmd_bench = {
     .options = list,
     .details =
         "--truth is DIR/truth.png unless it is given.\n"
-        "Into DIR: results.csv, a row per setting; ladder.json, the rungs of the Pareto front;\n"
-        "index.html, one page with tables, plots and pictures; plots/ if there is gnuplot;\n"
+        "Into DIR: results.csv, a row per setting; steady.csv, the rungs timed again; ladder.json,\n"
+        "the rungs of the Pareto front; index.html, one page with tables, plots and pictures;\n"
+        "plots/ if there is gnuplot;\n"
         "model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu model), computed.\n"
         "Where NAME.truth.so lies beside NAME.masu (code, as trusted as this program), surfaces are\n"
         "compared with it. A setting's time is that of frames at rest, in turns with the base\n"

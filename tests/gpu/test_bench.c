@@ -1,10 +1,12 @@
 /* test_bench.c: `masu bench` as a stranger runs it: what lies in the folder, that a run which was
- * stopped goes on where it was, that shards together are the whole, and what is refused. Times are
+ * stopped goes on where it was, that shards together are the whole, that rungs are timed again, and what
+ * is refused. Times are
  * only looked at for being times. */
 #include "support.h"
 #include "support_cli.h"
 
 #include "bench_ladder.h"
+#include "bench_report.h"
 #include "bench_sweep.h"
 
 #include <jansson.h>
@@ -12,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* `masu bench ARGUMENTS`. */
@@ -405,6 +408,148 @@ static void slow_shadows_are_timed_over_their_whole_period(void **state) {
     free(rows);
 }
 
+static masu_setting_list rungs_in(const char *folder) {
+    masu_setting_list rungs;
+    char path[256], error[512];
+    snprintf(path, sizeof path, "%s/%s", cli_dir, folder);
+    if (!masu_report_rungs(path, &rungs, error, sizeof error)) fail_msg("%s", error);
+    return rungs;
+}
+
+/* All rows of the folder's tables have those errors, and the times of steady.csv where it has some. */
+static void check_steady(const char *folder, const masu_row *old, uint32_t old_count) {
+    char name[256], error[512];
+    uint32_t count, steady_count;
+    snprintf(name, sizeof name, "%s/steady.csv", folder);
+    char *text = cli_read(name);
+    masu_row *rows = rows_of(folder, &count);
+    masu_row *steady = masu_rows_read(text, &steady_count, error, sizeof error);
+    const masu_setting_list rungs = rungs_in(folder);
+    assert_non_null(steady);
+    assert_int_equal(count, old_count);
+    for (uint32_t i = 0; i < rungs.count; i++) {
+        if (!strcmp(rungs.id[i], "base")) continue;
+        if (!masu_rows_find(steady, steady_count, rungs.id[i]))
+            fail_msg("%s was not timed again", rungs.id[i]);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const masu_row *again = masu_rows_find(steady, steady_count, rows[i].setting);
+        const masu_row *timed = again ? again : &old[i];
+        assert_string_equal(rows[i].setting, old[i].setting);
+        assert_true(fabs(rows[i].flip - old[i].flip) <= 0);
+        assert_true(fabs(rows[i].ratio - timed->ratio) <= 0);
+        assert_true(fabs(rows[i].wall_min - timed->wall_min) <= 0);
+        assert_true(fabs(rows[i].base_wall_min - timed->base_wall_min) <= 0);
+    }
+    assert_null(masu_rows_find(steady, steady_count, "base"));
+    free(steady);
+    free(rows);
+    free(text);
+}
+
+/* The folder of the first test, in which nothing else is left to do. */
+static void rungs_are_timed_again(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    uint32_t before;
+    masu_row *old = rows_of("whole", &before);
+    assert_false(cli_exists("whole/steady.csv"));
+    assert_int_equal(bench("%s " SMALL " --steady 0.2 --validate --out %s/whole", scene, cli_dir), 0);
+    check_steady("whole", old, before);
+    check_ladder("whole");
+    char *first = cli_read("whole/steady.csv");
+    assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene, cli_dir), 0);
+    char *second = cli_read("whole/steady.csv");
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
+    free(old);
+}
+
+/* As in a clone of the project, which has the rows of its reports alone. */
+static void a_row_without_its_picture_is_measured_again(void **state) {
+    (void)state;
+    const masu_setting_list rungs = rungs_in("whole");
+    const char *last = rungs.id[rungs.count - 1];
+    char path[512];
+    uint32_t before;
+    masu_row *old = rows_of("whole", &before);
+    snprintf(path, sizeof path, "%s/whole/pictures/%s.png", cli_dir, last);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene_path("test_both"), cli_dir), 0);
+    cli_said("1 settings measured");
+    char *steady = cli_read("whole/steady.csv"), name[MASU_SETTING_ID + 8];
+    snprintf(name, sizeof name, "\n%s,", last);
+    const char *at = strstr(steady, name);
+    if (strcmp(last, "base") != 0) assert_true(at && !strstr(at + 1, name));
+    uint32_t after;
+    masu_row *rows = rows_of("whole", &after);
+    assert_int_equal(after, before);
+    check_ladder("whole");
+    free(rows);
+    free(steady);
+    free(old);
+}
+
+static void rungs_alone_are_measured_elsewhere(void **state) {
+    (void)state;
+    const char *scene = scene_path("test_both");
+    const masu_setting_list rungs = rungs_in("whole");
+    uint32_t count, whole_count;
+    bool base = false;
+    assert_int_equal(bench("%s " SMALL " --rungs-of %s/whole --steady 0.2 --out %s/alone", scene,
+                           cli_dir, cli_dir),
+                     0);
+    masu_row *rows = rows_of("alone", &count), *whole = rows_of("whole", &whole_count);
+    for (uint32_t i = 0; i < rungs.count; i++) {
+        const masu_row *a = masu_rows_find(rows, count, rungs.id[i]);
+        const masu_row *b = masu_rows_find(whole, whole_count, rungs.id[i]);
+        base = base || !strcmp(rungs.id[i], "base");
+        assert_non_null(a);
+        assert_true(fabs(a->flip - b->flip) <= 0);
+    }
+    assert_int_equal(count, rungs.count + !base);
+    check_steady("alone", rows, count);
+    check_markup("alone/index.html");
+    assert_int_equal(bench("%s/whole --against %s/alone", cli_dir, cli_dir), 0);
+    assert_non_null(strstr(cli_out, ", 0 without a row"));
+    free(rows);
+    free(whole);
+}
+
+/* `name` of the folder whole as that of the folder odd: another quickest rung. */
+static void write_odd(const char *name) {
+    char from[64], to[64];
+    snprintf(from, sizeof from, "whole/%s", name);
+    snprintf(to, sizeof to, "odd/%s", name);
+    char *text = cli_read(from);
+    for (char *at = text; (at = strstr(at, "scale=0.4")); at++) at[8] = '3';
+    cli_write(to, text, strlen(text));
+    free(text);
+}
+
+static void rungs_of_no_use_are_refused(void **state) {
+    (void)state;
+    char path[256];
+    snprintf(path, sizeof path, "%s/odd", cli_dir);
+    assert_int_equal(mkdir(path, 0777), 0);
+    write_odd("sweep.json");
+    write_odd("results.csv");
+    assert_int_equal(bench("%s " SMALL " --rungs-of %s/odd --out %s/y", scene_path("test_both"),
+                           cli_dir, cli_dir),
+                     1);
+    said("is none of its settings");
+    assert_int_equal(bench("%s " SMALL " --rungs-of %s/none --out %s/y", scene_path("test_both"),
+                           cli_dir, cli_dir),
+                     1);
+    said("none: sweep.json");
+    assert_false(cli_exists("y"));
+    assert_int_equal(bench("a.masu --out %s/y --steady -1", cli_dir), 2);
+    said("steady");
+    assert_int_equal(bench("--merge --rungs-of %s/odd %s/whole --out %s/y", cli_dir, cli_dir, cli_dir), 2);
+    said("--rungs-of");
+}
+
 static void wrong_command_lines_are_exit_code_2(void **state) {
     (void)state;
     assert_int_equal(bench("--help"), 0);
@@ -440,6 +585,10 @@ int main(void) {
         cmocka_unit_test(slow_shadows_are_timed_over_their_whole_period),
         cmocka_unit_test(reflections_have_an_error_of_their_own),
         cmocka_unit_test(ways_to_march_and_what_depth_is_compared_with),
+        cmocka_unit_test(rungs_are_timed_again),
+        cmocka_unit_test(a_row_without_its_picture_is_measured_again),
+        cmocka_unit_test(rungs_alone_are_measured_elsewhere),
+        cmocka_unit_test(rungs_of_no_use_are_refused),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
     };
     return cmocka_run_group_tests(tests, cli_make_dir, cli_remove_dir);

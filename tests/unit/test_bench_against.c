@@ -213,6 +213,9 @@ static void runs_are_added_merged_and_read(void **state) {
     assert_true(m.cpu[0] && m.threads > 0 && strlen(m.date) == 20);
     assert_false(masu_machine_read(in("m1"), 0, &read));
     assert_true(masu_machine_append(in("m1"), &m, error, sizeof error));
+    m.date[15] = m.date[15] == '0' ? '1' : '0'; /* a minute later: the same run, as far as it says */
+    assert_true(masu_machine_append(in("m1"), &m, error, sizeof error));
+    assert_false(masu_machine_read(in("m1"), 1, &read));
     snprintf(m.date, sizeof m.date, "another day");
     assert_true(masu_machine_append(in("m1"), &m, error, sizeof error));
     assert_true(masu_machine_append(in("m2"), &m, error, sizeof error));
@@ -233,6 +236,9 @@ static void runs_are_added_merged_and_read(void **state) {
     assert_false(masu_machine_append(in("m2"), &m, error, sizeof error));
     assert_non_null(strstr(error, "machine.json"));
     assert_false(masu_machine_read(in("m2"), 0, &read));
+    masu_machine_forget(in("m2"));
+    masu_machine_forget(in("none"));
+    assert_true(masu_machine_append(in("m2"), &m, error, sizeof error));
 }
 
 int main(void) {
