@@ -59,8 +59,9 @@ static bool is_far(double from_time, double from_error, double time, double erro
     return hypot(log(time / from_time), log(error / from_error)) > 0.12;
 }
 
-/* From its parent to each single technique. */
-static void write_arrows(FILE *f, const masu_plot *p) {
+/* From its parent to each single technique. Returns how many. */
+static uint32_t write_arrows(FILE *f, const masu_plot *p) {
+    uint32_t count = 0;
     fprintf(f, "$arrows << EOD\n");
     for (uint32_t i = 0; i < p->row_count; i++) {
         const masu_row *row = &p->rows[i],
@@ -76,8 +77,10 @@ static void write_arrows(FILE *f, const masu_plot *p) {
                 !named ? ""
                 : name ? name + (*name == '+')
                        : row->setting);
+        count++;
     }
     fprintf(f, "nan nan nan nan \"\"\nEOD\n");
+    return count;
 }
 
 static const char style[] =
@@ -109,7 +112,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     write_points(f, p);
     write_list(f, "front", p, p->front, p->front_count);
     write_list(f, "rungs", p, p->rungs, p->rung_count);
-    write_arrows(f, p);
+    uint32_t arrows = write_arrows(f, p);
     fputs(style, f);
     write_ranges(f, p);
     fprintf(f, "set xlabel 'time / time of the base setting (%s)'\n", p->clock);
@@ -125,16 +128,24 @@ static void write_commands(FILE *f, const masu_plot *p) {
     for (uint32_t k = 0; k <= SERIES; k++)
         fprintf(f, "  $series%u using 1:2 with points pt %d ps 0.8 lc rgb '%s' title '%s', \\\n", k,
                 marks[k], colors[k], names[k]);
-    fprintf(f, "  $rungs using 1:2 with points pt 6 ps 2 lw 2 lc rgb '#d55e00' title 'rungs', \\\n"
-               "  $rungs using 1:2:3 with labels offset 0,1.2 textcolor rgb '#d55e00' notitle\n");
+    fprintf(f, "  $rungs using 1:2 with points pt 6 ps 2 lw 2 lc rgb '#d55e00' title 'rungs'");
+    /* gnuplot 5.4 ends by a fault where there is not one label to write. */
+    if (p->rung_count) {
+        fprintf(f, ", \\\n  $rungs using 1:2:3 with labels offset 0,1.2 textcolor rgb '#d55e00' "
+                   "notitle");
+    }
+    fprintf(f, "\n");
     fprintf(f, "set output 'techniques.svg'\nset key off\n");
     fprintf(f,
             "set title \"%s: what each technique does, from the setting without it\" noenhanced\n",
             p->title);
-    fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888', \\\n"
-               "  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 filled "
-               "lw 1.2 lc rgb '#0072b2', \\\n"
-               "  $arrows using 3:4:5 with labels font ',9' left offset 0.5,0 noenhanced\n");
+    fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888'");
+    if (arrows) {
+        fprintf(f, ", \\\n  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 "
+                   "filled lw 1.2 lc rgb '#0072b2', \\\n"
+                   "  $arrows using 3:4:5 with labels font ',9' left offset 0.5,0 noenhanced");
+    }
+    fprintf(f, "\n");
 }
 
 static bool write_file(const masu_plot *p, char *error, size_t error_size) {

@@ -297,6 +297,10 @@ static void ways_to_march_and_what_depth_is_compared_with(void **state) {
     assert_int_equal(bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/few",
                            scene_path("test_both"), cli_dir),
                      0);
+    /* One row is a page, too: with plots that have no arrow. */
+    assert_int_equal(bench("--merge %s/few --out %s/lone", cli_dir, cli_dir), 0);
+    check_markup("lone/index.html");
+    check_ladder("lone");
     char *text = cli_read("few/sweep.json");
     json_t *root = json_loads(text, 0, NULL);
     assert_non_null(root);
