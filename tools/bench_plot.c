@@ -26,7 +26,8 @@ static bool drawable(const masu_plot *p, uint32_t i) {
 
 /* Series of points: those that are bundles or sizes by name, single knobs together. */
 static const char *const series[] = {"base", "scale", "cheap",   "middle",
-                                     "full", "soft",  "soft aa", "soft steps"};
+                                     "full", "soft",  "soft aa", "soft steps",
+                                     "soft cascades"};
 enum { SERIES = sizeof series / sizeof *series };
 
 static uint32_t series_of(const masu_row *row) {
@@ -120,11 +121,11 @@ static void write_commands(FILE *f, const masu_plot *p) {
     fprintf(f, "set title \"%s: error against time, and the ladder\" noenhanced\n", p->title);
     fprintf(f, "plot $front using 1:2 with lines lw 2 lc rgb '#222222' title 'Pareto front', \\\n");
     static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
-                                         "#56b4e9", "#56b4e9", "#56b4e9", "#999999"};
+                                         "#56b4e9", "#56b4e9", "#56b4e9", "#d55e00", "#999999"};
     static const char *const names[] = {
         "base", "render size alone", "cheap",           "middle",  "full",
-        "soft", "soft, SMAA",        "soft, 128 steps", "one knob"};
-    static const int marks[] = {7, 7, 9, 5, 13, 11, 10, 12, 6};
+        "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "one knob"};
+    static const int marks[] = {7, 7, 9, 5, 13, 11, 10, 12, 8, 6};
     for (uint32_t k = 0; k <= SERIES; k++)
         fprintf(f, "  $series%u using 1:2 with points pt %d ps 0.8 lc rgb '%s' title '%s', \\\n", k,
                 marks[k], colors[k], names[k]);

@@ -196,6 +196,8 @@ static const technique bundles[] = {
     {"soft", SIXTEENTHS, {.sharpen = MASU_OFF}},
     {"soft aa", 0, {.sharpen = MASU_OFF, .aa = MASU_AA_SMAA_HIGH}},
     {"soft steps", 0, {.sharpen = MASU_OFF, .march_steps = 128}},
+    /* Of a world, whose shadow map takes a part of the frame that a smaller picture does not make less. */
+    {"soft cascades", 0, {.sharpen = MASU_OFF, .shadow_cascades = 2}},
     {"middle",
      0,
      {.aa = MASU_AA_FXAA,
@@ -328,6 +330,11 @@ static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t coun
 /* Values that only a scene can give a meaning. */
 static void scene_values(masu_rung *rung, const masu_scene *scene, const char **why) {
     if (scene->shadow_distance > 0.0f) rung->shadow_distance *= scene->shadow_distance;
+    if (rung->shadow_cascades && scene->shadow_cascades &&
+        rung->shadow_cascades >= scene->shadow_cascades) {
+        *why = "the scene has no more of them";
+        rung->shadow_cascades = 0;
+    }
     if (!(fabsf(rung->specular_cutoff - scene->specular_cutoff) > 1e-6f)) {
         if (rung->specular_cutoff > 0.0f) *why = "it is the scene's own";
         rung->specular_cutoff = 0.0f;

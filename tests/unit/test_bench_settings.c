@@ -36,7 +36,8 @@ static void check_names(uint32_t count) {
 }
 
 static const masu_scene everything = {
-    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1, .shadow_distance = 80};
+    .sdf = 1, .lods = 1, .placed_occluders = 1, .instances = 1, .lights = 1, .shadow_cascades = 4,
+    .shadow_distance = 80};
 
 static masu_plan_info plan_with(const char *const *passes, uint32_t count) {
     masu_plan_info plan;
@@ -116,13 +117,14 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     for (uint32_t i = 0; i < count; i++) dropped += settings[i].dropped[0] != 0;
     /* SMAA HIGH at 1 and 0.5 is a technique and a bundle; so is no sharpening, nothing at 1:
      * there the soft bundles are their other knob alone. */
-    assert_int_equal(dropped, 6);
+    assert_int_equal(dropped, 7);
     check_dropped("sharpen=off", count, "nothing is sharpened");
     check_dropped("scale=0.5+sharpen=off", count, "there already");
     check_dropped("aa=smaa-high", count, "there already");
     check_dropped("scale=0.5+aa=smaa-high", count, "there already");
     check_dropped("sharpen=off+aa=smaa-high", count, "nothing is sharpened");
     check_dropped("sharpen=off+march_steps=128", count, "nothing is sharpened");
+    check_dropped("sharpen=off+shadow_cascades=2", count, "nothing is sharpened");
     if (count - dropped > 110) fail_msg("%u settings", count - dropped);
     static const char *const there[] = {"march=plain",
                                         "march=seed",
@@ -135,7 +137,8 @@ static void a_scene_of_everything_keeps_everything(void **state) {
                                         "scale=0.9375+sharpen=off",
                                         "scale=0.4375+sharpen=off",
                                         "scale=0.4+sharpen=off+aa=smaa-high",
-                                        "scale=0.625+sharpen=off+march_steps=128"};
+                                        "scale=0.625+sharpen=off+march_steps=128",
+                                        "scale=0.625+sharpen=off+shadow_cascades=2"};
     for (size_t i = 0; i < sizeof there / sizeof *there; i++)
         assert_true(find(count, there[i]) < count);
     uint32_t half = find(count, "shadow_distance=40"); /* of the scene's 80 */
@@ -153,6 +156,22 @@ static void a_cutoff_that_is_the_scenes_own_is_the_base(void **state) {
     check_names(count);
     check_dropped("specular_cutoff=0.5", count, "the scene's own");
     assert_true(find(count, "specular_cutoff=0.25") < count);
+}
+
+static void cascades_that_are_the_scenes_own_are_the_base(void **state) {
+    (void)state;
+    static const char *const passes[] = {"cascade_0"};
+    const masu_plan_info plan = plan_with(passes, 1);
+    for (uint32_t n = 1; n <= 3; n++) {
+        const masu_scene scene = {.shadow_cascades = n, .shadow_distance = 80};
+        uint32_t count = masu_settings_make(false, settings);
+        masu_settings_fit(settings, count, &scene, &plan);
+        check_names(count);
+        if (n < 3)
+            check_dropped("shadow_cascades=2", count, "no more of them");
+        else
+            assert_true(find(count, "shadow_cascades=2") < count);
+    }
 }
 
 static void plans_are_compared_by_passes_sizes_and_bytes(void **state) {
@@ -250,6 +269,7 @@ int main(void) {
         cmocka_unit_test(a_scene_of_nothing_leaves_what_is_done_to_pictures),
         cmocka_unit_test(a_scene_of_everything_keeps_everything),
         cmocka_unit_test(a_cutoff_that_is_the_scenes_own_is_the_base),
+        cmocka_unit_test(cascades_that_are_the_scenes_own_are_the_base),
         cmocka_unit_test(plans_are_compared_by_passes_sizes_and_bytes),
         cmocka_unit_test(knobs_are_printed_as_json),
         cmocka_unit_test(names_are_read_again),
