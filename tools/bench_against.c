@@ -30,7 +30,7 @@ static json_t *load(const char *folder, const char *name, char *error, size_t er
     return NULL;
 }
 
-static bool same_sweep(const char *here, const char *there, char *error, size_t error_size) {
+bool masu_against_same(const char *here, const char *there, char *error, size_t error_size) {
     json_t *a = load(here, "sweep.json", error, error_size);
     json_t *b = a ? load(there, "sweep.json", error, error_size) : NULL;
     bool good = b != NULL;
@@ -103,7 +103,7 @@ static bool compare_rungs(const json_t *ladder, const char *here, const char *th
 bool masu_against_compare(const char *here, const char *there, masu_against *out, char *error,
                           size_t error_size) {
     memset(out, 0, sizeof *out);
-    if (!same_sweep(here, there, error, error_size)) return false;
+    if (!masu_against_same(here, there, error, error_size)) return false;
     json_t *a = load(here, "ladder.json", error, error_size);
     json_t *b = a ? load(there, "ladder.json", error, error_size) : NULL;
     out->by_timestamps = stamped(a) && stamped(b);

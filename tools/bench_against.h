@@ -25,6 +25,9 @@ typedef struct masu_against {
     bool by_timestamps;
 } masu_against;
 
+/* Both are of one scene, size, time and truth. False: `error` says what is not. */
+bool masu_against_same(const char *here, const char *there, char *error, size_t error_size);
+
 /* False: a file is not there or bad, or the folders are of another scene, size, time or truth. */
 bool masu_against_compare(const char *here, const char *there, masu_against *out, char *error,
                           size_t error_size);

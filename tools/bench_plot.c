@@ -121,7 +121,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     fprintf(f, "set title \"%s: error against time, and the ladder\" noenhanced\n", p->title);
     fprintf(f, "plot $front using 1:2 with lines lw 2 lc rgb '#222222' title 'Pareto front', \\\n");
     static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
-                                         "#56b4e9", "#56b4e9", "#56b4e9", "#d55e00", "#999999"};
+                                         "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#999999"};
     static const char *const names[] = {
         "base", "render size alone", "cheap",           "middle",  "full",
         "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "one knob"};

@@ -20,8 +20,8 @@ typedef struct report {
     const char *folder;
     masu_report_result *out;
     json_t *sweep; /* sweep.json */
-    masu_row *rows;
-    uint32_t count, rung_count, front_count;
+    masu_row *rows, *steady; /* of both files, of steady.csv alone */
+    uint32_t count, rung_count, front_count, steady_count;
     double *ratios; /* of the clock that the ladder goes by */
     masu_ladder_point *points;
     uint32_t *front, *rungs;
@@ -65,6 +65,8 @@ static bool read_all(report *r) {
     if (!r->sweep) return failed(r, "sweep.json cannot be read");
     r->rows = masu_sweep_rows(r->folder, &r->count, r->error, r->error_size);
     if (!r->rows) return false;
+    r->steady = masu_sweep_steady_rows(r->folder, &r->steady_count, r->error, r->error_size);
+    if (!r->steady) return false;
     for (uint32_t i = 0; i < r->count; i++) {
         if (setting_of(r, r->rows[i].setting)) r->rows[kept++] = r->rows[i];
     }
@@ -283,10 +285,13 @@ static void put_note(report *r) {
             "times. Where they differ by much, the machine was busy: by more than a tenth in %u "
             "rows of %u.</li>\n",
             number_of(r, "runs"), r->out->unsteady, r->out->rows);
-    fputs("<li>What looks best of many noisy times is lucky, too: so the rungs were timed again, by "
-          "themselves and for longer, where there is a steady.csv; its times are those of their "
-          "rows.</li>\n",
-          f);
+    if (r->steady_count) {
+        fprintf(f,
+                "<li>What looks best of many noisy times is lucky, too: so %u settings, the rungs "
+                "among them, were timed again by themselves and for longer (steady.csv); those are "
+                "the times of their rows.</li>\n",
+                r->steady_count);
+    }
     fprintf(f, "<li>The ladder goes by %s.</li>\n",
             r->out->by_timestamps ? "the device's timestamps, which fit the wall clock"
                                   : "the wall clock: not all timestamps fit it");
@@ -530,6 +535,7 @@ static bool write_page(report *r) {
 static void release(report *r) {
     json_decref(r->sweep);
     free(r->rows);
+    free(r->steady);
     free(r->ratios);
     free(r->points);
     free(r->front);
@@ -548,14 +554,13 @@ bool masu_report_rungs(const char *folder, masu_setting_list *out, char *error, 
 }
 
 /* Each round leaves out what it has found; without an end there would be at most count of them. */
-static void find_unsteady(report *r, const masu_row *steady, uint32_t steady_count,
-                          masu_setting_list *out) {
+static void find_unsteady(report *r, masu_setting_list *out) {
     const uint32_t most = MASU_MAX_RUNGS - 1;
     for (;;) {
         uint32_t before = out->count;
         for (uint32_t i = 0; i < r->rung_count && out->count < most; i++) {
             const char *id = r->rows[r->rungs[i]].setting;
-            if (!strcmp(id, "base") || masu_rows_find(steady, steady_count, id)) continue;
+            if (!strcmp(id, "base") || masu_rows_find(r->steady, r->steady_count, id)) continue;
             memcpy(out->id[out->count++], id, MASU_SETTING_ID);
             r->points[r->rungs[i]].time = 0.0;
         }
@@ -568,14 +573,11 @@ bool masu_report_unsteady(const char *folder, masu_setting_list *out, char *erro
                           size_t error_size) {
     masu_report_result result = {0};
     report r = {.folder = folder, .out = &result, .error = error, .error_size = error_size};
-    uint32_t count = 0;
     memset(out, 0, sizeof *out);
     bool good = read_all(&r) && find_ladder(&r);
-    masu_row *steady = good ? masu_sweep_steady_rows(folder, &count, error, error_size) : NULL;
-    if (steady) find_unsteady(&r, steady, count, out);
-    free(steady);
+    if (good) find_unsteady(&r, out);
     release(&r);
-    return good && steady;
+    return good;
 }
 
 bool masu_report_write(const char *folder, masu_report_result *out, char *error,

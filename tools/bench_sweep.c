@@ -1,6 +1,7 @@
 /* bench_sweep.c: see bench_sweep.h. */
 #include "bench_sweep.h"
 
+#include "bench_against.h"
 #include "bench_depth.h"
 #include "bench_machine.h"
 #include "bench_motion.h"
@@ -473,31 +474,35 @@ static void close_behind(sweep *w) {
 
 static bool known(sweep *w) {
     const masu_setting_list *only = w->d->only;
-    char text[MASU_SETTING_ID + 64];
+    char text[MASU_SETTING_ID + 256];
     for (uint32_t i = 0; only && i < only->count; i++) {
+        const char *why = "bench knows no such setting, or --quick leaves it out";
         bool there = false;
-        for (uint32_t k = 0; k < w->setting_count && !there; k++)
-            there = !w->settings[k].dropped[0] && !strcmp(w->settings[k].id, only->id[i]);
-        snprintf(text, sizeof text, "%s is none of its settings", only->id[i]);
+        for (uint32_t k = 0; k < w->setting_count && !there; k++) {
+            if (strcmp(w->settings[k].id, only->id[i]) != 0) continue;
+            there = !w->settings[k].dropped[0];
+            why = w->settings[k].dropped;
+        }
+        snprintf(text, sizeof text, "%s is none of its settings: %.200s", only->id[i], why);
         if (!there) return failed(w, text);
     }
     return true;
 }
 
+/* Before what takes minutes. */
+static bool alike(sweep *w) {
+    return !w->d->like ||
+           masu_against_same(w->d->like, w->d->folder, w->error, w->error_size);
+}
+
 static bool measure(sweep *w) {
     static batch b;
-    uint32_t list[MASU_SETTINGS_MOST], count = 0, again_count = 0;
-    masu_row *rows = masu_sweep_resume(w->d->folder, MASU_SWEEP_RESULTS, &count, w->error,
-                                       w->error_size);
+    uint32_t list[MASU_SETTINGS_MOST], count = 0;
+    masu_row *rows = masu_sweep_resume(w->d->folder, &count, w->error, w->error_size);
     if (!rows) return false;
-    /* Before what has lost its picture gets a new one. */
-    masu_row *again = masu_sweep_resume(w->d->folder, MASU_SWEEP_STEADY, &again_count, w->error,
-                                        w->error_size);
-    if (again && !count) masu_machine_forget(w->d->folder);
-    w->pending = again ? mine(w, rows, count, list) : 0;
+    if (!count) masu_machine_forget(w->d->folder);
+    w->pending = mine(w, rows, count, list);
     free(rows);
-    free(again);
-    if (!again) return false;
     if (!w->pending) return true;
     if (!find_truth(w) || !open_behind(w)) return false;
     w->start = masu_clock_ns(NULL);
@@ -553,8 +558,8 @@ static bool steady(sweep *w, const masu_setting_list *list) {
     static batch b;
     uint32_t of[MASU_SETTINGS_MOST], count = 0, there_count = 0;
     masu_row *rows = masu_sweep_rows(w->d->folder, &count, w->error, w->error_size);
-    masu_row *there = masu_sweep_resume(w->d->folder, MASU_SWEEP_STEADY, &there_count, w->error,
-                                        w->error_size);
+    masu_row *there =
+        masu_sweep_steady_rows(w->d->folder, &there_count, w->error, w->error_size);
     bool good = rows && there;
     w->pending = good ? unsteady(w, list, rows, count, there, there_count, of) : 0;
     w->start = masu_clock_ns(NULL);
@@ -611,7 +616,7 @@ bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *e
     w.true_radiance = malloc(3 * sizeof *w.true_radiance * w.pixels);
     bool good = (w.truth && w.before && w.map && w.true_radiance) || failed(&w, "out of memory");
     good = good && plan_settings(&w);
-    good = good && known(&w) && begin_folder(&w) && measure(&w);
+    good = good && known(&w) && begin_folder(&w) && alike(&w) && measure(&w);
     close_behind(&w);
     close_session(&w);
     free(w.truth);

@@ -57,6 +57,7 @@ typedef struct masu_sweep_desc {
     double steady;            /* seconds that seven rungs are timed again, see masu_sweep_steady */
     uint32_t shard, shards;   /* settings shard, shard + shards, ... */
     const masu_setting_list *only; /* NULL or empty: all settings; else these and the base */
+    const char *like;              /* NULL, or a folder whose sweep must be one with this */
     bool quick;
     masu_headless_desc host;
     void (*progress)(const char *text); /* or NULL */
@@ -75,7 +76,8 @@ bool masu_sweep_run(const masu_sweep_desc *desc, masu_sweep_result *out, char *e
                     size_t error_size);
 
 /* Times those settings again that have a row, but no times of this kind yet: by sevens, with the base,
- * for desc->steady seconds or desc->runs rounds, whichever is more. out->measured: how many. */
+ * for desc->steady seconds or desc->runs rounds, whichever is more, but not more than
+ * MASU_SWEEP_RUNS_MAX rounds. out->measured: how many. */
 bool masu_sweep_steady(const masu_sweep_desc *desc, const masu_setting_list *list,
                        masu_sweep_result *out, char *error, size_t error_size);
 

@@ -101,7 +101,7 @@ static bool begin_with(const char *folder, const char *text, char *error, size_t
     if (other) {
         return fail(error, error_size, folder,
                     "holds another sweep (scene, size, time, runs, driver or settings differ, see "
-                    "sweep.json): give another folder");
+                    "sweep.json): give another folder, or remove this one");
     }
     return same || masu_file_write(json, text, strlen(text), error, error_size);
 }
@@ -137,6 +137,22 @@ masu_row *masu_sweep_steady_rows(const char *folder, uint32_t *count, char *erro
     return rows_of(folder, MASU_SWEEP_STEADY, count, error, error_size);
 }
 
+static void take_times(masu_row *row, const masu_row *from) {
+    row->wall_min = from->wall_min;
+    row->wall_p50 = from->wall_p50;
+    row->wall_p95 = from->wall_p95;
+    row->wall_p99 = from->wall_p99;
+    row->gpu_min = from->gpu_min;
+    row->gpu_p50 = from->gpu_p50;
+    row->plausible = from->plausible;
+    row->base_wall_min = from->base_wall_min;
+    row->base_gpu_min = from->base_gpu_min;
+    row->ratio = from->ratio;
+    row->gpu_ratio = from->gpu_ratio;
+    row->least_ratio = from->least_ratio;
+    row->gpu_least_ratio = from->gpu_least_ratio;
+}
+
 masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size_t error_size) {
     uint32_t again_count = 0;
     masu_row *rows = rows_of(folder, MASU_SWEEP_RESULTS, count, error, error_size);
@@ -148,7 +164,7 @@ masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size
     }
     for (uint32_t i = 0; i < *count; i++) {
         const masu_row *row = masu_rows_find(again, again_count, rows[i].setting);
-        if (row) rows[i] = *row;
+        if (row) take_times(&rows[i], row);
     }
     free(again);
     return rows;
@@ -189,17 +205,40 @@ static uint32_t keep_drawn(const char *folder, masu_row *rows, uint32_t count) {
     return kept;
 }
 
-masu_row *masu_sweep_resume(const char *folder, const char *name, uint32_t *count, char *error,
-                            size_t error_size) {
-    char path[4096];
-    masu_row *rows = rows_of(folder, name, count, error, error_size);
-    if (!rows || !masu_sweep_path(folder, name, path) || !exists(path)) return rows;
-    *count = keep_drawn(folder, rows, *count);
-    if (!write_rows(folder, name, rows, *count, error, error_size)) {
-        free(rows);
-        return NULL;
+/* Times of rows that are to be measured again say nothing of the new ones. */
+static uint32_t keep_known(const masu_row *known, uint32_t known_count, masu_row *rows,
+                           uint32_t count) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (masu_rows_find(known, known_count, rows[i].setting)) rows[kept++] = rows[i];
     }
-    return rows;
+    return kept;
+}
+
+/* What is not there is not begun. */
+static bool rewrite(const char *folder, const char *name, const masu_row *rows, uint32_t count,
+                    char *error, size_t error_size) {
+    char path[4096];
+    return (masu_sweep_path(folder, name, path) && !exists(path)) ||
+           write_rows(folder, name, rows, count, error, error_size);
+}
+
+masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size) {
+    uint32_t again_count = 0;
+    masu_row *rows = rows_of(folder, MASU_SWEEP_RESULTS, count, error, error_size);
+    masu_row *again =
+        rows ? masu_sweep_steady_rows(folder, &again_count, error, error_size) : NULL;
+    bool good = again != NULL;
+    if (good) {
+        *count = keep_drawn(folder, rows, *count);
+        again_count = keep_known(rows, *count, again, again_count);
+        good = rewrite(folder, MASU_SWEEP_RESULTS, rows, *count, error, error_size) &&
+               rewrite(folder, MASU_SWEEP_STEADY, again, again_count, error, error_size);
+    }
+    free(again);
+    if (good) return rows;
+    free(rows);
+    return NULL;
 }
 
 bool masu_sweep_append(const char *folder, const char *name, const masu_row *row, char *error,
@@ -227,23 +266,34 @@ static bool copy(const char *from, const char *to, char *error, size_t error_siz
     return good;
 }
 
+typedef struct merged {
+    masu_row rows[MASU_SETTINGS_MOST], steady[MASU_SETTINGS_MOST];
+    uint32_t count, steady_count; /* of two parts that have a setting the first's is taken, times too */
+} merged;
+
 /* Rows that `all` has not got yet, with their pictures, and what there is of the truth. */
-static bool merge_part(const char *folder, const char *part, masu_row *all, uint32_t *count,
-                       char *error, size_t error_size) {
+static bool merge_part(const char *folder, const char *part, merged *all, char *error,
+                       size_t error_size) {
     char from[4096], to[4096];
-    uint32_t n = 0;
-    masu_row *rows = masu_sweep_rows(part, &n, error, error_size);
-    bool good = rows != NULL;
+    uint32_t n = 0, steady_count = 0;
+    masu_row *rows = rows_of(part, MASU_SWEEP_RESULTS, &n, error, error_size);
+    masu_row *steady =
+        rows ? masu_sweep_steady_rows(part, &steady_count, error, error_size) : NULL;
+    bool good = steady != NULL;
     for (uint32_t i = 0; i < n && good; i++) {
-        if (masu_rows_find(all, *count, rows[i].setting)) continue;
-        if (*count == MASU_SETTINGS_MOST)
+        if (masu_rows_find(all->rows, all->count, rows[i].setting)) continue;
+        if (all->count == MASU_SETTINGS_MOST)
             good = fail(error, error_size, part, "more settings than there are");
         good = good && masu_sweep_picture(part, rows[i].setting, "", from) &&
                masu_sweep_picture(folder, rows[i].setting, "", to) &&
                (!strcmp(from, to) || copy(from, to, error, error_size));
-        if (good) all[(*count)++] = rows[i];
+        if (!good) break;
+        const masu_row *again = masu_rows_find(steady, steady_count, rows[i].setting);
+        all->rows[all->count++] = rows[i];
+        if (again) all->steady[all->steady_count++] = *again;
     }
     free(rows);
+    free(steady);
     static const char *const truths[] = {"truth.png", "truth.pfm", "truth.specular.pfm"};
     for (size_t i = 0; i < sizeof truths / sizeof *truths && good; i++) {
         good = masu_sweep_path(part, truths[i], from) && masu_sweep_path(folder, truths[i], to) &&
@@ -268,10 +318,11 @@ static uint32_t in_order(const char *text, const masu_row *all, uint32_t count, 
 
 bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t part_count,
                       char *error, size_t error_size) {
-    static masu_row all[MASU_SETTINGS_MOST], ordered[MASU_SETTINGS_MOST];
-    uint32_t count = 0;
+    static masu_row ordered[MASU_SETTINGS_MOST];
+    static merged all;
     bool good = true;
     char *text = NULL, path[4096];
+    all.count = all.steady_count = 0;
     for (uint32_t i = 0; i < part_count && good; i++) {
         good = masu_sweep_path(parts[i], "sweep.json", path);
         char *own = good ? read_text(path) : NULL;
@@ -286,13 +337,17 @@ bool masu_sweep_merge(const char *folder, const char *const *parts, uint32_t par
             text = own;
             good = begin_with(folder, text, error, error_size);
         }
-        good = good && merge_part(folder, parts[i], all, &count, error, error_size) &&
+        good = good && merge_part(folder, parts[i], &all, error, error_size) &&
                masu_machine_merge(folder, parts[i], error, error_size);
     }
-    good = good && merge_part(folder, folder, all, &count, error, error_size);
-    good =
-        good && write_rows(folder, MASU_SWEEP_RESULTS, ordered,
-                           in_order(text, all, count, ordered), error, error_size);
+    good = good && merge_part(folder, folder, &all, error, error_size);
+    good = good &&
+           write_rows(folder, MASU_SWEEP_RESULTS, ordered,
+                      in_order(text, all.rows, all.count, ordered), error, error_size) &&
+           (all.steady_count
+                ? write_rows(folder, MASU_SWEEP_STEADY, all.steady, all.steady_count, error,
+                             error_size)
+                : rewrite(folder, MASU_SWEEP_STEADY, all.steady, 0, error, error_size));
     free(text);
     return good;
 }

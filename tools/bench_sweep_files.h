@@ -19,12 +19,12 @@ typedef struct masu_sweep_about {
 bool masu_sweep_begin(const masu_sweep_desc *desc, const masu_sweep_about *about, char *error,
                       size_t error_size);
 
-/* The rows that are in that file and have a picture in the folder; the file then has no others, nor what
- * was torn. No file is no error. `name`: MASU_SWEEP_RESULTS or MASU_SWEEP_STEADY. Freed by free(). */
-masu_row *masu_sweep_resume(const char *folder, const char *name, uint32_t *count, char *error,
-                            size_t error_size);
+/* The rows of results.csv that have a picture in the folder. It then has no others, nor what was torn;
+ * steady.csv has none but of these. No file is no error. Freed by free(). */
+masu_row *masu_sweep_resume(const char *folder, uint32_t *count, char *error, size_t error_size);
 
-/* On the disk when it returns; a new file begins with the header. */
+/* On the disk when it returns; a new file begins with the header. `name`: MASU_SWEEP_RESULTS or
+ * MASU_SWEEP_STEADY. */
 bool masu_sweep_append(const char *folder, const char *name, const masu_row *row, char *error,
                        size_t error_size);
 

@@ -103,7 +103,8 @@ static int against(const options *o) {
 }
 
 /* The rungs again, and those that have come up in place of what was not as quick as it looked. */
-static bool steady(options *o, uint32_t *messages, char *error, size_t error_size) {
+static bool steady(options *o, uint32_t *timed, uint32_t *messages, char *error,
+                   size_t error_size) {
     for (;;) {
         static masu_setting_list list;
         masu_sweep_result result;
@@ -113,17 +114,21 @@ static bool steady(options *o, uint32_t *messages, char *error, size_t error_siz
         if (!list.count) return true;
         if (!masu_sweep_steady(&o->sweep, &list, &result, error, error_size)) return false;
         *messages += result.messages;
+        *timed += result.measured;
         if (!result.measured) return true; /* the list is the whole of --rungs-of */
     }
 }
 
 static int sweep(options *o) {
     masu_sweep_result result;
+    uint32_t timed = 0;
     char error[4096];
     if (o->rungs_of) {
         if (!masu_report_rungs(o->rungs_of, &o->only, error, sizeof error))
             return masu_cli_error("%s", error);
+        if (!o->only.count) return masu_cli_error("%s: has no rungs", o->rungs_of);
         o->sweep.only = &o->only;
+        o->sweep.like = o->rungs_of;
     }
     o->sweep.scene_path = o->arguments[0];
     o->sweep.progress = masu_cli_progress_text;
@@ -135,13 +140,14 @@ static int sweep(options *o) {
     if (!o->steady) d->steady = d->quick ? 0.0 : 60.0;
     bool good = masu_sweep_run(&o->sweep, &result, error, sizeof error);
     if (good && d->shards == 1 && d->steady > 0.0)
-        good = steady(o, &result.messages, error, sizeof error);
+        good = steady(o, &timed, &result.messages, error, sizeof error);
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
     if (!masu_cli_quiet()) {
         printf("%s: %u settings measured, %u were there; of %u, and %u that the scene has no use "
-               "for\n",
-               o->sweep.folder, result.measured, result.there, result.settings, result.dropped);
+               "for; %u timed again\n",
+               o->sweep.folder, result.measured, result.there, result.settings, result.dropped,
+               timed);
     }
     int code = MASU_CLI_OK;
     if (o->sweep.shards == 1) code = report(o);
@@ -212,6 +218,11 @@ static int run(masu_cli *cli) {
     }
     if (o.rungs_of && (o.against || o.merge))
         return masu_cli_usage_error("--rungs-of is of measuring: not with --against or --merge");
+    if (o.steady && (o.against || o.merge || o.sweep.shards > 1))
+        return masu_cli_usage_error("--steady needs all settings and their scene: not with --shard, "
+                                    "--merge or --against");
+    if (o.rungs_of && o.sweep.folder && !strcmp(o.rungs_of, o.sweep.folder))
+        return masu_cli_usage_error("--rungs-of and --out are one folder");
     if (o.against) return against(&o);
     if (o.csv) return masu_cli_usage_error("--csv is of --against");
     if (!o.count)
@@ -241,7 +252,10 @@ static const masu_cli_option list[] = {
      OPTION_RUNGS_OF, 0},
     {"shard", "I/N", "measure each N-th setting alone, from the I-th on, 0 to N - 1; no report",
      OPTION_SHARD, 0},
-    {"merge", NULL, "join DIR... of shards in --out, and write the report", OPTION_MERGE, 0},
+    {"merge", NULL,
+     "join DIR... of shards in --out, and write the report; a run with SCENE.masu and\n"
+     "that --out then times the rungs again",
+     OPTION_MERGE, 0},
     {"against", "DIR2",
      "compare each rung of the folder DIR with the same setting there: error and\n"
      "time ratio of the two, and the worst",

@@ -451,50 +451,133 @@ static void check_steady(const char *folder, const masu_row *old, uint32_t old_c
     free(text);
 }
 
-/* The folder of the first test, in which nothing else is left to do. */
+/* A table of a folder alone, not with the times of the other. */
+static masu_row *table_of(const char *folder, const char *file, uint32_t *count) {
+    char name[256], error[512];
+    snprintf(name, sizeof name, "%s/%s", folder, file);
+    char *text = cli_read(name);
+    masu_row *rows = masu_rows_read(text, count, error, sizeof error);
+    if (!rows) fail_msg("%s: %s", name, error);
+    free(text);
+    return rows;
+}
+
+static void write_table(const char *folder, const char *file, const masu_row *rows,
+                        uint32_t count) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s/%s", cli_dir, folder, file);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    assert_true(masu_rows_header(f) > 0);
+    for (uint32_t i = 0; i < count; i++) assert_true(masu_rows_write(f, &rows[i]) > 0);
+    assert_int_equal(fclose(f), 0);
+}
+
+/* Times that no frame has, in a table of those settings or of all. */
+static void spoil(const char *folder, const char *file, const char *setting) {
+    uint32_t count;
+    masu_row *rows = table_of(folder, file, &count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (setting && strcmp(rows[i].setting, setting) != 0) continue;
+        rows[i].ratio = rows[i].gpu_ratio = 1e-3;
+        rows[i].wall_min = 12345;
+        rows[i].flip = 0.9;
+    }
+    write_table(folder, file, rows, count);
+    free(rows);
+}
+
+static bool spoilt(const masu_row *row) { return row->wall_min > 12344 || row->ratio < 2e-3; }
+
+/* The folder of the first test, in which nothing else is left to do. One of its rows has a time so short
+ * that it is a rung for sure: measured again it has not. */
 static void rungs_are_timed_again(void **state) {
     (void)state;
-    const char *scene = scene_path("test_both");
-    uint32_t before;
+    const char *scene = scene_path("test_both"), *quick = "scale=0.4";
+    uint32_t before, count;
+    masu_row *table = table_of("whole", "results.csv", &count);
+    masu_row *found = NULL;
+    for (uint32_t i = 0; i < count; i++) found = strcmp(table[i].setting, quick) ? found : &table[i];
+    assert_non_null(found);
+    found->ratio = found->gpu_ratio = 1e-3;
+    write_table("whole", "results.csv", table, count);
     masu_row *old = rows_of("whole", &before);
+    assert_true(spoilt(masu_rows_find(old, before, quick)));
     assert_false(cli_exists("whole/steady.csv"));
     assert_int_equal(bench("%s " SMALL " --steady 0.2 --validate --out %s/whole", scene, cli_dir), 0);
     check_steady("whole", old, before);
     check_ladder("whole");
+    masu_row *rows = rows_of("whole", &count);
+    assert_false(spoilt(masu_rows_find(rows, count, quick)));
     char *first = cli_read("whole/steady.csv");
     assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene, cli_dir), 0);
+    cli_said("; 0 timed again");
     char *second = cli_read("whole/steady.csv");
     assert_string_equal(first, second);
     free(first);
     free(second);
+    free(rows);
+    free(table);
     free(old);
 }
 
 /* As in a clone of the project, which has the rows of its reports alone. */
 static void a_row_without_its_picture_is_measured_again(void **state) {
     (void)state;
-    const masu_setting_list rungs = rungs_in("whole");
-    const char *last = rungs.id[rungs.count - 1];
     char path[512];
-    uint32_t before;
+    uint32_t before, after;
+    const char *setting = "scale=0.4"; /* it has been timed again */
     masu_row *old = rows_of("whole", &before);
-    snprintf(path, sizeof path, "%s/whole/pictures/%s.png", cli_dir, last);
+    spoil("whole", "steady.csv", setting);
+    snprintf(path, sizeof path, "%s/whole/pictures/%s.png", cli_dir, setting);
     assert_int_equal(unlink(path), 0);
     assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene_path("test_both"), cli_dir), 0);
-    cli_said("1 settings measured");
-    /* Its old times are gone; it has new ones if it is a rung still. */
-    char *steady = cli_read("whole/steady.csv"), name[MASU_SETTING_ID + 8];
-    snprintf(name, sizeof name, "\n%s,", last);
-    const char *at = strstr(steady, name);
-    assert_true(!at || !strstr(at + 1, name));
-    uint32_t after;
+    cli_said(": 1 settings measured");
     masu_row *rows = rows_of("whole", &after);
     assert_int_equal(after, before);
+    for (uint32_t i = 0; i < after; i++) {
+        const masu_row *was = masu_rows_find(old, before, rows[i].setting);
+        assert_non_null(was);
+        assert_false(spoilt(&rows[i]));
+        assert_true(fabs(rows[i].flip - was->flip) <= 0);
+    }
     check_steady("whole", rows, after);
     check_ladder("whole");
     free(rows);
-    free(steady);
     free(old);
+}
+
+static void check_same_table(const char *a, const char *b, const char *file) {
+    uint32_t a_count, b_count;
+    masu_row *of_a = table_of(a, file, &a_count), *of_b = table_of(b, file, &b_count);
+    assert_int_equal(a_count, b_count);
+    for (uint32_t i = 0; i < a_count; i++) {
+        const masu_row *row = masu_rows_find(of_b, b_count, of_a[i].setting);
+        assert_non_null(row);
+        assert_true(fabs(of_a[i].ratio - row->ratio) <= 0 && fabs(of_a[i].flip - row->flip) <= 0);
+    }
+    free(of_a);
+    free(of_b);
+}
+
+static void both_tables_are_joined_and_forgotten_together(void **state) {
+    (void)state;
+    char path[512];
+    uint32_t count, steady;
+    assert_int_equal(bench("--merge %s/whole --out %s/joined", cli_dir, cli_dir), 0);
+    check_same_table("whole", "joined", "results.csv");
+    check_same_table("whole", "joined", "steady.csv");
+    /* Times of a row that is gone are gone with it, though its picture is there. */
+    spoil("joined", "steady.csv", NULL);
+    snprintf(path, sizeof path, "%s/joined/results.csv", cli_dir);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/joined", scene_path("test_both"), cli_dir), 0);
+    masu_row *rows = rows_of("joined", &count);
+    free(table_of("joined", "steady.csv", &steady));
+    assert_int_equal(steady, 0);
+    assert_true(count >= 10);
+    for (uint32_t i = 0; i < count; i++) assert_false(spoilt(&rows[i]));
+    free(rows);
 }
 
 static void rungs_alone_are_measured_elsewhere(void **state) {
@@ -564,6 +647,14 @@ static void rungs_of_no_use_are_refused(void **state) {
     assert_false(cli_exists("y"));
     assert_int_equal(bench("a.masu --out %s/y --steady -1", cli_dir), 2);
     said("steady");
+    assert_int_equal(bench("a.masu --out %s/y --steady 1 --shard 0/2", cli_dir), 2);
+    said("--steady");
+    assert_int_equal(bench("a.masu --out %s/y --rungs-of %s/y", cli_dir, cli_dir), 2);
+    said("one folder");
+    assert_int_equal(bench("%s --quick --size 32x18 --rungs-of %s/whole --out %s/z",
+                           scene_path("test_both"), cli_dir, cli_dir),
+                     1);
+    said("\"width\" in sweep.json");
     assert_int_equal(bench("--merge --rungs-of %s/odd %s/whole --out %s/y", cli_dir, cli_dir, cli_dir), 2);
     said("--rungs-of");
 }
@@ -605,6 +696,7 @@ int main(void) {
         cmocka_unit_test(ways_to_march_and_what_depth_is_compared_with),
         cmocka_unit_test(rungs_are_timed_again),
         cmocka_unit_test(a_row_without_its_picture_is_measured_again),
+        cmocka_unit_test(both_tables_are_joined_and_forgotten_together),
         cmocka_unit_test(rungs_alone_are_measured_elsewhere),
         cmocka_unit_test(rungs_of_no_use_are_refused),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
