@@ -25,24 +25,6 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
          .flips = {0.12547f, 0.129831f, 0.131936f, 0.133885f,
               0.139956f, 0.163525f},
         },
-    [MASU_SCENE_WORLD] =
-        {.from = "city.masu, 320x180, "
-         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-22",
-         .count = 6,
-         .rungs = {
-              {.scale = 1.0f, .sharpness = 0.2f, .lod_error = -1.0f},
-              {.scale = 1.0f, .sharpness = 0.2f, .shadow_cascades = 2},
-              {.scale = 0.75f, .sharpen = MASU_OFF, .sharpness = 0.2f, .shadow_cascades = 2},
-              {.scale = 0.625f, .sharpen = MASU_OFF, .sharpness = 0.2f, .shadow_cascades = 2},
-              {.scale = 0.5f, .sharpen = MASU_OFF, .sharpness = 0.2f, .shadow_cascades = 2},
-              {.scale = 0.4f, .sharpen = MASU_OFF, .sharpness = 0.2f, .shadow_cascades = 2},
-         },
-         .ratios = {1.13442f, 0.768333f, 0.714932f, 0.652883f,
-              0.591423f, 0.561878f},
-         .flips = {0.0423758f, 0.0432634f, 0.0576672f, 0.0657657f,
-              0.0837864f, 0.101223f},
-        },
     [MASU_SCENE_SDF] =
         {.from = "city_shadows.masu, 320x180, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
