@@ -401,15 +401,19 @@ static bool look_behind(sweep *w, batch *b) {
     return true;
 }
 
+/* Once, and of runs that add rows alone. */
+static bool note_machine(sweep *w) {
+    masu_machine machine;
+    if (w->out->measured) return true;
+    masu_machine_here(w->driver, &machine);
+    return masu_machine_append(w->d->folder, &machine, w->error, w->error_size);
+}
+
 static bool run_batch(sweep *w, batch *b) {
     bool good = open_batch(w, b) && draw_batch(w, b) && time_batch(w, b, 0.0);
     close_session(w);
     good = good && draw_alone(w, b) && look_behind(w, b);
-    if (good && !w->out->measured) { /* of runs that add rows alone */
-        masu_machine machine;
-        masu_machine_here(w->driver, &machine);
-        good = masu_machine_append(w->d->folder, &machine, w->error, w->error_size);
-    }
+    good = good && note_machine(w);
     for (uint32_t k = b->base_too ? 0 : 1; k < b->count && good; k++) {
         good = masu_sweep_append(w->d->folder, MASU_SWEEP_RESULTS, &b->rows[k], w->error,
                                  w->error_size);
@@ -541,11 +545,7 @@ static bool steady_batch(sweep *w, batch *b, const masu_row *rows, uint32_t coun
     }
     bool good = open_batch(w, b) && time_batch(w, b, w->d->steady);
     close_session(w);
-    if (good && !w->out->measured) {
-        masu_machine machine;
-        masu_machine_here(w->driver, &machine);
-        good = masu_machine_append(w->d->folder, &machine, w->error, w->error_size);
-    }
+    good = good && note_machine(w);
     for (uint32_t k = 1; k < b->count && good; k++) {
         good = masu_sweep_append(w->d->folder, MASU_SWEEP_STEADY, &b->rows[k], w->error,
                                  w->error_size);
