@@ -82,10 +82,10 @@ $(BUILD)/lib/%.a:
 define link
 @mkdir -p $(@D)
 @echo "  LD      $@"
-$(V)$(CC) $(LINK_FLAGS) $(filter %.o,$^) $(filter %.a,$^) $(LIBS) -o $@
+$(V)$(CC) $(LINK_FLAGS) $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LIBS) -o $@
 endef
 
--include $(wildcard $(BUILD)/obj/*/*.d $(BUILD)/obj/*/*/*.d $(BUILD)/gen/*.d)
+-include $(shell find $(BUILD)/obj $(BUILD)/gen -name '*.d' 2> /dev/null)
 
 .PHONY: force
 force:
@@ -184,25 +184,25 @@ report-again: $(report_needs) ## measure the rungs of docs/report again, and com
 LADDERS ?= polygons=textures sdf=city_shadows both=engine polygons-traced=mirrors \
     world-traced=forza both-traced=wet_city
 LADDER_FOLDER ?= docs/report
-ladders: $(BUILD)/bin/masu ## write src/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
+ladders: $(BUILD)/bin/masu ## write src/quality/ladder_tables.h from docs/report/*/ladder.json: LADDERS='both=engine ...'
 	$(V)files=; for l in $(LADDERS); do \
 	    f=$(LADDER_FOLDER)/$${l#*=}/ladder.json; \
 	    if [ -f "$$f" ]; then files="$$files $${l%%=*}=$$f"; else echo "masu: there is no $$f"; fi; \
 	done; \
 	[ "$$files" ] || { echo "masu: no ladder to take; see make report" >&2; exit 1; }; \
 	$(BUILD)/bin/masu ladder --c $$files > $(BUILD)/ladder_tables.h && \
-	{ cmp -s $(BUILD)/ladder_tables.h src/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/ladder_tables.h; }
+	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
 
 coverage: ## run the tests with gcov and print the lines executed of each file of src/
 	+$(V)$(more) config=coverage check-built
-	$(V)cd build/coverage && gcov -n -r -s $(CURDIR) obj/src/*.gcda | awk -F "'" \
+	$(V)cd build/coverage && gcov -n -r -s $(CURDIR) $$(find obj/src -name '*.gcda') | awk -F "'" \
 	    '/^File/ { f = $$2 } /^Lines/ && f { printf "%-24s %s\n", f, $$0; f = "" }'
 
 .PHONY: sizes format format-check compdb
 sizes: lib ## print the size of each object of the library
 	$(V)size -t $(BUILD)/lib/libmasu.a
 
-FORMATTED = $(wildcard $(addsuffix /*.[ch],include src platform tools examples tests tests/*))
+FORMATTED = $(shell find include src platform tools examples tests -name '*.[ch]')
 format: ## clang-format every C file in place
 	$(V)clang-format -i $(FORMATTED)
 format-check: ## fail if clang-format would change a file

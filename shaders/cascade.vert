@@ -6,7 +6,7 @@
  * A surface that is steep to the sun changes its depth within a texel, and would shadow itself: it is
  * drawn farther from the sun by BIAS times what it changes. By its normal and here, not by the
  * rasteriser's slope bias, which has a bound only with an optional feature: culling by occluders must
- * know how far a mesh may lie behind its occluder (src/occlusion.c), or what is culled would show.
+ * know how far a mesh may lie behind its occluder (src/frame/occlusion.c), or what is culled would show.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -4,7 +4,7 @@
  * on what is hidden or on how invocations run.
  *
  * Placed meshes of few instances have one invocation each; for the others a group works off 64
- * instances at a time. Views in y. index.x: the header of src/occlusion.c; index.y: groups of the
+ * instances at a time. Views in y. index.x: the header of src/frame/occlusion.c; index.y: groups of the
  * first kind; index.z: the first view.
  */
 #version 450

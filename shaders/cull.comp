@@ -11,7 +11,7 @@
  * alone looks at: of each texel of the sun's part of the atlas, receivers.comp has noted how far from
  * the sun the farthest surface in the picture is that looks into the cascade.
  *
- * index.x: the header of src/occlusion.c; index.z: the first view.
+ * index.x: the header of src/frame/occlusion.c; index.z: the first view.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

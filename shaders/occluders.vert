@@ -12,7 +12,7 @@
  * product whether or not they are in front of the camera, so nothing needs to be clipped here. Every
  * line and plane carries a bound of its rounding: MASU_ROUND times the sum of the absolute terms.
  *
- * index.x: the header of src/occlusion.c, index.y: the view.
+ * index.x: the header of src/frame/occlusion.c, index.y: the view.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -3,7 +3,7 @@
  * texel of its part of the occluder atlas, and of each cascade, the farthest, for cull.comp. Only what shadow.comp would look
  * up a shadow for counts; where rounding might let the two disagree, it counts.
  *
- * index.x: the header of src/occlusion.c.
+ * index.x: the header of src/frame/occlusion.c.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -174,10 +174,10 @@ $(BUILD)/gen/scene_texts.list: force
 
 # The tables of shaders/brdf and the tile of shaders/noise. Objects wait for what is generated, so these
 # programs have none; the tables take 5 s, and minutes without -O2.
-$(BUILD)/tools/make_%: tools/make_%.c shaders/shared/masu_shared.h
+$(BUILD)/tools/make_%: tools/generate/make_%.c shaders/shared/masu_shared.h
 	@mkdir -p $(@D)
-	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders $< -lm -o $@
-$(BUILD)/tools/make_smaa_area: tools/smaa_tables.h
+	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools $< -lm -o $@
+$(BUILD)/tools/make_smaa_area: tools/generate/smaa_tables.h
 $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h: $(BUILD)/gen/%.h: $(BUILD)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"

@@ -1,6 +1,6 @@
 /*
  * transparents.vert: one transparent thing, which index.y of the push constants finds: six words in
- * the buffer of drawn instances, written anew for each frame (src/transparents.c): instance, material,
+ * the buffer of drawn instances, written anew for each frame (src/frame/transparents.c): instance, material,
  * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along. Of what is
  * drawn twice the first instance is for what is turned away from the eye.
  */

@@ -2,7 +2,7 @@
  * unwinding, frames. */
 #include "renderer.h"
 
-#include "error.h"
+#include "base/error.h"
 #include "shared/masu_shared.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  *
  *   masu.c      public functions; walks the layout, calls the steps, unwinds on failure
  *   plan.c      description -> which passes, which images           (pure)
- *   device_memory.c  images and buffers -> offsets, memory types
+ *   src/device/memory.c  images and buffers -> offsets, memory types
  *   bind.c      memory allocated or taken, objects bound, views made
  *   pipelines.c layouts, shader modules, pipelines, render pass
  *   record.c    descriptor sets and command buffers: barriers derived from the table
@@ -22,21 +22,21 @@
 #ifndef MASU_RENDERER_H
 #define MASU_RENDERER_H
 
-#include "arena.h"
-#include "blob.h"
-#include "cull.h"
-#include "device_memory.h"
-#include "governor.h"
-#include "plan.h"
-#include "ray_query.h"
-#include "scene.h"
-#include "shadow.h"
-#include "sky.h"
-#include "specular.h"
-#include "texture.h"
-#include "trace.h"
-#include "transparents.h"
-#include "vk.h"
+#include "base/arena.h"
+#include "scene/blob.h"
+#include "scene/cull.h"
+#include "device/memory.h"
+#include "quality/governor.h"
+#include "plan/plan.h"
+#include "device/ray_query.h"
+#include "scene/scene.h"
+#include "frame/shadow.h"
+#include "frame/sky.h"
+#include "frame/specular.h"
+#include "scene/texture.h"
+#include "scene/trace.h"
+#include "frame/transparents.h"
+#include "device/vk.h"
 
 /* The ways to draw polygons with textures; those without have the pass's own pipeline. Masks have
  * theirs, so that only they lose the early depth test. */
@@ -138,7 +138,7 @@ struct masu_renderer {
     masu_sky *sky;          /* NULL where the plan has no analytic sky */
     uint64_t slot_sky[MASU_MAX_FLIGHT]; /* sky->sun_updates that the slot has; 0: a gradient */
 
-    /* visible.c; positions are those of src/cull.h */
+    /* visible.c; positions are those of src/scene/cull.h */
     masu_batch *batches;
     uint32_t batch_count, large_count; /* large: of over 64 instances */
     masu_blob_lod *lods;

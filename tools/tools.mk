@@ -1,65 +1,62 @@
-# tools.mk: the programs. masu-meso is meso.c and meso_*.c. masu is masu.c and one cmd_NAME.c per command, with
-# conform_*.c behind one of them, masu-bake is bake.c and
-# bake_*.c, masu-sdfc is sdfc.c; the compiler itself, sdfc_*.c, is also part of masu-bake. cli*.c
-# belong to all.
+# tools.mk: the programs, and what they and the tests share. A folder of tools/ is one archive; a
+# program is its main file and the archives that hold what it calls, of which the linker takes what
+# is needed.
 
-CLI_OBJECTS := $(call objects,$(wildcard tools/cli*.c))
-SDFC_OBJECTS := $(call objects,$(wildcard tools/sdfc_*.c))
+# ---- Archives: one per folder of tools/ ----------------------------------------------------------
 
-$(BUILD)/bin/masu-sdfc: LIBS = -lm
-$(BUILD)/bin/masu-sdfc: $(call objects,tools/sdfc.c) $(SDFC_OBJECTS) $(CLI_OBJECTS)
-	$(link)
+tool_archive = $(BUILD)/lib/libmasu-$(1).a
+tool_sources = $(filter-out %/main.c,$(wildcard tools/$(1)/*.c tools/$(1)/*/*.c))
+TOOL_FOLDERS := cli sdfc bake meso world metric bench model conform simulate
+$(foreach f,$(TOOL_FOLDERS),$(eval $(call tool_archive,$(f)): $(call objects,$(call tool_sources,$(f)))))
 
-$(BUILD)/bin/masu: LIBS = -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
-$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu.c tools/cmd_*.c tools/conform_*.c)) $(CLI_OBJECTS)
-$(BUILD)/bin/masu: $(call objects,tools/bake_content.c tools/bake_groups.c) # a tree for cull-bench
-$(BUILD)/bin/masu: $(KEEP_LOADED) $(BUILD)/lib/libmasu-bench.a $(BUILD)/lib/libmasu-plant.a
-$(BUILD)/bin/masu: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
-	$(link)
-
-# What masu measures with, for the tests too.
-$(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/bench_*.c tools/metric_*.c))
-$(BUILD)/lib/libmasu-bench.a: $(call objects,$(wildcard tools/model_*.c tools/spirv*.c))
+PLATFORM  := $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+BAKE_ARCHIVES := $(foreach f,bake sdfc cli,$(call tool_archive,$(f))) $(PLATFORM)
+MEASURE_ARCHIVES := $(foreach f,conform bench model simulate metric,$(call tool_archive,$(f)))
 
 # Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
-$(BUILD)/obj/tools/bake_image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
+$(BUILD)/obj/tools/bake/texture/image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
     sed 's/-I/-isystem /g; s/-fopenmp//g')
 BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer -lembree3 $$(pkg-config --libs MagickWand) -lm -lpthread
-$(BUILD)/bin/masu-bake: LIBS = $(BAKE_LIBS)
-$(BUILD)/bin/masu-bake: $(call objects,$(wildcard tools/bake.c tools/bake_*.c) tools/probe_light.c) $(CLI_OBJECTS) $(SDFC_OBJECTS)
-$(BUILD)/bin/masu-bake: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+MASU_LIBS := -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
+
+# ---- Programs ------------------------------------------------------------------------------------
+
+$(BUILD)/bin/masu: LIBS = $(MASU_LIBS)
+$(BUILD)/bin/masu: $(call objects,$(wildcard tools/masu/*.c)) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
 	$(link)
 
-# Embree traces the reliefs; a user of the patches and of what is made of them links MESO_OBJECTS.
-MESO_OBJECTS := $(call objects,$(wildcard tools/meso_*.c))
-MESO_LIBS := -lembree3 $(BAKE_LIBS)
-$(BUILD)/bin/masu-meso: LIBS = $(MESO_LIBS)
-$(BUILD)/bin/masu-meso: $(call objects,tools/meso.c $(wildcard tools/bake_*.c) tools/probe_light.c) $(MESO_OBJECTS)
-$(BUILD)/bin/masu-meso: $(CLI_OBJECTS) $(SDFC_OBJECTS)
-$(BUILD)/bin/masu-meso: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+$(BUILD)/bin/masu-bake $(BUILD)/bin/masu-meso $(BUILD)/bin/masu-world: LIBS = $(BAKE_LIBS)
+$(BUILD)/bin/masu-bake: $(BUILD)/obj/tools/bake/main.o $(BAKE_ARCHIVES)
+	$(link)
+$(BUILD)/bin/masu-meso: $(BUILD)/obj/tools/meso/main.o $(call tool_archive,meso) $(BAKE_ARCHIVES)
+	$(link)
+$(BUILD)/bin/masu-world: $(BUILD)/obj/tools/world/main.o $(call tool_archive,world) $(BAKE_ARCHIVES)
 	$(link)
 
-# Writes the scenes of whole worlds; reads models as masu-bake does.
-$(BUILD)/bin/masu-world: LIBS = $(BAKE_LIBS)
-$(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/world.c tools/world_*.c)) $(CLI_OBJECTS)
-$(BUILD)/bin/masu-world: $(call objects,$(wildcard tools/bake_*.c) tools/probe_light.c) $(SDFC_OBJECTS)
-$(BUILD)/bin/masu-world: $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
+$(BUILD)/bin/masu-sdfc: LIBS = -lm
+$(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc) $(call tool_archive,cli)
 	$(link)
 
-# A scene is baked again when any file of scenes/ changes: descriptions name models and GLSL that
-# lie beside them.
-SCENES := $(patsubst scenes/%.json,$(BUILD)/scenes/%.masu,$(wildcard scenes/*.json))
+# ---- Scenes --------------------------------------------------------------------------------------
 
-$(BUILD)/scenes/%.masu: scenes/%.json $(BUILD)/bin/masu-bake $(wildcard scenes/*.* scenes/*/*.*) $(BUILD)/textures/made
-	@mkdir -p $(@D)
-	@echo "  BAKE    $<"
-	$(V)$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $< -o $@ --texture-path $(BUILD)/textures
+# Those worth looking at are in scenes/, those of the tests in tests/scenes/; their blobs lie side by
+# side. A scene is baked again when any file of its folder changes: descriptions name models and GLSL
+# that lie beside them.
+SCENES := $(patsubst %.json,$(BUILD)/scenes/%.masu,$(notdir $(wildcard scenes/*.json tests/scenes/*.json)))
+
+define scene_rule
+$(BUILD)/scenes/%.masu: $(1)/%.json $(BUILD)/bin/masu-bake $(wildcard $(1)/*.*) $(BUILD)/textures/made
+	@mkdir -p $$(@D)
+	@echo "  BAKE    $$<"
+	$$(V)$$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $$< -o $$@ --texture-path $(BUILD)/textures
+endef
+$(foreach f,scenes tests/scenes,$(eval $(call scene_rule,$(f))))
 
 # The pictures that scenes/textures.json and the tests place: made here, by formula.
 # stb's JPEG writer shifts bits out of signed integers.
-$(BUILD)/obj/tools/make_textures.o: FOLDER_FLAGS += -fno-sanitize=shift
+$(BUILD)/obj/tools/generate/make_textures.o: FOLDER_FLAGS += -fno-sanitize=shift
 $(BUILD)/tools/make_textures: LIBS = -lm
-$(BUILD)/tools/make_textures: $(BUILD)/obj/tools/make_textures.o
+$(BUILD)/tools/make_textures: $(BUILD)/obj/tools/generate/make_textures.o
 	$(link)
 $(BUILD)/textures/made: $(BUILD)/tools/make_textures
 	@mkdir -p $(@D)
@@ -102,7 +99,7 @@ EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c)
 
 # For masu march-bench: each .sdf scene with all ways to march it, and its double-precision truth
 # beside it. Not part of `all` or of the tests.
-MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(filter-out scenes/test_%,$(wildcard scenes/*.sdf)))
+MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
 
 $(BUILD)/march/%.masu: scenes/%.json scenes/%.sdf $(BUILD)/bin/masu-bake
 	@mkdir -p $(@D)

@@ -1,6 +1,6 @@
 /*
  * meso.glsl: what a relief too small for polygons does to the texels of its material, by the angle it
- * is seen at. tools/meso_model.h explains the forms and is the twin in C; masu-meso finds the numbers.
+ * is seen at. tools/meso/model.h explains the forms and is the twin in C; masu-meso finds the numbers.
  * What comes out goes through pack.glsl, which makes anything finite.
  */
 #ifndef MASU_MESO_GLSL

@@ -1,5 +1,5 @@
 /*
- * tables.glsl: directional albedos of the specular lobe, looked up. tools/make_split_sum.c has made the
+ * tables.glsl: directional albedos of the specular lobe, looked up. tools/generate/make_split_sum.c has made the
  * table; masu_shared.h says how it lies in its buffer, which is resident and the same for all scenes that
  * are lit. Interpolated by hand: a buffer needs no sampler, and all drivers round alike.
  */

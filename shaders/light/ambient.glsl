@@ -3,7 +3,7 @@
  *
  * frame.irradiance holds irradiance / pi by the normal: nine coefficients of spherical harmonics, and
  * in their w what order 2 cannot hold of a sky: a lobe around the sun (rgb in 0..2, direction in 3..5)
- * and P4 of y (rgb in 6..8). src/sky.h says how they are meant. Of a constant ambient light only the
+ * and P4 of y (rgb in 6..8). src/frame/sky.h says how they are meant. Of a constant ambient light only the
  * first is not 0.
  *
  * After light/sky.glsl.

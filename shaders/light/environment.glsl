@@ -1,6 +1,6 @@
 /*
  * environment.glsl: a sky from a picture: radiance over the octahedron of directions, +y at its middle,
- * as mips for rising roughness (src/blob.h: masu_blob_environment_map), the texels of
+ * as mips for rising roughness (src/scene/blob.h: masu_blob_environment_map), the texels of
  * one mip behind the other, each 9 bits of r, g and b and 5 of their exponent; filtering is done here.
  *
  * They lie at the end of the buffer of tables. Without such a map the code is compiled away. Size and number of mips

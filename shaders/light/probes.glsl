@@ -1,7 +1,7 @@
 /*
  * probes.glsl: light probes. What a probe has is SH-9 of irradiance / pi under the light of this
  * frame, which probes.comp sums up from what the baker has found (see the design notes); a point takes
- * the eight around it. tools/probe_light.c does the same in C, and tests hold them together.
+ * the eight around it. tools/bake/light/probe_light.c does the same in C, and tests hold them together.
  *
  * Weights of the eight, multiplied:
  *   trilinear, of the point moved off its surface by the grid's bias

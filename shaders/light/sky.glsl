@@ -1,6 +1,6 @@
 /*
  * sky.glsl: what is seen where there is no surface: a gradient of two colours, or the analytic sky of
- * src/sky.c. masu_sky_light is the twin of masu_sky_radiance there.
+ * src/frame/sky.c. masu_sky_light is the twin of masu_sky_radiance there.
  *
  * Which of the two a renderer can show is a specialisation constant: without an analytic sky its code
  * is compiled away, and the uniforms are a stand-in. With it, a frame may still have a gradient.

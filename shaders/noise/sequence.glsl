@@ -29,7 +29,7 @@ uint masu_hash(uint x)
     return x ^ (x >> 16);
 }
 
-/* Where in the tile of tools/make_blue_noise.c a pixel's word stands. Uses that must not know of
+/* Where in the tile of tools/generate/make_blue_noise.c a pixel's word stands. Uses that must not know of
  * each other, as two bounces, have different keys: the tile lies elsewhere for each. */
 uint masu_noise_index(uint x, uint y, uint key)
 {

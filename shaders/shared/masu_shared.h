@@ -31,7 +31,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* Pixels along an edge of what a workgroup of fsr1.comp makes. */
 #define MASU_FSR1_BLOCK 32
 
-/* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/frame.c. Set 2, of
+/* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/plan/frame.c. Set 2, of
  * gbuffer and the cascades: the textures of what is drawn, one binding per slot of blob.h's texture sets. With
  * three sets of the four that every device has, and 4 sampled images of 16 in a stage. */
 #define MASU_SET_GLOBAL 0
@@ -70,7 +70,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_BIND_SMAA_TILES 24
 #define MASU_BIND_EXPOSURE 25 /* where it is metered */
 
-/* Directional albedos of the specular lobe (shaders/brdf/tables.glsl, tools/make_split_sum.c). A table
+/* Directional albedos of the specular lobe (shaders/brdf/tables.glsl, tools/generate/make_split_sum.c). A table
  * has TABLE_SIZE nodes over sqrt(N.V) from 0 to 1, and TABLE_ROWS rows over perceptual roughness from
  * TABLE_SMOOTHEST to 1. In words, each two numbers of 16 bits from 0 to 1 unless said otherwise:
  *   TABLE_LOSS           what a white lobe loses, weight of (1 - h.v)^5
@@ -88,7 +88,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_TABLE_WORDS 16896 /* without coat */
 #define MASU_TABLE_WORDS_ALL 34304
 
-/* The tile of blue noise (shaders/noise/sequence.glsl, tools/make_blue_noise.c): a square of words, row
+/* The tile of blue noise (shaders/noise/sequence.glsl, tools/generate/make_blue_noise.c): a square of words, row
  * after row. */
 #define MASU_BLUE_NOISE_SIZE 64
 #define MASU_BLUE_NOISE_WORDS 4096
@@ -161,7 +161,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  *   TILES_HEADER + tiles of every tile SMAA_WORDS: a word for each row of pixels, then for each column.
  *                        Bits 0..15 of a row: the edge above each pixel, 16..31 that to the left of
  *                        it; of a column the other way round
- * The table of areas (tools/make_smaa_area.c), each texel two bytes: of straight edges 4x4 patterns, by the
+ * The table of areas (tools/generate/make_smaa_area.c), each texel two bytes: of straight edges 4x4 patterns, by the
  * code of the left end, then that of the right one; of each STRAIGHT rows (root of the distance to the
  * right) of STRAIGHT words, a texel and the one right of it; then of diagonals 4x4 patterns of DIAGONAL rows
  * of DIAGONAL texels, two to a word. */
@@ -204,7 +204,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_FILTER_TAPS_MAX 32
 #define MASU_SPECULAR_FRAMES_MAX 240
 
-/* Rays through triangles: shaders/trace/bvh.glsl, src/trace.h, src/blob.h. All buffers are uvec4:
+/* Rays through triangles: shaders/trace/bvh.glsl, src/scene/trace.h, src/scene/blob.h. All buffers are uvec4:
  *   static    header: first triangle, nodes, triangles, 0; from 1 on the nodes, NODE_UVEC4 each; triangles
  *   frame     header: first record, nodes, records, 0; from 1 on the nodes; records, RECORD_UVEC4 each
  *   vertices  as the blob has them: position, normal
@@ -283,14 +283,14 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  * aerosol's, each a polynomial of the cosine of the azimuth from the sun. */
 #define MASU_SKY_TERMS 3
 #define MASU_SKY_ROW 9
-/* Of the lobe that stands for the aureole in the sky's irradiance: src/sky.c. */
+/* Of the lobe that stands for the aureole in the sky's irradiance: src/frame/sky.c. */
 #define MASU_SKY_ROUND (1.0f / 3.0f)
 
 /* G-buffer material flags: two bits of the packed normal word. */
 #define MASU_SURFACE_EMISSIVE 1u
 #define MASU_SURFACE_MORE 2u /* the surface image holds the rest of it */
 
-/* Flags of a material with textures; src/blob.h has them too. */
+/* Flags of a material with textures; src/scene/blob.h has them too. */
 #define MASU_MAP_BASE 1u
 #define MASU_MAP_NORMAL 2u
 #define MASU_MAP_SURFACE 4u
@@ -345,7 +345,7 @@ struct masu_instance_data {
     masu_vec4 row2;
 };
 
-/* The analytic sky (src/sky.c), read by shaders/light/sky.glsl. Radiance of a term is 2 to the power of
+/* The analytic sky (src/frame/sky.c), read by shaders/light/sky.glsl. Radiance of a term is 2 to the power of
  * (c0 + c1 x + c2 x^2), x being the cosine of the azimuth from the sun: it is never negative. */
 struct masu_sky_uniforms {
     masu_vec4 sun;  /* xyz unit vector towards the sun; w asymmetry of the aerosol's phase function */
@@ -401,7 +401,7 @@ struct masu_trace_material {
 };
 
 /* Push constants of every pass. 48 bytes of the guaranteed 128. */
-/* A grid of light probes, the head of their buffer; src/blob.h has the same as masu_blob_probes. Then
+/* A grid of light probes, the head of their buffer; src/scene/blob.h has the same as masu_blob_probes. Then
  * words: what the blob has of each probe, then of each the light of the frame. */
 #define MASU_PROBE_SUNS 16
 #define MASU_PROBE_SETS 26
@@ -428,7 +428,7 @@ struct masu_push {
     masu_uint render_height;
     masu_uint output_width; /* what the pass writes, texels from (0,0) */
     masu_uint output_height;
-    masu_vec4 param;  /* pass-specific; src/frame.c names each next to the pass */
+    masu_vec4 param;  /* pass-specific; src/plan/frame.c names each next to the pass */
     masu_uvec4 index; /* pass-specific integers */
 };
 

@@ -1,6 +1,6 @@
 /*
  * bvh.glsl: rays against the triangles of a scene: the tree over the instances of a frame, then the
- * trees over the triangles of their meshes (src/blob.h, src/trace.h). The includer declares, each of uvec4,
+ * trees over the triangles of their meshes (src/scene/blob.h, src/scene/trace.h). The includer declares, each of uvec4,
  *   masu_trace_static[]     header, nodes and triangles as baked
  *   masu_trace_frame[]      header, nodes and records of this frame
  *   masu_trace_vertices[]   the vertices of the blob

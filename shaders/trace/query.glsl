@@ -1,5 +1,5 @@
 /*
- * query.glsl: rays against the triangles of a scene by ray queries of the device (src/ray_query.h), in place
+ * query.glsl: rays against the triangles of a scene by ray queries of the device (src/device/ray_query.h), in place
  * of bvh.glsl; the answer is the same. The includer declares
  *   masu_trace_top   the accelerationStructureEXT over the traced instances, each with its mesh's first triangle
  * and may define

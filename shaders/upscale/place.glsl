@@ -3,7 +3,7 @@
  *
  * The scale is in * (1 / out), rounded twice, as AMD's host code has it: with odd:odd ratios (3:5)
  * some pixels lie exactly on a texel centre, where its last bit decides which four texels are the
- * nearest. So the host computes it (src/record.c): a division of a shader may be 2.5 units off,
+ * nearest. So the host computes it (src/device/record.c): a division of a shader may be 2.5 units off,
  * differently on each device, and to make it exact takes a pixel more than its four texels do.
  */
 #ifndef MASU_PLACE_GLSL

@@ -1,7 +1,7 @@
 /* minimal.c: the smallest program that uses an installed Masu; C and C++ at once. It links nothing
  * but what masu.pc says, so it also shows that the library needs no Vulkan loader. It asks for
  * something that cannot work (no device) and wants a clear answer instead of a crash. Built and run
- * by tests/unit/install.sh, which compares the line it prints with the version in masu.pc. */
+ * by tests/scripts/install.sh, which compares the line it prints with the version in masu.pc. */
 #include <masu.h>
 
 #include <stdio.h>

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "blob.h"
-#include "plan.h"
+#include "scene/blob.h"
+#include "plan/plan.h"
 #include "reference/scene_walk.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sdfc.h"
+#include "sdfc/sdfc.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

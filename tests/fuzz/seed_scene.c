@@ -1,9 +1,9 @@
 /* seed_scene.c: writes the blobs that fuzz_scene starts from, small enough that most mutations hit
- * something that is looked at:  seed_scene FILE PARTS, parts as in support_blob.h. */
+ * something that is looked at:  seed_scene FILE PARTS, parts as in tests/support/blob.h. */
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "unit/support_blob.h"
+#include "support/blob.h"
 
 int main(int argc, char **argv) {
     static support_blob blob;

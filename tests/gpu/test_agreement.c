@@ -1,7 +1,7 @@
 /* test_agreement.c: polygons and SDF see the same world: a sphere given once as fine mesh and once
  * as SDF, and a box that cuts through an SDF sphere, both against rays intersected in double
  * precision. */
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>

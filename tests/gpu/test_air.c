@@ -1,6 +1,6 @@
 /* test_air.c: fog in the picture. Each pixel with fog, against the same pixel without and what a numeric
  * integral in double along its ray says that the fog leaves of it and adds. */
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdio.h>

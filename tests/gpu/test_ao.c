@@ -3,11 +3,11 @@
  * must hold whatever the error: planes hide nothing of themselves, a camera at rest sees a picture at
  * rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion is kept, and
  * scenes that do not ask have none of it. */
-#include "support_shadow.h"
+#include "support/shadow.h"
 
-#include "bench_ao.h"
+#include "bench/study/ao.h"
 #include "image.h"
-#include "scene.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>

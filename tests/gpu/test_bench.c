@@ -2,12 +2,12 @@
  * stopped goes on where it was, that shards together are the whole, that rungs are timed again, and what
  * is refused. Times are
  * only looked at for being times. */
-#include "support.h"
-#include "support_cli.h"
+#include "support/support.h"
+#include "support/cli.h"
 
-#include "bench_ladder.h"
-#include "bench_report.h"
-#include "bench_sweep.h"
+#include "bench/sweep/ladder.h"
+#include "bench/sweep/report.h"
+#include "bench/sweep/sweep.h"
 
 #include <jansson.h>
 #include <math.h>

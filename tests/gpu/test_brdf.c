@@ -4,8 +4,8 @@
 #include "reference/brdf.h"
 #include "shared/masu_shared.h"
 #include "split_sum.h"
-#include "support.h"
-#include "support_compute.h"
+#include "support/support.h"
+#include "support/compute.h"
 
 #include "brdf_comp.spv.h"
 

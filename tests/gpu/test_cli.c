@@ -1,7 +1,7 @@
 /* test_cli.c: the program `masu` as a stranger runs it: what it makes, and what it says when it
  * cannot. */
-#include "support.h"
-#include "support_cli.h"
+#include "support/support.h"
+#include "support/cli.h"
 
 #include "image.h"
 #include "reference/fsr1.h"

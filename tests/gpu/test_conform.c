@@ -1,7 +1,7 @@
 /* test_conform.c: `masu conform` as a stranger runs it: a part of the smoke suite passes, what is
  * planted is found and can be replayed, and what is no suite is refused in one line. */
-#include "support.h"
-#include "support_cli.h"
+#include "support/support.h"
+#include "support/cli.h"
 
 #include "image.h"
 

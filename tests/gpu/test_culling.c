@@ -1,6 +1,6 @@
 /* test_culling.c: what is not drawn cannot be seen: pictures with and without culling are the same
  * in every bit, wherever the camera turns and whatever moves, and less is drawn. */
-#include "support_shadow.h"
+#include "support/shadow.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -162,7 +162,7 @@ static void bake_shadows(void) {
         shadow_shell("sed -e 's#\"test_block.obj\"#\"'\"$PWD\"'/scenes/test_block.obj\"#' "
                      "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
                      "\"resolution\": 192, \"distance\": 90}, #' "
-                     "scenes/test_town.json > %s/town.json",
+                     "tests/scenes/test_town.json > %s/town.json",
                      shadow_dir()),
         0);
     assert_int_equal(shadow_shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet",

@@ -1,5 +1,5 @@
 /* test_extremes.c: fields and views at the edge of sense give a defined, finite picture. */
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* test_failures.c: when things go wrong: the n-th Vulkan call fails, the device lacks something,
  * the host asks for nonsense. Each gives a named error, leaves nothing behind, and a second try
  * succeeds. */
-#include "support.h"
-#include "support_wrap.h"
+#include "support/support.h"
+#include "support/wrap.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* test_far.c: a scene of signed distance fields a million and ten million metres from the origin is
  * the picture that it is at the origin: coverage, depth, material and velocity. The scene is written
  * and baked here, with another offset each time; without anchors the same comparison fails. */
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdio.h>

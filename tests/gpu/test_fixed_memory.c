@@ -1,6 +1,6 @@
 /* test_fixed_memory.c: the promise of the box: known before, never grown, nothing outside. */
-#include "support.h"
-#include "support_wrap.h"
+#include "support/support.h"
+#include "support/wrap.h"
 
 #include "alloc_count.h"
 

@@ -1,12 +1,12 @@
 /* test_foliage.c: masks over distance. A plane of repeating needles, or leaves, fills the picture; how
  * much of it is drawn, against the first mip's alpha sampled at 64 places in each pixel, in double.
  * Beside it what mips without care would give, sampled as the device does. */
-#include "support.h"
+#include "support/support.h"
 
-#include "blob.h"
+#include "scene/blob.h"
 #include "image.h"
-#include "scene.h"
-#include "texture.h"
+#include "scene/scene.h"
+#include "scene/texture.h"
 
 #include <math.h>
 #include <stdio.h>

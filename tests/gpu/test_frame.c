@@ -1,7 +1,7 @@
 /* test_frame.c: frames are the same whatever should not matter: poison, memory split by role, who
  * owns the memory, how many frames are in flight, which rung came before, how the target is
  * reached. */
-#include "support.h"
+#include "support/support.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* test_governor.c: governed frames. Times that decide are given by the test, so that every driver
  * decides alike; where they are the driver's own, only what holds for any times is asked. */
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <string.h>

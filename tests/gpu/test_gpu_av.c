@@ -1,7 +1,7 @@
 /* test_gpu_av.c: shaders read and write only what is theirs. Software rasterisers check bounds
  * silently, so this is invisible without the layer's GPU-assisted mode; a planted fault proves that
  * the mode is awake. */
-#include "support.h"
+#include "support/support.h"
 
 enum { W = 48, H = 32 };
 

@@ -1,8 +1,8 @@
 /* test_ladder.c: renderers with the ladder that was measured for their class of scenes: each of its
  * rungs is drawn, as it would be if a host had given it; memory is planned once for all of them; and
  * nothing is made after masu_init. Times are given by the test, so that every driver decides alike. */
-#include "support.h"
-#include "support_wrap.h"
+#include "support/support.h"
+#include "support/wrap.h"
 
 #include "alloc_count.h"
 

@@ -1,9 +1,9 @@
 /* test_lights.c: local lights. What a light does to a pixel is what a sun of that direction and colour
  * would do, with both from the reference in double precision (tests/reference/lights.h); lists by
  * tile change no bit of any picture; nothing is out of bounds; what the host may set and what not. */
-#include "support_shadow.h"
+#include "support/shadow.h"
 
-#include "blob.h"
+#include "scene/blob.h"
 #include "reference/lights.h"
 
 #include <math.h>

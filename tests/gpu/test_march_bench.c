@@ -1,8 +1,8 @@
 /* test_march_bench.c: `masu march-bench` on a sphere whose truth is a few lines of C, compiled
  * here: the numbers, the CSV, and the shading in double precision against the GPU's picture. */
-#include "support.h"
+#include "support/support.h"
 
-#include "bench_run.h"
+#include "bench/measure/run.h"
 #include "image.h"
 
 #include <math.h>

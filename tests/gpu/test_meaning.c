@@ -1,6 +1,6 @@
 /* test_meaning.c: what goes in comes out: constants of the field, time, camera path, materials,
  * light, exposure, and what is said to the log. */
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* test_memory_kinds.c: memory as other devices have it, and what a recording must hold that no
  * software driver would miss: both seen through support_wrap. */
-#include "support.h"
-#include "support_wrap.h"
+#include "support/support.h"
+#include "support/wrap.h"
 
 #include <stdlib.h>
 #include <string.h>

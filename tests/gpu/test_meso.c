@@ -1,7 +1,7 @@
-/* test_meso.c: shaders/brdf/meso.glsl on the GPU is tools/meso_model.c, and finite for anything. */
-#include "meso_model.h"
-#include "support.h"
-#include "support_compute.h"
+/* test_meso.c: shaders/brdf/meso.glsl on the GPU is tools/meso/model.c, and finite for anything. */
+#include "meso/model.h"
+#include "support/support.h"
+#include "support/compute.h"
 
 #include "meso_comp.spv.h"
 
@@ -76,7 +76,7 @@ static void test_twin(void **unused) {
     for (int i = 0; i < MANY; i++) {
         const test_case *c = &cases[i];
         masu_meso_curves curves;
-        double *number = curves.tilt; /* the struct is an array of numbers: checked in meso_fit.c */
+        double *number = curves.tilt; /* the struct is an array of numbers: checked in tools/meso/fit.c */
         double all[MASU_MESO_NUMBERS];
         for (uint32_t k = 0; k < MASU_MESO_NUMBERS; k++) all[k] = (double)c->curves[k];
         memcpy(number, all, sizeof curves);

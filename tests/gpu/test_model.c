@@ -1,12 +1,12 @@
 /* test_model.c: `masu model` on a driver: shaders with counters count what they run, bytes of known
  * passes are those that follow from sizes, sums are sums, and rungs have the rows that they run. */
-#include "support.h"
+#include "support/support.h"
 
-#include "support_cli.h"
-#include "support_compute.h"
+#include "support/cli.h"
+#include "support/compute.h"
 
-#include "model_hook.h"
-#include "model_write.h"
+#include "model/hook.h"
+#include "model/write.h"
 #include "tally_comp.spv.h"
 
 #include <math.h>

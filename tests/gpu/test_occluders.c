@@ -3,7 +3,7 @@
  * and without. Scenes are random (boxes turned, stretched, sheared, mirrored and flat; eyes in, at and
  * between them; near planes that cut them open), or gaps that are narrower than a texel of the
  * atlas. */
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdio.h>

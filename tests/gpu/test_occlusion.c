@@ -4,9 +4,9 @@
  *
  * The scenes of scenes/ are baked here again with the options; the fields of the truth come from the
  * SDF compiler and go through the C compiler. The table of errors is printed (docs/DESIGN.md). */
-#include "support.h"
+#include "support/support.h"
 
-#include "bench_truth.h"
+#include "bench/measure/truth.h"
 #include "reference/occlusion.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* test_output.c: what arrives in targets of every format and encoding; dither; constant pictures; what
  * 8 bits between tone curve and target cost; hostile input of the chain of colour passes. */
 #include "reference/tone.h"
-#include "support.h"
+#include "support/support.h"
 
 #include <math.h>
 #include <stdlib.h>

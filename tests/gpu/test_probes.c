@@ -1,11 +1,11 @@
-/* test_probes.c: what the GPU makes of light probes is what tools/probe_light.c says: the light of a
+/* test_probes.c: what the GPU makes of light probes is what tools/bake/light/probe_light.c says: the light of a
  * frame at each, and at points anywhere; nothing is infinite, whatever is asked for. The two shaders
  * are dispatched here by hand, on the grid of a real scene. Then whole frames, under the validation
  * layer: a room is darker with its probes, and the sun's colour comes back from its walls. */
-#include "support.h"
+#include "support/support.h"
 
-#include "probe_light.h"
-#include "scene.h"
+#include "bake/light/probe_light.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #include "probes_comp.spv.h"
@@ -254,7 +254,7 @@ static void the_gpu_says_what_the_twin_says(void **state) {
     memcpy(frame->sun_direction, light.sun_direction, sizeof light.sun_direction);
     memcpy(frame->sun_color, light.sun, sizeof light.sun);
     for (int k = 0; k < 3; k++) {
-        float c[9]; /* irradiance / pi, over the functions of src/sky.h */
+        float c[9]; /* irradiance / pi, over the functions of src/frame/sky.h */
         for (int i = 0; i < 9; i++) c[i] = i ? 0.01f * (float)((5 * i + 3 * k) % 7 - 3) : 0.0f;
         c[0] = light.sky[0][k] / 3.5449077f;
         for (int i = 0; i < 9; i++) frame->irradiance[i][k] = c[i];

@@ -3,11 +3,11 @@
  *
  * Where the driver has no ray queries, what is tested is that they are refused by name; which of
  * the drivers of the test suite has them is known. */
-#include "support.h"
-#include "support_wrap.h"
+#include "support/support.h"
+#include "support/wrap.h"
 
 #include "alloc_count.h"
-#include "scene.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #include <math.h>

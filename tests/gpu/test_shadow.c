@@ -3,7 +3,7 @@
  * 256 over its disc; no acne, how much light leaks in at the foot of a caster, SDF and polygons
  * together. The figures are printed (docs/DESIGN.md). test_shadow_frames.c has what holds from
  * frame to frame. */
-#include "support_shadow.h"
+#include "support/shadow.h"
 
 #include <math.h>
 #include <stdio.h>

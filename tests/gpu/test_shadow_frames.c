@@ -1,7 +1,7 @@
 /* test_shadow_frames.c: the shadow map from frame to frame: texels that do not change while the
  * view moves, cascades that are not drawn in every frame, rungs with cascades of their own; far
  * from the origin; what a plan has of it and when it is refused. */
-#include "support_shadow.h"
+#include "support/shadow.h"
 
 #include <math.h>
 #include <stdio.h>

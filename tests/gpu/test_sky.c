@@ -1,5 +1,5 @@
 /*
- * test_sky.c: the analytic sky on the GPU: what the shader makes of the tables against src/sky.c, the
+ * test_sky.c: the analytic sky on the GPU: what the shader makes of the tables against src/frame/sky.c, the
  * light of the sky on a matt sphere, and that a renderer which may have such a sky draws a gradient as
  * one that may not.
  */
@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #include "image.h"
-#include "support.h"
+#include "support/support.h"
 
-#include "sky.h"
+#include "frame/sky.h"
 
 #define W 128u
 #define H 96u

@@ -2,8 +2,8 @@
  * through the library's own frame: pictures that are hard on it in different ways, all settings,
  * with a scene and without; that nothing changes away from edges; what a picture without edges
  * costs; broken pixels. */
-#include "support.h"
-#include "support_wrap.h"
+#include "support/support.h"
+#include "support/wrap.h"
 
 #include "reference/patterns.h"
 #include "reference/smaa.h"

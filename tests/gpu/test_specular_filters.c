@@ -1,9 +1,9 @@
 /* test_specular_filters.c: the filters of reflections (shaders/specular_reuse.comp and those behind it): nearer
  * to the truth than each fewer of them, at rest and in motion; a world of one colour stays it, whatever it is
  * made of; nothing that is not finite lives on; the frame rate, another render size and a cut. */
-#include "support_shadow.h"
+#include "support/shadow.h"
 
-#include "bench_specular.h"
+#include "bench/study/specular.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,11 +1,11 @@
 /* test_specular_sdf.c: rays of reflections and the SDF: each ray's hit against the scene's field in double
  * precision, from surfaces that the truth has found too; rays that begin in a solid, hold any bits, meet slots
  * of any bits; what moves; and pictures: SDF and polygons in each other's mirrors. */
-#include "support_reflect.h"
-#include "support_stiff.h"
+#include "support/reflect.h"
+#include "support/stiff.h"
 
-#include "bench_truth.h"
-#include "scene.h"
+#include "bench/measure/truth.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -543,7 +543,7 @@ static void a_million_units_away_it_is_the_same(void **unused) {
     assert_true(other * 100 <= PIXELS);
 }
 
-/* scenes/test_reflections.json: a floor that mirrors, left of x = 0 a polygon, else the SDF; over it balls that
+/* tests/scenes/test_reflections.json: a floor that mirrors, left of x = 0 a polygon, else the SDF; over it balls that
  * shine, red ones of the SDF, green ones polygons. In front of the camera there is only the floor. */
 typedef struct ball {
     double center[3], radius;

@@ -8,11 +8,11 @@
  * view that is the same picture turned left to right.
  */
 #define _XOPEN_SOURCE 700 /* mkstemp */
-#include "support.h"
+#include "support/support.h"
 
-#include "blob.h"
+#include "scene/blob.h"
 #include "image.h"
-#include "scene.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,10 +7,10 @@
  * more even than that. Pixels are told apart by their material, and the mean of each material must lie
  * within 3 standard errors, and 0.2 % for what images round: 9 bits of a ray's worth, halves of its light. */
 #include "reference/specular.h"
-#include "bench_shade.h"
+#include "bench/study/shade.h"
 #include "image.h"
-#include "scene.h"
-#include "support_shadow.h"
+#include "scene/scene.h"
+#include "support/shadow.h"
 
 #include <math.h>
 #include <stdio.h>

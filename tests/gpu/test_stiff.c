@@ -6,9 +6,9 @@
  * and SwiftShader alike. They are there to be lowered when the march gets better. Depth is the
  * distance along the ray, relative; at a silhouette it may be that of the surface behind, so that
  * depth_max is bounded only where there is none. */
-#include "support_stiff.h"
+#include "support/stiff.h"
 
-#include "bench_truth.h"
+#include "bench/measure/truth.h"
 
 #include <math.h>
 #include <stdio.h>

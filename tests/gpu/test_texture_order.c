@@ -5,10 +5,10 @@
  * The scene has all three kinds side by side, also within one mesh. It is drawn as it is, with masks
  * that cut nothing away, and with its textures taken off in memory: the last is one sweep in the order
  * of the commands, so its depth is the truth for the second. */
-#include "support.h"
+#include "support/support.h"
 
-#include "blob.h"
-#include "scene.h"
+#include "scene/blob.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>

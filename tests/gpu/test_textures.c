@@ -1,14 +1,14 @@
 /* test_textures.c: textures from blob to pixel, against the same blob sampled on the CPU: mips and
  * their bias, blocks taken by the device and blocks decoded on the host, masks, normal maps, light,
  * grazing views, memory. */
-#include "support.h"
+#include "support/support.h"
 
-#include "blob.h"
+#include "scene/blob.h"
 #include "image.h"
 #include "reference/brdf.h"
-#include "scene.h"
+#include "scene/scene.h"
 #include "split_sum.h"
-#include "texture.h"
+#include "scene/texture.h"
 
 #include <math.h>
 #include <stdio.h>

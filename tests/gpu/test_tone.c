@@ -2,8 +2,8 @@
  * which has them in double precision: by themselves on whatever they may be given, and in frames. */
 #include "reference/tone.h"
 #include "shared/masu_shared.h"
-#include "support.h"
-#include "support_compute.h"
+#include "support/support.h"
+#include "support/compute.h"
 
 #include "tone_comp.spv.h"
 

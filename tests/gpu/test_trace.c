@@ -11,11 +11,11 @@
  * whether it is hit, and to a hundredth of its length where). Whatever does not stand is an error;
  * there may be none. A crack between triangles would hide in that rule, so closed meshes are asked
  * by themselves: from inside no ray gets out. */
-#include "support.h"
-#include "support_compute.h"
+#include "support/support.h"
+#include "support/compute.h"
 
 #include "shared/masu_shared.h"
-#include "trace.h"
+#include "scene/trace.h"
 
 #include "trace_mask_comp.spv.h"
 #include "trace_rays_comp.spv.h"

@@ -2,9 +2,9 @@
  * pixel; additive ones in any order; before and behind polygons and an SDF; a camera that moves through
  * them; none, one and 256 of them. The panes are quads of z = const that glow and are not lit, so that
  * their colour is known; their scenes are written here. */
-#include "support.h"
+#include "support/support.h"
 
-#include "blob.h"
+#include "scene/blob.h"
 #include "image.h"
 
 #include <math.h>

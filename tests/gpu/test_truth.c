@@ -2,9 +2,9 @@
  * of a pixel; the truth of a picture with an edge in it is the area that the edge leaves of each
  * pixel; and the table of errors is made. The scene's box and SDF share an edge at x = -0.013 on
  * the plane z = -5, glowing before black: the box above y = 0, the SDF below. */
-#include "support.h"
+#include "support/support.h"
 
-#include "bench_picture.h"
+#include "bench/measure/picture.h"
 
 #include <math.h>
 #include <stdio.h>

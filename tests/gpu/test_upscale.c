@@ -1,9 +1,9 @@
 /* test_upscale.c: EASU and RCAS on the GPU against the scalar transcription in
  * tests/reference/fsr1.c, through the library's own frame: six kinds of picture (nine patterns),
  * ratios from 1 to 2.5, garbage around the valid rectangle. */
-#include "support.h"
+#include "support/support.h"
 
-#include "bench_image.h"
+#include "bench/study/image.h"
 #include "easu_fast_bytes_counted_comp.spv.h"
 #include "easu_fast_counted_comp.spv.h"
 #include "reference/fsr1.h"

@@ -1,8 +1,8 @@
 /* test_velocity.c: where each pixel's surface was in the frame before, against double precision: the
  * point that the depth names is carried back by the same motions in plain C (for what changes in
  * itself by the C that masu-sdfc writes of the scene, compiled here), seen by the previous camera,
- * and compared in pixels. scenes/test_velocity.sdf says how its parts move. */
-#include "support.h"
+ * and compared in pixels. tests/scenes/test_velocity.sdf says how its parts move. */
+#include "support/support.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -55,7 +55,7 @@ static int make_truth(void **state) {
     const char *build = getenv("BUILD"), *cc = getenv("CC");
     char path[256];
     if (!mkdtemp(dir)) return 1;
-    if (shell("%s/bin/masu-sdfc scenes/test_velocity.sdf --c %s/t.c --quiet --pairs 100",
+    if (shell("%s/bin/masu-sdfc tests/scenes/test_velocity.sdf --c %s/t.c --quiet --pairs 100",
               build ? build : "build", dir) ||
         shell("%s -std=c11 -O2 -w -shared -fPIC -o %s/t.so %s/t.c -lm", cc && *cc ? cc : "cc", dir,
               dir)) {
@@ -450,7 +450,7 @@ static void every_way_to_march_has_velocities(void **state) {
     char path[256];
     const char *build = getenv("BUILD");
     snprintf(path, sizeof path, "%s/variants.masu", dir);
-    assert_int_equal(shell("%s/bin/masu-bake scenes/test_velocity.json -o %s --variants --quiet",
+    assert_int_equal(shell("%s/bin/masu-bake tests/scenes/test_velocity.json -o %s --variants --quiet",
                            build ? build : "build", path),
                      0);
     for (size_t i = 0; i < sizeof marches / sizeof *marches; i++) {

@@ -1,8 +1,8 @@
 /* test_vndf.c: shaders/brdf/vndf.glsl and shaders/noise/sequence.glsl on the GPU: equal to the same
  * text compiled as C, which tests/unit has tested, and total: finite directions, weights of 0..1,
  * for whatever is given. */
-#include "support.h"
-#include "support_compute.h"
+#include "support/support.h"
+#include "support/compute.h"
 
 #include "vndf_comp.spv.h"
 

@@ -1,10 +1,10 @@
 /* test_whole.c: `masu whole-bench`: the plain renderer traces a ray a pixel where Masu traces one in
  * four, its mean over many samples is the truth, the samples of equal error are what they are
  * called, and what is no setting is refused. */
-#include "support.h"
-#include "support_cli.h"
+#include "support/support.h"
+#include "support/cli.h"
 
-#include "bench_whole.h"
+#include "bench/study/whole.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* scene_walk.c: see scene_walk.h. */
 #include "reference/scene_walk.h"
 
-#include "cull.h"
-#include "scene.h"
+#include "scene/cull.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
  * "FXAA" (2009). */
 #include "reference/smaa.h"
 
-#include "smaa_tables.h"
+#include "generate/smaa_tables.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* specular.c: see specular.h. */
 #include "specular.h"
 
-#include "bench_shade.h"
-#include "scene.h"
+#include "bench/study/shade.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 #include "split_sum.h"
 

@@ -1,7 +1,7 @@
 /* triangles.c: see triangles.h. */
 #include "triangles.h"
 
-#include "scene.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdlib.h>

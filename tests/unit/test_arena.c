@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "arena.h"
-#include "support_random.h"
+#include "base/arena.h"
+#include "support/random.h"
 
 #define ROWS_MOST (MASU_ARENA_ROWS + 4u) /* more than the report keeps */
 #define ROWS_RANDOM 20u

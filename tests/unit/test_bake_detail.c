@@ -14,11 +14,11 @@
 
 #include <cmocka.h>
 
-#include "bake_detail.h"
-#include "bake_occluders.h"
-#include "bake_shape.h"
-#include "bake_surface.h"
-#include "support_random.h"
+#include "bake/mesh/detail.h"
+#include "bake/mesh/occluders.h"
+#include "bake/scene/shape.h"
+#include "bake/mesh/surface.h"
+#include "support/random.h"
 
 typedef masu_bake_vec3 vec3;
 
@@ -32,7 +32,7 @@ static double between(uint64_t *state, double low, double high) {
 
 /* ---- an own judge ---- */
 
-/* Distance from p to a triangle by its seven features, written apart from bake_surface.c. */
+/* Distance from p to a triangle by its seven features, written apart from tools/bake/mesh/surface.c. */
 static double own_distance(const vec3 t[3], vec3 p) {
     vec3 e0 = masu_bake_sub(t[1], t[0]), e1 = masu_bake_sub(t[2], t[0]), d = masu_bake_sub(t[0], p);
     double a = masu_bake_dot(e0, e0), b = masu_bake_dot(e0, e1), c = masu_bake_dot(e1, e1);

@@ -8,9 +8,9 @@
 
 #include <cmocka.h>
 
-#include "bench_against.h"
-#include "bench_machine.h"
-#include "bench_sweep.h"
+#include "bench/sweep/against.h"
+#include "bench/sweep/machine.h"
+#include "bench/sweep/sweep.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,9 +8,9 @@
 
 #include <cmocka.h>
 
-#include "bench_ladder.h"
-#include "bench_table.h"
-#include "support_random.h"
+#include "bench/sweep/ladder.h"
+#include "bench/sweep/table.h"
+#include "support/random.h"
 
 #include <math.h>
 #include <stdlib.h>

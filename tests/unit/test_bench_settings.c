@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "bench_settings.h"
+#include "bench/sweep/settings.h"
 
 #include <string.h>
 

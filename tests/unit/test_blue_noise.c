@@ -1,9 +1,9 @@
-/* test_blue_noise.c: the tile of tools/make_blue_noise.c: each rank once, and blue: its spectrum is
+/* test_blue_noise.c: the tile of tools/generate/make_blue_noise.c: each rank once, and blue: its spectrum is
  * dark where that of white noise is as bright as anywhere. Also after a shift round the range of
  * values, which shaders/noise/sequence.glsl does from frame to frame. */
 #include "blue_noise.h"
 #include "shared/masu_shared.h"
-#include "support_random.h"
+#include "support/random.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 /*
  * test_camera.c: the uniforms of a frame: the scene's camera path, the camera's matrix (compared
  * with projection done the long way in double), light, SDF parameters, and what is refused. Without
- * a GPU: see support_renderer.h.
+ * a GPU: see tests/support/dry_renderer.h.
  */
 #include <float.h>
 #include <math.h>
@@ -13,9 +13,9 @@
 
 #include <cmocka.h>
 
-#include "support_bind.h"
-#include "support_random.h"
-#include "support_renderer.h"
+#include "support/bind.h"
+#include "support/random.h"
+#include "support/dry_renderer.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

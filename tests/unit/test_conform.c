@@ -1,6 +1,6 @@
 /* test_conform.c: suites of `masu conform`: what is read, what is refused and with which words,
  * which cases are chosen, what makes a verdict, and reports that other programs can read. */
-#include "conform_report.h"
+#include "conform/report.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "plan.h"
-#include "support_desc.h"
+#include "plan/plan.h"
+#include "support/desc.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

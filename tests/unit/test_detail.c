@@ -11,11 +11,11 @@
 
 #include <cmocka.h>
 
-#include "lod.h"
+#include "scene/lod.h"
 #include "reference/scene_walk.h"
-#include "scene.h"
-#include "support_bind.h"
-#include "support_random.h"
+#include "scene/scene.h"
+#include "support/bind.h"
+#include "support/random.h"
 
 static support_blob blob;
 

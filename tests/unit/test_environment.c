@@ -15,9 +15,9 @@
 
 #include <cmocka.h>
 
-#include "bake_environment.h"
+#include "bake/light/environment.h"
 #include "image.h"
-#include "support_random.h"
+#include "support/random.h"
 
 #define PI 3.14159265358979323846
 #define WIDE 256u

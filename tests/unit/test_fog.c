@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "support_random.h"
+#include "support/random.h"
 
 /* What the text takes of GLSL and of guard.glsl. Its floats are floats: constants too, which are
  * doubles in C, so that what is computed here is at least as precise as on a device. */

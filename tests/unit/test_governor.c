@@ -1,4 +1,4 @@
-/* test_governor.c: the governor on simulated GPUs (tests/plant): what it promises on each of
+/* test_governor.c: the governor on simulated GPUs (tools/simulate): what it promises on each of
  * them, what it does with samples that are none, its modes. Counts of frames and of changes, no
  * times. */
 #include <math.h>
@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "governor.h"
-#include "plant/plant.h"
-#include "support_random.h"
+#include "quality/governor.h"
+#include "simulate/plant.h"
+#include "support/random.h"
 
 #define SEEDS 20u
 #define SETTLED PLANT_SETTLED
@@ -495,8 +495,8 @@ static void learns_from_fixed_passes(void **state) {
 /* Recorded on a machine whose processors were shared: times jump by a fifth for some frames in
  * ten. */
 static void misses_least_on_recorded_scenes(void **state) {
-    static const char *const paths[] = {"tests/plant/traces/engine.csv",
-                                        "tests/plant/traces/city.csv"};
+    static const char *const paths[] = {"tools/simulate/traces/engine.csv",
+                                        "tools/simulate/traces/city.csv"};
     static plant_trace trace;
     (void)state;
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {

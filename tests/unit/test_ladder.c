@@ -13,15 +13,15 @@
 #include <cmocka.h>
 #include <glob.h>
 
-#include "bench_knobs.h"
-#include "bench_ladder.h"
-#include "bench_ladder_file.h"
-#include "bench_settings.h"
+#include "bench/sweep/knobs.h"
+#include "bench/sweep/ladder.h"
+#include "bench/sweep/ladder_file.h"
+#include "bench/sweep/settings.h"
 #include "image.h"
-#include "ladder.h"
-#include "plan.h"
-#include "support_desc.h"
-#include "support_random.h"
+#include "quality/ladder.h"
+#include "plan/plan.h"
+#include "support/desc.h"
+#include "support/random.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

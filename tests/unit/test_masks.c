@@ -15,10 +15,10 @@
 
 #include <cmocka.h>
 
-#include "bake_mask.h"
-#include "bake_texel.h"
-#include "support_random.h"
-#include "texture.h"
+#include "bake/texture/mask.h"
+#include "bake/texture/texel.h"
+#include "support/random.h"
+#include "scene/texture.h"
 
 enum { SIDE = 128, TEXELS = SIDE * SIDE, MIPS = 8, CUTOFF = 128, FINE = 4 * SIDE, PICTURES = 5 };
 enum { PLAIN, SHARE, MADE, WAYS };

@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-#include "meso_study.h"
+#include "meso/study.h"
 
 #define RADIANS (MASU_BAKE_PI / 180)
 

@@ -7,11 +7,11 @@
 
 #include <cmocka.h>
 
-#include "metric_flip.h"
-#include "metric_hdr_flip.h"
-#include "metric_image.h"
-#include "metric_march.h"
-#include "support_random.h"
+#include "metric/flip.h"
+#include "metric/hdr_flip.h"
+#include "metric/image.h"
+#include "metric/march.h"
+#include "support/random.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -115,7 +115,7 @@ static void ssim_of_flat_pictures_is_that_of_their_means(void **state) {
 
 /* ---- FLIP ------------------------------------------------------------------------------------ */
 
-/* The paper's formulas pixel by pixel with whole 2-D kernels: nothing shared with metric_flip.c. */
+/* The paper's formulas pixel by pixel with whole 2-D kernels: nothing shared with tools/metric/flip.c. */
 typedef struct color {
     double c[3];
 } color;

@@ -8,12 +8,12 @@
 
 #include <cmocka.h>
 
-#include "bench_settings.h"
-#include "model_sheet.h"
-#include "model_write.h"
-#include "spirv_cost.h"
-#include "spirv_tally.h"
-#include "support_spirv.h"
+#include "bench/sweep/settings.h"
+#include "model/sheet.h"
+#include "model/write.h"
+#include "model/spirv_cost.h"
+#include "model/spirv_tally.h"
+#include "support/spirv.h"
 
 #include "bilinear_comp.spv.h"
 #include "easu_bytes_comp.spv.h"

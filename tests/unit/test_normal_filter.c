@@ -1,7 +1,7 @@
 /* test_normal_filter.c: bumps seen from afar. Truth is the mean of the light that the texels under a
  * pixel return, each with its own normal and roughness; against it the light of one mean normal with the
- * roughness that tools/bake_texture.c gives the mip. */
-#include "bake_texel.h"
+ * roughness that tools/bake/texture/texture.c gives the mip. */
+#include "bake/texture/texel.h"
 #include "reference/brdf.h"
 #include "split_sum.h"
 

@@ -17,7 +17,7 @@
 #include <cmocka.h>
 
 #include "masu.h"
-#include "support_random.h"
+#include "support/random.h"
 
 #define DIRECTIONS 100000
 #define PI 3.14159265358979323846

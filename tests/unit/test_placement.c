@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "device_memory.h"
-#include "support_random.h"
+#include "device/memory.h"
+#include "support/random.h"
 
 #define RANDOM_SETS 2000u
 #define ITEMS_MOST MASU_IMAGE_COUNT

@@ -17,12 +17,12 @@
 
 #include <cmocka.h>
 
-#include "blob.h"
-#include "output.h"
-#include "plan.h"
-#include "ray_query.h"
-#include "support_desc.h"
-#include "support_random.h"
+#include "scene/blob.h"
+#include "plan/output.h"
+#include "plan/plan.h"
+#include "device/ray_query.h"
+#include "support/desc.h"
+#include "support/random.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "plan.h"
-#include "support_desc.h"
+#include "plan/plan.h"
+#include "support/desc.h"
 
 static masu_frame_plan with, without;
 

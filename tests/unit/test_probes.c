@@ -11,12 +11,12 @@
 
 #include <cmocka.h>
 
-#include "bake_path.h"
-#include "bake_probes.h"
-#include "bake_scene.h"
-#include "bake_shape.h"
-#include "probe_light.h"
-#include "support_random.h"
+#include "bake/light/path.h"
+#include "bake/light/probes.h"
+#include "bake/scene/scene.h"
+#include "bake/scene/shape.h"
+#include "bake/light/probe_light.h"
+#include "support/random.h"
 
 static void add_box(masu_bake_content *scene, masu_bake_vec3 low, masu_bake_vec3 high, float r,
                     float g, float b, float glow) {

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "plan.h"
-#include "support_desc.h"
+#include "plan/plan.h"
+#include "support/desc.h"
 
 #define PASS(p) ((uint64_t)1 << MASU_PASS_SPECULAR_##p)
 #define COMMON (PASS(GUIDE) | PASS(RAYS) | PASS(SHADE) | PASS(COMPOSITE))

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "scene.h"
-#include "support_bind.h"
+#include "scene/scene.h"
+#include "support/bind.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

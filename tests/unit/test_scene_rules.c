@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "support_bind.h"
+#include "support/bind.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

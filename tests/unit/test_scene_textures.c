@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "support_bind.h"
+#include "support/bind.h"
 
 #define WITH (SUPPORT_ALL | SUPPORT_TEXTURES)
 

@@ -19,9 +19,9 @@
 #include <math.h>
 #include <unistd.h>
 
-#include "sdfc.h"
-#include "sdfc_internal.h"
-#include "support_random.h"
+#include "sdfc/sdfc.h"
+#include "sdfc/internal.h"
+#include "support/random.h"
 
 #define FEATURES "tests/unit/features.sdf"
 #define POINTS 2000

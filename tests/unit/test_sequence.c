@@ -4,7 +4,7 @@
  * over frames and over pixels; and that it is as even after 1e9 frames as before.
  */
 #include "blue_noise.h"
-#include "support_random.h"
+#include "support/random.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /*
  * test_shader_gates.c: what no shader of ours may do, asked of the SPIR-V: loop for as long as its
- * data says (support_loops.h), and use more than three descriptor sets, of the four that every
+ * data says (tests/support/loops.h), and use more than three descriptor sets, of the four that every
  * device has: GPU-assisted validation needs the fourth.
  *
  * Looked at are the shaders of the library as glslang writes them, and those that are compiled
@@ -22,8 +22,8 @@
 #include <cmocka.h>
 
 #include "image.h"
-#include "scene.h"
-#include "support_loops.h"
+#include "scene/scene.h"
+#include "support/loops.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 #define SETS_MOST 3u
@@ -382,7 +382,7 @@ static void a_march_has_the_code_that_its_scene_needs(void **state) {
     write_file("two.sdf", "part a = sphere(1);\npart b = box((1, 2, 3));\n", two);
     uint32_t loops[4];
     size_t single = march_words(one, &loops[0]), pair = march_words(two, &loops[1]);
-    size_t parts = march_words("scenes/parts300.sdf", &loops[2]);
+    size_t parts = march_words("tests/scenes/parts300.sdf", &loops[2]);
     size_t city = march_words("scenes/city.sdf", &loops[3]);
     printf("march.comp: %zu words with a sphere, %zu with a box too, %zu with 300 parts, %zu with "
            "the city\n",

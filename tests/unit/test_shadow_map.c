@@ -11,10 +11,10 @@
 
 #include <cmocka.h>
 
-#include "support_bind.h"
-#include "support_desc.h"
-#include "support_random.h"
-#include "support_renderer.h"
+#include "support/bind.h"
+#include "support/desc.h"
+#include "support/random.h"
+#include "support/dry_renderer.h"
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -17,7 +17,7 @@
 #include <cmocka.h>
 
 #include "shared/masu_shared.h"
-#include "support_spirv.h"
+#include "support/spirv.h"
 
 #define MEMBERS_MOST 24u
 

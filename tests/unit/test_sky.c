@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "sky.h"
-#include "support_random.h"
+#include "frame/sky.h"
+#include "support/random.h"
 
 #define PI 3.14159265358979323846
 #define RINGS 160 /* over both halves */

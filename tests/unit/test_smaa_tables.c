@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "smaa_area.h"
-#include "smaa_tables.h"
+#include "generate/smaa_tables.h"
 
 #include "reference/patterns.h"
 #include "shared/masu_shared.h"

@@ -14,9 +14,9 @@
 
 #include <cmocka.h>
 
-#include "bake_texel.h"
-#include "support_random.h"
-#include "texture.h"
+#include "bake/texture/texel.h"
+#include "support/random.h"
+#include "scene/texture.h"
 
 enum { SIDE = 64, TEXELS = SIDE * SIDE };
 

@@ -1,5 +1,5 @@
-/* test_trace.c: trees for rays (src/trace_tree.h) and the tree over the instances of a frame
- * (src/trace.h): what lies in a leaf lies in the quantised boxes all the way up, after a build, a
+/* test_trace.c: trees for rays (src/scene/trace_tree.h) and the tree over the instances of a frame
+ * (src/scene/trace.h): what lies in a leaf lies in the quantised boxes all the way up, after a build, a
  * fit and a thousand moves; shapes have the order that blobs are checked for; nothing goes deeper
  * than it may. */
 #include <math.h>
@@ -13,8 +13,8 @@
 #include <cmocka.h>
 
 #include "shared/masu_shared.h"
-#include "support_random.h"
-#include "trace.h"
+#include "support/random.h"
+#include "scene/trace.h"
 
 #define MOST 5000u
 

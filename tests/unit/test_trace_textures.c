@@ -14,17 +14,17 @@
 
 #include <cmocka.h>
 
-#include "bake_blob.h"
-#include "bake_bvh.h"
-#include "bake_scene.h"
-#include "bake_shape.h"
-#include "bake_texture.h"
-#include "bake_trace_texture.h"
+#include "bake/scene/blob.h"
+#include "bake/mesh/bvh.h"
+#include "bake/scene/scene.h"
+#include "bake/scene/shape.h"
+#include "bake/texture/texture.h"
+#include "bake/texture/trace_texture.h"
 #include "masu.h"
-#include "scene.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
-#include "specular.h"
-#include "support_random.h"
+#include "frame/specular.h"
+#include "support/random.h"
 
 enum { NOISE, LEAF, ROUGH, GLOW, UNSEEN, PICTURES };
 static const uint32_t sizes[PICTURES][2] = {{128, 64}, {64, 64}, {32, 32}, {16, 16}, {8, 8}};

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "support_random.h"
-#include "transparents.h"
+#include "support/random.h"
+#include "frame/transparents.h"
 
 enum { MOST = 4096 };
 

@@ -7,11 +7,11 @@
 
 #include <cmocka.h>
 
-#include "bench_shade.h"
-#include "bench_truth.h"
+#include "bench/study/shade.h"
+#include "bench/measure/truth.h"
 #include "reference/brdf.h"
 #include "split_sum.h"
-#include "support_random.h"
+#include "support/random.h"
 
 #include <math.h>
 #include <stdlib.h>

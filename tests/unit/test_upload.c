@@ -1,6 +1,6 @@
 /*
  * test_upload.c: what the host copies for the GPU: the scene, in chunks or at once, frames in their
- * slots, and instances that move. Without a GPU: see support_renderer.h.
+ * slots, and instances that move. Without a GPU: see tests/support/dry_renderer.h.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "support_bind.h"
+#include "support/bind.h"
 #include "split_sum.h"
-#include "support_renderer.h"
+#include "support/dry_renderer.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

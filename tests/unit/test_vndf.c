@@ -6,7 +6,7 @@
  */
 #include "reference/brdf.h"
 #include "split_sum.h"
-#include "support_random.h"
+#include "support/random.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "bench_whole.h"
+#include "bench/study/whole.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,0 +1,64 @@
+/* ray_query.h: polygons for VK_KHR_ray_query: where the host offers it, the device's own structures
+ * stand in for the trees of trace.h, and shaders/trace/query.glsl for bvh.glsl.
+ *
+ *   bottom levels   one structure for each traced mesh, all in one buffer; built while the scene is
+ *                   loaded, of the vertices as they are and of the triangles in the order of
+ *                   TRACE_TRIANGLES, so that the first triangle of a mesh plus the number of the
+ *                   primitive is what specular_shade looks up
+ *   top level       over the traced instances in their order, so that the number of the instance is
+ *                   what specular_shade looks up; built in every frame, of a buffer that the host
+ *                   writes
+ *   loading         the triangles as an index buffer, and the scratch memory of the bottom levels:
+ *                   needed in one command buffer of masu_load, so they lie where the transient
+ *                   images of frames will
+ *
+ * SIZES are the driver's for the geometry at hand, asked for while planning: nothing grows.
+ * Structures are not compacted: how small one can be is known after it has been built, and the box
+ * is sized before. Bottom levels are built one after the other, each in the same scratch memory:
+ * the largest counts, not the sum.
+ *
+ * What fails: a limit of the device (masu_ray_check), and vkCreateAccelerationStructureKHR. */
+#ifndef MASU_RAY_QUERY_H
+#define MASU_RAY_QUERY_H
+
+#include "plan/plan.h"
+#include "scene/scene.h"
+#include "device/vk.h"
+
+/* Of each mesh; one that rays do not meet has none. */
+typedef struct masu_ray_mesh {
+    VkAccelerationStructureKHR structure;
+    uint64_t address;
+    uint32_t first_triangle; /* of TRACE_TRIANGLES */
+} masu_ray_mesh;
+
+/* 1: some of what is traced has holes: the build of the shader that looks them up. */
+uint32_t masu_ray_masks(const masu_scene *scene);
+
+/* Whether the device's limits suffice. */
+masu_result masu_ray_check(const masu_scene *scene, const masu_vk *vk, masu_detail *detail);
+
+/* The rows of the buffers, but for the sizes that only the driver knows; and these. */
+void masu_ray_buffers(masu_frame_plan *plan);
+void masu_ray_sizes(masu_frame_plan *plan, const masu_vk *vk);
+
+/* Structures in the buffers, which have their memory. */
+masu_result masu_ray_create(masu_renderer *m, masu_detail *detail);
+void masu_ray_destroy(masu_renderer *m);
+void masu_ray_bind(masu_renderer *m, VkDescriptorSet set);
+
+/* Bytes [offset, offset + bytes) of the index buffer. */
+void masu_ray_write_indices(const masu_scene_view *v, uint64_t offset, uint64_t bytes,
+                            unsigned char *to);
+void masu_ray_record_bottoms(masu_renderer *m, VkCommandBuffer cmd);
+void masu_ray_record_top(masu_renderer *m, VkCommandBuffer cmd, uint32_t slot);
+
+/* After transforms have been copied, before masu_ray_write_instance: whether what instances are
+ * measured from has moved. */
+int masu_ray_moved(masu_renderer *m);
+/* A traced instance to a slot; rows: object to world minus anchor. One that is left out (trace.h)
+ * gets a mask that no ray has. */
+void masu_ray_write_instance(masu_renderer *m, uint32_t slot, uint32_t traced,
+                             float rows[3][4]);
+
+#endif

@@ -1,0 +1,191 @@
+/* vk.c: loading the function table and checking the device against the floor that include/masu.h
+ * states. */
+#include "device/vk.h"
+
+#include "base/error.h"
+#include "plan/output.h"
+#include "shared/masu_shared.h"
+
+#include <string.h>
+
+typedef struct format_floor {
+    VkFormat format;
+    const char *name;
+    VkFormatFeatureFlags features; /* optimal tiling */
+} format_floor;
+
+/* All but the first are mandatory in Vulkan 1.1 (specification, "Required Format Support"). They
+ * are checked all the same: a driver that lies here fails in a much darker place later. */
+static const format_floor format_floors[] = {
+    {VK_FORMAT_D32_SFLOAT, "VK_FORMAT_D32_SFLOAT",
+     VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT},
+    {VK_FORMAT_R8G8B8A8_UNORM, "VK_FORMAT_R8G8B8A8_UNORM",
+     VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
+         VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT},
+    {VK_FORMAT_R32_UINT, "VK_FORMAT_R32_UINT",
+     VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
+         VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
+    {VK_FORMAT_R32_SFLOAT, "VK_FORMAT_R32_SFLOAT",
+     VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
+    {VK_FORMAT_R16G16B16A16_SFLOAT, "VK_FORMAT_R16G16B16A16_SFLOAT",
+     VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
+};
+
+static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
+    const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
+    if (vk->properties.apiVersion < VK_API_VERSION_1_1) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "Vulkan 1.1", VK_API_VERSION_1_1,
+                         vk->properties.apiVersion,
+                         "device '%s' offers Vulkan %u.%u, needed is 1.1",
+                         vk->properties.deviceName, VK_VERSION_MAJOR(vk->properties.apiVersion),
+                         VK_VERSION_MINOR(vk->properties.apiVersion));
+    }
+    VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    if ((vk->queue_family.queueFlags & wanted) != wanted) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "queue family with graphics and compute",
+                         wanted, vk->queue_family.queueFlags,
+                         "queue family %u of '%s' lacks graphics or compute (flags 0x%x)",
+                         desc->vulkan.queue_family, vk->properties.deviceName,
+                         vk->queue_family.queueFlags);
+    }
+    for (size_t i = 0; i < sizeof format_floors / sizeof *format_floors; i++) {
+        VkFormatProperties p;
+        memset(&p, 0, sizeof p);
+        vk->GetPhysicalDeviceFormatProperties(vk->physical, format_floors[i].format, &p);
+        VkFormatFeatureFlags missing = format_floors[i].features & ~p.optimalTilingFeatures;
+        if (missing) {
+            return masu_fail(detail, MASU_ERROR_DEVICE, format_floors[i].name,
+                             format_floors[i].features, p.optimalTilingFeatures,
+                             "device '%s' lacks features 0x%x of %s", vk->properties.deviceName,
+                             missing, format_floors[i].name);
+        }
+    }
+    VkFormat target = desc->targets.format ? desc->targets.format : VK_FORMAT_R8G8B8A8_UNORM;
+    VkFormatProperties target_properties;
+    memset(&target_properties, 0, sizeof target_properties);
+    vk->GetPhysicalDeviceFormatProperties(vk->physical, target, &target_properties);
+    /* sRGB formats are copied to; every format that is there may be. */
+    VkFormatFeatureFlags into = masu_output_copies(desc) ? VK_FORMAT_FEATURE_TRANSFER_DST_BIT
+                                                         : VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    if (!desc->targets.storage && !(target_properties.optimalTilingFeatures & into)) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "targets.format", into,
+                         target_properties.optimalTilingFeatures,
+                         "device '%s' cannot blit or copy to targets.format %d",
+                         vk->properties.deviceName, (int)target);
+    }
+    if (desc->debug.timestamps && vk->queue_family.timestampValidBits == 0) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "debug.timestamps", 1, 0,
+                         "queue family %u of '%s' has no timestamps; leave debug.timestamps at 0",
+                         desc->vulkan.queue_family, vk->properties.deviceName);
+    }
+    uint32_t widest =
+        desc->output.width > desc->output.height ? desc->output.width : desc->output.height;
+    if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
+        widest > limits->maxFramebufferHeight) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "output", widest, limits->maxImageDimension2D,
+                         "output %ux%u is larger than the device's images may be (%u)",
+                         desc->output.width, desc->output.height, limits->maxImageDimension2D);
+    }
+    uint32_t groups = (widest + MASU_GROUP - 1) / MASU_GROUP;
+    if (groups > limits->maxComputeWorkGroupCount[0] ||
+        groups > limits->maxComputeWorkGroupCount[1]) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", groups,
+                         limits->maxComputeWorkGroupCount[0],
+                         "output %ux%u needs %u workgroups per axis, the device has %u",
+                         desc->output.width, desc->output.height, groups,
+                         limits->maxComputeWorkGroupCount[0]);
+    }
+    return MASU_OK;
+}
+
+/* Where the host says that they are there: a driver that then does not know one is at fault. */
+static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
+    if (!desc->vulkan.ray_query || desc->ray_query == MASU_OFF) return MASU_OK;
+#define MASU_VK_LOAD_RAYS(name)                                                                    \
+    vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(vk->device, "vk" #name);
+    MASU_VK_RAYS(MASU_VK_LOAD_RAYS)
+#undef MASU_VK_LOAD_RAYS
+    /* Of a device that has enabled the feature of 1.2 instead of the extension. */
+    if (!vk->GetBufferDeviceAddressKHR) {
+        vk->GetBufferDeviceAddressKHR = (PFN_vkGetBufferDeviceAddressKHR)vk->GetDeviceProcAddr(
+            vk->device, "vkGetBufferDeviceAddress");
+    }
+#define MASU_VK_CHECK_RAYS(name)                                                                   \
+    if (!vk->name) {                                                                               \
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vk" #name, 1, 0,                              \
+                         "vulkan.ray_query is set, but the device knows no vk" #name);             \
+    }
+    MASU_VK_RAYS(MASU_VK_CHECK_RAYS)
+#undef MASU_VK_CHECK_RAYS
+    PFN_vkGetPhysicalDeviceProperties2 get = (PFN_vkGetPhysicalDeviceProperties2)
+        desc->vulkan.get_instance_proc_addr(vk->instance, "vkGetPhysicalDeviceProperties2");
+    if (!get) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vkGetPhysicalDeviceProperties2", 1, 0,
+                         "the host's get_instance_proc_addr knows no vkGetPhysicalDeviceProperties2");
+    }
+    vk->rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vk->rays};
+    get(vk->physical, &properties);
+    vk->rays.pNext = NULL;
+    return MASU_OK;
+}
+
+masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
+    const masu_vulkan *host = &desc->vulkan;
+    memset(vk, 0, sizeof *vk);
+    if (!host->get_instance_proc_addr || !host->instance || !host->physical_device ||
+        !host->device) {
+        const char *what = !host->get_instance_proc_addr ? "vulkan.get_instance_proc_addr"
+                           : !host->instance             ? "vulkan.instance"
+                           : !host->physical_device      ? "vulkan.physical_device"
+                                                         : "vulkan.device";
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL", what);
+    }
+    vk->instance = host->instance;
+    vk->physical = host->physical_device;
+    vk->device = host->device;
+    vk->allocator = host->allocator;
+#define MASU_VK_LOAD_INSTANCE(name)                                                                \
+    vk->name = (PFN_vk##name)host->get_instance_proc_addr(host->instance, "vk" #name);             \
+    if (!vk->name) {                                                                               \
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vk" #name, 1, 0,                              \
+                         "the host's get_instance_proc_addr knows no vk" #name);                   \
+    }
+    MASU_VK_INSTANCE(MASU_VK_LOAD_INSTANCE)
+#undef MASU_VK_LOAD_INSTANCE
+#define MASU_VK_LOAD_DEVICE(name)                                                                  \
+    vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(host->device, "vk" #name);                      \
+    if (!vk->name) {                                                                               \
+        return masu_fail(detail, MASU_ERROR_DEVICE, "vk" #name, 1, 0,                              \
+                         "the device knows no vk" #name);                                          \
+    }
+    MASU_VK_DEVICE(MASU_VK_LOAD_DEVICE)
+#undef MASU_VK_LOAD_DEVICE
+    if (desc->debug.labels) {
+#define MASU_VK_LOAD_OPTIONAL(name)                                                                \
+    vk->name = (PFN_vk##name)host->get_instance_proc_addr(host->instance, "vk" #name);
+        MASU_VK_OPTIONAL(MASU_VK_LOAD_OPTIONAL)
+#undef MASU_VK_LOAD_OPTIONAL
+    }
+    vk->GetPhysicalDeviceProperties(vk->physical, &vk->properties);
+    vk->GetPhysicalDeviceMemoryProperties(vk->physical, &vk->memory);
+    uint32_t families = 0;
+    vk->GetPhysicalDeviceQueueFamilyProperties(vk->physical, &families, NULL);
+    if (host->queue_family >= families) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "vulkan.queue_family", families,
+                         host->queue_family, "queue_family is %u, the device has %u families",
+                         host->queue_family, families);
+    }
+    VkQueueFamilyProperties list[32];
+    uint32_t listed = families < 32 ? families : 32;
+    vk->GetPhysicalDeviceQueueFamilyProperties(vk->physical, &listed, list);
+    if (host->queue_family >= listed) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "vulkan.queue_family", listed,
+                         host->queue_family, "queue_family %u is not among the first %u",
+                         host->queue_family, listed);
+    }
+    vk->queue_family = list[host->queue_family];
+    masu_result result = check_floor(desc, vk, detail);
+    return result ? result : load_rays(desc, vk, detail);
+}

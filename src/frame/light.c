@@ -1,0 +1,143 @@
+/* light.c: the light of a frame: what the host gives or the scene has, checked; sky and fog from it. */
+#include "renderer.h"
+
+#include "base/error.h"
+#include "shared/masu_shared.h"
+#include "frame/sky.h"
+
+#include <string.h>
+
+static masu_result bad(masu_detail *detail, const char *what, const char *problem) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s %s", what, problem);
+}
+
+static int color_ok(const float *v) {
+    for (uint32_t i = 0; i < 3; i++) {
+        if (!(v[i] >= 0.0f && v[i] <= 1e9f)) return 0;
+    }
+    return 1;
+}
+
+static masu_result check_sky(const masu_renderer *m, const masu_light *light, masu_detail *detail) {
+    if (light->turbidity == 0.0f) return MASU_OK;
+    if (!(light->turbidity >= MASU_SKY_TURBIDITY_MIN &&
+          light->turbidity <= MASU_SKY_TURBIDITY_MAX)) {
+        return bad(detail, "light.turbidity", "is not 0 or 1.5 to 10");
+    }
+    for (uint32_t c = 0; c < 3; c++) {
+        if (!(light->ground[c] >= 0.0f && light->ground[c] <= 1.0f))
+            return bad(detail, "light.ground", "is not 0 to 1");
+    }
+    if (!m->plan.needs.sky) {
+        return bad(detail, "light.turbidity",
+                   "needs a scene with an analytic sky or desc.analytic_sky");
+    }
+    return MASU_OK;
+}
+
+static masu_result check_fog(const masu_light *light, masu_detail *detail) {
+    if (!color_ok(light->fog_color)) return bad(detail, "light.fog_color", "is not 0 to 1e9");
+    if (!(light->fog_density >= 0.0f && light->fog_density <= 1e6f))
+        return bad(detail, "light.fog_density", "is not 0 to 1e6 per metre");
+    if (!(light->fog_height >= -1e9f && light->fog_height <= 1e9f))
+        return bad(detail, "light.fog_height", "is not -1e9 to 1e9 m");
+    if (!(light->fog_falloff >= 0.0f && light->fog_falloff <= 1e6f))
+        return bad(detail, "light.fog_falloff", "is not 0 to 1e6 per metre");
+    if (!(light->fog_start >= 0.0f && light->fog_start <= 1e9f))
+        return bad(detail, "light.fog_start", "is not 0 to 1e9 m");
+    return MASU_OK;
+}
+
+/* The eye's height over the fog's in double: far up, neither is known to a metre as a float. */
+static void write_fog(const masu_light *light, double eye_y, struct masu_frame_uniforms *u) {
+    memcpy(u->fog, light->fog_color, sizeof light->fog_color);
+    u->fog[3] = light->fog_density;
+    u->air[0] = (float)(eye_y - (double)light->fog_height);
+    u->air[1] = light->fog_falloff;
+    u->air[2] = light->fog_start;
+    u->air[3] = light->fog_color[0] > 0.0f || light->fog_color[1] > 0.0f || light->fog_color[2] > 0.0f;
+}
+
+static masu_light scene_light(const masu_blob_environment *e) {
+    masu_light light = {.exposure = e->exposure,
+                        .turbidity = e->turbidity,
+                        .fog_density = e->fog_density,
+                        .fog_height = e->fog_height,
+                        .fog_falloff = e->fog_falloff,
+                        .fog_start = e->fog_start};
+    memcpy(light.fog_color, e->fog_color, sizeof light.fog_color);
+    memcpy(light.ground, e->ground, sizeof light.ground);
+    memcpy(light.sun_direction, e->sun_direction, sizeof light.sun_direction);
+    memcpy(light.sun_color, e->sun_color, sizeof light.sun_color);
+    memcpy(light.ambient, e->ambient, sizeof light.ambient);
+    memcpy(light.sky_zenith, e->sky_zenith, sizeof light.sky_zenith);
+    memcpy(light.sky_horizon, e->sky_horizon, sizeof light.sky_horizon);
+    return light;
+}
+
+masu_result masu_light_of(const masu_renderer *m, masu_light *out) {
+    if (!m || !out) return MASU_ERROR_ARGUMENT;
+    if (!m->plan.needs.scene) return MASU_ERROR_STATE;
+    *out = scene_light(&m->environment);
+    return MASU_OK;
+}
+
+masu_result masu_write_light(const masu_renderer *m, const masu_light *given, double eye_y,
+                             struct masu_frame_uniforms *u, masu_light *out, masu_detail *detail) {
+    masu_light light = given ? *given : scene_light(&m->environment);
+    if (light.exposure == 0.0f) light.exposure = 1.0f;
+    if (!(light.exposure >= 1e-9f && light.exposure <= 1e9f))
+        return bad(detail, "light.exposure", "is not 1e-9 to 1e9");
+    if (!masu_unit(light.sun_direction, u->sun_direction))
+        return bad(detail, "light.sun_direction", "is zero or not finite");
+    if (!color_ok(light.sun_color) || !color_ok(light.ambient) || !color_ok(light.sky_zenith) ||
+        !color_ok(light.sky_horizon)) {
+        return bad(detail, "light", "has a colour that is not 0 to 1e9");
+    }
+    masu_result result = check_sky(m, &light, detail);
+    if (!result) result = check_fog(&light, detail);
+    if (result) return result;
+    u->sun_direction[3] = light.exposure;
+    memcpy(u->sun_color, light.sun_color, sizeof light.sun_color);
+    memcpy(u->ambient, light.ambient, sizeof light.ambient);
+    memcpy(u->sky_zenith, light.sky_zenith, sizeof light.sky_zenith);
+    memcpy(u->sky_horizon, light.sky_horizon, sizeof light.sky_horizon);
+    memcpy(u->irradiance[0], light.ambient, sizeof light.ambient);
+    if (m->plan.needs.environment) {
+        for (uint32_t k = 0; k < 9; k++)
+            memcpy(u->irradiance[k], m->environment_sh[k], sizeof m->environment_sh[k]);
+        memcpy(u->ambient, m->environment_sh[0], sizeof m->environment_sh[0]);
+        u->sky_zenith[3] = (float)m->plan.scene.environment_size;
+        u->sky_horizon[3] = (float)m->plan.scene.environment_mips;
+    }
+    write_fog(&light, eye_y, u);
+    *out = light;
+    return MASU_OK;
+}
+
+void masu_write_sky(masu_renderer *m, const masu_light *light, uint32_t slot,
+                    struct masu_frame_uniforms *u) {
+    if (!m->plan.needs.sky) return;
+    struct masu_sky_uniforms *to =
+        (struct masu_sky_uniforms *)(void *)masu_buffer_pointer(m, MASU_BUFFER_SKY, slot);
+    if (light->turbidity == 0.0f) {
+        memset(to->azimuth, 0, sizeof to->azimuth);
+        m->slot_sky[slot] = 0;
+        return;
+    }
+    masu_sky *sky = m->sky;
+    (void)masu_sky_update(sky, u->sun_direction, light->turbidity, light->ground);
+    const masu_sky_irradiance *s = &sky->irradiance;
+    for (uint32_t k = 0; k < 9; k++) memcpy(u->irradiance[k], s->sh[k], sizeof s->sh[k]);
+    for (uint32_t k = 0; k < 3; k++) {
+        u->irradiance[k][3] = s->glow[k];
+        u->irradiance[3 + k][3] = s->direction[k];
+        u->irradiance[6 + k][3] = s->ring[k];
+        u->ambient[k] = s->sh[0][k];
+    }
+    if (u->sun_color[0] == 0.0f && u->sun_color[1] == 0.0f && u->sun_color[2] == 0.0f)
+        memcpy(u->sun_color, sky->sun_color, sizeof sky->sun_color);
+    if (m->slot_sky[slot] == sky->sun_updates) return;
+    memcpy(to, &sky->uniforms, sizeof *to);
+    m->slot_sky[slot] = sky->sun_updates;
+}

@@ -1,0 +1,231 @@
+/* lights.c: see lights.h. In double precision up to where the numbers are written. What is out of
+ * range is refused before it is kept; nothing else here can fail. */
+#include "frame/lights.h"
+
+#include "base/error.h"
+#include "renderer.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+/* By this share of all lengths that went into it a bounding sphere is larger: 64 units in the last
+ * place of fp32, of which light_tiles.comp and lights.glsl together lose fewer than 40. */
+#define SLACK 0x1p-17
+/* A range below is none: its square has no reciprocal. */
+#define RANGE_LEAST 1e-15
+
+static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/* ---- Checks ---------------------------------------------------------------------------------- */
+
+const char *masu_light_state_wrong(const masu_local_light_state *s, double *value) {
+    float direction = 0.0f;
+    for (uint32_t k = 0; k < 3; k++) {
+        *value = s->position[k];
+        if (!(fabs(s->position[k]) <= 1e15)) return "position is not finite or beyond 1e15 m";
+        *value = (double)s->color[k];
+        if (!(s->color[k] >= 0.0f && s->color[k] <= 1e9f)) return "color is not 0 to 1e9";
+        *value = (double)s->direction[k];
+        if (!(fabsf(s->direction[k]) <= 1e15f)) return "direction is not finite or beyond 1e15";
+        direction = fmaxf(direction, fabsf(s->direction[k]));
+    }
+    *value = (double)s->range;
+    if (!(s->range >= 0.0f && s->range <= 1e15f)) return "range is not 0 to 1e15 m";
+    *value = (double)s->radius;
+    if (!(s->radius >= 1e-6f && s->radius <= 1e9f)) return "radius is not 1e-6 to 1e9 m";
+    *value = (double)s->spot;
+    if (s->spot > 1) return "spot is neither 0 nor 1";
+    if (!s->spot) return NULL;
+    *value = (double)s->outer;
+    if (!(s->outer >= 0.0f && s->outer <= 3.1415928f)) return "outer is not 0 to pi";
+    *value = (double)s->inner;
+    if (!(s->inner >= 0.0f && s->inner <= s->outer)) return "inner is not 0 to outer";
+    *value = (double)direction;
+    return direction > 1e-15f ? NULL : "direction of a spot is zero";
+}
+
+masu_local_light_state masu_light_state_of(const masu_blob_light *light) {
+    masu_local_light_state s = {.range = light->range,
+                                .radius = light->radius,
+                                .spot = light->type == MASU_LIGHT_SPOT,
+                                .inner = light->inner,
+                                .outer = light->outer};
+    for (uint32_t k = 0; k < 3; k++) {
+        s.position[k] = (double)light->position[k];
+        s.direction[k] = light->direction[k];
+        s.color[k] = light->color[k];
+    }
+    if (light->parent != MASU_BLOB_NONE) s.instance.id = light->parent + 1;
+    return s;
+}
+
+/* ---- One light ------------------------------------------------------------------------------- */
+
+/* Of a cone of half angle a and the range as its side: up to 45 degrees the sphere through the tip and
+ * the rim, up to 90 the one around the rim's disc, beyond the whole of the range. */
+static masu_light_bound bound_of(const double position[3], const double axis[3], double range,
+                                 double angle) {
+    masu_light_bound b = {{position[0], position[1], position[2]}, range};
+    double along = 0.0;
+    if (angle < 0.25 * PI) {
+        along = b.radius = range / (2.0 * cos(angle));
+    } else if (angle < 0.5 * PI) {
+        along = range * cos(angle);
+        b.radius = range * sin(angle);
+    }
+    for (uint32_t k = 0; k < 3; k++) b.center[k] += axis[k] * along;
+    b.radius += SLACK * (length_of(position) + length_of(b.center) + range);
+    return b;
+}
+
+static double versine(double angle) {
+    double s = sin(0.5 * angle);
+    return 2.0 * s * s;
+}
+
+int masu_light_place(const masu_local_light_state *s, const double position[3],
+                     const double direction[3], struct masu_local_light_data *out) {
+    double axis[3] = {0, 0, 0}, range = (double)s->range, length = length_of(direction);
+    double outer = fmin((double)s->outer, PI);
+    int spot = s->spot && (double)s->inner < PI - 1e-6; /* else it is a point */
+    memset(out, 0, sizeof *out);
+    if (!(range >= RANGE_LEAST) || !(length_of(position) <= 1e16)) return 0;
+    if (!(s->color[0] > 0.0f || s->color[1] > 0.0f || s->color[2] > 0.0f)) return 0;
+    if (spot && !(length > 0.0 && length <= 1e300 && outer > 0.0)) return 0;
+    for (uint32_t k = 0; k < 3 && spot; k++) axis[k] = direction[k] / length;
+    masu_light_bound b = bound_of(position, axis, range, spot ? outer : PI);
+    for (uint32_t k = 0; k < 3; k++) {
+        out->position[k] = (float)position[k];
+        out->color[k] = s->color[k];
+        out->axis[k] = (float)axis[k];
+        out->bound[k] = (float)b.center[k];
+    }
+    out->position[3] = (float)(1.0 / (range * range));
+    out->color[3] = s->radius * s->radius;
+    out->bound[3] = (float)b.radius;
+    /* A point: of no direction the versine is below 4. */
+    out->axis[3] = 4.0f;
+    out->cone[0] = 1.0f;
+    if (!spot) return 1;
+    /* An edge sharper than fp32 can tell angles apart would be noise. */
+    double edge = versine(outer) - versine((double)s->inner), sharpest = 0x1p-22 * versine(outer);
+    out->axis[3] = (float)versine(outer);
+    out->cone[0] = (float)fmin(1.0 / fmax(edge, sharpest), 1e30);
+    out->cone[1] = (float)sin(outer);
+    out->cone[2] = (float)cos(outer);
+    return 1;
+}
+
+int masu_light_outside(const float bound[4], const float c[16]) {
+    for (uint32_t plane = 0; plane < 5; plane++) {
+        double n[3], at = 0.0;
+        for (uint32_t k = 0; k < 3; k++) {
+            double side = plane < 4 ? (double)c[4 * k + plane / 2] : 0.0;
+            n[k] = (double)c[4 * k + 3] + (plane % 2 ? -side : side);
+            at += n[k] * (double)bound[k];
+        }
+        if (at < -(double)bound[3] * length_of(n)) return 1;
+    }
+    return 0;
+}
+
+/* ---- All of them ----------------------------------------------------------------------------- */
+
+void masu_keep_lights(masu_renderer *m, const masu_scene_view *v) {
+    for (uint32_t i = 0; i < m->plan.scene.lights; i++) {
+        uint32_t name = v->lights[i].name;
+        m->lights[i] = masu_light_state_of(&v->lights[i]);
+        m->light_names[i] =
+            name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
+    }
+}
+
+/* World position and direction: of the instance that carries it, as it stands now. */
+static void carry(const masu_renderer *m, const masu_local_light_state *s, double position[3],
+                  double direction[3]) {
+    for (uint32_t k = 0; k < 3; k++) {
+        position[k] = s->position[k];
+        direction[k] = (double)s->direction[k];
+    }
+    if (!s->instance.id) return;
+    const struct masu_instance_data *to = &m->instances[s->instance.id - 1];
+    const float *rows[3] = {to->row0, to->row1, to->row2};
+    for (uint32_t k = 0; k < 3; k++) {
+        const float *row = rows[k];
+        position[k] = (double)row[3];
+        direction[k] = 0.0;
+        for (uint32_t j = 0; j < 3; j++) {
+            position[k] += (double)row[j] * s->position[j];
+            direction[k] += (double)row[j] * (double)s->direction[j];
+        }
+    }
+}
+
+void masu_write_lights(masu_renderer *m, uint32_t slot, const struct masu_frame_uniforms *u,
+                       const double eye[3], int culls) {
+    uint32_t lights = m->plan.scene.lights;
+    masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
+    if (!lights) return;
+    unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_LIGHTS, slot);
+    struct masu_local_light_data *data =
+        (struct masu_local_light_data *)(void *)(to + sizeof header);
+    for (uint32_t i = 0; i < lights; i++) {
+        struct masu_local_light_data placed;
+        double position[3], direction[3];
+        carry(m, &m->lights[i], position, direction);
+        for (uint32_t k = 0; k < 3; k++) position[k] -= eye[k];
+        if (!masu_light_place(&m->lights[i], position, direction, &placed)) continue;
+        if (culls && masu_light_outside(placed.bound, u->clip_from_rel)) continue;
+        data[header.count++] = placed;
+    }
+    memcpy(to, &header, sizeof header);
+    m->slot_lights[slot] = header.count;
+}
+
+/* ---- What the host changes ------------------------------------------------------------------- */
+
+masu_local_light masu_local_light_find(const masu_renderer *m, const char *name) {
+    if (!m || !name || !*name) return (masu_local_light){0};
+    uint64_t hash = masu_fnv1a64(name, strlen(name));
+    for (uint32_t i = 0; i < m->plan.scene.lights; i++) {
+        if (m->light_names[i] == hash) return (masu_local_light){i + 1};
+    }
+    return (masu_local_light){0};
+}
+
+static masu_result check_handle(masu_renderer *m, masu_local_light light) {
+    if (light.id && light.id <= m->plan.scene.lights) return MASU_OK;
+    return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", m->plan.scene.lights, light.id,
+                     "light handle %u: the scene has handles 1 to %u", light.id,
+                     m->plan.scene.lights);
+}
+
+masu_result masu_local_light_get(masu_renderer *m, masu_local_light light,
+                                 masu_local_light_state *out) {
+    if (!m || !out) return MASU_ERROR_ARGUMENT;
+    masu_result result = check_handle(m, light);
+    if (!result) *out = m->lights[light.id - 1];
+    return result;
+}
+
+masu_result masu_local_light_set(masu_renderer *m, masu_local_light light,
+                                 const masu_local_light_state *state) {
+    double value = 0.0;
+    if (!m || !state) return MASU_ERROR_ARGUMENT;
+    masu_result result = check_handle(m, light);
+    if (result) return result;
+    const char *wrong = masu_light_state_wrong(state, &value);
+    if (wrong) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "light", 0, 0, "light %u: %s (%g)",
+                         light.id, wrong, value);
+    }
+    if (state->instance.id > m->plan.scene.instances) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "instance", m->plan.scene.instances,
+                         state->instance.id,
+                         "light %u: instance handle %u: the scene has handles 1 to %u", light.id,
+                         state->instance.id, m->plan.scene.instances);
+    }
+    m->lights[light.id - 1] = *state;
+    return MASU_OK;
+}

@@ -1,0 +1,34 @@
+/* specular.h: the buffers of what reflections are traced through.
+ *
+ *   traced scene, once:     header, nodes, triangles as src/scene/trace.h lays them, then what shaders/trace/scene.glsl
+ *                           finds behind the header's last word: a header of its own, the tile of blue noise,
+ *                           materials, small pictures, their texels
+ *   traced instances, per frame in flight: the top level of src/scene/trace.h, then six rows for each traced
+ *                           instance: where it is, and where it was
+ *
+ * Nothing here allocates. The tree over instances lives in the host block. */
+#ifndef MASU_SPECULAR_H
+#define MASU_SPECULAR_H
+
+#include "scene/scene.h"
+
+#define MASU_TRACE_ROWS 6u /* of four floats, of each traced instance */
+
+/* Where things begin, in units of 16 bytes. */
+typedef struct masu_trace_plan {
+    uint64_t nodes, triangles, more, noise, materials, pictures, texels, end;
+} masu_trace_plan;
+
+masu_trace_plan masu_trace_lay(const masu_scene *scene);
+
+/* Bytes of the first buffer, and of a slot of the second. With ray queries (ray_query.h) neither
+ * has a tree: the plan's copy of the scene says that it has no nodes, and the header is followed by
+ * the rows. */
+uint64_t masu_trace_scene_bytes(const masu_scene *scene);
+uint64_t masu_trace_slot_bytes(const masu_scene *scene, int query);
+
+/* Bytes [offset, offset + bytes) of the first buffer; both multiples of 16, but for the end. */
+void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_t offset,
+                      uint64_t bytes, unsigned char *to);
+
+#endif

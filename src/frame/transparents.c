@@ -1,0 +1,125 @@
+/* transparents.c: blended things in the order of their distance, without recording anything anew.
+ *
+ * The recordings have as many slots as the scene has things. Slot k draws the k-th farthest: for each of
+ * the texture sets that things use one indirect command, and all of a slot's commands but that of its
+ * thing have instanceCount 0. Which instance and material a slot has, its vertex shader reads from the
+ * buffer of drawn instances. Both are written here for each frame:
+ *
+ *   draw commands      behind those of visible.c: [slot][texture set]
+ *   drawn instances    behind its lists: [slot] instance, material, flags, layers, detail
+ *
+ * What the camera does not see is left out, and the last slots are empty. The order is that of the
+ * boxes' centres: of things that reach through each other, or of a large pane and what is close to it,
+ * no order of whole things is right. Wrong turn: to sort by the nearest point of the box; a wide pane
+ * behind a small one would often come last. */
+#include "frame/transparents.h"
+
+#include "renderer.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Runs of 1, 2, 4, ... are merged from one array to the other. */
+masu_far_first *masu_sort_far_first(masu_far_first *entries, masu_far_first *scratch, uint32_t n) {
+    masu_far_first *from = entries, *to = scratch;
+    for (uint32_t run = 1; run < n; run *= 2) {
+        for (uint32_t start = 0; start < n; start += 2 * run) {
+            uint32_t middle = n - start < run ? n : start + run;
+            uint32_t end = n - start < 2 * run ? n : start + 2 * run;
+            uint32_t a = start, b = middle;
+            for (uint32_t i = start; i < end; i++) {
+                int left = a < middle && (b >= end || from[a].key >= from[b].key);
+                to[i] = left ? from[a++] : from[b++];
+            }
+        }
+        masu_far_first *swap = from;
+        from = to;
+        to = swap;
+    }
+    return from;
+}
+
+static uint32_t column_of(masu_renderer *m, const masu_blob_material *material) {
+    if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
+    uint32_t i = 0;
+    while (i < m->transparent_set_count && m->transparent_sets[i] != material->texture_set) i++;
+    if (i == m->transparent_set_count && i < MASU_TRANSPARENT_SETS_MAX)
+        m->transparent_sets[m->transparent_set_count++] = material->texture_set;
+    return i;
+}
+
+static void keep_primitive(masu_renderer *m, const masu_scene_view *v, uint32_t instance,
+                           const masu_blob_primitive *p) {
+    const masu_blob_material *material = &v->materials[p->material];
+    if (!(material->flags & MASU_MATERIAL_IS_BLEND)) return;
+    masu_transparent *t = &m->transparents[m->transparent_count++];
+    *t = (masu_transparent){
+        .draw = {p->index_count, 1, p->first_index, (int32_t)p->first_vertex, 0},
+        .instance = instance,
+        .material = p->material,
+        .flags = material->flags | material->occlusion_layer << MASU_MAP_OCCLUSION_SHIFT,
+        .layers = material->layers,
+        .detail = {material->detail[0], material->detail[1]},
+        .column = column_of(m, material)};
+    int flat = 0;
+    for (uint32_t k = 0; k < 3; k++) flat |= !(p->aabb_min[k] < p->aabb_max[k]);
+    if (!flat) { /* transparents.frag says why */
+        t->flags |= MASU_MAP_FAR_SIDE_FIRST;
+        t->draw.instanceCount = 2;
+    }
+    for (uint32_t k = 0; k < 3; k++) t->center[k] = 0.5f * p->aabb_min[k] + 0.5f * p->aabb_max[k];
+}
+
+void masu_keep_transparents(masu_renderer *m, const masu_scene_view *v) {
+    if (!m->plan.needs.transparents) return;
+    for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
+        const masu_blob_mesh *mesh = &v->meshes[v->instances[i].mesh];
+        for (uint32_t p = 0; p < mesh->primitive_count; p++)
+            keep_primitive(m, v, i, &v->primitives[mesh->first_primitive + p]);
+    }
+}
+
+/* Square of the distance from the eye to the middle of a thing's box: finite, since all of it is. */
+static float distance_of(const masu_renderer *m, const masu_transparent *t, const double eye[3]) {
+    const struct masu_instance_data *at = &m->instances[t->instance];
+    const float *rows[3] = {at->row0, at->row1, at->row2};
+    double square = 0.0;
+    for (uint32_t k = 0; k < 3; k++) {
+        double d = (double)rows[k][3] - eye[k];
+        for (uint32_t j = 0; j < 3; j++) d += (double)rows[k][j] * (double)t->center[j];
+        square += d * d;
+    }
+    return (float)fmin(square, 3e38);
+}
+
+void masu_write_transparents(masu_renderer *m, uint32_t slot) {
+    uint32_t count = m->plan.needs.transparents ? m->transparent_count : 0, seen = 0;
+    m->slot_transparents[slot] = 0;
+    if (!count) return;
+    for (uint32_t i = 0; i < count; i++) {
+        const masu_transparent *t = &m->transparents[i];
+        if (!(m->marks[t->instance] & 1u)) continue;
+        m->far_first[seen++] = (masu_far_first){distance_of(m, t, m->lod_view.eye), i};
+    }
+    const masu_far_first *order = masu_sort_far_first(m->far_first, m->far_first + count, seen);
+    /* Never read: upload memory may be write-combined. */
+    VkDrawIndexedIndirectCommand *draws =
+        (VkDrawIndexedIndirectCommand *)(void *)(masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
+                                                 m->plan.transparent_draws * MASU_DRAW_BYTES);
+    uint32_t *words = (uint32_t *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWN, slot) +
+                      m->plan.drawn.transparents;
+    uint32_t columns = m->plan.scene.transparent_sets;
+    for (uint32_t k = 0; k < count; k++) {
+        const masu_transparent *t = &m->transparents[k < seen ? order[k].thing : 0];
+        for (uint32_t c = 0; c < columns; c++) {
+            VkDrawIndexedIndirectCommand draw = t->draw;
+            draw.instanceCount = k < seen && c == t->column ? t->draw.instanceCount : 0;
+            *draws++ = draw;
+        }
+        uint32_t thing[MASU_TRANSPARENT_WORDS] = {t->instance, t->material, t->flags, t->layers};
+        memcpy(thing + 4, t->detail, sizeof t->detail);
+        memcpy(words, thing, sizeof thing);
+        words += MASU_TRANSPARENT_WORDS;
+    }
+    m->slot_transparents[slot] = seen;
+}

@@ -1,0 +1,201 @@
+/* plan.h: the compiled frame: the table of frame.c applied to one description. Pure data, no Vulkan
+ * calls, no allocation.
+ *
+ * masu_compile turns zeros into defaults, checks the description, decides for each rung which
+ * passes run, resolves the stand-ins ("latest depth", "latest colour"), and derives each image's
+ * size, usage flags and lifetime. What is known only to the driver (sizes, memory types) is added
+ * by src/device/memory.c. */
+#ifndef MASU_PLAN_H
+#define MASU_PLAN_H
+
+#include "plan/frame.h"
+#include "masu.h"
+
+/* Timestamps of a frame: one before the first pass and one after each; of the governor the first and
+ * the last alone; or none. */
+static inline uint32_t masu_stamps(const masu_desc *d) {
+    if (d->debug.timestamps) return MASU_PASS_COUNT + 1;
+    return d->governor.mode && !d->governor.wall_only ? 2 : 0;
+}
+
+typedef struct masu_image_plan {
+    int used;
+    int persistent; /* its content outlives the frame: it shares its bytes with nothing */
+    uint32_t width, height; /* as allocated: the largest rung */
+    VkImageUsageFlags usage;
+    uint32_t first, last; /* rows of the table between which its content is alive, over all rungs */
+    uint64_t bytes, alignment, offset; /* in the device role's block */
+    uint32_t type_bits;
+} masu_image_plan;
+
+typedef struct masu_rung_plan {
+    uint32_t render_width, render_height;
+    uint32_t cascades, cascade_size; /* of the shadow map; 0: none */
+    uint32_t slow; /* bit per cascade that is not drawn in every frame */
+    /* A recording for each set of slow cascades, per target; the last draws them all. */
+    uint32_t variants, first_recording;
+    uint64_t active; /* MASU_PASS_BIT of each */
+    uint32_t access_count[MASU_PASS_COUNT];
+    masu_access access[MASU_PASS_COUNT][MASU_PASS_ACCESSES]; /* stand-ins resolved */
+    uint32_t barriers;                                       /* counted while recording */
+} masu_rung_plan;
+
+typedef enum masu_buffer_id {
+    MASU_BUFFER_VERTICES,
+    MASU_BUFFER_INDICES,
+    MASU_BUFFER_TEXCOORDS, /* of scenes with textures */
+    MASU_BUFFER_MATERIALS,
+    MASU_BUFFER_COUNTERS,
+    MASU_BUFFER_SLOTS,     /* of the SDF: its parts as data */
+    MASU_BUFFER_TABLES,    /* directional albedos; masu_shared.h has the layout; then the texels of a sky
+                              from a picture, if it is from one */
+    MASU_BUFFER_EXPOSURE,  /* that the picture asks for, and what it is made of; outlives frames */
+    MASU_BUFFER_PROBES,    /* light probes: what was baked, then the light of the frame */
+    MASU_BUFFER_TILES,     /* of the SDF: which parts matter where; masu_shared.h has the layout */
+    MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
+    MASU_BUFFER_INSTANCES, /* one array per frame in flight */
+    MASU_BUFFER_DRAWS,     /* per frame in flight and view: an indirect command for each draw */
+    MASU_BUFFER_DRAWN,     /* per frame in flight and view: numbers of the instances drawn */
+    MASU_BUFFER_SEEN,      /* what stage 2 of culling knows of each instance; outlives frames */
+    MASU_BUFFER_SHADOW,    /* one masu_shadow_uniforms per frame in flight */
+    MASU_BUFFER_SKY,       /* one masu_sky_uniforms per frame in flight */
+    MASU_BUFFER_LIGHTS,    /* per frame in flight: local lights that may be seen to light something */
+    MASU_BUFFER_LIGHT_TILES, /* lists of them by tile; masu_shared.h has the layout */
+    MASU_BUFFER_TRACE,       /* what rays meet: nodes, triangles, materials, texels */
+    MASU_BUFFER_TRACE_FRAME, /* per frame in flight: the top level over instances, and these */
+    MASU_BUFFER_SPECULAR_TILES, /* tiles that trace reflections */
+    MASU_BUFFER_SMAA_AREA,  /* of SMAA: its table, */
+    MASU_BUFFER_SMAA_TILES, /* tiles with edges, and these; masu_shared.h has both layouts */
+    /* Of ray queries (src/device/ray_query.h): */
+    MASU_BUFFER_BOTTOM_LEVELS, /* a structure for each traced mesh */
+    MASU_BUFFER_TOP_LEVEL,     /* over the instances of the frame */
+    MASU_BUFFER_TOP_SCRATCH,   /* what its build needs */
+    MASU_BUFFER_RAY_INSTANCES, /* per frame in flight: what it is built of */
+    MASU_BUFFER_RAY_INDICES,   /* what bottom levels are built of; masu_load alone needs it, and */
+    MASU_BUFFER_RAY_SCRATCH,   /* what their builds need: both lie where transient images will */
+    MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
+    MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
+    MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
+    MASU_BUFFER_COUNT
+} masu_buffer_id;
+
+typedef struct masu_buffer_plan {
+    const char *name;
+    masu_role role;
+    VkBufferUsageFlags usage;
+    uint64_t bytes;  /* 0: not used */
+    uint64_t stride; /* bytes from one frame in flight to the next, 0: shared by all */
+    uint64_t count;  /* elements, for the report */
+    uint64_t memory_bytes, alignment, offset; /* in its role's block */
+    uint32_t type_bits;
+} masu_buffer_plan;
+
+typedef struct masu_block_plan {
+    uint64_t bytes, alignment;
+    uint32_t type_bits, type;
+    int host_visible; /* mapped for the renderer's whole life */
+    int address;      /* a buffer in it is known to the device by its address */
+} masu_block_plan;
+
+/* Whether a buffer is there while a scene is loaded, and no longer. */
+static inline int masu_is_of_loading(uint32_t buffer) {
+    return buffer == MASU_BUFFER_RAY_INDICES || buffer == MASU_BUFFER_RAY_SCRATCH;
+}
+
+#define MASU_READBACK_IMAGES 7u
+#define MASU_DRAW_BYTES 20u /* of a VkDrawIndexedIndirectCommand */
+
+/* The atlas of occluders has a part for the camera and one for the sun, whose views all share it. */
+#define MASU_ATLAS_PARTS(plan) ((plan)->views > 1 ? 2u : 1u)
+/* Where in a slot of MASU_BUFFER_DRAWS the draws of a view begin that stage 1 or 2 has counted, and
+ * the draw of the occluders of a part of the atlas. */
+#define MASU_DRAWS_OF(plan, view, stage2)                                                          \
+    (((uint64_t)(view) + ((stage2) ? (plan)->views : 0)) * (plan)->draws * MASU_DRAW_BYTES)
+#define MASU_OCCLUDER_DRAW(plan, part)                                                             \
+    (MASU_DRAWS_OF(plan, (plan)->views, 1) + (uint64_t)(part)*MASU_DRAW_BYTES)
+
+/* Words of a slot of MASU_BUFFER_DRAWN; masu_shared.h says what is where. Without occlusion there
+ * are the lists of stage 1 alone. */
+typedef struct masu_drawn_plan {
+    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, transparents, words;
+} masu_drawn_plan;
+
+/* An array of textures on the device. Plans have as many as their scene, in the host block; while
+ * only asked for, on the stack. */
+typedef struct masu_texture_plan {
+    VkImage image;
+    VkImageView view;
+    VkFormat format;
+    uint64_t bytes, alignment, offset; /* in the device role's block */
+    uint32_t type_bits;
+    uint32_t layers;
+} masu_texture_plan;
+
+typedef struct masu_frame_plan {
+    masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
+    masu_scene scene;
+    masu_needs needs; /* of the scene; upscale and sharpen are of the last rung looked at */
+    masu_rung_plan rungs[MASU_MAX_RUNGS];
+    const char *why[MASU_PASS_COUNT]; /* of the first rung that runs the pass, else of rung 0 */
+    masu_image_plan images[MASU_IMAGE_COUNT];
+    masu_buffer_plan buffers[MASU_BUFFER_COUNT];
+    masu_block_plan blocks[MASU_ROLE_COUNT];
+    masu_texture_plan *textures; /* scene.texture_arrays of them */
+    int compressed;              /* textures stay blocks on the device */
+    int unified;
+    int staged; /* the host cannot write resident buffers: they go through the staging buffer */
+    uint64_t transient_offset; /* of the transient region in the device role's block */
+    uint64_t transient_unaliased, transient_aliased, transient_lower_bound;
+    /* Within one readback slot: counters first, then timestamps, then images in the bit order of
+     * masu_readback_bits. */
+    uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
+    uint32_t views;     /* that instances are culled for: the camera, the cascades */
+    int occlusion;      /* a rung has stage 2 of culling */
+    int lods;           /* a rung draws coarser forms of meshes */
+    int deep;           /* colour between tone curve and target is of 16-bit floats */
+    int copies;         /* targets are filled by a copy of bytes, not by a blit */
+    struct masu_output_plan {
+        uint32_t steps[3]; /* of red, green, blue: what passes round to; 0: they do not */
+        uint32_t flags;    /* MASU_OUTPUT_*, of the pass that comes last */
+    } output;
+    uint32_t draws, listed; /* draws of a view; words of its lists: a list for each form */
+    masu_drawn_plan drawn;
+    uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
+    uint64_t receivers; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
+    uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
+    uint32_t recordings; /* of one frame in flight: rungs, their targets, their variants */
+    uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */
+} masu_frame_plan;
+
+/* Fills plan from desc. Device limits that shape the buffers come in as alignments. */
+masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
+                         uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail);
+
+/* v rounded up to a multiple of a, which need not be a power of two. */
+static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
+
+/* Where a cascade lies in the shadow map, of the size that the map is laid out for. */
+VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
+/* Bits over a rung's slow cascades only, out of bits over all: the variant that draws them. */
+uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn);
+/* Whether a variant of a rung's recordings draws a cascade. */
+int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t cascade);
+/* Size of an image or of a pass of a rung. */
+VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
+                            VkExtent2D render);
+/* Bytes of the scene's texels as this description has them on the device. */
+uint64_t masu_scene_texture_bytes(const masu_desc *desc);
+
+/* The format of an image in this plan. */
+VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
+
+/* Texel bytes of the formats of the table. */
+uint32_t masu_format_bytes(VkFormat format);
+
+/* The plan as the public struct. pipeline_ns may be NULL. */
+void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
+                      masu_plan_info *out);
+/* Its memory part. */
+void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out);
+
+#endif

@@ -1,0 +1,81 @@
+/* ladder.c: see ladder.h. */
+#include "quality/ladder.h"
+
+#include "quality/ladder_tables.h"
+
+#include <string.h>
+
+/* ---- Classes --------------------------------------------------------------------------------- */
+
+/* Classes without traced reflections, which come first. */
+enum { KINDS = MASU_SCENE_POLYGONS_TRACED };
+
+masu_scene_class masu_scene_class_of(const masu_scene *s) {
+    if (!s) return MASU_SCENE_POLYGONS;
+    uint32_t kind = s->sdf ? s->instances ? MASU_SCENE_BOTH : MASU_SCENE_SDF
+                    : s->lods && s->placed_occluders ? MASU_SCENE_WORLD
+                                                     : MASU_SCENE_POLYGONS;
+    /* A scene may ask for reflections and have nothing that is glossy enough. */
+    uint32_t traced = s->reflections && s->glossiest < s->specular_cutoff;
+    return (masu_scene_class)(kind + (traced ? KINDS : 0));
+}
+
+const char *masu_scene_class_name(masu_scene_class scene_class) {
+    static const char *const names[MASU_SCENE_CLASSES] = {
+        "polygons",        "world",        "sdf",        "both",
+        "polygons-traced", "world-traced", "sdf-traced", "both-traced"};
+    return (unsigned)scene_class < MASU_SCENE_CLASSES ? names[scene_class] : "unknown class";
+}
+
+/* ---- Tables ---------------------------------------------------------------------------------- */
+
+const masu_ladder *masu_ladder_of_class(masu_scene_class scene_class) {
+    return &measured[scene_class];
+}
+
+const masu_ladder *masu_ladder_for(const masu_scene *scene) {
+    /* Which kinds are alike. What is traced costs more than what it is traced through: a class that
+     * traces alike comes before one that is drawn alike. */
+    static const uint8_t nearest[KINDS][KINDS] = {
+        [MASU_SCENE_POLYGONS] = {MASU_SCENE_POLYGONS, MASU_SCENE_WORLD, MASU_SCENE_BOTH,
+                                 MASU_SCENE_SDF},
+        [MASU_SCENE_WORLD] = {MASU_SCENE_WORLD, MASU_SCENE_POLYGONS, MASU_SCENE_BOTH,
+                              MASU_SCENE_SDF},
+        [MASU_SCENE_SDF] = {MASU_SCENE_SDF, MASU_SCENE_BOTH, MASU_SCENE_POLYGONS, MASU_SCENE_WORLD},
+        [MASU_SCENE_BOTH] = {MASU_SCENE_BOTH, MASU_SCENE_SDF, MASU_SCENE_POLYGONS,
+                             MASU_SCENE_WORLD}};
+    uint32_t own = (uint32_t)masu_scene_class_of(scene), kind = own % KINDS, traced = own / KINDS;
+    for (uint32_t i = 0; i < 2 * KINDS; i++) {
+        uint32_t traces = i < KINDS ? traced : 1 - traced;
+        const masu_ladder *l = &measured[nearest[kind][i % KINDS] + traces * KINDS];
+        if (l->count) return l;
+    }
+    return NULL;
+}
+
+static void give(const masu_ladder *l, masu_desc *desc) {
+    desc->rung_count = l->count;
+    memcpy(desc->rungs, l->rungs, sizeof desc->rungs);
+    memcpy(desc->flips, l->flips, sizeof desc->flips);
+}
+
+masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc, const char **from) {
+    const masu_ladder *l = masu_ladder_for(scene);
+    if (!scene || !desc || !l) return MASU_ERROR_ARGUMENT;
+    give(l, desc);
+    memcpy(desc->governor.costs, l->ratios, sizeof desc->governor.costs);
+    if (from) *from = l->from;
+    return MASU_OK;
+}
+
+void masu_ladder_defaults(masu_desc *desc) {
+    if (desc->ladder == MASU_AUTO)
+        desc->ladder = desc->governor.mode && !desc->rung_count ? MASU_ON : MASU_OFF;
+    if (desc->rung_count || desc->ladder != MASU_ON) return;
+    const masu_ladder *l = masu_ladder_for(desc->scene);
+    if (!desc->scene || desc->source.view || !l) return;
+    give(l, desc);
+    for (uint32_t r = 0; r < l->count; r++) {
+        if (desc->governor.costs[r] == 0.0f) desc->governor.costs[r] = l->ratios[r];
+    }
+}

@@ -1,0 +1,143 @@
+/* ladder_tables.h: measured ladders, one per class of scenes; part of ladder.c. Written by
+ * `make ladders` out of what `masu bench` has measured: not to be edited. */
+/* clang-format off */
+#ifndef MASU_LADDER_TABLES_H
+#define MASU_LADDER_TABLES_H
+
+#include "quality/ladder.h"
+
+static const masu_ladder measured[MASU_SCENE_CLASSES] = {
+    [MASU_SCENE_POLYGONS] =
+        {.from = "textures.masu, 320x180, "
+         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
+         "by timestamps, 2026-11-22",
+         .count = 6,
+         .rungs = {
+              {.scale = 1.0f, .sharpness = 0.2f},
+              {.scale = 0.8125f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.6875f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f},
+         },
+         .ratios = {1.0f, 0.84396f, 0.763154f, 0.711397f,
+              0.630119f, 0.524386f},
+         .flips = {0.12547f, 0.129831f, 0.131936f, 0.133885f,
+              0.139956f, 0.163525f},
+        },
+    [MASU_SCENE_SDF] =
+        {.from = "city_shadows.masu, 320x180, "
+         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
+         "by timestamps, 2026-11-22",
+         .count = 8,
+         .rungs = {
+              {.scale = 1.0f, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
+              {.scale = 0.875f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
+              {.scale = 0.75f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
+              {.scale = 0.625f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
+              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.5f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
+              {.scale = 0.4375f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .march_steps = 128},
+         },
+         .ratios = {1.03845f, 0.799013f, 0.612179f, 0.432534f,
+              0.349536f, 0.29268f, 0.242539f, 0.198342f},
+         .flips = {0.029578f, 0.040855f, 0.0493774f, 0.0578781f,
+              0.0704565f, 0.074186f, 0.0875745f, 0.0951214f},
+        },
+    [MASU_SCENE_BOTH] =
+        {.from = "engine.masu, 320x180, "
+         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
+         "by timestamps, 2026-11-22",
+         .count = 8,
+         .rungs = {
+              {.scale = 1.0f, .sharpness = 0.2f},
+              {.scale = 1.0f, .sharpness = 0.2f, .march_steps = 128},
+              {.scale = 1.0f, .sharpness = 0.2f, .march_steps = 64},
+              {.scale = 0.875f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .march_steps = 128},
+              {.scale = 0.75f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.5f, .easu = MASU_EASU_BILINEAR, .sharpness = 0.2f},
+         },
+         .ratios = {1.0f, 0.92049f, 0.868721f, 0.827835f,
+              0.772761f, 0.705288f, 0.651197f, 0.569325f},
+         .flips = {0.0341412f, 0.034565f, 0.0417077f, 0.0505464f,
+              0.0550697f, 0.066287f, 0.0772771f, 0.0912392f},
+        },
+    [MASU_SCENE_POLYGONS_TRACED] =
+        {.from = "mirrors.masu, 320x180, "
+         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
+         "by timestamps, 2026-11-22",
+         .count = 8,
+         .rungs = {
+              {.scale = 1.0f, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
+              {.scale = 1.0f, .sharpness = 0.2f, .specular_taa = MASU_OFF},
+              {.scale = 1.0f, .sharpness = 0.2f, .shadow_refresh = {4, 4, 4, 4}},
+              {.scale = 0.5625f, .sharpness = 0.2f},
+              {.scale = 0.5f, .sharpness = 1.0f},
+              {.scale = 0.4f, .sharpness = 0.2f},
+              {.scale = 0.75f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .shadow_refresh = {2, 4, 8, 8}, .specular = MASU_OFF},
+              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .shadow_refresh = {2, 4, 8, 8}, .specular = MASU_OFF},
+         },
+         .ratios = {1.08596f, 0.997367f, 0.823887f, 0.734728f,
+              0.692142f, 0.636155f, 0.53155f, 0.480085f},
+         .flips = {0.0356638f, 0.0367341f, 0.0389825f, 0.0602737f,
+              0.0615353f, 0.0731838f, 0.102111f, 0.115492f},
+        },
+    [MASU_SCENE_WORLD_TRACED] =
+        {.from = "forza.masu, 320x180, "
+         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
+         "by timestamps, 2026-11-22",
+         .count = 6,
+         .rungs = {
+              {.scale = 1.0f, .sharpness = 0.2f, .shadow_refresh = {4, 4, 4, 4}},
+              {.scale = 1.0f, .sharpness = 0.2f, .lod_error = 2.0f, .ao = MASU_OFF,
+               .shadow_refresh = {2, 4, 8, 8}, .specular = MASU_OFF},
+              {.scale = 0.875f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .lod_error = 2.0f, .ao = MASU_OFF, .shadow_refresh = {2, 4, 8, 8},
+               .specular = MASU_OFF},
+              {.scale = 0.75f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .lod_error = 2.0f, .ao = MASU_OFF, .shadow_refresh = {2, 4, 8, 8},
+               .specular = MASU_OFF},
+              {.scale = 0.5f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .lod_error = 2.0f, .ao = MASU_OFF, .shadow_refresh = {2, 4, 8, 8},
+               .specular = MASU_OFF},
+              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .lod_error = 2.0f, .ao = MASU_OFF, .shadow_refresh = {2, 4, 8, 8},
+               .specular = MASU_OFF},
+         },
+         .ratios = {0.738076f, 0.52385f, 0.48489f, 0.451595f,
+              0.385058f, 0.354267f},
+         .flips = {0.0872425f, 0.0930473f, 0.097315f, 0.101597f,
+              0.120299f, 0.137232f},
+        },
+    [MASU_SCENE_BOTH_TRACED] =
+        {.from = "wet_city.masu, 320x180, "
+         "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
+         "by timestamps, 2026-11-22",
+         .count = 8,
+         .rungs = {
+              {.scale = 1.0f, .sharpness = 0.2f, .specular_taa = MASU_OFF},
+              {.scale = 0.875f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.75f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.6875f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.5f, .sharpen = MASU_OFF, .sharpness = 0.2f, .march_steps = 128},
+              {.scale = 0.5f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .march_steps = 128, .specular = MASU_OFF},
+              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+               .march_steps = 128, .specular = MASU_OFF},
+         },
+         .ratios = {0.989929f, 0.832177f, 0.655597f, 0.616826f,
+              0.456145f, 0.370864f, 0.29001f, 0.231776f},
+         .flips = {0.0603801f, 0.0700673f, 0.0798337f, 0.0866085f,
+              0.0882799f, 0.109213f, 0.191891f, 0.202486f},
+        },
+};
+
+#endif

@@ -1,0 +1,203 @@
+/* check_light.c: the checks of what lights a scene: scene.c has the rest. */
+#include "scene/reader.h"
+
+#include "frame/lights.h"
+#include "frame/transparents.h"
+
+#include <string.h>
+
+static masu_result check_material(reader *r, uint64_t i) {
+    const masu_blob_material *m = &r->view.materials[i];
+    if (!within(&m->specular, 1, 0.0f, 1.0f) || !within(&m->coat, 1, 0.0f, 1.0f) ||
+        !within(&m->coat_roughness, 1, 0.0f, 1.0f) || !within(&m->opacity, 1, 0.0f, 1.0f)) {
+        return bad(r, "materials", i, "a value is out of range");
+    }
+    if (!within(m->detail, 2, 1e-3f, 1e4f))
+        return bad(r, "materials", i, "detail is not 0.001 to 10000");
+    if (m->meso != MASU_BLOB_NONE && m->meso >= r->counts[MASU_BLOB_MESO])
+        return bad(r, "materials", i, "no such meso");
+    if (m->flags & MASU_MATERIAL_IS_ADDITIVE && !(m->flags & MASU_MATERIAL_IS_BLEND))
+        return bad(r, "materials", i, "is additive, but not blended");
+    if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->opacity != 1.0f)
+        return bad(r, "materials", i, "is not blended, but not opaque");
+    return MASU_OK;
+}
+
+/* The ranges of a state, which a program may set as well; and what a blob has beside it. */
+static masu_result check_light(reader *r, uint64_t i) {
+    const masu_blob_light *l = &r->view.lights[i];
+    double value;
+    if (l->type > MASU_LIGHT_SPOT) return bad(r, "lights", i, "no such type");
+    masu_local_light_state state = masu_light_state_of(l);
+    const char *wrong = masu_light_state_wrong(&state, &value);
+    if (wrong) return bad(r, "lights", i, wrong);
+    if (l->type == MASU_LIGHT_SPOT && !unit_vector(l->direction))
+        return bad(r, "lights", i, "direction is no unit vector");
+    if (l->type == MASU_LIGHT_POINT && (l->inner != 0.0f || l->outer != 0.0f))
+        return bad(r, "lights", i, "is a point, but has angles");
+    if (l->parent != MASU_BLOB_NONE && l->parent >= r->counts[MASU_BLOB_INSTANCES])
+        return bad(r, "lights", i, "no such parent");
+    return name_ok(r, l->name) ? MASU_OK : bad(r, "lights", i, "name lies outside the names");
+}
+
+/* Of a half, the exponent 31 is infinity or no number. */
+static int finite_halves(uint32_t word) {
+    return (word & 0x7C00u) != 0x7C00u && (word >> 16 & 0x7C00u) != 0x7C00u;
+}
+
+static masu_result check_probes(reader *r) {
+    const masu_blob_probes *p = r->view.probes;
+    if (!p != !r->view.probe_data) return bad(r, "probes", 0, "are there in part");
+    if (!p) return MASU_OK;
+    if (!within(p->origin, 3, -1e15f, 1e15f) || !within(p->spacing, 3, 1e-3f, 1e9f) ||
+        !within(&p->bias, 1, 0.0f, 1e9f)) {
+        return bad(r, "probes", 0, "place, spacing or bias is out of range");
+    }
+    if (p->sky_sets != 1 && p->sky_sets != 4 && p->sky_sets != 9)
+        return bad(r, "probes", 0, "sets of the sky are not 1, 4 or 9");
+    if (p->suns > MASU_PROBE_SUNS_MAX) return bad(r, "probes", 0, "has more than 16 suns");
+    if (p->emissive > 1 || p->visibility > MASU_PROBE_VISIBILITY_MAX)
+        return bad(r, "probes", 0, "emissive is not 0 or 1, or maps have over 16 texels a side");
+    uint64_t count = 1;
+    for (uint32_t k = 0; k < 3; k++) {
+        if (p->counts[k] < 1 || p->counts[k] > MASU_PROBE_COUNT_MAX)
+            return bad(r, "probes", 0, "counts are out of range");
+        count *= p->counts[k];
+        if (count > MASU_PROBE_COUNT_MAX) return bad(r, "probes", 0, "are more than 262144");
+    }
+    if (count * masu_probe_words(p) != r->counts[MASU_BLOB_PROBE_DATA])
+        return bad(r, "probe data", r->counts[MASU_BLOB_PROBE_DATA], "is not of that many probes");
+    for (uint32_t s = 0; s < MASU_PROBE_SUNS_MAX; s++) {
+        if (s < p->suns && !unit_vector(p->sun_direction[s]))
+            return bad(r, "probes", s, "sun is no unit vector");
+        if (!within(p->sun_direction[s], 4, -2.0f, 2.0f) ||
+            !within(p->sun_inverse[s], MASU_PROBE_SUNS_MAX, -1e6f, 1e6f)) {
+            return bad(r, "probes", s, "a number of its suns is out of range");
+        }
+    }
+    uint64_t halves = count * masu_probe_sets(p) * MASU_PROBE_WORDS;
+    for (uint64_t i = 0; i < halves; i++) {
+        if (!finite_halves(r->view.probe_data[i])) return bad(r, "probe data", i, "is not finite");
+    }
+    return MASU_OK;
+}
+
+static masu_result check_environment(reader *r) {
+    const masu_blob_environment *e = r->view.environment;
+    const masu_blob_environment_map *map = r->view.environment_map;
+    if ((e->turbidity != 0.0f && !within(&e->turbidity, 1, 1.5f, 10.0f)) ||
+        !within(e->ground, 3, 0.0f, 1.0f)) {
+        return bad(r, "environment", 0,
+                   "turbidity is not 0 or 1.5 to 10, or the ground not 0 to 1");
+    }
+    if (e->metered != 0.0f && e->metered != 1.0f)
+        return bad(r, "environment", 0, "metered is not 0 or 1");
+    if (!within(&e->brighten, 1, 0.0f, 1e6f) || !within(&e->darken, 1, 0.0f, 1e6f))
+        return bad(r, "environment", 0, "a speed of the exposure is out of range");
+    if (e->occlusion_radius != 0.0f && !within(&e->occlusion_radius, 1, 1e-3f, 1e6f))
+        return bad(r, "environment", 0, "occlusion radius is not 0 or 0.001 to 1e6 m");
+    if (!within(e->fog_color, 3, 0.0f, 1e9f) || !within(&e->fog_density, 1, 0.0f, 1e6f) ||
+        !within(&e->fog_height, 1, -1e9f, 1e9f) || !within(&e->fog_falloff, 1, 0.0f, 1e6f) ||
+        !within(&e->fog_start, 1, 0.0f, 1e9f)) {
+        return bad(r, "environment", 0, "a value of the fog is out of range");
+    }
+    if (!map != !r->view.environment_texels)
+        return bad(r, "environment map", 0, "is there in part");
+    if (!map) return MASU_OK;
+    if (map->size < 8 || map->size > 1024 || (map->size & (map->size - 1)))
+        return bad(r, "environment map", 0, "size is no power of two from 8 to 1024");
+    if (map->mips < 2 || map->mips > 8 || map->size >> (map->mips - 1) < 4)
+        return bad(r, "environment map", 0, "number of mips");
+    uint64_t texels = masu_blob_environment_texels(map->size, map->mips);
+    if (texels != r->counts[MASU_BLOB_ENVIRONMENT_TEXELS])
+        return bad(r, "environment texels", r->counts[MASU_BLOB_ENVIRONMENT_TEXELS],
+                   "are not as many as the map has");
+    for (uint32_t k = 0; k < 9; k++) {
+        if (!within(map->sh[k], 4, -1e9f, 1e9f))
+            return bad(r, "environment map", k, "a coefficient is out of range");
+    }
+    return MASU_OK;
+}
+
+masu_result masu_check_lighting(reader *r) {
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_MATERIALS]; i++) {
+        masu_result result = check_material(r, i);
+        if (result) return result;
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_MESO]; i++) {
+        const masu_blob_meso *m = &r->view.meso[i];
+        const float positive[2] = {m->alpha, m->offset};
+        if (!within((const float *)(const void *)m, 24, -1e3f, 1e3f) || !within(&m->facet, 1, 0.0f, 1.0f) ||
+            !within(positive, 2, 0.0f, 4.0f)) {
+            return bad(r, "meso", i, "a value is out of range");
+        }
+    }
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_LIGHTS]; i++) {
+        masu_result result = check_light(r, i);
+        if (result) return result;
+    }
+    masu_result result = check_probes(r);
+    return result ? result : check_environment(r);
+}
+
+/* More than albedo, normal, roughness, metallic and emissive. What is blended is in no G-buffer. */
+static int has_surface(const masu_blob_material *m) {
+    if (m->flags & MASU_MATERIAL_IS_BLEND) return 0;
+    return m->specular != 0.5f || m->coat > 0.0f || m->meso != MASU_BLOB_NONE ||
+           (m->flags & 1u << MASU_SLOT_OCCLUSION) != 0;
+}
+
+/* Which texture set of those that blended things use; one more than there may be if they are too many. */
+static void note_set(const masu_blob_material *m, uint32_t sets[], uint32_t *count) {
+    uint32_t i = 0;
+    if (!(m->flags & MASU_MATERIAL_HAS_MAPS)) return;
+    while (i < *count && sets[i] != m->texture_set) i++;
+    if (i == *count && i <= MASU_TRANSPARENT_SETS_MAX) sets[(*count)++] = m->texture_set;
+}
+
+static void look_at_transparents(const reader *r, masu_scene *out) {
+    uint32_t sets[MASU_TRANSPARENT_SETS_MAX + 1], count = 0;
+    uint64_t things = 0;
+    for (uint32_t m = 0, from = 0; m < out->meshes; m++) {
+        const masu_blob_mesh *mesh = &r->view.meshes[m];
+        uint32_t first, end = masu_scene_mesh_instances(&r->view, out->instances, m, from, &first);
+        from = end;
+        for (uint32_t p = 0; p < mesh->primitive_count && end > first; p++) {
+            uint32_t number = r->view.primitives[mesh->first_primitive + p].material;
+            const masu_blob_material *material = &r->view.materials[number];
+            if (!(material->flags & MASU_MATERIAL_IS_BLEND)) continue;
+            things += end - first;
+            note_set(material, sets, &count);
+        }
+    }
+    out->transparents = things < UINT32_MAX ? (uint32_t)things : UINT32_MAX;
+    out->transparent_sets = things && !count ? 1 : count;
+}
+
+void masu_look_at_lighting(const reader *r, masu_scene *out) {
+    for (uint32_t i = 0; i < out->materials; i++) {
+        const masu_blob_material *m = &r->view.materials[i];
+        if (has_surface(m)) out->surfaces++;
+        if (m->coat > 0.0f) out->coats++;
+        if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
+    }
+    look_at_transparents(r, out);
+    out->meso = (uint32_t)r->counts[MASU_BLOB_MESO];
+    out->lights = (uint32_t)r->counts[MASU_BLOB_LIGHTS];
+    if (r->view.probes) {
+        const masu_blob_probes *p = r->view.probes;
+        out->probe_sets = masu_probe_sets(p);
+        out->probes = p->counts[0] * p->counts[1] * p->counts[2];
+        out->probe_words = r->counts[MASU_BLOB_PROBE_DATA];
+    }
+    if (r->view.environment_map) {
+        out->environment_size = r->view.environment_map->size;
+        out->environment_mips = r->view.environment_map->mips;
+    }
+    out->analytic_sky = r->view.environment->turbidity > 0.0f;
+    out->fog = r->view.environment->fog_density > 0.0f;
+    out->occlusion_radius = r->view.environment->occlusion_radius;
+    out->metered = r->view.environment->metered != 0.0f;
+    out->brighten = r->view.environment->brighten;
+    out->darken = r->view.environment->darken;
+}

@@ -1,0 +1,348 @@
+/* blob.c: see blob.h. Also linked to the writer of the fuzzer's seed: libc only. */
+#include "support/blob.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* Offsets into `names`: */
+enum {
+    NAME_PLATE = 0,
+    NAME_LID = 6,
+    NAME_STEEL = 10,
+    NAME_GLOW = 16,
+    NAME_RADIUS = 21,
+    NAME_BEND = 28
+};
+static const char names[] = "plate\0lid\0steel\0glow\0radius\0bend";
+
+static const masu_blob_vertex vertices[] = {
+    {{-1.0f, 0.0f, -1.0f}, {0, 32767}}, {{1.0f, 0.0f, -1.0f}, {0, 32767}},
+    {{1.0f, 0.0f, 1.0f}, {0, 32767}},   {{-1.0f, 0.0f, 1.0f}, {0, 32767}},
+    {{0.0f, 1.0f, 0.0f}, {32767, 0}},   {{0.0f, 2.0f, 0.0f}, {32767, 0}},
+    {{0.0f, 1.0f, 1.0f}, {32767, 0}},   {{-2.0f, -2.0f, 0.0f}, {0, 0}},
+    {{2.0f, -2.0f, 0.0f}, {0, 0}},      {{2.0f, 2.0f, 0.0f}, {0, 0}},
+    {{-2.0f, 2.0f, 0.0f}, {0, 0}},
+};
+
+/* The last three are those of SUPPORT_DETAIL. */
+static const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 1, 2, 0, 2, 3, 0, 1, 2};
+
+static const masu_blob_primitive primitives[] = {
+    {0, 6, 0, 4, 0, {-1.0f, 0.0f, -1.0f}, {1.0f, 0.0f, 1.0f}, 0},
+    {6, 3, 4, 3, 1, {0.0f, 1.0f, 0.0f}, {0.0f, 2.0f, 1.0f}, 0},
+    {9, 6, 7, 4, 0, {-2.0f, -2.0f, 0.0f}, {2.0f, 2.0f, 0.0f}, 0},
+    {15, 3, 7, 4, 0, {-2.0f, -2.0f, 0.0f}, {2.0f, 2.0f, 0.0f}, 0},
+};
+
+static const masu_blob_lod lods[] = {{1, 3, 2.5f, 0}};
+
+static const masu_blob_mesh meshes[] = {
+    {0, 2, {-1.0f, 0.0f, -1.0f}, {1.0f, 2.0f, 1.0f}, NAME_PLATE, 0},
+    {2, 1, {-2.0f, -2.0f, 0.0f}, {2.0f, 2.0f, 0.0f}, NAME_LID, 0},
+};
+
+static const masu_blob_instance instances[] = {
+    {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, NAME_PLATE, MASU_BLOB_NONE, 0},
+    {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, -4}, 0, MASU_BLOB_NONE, 0, 1},
+    {{0, 0, 1, 0, 0, 1, 0, 5, -1, 0, 0, 0}, 1, NAME_LID, 0, MASU_BLOB_NONE},
+};
+
+static const masu_blob_group groups[] = {
+    {{0, 0, 0}, {16, 16, 16}, 1, 1, 0, 1, MASU_BLOB_NONE, 0},
+    {{3, 1, -4}, {8, 8, 8}, 0, 0, 1, 1, NAME_PLATE, 0},
+};
+
+static const uint32_t group_items[] = {0, 1};
+
+static const masu_blob_occluder occluders[] = {
+    {{-0.5f, 0.25f, -0.5f}, {0.5f, 1.0f, 0.5f}, 0, 0},
+    {{-1.0f, -1.0f, 0.0f}, {1.0f, 2.0f, 0.0f}, 1, 0},
+};
+
+static const masu_blob_material materials[] = {
+    {{0.5f, 0.25f, 1.0f}, 0.4f, {0.0f, 0.0f, 0.0f}, 0.9f, NAME_STEEL, 0, 0, 0,
+     0.5f, 0.0f, 0.0f, 1.0f, MASU_BLOB_NONE, 0, {1.0f, 1.0f}},
+    {{0.0f, 0.0f, 0.0f}, 1.0f, {4.0f, 2.0f, 1.0f}, 0.0f, NAME_GLOW, 0, 0, 0,
+     0.5f, 0.0f, 0.0f, 1.0f, MASU_BLOB_NONE, 0, {1.0f, 1.0f}},
+};
+
+static const masu_blob_camera_key camera_keys[] = {
+    {0.0f, {0.0f, 1.0f, 5.0f}, {0.0f, 0.0f, 0.0f}, 0.8f},
+    {1.5f, {5.0f, 1.0f, 0.0f}, {0.0f, 0.5f, 0.0f}, 0.9f},
+    {4.0f, {0.0f, 1.0f, -5.0f}, {0.0f, 0.0f, 1.0f}, 1.0f},
+};
+
+static const masu_blob_environment environment[] = {{
+    .sun_direction = {0.6f, 0.8f, 0.0f},
+    .exposure = 1.5f,
+    .sun_color = {2.0f, 1.5f, 1.0f},
+    .near_distance = 0.05f,
+    .ambient = {0.1f, 0.2f, 0.3f},
+    .sky_zenith = {0.1f, 0.2f, 0.8f},
+    .sky_horizon = {1.0f, 0.7f, 0.4f},
+}};
+
+static const masu_blob_shadow shadow[] = {{2, 64, 50.0f, 0.5f}};
+
+static const masu_blob_sdf_param sdf_params[] = {
+    {0.5f, 0.0f, 2.0f, NAME_RADIUS},
+    {-1.0f, -1.0f, 1.0f, NAME_BEND},
+};
+
+static const masu_blob_material mapped[] = {
+    {{0.5f, 0.25f, 1.0f},
+     0.4f,
+     {0.0f, 0.0f, 0.0f},
+     0.9f,
+     NAME_STEEL,
+     7 | MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | 128 << MASU_MATERIAL_CUTOFF_SHIFT,
+     0,
+     1,
+     0.5f,
+     0.0f,
+     0.0f,
+     1.0f,
+     MASU_BLOB_NONE,
+     0,
+     {1.0f, 1.0f}},
+    {{0.0f, 0.0f, 0.0f},
+     1.0f,
+     {4.0f, 2.0f, 1.0f},
+     0.0f,
+     NAME_GLOW,
+     8 | MASU_MATERIAL_IS_BLEND,
+     1,
+     0,
+     0.5f,
+     0.0f,
+     0.0f,
+     1.0f,
+     MASU_BLOB_NONE,
+     0,
+     {1.0f, 1.0f}},
+};
+
+static const float texcoords[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {-3.5f, 2},   {0.5f, 0.5f},
+                                     {7, 7}, {0, 0}, {4, 0}, {4, 4}, {0, 32768.0f}};
+
+static const masu_blob_texture textures[] = {
+    {MASU_TEXTURE_BC3_SRGB, 8, 8, 4, 2, NAME_PLATE, 0},
+    {MASU_TEXTURE_BC5, 6, 3, 3, 1, MASU_BLOB_NONE, 224},
+    {MASU_TEXTURE_BC1_SRGB, 4, 4, 1, 1, NAME_LID, 288},
+};
+
+static const masu_blob_texture_set texture_sets[] = {
+    {{0, 1, 1, MASU_BLOB_NONE, MASU_BLOB_NONE}, {0, 2}, 0},
+    {{MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE, 2, MASU_BLOB_NONE}, {1, 1}, 0},
+};
+
+/* 7 blocks of 16 bytes twice, 2 + 1 + 1 of 16, 1 of 8 and padding. */
+static const unsigned char texels[19][16] = {{1, 2, 3}, {0xFF, 0, 0x5A}};
+
+static const masu_blob_meso meso[] = {
+    {.tilt = {0.5f, 0.0f, -0.25f}, .facet = 0.5f, .occlusion = {1.0f, 0.5f, 0.0f}, .alpha = 1.5f,
+     .offset = 1.0f, .specular = {1.0f, 0.0f, 0.0f}}};
+
+static const masu_blob_light lights[] = {
+    {{1.0f, 2.0f, 3.0f}, 8.0f, {1.0f, 0.5f, 0.25f}, 0.1f, {0.0f, 0.0f, 0.0f}, MASU_LIGHT_POINT, 0.0f,
+     0.0f, MASU_BLOB_NONE, NAME_GLOW},
+    {{0.0f, 1.0f, 0.0f}, 20.0f, {2.0f, 2.0f, 2.0f}, 0.05f, {0.0f, 0.0f, -1.0f}, MASU_LIGHT_SPOT, 0.4f,
+     0.8f, 1, MASU_BLOB_NONE}};
+
+static const masu_blob_probes probes[] = {{.origin = {-1.0f, 0.0f, 0.0f},
+                                           .bias = 0.5f,
+                                           .spacing = {2.0f, 2.0f, 2.0f},
+                                           .counts = {2, 1, 1},
+                                           .sky_sets = 1,
+                                           .suns = 1,
+                                           .visibility = 1,
+                                           .sun_direction = {{0.0f, 1.0f, 0.0f, 0.0f}},
+                                           .sun_inverse = {{1.0f}}}};
+
+/* Two sets and a map of 3 x 3 of each. */
+static const uint32_t probe_data[2 * (2 * MASU_PROBE_WORDS + 9)] = {0x3C003800u, 0x80000001u};
+
+static const masu_blob_environment_map environment_map[] = {
+    {8, 2, {0}, {{0.5f, 0.5f, 1.0f, 0.0f}, {0.1f, -0.1f, 0.0f, 0.0f}}}};
+
+static const uint32_t environment_texels[64 + 16] = {0x80000001u, 0xFFFFFFFFu};
+
+#define NODE_SCALE (128u | 128u << 8 | 128u << 16)
+
+static const masu_blob_trace_node trace_nodes[] = {
+    {{-1, 0, -1}, NODE_SCALE | 1u << 24 | 2u << 26, {0, 0, 0}, {0x0101, 0x0101, 0x0101}, 1, 0},
+    {{-1, 0, -1}, NODE_SCALE | 3u << 24, {0, 0, 0}, {1, 1, 1}, 2, 1},
+    {{-2, -2, 0}, NODE_SCALE | 2u << 24, {0, 0, 0}, {2, 2, 1}, 3, 3},
+};
+
+static const masu_blob_trace_triangle trace_triangles[] = {
+    {{0, 1, 2}, 0}, {{4, 5, 6}, 1}, {{0, 2, 3}, 0}, {{7, 8, 9}, 2}};
+
+static const masu_blob_trace_mesh trace_meshes[] = {{0, 2, 0, 3, 2, 0}, {2, 1, 3, 1, 1, 0}};
+
+static const masu_blob_reflections reflections[] = {{0.5f, 100.0f, 0.25f, 0}};
+static const uint32_t trace_instances[] = {1, 2};
+
+/* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
+static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
+
+static const float slots[] = {0.5f, -1.0f, 2.0f};
+
+static size_t aligned(size_t at) {
+    return (at + MASU_BLOB_ALIGN - 1) / MASU_BLOB_ALIGN * MASU_BLOB_ALIGN;
+}
+
+static void add(support_blob *blob, enum masu_blob_kind kind, const void *data, size_t stride,
+                size_t count) {
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    masu_blob_section *row = (masu_blob_section *)(void *)(blob->bytes + sizeof *header);
+    size_t at = aligned(blob->size);
+    row[header->section_count++] = (masu_blob_section){(uint32_t)kind, (uint32_t)stride, at, count};
+    if (at + stride * count > sizeof blob->bytes) {
+        fputs("support_blob: SUPPORT_BLOB_ROOM is too small\n", stderr);
+        abort();
+    }
+    memcpy(blob->bytes + at, data, stride * count);
+    blob->size = at + stride * count;
+}
+
+#define ADD(kind, array) add(blob, kind, array, sizeof *(array), COUNT(array))
+
+void support_blob_write(support_blob *blob, uint32_t parts) {
+    memset(blob, 0, sizeof *blob);
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    header->magic = MASU_BLOB_MAGIC;
+    header->version = MASU_BLOB_VERSION;
+    size_t sections = 1 + (parts & SUPPORT_RASTER ? 9u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
+                      (parts & SUPPORT_SDF ? 8u : 0u) + (parts & SUPPORT_SHADOW ? 1u : 0u) + 1;
+    int detail = parts & SUPPORT_RASTER && parts & SUPPORT_DETAIL;
+    if (detail) sections++;
+    int lighting = parts & SUPPORT_RASTER && parts & SUPPORT_LIGHTING;
+    if (lighting) sections += 6;
+    if (parts & SUPPORT_SDF && parts & SUPPORT_VARIANTS) sections += parts & SUPPORT_RASTER ? 6 : 7;
+    uint32_t with_textures = SUPPORT_RASTER | SUPPORT_TEXTURES;
+    if ((parts & with_textures) == with_textures) sections += 4;
+    int trace = parts & SUPPORT_RASTER && parts & SUPPORT_TRACE;
+    if (trace) sections += 5;
+    blob->size = sizeof *header + sections * sizeof(masu_blob_section);
+    if (parts & SUPPORT_RASTER) {
+        ADD(MASU_BLOB_VERTICES, vertices);
+        add(blob, MASU_BLOB_INDICES, indices, sizeof *indices, COUNT(indices) - (detail ? 0 : 3));
+        add(blob, MASU_BLOB_PRIMITIVES, primitives, sizeof *primitives,
+            COUNT(primitives) - (detail ? 0 : 1));
+        ADD(MASU_BLOB_MESHES, meshes);
+        ADD(MASU_BLOB_INSTANCES, instances);
+        if (parts & SUPPORT_TEXTURES) {
+            ADD(MASU_BLOB_MATERIALS, mapped);
+        } else {
+            ADD(MASU_BLOB_MATERIALS, materials);
+        }
+        ADD(MASU_BLOB_GROUPS, groups);
+        ADD(MASU_BLOB_GROUP_ITEMS, group_items);
+        ADD(MASU_BLOB_OCCLUDERS, occluders);
+    }
+    if (parts & SUPPORT_CAMERA) ADD(MASU_BLOB_CAMERA_KEYS, camera_keys);
+    ADD(MASU_BLOB_ENVIRONMENT, environment);
+    if (parts & SUPPORT_SHADOW) ADD(MASU_BLOB_SHADOW, shadow);
+    if (parts & SUPPORT_SDF) {
+        masu_blob_sdf sdf[] = {{{-10.0f, -1.0f, -10.0f},
+                                2.0f,
+                                {10.0f, 4.0f, 10.0f},
+                                100.0f,
+                                parts & SUPPORT_RASTER ? 1u : 0u,
+                                1,
+                                0,
+                                0}};
+        ADD(MASU_BLOB_SDF, sdf);
+        ADD(MASU_BLOB_SDF_PARAMS, sdf_params);
+        ADD(MASU_BLOB_MARCH_SPIRV, code);
+    }
+    ADD(MASU_BLOB_NAMES, names);
+    if (parts & SUPPORT_SDF) {
+        ADD(MASU_BLOB_CLASSIFY_SPIRV, code);
+        ADD(MASU_BLOB_CONE8_SPIRV, code);
+        ADD(MASU_BLOB_CONE4_SPIRV, code);
+        ADD(MASU_BLOB_VELOCITY_SPIRV, code);
+        if (parts & SUPPORT_VARIANTS) {
+            ADD(MASU_BLOB_UPDATE_SPIRV, code);
+            ADD(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, code);
+            ADD(MASU_BLOB_PLAIN_SPIRV, code);
+            ADD(MASU_BLOB_SEED_SPIRV, code);
+            ADD(MASU_BLOB_CHECKERBOARD_SPIRV, code);
+            ADD(MASU_BLOB_OCCLUSION_SPIRV, code);
+            if (!(parts & SUPPORT_RASTER)) ADD(MASU_BLOB_FRAGMENT_SPIRV, code);
+        }
+        ADD(MASU_BLOB_SLOTS, slots);
+    }
+    if ((parts & with_textures) == with_textures) {
+        ADD(MASU_BLOB_TEXCOORDS, texcoords);
+        ADD(MASU_BLOB_TEXTURES, textures);
+        ADD(MASU_BLOB_TEXTURE_SETS, texture_sets);
+        ADD(MASU_BLOB_TEXELS, texels);
+    }
+    if (detail) ADD(MASU_BLOB_LODS, lods);
+    if (lighting) {
+        ADD(MASU_BLOB_MESO, meso);
+        ADD(MASU_BLOB_LIGHTS, lights);
+        ADD(MASU_BLOB_PROBES, probes);
+        ADD(MASU_BLOB_PROBE_DATA, probe_data);
+        ADD(MASU_BLOB_ENVIRONMENT_MAP, environment_map);
+        ADD(MASU_BLOB_ENVIRONMENT_TEXELS, environment_texels);
+    }
+    if (trace) {
+        ADD(MASU_BLOB_TRACE_NODES, trace_nodes);
+        ADD(MASU_BLOB_TRACE_TRIANGLES, trace_triangles);
+        ADD(MASU_BLOB_TRACE_MESHES, trace_meshes);
+        ADD(MASU_BLOB_TRACE_INSTANCES, trace_instances);
+        ADD(MASU_BLOB_REFLECTIONS, reflections);
+    }
+    support_blob_seal(blob->bytes, blob->size);
+}
+
+masu_blob_section *support_blob_row(support_blob *blob, enum masu_blob_kind kind) {
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    masu_blob_section *rows = (masu_blob_section *)(void *)(blob->bytes + sizeof *header);
+    for (uint32_t i = 0; i < header->section_count; i++) {
+        if (rows[i].kind == (uint32_t)kind) return &rows[i];
+    }
+    return NULL;
+}
+
+void *support_blob_find(support_blob *blob, enum masu_blob_kind kind) {
+    masu_blob_section *row = support_blob_row(blob, kind);
+    if (!row) {
+        fprintf(stderr, "support_blob: no section of kind %d\n", (int)kind);
+        abort();
+    }
+    return blob->bytes + row->offset;
+}
+
+void support_blob_drop(support_blob *blob, enum masu_blob_kind kind) {
+    static support_blob old;
+    old = *blob;
+    const masu_blob_header *was = (const masu_blob_header *)(const void *)old.bytes;
+    const masu_blob_section *rows =
+        (const masu_blob_section *)(const void *)(old.bytes + sizeof *was);
+    masu_blob_header *header = (masu_blob_header *)(void *)blob->bytes;
+    uint32_t kept = was->section_count - (support_blob_row(blob, kind) != NULL);
+    memset(blob->bytes + sizeof *was, 0, sizeof blob->bytes - sizeof *was);
+    header->section_count = 0;
+    blob->size = sizeof *header + kept * sizeof *rows;
+    for (uint32_t i = 0; i < was->section_count; i++) {
+        if (rows[i].kind == (uint32_t)kind) continue;
+        add(blob, (enum masu_blob_kind)rows[i].kind, old.bytes + rows[i].offset, rows[i].stride,
+            (size_t)rows[i].count);
+    }
+}
+
+void support_blob_seal(unsigned char *bytes, size_t size) {
+    masu_blob_header header;
+    if (size < sizeof header) return;
+    memcpy(&header, bytes, sizeof header);
+    header.bytes = size;
+    header.hash = masu_fnv1a64(bytes + sizeof header, size - sizeof header);
+    memcpy(bytes, &header, sizeof header);
+}

@@ -1,0 +1,114 @@
+/* dry_renderer.c: see dry_renderer.h. */
+#include "support/dry_renderer.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/bind.h"
+#include "support/desc.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+masu_renderer m;
+masu_scene scene;
+_Alignas(64) unsigned char memory[MASU_ROLE_COUNT][ROOM];
+masu_blob_camera_key keys[4];
+
+static support_blob blob;
+static VkCommandBuffer frame_handles[MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX_TARGETS];
+static VkCommandBuffer load_handles[16384];
+static struct masu_instance_data instances[4];
+static uint64_t instance_names[4];
+static uint8_t instance_dirty[4];
+static masu_blob_sdf_param params[4];
+static masu_batch batches[4];
+static masu_cull_node groups[4];
+static masu_placed_occluder occluders[4];
+static masu_local_light_state lights[4];
+static uint64_t light_names[4];
+static masu_sky sky;
+static masu_transparent transparents[8];
+static masu_far_first far_first[16];
+static uint8_t group_states[4 * MASU_MAX_VIEWS], marks[4];
+static float boxes[6 * (4 + MASU_BOX_PADDING)], mesh_bounds[4][6];
+static uint32_t box_items[4], box_positions[4], moved[4], instance_meshes[4];
+
+VkCommandBuffer *frames = frame_handles, *loads = load_handles;
+
+/* Lays the buffers of each role one behind the other. */
+void make_renderer(uint32_t parts, uint64_t staging) {
+    make_renderer_with(parts, staging, NULL, 0);
+}
+
+void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs,
+                        uint32_t count) {
+    masu_detail detail;
+    memset(&m, 0, sizeof m);
+    memset(memory, NOISE, sizeof memory);
+    support_blob_write(&blob, parts);
+    support_accepted(&blob, &scene);
+    masu_desc d = scene_desc(0, 1280, 720);
+    d.scene = &scene;
+    d.rung_count = count;
+    for (uint32_t r = 0; r < count; r++) d.rungs[r] = rungs[r];
+    if (masu_compile(&d, 64, 64, &m.plan, &detail)) fail_msg("%s", detail.text);
+    m.plan.buffers[MASU_BUFFER_STAGING].bytes = staging;
+    m.plan.staged = staging != 0;
+    uint64_t used[MASU_ROLE_COUNT] = {0};
+    for (uint32_t b = 0; b < MASU_BUFFER_POISON; b++) {
+        masu_buffer_plan *buffer = &m.plan.buffers[b];
+        buffer->offset = used[buffer->role];
+        used[buffer->role] += (buffer->bytes + 63) / 64 * 64;
+        assert_true(used[buffer->role] <= ROOM);
+    }
+    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) m.mapped[role] = memory[role];
+    for (size_t i = 0; i < COUNT(frame_handles); i++) frames[i] = FAKE(VkCommandBuffer, i);
+    for (size_t i = 0; i < COUNT(load_handles); i++) loads[i] = FAKE(VkCommandBuffer, 0x800 + i);
+    for (uint32_t f = 0; f < MASU_MAX_FLIGHT; f++) m.slot_frame[f] = UINT64_MAX;
+    m.frames = frames;
+    m.loads = loads;
+    m.instances = instances;
+    m.instance_names = instance_names;
+    m.instance_dirty = instance_dirty;
+    m.camera_keys = keys;
+    m.sdf_params = params;
+    m.batches = batches;
+    m.groups = groups;
+    m.occluders = occluders;
+    m.group_states = group_states;
+    m.marks = marks;
+    m.boxes = boxes;
+    m.mesh_bounds = mesh_bounds;
+    m.box_items = box_items;
+    m.box_positions = box_positions;
+    m.moved = moved;
+    m.instance_meshes = instance_meshes;
+    m.lights = lights;
+    m.light_names = light_names;
+    m.sky = &sky;
+    m.transparents = transparents;
+    m.far_first = far_first;
+    m.load_count = masu_load_chunks(&m.plan);
+    assert_true(m.load_count <= COUNT(load_handles));
+    masu_keep_scene(&m);
+}
+
+const unsigned char *slot_bytes(masu_buffer_id buffer, uint32_t slot) {
+    return masu_buffer_pointer(&m, buffer, slot);
+}
+
+struct masu_frame_uniforms uniforms(uint32_t slot) {
+    struct masu_frame_uniforms u;
+    memcpy(&u, slot_bytes(MASU_BUFFER_FRAME, slot), sizeof u);
+    return u;
+}
+
+void write_good(const masu_frame_desc *f, uint32_t slot) {
+    masu_detail detail;
+    if (masu_write_frame(&m, f, slot, &detail)) fail_msg("refused: %s", detail.text);
+}

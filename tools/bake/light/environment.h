@@ -1,0 +1,41 @@
+/* environment.h: a sky from a picture: a panorama in latitude and longitude becomes radiances over
+ * the octahedron, as mips for rising roughness, and spherical harmonics of its irradiance
+ * (src/scene/blob.h: masu_blob_environment_map).
+ *
+ * Files: Radiance .hdr (RGBE, run lengths or none) and .pfm; rows from the zenith down. */
+#ifndef MASU_BAKE_ENVIRONMENT_H
+#define MASU_BAKE_ENVIRONMENT_H
+
+#include "bake/scene/content.h"
+#include "bake/scene/json.h"
+
+typedef struct masu_bake_panorama {
+    uint32_t width, height;
+    float *rgb;    /* finite, >= 0 */
+    double turn;   /* radians: azimuth of the picture's middle, from +Z towards +X */
+    double factor; /* on radiance */
+} masu_bake_panorama;
+
+/* On false the error has been reported. free() rgb. */
+bool masu_bake_load_panorama(const char *path, masu_bake_panorama *out);
+
+/* Radiance of a unit direction, bilinear between the picture's pixels. */
+void masu_bake_panorama_at(const masu_bake_panorama *p, const double direction[3], double out[3]);
+
+/* Adds both sections. size: as in the blob. */
+void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
+                               masu_bake_content *content);
+
+/* The direction in the middle of a texel of the octahedron's square; what a texel holds; what the
+ * blob's mips give for a direction and a roughness, as shaders/light/environment.glsl looks it up. */
+void masu_bake_octahedral(double x, double y, double out[3]);
+uint32_t masu_bake_pack_9995(const double rgb[3]);
+void masu_bake_unpack_9995(uint32_t texel, double out[3]);
+void masu_bake_environment_at(const masu_blob_environment_map *map, const uint32_t *texels,
+                              const double direction[3], double roughness, double out[3]);
+
+/* The scene's "environment". directory: of the scene file. */
+bool masu_bake_read_environment(const masu_bake_json *scene, const char *directory,
+                                masu_bake_content *content);
+
+#endif

@@ -1,0 +1,61 @@
+/* probes.h: a grid of light probes, path traced: how the diffuse light at each answers to the
+ * sky and to the sun (blob.h, masu_blob_probes). Daylight changes while a scene is shown; what the
+ * scene does to it does not, and is what is stored. */
+#ifndef MASU_BAKE_PROBES_H
+#define MASU_BAKE_PROBES_H
+
+#include "bake/scene/json.h"
+#include "bake/mesh/trace.h"
+
+typedef struct masu_bake_probe_settings {
+    bool wanted;
+    bool has_bounds, has_spacing, has_counts;
+    masu_bake_box bounds;   /* default: of what the instances show */
+    masu_bake_vec3 spacing; /* default: about 2048 probes, alike along all axes */
+    uint32_t counts[3];
+    uint32_t rays; /* of each probe */
+    uint32_t bounces;
+    uint32_t sky_bands;  /* 1..3 */
+    uint32_t visibility; /* texels along the edge of a map of distances */
+    uint32_t suns;       /* 0 and !has_suns: the scene's */
+    bool has_suns;
+    double bias; /* of the shortest spacing */
+    float sun[MASU_PROBE_SUNS_MAX][4];
+    uint32_t threads; /* 0: all processors */
+} masu_bake_probe_settings;
+
+typedef struct masu_bake_probe_report {
+    uint64_t probes, invalid, rays, bytes, triangles;
+    double seconds;
+} masu_bake_probe_report;
+
+masu_bake_probe_settings masu_bake_probe_defaults(void);
+
+/* The scene's "probes"; absent: nothing is changed. False after reporting. */
+bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_probe_settings *settings);
+
+/* Appends PROBES and PROBE_DATA. Textures have been made, if there are any. False after reporting. */
+bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_settings *settings,
+                           const masu_bake_trace *trace, masu_bake_probe_report *report);
+
+/* How far one way to have ambient light is off under one light. */
+typedef struct masu_bake_probe_error {
+    const char *light, *method;
+    double rmse, bias, worst; /* by the mean of the truth */
+} masu_bake_probe_error;
+
+#define MASU_BAKE_PROBE_ERRORS 48u
+
+/* Fills what the grid's light is off by from path-traced truth at `points` surface points (fewer are
+ * left where the grid shows fewer), and returns how many rows there are. */
+uint32_t masu_bake_judge_probes(const masu_bake_content *content,
+                                const masu_bake_probe_settings *settings,
+                                const masu_bake_trace *trace, uint32_t points, uint32_t rays,
+                                masu_bake_probe_error errors[MASU_BAKE_PROBE_ERRORS]);
+
+/* The same as a table. */
+void masu_bake_report_probes(const masu_bake_content *content,
+                             const masu_bake_probe_settings *settings, const masu_bake_trace *trace,
+                             uint32_t points, uint32_t rays);
+
+#endif

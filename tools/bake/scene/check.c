@@ -1,0 +1,192 @@
+/* check.c: what another process has handed over, checked before any of its indices is
+ * followed. The rules are those of blob.h for geometry, instances and materials; the finished scene
+ * is judged by the runtime's own reader, masu_scene_bind. */
+#include "bake/scene/content.h"
+#include "frame/lights.h"
+
+static bool finite_all(const float *values, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(values[i])) return false;
+    }
+    return true;
+}
+
+static bool in_range(const float *values, size_t count, float low, float high) {
+    for (size_t i = 0; i < count; i++) {
+        if (!(values[i] >= low && values[i] <= high)) return false;
+    }
+    return true;
+}
+
+static bool name_ok(const masu_bake_content *c, uint32_t name) {
+    return name == MASU_BLOB_NONE || name < c->section[MASU_BLOB_NAMES].bytes;
+}
+
+/* [first, first + count) lies in [0, total), and is not empty. */
+static bool range_ok(uint32_t first, uint32_t count, uint64_t total) {
+    return count > 0 && (uint64_t)first + count <= total;
+}
+
+static const char *check_sections(const masu_bake_content *c) {
+    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        if (!masu_bake_stride(kind)) continue; /* no such section */
+        if (c->section[kind].bytes % masu_bake_stride(kind))
+            return "a section with half an element";
+        if (masu_bake_count(c, kind) > INT32_MAX) return "a section of 2^31 elements or more";
+    }
+    const masu_bake_buffer *names = &c->section[MASU_BLOB_NAMES];
+    if (names->bytes && names->data[names->bytes - 1] != 0) return "names that do not end";
+    return NULL;
+}
+
+static const char *check_primitive(const masu_bake_content *c, const masu_blob_primitive *p) {
+    if (!range_ok(p->first_index, p->index_count, masu_bake_count(c, MASU_BLOB_INDICES)) ||
+        p->index_count % 3 ||
+        !range_ok(p->first_vertex, p->vertex_count, masu_bake_count(c, MASU_BLOB_VERTICES)) ||
+        p->vertex_count > 16777215u || p->material >= masu_bake_count(c, MASU_BLOB_MATERIALS)) {
+        return "a primitive with a range outside the geometry";
+    }
+    for (uint32_t i = 0; i < p->index_count; i++) {
+        if (MASU_BAKE_INDICES(c)[p->first_index + i] >= p->vertex_count) {
+            return "an index beyond its primitive's vertices";
+        }
+    }
+    for (uint32_t i = 0; i < p->vertex_count; i++) {
+        const float *v = MASU_BAKE_VERTICES(c)[p->first_vertex + i].position;
+        for (int k = 0; k < 3; k++) {
+            if (!(v[k] >= p->aabb_min[k] && v[k] <= p->aabb_max[k])) {
+                return "a vertex outside its primitive's box";
+            }
+        }
+    }
+    return NULL;
+}
+
+static const char *check_geometry(const masu_bake_content *c) {
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_VERTICES); i++) {
+        const masu_blob_vertex *v = &MASU_BAKE_VERTICES(c)[i];
+        if (!finite_all(v->position, 3)) return "a vertex that is not finite";
+        if (v->normal[0] == INT16_MIN || v->normal[1] == INT16_MIN) return "a normal out of range";
+    }
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_PRIMITIVES); i++) {
+        const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(c)[i];
+        if (!finite_all(p->aabb_min, 3) || !finite_all(p->aabb_max, 3)) {
+            return "a primitive whose box is not finite";
+        }
+        const char *problem = check_primitive(c, p);
+        if (problem) return problem;
+    }
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_MESHES); i++) {
+        const masu_blob_mesh *m = &MASU_BAKE_MESHES(c)[i];
+        if (!range_ok(m->first_primitive, m->primitive_count,
+                      masu_bake_count(c, MASU_BLOB_PRIMITIVES))) {
+            return "a mesh with a range outside the primitives";
+        }
+        if (!name_ok(c, m->name)) return "a name out of range";
+        for (uint32_t j = 0; j < m->primitive_count; j++) {
+            const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(c)[m->first_primitive + j];
+            for (int k = 0; k < 3; k++) {
+                if (!(m->aabb_min[k] <= p->aabb_min[k] && m->aabb_max[k] >= p->aabb_max[k])) {
+                    return "a primitive outside its mesh's box";
+                }
+            }
+        }
+    }
+    return NULL;
+}
+
+static const char *check_instances(const masu_bake_content *c) {
+    uint64_t count = masu_bake_count(c, MASU_BLOB_INSTANCES);
+    for (uint64_t i = 0; i < count; i++) {
+        const masu_blob_instance *n = &MASU_BAKE_INSTANCES(c)[i];
+        if (!finite_all(n->transform, 12)) return "an instance whose transform is not finite";
+        if (n->mesh >= masu_bake_count(c, MASU_BLOB_MESHES)) return "an instance of no mesh";
+        if (n->parent != MASU_BLOB_NONE && n->parent >= count) return "a parent out of range";
+        if (n->group != MASU_BLOB_NONE) return "an instance in a group that is not there";
+        if (!name_ok(c, n->name)) return "a name out of range";
+    }
+    return NULL;
+}
+
+/* Pictures and maps. They are no part of the blob, so nobody else looks at them. */
+static const char *check_maps(const masu_bake_content *c) {
+    uint64_t materials = masu_bake_count(c, MASU_BLOB_MATERIALS);
+    size_t images = c->images.bytes / sizeof(masu_bake_image);
+    if (c->maps.bytes != materials * sizeof(masu_bake_maps) ||
+        c->images.bytes != images * sizeof(masu_bake_image)) {
+        return "maps of other materials";
+    }
+    if (c->image_text.bytes && c->image_text.data[c->image_text.bytes - 1] != 0) {
+        return "picture names that do not end";
+    }
+    for (size_t i = 0; i < images; i++) {
+        const masu_bake_image *image = &MASU_BAKE_IMAGES(c)[i];
+        if (image->name >= c->image_text.bytes || image->data > c->image_data.bytes ||
+            image->data_bytes > c->image_data.bytes - image->data) {
+            return "a picture out of range";
+        }
+        if ((uint64_t)image->raw_width * image->raw_height > image->data_bytes / 4) {
+            return "a picture of too few texels";
+        }
+    }
+    for (uint64_t i = 0; i < materials; i++) {
+        const masu_bake_maps *m = &MASU_BAKE_MAPS_OF(c)[i];
+        for (int k = 0; k < MASU_BAKE_MAPS; k++) {
+            if ((m->image[k] != MASU_BLOB_NONE && m->image[k] >= images) || m->channel[k] > 3) {
+                return "a map of no picture";
+            }
+        }
+        if (m->gloss > 1 || m->additive > 1 || m->alpha > MASU_BAKE_ALPHA_BLEND || m->wrap[0] > 2 || m->wrap[1] > 2 ||
+            !in_range(&m->cutoff, 1, 0, 1) || !in_range(&m->normal_scale, 1, -16, 16)) {
+            return "a map out of range";
+        }
+    }
+    if (masu_bake_count(c, MASU_BLOB_TEXCOORDS) != masu_bake_count(c, MASU_BLOB_VERTICES)) {
+        return "not as many texture coordinates as vertices";
+    }
+    const float *texcoords = MASU_BAKE_ARRAY(c, MASU_BLOB_TEXCOORDS, const float);
+    if (!in_range(texcoords, (size_t)(2 * masu_bake_count(c, MASU_BLOB_TEXCOORDS)),
+                  -MASU_TEXCOORD_MAX, MASU_TEXCOORD_MAX)) {
+        return "texture coordinates out of range";
+    }
+    return NULL;
+}
+
+static const char *check_materials(const masu_bake_content *c) {
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_MATERIALS); i++) {
+        const masu_blob_material *m = &MASU_BAKE_MATERIALS(c)[i];
+        if (!in_range(m->base_color, 3, 0, 1) || !in_range(&m->roughness, 1, 0, 1) ||
+            !in_range(&m->metallic, 1, 0, 1) || !in_range(m->emissive, 3, 0, 1e9f)) {
+            return "a material out of range";
+        }
+        if (!name_ok(c, m->name)) return "a name out of range";
+        if (m->flags || m->texture_set || m->layers) return "a material with textures already";
+    }
+    return NULL;
+}
+
+static const char *check_lights(const masu_bake_content *c) {
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_LIGHTS); i++) {
+        const masu_blob_light *light = &MASU_BAKE_LIGHTS(c)[i];
+        double value;
+        masu_local_light_state state = masu_light_state_of(light);
+        if (light->type > MASU_LIGHT_SPOT || masu_light_state_wrong(&state, &value))
+            return "a light with a value out of range";
+        if (light->parent != MASU_BLOB_NONE &&
+            light->parent >= masu_bake_count(c, MASU_BLOB_INSTANCES)) {
+            return "a light of no instance";
+        }
+        if (!name_ok(c, light->name)) return "a name out of range";
+    }
+    return NULL;
+}
+
+const char *masu_bake_check(const masu_bake_content *piece) {
+    const char *problem = check_sections(piece);
+    if (!problem) problem = check_materials(piece);
+    if (!problem) problem = check_maps(piece);
+    if (!problem) problem = check_geometry(piece);
+    if (!problem) problem = check_instances(piece);
+    if (!problem) problem = check_lights(piece);
+    return problem;
+}

@@ -1,0 +1,496 @@
+/* content.c: the arrays of a scene being baked, and how pieces come together; see
+ * content.h. */
+#define _POSIX_C_SOURCE 200809L
+#include "bake/scene/content.h"
+#include "cli/cli.h"
+
+#include <fnmatch.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
+    [MASU_BLOB_VERTICES] = sizeof(masu_blob_vertex),
+    [MASU_BLOB_INDICES] = sizeof(uint32_t),
+    [MASU_BLOB_PRIMITIVES] = sizeof(masu_blob_primitive),
+    [MASU_BLOB_MESHES] = sizeof(masu_blob_mesh),
+    [MASU_BLOB_INSTANCES] = sizeof(masu_blob_instance),
+    [MASU_BLOB_MATERIALS] = sizeof(masu_blob_material),
+    [MASU_BLOB_CAMERA_KEYS] = sizeof(masu_blob_camera_key),
+    [MASU_BLOB_ENVIRONMENT] = sizeof(masu_blob_environment),
+    [MASU_BLOB_SDF] = sizeof(masu_blob_sdf),
+    [MASU_BLOB_SDF_PARAMS] = sizeof(masu_blob_sdf_param),
+    [MASU_BLOB_MARCH_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CLASSIFY_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CONE8_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CONE4_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_UPDATE_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_PLAIN_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_SEED_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_CHECKERBOARD_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_FRAGMENT_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_VELOCITY_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_OCCLUSION_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_TRACE_SDF_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_SHADOW] = sizeof(masu_blob_shadow),
+    [MASU_BLOB_SLOTS] = sizeof(float),
+    [MASU_BLOB_GROUPS] = sizeof(masu_blob_group),
+    [MASU_BLOB_GROUP_ITEMS] = sizeof(uint32_t),
+    [MASU_BLOB_LODS] = sizeof(masu_blob_lod),
+    [MASU_BLOB_OCCLUDERS] = sizeof(masu_blob_occluder),
+    [MASU_BLOB_NAMES] = 1,
+    [MASU_BLOB_TEXCOORDS] = 2 * sizeof(float),
+    [MASU_BLOB_TEXTURES] = sizeof(masu_blob_texture),
+    [MASU_BLOB_TEXTURE_SETS] = sizeof(masu_blob_texture_set),
+    [MASU_BLOB_TEXELS] = MASU_BLOB_ALIGN,
+    [MASU_BLOB_MESO] = sizeof(masu_blob_meso),
+    [MASU_BLOB_LIGHTS] = sizeof(masu_blob_light),
+    [MASU_BLOB_PROBES] = sizeof(masu_blob_probes),
+    [MASU_BLOB_PROBE_DATA] = sizeof(uint32_t),
+    [MASU_BLOB_ENVIRONMENT_MAP] = sizeof(masu_blob_environment_map),
+    [MASU_BLOB_ENVIRONMENT_TEXELS] = sizeof(uint32_t),
+    [MASU_BLOB_TRACE_NODES] = sizeof(masu_blob_trace_node),
+    [MASU_BLOB_TRACE_TRIANGLES] = sizeof(masu_blob_trace_triangle),
+    [MASU_BLOB_TRACE_MESHES] = sizeof(masu_blob_trace_mesh),
+    [MASU_BLOB_TRACE_INSTANCES] = sizeof(uint32_t),
+    [MASU_BLOB_REFLECTIONS] = sizeof(masu_blob_reflections),
+    [MASU_BLOB_TRACE_TEXTURES] = sizeof(masu_blob_trace_texture),
+    [MASU_BLOB_TRACE_TEXELS] = sizeof(uint32_t),
+};
+
+/* ---- arrays ---- */
+
+static void out_of_memory(void) {
+    masu_cli_error("out of memory");
+    exit(MASU_CLI_FAILURE); /* in an importing child, which must not return either, harmless */
+}
+
+void *masu_bake_allocate(size_t bytes) {
+    void *memory = malloc(bytes ? bytes : 1);
+    if (!memory) out_of_memory();
+    return memory;
+}
+
+void *masu_bake_append(masu_bake_buffer *buffer, const void *data, size_t bytes) {
+    if (bytes > SIZE_MAX / 2 - buffer->bytes) out_of_memory();
+    size_t needed = buffer->bytes + bytes;
+    if (needed > buffer->capacity || !buffer->data) {
+        size_t capacity = buffer->capacity + buffer->capacity / 2;
+        if (capacity < needed) capacity = needed;
+        if (capacity < 256) capacity = 256;
+        unsigned char *grown = realloc(buffer->data, capacity);
+        if (!grown) out_of_memory();
+        buffer->data = grown;
+        buffer->capacity = capacity;
+    }
+    unsigned char *at = buffer->data + buffer->bytes;
+    if (data)
+        memcpy(at, data, bytes);
+    else
+        memset(at, 0, bytes);
+    buffer->bytes = needed;
+    return at;
+}
+
+void masu_bake_append_text(masu_bake_buffer *buffer, const char *text) {
+    masu_bake_append(buffer, text, strlen(text));
+}
+
+void masu_bake_release(masu_bake_buffer *buffer) {
+    free(buffer->data);
+    *buffer = (masu_bake_buffer){0};
+}
+
+uint32_t masu_bake_stride(uint32_t kind) { return strides[kind]; }
+
+uint64_t masu_bake_count(const masu_bake_content *content, uint32_t kind) {
+    return masu_bake_stride(kind) ? content->section[kind].bytes / masu_bake_stride(kind) : 0;
+}
+
+void masu_bake_content_release(masu_bake_content *content) {
+    for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
+        masu_bake_release(&content->section[kind]);
+    }
+    masu_bake_release(&content->maps);
+    masu_bake_release(&content->images);
+    masu_bake_release(&content->image_text);
+    masu_bake_release(&content->image_data);
+    masu_bake_release(&content->traced);
+    masu_bake_release(&content->pictures);
+    masu_bake_release(&content->picture_texels);
+}
+
+/* ---- names ---- */
+
+/* Bytes of the UTF-8 character at `text`, 0 if it is none (overlong forms and surrogates too). */
+static size_t utf8_length(const unsigned char *text, size_t left) {
+    static const struct {
+        unsigned char mask, lead;
+        uint32_t least;
+    } forms[4] = {{0x80, 0x00, 0}, {0xE0, 0xC0, 0x80}, {0xF0, 0xE0, 0x800}, {0xF8, 0xF0, 0x10000}};
+    for (size_t n = 1; n <= 4 && n <= left; n++) {
+        if ((text[0] & forms[n - 1].mask) != forms[n - 1].lead) continue;
+        uint32_t code = text[0] & (unsigned char)~forms[n - 1].mask;
+        for (size_t i = 1; i < n; i++) {
+            if ((text[i] & 0xC0) != 0x80) return 0;
+            code = code << 6 | (text[i] & 0x3Fu);
+        }
+        bool surrogate = code >= 0xD800 && code <= 0xDFFF;
+        return code >= forms[n - 1].least && code <= 0x10FFFF && !surrogate ? n : 0;
+    }
+    return 0;
+}
+
+uint32_t masu_bake_name(masu_bake_content *content, const char *name, size_t length) {
+    masu_bake_buffer *names = &content->section[MASU_BLOB_NAMES];
+    const unsigned char *text = (const unsigned char *)name;
+    length = strnlen(name, length);
+    if (length == 0 || names->bytes + length + 1 >= MASU_BLOB_NONE) return MASU_BLOB_NONE;
+    uint32_t offset = (uint32_t)names->bytes;
+    unsigned char *out = masu_bake_append(names, name, length);
+    masu_bake_append(names, "", 1);
+    out = names->data + offset;
+    for (size_t i = 0; i < length;) {
+        size_t n = utf8_length(text + i, length - i);
+        if (n == 0 || (n == 1 && (text[i] < 0x20 || text[i] == 0x7F))) {
+            out[i] = '?';
+            n = 1;
+        }
+        i += n;
+    }
+    return offset;
+}
+
+const char *masu_bake_name_text(const masu_bake_content *content, uint32_t name) {
+    if (name == MASU_BLOB_NONE) return "";
+    return (const char *)content->section[MASU_BLOB_NAMES].data + name;
+}
+
+/* ---- materials, meshes, instances ---- */
+
+masu_blob_material masu_bake_default_material(void) {
+    return (masu_blob_material){.base_color = {0.6f, 0.6f, 0.6f},
+                                .roughness = 0.6f,
+                                .name = MASU_BLOB_NONE,
+                                .specular = 0.5f,
+                                .opacity = 1.0f,
+                                .detail = {1.0f, 1.0f},
+                                .meso = MASU_BLOB_NONE};
+}
+
+masu_bake_maps masu_bake_no_maps(void) {
+    masu_bake_maps maps;
+    memset(&maps, 0, sizeof maps);
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) maps.image[i] = MASU_BLOB_NONE;
+    maps.cutoff = 0.5f;
+    maps.normal_scale = 1;
+    return maps;
+}
+
+bool masu_bake_has_maps(const masu_bake_maps *maps) {
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (maps->image[i] != MASU_BLOB_NONE) return true;
+    }
+    return false;
+}
+
+uint32_t masu_bake_add_image(masu_bake_content *content, const char *name,
+                             const masu_bake_image *about, const void *data) {
+    size_t count = content->images.bytes / sizeof *about;
+    for (size_t i = 0; i < count; i++) {
+        const masu_bake_image *other = &MASU_BAKE_IMAGES(content)[i];
+        if (strcmp((const char *)content->image_text.data + other->name, name) == 0) {
+            return (uint32_t)i;
+        }
+    }
+    masu_bake_image image = {0};
+    if (about) image = *about;
+    image.name = (uint32_t)content->image_text.bytes;
+    image.data = content->image_data.bytes;
+    masu_bake_append(&content->image_text, name, strlen(name) + 1);
+    if (image.data_bytes) masu_bake_append(&content->image_data, data, (size_t)image.data_bytes);
+    masu_bake_append(&content->images, &image, sizeof image);
+    return (uint32_t)count;
+}
+
+uint32_t masu_bake_material(masu_bake_content *content, const masu_blob_material *material,
+                            const char *name) {
+    masu_bake_maps none = masu_bake_no_maps();
+    return masu_bake_mapped_material(content, material, &none, name);
+}
+
+uint32_t masu_bake_mapped_material(masu_bake_content *content, const masu_blob_material *material,
+                                   const masu_bake_maps *maps, const char *name) {
+    uint64_t count = masu_bake_count(content, MASU_BLOB_MATERIALS);
+    masu_blob_material wanted = *material;
+    for (uint64_t i = 0; i < count; i++) {
+        const masu_blob_material *other = &MASU_BAKE_MATERIALS(content)[i];
+        wanted.name = other->name;
+        if (memcmp(other, &wanted, sizeof wanted) == 0 &&
+            memcmp(&MASU_BAKE_MAPS_OF(content)[i], maps, sizeof *maps) == 0 &&
+            strcmp(masu_bake_name_text(content, other->name), name) == 0) {
+            return (uint32_t)i;
+        }
+    }
+    wanted.name = masu_bake_name(content, name, strlen(name));
+    masu_bake_append(&content->section[MASU_BLOB_MATERIALS], &wanted, sizeof wanted);
+    masu_bake_append(&content->maps, maps, sizeof *maps);
+    return (uint32_t)count;
+}
+
+uint32_t masu_bake_mesh(masu_bake_content *content, uint32_t first_primitive, uint32_t count,
+                        uint32_t name) {
+    masu_blob_mesh mesh = {
+        .first_primitive = first_primitive, .primitive_count = count, .name = name};
+    for (uint32_t i = 0; i < count; i++) {
+        const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(content)[first_primitive + i];
+        for (int k = 0; k < 3; k++) {
+            float low = p->aabb_min[k], high = p->aabb_max[k];
+            if (i == 0 || low < mesh.aabb_min[k]) mesh.aabb_min[k] = low;
+            if (i == 0 || high > mesh.aabb_max[k]) mesh.aabb_max[k] = high;
+        }
+    }
+    masu_bake_append(&content->section[MASU_BLOB_MESHES], &mesh, sizeof mesh);
+    return (uint32_t)(masu_bake_count(content, MASU_BLOB_MESHES) - 1);
+}
+
+uint32_t masu_bake_instance(masu_bake_content *content, const masu_bake_affine *transform,
+                            uint32_t mesh, uint32_t parent, uint32_t name) {
+    if (!masu_bake_affine_sane(transform)) return MASU_BLOB_NONE;
+    masu_blob_instance instance = {
+        .mesh = mesh, .name = name, .parent = parent, .group = MASU_BLOB_NONE};
+    for (int i = 0; i < 12; i++) instance.transform[i] = (float)transform->m[i];
+    masu_bake_append(&content->section[MASU_BLOB_INSTANCES], &instance, sizeof instance);
+    return (uint32_t)(masu_bake_count(content, MASU_BLOB_INSTANCES) - 1);
+}
+
+static masu_bake_affine instance_transform(const masu_blob_instance *instance) {
+    masu_bake_affine a;
+    for (int i = 0; i < 12; i++) a.m[i] = (double)instance->transform[i];
+    return a;
+}
+
+/* ---- placing a piece ---- */
+
+/* The file of a path, without folders. */
+static const char *last_part(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static bool matches(const masu_bake_content *piece, uint32_t index, const masu_bake_override *o) {
+    uint32_t image = MASU_BAKE_MAPS_OF(piece)[index].image[MASU_BAKE_BASE];
+    const char *name = masu_bake_name_text(piece, MASU_BAKE_MATERIALS(piece)[index].name);
+    if (!*o->match || fnmatch(o->match, name, 0) == 0) return true;
+    if (image == MASU_BLOB_NONE) return false;
+    const char *path =
+        (const char *)piece->image_text.data + MASU_BAKE_IMAGES(piece)[image].name;
+    return fnmatch(o->match, last_part(path), 0) == 0;
+}
+
+static void apply_override(const masu_bake_override *o, masu_blob_material *to,
+                           masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
+    const masu_blob_material *v = &o->value;
+    if (o->base_color) memcpy(to->base_color, v->base_color, sizeof v->base_color);
+    if (o->roughness) to->roughness = v->roughness;
+    if (o->metallic) to->metallic = v->metallic;
+    if (o->specular) to->specular = v->specular;
+    if (o->coat) to->coat = v->coat;
+    if (o->coat_roughness) to->coat_roughness = v->coat_roughness;
+    if (o->meso) to->meso = v->meso;
+    if (o->detail) memcpy(to->detail, v->detail, sizeof v->detail);
+    if (o->opacity) to->opacity = v->opacity;
+    if (o->emissive) memcpy(to->emissive, v->emissive, sizeof v->emissive);
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (!o->map[i]) continue;
+        maps->image[i] = o->maps.image[i];
+        maps->channel[i] = o->maps.channel[i];
+        own[i] = true;
+    }
+    if (o->map[MASU_BAKE_ROUGHNESS]) maps->gloss = 0;
+    if (o->alpha) {
+        maps->alpha = o->maps.alpha;
+        maps->additive = o->maps.additive;
+    } else if (o->opacity && v->opacity < 1.0f) {
+        maps->alpha = MASU_BAKE_ALPHA_BLEND;
+    }
+    if (o->cutoff) maps->cutoff = o->maps.cutoff;
+}
+
+static uint32_t placed_material(masu_bake_content *scene, const masu_bake_content *piece,
+                                uint32_t index, const masu_bake_overrides *overrides) {
+    masu_blob_material material = MASU_BAKE_MATERIALS(piece)[index];
+    const char *name = masu_bake_name_text(piece, material.name);
+    masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
+    bool own[MASU_BAKE_MAPS] = {false}; /* the scene's picture, not the piece's */
+    for (size_t i = 0; i < overrides->count; i++) {
+        if (!matches(piece, index, &overrides->items[i])) continue;
+        apply_override(&overrides->items[i], &material, &maps, own);
+    }
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
+        if (own[i] || maps.image[i] == MASU_BLOB_NONE) continue;
+        const masu_bake_image *from = &MASU_BAKE_IMAGES(piece)[maps.image[i]];
+        maps.image[i] =
+            masu_bake_add_image(scene, (const char *)piece->image_text.data + from->name, from,
+                                piece->image_data.data + from->data);
+    }
+    return masu_bake_mapped_material(scene, &material, &maps, name);
+}
+
+static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *piece, uint32_t name,
+                            const char *prefix) {
+    const char *own = masu_bake_name_text(piece, name);
+    if (!prefix || !*prefix) return masu_bake_name(scene, own, strlen(own));
+    masu_bake_buffer text = {0};
+    masu_bake_append_text(&text, prefix);
+    if (*own) {
+        masu_bake_append_text(&text, "/");
+        masu_bake_append_text(&text, own);
+    }
+    uint32_t offset = masu_bake_name(scene, (const char *)text.data, text.bytes);
+    masu_bake_release(&text);
+    return offset;
+}
+
+/* Primitives and meshes of the piece, with its materials as overridden. Returns the first mesh. */
+static uint32_t place_meshes(masu_bake_content *scene, const masu_bake_content *piece,
+                             uint32_t first_vertex, uint32_t first_index,
+                             const masu_bake_overrides *overrides) {
+    uint32_t first_primitive = (uint32_t)masu_bake_count(scene, MASU_BLOB_PRIMITIVES);
+    uint32_t first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
+    uint64_t materials = masu_bake_count(piece, MASU_BLOB_MATERIALS);
+    uint32_t *material_map = masu_bake_allocate((size_t)materials * sizeof *material_map);
+    for (uint32_t i = 0; i < materials; i++) {
+        material_map[i] = placed_material(scene, piece, i, overrides);
+    }
+    for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_PRIMITIVES); i++) {
+        masu_blob_primitive p = MASU_BAKE_PRIMITIVES(piece)[i];
+        p.first_index += first_index;
+        p.first_vertex += first_vertex;
+        p.material = material_map[p.material];
+        masu_bake_append(&scene->section[MASU_BLOB_PRIMITIVES], &p, sizeof p);
+    }
+    for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MESHES); i++) {
+        masu_blob_mesh m = MASU_BAKE_MESHES(piece)[i];
+        m.first_primitive += first_primitive;
+        m.name = copied_name(scene, piece, m.name, NULL);
+        masu_bake_append(&scene->section[MASU_BLOB_MESHES], &m, sizeof m);
+    }
+    free(material_map);
+    return first_mesh;
+}
+
+/* The largest counts that the runtime takes, after adding the piece. */
+static const char *room_for(const masu_bake_content *scene, const masu_bake_content *piece) {
+    static const struct {
+        uint32_t kind;
+        const char *problem;
+    } rows[] = {
+        {MASU_BLOB_VERTICES, "more than 2^31 - 1 vertices"},
+        {MASU_BLOB_INDICES, "more than 2^31 - 1 indices"},
+        {MASU_BLOB_PRIMITIVES, "more than 2^31 - 1 primitives"},
+        {MASU_BLOB_MESHES, "more than 2^31 - 1 meshes"},
+        {MASU_BLOB_INSTANCES, "more than 2^31 - 1 instances"},
+        {MASU_BLOB_MATERIALS, "more than 2^31 - 1 materials"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        uint64_t sum = masu_bake_count(scene, rows[i].kind) + masu_bake_count(piece, rows[i].kind);
+        if (sum > INT32_MAX) return rows[i].problem;
+    }
+    return NULL;
+}
+
+static uint32_t copy_section(masu_bake_content *scene, const masu_bake_content *piece,
+                             uint32_t kind) {
+    uint32_t first = (uint32_t)masu_bake_count(scene, kind);
+    masu_bake_append(&scene->section[kind], piece->section[kind].data, piece->section[kind].bytes);
+    return first;
+}
+
+const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
+                            masu_bake_residence *residence, const masu_bake_affine *placement,
+                            const masu_bake_overrides *overrides, const char *prefix) {
+    const char *problem = room_for(scene, piece);
+    if (problem) return problem;
+    if (!residence->has_vertices) {
+        residence->first_vertex = copy_section(scene, piece, MASU_BLOB_VERTICES);
+        copy_section(scene, piece, MASU_BLOB_TEXCOORDS);
+        residence->has_vertices = true;
+    }
+    uint32_t first_mesh = residence->first_mesh;
+    if (!residence->has_meshes) {
+        /* Two primitives share no indices (src/scene/scene.c): other materials, other indices. */
+        uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
+        first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, overrides);
+        residence->first_mesh = first_mesh;
+        residence->has_meshes = true;
+    }
+    uint32_t first_instance = (uint32_t)masu_bake_count(scene, MASU_BLOB_INSTANCES);
+    for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_INSTANCES); i++) {
+        const masu_blob_instance *from = &MASU_BAKE_INSTANCES(piece)[i];
+        masu_bake_affine own = instance_transform(from);
+        masu_bake_affine world = masu_bake_multiply(placement, &own);
+        uint32_t parent = from->parent;
+        if (parent != MASU_BLOB_NONE) parent += first_instance;
+        uint32_t name = copied_name(scene, piece, from->name, prefix);
+        if (masu_bake_instance(scene, &world, first_mesh + from->mesh, parent, name) ==
+            MASU_BLOB_NONE) {
+            return "a transform that is not finite or moves beyond 1e15";
+        }
+    }
+    return NULL;
+}
+
+masu_bake_box masu_bake_bounds(const masu_bake_content *content,
+                               const masu_bake_affine *placement) {
+    masu_bake_box box = masu_bake_box_empty();
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
+        const masu_blob_instance *instance = &MASU_BAKE_INSTANCES(content)[i];
+        const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(content)[instance->mesh];
+        masu_bake_affine own = instance_transform(instance);
+        masu_bake_affine world = masu_bake_multiply(placement, &own);
+        for (uint32_t j = 0; j < mesh->primitive_count; j++) {
+            const masu_blob_primitive *p =
+                &MASU_BAKE_PRIMITIVES(content)[mesh->first_primitive + j];
+            for (uint32_t k = 0; k < p->vertex_count; k++) {
+                const float *v = MASU_BAKE_VERTICES(content)[p->first_vertex + k].position;
+                masu_bake_box_grow(&box, masu_bake_apply(&world, masu_bake_v3f(v)));
+            }
+        }
+    }
+    return box;
+}
+
+void masu_bake_sort_instances(masu_bake_content *content) {
+    size_t count = (size_t)masu_bake_count(content, MASU_BLOB_INSTANCES);
+    size_t meshes = (size_t)masu_bake_count(content, MASU_BLOB_MESHES);
+    masu_blob_instance *instances = MASU_BAKE_INSTANCES(content);
+    masu_blob_instance *sorted = masu_bake_allocate(count * sizeof *sorted);
+    uint32_t *place = masu_bake_allocate(count * sizeof *place);
+    size_t *next = masu_bake_allocate((meshes + 1) * sizeof *next);
+    memset(next, 0, (meshes + 1) * sizeof *next);
+    for (size_t i = 0; i < count; i++) next[instances[i].mesh + 1]++;
+    for (size_t m = 0; m < meshes; m++) next[m + 1] += next[m];
+    for (size_t i = 0; i < count; i++) place[i] = (uint32_t)next[instances[i].mesh]++;
+    for (size_t i = 0; i < count; i++) {
+        masu_blob_instance moved = instances[i];
+        if (moved.parent != MASU_BLOB_NONE) moved.parent = place[moved.parent];
+        sorted[place[i]] = moved;
+    }
+    if (count) memcpy(instances, sorted, count * sizeof *sorted);
+    if (content->traced.bytes) {
+        masu_bake_buffer traced = {0};
+        masu_bake_append(&traced, NULL, count);
+        for (size_t i = 0; i < content->traced.bytes; i++)
+            traced.data[place[i]] = content->traced.data[i];
+        masu_bake_release(&content->traced);
+        content->traced = traced;
+    }
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_LIGHTS); i++) {
+        masu_blob_light *light = &MASU_BAKE_LIGHTS(content)[i];
+        if (light->parent != MASU_BLOB_NONE) light->parent = place[light->parent];
+    }
+    free(next);
+    free(place);
+    free(sorted);
+}

@@ -1,0 +1,21 @@
+/* groups.h: what is culled together.
+ *
+ * While a scene is put together, an instance's `group` is a tag: MASU_BLOB_NONE, MASU_BAKE_MOVING, or
+ * the index of a group that the scene names; those stand in the GROUPS section with their full path
+ * as name and their parent in `reserved`. masu_bake_groups turns all of it into the final tree. */
+#ifndef MASU_BAKE_GROUPS_H
+#define MASU_BAKE_GROUPS_H
+
+#include "bake/scene/content.h"
+
+#define MASU_BAKE_MOVING 0xFFFFFFFEu /* moves in every frame: in no group */
+#define MASU_BAKE_GROUP_LEVELS 8u    /* of a path */
+
+/* The tag of "outer/inner", with its outer groups added as needed. MASU_BLOB_NONE: an empty part, or
+ * too many. */
+uint32_t masu_bake_group(masu_bake_content *content, const char *path);
+
+/* The tree over the instances, which are sorted by mesh by now. */
+void masu_bake_groups(masu_bake_content *content);
+
+#endif

@@ -1,0 +1,418 @@
+/* sdf.c: compiling the scene's march shader; see sdf.h. */
+#define _POSIX_C_SOURCE 200809L
+#include "bake/shader/sdf.h"
+#include "bake/scene/file.h"
+#include "bake/scene/process.h"
+#include "bake/shader/try.h"
+#include "cli/cli.h"
+#include "scene_sources.h"
+#include "shared/masu_shared.h"
+#include "sdfc/sdfc.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define GLSL_MAX ((size_t)4 << 20)
+#define SPIRV_MAX ((size_t)64 << 20)
+#define SPIRV_MAGIC 0x07230203u
+#define ERRORS_SHOWN 8
+
+/* ---- laying out the sources ---- */
+
+void masu_bake_param_macro(const char *name, char *out, size_t room) {
+    snprintf(out, room, "MASU_PARAM_%s", name);
+    for (char *c = out; *c; c++) {
+        if (*c >= 'a' && *c <= 'z') *c = (char)(*c - 'a' + 'A');
+    }
+}
+
+static bool write_text(const char *directory, const char *name, const void *text, size_t bytes) {
+    char *path = masu_bake_join(directory, name);
+    char *slash = path + strlen(directory); /* make the directories in between */
+    while ((slash = strchr(slash + 1, '/'))) {
+        *slash = '\0';
+        mkdir(path, 0700);
+        *slash = '/';
+    }
+    FILE *file = fopen(path, "wb");
+    bool good = file && fwrite(text, 1, bytes, file) == bytes;
+    int cause = errno;
+    if (file && fclose(file) != 0) good = false;
+    if (!good) masu_cli_error("cannot write %s: %s", path, strerror(cause));
+    free(path);
+    return good;
+}
+
+static void append_scene_header(masu_bake_buffer *text, const masu_bake_content *content,
+                                const char *glsl_path) {
+    for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
+        const masu_blob_sdf_param *p =
+            &MASU_BAKE_ARRAY(content, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];
+        char macro[128], line[160];
+        masu_bake_param_macro(masu_bake_name_text(content, p->name), macro, sizeof macro);
+        snprintf(line, sizeof line, "#define %s %llu\n", macro, (unsigned long long)i);
+        masu_bake_append_text(text, line);
+    }
+    masu_bake_append_text(text, "#line 1 \"");
+    for (const char *c = glsl_path; *c; c++) {
+        bool plain = *c != '"' && *c != '\\' && (unsigned char)*c >= 0x20;
+        masu_bake_append(text, plain ? c : "?", 1);
+    }
+    masu_bake_append_text(text, "\"\n");
+}
+
+_Static_assert(MASU_SDFC_MASKED_MAX == MASU_TILE_MASKED_MAX, "the compiler and the tiles agree");
+
+/* ---- the language of docs/sdf.md ---- */
+
+bool masu_bake_is_sdf(const char *path) {
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".sdf") == 0;
+}
+
+/* Every line of a message by itself: "file:1:2: expected ...", the line, the caret. */
+static void report_lines(const char *text, bool warnings) {
+    while (*text) {
+        int length = (int)strcspn(text, "\n");
+        if (warnings)
+            masu_cli_warn("%.*s", length, text);
+        else
+            masu_cli_error("%.*s", length, text);
+        text += length + (text[length] == '\n');
+    }
+}
+
+static void take_params(const masu_sdfc_result *scene, masu_bake_content *content) {
+    for (uint32_t i = 0; i < scene->param_count; i++) {
+        const masu_sdfc_param *p = &scene->params[i];
+        masu_blob_sdf_param param = {(float)p->value, (float)p->minimum, (float)p->maximum,
+                                     masu_bake_name(content, p->name, strlen(p->name))};
+        masu_bake_append(&content->section[MASU_BLOB_SDF_PARAMS], &param, sizeof param);
+    }
+}
+
+/* The parts' data, and the code's shape that depends on them. */
+static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content, bool *dynamic) {
+    static const float no_slot = 0.0f;
+    masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
+    sdf->part_count = scene->part_count;
+    if (!scene->anchored) sdf->anchored = 0; /* nothing in it depends on where it is */
+    masu_bake_append(&content->section[MASU_BLOB_SLOTS],
+                     scene->slot_count ? scene->slots : &no_slot,
+                     (scene->slot_count ? scene->slot_count : 1) * sizeof(float));
+    *dynamic = scene->dynamic;
+    content->sdf_glossiest = (float)scene->glossiest;
+}
+
+/* `scene` is the caller's to release, whatever is returned. */
+static bool compile_scene(const char *path, masu_bake_content *content, masu_bake_buffer *out,
+                          bool *dynamic, masu_sdfc_result *scene) {
+    masu_bake_buffer own = {0};
+    char error[2048];
+    if (!masu_bake_read_file(path, MASU_SDFC_SOURCE_MAX, &own)) return false;
+    masu_cli_progress("compiling %s", path);
+    bool good = masu_bake_count(content, MASU_BLOB_SDF_PARAMS) == 0;
+    if (!good) {
+        masu_cli_error("%s: its parameters are declared in it, not in the scene's JSON", path);
+        masu_bake_release(&own);
+        return false;
+    }
+    masu_sdfc_options options = {
+        .anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0};
+    good = masu_sdfc_compile_with((const char *)own.data, own.bytes, path, &options, scene, error,
+                                  sizeof error);
+    if (good) {
+        report_lines(scene->warnings, true);
+        take_params(scene, content);
+        take_parts(scene, content, dynamic);
+        masu_bake_append_text(out, scene->glsl);
+    } else {
+        report_lines(error, false);
+    }
+    masu_bake_release(&own);
+    return good;
+}
+
+/* Constants and not data: what a scene does not ask for is then not in its code. */
+static bool write_occlusion(const char *directory, const masu_bake_occlusion *o) {
+    char text[512];
+    int n = snprintf(text, sizeof text, "#define MASU_SHADOWS %d\n#define MASU_AMBIENT_OCCLUSION %d\n",
+                     o->shadows, o->ambient);
+    n += snprintf(text + n, sizeof text - (size_t)n,
+                  "#define MASU_SUN_TANGENT float(%.9g)\n#define MASU_SHADOW_DISTANCE float(%.9g)\n",
+                  tan(o->sun_radius), o->distance);
+    n += snprintf(text + n, sizeof text - (size_t)n,
+                  "#define MASU_AO_RADIUS float(%.9g)\n#define MASU_AO_STRENGTH float(%.9g)\n",
+                  o->radius, o->strength);
+    return write_text(directory, "sdf_options.glsl", text, (size_t)n);
+}
+
+static bool lay_out(const char *directory, masu_bake_content *content, const char *glsl_path,
+                    bool *dynamic, masu_sdfc_result *scene) {
+    for (size_t i = 0; i < sizeof masu_scene_sources / sizeof masu_scene_sources[0]; i++) {
+        const char *name = masu_scene_sources[i].name, *text = masu_scene_sources[i].text;
+        if (name && !write_text(directory, name, text, strlen(text))) return false;
+    }
+    masu_bake_buffer text = {0}, own = {0};
+    bool good;
+    if (masu_bake_is_sdf(glsl_path)) {
+        good = compile_scene(glsl_path, content, &text, dynamic, scene);
+    } else {
+        good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
+        if (good) {
+            append_scene_header(&text, content, glsl_path);
+            masu_bake_append(&text, own.data, own.bytes);
+            masu_bake_append_text(&text, "\n");
+            masu_bake_append_text(&text, "#include \"sdf/hand_written.glsl\"\n");
+            static const float no_slot = 0.0f;
+            masu_bake_append(&content->section[MASU_BLOB_SLOTS], &no_slot, sizeof no_slot);
+        }
+    }
+    good = good && write_text(directory, "sdf_scene.glsl", text.data, text.bytes) &&
+           write_text(directory, "try.comp", masu_bake_try_source, strlen(masu_bake_try_source));
+    masu_bake_release(&own);
+    masu_bake_release(&text);
+    return good;
+}
+
+/* ---- running the tools ---- */
+
+/* Without the directory that exists only now: "/tmp/masu-bake-x/march.comp" -> "march.comp". */
+static void hide_directory(char *line, const char *directory) {
+    size_t length = strlen(directory);
+    for (char *at = line; (at = strstr(at, directory));) {
+        size_t skip = at[length] == '/' ? length + 1 : length;
+        memmove(at, at + skip, strlen(at + skip) + 1);
+    }
+}
+
+/* glslang says "ERROR: FILE:LINE: message" and a count at the end. */
+static void report_compiler(char *text, const char *directory, const char *glsl_path) {
+    bool about_contract = false, scene_blamed = false;
+    int shown = 0;
+    char *save = NULL;
+    for (char *line = strtok_r(text, "\n", &save); line; line = strtok_r(NULL, "\n", &save)) {
+        hide_directory(line, directory);
+        bool error = strncmp(line, "ERROR: ", 7) == 0, warning = strncmp(line, "WARNING: ", 9) == 0;
+        if (warning) masu_cli_warn("%s", line + 9);
+        if (!error || strstr(line, "compilation errors.  No code") || shown >= ERRORS_SHOWN) {
+            continue;
+        }
+        /* After an error in the scene's own file glslang loses what follows it: more errors in our
+         * headers say nothing new. */
+        bool own = strncmp(line + 7, glsl_path, strlen(glsl_path)) == 0;
+        if (scene_blamed && !own) continue;
+        scene_blamed = scene_blamed || own;
+        masu_cli_error("%s", line + 7);
+        about_contract = about_contract || strstr(line, "'masu_sdf");
+        shown++;
+    }
+    if (about_contract) {
+        masu_cli_error("the scene's GLSL must define float masu_sdf(vec3) and "
+                       "void masu_sdf_surface(vec3, inout masu_surface)");
+    }
+}
+
+static bool run_tool(const char *const *arguments, const char *package, const char *directory,
+                     const char *glsl_path) {
+    masu_bake_buffer output = {0};
+    masu_bake_result result = masu_bake_run(arguments, MASU_BAKE_TOOL_SECONDS, &output);
+    masu_bake_append(&output, "", 1);
+    char *text = (char *)output.data;
+    bool good = result.end == MASU_BAKE_EXITED && result.code == 0;
+    bool compiler = strcmp(arguments[0], "glslangValidator") == 0;
+    if (good && compiler) {
+        report_compiler(text, directory, glsl_path);
+    } else if (result.end == MASU_BAKE_EXITED && result.code == MASU_BAKE_CANNOT_START) {
+        masu_cli_error("cannot run %s; is it installed? (package %s)", arguments[0], package);
+    } else if (result.end == MASU_BAKE_SIGNALED) {
+        masu_cli_error("%s: %s crashed (signal %d)", glsl_path, arguments[0], result.code);
+    } else if (result.end == MASU_BAKE_TIMEOUT) {
+        masu_cli_error("%s: %s took more than %d seconds", glsl_path, arguments[0], result.code);
+    } else if (result.end == MASU_BAKE_NO_CHILD) {
+        masu_cli_error("cannot start %s: %s", arguments[0], strerror(result.code));
+    } else if (!good && compiler && strstr(text, "ERROR: ")) {
+        report_compiler(text, directory, glsl_path);
+    } else if (!good) {
+        hide_directory(text, directory);
+        text[strcspn(text, "\n")] = '\0';
+        masu_cli_error("%s: %s failed (status %d): %s", glsl_path, arguments[0], result.code, text);
+    }
+    masu_bake_release(&output);
+    return good;
+}
+
+typedef struct paths {
+    char *source, *raw, *optimised, *include_here, *include_scene;
+    const char *define, *stage;
+} paths;
+
+static bool run_tools(const paths *p, bool has_raster, const char *directory,
+                      const char *glsl_path) {
+    const char *const compile[] = {"glslangValidator",
+                                   "-V",
+                                   "--target-env",
+                                   "vulkan1.1",
+                                   p->include_here,
+                                   p->include_scene,
+                                   has_raster ? "-DMASU_HAS_RASTER=1" : "-DMASU_HAS_RASTER=0",
+                                   "-S",
+                                   p->stage,
+                                   "-o",
+                                   p->raw,
+                                   p->source,
+                                   p->define, /* NULL: the list ends here */
+                                   NULL};
+    const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
+    const char *const optimise[] = {
+        "spirv-opt", "--target-env=vulkan1.1", "-O", "--strip-debug", p->raw, "-o", p->optimised,
+        NULL};
+    const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.1", p->optimised, NULL};
+    const struct {
+        const char *const *arguments;
+        const char *package;
+    } steps[] = {{compile, "glslang-tools"},
+                 {check, "spirv-tools"},
+                 {optimise, "spirv-tools"},
+                 {recheck, "spirv-tools"}};
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        masu_cli_progress("%s %s", steps[i].arguments[0], glsl_path);
+        if (!run_tool(steps[i].arguments, steps[i].package, directory, glsl_path)) return false;
+    }
+    return true;
+}
+
+static bool take_spirv(masu_bake_content *content, uint32_t kind, const char *path,
+                       const char *glsl_path) {
+    masu_bake_buffer *spirv = &content->section[kind];
+    if (!masu_bake_read_file(path, SPIRV_MAX, spirv)) return false;
+    uint32_t magic = 0;
+    if (spirv->bytes >= 20) memcpy(&magic, spirv->data, sizeof magic);
+    if (magic == SPIRV_MAGIC && spirv->bytes % 4 == 0) return true;
+    masu_cli_error("%s: spirv-opt wrote no SPIR-V", glsl_path);
+    return false;
+}
+
+static char *include_option(const char *directory) {
+    size_t bytes = strlen(directory) + 3;
+    char *option = masu_bake_allocate(bytes);
+    snprintf(option, bytes, "-I%s", directory);
+    return option;
+}
+
+enum {
+    ALWAYS,
+    UPDATED,
+    DYNAMIC,
+    VARIANT,
+    WITHOUT_RASTER,
+    OCCLUSION,
+    REFLECTED_STILL,
+    REFLECTED_DYNAMIC
+};
+
+/* The shaders that are compiled together with the scene's field, and the sections they go to. */
+static const struct {
+    const char *source, *define /* or NULL */, *raw, *optimised;
+    uint32_t kind;
+    int when; /* always; with slots that change, or with time; with --variants, and then only
+                 without polygons; with shadows or ambient occlusion; with reflections and slots that
+                 change not, or do */
+} scene_shaders[] = {
+    {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
+    {"update.comp", "-DMASU_MOTION=1", "before.raw", "before.spv", MASU_BLOB_UPDATE_PREVIOUS_SPIRV,
+     DYNAMIC},
+    {"sdf_velocity.comp", NULL, "motion.raw", "motion.spv", MASU_BLOB_VELOCITY_SPIRV, ALWAYS},
+    {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
+    {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
+    {"cone.comp", "-DMASU_CONE_BLOCK=4", "cone4.raw", "cone4.spv", MASU_BLOB_CONE4_SPIRV, ALWAYS},
+    {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
+    {"march_plain.comp", NULL, "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
+    {"march_seed.comp", NULL, "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
+    {"march_checkerboard.comp", NULL, "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
+     VARIANT},
+    {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
+     WITHOUT_RASTER},
+    {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION},
+    {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
+     REFLECTED_STILL},
+    {"specular_trace_sdf.comp", "-DMASU_MOTION=1", "mirror.raw", "mirror.spv",
+     MASU_BLOB_TRACE_SDF_SPIRV, REFLECTED_DYNAMIC}};
+
+static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool reflected,
+                   bool variants, bool has_raster) {
+    if (when == UPDATED) return dynamic || anchored;
+    if (when == DYNAMIC) return dynamic;
+    if (when == OCCLUSION) return occlusion;
+    if (when == REFLECTED_STILL) return reflected && !dynamic;
+    if (when == REFLECTED_DYNAMIC) return reflected && dynamic;
+    if (when == WITHOUT_RASTER) return variants && !has_raster;
+    return when == ALWAYS || variants;
+}
+
+/* After the others: what does not compile is reported under the march's name, as it always is. */
+static bool try_blocks(const masu_sdfc_result *scene, const char *directory, char *include_here,
+                       char *include_scene, const char *path) {
+    masu_bake_buffer spirv = {0};
+    if (!masu_bake_try_needed(scene)) return true;
+    paths p = {masu_bake_join(directory, "try.comp"),
+               masu_bake_join(directory, "try.raw"),
+               masu_bake_join(directory, "try.spv"),
+               include_here,
+               include_scene,
+               NULL,
+               "comp"};
+    masu_cli_progress("trying %s", path);
+    bool good =
+        run_tools(&p, false, directory, path) &&
+        masu_bake_read_file(p.optimised, SPIRV_MAX, &spirv) &&
+        masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, path);
+    masu_bake_release(&spirv);
+    free(p.source);
+    free(p.raw);
+    free(p.optimised);
+    return good;
+}
+
+bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
+                             const masu_bake_occlusion *occlusion, bool reflected,
+                             bool variants) {
+    const char *directory = masu_bake_temporary_directory();
+    if (!directory) return false;
+    char *scene_directory = masu_bake_directory_of(glsl_path);
+    char *include_here = include_option(directory),
+         *include_scene = include_option(scene_directory);
+    bool has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0;
+    bool dynamic = false;
+    masu_sdfc_result scene = {0};
+    bool darkens = occlusion->shadows || occlusion->ambient;
+    bool good = lay_out(directory, content, glsl_path, &dynamic, &scene) &&
+                (!darkens || write_occlusion(directory, occlusion));
+    for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
+        bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, reflected, variants, has_raster))
+            continue;
+        paths p = {masu_bake_join(directory, scene_shaders[i].source),
+                   masu_bake_join(directory, scene_shaders[i].raw),
+                   masu_bake_join(directory, scene_shaders[i].optimised),
+                   include_here,
+                   include_scene,
+                   scene_shaders[i].define,
+                   strrchr(scene_shaders[i].source, '.') + 1};
+        good = run_tools(&p, has_raster, directory, glsl_path) &&
+               take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path);
+        free(p.source);
+        free(p.raw);
+        free(p.optimised);
+    }
+    good = good && try_blocks(&scene, directory, include_here, include_scene, glsl_path);
+    masu_sdfc_release(&scene);
+    free(include_here);
+    free(include_scene);
+    free(scene_directory);
+    return good;
+}

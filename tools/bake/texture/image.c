@@ -1,0 +1,262 @@
+/* image.c: see image.h. What comes back through the pipe: a head, then the texels, or the
+ * text of what is wrong. */
+#define _POSIX_C_SOURCE 200809L
+#include "bake/texture/image.h"
+#include "bake/scene/process.h"
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include <wand/MagickWand.h>
+
+typedef struct head {
+    uint32_t width, height; /* 0: text follows */
+} head;
+
+const char *masu_bake_image_format(const unsigned char *data, size_t bytes, const char *name) {
+    static const struct {
+        const char *format, *magic;
+        size_t offset, length;
+    } rows[] = {{"PNG", "\x89PNG\r\n\x1A\n", 0, 8},
+                {"JPEG", "\xFF\xD8\xFF", 0, 3},
+                {"SGI", "\x01\xDA", 0, 2},
+                {"DDS", "DDS ", 0, 4},
+                {"BMP", "BM", 0, 2},
+                {"GIF", "GIF8", 0, 4},
+                {"TIFF", "II*\0", 0, 4},
+                {"TIFF", "MM\0*", 0, 4},
+                {"WEBP", "WEBP", 8, 4},
+                {"PSD", "8BPS", 0, 4},
+                {"PPM", "P6", 0, 2},
+                {"PGM", "P5", 0, 2}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (bytes >= rows[i].offset + rows[i].length &&
+            memcmp(data + rows[i].offset, rows[i].magic, rows[i].length) == 0) {
+            return rows[i].format;
+        }
+    }
+    size_t length = strlen(name);
+    return bytes > 18 && length > 4 && strcasecmp(name + length - 4, ".tga") == 0 ? "TGA" : NULL;
+}
+
+/* ---- the child's side ---- */
+
+typedef struct job {
+    const masu_bake_content *content;
+    const masu_bake_image *image;
+    const char *name, *directories;
+    int sizes;
+} job;
+
+static void give_up(int fd, const char *why) {
+    head h = {0, 0};
+    masu_bake_send(fd, &h, sizeof h);
+    masu_bake_send(fd, why, strlen(why));
+}
+
+static FILE *open_regular(const char *path, off_t *bytes) {
+    struct stat about;
+    FILE *file = fopen(path, "rb");
+    if (!file) return NULL;
+    if (fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode)) {
+        fclose(file);
+        errno = EINVAL;
+        return NULL;
+    }
+    *bytes = about.st_size;
+    return file;
+}
+
+/* Where its name says, else by the last part of its name in one of the directories: models often
+ * remember folders of another machine. */
+static FILE *find(const job *j, off_t *bytes) {
+    FILE *file = open_regular(j->name, bytes);
+    int cause = errno;
+    const char *slash = strrchr(j->name, '/'), *base = slash ? slash + 1 : j->name;
+    char path[4096];
+    for (const char *at = j->directories; !file && at && *at;) {
+        size_t length = strcspn(at, ":");
+        int wrote = snprintf(path, sizeof path, "%.*s/%s", (int)length, at, base);
+        if (wrote > 0 && (size_t)wrote < sizeof path) file = open_regular(path, bytes);
+        at += length + (at[length] == ':');
+    }
+    if (!file) errno = cause;
+    return file;
+}
+
+static unsigned char *read_bytes(const job *j, int fd, size_t *bytes) {
+    off_t size = 0;
+    FILE *file = find(j, &size);
+    if (!file) {
+        give_up(fd, errno == EINVAL ? "not a regular file" : strerror(errno));
+        return NULL;
+    }
+    if (size < 1 || (uint64_t)size > MASU_BAKE_IMAGE_BYTES) {
+        give_up(fd, size < 1 ? "the file is empty" : "the file is larger than 256 MiB");
+        return NULL;
+    }
+    unsigned char *data = malloc((size_t)size);
+    if (!data || fread(data, 1, (size_t)size, file) != (size_t)size) {
+        give_up(fd, "cannot be read to its end");
+        return NULL;
+    }
+    *bytes = (size_t)size;
+    return data;
+}
+
+static size_t power_near(size_t size) {
+    size_t power = 1;
+    while (power * 3 / 2 <= size && power < MASU_TEXTURE_SIZE_MAX) power *= 2;
+    return power;
+}
+
+static void choose_size(int sizes, size_t *width, size_t *height) {
+    if (sizes != MASU_BAKE_SIZE_KEPT) {
+        *width = power_near(*width);
+        *height = power_near(*height);
+    }
+    if (sizes == MASU_BAKE_SIZE_SQUARE) {
+        if (*width < *height) *width = *height;
+        *height = *width;
+    }
+    /* Both sides by the same factor: the picture keeps its shape. */
+    size_t larger = *width > *height ? *width : *height;
+    if (larger > MASU_TEXTURE_SIZE_MAX) {
+        *width = *width * MASU_TEXTURE_SIZE_MAX / larger;
+        *height = *height * MASU_TEXTURE_SIZE_MAX / larger;
+    }
+    if (*width < 1) *width = 1;
+    if (*height < 1) *height = 1;
+}
+
+static void set_limits(void) {
+    MagickSetResourceLimit(WidthResource, MASU_BAKE_IMAGE_SIDE);
+    MagickSetResourceLimit(HeightResource, MASU_BAKE_IMAGE_SIDE);
+    MagickSetResourceLimit(AreaResource, (MagickSizeType)1 << 26);
+    MagickSetResourceLimit(MemoryResource, (MagickSizeType)1 << 30);
+    MagickSetResourceLimit(MapResource, 0);
+    MagickSetResourceLimit(DiskResource, 0);
+    MagickSetResourceLimit(ThreadResource, 1);
+}
+
+static void complain(MagickWand *wand, int fd) {
+    ExceptionType severity;
+    char *text = MagickGetException(wand, &severity);
+    char line[256];
+    snprintf(line, sizeof line, "%s", text && *text ? text : "no reason is given");
+    for (char *c = line; *c; c++) {
+        if ((unsigned char)*c < 0x20) *c = ' ';
+    }
+    give_up(fd, line);
+}
+
+static void send_texels(MagickWand *wand, int sizes, int fd) {
+    size_t width = MagickGetImageWidth(wand), height = MagickGetImageHeight(wand);
+    size_t w = width, h = height;
+    choose_size(sizes, &w, &h);
+    unsigned char *texels = malloc(w * h * 4);
+    if (!texels) {
+        give_up(fd, "out of memory");
+        return;
+    }
+    if (((w != width || h != height) &&
+         MagickResizeImage(wand, w, h, BoxFilter, 1.0) == MagickFalse) ||
+        MagickExportImagePixels(wand, 0, 0, w, h, "RGBA", CharPixel, texels) == MagickFalse) {
+        complain(wand, fd);
+        return;
+    }
+    head answer = {(uint32_t)w, (uint32_t)h};
+    masu_bake_send(fd, &answer, sizeof answer);
+    masu_bake_send(fd, texels, w * h * 4);
+}
+
+static void decode(const job *j, const unsigned char *data, size_t bytes, int fd) {
+    MagickWandGenesis();
+    set_limits();
+    MagickWand *wand = NewMagickWand();
+    if (j->image->raw_width) {
+        if (MagickConstituteImage(wand, j->image->raw_width, j->image->raw_height, "BGRA",
+                                  CharPixel, (void *)(uintptr_t)data) == MagickFalse) {
+            complain(wand, fd);
+        } else {
+            send_texels(wand, j->sizes, fd);
+        }
+        return;
+    }
+    const char *format = masu_bake_image_format(data, bytes, j->name);
+    if (!format) {
+        give_up(fd, "not a picture of a kind that is read");
+        return;
+    }
+    char forced[16];
+    snprintf(forced, sizeof forced, "%s:", format);
+    MagickSetFilename(wand, forced);
+    MagickSetFormat(wand, format);
+    if (MagickReadImageBlob(wand, data, bytes) == MagickFalse) {
+        complain(wand, fd);
+        return;
+    }
+    MagickSetFirstIterator(wand); /* of several pictures, such as mips, the first */
+    /* A TGA may have its lowest row first and says so; ImageMagick leaves it like that. */
+    if (!strcmp(format, "TGA")) MagickAutoOrientImage(wand);
+    if (MagickGetImageColorspace(wand) == CMYKColorspace) {
+        MagickTransformImageColorspace(wand, sRGBColorspace);
+    }
+    send_texels(wand, j->sizes, fd);
+}
+
+static void read_in_child(void *argument, int fd) {
+    const job *j = argument;
+    const unsigned char *data = j->content->image_data.data + j->image->data;
+    size_t bytes = (size_t)j->image->data_bytes;
+    if (!bytes) data = read_bytes(j, fd, &bytes);
+    if (data) decode(j, data, bytes, fd);
+}
+
+/* ---- the parent's side ---- */
+
+static bool warn(const char *name, const char *why) {
+    masu_cli_warn("texture %s: %s; left out", name, why);
+    return false;
+}
+
+bool masu_bake_read_image(const masu_bake_content *content, uint32_t image, const char *directories,
+                          int sizes, masu_bake_picture *picture) {
+    const masu_bake_image *about = &MASU_BAKE_IMAGES(content)[image];
+    const char *name = (const char *)content->image_text.data + about->name;
+    job j = {content, about, name, directories, sizes};
+    *picture = (masu_bake_picture){0, 0, {0}};
+    masu_bake_buffer *out = &picture->rgba;
+    masu_bake_result result = masu_bake_fork(read_in_child, &j, MASU_BAKE_IMAGE_SECONDS, out);
+    head h = {0, 0};
+    bool good = false;
+    if (result.end == MASU_BAKE_TIMEOUT) {
+        warn(name, "reading it takes too long");
+    } else if (result.end != MASU_BAKE_EXITED || result.code || out->bytes < sizeof h) {
+        warn(name, "its reader crashed or ran out of memory");
+    } else {
+        memcpy(&h, out->data, sizeof h);
+        good = h.width > 0 && h.width <= MASU_TEXTURE_SIZE_MAX && h.height > 0 &&
+               h.height <= MASU_TEXTURE_SIZE_MAX &&
+               out->bytes == sizeof h + (size_t)h.width * h.height * 4;
+        if (!good) {
+            masu_bake_append(out, "", 1);
+            warn(name, h.width ? "its reader returned something else"
+                               : (const char *)out->data + sizeof h);
+        }
+    }
+    if (!good) {
+        masu_bake_release(out);
+        return false;
+    }
+    memmove(out->data, out->data + sizeof h, out->bytes - sizeof h);
+    out->bytes -= sizeof h;
+    picture->width = h.width;
+    picture->height = h.height;
+    return true;
+}

@@ -1,0 +1,557 @@
+/* texture.c: see texture.h.
+ *
+ *   maps of a material -> requests (what is to be made of which pictures), each made once
+ *   request -> texture: pictures read, mips filtered, blocks made
+ *   textures of one format and size -> one array of layers, the larger ones first
+ *   arrays that a material uses together, and its wrapping -> a texture set
+ *
+ * Colour is filtered as linear light and weighted by alpha; masks keep their coverage; normals are
+ * added up as vectors, and what their mean lacks in length makes the surface rougher: in its roughness
+ * map, which is as large as the normals', or in one made for it where there is none. */
+#include "bake/texture/texture.h"
+#include "bake/texture/image.h"
+#include "bake/texture/mask.h"
+#include "bake/texture/texel.h"
+#include "bake/texture/trace_texture.h"
+#include "cli/cli.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What to make; compared as bytes. */
+typedef struct request {
+    uint32_t slot;
+    uint32_t image[3]; /* base: colour, opacity. surface: roughness, metallic, normal. Or one */
+    uint8_t channel[2];
+    uint8_t gloss, alpha;
+    float cutoff, normal_scale, roughness;
+} request;
+
+typedef struct texture {
+    request wanted;
+    bool made; /* else its pictures could not be used */
+    uint32_t format, width, height, mips;
+    uint8_t alpha; /* what AUTO came to */
+    bool absolute; /* roughness has the material's factor in it already */
+    masu_bake_buffer blocks;
+    bool traced; /* it keeps a picture for rays */
+    uint32_t traced_side;
+    masu_bake_trace_picture picture;
+    uint32_t array, layer;
+} texture;
+
+typedef struct maker {
+    masu_bake_content *content;
+    const char *directories;
+    int sizes;
+    bool *failed; /* by image: warned of once */
+    texture *textures;
+    uint32_t count, capacity;
+    uint32_t *order;
+} maker;
+
+static bool read_picture(maker *m, uint32_t image, masu_bake_picture *picture) {
+    *picture = (masu_bake_picture){0, 0, {0}};
+    if (image == MASU_BLOB_NONE || m->failed[image]) return false;
+    bool good = masu_bake_read_image(m->content, image, m->directories, m->sizes, picture);
+    m->failed[image] = !good;
+    return good;
+}
+
+/* Byte `channel` of the texel of `p` that is where (x, y) of a picture of that size is. */
+static uint8_t byte_at(const masu_bake_picture *p, uint32_t x, uint32_t y, uint32_t width,
+                       uint32_t height, uint32_t channel) {
+    size_t px = (size_t)x * p->width / width, py = (size_t)y * p->height / height;
+    return p->rgba.data[4 * (py * p->width + px) + channel];
+}
+
+static float *allocate_level(uint32_t width, uint32_t height) {
+    return masu_bake_allocate((size_t)width * height * 4 * sizeof(float));
+}
+
+/* ---- mips and blocks ---- */
+
+static void begin(texture *t, uint32_t format, uint32_t width, uint32_t height) {
+    t->format = format;
+    t->width = width;
+    t->height = height;
+    t->mips = 1;
+    while ((width > height ? width : height) >> t->mips) t->mips++;
+}
+
+static unsigned char *append_blocks(texture *t, const uint8_t *bytes, uint32_t w, uint32_t h) {
+    size_t blocks = (size_t)((w + 3) / 4) * ((h + 3) / 4);
+    unsigned char *to =
+        masu_bake_append(&t->blocks, NULL, blocks * masu_blob_block_bytes(t->format));
+    masu_texel_blocks(t->format, bytes, w, h, to);
+    return to;
+}
+
+/* A level, and the next one in its place; `level` has room for the largest. */
+static void step_down(float *level, float *scratch, uint32_t w, uint32_t h, bool by_alpha) {
+    uint32_t nw = w > 1 ? w / 2 : 1, nh = h > 1 ? h / 2 : 1;
+    masu_texel_halve(level, w, h, by_alpha, scratch);
+    memcpy(level, scratch, (size_t)nw * nh * 4 * sizeof *level);
+}
+
+static void encode_color(const float *level, size_t texels, uint8_t *bytes) {
+    for (size_t i = 0; i < texels; i++) {
+        for (int k = 0; k < 3; k++) bytes[4 * i + k] = masu_texel_to_srgb(level[4 * i + k]);
+        bytes[4 * i + 3] = masu_texel_to_unorm(level[4 * i + 3]);
+    }
+}
+
+/* The alpha of a mask's mip into its blocks; `wanted`: what mip 0 covers, which mip 0 says. */
+static void encode_mask(const texture *t, const float *level, uint32_t w, uint32_t h, uint32_t mip,
+                        double *wanted, uint8_t *scratch, unsigned char *blocks) {
+    uint8_t cutoff = masu_texel_to_unorm(t->wanted.cutoff);
+    float scale = 1;
+    if (mip && *wanted > 0 && *wanted < 1) {
+        scale = masu_mask_scale(level, w, h, cutoff, *wanted, scratch);
+    }
+    masu_mask_encode(level, w, h, cutoff, scale, scratch, blocks);
+    if (!mip) *wanted = masu_mask_coverage(scratch, w, h, cutoff);
+}
+
+static void encode_normal(const float *level, size_t texels, uint8_t *bytes) {
+    for (size_t i = 0; i < texels; i++) {
+        masu_bake_vec3 n = masu_bake_v3f(level + 4 * i);
+        if (!masu_bake_normalize(&n)) n = masu_bake_v3(0, 0, 1);
+        bytes[4 * i] = (uint8_t)(128.5 + 127 * n.x);
+        bytes[4 * i + 1] = (uint8_t)(128.5 + 127 * n.y);
+        bytes[4 * i + 2] = bytes[4 * i + 3] = 255;
+    }
+}
+
+/* Roughness itself is averaged: the mean of alpha^2, which a variance is, drowns what is smooth, and the
+ * light of a mixture is further off (tests/unit/test_normal_filter.c). */
+static void encode_surface(const float *level, const float *normals, size_t texels, float roughness,
+                           uint8_t *bytes) {
+    for (size_t i = 0; i < texels; i++) {
+        float rough = level[4 * i];
+        if (normals) {
+            float length = (float)masu_bake_length(masu_bake_v3f(normals + 4 * i));
+            rough = masu_texel_rougher(rough * roughness, length);
+        }
+        bytes[4 * i] = masu_texel_to_unorm(rough);
+        bytes[4 * i + 1] = masu_texel_to_unorm(level[4 * i + 1]);
+        bytes[4 * i + 2] = bytes[4 * i + 3] = 255;
+    }
+}
+
+/* What rays see of a mip; `bytes`: what it was encoded as, of masks their alpha. Nothing of normals and
+ * occlusion, nor of what is blended, which rays pass by. */
+static void keep_picture(texture *t, const float *level, const uint8_t *bytes, uint32_t w,
+                         uint32_t h, uint32_t mip) {
+    bool mask = t->format == MASU_TEXTURE_BC3_SRGB;
+    if (!t->traced) return;
+    if (t->wanted.slot == MASU_SLOT_SURFACE) {
+        masu_bake_trace_surface(&t->picture, bytes, (size_t)w * h, mip == 0, mip + 1 == t->mips);
+    } else if (t->wanted.slot == MASU_SLOT_EMISSIVE ||
+               (t->wanted.slot == MASU_SLOT_BASE && !(mask && t->alpha == MASU_BAKE_ALPHA_BLEND))) {
+        masu_bake_trace_colors(&t->picture, t->traced_side, level, w, h, mask ? bytes : NULL);
+    }
+}
+
+/* All mips of `level`, which is used up; `normals`, of the same size, may be NULL. */
+static void finish(texture *t, float *level, float *normals) {
+    size_t texels = (size_t)t->width * t->height;
+    float *scratch = allocate_level(t->width, t->height);
+    uint8_t *bytes = masu_bake_allocate(texels * 4);
+    bool by_alpha = t->format == MASU_TEXTURE_BC3_SRGB;
+    double wanted = 1;
+    uint32_t w = t->width, h = t->height;
+    for (uint32_t mip = 0; mip < t->mips; mip++) {
+        texels = (size_t)w * h;
+        if (t->wanted.slot == MASU_SLOT_NORMAL) {
+            encode_normal(level, texels, bytes);
+        } else if (t->wanted.slot == MASU_SLOT_SURFACE || t->wanted.slot == MASU_SLOT_OCCLUSION) {
+            encode_surface(level, normals, texels, t->wanted.roughness, bytes);
+        } else {
+            encode_color(level, texels, bytes);
+        }
+        unsigned char *blocks = append_blocks(t, bytes, w, h);
+        if (t->alpha == MASU_BAKE_ALPHA_MASK && by_alpha) {
+            encode_mask(t, level, w, h, mip, &wanted, bytes, blocks);
+        }
+        keep_picture(t, level, bytes, w, h, mip);
+        if (mip + 1 == t->mips) break;
+        step_down(level, scratch, w, h, by_alpha);
+        if (normals) step_down(normals, scratch, w, h, false);
+        w = w > 1 ? w / 2 : 1;
+        h = h > 1 ? h / 2 : 1;
+    }
+    t->made = true;
+    free(bytes);
+    free(scratch);
+}
+
+/* ---- the three kinds ---- */
+
+/* What alpha is meant for, where the model does not say: nothing where no texel is under the cut-off,
+ * else a mask. Never blending: it costs a draw for each thing, and an order that meshes of many leaves
+ * do not have. */
+static uint8_t judge_alpha(const float *level, size_t texels, float cutoff, uint8_t meant) {
+    size_t below = 0, less = 0;
+    for (size_t i = 0; i < texels; i++) {
+        float a = level[4 * i + 3];
+        less += a < 0.999f;
+        below += a < cutoff;
+    }
+    if (meant == MASU_BAKE_ALPHA_OPAQUE || !less) return MASU_BAKE_ALPHA_OPAQUE;
+    if (meant != MASU_BAKE_ALPHA_AUTO) return meant;
+    return below ? MASU_BAKE_ALPHA_MASK : MASU_BAKE_ALPHA_OPAQUE;
+}
+
+/* Opacity as a picture: its alpha where that says something, else its brightness. */
+static uint32_t opacity_channel(const masu_bake_picture *p) {
+    for (size_t i = 0; i < p->rgba.bytes; i += 4) {
+        if (p->rgba.data[i + 3] != 255) return 3;
+    }
+    return 0;
+}
+
+static void make_color(maker *m, texture *t) {
+    masu_bake_picture color, opacity;
+    bool has_color = read_picture(m, t->wanted.image[0], &color);
+    bool has_opacity =
+        t->wanted.slot == MASU_SLOT_BASE && read_picture(m, t->wanted.image[1], &opacity);
+    if (has_color || has_opacity) {
+        const masu_bake_picture *size = has_color ? &color : &opacity;
+        uint32_t w = size->width, h = size->height;
+        uint32_t channel = has_opacity ? opacity_channel(&opacity) : 0;
+        float *level = allocate_level(w, h), linear[256];
+        for (int i = 0; i < 256; i++) linear[i] = masu_texel_from_srgb((uint8_t)i);
+        for (uint32_t y = 0; y < h; y++) {
+            for (uint32_t x = 0; x < w; x++) {
+                float *to = level + 4 * ((size_t)y * w + x);
+                for (uint32_t k = 0; k < 3; k++) {
+                    to[k] = has_color ? linear[byte_at(&color, x, y, w, h, k)] : 1;
+                }
+                to[3] = has_opacity ? (float)byte_at(&opacity, x, y, w, h, channel) / 255.0f
+                        : has_color ? (float)byte_at(&color, x, y, w, h, 3) / 255.0f
+                                    : 1;
+            }
+        }
+        size_t texels = (size_t)w * h;
+        t->alpha = judge_alpha(level, texels, t->wanted.cutoff, t->wanted.alpha);
+        bool opaque = t->alpha == MASU_BAKE_ALPHA_OPAQUE || t->wanted.slot != MASU_SLOT_BASE;
+        begin(t, opaque ? MASU_TEXTURE_BC1_SRGB : MASU_TEXTURE_BC3_SRGB, w, h);
+        finish(t, level, NULL);
+        free(level);
+    }
+    masu_bake_release(&color.rgba);
+    if (has_opacity) masu_bake_release(&opacity.rgba);
+}
+
+/* As normals of a map of this size. */
+static float *normal_level(const masu_bake_picture *p, float scale, uint32_t w, uint32_t h) {
+    float *level = allocate_level(w, h);
+    for (size_t i = 0; i < (size_t)w * h; i++) {
+        size_t x = i % w * p->width / w, y = i / w * p->height / h;
+        const uint8_t *from = p->rgba.data + 4 * (y * p->width + x);
+        masu_bake_vec3 n = {(from[0] - 128) / 127.0 * (double)scale,
+                            (from[1] - 128) / 127.0 * (double)scale, (from[2] - 128) / 127.0};
+        if (n.z < 0 || !masu_bake_normalize(&n)) n = masu_bake_v3(0, 0, 1);
+        level[4 * i] = (float)n.x;
+        level[4 * i + 1] = (float)n.y;
+        level[4 * i + 2] = (float)n.z;
+        level[4 * i + 3] = 1;
+    }
+    return level;
+}
+
+static void make_normal(maker *m, texture *t) {
+    masu_bake_picture p;
+    if (!read_picture(m, t->wanted.image[0], &p)) return;
+    float *level = normal_level(&p, t->wanted.normal_scale, p.width, p.height);
+    begin(t, MASU_TEXTURE_BC5, p.width, p.height);
+    finish(t, level, NULL);
+    free(level);
+    masu_bake_release(&p.rgba);
+}
+
+static void make_surface(maker *m, texture *t) {
+    masu_bake_picture p[3];
+    bool has[3];
+    for (int i = 0; i < 3; i++) has[i] = read_picture(m, t->wanted.image[i], &p[i]);
+    if (has[0] || has[1] || has[2]) {
+        const masu_bake_picture *size = has[0] ? &p[0] : has[1] ? &p[1] : &p[2];
+        uint32_t w = size->width, h = size->height;
+        /* No smaller than the normals: else they would make it rougher where they are still seen. */
+        if (has[2] && w < p[2].width) w = p[2].width;
+        if (has[2] && h < p[2].height) h = p[2].height;
+        float *level = allocate_level(w, h), *normals = NULL;
+        for (uint32_t y = 0; y < h; y++) {
+            for (uint32_t x = 0; x < w; x++) {
+                float *to = level + 4 * ((size_t)y * w + x);
+                for (int i = 0; i < 2; i++) {
+                    to[i] = has[i]
+                                ? (float)byte_at(&p[i], x, y, w, h, t->wanted.channel[i]) / 255.0f
+                                : 1;
+                }
+                if (has[0] && t->wanted.gloss) to[0] = 1 - to[0];
+                to[2] = to[3] = 1;
+            }
+        }
+        if (has[2]) {
+            normals = normal_level(&p[2], t->wanted.normal_scale, w, h);
+            t->absolute = true;
+        }
+        begin(t, has[1] ? MASU_TEXTURE_BC5 : MASU_TEXTURE_BC4, w, h);
+        finish(t, level, normals);
+        free(normals);
+        free(level);
+    }
+    for (int i = 0; i < 3; i++) masu_bake_release(&p[i].rgba);
+}
+
+/* ---- requests ---- */
+
+static uint32_t obtain(maker *m, const request *wanted) {
+    for (uint32_t i = 0; i < m->count; i++) {
+        if (memcmp(&m->textures[i].wanted, wanted, sizeof *wanted) == 0) return i;
+    }
+    if (m->count == m->capacity) {
+        m->capacity = m->capacity ? 2 * m->capacity : 64;
+        texture *grown = masu_bake_allocate(m->capacity * sizeof *grown);
+        if (m->count) memcpy(grown, m->textures, m->count * sizeof *grown);
+        free(m->textures);
+        m->textures = grown;
+    }
+    texture *t = &m->textures[m->count];
+    *t = (texture){.wanted = *wanted,
+                   .traced = m->content->pictures_wanted,
+                   .traced_side = m->content->picture_side};
+    masu_cli_progress("texture %u", m->count + 1);
+    switch (wanted->slot) {
+    case MASU_SLOT_NORMAL: make_normal(m, t); break;
+    case MASU_SLOT_OCCLUSION: /* one channel, as roughness alone */
+    case MASU_SLOT_SURFACE: make_surface(m, t); break;
+    default: make_color(m, t); break;
+    }
+    return m->count++;
+}
+
+/* The textures of a material by slot, NONE where there are none. */
+static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
+                        uint32_t out[MASU_SLOT_COUNT]) {
+    for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
+        request r;
+        memset(&r, 0, sizeof r);
+        r.slot = slot;
+        r.image[0] = r.image[1] = r.image[2] = MASU_BLOB_NONE;
+        switch (slot) {
+        case MASU_SLOT_BASE:
+            r.image[0] = maps->image[MASU_BAKE_BASE];
+            r.image[1] = maps->image[MASU_BAKE_OPACITY];
+            r.alpha = maps->alpha;
+            r.cutoff = maps->cutoff;
+            break;
+        case MASU_SLOT_NORMAL:
+            r.image[0] = maps->image[MASU_BAKE_NORMAL];
+            r.normal_scale = maps->normal_scale;
+            break;
+        case MASU_SLOT_SURFACE:
+            r.image[0] = maps->image[MASU_BAKE_ROUGHNESS];
+            r.image[1] = maps->image[MASU_BAKE_METALLIC];
+            r.channel[0] = maps->channel[MASU_BAKE_ROUGHNESS];
+            r.channel[1] = maps->channel[MASU_BAKE_METALLIC];
+            r.gloss = maps->gloss;
+            /* Normals alone make a roughness map too, unless the surface is as rough as can be. */
+            if (maps->image[MASU_BAKE_NORMAL] != MASU_BLOB_NONE &&
+                (r.image[0] != MASU_BLOB_NONE || material->roughness < 0.99f)) {
+                r.image[2] = maps->image[MASU_BAKE_NORMAL];
+                r.normal_scale = maps->normal_scale;
+                r.roughness = material->roughness;
+            }
+            break;
+        case MASU_SLOT_OCCLUSION:
+            r.image[0] = maps->image[MASU_BAKE_OCCLUSION];
+            r.channel[0] = maps->channel[MASU_BAKE_OCCLUSION];
+            break;
+        default: r.image[0] = maps->image[MASU_BAKE_EMISSIVE]; break;
+        }
+        out[slot] = MASU_BLOB_NONE;
+        if (r.image[0] == MASU_BLOB_NONE && r.image[1] == MASU_BLOB_NONE &&
+            r.image[2] == MASU_BLOB_NONE) {
+            continue;
+        }
+        uint32_t found = obtain(m, &r);
+        if (m->textures[found].made) out[slot] = found;
+    }
+}
+
+/* ---- arrays ---- */
+
+static const texture *sorted; /* qsort has no other way to give its comparison anything */
+
+static int compare(const void *a, const void *b) {
+    const uint32_t i = *(const uint32_t *)a, j = *(const uint32_t *)b;
+    const texture *x = &sorted[i], *y = &sorted[j];
+    const uint64_t keys[2] = {(uint64_t)x->width * x->height, (uint64_t)y->width * y->height};
+    if (keys[0] != keys[1]) return keys[0] > keys[1] ? -1 : 1;
+    if (x->width != y->width) return x->width > y->width ? -1 : 1;
+    if (x->format != y->format) return x->format < y->format ? -1 : 1;
+    return i < j ? -1 : i > j;
+}
+
+static bool same_array(const texture *a, const texture *b) {
+    return a->format == b->format && a->width == b->width && a->height == b->height;
+}
+
+/* Numbers the arrays; returns how many. `made`: of order. */
+static uint32_t number_arrays(maker *m, uint32_t *made) {
+    *made = 0;
+    free(m->order);
+    m->order = masu_bake_allocate(m->count * sizeof *m->order);
+    for (uint32_t i = 0; i < m->count; i++) {
+        if (m->textures[i].made) m->order[(*made)++] = i;
+    }
+    sorted = m->textures;
+    if (*made) qsort(m->order, *made, sizeof *m->order, compare);
+    uint32_t arrays = 0;
+    for (uint32_t i = 0; i < *made; i++) {
+        texture *t = &m->textures[m->order[i]];
+        const texture *before = i ? &m->textures[m->order[i - 1]] : NULL;
+        if (before && same_array(before, t) && before->layer + 1 < MASU_TEXTURE_LAYERS_MAX) {
+            t->array = before->array;
+            t->layer = before->layer + 1;
+        } else {
+            t->array = arrays++;
+            t->layer = 0;
+        }
+    }
+    return arrays;
+}
+
+static void write_arrays(maker *m, uint32_t made) {
+    masu_bake_content *c = m->content;
+    masu_bake_buffer *texels = &c->section[MASU_BLOB_TEXELS];
+    for (uint32_t i = 0; i < made; i++) {
+        const texture *t = &m->textures[m->order[i]];
+        if (t->layer == 0) {
+            uint32_t image = t->wanted.image[0];
+            for (int k = 1; k < 3 && image == MASU_BLOB_NONE; k++) image = t->wanted.image[k];
+            const char *name = (const char *)c->image_text.data + MASU_BAKE_IMAGES(c)[image].name;
+            const char *slash = strrchr(name, '/');
+            if (slash) name = slash + 1;
+            masu_bake_append(texels, NULL, (size_t)(-texels->bytes % MASU_BLOB_ALIGN));
+            masu_blob_texture row = {.format = t->format,
+                                     .width = t->width,
+                                     .height = t->height,
+                                     .mips = t->mips,
+                                     .name = masu_bake_name(c, name, strlen(name)),
+                                     .offset = texels->bytes};
+            masu_bake_append(&c->section[MASU_BLOB_TEXTURES], &row, sizeof row);
+        }
+        MASU_BAKE_ARRAY(c, MASU_BLOB_TEXTURES, masu_blob_texture)[t->array].layers++;
+        masu_bake_append(texels, t->blocks.data, t->blocks.bytes);
+        masu_bake_trace_keep(c, t->array, t->layer, &t->picture);
+    }
+    masu_bake_append(texels, NULL, (size_t)(-texels->bytes % MASU_BLOB_ALIGN));
+}
+
+/* ---- materials ---- */
+
+static uint32_t set_of(masu_bake_content *c, const masu_blob_texture_set *set) {
+    uint64_t count = masu_bake_count(c, MASU_BLOB_TEXTURE_SETS);
+    const masu_blob_texture_set *sets =
+        MASU_BAKE_ARRAY(c, MASU_BLOB_TEXTURE_SETS, const masu_blob_texture_set);
+    for (uint64_t i = 0; i < count; i++) {
+        if (memcmp(&sets[i], set, sizeof *set) == 0) return (uint32_t)i;
+    }
+    masu_bake_append(&c->section[MASU_BLOB_TEXTURE_SETS], set, sizeof *set);
+    return (uint32_t)count;
+}
+
+static void point(maker *m, masu_blob_material *material, const masu_bake_maps *maps,
+                  const uint32_t slots[MASU_SLOT_COUNT]) {
+    masu_blob_texture_set set = {.wrap = {maps->wrap[0], maps->wrap[1]}};
+    uint32_t flags = 0, layers = 0;
+    /* What may be blended but is opaque all over is not. */
+    if (maps->alpha == MASU_BAKE_ALPHA_BLEND && (maps->additive || material->opacity < 0.999f))
+        flags |= MASU_MATERIAL_IS_BLEND;
+    for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
+        set.texture[slot] = MASU_BLOB_NONE;
+        if (slots[slot] == MASU_BLOB_NONE) continue;
+        const texture *t = &m->textures[slots[slot]];
+        set.texture[slot] = t->array;
+        if (slot == MASU_SLOT_OCCLUSION)
+            material->occlusion_layer = t->layer;
+        else
+            layers |= t->layer << 8 * slot;
+        flags |= 1u << slot;
+        if (slot == MASU_SLOT_BASE && t->format == MASU_TEXTURE_BC3_SRGB) {
+            if (t->alpha == MASU_BAKE_ALPHA_BLEND) {
+                flags |= MASU_MATERIAL_IS_BLEND;
+            } else {
+                flags |= MASU_MATERIAL_IS_MASK;
+                flags |= (uint32_t)masu_texel_to_unorm(maps->cutoff) << MASU_MATERIAL_CUTOFF_SHIFT;
+            }
+        }
+        if (slot == MASU_SLOT_SURFACE && t->format == MASU_TEXTURE_BC5) {
+            flags |= MASU_MATERIAL_HAS_METAL;
+        }
+        if (t->absolute) material->roughness = 1;
+    }
+    /* An emissive factor is often white and meant for its map: without the map it would be a lamp. */
+    if (maps->image[MASU_BAKE_EMISSIVE] != MASU_BLOB_NONE &&
+        slots[MASU_SLOT_EMISSIVE] == MASU_BLOB_NONE) {
+        memset(material->emissive, 0, sizeof material->emissive);
+    }
+    if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
+    if (!(flags & MASU_MATERIAL_IS_BLEND)) material->opacity = 1;
+    material->flags = flags;
+    if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
+    material->layers = layers;
+    material->texture_set = set_of(m->content, &set);
+}
+
+static void forget(maker *m) {
+    for (uint32_t i = 0; i < m->count; i++) {
+        masu_bake_release(&m->textures[i].blocks);
+        masu_bake_release(&m->textures[i].picture.texels);
+    }
+    m->count = 0;
+}
+
+bool masu_bake_make_textures(masu_bake_content *content, const char *directories) {
+    size_t materials = (size_t)masu_bake_count(content, MASU_BLOB_MATERIALS);
+    size_t images = content->images.bytes / sizeof(masu_bake_image);
+    maker m = {.content = content, .directories = directories};
+    uint32_t(*slots)[MASU_SLOT_COUNT] = masu_bake_allocate(materials * sizeof *slots);
+    m.failed = masu_bake_allocate(images);
+    memset(m.failed, 0, images);
+    uint32_t arrays = 0, made = 0;
+    for (m.sizes = 0; m.sizes < MASU_BAKE_SIZES; m.sizes++) {
+        forget(&m);
+        for (size_t i = 0; i < materials; i++) {
+            request_all(&m, &MASU_BAKE_MAPS_OF(content)[i], &MASU_BAKE_MATERIALS(content)[i],
+                        slots[i]);
+        }
+        arrays = number_arrays(&m, &made);
+        if (arrays <= MASU_TEXTURE_ARRAYS_MAX) break;
+        masu_cli_warn("%u sizes and formats of textures, a scene may have %u: %s", arrays,
+                      MASU_TEXTURE_ARRAYS_MAX,
+                      m.sizes ? "they become squares" : "they become powers of two");
+    }
+    masu_cli_progress_clear();
+    bool good = arrays <= MASU_TEXTURE_ARRAYS_MAX;
+    if (!good) {
+        masu_cli_error("%u sizes and formats of textures, a scene may have %u", arrays,
+                       MASU_TEXTURE_ARRAYS_MAX);
+    } else {
+        write_arrays(&m, made);
+        for (size_t i = 0; i < materials; i++) {
+            point(&m, &MASU_BAKE_MATERIALS(content)[i], &MASU_BAKE_MAPS_OF(content)[i], slots[i]);
+        }
+        if (!made) masu_bake_release(&content->section[MASU_BLOB_TEXCOORDS]);
+    }
+    forget(&m);
+    free(m.textures);
+    free(m.order);
+    free(m.failed);
+    free(slots);
+    return good;
+}

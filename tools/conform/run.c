@@ -1,0 +1,629 @@
+/* run.c: see run.h. */
+#include "conform/run.h"
+
+#include "alloc_count.h"
+#include "bench/measure/picture.h"
+#include "cli/cli.h"
+#include "clock.h"
+#include "image.h"
+#include "metric/flip.h"
+#include "metric/image.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The calibration: FSR1 on a picture made by formula. Large enough that what a submit costs does
+ * not count, small enough to be run many times. */
+enum { FROM_WIDTH = 320, FROM_HEIGHT = 180, TO_WIDTH = 640, TO_HEIGHT = 360 };
+#define ROUNDS_MOST 4u
+#define TURN_MOST 64.0 /* frames of it */
+
+/* ---- Findings -------------------------------------------------------------------------------- */
+
+/* The worst verdict stays; of those equally bad all are told, as far as there is room. */
+static void find(masu_conform_result *r, masu_verdict verdict, const char *format, ...) {
+    if (verdict < r->verdict || verdict == MASU_VERDICT_PASS) return;
+    size_t n = verdict > r->verdict ? 0 : strlen(r->why);
+    r->verdict = verdict;
+    if (n && n + 3 < sizeof r->why) n += (size_t)snprintf(r->why + n, sizeof r->why - n, "; ");
+    va_list arguments;
+    va_start(arguments, format);
+    if (n < sizeof r->why && vsnprintf(r->why + n, sizeof r->why - n, format, arguments) < 0)
+        r->why[n] = '\0';
+    va_end(arguments);
+}
+
+static void note(masu_conform_result *r, const char *text) {
+    size_t n = strlen(r->note);
+    snprintf(r->note + n, sizeof r->note - n, "%s%s", n ? "; " : "", text);
+}
+
+static void judge(masu_conform_result *r, masu_measure m, bool least) {
+    const masu_bound *bound = least ? &r->of->least[m] : &r->of->bounds[m];
+    bool more = least || m == MASU_MEASURE_PSNR || m == MASU_MEASURE_SSIM;
+    masu_verdict verdict = masu_bound_judge(bound, r->values[m], more);
+    if (verdict == MASU_VERDICT_PASS) return;
+    double limit = verdict == MASU_VERDICT_FAIL ? bound->fail : bound->warn;
+    if (isnan(r->values[m])) {
+        find(r, verdict, "%s was not measured, the limit is %.10g", masu_measure_name(m), limit);
+        return;
+    }
+    find(r, verdict, "%s is %.10g, %s is %.10g", masu_measure_name(m), r->values[m],
+         more ? "needed" : "the limit", limit);
+}
+
+static void judge_all(masu_conform_result *r, bool validated) {
+    for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
+        bool blind = isnan(r->values[m]) &&
+                     ((m == MASU_MEASURE_ALLOCATIONS && (validated || !masu_alloc_counting())) ||
+                      (m == MASU_MEASURE_MESSAGES && !validated));
+        if (!blind) judge(r, (masu_measure)m, false);
+        judge(r, (masu_measure)m, true);
+    }
+}
+
+/* Why masu_session_start has failed. */
+static masu_verdict verdict_of(const masu_detail *d) {
+    if (d->vulkan == VK_ERROR_OUT_OF_HOST_MEMORY || d->vulkan == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        return MASU_VERDICT_RESOURCE;
+    switch (d->result) {
+    case MASU_OK: return MASU_VERDICT_RESOURCE; /* the host block was not to be had */
+    case MASU_ERROR_MEMORY:
+    case MASU_ERROR_LIMIT: return MASU_VERDICT_RESOURCE;
+    case MASU_ERROR_DEVICE: return MASU_VERDICT_UNSUPPORTED;
+    default: return MASU_VERDICT_FAIL;
+    }
+}
+
+/* ---- Sessions -------------------------------------------------------------------------------- */
+
+typedef struct way {
+    uint32_t poison, flight;
+    bool split, unculled;
+    bool first; /* the case itself: the one that budgets are for */
+} way;
+
+static bool counts(const masu_case *of) {
+    for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
+        if (masu_measure_counted((masu_measure)m) &&
+            (masu_bound_is_set(&of->bounds[m]) || masu_bound_is_set(&of->least[m]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static uint64_t budget(const masu_bound *bound) {
+    return isnan(bound->fail) ? 0 : bound->fail < 1.0 ? 1 : (uint64_t)bound->fail;
+}
+
+static void scene_path(const masu_conform *c, const masu_case *of, char *path, size_t size) {
+    snprintf(path, size, "%s/%s.masu", c->scenes, of->scene);
+}
+
+static masu_session_desc describe(const masu_conform *c, const masu_case *of, const way *w) {
+    masu_session_desc d = {.host = c->host, .no_renderer = true};
+    d.host.ray_query = c->ray_query != MASU_OFF;
+    d.host.validate = d.host.validate || (of->validate && !d.host.gpu_av);
+    d.desc.output = (VkExtent2D){of->width, of->height};
+    d.desc.targets.storage = 1;
+    d.desc.frames_in_flight = w->flight ? w->flight : of->flight;
+    d.desc.ray_query = c->ray_query;
+    d.desc.ladder = of->measured ? MASU_ON : MASU_OFF;
+    d.desc.rung_count = of->rung_count;
+    memcpy(d.desc.rungs, of->rungs, sizeof d.desc.rungs);
+    for (uint32_t r = 0; r < of->rung_count && w->unculled; r++)
+        d.desc.rungs[r].frustum = d.desc.rungs[r].occlusion = MASU_OFF;
+    d.desc.deny.unified_memory = w->split;
+    d.desc.debug.poison = w->poison;
+    d.desc.debug.counters = counts(of);
+    if (w->first) {
+        d.desc.host_budget = budget(&of->bounds[MASU_MEASURE_HOST_BYTES]);
+        d.desc.device_budget = budget(&of->bounds[MASU_MEASURE_DEVICE_BYTES]);
+    }
+    if (of->governed.on) {
+        d.desc.governor = (masu_governor_desc){.mode = MASU_GOVERNOR_ON,
+                                               .target_ms = (float)of->governed.target_ms,
+                                               .best_rung = of->governed.best,
+                                               .worst_rung = of->governed.worst,
+                                               .wall_only = of->governed.told};
+    }
+    return d;
+}
+
+/* A query, budgets and a block that are a byte short must be refused by name; the exact ones are
+ * then used. */
+static void check_memory(masu_session *s, masu_conform_result *r) {
+    masu_desc q = s->desc;
+    masu_memory need;
+    masu_detail detail;
+    masu_renderer *m = NULL;
+    q.host_budget = q.device_budget = 0;
+    if (masu_memory_query(&q, &need, &detail)) return; /* the start below says so */
+    q.host_budget = need.host_bytes;
+    q.device_budget = need.device_bytes;
+    if (masu_memory_query(&q, &need, &detail))
+        find(r, MASU_VERDICT_FAIL, "a budget of what is needed is refused: %s", detail.text);
+    q.host_budget--;
+    if (masu_memory_query(&q, &need, &detail) != MASU_ERROR_LIMIT ||
+        strcmp(detail.what, "host_budget"))
+        find(r, MASU_VERDICT_FAIL, "a host budget of a byte less than needed is not refused");
+    q.host_budget++;
+    q.device_budget--;
+    if (masu_memory_query(&q, &need, &detail) != MASU_ERROR_LIMIT ||
+        strcmp(detail.what, "device_budget")) {
+        find(r, MASU_VERDICT_FAIL, "a device budget of a byte less than needed is not refused");
+    }
+    q.device_budget++;
+    size_t bytes = (size_t)need.host_bytes;
+    void *block = aligned_alloc((size_t)need.host_alignment, (bytes + need.host_alignment - 1) /
+                                                                 need.host_alignment *
+                                                                 (size_t)need.host_alignment);
+    if (block && masu_init(&q, block, bytes - 1, &m, &detail) != MASU_ERROR_MEMORY)
+        find(r, MASU_VERDICT_FAIL, "a host block of a byte less than needed is not refused");
+    masu_destroy(m);
+    free(block);
+}
+
+/* On false the verdict is found and the session closed. */
+static bool open_session(masu_conform *c, const masu_case *of, const way *w,
+                         masu_conform_result *r) {
+    char path[4096], error[1024];
+    masu_session *s = &c->session;
+    masu_session_desc d = describe(c, of, w);
+    scene_path(c, of, path, sizeof path);
+    d.scene_path = path;
+    if (!masu_session_open(&d, s, error, sizeof error)) {
+        find(r, MASU_VERDICT_FAIL, "%s", error);
+        return false;
+    }
+    if (w->first && of->exact_memory) check_memory(s, r);
+    if (masu_session_start(s, error, sizeof error)) {
+        masu_peak_info peaks;
+        masu_peaks(s->m, &peaks);
+        if (peaks.host_bytes == s->need.host_bytes && peaks.device_bytes == s->need.device_bytes)
+            return true;
+        find(r, MASU_VERDICT_FAIL, "the memory used is not what was asked for");
+    } else {
+        find(r, verdict_of(&s->detail), "%s", error);
+    }
+    masu_session_close(s);
+    return false;
+}
+
+static void close_session(masu_conform *c, masu_conform_result *r) {
+    masu_session *s = &c->session;
+    bool validating = s->host.validating;
+    masu_session_close(s); /* validated too */
+    if (!validating) return;
+    double *all = &r->values[MASU_MEASURE_MESSAGES];
+    *all = (isnan(*all) ? 0.0 : *all) + s->host.messages;
+    if (s->host.messages && !masu_bound_is_set(&r->of->bounds[MASU_MEASURE_MESSAGES]))
+        find(r, MASU_VERDICT_FAIL, "the validation layer says: %.300s", s->host.first_message);
+}
+
+/* ---- Frames ---------------------------------------------------------------------------------- */
+
+/* Hands a frame out and submits it. */
+static bool submit(masu_session *s, const masu_frame_desc *frame, masu_conform_result *r,
+                   masu_commands *commands) {
+    char error[1024];
+    if (!masu_headless_wait(&s->host, s->next_slot, error, sizeof error)) {
+        find(r, MASU_VERDICT_FAIL, "%s", error);
+        return false;
+    }
+    uint64_t before = masu_allocs_of_thread();
+    masu_result result = masu_frame(s->m, frame, commands);
+    uint64_t allocations = masu_allocs_of_thread() - before;
+    /* The layer allocates inside the calls that it wraps. */
+    if (masu_alloc_counting() && !s->host.validating) {
+        double *all = &r->values[MASU_MEASURE_ALLOCATIONS];
+        *all = (isnan(*all) ? 0.0 : *all) + (double)allocations;
+    }
+    if (result) {
+        find(r, MASU_VERDICT_FAIL, "masu_frame: %s", masu_last_error(s->m)->text);
+        return false;
+    }
+    s->next_slot = (commands->slot + 1) % masu_desc_resolved(&s->desc).frames_in_flight;
+    if (masu_headless_submit(&s->host, commands->buffer, commands->slot, error, sizeof error))
+        return true;
+    find(r, MASU_VERDICT_FAIL, "%s", error);
+    return false;
+}
+
+static bool wait(masu_session *s, uint32_t slot, masu_conform_result *r) {
+    char error[1024];
+    if (masu_headless_wait(&s->host, slot, error, sizeof error)) return true;
+    find(r, MASU_VERDICT_FAIL, "%s", error);
+    return false;
+}
+
+static masu_frame_desc frame_at(const masu_case *of, uint32_t number) {
+    return (masu_frame_desc){.time = of->time + of->move * number, .time_step = 1.0f / 60.0f};
+}
+
+static void take_counts(const masu_stats_info *s, masu_conform_result *r) {
+#define MASU_TAKE(key) (double)s->key
+    const struct {
+        masu_measure m;
+        double value;
+    } taken[] = {
+        {MASU_MEASURE_SDF_EVALS, MASU_TAKE(sdf_evals)},
+        {MASU_MEASURE_SDF_HITS, MASU_TAKE(sdf_hits)},
+        {MASU_MEASURE_SDF_UNCONVERGED, MASU_TAKE(sdf_unconverged)},
+        {MASU_MEASURE_SHADOW_EVALS, MASU_TAKE(shadow_evals)},
+        {MASU_MEASURE_OCCLUSION_EVALS, MASU_TAKE(occlusion_evals)},
+        {MASU_MEASURE_SHADOW_UNCONVERGED, MASU_TAKE(shadow_unconverged)},
+        {MASU_MEASURE_REPLACED, MASU_TAKE(replaced)},
+        {MASU_MEASURE_DRAWS, MASU_TAKE(draws)},
+        {MASU_MEASURE_TRIANGLES, MASU_TAKE(triangles)},
+        {MASU_MEASURE_TRANSPARENTS, MASU_TAKE(transparents)},
+        {MASU_MEASURE_OCCLUSION_TESTS, MASU_TAKE(occlusion_tests)},
+        {MASU_MEASURE_LIGHT_TESTS, MASU_TAKE(light_tests)},
+        {MASU_MEASURE_LIGHT_SHADED, MASU_TAKE(light_shaded)},
+        {MASU_MEASURE_SPECULAR_TILES, MASU_TAKE(specular_tiles)},
+        {MASU_MEASURE_SPECULAR_RAYS, MASU_TAKE(specular_rays)},
+        {MASU_MEASURE_SPECULAR_HITS, MASU_TAKE(specular_hits)},
+        {MASU_MEASURE_SPECULAR_SDF_HITS, MASU_TAKE(specular_sdf_hits)},
+        {MASU_MEASURE_SPECULAR_NODES, MASU_TAKE(specular_nodes)},
+        {MASU_MEASURE_SPECULAR_EVALS, MASU_TAKE(specular_evals)},
+        {MASU_MEASURE_SMAA_TILES, MASU_TAKE(smaa_tiles)},
+    };
+#undef MASU_TAKE
+    for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
+        r->values[taken[i].m] = taken[i].value;
+}
+
+/* The last frame's picture: NULL after a failure. */
+static uint8_t *draw_frames(masu_conform *c, const masu_case *of, masu_conform_result *r,
+                            bool keep_counts) {
+    masu_session *s = &c->session;
+    masu_commands commands = {0};
+    masu_stats_info stats;
+    char error[1024];
+    for (uint32_t i = 0; i < of->frames; i++) {
+        masu_frame_desc frame = frame_at(of, i);
+        if (!submit(s, &frame, r, &commands)) return NULL;
+    }
+    if (!wait(s, commands.slot, r)) return NULL;
+    if (keep_counts && counts(of) && !masu_stats(s->m, commands.slot, &stats))
+        take_counts(&stats, r);
+    size_t bytes = 4 * (size_t)of->width * of->height;
+    uint8_t *rgba = malloc(bytes);
+    if (!rgba) {
+        find(r, MASU_VERDICT_RESOURCE, "no memory for a picture of %zu bytes", bytes);
+        return NULL;
+    }
+    if (masu_headless_target_read(&s->host, &s->targets[0], error, sizeof error)) {
+        memcpy(rgba, s->targets[0].mapped, bytes);
+        return rgba;
+    }
+    find(r, MASU_VERDICT_FAIL, "%s", error);
+    free(rgba);
+    return NULL;
+}
+
+static void run_governed(masu_conform *c, const masu_case *of, masu_conform_result *r) {
+    masu_session *s = &c->session;
+    const masu_governed *g = &of->governed;
+    masu_stats_info stats;
+    masu_commands commands;
+    uint32_t last = 0;
+    const masu_desc is = masu_desc_resolved(&s->desc); /* with the rungs of a measured ladder */
+    uint32_t worst = of->measured && !g->worst ? is.rung_count - 1 : g->worst;
+    memset(&stats, 0, sizeof stats);
+    for (uint32_t i = 0; i < g->frames; i++) {
+        masu_frame_desc frame = frame_at(of, i);
+        frame.rung = MASU_RUNG_AUTO;
+        uint64_t start = masu_clock_ns(NULL);
+        if (!submit(s, &frame, r, &commands) || !wait(s, commands.slot, r)) return;
+        double wall = (double)(masu_clock_ns(NULL) - start) / 1e6;
+        last = commands.rung;
+        if (last < g->best || last > worst) {
+            find(r, MASU_VERDICT_FAIL, "frame %u is of rung %u, allowed are %u to %u", i, last,
+                 g->best, worst);
+            return;
+        }
+        double scale = (double)is.rungs[last].scale, ratio = (double)is.governor.costs[last];
+        double cost = of->measured && ratio > 0.0 ? ratio : scale * scale;
+        masu_frame_wall(s->m, commands.slot, g->told ? g->fixed_ms + g->load_ms * cost : wall);
+        if (masu_stats(s->m, commands.slot, &stats)) {
+            find(r, MASU_VERDICT_FAIL, "there are no statistics of frame %u", i);
+            return;
+        }
+    }
+    r->values[MASU_MEASURE_CHANGES] = (double)stats.governor.changes;
+    if (counts(of)) take_counts(&stats, r);
+    if (g->settles[0] >= 0 && ((int32_t)last < g->settles[0] || (int32_t)last > g->settles[1])) {
+        find(r, MASU_VERDICT_FAIL, "after %u frames the rung is %u (%s), needed is %d to %d",
+             g->frames, last, stats.governor.reason_text, g->settles[0], g->settles[1]);
+    }
+}
+
+/* ---- Times ----------------------------------------------------------------------------------- */
+
+static bool calibrate(masu_conform *c, masu_conform_result *r) {
+    static uint8_t rgba[4 * FROM_WIDTH * FROM_HEIGHT];
+    char error[1024];
+    masu_session *s = &c->calibration;
+    masu_session_desc d = {.host = c->host, .no_renderer = true};
+    if (c->calibrated) return true;
+    for (uint32_t i = 0; i < FROM_WIDTH * FROM_HEIGHT;
+         i++) { /* discs of a few sizes: edges all over */
+        uint32_t x = i % FROM_WIDTH, y = i / FROM_WIDTH, cell = 8 + 8 * (x / 64 % 3);
+        uint32_t u = x % cell, v = y % cell, half = cell / 2;
+        uint32_t away = (u - half) * (u - half) + (v - half) * (v - half);
+        memset(rgba + 4 * i, away < half * half / 2 ? 220 : 30, 3);
+        rgba[4 * i + (i % 3)] ^= 64;
+        rgba[4 * i + 3] = 255;
+    }
+    d.host.validate = d.host.gpu_av = false;
+    d.desc.output = (VkExtent2D){TO_WIDTH, TO_HEIGHT};
+    d.desc.targets.storage = 1;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.upscale = MASU_ON, .sharpen = MASU_ON, .sharpness = 0.2f};
+    bool good = masu_session_open(&d, s, error, sizeof error);
+    if (good && masu_headless_source_create(&s->host, rgba, FROM_WIDTH, FROM_HEIGHT, FROM_WIDTH,
+                                            FROM_HEIGHT, 0, &c->source, error, sizeof error)) {
+        s->desc.source =
+            (masu_source){c->source.view, FROM_WIDTH, FROM_HEIGHT, VK_FORMAT_R8G8B8A8_UNORM};
+        c->calibrated = masu_session_start(s, error, sizeof error);
+        if (!c->calibrated) masu_headless_source_destroy(&s->host, &c->source);
+    }
+    if (good && !c->calibrated) masu_session_close(s);
+    if (!c->calibrated) find(r, MASU_VERDICT_FAIL, "the calibration: %s", error);
+    return c->calibrated;
+}
+
+/* n frames, one after the other; the least mean of them so far. */
+static bool timed(masu_session *s, const masu_frame_desc *frame, uint32_t n, masu_conform_result *r,
+                  double *least) {
+    masu_commands commands;
+    uint64_t start = masu_clock_ns(NULL);
+    for (uint32_t i = 0; i < n; i++) {
+        if (!submit(s, frame, r, &commands) || !wait(s, commands.slot, r)) return false;
+    }
+    double ms = (double)(masu_clock_ns(NULL) - start) / 1e6 / n;
+    if (!(*least <= ms)) *least = ms;
+    return true;
+}
+
+/* Both take turns, and the least of each counts: what else the machine does makes single frames
+ * longer, none shorter. A turn of the calibration has as many frames as last about as long as one
+ * of the case: shorter work finds a quiet moment more easily, and on a loaded machine the ratio
+ * would be too large. Where it is too large, more turns may show that it was that. */
+static void time_case(masu_conform *c, const masu_case *of, masu_conform_result *r) {
+    double own = MASU_UNKNOWN, other = MASU_UNKNOWN;
+    if (!calibrate(c, r)) return;
+    masu_frame_desc frame = frame_at(of, of->frames - 1), none = {0};
+    masu_conform_result unused = {.of = of};
+    masu_session *s = &c->calibration;
+    bool good =
+        timed(s, &none, 1, &unused, &(double){MASU_UNKNOWN}) && timed(s, &none, 1, &unused, &other);
+    if (good && !timed(&c->session, &frame, 1, r, &own)) return;
+    uint32_t n = good && own > other ? (uint32_t)fmin(own / other + 0.5, TURN_MOST) : 1;
+    for (uint32_t round = 0; round < ROUNDS_MOST && good; round++) {
+        other = round ? other : MASU_UNKNOWN; /* the one above was shorter than a turn */
+        for (uint32_t i = 0; i < c->runs && good; i++) {
+            good = timed(s, &none, n, &unused, &other);
+            if (good && !timed(&c->session, &frame, 1, r, &own)) return;
+        }
+        r->values[MASU_MEASURE_MS_RATIO] = own / other;
+        if (!masu_bound_judge(&of->bounds[MASU_MEASURE_MS_RATIO], own / other, false)) break;
+    }
+    if (!good) find(r, MASU_VERDICT_FAIL, "the calibration: %s", unused.why);
+}
+
+/* ---- Pictures -------------------------------------------------------------------------------- */
+
+static uint32_t differing(const uint8_t *a, const uint8_t *b, const masu_case *of,
+                          uint32_t *steps) {
+    uint32_t pixels = 0;
+    *steps = 0;
+    for (size_t i = 0; i < (size_t)of->width * of->height; i++) {
+        uint32_t most = 0;
+        for (size_t k = 0; k < 4; k++) {
+            uint32_t step = (uint32_t)abs(a[4 * i + k] - b[4 * i + k]);
+            most = step > most ? step : most;
+        }
+        pixels += most != 0;
+        *steps = most > *steps ? most : *steps;
+    }
+    return pixels;
+}
+
+static void draw_ways(masu_conform *c, const masu_case *of, const uint8_t *picture,
+                      masu_conform_result *r) {
+    static const char *const names[] = MASU_SAME_NAMES;
+    static const struct {
+        uint32_t of, name;
+        way way;
+    } ways[] = {
+        {MASU_SAME_AGAIN, 0, {0}},
+        {MASU_SAME_POISON, 1, {.poison = 1}},
+        {MASU_SAME_INFINITIES, 2, {.poison = 2}},
+        {MASU_SAME_SPLIT, 3, {.split = true}},
+        {MASU_SAME_UNCULLED, 4, {.unculled = true}},
+        {MASU_SAME_FLIGHT, 5, {.flight = 1}},
+        {MASU_SAME_FLIGHT, 5, {.flight = 3}},
+    };
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        if (!(of->same & ways[i].of)) continue;
+        uint32_t steps = 0;
+        masu_cli_progress("%s: %s", of->name, names[ways[i].name]);
+        if (!open_session(c, of, &ways[i].way, r)) return;
+        uint8_t *own = draw_frames(c, of, r, false);
+        close_session(c, r);
+        if (!own) return;
+        uint32_t pixels = differing(picture, own, of, &steps);
+        free(own);
+        if (!pixels) continue;
+        find(r, MASU_VERDICT_FAIL, "same: %s: %u of %u pixels differ, by up to %u steps",
+             names[ways[i].name], pixels, of->width * of->height, steps);
+    }
+}
+
+static bool same_truth(const masu_case *a, const masu_case *b) {
+    return !strcmp(a->scene, b->scene) && a->width == b->width && a->height == b->height &&
+           a->positions == b->positions && a->rays == b->rays &&
+           a->time + a->move * (a->frames - 1) == b->time + b->move * (b->frames - 1);
+}
+
+/* The truth of a case; kept for those that ask for the same. */
+static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_conform_result *r) {
+    char path[4096], error[1024];
+    for (uint32_t i = 0; i < c->truth_count; i++) {
+        if (same_truth(c->truths[i].of, of)) return c->truths[i].rgba;
+    }
+    masu_session *s = &c->session;
+    masu_session_desc d = describe(c, of, &(way){0});
+    scene_path(c, of, path, sizeof path);
+    d.scene_path = path;
+    d.no_renderer = false;
+    uint8_t *rgba = malloc(4 * (size_t)of->width * of->height);
+    if (!rgba || !masu_picture_open(&d, of->positions, s, error, sizeof error)) {
+        find(r, rgba ? MASU_VERDICT_FAIL : MASU_VERDICT_RESOURCE, "the truth: %s",
+             rgba ? error : "no memory for it");
+        free(rgba);
+        return NULL;
+    }
+    masu_frame_desc frame = frame_at(of, of->frames - 1);
+    bool good = masu_picture_truth(s, &frame, of->positions, of->rays, rgba, masu_cli_progress_text, error,
+                                   sizeof error);
+    close_session(c, r);
+    masu_truth_picture *more =
+        good ? realloc(c->truths, (c->truth_count + 1) * sizeof *more) : NULL;
+    if (!more) {
+        find(r, good ? MASU_VERDICT_RESOURCE : MASU_VERDICT_FAIL, "the truth: %s",
+             good ? "no memory for it" : error);
+        free(rgba);
+        return NULL;
+    }
+    c->truths = more;
+    c->truths[c->truth_count++] = (masu_truth_picture){of, rgba};
+    return rgba;
+}
+
+static void compare(const uint8_t *truth, const uint8_t *picture, const masu_case *of,
+                    masu_conform_result *r) {
+    masu_flip flip;
+    uint32_t steps = 0, pixels = differing(truth, picture, of, &steps);
+    double rmse = masu_metric_rmse(truth, picture, of->width, of->height);
+    r->values[MASU_MEASURE_PIXELS] = pixels;
+    r->values[MASU_MEASURE_STEPS] = steps;
+    r->values[MASU_MEASURE_RMSE] = 255.0 * rmse;
+    r->values[MASU_MEASURE_PSNR] = masu_metric_psnr(rmse);
+    r->values[MASU_MEASURE_SSIM] = masu_metric_ssim(truth, picture, of->width, of->height);
+    if (masu_metric_flip(truth, picture, of->width, of->height, 0, NULL, &flip)) {
+        r->values[MASU_MEASURE_FLIP] = flip.mean;
+        r->values[MASU_MEASURE_FLIP_P99] = flip.p99;
+    }
+}
+
+static void compare_with_other(masu_conform *c, const masu_case *of, const uint8_t *picture,
+                               masu_conform_result *r) {
+    const masu_case *other = &c->suite->cases[of->other];
+    masu_cli_progress("%s: against %s", of->name, other->name);
+    if (!open_session(c, other, &(way){0}, r)) return;
+    uint8_t *rgba = draw_frames(c, other, r, false);
+    close_session(c, r);
+    if (rgba) compare(rgba, picture, of, r);
+    free(rgba);
+}
+
+static void save(const masu_conform *c, const masu_case *of, const uint8_t *rgba,
+                 masu_conform_result *r) {
+    char path[4096], name[200], error[1024];
+    snprintf(name, sizeof name, "%s", of->name);
+    for (char *p = name; *p; p++) *p = strchr("/\\ ", *p) ? '-' : *p;
+    snprintf(path, sizeof path, "%s/%s.%ux%u.png", c->images, name, of->width, of->height);
+    if (!masu_image_save_png(path, rgba, of->width, of->height, 0, error, sizeof error))
+        find(r, MASU_VERDICT_FAIL, "%s", error);
+}
+
+/* ---- Cases ----------------------------------------------------------------------------------- */
+
+static bool supported(const masu_conform *c, const masu_case *of, masu_conform_result *r) {
+    static const char *const names[] = MASU_NEEDS_NAMES;
+    for (uint32_t i = 0; names[i]; i++) {
+        if (of->needs & ~c->offers & 1u << i)
+            find(r, MASU_VERDICT_UNSUPPORTED, "the device has no %s", names[i]);
+    }
+    if (of->width > c->most_pixels || of->height > c->most_pixels) {
+        find(r, MASU_VERDICT_UNSUPPORTED, "%ux%u is more than the device's images may have, %u",
+             of->width, of->height, c->most_pixels);
+    }
+    return r->verdict == MASU_VERDICT_PASS;
+}
+
+static void run(masu_conform *c, const masu_case *of, masu_conform_result *r) {
+    if (!supported(c, of, r) || !open_session(c, of, &(way){.first = true}, r)) return;
+    masu_session *s = &c->session;
+    uint8_t *picture = NULL;
+    r->values[MASU_MEASURE_HOST_BYTES] = (double)s->need.host_bytes;
+    r->values[MASU_MEASURE_DEVICE_BYTES] = (double)s->need.device_bytes;
+    bool validated = s->host.validating;
+    if (s->host.desc.validate && !validated) note(r, "the validation layer is not installed");
+    if (!masu_alloc_counting()) note(r, "allocations are not counted in this build");
+    if (of->governed.on) {
+        run_governed(c, of, r);
+    } else {
+        picture = draw_frames(c, of, r, true);
+        if (picture && masu_bound_is_set(&of->bounds[MASU_MEASURE_MS_RATIO])) time_case(c, of, r);
+    }
+    close_session(c, r);
+    if (!picture && !of->governed.on) return;
+    if (picture && c->images) save(c, of, picture, r);
+    if (picture && of->same) draw_ways(c, of, picture, r);
+    if (picture && of->other >= 0) compare_with_other(c, of, picture, r);
+    if (picture && of->against && of->other < 0) {
+        const uint8_t *truth = truth_of(c, of, r);
+        if (truth) compare(truth, picture, of, r);
+    }
+    free(picture);
+    judge_all(r, validated);
+}
+
+void masu_conform_run(masu_conform *c, const masu_case *of, masu_conform_result *out) {
+    uint64_t start = masu_clock_ns(NULL);
+    memset(out, 0, sizeof *out);
+    out->of = of;
+    for (int m = 0; m < MASU_MEASURE_COUNT; m++) out->values[m] = MASU_UNKNOWN;
+    run(c, of, out);
+    for (char *p = out->why; *p; p++) *p = (unsigned char)*p < ' ' ? ' ' : *p;
+    out->seconds = (double)(masu_clock_ns(NULL) - start) / 1e9;
+}
+
+bool masu_conform_open(masu_conform *c, char *error, size_t error_size) {
+    masu_headless_desc d = c->host;
+    masu_headless host;
+    d.ray_query = c->ray_query != MASU_OFF;
+    d.validate = d.gpu_av = false;
+    if (!masu_headless_open(&d, &host, error, error_size)) return false;
+    snprintf(c->driver, sizeof c->driver, "%s", host.driver);
+    c->most_pixels = host.properties.limits.maxImageDimension2D;
+    c->offers = (host.ray_query ? MASU_NEEDS_RAY_QUERY : 0) |
+                (host.compressed ? MASU_NEEDS_BC : 0) | (host.float16 ? MASU_NEEDS_FLOAT16 : 0) |
+                (host.most_anisotropy > 1.0f ? MASU_NEEDS_ANISO : 0);
+    masu_headless_close(&host);
+    return true;
+}
+
+void masu_conform_close(masu_conform *c) {
+    if (c->calibrated) {
+        masu_headless_settle(&c->calibration.host);
+        masu_destroy(c->calibration.m);
+        c->calibration.m = NULL;
+        masu_headless_source_destroy(&c->calibration.host, &c->source);
+        masu_session_close(&c->calibration);
+    }
+    c->calibrated = false;
+    for (uint32_t i = 0; i < c->truth_count; i++) free(c->truths[i].rgba);
+    free(c->truths);
+    c->truths = NULL;
+    c->truth_count = 0;
+}

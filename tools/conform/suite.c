@@ -1,0 +1,695 @@
+/* suite.c: see suite.h. */
+#include "conform/suite.h"
+
+#include <fnmatch.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CASES_MOST 4096u
+#define NAME_MOST 120u
+
+/* ---- Verdicts -------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *name, *group;
+    bool more_is_better;
+} measures[MASU_MEASURE_COUNT] = {
+#define MASU_MEASURE_ROW(name, key, group, more) {#key, group, more},
+    MASU_MEASURES(MASU_MEASURE_ROW)
+#undef MASU_MEASURE_ROW
+};
+
+const char *masu_verdict_name(masu_verdict verdict) {
+    static const char *const names[MASU_VERDICT_COUNT] = {
+        "pass", "quality warning", "not supported", "resource error", "fail"};
+    return verdict < MASU_VERDICT_COUNT ? names[verdict] : "?";
+}
+
+bool masu_verdict_failed(masu_verdict verdict) {
+    return verdict == MASU_VERDICT_FAIL || verdict == MASU_VERDICT_RESOURCE;
+}
+
+const char *masu_measure_name(masu_measure measure) { return measures[measure].name; }
+
+bool masu_measure_counted(masu_measure measure) {
+    return !strcmp(measures[measure].group, "counts");
+}
+
+bool masu_bound_is_set(const masu_bound *bound) {
+    return !isnan(bound->warn) || !isnan(bound->fail);
+}
+
+/* Written so that NaN is beyond. */
+static bool beyond(double value, double limit, bool least) {
+    return !isnan(limit) && !(least ? value >= limit : value <= limit);
+}
+
+masu_verdict masu_bound_judge(const masu_bound *bound, double value, bool least) {
+    if (beyond(value, bound->fail, least)) return MASU_VERDICT_FAIL;
+    return beyond(value, bound->warn, least) ? MASU_VERDICT_WARNING : MASU_VERDICT_PASS;
+}
+
+/* ---- Reading --------------------------------------------------------------------------------- */
+
+/* A place in the file, for messages. */
+typedef struct place {
+    masu_suite *suite;
+    const char *case_name; /* or "defaults" */
+    char *error;
+    size_t error_size;
+} place;
+
+static bool wrong(const place *at, const char *key, const char *format, ...) {
+    char text[400];
+    va_list arguments;
+    va_start(arguments, format);
+    if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
+    va_end(arguments);
+    snprintf(at->error, at->error_size, "%s: %s%s%s%s%s: %s", at->suite->file,
+             at->case_name ? "case '" : "", at->case_name ? at->case_name : "",
+             at->case_name ? "'" : "", at->case_name && key ? ": " : "", key ? key : "", text);
+    return false;
+}
+
+/* What a value is, as it is said in messages. */
+static const char *given(const json_t *value, char *text, size_t size) {
+    if (json_is_number(value)) {
+        snprintf(text, size, "%.10g", json_number_value(value));
+    } else if (json_is_string(value)) {
+        snprintf(text, size, "'%.60s'", json_string_value(value));
+    } else {
+        static const char *const names[] = {"an object", "an array", "a string", "a number",
+                                            "a number",  "true",     "false",    "null"};
+        snprintf(text, size, "%s", value ? names[json_typeof(value)] : "nothing");
+    }
+    return text;
+}
+
+static bool read_number(const place *at, const char *key, const json_t *value, double low,
+                        double high, bool whole, double *out) {
+    char text[80];
+    double v = json_number_value(value);
+    if (json_is_number(value) && v >= low && v <= high && (!whole || v == floor(v))) {
+        *out = v;
+        return true;
+    }
+    return wrong(at, key, "needed is a %snumber from %.10g to %.10g, given is %s",
+                 whole ? "whole " : "", low, high, given(value, text, sizeof text));
+}
+
+static bool read_count(const place *at, const char *key, const json_t *value, uint32_t low,
+                       uint32_t high, uint32_t *out) {
+    double v = 0.0;
+    if (!read_number(at, key, value, low, high, true, &v)) return false;
+    *out = (uint32_t)v;
+    return true;
+}
+
+static bool read_flag(const place *at, const char *key, const json_t *value, bool *out) {
+    char text[80];
+    if (!json_is_boolean(value))
+        return wrong(at, key, "needed is true or false, given is %s",
+                     given(value, text, sizeof text));
+    *out = json_is_true(value);
+    return true;
+}
+
+static bool read_string(const place *at, const char *key, const json_t *value, const char **out) {
+    char text[80];
+    if (!json_is_string(value) || !json_string_length(value)) {
+        return wrong(at, key, "needed is a string that is not empty, given is %s",
+                     given(value, text, sizeof text));
+    }
+    *out = json_string_value(value);
+    return true;
+}
+
+static bool read_object(const place *at, const char *key, const json_t *value) {
+    char text[80];
+    return json_is_object(value) ||
+           wrong(at, key, "needed is an object, given is %s", given(value, text, sizeof text));
+}
+
+/* One of the names; their numbers begin at 0. */
+static bool read_choice(const place *at, const char *key, const json_t *value,
+                        const char *const *names, uint32_t *out) {
+    char text[80], list[200] = "";
+    for (uint32_t i = 0; names[i]; i++) {
+        if (json_is_string(value) && !strcmp(names[i], json_string_value(value))) {
+            *out = i;
+            return true;
+        }
+        size_t n = strlen(list);
+        snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
+    }
+    return wrong(at, key, "needed is one of %s, given is %s", list,
+                 given(value, text, sizeof text));
+}
+
+/* A list of names, each a bit. */
+static bool read_names(const place *at, const char *key, const json_t *value,
+                       const char *const *names, uint32_t *out) {
+    char text[80];
+    if (!json_is_array(value))
+        return wrong(at, key, "needed is an array, given is %s", given(value, text, sizeof text));
+    *out = 0;
+    for (size_t i = 0; i < json_array_size(value); i++) {
+        uint32_t bit = 0;
+        if (!read_choice(at, key, json_array_get(value, i), names, &bit)) return false;
+        *out |= 1u << bit;
+    }
+    return true;
+}
+
+static bool unknown(const place *at, const char *group, const char *key) {
+    char text[160];
+    snprintf(text, sizeof text, "%s%s%.100s", group, group[0] ? "." : "", key);
+    return wrong(at, text, "there is no such key");
+}
+
+/* ---- Rungs ----------------------------------------------------------------------------------- */
+
+typedef enum kind { REAL, WHOLE, SWITCH, MARCH, EASU, AA } kind;
+static const char *const switch_names[] = {"auto", "off", "on", NULL};
+static const char *const march_names[] = {"auto",  "plain",        "fragment", "seed", "cone8",
+                                          "cones", "checkerboard", "unpruned", NULL};
+static const char *const easu_names[] = {"auto", "full", "fast", "bilinear", NULL};
+static const char *const aa_names[] = {"auto",   "off",  "fxaa",  "low",
+                                       "medium", "high", "ultra", NULL};
+
+#define FIELD(name, kind, low, high)                                                               \
+    { #name, kind, offsetof(masu_rung, name), low, high }
+static const struct {
+    const char *name;
+    kind kind;
+    size_t at;
+    double low, high;
+} rung_fields[] = {
+    FIELD(scale, REAL, 0.01, 1.0),
+    FIELD(upscale, SWITCH, 0, 0),
+    FIELD(sharpen, SWITCH, 0, 0),
+    FIELD(sharpness, REAL, 0.0, 64.0),
+    FIELD(march, MARCH, 0, 0),
+    FIELD(march_steps, WHOLE, 0, 2048),
+    FIELD(frustum, SWITCH, 0, 0),
+    FIELD(occlusion, SWITCH, 0, 0),
+    FIELD(lod_error, REAL, -1e9, 1e9),
+    FIELD(ao, SWITCH, 0, 0),
+    FIELD(ao_slices, WHOLE, 0, 8),
+    FIELD(ao_steps, WHOLE, 0, 16),
+    FIELD(shadow_cascades, WHOLE, 0, 4),
+    FIELD(shadow_resolution, WHOLE, 0, 8192),
+    FIELD(shadow_distance, REAL, 0.0, 1e9),
+    FIELD(light_tiles, SWITCH, 0, 0),
+    FIELD(specular, SWITCH, 0, 0),
+    FIELD(specular_cutoff, REAL, 0.0, 1.0),
+    FIELD(specular_reuse, SWITCH, 0, 0),
+    FIELD(specular_temporal, SWITCH, 0, 0),
+    FIELD(specular_fine, SWITCH, 0, 0),
+    FIELD(specular_filter, SWITCH, 0, 0),
+    FIELD(specular_taa, SWITCH, 0, 0),
+    FIELD(specular_reuse_taps, WHOLE, 0, 16),
+    FIELD(specular_filter_taps, WHOLE, 0, 32),
+    FIELD(specular_frames, WHOLE, 0, 240),
+    FIELD(easu, EASU, 0, 0),
+    FIELD(aa, AA, 0, 0),
+    FIELD(fuse, SWITCH, 0, 0),
+};
+
+static bool read_field(const place *at, size_t f, const char *key, const json_t *value,
+                       masu_rung *rung) {
+    static const char *const *const names[] = {
+        [SWITCH] = switch_names, [MARCH] = march_names, [EASU] = easu_names, [AA] = aa_names};
+    char *field = (char *)rung + rung_fields[f].at;
+    kind kind = rung_fields[f].kind;
+    double number = 0.0;
+    uint32_t choice = 0;
+    if (kind == REAL || kind == WHOLE) {
+        if (!read_number(at, key, value, rung_fields[f].low, rung_fields[f].high, kind == WHOLE,
+                         &number)) {
+            return false;
+        }
+        float real = (float)number;
+        uint32_t whole = kind == WHOLE ? (uint32_t)number : 0;
+        memcpy(field, kind == REAL ? (void *)&real : (void *)&whole, 4);
+        return true;
+    }
+    if (!read_choice(at, key, value, names[kind], &choice)) return false;
+    _Static_assert(sizeof(masu_switch) == 4 && sizeof(masu_aa) == 4,
+                   "enums are as wide as uint32_t");
+    memcpy(field, &choice, 4);
+    return true;
+}
+
+static bool read_rung(const place *at, const json_t *value, masu_rung *rung) {
+    const char *key;
+    json_t *member;
+    if (!read_object(at, "rung", value)) return false;
+    json_object_foreach((json_t *)(uintptr_t)value, key, member) {
+        char name[80];
+        size_t f = 0, n = sizeof rung_fields / sizeof *rung_fields;
+        while (f < n && strcmp(rung_fields[f].name, key)) f++;
+        if (f == n) return unknown(at, "rung", key);
+        snprintf(name, sizeof name, "rung.%s", key);
+        if (!read_field(at, f, name, member, rung)) return false;
+    }
+    return true;
+}
+
+static bool read_ladder(const place *at, const json_t *value, masu_case *c) {
+    size_t n = json_array_size(value);
+    c->measured = json_is_string(value) && !strcmp(json_string_value(value), "auto");
+    if (c->measured) return true;
+    if (!json_is_array(value) || !n || n > MASU_MAX_RUNGS) {
+        return wrong(at, "ladder", "needed is 'auto' or an array of 1 to %u rungs, given are %zu",
+                     MASU_MAX_RUNGS, n);
+    }
+    memset(c->rungs, 0, sizeof c->rungs);
+    for (size_t i = 0; i < n; i++) {
+        if (!read_rung(at, json_array_get(value, i), &c->rungs[i])) return false;
+    }
+    c->rung_count = (uint32_t)n;
+    return true;
+}
+
+/* ---- Groups of limits ------------------------------------------------------------------------ */
+
+/* A number: what is beyond fails. Or an object of warn and fail. */
+static bool read_bound(const place *at, const char *name, const json_t *value, bool least,
+                       masu_bound *bound) {
+    const char *key;
+    json_t *member;
+    *bound = (masu_bound){MASU_UNKNOWN, MASU_UNKNOWN};
+    if (!json_is_object(value)) return read_number(at, name, value, 0.0, 1e18, false, &bound->fail);
+    json_object_foreach((json_t *)(uintptr_t)value, key, member) {
+        char text[200];
+        snprintf(text, sizeof text, "%.160s.%.20s", name, key);
+        bool warn = !strcmp(key, "warn");
+        if (!warn && strcmp(key, "fail")) return wrong(at, text, "there is no such key");
+        if (!read_number(at, text, member, 0.0, 1e18, false, warn ? &bound->warn : &bound->fail))
+            return false;
+    }
+    if (!masu_bound_is_set(bound)) return wrong(at, name, "needed is warn, fail, or both");
+    if (isnan(bound->warn) || isnan(bound->fail) ||
+        (least ? bound->warn >= bound->fail : bound->warn <= bound->fail)) {
+        return true;
+    }
+    return wrong(at, name, "warn is %.10g, which is beyond fail, %.10g", bound->warn, bound->fail);
+}
+
+static bool read_measure(const place *at, const char *group, const char *key, const json_t *value,
+                         masu_case *c) {
+    bool least = !strcmp(group, "at_least");
+    char name[160];
+    snprintf(name, sizeof name, "%s.%.100s", group, key);
+    for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
+        if (strcmp(measures[m].name, key) || strcmp(measures[m].group, least ? "counts" : group))
+            continue;
+        bool more = least || measures[m].more_is_better;
+        return read_bound(at, name, value, more, least ? &c->least[m] : &c->bounds[m]);
+    }
+    return unknown(at, group, key);
+}
+
+static bool read_measures(const place *at, const char *group, const json_t *value, masu_case *c) {
+    const char *key;
+    json_t *member;
+    if (!read_object(at, group, value)) return false;
+    json_object_foreach((json_t *)(uintptr_t)value, key, member) {
+        if (!read_measure(at, group, key, member, c)) return false;
+    }
+    return true;
+}
+
+static bool read_error(const place *at, const json_t *value, masu_case *c) {
+    const char *key;
+    json_t *member;
+    if (!read_object(at, "error", value)) return false;
+    json_object_foreach((json_t *)(uintptr_t)value, key, member) {
+        bool good = !strcmp(key, "against") ? read_string(at, "error.against", member, &c->against)
+                    : !strcmp(key, "positions")
+                        ? read_count(at, "error.positions", member, 1, 4096, &c->positions)
+                    : !strcmp(key, "rays")
+                        ? read_count(at, "error.rays", member, 1, 1000000, &c->rays)
+                        : read_measure(at, "error", key, member, c);
+        if (!good) return false;
+    }
+    return true;
+}
+
+static bool read_pair(const place *at, const char *key, const json_t *value, uint32_t low,
+                      uint32_t high, uint32_t *a, uint32_t *b) {
+    char text[80];
+    if (!json_is_array(value) || json_array_size(value) != 2) {
+        return wrong(at, key, "needed are two numbers in an array, given is %s",
+                     given(value, text, sizeof text));
+    }
+    return read_count(at, key, json_array_get(value, 0), low, high, a) &&
+           read_count(at, key, json_array_get(value, 1), low, high, b);
+}
+
+static bool read_settles(const place *at, const json_t *value, masu_governed *g) {
+    uint32_t low = 0, high = 0;
+    if (!read_pair(at, "governed.settles", value, 0, MASU_MAX_RUNGS - 1, &low, &high)) return false;
+    if (low > high) {
+        return wrong(at, "governed.settles", "needed is the lower rung first, given are %u and %u",
+                     low, high);
+    }
+    g->settles[0] = (int32_t)low;
+    g->settles[1] = (int32_t)high;
+    return true;
+}
+
+static bool read_told(const place *at, const json_t *value, masu_governed *g) {
+    const char *key;
+    json_t *member;
+    g->told = true;
+    if (!read_object(at, "governed.told", value)) return false;
+    json_object_foreach((json_t *)(uintptr_t)value, key, member) {
+        double *out = !strcmp(key, "fixed_ms")  ? &g->fixed_ms
+                      : !strcmp(key, "load_ms") ? &g->load_ms
+                                                : NULL;
+        if (!out) return unknown(at, "governed.told", key);
+        if (!read_number(at, "governed.told", member, 0.0, 1e4, false, out)) return false;
+    }
+    return true;
+}
+
+static bool read_governed(const place *at, const json_t *value, masu_case *c) {
+    const char *key;
+    json_t *member;
+    masu_governed *g = &c->governed;
+    if (!read_object(at, "governed", value)) return false;
+    *g = (masu_governed){.on = true, .frames = 60, .settles = {-1, -1}};
+    json_object_foreach((json_t *)(uintptr_t)value, key, member) {
+        bool good;
+        if (!strcmp(key, "target_ms")) {
+            good = read_number(at, "governed.target_ms", member, 1, 1000, false, &g->target_ms);
+        } else if (!strcmp(key, "frames")) {
+            good = read_count(at, "governed.frames", member, 1, 100000, &g->frames);
+        } else if (!strcmp(key, "best_rung")) {
+            good = read_count(at, "governed.best_rung", member, 0, MASU_MAX_RUNGS - 1, &g->best);
+        } else if (!strcmp(key, "worst_rung")) {
+            good = read_count(at, "governed.worst_rung", member, 0, MASU_MAX_RUNGS - 1, &g->worst);
+        } else if (!strcmp(key, "settles")) {
+            good = read_settles(at, member, g);
+        } else if (!strcmp(key, "told")) {
+            good = read_told(at, member, g);
+        } else {
+            good = read_measure(at, "governed", key, member, c);
+        }
+        if (!good) return false;
+    }
+    return json_object_get(value, "target_ms") ||
+           wrong(at, "governed.target_ms", "needed is a number from 1 to 1000, given is nothing");
+}
+
+/* ---- Cases ----------------------------------------------------------------------------------- */
+
+static bool read_key(const place *at, const char *key, const json_t *value, masu_case *c) {
+    static const char *const same[] = MASU_SAME_NAMES, *const needs[] = MASU_NEEDS_NAMES;
+    if (!strcmp(key, "name") || !strcmp(key, "sizes")) return true; /* read by the caller */
+    if (!strcmp(key, "scene")) return read_string(at, key, value, &c->scene);
+    if (!strcmp(key, "size")) return read_pair(at, key, value, 1, 16384, &c->width, &c->height);
+    if (!strcmp(key, "time")) return read_number(at, key, value, -1e9, 1e9, false, &c->time);
+    if (!strcmp(key, "move")) return read_number(at, key, value, 0.0, 1e6, false, &c->move);
+    if (!strcmp(key, "frames")) return read_count(at, key, value, 1, 100000, &c->frames);
+    if (!strcmp(key, "flight")) return read_count(at, key, value, 1, MASU_MAX_FLIGHT, &c->flight);
+    if (!strcmp(key, "validate")) return read_flag(at, key, value, &c->validate);
+    if (!strcmp(key, "exact_memory")) return read_flag(at, key, value, &c->exact_memory);
+    if (!strcmp(key, "same")) return read_names(at, key, value, same, &c->same);
+    if (!strcmp(key, "needs")) return read_names(at, key, value, needs, &c->needs);
+    if (!strcmp(key, "rung")) {
+        memset(c->rungs, 0, sizeof c->rungs);
+        c->rung_count = 1;
+        c->measured = false;
+        return read_rung(at, value, &c->rungs[0]);
+    }
+    if (!strcmp(key, "ladder")) return read_ladder(at, value, c);
+    if (!strcmp(key, "governed")) return read_governed(at, value, c);
+    if (!strcmp(key, "error")) return read_error(at, value, c);
+    if (!strcmp(key, "budget") || !strcmp(key, "counts") || !strcmp(key, "at_least"))
+        return read_measures(at, key, value, c);
+    return wrong(at, key, "there is no such key");
+}
+
+static bool read_keys(const place *at, const json_t *value, masu_case *c) {
+    const char *key;
+    json_t *member;
+    json_object_foreach((json_t *)(uintptr_t)value, key, member) {
+        if (!read_key(at, key, member, c)) return false;
+    }
+    return true;
+}
+
+/* What keys alone do not show. */
+static bool check_case(const place *at, masu_case *c) {
+    bool compares = false;
+    for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PIXELS; m++)
+        compares = compares || masu_bound_is_set(&c->bounds[m]);
+    if (!c->scene) return wrong(at, "scene", "needed is the name of a scene, given is nothing");
+    if (strstr(c->scene, "..") || c->scene[0] == '/')
+        return wrong(at, "scene", "needed is a name in the folder of scenes, given is '%s'",
+                     c->scene);
+    if (!c->width) return wrong(at, "size", "needed are width and height, given is nothing");
+    if (compares != (c->against != NULL)) {
+        return wrong(at, compares ? "error.against" : "error",
+                     compares ? "needed is 'truth' or the name of a case, given is nothing"
+                              : "needed is a limit beside 'against', given is none");
+    }
+    masu_governed *g = &c->governed;
+    if (!g->on && (c->measured || c->rung_count > 1))
+        return wrong(at, "ladder", "needed is 'governed', for something to choose from it");
+    if (!g->on) return true;
+    if (c->against || c->same || masu_bound_is_set(&c->bounds[MASU_MEASURE_MS_RATIO])) {
+        return wrong(at, "governed",
+                     "needed is a picture of one rung for error, same and ms_ratio, "
+                     "which a governed case has not");
+    }
+    if (c->measured) { /* as long as it is: that is known when the scene is */
+        memset(c->rungs, 0, sizeof c->rungs);
+        c->rung_count = 0;
+        if (g->worst && g->best > g->worst) {
+            return wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u", g->best,
+                         MASU_MAX_RUNGS - 1, g->worst);
+        }
+        return true;
+    }
+    if (c->rung_count ==
+        1) { /* eight rungs from the full size to 0.4, as masu render --target-ms --ladder off */
+        masu_rung first = c->rungs[0];
+        c->rung_count = MASU_MAX_RUNGS;
+        for (uint32_t r = 0; r < c->rung_count; r++) {
+            c->rungs[r] = first;
+            c->rungs[r].scale = (float)pow(0.4, r / (double)(c->rung_count - 1));
+        }
+    }
+    if (!g->worst) g->worst = c->rung_count - 1;
+    if (g->worst >= c->rung_count || g->best > g->worst) {
+        return wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u", g->best,
+                     c->rung_count - 1, g->worst);
+    }
+    return true;
+}
+
+static bool append(const place *at, const masu_case *c) {
+    masu_suite *s = at->suite;
+    char size[40];
+    for (uint32_t i = 0; i < s->count; i++) {
+        const masu_case *o = &s->cases[i];
+        if (strcmp(o->name, c->name) || o->width != c->width || o->height != c->height) continue;
+        snprintf(size, sizeof size, "%ux%u", c->width, c->height);
+        return wrong(at, "name", "there are two cases of this name at %s", size);
+    }
+    if (s->count == CASES_MOST) return wrong(at, NULL, "more than %u cases", CASES_MOST);
+    if (!(s->count & (s->count - 1))) { /* full at each power of two */
+        size_t room = s->count ? 2 * (size_t)s->count : 1;
+        masu_case *more = realloc(s->cases, room * sizeof *more);
+        if (!more) return wrong(at, NULL, "no memory for %zu cases", room);
+        s->cases = more;
+    }
+    s->cases[s->count++] = *c;
+    return true;
+}
+
+/* ':' parts a token, and what is not shown cannot be typed again. */
+static bool read_name(place *at, const json_t *value, masu_case *c) {
+    if (!read_string(at, "name", json_object_get(value, "name"), &c->name)) return false;
+    size_t n = strlen(c->name);
+    bool good = n <= NAME_MOST && n == json_string_length(json_object_get(value, "name"));
+    for (size_t i = 0; i < n; i++)
+        good = good && (unsigned char)c->name[i] >= ' ' && c->name[i] != ':' && c->name[i] != 127;
+    if (!good) {
+        return wrong(at, "name",
+                     "needed are up to %u characters, none of them ':' or a control "
+                     "character, given are %zu",
+                     NAME_MOST, n);
+    }
+    at->case_name = c->name;
+    return true;
+}
+
+static bool read_case(place *at, size_t number, const json_t *value, const masu_case *defaults) {
+    masu_case c = *defaults;
+    char label[32], text[80];
+    snprintf(label, sizeof label, "cases[%zu]", number);
+    at->case_name = NULL;
+    if (!read_object(at, label, value)) return false;
+    at->case_name = label;
+    if (!read_name(at, value, &c) || !read_keys(at, value, &c)) return false;
+    const json_t *sizes = json_object_get(value, "sizes");
+    if (!sizes) return check_case(at, &c) && append(at, &c);
+    if (!json_is_array(sizes) || !json_array_size(sizes)) {
+        return wrong(at, "sizes", "needed is an array of sizes, given is %s",
+                     given(sizes, text, sizeof text));
+    }
+    if (json_object_get(value, "size")) return wrong(at, "sizes", "given is 'size' as well");
+    for (size_t i = 0; i < json_array_size(sizes); i++) {
+        masu_case one = c;
+        if (!read_pair(at, "sizes", json_array_get(sizes, i), 1, 16384, &one.width, &one.height) ||
+            !check_case(at, &one) || !append(at, &one)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A case is compared with another at the same size that has a picture of its own. */
+static bool find_others(place *at) {
+    masu_suite *s = at->suite;
+    for (uint32_t i = 0; i < s->count; i++) {
+        masu_case *c = &s->cases[i];
+        at->case_name = c->name;
+        if (!c->against || !strcmp(c->against, "truth")) continue;
+        for (uint32_t k = 0; k < s->count && c->other < 0; k++) {
+            const masu_case *o = &s->cases[k];
+            if (k != i && !o->governed.on && o->width == c->width && o->height == c->height &&
+                !strcmp(o->name, c->against)) {
+                c->other = (int32_t)k;
+            }
+        }
+        if (c->other < 0) {
+            return wrong(at, "error.against",
+                         "needed is 'truth' or another case of %ux%u that is not "
+                         "governed, given is '%.60s'",
+                         c->width, c->height, c->against);
+        }
+    }
+    return true;
+}
+
+static bool read_suite(place *at) {
+    static const char *const known[] = {"format", "defaults", "cases", "about", NULL};
+    const char *key;
+    json_t *member, *root = at->suite->root;
+    uint32_t format = 0;
+    if (!read_object(at, "the suite", root)) return false;
+    json_object_foreach(root, key, member) {
+        const char *const *k = known;
+        while (*k && strcmp(*k, key)) k++;
+        if (!*k) return wrong(at, key, "there is no such key");
+    }
+    if (!read_count(at, "format", json_object_get(root, "format"), 1, 1, &format)) return false;
+    masu_case defaults = {.frames = 1,
+                          .flight = 2,
+                          .other = -1,
+                          .positions = 64,
+                          .rays = 1024,
+                          .rung_count = 1,
+                          .governed = {.settles = {-1, -1}}};
+    for (int m = 0; m < MASU_MEASURE_COUNT; m++)
+        defaults.bounds[m] = defaults.least[m] = (masu_bound){MASU_UNKNOWN, MASU_UNKNOWN};
+    const json_t *given_defaults = json_object_get(root, "defaults");
+    at->case_name = "defaults";
+    if (given_defaults &&
+        (!read_object(at, NULL, given_defaults) || !read_keys(at, given_defaults, &defaults))) {
+        return false;
+    }
+    at->case_name = NULL;
+    const json_t *cases = json_object_get(root, "cases");
+    if (!json_array_size(cases))
+        return wrong(at, "cases", "needed is an array of cases, given is none");
+    for (size_t i = 0; i < json_array_size(cases); i++) {
+        if (!read_case(at, i, json_array_get(cases, i), &defaults)) return false;
+    }
+    return find_others(at);
+}
+
+/* FNV-1a (Fowler, Noll, Vo), 32 bits: it tells suites apart, and guards against nothing else. */
+static uint32_t hash_of(const char *text, size_t bytes) {
+    uint32_t hash = 2166136261u;
+    for (size_t i = 0; i < bytes; i++) hash = (hash ^ (unsigned char)text[i]) * 16777619u;
+    return hash;
+}
+
+bool masu_suite_parse(const char *file, const char *text, size_t bytes, masu_suite *suite,
+                      char *error, size_t error_size) {
+    json_error_t json_error;
+    place at = {suite, NULL, error, error_size};
+    *suite = (masu_suite){.file = file, .hash = hash_of(text, bytes)};
+    suite->root = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &json_error);
+    if (!suite->root) {
+        snprintf(error, error_size, "%s:%d:%d: %s", file, json_error.line, json_error.column,
+                 json_error.text);
+        return false;
+    }
+    if (read_suite(&at)) return true;
+    masu_suite_free(suite);
+    return false;
+}
+
+void masu_suite_free(masu_suite *suite) {
+    json_decref(suite->root);
+    free(suite->cases);
+    suite->root = NULL;
+    suite->cases = NULL;
+    suite->count = 0;
+}
+
+/* ---- Which of them --------------------------------------------------------------------------- */
+
+bool masu_replay_token(const masu_suite *suite, const masu_case *c, char *out, size_t size) {
+    int n = snprintf(out, size, "%08x:%s:%ux%u", suite->hash, c->name, c->width, c->height);
+    return n > 0 && (size_t)n < size;
+}
+
+int32_t masu_replay_find(const masu_suite *suite, const char *token, char *error,
+                         size_t error_size) {
+    char own[200];
+    unsigned hash = 0;
+    int read = 0;
+    if (sscanf(token, "%8x:%n", &hash, &read) != 1 || read != 9) {
+        snprintf(error, error_size,
+                 "'%.80s' is no token: needed is suite:case:size, as in "
+                 "1f00ba42:rungs.city:96x64",
+                 token);
+        return -1;
+    }
+    if (hash != suite->hash) {
+        snprintf(error, error_size, "the token is of suite %08x, %s is %08x", hash, suite->file,
+                 suite->hash);
+        return -1;
+    }
+    for (uint32_t i = 0; i < suite->count; i++) {
+        if (masu_replay_token(suite, &suite->cases[i], own, sizeof own) &&
+            !strcmp(own + 9, token + 9))
+            return (int32_t)i;
+    }
+    snprintf(error, error_size, "%s has no case '%.140s'", suite->file, token + 9);
+    return -1;
+}
+
+uint32_t masu_suite_select(const masu_suite *suite, const char *glob, uint32_t first, uint32_t of,
+                           bool *marks) {
+    uint32_t fits = 0, marked = 0;
+    for (uint32_t i = 0; i < suite->count; i++) {
+        bool fit = !glob || !fnmatch(glob, suite->cases[i].name, 0);
+        marks[i] = fit && fits % of == first;
+        fits += fit;
+        marked += marks[i];
+    }
+    return marked;
+}

@@ -1,0 +1,170 @@
+/* suite.h: what `masu conform` is asked: suites of cases out of JSON (docs/conform.md), and
+ * what makes a verdict of what was measured.
+ *
+ * Nothing here knows a device, prints, or opens a file: it is tested without any. A suite owns the
+ * parsed JSON that its names point into, and its array of cases. */
+#ifndef MASU_CONFORM_SUITE_H
+#define MASU_CONFORM_SUITE_H
+
+#include "masu.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* From best to worst: the worst of a case's findings is the case's. */
+typedef enum masu_verdict {
+    MASU_VERDICT_PASS = 0,
+    MASU_VERDICT_WARNING = 1,     /* between a warn and a fail limit */
+    MASU_VERDICT_UNSUPPORTED = 2, /* the device lacks a feature or the size: nothing was judged */
+    MASU_VERDICT_RESOURCE = 3,    /* a memory budget is too small, or memory was not to be had */
+    MASU_VERDICT_FAIL = 4,
+    MASU_VERDICT_COUNT = 5
+} masu_verdict;
+
+const char *masu_verdict_name(masu_verdict verdict); /* "pass", "resource error" */
+bool masu_verdict_failed(masu_verdict verdict);      /* makes the exit code 1 */
+
+/* ---- What is measured ------------------------------------------------------------------------ */
+
+/* Name in the suite, its group there, whether more is better. What is in `counts` is also known to
+ * `at_least`. */
+#define MASU_MEASURES(X)                                                                           \
+    X(HOST_BYTES, host_bytes, "budget", 0)                                                         \
+    X(DEVICE_BYTES, device_bytes, "budget", 0)                                                     \
+    X(ALLOCATIONS, allocations, "budget", 0) /* of the library's thread, in all frames */          \
+    X(MESSAGES, messages, "budget", 0)       /* of the validation layer */                         \
+    X(MS_RATIO, ms_ratio, "budget", 0)       /* least frame / least frame of the calibration */    \
+    X(SDF_EVALS, sdf_evals, "counts", 0)                                                           \
+    X(SDF_HITS, sdf_hits, "counts", 0)                                                             \
+    X(SDF_UNCONVERGED, sdf_unconverged, "counts", 0)                                               \
+    X(SHADOW_EVALS, shadow_evals, "counts", 0)                                                     \
+    X(OCCLUSION_EVALS, occlusion_evals, "counts", 0)                                               \
+    X(SHADOW_UNCONVERGED, shadow_unconverged, "counts", 0)                                         \
+    X(REPLACED, replaced, "counts", 0)                                                             \
+    X(DRAWS, draws, "counts", 0)                                                                   \
+    X(TRIANGLES, triangles, "counts", 0)                                                           \
+    X(TRANSPARENTS, transparents, "counts", 0)                                                     \
+    X(OCCLUSION_TESTS, occlusion_tests, "counts", 0)                                               \
+    X(LIGHT_TESTS, light_tests, "counts", 0)                                                       \
+    X(LIGHT_SHADED, light_shaded, "counts", 0)                                                     \
+    X(SPECULAR_TILES, specular_tiles, "counts", 0)                                                 \
+    X(SPECULAR_RAYS, specular_rays, "counts", 0)                                                   \
+    X(SPECULAR_HITS, specular_hits, "counts", 0)                                                   \
+    X(SPECULAR_SDF_HITS, specular_sdf_hits, "counts", 0)                                           \
+    X(SPECULAR_NODES, specular_nodes, "counts", 0)                                                 \
+    X(SPECULAR_EVALS, specular_evals, "counts", 0)                                                 \
+    X(SMAA_TILES, smaa_tiles, "counts", 0)                                                         \
+    X(RMSE, rmse, "error", 0) /* steps of 8 bits */                                                \
+    X(PSNR, psnr, "error", 1)                                                                      \
+    X(SSIM, ssim, "error", 1)                                                                      \
+    X(FLIP, flip, "error", 0)                                                                      \
+    X(FLIP_P99, flip_p99, "error", 0)                                                              \
+    X(STEPS, steps, "error", 0)   /* largest difference of a channel */                            \
+    X(PIXELS, pixels, "error", 0) /* that differ at all */                                         \
+    X(CHANGES, changes, "governed", 0)
+
+typedef enum masu_measure {
+#define MASU_MEASURE_ENUM(name, key, group, more) MASU_MEASURE_##name,
+    MASU_MEASURES(MASU_MEASURE_ENUM)
+#undef MASU_MEASURE_ENUM
+        MASU_MEASURE_COUNT
+} masu_measure;
+
+const char *masu_measure_name(masu_measure measure);
+bool masu_measure_counted(masu_measure measure); /* is in the group `counts` */
+
+/* Not measured; no limit. A double: NAN is a float. */
+#define MASU_UNKNOWN ((double)NAN)
+
+/* A limit: reached is still good. MASU_UNKNOWN: there is none. */
+typedef struct masu_bound {
+    double warn, fail;
+} masu_bound;
+
+/* The worse of the two limits that `value` is beyond. A value that is not a number is beyond each
+ * limit: what could not be measured has not been kept. `least`: the limit is one from below. */
+masu_verdict masu_bound_judge(const masu_bound *bound, double value, bool least);
+bool masu_bound_is_set(const masu_bound *bound);
+
+/* ---- Cases ----------------------------------------------------------------------------------- */
+
+/* Other ways to the same picture, that must give it to the bit. */
+typedef enum masu_same {
+    MASU_SAME_AGAIN = 1,      /* another renderer, the same frames */
+    MASU_SAME_POISON = 2,     /* transient images are full of NaN before each frame */
+    MASU_SAME_INFINITIES = 4, /* or of infinities */
+    MASU_SAME_SPLIT = 8,      /* memory in one block per role */
+    MASU_SAME_UNCULLED = 16,  /* everything is drawn */
+    MASU_SAME_FLIGHT = 32     /* 1 and 3 frames in flight */
+} masu_same;
+#define MASU_SAME_NAMES                                                                            \
+    { "again", "poison", "infinities", "split-memory", "unculled", "frames-in-flight", NULL }
+
+/* What a device must offer for a case to mean anything. */
+#define MASU_NEEDS_NAMES                                                                           \
+    { "ray-query", "compressed-textures", "float16", "anisotropy", NULL }
+enum { MASU_NEEDS_RAY_QUERY = 1, MASU_NEEDS_BC = 2, MASU_NEEDS_FLOAT16 = 4, MASU_NEEDS_ANISO = 8 };
+
+typedef struct masu_governed {
+    bool on;
+    double target_ms;
+    uint32_t frames;
+    uint32_t best, worst;     /* rungs it may choose; worst 0: to the end of a measured ladder */
+    bool told;                /* the governor is told times that follow from the next two, */
+    /* fixed + load * the ladder's time of the rung, if it is a measured one, else scale^2: and not those
+     * of the clock */
+    double fixed_ms, load_ms;
+    int32_t settles[2];       /* the last rung lies between these; -1: anywhere */
+} masu_governed;
+
+typedef struct masu_case {
+    const char *name, *scene;
+    uint32_t width, height;
+    double time, move; /* of the first frame, and by how much each goes on, s */
+    uint32_t frames;
+    uint32_t rung_count; /* the ladder; without `governed` one; 0: */
+    bool measured;       /* the ladder that was measured for the scene's class */
+    masu_rung rungs[MASU_MAX_RUNGS];
+    masu_governed governed;
+    bool validate;
+    bool exact_memory; /* what is asked for is used to the byte, and a byte less refused */
+    uint32_t same;     /* masu_same */
+    uint32_t needs;
+    uint32_t flight;
+    masu_bound bounds[MASU_MEASURE_COUNT], least[MASU_MEASURE_COUNT];
+    const char *against;      /* "truth", or the name of a case */
+    int32_t other;            /* that case's number; -1: none */
+    uint32_t positions, rays; /* of the truth */
+} masu_case;
+
+typedef struct masu_suite {
+    const char *file; /* as given; the caller's */
+    uint32_t hash;    /* of the file's bytes */
+    json_t *root;
+    masu_case *cases;
+    uint32_t count;
+} masu_suite;
+
+/* On false `error` has one line: file, case, key, what was needed and what was given. */
+bool masu_suite_parse(const char *file, const char *text, size_t bytes, masu_suite *suite,
+                      char *error, size_t error_size);
+void masu_suite_free(masu_suite *suite);
+
+/* ---- Which of them --------------------------------------------------------------------------- */
+
+/* Names one case of one suite at one size: "1f00ba42:rungs.city:96x64". */
+bool masu_replay_token(const masu_suite *suite, const masu_case *c, char *out, size_t size);
+
+/* The case that a token names, or -1 with one line. */
+int32_t masu_replay_find(const masu_suite *suite, const char *token, char *error,
+                         size_t error_size);
+
+/* `glob` NULL: all. Of those whose name it fits, each `of`-th from `first` on: as the parts 0 ..
+ * of-1 share out the suite. Fills marks[count], returns how many are marked. */
+uint32_t masu_suite_select(const masu_suite *suite, const char *glob, uint32_t first, uint32_t of,
+                           bool *marks);
+
+#endif

@@ -1,0 +1,50 @@
+/* make_smaa_area.c: what the shaders look up of SMAA's table of areas, as a C header on stdout.
+ * Made while building. masu_shared.h says how it lies.
+ *
+ * Of the table's 179 200 bytes these are 15 648: one subsample; of 5x5 patterns the 4x4 that
+ * there are; of 16x16 roots of distances the 10x10 that the longest search reaches, of diagonals
+ * 17x17 distances of 20x20. */
+#include "generate/smaa_tables.h"
+
+#include "shared/masu_shared.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static uint8_t texels[MASU_SMAA_AREA_BYTES];
+static uint32_t words[MASU_SMAA_AREA_WORDS];
+
+static uint32_t texel(int x, int y) {
+    const uint8_t *t = &texels[2 * (y * MASU_SMAA_AREA_WIDTH + x)];
+    return t[0] | (uint32_t)t[1] << 8;
+}
+
+int main(void) {
+    static const int code[4] = {0, 1, 3, 4};
+    uint32_t n = 0;
+    masu_smaa_area_texture(texels, 1);
+    for (int cell = 0; cell < 16; cell++) {
+        for (int r = 0; r < MASU_SMAA_STRAIGHT; r++) {
+            for (int l = 0; l < MASU_SMAA_STRAIGHT; l++) {
+                int x = MASU_SMAA_CELL * code[cell % 4] + l,
+                    y = MASU_SMAA_CELL * code[cell / 4] + r;
+                words[n++] = texel(x, y) | texel(x + 1, y) << 16;
+            }
+        }
+    }
+    uint32_t half = 0;
+    for (int cell = 0; cell < 16; cell++) {
+        for (int r = 0; r < MASU_SMAA_DIAGONAL; r++) {
+            for (int l = 0; l < MASU_SMAA_DIAGONAL; l++, half++) {
+                int x = 80 + MASU_SMAA_DIAGONAL_CELL * (cell % 4) + l;
+                int y = MASU_SMAA_DIAGONAL_CELL * (cell / 4) + r;
+                words[n + half / 2] |= texel(x, y) << 16 * (half % 2);
+            }
+        }
+    }
+    printf("/* Made by tools/generate/make_smaa_area.c. */\nstatic const uint32_t masu_smaa_area[] = {\n");
+    for (int i = 0; i < MASU_SMAA_AREA_WORDS; i++)
+        printf("0x%08x,%s", words[i], i % 8 == 7 ? "\n" : " ");
+    printf("};\n");
+    return fflush(stdout) || ferror(stdout) ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,125 @@
+/* compare.c: `masu compare`: how far one PNG is from another, by the measures that all benches
+ * use (metric/image.h, metric/flip.h). tests/scripts/compare.sh holds them against other people's
+ * programs. Opens no device; nothing is judged. */
+#include "masu/cmd.h"
+
+#include "image.h"
+#include "metric/flip.h"
+#include "metric/image.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTION_MAP = 1, OPTION_PPD, OPTION_JSON };
+
+typedef struct differences {
+    double rmse, psnr, ssim;
+    masu_flip flip;
+} differences;
+
+static bool measure(const struct masu_image *reference, const struct masu_image *test, double ppd,
+                    float *map, differences *d) {
+    uint32_t w = reference->width, h = reference->height;
+    d->rmse = masu_metric_rmse(reference->rgba, test->rgba, w, h);
+    d->psnr = masu_metric_psnr(d->rmse);
+    d->ssim = masu_metric_ssim(reference->rgba, test->rgba, w, h);
+    return !isnan(d->ssim) &&
+           masu_metric_flip(reference->rgba, test->rgba, w, h, ppd, map, &d->flip);
+}
+
+/* Grey, 0 where nobody sees a difference. Over `pixels`, which nobody needs any more. */
+static bool save_map(const char *path, const float *map, struct masu_image *pixels, char *error,
+                     size_t error_size) {
+    size_t n = (size_t)pixels->width * pixels->height;
+    for (size_t i = 0; i < n; i++) {
+        memset(pixels->rgba + 4 * i, (int)(255.0f * fminf(map[i], 1.0f) + 0.5f), 3);
+        pixels->rgba[4 * i + 3] = 255;
+    }
+    return masu_image_save_png(path, pixels->rgba, pixels->width, pixels->height, 0, error,
+                               error_size);
+}
+
+static int write_json(const differences *d, const char *path) {
+    /* JSON has no infinity: of equal pictures the PSNR is null. */
+    json_t *psnr = isfinite(d->psnr) ? json_real(d->psnr) : json_null();
+    json_t *root = json_pack("{s:f, s:o, s:f, s:f, s:f, s:f}", "rmse", 255.0 * d->rmse, "psnr_db",
+                             psnr, "ssim", d->ssim, "flip", d->flip.mean, "flip_p99", d->flip.p99,
+                             "flip_max", d->flip.max);
+    return masu_json_write(root, path);
+}
+
+static int compare(const char *const files[2], double ppd, const char *map_path,
+                   const char *json_path) {
+    struct masu_image images[2];
+    differences d;
+    char error[4096] = "no memory for the comparison";
+    memset(images, 0, sizeof images);
+    bool good = masu_image_load_png(files[0], &images[0], error, sizeof error) &&
+                masu_image_load_png(files[1], &images[1], error, sizeof error);
+    if (good && (images[0].width != images[1].width || images[0].height != images[1].height)) {
+        snprintf(error, sizeof error, "%.1500s is %ux%u, but %.1500s is %ux%u", files[1],
+                 images[1].width, images[1].height, files[0], images[0].width, images[0].height);
+        good = false;
+    }
+    float *map = NULL;
+    if (good && map_path) {
+        map = malloc(sizeof *map * images[0].width * images[0].height);
+        good = map != NULL;
+    }
+    good = good && measure(&images[0], &images[1], ppd, map, &d);
+    if (good && map_path) good = save_map(map_path, map, &images[1], error, sizeof error);
+    free(map);
+    masu_image_free(&images[0]);
+    masu_image_free(&images[1]);
+    if (!good) return masu_cli_error("%s", error);
+    if (json_path) return write_json(&d, json_path);
+    printf("RMSE %.4f of 255, PSNR %.3f dB, SSIM %.5f, FLIP %.5f (p99 %.4f, most %.4f)\n",
+           255.0 * d.rmse, d.psnr, d.ssim, d.flip.mean, d.flip.p99, d.flip.max);
+    return MASU_CLI_OK;
+}
+
+static int run(masu_cli *cli) {
+    const char *files[2] = {NULL, NULL}, *map = NULL, *json = NULL;
+    double ppd = 0.0;
+    for (;;) {
+        switch (masu_cli_next(cli)) {
+        case OPTION_MAP:
+            if (!masu_output_file(cli, &map)) return cli->exit_code;
+            continue;
+        case OPTION_JSON:
+            if (!masu_output_file_or_stdout(cli, &json)) return cli->exit_code;
+            continue;
+        case OPTION_PPD:
+            if (!masu_cli_double(cli, 1.0, 1000.0, &ppd)) return MASU_CLI_USAGE;
+            continue;
+        case MASU_CLI_ARGUMENT:
+            if (files[0] && files[1])
+                return masu_cli_usage_error("one reference and one picture: '%s'", cli->value);
+            files[files[0] ? 1 : 0] = cli->value;
+            continue;
+        case MASU_CLI_EXIT: return cli->exit_code;
+        default: break;
+        }
+        break;
+    }
+    if (!files[0] || !files[1])
+        return masu_cli_usage_error("a reference and a picture are needed");
+    return compare(files, ppd, map, json);
+}
+
+static const masu_cli_option list[] = {
+    {"map", "FILE.png", "write FLIP of each pixel there, black where there is no difference",
+     OPTION_MAP, 0},
+    {"ppd", "N", "pixels per degree of sight, 1 to 1000 (default 67.02: 0.7 m before a 4K screen)",
+     OPTION_PPD, 0},
+    {"json", "FILE", "write the numbers there instead, - for stdout", OPTION_JSON, 0},
+    {NULL, NULL, NULL, 0, 0}};
+
+const masu_cli_command masu_cmd_compare = {
+    .name = "compare",
+    .arguments = "REFERENCE.png PICTURE.png [options]",
+    .summary = "how far a picture is from another: RMSE, PSNR, SSIM, FLIP",
+    .options = list,
+    .details = "Pictures are taken as sRGB-encoded, alpha is ignored. SSIM is that of luma.\n",
+    .run = run};

@@ -1,0 +1,274 @@
+/* plan.c: `masu plan`: the compiled frame of a scene: passes, resources, bytes, aliasing, and
+ * what was left out and why. */
+#include "masu/cmd.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT, OPTION_RAYS, OPTION_LADDER };
+
+static const char *format_name(VkFormat format) {
+    switch (format) {
+    case VK_FORMAT_R8G8B8A8_UNORM: return "R8G8B8A8_UNORM";
+    case VK_FORMAT_R32_UINT: return "R32_UINT";
+    case VK_FORMAT_R32_SFLOAT: return "R32_SFLOAT";
+    case VK_FORMAT_D32_SFLOAT: return "D32_SFLOAT";
+    case VK_FORMAT_R16G16B16A16_SFLOAT: return "R16G16B16A16_SFLOAT";
+    default: return "?";
+    }
+}
+
+static void join(char *out, size_t size, const char *const *names, size_t n) {
+    size_t used = 0;
+    out[0] = 0;
+    for (size_t i = 0; i < n && names[i] && used < size; i++) {
+        used += (size_t)snprintf(out + used, size - used, "%s%s", i ? ", " : "", names[i]);
+    }
+}
+
+static double mib(uint64_t bytes) { return (double)bytes / (1024.0 * 1024.0); }
+
+static void print_passes(const masu_plan_info *p) {
+    int width = p->rung_count > 6 ? (int)p->rung_count : 6; /* of the column */
+    printf("\npasses\n  %-19s %-*s %-44s %s\n", "", width, "rungs", "reads -> writes", "why");
+    for (uint32_t i = 0; i < p->pass_count; i++) {
+        const masu_plan_pass *pass = &p->passes[i];
+        char reads[128], writes[128], both[300], rungs[16] = "";
+        join(reads, sizeof reads, pass->reads, 6);
+        join(writes, sizeof writes, pass->writes, 4);
+        snprintf(both, sizeof both, "%s%s%s%s", reads, *reads ? " " : "", *writes ? "-> " : "",
+                 writes);
+        for (uint32_t r = 0; r < p->rung_count; r++)
+            rungs[r] = pass->active & 1u << r ? (char)('0' + r) : '-';
+        printf("  %-19s %-*s %-44s %s\n", pass->name, width, rungs, pass->active ? both : "left out",
+               pass->why);
+    }
+}
+
+static void print_images(const masu_plan_info *p) {
+    printf("\nimages, alive from pass to pass; equal bytes are shared\n  %-19s %-20s %-11s %10s  "
+           "%-22s %s\n",
+           "", "format", "extent", "bytes", "at", "alive");
+    for (uint32_t i = 0; i < p->image_count; i++) {
+        const masu_plan_image *image = &p->images[i];
+        if (!image->used) {
+            printf("  %-19s %-20s left out\n", image->name, format_name(image->format));
+            continue;
+        }
+        char extent[32], at[48];
+        snprintf(extent, sizeof extent, "%ux%u", image->width, image->height);
+        snprintf(at, sizeof at, "%llu-%llu", (unsigned long long)image->offset,
+                 (unsigned long long)(image->offset + image->bytes));
+        printf("  %-19s %-20s %-11s %10llu  %-22s %s..%s\n", image->name,
+               format_name(image->format), extent, (unsigned long long)image->bytes, at,
+               p->passes[image->first_pass].name, p->passes[image->last_pass].name);
+    }
+}
+
+static void print_pipelines(const masu_plan_info *p) {
+    printf("\npipelines, time to build\n");
+    for (uint32_t i = 0; i < p->pass_count; i++) {
+        if (p->passes[i].pipeline_ns) {
+            printf("  %-19s %8.1f ms\n", p->passes[i].name, (double)p->passes[i].pipeline_ns / 1e6);
+        }
+    }
+}
+
+/* Tens, and one for each array of textures. */
+#define MEMORY_ROWS 160u
+
+static void print_memory(const masu_session *s, const masu_plan_info *p) {
+    static const char *const names[MASU_ROLE_COUNT] = {"device", "upload", "readback"};
+    const masu_memory *m = &p->memory;
+    printf("\nmemory\n  host block          %12llu bytes\n", (unsigned long long)m->host_bytes);
+    printf("  device, all roles   %12llu bytes  (%.1f MiB)%s\n",
+           (unsigned long long)m->device_bytes, mib(m->device_bytes),
+           m->unified ? "  one block, unified memory" : "");
+    for (uint32_t r = 0; r < MASU_ROLE_COUNT && !m->unified; r++) {
+        if (m->roles[r].bytes)
+            printf("    %-17s %12llu bytes\n", names[r], (unsigned long long)m->roles[r].bytes);
+    }
+    printf("  transient images: unaliased %llu, aliased %llu, lower bound %llu bytes\n",
+           (unsigned long long)m->transient_unaliased, (unsigned long long)m->transient_aliased,
+           (unsigned long long)m->transient_lower_bound);
+    printf("  left out: %llu bytes of images\n", (unsigned long long)p->left_out_bytes);
+    masu_memory_row rows[MEMORY_ROWS];
+    uint32_t n = masu_memory_report(s->m, rows, MEMORY_ROWS);
+    printf("\n  %-22s %-7s %10s %12s %12s\n", "row", "kind", "count", "bytes", "offset");
+    for (uint32_t i = 0; i < n && i < MEMORY_ROWS; i++) {
+        printf("  %-22s %-7s %10llu %12llu %12llu\n", rows[i].name, rows[i].kind,
+               (unsigned long long)rows[i].count, (unsigned long long)rows[i].bytes,
+               (unsigned long long)rows[i].offset);
+    }
+}
+
+static int print_text(const masu_session *s, const masu_plan_info *p, const char *scene) {
+    printf("%s on %s\n", scene, s->host.driver);
+    printf("scene: %u instances of %u meshes, %u draws, %llu triangles, %s\n", s->scene.instances,
+           s->scene.meshes, s->scene.draws, (unsigned long long)s->scene.triangles,
+           s->scene.sdf ? "an SDF" : "no SDF");
+    if (s->scene.textures) {
+        printf("textures: %u in %u arrays, %llu bytes as blocks, %llu decoded\n", s->scene.textures,
+               s->scene.texture_arrays, (unsigned long long)s->scene.texture_bytes,
+               (unsigned long long)s->scene.texture_bytes_decoded);
+    }
+    if (s->scene.environment_size) {
+        printf("sky: a picture, %u texels an edge, %u mips\n", s->scene.environment_size,
+               s->scene.environment_mips);
+    } else {
+        printf("sky: %s\n", s->scene.analytic_sky ? "follows from the sun" : "two colours");
+    }
+    printf("class: %s", masu_scene_class_name(masu_scene_class_of(&s->scene)));
+    masu_desc ladder;
+    const char *from;
+    if (s->desc.ladder == MASU_ON && !masu_ladder_of(&s->scene, &ladder, &from))
+        printf("; its ladder is that of %s", from);
+    printf("\noutput %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
+    for (uint32_t r = 0; r < p->rung_count; r++) {
+        const masu_plan_rung *rung = &p->rungs[r];
+        printf("  %u  renders %ux%u, %u passes, %u barriers", r, rung->render_width,
+               rung->render_height, rung->dispatches, rung->barriers);
+        if (rung->ratio > 0.0f) printf(", time %.3f", (double)rung->ratio);
+        if (rung->flip > 0.0f) printf(", FLIP %.4f", (double)rung->flip);
+        printf("\n");
+    }
+    print_passes(p);
+    print_images(p);
+    print_pipelines(p);
+    print_memory(s, p);
+    return MASU_CLI_OK;
+}
+
+static json_t *names_json(const char *const *names, size_t n) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < n && names[i]; i++) json_array_append_new(list, json_string(names[i]));
+    return list;
+}
+
+static json_t *rows_json(const masu_session *s) {
+    masu_memory_row rows[MEMORY_ROWS];
+    uint32_t n = masu_memory_report(s->m, rows, MEMORY_ROWS);
+    json_t *list = json_array();
+    for (uint32_t i = 0; i < n && i < MEMORY_ROWS; i++) {
+        json_array_append_new(
+            list, json_pack("{s:s, s:s, s:i, s:I, s:I, s:I, s:b}", "name", rows[i].name, "kind",
+                            rows[i].kind, "role", (int)rows[i].role, "count",
+                            (json_int_t)rows[i].count, "bytes", (json_int_t)rows[i].bytes, "offset",
+                            (json_int_t)rows[i].offset, "transient", rows[i].transient != 0));
+    }
+    return list;
+}
+
+static int print_json(const masu_session *s, const masu_plan_info *p, const char *scene) {
+    json_t *passes = json_array(), *images = json_array(), *rungs = json_array();
+    for (uint32_t i = 0; i < p->pass_count; i++) {
+        const masu_plan_pass *pass = &p->passes[i];
+        json_t *active = json_array();
+        for (uint32_t r = 0; r < p->rung_count; r++) {
+            if (pass->active & 1u << r) json_array_append_new(active, json_integer((json_int_t)r));
+        }
+        json_array_append_new(passes, json_pack("{s:s, s:o, s:s, s:o, s:o, s:f}", "name",
+                                                pass->name, "rungs", active, "why", pass->why,
+                                                "reads", names_json(pass->reads, 6), "writes",
+                                                names_json(pass->writes, 4), "pipeline_ms",
+                                                (double)pass->pipeline_ns / 1e6));
+    }
+    for (uint32_t i = 0; i < p->image_count; i++) {
+        const masu_plan_image *image = &p->images[i];
+        json_t *o = json_pack("{s:s, s:s, s:b}", "name", image->name, "format",
+                              format_name(image->format), "used", image->used != 0);
+        if (image->used) {
+            json_t *more = json_pack("{s:i, s:i, s:I, s:I, s:s, s:s}", "width", (int)image->width,
+                                     "height", (int)image->height, "bytes",
+                                     (json_int_t)image->bytes, "offset", (json_int_t)image->offset,
+                                     "first_pass", p->passes[image->first_pass].name, "last_pass",
+                                     p->passes[image->last_pass].name);
+            json_object_update(o, more);
+            json_decref(more);
+        }
+        json_array_append_new(images, o);
+    }
+    for (uint32_t r = 0; r < p->rung_count; r++) {
+        json_array_append_new(
+            rungs, json_pack("{s:i, s:i, s:i, s:i, s:f, s:f}", "render_width",
+                             (int)p->rungs[r].render_width, "render_height",
+                             (int)p->rungs[r].render_height, "passes", (int)p->rungs[r].dispatches,
+                             "barriers", (int)p->rungs[r].barriers, "ratio",
+                             (double)p->rungs[r].ratio, "flip", (double)p->rungs[r].flip));
+    }
+    json_t *root = json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:o}", "scene", scene,
+                             "class", masu_scene_class_name(masu_scene_class_of(&s->scene)),
+                             "device",
+                             masu_json_device(&s->host), "rungs", rungs, "passes", passes, "images",
+                             images, "memory", masu_json_memory(&p->memory), "left_out_bytes",
+                             (json_int_t)p->left_out_bytes, "rows", rows_json(s));
+    return masu_json_write(root, "-");
+}
+
+static int run(masu_cli *cli) {
+    masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
+                           .host = {.ray_query = true}};
+    const char *ladder = NULL;
+    bool json = false;
+    for (;;) {
+        int id = masu_cli_next(cli);
+        if (masu_device_option(cli, id, &d.host)) continue;
+        switch (id) {
+        case OPTION_SIZE:
+            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
+            continue;
+        case OPTION_FLIGHT:
+            if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight))
+                return MASU_CLI_USAGE;
+            continue;
+        case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
+        case OPTION_RAYS:
+            if (!masu_rays_option(cli, &d)) return MASU_CLI_USAGE;
+            continue;
+        case OPTION_JSON: json = true; continue;
+        case OPTION_LADDER: ladder = cli->value; continue;
+        case MASU_CLI_ARGUMENT:
+            if (d.scene_path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
+            d.scene_path = cli->value;
+            continue;
+        case MASU_CLI_EXIT: return cli->exit_code;
+        default: break;
+        }
+        break;
+    }
+    if (!d.scene_path) return masu_cli_usage_error("no scene is given");
+    int code = masu_ladder_option(ladder, &d.desc);
+    if (code) return code;
+    d.host.message = masu_print_message;
+    static masu_session s;
+    char error[1024];
+    if (!masu_session_open(&d, &s, error, sizeof error)) return masu_cli_error("%s", error);
+    masu_plan_info plan;
+    masu_plan_of(s.m, &plan);
+    code = json ? print_json(&s, &plan, d.scene_path) : print_text(&s, &plan, d.scene_path);
+    code = masu_finish_validation(&s.host, code);
+    masu_session_close(&s);
+    return code;
+}
+
+static const masu_cli_option options[] = {
+    {"size", "WxH",
+     "output size in pixels, at most 16384 a side and 64 Mi in all\n(default 1920x1080)",
+     OPTION_SIZE, 0},
+    {"json", NULL, "print JSON", OPTION_JSON, 0},
+    {"ladder", "FILE|auto|off",
+     "the rungs: those of a ladder.json of masu bench; auto, those measured for scenes of this\n"
+     "class; off, 1, 0.8 and 0.4 of the size (default off)", OPTION_LADDER, 0},
+    {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
+    {"split-memory", NULL, "one block per memory role, even on unified memory", OPTION_SPLIT, 0},
+    MASU_RAYS_OPTION(OPTION_RAYS),
+    MASU_DEVICE_OPTIONS,
+    {NULL, NULL, NULL, 0, 0}};
+
+const masu_cli_command masu_cmd_plan = {
+    .name = "plan",
+    .arguments = "SCENE.masu [options]",
+    .summary = "print a scene's passes, images, memory, and what was left out",
+    .options = options,
+    .run = run};

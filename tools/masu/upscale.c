@@ -1,0 +1,199 @@
+/* upscale.c: `masu upscale`: anti-aliasing and FSR1 on a PNG, by exactly the passes that a frame ends
+ * with. */
+#include "masu/cmd.h"
+
+#include "image.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    OPTION_OUTPUT = 1,
+    OPTION_SIZE,
+    OPTION_SHARPNESS,
+    OPTION_NO_RCAS,
+    OPTION_EASU,
+    OPTION_AA,
+    OPTION_SMAA
+};
+
+/* Runs the passes over `rgba` and leaves the result in the session's target. */
+static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_t width,
+                    uint32_t height, uint8_t *out, char *error, size_t size) {
+    /* The source image needs the device and the renderer needs the source image: so the session
+     * stops before masu_init and goes on when the source is there. */
+    static masu_session s;
+    masu_session_desc d = *given;
+    masu_headless_source source;
+    bool done = false;
+    memset(&source, 0, sizeof source);
+    d.no_renderer = true;
+    if (!masu_session_open(&d, &s, error, size)) return false;
+    uint32_t most = s.host.properties.limits.maxImageDimension2D;
+    if (width > most || height > most) {
+        snprintf(error, size, "input %ux%u is larger than the device's images may be (%u)", width,
+                 height, most);
+    } else if (masu_headless_source_create(&s.host, rgba, width, height, width, height, 0, &source,
+                                           error, size)) {
+        s.desc.source = (masu_source){source.view, width, height,
+                                       VK_FORMAT_R8G8B8A8_UNORM};
+        masu_frame_desc frame = {0};
+        masu_commands commands;
+        done = masu_session_start(&s, error, size) &&
+               masu_session_frame(&s, &frame, true, &commands, error, size) &&
+               masu_headless_target_read(&s.host, &s.targets[0], error, size);
+        if (done)
+            memcpy(out, s.targets[0].mapped,
+                   (size_t)s.desc.output.width * s.desc.output.height * 4);
+        if (done && s.host.messages) {
+            snprintf(error, size, "the validation layer has reported %u messages", s.host.messages);
+            done = false;
+        }
+        masu_destroy(s.m);
+        s.m = NULL;
+        masu_headless_source_destroy(&s.host, &source);
+    }
+    masu_session_close(&s);
+    return done;
+}
+
+static bool has_alpha(const struct masu_image *image) {
+    for (size_t i = 0; i < (size_t)image->width * image->height; i++) {
+        if (image->rgba[4 * i + 3] != 255) return true;
+    }
+    return false;
+}
+
+/* FSR1 knows three channels. Alpha goes through the same passes as a grey picture of its own. */
+static bool upscale_alpha(const masu_session_desc *d, const struct masu_image *image, uint8_t *out,
+                          char *error, size_t size) {
+    size_t in_pixels = (size_t)image->width * image->height;
+    size_t out_pixels = (size_t)d->desc.output.width * d->desc.output.height;
+    uint8_t *grey = malloc(in_pixels * 4), *grey_out = malloc(out_pixels * 4);
+    bool done = grey && grey_out;
+    if (!done) snprintf(error, size, "no memory for the alpha channel");
+    for (size_t i = 0; i < in_pixels && done; i++) {
+        memset(grey + 4 * i, image->rgba[4 * i + 3], 3);
+        grey[4 * i + 3] = 255;
+    }
+    done = done && upscale(d, grey, image->width, image->height, grey_out, error, size);
+    for (size_t i = 0; i < out_pixels && done; i++) out[4 * i + 3] = grey_out[4 * i];
+    free(grey);
+    free(grey_out);
+    return done;
+}
+
+static int upscale_file(const masu_session_desc *given, const char *from, const char *to) {
+    struct masu_image image;
+    char error[1024];
+    masu_session_desc copy = *given, *d = &copy;
+    if (!masu_image_load_png(from, &image, error, sizeof error)) return masu_cli_error("%s", error);
+    if (!d->desc.output.width) d->desc.output = (VkExtent2D){image.width, image.height};
+    masu_rung *rung = &d->desc.rungs[0];
+    int same = d->desc.output.width == image.width && d->desc.output.height == image.height;
+    if (rung->aa > MASU_AA_OFF && same) rung->upscale = rung->sharpen = MASU_OFF;
+    uint32_t width = d->desc.output.width, height = d->desc.output.height;
+    uint8_t *out = malloc((size_t)width * height * 4);
+    int code = MASU_CLI_OK;
+    if (!out) {
+        code = masu_cli_error("no memory for %ux%u pixels", width, height);
+    } else if (!upscale(d, image.rgba, image.width, image.height, out, error, sizeof error) ||
+               (has_alpha(&image) && !upscale_alpha(d, &image, out, error, sizeof error)) ||
+               !masu_image_save_png(to, out, width, height, 0, error, sizeof error)) {
+        code = masu_cli_error("%s", error);
+    } else if (width > 2 * image.width || height > 2 * image.height) {
+        masu_cli_warn("%ux%u to %ux%u: FSR1 is made for at most twice the size per axis",
+                      image.width, image.height, width, height);
+    }
+    free(out);
+    masu_image_free(&image);
+    return code;
+}
+
+static bool easu_of(const char *name, masu_easu *easu) {
+    static const char *const names[] = {[MASU_EASU_FULL] = "full",
+                                        [MASU_EASU_FAST] = "fast",
+                                        [MASU_EASU_BILINEAR] = "bilinear"};
+    for (int i = MASU_EASU_FULL; i <= MASU_EASU_BILINEAR; i++) {
+        if (strcmp(name, names[i])) continue;
+        *easu = (masu_easu)i;
+        return true;
+    }
+    return false;
+}
+
+static int run(masu_cli *cli) {
+    masu_session_desc d = {
+        .desc = {.targets = {.storage = 1}, .rung_count = 1, .rungs = {{.sharpness = 0.2f}}}};
+    masu_rung *rung = &d.desc.rungs[0];
+    const char *files[2] = {NULL, NULL};
+    double stops = 0.2;
+    rung->upscale = MASU_ON;
+    rung->sharpen = MASU_ON;
+    for (;;) {
+        int id = masu_cli_next(cli);
+        if (masu_device_option(cli, id, &d.host)) continue;
+        switch (id) {
+        case OPTION_OUTPUT:
+            if (!masu_output_file(cli, &files[1])) return cli->exit_code;
+            continue;
+        case OPTION_SIZE:
+            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
+            continue;
+        case OPTION_SHARPNESS:
+            if (!masu_cli_double(cli, 0.0, 64.0, &stops)) return MASU_CLI_USAGE;
+            continue;
+        case OPTION_AA:
+        case OPTION_SMAA:
+            if (!masu_aa_option(cli, id == OPTION_SMAA, &rung->aa)) return MASU_CLI_USAGE;
+            continue;
+        case OPTION_NO_RCAS: rung->sharpen = MASU_OFF; continue;
+        case OPTION_EASU:
+            if (!easu_of(cli->value, &rung->easu))
+                return masu_cli_usage_error("--easu is full, fast or bilinear, not '%s'",
+                                            cli->value);
+            continue;
+        case MASU_CLI_ARGUMENT:
+            if (files[0] && files[1])
+                return masu_cli_usage_error("one input and one output: '%s'", cli->value);
+            files[files[0] ? 1 : 0] = cli->value;
+            continue;
+        case MASU_CLI_EXIT: return cli->exit_code;
+        default: break;
+        }
+        break;
+    }
+    if (!files[0] || !files[1])
+        return masu_cli_usage_error("an input and an output file are needed");
+    if (!d.desc.output.width && rung->aa <= MASU_AA_OFF)
+        return masu_cli_usage_error("--size WxH is needed");
+    rung->sharpness = (float)stops;
+    d.host.message = masu_print_message;
+    return upscale_file(&d, files[0], files[1]);
+}
+
+static const masu_cli_option options[] = {
+    {"size", "WxH", "output size in pixels, at most 16384 a side and 64 Mi in all", OPTION_SIZE, 0},
+    {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)",
+     OPTION_SHARPNESS, 0},
+    {"aa", "WAY", "first anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
+    {"smaa", "PRESET", "the same: low, medium, high, ultra", OPTION_SMAA, 0},
+    {"no-rcas", NULL, "EASU alone", OPTION_NO_RCAS, 0},
+    {"easu", "WAY", "full (default), fast: edges looked at once, or bilinear: for comparison",
+     OPTION_EASU, 0},
+    {"output", "FILE.png", "the output, instead of the second argument", OPTION_OUTPUT, 'o'},
+    MASU_DEVICE_OPTIONS,
+    {NULL, NULL, NULL, 0, 0}};
+
+const masu_cli_command masu_cmd_upscale = {
+    .name = "upscale",
+    .arguments = "IN.png OUT.png --size WxH|--aa WAY [options]",
+    .summary = "upscale a picture by FSR1 (EASU, RCAS), smooth its edges by SMAA",
+    .options = options,
+    .details = "The picture is taken as it is: already display-encoded (sRGB), as FSR1 wants it. "
+               "Alpha goes through the\n"
+               "same passes as a picture of its own. With --aa and no other --size than the picture's "
+               "own, there is\n"
+               "anti-aliasing alone.\n",
+    .run = run};

@@ -1,0 +1,257 @@
+/* report.c: see report.h. */
+#include "meso/report.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bake/texture/texel.h"
+#include "cli/cli.h"
+#include "image.h"
+
+#define DEGREES (180 / MASU_BAKE_PI)
+
+/* ---- text ---- */
+
+typedef struct text {
+    char *data;
+    size_t bytes, room;
+} text;
+
+MASU_CLI_PRINTF(2, 3) static void add(text *t, const char *format, ...) {
+    if (t->room - t->bytes < 1024) {
+        t->room = t->room * 2 + 8192;
+        t->data = realloc(t->data, t->room);
+        if (!t->data) exit(masu_cli_error("out of memory"));
+    }
+    va_list arguments;
+    va_start(arguments, format);
+    int n = vsnprintf(t->data + t->bytes, t->room - t->bytes, format, arguments);
+    va_end(arguments);
+    if (n > 0) t->bytes += (size_t)n < 1024 ? (size_t)n : 1023;
+}
+
+static const char *path_of(const char *name, const char *end) {
+    static char path[4352];
+    snprintf(path, sizeof path, "%s%s", name, end);
+    return path;
+}
+
+static bool save(const char *path, text *t) {
+    char error[1024];
+    bool good = masu_file_write(path, t->data, t->bytes, error, sizeof error);
+    if (!good) masu_cli_error("%s", error);
+    free(t->data);
+    *t = (text){0};
+    return good;
+}
+
+/* ---- curves ---- */
+
+static void add_three(text *t, const char *name, const double v[3], const char *end) {
+    add(t, "  \"%s\": [%.6g, %.6g, %.6g]%s\n", name, v[0], v[1], v[2], end);
+}
+
+bool masu_meso_write_curves(const char *name, const masu_meso_study *study) {
+    const masu_meso_curves *c = &study->curves;
+    text t = {0};
+    add(&t, "{\n");
+    add_three(&t, "tilt", c->tilt, ",");
+    add_three(&t, "rough", c->rough, ",");
+    add_three(&t, "open", c->ao, ",");
+    add_three(&t, "gain", c->gain, ",");
+    add_three(&t, "tint", c->tint, ",");
+    add_three(&t, "specular", c->specular, ",");
+    add(&t, "  \"facet_roughness\": %.6g,\n  \"spread\": [%.6g, %.6g, %.6g],\n", c->facet,
+        c->spread, c->spread1, c->spread2);
+    add(&t, "  \"alpha\": %.6g,\n  \"offset\": %.6g\n}\n", c->alpha, c->offset);
+    return save(path_of(name, ".json"), &t);
+}
+
+/* ---- maps ---- */
+
+enum { MAP_COLOR, MAP_NORMAL, MAP_ROUGH, MAP_AO, MAPS };
+
+static void encode(const masu_meso_texel *t, int map, uint8_t rgba[4]) {
+    for (int k = 0; k < 3; k++) {
+        double n = k == 0 ? t->normal[0] : k == 1 ? -t->normal[2] : t->normal[1];
+        switch (map) {
+        case MAP_COLOR: rgba[k] = masu_texel_to_srgb((float)t->color[k]); break;
+        case MAP_NORMAL: rgba[k] = (uint8_t)(128.5 + 127 * n); break;
+        case MAP_ROUGH: rgba[k] = masu_texel_to_unorm((float)t->roughness); break;
+        default: rgba[k] = masu_texel_to_unorm((float)t->ao); break;
+        }
+    }
+    rgba[3] = 255;
+}
+
+bool masu_meso_write_maps(const char *name, const masu_meso_study *study) {
+    static const char *const ends[MAPS] = {"_color.png", "_normal.png", "_rough.png", "_ao.png"};
+    size_t texels = (size_t)study->size * study->size;
+    uint8_t *rgba = malloc(texels * 4);
+    if (!rgba) exit(masu_cli_error("out of memory"));
+    bool good = true;
+    for (int map = 0; map < MAPS && good; map++) {
+        char error[1024];
+        for (size_t i = 0; i < texels; i++) encode(&study->texels[i], map, rgba + 4 * i);
+        good = masu_image_save_png(path_of(name, ends[map]), rgba, study->size, study->size, 0,
+                                   error, sizeof error);
+        if (!good) masu_cli_error("%s", error);
+    }
+    free(rgba);
+    return good;
+}
+
+/* ---- numbers ---- */
+
+masu_meso_pair masu_meso_compare(const masu_meso_study *study, uint32_t view) {
+    const masu_meso_view *m = &study->views[view];
+    const masu_meso_curves *c = &study->curves;
+    masu_meso_vec3 v = masu_meso_from_above(m->angle, 0);
+    masu_meso_surface s = {{study->mean.normal[0], study->mean.normal[1], study->mean.normal[2]},
+                           {1, 1, 1},
+                           study->mean.roughness,
+                           study->mean.ao,
+                           1,
+                           1};
+    masu_meso_bend(c, v, masu_bake_v3(0, 1, 0), &s);
+    double y = 1 - v.y, open = y * (c->ao[0] + y * (c->ao[1] + y * c->ao[2]));
+    masu_meso_pair p = {.x = v.y};
+    p.tilt[0] = atan2(m->toward, m->up) * DEGREES;
+    p.tilt[1] = atan2(s.normal.x, s.normal.y) * DEGREES;
+    p.rough[0] = (double)masu_texel_rougher((float)c->facet, (float)m->length);
+    p.rough[1] = s.roughness;
+    p.ao[0] = m->ao;
+    p.ao[1] = fmin(fmax(study->mean.ao + (1 - study->mean.ao) * open, 0), 1);
+    return p;
+}
+
+static double fitted_shadow(uint32_t bin) { return fmin(fmax(masu_meso_bin_value(bin), 0), 1); }
+
+bool masu_meso_write_csv(const char *name, const masu_meso_study *study) {
+    text t = {0};
+    add(&t, "angle,x,tilt_measured,tilt_fitted,roughness_measured,roughness_fitted,"
+            "ao_measured,ao_fitted,albedo_r,albedo_g,albedo_b\n");
+    for (uint32_t i = 0; i < study->setup.view_count; i++) {
+        masu_meso_pair p = masu_meso_compare(study, i);
+        const masu_meso_view *m = &study->views[i];
+        add(&t, "%g,%.5f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", m->angle, p.x, p.tilt[0],
+            p.tilt[1], p.rough[0], p.rough[1], p.ao[0], p.ao[1], m->color[0], m->color[1],
+            m->color[2]);
+    }
+    add(&t, "\nshadow,texels_and_lights,lit_measured,lit_fitted\n");
+    for (uint32_t i = 0; i < MASU_MESO_BINS; i++) {
+        if (!(study->bins[i].count > 0)) continue;
+        add(&t, "%.4f,%.0f,%.4f,%.4f\n", masu_meso_bin_value(i), study->bins[i].count,
+            study->bins[i].lit, fitted_shadow(i));
+    }
+    add(&t, "\nangle,plain,plain_and_ao,curves,plain_over_curves,filtered_plain,filtered_curves,"
+            "filtered_curves_diffuse,filtered_mean_plain,filtered_mean_curves\n");
+    for (uint32_t i = 0; i < MASU_MESO_JUDGED; i++) {
+        const masu_meso_verdict *v = &study->verdict[i];
+        add(&t, "%g,%.4f,%.4f,%.4f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f\n", masu_meso_judged[i],
+            v->far[MASU_MESO_PLAIN], v->far[MASU_MESO_OCCLUDED], v->far[MASU_MESO_CURVES],
+            v->far[MASU_MESO_PLAIN] / v->far[MASU_MESO_CURVES], v->filtered[MASU_MESO_PLAIN],
+            v->filtered[MASU_MESO_CURVES], v->filtered_diffuse, v->filtered_mean[MASU_MESO_PLAIN],
+            v->filtered_mean[MASU_MESO_CURVES]);
+    }
+    add(&t, "\nangle,texels_of_an_edge,plain,plain_and_ao,curves\n");
+    for (uint32_t i = 0; i < MASU_MESO_JUDGED; i++) {
+        for (uint32_t m = 0; m < MASU_MESO_LEVELS; m++) {
+            const double *e = study->verdict[i].texel[m];
+            add(&t, "%g,%u,%.4f,%.4f,%.4f\n", masu_meso_judged[i], masu_meso_level_size[m],
+                e[MASU_MESO_PLAIN], e[MASU_MESO_OCCLUDED], e[MASU_MESO_CURVES]);
+        }
+    }
+    return save(path_of(name, ".csv"), &t);
+}
+
+void masu_meso_print(const char *name, const masu_meso_study *study) {
+    printf("%s: relative error of radiance (RMS over lights) against ray tracing\n", name);
+    printf("  angle  plain  plain+AO  curves  times better | single texels: plain  curves | "
+           "a mip's mean: 16 x 16   4 x 4   1 x 1  each light\n");
+    for (uint32_t i = 0; i < MASU_MESO_JUDGED; i++) {
+        const masu_meso_verdict *v = &study->verdict[i];
+        printf("  %5g  %5.3f  %8.3f  %6.3f  %12.2f | %20.3f  %6.3f | %+21.3f  %+6.3f  %+6.3f  "
+               "%10.3f\n",
+               masu_meso_judged[i], v->far[MASU_MESO_PLAIN], v->far[MASU_MESO_OCCLUDED],
+               v->far[MASU_MESO_CURVES], v->far[MASU_MESO_PLAIN] / v->far[MASU_MESO_CURVES],
+               v->texel[0][MASU_MESO_PLAIN], v->texel[0][MASU_MESO_CURVES], v->mip_mean[0],
+               v->mip_mean[1], v->mip_mean[2], v->filtered[MASU_MESO_CURVES]);
+    }
+}
+
+/* ---- plots ---- */
+
+static void add_data(text *t, const masu_meso_study *study) {
+    add(t, "$curves << end\n");
+    for (uint32_t i = 0; i < study->setup.view_count; i++) {
+        masu_meso_pair p = masu_meso_compare(study, i);
+        add(t, "%.5f %.3f %.3f %.4f %.4f %.4f %.4f\n", p.x, p.tilt[0], p.tilt[1], p.rough[0],
+            p.rough[1], p.ao[0], p.ao[1]);
+    }
+    add(t, "end\n$shadow << end\n");
+    for (uint32_t i = 0; i < MASU_MESO_BINS; i++) {
+        if (!(study->bins[i].count > 100)) continue;
+        add(t, "%.4f %.4f %.4f\n", masu_meso_bin_value(i), study->bins[i].lit, fitted_shadow(i));
+    }
+    add(t, "end\n$error << end\n");
+    for (uint32_t i = 0; i < MASU_MESO_JUDGED; i++) {
+        const double *e = study->verdict[i].far;
+        add(t, "%g %.4f %.4f %.4f\n", masu_meso_judged[i], e[MASU_MESO_PLAIN],
+            e[MASU_MESO_OCCLUDED], e[MASU_MESO_CURVES]);
+    }
+    add(t, "end\n");
+}
+
+/* A name in single quotes: gnuplot doubles the quote itself and knows no other escape. */
+static void add_output(text *t, const char *name, const char *end) {
+    add(t, "set output '");
+    for (const char *c = name; *c; c++) add(t, *c == '\'' ? "''" : "%c", *c);
+    add(t, "%s'\n", end);
+}
+
+bool masu_meso_write_plots(const char *name, const masu_meso_study *study) {
+    static const struct {
+        const char *end, *title, *y, *plot;
+    } plots[] = {
+        {"_tilt.svg", "mean visible normal", "degrees towards the viewer",
+         "$curves using 1:2 with linespoints title 'measured', '' using 1:3 with linespoints title "
+         "'fitted to radiance'"},
+        {"_rough.svg", "roughness of what is seen", "perceptual roughness",
+         "$curves using 1:4 with linespoints title 'measured', '' using 1:5 with linespoints title "
+         "'fitted to radiance'"},
+        {"_ao.svg", "ambient occlusion of what is seen", "share of the sky",
+         "$curves using 1:6 with linespoints title 'measured', '' using 1:7 with linespoints title "
+         "'fitted to radiance'"},
+        {"_shadow.svg", "local shadow", "share lit",
+         "$shadow using 1:2 with linespoints title 'measured', '' using 1:3 with lines title 'f'"},
+        {"_error.svg", "radiance against ray tracing", "relative RMS error",
+         "$error using 1:2 with linespoints title 'plain', '' using 1:3 with linespoints title "
+         "'plain and AO', '' using 1:4 with linespoints title 'curves'"}};
+    text t = {0};
+    add(&t, "set terminal svg size 560,360\nset grid\nset key top left\n");
+    add_data(&t, study);
+    for (size_t i = 0; i < sizeof plots / sizeof *plots; i++) {
+        add_output(&t, name, plots[i].end);
+        add(&t, "set title '%s'\nset ylabel '%s'\nset yrange [%s]\n", plots[i].title, plots[i].y,
+            i == 1 || i == 2 ? "0:1.05" : "*:*");
+        add(&t, "set xlabel '%s'\n",
+            i < 3    ? "cosine between view and polygon"
+            : i == 3 ? "offset - alpha (1 - AO)"
+                     : "view angle, degrees");
+        add(&t, "plot %s\n", plots[i].plot);
+    }
+    FILE *pipe =
+        popen("command -v gnuplot > /dev/null || exit 127; exec gnuplot > /dev/null 2>&1", "w");
+    if (pipe) (void)fwrite(t.data, 1, t.bytes, pipe);
+    free(t.data);
+    int status = pipe ? pclose(pipe) : -1;
+    if (status == 127 << 8) {
+        masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
+    } else if (status != 0) {
+        masu_cli_error("gnuplot could not write %s_*.svg", name);
+        return false;
+    }
+    return true;
+}

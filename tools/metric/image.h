@@ -1,0 +1,24 @@
+/* image.h: how far two 8-bit pictures are apart: RMSE, PSNR, SSIM.
+ *
+ * Pictures are RGBA8, tightly packed, top row first, display-encoded; alpha is ignored. Nothing
+ * here keeps anything; only masu_metric_ssim allocates, and frees again before it returns. */
+#ifndef MASU_METRIC_IMAGE_H
+#define MASU_METRIC_IMAGE_H
+
+#include <stdint.h>
+
+/* Root of the mean squared difference over all pixels and the channels R, G, B, as a fraction of
+ * 255. */
+double masu_metric_rmse(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height);
+
+/* 20 log10(1 / rmse), dB; INFINITY for equal pictures. */
+double masu_metric_psnr(double rmse);
+
+/* Mean structural similarity of luma (Rec. 709 weights on the encoded values): Wang et al., "Image
+ * quality assessment: from error visibility to structural similarity", IEEE TIP 13-4, 2004, with
+ * their 11x11 Gaussian window of sigma 1.5 and K1 = 0.01, K2 = 0.03. The mean is over the windows
+ * that lie inside the picture; a picture narrower than a window has one window per pixel, its edge
+ * repeated. 1: equal. NAN: no memory. */
+double masu_metric_ssim(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height);
+
+#endif

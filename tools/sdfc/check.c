@@ -1,0 +1,266 @@
+/* check.c: tries what the analysis claims, in double precision, on points that a fixed seed
+ * gives: the same text is always judged alike.
+ *
+ *   constant   |f(p) - f(q)| <= L |p - q| for pairs far apart, near each other, and, found by
+ *              bisection, just left and right of the border of two cells of a repetition
+ *   estimates  (fractals) within f / L of a point there is no solid
+ *   bounds     outside of the box and of the sphere f is positive and at least growth * distance
+ *
+ * Parameters are at their defaults first, then anywhere in their ranges; time likewise. A violation
+ * is an error of the analysis (or of a constant that was measured), and fails the compilation. */
+#include "sdfc/internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define ENVIRONMENTS 16
+#define OPERATIONS_MAX 6e7 /* in all; about a second */
+#define FAR_AWAY 40.0      /* what stands for the size of something endless */
+
+/* ---- running ---- */
+
+/* Which cell the point fell into, for the operations that choose one. */
+static void note_cell(uint64_t *cells, int op, const double *a, double result) {
+    double cell;
+    switch (op) {
+    case SDFC_fold:
+    case SDFC_fold_row:
+    case SDFC_beside_row: cell = floor((a[0] - result) * a[2] * 2 + 0.5); break;
+    case SDFC_beside: cell = a[0] < 0; break;
+    case SDFC_polar_angle: cell = floor(result * 1e6 + 0.5); break;
+    default: return;
+    }
+    *cells = (*cells ^ (uint64_t)(int64_t)fmax(fmin(cell, 1e15), -1e15)) * 0x100000001B3u;
+}
+
+static double run_function(const sdfc *c, const sdfc_program *p, int function, double x, double y,
+                           double z, uint64_t *cells) {
+    const sdfc_function *f = &p->functions[function];
+    double *v = c->variables + f->first_variable;
+    v[0] = x;
+    v[1] = y;
+    v[2] = z;
+    for (int k = 0; k < f->count; k++) {
+        const sdfc_instr *i = &f->instrs[k];
+        int count = i->op == SDFC_CALL_MIN ? 6 : sdfc_ops[i->op].operands;
+        double a[SDFC_OPERANDS_MAX], r = 1e30;
+        for (int j = 0; j < count; j++) {
+            a[j] = i->operand[j] >= 0 ? v[i->operand[j]] : c->values[p->args[~i->operand[j]]];
+        }
+        if (i->op == SDFC_CALL_MIN) {
+            for (int n = 0; n < i->points; n++) {
+                double q[3];
+                for (int j = 0; j < 3; j++) {
+                    bool other = i->select[j] && (n >> (i->select[j] - 1) & 1);
+                    q[j] = a[2 * j + other];
+                }
+                double d = run_function(c, p, i->aux, q[0], q[1], q[2], cells);
+                r = d < r ? d : r;
+            }
+        } else if (i->op != SDFC_CALL_USER) {
+            r = sdfc_ops[i->op].run(a);
+            if (cells) note_cell(cells, i->op, a, r);
+        }
+        v[3 + k] = r;
+    }
+    return f->result >= 0 ? v[f->result] : c->values[p->args[~f->result]];
+}
+
+double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells) {
+    return run_function(c, p, 0, p3[0], p3[1], p3[2], cells);
+}
+
+/* ---- random points ---- */
+
+typedef struct checker {
+    sdfc *c;
+    const sdfc_part *part;
+    const sdfc_facts *facts;
+    uint64_t random;
+    double center[3], half[3], size;
+    double params[MASU_SDFC_PARAMS_MAX], time;
+    double tiny;
+    int tried, broken; /* estimates */
+} checker;
+
+static double unit(checker *k) {
+    uint64_t z = k->random += 0x9E3779B97F4A7C15u;
+    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+    return (double)((z ^ z >> 31) >> 11) / 9007199254740992.0;
+}
+
+static void direction(checker *k, double out[3]) {
+    double n;
+    do {
+        for (int i = 0; i < 3; i++) out[i] = 2 * unit(k) - 1;
+        n = out[0] * out[0] + out[1] * out[1] + out[2] * out[2];
+    } while (n > 1 || n < 1e-6);
+    for (int i = 0; i < 3; i++) out[i] /= sqrt(n);
+}
+
+static void any_point(checker *k, double out[3]) {
+    static const double scales[] = {0.3, 1, 1.2, 4};
+    double scale = scales[(int)(unit(k) * 4)];
+    for (int i = 0; i < 3; i++) {
+        out[i] = k->center[i] + (2 * unit(k) - 1) * scale * (k->half[i] + 0.1 * k->size);
+    }
+}
+
+static double field(checker *k, const double p[3], uint64_t *cells) {
+    return sdfc_run(k->c, &k->part->program, p, cells);
+}
+
+static double distance(const double p[3], const double q[3]) {
+    double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+/* ---- the two claims ---- */
+
+static void check_pair(checker *k, const double p[3], const double q[3], double fp, double fq) {
+    double allowed = k->facts->lipschitz * distance(p, q) * (1 + 1e-9);
+    allowed += k->tiny * (1 + fabs(fp) + fabs(fq)) * fmax(k->facts->lipschitz, 1);
+    if (fabs(fp - fq) <= allowed) return;
+    sdfc_fail(k->c, k->part->token,
+              "part %s: the field is steeper than its Lipschitz constant %.9g: f(%.17g, %.17g, "
+              "%.17g) = %.17g, f(%.17g, %.17g, %.17g) = %.17g at time %.17g",
+              k->part->name, k->facts->lipschitz, p[0], p[1], p[2], fp, q[0], q[1], q[2], fq,
+              k->time);
+}
+
+static void check_border(checker *k, double p[3], double q[3], uint64_t from) {
+    for (int step = 0; step < 60 && distance(p, q) > 1e-9 * k->size; step++) {
+        double m[3];
+        uint64_t cells = 0;
+        for (int i = 0; i < 3; i++) m[i] = (p[i] + q[i]) / 2;
+        field(k, m, &cells);
+        memcpy(cells == from ? p : q, m, sizeof m);
+    }
+    check_pair(k, p, q, field(k, p, NULL), field(k, q, NULL));
+}
+
+static void check_constant(checker *k, bool borders) {
+    double p[3], q[3], way[3];
+    uint64_t cells_p = 0, cells_q = 0;
+    any_point(k, p);
+    if (unit(k) < 0.3) {
+        any_point(k, q);
+    } else {
+        double length = k->size * pow(10, -6 * unit(k));
+        direction(k, way);
+        for (int i = 0; i < 3; i++) q[i] = p[i] + way[i] * length;
+    }
+    double fp = field(k, p, borders ? &cells_p : NULL);
+    double fq = field(k, q, borders ? &cells_q : NULL);
+    check_pair(k, p, q, fp, fq);
+    if (borders && cells_p != cells_q) check_border(k, p, q, cells_p);
+}
+
+/* Fractals have no Lipschitz constant. What the march needs is that no solid is nearer than f / L;
+ * an estimate may break that for one point in 200. */
+static void check_estimate(checker *k) {
+    double p[3], way[3], q[3];
+    any_point(k, p);
+    double fp = field(k, p, NULL);
+    if (!(fp > 0)) return;
+    double length = fp / k->facts->lipschitz * cbrt(unit(k));
+    direction(k, way);
+    for (int i = 0; i < 3; i++) q[i] = p[i] + way[i] * length;
+    k->tried++;
+    if (field(k, q, NULL) > 0 || (++k->broken) * 200 <= k->tried + 1000) return;
+    sdfc_fail(k->c, k->part->token,
+              "part %s: in %d of %d cases there is something nearer than the estimate says, last "
+              "(%.17g, %.17g, %.17g) from (%.17g, %.17g, %.17g) at time %.17g",
+              k->part->name, k->broken, k->tried, q[0], q[1], q[2], p[0], p[1], p[2], k->time);
+}
+
+static void check_bounds(checker *k) {
+    const sdfc_facts *f = k->facts;
+    double p[3], out = 0, tiny = k->tiny;
+    any_point(k, p);
+    for (int i = 0; i < 3; i++) {
+        double d = fmax(f->box.low[i] - p[i], p[i] - f->box.high[i]);
+        if (d > 0) out += d * d;
+    }
+    out = sqrt(out);
+    if (isfinite(f->radius)) out = fmax(out, distance(p, f->center) - f->radius);
+    if (k->part->moves) {
+        double center[3];
+        for (int i = 0; i < 3; i++) center[i] = k->c->values[k->part->moving_center[i]];
+        out = fmax(out, distance(p, center) - k->part->moving_radius);
+    }
+    if (!(out > tiny)) return;
+    double fp = field(k, p, NULL);
+    if (fp >= f->growth * out * (1 - 1e-9) - tiny * fmax(f->lipschitz, 1)) return;
+    sdfc_fail(k->c, k->part->token,
+              "part %s: the field is %.17g at (%.17g, %.17g, %.17g), %.9g outside of its bounds, "
+              "at time %.17g",
+              k->part->name, fp, p[0], p[1], p[2], out, k->time);
+}
+
+/* ---- all parts ---- */
+
+static void set_part(checker *k, int part) {
+    k->part = &k->c->parts[part];
+    k->facts = &k->c->shapes[k->part->shape].facts;
+    k->size = 0;
+    k->tried = k->broken = 0;
+    double furthest = 0;
+    for (int i = 0; i < 3; i++) {
+        double from = k->facts->box.low[i], to = k->facts->box.high[i];
+        bool ends = isfinite(from) && isfinite(to);
+        k->center[i] = ends ? (from + to) / 2 : isfinite(from) ? from : isfinite(to) ? to : 0;
+        k->half[i] = ends ? (to - from) / 2 : FAR_AWAY;
+        k->size = fmax(k->size, k->half[i]);
+        furthest = fmax(furthest, fabs(k->center[i]));
+    }
+    k->size = fmax(k->size, 1e-6);
+    k->tiny = 1e-11 * (k->size + furthest);
+}
+
+static void set_environment(checker *k, int environment) {
+    for (int i = 0; i < k->c->param_count; i++) {
+        const masu_sdfc_param *p = &k->c->params[i];
+        double t = unit(k);
+        k->params[i] = environment == 0   ? p->value
+                       : environment == 1 ? p->minimum
+                       : environment == 2 ? p->maximum
+                                          : p->minimum * (1 - t) + p->maximum * t;
+    }
+    k->time = environment == 0 ? 0 : 100 * unit(k);
+    sdfc_evaluate(k->c, k->params, k->time, k->c->values);
+}
+
+void sdfc_check(sdfc *c, uint32_t pairs) {
+    checker k = {.c = c, .random = 0x6D617375};
+    int variables = 0;
+    double operations = 0;
+    for (int i = 0; i < c->part_count; i++) {
+        const sdfc_part *p = &c->parts[i];
+        double share = fmax((double)pairs / c->groups[p->group].part_count, ENVIRONMENTS);
+        operations += 3 * share * c->shapes[p->shape].facts.cost * 4;
+        if (p->program.variable_count > variables) variables = p->program.variable_count;
+    }
+    double thin = operations > OPERATIONS_MAX ? OPERATIONS_MAX / operations : 1;
+    c->variables = sdfc_take(c, (size_t)variables, sizeof *c->variables);
+    c->values = sdfc_take(c, (size_t)c->expr_count, sizeof *c->values);
+    int environments = c->dynamic_count ? ENVIRONMENTS : 1;
+    if (c->cost * 8 * ENVIRONMENTS > OPERATIONS_MAX) environments = 1;
+    for (int e = 0; e < environments; e++) {
+        set_environment(&k, e);
+        for (int i = 0; i < c->part_count; i++) {
+            set_part(&k, i);
+            if (k.facts->user) continue;
+            double share = (double)pairs * thin / c->groups[k.part->group].part_count;
+            int rounds = (int)ceil(share / environments);
+            for (int n = 0; n < rounds; n++) {
+                if (k.facts->estimate)
+                    check_estimate(&k);
+                else
+                    check_constant(&k, n % 4 == 0);
+                check_bounds(&k);
+            }
+        }
+    }
+}

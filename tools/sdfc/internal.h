@@ -1,0 +1,330 @@
+/* internal.h: what the files of the SDF compiler share; see sdfc.h. */
+#ifndef MASU_SDFC_INTERNAL_H
+#define MASU_SDFC_INTERNAL_H
+
+#include "sdfc/sdfc.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+
+#if defined(__GNUC__)
+#define SDFC_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#define SDFC_NORETURN __attribute__((noreturn))
+#else
+#define SDFC_PRINTF(text, first)
+#define SDFC_NORETURN
+#endif
+
+#define SDFC_INFINITY ((double)INFINITY) /* <math.h>'s is a float */
+#define SDFC_OPERANDS_MAX 12
+#define SDFC_EXPRS_MAX (1 << 20)
+#define SDFC_SHAPES_MAX (1 << 17)
+#define SDFC_SYMBOLS_MAX 4096
+#define SDFC_WORK_MAX 8000000 /* tokens read, loops included */
+#define SDFC_TREE_MAX 2048    /* shapes within one part */
+#define SDFC_COST_MAX 20000.0 /* operations to evaluate one part once */
+#define SDFC_COST_ALL_MAX 4e6 /* all parts once */
+#define SDFC_INSTRS_MAX (1 << 20)
+#define SDFC_CHILDREN_MAX 64
+
+/* ---- operations (ops.c) ---- */
+
+enum sdfc_op {
+    SDFC_CONST,
+    SDFC_PARAM,
+    SDFC_ANCHOR, /* a[0]: axis */
+    SDFC_TIME,
+#define T(name, count, text, code) SDFC_##name,
+#define F(name, count, params, ...) SDFC_##name,
+#include "sdfc/library.inc"
+#undef T
+#undef F
+    SDFC_CALL_MIN, /* the least of a function's values at up to 8 points */
+    SDFC_CALL_USER,
+    SDFC_OP_COUNT
+};
+
+typedef struct sdfc_op_info {
+    const char *name;
+    int operands;
+    const char *text;          /* template, or NULL */
+    const char *params, *body; /* of a function, or NULL */
+    double (*run)(const double *a);
+} sdfc_op_info;
+
+extern const sdfc_op_info sdfc_ops[SDFC_OP_COUNT];
+extern const char *const sdfc_c_prelude;
+
+/* ---- tokens ---- */
+
+typedef enum sdfc_token_kind {
+    TOKEN_END,
+    TOKEN_NAME,
+    TOKEN_NUMBER,
+    TOKEN_MARK,
+    TOKEN_RAW
+} sdfc_token_kind;
+
+typedef struct sdfc_token {
+    sdfc_token_kind kind;
+    uint32_t offset, length; /* in the text; of a raw block: what is between its braces */
+    uint32_t line, column;
+    double number;
+    char mark; /* ':' for "..", else the character... see TOKEN_DOTS */
+} sdfc_token;
+#define TOKEN_DOTS '~'
+
+/* ---- expressions ---- */
+
+typedef struct sdfc_expr {
+    int op, a[3]; /* PARAM: a[0] is its index */
+    bool dynamic;  /* depends on parameters, time or the anchor */
+    bool timed;    /* on parameters or time */
+    bool anchored; /* on the anchor */
+    double value, low, high; /* value: at the parameters' defaults and time 0 */
+} sdfc_expr;
+
+/* ---- shapes ---- */
+
+typedef struct sdfc_box {
+    double low[3], high[3];
+} sdfc_box;
+
+/* What is known of a field f whatever the parameters and the time:
+ *   |f(p) - f(q)| <= lipschitz |p - q|
+ *   f(p) >= growth * distance(p, box), and the same for the sphere
+ *   f does not change when p is mirrored in an axis of `symmetric` (bits 1 2 4) */
+typedef struct sdfc_facts {
+    double lipschitz, growth;
+    sdfc_box box;
+    double center[3], radius; /* INFINITY: unbounded */
+    unsigned symmetric;
+    bool user;     /* holds a glsl block: cannot be run here */
+    bool estimate; /* f / lipschitz only nearly never exceeds the distance */
+    bool truth;    /* has C */
+    double cost;
+    int depth, size;
+} sdfc_facts;
+
+typedef struct sdfc_shape {
+    int kind;       /* index into sdfc_kinds */
+    int number[12]; /* expressions */
+    int whole[4];   /* compile-time integers */
+    int *child;
+    int children;
+    int user;         /* index of its glsl block */
+    int token;        /* where it stands */
+    double extra[16]; /* constants that the analysis adds */
+    sdfc_facts facts;
+} sdfc_shape;
+
+typedef struct sdfc_user {
+    uint32_t glsl_offset, glsl_length, c_offset, c_length;
+    bool has_c;
+} sdfc_user;
+
+enum {
+#define KIND(id, name, pattern) SDFC_KIND_##id,
+#include "sdfc/kinds.inc"
+#undef KIND
+    SDFC_KIND_COUNT
+};
+extern const char *const sdfc_kind_names[SDFC_KIND_COUNT];
+extern const char *const sdfc_kind_patterns[SDFC_KIND_COUNT];
+
+/* ---- what a part becomes ---- */
+
+typedef struct sdfc_instr {
+    int32_t op;
+    int32_t aux;                        /* CALL_MIN: the function, CALL_USER: the block */
+    int32_t select[3];                  /* CALL_MIN: which bit of the point's number chooses */
+    int32_t points;                     /* CALL_MIN */
+    int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
+} sdfc_instr;
+
+typedef struct sdfc_function {
+    sdfc_instr *instrs;
+    int count, capacity;
+    int result; /* operand */
+    int first_variable;
+} sdfc_function;
+
+/* A step of a part's root transform: what stands around all else in it. */
+typedef struct sdfc_root_step {
+    int kind;   /* SDFC_KIND_TRANSLATE, _ROTATE or _SCALE */
+    int arg[9]; /* arguments: the offset; the matrix; the factors, inverted */
+} sdfc_root_step;
+
+typedef struct sdfc_program {
+    sdfc_root_step *root; /* from the world inwards */
+    int root_count, root_capacity;
+    sdfc_function *functions; /* the first one is the part's */
+    int function_count, function_capacity;
+    int *args; /* expressions */
+    int arg_count, arg_capacity;
+    int variable_count;
+} sdfc_program;
+
+typedef struct sdfc_part {
+    char name[MASU_SDFC_NAME_MAX];
+    int shape, material, token;
+    sdfc_program program;
+    int group;
+    uint32_t slot_base;
+    bool moves; /* as a whole: its sphere moves along, instead of holding all its places */
+    int moving_center[3]; /* expressions */
+    double moving_radius;
+} sdfc_part;
+
+typedef struct sdfc_group {
+    int first_part, part_count;
+    int *slot_of_arg; /* -1: a literal */
+    int slot_count;
+    bool flat; /* half-spaces: f is affine in the point */
+    bool moves; /* a root transform of its parts changes */
+} sdfc_group;
+
+typedef struct sdfc_material {
+    char name[MASU_SDFC_NAME_MAX];
+    int value[MASU_SDFC_MATERIAL_SLOTS];
+} sdfc_material;
+
+typedef struct sdfc_value {
+    int count; /* 1 or 3 */
+    int e[3];
+} sdfc_value;
+
+typedef enum sdfc_symbol_kind { SYMBOL_LET, SYMBOL_SHAPE, SYMBOL_MATERIAL } sdfc_symbol_kind;
+
+typedef struct sdfc_symbol {
+    uint32_t offset, length;
+    sdfc_symbol_kind kind;
+    sdfc_value value;
+    int index;
+} sdfc_symbol;
+
+/* A slot that is a constant sum of the anchor's coordinates, taken modulo a period where that is not
+ * 0. As data: a scene has thousands of them, and as code no optimiser comes to an end. */
+typedef struct sdfc_place {
+    uint32_t slot;
+    double factor[3], term, period, inverse;
+} sdfc_place;
+enum { SDFC_PLACE_SLOTS = 12 }; /* the slot, then the rest in two floats each, inverse in one */
+
+typedef struct sdfc_text {
+    char *data;
+    size_t length, capacity;
+} sdfc_text;
+
+typedef struct sdfc {
+    jmp_buf failed;
+    const char *text, *name;
+    size_t bytes;
+    char *error;
+    size_t error_size;
+    sdfc_token *tokens;
+    int token_count, token_capacity;
+    int at; /* the token looked at */
+    long work;
+    int instrs;
+    double cost;
+    int depth;
+    int loop_depth;
+    long loop_index[8];
+    sdfc_expr *exprs;
+    int expr_count, expr_capacity;
+    int time_expr; /* -1: not yet needed */
+    bool anchored;
+    int anchor_expr[3];
+    sdfc_shape *shapes;
+    int shape_count, shape_capacity;
+    sdfc_user *users;
+    int user_count, user_capacity;
+    sdfc_symbol *symbols;
+    int symbol_count, symbol_capacity;
+    masu_sdfc_param *params;
+    int param_count, param_capacity;
+    sdfc_material *materials;
+    int material_count, material_capacity;
+    sdfc_part *parts;
+    int part_count, part_capacity;
+    sdfc_group *groups;
+    int group_count, group_capacity;
+    uint32_t slot_count;
+    int flat_parts; /* the last ones */
+    int box[2][3]; /* low and high side of the listed parts: expressions, or -1 */
+    uint32_t box_slot[2][3]; /* of those that change */
+    uint32_t *dynamic_slots; /* pairs: slot, expression */
+    int dynamic_count, dynamic_capacity;
+    sdfc_place *places; /* behind all other slots, from place_base on */
+    int place_count, place_capacity;
+    uint32_t place_base;
+    double *initial; /* slots */
+    void *scratch;
+    bool *needed;   /* expressions that slots are made of */
+    double *values; /* of expressions, while checking */
+    double *variables;
+    sdfc_text glsl, c, table, warnings;
+} sdfc;
+
+/* ---- lex.c ---- */
+
+void sdfc_lex(sdfc *c);
+/* Reports at a token and gives up; "expected WHAT, found THE TOKEN" */
+SDFC_NORETURN void sdfc_fail(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
+SDFC_NORETURN void sdfc_expected(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
+void sdfc_warn(sdfc *c, int token, const char *format, ...) SDFC_PRINTF(3, 4);
+
+void sdfc_put(sdfc *c, sdfc_text *text, const char *format, ...) SDFC_PRINTF(3, 4);
+void sdfc_put_bytes(sdfc *c, sdfc_text *text, const char *bytes, size_t length);
+/* An array's next element: grows it, at most to `most`. */
+void *sdfc_grow(sdfc *c, void *array, int count, int *capacity, size_t size, int most,
+                const char *what);
+void *sdfc_take(sdfc *c, size_t count, size_t size); /* zeros */
+
+/* ---- expr.c ---- */
+
+int sdfc_number(sdfc *c, double value);
+int sdfc_param_expr(sdfc *c, int param);
+int sdfc_time_expr(sdfc *c);
+int sdfc_anchor_expr(sdfc *c, int axis); /* 0 but in the GLSL of an anchored scene */
+int sdfc_apply(sdfc *c, int op, int x, int y, int z); /* unused operands: 0 */
+/* The values of all expressions for these parameters and this time. */
+void sdfc_evaluate(const sdfc *c, const double *params, double time, double *values);
+
+#define SDFC_EXPR(c, i) ((c)->exprs[i])
+static inline bool sdfc_constant(const sdfc *c, int e) { return c->exprs[e].op == SDFC_CONST; }
+static inline bool sdfc_is(const sdfc *c, int e, double value) {
+    return c->exprs[e].op == SDFC_CONST && c->exprs[e].value == value;
+}
+
+/* ---- parse.c, shape.c ---- */
+
+void sdfc_parse(sdfc *c);
+void sdfc_enter(sdfc *c); /* one level deeper, or an error */
+void sdfc_leave(sdfc *c);
+sdfc_value sdfc_parse_expression(sdfc *c);
+int sdfc_parse_scalar(sdfc *c);
+void sdfc_parse_vector(sdfc *c, int out[3]); /* a number stands for three */
+long sdfc_parse_whole(sdfc *c, long low, long high);
+bool sdfc_mark(sdfc *c, char mark); /* takes it if it is there */
+void sdfc_need_mark(sdfc *c, char mark);
+bool sdfc_word(sdfc *c, const char *word);
+bool sdfc_token_is(const sdfc *c, int token, const char *word);
+void sdfc_next(sdfc *c);
+const sdfc_symbol *sdfc_find(sdfc *c, int token);
+int sdfc_parse_shape(sdfc *c);
+
+/* ---- the rest ---- */
+
+void sdfc_analyse(sdfc *c, int shape); /* fills in facts and extra */
+void sdfc_lower(sdfc *c, sdfc_part *part);
+int sdfc_box_side(sdfc *c, int axis, bool high); /* around the listed parts; -1: endless */
+void sdfc_group_parts(sdfc *c);
+void sdfc_emit(sdfc *c);
+void sdfc_check(sdfc *c, uint32_t pairs);
+void sdfc_free(sdfc *c); /* and all it has taken */
+double sdfc_run(const sdfc *c, const sdfc_program *p, const double p3[3], uint64_t *cells);
+
+#endif

@@ -1,0 +1,913 @@
+/* lower.c: a part's tree of shapes becomes functions of straight-line operations on numbers.
+ * Points travel from the outside in as three variables, distances come back as one. What a
+ * parameter of the scene or a literal of the text contributes is an argument, by number: two parts
+ * with the same operations and different arguments share their code (sdfc_group_parts).
+ *
+ * In an anchored scene the GLSL's points are relative to an anchor, which may be a million metres
+ * from the origin. So a point carries an offset that is still to be added to it, at first the
+ * anchor: movements, turns, scalings and endless repetitions change the offset and not the point,
+ * and what needs true coordinates adds it up. By then it is small, since what one sees stands near
+ * the anchor. The offset's expressions are evaluated in two floats each (shared/wide.glsl). */
+#include "sdfc/internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define INSTRS_MAX 60000
+
+typedef struct lowering {
+    sdfc *c;
+    sdfc_program *program;
+    int function; /* being written */
+    bool root;    /* no shape but movements, turns and scalings has been met */
+} lowering;
+
+typedef struct point {
+    int x, y, z;
+    int offset[3]; /* expressions + 1, to be added; 0: nothing */
+} point;
+
+static const point entry = {0, 1, 2, {0}}; /* the variables of a function that are its parameters */
+
+/* ---- writing ---- */
+
+static int argument(lowering *l, int expr) {
+    sdfc_program *p = l->program;
+    p->args = sdfc_grow(l->c, p->args, p->arg_count, &p->arg_capacity, sizeof *p->args, INSTRS_MAX,
+                        "arguments of a part");
+    p->args[p->arg_count] = expr;
+    return ~p->arg_count++;
+}
+
+static int constant(lowering *l, double value) { return argument(l, sdfc_number(l->c, value)); }
+
+static sdfc_instr *add_instr(lowering *l, int op) {
+    if (++l->c->instrs > SDFC_INSTRS_MAX) {
+        sdfc_fail(l->c, l->c->at, "more than %d operations in all parts", SDFC_INSTRS_MAX);
+    }
+    sdfc_function *f = &l->program->functions[l->function];
+    f->instrs = sdfc_grow(l->c, f->instrs, f->count, &f->capacity, sizeof *f->instrs, INSTRS_MAX,
+                          "operations of a part");
+    sdfc_instr *i = &f->instrs[f->count++];
+    memset(i, 0, sizeof *i);
+    i->op = op;
+    return i;
+}
+
+static int last_variable(const lowering *l) { return 2 + l->program->functions[l->function].count; }
+
+static int op_n(lowering *l, int op, int count, const int *operands) {
+    sdfc_instr *i = add_instr(l, op);
+    for (int k = 0; k < count; k++) i->operand[k] = operands[k];
+    return last_variable(l);
+}
+
+#define OP(l, op, ...)                                                                             \
+    op_n(l, SDFC_##op, (int)(sizeof((int[]){__VA_ARGS__}) / sizeof(int)), (int[]){__VA_ARGS__})
+
+static int open_function(lowering *l) {
+    sdfc_program *p = l->program;
+    p->functions = sdfc_grow(l->c, p->functions, p->function_count, &p->function_capacity,
+                             sizeof *p->functions, 4096, "functions of a part");
+    int before = l->function;
+    l->function = p->function_count++;
+    memset(&p->functions[l->function], 0, sizeof p->functions[0]);
+    return before;
+}
+
+/* ---- offsets ---- */
+
+static bool has_offset(const point *p) { return p->offset[0] || p->offset[1] || p->offset[2]; }
+
+static int offset_of(lowering *l, const point *p, int axis) {
+    return p->offset[axis] ? p->offset[axis] - 1 : sdfc_number(l->c, 0);
+}
+
+/* What is to be subtracted from a coordinate. */
+static int against(lowering *l, const point *p, int axis) {
+    return sdfc_apply(l->c, SDFC_neg, offset_of(l, p, axis), 0, 0);
+}
+
+/* The point in true coordinates. */
+static point settled(lowering *l, point p) {
+    int v[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; i++) {
+        if (p.offset[i]) v[i] = OP(l, sub, v[i], argument(l, against(l, &p, i)));
+    }
+    return (point){v[0], v[1], v[2], {0}};
+}
+
+static point moved_offset(lowering *l, point p, const int by[3]) {
+    for (int i = 0; i < 3; i++) {
+        p.offset[i] = sdfc_apply(l->c, SDFC_sub, offset_of(l, &p, i), by[i], 0) + 1;
+    }
+    return p;
+}
+
+static void turn_offset(lowering *l, const sdfc_shape *s, const point *from, point *to) {
+    for (int i = 0; i < 3; i++) {
+        int sum = sdfc_number(l->c, 0);
+        for (int j = 0; j < 3; j++) {
+            int part = sdfc_apply(l->c, SDFC_mul, s->number[3 * i + j], offset_of(l, from, j), 0);
+            sum = sdfc_apply(l->c, SDFC_add, sum, part, 0);
+        }
+        to->offset[i] = sum + 1;
+    }
+}
+
+/* A constant coordinate, to be compared with the point's. */
+static int relative(lowering *l, const point *p, int axis, double value) {
+    int e = sdfc_number(l->c, value);
+    if (p->offset[axis]) e = sdfc_apply(l->c, SDFC_sub, e, p->offset[axis] - 1, 0);
+    return argument(l, e);
+}
+
+static bool any_timed(const sdfc *c, const int *exprs, int count) {
+    for (int i = 0; i < count; i++) {
+        if (c->exprs[exprs[i]].timed) return true;
+    }
+    return false;
+}
+
+/* Which forms hand an offset on, instead of having it added first. A turn or a factor that changes
+ * is known to 24 bits only: more bits of its product with the offset would say nothing. */
+static bool hands_offset_on(const sdfc *c, const sdfc_shape *s) {
+    switch (s->kind) {
+    case SDFC_KIND_ROTATE:
+    case SDFC_KIND_ROTATE_EULER: return !any_timed(c, s->number, 9);
+    case SDFC_KIND_TRANSLATE:
+    case SDFC_KIND_REPEAT:
+    case SDFC_KIND_PLANE:
+    case SDFC_KIND_ONION:
+    case SDFC_KIND_ROUND:
+    case SDFC_KIND_DISPLACE:
+    case SDFC_KIND_DISPLACE_NOISE:
+    case SDFC_KIND_MORPH:
+    case SDFC_KIND_UNION:
+    case SDFC_KIND_INTERSECTION:
+    case SDFC_KIND_DIFFERENCE:
+    case SDFC_KIND_SMOOTH_UNION:
+    case SDFC_KIND_SMOOTH_INTERSECTION:
+    case SDFC_KIND_SMOOTH_DIFFERENCE: return true;
+    case SDFC_KIND_SCALE: /* which looks at the point again where it may be 0 */
+        return s->extra[0] == 0 && !any_timed(c, s->number, 3);
+    default: return false;
+    }
+}
+
+static int lower(lowering *l, int shape, point p);
+
+/* The child as a function of its own, since it is called at several points. They share `offset`. */
+static int child_function(lowering *l, int shape, bool join_box, const sdfc_shape *owner,
+                          const int offset[3]) {
+    int before = open_function(l), function = l->function;
+    const point start = {0, 1, 2, {offset[0], offset[1], offset[2]}};
+    int d = lower(l, shape, start);
+    double lipschitz = l->c->shapes[shape].facts.lipschitz;
+    if (join_box) {
+        int outside;
+        int e[6];
+        for (int i = 0; i < 3; i++) e[i] = relative(l, &start, i, owner->extra[4 + i]);
+        for (int i = 3; i < 6; i++) e[i] = constant(l, owner->extra[4 + i]);
+        outside = OP(l, around_box, 0, 1, 2, e[0], e[1], e[2], e[3], e[4], e[5]);
+        if (owner->kind == SDFC_KIND_POLAR) {
+            int cosine = constant(l, owner->extra[1]);
+            int wedge = OP(l, around_wedge, 0, 2, cosine, constant(l, owner->extra[2]));
+            outside = OP(l, max, outside, wedge);
+        }
+        d = OP(l, max, d, OP(l, mul, outside, constant(l, lipschitz)));
+    }
+    l->program->functions[function].result = d;
+    l->function = before;
+    return function;
+}
+
+/* The distance to all of it, where no cell that was looked at is near. */
+static int capped(lowering *l, int d, int least, const sdfc_facts *f, point p) {
+    bool ends = false;
+    int e[6];
+    for (int i = 0; i < 3; i++) {
+        bool end = isfinite(f->box.low[i]) && isfinite(f->box.high[i]);
+        ends = ends || end;
+    }
+    if (ends) {
+        for (int i = 0; i < 3; i++) {
+            bool end = isfinite(f->box.low[i]) && isfinite(f->box.high[i]);
+            e[i] = end ? relative(l, &p, i, (f->box.low[i] + f->box.high[i]) / 2) : constant(l, 0);
+            e[3 + i] = constant(l, end ? (f->box.high[i] - f->box.low[i]) / 2 : 1e30);
+        }
+        int outside = OP(l, around_box, p.x, p.y, p.z, e[0], e[1], e[2], e[3], e[4], e[5]);
+        least = OP(l, max, least, OP(l, mul, outside, constant(l, f->lipschitz)));
+    }
+    return OP(l, min, d, least);
+}
+
+/* ---- the root transform ---- */
+
+/* Arguments `first` on, `count` of them; count 1: the one stands for three. */
+static void add_root_step(lowering *l, int kind, int first, int count) {
+    sdfc_program *p = l->program;
+    p->root = sdfc_grow(l->c, p->root, p->root_count, &p->root_capacity, sizeof *p->root,
+                        MASU_SDFC_DEPTH_MAX, "movements around a part");
+    sdfc_root_step *step = &p->root[p->root_count++];
+    memset(step, 0, sizeof *step);
+    step->kind = kind;
+    for (int i = 0; i < 9; i++) step->arg[i] = i < count ? first + i : first;
+}
+
+/* It matters where it changes: only then has it carried the part. */
+static bool root_moves(const sdfc *c, const sdfc_program *p) {
+    for (int i = 0; i < p->root_count; i++) {
+        int count = p->root[i].kind == SDFC_KIND_ROTATE ? 9 : 3;
+        for (int k = 0; k < count; k++) {
+            if (c->exprs[p->args[p->root[i].arg[k]]].timed) return true;
+        }
+    }
+    return false;
+}
+
+/* What the offset has gathered is a movement too. At the end of the root transform it needs no
+ * arguments where nothing of all this changes with time: nothing has moved. */
+static void gather_root(lowering *l, const point *p, bool ends) {
+    if (!has_offset(p)) return;
+    bool timed = !ends || root_moves(l->c, l->program);
+    for (int i = 0; i < 3; i++) timed = timed || l->c->exprs[offset_of(l, p, i)].timed;
+    if (!timed) return;
+    int first = l->program->arg_count;
+    for (int i = 0; i < 3; i++) argument(l, against(l, p, i));
+    add_root_step(l, SDFC_KIND_TRANSLATE, first, 3);
+}
+
+/* ---- operators ---- */
+
+static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
+    bool limited = s->kind == SDFC_KIND_REPEAT_LIMITED;
+    point rest = p; /* the offset that the axes which do not repeat keep */
+    for (int i = 0; i < 3; i++) {
+        if (s->extra[i] != 0) rest.offset[i] = 0;
+        if (s->extra[i] == 0) p.offset[i] = 0;
+        if (!p.offset[i]) continue; /* whole periods of it do not matter */
+        p.offset[i] =
+            1 + sdfc_apply(l->c, SDFC_fold, p.offset[i] - 1, s->number[i], s->number[3 + i]);
+    }
+    p = settled(l, p);
+    memcpy(p.offset, rest.offset, sizeof p.offset);
+    int in[3] = {p.x, p.y, p.z}, own[3], beside[3], bits = 0, bit[3] = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        own[i] = beside[i] = in[i];
+        if (s->extra[i] == 0) continue;
+        int period = argument(l, s->number[i]), inverse = argument(l, s->number[3 + i]);
+        int half = 0;
+        if (limited) {
+            half = constant(l, (s->whole[i] - 1) / 2.0);
+            own[i] = OP(l, fold_row, in[i], period, inverse, half);
+        } else {
+            own[i] = OP(l, fold, in[i], period, inverse);
+        }
+        if (s->extra[i] != 2) continue;
+        bit[i] = ++bits;
+        beside[i] = limited ? OP(l, beside_row, in[i], period, inverse, half)
+                            : OP(l, beside, own[i], period);
+    }
+    if (!bits) {
+        point q = {own[0], own[1], own[2], {p.offset[0], p.offset[1], p.offset[2]}};
+        return lower(l, s->child[0], q);
+    }
+    int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
+    sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
+    call->aux = function;
+    call->points = 1 << bits;
+    for (int i = 0; i < 3; i++) {
+        call->operand[2 * i] = own[i];
+        call->operand[2 * i + 1] = beside[i];
+        call->select[i] = bit[i];
+    }
+    int d = last_variable(l);
+    return capped(l, d, constant(l, s->extra[3]), &s->facts, p);
+}
+
+static int lower_polar(lowering *l, const sdfc_shape *s, point p) {
+    if (s->extra[0] == 0) return lower(l, s->child[0], p);
+    int sector = constant(l, 6.283185307179586 / s->whole[0]);
+    int zero = constant(l, 0), one = constant(l, 1);
+    int a = OP(l, polar_angle, p.x, p.z, sector, zero);
+    point q = {OP(l, turn_x, p.x, p.z, a), p.y, OP(l, turn_z, p.x, p.z, a), {0}};
+    if (s->extra[0] == 1) return lower(l, s->child[0], q);
+    int b = OP(l, polar_angle, p.x, p.z, sector, one);
+    point r = {OP(l, turn_x, p.x, p.z, b), p.y, OP(l, turn_z, p.x, p.z, b), {0}};
+    int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
+    sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
+    *call = (sdfc_instr){.op = SDFC_CALL_MIN,
+                         .aux = function,
+                         .points = 2,
+                         .select = {1, 0, 1},
+                         .operand = {q.x, r.x, p.y, p.y, q.z, r.z}};
+    int d = last_variable(l);
+    if (s->extra[0] == 2) return d;
+    int edge = OP(l, mul, OP(l, len2, p.x, p.z), constant(l, s->extra[2] * s->facts.lipschitz));
+    return capped(l, d, edge, &s->facts, p);
+}
+
+static int lower_bend(lowering *l, const sdfc_shape *s, point p) {
+    bool twist = s->kind == SDFC_KIND_TWIST;
+    int rate = argument(l, s->number[0]);
+    /* turned by the coordinate along the axis (twist) or across it (bend) */
+    int a = OP(l, mul, twist ? p.y : p.x, rate);
+    int u = p.x, v = twist ? p.z : p.y;
+    int turned_u = OP(l, turn_x, u, v, a), turned_v = OP(l, turn_z, u, v, a);
+    point q = {turned_u, twist ? p.y : turned_v, twist ? turned_v : p.z, {0}};
+    int d = lower(l, s->child[0], q);
+    int along = twist ? p.y : p.z;
+    int radius = constant(l, s->extra[2]), middle = constant(l, s->extra[3]);
+    int outside = OP(l, around_cylinder, u, along, v, radius, middle, constant(l, s->extra[4]));
+    int shell = OP(l, mul, outside, constant(l, s->extra[0]));
+    return OP(l, max, shell, OP(l, min, d, constant(l, s->extra[1])));
+}
+
+static point matrix(lowering *l, const sdfc_shape *s, point p) {
+    int v[3];
+    for (int i = 0; i < 3; i++) {
+        int a = argument(l, s->number[3 * i]), b = argument(l, s->number[3 * i + 1]);
+        v[i] = OP(l, dot3, p.x, p.y, p.z, a, b, argument(l, s->number[3 * i + 2]));
+    }
+    return (point){v[0], v[1], v[2], {0}};
+}
+
+static point reflect(lowering *l, point p, int nx, int ny, int nz) {
+    int d = OP(l, dot3, p.x, p.y, p.z, nx, ny, nz);
+    int x = OP(l, reflect, p.x, d, nx), y = OP(l, reflect, p.y, d, ny);
+    return (point){x, y, OP(l, reflect, p.z, d, nz), {0}};
+}
+
+/* Into one octant, then across its diagonals into x >= y >= z: reflections only. Then the factor. */
+static int lower_kaleidoscope(lowering *l, const sdfc_shape *s, point p) {
+    int k = argument(l, s->number[0]);
+    int shift[3];
+    for (int i = 0; i < 3; i++) shift[i] = argument(l, s->number[1 + i]);
+    for (int level = 0; level < s->whole[0]; level++) {
+        int a = OP(l, abs, p.x), b = OP(l, abs, p.y), e = OP(l, abs, p.z);
+        int high = OP(l, max, a, b), low = OP(l, min, a, b);
+        int middle = OP(l, max, low, e), least = OP(l, min, low, e);
+        int most = OP(l, max, high, middle);
+        middle = OP(l, min, high, middle);
+        int x = OP(l, sub, OP(l, mul, most, k), shift[0]);
+        int y = OP(l, sub, OP(l, mul, middle, k), shift[1]);
+        p = (point){x, y, OP(l, sub, OP(l, mul, least, k), shift[2]), {0}};
+    }
+    return OP(l, mul, lower(l, s->child[0], p), argument(l, s->number[4]));
+}
+
+static int lower_joined(lowering *l, const sdfc_shape *s, point p) {
+    int d = 0, k = 0, inverse = 0;
+    bool smooth = s->kind >= SDFC_KIND_SMOOTH_UNION;
+    if (smooth && s->children > 1) {
+        k = argument(l, s->number[0]);
+        inverse = argument(l, s->number[1]);
+    }
+    for (int i = 0; i < s->children; i++) {
+        int e = lower(l, s->child[i], p);
+        if (s->extra[0] != 0) {
+            double lipschitz = l->c->shapes[s->child[i]].facts.lipschitz;
+            e = OP(l, mul, e, constant(l, 1 / lipschitz));
+        }
+        if (i == 0) {
+            d = e;
+            continue;
+        }
+        switch (s->kind) {
+        case SDFC_KIND_UNION: d = OP(l, min, d, e); break;
+        case SDFC_KIND_INTERSECTION: d = OP(l, max, d, e); break;
+        case SDFC_KIND_DIFFERENCE: d = OP(l, max, d, OP(l, neg, e)); break;
+        case SDFC_KIND_SMOOTH_UNION: d = OP(l, smooth_min, d, e, k, inverse); break;
+        case SDFC_KIND_SMOOTH_INTERSECTION: d = OP(l, smooth_max, d, e, k, inverse); break;
+        default: d = OP(l, smooth_max, d, OP(l, neg, e), k, inverse); break;
+        }
+    }
+    return d;
+}
+
+/* ---- primitives ---- */
+
+/* An operation whose operands are the point and the first `count` numbers. */
+static int plain(lowering *l, int op, const sdfc_shape *s, point p, int count) {
+    int operands[SDFC_OPERANDS_MAX] = {p.x, p.y, p.z};
+    for (int i = 0; i < count; i++) operands[3 + i] = argument(l, s->number[i]);
+    return op_n(l, op, 3 + count, operands);
+}
+
+static int lower_user(lowering *l, const sdfc_shape *s, point p) {
+    sdfc_instr *call = add_instr(l, SDFC_CALL_USER);
+    call->aux = s->user;
+    call->operand[0] = p.x;
+    call->operand[1] = p.y;
+    call->operand[2] = p.z;
+    int d = last_variable(l), e[6];
+    const sdfc_box *b = &s->facts.box;
+    for (int i = 0; i < 3; i++) {
+        e[i] = constant(l, (b->low[i] + b->high[i]) / 2);
+        e[3 + i] = constant(l, (b->high[i] - b->low[i]) / 2);
+    }
+    int outside = OP(l, around_box, p.x, p.y, p.z, e[0], e[1], e[2], e[3], e[4], e[5]);
+    return OP(l, max, d, OP(l, mul, outside, constant(l, s->facts.lipschitz)));
+}
+
+static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
+    switch (s->kind) {
+    case SDFC_KIND_SPHERE: return plain(l, SDFC_sphere, s, p, 1);
+    case SDFC_KIND_BOX: return plain(l, SDFC_box, s, p, 3);
+    case SDFC_KIND_ROUNDED_BOX: {
+        int r = argument(l, s->number[3]), h[3];
+        for (int i = 0; i < 3; i++) {
+            int inner = sdfc_apply(l->c, SDFC_sub, s->number[i], s->number[3], 0);
+            inner = sdfc_apply(l->c, SDFC_max, inner, sdfc_number(l->c, 0), 0);
+            h[i] = argument(l, inner);
+        }
+        return OP(l, sub, OP(l, box, p.x, p.y, p.z, h[0], h[1], h[2]), r);
+    }
+    case SDFC_KIND_TORUS: return plain(l, SDFC_torus, s, p, 2);
+    case SDFC_KIND_CAPSULE: return plain(l, SDFC_capsule, s, p, 8);
+    case SDFC_KIND_CYLINDER: return plain(l, SDFC_cylinder, s, p, 2);
+    case SDFC_KIND_CONE: return plain(l, SDFC_cone, s, p, 3);
+    case SDFC_KIND_PLANE: {
+        int d = plain(l, SDFC_dot3, s, p, 3), e = s->number[3];
+        for (int i = 0; i < 3; i++) {
+            if (!p.offset[i]) continue;
+            int along = sdfc_apply(l->c, SDFC_mul, s->number[i], p.offset[i] - 1, 0);
+            e = sdfc_apply(l->c, SDFC_sub, e, along, 0);
+        }
+        return OP(l, sub, d, argument(l, e));
+    }
+    case SDFC_KIND_ELLIPSOID: return plain(l, SDFC_ellipsoid, s, p, 4);
+    case SDFC_KIND_BOX_FRAME: return plain(l, SDFC_box_frame, s, p, 4);
+    case SDFC_KIND_OCTAHEDRON: return plain(l, SDFC_octahedron, s, p, 1);
+    case SDFC_KIND_HEX_PRISM: return plain(l, SDFC_hex_prism, s, p, 2);
+    case SDFC_KIND_TRI_PRISM: return plain(l, SDFC_tri_prism, s, p, 2);
+    case SDFC_KIND_LINK: return plain(l, SDFC_link, s, p, 3);
+    case SDFC_KIND_MENGER: return OP(l, menger, p.x, p.y, p.z, constant(l, s->whole[0]));
+    case SDFC_KIND_SIERPINSKI: {
+        int d = OP(l, sierpinski, p.x, p.y, p.z, constant(l, s->whole[0]));
+        int zero = constant(l, 0), one = constant(l, 1);
+        return OP(l, max, d, OP(l, around_box, p.x, p.y, p.z, zero, zero, zero, one, one, one));
+    }
+    case SDFC_KIND_MANDELBULB: {
+        double bail = pow(10, 12.0 / s->whole[0]);
+        int power = constant(l, s->whole[0]), limit = constant(l, bail);
+        int d = OP(l, mandelbulb, p.x, p.y, p.z, power, limit, constant(l, s->whole[1]));
+        d = OP(l, min, d, constant(l, 0.25)); /* far away the estimate is none */
+        int r = constant(l, pow(2, 1.0 / (s->whole[0] - 1)));
+        return OP(l, max, d, OP(l, sphere, p.x, p.y, p.z, r));
+    }
+    default: return lower_user(l, s, p);
+    }
+}
+
+static int lower(lowering *l, int shape, point p) {
+    sdfc *c = l->c;
+    /* A copy: expressions made below may move the array. */
+    const sdfc_shape copy = c->shapes[shape], *s = &copy;
+    const int *n = s->number;
+    bool root = l->root;
+    l->root = root && (s->kind == SDFC_KIND_TRANSLATE || s->kind == SDFC_KIND_ROTATE ||
+                       s->kind == SDFC_KIND_ROTATE_EULER || s->kind == SDFC_KIND_SCALE);
+    if (root && (!l->root || !hands_offset_on(l->c, s))) gather_root(l, &p, !l->root);
+    if (!hands_offset_on(l->c, s)) p = settled(l, p);
+    if (s->children == 0) return lower_primitive(l, s, p);
+    int first = s->child[0], next = l->program->arg_count;
+    switch (s->kind) {
+    case SDFC_KIND_TRANSLATE: {
+        if (has_offset(&p)) return lower(l, first, moved_offset(l, p, n));
+        int x = OP(l, sub, p.x, argument(l, n[0])), y = OP(l, sub, p.y, argument(l, n[1]));
+        int z = OP(l, sub, p.z, argument(l, n[2]));
+        if (root) add_root_step(l, SDFC_KIND_TRANSLATE, next, 3);
+        return lower(l, first, (point){x, y, z, {0}});
+    }
+    case SDFC_KIND_ROTATE:
+    case SDFC_KIND_ROTATE_EULER: {
+        point turned = matrix(l, s, p);
+        if (has_offset(&p)) turn_offset(l, s, &p, &turned);
+        if (root) add_root_step(l, SDFC_KIND_ROTATE, next, 9);
+        return lower(l, first, turned);
+    }
+    case SDFC_KIND_SCALE: {
+        int a[3] = {argument(l, n[0]), 0, 0};
+        for (int i = 1; i < 3; i++) a[i] = n[i] == n[0] ? a[0] : argument(l, n[i]);
+        int x = OP(l, mul, p.x, a[0]), y = OP(l, mul, p.y, a[1]), z = OP(l, mul, p.z, a[2]);
+        if (root) {
+            add_root_step(l, SDFC_KIND_SCALE, next, 1);
+            sdfc_root_step *step = &l->program->root[l->program->root_count - 1];
+            for (int i = 0; i < 3; i++) step->arg[i] = ~a[i];
+        }
+        point q = {x, y, z, {0}};
+        for (int i = 0; i < 3; i++) {
+            if (p.offset[i]) {
+                q.offset[i] = 1 + sdfc_apply(c, SDFC_mul, p.offset[i] - 1, n[i], 0);
+            }
+        }
+        int d = lower(l, first, q);
+        int k = argument(l, n[3]);
+        return s->extra[0] != 0 ? OP(l, unscale, d, k, p.x, p.y, p.z) : OP(l, mul, d, k);
+    }
+    case SDFC_KIND_MIRROR: {
+        for (int i = 0; i < 3; i++) {
+            if (fabs(c->exprs[n[i]].value) != 1) continue;
+            int v = OP(l, abs, i == 0 ? p.x : i == 1 ? p.y : p.z);
+            if (c->exprs[n[i]].value < 0) v = OP(l, neg, v);
+            return lower(l, first, (point){i == 0 ? v : p.x, i == 1 ? v : p.y, i == 2 ? v : p.z, {0}});
+        }
+        int x = argument(l, n[0]), y = argument(l, n[1]);
+        return lower(l, first, reflect(l, p, x, y, argument(l, n[2])));
+    }
+    case SDFC_KIND_REPEAT:
+    case SDFC_KIND_REPEAT_LIMITED: return lower_repeat(l, s, p);
+    case SDFC_KIND_POLAR: return lower_polar(l, s, p);
+    case SDFC_KIND_TWIST:
+    case SDFC_KIND_BEND: return lower_bend(l, s, p);
+    case SDFC_KIND_ELONGATE: {
+        int x = OP(l, elongate, p.x, argument(l, n[0]));
+        int y = OP(l, elongate, p.y, argument(l, n[1]));
+        return lower(l, first, (point){x, y, OP(l, elongate, p.z, argument(l, n[2])), {0}});
+    }
+    case SDFC_KIND_ONION: {
+        int d = lower(l, first, p);
+        return OP(l, onion, d, argument(l, n[0]));
+    }
+    case SDFC_KIND_ROUND: {
+        int d = lower(l, first, p);
+        return OP(l, sub, d, argument(l, n[0]));
+    }
+    case SDFC_KIND_DISPLACE: {
+        int d = lower(l, first, p), a = argument(l, n[0]);
+        int x = argument(l, n[1]), y = argument(l, n[2]);
+        p = settled(l, p);
+        int w = OP(l, waves, p.x, p.y, p.z, x, y, argument(l, n[3]));
+        return OP(l, add, d, OP(l, mul, w, a));
+    }
+    case SDFC_KIND_DISPLACE_NOISE: {
+        int d = lower(l, first, p), a = argument(l, n[0]), k = argument(l, n[1]);
+        p = settled(l, p);
+        int x = OP(l, mul, p.x, k), y = OP(l, mul, p.y, k);
+        int w = OP(l, noise, x, y, OP(l, mul, p.z, k));
+        return OP(l, add, d, OP(l, mul, w, a));
+    }
+    case SDFC_KIND_MORPH: {
+        int a = lower(l, first, p), b = lower(l, s->child[1], p);
+        return OP(l, mix, a, b, argument(l, n[0]));
+    }
+    case SDFC_KIND_KALEIDOSCOPE: return lower_kaleidoscope(l, s, p);
+    default: return lower_joined(l, s, p);
+    }
+}
+
+void sdfc_lower(sdfc *c, sdfc_part *part) {
+    lowering l = {c, &part->program, 0, true};
+    c->at = part->token;
+    open_function(&l);
+    int root = l.function;
+    point whole = entry;
+    for (int i = 0; i < 3 && c->anchored; i++) whole.offset[i] = c->anchor_expr[i] + 1;
+    int d = lower(&l, part->shape, whole);
+    part->program.functions[root].result = d;
+    int variables = 0;
+    for (int i = 0; i < part->program.function_count; i++) {
+        part->program.functions[i].first_variable = variables;
+        variables += 3 + part->program.functions[i].count;
+    }
+    part->program.variable_count = variables;
+}
+
+/* ---- parts of the same form ---- */
+
+static bool same_user(const sdfc *c, int a, int b) {
+    const sdfc_user *u = &c->users[a], *v = &c->users[b];
+    return u->glsl_offset == v->glsl_offset && u->c_offset == v->c_offset;
+}
+
+static bool same_form(const sdfc *c, const sdfc_program *a, const sdfc_program *b) {
+    if (a->function_count != b->function_count || a->arg_count != b->arg_count) return false;
+    if (a->root_count != b->root_count) return false;
+    if (a->root_count && memcmp(a->root, b->root, (size_t)a->root_count * sizeof *a->root)) {
+        return false;
+    }
+    for (int i = 0; i < a->function_count; i++) {
+        const sdfc_function *f = &a->functions[i], *g = &b->functions[i];
+        if (f->count != g->count || f->result != g->result) return false;
+        for (int k = 0; k < f->count; k++) {
+            sdfc_instr x = f->instrs[k];
+            const sdfc_instr *y = &g->instrs[k];
+            if (x.op == SDFC_CALL_USER && y->op == SDFC_CALL_USER && same_user(c, x.aux, y->aux)) {
+                x.aux = y->aux;
+            }
+            if (memcmp(&x, y, sizeof x) != 0) return false;
+        }
+    }
+    return true;
+}
+
+static uint32_t form_hash(const sdfc_program *p) {
+    uint32_t h = 2166136261u;
+    for (int i = 0; i < p->function_count; i++) {
+        for (int k = 0; k < p->functions[i].count; k++) {
+            h = (h ^ (uint32_t)p->functions[i].instrs[k].op) * 16777619u;
+        }
+    }
+    return (h ^ (uint32_t)p->arg_count) * 16777619u;
+}
+
+/* An argument is a literal where all parts of the form agree on a constant. */
+static void choose_slots(sdfc *c, int group) {
+    sdfc_group *g = &c->groups[group];
+    const sdfc_program *first = &c->parts[g->first_part].program;
+    g->slot_of_arg = sdfc_take(c, (size_t)first->arg_count, sizeof(int));
+    for (int a = 0; a < first->arg_count; a++) g->slot_of_arg[a] = -1;
+    for (int i = g->first_part; i < c->part_count; i++) {
+        if (c->parts[i].group != group) continue;
+        const sdfc_program *p = &c->parts[i].program;
+        for (int a = 0; a < p->arg_count; a++) {
+            int e = p->args[a];
+            if (!sdfc_constant(c, e) || c->exprs[e].value != c->exprs[first->args[a]].value) {
+                g->slot_of_arg[a] = 0;
+            }
+        }
+    }
+    for (int a = 0; a < first->arg_count; a++) {
+        if (g->slot_of_arg[a] == 0) g->slot_of_arg[a] = g->slot_count++;
+    }
+}
+
+static void add_dynamic(sdfc *c, uint32_t slot, int expr) {
+    c->dynamic_slots = sdfc_grow(c, c->dynamic_slots, c->dynamic_count, &c->dynamic_capacity,
+                                 2 * sizeof *c->dynamic_slots, MASU_SDFC_SLOTS_MAX, "slots");
+    c->dynamic_slots[2 * c->dynamic_count] = slot;
+    c->dynamic_slots[2 * c->dynamic_count + 1] = (uint32_t)expr;
+    c->dynamic_count++;
+}
+
+static void set_slot(sdfc *c, uint32_t slot, int expr) {
+    c->initial[slot] = c->exprs[expr].value;
+    if (c->exprs[expr].dynamic) add_dynamic(c, slot, expr);
+}
+
+/* ---- slots that depend on the anchor alone ---- */
+
+/* factor . anchor + term, folded into the period if that is not 0. */
+typedef struct affine {
+    sdfc_place sum;
+    bool known;
+} affine;
+
+static affine affine_of(const sdfc *c, int e, const affine *all) {
+    const sdfc_expr *x = &c->exprs[e];
+    affine r = {.known = false}, a = all[x->a[0]], b = all[x->a[1]];
+    bool sums = a.known && b.known && a.sum.period == 0 && b.sum.period == 0;
+    switch (x->op) {
+    case SDFC_CONST: return (affine){{.term = x->value}, true};
+    case SDFC_ANCHOR:
+        r.sum.factor[x->a[0]] = 1;
+        r.known = true;
+        return r;
+    case SDFC_add:
+    case SDFC_sub:
+    case SDFC_neg: {
+        double s = x->op == SDFC_add ? 1 : -1;
+        if (x->op == SDFC_neg) b = a, a = (affine){.known = true}, sums = b.known;
+        for (int i = 0; i < 3; i++) a.sum.factor[i] += s * b.sum.factor[i];
+        a.sum.term += s * b.sum.term;
+        if (x->op == SDFC_neg) a.sum.period = b.sum.period, a.sum.inverse = b.sum.inverse;
+        a.known = sums;
+        return a;
+    }
+    case SDFC_mul: {
+        bool first = sdfc_constant(c, x->a[0]);
+        double s = c->exprs[x->a[first ? 0 : 1]].value;
+        if (first) a = b;
+        for (int i = 0; i < 3; i++) a.sum.factor[i] *= s;
+        a.sum.term *= s;
+        a.known = sums && (first || sdfc_constant(c, x->a[1]));
+        return a;
+    }
+    case SDFC_fold:
+        a.known = a.known && a.sum.period == 0 && sdfc_constant(c, x->a[1]) &&
+                  sdfc_constant(c, x->a[2]);
+        a.sum.period = c->exprs[x->a[1]].value;
+        a.sum.inverse = c->exprs[x->a[2]].value;
+        return a;
+    default: return r;
+    }
+}
+
+/* A number and what a float leaves of it. */
+static void put_pair(double *to, double v) {
+    to[0] = (double)(float)v;
+    to[1] = v - to[0];
+}
+
+/* Takes them out of the code that the update runs, and lays them behind the slots. */
+static void gather_places(sdfc *c) {
+    affine *all = sdfc_take(c, (size_t)c->expr_count, sizeof *all);
+    free(c->scratch);
+    c->scratch = all;
+    for (int i = 0; i < c->expr_count; i++) all[i] = affine_of(c, i, all);
+    int kept = 0;
+    for (int i = 0; i < c->dynamic_count; i++) {
+        uint32_t slot = c->dynamic_slots[2 * i], e = c->dynamic_slots[2 * i + 1];
+        if (all[e].known) {
+            c->places = sdfc_grow(c, c->places, c->place_count, &c->place_capacity,
+                                  sizeof *c->places, MASU_SDFC_SLOTS_MAX, "slots");
+            c->places[c->place_count] = all[e].sum;
+            c->places[c->place_count++].slot = slot;
+        } else {
+            c->dynamic_slots[2 * kept] = slot;
+            c->dynamic_slots[2 * kept++ + 1] = e;
+        }
+    }
+    c->dynamic_count = kept;
+    long slots = (long)c->slot_count + (long)c->place_count * SDFC_PLACE_SLOTS;
+    if (slots > MASU_SDFC_SLOTS_MAX) {
+        sdfc_fail(c, c->parts[c->part_count - 1].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
+    }
+    double *initial = sdfc_take(c, (size_t)slots, sizeof *initial);
+    memcpy(initial, c->initial, c->slot_count * sizeof *initial);
+    free(c->initial);
+    c->initial = initial;
+    c->place_base = c->slot_count;
+    for (int i = 0; i < c->place_count; i++) {
+        const sdfc_place *p = &c->places[i];
+        double *to = initial + c->place_base + i * SDFC_PLACE_SLOTS;
+        to[0] = p->slot;
+        for (int k = 0; k < 3; k++) put_pair(to + 1 + 2 * k, p->factor[k]);
+        put_pair(to + 7, p->term);
+        put_pair(to + 9, p->period);
+        to[11] = p->inverse;
+    }
+    c->slot_count = (uint32_t)slots;
+}
+
+/* A translation by something that changes, around all else. */
+static void find_motion(sdfc *c, sdfc_part *p) {
+    const sdfc_shape *s = &c->shapes[p->shape];
+    if (s->kind != SDFC_KIND_TRANSLATE) return;
+    const sdfc_facts f = c->shapes[s->child[0]].facts;
+    int by[3] = {s->number[0], s->number[1], s->number[2]};
+    bool dynamic = false;
+    for (int i = 0; i < 3; i++) dynamic = dynamic || c->exprs[by[i]].dynamic;
+    if (!dynamic || !isfinite(f.radius)) return;
+    p->moves = true;
+    p->moving_radius = f.radius;
+    for (int i = 0; i < 3; i++) {
+        p->moving_center[i] = sdfc_apply(c, SDFC_add, by[i], sdfc_number(c, f.center[i]), by[i]);
+    }
+}
+
+static void fill_record(sdfc *c, int part) {
+    sdfc_part *p = &c->parts[part];
+    const sdfc_facts *f = &c->shapes[p->shape].facts;
+    uint32_t at = (uint32_t)part * MASU_SDFC_PART_SLOTS;
+    double *record = c->initial + at;
+    find_motion(c, p);
+    bool ends = p->moves || isfinite(f->radius);
+    double slack = 0; /* fp32 rounds the centre by up to 2^-24 of it */
+    for (int i = 0; i < 3; i++) {
+        double most = fabs(f->center[i]);
+        record[i] = ends ? f->center[i] : 0;
+        int center = -1;
+        if (p->moves) {
+            const sdfc_expr *e = &c->exprs[p->moving_center[i]];
+            most = fmin(fmax(fabs(e->low), fabs(e->high)), 1e4);
+            center = p->moving_center[i];
+        }
+        if (c->anchored && ends) {
+            /* Rounded relative to the anchor, which classify allows for. */
+            if (!p->moves) most = 0, center = sdfc_number(c, f->center[i]);
+            center = sdfc_apply(c, SDFC_sub, center, c->anchor_expr[i], 0);
+        }
+        if (center >= 0) set_slot(c, at + (uint32_t)i, center);
+        slack += ends ? most * 2.4e-7 : 0;
+    }
+    double radius = p->moves ? p->moving_radius : f->radius;
+    record[3] = ends ? radius * (1 + 2.4e-7) + slack : -1;
+    record[4] = 1 / f->lipschitz * (1 - 1.2e-7);
+    if (f->lipschitz == 1) record[4] = 1;
+    record[5] = p->group;
+    record[6] = p->slot_base;
+    record[7] = p->material;
+}
+
+/* Whether the form's field is affine in the point: a half-space, however it is placed. The march
+ * meets it in closed form. */
+static bool is_flat(const sdfc_program *p) {
+    if (p->function_count != 1) return false;
+    const sdfc_function *f = &p->functions[0];
+    for (int i = 0; i < f->count; i++) {
+        const sdfc_instr *at = &f->instrs[i];
+        int points = at->op == SDFC_dot3                                              ? 3
+                     : at->op == SDFC_sub || at->op == SDFC_mul || at->op == SDFC_neg ? 1
+                                                                                      : 0;
+        if (!points) return false;
+        for (int k = 0; k < sdfc_ops[at->op].operands; k++) {
+            if ((at->operand[k] >= 0) != (k < points)) return false;
+        }
+    }
+    return f->count > 0 && f->result >= 0;
+}
+
+/* Flat forms last: lists of parts never hold them. */
+static void order_groups(sdfc *c) {
+    int *place = sdfc_take(c, (size_t)c->group_count, sizeof *place), count = 0;
+    free(c->scratch);
+    c->scratch = place;
+    sdfc_group *ordered = sdfc_take(c, (size_t)c->group_count, sizeof *ordered);
+    for (int flat = 0; flat < 2; flat++) {
+        for (int g = 0; g < c->group_count; g++) {
+            if (c->groups[g].flat != (flat != 0)) continue;
+            if (flat) c->flat_parts += c->groups[g].part_count;
+            place[g] = count;
+            ordered[count++] = c->groups[g];
+        }
+    }
+    for (int i = 0; i < c->part_count; i++) c->parts[i].group = place[c->parts[i].group];
+    free(c->groups);
+    c->groups = ordered;
+    c->group_capacity = c->group_count;
+}
+
+/* Parts of one form stand together, else in the order of the text: the march can then go through
+ * the forms one after another. */
+static void order_parts(sdfc *c) {
+    sdfc_part *ordered = sdfc_take(c, (size_t)c->part_count, sizeof *ordered);
+    int count = 0;
+    for (int g = 0; g < c->group_count; g++) {
+        int first = count;
+        for (int i = c->groups[g].first_part; i < c->part_count; i++) {
+            if (c->parts[i].group == g) ordered[count++] = c->parts[i];
+        }
+        c->groups[g].first_part = first;
+    }
+    free(c->parts);
+    c->parts = ordered;
+    c->part_capacity = c->part_count;
+}
+
+void sdfc_group_parts(sdfc *c) {
+    uint32_t *hashes = sdfc_take(c, (size_t)c->part_count, sizeof *hashes);
+    c->scratch = hashes;
+    for (int i = 0; i < c->part_count; i++) {
+        sdfc_part *p = &c->parts[i];
+        hashes[i] = form_hash(&p->program);
+        p->group = -1;
+        for (int g = 0; g < c->group_count && p->group < 0; g++) {
+            int first = c->groups[g].first_part;
+            if (hashes[first] == hashes[i] && same_form(c, &c->parts[first].program, &p->program)) {
+                p->group = g;
+            }
+        }
+        if (p->group < 0) {
+            c->groups = sdfc_grow(c, c->groups, c->group_count, &c->group_capacity,
+                                  sizeof *c->groups, MASU_SDFC_PARTS_MAX, "forms");
+            c->groups[c->group_count] =
+                (sdfc_group){.first_part = i, .flat = is_flat(&p->program)};
+            p->group = c->group_count++;
+        }
+        c->groups[p->group].part_count++;
+        c->groups[p->group].moves = c->groups[p->group].moves || root_moves(c, &p->program);
+    }
+    order_groups(c);
+    order_parts(c);
+    for (int g = 0; g < c->group_count; g++) choose_slots(c, g);
+    long slots = (long)c->part_count * MASU_SDFC_PART_SLOTS +
+                 (long)c->material_count * MASU_SDFC_MATERIAL_SLOTS;
+    for (int i = 0; i < c->part_count; i++) {
+        c->parts[i].slot_base = (uint32_t)slots;
+        slots += c->groups[c->parts[i].group].slot_count;
+        if (slots > MASU_SDFC_SLOTS_MAX) {
+            sdfc_fail(c, c->parts[i].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
+        }
+    }
+    for (int i = 0; i < 6; i++) {
+        int side = c->box[i / 3][i % 3] = sdfc_box_side(c, i % 3, i >= 3);
+        if (side >= 0 && c->exprs[side].dynamic) c->box_slot[i / 3][i % 3] = (uint32_t)slots++;
+    }
+    if (slots > MASU_SDFC_SLOTS_MAX) {
+        sdfc_fail(c, c->parts[c->part_count - 1].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
+    }
+    c->slot_count = (uint32_t)slots;
+    c->initial = sdfc_take(c, (size_t)slots, sizeof *c->initial);
+    for (int i = 0; i < 6; i++) {
+        uint32_t slot = c->box_slot[i / 3][i % 3];
+        if (slot) set_slot(c, slot, c->box[i / 3][i % 3]);
+    }
+    for (int m = 0; m < c->material_count; m++) {
+        uint32_t base =
+            (uint32_t)(c->part_count * MASU_SDFC_PART_SLOTS + m * MASU_SDFC_MATERIAL_SLOTS);
+        for (uint32_t k = 0; k < 8; k++) set_slot(c, base + k, c->materials[m].value[k]);
+    }
+    for (int i = 0; i < c->part_count; i++) {
+        const sdfc_part *p = &c->parts[i];
+        const sdfc_group *g = &c->groups[p->group];
+        fill_record(c, i);
+        for (int a = 0; a < p->program.arg_count; a++) {
+            if (g->slot_of_arg[a] < 0) continue;
+            set_slot(c, p->slot_base + (uint32_t)g->slot_of_arg[a], p->program.args[a]);
+        }
+    }
+    if (c->anchored) gather_places(c);
+}

@@ -1,0 +1,74 @@
+/* ops.c: the table of operations, made of library.inc twice: run here in double
+ * precision, and as text. The names that GLSL has and C lacks are made up for below. */
+#include "sdfc/internal.h"
+
+/* The C that GLSL's built-in functions and shared/guard.glsl stand for: once compiled here, once as
+ * the beginning of every truth file. */
+#define PRELUDE(...)                                                                               \
+    __VA_ARGS__                                                                                    \
+    static const char prelude_text[] = #__VA_ARGS__;
+
+/* clang-format off */
+PRELUDE(
+typedef double real;
+static inline real lib_min(real a, real b) { return b < a ? b : a; }
+static inline real lib_max(real a, real b) { return a < b ? b : a; }
+static inline real lib_mix(real a, real b, real t) { return a * (1.0 - t) + b * t; }
+static inline real masu_rcp(real x) { return fabs(x) > 1e-30 && isfinite(x) ? 1.0 / x : 0.0; }
+static inline real masu_sqrt(real x) { return x > 0.0 && isfinite(x) ? sqrt(x) : 0.0; }
+static inline real masu_atan2(real y, real x) { return isfinite(x) && isfinite(y) ? atan2(y, x) : 0.0; }
+static inline real masu_pow(real x, real y) { return x > 1e-30 && isfinite(x) ? exp2(lib_min(lib_max(y * log2(x), -126.0), 126.0)) : (y == 0.0 ? 1.0 : 0.0); }
+static inline real masu_log2(real x) { return log2(x > 1e-30 && isfinite(x) ? x : 1e-30); }
+)
+
+typedef uint32_t uint;
+#define T(name, count, text, code)
+#define F(name, count, params, ...) static inline real masu_h_##name params __VA_ARGS__
+#define min lib_min
+#define max lib_max
+#define mix lib_mix
+#define abs fabs
+#define uint(x) ((uint32_t)(x))
+#define real(x) ((real)(x))
+#define TO_INT(x) ((int32_t)((x) == (x) ? (x) : 0.0))
+#include "sdfc/library.inc"
+#undef T
+#undef F
+
+#define CALL_1(f) f(a[0])
+#define CALL_2(f) f(a[0], a[1])
+#define CALL_3(f) f(a[0], a[1], a[2])
+#define CALL_4(f) f(a[0], a[1], a[2], a[3])
+#define CALL_5(f) f(a[0], a[1], a[2], a[3], a[4])
+#define CALL_6(f) f(a[0], a[1], a[2], a[3], a[4], a[5])
+#define CALL_7(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6])
+#define CALL_9(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
+#define CALL_11(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10])
+#define T(name, count, text, code) static double run_##name(const double *a) { return code; }
+#define F(name, count, params, ...) static double run_##name(const double *a) { return CALL_##count(masu_h_##name); }
+#include "sdfc/library.inc"
+#undef T
+#undef F
+#undef min
+#undef max
+#undef mix
+#undef abs
+#undef uint
+#undef real
+
+const sdfc_op_info sdfc_ops[SDFC_OP_COUNT] = {
+    [SDFC_CONST] = {"const", 0, NULL, NULL, NULL, NULL},
+    [SDFC_PARAM] = {"param", 0, NULL, NULL, NULL, NULL},
+    [SDFC_ANCHOR] = {"anchor", 0, NULL, NULL, NULL, NULL},
+    [SDFC_TIME] = {"time", 0, NULL, NULL, NULL, NULL},
+#define T(name, count, text, code) [SDFC_##name] = {#name, count, text, NULL, NULL, run_##name},
+#define F(name, count, params, ...) [SDFC_##name] = {#name, count, NULL, #params, #__VA_ARGS__, run_##name},
+#include "sdfc/library.inc"
+#undef T
+#undef F
+    [SDFC_CALL_MIN] = {"call_min", 0, NULL, NULL, NULL, NULL},
+    [SDFC_CALL_USER] = {"call_user", 0, NULL, NULL, NULL, NULL},
+};
+/* clang-format on */
+
+const char *const sdfc_c_prelude = prelude_text;

@@ -1,0 +1,85 @@
+/* sdfc.h: the SDF compiler: the text of a scene (docs/sdf.md) becomes GLSL for the march, C in
+ * double precision that says the truth, and a table of parts with Lipschitz constants and bounds.
+ *
+ *   sdfc.c           the program masu-sdfc
+ *   lex.c       text -> tokens, messages
+ *   parse.c     statements and expressions
+ *   shape.c     the table of shapes and their arguments
+ *   expr.c      expressions: folding, intervals, values
+ *   ops.c       the formulas of library.inc, as C and as text
+ *   analyse.c   Lipschitz constant and bounds of each operator
+ *   lower.c     a tree of shapes -> a straight list of operations
+ *   emit.c      that list -> GLSL, C, JSON
+ *   check.c     that list, run: constants and bounds tried on random points
+ *
+ * Any bytes are a valid question: the answer is a result or a message. Memory and time are bounded
+ * by the limits below. Nothing is global. */
+#ifndef MASU_SDFC_H
+#define MASU_SDFC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define MASU_SDFC_SOURCE_MAX ((size_t)1 << 20)
+#define MASU_SDFC_PARTS_MAX 4096
+#define MASU_SDFC_SLOTS_MAX 65536
+#define MASU_SDFC_PARAMS_MAX 256
+#define MASU_SDFC_MATERIALS_MAX 1024
+#define MASU_SDFC_DEPTH_MAX 64
+#define MASU_SDFC_NAME_MAX 64
+#define MASU_SDFC_MASKED_MAX 64 /* parts of a scene whose tiles have bits instead of lists */
+
+/* The slots: first one record of each part, then one of each material, then the arguments. A
+ * number that is an index is stored as a float of that value. */
+enum {
+    MASU_SDFC_PART_SLOTS =
+        8, /* centre x y z, radius (< 0: unbounded), 1 / L, shape, base, material */
+    MASU_SDFC_MATERIAL_SLOTS = 8, /* albedo r g b, roughness, emissive r g b, metallic */
+};
+
+typedef struct masu_sdfc_part {
+    char name[MASU_SDFC_NAME_MAX];
+    uint32_t shape, slot_base, material;
+    double lipschitz;
+    double center[3], radius; /* radius < 0: unbounded */
+    double low[3], high[3];   /* may be infinite */
+    bool dynamic;             /* some of its slots depend on parameters or time */
+    bool truth;               /* the C evaluates it */
+    bool user;                /* holds a glsl block: not checked by the compiler */
+} masu_sdfc_part;
+
+typedef struct masu_sdfc_param {
+    char name[MASU_SDFC_NAME_MAX];
+    double value, minimum, maximum;
+} masu_sdfc_param;
+
+typedef struct masu_sdfc_result {
+    char *glsl, *c, *table; /* NUL-terminated; table is JSON */
+    char *warnings;         /* one line each; "" for none */
+    masu_sdfc_part *parts;
+    uint32_t part_count, shape_count, material_count;
+    masu_sdfc_param *params;
+    uint32_t param_count;
+    float *slots; /* initial values: parameters at their defaults, time 0 */
+    uint32_t slot_count;
+    bool dynamic;  /* slots depend on parameters or time */
+    bool anchored; /* slots depend on the anchor */
+    double glossiest; /* least roughness that a part which does not shine may have; 1: all do */
+} masu_sdfc_result;
+
+typedef struct masu_sdfc_options {
+    uint32_t pairs; /* tried per distinct shape; 0: 20000. UINT32_MAX: none */
+    bool anchored;  /* the GLSL takes points relative to masu_anchor() */
+} masu_sdfc_options;
+
+/* False: `error` holds "name:line:column: message", the line and a caret. The result is then empty.
+ * Either way masu_sdfc_release may be called. `options` may be NULL. */
+bool masu_sdfc_compile_with(const char *text, size_t bytes, const char *name,
+                            const masu_sdfc_options *options, masu_sdfc_result *out, char *error,
+                            size_t error_size);
+bool masu_sdfc_compile(const char *text, size_t bytes, const char *name, masu_sdfc_result *out,
+                       char *error, size_t error_size);
+void masu_sdfc_release(masu_sdfc_result *result);
+
+#endif

@@ -1,0 +1,155 @@
+/* shape.c: shapes as they are written: a name, its arguments by the pattern of kinds.inc,
+ * and the shapes that it changes or joins. */
+#include "sdfc/internal.h"
+
+#include <string.h>
+
+const char *const sdfc_kind_names[SDFC_KIND_COUNT] = {
+#define KIND(id, name, pattern) name,
+#include "sdfc/kinds.inc"
+#undef KIND
+};
+const char *const sdfc_kind_patterns[SDFC_KIND_COUNT] = {
+#define KIND(id, name, pattern) pattern,
+#include "sdfc/kinds.inc"
+#undef KIND
+};
+
+static int add_shape(sdfc *c, const sdfc_shape *shape) {
+    c->shapes = sdfc_grow(c, c->shapes, c->shape_count, &c->shape_capacity, sizeof *c->shapes,
+                          SDFC_SHAPES_MAX, "shapes");
+    c->shapes[c->shape_count] = *shape;
+    return c->shape_count++;
+}
+
+static void set_children(sdfc *c, int shape, const int *children, int count) {
+    c->shapes[shape].child = sdfc_take(c, (size_t)count, sizeof *children);
+    if (count) memcpy(c->shapes[shape].child, children, (size_t)count * sizeof *children);
+    c->shapes[shape].children = count;
+}
+
+/* Limits of compile-time integers by kind and place. */
+static long whole_most(int kind, int place) {
+    switch (kind) {
+    case SDFC_KIND_MENGER: return 8;
+    case SDFC_KIND_SIERPINSKI: return 12;
+    case SDFC_KIND_MANDELBULB: return 16;
+    case SDFC_KIND_POLAR: return 4096;
+    case SDFC_KIND_KALEIDOSCOPE: return 12;
+    default: return place < 0 ? 0 : 1 << 20;
+    }
+}
+
+/* glsl { ... } bounds (low), (high) lipschitz L c { ... } */
+static int parse_user(sdfc *c, int token) {
+    sdfc_shape s = {.kind = SDFC_KIND_USER, .token = token};
+    c->users = sdfc_grow(c, c->users, c->user_count, &c->user_capacity, sizeof *c->users, 4096,
+                         "glsl blocks");
+    s.user = c->user_count++;
+    const sdfc_token *block = &c->tokens[c->at];
+    if (block->kind != TOKEN_RAW) sdfc_expected(c, c->at, "a block of GLSL in braces");
+    sdfc_user user = {.glsl_offset = block->offset, .glsl_length = block->length};
+    sdfc_next(c);
+    if (!sdfc_word(c, "bounds")) sdfc_expected(c, c->at, "\"bounds\"");
+    sdfc_parse_vector(c, s.number);
+    sdfc_need_mark(c, ',');
+    sdfc_parse_vector(c, s.number + 3);
+    if (!sdfc_word(c, "lipschitz")) sdfc_expected(c, c->at, "\"lipschitz\"");
+    int at = c->at;
+    s.number[6] = sdfc_parse_scalar(c);
+    for (int i = 0; i < 7; i++) {
+        if (!sdfc_constant(c, s.number[i])) {
+            sdfc_fail(c, token, "expected bounds and a constant known at compile time");
+        }
+    }
+    if (!(c->exprs[s.number[6]].value > 0)) {
+        sdfc_fail(c, at, "expected a constant above 0, found %g", c->exprs[s.number[6]].value);
+    }
+    if (sdfc_token_is(c, c->at, "c") && c->tokens[c->at + 1].kind == TOKEN_RAW) {
+        sdfc_next(c);
+        block = &c->tokens[c->at];
+        user.c_offset = block->offset;
+        user.c_length = block->length;
+        user.has_c = true;
+        sdfc_next(c);
+    }
+    c->users[s.user] = user;
+    return add_shape(c, &s);
+}
+
+static void parse_argument(sdfc *c, char kind_of, sdfc_shape *s, int *numbers, int *wholes) {
+    int v[3];
+    switch (kind_of) {
+    case 's': s->number[(*numbers)++] = sdfc_parse_scalar(c); break;
+    case 'v':
+    case 'n':
+        sdfc_parse_vector(c, v);
+        for (int i = 0; i < 3; i++) s->number[(*numbers)++] = v[i];
+        break;
+    case 'i':
+        s->whole[*wholes] = (int)sdfc_parse_whole(c, 1, whole_most(s->kind, *wholes));
+        (*wholes)++;
+        break;
+    case 'c': {
+        int token = c->at;
+        sdfc_parse_vector(c, v);
+        for (int i = 0; i < 3; i++) {
+            double n = c->exprs[v[i]].value;
+            if (!sdfc_constant(c, v[i]) || n != floor(n) || n < 1 || n > 1 << 20) {
+                sdfc_fail(c, token, "expected three whole numbers from 1 to 1048576");
+            }
+            s->whole[(*wholes)++] = (int)n;
+        }
+        break;
+    }
+    default: break;
+    }
+}
+
+static int parse_call(sdfc *c, int kind, int token) {
+    sdfc_shape s = {.kind = kind, .token = token};
+    int children[SDFC_CHILDREN_MAX], count = 0, numbers = 0, wholes = 0;
+    sdfc_need_mark(c, '(');
+    bool first = true;
+    for (const char *p = sdfc_kind_patterns[kind]; *p; p++) {
+        if (*p == '+') {
+            while (sdfc_mark(c, ',')) {
+                if (count == SDFC_CHILDREN_MAX) {
+                    sdfc_fail(c, c->at, "expected at most %d shapes in one %s", SDFC_CHILDREN_MAX,
+                              sdfc_kind_names[kind]);
+                }
+                children[count++] = sdfc_parse_shape(c);
+            }
+            continue;
+        }
+        if (!first) sdfc_need_mark(c, ',');
+        first = false;
+        if (*p == 'S')
+            children[count++] = sdfc_parse_shape(c);
+        else
+            parse_argument(c, *p, &s, &numbers, &wholes);
+    }
+    sdfc_need_mark(c, ')');
+    int shape = add_shape(c, &s);
+    set_children(c, shape, children, count);
+    return shape;
+}
+
+int sdfc_parse_shape(sdfc *c) {
+    sdfc_enter(c);
+    int token = c->at, shape = -1;
+    if (c->tokens[token].kind != TOKEN_NAME) sdfc_expected(c, token, "a shape");
+    sdfc_next(c);
+    for (int kind = 0; kind < SDFC_KIND_COUNT && shape < 0; kind++) {
+        if (!sdfc_token_is(c, token, sdfc_kind_names[kind])) continue;
+        shape = kind == SDFC_KIND_USER ? parse_user(c, token) : parse_call(c, kind, token);
+        sdfc_analyse(c, shape);
+    }
+    if (shape < 0) {
+        const sdfc_symbol *s = sdfc_find(c, token);
+        if (!s || s->kind != SYMBOL_SHAPE) sdfc_expected(c, token, "a shape");
+        shape = s->index;
+    }
+    sdfc_leave(c);
+    return shape;
+}
