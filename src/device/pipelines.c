@@ -1,9 +1,12 @@
 /* pipelines.c: descriptor set layouts derived from the rows of the frame table, shader modules,
  * pipelines, and the render passes of graphics rows. Modules live only while their pipeline is
  * built. */
-#include "renderer.h"
+#include "device/pipelines.h"
 
 #include "base/error.h"
+#include "device/bind.h"
+#include "plan/ray_buffers.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #include "ao_comp.spv.h"
@@ -149,8 +152,8 @@ typedef struct spirv {
     uint64_t bytes;
 } spirv;
 
-static spirv scene_code(const masu_renderer *m, uint32_t pass) {
-    masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+static spirv scene_code(const masu_device *m, uint32_t pass) {
+    masu_scene_view v = masu_scene_look(m->plan->desc.scene);
     return (spirv){v.code[masu_passes[pass].code].words,
                    v.code[masu_passes[pass].code].count * sizeof(uint32_t)};
 }
@@ -202,11 +205,11 @@ static const spirv light_builds[LIGHT_BUILDS] = {
     [LIGHT_OCCLUDED | LIGHT_LIGHTS | LIGHT_PROBES] = SPIRV(light_occluded_lights_probes_comp),
     [LIGHT_OCCLUDED | LIGHT_LIGHTS | LIGHT_PROBES | LIGHT_SURFACE] = SPIRV(light_occluded_lights_probes_surface_comp)};
 
-static spirv light_code(const masu_renderer *m, uint32_t pass) {
+static spirv light_code(const masu_device *m, uint32_t pass) {
     uint32_t build = pass == MASU_PASS_LIGHT_OCCLUDED ? LIGHT_OCCLUDED : 0;
-    if (m->plan.needs.surface) build |= LIGHT_SURFACE;
-    if (m->plan.needs.probes) build |= LIGHT_PROBES;
-    if (m->plan.needs.lights) build |= LIGHT_LIGHTS;
+    if (m->plan->needs.surface) build |= LIGHT_SURFACE;
+    if (m->plan->needs.probes) build |= LIGHT_PROBES;
+    if (m->plan->needs.lights) build |= LIGHT_LIGHTS;
     return light_builds[build];
 }
 
@@ -224,8 +227,8 @@ static const spirv specular_keep_builds[] = {SPIRV(specular_keep_comp),
                                              SPIRV(specular_keep_steady_comp)};
 
 
-static spirv specular_code(const masu_renderer *m, const spirv builds[2]) {
-    return builds[m->plan.needs.surface ? 1 : 0];
+static spirv specular_code(const masu_device *m, const spirv builds[2]) {
+    return builds[m->plan->needs.surface ? 1 : 0];
 }
 
 /* With holes of masks, or without. */
@@ -262,17 +265,17 @@ static const spirv shade_sdf_builds[SHADE_TEXTURES] = {
     SPIRV(specular_shade_sdf_lights_probes_comp),
     SPIRV(specular_shade_sdf_lights_probes_sun_comp)};
 
-static spirv shade_code(const masu_renderer *m) {
-    const spirv *builds = m->plan.needs.traced ? shade_builds : shade_sdf_builds;
-    return builds[(m->plan.needs.shadow ? SHADE_SUN : 0) |
-                        (m->plan.needs.lights ? SHADE_LIGHTS : 0) |
-                        (m->plan.scene.trace_colors ? SHADE_TEXTURES : 0) |
-                        (m->plan.needs.probes ? SHADE_PROBES : 0)];
+static spirv shade_code(const masu_device *m) {
+    const spirv *builds = m->plan->needs.traced ? shade_builds : shade_sdf_builds;
+    return builds[(m->plan->needs.shadow ? SHADE_SUN : 0) |
+                        (m->plan->needs.lights ? SHADE_LIGHTS : 0) |
+                        (m->plan->scene.trace_colors ? SHADE_TEXTURES : 0) |
+                        (m->plan->needs.probes ? SHADE_PROBES : 0)];
 }
 
-static uint32_t gbuffer_build(const masu_renderer *m) {
-    return (m->plan.needs.velocity ? GBUFFER_VELOCITY : 0u) |
-           (m->plan.needs.surface ? GBUFFER_SURFACE : 0u);
+static uint32_t gbuffer_build(const masu_device *m) {
+    return (m->plan->needs.velocity ? GBUFFER_VELOCITY : 0u) |
+           (m->plan->needs.surface ? GBUFFER_SURFACE : 0u);
 }
 
 /* Of display-encoded colour: of a source image in any format; in 8 bits; of a scene in 8 bits; in 16-bit
@@ -307,15 +310,15 @@ static const spirv tonemap_builds[] = {SPIRV(tonemap_comp), SPIRV(tonemap_deep_c
                                        SPIRV(tonemap_deep_metered_comp)};
 
 /* Whether all that a pass samples, in any rung, is colour of 8 bits. */
-static int reads_bytes(const masu_renderer *m, uint32_t pass) {
-    for (uint32_t r = 0; r < m->plan.desc.rung_count; r++) {
-        const masu_rung_plan *rp = &m->plan.rungs[r];
+static int reads_bytes(const masu_device *m, uint32_t pass) {
+    for (uint32_t r = 0; r < m->plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &m->plan->rungs[r];
         if (!(rp->active & MASU_PASS_BIT(pass))) continue;
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
             masu_access access = rp->access[pass][a];
             if (access.usage != MASU_READ) continue;
-            VkFormat format = access.image == MASU_IMAGE_SOURCE ? m->plan.desc.source.format
-                                                                : masu_plan_format(&m->plan, access.image);
+            VkFormat format = access.image == MASU_IMAGE_SOURCE ? m->plan->desc.source.format
+                                                                : masu_plan_format(m->plan, access.image);
             if (format != VK_FORMAT_R8G8B8A8_UNORM && format != VK_FORMAT_B8G8R8A8_UNORM &&
                 format != VK_FORMAT_A8B8G8R8_UNORM_PACK32)
                 return 0;
@@ -324,24 +327,24 @@ static int reads_bytes(const masu_renderer *m, uint32_t pass) {
     return 1;
 }
 
-static uint32_t color_build(const masu_renderer *m) {
-    return !m->plan.needs.scene ? 0 : m->plan.deep ? 2 : 1;
+static uint32_t color_build(const masu_device *m) {
+    return !m->plan->needs.scene ? 0 : m->plan->deep ? 2 : 1;
 }
 
-static uint32_t color_bytes_build(const masu_renderer *m, uint32_t pass) {
-    if (m->plan.needs.scene) return m->plan.deep ? COLOR_DEEP : COLOR_SCENE;
+static uint32_t color_bytes_build(const masu_device *m, uint32_t pass) {
+    if (m->plan->needs.scene) return m->plan->deep ? COLOR_DEEP : COLOR_SCENE;
     return reads_bytes(m, pass) ? COLOR_BYTES : COLOR_SOURCE;
 }
 
-static spirv easu_fast_code(const masu_renderer *m) {
+static spirv easu_fast_code(const masu_device *m) {
     uint32_t build = color_bytes_build(m, MASU_PASS_EASU_FAST);
     /* Without a scene there are no counters. */
-    if (m->plan.desc.debug.counters && m->plan.needs.scene) build += COLOR_BUILDS - COLOR_SCENE;
-    return easu_fast_builds[m->plan.desc.half_floats == MASU_ON][build];
+    if (m->plan->desc.debug.counters && m->plan->needs.scene) build += COLOR_BUILDS - COLOR_SCENE;
+    return easu_fast_builds[m->plan->desc.half_floats == MASU_ON][build];
 }
 
 /* Compute code by pass: the scene's own where the row names a section of the blob. */
-static spirv compute_code(const masu_renderer *m, uint32_t pass) {
+static spirv compute_code(const masu_device *m, uint32_t pass) {
     if (masu_passes[pass].code) return scene_code(m, pass);
     switch (pass) {
     case MASU_PASS_CULL:
@@ -363,10 +366,10 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     case MASU_PASS_SPECULAR_GUIDE: return specular_code(m, specular_guide_builds);
     case MASU_PASS_SPECULAR_RAYS: return specular_code(m, specular_rays_builds);
     case MASU_PASS_SPECULAR_COMPOSITE: 
-        return specular_code(m, specular_composite_builds + (m->plan.needs.finest ? 2 : 0));
+        return specular_code(m, specular_composite_builds + (m->plan->needs.finest ? 2 : 0));
     case MASU_PASS_SPECULAR_TRACE:
-        return trace_builds[masu_ray_masks(&m->plan.scene)];
-    case MASU_PASS_SPECULAR_QUERY: return query_builds[masu_ray_masks(&m->plan.scene)];
+        return trace_builds[masu_ray_masks(&m->plan->scene)];
+    case MASU_PASS_SPECULAR_QUERY: return query_builds[masu_ray_masks(&m->plan->scene)];
     case MASU_PASS_SPECULAR_SHADE: return shade_code(m);
     case MASU_PASS_SPECULAR_REUSE:
         return (spirv){masu_spv_specular_reuse_comp, sizeof masu_spv_specular_reuse_comp};
@@ -380,13 +383,13 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
         return (spirv){masu_spv_specular_filter_comp, sizeof masu_spv_specular_filter_comp};
     case MASU_PASS_SPECULAR_TAA:
         return (spirv){masu_spv_specular_taa_comp, sizeof masu_spv_specular_taa_comp};
-    case MASU_PASS_SPECULAR_KEEP: return specular_keep_builds[m->plan.needs.steady ? 1 : 0];
+    case MASU_PASS_SPECULAR_KEEP: return specular_keep_builds[m->plan->needs.steady ? 1 : 0];
     case MASU_PASS_SPECULAR_ACCUMULATE:
         return (spirv){masu_spv_specular_accumulate_comp, sizeof masu_spv_specular_accumulate_comp};
     case MASU_PASS_METER: return (spirv){masu_spv_meter_comp, sizeof masu_spv_meter_comp};
     case MASU_PASS_EXPOSE: return (spirv){masu_spv_expose_comp, sizeof masu_spv_expose_comp};
     case MASU_PASS_TONEMAP:
-        return tonemap_builds[(m->plan.deep ? 1 : 0) | (m->plan.needs.metered ? 2 : 0)];
+        return tonemap_builds[(m->plan->deep ? 1 : 0) | (m->plan->needs.metered ? 2 : 0)];
     case MASU_PASS_FXAA: return fxaa_builds[color_build(m)];
     case MASU_PASS_SMAA_EDGES: return smaa_edges_builds[color_build(m)];
     case MASU_PASS_SMAA_BLEND: return smaa_blend_builds[color_build(m)];
@@ -399,7 +402,7 @@ static spirv compute_code(const masu_renderer *m, uint32_t pass) {
     }
 }
 
-static masu_result make_module(masu_renderer *m, spirv code, VkShaderModule *module,
+static masu_result make_module(masu_device *m, spirv code, VkShaderModule *module,
                                masu_detail *detail) {
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                      .codeSize = (size_t)code.bytes,
@@ -408,8 +411,8 @@ static masu_result make_module(masu_renderer *m, spirv code, VkShaderModule *mod
     return MASU_FAILED(r, *module) ? masu_fail_vulkan(detail, r, "vkCreateShaderModule") : MASU_OK;
 }
 
-static uint64_t now(const masu_renderer *m) {
-    return m->plan.desc.clock_ns ? m->plan.desc.clock_ns(m->plan.desc.clock_user) : 0;
+static uint64_t now(const masu_device *m) {
+    return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
 /* Constants 0 to 7 of all shaders, of which each has those it declares: of compute shaders whether counters
@@ -418,7 +421,7 @@ static uint64_t now(const masu_renderer *m) {
  * encoding; whether the last pass rounds to its steps or changes the order of its channels. */
 enum { SPECIAL_COUNT = 8 };
 
-static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
+static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
     static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
         {0, 0, sizeof *constants},
@@ -430,16 +433,16 @@ static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
         {6, 6 * sizeof *constants, sizeof *constants},
         {7, 7 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
-    constants[1] = m->plan.needs.sky != 0;
-    constants[2] = m->plan.scene.fog != 0;
-    constants[3] = m->plan.needs.environment != 0;
-    constants[4] = m->plan.needs.reflections != 0;
-    constants[5] = (uint32_t)m->plan.desc.tone;
-    masu_encoding encoding = m->plan.desc.targets.encoding;
+    constants[1] = m->plan->needs.sky != 0;
+    constants[2] = m->plan->scene.fog != 0;
+    constants[3] = m->plan->needs.environment != 0;
+    constants[4] = m->plan->needs.reflections != 0;
+    constants[5] = (uint32_t)m->plan->desc.tone;
+    masu_encoding encoding = m->plan->desc.targets.encoding;
     constants[6] = encoding == MASU_ENCODING_LINEAR ? MASU_OUTPUT_LINEAR
                    : encoding == MASU_ENCODING_PQ   ? MASU_OUTPUT_PQ
                                                     : MASU_OUTPUT_SRGB;
-    constants[7] = m->plan.output.steps[0] || (m->plan.output.flags & MASU_OUTPUT_SWAP);
+    constants[7] = m->plan->output.steps[0] || (m->plan->output.flags & MASU_OUTPUT_SWAP);
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -448,11 +451,11 @@ static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
 
 /* What a plan has no buffer for takes no binding: devices need to have no more than four storage buffers
  * in a stage. */
-static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
+static masu_result make_global_layout(masu_device *m, masu_detail *detail) {
     const VkShaderStageFlags compute = VK_SHADER_STAGE_COMPUTE_BIT;
     const VkShaderStageFlags fragment = VK_SHADER_STAGE_FRAGMENT_BIT;
     const VkShaderStageFlags vertex = VK_SHADER_STAGE_VERTEX_BIT, all = compute | fragment | vertex;
-    const int stage2 = m->plan.occlusion;
+    const int stage2 = m->plan->occlusion;
     const struct {
         uint32_t binding;
         int uniform, needed;
@@ -471,18 +474,18 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
                 {MASU_BIND_SEEN, 0, stage2, compute},
                 {MASU_BIND_TABLES, 0, 1, compute | fragment},
                 {MASU_BIND_SKY, 1, 1, compute | fragment},
-                {MASU_BIND_PROBES, 0, m->plan.needs.probes, compute},
-                {MASU_BIND_LIGHTS, 0, m->plan.needs.lights, compute},
-                {MASU_BIND_LIGHT_TILES, 0, m->plan.needs.lights, compute},
-                {MASU_BIND_TRACE, 0, m->plan.needs.reflections, compute},
-                {MASU_BIND_TRACE_FRAME, 0, m->plan.needs.traced, compute},
-                {MASU_BIND_TRACE_VERTICES, 0, m->plan.needs.traced, compute},
-                {MASU_BIND_TRACE_TEXCOORDS, 0, m->plan.needs.traced && m->plan.scene.trace_colors,
+                {MASU_BIND_PROBES, 0, m->plan->needs.probes, compute},
+                {MASU_BIND_LIGHTS, 0, m->plan->needs.lights, compute},
+                {MASU_BIND_LIGHT_TILES, 0, m->plan->needs.lights, compute},
+                {MASU_BIND_TRACE, 0, m->plan->needs.reflections, compute},
+                {MASU_BIND_TRACE_FRAME, 0, m->plan->needs.traced, compute},
+                {MASU_BIND_TRACE_VERTICES, 0, m->plan->needs.traced, compute},
+                {MASU_BIND_TRACE_TEXCOORDS, 0, m->plan->needs.traced && m->plan->scene.trace_colors,
                  compute},
-                {MASU_BIND_SPECULAR_TILES, 0, m->plan.needs.reflections, compute},
-                {MASU_BIND_SMAA_AREA, 0, m->plan.needs.smoothing, compute},
-                {MASU_BIND_SMAA_TILES, 0, m->plan.needs.smoothing, compute},
-                {MASU_BIND_EXPOSURE, 0, m->plan.needs.metered, compute}};
+                {MASU_BIND_SPECULAR_TILES, 0, m->plan->needs.reflections, compute},
+                {MASU_BIND_SMAA_AREA, 0, m->plan->needs.smoothing, compute},
+                {MASU_BIND_SMAA_TILES, 0, m->plan->needs.smoothing, compute},
+                {MASU_BIND_EXPOSURE, 0, m->plan->needs.metered, compute}};
     VkDescriptorSetLayoutBinding bindings[sizeof rows / sizeof *rows + 1];
     uint32_t count = 0;
     for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -492,7 +495,7 @@ static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
             rows[i].uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
             1, rows[i].stages, NULL};
     }
-    if (m->plan.needs.query) {
+    if (m->plan->needs.query) {
         bindings[count++] = (VkDescriptorSetLayoutBinding){
             MASU_BIND_TOP_LEVEL, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, compute, NULL};
     }
@@ -512,8 +515,8 @@ static int draws_polygons(uint32_t pass) {
 }
 
 /* Set 2: the textures of a draw. */
-static masu_result make_texture_layout(masu_renderer *m, masu_detail *detail) {
-    if (!m->plan.scene.texture_arrays) return MASU_OK;
+static masu_result make_texture_layout(masu_device *m, masu_detail *detail) {
+    if (!m->plan->scene.texture_arrays) return MASU_OK;
     VkDescriptorSetLayoutBinding bindings[MASU_SLOT_COUNT];
     for (uint32_t i = 0; i < MASU_SLOT_COUNT; i++) {
         bindings[i] =
@@ -534,14 +537,14 @@ static masu_result make_texture_layout(masu_renderer *m, masu_detail *detail) {
 /* Set 1: reads first, then writes, in the order of the row. Which images stand behind the bindings
  * may differ from rung to rung, their number and kind do not: the first rung that runs the pass
  * speaks for all. */
-static const masu_rung_plan *first_rung(const masu_renderer *m, uint32_t pass) {
-    for (uint32_t r = 0; r < m->plan.desc.rung_count; r++) {
-        if (m->plan.rungs[r].active & MASU_PASS_BIT(pass)) return &m->plan.rungs[r];
+static const masu_rung_plan *first_rung(const masu_device *m, uint32_t pass) {
+    for (uint32_t r = 0; r < m->plan->desc.rung_count; r++) {
+        if (m->plan->rungs[r].active & MASU_PASS_BIT(pass)) return &m->plan->rungs[r];
     }
     return NULL;
 }
 
-static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *detail) {
     const masu_rung_plan *rp = first_rung(m, pass);
     if (!rp) return MASU_OK;
     VkDescriptorSetLayoutBinding bindings[MASU_PASS_ACCESSES];
@@ -586,12 +589,12 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
 
 /* ---- Compute --------------------------------------------------------------------------------- */
 
-static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
     masu_result result = make_module(m, compute_code(m, pass), &module, detail);
     if (result) return result;
     VkBool32 constants[SPECIAL_COUNT];
-    VkSpecializationInfo special = specialise(m, m->plan.desc.debug.counters != 0, constants);
+    VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -601,7 +604,7 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
                   .pSpecializationInfo = &special},
         .layout = m->layouts[pass]};
     uint64_t start = now(m);
-    VkResult r = m->vk.CreateComputePipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1,
+    VkResult r = m->vk.CreateComputePipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1,
                                               &info, m->vk.allocator, &m->pipelines[pass]);
     m->pipeline_ns[pass] = now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
@@ -615,7 +618,7 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
  * Only the render area is cleared: a cascade of the shadow map leaves the others alone. */
-static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_render_pass(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
     VkImageView views[MASU_PASS_ACCESSES];
@@ -644,8 +647,8 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
                                       .initialLayout = layout,
                                       .finalLayout = layout};
         views[n++] = m->views[access.image];
-        width = m->plan.images[access.image].width;
-        height = m->plan.images[access.image].height;
+        width = m->plan->images[access.image].width;
+        height = m->plan->images[access.image].height;
     }
     VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
                                     .colorAttachmentCount = color_count,
@@ -675,7 +678,7 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
 }
 
 /* textured: with texture coordinates; masked: with the discard of masks. */
-static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
+static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
                                          VkBool32 masked, VkPipeline *out) {
     int cascade = masu_is_cascade(pass);                 /* no colour */
@@ -745,8 +748,8 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
         .attachmentCount = boxes || cascade ? 0
                            : blends            ? 1
-                           : polygons          ? 2u + (m->plan.needs.velocity ? 1u : 0u) +
-                                            (m->plan.needs.surface ? 1u : 0u)
+                           : polygons          ? 2u + (m->plan->needs.velocity ? 1u : 0u) +
+                                            (m->plan->needs.surface ? 1u : 0u)
                                                : 3,
         .pAttachments = blend};
     VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
@@ -767,12 +770,12 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
                                          .pDynamicState = &dynamics,
                                          .layout = m->layouts[pass],
                                          .renderPass = m->render_passes[pass]};
-    return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1, &info,
+    return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1, &info,
                                          m->vk.allocator, out);
 }
 
 /* fragment.words NULL: depth alone. Times are added up per pass. */
-static masu_result make_pipeline(masu_renderer *m, uint32_t pass, spirv vertex, spirv fragment,
+static masu_result make_pipeline(masu_device *m, uint32_t pass, spirv vertex, spirv fragment,
                                  int textured, VkBool32 masked, VkPipeline *out,
                                  masu_detail *detail) {
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
@@ -789,13 +792,13 @@ static masu_result make_pipeline(masu_renderer *m, uint32_t pass, spirv vertex, 
     return result;
 }
 
-static masu_result make_textured(masu_renderer *m, masu_detail *detail) {
+static masu_result make_textured(masu_device *m, masu_detail *detail) {
     uint32_t build = gbuffer_build(m) | GBUFFER_TEXTURED;
     spirv vertex = gbuffer_vertex[build & ~(uint32_t)GBUFFER_SURFACE];
     spirv fragment = gbuffer_fragment[build];
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
-        if (i == MASU_TEXTURED_MASK && !m->plan.scene.masks) continue;
+        if (i == MASU_TEXTURED_MASK && !m->plan->scene.masks) continue;
         result = make_pipeline(m, MASU_PASS_GBUFFER, vertex, fragment, 1, i == MASU_TEXTURED_MASK,
                                &m->textured[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->textured[i]),
@@ -805,10 +808,10 @@ static masu_result make_textured(masu_renderer *m, masu_detail *detail) {
 }
 
 /* Through the holes of a mask the sun shines. */
-static masu_result make_masked_casters(masu_renderer *m, masu_detail *detail) {
+static masu_result make_masked_casters(masu_device *m, masu_detail *detail) {
     spirv vertex = {masu_spv_cascade_masked_vert, sizeof masu_spv_cascade_masked_vert};
     spirv fragment = {masu_spv_cascade_frag, sizeof masu_spv_cascade_frag};
-    if (!m->plan.scene.masks) return MASU_OK;
+    if (!m->plan->scene.masks) return MASU_OK;
     masu_result result = make_pipeline(m, MASU_PASS_CASCADE_0, vertex, fragment, 1, VK_TRUE,
                                        &m->masked_casters, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_casters), "cascades, masks");
@@ -816,22 +819,22 @@ static masu_result make_masked_casters(masu_renderer *m, masu_detail *detail) {
 }
 
 /* One pipeline for all: in scenes with textures what has none passes by them. */
-static masu_result make_transparents(masu_renderer *m, masu_detail *detail) {
+static masu_result make_transparents(masu_device *m, masu_detail *detail) {
     static const spirv fragments[] = {SPIRV(transparents_frag), SPIRV(transparents_textured_frag),
                                       SPIRV(transparents_sun_frag),
                                       SPIRV(transparents_textured_sun_frag)};
     static const spirv vertices[] = {SPIRV(transparents_vert), SPIRV(transparents_textured_vert)};
     int textured = m->texture_layout != VK_NULL_HANDLE;
     return make_pipeline(m, MASU_PASS_TRANSPARENTS, vertices[textured],
-                         fragments[textured + (m->plan.needs.shadow ? 2 : 0)], textured, VK_FALSE,
+                         fragments[textured + (m->plan->needs.shadow ? 2 : 0)], textured, VK_FALSE,
                          &m->pipelines[MASU_PASS_TRANSPARENTS], detail);
 }
 
-static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_graphics(masu_device *m, uint32_t pass, masu_detail *detail) {
     if (masu_is_cascade(pass) && pass != MASU_PASS_CASCADE_0) return MASU_OK;
     masu_result result = make_render_pass(m, pass, detail);
     int cascade = masu_is_cascade(pass), polygons = pass == MASU_PASS_GBUFFER;
-    if (result || (polygons && !m->plan.needs.raster)) return result; /* an empty scene clears */
+    if (result || (polygons && !m->plan->needs.raster)) return result; /* an empty scene clears */
     if (pass == MASU_PASS_TRANSPARENTS) return make_transparents(m, detail);
     spirv vertex = gbuffer_vertex[gbuffer_build(m) & ~(uint32_t)GBUFFER_SURFACE];
     spirv fragment = gbuffer_fragment[gbuffer_build(m)];
@@ -853,15 +856,15 @@ static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *d
 
 /* Those that the scene's texture sets ask for: trilinear, and along the longer axis of a pixel's
  * footprint where the device was created for it. */
-static masu_result make_samplers(masu_renderer *m, masu_detail *detail) {
+static masu_result make_samplers(masu_device *m, masu_detail *detail) {
     static const VkSamplerAddressMode modes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
                                                  VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                                  VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
-    if (!m->plan.scene.texture_sets) return MASU_OK;
-    masu_scene_view v = masu_scene_look(&m->plan.scene);
+    if (!m->plan->scene.texture_sets) return MASU_OK;
+    masu_scene_view v = masu_scene_look(&m->plan->scene);
     float most = m->vk.properties.limits.maxSamplerAnisotropy;
-    float anisotropy = m->plan.desc.vulkan.max_anisotropy;
-    for (uint32_t i = 0; i < m->plan.scene.texture_sets; i++) {
+    float anisotropy = m->plan->desc.vulkan.max_anisotropy;
+    for (uint32_t i = 0; i < m->plan->scene.texture_sets; i++) {
         const uint32_t *wrap = v.texture_sets[i].wrap;
         VkSampler *sampler = &m->samplers[wrap[0] + 3 * wrap[1]];
         if (*sampler) continue;
@@ -881,7 +884,7 @@ static masu_result make_samplers(masu_renderer *m, masu_detail *detail) {
     return MASU_OK;
 }
 
-masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
+masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
     VkSamplerCreateInfo nearest = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .magFilter = VK_FILTER_NEAREST,
                                    .minFilter = VK_FILTER_NEAREST,

@@ -8,7 +8,7 @@
 
 /* What the passes of ambient occlusion need of scene and description; the shaders name it. */
 static void ao_push(const masu_recorder *rec, uint32_t pass, struct masu_push *push) {
-    const masu_frame_plan *plan = &rec->m->plan;
+    const masu_frame_plan *plan = rec->m->plan;
     push->param[0] = plan->scene.occlusion_radius;
     push->param[1] = (float)MASU_AO_REACH;
     push->index[2] = plan->desc.debug.ao_full ? 1 : 2;
@@ -24,16 +24,16 @@ static int is_specular(uint32_t pass) {
 /* Of what reflections are traced: index.z pixels along an edge of a traced texel, index.w 1: of every
  * pixel, for comparison. */
 static void specular_push(const masu_recorder *rec, struct masu_push *push) {
-    push->index[2] = rec->m->plan.desc.debug.reference ? 1 : 2;
-    push->index[3] = rec->m->plan.needs.accumulate != 0;
+    push->index[2] = rec->m->plan->desc.debug.reference ? 1 : 2;
+    push->index[3] = rec->m->plan->needs.accumulate != 0;
     push->render_width = rec->rp->render_width;
     push->render_height = rec->rp->render_height;
 }
 
 struct masu_push masu_push_constants(const masu_recorder *rec, uint32_t pass) {
-    const masu_desc *d = &rec->m->plan.desc;
+    const masu_desc *d = &rec->m->plan->desc;
     VkExtent2D render = {rec->rp->render_width, rec->rp->render_height};
-    VkExtent2D output = masu_plan_extent(&rec->m->plan, masu_passes[pass].extent, render);
+    VkExtent2D output = masu_plan_extent(rec->m->plan, masu_passes[pass].extent, render);
     VkExtent2D input = render; /* of the first image read that is not of blocks */
     struct masu_push push;
     memset(&push, 0, sizeof push);
@@ -53,19 +53,19 @@ struct masu_push masu_push_constants(const masu_recorder *rec, uint32_t pass) {
         push.param[3] = (float)input.height * (1.0f / (float)output.height);
     }
     if (masu_passes[pass].params) masu_passes[pass].params(&d->rungs[rec->rung], &push);
-    masu_output_push(&rec->m->plan, rec->rp, pass, &push);
+    masu_output_push(rec->m->plan, rec->rp, pass, &push);
     masu_image_extent extent = masu_passes[pass].extent;
     int culling = extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES;
-    if (culling || pass == MASU_PASS_RECEIVERS) push.index[0] = (uint32_t)rec->m->plan.drawn.header;
+    if (culling || pass == MASU_PASS_RECEIVERS) push.index[0] = (uint32_t)rec->m->plan->drawn.header;
     if (pass == MASU_PASS_AO || pass == MASU_PASS_AO_UPSAMPLE) ao_push(rec, pass, &push);
     if (is_specular(pass)) specular_push(rec, &push);
     if (pass == MASU_PASS_LIGHT || pass == MASU_PASS_LIGHT_OCCLUDED)
-        push.index[3] = rec->m->plan.needs.accumulate != 0;
+        push.index[3] = rec->m->plan->needs.accumulate != 0;
     return push;
 }
 
 static float mip_bias(const masu_recorder *rec) {
-    const masu_desc *d = &rec->m->plan.desc;
+    const masu_desc *d = &rec->m->plan->desc;
     return (d->debug.no_bias ? 0.0f : log2f(d->rungs[rec->rung].scale)) + d->debug.mip_bias;
 }
 

@@ -1,12 +1,15 @@
 /* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and
  * where a rung draws cascades of the shadow map less often than every frame: set of those that it
  * draws), made once in masu_init and submitted again and again. */
-#include "renderer.h"
+#include "device/record.h"
 
 #include "base/error.h"
 #include "device/barriers.h"
 #include "device/descriptors.h"
+#include "device/load.h"
 #include "device/push.h"
+#include "device/ray_query.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>
@@ -15,8 +18,8 @@
 
 /* Stage 2 of culling: 64 invocations to a group, views in y: the camera, or the sun's. */
 static void record_culling(masu_recorder *rec, uint32_t pass, struct masu_push *push) {
-    const masu_frame_plan *plan = &rec->m->plan;
-    uint32_t few = (rec->m->batch_count + 63) / 64, groups = few + rec->m->large_count;
+    const masu_frame_plan *plan = rec->m->plan;
+    uint32_t few = (rec->draws->batch_count + 63) / 64, groups = few + rec->draws->large_count;
     uint32_t first = pass == MASU_PASS_CULL || pass == MASU_PASS_COMPACT ? 0 : 1;
     if (masu_passes[pass].extent == MASU_EXTENT_KEPT) groups = (plan->scene.instances + 63) / 64;
     push->index[1] = few;
@@ -32,7 +35,7 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     VkPipelineLayout layout = rec->m->layouts[pass];
     masu_image_extent extent = masu_passes[pass].extent;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
-    if (masu_has_global_sets(&rec->m->plan)) {
+    if (masu_has_global_sets(rec->m->plan)) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
                                   1, &rec->m->global_sets[rec->flight], 0, NULL);
     }
@@ -52,7 +55,7 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
         return;
     }
     if (extent == MASU_EXTENT_PROBES) {
-        vk->CmdDispatch(rec->cmd, (rec->m->plan.scene.probes + 63) / 64, 1, 1);
+        vk->CmdDispatch(rec->cmd, (rec->m->plan->scene.probes + 63) / 64, 1, 1);
         return;
     }
     if (extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES) {
@@ -68,8 +71,8 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
-/* How a material is drawn: 0 without textures, then as renderer.h counts. The sun asks for no maps but
- * the masks. */
+/* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the
+ * masks. */
 static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
     if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
     if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
@@ -97,9 +100,9 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
  * that most of what they would hide or shade in vain is known already. */
 static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, struct masu_push push) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
-    masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+    masu_scene_view v = masu_scene_look(m->plan->desc.scene);
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
     int sun = masu_is_cascade(pass);
@@ -117,12 +120,12 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, stru
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     int occlusion = (int)(rec->rp->active >> MASU_PASS_CULL & 1u);
-    uint32_t lists = view * m->plan.listed;
-    if (occlusion) lists += (uint32_t)m->plan.drawn.lists;
-    VkDeviceSize commands = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                            MASU_DRAWS_OF(&m->plan, view, occlusion);
-    for (uint32_t b = 0; b < m->batch_count; b++) {
-        const masu_batch *batch = &m->batches[b];
+    uint32_t lists = view * m->plan->listed;
+    if (occlusion) lists += (uint32_t)m->plan->drawn.lists;
+    VkDeviceSize commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                            MASU_DRAWS_OF(m->plan, view, occlusion);
+    for (uint32_t b = 0; b < rec->draws->batch_count; b++) {
+        const masu_batch *batch = &rec->draws->batches[b];
         push.index[1] = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             uint32_t number = v.primitives[batch->first_primitive + d].material;
@@ -156,12 +159,12 @@ static void record_polygons(masu_recorder *rec, uint32_t pass) {
 
 /* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. */
 static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
-    const masu_scene *scene = &m->plan.scene;
+    const masu_scene *scene = &m->plan->scene;
     VkPipelineLayout layout = m->layouts[MASU_PASS_TRANSPARENTS];
-    VkDeviceSize zero = 0, at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                                m->plan.transparent_draws * MASU_DRAW_BYTES;
+    VkDeviceSize zero = 0, at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                                m->plan->transparent_draws * MASU_DRAW_BYTES;
     const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
     struct masu_push push = masu_push_draw(rec, 1);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
@@ -173,14 +176,14 @@ static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
         vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
-    for (uint32_t k = 0; k < m->transparent_count; k++) {
-        push.index[1] = (uint32_t)m->plan.drawn.transparents + MASU_TRANSPARENT_WORDS * k;
+    for (uint32_t k = 0; k < rec->draws->transparent_count; k++) {
+        push.index[1] = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
         vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
         for (uint32_t c = 0; c < scene->transparent_sets; c++) {
             if (m->texture_layout && (k == 0 || scene->transparent_sets > 1)) {
-                vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
-                                          MASU_SET_TEXTURES, 1,
-                                          &m->texture_sets[m->transparent_sets[c]], 0, NULL);
+                vk->CmdBindDescriptorSets(
+                    rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_TEXTURES, 1,
+                    &m->texture_sets[rec->draws->transparent_sets[c]], 0, NULL);
             }
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at, 1,
                                        MASU_DRAW_BYTES);
@@ -191,7 +194,7 @@ static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
 
 /* Each part of the atlas has its own. */
 static void record_occluders(masu_recorder *rec) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
     m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
                           m->pipelines[MASU_PASS_OCCLUDERS]);
@@ -199,8 +202,8 @@ static void record_occluders(masu_recorder *rec) {
                                 1, &m->global_sets[rec->flight], 0, NULL);
     struct masu_push push;
     memset(&push, 0, sizeof push);
-    push.index[0] = (uint32_t)m->plan.drawn.header;
-    for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
+    push.index[0] = (uint32_t)m->plan->drawn.header;
+    for (uint32_t part = 0; part < MASU_ATLAS_PARTS(m->plan); part++) {
         VkRect2D area = masu_atlas_part(part);
         VkViewport viewport = {(float)area.offset.x,
                                (float)area.offset.y,
@@ -213,8 +216,8 @@ static void record_occluders(masu_recorder *rec) {
         m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
         m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
         m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
-                              rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                                  MASU_OCCLUDER_DRAW(&m->plan, part),
+                              rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                                  MASU_OCCLUDER_DRAW(m->plan, part),
                               1, MASU_DRAW_BYTES);
     }
 }
@@ -236,7 +239,7 @@ static VkRect2D render_area(const masu_recorder *rec, uint32_t pass) {
         return (VkRect2D){{0, 0}, {MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT}};
     if (!masu_is_cascade(pass))
         return (VkRect2D){{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
-    return (VkRect2D){masu_cascade_place(&rec->m->plan, pass - MASU_PASS_CASCADE_0),
+    return (VkRect2D){masu_cascade_place(rec->m->plan, pass - MASU_PASS_CASCADE_0),
                       {rec->rp->cascade_size, rec->rp->cascade_size}};
 }
 
@@ -271,16 +274,16 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, VkDescriptorSet s
 }
 
 static void record_readback(masu_recorder *rec, uint32_t pass) {
-    const masu_buffer_plan *buffer = &rec->m->plan.buffers[MASU_BUFFER_READBACK];
+    const masu_buffer_plan *buffer = &rec->m->plan->buffers[MASU_BUFFER_READBACK];
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
         masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
         VkExtent2D size =
-            masu_plan_extent(&rec->m->plan, masu_images[id].extent,
+            masu_plan_extent(rec->m->plan, masu_images[id].extent,
                              (VkExtent2D){rec->rp->render_width, rec->rp->render_height});
         uint32_t bit = 0;
         while (masu_images[id].readback >> bit != 1u) bit++;
         VkBufferImageCopy copy = {
-            .bufferOffset = rec->flight * buffer->stride + rec->m->plan.readback_offset[bit],
+            .bufferOffset = rec->flight * buffer->stride + rec->m->plan->readback_offset[bit],
             .imageSubresource = {.aspectMask = masu_images[id].format == VK_FORMAT_D32_SFLOAT
                                                    ? VK_IMAGE_ASPECT_DEPTH_BIT
                                                    : VK_IMAGE_ASPECT_COLOR_BIT,
@@ -293,9 +296,9 @@ static void record_readback(masu_recorder *rec, uint32_t pass) {
 }
 
 static void record_present(masu_recorder *rec, uint32_t pass) {
-    const VkExtent2D size = rec->m->plan.desc.output;
+    const VkExtent2D size = rec->m->plan->desc.output;
     masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
-    if (rec->m->plan.copies) {
+    if (rec->m->plan->copies) {
         VkImageCopy copy = {
             .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
             .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
@@ -336,7 +339,7 @@ static void end_label(const masu_recorder *rec) {
  * time would mean little. */
 static void timestamp(masu_recorder *rec, uint32_t index) {
     if (!rec->m->queries) return;
-    if (!rec->m->plan.desc.debug.timestamps) { /* the governor's two cost no barrier */
+    if (!rec->m->plan->desc.debug.timestamps) { /* the governor's two cost no barrier */
         if (index != 0 && index != MASU_PASS_COUNT) return;
         rec->m->vk.CmdWriteTimestamp(rec->cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
                                      rec->m->queries,
@@ -354,8 +357,8 @@ static void timestamp(masu_recorder *rec, uint32_t index) {
 static uint32_t poison_word(uint32_t kind) { return kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
 
 static void record_prologue(masu_recorder *rec) {
-    const masu_renderer *m = rec->m;
-    int counters = m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes;
+    const masu_device *m = rec->m;
+    int counters = m->plan->desc.debug.counters && m->plan->buffers[MASU_BUFFER_COUNTERS].bytes;
     masu_memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                         VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -363,32 +366,32 @@ static void record_prologue(masu_recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS], 0, VK_WHOLE_SIZE,
                             0);
     }
-    if (m->plan.buffers[MASU_BUFFER_POISON].bytes) {
+    if (m->plan->buffers[MASU_BUFFER_POISON].bytes) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_POISON], 0, VK_WHOLE_SIZE,
-                            poison_word(m->plan.desc.debug.poison));
+                            poison_word(m->plan->desc.debug.poison));
     }
     static const masu_buffer_id tiles[] = {MASU_BUFFER_TILES, MASU_BUFFER_SPECULAR_TILES,
                                            MASU_BUFFER_SMAA_TILES};
     int tiled = 0;
     for (uint32_t t = 0; t < sizeof tiles / sizeof *tiles; t++) {
-        if (!m->plan.buffers[tiles[t]].bytes) continue;
+        if (!m->plan->buffers[tiles[t]].bytes) continue;
         /* Arguments of the indirect dispatch: no tile yet, one row, one layer. */
         static const uint32_t arguments[3] = {0, 1, 1};
         tiled = 1;
         for (uint32_t i = 0; i < 3; i++)
             m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[tiles[t]], 4 * i, 4, arguments[i]);
     }
-    if (m->plan.needs.metered) { /* the bins; what the frame before has left stays */
+    if (m->plan->needs.metered) { /* the bins; what the frame before has left stays */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
                             MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
     }
     int receivers = (int)(rec->rp->active >> MASU_PASS_RECEIVERS & 1u);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
-                            m->plan.receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
+                            m->plan->receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
-    if (counters || receivers || tiled || m->plan.needs.metered ||
-        m->plan.buffers[MASU_BUFFER_POISON].bytes) {
+    if (counters || receivers || tiled || m->plan->needs.metered ||
+        m->plan->buffers[MASU_BUFFER_POISON].bytes) {
         masu_memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                             VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                             VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -400,22 +403,22 @@ static void record_prologue(masu_recorder *rec) {
 }
 
 static void record_epilogue(masu_recorder *rec) {
-    const masu_renderer *m = rec->m;
-    const masu_buffer_plan *readback = &m->plan.buffers[MASU_BUFFER_READBACK];
-    if (m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes) {
+    const masu_device *m = rec->m;
+    const masu_buffer_plan *readback = &m->plan->buffers[MASU_BUFFER_READBACK];
+    if (m->plan->desc.debug.counters && m->plan->buffers[MASU_BUFFER_COUNTERS].bytes) {
         masu_memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                             VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
         VkBufferCopy copy = {0, rec->flight * readback->stride,
-                             m->plan.buffers[MASU_BUFFER_COUNTERS].bytes};
+                             m->plan->buffers[MASU_BUFFER_COUNTERS].bytes};
         m->vk.CmdCopyBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS],
                             m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
     }
     if (m->queries) {
         /* Copied by the GPU, so that masu_stats is a read of memory and no call into the driver. */
         m->vk.CmdCopyQueryPoolResults(
-            rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), masu_stamps(&m->plan.desc),
+            rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), masu_stamps(&m->plan->desc),
             m->objects.buffers[MASU_BUFFER_READBACK],
-            rec->flight * readback->stride + m->plan.readback_times, sizeof(uint64_t),
+            rec->flight * readback->stride + m->plan->readback_times, sizeof(uint64_t),
             VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
     }
     if (readback->bytes) {
@@ -425,7 +428,7 @@ static void record_epilogue(masu_recorder *rec) {
     /* The target to where the host wants it, visible to whatever comes next. */
     const masu_use *target = &rec->states[MASU_IMAGE_TARGET];
     masu_use last = {1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
-                     m->plan.desc.targets.final_layout, 0};
+                     m->plan->desc.targets.final_layout, 0};
     VkImageMemoryBarrier b =
         masu_image_barrier(rec, MASU_IMAGE_TARGET, target->access, &last, target->layout);
     m->vk.CmdPipelineBarrier(rec->cmd, target->stages, last.stages, 0, 0, NULL, 0, NULL, 1, &b);
@@ -435,7 +438,7 @@ static void record_epilogue(masu_recorder *rec) {
 /* sets: the rung's, of this target; see masu_make_pass_sets for the order. */
 static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                                 masu_detail *detail) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkResult r = m->vk.BeginCommandBuffer(rec->cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
@@ -466,86 +469,9 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
 
 /* ---- All recordings -------------------------------------------------------------------------- */
 
-/* All of a texture to the layout that copies need, or from there to that of shaders. */
-static void move_texture(masu_renderer *m, VkCommandBuffer cmd, VkImage image, int to_shader) {
-    VkImageMemoryBarrier b = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = to_shader ? VK_ACCESS_TRANSFER_WRITE_BIT : 0,
-        .dstAccessMask = to_shader ? VK_ACCESS_SHADER_READ_BIT : VK_ACCESS_TRANSFER_WRITE_BIT,
-        .oldLayout = to_shader ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED,
-        .newLayout = to_shader ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
-                               : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
-                             VK_REMAINING_ARRAY_LAYERS}};
-    m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                             to_shader ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
-                                       : VK_PIPELINE_STAGE_TRANSFER_BIT,
-                             0, 0, NULL, 0, NULL, 1, &b);
-}
-
-/* One chunk of textures from `next` on. Rows of one texture that two chunks copy do not overlap:
- * they need no barrier between them. */
-static void record_textures(masu_renderer *m, VkCommandBuffer cmd, masu_texture_cursor *next) {
-    masu_scene_view v = masu_scene_look(&m->plan.scene);
-    masu_texture_region r;
-    uint64_t used = 0, room = m->plan.buffers[MASU_BUFFER_STAGING].bytes;
-    while (masu_texture_next(v.textures, m->plan.scene.texture_arrays, m->plan.compressed, room,
-                             next, &used, &r)) {
-        VkImage image = m->plan.textures[r.texture].image;
-        if (r.first) move_texture(m, cmd, image, 0);
-        VkBufferImageCopy copy = {
-            .bufferOffset = r.offset,
-            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, r.mip, r.layer, 1},
-            .imageOffset = {0, (int32_t)r.y, 0},
-            .imageExtent = {r.width, r.height, 1}};
-        m->vk.CmdCopyBufferToImage(cmd, m->objects.buffers[MASU_BUFFER_STAGING], image,
-                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-        if (r.last) move_texture(m, cmd, image, 1);
-    }
-}
-
-/* The images that the first frame finds as if another had left them; what is in them is not looked
- * at. */
-static void record_kept(masu_renderer *m, VkCommandBuffer cmd) {
-    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);
-    masu_recorder rec = {.m = m, .cmd = cmd};
-    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
-        if (!m->plan.images[i].used || !masu_images[i].kept) continue;
-        VkImageMemoryBarrier b =
-            masu_image_barrier(&rec, (masu_image_id)i, 0, &rest, VK_IMAGE_LAYOUT_UNDEFINED);
-        m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0, NULL, 0,
-                                 NULL, 1, &b);
-    }
-}
-
-static masu_result record_load(masu_renderer *m, uint32_t index, masu_texture_cursor *next,
-                               masu_detail *detail) {
-    VkCommandBuffer cmd = m->loads[index];
-    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
-    if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
-    if (masu_keeps_images(&m->plan) && index + 1 == m->load_count) {
-        record_kept(m, cmd);
-    } else if (masu_is_build_chunk(&m->plan, index, m->load_count)) {
-        masu_ray_record_bottoms(m, cmd);
-    } else if (index < masu_buffer_chunks(&m->plan)) {
-        masu_chunk chunk = masu_load_chunk(&m->plan, index);
-        VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
-        m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING],
-                            m->objects.buffers[chunk.buffer], 1, &copy);
-    } else {
-        record_textures(m, cmd, next);
-    }
-    r = m->vk.EndCommandBuffer(cmd);
-    return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
-}
-
-static masu_result make_command_buffers(masu_renderer *m, uint32_t frames, masu_detail *detail) {
+static masu_result make_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .queueFamilyIndex = m->plan.desc.vulkan.queue_family};
+                                    .queueFamilyIndex = m->plan->desc.vulkan.queue_family};
     VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
     if (MASU_FAILED(r, m->command_pool)) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
     VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
@@ -558,19 +484,19 @@ static masu_result make_command_buffers(masu_renderer *m, uint32_t frames, masu_
     return r ? masu_fail_vulkan(detail, r, "vkAllocateCommandBuffers") : MASU_OK;
 }
 
-static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
-    if (!masu_stamps(&m->plan.desc)) return MASU_OK;
+static masu_result make_queries(masu_device *m, masu_detail *detail) {
+    if (!masu_stamps(&m->plan->desc)) return MASU_OK;
     VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                   .queryCount =
-                                      m->plan.desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
+                                      m->plan->desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
     VkResult r = m->vk.CreateQueryPool(m->vk.device, &info, m->vk.allocator, &m->queries);
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
-masu_result masu_record(masu_renderer *m, masu_detail *detail) {
-    const masu_desc *d = &m->plan.desc;
-    uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan.recordings;
+masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+    const masu_desc *d = &m->plan->desc;
+    uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan->recordings;
     masu_result result = masu_make_sets(m, detail);
     if (!result) result = make_queries(m, detail);
     if (!result) result = make_command_buffers(m, d->frames_in_flight * recordings, detail);
@@ -578,12 +504,13 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail) {
     for (uint32_t r = 0; r < rungs && !result; r++) {
         VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
         memset(sets, 0, sizeof sets);
-        masu_rung_plan *rp = &m->plan.rungs[r];
+        masu_rung_plan *rp = &m->plan->rungs[r];
         result = masu_make_pass_sets(m, rp, &next, sets, detail);
         uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
         for (uint32_t i = 0; i < d->frames_in_flight * own && !result; i++) {
             uint32_t f = i / own, t = i % own / rp->variants;
             masu_recorder rec = {.m = m,
+                                 .draws = draws,
                                  .cmd = m->frames[f * recordings + rp->first_recording + i % own],
                                  .flight = f,
                                  .rung = r,
@@ -594,8 +521,5 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail) {
             rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }
     }
-    masu_texture_cursor texture = {0};
-    for (uint32_t i = 0; i < m->load_count && !result; i++)
-        result = record_load(m, i, &texture, detail);
-    return result;
+    return result ? result : masu_load_record(m, detail);
 }

@@ -3,11 +3,11 @@
 
 #include "scene/blob.h"
 #include "base/error.h"
-#include "frame/lights.h"
+#include "plan/draws.h"
 #include "plan/output.h"
-#include "device/ray_query.h"
-#include "frame/specular.h"
-#include "frame/transparents.h"
+#include "plan/ray_buffers.h"
+#include "scene/punctual_light.h"
+#include "scene/trace_scene.h"
 
 #include <math.h>
 #include <string.h>

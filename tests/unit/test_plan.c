@@ -20,7 +20,6 @@
 #include "scene/blob.h"
 #include "plan/output.h"
 #include "plan/plan.h"
-#include "device/ray_query.h"
 #include "support/desc.h"
 #include "support/random.h"
 
