@@ -68,7 +68,7 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
 }
 
 VkImage masu_recorded_image(const masu_recorder *rec, masu_image_id id) {
-    return id == MASU_IMAGE_TARGET ? rec->m->plan.desc.targets.images[rec->target]
+    return id == MASU_IMAGE_TARGET ? rec->m->plan->desc.targets.images[rec->target]
                                    : rec->m->objects.images[id];
 }
 
@@ -81,7 +81,7 @@ static int share_bytes(const masu_image_plan *a, const masu_image_plan *b) {
  * chains with nothing before it). */
 static void add_tenants(const masu_recorder *rec, masu_image_id id, VkPipelineStageFlags *stages,
                         VkAccessFlags *access) {
-    const masu_image_plan *images = rec->m->plan.images;
+    const masu_image_plan *images = rec->m->plan->images;
     for (uint32_t j = 1; j < MASU_IMAGE_SOURCE; j++) {
         if (j == (uint32_t)id || !rec->states[j].used || !images[id].used ||
             !share_bytes(&images[id], &images[j])) {
@@ -171,7 +171,7 @@ void masu_memory_barrier(masu_recorder *rec, VkPipelineStageFlags from, VkAccess
 void masu_find_persistent(masu_recorder *rec) {
     int all = rec->variant + 1 == rec->rp->variants;
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
-        if (!rec->m->plan.images[i].persistent || (all && !masu_images[i].kept)) continue;
+        if (!rec->m->plan->images[i].persistent || (all && !masu_images[i].kept)) continue;
         rec->states[i] = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);
     }
 }
@@ -180,7 +180,7 @@ void masu_leave_persistent(masu_recorder *rec) {
     masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         const masu_use *now = &rec->states[i];
-        if (!rec->m->plan.images[i].persistent || now->layout == rest.layout) continue;
+        if (!rec->m->plan->images[i].persistent || now->layout == rest.layout) continue;
         VkImageMemoryBarrier b = masu_image_barrier(
             rec, (masu_image_id)i, now->writes ? now->access : 0, &rest, now->layout);
         rec->m->vk.CmdPipelineBarrier(rec->cmd, now->stages, rest.stages, 0, 0, NULL, 0, NULL, 1,

@@ -1,7 +1,7 @@
 /* bind.c: device memory is allocated (one vkAllocateMemory per block) or taken from the host,
  * mapped once for the renderer's whole life, and the planned images and buffers are bound at their
  * offsets. */
-#include "renderer.h"
+#include "device/bind.h"
 
 #include "base/error.h"
 
@@ -14,13 +14,13 @@ static uint32_t block_of(const masu_frame_plan *plan, masu_role role) {
     return plan->unified ? (uint32_t)MASU_ROLE_DEVICE : (uint32_t)role;
 }
 
-unsigned char *masu_buffer_pointer(const masu_renderer *m, masu_buffer_id buffer, uint32_t slot) {
-    const masu_buffer_plan *b = &m->plan.buffers[buffer];
-    unsigned char *base = m->mapped[block_of(&m->plan, b->role)];
+unsigned char *masu_buffer_pointer(const masu_device *m, masu_buffer_id buffer, uint32_t slot) {
+    const masu_buffer_plan *b = &m->plan->buffers[buffer];
+    unsigned char *base = m->mapped[block_of(m->plan, b->role)];
     return base && b->bytes ? base + b->offset + slot * b->stride : NULL;
 }
 
-void masu_name(const masu_renderer *m, VkObjectType type, uint64_t handle, const char *name) {
+void masu_name(const masu_device *m, VkObjectType type, uint64_t handle, const char *name) {
     if (!m->vk.SetDebugUtilsObjectNameEXT || !handle) return;
     VkDebugUtilsObjectNameInfoEXT info = {.sType =
                                               VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
@@ -30,9 +30,9 @@ void masu_name(const masu_renderer *m, VkObjectType type, uint64_t handle, const
     (void)m->vk.SetDebugUtilsObjectNameEXT(m->vk.device, &info); /* a missing name harms nobody */
 }
 
-static masu_result take_host_block(masu_renderer *m, uint32_t role, masu_detail *detail) {
-    const masu_device_block *given = &m->plan.desc.device_blocks[role];
-    const masu_block_plan *need = &m->plan.blocks[role];
+static masu_result take_host_block(masu_device *m, uint32_t role, masu_detail *detail) {
+    const masu_device_block *given = &m->plan->desc.device_blocks[role];
+    const masu_block_plan *need = &m->plan->blocks[role];
     const char *name = role_names[role];
     if (given->offset % need->alignment) {
         return masu_fail(detail, MASU_ERROR_MEMORY, name, need->alignment, given->offset,
@@ -56,8 +56,8 @@ static masu_result take_host_block(masu_renderer *m, uint32_t role, masu_detail 
     return MASU_OK;
 }
 
-static masu_result allocate_block(masu_renderer *m, uint32_t role, masu_detail *detail) {
-    const masu_block_plan *need = &m->plan.blocks[role];
+static masu_result allocate_block(masu_device *m, uint32_t role, masu_detail *detail) {
+    const masu_block_plan *need = &m->plan->blocks[role];
     VkMemoryAllocateFlagsInfo flags = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
                                        .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
     VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
@@ -80,36 +80,36 @@ static masu_result allocate_block(masu_renderer *m, uint32_t role, masu_detail *
     return MASU_OK;
 }
 
-masu_result masu_bind_memory(masu_renderer *m, masu_detail *detail) {
+masu_result masu_bind_memory(masu_device *m, masu_detail *detail) {
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
-        if (!m->plan.blocks[role].bytes) continue;
-        masu_result result = m->plan.desc.device_blocks[role].memory
+        if (!m->plan->blocks[role].bytes) continue;
+        masu_result result = m->plan->desc.device_blocks[role].memory
                                  ? take_host_block(m, role, detail)
                                  : allocate_block(m, role, detail);
         if (result) return result;
     }
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
-        const masu_buffer_plan *buffer = &m->plan.buffers[b];
+        const masu_buffer_plan *buffer = &m->plan->buffers[b];
         if (!m->objects.buffers[b]) continue;
-        uint32_t block = block_of(&m->plan, buffer->role);
-        uint64_t base = m->memory_owned[block] ? 0 : m->plan.desc.device_blocks[block].offset;
+        uint32_t block = block_of(m->plan, buffer->role);
+        uint64_t base = m->memory_owned[block] ? 0 : m->plan->desc.device_blocks[block].offset;
         VkResult r = m->vk.BindBufferMemory(m->vk.device, m->objects.buffers[b], m->memory[block],
                                             base + buffer->offset);
         if (r) return masu_fail_vulkan(detail, r, "vkBindBufferMemory");
         masu_name(m, VK_OBJECT_TYPE_BUFFER, MASU_HANDLE(m->objects.buffers[b]), buffer->name);
     }
     uint64_t base =
-        m->memory_owned[MASU_ROLE_DEVICE] ? 0 : m->plan.desc.device_blocks[MASU_ROLE_DEVICE].offset;
+        m->memory_owned[MASU_ROLE_DEVICE] ? 0 : m->plan->desc.device_blocks[MASU_ROLE_DEVICE].offset;
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         if (!m->objects.images[i]) continue;
         VkResult r =
             m->vk.BindImageMemory(m->vk.device, m->objects.images[i], m->memory[MASU_ROLE_DEVICE],
-                                  base + m->plan.images[i].offset);
+                                  base + m->plan->images[i].offset);
         if (r) return masu_fail_vulkan(detail, r, "vkBindImageMemory");
         masu_name(m, VK_OBJECT_TYPE_IMAGE, MASU_HANDLE(m->objects.images[i]), masu_images[i].name);
     }
-    for (uint32_t i = 0; i < m->plan.scene.texture_arrays; i++) {
-        masu_texture_plan *t = &m->plan.textures[i];
+    for (uint32_t i = 0; i < m->plan->scene.texture_arrays; i++) {
+        masu_texture_plan *t = &m->plan->textures[i];
         VkResult r = m->vk.BindImageMemory(m->vk.device, t->image, m->memory[MASU_ROLE_DEVICE],
                                            base + t->offset);
         if (r) return masu_fail_vulkan(detail, r, "vkBindImageMemory");
@@ -118,9 +118,9 @@ masu_result masu_bind_memory(masu_renderer *m, masu_detail *detail) {
     return MASU_OK;
 }
 
-static masu_result make_texture_views(masu_renderer *m, masu_detail *detail) {
-    for (uint32_t i = 0; i < m->plan.scene.texture_arrays; i++) {
-        masu_texture_plan *t = &m->plan.textures[i];
+static masu_result make_texture_views(masu_device *m, masu_detail *detail) {
+    for (uint32_t i = 0; i < m->plan->scene.texture_arrays; i++) {
+        masu_texture_plan *t = &m->plan->textures[i];
         VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                       .image = t->image,
                                       .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
@@ -135,7 +135,7 @@ static masu_result make_texture_views(masu_renderer *m, masu_detail *detail) {
     return MASU_OK;
 }
 
-masu_result masu_make_views(masu_renderer *m, masu_detail *detail) {
+masu_result masu_make_views(masu_device *m, masu_detail *detail) {
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         if (!m->objects.images[i]) continue;
         int depth = masu_images[i].format == VK_FORMAT_D32_SFLOAT;
@@ -143,7 +143,7 @@ masu_result masu_make_views(masu_renderer *m, masu_detail *detail) {
             .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
             .image = m->objects.images[i],
             .viewType = VK_IMAGE_VIEW_TYPE_2D,
-            .format = masu_plan_format(&m->plan, i),
+            .format = masu_plan_format(m->plan, i),
             .subresourceRange = {.aspectMask =
                                      depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                                  .levelCount = 1,
@@ -151,11 +151,11 @@ masu_result masu_make_views(masu_renderer *m, masu_detail *detail) {
         /* An image that is only copied may not have a view (valid usage 04441). */
         VkImageUsageFlags viewable =
             ~(VkImageUsageFlags)(VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        if (!(m->plan.images[i].usage & viewable)) continue;
+        if (!(m->plan->images[i].usage & viewable)) continue;
         VkResult r = m->vk.CreateImageView(m->vk.device, &info, m->vk.allocator, &m->views[i]);
         if (MASU_FAILED(r, m->views[i])) return masu_fail_vulkan(detail, r, "vkCreateImageView");
         masu_name(m, VK_OBJECT_TYPE_IMAGE_VIEW, MASU_HANDLE(m->views[i]), masu_images[i].name);
     }
-    m->views[MASU_IMAGE_SOURCE] = m->plan.desc.source.view;
+    m->views[MASU_IMAGE_SOURCE] = m->plan->desc.source.view;
     return make_texture_views(m, detail);
 }

@@ -384,12 +384,10 @@ static uint64_t texture_staging(const masu_frame_plan *plan) {
 /* Resident buffers need a staging buffer exactly when the host cannot write where they live. */
 static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
                                   masu_detail *detail) {
-    uint64_t resident =
-        plan->buffers[MASU_BUFFER_VERTICES].bytes + plan->buffers[MASU_BUFFER_INDICES].bytes +
-        plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes +
-        plan->buffers[MASU_BUFFER_TEXCOORDS].bytes + plan->buffers[MASU_BUFFER_TABLES].bytes +
-        plan->buffers[MASU_BUFFER_PROBES].bytes + plan->buffers[MASU_BUFFER_TRACE].bytes +
-        plan->buffers[MASU_BUFFER_RAY_INDICES].bytes + plan->buffers[MASU_BUFFER_SMAA_AREA].bytes;
+    uint64_t resident = 0;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        if (masu_buffers[b].loaded) resident += plan->buffers[b].bytes;
+    }
     uint64_t textures = texture_staging(plan);
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
     plan->staged = resident && !plan->blocks[MASU_ROLE_DEVICE].host_visible;

@@ -1,18 +1,20 @@
 /* pipelines.c: descriptor set layouts derived from the rows of the frame table, shader modules,
  * pipelines, and the render passes of graphics rows. Modules live only while their pipeline is
  * built. */
-#include "renderer.h"
+#include "device/pipelines.h"
 
 #include "device/shaders.h"
 #include "plan/buffers.h"
 #include "plan/push.h"
 
 #include "base/error.h"
+#include "device/bind.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>
 
-static masu_result make_module(masu_renderer *m, masu_code code, VkShaderModule *module,
+static masu_result make_module(masu_device *m, masu_code code, VkShaderModule *module,
                                masu_detail *detail) {
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                      .codeSize = (size_t)code.bytes,
@@ -21,8 +23,8 @@ static masu_result make_module(masu_renderer *m, masu_code code, VkShaderModule 
     return MASU_FAILED(r, *module) ? masu_fail_vulkan(detail, r, "vkCreateShaderModule") : MASU_OK;
 }
 
-static uint64_t now(const masu_renderer *m) {
-    return m->plan.desc.clock_ns ? m->plan.desc.clock_ns(m->plan.desc.clock_user) : 0;
+static uint64_t now(const masu_device *m) {
+    return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
 /* Constants 0 to 7 of all shaders, of which each has those it declares: of compute shaders whether counters
@@ -31,7 +33,7 @@ static uint64_t now(const masu_renderer *m) {
  * encoding; whether the last pass rounds to its steps or changes the order of its channels. */
 enum { SPECIAL_COUNT = 8 };
 
-static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
+static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
     static const VkSpecializationMapEntry entries[SPECIAL_COUNT] = {
         {0, 0, sizeof *constants},
@@ -43,16 +45,16 @@ static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
         {6, 6 * sizeof *constants, sizeof *constants},
         {7, 7 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
-    constants[1] = m->plan.needs.sky != 0;
-    constants[2] = m->plan.scene.fog != 0;
-    constants[3] = m->plan.needs.environment != 0;
-    constants[4] = m->plan.needs.reflections != 0;
-    constants[5] = (uint32_t)m->plan.desc.tone;
-    masu_encoding encoding = m->plan.desc.targets.encoding;
+    constants[1] = m->plan->needs.sky != 0;
+    constants[2] = m->plan->scene.fog != 0;
+    constants[3] = m->plan->needs.environment != 0;
+    constants[4] = m->plan->needs.reflections != 0;
+    constants[5] = (uint32_t)m->plan->desc.tone;
+    masu_encoding encoding = m->plan->desc.targets.encoding;
     constants[6] = encoding == MASU_ENCODING_LINEAR ? MASU_OUTPUT_LINEAR
                    : encoding == MASU_ENCODING_PQ   ? MASU_OUTPUT_PQ
                                                     : MASU_OUTPUT_SRGB;
-    constants[7] = m->plan.output.steps[0] || (m->plan.output.flags & MASU_OUTPUT_SWAP);
+    constants[7] = m->plan->output.steps[0] || (m->plan->output.flags & MASU_OUTPUT_SWAP);
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -61,11 +63,11 @@ static VkSpecializationInfo specialise(const masu_renderer *m, VkBool32 first,
 
 /* What a plan has no buffer for takes no binding: devices need to have no more than four storage buffers
  * in a stage. */
-static masu_result make_global_layout(masu_renderer *m, masu_detail *detail) {
+static masu_result make_global_layout(masu_device *m, masu_detail *detail) {
     masu_binding rows[MASU_BIND_COUNT];
     VkDescriptorSetLayoutBinding bindings[MASU_BIND_COUNT];
     uint32_t count = 0;
-    masu_bindings(&m->plan, rows);
+    masu_bindings(m->plan, rows);
     for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
         if (!rows[i].bound) continue;
         bindings[count++] = (VkDescriptorSetLayoutBinding){rows[i].binding, rows[i].type, 1,
@@ -88,8 +90,8 @@ static int draws_polygons(uint32_t pass) {
 }
 
 /* Set 2: the textures of a draw. */
-static masu_result make_texture_layout(masu_renderer *m, masu_detail *detail) {
-    if (!m->plan.scene.texture_arrays) return MASU_OK;
+static masu_result make_texture_layout(masu_device *m, masu_detail *detail) {
+    if (!m->plan->scene.texture_arrays) return MASU_OK;
     VkDescriptorSetLayoutBinding bindings[MASU_SLOT_COUNT];
     for (uint32_t i = 0; i < MASU_SLOT_COUNT; i++) {
         bindings[i] =
@@ -108,8 +110,8 @@ static masu_result make_texture_layout(masu_renderer *m, masu_detail *detail) {
 }
 
 /* Set 1: reads first, then writes, in the order of the row. */
-static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail *detail) {
-    const masu_rung_plan *rp = masu_first_rung(&m->plan, pass);
+static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *detail) {
+    const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     if (!rp) return MASU_OK;
     VkDescriptorSetLayoutBinding bindings[MASU_PASS_ACCESSES];
     uint32_t n = 0;
@@ -153,12 +155,12 @@ static masu_result make_pass_layout(masu_renderer *m, uint32_t pass, masu_detail
 
 /* ---- Compute --------------------------------------------------------------------------------- */
 
-static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
-    masu_result result = make_module(m, masu_compute_code(&m->plan, pass), &module, detail);
+    masu_result result = make_module(m, masu_compute_code(m->plan, pass), &module, detail);
     if (result) return result;
     VkBool32 constants[SPECIAL_COUNT];
-    VkSpecializationInfo special = specialise(m, m->plan.desc.debug.counters != 0, constants);
+    VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -168,7 +170,7 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
                   .pSpecializationInfo = &special},
         .layout = m->layouts[pass]};
     uint64_t start = now(m);
-    VkResult r = m->vk.CreateComputePipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1,
+    VkResult r = m->vk.CreateComputePipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1,
                                               &info, m->vk.allocator, &m->pipelines[pass]);
     m->pipeline_ns[pass] = now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
@@ -182,12 +184,12 @@ static masu_result make_compute(masu_renderer *m, uint32_t pass, masu_detail *de
 /* Attachments come in the layouts that the row's barriers put them in, and stay there: the render
  * pass itself does no transition, so that record.c remains the only place that thinks about them.
  * Only the render area is cleared: a cascade of the shadow map leaves the others alone. */
-static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_render_pass(masu_device *m, uint32_t pass, masu_detail *detail) {
     VkAttachmentDescription attachments[MASU_PASS_ACCESSES];
     VkAttachmentReference colors[MASU_PASS_ACCESSES], depth = {0, VK_IMAGE_LAYOUT_UNDEFINED};
     VkImageView views[MASU_PASS_ACCESSES];
     uint32_t n = 0, color_count = 0, width = 0, height = 0;
-    const masu_rung_plan *rp = masu_first_rung(&m->plan, pass);
+    const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_access access = rp->access[pass][a];
         int is_depth = access.usage == MASU_WRITE_DEPTH || access.usage == MASU_UPDATE_DEPTH;
@@ -211,8 +213,8 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
                                       .initialLayout = layout,
                                       .finalLayout = layout};
         views[n++] = m->views[access.image];
-        width = m->plan.images[access.image].width;
-        height = m->plan.images[access.image].height;
+        width = m->plan->images[access.image].width;
+        height = m->plan->images[access.image].height;
     }
     VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
                                     .colorAttachmentCount = color_count,
@@ -241,8 +243,8 @@ static masu_result make_render_pass(masu_renderer *m, uint32_t pass, masu_detail
                : MASU_OK;
 }
 
-static uint32_t color_attachments(const masu_renderer *m, uint32_t pass) {
-    const masu_rung_plan *rp = masu_first_rung(&m->plan, pass);
+static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
+    const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     uint32_t count = 0;
     for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
         masu_usage usage = (masu_usage)rp->access[pass][a].usage;
@@ -252,7 +254,7 @@ static uint32_t color_attachments(const masu_renderer *m, uint32_t pass) {
 }
 
 /* textured: with texture coordinates; masked: with the discard of masks. */
-static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
+static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
                                          VkBool32 masked, VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
@@ -341,14 +343,14 @@ static VkResult create_graphics_pipeline(masu_renderer *m, uint32_t pass,
                                          .pDynamicState = &dynamics,
                                          .layout = m->layouts[pass],
                                          .renderPass = m->render_passes[pass]};
-    return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan.desc.vulkan.pipeline_cache, 1, &info,
+    return m->vk.CreateGraphicsPipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1, &info,
                                          m->vk.allocator, out);
 }
 
 /* Times are added up per pass. */
-static masu_result make_pipeline(masu_renderer *m, uint32_t pass, int textured, VkBool32 masked,
+static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked,
                                  VkPipeline *out, masu_detail *detail) {
-    masu_draw_code code = masu_draw_code_of(&m->plan, pass, textured);
+    masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     masu_result result = make_module(m, code.vertex, &modules[0], detail);
     if (!result && code.fragment.words) result = make_module(m, code.fragment, &modules[1], detail);
@@ -364,10 +366,10 @@ static masu_result make_pipeline(masu_renderer *m, uint32_t pass, int textured, 
 }
 
 /* What has textures, and what has masks. */
-static masu_result make_textured(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_textured(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
-        if (i == MASU_TEXTURED_MASK && !m->plan.scene.masks) continue;
+        if (i == MASU_TEXTURED_MASK && !m->plan->scene.masks) continue;
         result = make_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, &m->textured[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->textured[i]),
                   i == MASU_TEXTURED_MASK ? "gbuffer, masks" : "gbuffer, textured");
@@ -376,21 +378,21 @@ static masu_result make_textured(masu_renderer *m, uint32_t pass, masu_detail *d
 }
 
 /* Through the holes of a mask the sun shines. */
-static masu_result make_masked_casters(masu_renderer *m, uint32_t pass, masu_detail *detail) {
-    if (!m->plan.scene.masks) return MASU_OK;
+static masu_result make_masked_casters(masu_device *m, uint32_t pass, masu_detail *detail) {
+    if (!m->plan->scene.masks) return MASU_OK;
     masu_result result = make_pipeline(m, pass, 1, VK_TRUE, &m->masked_casters, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_casters), "cascades, masks");
     return result;
 }
 
-static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_graphics(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int textures = m->texture_layout != VK_NULL_HANDLE;
     /* Cascades share what the first one has. */
     if (geometry == MASU_GEOMETRY_CASCADE && pass != MASU_PASS_CASCADE_0) return MASU_OK;
     masu_result result = make_render_pass(m, pass, detail);
     /* An empty scene clears. */
-    if (geometry == MASU_GEOMETRY_POLYGONS && !m->plan.needs.raster) return result;
+    if (geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.raster) return result;
     /* One pipeline for all that is blended: in scenes with textures what has none passes by them. */
     int textured = geometry == MASU_GEOMETRY_BLENDED && textures;
     if (!result) result = make_pipeline(m, pass, textured, VK_FALSE, &m->pipelines[pass], detail);
@@ -403,15 +405,15 @@ static masu_result make_graphics(masu_renderer *m, uint32_t pass, masu_detail *d
 
 /* Those that the scene's texture sets ask for: trilinear, and along the longer axis of a pixel's
  * footprint where the device was created for it. */
-static masu_result make_samplers(masu_renderer *m, masu_detail *detail) {
+static masu_result make_samplers(masu_device *m, masu_detail *detail) {
     static const VkSamplerAddressMode modes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
                                                  VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                                  VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
-    if (!m->plan.scene.texture_sets) return MASU_OK;
-    masu_scene_view v = masu_scene_look(&m->plan.scene);
+    if (!m->plan->scene.texture_sets) return MASU_OK;
+    masu_scene_view v = masu_scene_look(&m->plan->scene);
     float most = m->vk.properties.limits.maxSamplerAnisotropy;
-    float anisotropy = m->plan.desc.vulkan.max_anisotropy;
-    for (uint32_t i = 0; i < m->plan.scene.texture_sets; i++) {
+    float anisotropy = m->plan->desc.vulkan.max_anisotropy;
+    for (uint32_t i = 0; i < m->plan->scene.texture_sets; i++) {
         const uint32_t *wrap = v.texture_sets[i].wrap;
         VkSampler *sampler = &m->samplers[wrap[0] + 3 * wrap[1]];
         if (*sampler) continue;
@@ -431,7 +433,7 @@ static masu_result make_samplers(masu_renderer *m, masu_detail *detail) {
     return MASU_OK;
 }
 
-masu_result masu_make_pipelines(masu_renderer *m, masu_detail *detail) {
+masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
     VkSamplerCreateInfo nearest = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .magFilter = VK_FILTER_NEAREST,
                                    .minFilter = VK_FILTER_NEAREST,

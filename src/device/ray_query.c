@@ -2,7 +2,9 @@
 #include "device/ray_query.h"
 
 #include "base/error.h"
-#include "renderer.h"
+#include "device/bind.h"
+#include "scene/scene.h"
+#include "scene/trace_scene.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>
@@ -14,10 +16,6 @@
 #define ALL_RAYS 0xFFu
 
 _Static_assert(sizeof(VkAccelerationStructureInstanceKHR) == 64, "instances of the top level");
-
-uint32_t masu_ray_masks(const masu_scene *scene) {
-    return scene->trace_colors && scene->masks ? 1 : 0;
-}
 
 /* ---- What is built --------------------------------------------------------------------------- */
 
@@ -115,26 +113,6 @@ masu_result masu_ray_check(const masu_scene *scene, const masu_vk *vk, masu_deta
     return MASU_OK;
 }
 
-void masu_ray_buffers(masu_frame_plan *plan) {
-    masu_buffer_plan *b = plan->buffers;
-    VkBufferUsageFlags address = VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-    VkBufferUsageFlags input =
-        address | VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
-    VkBufferUsageFlags structure =
-        address | VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR;
-    VkBufferUsageFlags scratch = address | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    b[MASU_BUFFER_BOTTOM_LEVELS] = (masu_buffer_plan){.name = "bottom levels", .usage = structure};
-    b[MASU_BUFFER_TOP_LEVEL] = (masu_buffer_plan){.name = "top level", .usage = structure};
-    b[MASU_BUFFER_TOP_SCRATCH] = (masu_buffer_plan){.name = "top level scratch", .usage = scratch};
-    b[MASU_BUFFER_RAY_INSTANCES] = (masu_buffer_plan){
-        .name = "top level instances", .role = MASU_ROLE_UPLOAD, .usage = input};
-    b[MASU_BUFFER_RAY_INDICES] = (masu_buffer_plan){
-        .name = "bottom level indices", .usage = input | VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-    b[MASU_BUFFER_RAY_SCRATCH] =
-        (masu_buffer_plan){.name = "bottom level scratch", .usage = scratch};
-    if (plan->needs.query) b[MASU_BUFFER_VERTICES].usage |= input;
-}
-
 static void set_row(masu_buffer_plan *row, uint64_t count, uint64_t bytes, uint64_t alignment) {
     row->count = count;
     row->bytes = bytes;
@@ -172,7 +150,7 @@ void masu_ray_sizes(masu_frame_plan *plan, const masu_vk *vk) {
 
 /* ---- Structures ------------------------------------------------------------------------------ */
 
-static masu_result create(masu_renderer *m, masu_buffer_id buffer, uint64_t offset, const build *b,
+static masu_result create(masu_device *m, masu_buffer_id buffer, uint64_t offset, const build *b,
                           uint64_t *bytes, VkAccelerationStructureKHR *out, masu_detail *detail) {
     VkAccelerationStructureCreateInfoKHR info = {
         .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR,
@@ -184,20 +162,20 @@ static masu_result create(masu_renderer *m, masu_buffer_id buffer, uint64_t offs
     if (MASU_FAILED(r, *out))
         return masu_fail_vulkan(detail, r, "vkCreateAccelerationStructureKHR");
     masu_name(m, VK_OBJECT_TYPE_ACCELERATION_STRUCTURE_KHR, MASU_HANDLE(*out),
-              m->plan.buffers[buffer].name);
+              m->plan->buffers[buffer].name);
     *bytes = info.size;
     return MASU_OK;
 }
 
-masu_result masu_ray_create(masu_renderer *m, masu_detail *detail) {
+masu_result masu_ray_create(masu_device *m, masu_detail *detail) {
     uint64_t offset = 0, bytes = 0;
     build b;
-    if (!m->plan.needs.query) return MASU_OK;
-    masu_scene_view v = masu_scene_look(&m->plan.scene);
-    for (uint32_t mesh = 0; mesh < m->plan.scene.meshes; mesh++) {
+    if (!m->plan->needs.query) return MASU_OK;
+    masu_scene_view v = masu_scene_look(&m->plan->scene);
+    for (uint32_t mesh = 0; mesh < m->plan->scene.meshes; mesh++) {
         masu_ray_mesh *to = &m->ray_meshes[mesh];
         if (!v.trace_meshes[mesh].node_count) continue;
-        describe_bottom(&m->plan.scene, &v, mesh, &b);
+        describe_bottom(&m->plan->scene, &v, mesh, &b);
         masu_result result =
             create(m, MASU_BUFFER_BOTTOM_LEVELS, offset, &b, &bytes, &to->structure, detail);
         if (result) return result;
@@ -208,20 +186,20 @@ masu_result masu_ray_create(masu_renderer *m, masu_detail *detail) {
         to->first_triangle = v.trace_meshes[mesh].first_triangle;
         offset += masu_align_up(bytes, STRUCTURE_ALIGNMENT);
     }
-    describe_top(&m->plan.scene, &b);
+    describe_top(&m->plan->scene, &b);
     return create(m, MASU_BUFFER_TOP_LEVEL, 0, &b, &bytes, &m->ray_top, detail);
 }
 
-void masu_ray_destroy(masu_renderer *m) {
-    if (!m->plan.needs.query) return;
+void masu_ray_destroy(masu_device *m) {
+    if (!m->plan->needs.query) return;
     m->vk.DestroyAccelerationStructureKHR(m->vk.device, m->ray_top, m->vk.allocator);
-    for (uint32_t mesh = 0; mesh < m->plan.scene.meshes; mesh++) {
+    for (uint32_t mesh = 0; mesh < m->plan->scene.meshes; mesh++) {
         m->vk.DestroyAccelerationStructureKHR(m->vk.device, m->ray_meshes[mesh].structure,
                                               m->vk.allocator);
     }
 }
 
-void masu_ray_bind(masu_renderer *m, VkDescriptorSet set) {
+void masu_ray_bind(masu_device *m, VkDescriptorSet set) {
     VkWriteDescriptorSetAccelerationStructureKHR top = {
         .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR,
         .accelerationStructureCount = 1,
@@ -248,13 +226,13 @@ void masu_ray_write_indices(const masu_scene_view *v, uint64_t offset, uint64_t 
     }
 }
 
-static uint64_t address_of(const masu_renderer *m, masu_buffer_id buffer) {
+static uint64_t address_of(const masu_device *m, masu_buffer_id buffer) {
     VkBufferDeviceAddressInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
                                       .buffer = m->objects.buffers[buffer]};
     return m->vk.GetBufferDeviceAddressKHR(m->vk.device, &info);
 }
 
-static void record_build(masu_renderer *m, VkCommandBuffer cmd, build *b,
+static void record_build(masu_device *m, VkCommandBuffer cmd, build *b,
                          VkAccelerationStructureKHR to, masu_buffer_id scratch) {
     const VkAccelerationStructureBuildRangeInfoKHR *range = &b->range;
     b->info.dstAccelerationStructure = to;
@@ -263,7 +241,7 @@ static void record_build(masu_renderer *m, VkCommandBuffer cmd, build *b,
 }
 
 /* What was copied, or built in the same scratch memory, comes before. */
-static void wait_before_build(masu_renderer *m, VkCommandBuffer cmd, VkPipelineStageFlags from,
+static void wait_before_build(masu_device *m, VkCommandBuffer cmd, VkPipelineStageFlags from,
                               VkAccessFlags access) {
     VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                .srcAccessMask = access,
@@ -274,14 +252,14 @@ static void wait_before_build(masu_renderer *m, VkCommandBuffer cmd, VkPipelineS
                              1, &barrier, 0, NULL, 0, NULL);
 }
 
-void masu_ray_record_bottoms(masu_renderer *m, VkCommandBuffer cmd) {
-    masu_scene_view v = masu_scene_look(&m->plan.scene);
+void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd) {
+    masu_scene_view v = masu_scene_look(&m->plan->scene);
     VkPipelineStageFlags from = VK_PIPELINE_STAGE_TRANSFER_BIT;
     VkAccessFlags access = VK_ACCESS_TRANSFER_WRITE_BIT;
-    for (uint32_t mesh = 0; mesh < m->plan.scene.meshes; mesh++) {
+    for (uint32_t mesh = 0; mesh < m->plan->scene.meshes; mesh++) {
         build b;
         if (!m->ray_meshes[mesh].structure) continue;
-        describe_bottom(&m->plan.scene, &v, mesh, &b);
+        describe_bottom(&m->plan->scene, &v, mesh, &b);
         VkAccelerationStructureGeometryTrianglesDataKHR *t = &b.geometry.geometry.triangles;
         t->vertexData.deviceAddress = address_of(m, MASU_BUFFER_VERTICES);
         t->indexData.deviceAddress = address_of(m, MASU_BUFFER_RAY_INDICES);
@@ -293,39 +271,24 @@ void masu_ray_record_bottoms(masu_renderer *m, VkCommandBuffer cmd) {
 }
 
 /* The barrier at the top of the frame stands between it and what the frame before did. */
-void masu_ray_record_top(masu_renderer *m, VkCommandBuffer cmd, uint32_t slot) {
+void masu_ray_record_top(masu_device *m, VkCommandBuffer cmd, uint32_t slot) {
     build b;
-    describe_top(&m->plan.scene, &b);
+    describe_top(&m->plan->scene, &b);
     b.geometry.geometry.instances.data.deviceAddress =
         address_of(m, MASU_BUFFER_RAY_INSTANCES) +
-        slot * m->plan.buffers[MASU_BUFFER_RAY_INSTANCES].stride;
+        slot * m->plan->buffers[MASU_BUFFER_RAY_INSTANCES].stride;
     record_build(m, cmd, &b, m->ray_top, MASU_BUFFER_TOP_SCRATCH);
 }
 
 /* ---- Instances ------------------------------------------------------------------------------- */
 
-int masu_ray_moved(masu_renderer *m) {
-    int moved = memcmp(m->ray_anchor, m->anchor, sizeof m->anchor) != 0;
-    memcpy(m->ray_anchor, m->anchor, sizeof m->anchor);
-    if (!m->dirty_count && m->trace_versions) return moved;
-    for (uint32_t i = 0; i < m->plan.scene.trace_instances; i++) {
-        if (!m->instance_dirty[m->traced[i]] && m->trace_versions) continue;
-        float rows[12];
-        memcpy(rows, &m->instances[m->traced[i]], sizeof rows);
-        m->ray_live[i] = (uint8_t)masu_trace_places(rows);
-    }
-    return moved;
-}
-
-void masu_ray_write_instance(masu_renderer *m, uint32_t slot, uint32_t traced,
-                             float rows[3][4]) {
+void masu_ray_write_instance(const masu_device *m, uint32_t slot, uint32_t traced, uint32_t mesh,
+                             int live, float rows[3][4]) {
     static const float identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
-    const masu_ray_mesh *mesh = &m->ray_meshes[m->instance_meshes[m->traced[traced]]];
-    int live = m->ray_live[traced];
     VkAccelerationStructureInstanceKHR to = {
-        .instanceCustomIndex = mesh->first_triangle & (TRIANGLES_MAX - 1),
+        .instanceCustomIndex = m->ray_meshes[mesh].first_triangle & (TRIANGLES_MAX - 1),
         .mask = live ? ALL_RAYS : 0,
-        .accelerationStructureReference = mesh->address};
+        .accelerationStructureReference = m->ray_meshes[mesh].address};
     if (live)
         memcpy(to.transform.matrix, rows, sizeof to.transform.matrix);
     else

@@ -21,44 +21,29 @@
 #ifndef MASU_RAY_QUERY_H
 #define MASU_RAY_QUERY_H
 
-#include "plan/plan.h"
-#include "scene/scene.h"
-#include "device/vk.h"
-
-/* Of each mesh; one that rays do not meet has none. */
-typedef struct masu_ray_mesh {
-    VkAccelerationStructureKHR structure;
-    uint64_t address;
-    uint32_t first_triangle; /* of TRACE_TRIANGLES */
-} masu_ray_mesh;
-
-/* 1: some of what is traced has holes: the build of the shader that looks them up. */
-uint32_t masu_ray_masks(const masu_scene *scene);
+#include "device/device.h"
+#include "scene/view.h"
 
 /* Whether the device's limits suffice. */
 masu_result masu_ray_check(const masu_scene *scene, const masu_vk *vk, masu_detail *detail);
 
-/* The rows of the buffers, but for the sizes that only the driver knows; and these. */
-void masu_ray_buffers(masu_frame_plan *plan);
+/* Sizes of the buffers that only the driver knows. */
 void masu_ray_sizes(masu_frame_plan *plan, const masu_vk *vk);
 
 /* Structures in the buffers, which have their memory. */
-masu_result masu_ray_create(masu_renderer *m, masu_detail *detail);
-void masu_ray_destroy(masu_renderer *m);
-void masu_ray_bind(masu_renderer *m, VkDescriptorSet set);
+masu_result masu_ray_create(masu_device *m, masu_detail *detail);
+void masu_ray_destroy(masu_device *m);
+void masu_ray_bind(masu_device *m, VkDescriptorSet set);
 
 /* Bytes [offset, offset + bytes) of the index buffer. */
 void masu_ray_write_indices(const masu_scene_view *v, uint64_t offset, uint64_t bytes,
                             unsigned char *to);
-void masu_ray_record_bottoms(masu_renderer *m, VkCommandBuffer cmd);
-void masu_ray_record_top(masu_renderer *m, VkCommandBuffer cmd, uint32_t slot);
+void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd);
+void masu_ray_record_top(masu_device *m, VkCommandBuffer cmd, uint32_t slot);
 
-/* After transforms have been copied, before masu_ray_write_instance: whether what instances are
- * measured from has moved. */
-int masu_ray_moved(masu_renderer *m);
-/* A traced instance to a slot; rows: object to world minus anchor. One that is left out (trace.h)
- * gets a mask that no ray has. */
-void masu_ray_write_instance(masu_renderer *m, uint32_t slot, uint32_t traced,
-                             float rows[3][4]);
+/* Traced instance `traced`, which places `mesh`, to a slot; rows: object to world minus anchor. One that
+ * is not live (trace.h) gets a mask that no ray has. */
+void masu_ray_write_instance(const masu_device *m, uint32_t slot, uint32_t traced, uint32_t mesh,
+                             int live, float rows[3][4]);
 
 #endif

@@ -1,22 +1,25 @@
 /* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and
  * where a rung draws cascades of the shadow map less often than every frame: set of those that it
  * draws), made once in masu_init and submitted again and again. */
-#include "renderer.h"
+#include "device/record.h"
 
 #include "base/error.h"
 #include "device/barriers.h"
 #include "device/descriptors.h"
+#include "device/load.h"
+#include "device/ray_query.h"
 #include "plan/push.h"
+#include "scene/scene.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>
 
 /* ---- Passes ---------------------------------------------------------------------------------- */
 
-static uint32_t few_groups(const masu_recorder *rec) { return (rec->m->batch_count + 63) / 64; }
+static uint32_t few_groups(const masu_recorder *rec) { return (rec->draws->batch_count + 63) / 64; }
 
 static masu_push_block push_of(const masu_recorder *rec, uint32_t pass) {
-    return masu_push_of(&rec->m->plan, rec->rung, pass, few_groups(rec));
+    return masu_push_of(rec->m->plan, rec->rung, pass, few_groups(rec));
 }
 
 /* The list of tiles that an indirect pass runs for; MASU_BUFFER_COUNT: it runs for all. */
@@ -31,14 +34,14 @@ static masu_buffer_id tiles_of(masu_image_extent extent) {
 
 /* Workgroups of a direct dispatch. */
 static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_push_block *push) {
-    const masu_frame_plan *plan = &rec->m->plan;
+    const masu_frame_plan *plan = rec->m->plan;
     uint32_t few = few_groups(rec), edge = MASU_GROUP;
     /* Of culling views lie in y: the camera, or the sun's. */
     uint32_t views = push->own.word[offsetof(struct masu_push_cull, view) / 4] ? plan->views - 1 : 1;
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_PROBES: return (VkExtent2D){(plan->scene.probes + 63) / 64, 1};
     case MASU_EXTENT_KEPT: return (VkExtent2D){(plan->scene.instances + 63) / 64, views};
-    case MASU_EXTENT_BATCHES: return (VkExtent2D){few + rec->m->large_count, views};
+    case MASU_EXTENT_BATCHES: return (VkExtent2D){few + rec->draws->large_count, views};
     /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
     case MASU_EXTENT_TILE:
     case MASU_EXTENT_ONE: edge = 1; break;
@@ -54,7 +57,7 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     masu_push_block push = push_of(rec, pass);
     VkPipelineLayout layout = rec->m->layouts[pass];
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
-    if (masu_has_global_sets(&rec->m->plan)) {
+    if (masu_has_global_sets(rec->m->plan)) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
                                   1, &rec->m->global_sets[rec->flight], 0, NULL);
     }
@@ -82,8 +85,8 @@ SAME_PLACE(instances);
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
-/* How a material is drawn: 0 without textures, then as renderer.h counts. The sun asks for no maps but
- * the masks. */
+/* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the
+ * masks. */
 static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
     if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
     if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
@@ -111,9 +114,9 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
  * that most of what they would hide or shade in vain is known already. */
 static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
-    masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+    masu_scene_view v = masu_scene_look(m->plan->desc.scene);
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
     int sun = masu_is_cascade(pass);
@@ -131,15 +134,15 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     int occlusion = masu_has_pass(&rec->rp->active, MASU_PASS_CULL);
-    uint32_t lists = view * m->plan.listed;
-    if (occlusion) lists += (uint32_t)m->plan.drawn.lists;
-    VkDeviceSize commands = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                            MASU_DRAWS_OF(&m->plan, view, occlusion);
+    uint32_t lists = view * m->plan->listed;
+    if (occlusion) lists += (uint32_t)m->plan->drawn.lists;
+    VkDeviceSize commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                            MASU_DRAWS_OF(m->plan, view, occlusion);
     masu_push_block block = push_of(rec, pass);
     struct masu_push_gbuffer push; /* a cascade is told the same, but its number for the material */
     memcpy(&push, &block.own, sizeof push);
-    for (uint32_t b = 0; b < m->batch_count; b++) {
-        const masu_batch *batch = &m->batches[b];
+    for (uint32_t b = 0; b < rec->draws->batch_count; b++) {
+        const masu_batch *batch = &rec->draws->batches[b];
         push.instances = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             uint32_t number = v.primitives[batch->first_primitive + d].material;
@@ -169,12 +172,12 @@ static void record_polygons(masu_recorder *rec, uint32_t pass) {
 
 /* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. */
 static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
-    const masu_scene *scene = &m->plan.scene;
+    const masu_scene *scene = &m->plan->scene;
     VkPipelineLayout layout = m->layouts[MASU_PASS_TRANSPARENTS];
-    VkDeviceSize zero = 0, at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                                m->plan.transparent_draws * MASU_DRAW_BYTES;
+    VkDeviceSize zero = 0, at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                                m->plan->transparent_draws * MASU_DRAW_BYTES;
     const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
     masu_push_block block = push_of(rec, MASU_PASS_TRANSPARENTS);
     struct masu_push_transparents push;
@@ -188,15 +191,15 @@ static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
         vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
-    for (uint32_t k = 0; k < m->transparent_count; k++) {
-        push.instances = (uint32_t)m->plan.drawn.transparents + MASU_TRANSPARENT_WORDS * k;
+    for (uint32_t k = 0; k < rec->draws->transparent_count; k++) {
+        push.instances = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
         memcpy(&block.own, &push, sizeof push);
         vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         for (uint32_t c = 0; c < scene->transparent_sets; c++) {
             if (m->texture_layout && (k == 0 || scene->transparent_sets > 1)) {
-                vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
-                                          MASU_SET_TEXTURES, 1,
-                                          &m->texture_sets[m->transparent_sets[c]], 0, NULL);
+                vk->CmdBindDescriptorSets(
+                    rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_TEXTURES, 1,
+                    &m->texture_sets[rec->draws->transparent_sets[c]], 0, NULL);
             }
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at, 1,
                                        MASU_DRAW_BYTES);
@@ -207,7 +210,7 @@ static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
 
 /* Each part of the atlas has its own. */
 static void record_occluders(masu_recorder *rec) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
     m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
                           m->pipelines[MASU_PASS_OCCLUDERS]);
@@ -216,7 +219,7 @@ static void record_occluders(masu_recorder *rec) {
     masu_push_block block = push_of(rec, MASU_PASS_OCCLUDERS);
     struct masu_push_occluders push;
     memcpy(&push, &block.own, sizeof push);
-    for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
+    for (uint32_t part = 0; part < MASU_ATLAS_PARTS(m->plan); part++) {
         VkRect2D area = masu_atlas_part(part);
         VkViewport viewport = {(float)area.offset.x,
                                (float)area.offset.y,
@@ -230,8 +233,8 @@ static void record_occluders(masu_recorder *rec) {
         m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
         m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
-                              rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
-                                  MASU_OCCLUDER_DRAW(&m->plan, part),
+                              rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
+                                  MASU_OCCLUDER_DRAW(m->plan, part),
                               1, MASU_DRAW_BYTES);
     }
 }
@@ -253,7 +256,7 @@ static VkRect2D render_area(const masu_recorder *rec, uint32_t pass) {
         return (VkRect2D){{0, 0}, {MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT}};
     if (!masu_is_cascade(pass))
         return (VkRect2D){{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
-    return (VkRect2D){masu_cascade_place(&rec->m->plan, pass - MASU_PASS_CASCADE_0),
+    return (VkRect2D){masu_cascade_place(rec->m->plan, pass - MASU_PASS_CASCADE_0),
                       {rec->rp->cascade_size, rec->rp->cascade_size}};
 }
 
@@ -288,16 +291,16 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, VkDescriptorSet s
 }
 
 static void record_readback(masu_recorder *rec, uint32_t pass) {
-    const masu_buffer_plan *buffer = &rec->m->plan.buffers[MASU_BUFFER_READBACK];
+    const masu_buffer_plan *buffer = &rec->m->plan->buffers[MASU_BUFFER_READBACK];
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
         masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
         VkExtent2D size =
-            masu_plan_extent(&rec->m->plan, masu_images[id].extent,
+            masu_plan_extent(rec->m->plan, masu_images[id].extent,
                              (VkExtent2D){rec->rp->render_width, rec->rp->render_height});
         uint32_t bit = 0;
         while (masu_images[id].readback >> bit != 1u) bit++;
         VkBufferImageCopy copy = {
-            .bufferOffset = rec->flight * buffer->stride + rec->m->plan.readback_offset[bit],
+            .bufferOffset = rec->flight * buffer->stride + rec->m->plan->readback_offset[bit],
             .imageSubresource = {.aspectMask = masu_images[id].format == VK_FORMAT_D32_SFLOAT
                                                    ? VK_IMAGE_ASPECT_DEPTH_BIT
                                                    : VK_IMAGE_ASPECT_COLOR_BIT,
@@ -310,9 +313,9 @@ static void record_readback(masu_recorder *rec, uint32_t pass) {
 }
 
 static void record_present(masu_recorder *rec, uint32_t pass) {
-    const VkExtent2D size = rec->m->plan.desc.output;
+    const VkExtent2D size = rec->m->plan->desc.output;
     masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
-    if (rec->m->plan.copies) {
+    if (rec->m->plan->copies) {
         VkImageCopy copy = {
             .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
             .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
@@ -353,7 +356,7 @@ static void end_label(const masu_recorder *rec) {
  * time would mean little. */
 static void timestamp(masu_recorder *rec, uint32_t index) {
     if (!rec->m->queries) return;
-    if (!rec->m->plan.desc.debug.timestamps) { /* the governor's two cost no barrier */
+    if (!rec->m->plan->desc.debug.timestamps) { /* the governor's two cost no barrier */
         if (index != 0 && index != MASU_PASS_COUNT) return;
         rec->m->vk.CmdWriteTimestamp(rec->cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
                                      rec->m->queries,
@@ -371,8 +374,8 @@ static void timestamp(masu_recorder *rec, uint32_t index) {
 static uint32_t poison_word(uint32_t kind) { return kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
 
 static void record_prologue(masu_recorder *rec) {
-    const masu_renderer *m = rec->m;
-    int counters = m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes;
+    const masu_device *m = rec->m;
+    int counters = m->plan->desc.debug.counters && m->plan->buffers[MASU_BUFFER_COUNTERS].bytes;
     masu_memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                         VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -380,32 +383,32 @@ static void record_prologue(masu_recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS], 0, VK_WHOLE_SIZE,
                             0);
     }
-    if (m->plan.buffers[MASU_BUFFER_POISON].bytes) {
+    if (m->plan->buffers[MASU_BUFFER_POISON].bytes) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_POISON], 0, VK_WHOLE_SIZE,
-                            poison_word(m->plan.desc.debug.poison));
+                            poison_word(m->plan->desc.debug.poison));
     }
     static const masu_buffer_id tiles[] = {MASU_BUFFER_TILES, MASU_BUFFER_SPECULAR_TILES,
                                            MASU_BUFFER_SMAA_TILES};
     int tiled = 0;
     for (uint32_t t = 0; t < sizeof tiles / sizeof *tiles; t++) {
-        if (!m->plan.buffers[tiles[t]].bytes) continue;
+        if (!m->plan->buffers[tiles[t]].bytes) continue;
         /* Arguments of the indirect dispatch: no tile yet, one row, one layer. */
         static const uint32_t arguments[3] = {0, 1, 1};
         tiled = 1;
         for (uint32_t i = 0; i < 3; i++)
             m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[tiles[t]], 4 * i, 4, arguments[i]);
     }
-    if (m->plan.needs.metered) { /* the bins; what the frame before has left stays */
+    if (m->plan->needs.metered) { /* the bins; what the frame before has left stays */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
                             MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
     }
     int receivers = masu_has_pass(&rec->rp->active, MASU_PASS_RECEIVERS);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
-                            m->plan.receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
+                            m->plan->receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
-    if (counters || receivers || tiled || m->plan.needs.metered ||
-        m->plan.buffers[MASU_BUFFER_POISON].bytes) {
+    if (counters || receivers || tiled || m->plan->needs.metered ||
+        m->plan->buffers[MASU_BUFFER_POISON].bytes) {
         masu_memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                             VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                             VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -417,22 +420,22 @@ static void record_prologue(masu_recorder *rec) {
 }
 
 static void record_epilogue(masu_recorder *rec) {
-    const masu_renderer *m = rec->m;
-    const masu_buffer_plan *readback = &m->plan.buffers[MASU_BUFFER_READBACK];
-    if (m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes) {
+    const masu_device *m = rec->m;
+    const masu_buffer_plan *readback = &m->plan->buffers[MASU_BUFFER_READBACK];
+    if (m->plan->desc.debug.counters && m->plan->buffers[MASU_BUFFER_COUNTERS].bytes) {
         masu_memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                             VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
         VkBufferCopy copy = {0, rec->flight * readback->stride,
-                             m->plan.buffers[MASU_BUFFER_COUNTERS].bytes};
+                             m->plan->buffers[MASU_BUFFER_COUNTERS].bytes};
         m->vk.CmdCopyBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS],
                             m->objects.buffers[MASU_BUFFER_READBACK], 1, &copy);
     }
     if (m->queries) {
         /* Copied by the GPU, so that masu_stats is a read of memory and no call into the driver. */
         m->vk.CmdCopyQueryPoolResults(
-            rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), masu_stamps(&m->plan.desc),
+            rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), masu_stamps(&m->plan->desc),
             m->objects.buffers[MASU_BUFFER_READBACK],
-            rec->flight * readback->stride + m->plan.readback_times, sizeof(uint64_t),
+            rec->flight * readback->stride + m->plan->readback_times, sizeof(uint64_t),
             VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
     }
     if (readback->bytes) {
@@ -442,7 +445,7 @@ static void record_epilogue(masu_recorder *rec) {
     /* The target to where the host wants it, visible to whatever comes next. */
     const masu_use *target = &rec->states[MASU_IMAGE_TARGET];
     masu_use last = {1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
-                     m->plan.desc.targets.final_layout, 0};
+                     m->plan->desc.targets.final_layout, 0};
     VkImageMemoryBarrier b =
         masu_image_barrier(rec, MASU_IMAGE_TARGET, target->access, &last, target->layout);
     m->vk.CmdPipelineBarrier(rec->cmd, target->stages, last.stages, 0, 0, NULL, 0, NULL, 1, &b);
@@ -452,7 +455,7 @@ static void record_epilogue(masu_recorder *rec) {
 /* sets: the rung's, of this target; see masu_make_pass_sets for the order. */
 static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                                 masu_detail *detail) {
-    const masu_renderer *m = rec->m;
+    const masu_device *m = rec->m;
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkResult r = m->vk.BeginCommandBuffer(rec->cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
@@ -483,86 +486,9 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
 
 /* ---- All recordings -------------------------------------------------------------------------- */
 
-/* All of a texture to the layout that copies need, or from there to that of shaders. */
-static void move_texture(masu_renderer *m, VkCommandBuffer cmd, VkImage image, int to_shader) {
-    VkImageMemoryBarrier b = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = to_shader ? VK_ACCESS_TRANSFER_WRITE_BIT : 0,
-        .dstAccessMask = to_shader ? VK_ACCESS_SHADER_READ_BIT : VK_ACCESS_TRANSFER_WRITE_BIT,
-        .oldLayout = to_shader ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED,
-        .newLayout = to_shader ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
-                               : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
-                             VK_REMAINING_ARRAY_LAYERS}};
-    m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                             to_shader ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
-                                       : VK_PIPELINE_STAGE_TRANSFER_BIT,
-                             0, 0, NULL, 0, NULL, 1, &b);
-}
-
-/* One chunk of textures from `next` on. Rows of one texture that two chunks copy do not overlap:
- * they need no barrier between them. */
-static void record_textures(masu_renderer *m, VkCommandBuffer cmd, masu_texture_cursor *next) {
-    masu_scene_view v = masu_scene_look(&m->plan.scene);
-    masu_texture_region r;
-    uint64_t used = 0, room = m->plan.buffers[MASU_BUFFER_STAGING].bytes;
-    while (masu_texture_next(v.textures, m->plan.scene.texture_arrays, m->plan.compressed, room,
-                             next, &used, &r)) {
-        VkImage image = m->plan.textures[r.texture].image;
-        if (r.first) move_texture(m, cmd, image, 0);
-        VkBufferImageCopy copy = {
-            .bufferOffset = r.offset,
-            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, r.mip, r.layer, 1},
-            .imageOffset = {0, (int32_t)r.y, 0},
-            .imageExtent = {r.width, r.height, 1}};
-        m->vk.CmdCopyBufferToImage(cmd, m->objects.buffers[MASU_BUFFER_STAGING], image,
-                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-        if (r.last) move_texture(m, cmd, image, 1);
-    }
-}
-
-/* The images that the first frame finds as if another had left them; what is in them is not looked
- * at. */
-static void record_kept(masu_renderer *m, VkCommandBuffer cmd) {
-    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);
-    masu_recorder rec = {.m = m, .cmd = cmd};
-    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
-        if (!m->plan.images[i].used || !masu_images[i].kept) continue;
-        VkImageMemoryBarrier b =
-            masu_image_barrier(&rec, (masu_image_id)i, 0, &rest, VK_IMAGE_LAYOUT_UNDEFINED);
-        m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0, NULL, 0,
-                                 NULL, 1, &b);
-    }
-}
-
-static masu_result record_load(masu_renderer *m, uint32_t index, masu_texture_cursor *next,
-                               masu_detail *detail) {
-    VkCommandBuffer cmd = m->loads[index];
-    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
-    if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
-    if (masu_keeps_images(&m->plan) && index + 1 == m->load_count) {
-        record_kept(m, cmd);
-    } else if (masu_is_build_chunk(&m->plan, index, m->load_count)) {
-        masu_ray_record_bottoms(m, cmd);
-    } else if (index < masu_buffer_chunks(&m->plan)) {
-        masu_chunk chunk = masu_load_chunk(&m->plan, index);
-        VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
-        m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING],
-                            m->objects.buffers[chunk.buffer], 1, &copy);
-    } else {
-        record_textures(m, cmd, next);
-    }
-    r = m->vk.EndCommandBuffer(cmd);
-    return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
-}
-
-static masu_result make_command_buffers(masu_renderer *m, uint32_t frames, masu_detail *detail) {
+static masu_result make_command_buffers(masu_device *m, uint32_t frames, masu_detail *detail) {
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .queueFamilyIndex = m->plan.desc.vulkan.queue_family};
+                                    .queueFamilyIndex = m->plan->desc.vulkan.queue_family};
     VkResult r = m->vk.CreateCommandPool(m->vk.device, &pool, m->vk.allocator, &m->command_pool);
     if (MASU_FAILED(r, m->command_pool)) return masu_fail_vulkan(detail, r, "vkCreateCommandPool");
     VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
@@ -575,19 +501,19 @@ static masu_result make_command_buffers(masu_renderer *m, uint32_t frames, masu_
     return r ? masu_fail_vulkan(detail, r, "vkAllocateCommandBuffers") : MASU_OK;
 }
 
-static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
-    if (!masu_stamps(&m->plan.desc)) return MASU_OK;
+static masu_result make_queries(masu_device *m, masu_detail *detail) {
+    if (!masu_stamps(&m->plan->desc)) return MASU_OK;
     VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                   .queryCount =
-                                      m->plan.desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
+                                      m->plan->desc.frames_in_flight * (MASU_PASS_COUNT + 1)};
     VkResult r = m->vk.CreateQueryPool(m->vk.device, &info, m->vk.allocator, &m->queries);
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
-masu_result masu_record(masu_renderer *m, masu_detail *detail) {
-    const masu_desc *d = &m->plan.desc;
-    uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan.recordings;
+masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+    const masu_desc *d = &m->plan->desc;
+    uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan->recordings;
     masu_result result = masu_make_sets(m, detail);
     if (!result) result = make_queries(m, detail);
     if (!result) result = make_command_buffers(m, d->frames_in_flight * recordings, detail);
@@ -595,12 +521,13 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail) {
     for (uint32_t r = 0; r < rungs && !result; r++) {
         VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
         memset(sets, 0, sizeof sets);
-        masu_rung_plan *rp = &m->plan.rungs[r];
+        masu_rung_plan *rp = &m->plan->rungs[r];
         result = masu_make_pass_sets(m, rp, &next, sets, detail);
         uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
         for (uint32_t i = 0; i < d->frames_in_flight * own && !result; i++) {
             uint32_t f = i / own, t = i % own / rp->variants;
             masu_recorder rec = {.m = m,
+                                 .draws = draws,
                                  .cmd = m->frames[f * recordings + rp->first_recording + i % own],
                                  .flight = f,
                                  .rung = r,
@@ -611,8 +538,5 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail) {
             rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }
     }
-    masu_texture_cursor texture = {0};
-    for (uint32_t i = 0; i < m->load_count && !result; i++)
-        result = record_load(m, i, &texture, detail);
-    return result;
+    return result ? result : masu_load_record(m, detail);
 }

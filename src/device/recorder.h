@@ -3,7 +3,7 @@
 #ifndef MASU_RECORDER_H
 #define MASU_RECORDER_H
 
-#include "renderer.h"
+#include "device/device.h"
 
 /* How an image or a buffer was used last in the frame. */
 typedef struct masu_use {
@@ -15,7 +15,8 @@ typedef struct masu_use {
 } masu_use;
 
 typedef struct masu_recorder {
-    masu_renderer *m;
+    masu_device *m;
+    const masu_draws *draws;
     VkCommandBuffer cmd;
     uint32_t flight, rung, target, variant;
     masu_rung_plan *rp;

@@ -2,6 +2,7 @@
 #include "device/shaders.h"
 
 #include "scene/scene.h"
+#include "scene/trace_scene.h"
 
 enum {
 #define AXIS(ID, ...) MASU_AXIS_##ID,

@@ -1,5 +1,5 @@
 /* shadow.c: see shadow.h. */
-#include "renderer.h"
+#include "frame/shadow.h"
 
 #include <math.h>
 #include <string.h>
@@ -109,30 +109,19 @@ void masu_cascade_write(const masu_cascade *c, const double eye[3], const int32_
     u->rect[k][3] = (float)(c->behind * metre);
 }
 
-/* ---- In the renderer ------------------------------------------------------------------------- */
+/* ---- Of a frame ------------------------------------------------------------------------------ */
 
-/* The box only grows: where an instance was it may come again, and a smaller one would gain nothing
- * but a depth scale that changes. */
-void masu_note_caster(masu_renderer *m, const masu_cull_box *box) {
-    for (uint32_t k = 0; k < 3; k++) {
-        double low = (double)box->center[k] - (double)box->half[k];
-        double high = (double)box->center[k] + (double)box->half[k];
-        m->casters[0][k] = fmin(m->casters[0][k], fmax(low, -1e30));
-        m->casters[1][k] = fmax(m->casters[1][k], fmin(high, 1e30));
-    }
-}
-
-static masu_shadow_view shadow_view(const masu_renderer *m, const struct masu_frame_uniforms *u,
-                                    const double eye[3]) {
+static masu_shadow_view shadow_view(const masu_bounds *bounds, const masu_frame_data *f) {
+    const struct masu_frame_uniforms *u = &f->u;
     masu_shadow_view v;
     memset(&v, 0, sizeof v);
     double x = (double)u->right[3] * (1.0 + fabs((double)u->jitter[0]));
     double y = (double)u->up[3] * (1.0 + fabs((double)u->jitter[1])), length = 0.0;
     v.tan2 = x * x + y * y;
     v.near_distance = (double)u->forward[3];
-    memcpy(v.casters, m->casters, sizeof v.casters);
+    memcpy(v.casters, bounds->swept, sizeof v.casters);
     for (uint32_t i = 0; i < 3; i++) {
-        v.eye[i] = eye[i];
+        v.eye[i] = f->eye[i];
         v.forward[i] = (double)u->forward[i];
         v.sun[i] = (double)u->sun_direction[i];
         length += v.sun[i] * v.sun[i];
@@ -141,20 +130,19 @@ static masu_shadow_view shadow_view(const masu_renderer *m, const struct masu_fr
     return v;
 }
 
-uint32_t masu_write_shadow(masu_renderer *m, const masu_frame_desc *f, uint32_t slot,
-                           const struct masu_frame_uniforms *u, const double eye[3]) {
-    const masu_rung_plan *rp = &m->plan.rungs[f->rung];
-    const masu_rung *rung = &m->plan.desc.rungs[f->rung];
-    const masu_scene *scene = &m->plan.scene;
-    masu_shadow_view view = shadow_view(m, u, eye);
+void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_data *f) {
+    const masu_rung_plan *rp = masu_frame_rung_plan(f);
+    const masu_rung *rung = masu_frame_rung(f);
+    const masu_scene *scene = &f->plan->scene;
+    if (!f->plan->needs.shadow) return;
+    masu_shadow_view view = shadow_view(bounds, f);
     struct masu_shadow_uniforms out;
     memset(&out, 0, sizeof out);
     double distance = (double)scene->shadow_distance, wish = (double)rung->shadow_distance;
     if (wish > 0.0 && wish < distance) distance = wish;
-    m->shadow_distance = distance;
-    uint32_t drawn = 0;
+    s->distance = distance;
     for (uint32_t k = 0; k < rp->cascades; k++) {
-        masu_cascade *c = &m->cascades[k];
+        masu_cascade *c = &s->cascades[k];
         uint32_t every = rung->shadow_refresh[k];
         int slow = (rp->slow >> k & 1u) != 0;
         double depth = masu_shadow_split(view.near_distance, distance, (double)scene->shadow_lambda,
@@ -163,24 +151,23 @@ uint32_t masu_write_shadow(masu_renderer *m, const masu_frame_desc *f, uint32_t 
         wanted.trimmed = !slow;
         wanted.lod_error = rung->lod_error;
         /* By the cascade's number, so that two of the same pace take turns. */
-        int due = !slow || (m->frame + k) % every == 0 || m->frame - c->frame >= every;
-        if (due || !c->drawn || masu_is_cut(m, f) || !masu_cascade_holds(c, &wanted)) {
+        int due = !slow || (f->number + k) % every == 0 || f->number - c->frame >= every;
+        if (due || !c->drawn || f->cut || !masu_cascade_holds(c, &wanted)) {
             *c = wanted;
             c->drawn = 1;
-            c->frame = m->frame;
-            drawn |= 1u << k;
+            c->frame = f->number;
+            f->cascades |= 1u << k;
         }
-        VkOffset2D place = masu_cascade_place(&m->plan, k);
-        masu_cascade_write(c, eye, (int32_t[2]){place.x, place.y}, k, &out);
+        VkOffset2D place = masu_cascade_place(f->plan, k);
+        masu_cascade_write(c, f->eye, (int32_t[2]){place.x, place.y}, k, &out);
     }
     /* A recording that draws all that its rung has does not keep the rest (record.c). */
     for (uint32_t k = rp->cascades; k < MASU_CASCADES_MAX; k++) {
-        if (drawn + 1 == 1u << rp->cascades) m->cascades[k].drawn = 0;
+        if (f->cascades + 1 == 1u << rp->cascades) s->cascades[k].drawn = 0;
     }
     out.reach[0] = (float)rp->cascades;
     out.reach[1] = (float)(distance * (1.0 - FADE));
     out.reach[2] = (float)(1.0 / (distance * FADE));
-    out.reach[3] = m->plan.needs.sdf_occlusion ? 1.0f : 0.0f;
-    memcpy(masu_buffer_pointer(m, MASU_BUFFER_SHADOW, slot), &out, sizeof out);
-    return drawn;
+    out.reach[3] = f->plan->needs.sdf_occlusion ? 1.0f : 0.0f;
+    memcpy(masu_frame_slot(f, MASU_BUFFER_SHADOW), &out, sizeof out);
 }

@@ -19,9 +19,7 @@
 #ifndef MASU_SHADOW_H
 #define MASU_SHADOW_H
 
-#include "shared/masu_shared.h"
-
-#include <stdint.h>
+#include "frame/bounds.h"
 
 /* Texels by which cascade.vert moves surfaces away from the sun at most. */
 #define MASU_SHADOW_BIAS_MOST (MASU_SHADOW_BIAS * MASU_SHADOW_STEEPEST)
@@ -69,5 +67,15 @@ int masu_cascade_holds(const masu_cascade *drawn, const masu_cascade *wanted);
 /* Element k of the uniforms, for an eye and a first texel in the map. */
 void masu_cascade_write(const masu_cascade *c, const double eye[3], const int32_t place[2],
                         uint32_t k, struct masu_shadow_uniforms *u);
+
+/* ---- Of a frame ------------------------------------------------------------------------------ */
+
+typedef struct masu_shadow {
+    masu_cascade cascades[MASU_CASCADES_MAX]; /* as drawn last */
+    double distance;                          /* view depth where shadows end in this frame */
+} masu_shadow;
+
+/* Fits the cascades to camera and sun, writes them to the slot, and decides which the frame draws. */
+void masu_shadow_write(masu_shadow *s, const masu_bounds *bounds, masu_frame_data *f);
 
 #endif

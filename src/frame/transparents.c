@@ -14,14 +14,13 @@
  * behind a small one would often come last. */
 #include "frame/transparents.h"
 
-#include "renderer.h"
-
 #include <math.h>
 #include <string.h>
 
 /* Runs of 1, 2, 4, ... are merged from one array to the other. */
-masu_far_first *masu_sort_far_first(masu_far_first *entries, masu_far_first *scratch, uint32_t n) {
-    masu_far_first *from = entries, *to = scratch;
+masu_back_to_front *masu_sort_back_to_front(masu_back_to_front *entries,
+                                            masu_back_to_front *scratch, uint32_t n) {
+    masu_back_to_front *from = entries, *to = scratch;
     for (uint32_t run = 1; run < n; run *= 2) {
         for (uint32_t start = 0; start < n; start += 2 * run) {
             uint32_t middle = n - start < run ? n : start + run;
@@ -32,27 +31,31 @@ masu_far_first *masu_sort_far_first(masu_far_first *entries, masu_far_first *scr
                 to[i] = left ? from[a++] : from[b++];
             }
         }
-        masu_far_first *swap = from;
+        masu_back_to_front *swap = from;
         from = to;
         to = swap;
     }
     return from;
 }
 
-static uint32_t column_of(masu_renderer *m, const masu_blob_material *material) {
-    if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
+void masu_transparents_lay(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan) {
+    uint32_t count = plan->scene.transparents;
+    s->things = masu_arena_take(arena, "transparents", count, sizeof *s->things, 4);
+    s->order =
+        masu_arena_take(arena, "transparents, sorted", 2 * (uint64_t)count, sizeof *s->order, 4);
+}
+
+/* Which of the texture sets is a material's. */
+static uint32_t column_of(const masu_draws *draws, const masu_blob_material *material) {
     uint32_t i = 0;
-    while (i < m->transparent_set_count && m->transparent_sets[i] != material->texture_set) i++;
-    if (i == m->transparent_set_count && i < MASU_TRANSPARENT_SETS_MAX)
-        m->transparent_sets[m->transparent_set_count++] = material->texture_set;
+    if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
+    while (i < draws->transparent_set_count && draws->transparent_sets[i] != material->texture_set)
+        i++;
     return i;
 }
 
-static void keep_primitive(masu_renderer *m, const masu_scene_view *v, uint32_t instance,
-                           const masu_blob_primitive *p) {
-    const masu_blob_material *material = &v->materials[p->material];
-    if (!(material->flags & MASU_MATERIAL_IS_BLEND)) return;
-    masu_transparent *t = &m->transparents[m->transparent_count++];
+static void keep_primitive(masu_transparent *t, const masu_draws *draws, uint32_t instance,
+                           const masu_blob_primitive *p, const masu_blob_material *material) {
     *t = (masu_transparent){
         .draw = {p->index_count, 1, p->first_index, (int32_t)p->first_vertex, 0},
         .instance = instance,
@@ -60,7 +63,7 @@ static void keep_primitive(masu_renderer *m, const masu_scene_view *v, uint32_t 
         .flags = material->flags | material->occlusion_layer << MASU_MAP_OCCLUSION_SHIFT,
         .layers = material->layers,
         .detail = {material->detail[0], material->detail[1]},
-        .column = column_of(m, material)};
+        .column = column_of(draws, material)};
     int flat = 0;
     for (uint32_t k = 0; k < 3; k++) flat |= !(p->aabb_min[k] < p->aabb_max[k]);
     if (!flat) { /* transparents.frag says why */
@@ -70,18 +73,24 @@ static void keep_primitive(masu_renderer *m, const masu_scene_view *v, uint32_t 
     for (uint32_t k = 0; k < 3; k++) t->center[k] = 0.5f * p->aabb_min[k] + 0.5f * p->aabb_max[k];
 }
 
-void masu_keep_transparents(masu_renderer *m, const masu_scene_view *v) {
-    if (!m->plan.needs.transparents) return;
-    for (uint32_t i = 0; i < m->plan.scene.instances; i++) {
+void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
+                            const masu_draws *draws, const masu_scene_view *v) {
+    masu_transparent *next = s->things;
+    if (!plan->needs.transparents) return;
+    for (uint32_t i = 0; i < plan->scene.instances; i++) {
         const masu_blob_mesh *mesh = &v->meshes[v->instances[i].mesh];
-        for (uint32_t p = 0; p < mesh->primitive_count; p++)
-            keep_primitive(m, v, i, &v->primitives[mesh->first_primitive + p]);
+        for (uint32_t k = 0; k < mesh->primitive_count; k++) {
+            const masu_blob_primitive *p = &v->primitives[mesh->first_primitive + k];
+            const masu_blob_material *material = &v->materials[p->material];
+            if (material->flags & MASU_MATERIAL_IS_BLEND)
+                keep_primitive(next++, draws, i, p, material);
+        }
     }
 }
 
 /* Square of the distance from the eye to the middle of a thing's box: finite, since all of it is. */
-static float distance_of(const masu_renderer *m, const masu_transparent *t, const double eye[3]) {
-    const struct masu_instance_data *at = &m->instances[t->instance];
+static float distance_of(const masu_transparent *t, const struct masu_instance_data *at,
+                         const double eye[3]) {
     const float *rows[3] = {at->row0, at->row1, at->row2};
     double square = 0.0;
     for (uint32_t k = 0; k < 3; k++) {
@@ -92,25 +101,26 @@ static float distance_of(const masu_renderer *m, const masu_transparent *t, cons
     return (float)fmin(square, 3e38);
 }
 
-void masu_write_transparents(masu_renderer *m, uint32_t slot) {
-    uint32_t count = m->plan.needs.transparents ? m->transparent_count : 0, seen = 0;
-    m->slot_transparents[slot] = 0;
+void masu_transparents_write(masu_transparents *s, const masu_instances *in,
+                             const masu_visible *visible, const masu_frame_data *f) {
+    uint32_t count = f->draws->transparent_count, seen = 0;
+    s->slot_count[f->slot] = 0;
     if (!count) return;
     for (uint32_t i = 0; i < count; i++) {
-        const masu_transparent *t = &m->transparents[i];
-        if (!(m->marks[t->instance] & 1u)) continue;
-        m->far_first[seen++] = (masu_far_first){distance_of(m, t, m->lod_view.eye), i};
+        const masu_transparent *t = &s->things[i];
+        if (!(visible->marks[t->instance] & 1u)) continue;
+        s->order[seen++] = (masu_back_to_front){distance_of(t, &in->now[t->instance], f->eye), i};
     }
-    const masu_far_first *order = masu_sort_far_first(m->far_first, m->far_first + count, seen);
+    const masu_back_to_front *order = masu_sort_back_to_front(s->order, s->order + count, seen);
     /* Never read: upload memory may be write-combined. */
     VkDrawIndexedIndirectCommand *draws =
-        (VkDrawIndexedIndirectCommand *)(void *)(masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
-                                                 m->plan.transparent_draws * MASU_DRAW_BYTES);
-    uint32_t *words = (uint32_t *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWN, slot) +
-                      m->plan.drawn.transparents;
-    uint32_t columns = m->plan.scene.transparent_sets;
+        (VkDrawIndexedIndirectCommand *)(void *)(masu_frame_slot(f, MASU_BUFFER_DRAWS) +
+                                                 f->plan->transparent_draws * MASU_DRAW_BYTES);
+    uint32_t *words =
+        (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) + f->plan->drawn.transparents;
+    uint32_t columns = f->plan->scene.transparent_sets;
     for (uint32_t k = 0; k < count; k++) {
-        const masu_transparent *t = &m->transparents[k < seen ? order[k].thing : 0];
+        const masu_transparent *t = &s->things[k < seen ? order[k].thing : 0];
         for (uint32_t c = 0; c < columns; c++) {
             VkDrawIndexedIndirectCommand draw = t->draw;
             draw.instanceCount = k < seen && c == t->column ? t->draw.instanceCount : 0;
@@ -121,5 +131,5 @@ void masu_write_transparents(masu_renderer *m, uint32_t slot) {
         memcpy(words, thing, sizeof thing);
         words += MASU_TRANSPARENT_WORDS;
     }
-    m->slot_transparents[slot] = seen;
+    s->slot_count[f->slot] = seen;
 }

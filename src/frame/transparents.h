@@ -3,14 +3,7 @@
 #ifndef MASU_TRANSPARENTS_H
 #define MASU_TRANSPARENTS_H
 
-#include "device/vk.h"
-
-#include <stdint.h>
-
-#define MASU_TRANSPARENTS_MAX 4096u       /* things of a scene */
-#define MASU_TRANSPARENT_SETS_MAX 64u     /* texture sets that they use */
-#define MASU_TRANSPARENT_DRAWS_MAX 65536u /* the product of both */
-#define MASU_TRANSPARENT_WORDS 6u         /* of a slot in the buffer of drawn instances */
+#include "frame/visible.h"
 
 typedef struct masu_transparent {
     VkDrawIndexedIndirectCommand draw;
@@ -20,13 +13,27 @@ typedef struct masu_transparent {
     float center[3]; /* of its box, object space */
 } masu_transparent;
 
-typedef struct masu_far_first {
+typedef struct masu_back_to_front {
     float key; /* the larger comes first; no NaN */
     uint32_t thing;
-} masu_far_first;
+} masu_back_to_front;
 
 /* Sorts by falling key; equal keys stay as they are. `scratch` has room for n too. Which of the two
  * arrays holds the result is returned. n log2 n steps, whatever the keys. */
-masu_far_first *masu_sort_far_first(masu_far_first *entries, masu_far_first *scratch, uint32_t n);
+masu_back_to_front *masu_sort_back_to_front(masu_back_to_front *entries,
+                                            masu_back_to_front *scratch, uint32_t n);
+
+typedef struct masu_transparents {
+    masu_transparent *things;             /* plan->scene.transparents of them */
+    masu_back_to_front *order;            /* twice as many */
+    uint32_t slot_count[MASU_MAX_FLIGHT]; /* drawn */
+} masu_transparents;
+
+void masu_transparents_lay(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
+                            const masu_draws *draws, const masu_scene_view *v);
+/* Sorted to the slot; after masu_visible_write, which says what the camera sees. */
+void masu_transparents_write(masu_transparents *s, const masu_instances *in,
+                             const masu_visible *visible, const masu_frame_data *f);
 
 #endif

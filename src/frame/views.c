@@ -2,18 +2,13 @@
  * the numbers alone, for all of the scene). For each view the planes of stage 1 of culling and what
  * stage 2 reads, and for the camera what the choice of LODs asks. In double precision and world space
  * up to where the numbers are written. */
-#include "renderer.h"
+#include "frame/views.h"
 
 #include <math.h>
 #include <string.h>
 
-int masu_view_draws(const masu_renderer *m, uint32_t view) {
-    return !view || !m->plan.needs.shadow || (m->drawn >> (view - 1) & 1u);
-}
-
-VkRect2D masu_atlas_part(uint32_t part) {
-    if (part) return (VkRect2D){{0, MASU_ATLAS_CAMERA_HEIGHT}, {MASU_ATLAS_SUN, MASU_ATLAS_SUN}};
-    return (VkRect2D){{0, 0}, {MASU_ATLAS_CAMERA_WIDTH, MASU_ATLAS_CAMERA_HEIGHT}};
+int masu_view_draws(const masu_frame_data *f, uint32_t view) {
+    return !view || !f->plan->needs.shadow || (f->cascades >> (view - 1) & 1u);
 }
 
 /* A box along the sun's direction, which is its last axis. It reaches from the centre `half` across it,
@@ -28,15 +23,15 @@ static double along(const double axis[3], const double p[3]) {
 }
 
 /* All of the scene as it was baked. */
-static sun_box around_scene(const masu_renderer *m, const float sun[3]) {
+static sun_box around_scene(const masu_cull_box *scene, const float sun[3]) {
     sun_box b;
     double towards[3], half[3] = {1e-6, 1e-6, 1e-6};
     for (uint32_t i = 0; i < 3; i++) towards[i] = (double)sun[i];
     masu_shadow_axes(towards, b.axis);
     for (uint32_t i = 0; i < 3; i++) {
-        b.center[i] = (double)m->scene_box.center[i];
+        b.center[i] = (double)scene->center[i];
         for (uint32_t j = 0; j < 3; j++)
-            half[i] += fabs(b.axis[i][j]) * 1.001 * (double)m->scene_box.half[j];
+            half[i] += fabs(b.axis[i][j]) * 1.001 * (double)scene->half[j];
     }
     b.half[0] = half[0];
     b.half[1] = half[1];
@@ -92,16 +87,16 @@ typedef struct outline {
     double at[5][2];
 } outline;
 
-static outline outline_of(const masu_renderer *m, const sun_box *b,
-                          const struct masu_frame_uniforms *u, const double eye[3]) {
+static outline outline_of(const sun_box *b, double depth, const masu_frame_data *f) {
+    const struct masu_frame_uniforms *u = &f->u;
     outline o;
-    double depth = m->shadow_distance;
     for (uint32_t i = 0; i < 5; i++) {
         double rel[3], x = i & 1 ? 1.0 : -1.0, y = i & 2 ? 1.0 : -1.0;
         for (uint32_t k = 0; k < 3; k++) {
-            double corner = (double)u->forward[k] + (x + (double)u->jitter[0]) * (double)u->right[k] +
+            double corner = (double)u->forward[k] +
+                            (x + (double)u->jitter[0]) * (double)u->right[k] +
                             (y - (double)u->jitter[1]) * (double)u->up[k];
-            rel[k] = eye[k] - b->center[k] + (i < 4 ? depth * corner : 0.0);
+            rel[k] = f->eye[k] - b->center[k] + (i < 4 ? depth * corner : 0.0);
         }
         o.at[i][0] = along(b->axis[0], rel);
         o.at[i][1] = along(b->axis[1], rel);
@@ -172,82 +167,98 @@ static void set_atlas(masu_stage2_view *v, uint32_t part) {
     v->atlas[3] = (float)area.extent.height;
 }
 
+/* Where each cascade, or all of the scene, lies along the sun, and its planes. */
+static void set_sun_boxes(masu_views *v, const masu_bounds *bounds, const masu_shadow *s,
+                          const masu_frame_data *f, sun_box boxes[MASU_CASCADES_MAX]) {
+    int shadow = f->plan->needs.shadow;
+    for (uint32_t k = 0; k + 1 < f->plan->views; k++) {
+        if (!masu_view_draws(f, 1 + k)) continue;
+        boxes[k] = shadow ? around_cascade(&s->cascades[k])
+                          : around_scene(&bounds->initial, f->u.sun_direction);
+        set_box_planes(&boxes[k], &v->planes[1 + k]);
+        if (shadow && !(masu_frame_rung_plan(f)->slow >> k & 1u)) {
+            outline o = outline_of(&boxes[k], s->distance, f);
+            add_outline(&o, &boxes[k], 4.0 * texel_of(&s->cascades[k]), &v->planes[1 + k]);
+        }
+    }
+}
+
 /* The sun's views share one part of the atlas, a square around all that this frame draws. Cascades
  * lie inside of each other, so that what hides something in the part hides it in each of them; but a
  * cascade moves surfaces away from the sun, and so a mesh may be a little behind its occluder. */
-static void set_suns(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
-                     const masu_rung_plan *rp, float step) {
+static void set_suns(masu_views *v, const masu_bounds *bounds, const masu_shadow *s,
+                     const masu_frame_data *f, float step) {
     sun_box boxes[MASU_CASCADES_MAX], all;
-    uint32_t suns = m->plan.views - 1, any = 0;
+    uint32_t suns = f->plan->views - 1, any = 0;
+    int shadow = f->plan->needs.shadow;
+    set_sun_boxes(v, bounds, s, f, boxes);
     for (uint32_t k = 0; k < suns; k++) {
-        if (!masu_view_draws(m, 1 + k)) continue;
-        boxes[k] = m->plan.needs.shadow ? around_cascade(&m->cascades[k])
-                                        : around_scene(m, u->sun_direction);
-        set_box_planes(&boxes[k], &m->view_planes[1 + k]);
-        if (m->plan.needs.shadow && !(rp->slow >> k & 1u)) {
-            outline o = outline_of(m, &boxes[k], u, eye);
-            add_outline(&o, &boxes[k], 4.0 * texel_of(&m->cascades[k]), &m->view_planes[1 + k]);
-        }
+        if (!masu_view_draws(f, 1 + k)) continue;
         all = any ? around_both(&all, &boxes[k]) : boxes[k];
         any = 1;
     }
-    if (!any || !m->plan.occlusion) return;
+    if (!any || !f->plan->occlusion) return;
     all.half[0] = all.half[1] = fmax(all.half[0], all.half[1]);
-    masu_stage2_view shared = m->stage2[1];
+    masu_stage2_view shared = v->stage2[1];
     set_atlas(&shared, 1);
-    look_from_sun(&all, eye, &shared);
-    double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN,
-           coarsest = m->plan.needs.shadow ? 0.0 : texel;
-    for (uint32_t k = 0; k < suns && m->plan.needs.shadow; k++) {
-        if (masu_view_draws(m, 1 + k)) coarsest = fmax(coarsest, texel_of(&m->cascades[k]));
+    look_from_sun(&all, f->eye, &shared);
+    double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN, coarsest = shadow ? 0.0 : texel;
+    for (uint32_t k = 0; k < suns && shadow; k++) {
+        if (masu_view_draws(f, 1 + k)) coarsest = fmax(coarsest, texel_of(&s->cascades[k]));
     }
     shared.margin = (float)((double)step * coarsest / texel);
     for (uint32_t k = 0; k < suns; k++) {
-        double bias =
-            m->plan.needs.shadow ? MASU_SHADOW_BIAS_MOST * texel_of(&m->cascades[k]) : 0.0;
+        double bias = shadow ? MASU_SHADOW_BIAS_MOST * texel_of(&s->cascades[k]) : 0.0;
         shared.bias = (float)(bias / (all.behind + all.ahead) + 2e-6);
-        if (m->plan.needs.shadow) {
-            shared.trimmed = !(rp->slow >> k & 1u);
-            shared.reach = (float)(2.5 * texel_of(&m->cascades[k]) / texel) + 0.01f;
+        if (shadow) {
+            shared.trimmed = !(masu_frame_rung_plan(f)->slow >> k & 1u);
+            shared.reach = (float)(2.5 * texel_of(&s->cascades[k]) / texel) + 0.01f;
         }
-        m->stage2[1 + k] = shared;
+        v->stage2[1 + k] = shared;
     }
 }
+
+/* ---- The camera ------------------------------------------------------------------------------ */
 
 /* Lengths of one at depth one, in pixels: of the two axes the one of more. */
-static void set_lods(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
-                     uint32_t rung) {
-    const masu_rung_plan *rp = &m->plan.rungs[rung];
+static void set_lods(masu_lod_view *lod, const masu_frame_data *f) {
+    const struct masu_frame_uniforms *u = &f->u;
+    const masu_rung_plan *rp = masu_frame_rung_plan(f);
     float x = 0.5f * (float)rp->render_width / u->right[3];
     float y = 0.5f * (float)rp->render_height / u->up[3];
-    m->lod_view.pixels = x > y ? x : y;
+    lod->pixels = x > y ? x : y;
     double side = (double)u->right[3] * (1.0 + fabs((double)u->jitter[0]));
     double edge = (double)u->up[3] * (1.0 + fabs((double)u->jitter[1]));
-    m->lod_view.widest = 1.0 / sqrt(1.0 + side * side + edge * edge);
-    m->lod_view.threshold = m->plan.desc.rungs[rung].lod_error;
+    lod->widest = 1.0 / sqrt(1.0 + side * side + edge * edge);
+    lod->threshold = masu_frame_rung(f)->lod_error;
     for (uint32_t k = 0; k < 3; k++) {
-        m->lod_view.eye[k] = eye[k];
-        m->lod_view.forward[k] = (double)u->forward[k];
+        lod->eye[k] = f->eye[k];
+        lod->forward[k] = (double)u->forward[k];
     }
 }
 
-void masu_set_views(masu_renderer *m, const struct masu_frame_uniforms *u, const double eye[3],
-                    uint32_t rung) {
-    set_lods(m, u, eye, rung);
-    masu_cull_camera(&m->view_planes[0], u->clip_from_rel, eye, u->forward[3]);
-    memset(m->stage2, 0, sizeof m->stage2);
-    /* How far the raster may move an edge, in its own texels. */
-    float step = ldexpf(1.0f, -(int)m->vk.properties.limits.subPixelPrecisionBits);
-    set_suns(m, u, eye, &m->plan.rungs[rung], step);
-    masu_stage2_view *v = &m->stage2[0];
+static void set_camera(masu_stage2_view *v, const masu_frame_data *f, float step) {
+    const struct masu_frame_uniforms *u = &f->u;
+    const masu_rung_plan *rp = masu_frame_rung_plan(f);
     set_atlas(v, 0);
     memcpy(v->clip, u->clip_from_rel, sizeof v->clip);
-    float across = v->atlas[2] / (float)m->plan.rungs[rung].render_width;
-    float down = v->atlas[3] / (float)m->plan.rungs[rung].render_height;
+    float across = v->atlas[2] / (float)rp->render_width;
+    float down = v->atlas[3] / (float)rp->render_height;
     v->margin = step * (across > down ? across : down);
     v->eye[3] = 1.0f;
     v->near_distance = u->forward[3];
     float side = u->right[3] * (1.0f + fabsf(u->jitter[0]));
     float edge = u->up[3] * (1.0f + fabsf(u->jitter[1]));
     v->blind = 1.001f * u->forward[3] * sqrtf(1.0f + side * side + edge * edge);
+}
+
+void masu_views_set(masu_views *v, const masu_bounds *bounds, const masu_shadow *s,
+                    const masu_frame_data *f) {
+    set_lods(&v->lod, f);
+    masu_cull_camera(&v->planes[0], f->u.clip_from_rel, f->eye, f->u.forward[3]);
+    memset(v->stage2, 0, sizeof v->stage2);
+    /* How far the raster may move an edge, in its own texels. */
+    float step = ldexpf(1.0f, -(int)f->device->vk.properties.limits.subPixelPrecisionBits);
+    set_suns(v, bounds, s, f, step);
+    set_camera(&v->stage2[0], f, step);
 }

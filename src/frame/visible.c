@@ -16,8 +16,10 @@
  *
  * Kept instances stay in order, so that what is not seen changes nothing: of two surfaces at one
  * depth the same one wins with and without it. */
+#include "frame/visible.h"
+
+#include "device/bind.h"
 #include "scene/lod.h"
-#include "renderer.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,109 +28,34 @@ _Static_assert(sizeof(VkDrawIndexedIndirectCommand) == MASU_DRAW_BYTES, "indirec
 
 /* ---- Once per scene -------------------------------------------------------------------------- */
 
-/* A form of a mesh that has instances. */
-static masu_batch *keep_batch(masu_renderer *m, const masu_scene_view *v, uint32_t first_primitive,
-                              uint32_t primitives, uint32_t first, uint32_t instances) {
-    masu_batch *b = &m->batches[m->batch_count];
-    *b = (masu_batch){.first_primitive = first_primitive,
-                      .draw_count = primitives,
-                      .first_instance = first,
-                      .instance_count = instances};
-    if (m->batch_count) {
-        b->first_draw = b[-1].first_draw + b[-1].draw_count;
-        b->first_listed = b[-1].first_listed + b[-1].instance_count;
-    }
-    for (uint32_t p = 0; p < primitives; p++) {
-        const masu_blob_primitive *one = &v->primitives[first_primitive + p];
-        if (v->materials[one->material].flags & MASU_MATERIAL_IS_BLEND) {
-            b->blended++; /* transparents.c draws it */
-        } else {
-            b->triangles += one->index_count / 3;
-        }
-    }
-    m->batch_count++;
-    m->large_count += instances > 64;
-    return b;
+void masu_visible_lay(masu_visible *s, masu_arena *arena, const masu_frame_plan *plan) {
+    uint64_t lods = plan->lods ? plan->scene.lods : 0;
+    uint32_t instances = plan->scene.instances;
+    s->lods = masu_arena_take(arena, "LODs", lods, sizeof *s->lods, 4);
+    s->levels = masu_arena_take(arena, "instance LODs", lods ? instances : 0, sizeof *s->levels, 1);
+    s->group_states =
+        masu_arena_take(arena, "group states", (uint64_t)plan->views * plan->scene.groups,
+                        sizeof *s->group_states, 1);
+    s->marks = masu_arena_take(arena, "instance marks", instances, sizeof *s->marks, 1);
 }
 
-static void keep_batches(masu_renderer *m, const masu_scene_view *v) {
-    const masu_scene *scene = &m->plan.scene;
-    uint32_t from = 0;
-    for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
-        uint32_t first, first_lod,
-            end = masu_scene_mesh_instances(v, scene->instances, mesh, from, &first);
-        from = end;
-        const masu_blob_mesh *what = &v->meshes[mesh];
-        memcpy(m->mesh_bounds[mesh], what->aabb_min, sizeof what->aabb_min);
-        memcpy(m->mesh_bounds[mesh] + 3, what->aabb_max, sizeof what->aabb_max);
-        if (end == first || !what->primitive_count) continue;
-        masu_batch *b =
-            keep_batch(m, v, what->first_primitive, what->primitive_count, first, end - first);
-        if (!m->plan.lods) continue;
-        b->lod_count = masu_scene_mesh_lods(v, scene->lods, mesh, &first_lod);
-        b->first_lod = first_lod;
-        for (uint32_t l = 0; l < b->lod_count; l++) {
-            (void)keep_batch(m, v, v->lods[first_lod + l].first_primitive, what->primitive_count,
-                             first, end - first);
-        }
-    }
-    for (uint32_t l = 0; m->plan.lods && l < scene->lods; l++) m->lods[l] = v->lods[l];
-}
-
-static void rows_of(const struct masu_instance_data *at, float rows[12]) {
-    memcpy(rows, at->row0, sizeof at->row0);
-    memcpy(rows + 4, at->row1, sizeof at->row1);
-    memcpy(rows + 8, at->row2, sizeof at->row2);
-}
-
-static void set_box(masu_renderer *m, uint32_t position, uint32_t instance) {
-    const float *bounds = m->mesh_bounds[m->instance_meshes[instance]];
-    float rows[12];
-    rows_of(&m->instances[instance], rows);
-    masu_cull_box box = masu_cull_place(rows, bounds, bounds + 3);
-    box = masu_cull_widen(&box, 1.0f);
-    for (uint32_t k = 0; k < 3; k++) {
-        m->boxes[k * m->box_stride + position] = box.center[k];
-        m->boxes[(3 + k) * m->box_stride + position] = box.half[k];
-    }
-    if (m->plan.needs.shadow) masu_note_caster(m, &box);
-}
-
-void masu_keep_visible(masu_renderer *m, const masu_scene_view *v) {
-    const masu_scene *scene = &m->plan.scene;
-    m->box_stride = (uint64_t)scene->instances + MASU_BOX_PADDING;
-    for (uint32_t k = 0; k < 3; k++) m->casters[0][k] = 1e30, m->casters[1][k] = -1e30;
-    keep_batches(m, v);
-    for (uint32_t g = 0; g < scene->groups; g++) {
-        const masu_blob_group *from = &v->groups[g];
-        masu_cull_box box;
-        memcpy(box.center, from->center, sizeof box.center);
-        memcpy(box.half, from->half, sizeof box.half);
-        m->groups[g] = (masu_cull_node){masu_cull_widen(&box, 4.0f), from->first_child,
-                                        from->child_count, from->first_item, from->item_count};
-    }
-    uint32_t behind = scene->group_items;
-    for (uint32_t p = 0; p < scene->group_items; p++) m->box_items[p] = v->group_items[p];
-    for (uint32_t i = 0; i < scene->instances; i++) {
-        m->instance_meshes[i] = v->instances[i].mesh;
-        if (v->instances[i].group == MASU_BLOB_NONE) m->box_items[behind++] = i;
-    }
-    for (uint32_t p = 0; p < scene->instances; p++) {
-        m->box_positions[m->box_items[p]] = p;
-        set_box(m, p, m->box_items[p]);
-    }
+void masu_visible_keep(masu_visible *s, const masu_frame_plan *plan, const masu_scene_view *v) {
+    for (uint32_t l = 0; plan->lods && l < plan->scene.lods; l++) s->lods[l] = v->lods[l];
 }
 
 /* All of each command but the count, for every slot and view. */
-void masu_write_commands(masu_renderer *m, const masu_scene_view *v) {
-    if (!m->batch_count) return;
-    for (uint32_t slot = 0; slot < m->plan.desc.frames_in_flight; slot++) {
+void masu_visible_write_scene(const masu_device *device, const masu_draws *draws,
+                              const masu_scene_view *v) {
+    const masu_frame_plan *plan = device->plan;
+    if (!draws->batch_count) return;
+    for (uint32_t slot = 0; slot < plan->desc.frames_in_flight; slot++) {
         VkDrawIndexedIndirectCommand *to =
-            (VkDrawIndexedIndirectCommand *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot);
-        uint32_t lists = m->plan.views * (m->plan.occlusion ? 2 : 1);
+            (VkDrawIndexedIndirectCommand *)(void *)masu_buffer_pointer(device, MASU_BUFFER_DRAWS,
+                                                                        slot);
+        uint32_t lists = plan->views * (plan->occlusion ? 2 : 1);
         for (uint32_t list = 0; list < lists; list++) {
-            for (uint32_t b = 0; b < m->batch_count; b++) {
-                const masu_batch *batch = &m->batches[b];
+            for (uint32_t b = 0; b < draws->batch_count; b++) {
+                const masu_batch *batch = &draws->batches[b];
                 for (uint32_t d = 0; d < batch->draw_count; d++) {
                     const masu_blob_primitive *p = &v->primitives[batch->first_primitive + d];
                     *to++ = (VkDrawIndexedIndirectCommand){p->index_count, 0, p->first_index,
@@ -139,86 +66,70 @@ void masu_write_commands(masu_renderer *m, const masu_scene_view *v) {
     }
 }
 
-/* ---- Moving ---------------------------------------------------------------------------------- */
-
-/* Once it has moved, an instance is tested by itself: groups keep the boxes they were baked with. */
-void masu_move_box(masu_renderer *m, uint32_t instance) {
-    uint32_t position = m->box_positions[instance] & ~MASU_BOX_MOVED;
-    set_box(m, position, instance);
-    if (position >= m->plan.scene.group_items || m->box_positions[instance] & MASU_BOX_MOVED)
-        return;
-    m->box_positions[instance] |= MASU_BOX_MOVED;
-    m->moved[m->moved_count++] = position;
-}
-
 /* ---- Each frame ------------------------------------------------------------------------------ */
-
-static masu_cull_set box_set(const masu_renderer *m) {
-    masu_cull_set set = {.nodes = m->groups,
-                         .node_count = m->plan.scene.groups,
-                         .items = m->box_items,
-                         .tree_count = m->plan.scene.group_items,
-                         .count = m->plan.scene.instances,
-                         .moved = m->moved,
-                         .moved_count = m->moved_count};
-    for (uint32_t k = 0; k < 6; k++) set.boxes[k] = m->boxes + k * m->box_stride;
-    return set;
-}
 
 /* By the least depth that a point of the box can have in the picture: not below that of its nearest
  * corner, nor below its distance times the cosine of the widest angle. The latter also serves what is
  * beside or behind the camera and casts a shadow. What the camera is in is drawn as it is. */
-static uint32_t level_of(const masu_renderer *m, const masu_batch *mesh, uint32_t instance) {
-    const masu_lod_view *view = &m->lod_view;
-    uint32_t position = m->box_positions[instance] & ~MASU_BOX_MOVED;
+static uint32_t level_of(const masu_visible *s, const masu_lod_view *view,
+                         const masu_bounds *bounds, const masu_instances *in,
+                         const masu_batch *mesh, uint32_t instance) {
     double depth = 0.0, squared = 0.0;
-    float rows[12];
+    float rows[12], box[6];
+    masu_bounds_of(bounds, instance, box);
     for (uint32_t k = 0; k < 3; k++) {
-        double rel = (double)m->boxes[k * m->box_stride + position] - view->eye[k];
-        double half = (double)m->boxes[(3 + k) * m->box_stride + position];
+        double rel = (double)box[k] - view->eye[k];
+        double half = (double)box[3 + k];
         double outside = fmax(fabs(rel) - half, 0.0);
         depth += view->forward[k] * rel - fabs(view->forward[k]) * half;
         squared += outside * outside;
     }
     depth = fmax(depth, sqrt(squared) * view->widest);
-    rows_of(&m->instances[instance], rows);
-    return masu_lod_choose(m->lods + mesh->first_lod, mesh->lod_count, masu_lod_scale(rows),
+    masu_instance_rows(&in->now[instance], rows);
+    return masu_lod_choose(s->lods + mesh->first_lod, mesh->lod_count, masu_lod_scale(rows),
                            (float)depth, view->pixels, view->threshold);
 }
 
-void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int culls) {
-    const masu_scene *scene = &m->plan.scene;
-    masu_view_stats *counts = &m->slot_views[slot][view];
+/* Stage 1: the bit of a view in the marks of what it keeps. */
+static void mark(masu_visible *s, const masu_bounds *bounds, const masu_views *views,
+                 const masu_frame_data *f, uint32_t view) {
+    const masu_scene *scene = &f->plan->scene;
+    masu_view_stats *counts = &s->slot_views[f->slot][view];
     uint8_t bit = (uint8_t)(1u << view);
-    memset(counts, 0, sizeof *counts);
-    if (!scene->instances) return;
-    if (!masu_view_draws(m, view)) {
-        for (uint32_t i = 0; i < scene->instances; i++) m->marks[i] &= (uint8_t)~bit;
-    } else if (culls) {
-        masu_cull_set set = box_set(m);
+    if (!masu_view_draws(f, view)) {
+        for (uint32_t i = 0; i < scene->instances; i++) s->marks[i] &= (uint8_t)~bit;
+    } else if (masu_frame_rung(f)->frustum != MASU_OFF) {
+        masu_cull_set set = masu_bounds_set(bounds, scene);
         masu_cull_counts c = {0, 0};
-        masu_cull(&set, &m->view_planes[view], m->group_states + (uint64_t)view * scene->groups,
-                  m->marks, bit, &c);
+        masu_cull(&set, &views->planes[view], s->group_states + (uint64_t)view * scene->groups,
+                  s->marks, bit, &c);
         counts->groups = c.nodes;
         counts->plane_tests = c.plane_tests;
     } else {
-        for (uint32_t i = 0; i < scene->instances; i++) m->marks[i] |= bit;
+        for (uint32_t i = 0; i < scene->instances; i++) s->marks[i] |= bit;
     }
+}
+
+/* What is marked, into the lists and counts of the forms of its mesh. */
+static void list(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
+                 const masu_views *views, const masu_frame_data *f, uint32_t view) {
+    masu_view_stats *counts = &s->slot_views[f->slot][view];
     /* Never read: upload memory may be write-combined. */
     VkDrawIndexedIndirectCommand *draws =
-        (VkDrawIndexedIndirectCommand *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWS, slot) +
-        (uint64_t)view * m->plan.draws;
-    uint32_t *ids = (uint32_t *)(void *)masu_buffer_pointer(m, MASU_BUFFER_DRAWN, slot) +
-                    (uint64_t)view * m->plan.listed;
-    for (uint32_t b = 0, forms; b < m->batch_count; b += forms) {
-        const masu_batch *mesh = &m->batches[b];
+        (VkDrawIndexedIndirectCommand *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWS) +
+        (uint64_t)view * f->plan->draws;
+    uint32_t *ids = (uint32_t *)(void *)masu_frame_slot(f, MASU_BUFFER_DRAWN) +
+                    (uint64_t)view * f->plan->listed;
+    for (uint32_t b = 0, forms; b < f->draws->batch_count; b += forms) {
+        const masu_batch *mesh = &f->draws->batches[b];
         uint32_t kept[1 + MASU_BLOB_LODS_MAX] = {0};
         uint32_t end = mesh->first_instance + mesh->instance_count;
         forms = 1 + mesh->lod_count;
         for (uint32_t i = mesh->first_instance; i < end; i++) {
-            if (!(m->marks[i] & bit)) continue;
+            if (!(s->marks[i] >> view & 1u)) continue;
             uint32_t level = 0;
-            if (m->plan.lods) m->levels[i] = (uint8_t)(level = level_of(m, mesh, i));
+            if (f->plan->lods)
+                s->levels[i] = (uint8_t)(level = level_of(s, &views->lod, bounds, in, mesh, i));
             ids[mesh[level].first_listed + kept[level]++] = i;
         }
         for (uint32_t level = 0; level < forms; level++) {
@@ -230,5 +141,15 @@ void masu_write_visible(masu_renderer *m, uint32_t slot, uint32_t view, int cull
             counts->triangles += kept[level] * batch->triangles;
             counts->draws += kept[level] ? batch->draw_count - batch->blended : 0;
         }
+    }
+}
+
+void masu_visible_write(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
+                        const masu_views *views, const masu_frame_data *f) {
+    for (uint32_t view = 0; view < f->plan->views; view++) {
+        memset(&s->slot_views[f->slot][view], 0, sizeof s->slot_views[f->slot][view]);
+        if (!f->plan->scene.instances) continue;
+        mark(s, bounds, views, f, view);
+        list(s, bounds, in, views, f, view);
     }
 }

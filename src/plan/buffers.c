@@ -1,17 +1,19 @@
 /* buffers.c: see buffers.h. */
 #include "plan/buffers.h"
 
-#include "frame/lights.h"
-#include "frame/specular.h"
-#include "frame/transparents.h"
+#include "plan/draws.h"
+#include "scene/punctual_light.h"
+#include "scene/trace_scene.h"
 
 /* ---- Rows as they are ------------------------------------------------------------------------ */
 
 enum { LIFETIME_ALWAYS = 0, LIFETIME_LOADING = 1 };
 
+#define NOTHING 0
+#define LOADED(load) 1
 const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT] = {
 #define BUFFER(ID, name, role, usage, slots, lifetime, loaded, ...)                                \
-    [MASU_BUFFER_##ID] = {name, MASU_ROLE_##role, MASU_LOADED_##loaded, LIFETIME_##lifetime},
+    [MASU_BUFFER_##ID] = {name, MASU_ROLE_##role, loaded, LIFETIME_##lifetime},
 #include "plan/buffers.inc"
 #undef BUFFER
 };

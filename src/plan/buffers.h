@@ -35,25 +35,10 @@ void masu_bindings(const masu_frame_plan *plan, masu_binding out[]);
 uint32_t masu_plain_buffers(const masu_frame_plan *plan);
 uint32_t masu_group_buffers(const masu_frame_plan *plan, masu_binding_group group);
 
-/* What masu_load copies into a buffer; the columns `loaded` of buffers.inc. */
-typedef enum masu_loaded {
-    MASU_LOADED_NOTHING,
-    MASU_LOADED_VERTICES,
-    MASU_LOADED_INDICES,
-    MASU_LOADED_TEXCOORDS,
-    MASU_LOADED_MATERIALS,
-    MASU_LOADED_SLOTS,
-    MASU_LOADED_TABLES,
-    MASU_LOADED_PROBES,
-    MASU_LOADED_TRACE,
-    MASU_LOADED_SMAA_AREA,
-    MASU_LOADED_RAY_INDICES
-} masu_loaded;
-
 typedef struct masu_buffer_row {
     const char *name;
     masu_role role;
-    masu_loaded loaded;
+    int loaded;     /* masu_load writes it */
     int of_loading; /* masu_load alone needs it */
 } masu_buffer_row;
 

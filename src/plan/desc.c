@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "quality/governor.h"
 #include "quality/ladder.h"
-#include "frame/transparents.h"
 #include "scene/lod.h"
 #include "plan/output.h"
 

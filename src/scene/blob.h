@@ -244,6 +244,12 @@ typedef struct masu_blob_light {
 } masu_blob_light;
 
 #define MASU_BLOB_LIGHTS_MAX 4096u
+
+/* What is blended is drawn one by one: a thing for each primitive of such a material and each instance of
+ * its mesh. */
+#define MASU_TRANSPARENTS_MAX 4096u       /* things of a scene */
+#define MASU_TRANSPARENT_SETS_MAX 64u     /* texture sets that they use */
+#define MASU_TRANSPARENT_DRAWS_MAX 65536u /* the product of both */
 #define MASU_PROBE_SUNS_MAX 16u
 #define MASU_PROBE_SETS_MAX 26u
 #define MASU_PROBE_WORDS 14u /* of one set: 27 halfs, coefficient after coefficient, RGB in each; then

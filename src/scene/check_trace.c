@@ -5,7 +5,7 @@
  * one order that is allowed, so it needs no mark for what it has seen: where the next children must
  * be follows from the count of those before. Boxes that do not hold what they should only lose
  * hits; they are not looked at. */
-#include "scene/reader.h"
+#include "scene/check.h"
 
 /* The node `i` of the walk: its children and items are the next. */
 static const char *check_node(const masu_blob_trace_node *n, uint64_t *next_node,

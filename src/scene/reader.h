@@ -1,12 +1,15 @@
-/* reader.h: what checks a blob: scene.c, check_light.c for what lights it, and
- * check_trace.c for what rays are traced through. */
+/* reader.h: the container of a blob: its header, and where its sections are. Every number of a blob is
+ * hostile until it has been checked; sums are done so that they cannot wrap. Counts fit 32 bits
+ * (each section is checked), products are taken in 64. */
 #ifndef MASU_SCENE_READER_H
 #define MASU_SCENE_READER_H
 
 #include "base/error.h"
-#include "scene/scene.h"
+#include "scene/view.h"
 
 #include <math.h>
+
+#define MASU_SECTION_MOST 0x7FFFFFFFu /* elements of any section */
 
 typedef struct reader {
     const unsigned char *bytes;
@@ -43,13 +46,20 @@ static inline int name_ok(const reader *r, uint32_t name) {
     return name == MASU_BLOB_NONE || name < r->view.name_bytes;
 }
 
-/* Materials beyond their colours, local lights, probes, the sky and fog. After geometry and
- * textures have passed. */
-masu_result masu_check_lighting(reader *r);
-void masu_look_at_lighting(const reader *r, masu_scene *out);
+/* Culling believes bounds. Two boxes; a point is a box too. */
+static inline int box_holds(const float *low, const float *high, const float *from,
+                            const float *to) {
+    for (uint32_t k = 0; k < 3; k++) {
+        if (!(low[k] <= from[k] && to[k] <= high[k])) return 0;
+    }
+    return 1;
+}
 
-/* What rays are traced through. After geometry has passed. */
-masu_result masu_check_trace(reader *r);
-void masu_look_at_trace(const reader *r, masu_scene *out);
+/* Of all `given` bytes: who wrote them, for which version, and whether they are whole. */
+masu_result masu_read_header(reader *r, uint64_t given);
+/* Fills view and counts; after the header has passed. */
+masu_result masu_read_sections(reader *r, uint64_t given);
+/* What a section is called in messages. */
+const char *masu_section_name(uint32_t kind);
 
 #endif

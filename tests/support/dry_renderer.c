@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "device/bind.h"
+#include "device/load.h"
 #include "support/bind.h"
 #include "support/desc.h"
 
@@ -33,7 +35,7 @@ static masu_local_light_state lights[4];
 static uint64_t light_names[4];
 static masu_sky sky;
 static masu_transparent transparents[8];
-static masu_far_first far_first[16];
+static masu_back_to_front order[16];
 static uint8_t group_states[4 * MASU_MAX_VIEWS], marks[4];
 static float boxes[6 * (4 + MASU_BOX_PADDING)], mesh_bounds[4][6];
 static uint32_t box_items[4], box_positions[4], moved[4], instance_meshes[4];
@@ -66,40 +68,41 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
         used[buffer->role] += (buffer->bytes + 63) / 64 * 64;
         assert_true(used[buffer->role] <= ROOM);
     }
-    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) m.mapped[role] = memory[role];
+    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) m.device.mapped[role] = memory[role];
     for (size_t i = 0; i < COUNT(frame_handles); i++) frames[i] = FAKE(VkCommandBuffer, i);
     for (size_t i = 0; i < COUNT(load_handles); i++) loads[i] = FAKE(VkCommandBuffer, 0x800 + i);
-    for (uint32_t f = 0; f < MASU_MAX_FLIGHT; f++) m.slot_frame[f] = UINT64_MAX;
-    m.frames = frames;
-    m.loads = loads;
-    m.instances = instances;
-    m.instance_names = instance_names;
-    m.instance_dirty = instance_dirty;
-    m.camera_keys = keys;
-    m.sdf_params = params;
-    m.batches = batches;
-    m.groups = groups;
-    m.occluders = occluders;
-    m.group_states = group_states;
-    m.marks = marks;
-    m.boxes = boxes;
-    m.mesh_bounds = mesh_bounds;
-    m.box_items = box_items;
-    m.box_positions = box_positions;
-    m.moved = moved;
-    m.instance_meshes = instance_meshes;
-    m.lights = lights;
-    m.light_names = light_names;
-    m.sky = &sky;
-    m.transparents = transparents;
-    m.far_first = far_first;
-    m.load_count = masu_load_chunks(&m.plan);
-    assert_true(m.load_count <= COUNT(load_handles));
+    masu_timeline_start(&m.timeline);
+    m.device.plan = &m.plan;
+    m.device.frames = frames;
+    m.device.loads = loads;
+    m.instances.now = instances;
+    m.instances.names = instance_names;
+    m.instances.dirty = instance_dirty;
+    m.camera.keys = keys;
+    m.sdf.params = params;
+    m.draws.batches = batches;
+    m.bounds.groups = groups;
+    m.occlusion.occluders = occluders;
+    m.visible.group_states = group_states;
+    m.visible.marks = marks;
+    m.bounds.boxes = boxes;
+    m.bounds.meshes = mesh_bounds;
+    m.bounds.items = box_items;
+    m.bounds.positions = box_positions;
+    m.bounds.moved = moved;
+    m.instances.meshes = instance_meshes;
+    m.lights.states = lights;
+    m.lights.names = light_names;
+    m.sun_sky.sky = &sky;
+    m.transparents.things = transparents;
+    m.transparents.order = order;
+    m.device.load_count = masu_load_chunks(&m.plan);
+    assert_true(m.device.load_count <= COUNT(load_handles));
     masu_keep_scene(&m);
 }
 
 const unsigned char *slot_bytes(masu_buffer_id buffer, uint32_t slot) {
-    return masu_buffer_pointer(&m, buffer, slot);
+    return masu_buffer_pointer(&m.device, buffer, slot);
 }
 
 struct masu_frame_uniforms uniforms(uint32_t slot) {
@@ -108,7 +111,21 @@ struct masu_frame_uniforms uniforms(uint32_t slot) {
     return u;
 }
 
-void write_good(const masu_frame_desc *f, uint32_t slot) {
-    masu_detail detail;
-    if (masu_write_frame(&m, f, slot, &detail)) fail_msg("refused: %s", detail.text);
+masu_frame_data begin_frame(const masu_frame_desc *frame, uint32_t slot) {
+    masu_frame_data f = masu_frame_begin(&m.plan, &m.device, &m.draws, &m.timeline, frame);
+    f.slot = slot;
+    return f;
+}
+
+masu_result write_frame(const masu_frame_desc *frame, uint32_t slot, masu_detail *detail) {
+    masu_frame_data f = begin_frame(frame, slot);
+    masu_result result = masu_write_frame(&m, &f);
+    *detail = m.error;
+    return result;
+}
+
+uint32_t write_good(const masu_frame_desc *frame, uint32_t slot) {
+    masu_frame_data f = begin_frame(frame, slot);
+    if (masu_write_frame(&m, &f)) fail_msg("refused: %s", m.error.text);
+    return f.cascades;
 }

@@ -25,7 +25,10 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
 const unsigned char *slot_bytes(masu_buffer_id buffer, uint32_t slot);
 struct masu_frame_uniforms uniforms(uint32_t slot);
 
-/* Asserts that it is written. */
-void write_good(const masu_frame_desc *frame, uint32_t slot);
+/* The next frame, but in that slot. */
+masu_frame_data begin_frame(const masu_frame_desc *frame, uint32_t slot);
+masu_result write_frame(const masu_frame_desc *frame, uint32_t slot, masu_detail *detail);
+/* Asserts that it is written; which cascades it draws. */
+uint32_t write_good(const masu_frame_desc *frame, uint32_t slot);
 
 #endif

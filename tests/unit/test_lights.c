@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "frame/lights.h"
+#include "scene/punctual_light.h"
 #include "reference/lights.h"
 
 #define PI 3.14159265358979323846

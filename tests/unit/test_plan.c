@@ -22,7 +22,6 @@
 #include "plan/buffers.h"
 #include "plan/plan.h"
 #include "plan/push.h"
-#include "device/ray_query.h"
 #include "support/desc.h"
 #include "support/random.h"
 

@@ -213,9 +213,7 @@ static void drawn_and_looked_up_is_the_same_place(void **state) {
 
 static uint32_t draw_frame(const masu_camera *camera, uint32_t rung, uint32_t cut) {
     masu_frame_desc f = {.camera = camera, .rung = rung, .cut = cut};
-    write_good(&f, (uint32_t)(m.frame % 2));
-    m.frame++;
-    return m.drawn;
+    return write_good(&f, (uint32_t)(m.timeline.frame++ % 2));
 }
 
 static const masu_camera still = {.position = {0, 2, 5}, .forward = {0, 0, -1}, .fov_y = 1};
@@ -303,23 +301,23 @@ static void casters_that_move_away_stay_in_reach(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
     double before[2][3];
-    memcpy(before, m.casters, sizeof before);
+    memcpy(before, m.bounds.swept, sizeof before);
     assert_true(before[0][0] <= -1 && before[1][0] >= 4); /* "plate" at 0 and at 3 */
     float rows[12] = {1, 0, 0, 1e6f, 0, 1, 0, 500, 0, 0, 1, 0};
     masu_instance i = masu_instance_find(&m, "plate");
     assert_int_equal(masu_instance_set_transform(&m, i, rows), MASU_OK);
-    assert_true(m.casters[1][0] >= 1e6 && m.casters[1][1] >= 502);
-    assert_true(m.casters[0][0] == before[0][0]);
+    assert_true(m.bounds.swept[1][0] >= 1e6 && m.bounds.swept[1][1] >= 502);
+    assert_true(m.bounds.swept[0][0] == before[0][0]);
     draw_frame(&still, 0, 0);
     for (uint32_t k = 0; k < 2; k++) {
         double p[3] = {1e6, 502, 0};
-        for (int j = 0; j < 3; j++) p[j] -= m.cascades[k].center[j];
-        assert_true(dot(m.cascades[k].axis[2], p) <= m.cascades[k].ahead);
+        for (int j = 0; j < 3; j++) p[j] -= m.shadow.cascades[k].center[j];
+        assert_true(dot(m.shadow.cascades[k].axis[2], p) <= m.shadow.cascades[k].ahead);
     }
     rows[3] = 3e38f; /* finite, as is asked */
     assert_int_equal(masu_instance_set_transform(&m, i, rows), MASU_OK);
     draw_frame(&still, 0, 0);
-    assert_true(isfinite(m.cascades[0].ahead));
+    assert_true(isfinite(m.shadow.cascades[0].ahead));
 }
 
 /* ---- Plan ------------------------------------------------------------------------------------ */

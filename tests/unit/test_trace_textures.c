@@ -23,7 +23,7 @@
 #include "masu.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
-#include "frame/specular.h"
+#include "scene/trace_scene.h"
 #include "support/random.h"
 
 enum { NOISE, LEAF, ROUGH, GLOW, UNSEEN, PICTURES };

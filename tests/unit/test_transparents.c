@@ -17,15 +17,15 @@
 
 enum { MOST = 4096 };
 
-static masu_far_first entries[MOST + 1], scratch[MOST + 1];
+static masu_back_to_front entries[MOST + 1], scratch[MOST + 1];
 
 /* Every thing once, and in order; behind both arrays nothing was touched. */
 static void assert_sorted(uint32_t n, const float *keys) {
     static uint8_t seen[MOST];
-    const masu_far_first guard = {-7, 12345};
-    for (uint32_t i = 0; i < n; i++) entries[i] = (masu_far_first){keys[i], i};
+    const masu_back_to_front guard = {-7, 12345};
+    for (uint32_t i = 0; i < n; i++) entries[i] = (masu_back_to_front){keys[i], i};
     entries[n] = scratch[n] = guard;
-    const masu_far_first *sorted = masu_sort_far_first(entries, scratch, n);
+    const masu_back_to_front *sorted = masu_sort_back_to_front(entries, scratch, n);
     assert_true(sorted == entries || sorted == scratch);
     memset(seen, 0, sizeof seen);
     for (uint32_t i = 0; i < n; i++) {

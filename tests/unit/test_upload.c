@@ -12,6 +12,9 @@
 #include <cmocka.h>
 
 #include "support/bind.h"
+#include "device/bind.h"
+#include "device/load.h"
+#include "scene/scene.h"
 #include "split_sum.h"
 #include "support/dry_renderer.h"
 
@@ -68,7 +71,7 @@ static void chunks_of_any_size_add_up_to_the_scene(void **state) {
             for (int k = 0; k < 64; k++) assert_int_equal(behind[k], NOISE);
             submitted++;
         }
-        assert_int_equal(submitted, m.load_count);
+        assert_int_equal(submitted, m.device.load_count);
         assert_resident(copy[MASU_BUFFER_VERTICES], copy[MASU_BUFFER_INDICES],
                         copy[MASU_BUFFER_MATERIALS], copy[MASU_BUFFER_SLOTS]);
         assert_memory_equal(copy[MASU_BUFFER_TABLES], masu_split_sum, 4 * MASU_TABLE_WORDS);
@@ -175,6 +178,12 @@ static void a_frame_that_is_refused_changes_nothing(void **state) {
 
 /* ---- Instances ------------------------------------------------------------------------------- */
 
+static void write_instances(uint32_t slot) {
+    masu_frame_data f = begin_frame(&(masu_frame_desc){.rung = 0}, slot);
+    f.cut = 0;
+    masu_instances_write(&m.instances, &f);
+}
+
 static void instances_are_found_by_name(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
@@ -193,7 +202,7 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
     make_renderer(SUPPORT_ALL, 0);
     masu_scene_view v = masu_scene_look(&scene);
     for (uint32_t slot = 0; slot < 2; slot++) { /* all, at first */
-        masu_write_instances(&m, slot, 0);
+        write_instances(slot);
         for (uint32_t i = 0; i < 3; i++) {
             assert_memory_equal(slot_bytes(MASU_BUFFER_INSTANCES, slot) + i * size,
                                 v.instances[i].transform, size);
@@ -201,9 +210,9 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
     }
     assert_int_equal(masu_instance_set_transform(&m, (masu_instance){2}, rows), MASU_OK);
     for (uint32_t frame = 0; frame < 4; frame++) { /* slots come in turn */
-        unsigned char *to = masu_buffer_pointer(&m, MASU_BUFFER_INSTANCES, frame % 2);
+        unsigned char *to = masu_buffer_pointer(&m.device, MASU_BUFFER_INSTANCES, frame % 2);
         memset(to, NOISE, 3 * size);
-        masu_write_instances(&m, frame % 2, 0);
+        write_instances(frame % 2);
         if (frame < 2) {
             assert_memory_equal(to + size, rows, size);
         } else {
@@ -218,25 +227,25 @@ static void moving_twice_before_a_frame_keeps_the_last(void **state) {
     (void)state;
     float rows[12] = {0};
     make_renderer(SUPPORT_ALL, 0);
-    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot, 0);
+    for (uint32_t slot = 0; slot < 2; slot++) write_instances(slot);
     for (int n = 1; n <= 5; n++) {
         rows[3] = (float)n;
         assert_int_equal(masu_instance_set_transform(&m, (masu_instance){3}, rows), MASU_OK);
     }
     for (uint32_t slot = 0; slot < 2; slot++) {
         struct masu_instance_data got;
-        masu_write_instances(&m, slot, 0);
+        write_instances(slot);
         memcpy(&got, slot_bytes(MASU_BUFFER_INSTANCES, slot) + 2 * sizeof got, sizeof got);
         assert_true(got.row0[3] == 5.0f);
     }
-    assert_int_equal(m.dirty_count, 0);
+    assert_int_equal(m.instances.dirty_count, 0);
 }
 
 static void a_bad_instance_or_transform_is_refused(void **state) {
     (void)state;
     static const float good[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     make_renderer(SUPPORT_ALL, 0);
-    for (uint32_t slot = 0; slot < 2; slot++) masu_write_instances(&m, slot, 0);
+    for (uint32_t slot = 0; slot < 2; slot++) write_instances(slot);
     const uint32_t ids[] = {0, 4, UINT32_MAX};
     for (size_t i = 0; i < COUNT(ids); i++) {
         assert_int_equal(masu_instance_set_transform(&m, (masu_instance){ids[i]}, good),
@@ -257,7 +266,7 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
                      MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_instance_set_transform(NULL, (masu_instance){1}, good),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(m.dirty_count, 0);
+    assert_int_equal(m.instances.dirty_count, 0);
 }
 
 int main(void) {

@@ -25,7 +25,7 @@
 #include "bake/texture/trace_texture.h"
 #include "cli/cli.h"
 #include "masu.h"
-#include "frame/transparents.h"
+#include "scene/blob.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * followed. The rules are those of blob.h for geometry, instances and materials; the finished scene
  * is judged by the runtime's own reader, masu_scene_bind. */
 #include "bake/scene/content.h"
-#include "frame/lights.h"
+#include "scene/punctual_light.h"
 
 static bool finite_all(const float *values, size_t count) {
     for (size_t i = 0; i < count; i++) {

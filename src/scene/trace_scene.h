@@ -1,16 +1,17 @@
-/* specular.h: the buffers of what reflections are traced through.
+/* trace_scene.h: the buffers of what reflections are traced through.
  *
- *   traced scene, once:     header, nodes, triangles as src/scene/trace.h lays them, then what shaders/trace/scene.glsl
+ *   traced scene, once:     header, nodes, triangles as trace.h lays them, then what shaders/trace/scene.glsl
  *                           finds behind the header's last word: a header of its own, the tile of blue noise,
  *                           materials, small pictures, their texels
- *   traced instances, per frame in flight: the top level of src/scene/trace.h, then six rows for each traced
- *                           instance: where it is, and where it was
+ *   traced instances, per frame in flight: the top level of trace.h, then six rows for each traced
+ *                           instance: where it is, and where it was (src/frame/reflections.c)
  *
- * Nothing here allocates. The tree over instances lives in the host block. */
-#ifndef MASU_SPECULAR_H
-#define MASU_SPECULAR_H
+ * Nothing here allocates. */
+#ifndef MASU_TRACE_SCENE_H
+#define MASU_TRACE_SCENE_H
 
-#include "scene/scene.h"
+#include "masu.h"
+#include "scene/view.h"
 
 #define MASU_TRACE_ROWS 6u /* of four floats, of each traced instance */
 
@@ -26,9 +27,14 @@ masu_trace_plan masu_trace_lay(const masu_scene *scene);
  * the rows. */
 uint64_t masu_trace_scene_bytes(const masu_scene *scene);
 uint64_t masu_trace_slot_bytes(const masu_scene *scene, int query);
+/* Where in a slot the rows begin. */
+uint64_t masu_trace_rows_at(const masu_scene *scene, int query);
 
 /* Bytes [offset, offset + bytes) of the first buffer; both multiples of 16, but for the end. */
 void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_t offset,
                       uint64_t bytes, unsigned char *to);
+
+/* 1: some of what is traced has holes: the permutation of the shader that looks them up. */
+uint32_t masu_ray_masks(const masu_scene *scene);
 
 #endif

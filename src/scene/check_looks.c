@@ -1,10 +1,74 @@
-/* check_light.c: the checks of what lights a scene: scene.c has the rest. */
-#include "scene/reader.h"
+/* check_looks.c: how a scene looks, but for its textures: materials, the camera path, the sun and its
+ * shadow, local lights, probes, sky and fog. */
+#include "scene/check.h"
 
-#include "frame/lights.h"
-#include "frame/transparents.h"
+#include "scene/punctual_light.h"
 
 #include <string.h>
+
+static masu_result check_colors(reader *r) {
+    const masu_scene_view *v = &r->view;
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_MATERIALS]; i++) {
+        const masu_blob_material *m = &v->materials[i];
+        if (!within(m->base_color, 3, 0.0f, 1.0f) || !within(&m->roughness, 1, 0.0f, 1.0f) ||
+            !within(&m->metallic, 1, 0.0f, 1.0f) || !within(m->emissive, 3, 0.0f, 1e9f)) {
+            return bad(r, "materials", i, "a value is out of range");
+        }
+        if (!name_ok(r, m->name)) return bad(r, "materials", i, "name lies outside the names");
+    }
+    return MASU_OK;
+}
+
+static masu_result check_path(reader *r) {
+    const masu_scene_view *v = &r->view;
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_CAMERA_KEYS]; i++) {
+        const masu_blob_camera_key *k = &v->camera_keys[i];
+        /* Times and places that masu_frame would accept, so that the path works as a whole. */
+        if (!within(&k->time, 1, -1e15f, 1e15f) || !within(k->position, 3, -1e15f, 1e15f) ||
+            !within(k->target, 3, -1e15f, 1e15f)) {
+            return bad(r, "camera keys", i, "is not finite or beyond 1e15");
+        }
+        if (!(k->fov_y >= 0.001f && k->fov_y <= 3.1f)) {
+            return bad(r, "camera keys", i, "field of view is not 0.001 to 3.1 radians");
+        }
+        if (!memcmp(k->position, k->target, sizeof k->position)) {
+            return bad(r, "camera keys", i, "position and target are the same");
+        }
+        if (i && !(k->time > v->camera_keys[i - 1].time)) {
+            return bad(r, "camera keys", i, "time does not rise");
+        }
+    }
+    return MASU_OK;
+}
+
+static masu_result check_sun(reader *r) {
+    const masu_blob_environment *e = r->view.environment;
+    if (!e) return bad(r, "environment", 0, "is missing");
+    float sun = e->sun_direction[0] * e->sun_direction[0] +
+                e->sun_direction[1] * e->sun_direction[1] +
+                e->sun_direction[2] * e->sun_direction[2];
+    if (!(sun > 0.98f && sun < 1.02f))
+        return bad(r, "environment", 0, "sun direction is no unit vector");
+    if (!within(e->sun_color, 3, 0.0f, 1e9f) || !within(e->ambient, 3, 0.0f, 1e9f) ||
+        !within(e->sky_zenith, 3, 0.0f, 1e9f) || !within(e->sky_horizon, 3, 0.0f, 1e9f) ||
+        !within(&e->exposure, 1, 1e-9f, 1e9f) || !within(&e->near_distance, 1, 1e-9f, 1e9f)) {
+        return bad(r, "environment", 0, "a value is out of range");
+    }
+    return MASU_OK;
+}
+
+static masu_result check_shadow(reader *r) {
+    const masu_blob_shadow *s = r->view.shadow;
+    if (!s) return MASU_OK;
+    if (s->cascades < 1 || s->cascades > MASU_SHADOW_CASCADES_MAX)
+        return bad(r, "shadow", 0, "cascades are not 1 to 4");
+    if (s->resolution < MASU_SHADOW_SIZE_MIN || s->resolution > MASU_SHADOW_SIZE_MAX)
+        return bad(r, "shadow", 0, "resolution is not 16 to 8192");
+    if (!within(&s->distance, 1, 1e-3f, 1e9f))
+        return bad(r, "shadow", 0, "distance is not 0.001 to 1e9 m");
+    if (!within(&s->lambda, 1, 0.0f, 1.0f)) return bad(r, "shadow", 0, "lambda is not 0 to 1");
+    return MASU_OK;
+}
 
 static masu_result check_material(reader *r, uint64_t i) {
     const masu_blob_material *m = &r->view.materials[i];
@@ -119,24 +183,29 @@ static masu_result check_environment(reader *r) {
     return MASU_OK;
 }
 
-masu_result masu_check_lighting(reader *r) {
+masu_result masu_check_looks(reader *r) {
+    masu_result result = check_colors(r);
+    if (!result) result = check_path(r);
+    if (!result) result = check_sun(r);
+    if (!result) result = check_shadow(r);
+    if (result) return result;
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_MATERIALS]; i++) {
-        masu_result result = check_material(r, i);
+        result = check_material(r, i);
         if (result) return result;
     }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_MESO]; i++) {
         const masu_blob_meso *m = &r->view.meso[i];
         const float positive[2] = {m->alpha, m->offset};
-        if (!within((const float *)(const void *)m, 24, -1e3f, 1e3f) || !within(&m->facet, 1, 0.0f, 1.0f) ||
-            !within(positive, 2, 0.0f, 4.0f)) {
+        if (!within((const float *)(const void *)m, 24, -1e3f, 1e3f) ||
+            !within(&m->facet, 1, 0.0f, 1.0f) || !within(positive, 2, 0.0f, 4.0f)) {
             return bad(r, "meso", i, "a value is out of range");
         }
     }
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_LIGHTS]; i++) {
-        masu_result result = check_light(r, i);
+        result = check_light(r, i);
         if (result) return result;
     }
-    masu_result result = check_probes(r);
+    result = check_probes(r);
     return result ? result : check_environment(r);
 }
 
@@ -174,7 +243,7 @@ static void look_at_transparents(const reader *r, masu_scene *out) {
     out->transparent_sets = things && !count ? 1 : count;
 }
 
-void masu_look_at_lighting(const reader *r, masu_scene *out) {
+void masu_look_at_looks(const reader *r, masu_scene *out) {
     for (uint32_t i = 0; i < out->materials; i++) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;

@@ -1,9 +1,8 @@
-/* light.c: the light of a frame: what the host gives or the scene has, checked; sky and fog from it. */
-#include "renderer.h"
+/* sun_sky.c: see sun_sky.h. */
+#include "frame/sun_sky.h"
 
 #include "base/error.h"
-#include "shared/masu_shared.h"
-#include "frame/sky.h"
+#include "base/vec.h"
 
 #include <string.h>
 
@@ -18,7 +17,8 @@ static int color_ok(const float *v) {
     return 1;
 }
 
-static masu_result check_sky(const masu_renderer *m, const masu_light *light, masu_detail *detail) {
+static masu_result check_sky(const masu_frame_plan *plan, const masu_light *light,
+                             masu_detail *detail) {
     if (light->turbidity == 0.0f) return MASU_OK;
     if (!(light->turbidity >= MASU_SKY_TURBIDITY_MIN &&
           light->turbidity <= MASU_SKY_TURBIDITY_MAX)) {
@@ -28,7 +28,7 @@ static masu_result check_sky(const masu_renderer *m, const masu_light *light, ma
         if (!(light->ground[c] >= 0.0f && light->ground[c] <= 1.0f))
             return bad(detail, "light.ground", "is not 0 to 1");
     }
-    if (!m->plan.needs.sky) {
+    if (!plan->needs.sky) {
         return bad(detail, "light.turbidity",
                    "needs a scene with an analytic sky or desc.analytic_sky");
     }
@@ -55,7 +55,8 @@ static void write_fog(const masu_light *light, double eye_y, struct masu_frame_u
     u->air[0] = (float)(eye_y - (double)light->fog_height);
     u->air[1] = light->fog_falloff;
     u->air[2] = light->fog_start;
-    u->air[3] = light->fog_color[0] > 0.0f || light->fog_color[1] > 0.0f || light->fog_color[2] > 0.0f;
+    u->air[3] =
+        light->fog_color[0] > 0.0f || light->fog_color[1] > 0.0f || light->fog_color[2] > 0.0f;
 }
 
 static masu_light scene_light(const masu_blob_environment *e) {
@@ -75,69 +76,82 @@ static masu_light scene_light(const masu_blob_environment *e) {
     return light;
 }
 
-masu_result masu_light_of(const masu_renderer *m, masu_light *out) {
-    if (!m || !out) return MASU_ERROR_ARGUMENT;
-    if (!m->plan.needs.scene) return MASU_ERROR_STATE;
-    *out = scene_light(&m->environment);
-    return MASU_OK;
+masu_light masu_sun_sky_light(const masu_sun_sky *s) { return scene_light(&s->environment); }
+
+void masu_sun_sky_lay(masu_sun_sky *s, masu_arena *arena, const masu_frame_plan *plan) {
+    s->sky = masu_arena_take(arena, "sky", plan->needs.sky ? 1 : 0, sizeof *s->sky, 16);
 }
 
-masu_result masu_write_light(const masu_renderer *m, const masu_light *given, double eye_y,
-                             struct masu_frame_uniforms *u, masu_light *out, masu_detail *detail) {
-    masu_light light = given ? *given : scene_light(&m->environment);
+void masu_sun_sky_keep(masu_sun_sky *s, const masu_scene_view *v) {
+    s->environment = *v->environment;
+    if (!v->environment_map) return;
+    for (uint32_t k = 0; k < 9; k++)
+        memcpy(s->environment_sh[k], v->environment_map->sh[k], sizeof s->environment_sh[k]);
+}
+
+/* The masu_light as it is, and the irradiance of a sky that is not analytic. */
+static void write_light(const masu_sun_sky *s, masu_frame_data *f) {
+    struct masu_frame_uniforms *u = &f->u;
+    const masu_light *light = &f->light;
+    u->sun_direction[3] = light->exposure;
+    memcpy(u->sun_color, light->sun_color, sizeof light->sun_color);
+    memcpy(u->ambient, light->ambient, sizeof light->ambient);
+    memcpy(u->sky_zenith, light->sky_zenith, sizeof light->sky_zenith);
+    memcpy(u->sky_horizon, light->sky_horizon, sizeof light->sky_horizon);
+    memcpy(u->irradiance[0], light->ambient, sizeof light->ambient);
+    if (f->plan->needs.environment) {
+        for (uint32_t k = 0; k < 9; k++)
+            memcpy(u->irradiance[k], s->environment_sh[k], sizeof s->environment_sh[k]);
+        memcpy(u->ambient, s->environment_sh[0], sizeof s->environment_sh[0]);
+        u->sky_zenith[3] = (float)f->plan->scene.environment_size;
+        u->sky_horizon[3] = (float)f->plan->scene.environment_mips;
+    }
+    write_fog(light, f->eye[1], u);
+}
+
+masu_result masu_sun_sky_read(const masu_sun_sky *s, masu_frame_data *f, masu_detail *detail) {
+    masu_light light = f->desc.light ? *f->desc.light : scene_light(&s->environment);
     if (light.exposure == 0.0f) light.exposure = 1.0f;
     if (!(light.exposure >= 1e-9f && light.exposure <= 1e9f))
         return bad(detail, "light.exposure", "is not 1e-9 to 1e9");
-    if (!masu_unit(light.sun_direction, u->sun_direction))
+    if (!masu_unit(light.sun_direction, f->u.sun_direction))
         return bad(detail, "light.sun_direction", "is zero or not finite");
     if (!color_ok(light.sun_color) || !color_ok(light.ambient) || !color_ok(light.sky_zenith) ||
         !color_ok(light.sky_horizon)) {
         return bad(detail, "light", "has a colour that is not 0 to 1e9");
     }
-    masu_result result = check_sky(m, &light, detail);
+    masu_result result = check_sky(f->plan, &light, detail);
     if (!result) result = check_fog(&light, detail);
     if (result) return result;
-    u->sun_direction[3] = light.exposure;
-    memcpy(u->sun_color, light.sun_color, sizeof light.sun_color);
-    memcpy(u->ambient, light.ambient, sizeof light.ambient);
-    memcpy(u->sky_zenith, light.sky_zenith, sizeof light.sky_zenith);
-    memcpy(u->sky_horizon, light.sky_horizon, sizeof light.sky_horizon);
-    memcpy(u->irradiance[0], light.ambient, sizeof light.ambient);
-    if (m->plan.needs.environment) {
-        for (uint32_t k = 0; k < 9; k++)
-            memcpy(u->irradiance[k], m->environment_sh[k], sizeof m->environment_sh[k]);
-        memcpy(u->ambient, m->environment_sh[0], sizeof m->environment_sh[0]);
-        u->sky_zenith[3] = (float)m->plan.scene.environment_size;
-        u->sky_horizon[3] = (float)m->plan.scene.environment_mips;
-    }
-    write_fog(&light, eye_y, u);
-    *out = light;
+    f->light = light;
+    write_light(s, f);
     return MASU_OK;
 }
 
-void masu_write_sky(masu_renderer *m, const masu_light *light, uint32_t slot,
-                    struct masu_frame_uniforms *u) {
-    if (!m->plan.needs.sky) return;
+void masu_sun_sky_write(masu_sun_sky *s, masu_frame_data *f) {
+    struct masu_frame_uniforms *u = &f->u;
+    const masu_light *light = &f->light;
+    if (!f->plan->needs.sky) return;
     struct masu_sky_uniforms *to =
-        (struct masu_sky_uniforms *)(void *)masu_buffer_pointer(m, MASU_BUFFER_SKY, slot);
+        (struct masu_sky_uniforms *)(void *)masu_frame_slot(f, MASU_BUFFER_SKY);
     if (light->turbidity == 0.0f) {
         memset(to->azimuth, 0, sizeof to->azimuth);
-        m->slot_sky[slot] = 0;
+        s->slot_updates[f->slot] = 0;
         return;
     }
-    masu_sky *sky = m->sky;
+    masu_sky *sky = s->sky;
     (void)masu_sky_update(sky, u->sun_direction, light->turbidity, light->ground);
-    const masu_sky_irradiance *s = &sky->irradiance;
-    for (uint32_t k = 0; k < 9; k++) memcpy(u->irradiance[k], s->sh[k], sizeof s->sh[k]);
+    const masu_sky_irradiance *from = &sky->irradiance;
+    for (uint32_t k = 0; k < 9; k++) memcpy(u->irradiance[k], from->sh[k], sizeof from->sh[k]);
     for (uint32_t k = 0; k < 3; k++) {
-        u->irradiance[k][3] = s->glow[k];
-        u->irradiance[3 + k][3] = s->direction[k];
-        u->irradiance[6 + k][3] = s->ring[k];
-        u->ambient[k] = s->sh[0][k];
+        u->irradiance[k][3] = from->glow[k];
+        u->irradiance[3 + k][3] = from->direction[k];
+        u->irradiance[6 + k][3] = from->ring[k];
+        u->ambient[k] = from->sh[0][k];
     }
     if (u->sun_color[0] == 0.0f && u->sun_color[1] == 0.0f && u->sun_color[2] == 0.0f)
         memcpy(u->sun_color, sky->sun_color, sizeof sky->sun_color);
-    if (m->slot_sky[slot] == sky->sun_updates) return;
+    if (s->slot_updates[f->slot] == sky->sun_updates) return;
     memcpy(to, &sky->uniforms, sizeof *to);
-    m->slot_sky[slot] = sky->sun_updates;
+    s->slot_updates[f->slot] = sky->sun_updates;
 }

@@ -1,19 +1,16 @@
-/* specular.c: see specular.h. */
-#include "frame/specular.h"
+/* trace_scene.c: see trace_scene.h. */
+#include "scene/trace_scene.h"
 
 #include "blue_noise.h"
-#include "renderer.h"
-#include "shared/masu_shared.h"
 #include "scene/trace.h"
+#include "shared/masu_shared.h"
 
-#include <math.h>
 #include <string.h>
-
-/* ---- The scene ------------------------------------------------------------------------------- */
 
 masu_trace_plan masu_trace_lay(const masu_scene *scene) {
     masu_trace_static s = masu_trace_static_layout(scene->trace_nodes, scene->trace_triangles);
-    masu_trace_plan p = {.nodes = s.nodes / 16, .triangles = s.triangles / 16, .more = s.bytes / 16};
+    masu_trace_plan p = {
+        .nodes = s.nodes / 16, .triangles = s.triangles / 16, .more = s.bytes / 16};
     p.noise = p.more + 1;
     p.materials = p.noise + MASU_BLUE_NOISE_WORDS / 4;
     p.pictures = p.materials;
@@ -25,13 +22,13 @@ masu_trace_plan masu_trace_lay(const masu_scene *scene) {
 
 uint64_t masu_trace_scene_bytes(const masu_scene *scene) { return 16 * masu_trace_lay(scene).end; }
 
-/* Where the rows begin. */
-static uint64_t rows_at(const masu_scene *scene, int query) {
+uint64_t masu_trace_rows_at(const masu_scene *scene, int query) {
     return query ? 16 : masu_trace_frame_bytes(scene->trace_instances);
 }
 
 uint64_t masu_trace_slot_bytes(const masu_scene *scene, int query) {
-    return rows_at(scene, query) + 16 * (uint64_t)MASU_TRACE_ROWS * scene->trace_instances;
+    return masu_trace_rows_at(scene, query) +
+           16 * (uint64_t)MASU_TRACE_ROWS * scene->trace_instances;
 }
 
 /* The picture of a material's map, or none. They are sorted. */
@@ -132,101 +129,6 @@ void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_
     }
 }
 
-/* ---- Instances ------------------------------------------------------------------------------- */
-
-void masu_keep_trace(masu_renderer *m, const masu_scene_view *v) {
-    uint32_t count = m->plan.scene.trace_instances;
-    if (!m->plan.needs.traced) return;
-    for (uint32_t i = 0; i < count; i++) m->traced[i] = v->trace_instances[i];
-    if (m->plan.needs.query) return;
-    masu_trace_top_make(&m->trace, m->trace_memory, count);
-    for (uint32_t i = 0; i < count; i++) {
-        masu_trace_root root = masu_trace_root_of(v, i);
-        masu_trace_top_set(&m->trace, i, &root);
-    }
-}
-
-/* The tree over instances, after transforms have been copied. Whether it has changed. */
-static int update_tree(masu_renderer *m) {
-    for (uint32_t i = 0; i < m->trace.count && (m->dirty_count || !m->trace_versions); i++) {
-        uint32_t instance = m->traced[i];
-        if (!m->instance_dirty[instance] && m->trace_versions) continue;
-        float rows[12];
-        memcpy(rows, &m->instances[instance], sizeof rows);
-        (void)masu_trace_top_place(&m->trace, i, rows); /* one without an inverse is not seen */
-    }
-    return masu_trace_top_update(&m->trace, m->anchor) != MASU_TRACE_SAME;
-}
-
-static void rows_of(const struct masu_instance_data *from, const double anchor[3], float to[3][4]) {
-    const float *rows[3] = {from->row0, from->row1, from->row2};
-    for (uint32_t k = 0; k < 3; k++) {
-        memcpy(to[k], rows[k], 3 * sizeof(float));
-        to[k][3] = (float)((double)rows[k][3] - anchor[k]);
-    }
-}
-
-/* All of a slot, where anything has changed since it was written last: a frame in which nothing moves writes
- * nothing. After transforms have been copied, before masu_write_instances forgets those of the frame before. */
-void masu_write_trace(masu_renderer *m, uint32_t slot, int cut) {
-    const double *anchor = m->anchor;
-    uint32_t count = m->plan.scene.trace_instances;
-    if (!m->plan.needs.traced) return;
-    int changed = m->plan.needs.query ? masu_ray_moved(m) : update_tree(m);
-    /* What has moved stands still one frame later: that is a change of where it was. */
-    if (changed || m->dirty_count || !m->trace_versions) m->trace_versions++;
-    if (m->slot_trace[slot] == m->trace_versions) return;
-    m->slot_trace[slot] = m->trace_versions;
-    unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_TRACE_FRAME, slot);
-    uint64_t at = rows_at(&m->plan.scene, m->plan.needs.query);
-    uint32_t header[4] = {0, 0, 0, (uint32_t)(at / 16)};
-    if (m->plan.needs.query)
-        memcpy(to, header, sizeof header);
-    else
-        masu_trace_top_write(&m->trace, to);
-    memcpy(to + 12, &header[3], 4);
-    for (uint32_t i = 0; i < count; i++) {
-        const struct masu_instance_data *now = &m->instances[m->traced[i]];
-        const struct masu_instance_data *before = &m->previous_instances[m->traced[i]];
-        float both[2][3][4];
-        rows_of(now, anchor, both[0]);
-        rows_of(cut ? now : before, anchor, both[1]);
-        memcpy(to + at + i * sizeof both, both, sizeof both);
-        if (m->plan.needs.query) masu_ray_write_instance(m, slot, i, both[0]);
-    }
-}
-
-/* Where traced things are measured from: the origin, or where the eye is far out a point near it that rarely
- * moves, as the SDF's (upload.c). */
-static void anchor_of(const double eye[3], double anchor[3]) {
-    int far = 0;
-    for (uint32_t k = 0; k < 3; k++) far |= fabs(eye[k]) >= MASU_ANCHOR_FROM;
-    for (uint32_t k = 0; k < 3; k++)
-        anchor[k] = far ? floor(eye[k] / MASU_ANCHOR_GRID + 0.5) * MASU_ANCHOR_GRID : 0.0;
-}
-
-void masu_write_reflections(masu_renderer *m, const masu_frame_desc *f, const double eye[3],
-                            struct masu_frame_uniforms *u) {
-    double anchor[3];
-    if (!m->plan.needs.reflections) return;
-    const masu_rung_plan *rp = &m->plan.rungs[f->rung];
-    anchor_of(eye, anchor);
-    for (uint32_t k = 0; k < 3; k++) {
-        u->trace_anchor[k] = (float)anchor[k];
-        u->trace_eye[k] = (float)(eye[k] - anchor[k]);
-        m->anchor[k] = anchor[k];
-    }
-    u->trace_anchor[3] = m->plan.scene.trace_distance;
-    if (!masu_is_cut(m, f) && m->traced_before) {
-        u->history[1] = m->traced_size[0];
-        u->history[2] = m->traced_size[1];
-    }
-    if (!m->fine_before) u->history[3] |= MASU_HISTORY_NO_FINE;
-    /* Of the frame before counts what it has kept. */
-    m->fine_before = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP_FINE);
-    m->traced_before =
-        masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP) ||
-        masu_has_pass(&rp->active, MASU_PASS_SPECULAR_ACCUMULATE);
-    m->traced_size[0] = rp->render_width;
-    m->traced_size[1] = rp->render_height;
+uint32_t masu_ray_masks(const masu_scene *scene) {
+    return scene->trace_colors && scene->masks ? 1 : 0;
 }

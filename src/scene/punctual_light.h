@@ -1,14 +1,10 @@
-/* lights.h: local lights, points and spots, between the scene and the shaders.
- *
- * The host keeps each light as the scene or masu_local_light_set has it; every frame it places them,
- * leaves out those that light nothing in the picture, and writes the rest, in the scene's order, to
- * the frame's slot of MASU_BUFFER_LIGHTS: a masu_light_header and so many masu_local_light_data,
- * relative to the eye. light_tiles.comp sorts them into tiles from there. */
-#ifndef MASU_LIGHTS_H
-#define MASU_LIGHTS_H
+/* punctual_light.h: one local light, a point or a spot: what the scene or the host says of it, whether
+ * that is in range, and how the shaders read it (masu_local_light_data). Pure functions. */
+#ifndef MASU_PUNCTUAL_LIGHT_H
+#define MASU_PUNCTUAL_LIGHT_H
 
-#include "scene/blob.h"
 #include "masu.h"
+#include "scene/blob.h"
 #include "shared/masu_shared.h"
 
 /* Words of one tile's list: none needs more lights than there are. */

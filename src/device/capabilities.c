@@ -1,0 +1,178 @@
+/* capabilities.c: see capabilities.h. */
+#include "device/capabilities.h"
+
+#include "base/error.h"
+#include "device/ray_query.h"
+#include "plan/buffers.h"
+
+#include <string.h>
+
+/* ---- Storage buffers ------------------------------------------------------------------------- */
+
+/* Rungs that leave reflections to us go without where there are too few. */
+static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan,
+                                 const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
+    uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
+    uint32_t needed = masu_plain_buffers(plan) + masu_group_buffers(plan, MASU_BINDING_TRACING);
+    if (!plan->needs.reflections || has >= needed) return MASU_OK;
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        if (desc->rungs[r].specular == MASU_ON) {
+            return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
+                             needed, has,
+                             "rungs[%u].specular needs %u storage buffers in a stage, the device "
+                             "has %u",
+                             r, needed, has);
+        }
+        desc->rungs[r].specular = MASU_OFF;
+    }
+    return MASU_OK;
+}
+
+/* Whether any rung still may trace. */
+static int desc_traces(const masu_desc *desc) {
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        if (desc->rungs[r].specular != MASU_OFF) return 1;
+    }
+    return 0;
+}
+
+/* Whether the device's ray queries or our own tree finds what is reflected: the description is left
+ * with ON or OFF. */
+static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
+                                    masu_detail *detail) {
+    VkPhysicalDeviceType type = vk->properties.deviceType;
+    int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
+              type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    int forced = desc->ray_query == MASU_ON;
+    int wished = forced || (desc->ray_query == MASU_AUTO && desc->vulkan.ray_query && gpu);
+    desc->ray_query = MASU_OFF;
+    if (!wished || !plan->needs.traced || !desc_traces(desc)) return MASU_OK;
+    if (!desc->vulkan.ray_query) {
+        return masu_fail(
+            detail, MASU_ERROR_DEVICE, "vulkan.ray_query", 1, 0,
+            "ray_query is MASU_ON, but vulkan.ray_query says that the device was created "
+            "without VK_KHR_ray_query");
+    }
+    masu_result result = masu_ray_check(&plan->scene, vk, detail);
+    if (result) return forced ? result : MASU_OK;
+    desc->ray_query = MASU_ON;
+    return MASU_OK;
+}
+
+/* Whether fast EASU weighs texels in 16 bits: the description is left with ON or OFF. */
+static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
+    VkPhysicalDeviceType type = vk->properties.deviceType;
+    int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
+              type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    int forced = desc->half_floats == MASU_ON, used = 0;
+    for (uint32_t r = 0; r < desc->rung_count; r++) used |= desc->rungs[r].easu == MASU_EASU_FAST;
+    if (used && forced && !desc->vulkan.shader_float16) {
+        return masu_fail(
+            detail, MASU_ERROR_DEVICE, "vulkan.shader_float16", 1, 0,
+            "half_floats is MASU_ON, but vulkan.shader_float16 says that the device was "
+            "created without shaderFloat16");
+    }
+    int wished = forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && gpu);
+    desc->half_floats = used && wished ? MASU_ON : MASU_OFF;
+    return MASU_OK;
+}
+
+/* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
+ * without it where there are no more. */
+static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
+                                  const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
+    uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
+    uint32_t plain = masu_plain_buffers(plan);
+    uint32_t needed = plain + masu_group_buffers(plan, MASU_BINDING_CULLING);
+    if (has < plain) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain,
+                         has,
+                         "the scene's lights, probes or metered exposure, or SMAA, need %u storage "
+                         "buffers in a stage, the "
+                         "device has %u",
+                         plain, has);
+    }
+    if (plan->needs.reflections && desc_traces(desc))
+        needed += masu_group_buffers(plan, MASU_BINDING_TRACING);
+    if (!plan->occlusion || has >= needed) return MASU_OK;
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        if (desc->rungs[r].occlusion == MASU_ON) {
+            return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers",
+                             needed, has,
+                             "rungs[%u].occlusion needs %u storage buffers in a stage, the device "
+                             "has %u",
+                             r, needed, has);
+        }
+        desc->rungs[r].occlusion = MASU_OFF;
+    }
+    return MASU_OK;
+}
+
+/* What grows with the scene and is bound whole, and the widest dispatch over instances. */
+static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
+                                masu_detail *detail) {
+    for (uint32_t i = 0; i < MASU_BUFFER_COUNT; i++) {
+        const masu_buffer_plan *b = &plan->buffers[i];
+        uint64_t bytes = b->stride ? b->stride : b->bytes;
+        if (bytes <= limits->maxStorageBufferRange ||
+            !(b->usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT))
+            continue;
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxStorageBufferRange", bytes,
+                         limits->maxStorageBufferRange,
+                         "%s need a storage buffer of %llu bytes, the device has %u", b->name,
+                         (unsigned long long)bytes, limits->maxStorageBufferRange);
+    }
+    uint32_t groups = (plan->scene.instances + 63) / 64;
+    if (plan->occlusion && groups > limits->maxComputeWorkGroupCount[0]) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", groups,
+                         limits->maxComputeWorkGroupCount[0],
+                         "culling %u instances takes %u workgroups, the device has %u",
+                         plan->scene.instances, groups, limits->maxComputeWorkGroupCount[0]);
+    }
+    return MASU_OK;
+}
+
+static masu_result check_shadow_map(const masu_frame_plan *plan,
+                                    const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
+    VkExtent2D map = masu_plan_extent(plan, MASU_EXTENT_SHADOW, plan->desc.output);
+    uint32_t widest = map.width > map.height ? map.width : map.height;
+    if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
+        widest > limits->maxFramebufferHeight) {
+        return masu_fail(
+            detail, MASU_ERROR_DEVICE, "maxImageDimension2D", widest, limits->maxImageDimension2D,
+            "the shadow map's %u cascades of %u texels make an image of %ux%u, the "
+            "device's may be %u",
+            plan->cascades, plan->cascade_size, map.width, map.height, limits->maxImageDimension2D);
+    }
+    return MASU_OK;
+}
+
+masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *vk,
+                                    masu_detail *detail) {
+    const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
+    masu_result result = check_ranges(plan, limits, detail);
+    return result ? result : check_shadow_map(plan, limits, detail);
+}
+
+/* ---- Open choices ---------------------------------------------------------------------------- */
+
+/* The rungs as the host gave them, or those that the plan chose, to be looked at and changed. */
+static void own_rungs(masu_desc *desc, const masu_frame_plan *plan) {
+    if (desc->rung_count) return;
+    desc->rung_count = plan->desc.rung_count;
+    memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
+    memcpy(desc->flips, plan->desc.flips, sizeof desc->flips);
+    memcpy(desc->governor.costs, plan->desc.governor.costs, sizeof desc->governor.costs);
+}
+
+masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
+                                  masu_detail *detail) {
+    const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
+    own_rungs(desc, plan);
+    if (vk->queue_family.timestampValidBits == 0) desc->governor.wall_only = 1;
+    masu_result result = drop_specular(desc, plan, limits, detail);
+    if (!result) result = drop_occlusion(desc, plan, limits, detail);
+    if (!result) result = choose_ray_query(desc, plan, vk, detail);
+    if (!result) result = choose_half_floats(desc, vk, detail);
+    return result;
+}

@@ -1,0 +1,69 @@
+/* device.h: the objects of a renderer on the device. All handles are zero before they are created, so
+ * masu_device_destroy may run after any failed step. Arrays that depend on the scene are pointers into
+ * the host block. */
+#ifndef MASU_DEVICE_H
+#define MASU_DEVICE_H
+
+#include "device/memory.h"
+#include "device/vk.h"
+#include "plan/draws.h"
+#include "plan/plan.h"
+#include "scene/texture.h"
+
+#define MASU_SAMPLER_COUNT 9u
+
+/* Of each mesh; one that rays do not meet has none. */
+typedef struct masu_ray_mesh {
+    VkAccelerationStructureKHR structure;
+    uint64_t address;
+    uint32_t first_triangle; /* of TRACE_TRIANGLES */
+} masu_ray_mesh;
+
+typedef struct masu_device {
+    masu_vk vk;
+    masu_frame_plan *plan; /* the renderer's */
+
+    /* bind.c */
+    masu_objects objects;
+    VkImageView views[MASU_IMAGE_COUNT]; /* whole images; source and target views are the host's */
+    VkDeviceMemory memory[MASU_ROLE_COUNT];
+    int memory_owned[MASU_ROLE_COUNT];
+    unsigned char *mapped[MASU_ROLE_COUNT]; /* NULL where the block is not host-visible */
+
+    /* pipelines.c */
+    VkSampler sampler; /* nearest, clamp to edge */
+    VkDescriptorSetLayout global_layout;
+    VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
+    VkPipelineLayout layouts[MASU_PASS_COUNT];
+    VkPipeline pipelines[MASU_PASS_COUNT];
+    /* Of the graphics rows; the cascades of the shadow map share those of the first, and its
+     * pipeline. */
+    VkRenderPass render_passes[MASU_PASS_COUNT];
+    VkFramebuffer framebuffers[MASU_PASS_COUNT];
+    VkDescriptorSetLayout texture_layout; /* null without textures, as are the next three */
+    VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters;
+    VkSampler samplers[MASU_SAMPLER_COUNT]; /* wrap of u + 3 * wrap of v; those that sets ask for */
+    uint64_t pipeline_ns[MASU_PASS_COUNT];
+
+    /* descriptors.c */
+    VkDescriptorPool descriptor_pool;
+    VkDescriptorSet global_sets[MASU_MAX_FLIGHT];
+    VkDescriptorSet *pass_sets;    /* plan->pass_sets of them, in the order that they are made in */
+    VkDescriptorSet *texture_sets; /* one per texture set of the scene */
+
+    /* record.c */
+    VkCommandPool command_pool;
+    VkCommandBuffer *frames; /* [flight][rung][target][variant]; plan->recordings of each flight */
+    VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
+
+    /* load.c */
+    VkCommandBuffer *loads;           /* one per staging chunk */
+    uint32_t load_count, load_next;   /* chunks in all, chunks handed out */
+    masu_texture_cursor texture_next; /* first texel row of the next chunk */
+
+    /* ray_query.c */
+    masu_ray_mesh *ray_meshes; /* [mesh]; of no length without ray queries */
+    VkAccelerationStructureKHR ray_top;
+} masu_device;
+
+#endif

@@ -1,0 +1,65 @@
+/* lifetime.c: see lifetime.h. */
+#include "device/lifetime.h"
+
+#include "device/bind.h"
+#include "device/load.h"
+#include "device/pipelines.h"
+#include "device/ray_query.h"
+#include "device/record.h"
+
+void masu_device_lay(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
+    uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings;
+    m->frames = masu_arena_take(arena, "command buffers", frames, sizeof *m->frames, 8);
+    m->loads =
+        masu_arena_take(arena, "load command buffers", masu_load_chunks(plan), sizeof *m->loads, 8);
+    m->pass_sets =
+        masu_arena_take(arena, "descriptor sets", plan->pass_sets, sizeof *m->pass_sets, 8);
+    m->texture_sets = masu_arena_take(arena, "texture sets", plan->scene.texture_sets,
+                                      sizeof *m->texture_sets, 8);
+    m->ray_meshes =
+        masu_arena_take(arena, "bottom levels", plan->needs.query ? plan->scene.meshes : 0,
+                        sizeof *m->ray_meshes, 8);
+}
+
+masu_result masu_device_make(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+    m->load_count = masu_load_chunks(m->plan);
+    masu_result result = masu_bind_memory(m, detail);
+    if (!result) result = masu_make_views(m, detail);
+    if (!result) result = masu_ray_create(m, detail);
+    if (!result) result = masu_make_pipelines(m, detail);
+    if (!result) result = masu_record(m, draws, detail);
+    return result;
+}
+
+void masu_device_destroy(masu_device *m) {
+    const masu_vk *vk = &m->vk;
+    VkDevice device = vk->device;
+    vk->DestroyQueryPool(device, m->queries, vk->allocator);
+    vk->DestroyCommandPool(device, m->command_pool, vk->allocator);
+    vk->DestroyDescriptorPool(device, m->descriptor_pool, vk->allocator);
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        vk->DestroyPipeline(device, m->pipelines[p], vk->allocator);
+        vk->DestroyFramebuffer(device, m->framebuffers[p], vk->allocator);
+        vk->DestroyRenderPass(device, m->render_passes[p], vk->allocator);
+        vk->DestroyPipelineLayout(device, m->layouts[p], vk->allocator);
+        vk->DestroyDescriptorSetLayout(device, m->pass_layouts[p], vk->allocator);
+    }
+    vk->DestroyDescriptorSetLayout(device, m->global_layout, vk->allocator);
+    vk->DestroySampler(device, m->sampler, vk->allocator);
+    for (uint32_t i = 0; i < MASU_TEXTURED_COUNT; i++)
+        vk->DestroyPipeline(device, m->textured[i], vk->allocator);
+    vk->DestroyPipeline(device, m->masked_casters, vk->allocator);
+    vk->DestroyDescriptorSetLayout(device, m->texture_layout, vk->allocator);
+    for (uint32_t i = 0; i < MASU_SAMPLER_COUNT; i++)
+        vk->DestroySampler(device, m->samplers[i], vk->allocator);
+    for (uint32_t i = 0; i < m->plan->scene.texture_arrays; i++)
+        vk->DestroyImageView(device, m->plan->textures[i].view, vk->allocator);
+    for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++)
+        vk->DestroyImageView(device, m->views[i], vk->allocator);
+    masu_ray_destroy(m);
+    masu_objects_destroy(vk, m->plan, &m->objects);
+    for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {
+        if (m->memory_owned[role])
+            vk->FreeMemory(device, m->memory[role], vk->allocator); /* also unmaps */
+    }
+}

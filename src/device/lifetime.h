@@ -1,0 +1,16 @@
+/* lifetime.h: the objects of the device from masu_init to masu_destroy. */
+#ifndef MASU_LIFETIME_H
+#define MASU_LIFETIME_H
+
+#include "base/arena.h"
+#include "device/device.h"
+
+/* Arrays in the host block. */
+void masu_device_lay(masu_device *m, masu_arena *arena, const masu_frame_plan *plan);
+
+/* vk, plan and objects are there; all else is made of them. What has been made when a step fails stays
+ * for masu_device_destroy. */
+masu_result masu_device_make(masu_device *m, const masu_draws *draws, masu_detail *detail);
+void masu_device_destroy(masu_device *m);
+
+#endif

@@ -1,0 +1,325 @@
+/* load.c: see load.h. */
+#include "device/load.h"
+
+#include "base/error.h"
+#include "device/barriers.h"
+#include "device/bind.h"
+#include "device/ray_query.h"
+#include "plan/buffers.h"
+#include "scene/scene.h"
+#include "scene/trace_scene.h"
+#include "shared/masu_shared.h"
+#include "smaa_area.h"
+#include "split_sum.h"
+
+#include <string.h>
+
+/* ---- Chunks ---------------------------------------------------------------------------------- */
+
+/* Chunks of resident buffers: none where the host can write them. */
+static uint32_t buffer_chunks(const masu_frame_plan *plan) {
+    uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
+    uint32_t chunks = 0;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT && plan->staged; b++) {
+        if (masu_buffers[b].loaded)
+            chunks += (uint32_t)((plan->buffers[b].bytes + step - 1) / step);
+    }
+    return chunks;
+}
+
+/* Whether frames leave images to each other: then the last chunk puts them into their layout. */
+static int keeps_images(const masu_frame_plan *plan) {
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (plan->images[i].used && masu_images[i].kept) return 1;
+    }
+    return 0;
+}
+
+uint32_t masu_load_chunks(const masu_frame_plan *plan) {
+    uint32_t chunks = buffer_chunks(plan) + (keeps_images(plan) ? 1 : 0);
+    if (plan->needs.query) chunks++;
+    if (!plan->scene.texture_arrays) return chunks;
+    masu_scene_view v = masu_scene_look(&plan->scene);
+    return chunks + masu_texture_chunks(v.textures, plan->scene.texture_arrays, plan->compressed,
+                                        plan->buffers[MASU_BUFFER_STAGING].bytes);
+}
+
+/* Whether structures of ray queries are built in it: behind all that is copied. */
+static int is_build_chunk(const masu_frame_plan *plan, uint32_t index, uint32_t chunks) {
+    return plan->needs.query && index + 1 + (keeps_images(plan) ? 1 : 0) == chunks;
+}
+
+masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
+    uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        uint64_t bytes = masu_buffers[b].loaded ? plan->buffers[b].bytes : 0;
+        uint32_t chunks = (uint32_t)((bytes + step - 1) / step);
+        if (index < chunks) {
+            uint64_t offset = index * step, left = bytes - offset;
+            return (masu_chunk){(masu_buffer_id)b, offset, left < step ? left : step, bytes};
+        }
+        index -= chunks;
+    }
+    return (masu_chunk){MASU_BUFFER_COUNT, 0, 0, 0};
+}
+
+/* ---- What is recorded ------------------------------------------------------------------------ */
+
+/* All of a texture to the layout that copies need, or from there to that of shaders. */
+static void move_texture(masu_device *m, VkCommandBuffer cmd, VkImage image, int to_shader) {
+    VkImageMemoryBarrier b = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+        .srcAccessMask = to_shader ? VK_ACCESS_TRANSFER_WRITE_BIT : 0,
+        .dstAccessMask = to_shader ? VK_ACCESS_SHADER_READ_BIT : VK_ACCESS_TRANSFER_WRITE_BIT,
+        .oldLayout = to_shader ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED,
+        .newLayout = to_shader ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+                               : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = image,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                             VK_REMAINING_ARRAY_LAYERS}};
+    m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             to_shader ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
+                                       : VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             0, 0, NULL, 0, NULL, 1, &b);
+}
+
+/* One chunk of textures from `next` on. Rows of one texture that two chunks copy do not overlap:
+ * they need no barrier between them. */
+static void record_textures(masu_device *m, VkCommandBuffer cmd, masu_texture_cursor *next) {
+    masu_scene_view v = masu_scene_look(&m->plan->scene);
+    masu_texture_region r;
+    uint64_t used = 0, room = m->plan->buffers[MASU_BUFFER_STAGING].bytes;
+    while (masu_texture_next(v.textures, m->plan->scene.texture_arrays, m->plan->compressed, room,
+                             next, &used, &r)) {
+        VkImage image = m->plan->textures[r.texture].image;
+        if (r.first) move_texture(m, cmd, image, 0);
+        VkBufferImageCopy copy = {
+            .bufferOffset = r.offset,
+            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, r.mip, r.layer, 1},
+            .imageOffset = {0, (int32_t)r.y, 0},
+            .imageExtent = {r.width, r.height, 1}};
+        m->vk.CmdCopyBufferToImage(cmd, m->objects.buffers[MASU_BUFFER_STAGING], image,
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+        if (r.last) move_texture(m, cmd, image, 1);
+    }
+}
+
+/* The images that the first frame finds as if another had left them; what is in them is not looked
+ * at. */
+static void record_kept(masu_device *m, VkCommandBuffer cmd) {
+    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);
+    masu_recorder rec = {.m = m, .cmd = cmd};
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (!m->plan->images[i].used || !masu_images[i].kept) continue;
+        VkImageMemoryBarrier b =
+            masu_image_barrier(&rec, (masu_image_id)i, 0, &rest, VK_IMAGE_LAYOUT_UNDEFINED);
+        m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0, NULL, 0,
+                                 NULL, 1, &b);
+    }
+}
+
+static masu_result record_load(masu_device *m, uint32_t index, masu_texture_cursor *next,
+                               masu_detail *detail) {
+    VkCommandBuffer cmd = m->loads[index];
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
+    if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
+    if (keeps_images(m->plan) && index + 1 == m->load_count) {
+        record_kept(m, cmd);
+    } else if (is_build_chunk(m->plan, index, m->load_count)) {
+        masu_ray_record_bottoms(m, cmd);
+    } else if (index < buffer_chunks(m->plan)) {
+        masu_chunk chunk = masu_load_chunk(m->plan, index);
+        VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
+        m->vk.CmdCopyBuffer(cmd, m->objects.buffers[MASU_BUFFER_STAGING],
+                            m->objects.buffers[chunk.buffer], 1, &copy);
+    } else {
+        record_textures(m, cmd, next);
+    }
+    r = m->vk.EndCommandBuffer(cmd);
+    return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
+}
+
+masu_result masu_load_record(masu_device *m, masu_detail *detail) {
+    masu_texture_cursor texture = {0};
+    masu_result result = MASU_OK;
+    for (uint32_t i = 0; i < m->load_count && !result; i++)
+        result = record_load(m, i, &texture, detail);
+    return result;
+}
+
+/* ---- What is written ------------------------------------------------------------------------- */
+
+static struct masu_material_data device_material(const masu_blob_material *m) {
+    struct masu_material_data d = {
+        {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
+        {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic},
+        {m->specular, m->coat, m->coat_roughness, m->opacity}};
+    return d;
+}
+
+_Static_assert(sizeof(masu_blob_meso) == 2 * sizeof(struct masu_material_data),
+               "curves lie in the buffer of materials");
+
+/* An element of the buffer of materials: a material, or half of the curves of a small relief. */
+static struct masu_material_data material_element(const masu_scene_view *v, uint64_t i) {
+    struct masu_material_data d;
+    if (i < v->material_count) return device_material(&v->materials[i]);
+    memcpy(&d, (const unsigned char *)v->meso + (i - v->material_count) * sizeof d, sizeof d);
+    return d;
+}
+
+_Static_assert(sizeof(masu_blob_probes) == sizeof(struct masu_probe_grid), "probes");
+
+/* The grid, its data, and room that the GPU fills. */
+static void write_probes(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
+    const struct {
+        const void *from;
+        uint64_t bytes;
+    } parts[] = {{v->probes, sizeof *v->probes},
+                 {v->probe_data, v->probe_words * sizeof(uint32_t)}};
+    uint64_t start = 0;
+    memset(to, 0, (size_t)chunk.bytes);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        uint64_t end = start + parts[i].bytes, last = chunk.offset + chunk.bytes;
+        uint64_t low = start > chunk.offset ? start : chunk.offset, high = end < last ? end : last;
+        if (low < high) {
+            memcpy(to + (low - chunk.offset), (const unsigned char *)parts[i].from + (low - start),
+                   (size_t)(high - low));
+        }
+        start = end;
+    }
+}
+
+/* The library's tables, then the scene's picture of a sky. */
+static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
+    const masu_blob_environment_map *map = v->environment_map;
+    uint64_t texels = map ? masu_blob_environment_texels(map->size, map->mips) : 0;
+    uint64_t own = chunk.whole - texels * sizeof(uint32_t), from = 0;
+    if (chunk.offset < own) {
+        from = own - chunk.offset < chunk.bytes ? own - chunk.offset : chunk.bytes;
+        memcpy(to, (const unsigned char *)masu_split_sum + chunk.offset, (size_t)from);
+    }
+    if (from < chunk.bytes) {
+        memcpy(to + from,
+               (const unsigned char *)v->environment_texels + (chunk.offset + from - own),
+               (size_t)(chunk.bytes - from));
+    }
+}
+
+/* ---- A function for each LOADED of buffers.inc: all write a chunk of it ---------------------- */
+
+typedef struct source {
+    const masu_scene *scene;
+    const masu_scene_view *v;
+} source;
+
+static void copy(const void *from, masu_chunk chunk, unsigned char *to) {
+    memcpy(to, (const unsigned char *)from + chunk.offset, (size_t)chunk.bytes);
+}
+
+static void load_vertices(const source *s, masu_chunk chunk, unsigned char *to) {
+    copy(s->v->vertices, chunk, to);
+}
+
+static void load_indices(const source *s, masu_chunk chunk, unsigned char *to) {
+    copy(s->v->indices, chunk, to);
+}
+
+static void load_texcoords(const source *s, masu_chunk chunk, unsigned char *to) {
+    copy(s->v->texcoords, chunk, to);
+}
+
+static void load_smaa_area(const source *s, masu_chunk chunk, unsigned char *to) {
+    (void)s;
+    copy(masu_smaa_area, chunk, to);
+}
+
+static void load_tables(const source *s, masu_chunk chunk, unsigned char *to) {
+    write_tables(s->v, chunk, to);
+}
+
+static void load_probes(const source *s, masu_chunk chunk, unsigned char *to) {
+    write_probes(s->v, chunk, to);
+}
+
+static void load_trace(const source *s, masu_chunk chunk, unsigned char *to) {
+    masu_trace_write(s->scene, s->v, chunk.offset, chunk.bytes, to);
+}
+
+static void load_ray_indices(const source *s, masu_chunk chunk, unsigned char *to) {
+    masu_ray_write_indices(s->v, chunk.offset, chunk.bytes, to);
+}
+
+/* The buffer may hold two sets; both begin as the blob has them. */
+static void load_slots(const source *s, masu_chunk chunk, unsigned char *to) {
+    uint64_t size = s->v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
+    while (at < end) {
+        uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
+        memcpy(to + (at - chunk.offset), (const unsigned char *)s->v->slots + skip, (size_t)part);
+        at += part;
+    }
+}
+
+/* A chunk may cut a material in two when the staging buffer is small: convert whole, copy the part. */
+static void load_materials(const source *s, masu_chunk chunk, unsigned char *to) {
+    uint64_t size = sizeof(struct masu_material_data), at = chunk.offset, end = at + chunk.bytes;
+    while (at < end) {
+        struct masu_material_data d = material_element(s->v, at / size);
+        uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
+        memcpy(to + (at - chunk.offset), (const unsigned char *)&d + skip, (size_t)part);
+        at += part;
+    }
+}
+
+#define NOTHING NULL
+#define LOADED(name) load_##name
+static void (*const loads[MASU_BUFFER_COUNT])(const source *s, masu_chunk chunk,
+                                              unsigned char *to) = {
+#define BUFFER(ID, name, role, usage, slots, lifetime, loaded, ...) [MASU_BUFFER_##ID] = loaded,
+#include "plan/buffers.inc"
+#undef BUFFER
+};
+
+static void write_resident(const masu_scene *scene, const masu_scene_view *v, masu_chunk chunk,
+                           unsigned char *to) {
+    const source s = {scene, v};
+    loads[chunk.buffer](&s, chunk, to);
+}
+
+static void write_textures(masu_device *m, const masu_scene_view *v, unsigned char *to) {
+    uint64_t used = 0, room = m->plan->buffers[MASU_BUFFER_STAGING].bytes;
+    masu_texture_region region;
+    while (masu_texture_next(v->textures, m->plan->scene.texture_arrays, m->plan->compressed, room,
+                             &m->texture_next, &used, &region)) {
+        masu_texture_write(&v->textures[region.texture], v->texels, m->plan->compressed, &region,
+                           to);
+    }
+}
+
+/* Where the host can write them, all at once. */
+static void write_in_place(const masu_device *m, const masu_scene_view *v) {
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        masu_chunk all = {(masu_buffer_id)b, 0, m->plan->buffers[b].bytes, m->plan->buffers[b].bytes};
+        if (!masu_buffers[b].loaded || !all.bytes) continue;
+        write_resident(&m->plan->scene, v, all, masu_buffer_pointer(m, all.buffer, 0));
+    }
+}
+
+VkCommandBuffer masu_load_next(masu_device *m) {
+    masu_scene_view v = {0}; /* without a scene there may still be tables */
+    if (m->plan->desc.scene) v = masu_scene_look(m->plan->desc.scene);
+    if (!m->load_next && !m->plan->staged) write_in_place(m, &v);
+    if (m->load_next == m->load_count) return NULL;
+    unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0);
+    int copies = !(keeps_images(m->plan) && m->load_next + 1 == m->load_count) &&
+                 !is_build_chunk(m->plan, m->load_next, m->load_count);
+    if (copies && m->load_next < buffer_chunks(m->plan)) {
+        write_resident(&m->plan->scene, &v, masu_load_chunk(m->plan, m->load_next), to);
+    } else if (copies) {
+        write_textures(m, &v, to);
+    }
+    return m->loads[m->load_next++];
+}

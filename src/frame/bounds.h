@@ -1,0 +1,37 @@
+/* bounds.h: world boxes of instances, and of the groups that the scene sorts them into, as culling, shadow
+ * and LODs ask for them. Positions are those of src/scene/cull.h. */
+#ifndef MASU_BOUNDS_H
+#define MASU_BOUNDS_H
+
+#include "frame/instances.h"
+#include "scene/cull.h"
+
+#define MASU_BOX_MOVED 0x80000000u /* in positions: the tree no longer knows the box */
+#define MASU_BOX_PADDING 3u        /* floats that SIMD may read behind the last box */
+
+typedef struct masu_bounds {
+    masu_cull_node *groups;
+    float *boxes; /* [6][box_stride] */
+    uint64_t box_stride;
+    uint32_t *items;     /* [position]: instance */
+    uint32_t *positions; /* [instance] */
+    uint32_t *moved;     /* positions */
+    uint32_t moved_count;
+    float (*meshes)[6];    /* low, high */
+    masu_cull_box initial; /* around all instances as the scene places them */
+    double swept[2][3];    /* a box around all of them, wherever they have been */
+} masu_bounds;
+
+void masu_bounds_lay(masu_bounds *b, masu_arena *arena, const masu_frame_plan *plan);
+void masu_bounds_keep(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
+                      const masu_scene_view *v);
+/* After a transform has changed. */
+void masu_bounds_move(masu_bounds *b, const masu_frame_plan *plan, const masu_instances *in,
+                      uint32_t instance);
+
+/* Middle and half size of an instance's box. */
+void masu_bounds_of(const masu_bounds *b, uint32_t instance, float box[6]);
+/* As masu_cull takes them. */
+masu_cull_set masu_bounds_set(const masu_bounds *b, const masu_scene *scene);
+
+#endif

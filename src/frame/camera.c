@@ -1,0 +1,141 @@
+/* camera.c: see camera.h. */
+#include "frame/camera.h"
+
+#include "base/error.h"
+#include "base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- The path -------------------------------------------------------------------------------- */
+
+void masu_camera_path_lay(masu_camera_path *path, masu_arena *arena, const masu_frame_plan *plan) {
+    path->keys =
+        masu_arena_take(arena, "camera keys", plan->scene.camera_keys, sizeof *path->keys, 4);
+}
+
+void masu_camera_path_keep(masu_camera_path *path, const masu_frame_plan *plan,
+                           const masu_scene_view *v) {
+    path->near_distance = v->environment->near_distance;
+    if (plan->scene.camera_keys)
+        memcpy(path->keys, v->camera_keys, plan->scene.camera_keys * sizeof *v->camera_keys);
+}
+
+masu_result masu_camera_path_at(const masu_camera_path *path, const masu_frame_plan *plan,
+                                double time, masu_camera *out) {
+    uint32_t n = plan->scene.camera_keys;
+    if (!out || !isfinite(time)) return MASU_ERROR_ARGUMENT;
+    if (!n) return MASU_ERROR_STATE;
+    uint32_t k = 0;
+    while (k + 2 < n && time >= (double)path->keys[k + 1].time) k++;
+    const masu_blob_camera_key *a = &path->keys[k], *b = &path->keys[n > 1 ? k + 1 : k];
+    double span = (double)b->time - (double)a->time;
+    double u = span > 0.0 ? (time - (double)a->time) / span : 0.0;
+    u = u < 0.0 ? 0.0 : u > 1.0 ? 1.0 : u;
+    memset(out, 0, sizeof *out);
+    for (uint32_t i = 0; i < 3; i++) {
+        out->position[i] =
+            (double)a->position[i] + ((double)b->position[i] - (double)a->position[i]) * u;
+        double target = (double)a->target[i] + ((double)b->target[i] - (double)a->target[i]) * u;
+        out->forward[i] = (float)(target - out->position[i]);
+    }
+    out->fov_y = (float)((double)a->fov_y + ((double)b->fov_y - (double)a->fov_y) * u);
+    /* Two keys whose positions and targets cross over meet in a point half-way: look along the
+     * first key's. */
+    float ignored[3];
+    if (!masu_unit(out->forward, ignored)) {
+        for (uint32_t i = 0; i < 3; i++) out->forward[i] = a->target[i] - a->position[i];
+    }
+    return MASU_OK;
+}
+
+/* ---- A frame's ------------------------------------------------------------------------------- */
+
+static masu_result bad_camera(masu_detail *detail, const char *what, const char *problem) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s %s", what, problem);
+}
+
+/* Orthonormal: right, up, forward. */
+static masu_result find_axes(const masu_camera *c, float right[3], float up[3], float forward[3],
+                             masu_detail *detail) {
+    float wish[3] = {0.0f, 1.0f, 0.0f};
+    for (uint32_t i = 0; i < 3; i++) {
+        if (!(fabs(c->position[i]) <= 1e15)) {
+            return bad_camera(detail, "camera.position", "is not finite or beyond 1e15 m");
+        }
+    }
+    if (!masu_unit(c->forward, forward))
+        return bad_camera(detail, "camera.forward", "is zero or not finite");
+    int own_up = c->up[0] != 0.0f || c->up[1] != 0.0f || c->up[2] != 0.0f;
+    if (own_up && !masu_unit(c->up, wish)) return bad_camera(detail, "camera.up", "is not finite");
+    masu_cross(forward, wish, right);
+    if (!masu_unit(right, right)) {
+        if (own_up) return bad_camera(detail, "camera.up", "is parallel to camera.forward");
+        /* Looking straight up or down without an up of one's own: any right-hand side will do. */
+        right[0] = 1.0f, right[1] = right[2] = 0.0f;
+    }
+    masu_cross(right, forward, up);
+    return MASU_OK;
+}
+
+/* What is no direction; near_distance with its default. */
+static masu_result check_lens(const masu_camera *c, float near_distance, masu_detail *detail) {
+    if (!(near_distance >= 1e-9f && near_distance <= 1e9f)) {
+        return bad_camera(detail, "camera.near_distance", "is not 1e-9 to 1e9 m");
+    }
+    if (!(c->fov_y >= 0.001f && c->fov_y <= 3.1f)) {
+        return bad_camera(detail, "camera.fov_y", "is not 0.001 to 3.1 radians");
+    }
+    if (!(fabsf(c->jitter[0]) <= 1.0f && fabsf(c->jitter[1]) <= 1.0f))
+        return bad_camera(detail, "camera.jitter", "is not -1 to 1 pixels");
+    return MASU_OK;
+}
+
+static void project(const masu_camera *c, const float right[3], const float up[3],
+                    const float forward[3], float near_distance, masu_frame_data *f) {
+    const masu_rung_plan *rp = masu_frame_rung_plan(f);
+    struct masu_frame_uniforms *u = &f->u;
+    u->jitter[0] = 2.0f * c->jitter[0] / (float)rp->render_width;
+    u->jitter[1] = 2.0f * c->jitter[1] / (float)rp->render_height;
+    double tan_y = tan((double)c->fov_y * 0.5);
+    double tan_x = tan_y * (double)f->plan->desc.output.width / (double)f->plan->desc.output.height;
+    for (uint32_t i = 0; i < 3; i++) {
+        float high = (float)c->position[i];
+        u->eye_hi[i] = high;
+        u->eye_lo[i] = (float)(c->position[i] - (double)high);
+        u->right[i] = (float)((double)right[i] * tan_x);
+        u->up[i] = (float)((double)up[i] * tan_y);
+        u->forward[i] = forward[i];
+        /* Reverse-Z with an infinite far plane: depth = near / view z, so that fp32 resolution is
+         * relative at any distance (view z comes back as near / depth). Vulkan's clip y points
+         * down. */
+        u->clip_from_rel[i * 4 + 0] =
+            (float)((double)right[i] / tan_x - (double)u->jitter[0] * (double)forward[i]);
+        u->clip_from_rel[i * 4 + 1] =
+            (float)(-(double)up[i] / tan_y - (double)u->jitter[1] * (double)forward[i]);
+        u->clip_from_rel[i * 4 + 3] = forward[i];
+    }
+    u->clip_from_rel[14] = near_distance;
+    u->right[3] = (float)tan_x;
+    u->up[3] = (float)tan_y;
+    u->forward[3] = near_distance;
+}
+
+masu_result masu_camera_read(const masu_camera_path *path, masu_frame_data *f,
+                             masu_detail *detail) {
+    masu_camera c;
+    if (f->desc.camera) {
+        c = *f->desc.camera;
+    } else if (masu_camera_path_at(path, f->plan, f->desc.time, &c) != MASU_OK) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "camera", 1, 0,
+                         "camera is NULL and the scene has no camera path");
+    }
+    float right[3], up[3], forward[3];
+    float near_distance = c.near_distance != 0.0f ? c.near_distance : path->near_distance;
+    masu_result result = find_axes(&c, right, up, forward, detail);
+    if (!result) result = check_lens(&c, near_distance, detail);
+    if (result) return result;
+    memcpy(f->eye, c.position, sizeof f->eye);
+    project(&c, right, up, forward, near_distance, f);
+    return MASU_OK;
+}

@@ -1,0 +1,89 @@
+/* instances.c: see instances.h. */
+#include "frame/instances.h"
+
+#include "base/error.h"
+
+#include <math.h>
+#include <string.h>
+
+void masu_instances_lay(masu_instances *in, masu_arena *arena, const masu_frame_plan *plan) {
+    uint32_t count = plan->scene.instances, before = plan->needs.velocity ? count : 0;
+    in->now = masu_arena_take(arena, "instance transforms", count, sizeof *in->now, 16);
+    in->previous = masu_arena_take(arena, "previous transforms", before, sizeof *in->previous, 16);
+    in->names = masu_arena_take(arena, "instance names", count, sizeof *in->names, 8);
+    in->meshes = masu_arena_take(arena, "instance meshes", count, sizeof *in->meshes, 4);
+    in->dirty = masu_arena_take(arena, "instance flags", count, sizeof *in->dirty, 1);
+}
+
+/* A transform must reach every slot, each when it is free; with the previous frame, once more: the slot
+ * of the frame that moved it still says that it is moving. */
+static uint8_t frames_to_write(const masu_frame_plan *plan) {
+    return (uint8_t)(plan->desc.frames_in_flight + (plan->needs.velocity ? 1 : 0));
+}
+
+void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan,
+                         const masu_scene_view *v) {
+    for (uint32_t i = 0; i < plan->scene.instances; i++) {
+        memcpy(&in->now[i], v->instances[i].transform, sizeof in->now[i]);
+        if (plan->needs.velocity) in->previous[i] = in->now[i];
+        uint32_t name = v->instances[i].name;
+        in->names[i] =
+            name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
+        in->meshes[i] = v->instances[i].mesh;
+        in->dirty[i] = frames_to_write(plan);
+    }
+    in->dirty_count = plan->scene.instances;
+}
+
+masu_instance masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,
+                                  const char *name) {
+    uint64_t hash = masu_fnv1a64(name, strlen(name));
+    for (uint32_t i = 0; i < plan->scene.instances; i++) {
+        if (in->names[i] == hash) return (masu_instance){i + 1};
+    }
+    return (masu_instance){0};
+}
+
+masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan,
+                               masu_instance instance, const float rows[12], masu_detail *detail) {
+    if (instance.id == 0 || instance.id > plan->scene.instances) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", plan->scene.instances,
+                         instance.id, "instance handle %u: the scene has handles 1 to %u",
+                         instance.id, plan->scene.instances);
+    }
+    for (uint32_t k = 0; k < 12; k++) {
+        if (!isfinite(rows[k])) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 12, k,
+                             "instance %u: transform[%u] is not finite", instance.id, k);
+        }
+    }
+    uint32_t i = instance.id - 1;
+    memcpy(&in->now[i], rows, sizeof in->now[i]);
+    if (!in->dirty[i]) in->dirty_count++;
+    in->dirty[i] = frames_to_write(plan);
+    return MASU_OK;
+}
+
+void masu_instance_rows(const struct masu_instance_data *at, float rows[12]) {
+    memcpy(rows, at->row0, sizeof at->row0);
+    memcpy(rows + 4, at->row1, sizeof at->row1);
+    memcpy(rows + 8, at->row2, sizeof at->row2);
+}
+
+void masu_instances_write(masu_instances *in, const masu_frame_data *f) {
+    if (!in->dirty_count) return;
+    unsigned char *at = masu_frame_slot(f, MASU_BUFFER_INSTANCES);
+    struct masu_instance_data *to = (struct masu_instance_data *)(void *)at;
+    struct masu_instance_data *before =
+        (struct masu_instance_data *)(void *)(at +
+                                              f->plan->buffers[MASU_BUFFER_INSTANCES].stride / 2);
+    for (uint32_t i = 0; i < f->plan->scene.instances; i++) {
+        if (!in->dirty[i]) continue;
+        to[i] = in->now[i];
+        if (f->plan->needs.velocity) {
+            before[i] = f->cut ? in->now[i] : in->previous[i];
+            in->previous[i] = in->now[i];
+        }
+        if (--in->dirty[i] == 0) in->dirty_count--;
+    }
+}

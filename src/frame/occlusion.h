@@ -1,0 +1,31 @@
+/* occlusion.h: the host's part of stage 2 of culling, which asks what placed occluders hide. */
+#ifndef MASU_OCCLUSION_H
+#define MASU_OCCLUSION_H
+
+#include "frame/visible.h"
+
+/* An occluder, the instances of its mesh, and how many LODs hide it too. */
+typedef struct masu_placed_occluder {
+    uint32_t first_instance, instance_count, lods;
+} masu_placed_occluder;
+
+typedef struct masu_occlusion {
+    masu_placed_occluder *occluders; /* plan->scene.occluders of them */
+    uint32_t turns[MASU_MAX_VIEWS];  /* frames that have drawn the view, modulo 5 */
+} masu_occlusion;
+
+void masu_occlusion_lay(masu_occlusion *o, masu_arena *arena, const masu_frame_plan *plan);
+void masu_occlusion_keep(masu_occlusion *o, const masu_frame_plan *plan, const masu_scene_view *v);
+/* What stays the same in every frame, to all slots. */
+void masu_occlusion_write_scene(const masu_device *device, const masu_draws *draws,
+                                const masu_scene_view *v);
+
+/* Boxes of dirty instances to the slot: before masu_instances_write. */
+void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances *in,
+                                const masu_frame_data *f);
+/* What stage 2 reads of the frame, if its rung has it; after masu_visible_write, whose counts get those
+ * of occluders. */
+void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_views *views,
+                          const masu_frame_data *f);
+
+#endif

@@ -1,0 +1,113 @@
+/* punctual_lights.c: see punctual_lights.h. What is out of range is refused before it is kept; nothing else
+ * here can fail. */
+#include "frame/punctual_lights.h"
+
+#include "base/error.h"
+#include "scene/punctual_light.h"
+
+#include <string.h>
+
+void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan) {
+    uint32_t count = plan->scene.lights;
+    l->states = masu_arena_take(arena, "local lights", count, sizeof *l->states, 8);
+    l->names = masu_arena_take(arena, "light names", count, sizeof *l->names, 8);
+}
+
+void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v) {
+    for (uint32_t i = 0; i < plan->scene.lights; i++) {
+        uint32_t name = v->lights[i].name;
+        l->states[i] = masu_light_state_of(&v->lights[i]);
+        l->names[i] =
+            name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
+    }
+}
+
+/* World position and direction: of the instance that carries it, as it stands now. */
+static void carry(const masu_instances *in, const masu_local_light_state *s, double position[3],
+                  double direction[3]) {
+    for (uint32_t k = 0; k < 3; k++) {
+        position[k] = s->position[k];
+        direction[k] = (double)s->direction[k];
+    }
+    if (!s->instance.id) return;
+    const struct masu_instance_data *to = &in->now[s->instance.id - 1];
+    const float *rows[3] = {to->row0, to->row1, to->row2};
+    for (uint32_t k = 0; k < 3; k++) {
+        const float *row = rows[k];
+        position[k] = (double)row[3];
+        direction[k] = 0.0;
+        for (uint32_t j = 0; j < 3; j++) {
+            position[k] += (double)row[j] * s->position[j];
+            direction[k] += (double)row[j] * (double)s->direction[j];
+        }
+    }
+}
+
+void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f) {
+    uint32_t lights = f->plan->scene.lights;
+    masu_light_header header = {.list_words = MASU_LIGHT_LIST_WORDS(lights)};
+    if (!lights) return;
+    /* What is mirrored may be lit by what is not in the picture. */
+    int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
+    unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
+    struct masu_local_light_data *data =
+        (struct masu_local_light_data *)(void *)(to + sizeof header);
+    for (uint32_t i = 0; i < lights; i++) {
+        struct masu_local_light_data placed;
+        double position[3], direction[3];
+        carry(in, &l->states[i], position, direction);
+        for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
+        if (!masu_light_place(&l->states[i], position, direction, &placed)) continue;
+        if (culls && masu_light_outside(placed.bound, f->u.clip_from_rel)) continue;
+        data[header.count++] = placed;
+    }
+    memcpy(to, &header, sizeof header);
+    l->slot_count[f->slot] = header.count;
+}
+
+/* ---- What the host changes ------------------------------------------------------------------- */
+
+masu_local_light masu_lights_find(const masu_lights *l, const masu_frame_plan *plan,
+                                  const char *name) {
+    uint64_t hash = masu_fnv1a64(name, strlen(name));
+    for (uint32_t i = 0; i < plan->scene.lights; i++) {
+        if (l->names[i] == hash) return (masu_local_light){i + 1};
+    }
+    return (masu_local_light){0};
+}
+
+static masu_result check_handle(const masu_frame_plan *plan, masu_local_light light,
+                                masu_detail *detail) {
+    if (light.id && light.id <= plan->scene.lights) return MASU_OK;
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", plan->scene.lights, light.id,
+                     "light handle %u: the scene has handles 1 to %u", light.id,
+                     plan->scene.lights);
+}
+
+masu_result masu_lights_get(const masu_lights *l, const masu_frame_plan *plan,
+                            masu_local_light light, masu_local_light_state *out,
+                            masu_detail *detail) {
+    masu_result result = check_handle(plan, light, detail);
+    if (!result) *out = l->states[light.id - 1];
+    return result;
+}
+
+masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_local_light light,
+                            const masu_local_light_state *state, masu_detail *detail) {
+    double value = 0.0;
+    masu_result result = check_handle(plan, light, detail);
+    if (result) return result;
+    const char *wrong = masu_light_state_wrong(state, &value);
+    if (wrong) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", 0, 0, "light %u: %s (%g)", light.id,
+                         wrong, value);
+    }
+    if (state->instance.id > plan->scene.instances) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", plan->scene.instances,
+                         state->instance.id,
+                         "light %u: instance handle %u: the scene has handles 1 to %u", light.id,
+                         state->instance.id, plan->scene.instances);
+    }
+    l->states[light.id - 1] = *state;
+    return MASU_OK;
+}

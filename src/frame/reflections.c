@@ -1,0 +1,132 @@
+/* reflections.c: see reflections.h. */
+#include "frame/reflections.h"
+
+#include "device/ray_query.h"
+#include "scene/trace_scene.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Traced instances ------------------------------------------------------------------------ */
+
+void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_frame_plan *plan) {
+    uint32_t traced = plan->needs.traced ? plan->scene.trace_instances : 0;
+    uint64_t tree = traced && !plan->needs.query ? masu_trace_top_bytes(traced) : 0;
+    s->tree_memory = masu_arena_take(arena, "traced instances", tree, 1, 16);
+    s->traced = masu_arena_take(arena, "traced instances' numbers", traced, sizeof *s->traced, 4);
+    s->live = masu_arena_take(arena, "traced instances' flags", plan->needs.query ? traced : 0,
+                              sizeof *s->live, 1);
+}
+
+void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
+                           const masu_scene_view *v) {
+    uint32_t count = plan->scene.trace_instances;
+    if (!plan->needs.traced) return;
+    for (uint32_t i = 0; i < count; i++) s->traced[i] = v->trace_instances[i];
+    if (plan->needs.query) return;
+    masu_trace_top_make(&s->tree, s->tree_memory, count);
+    for (uint32_t i = 0; i < count; i++) {
+        masu_trace_root root = masu_trace_root_of(v, i);
+        masu_trace_top_set(&s->tree, i, &root);
+    }
+}
+
+/* Those that have moved, or all where nothing has been written yet, are placed anew. */
+static void place(masu_reflections *s, const masu_instances *in, const masu_frame_data *f) {
+    if (!in->dirty_count && s->versions) return;
+    for (uint32_t i = 0; i < f->plan->scene.trace_instances; i++) {
+        uint32_t instance = s->traced[i];
+        if (!in->dirty[instance] && s->versions) continue;
+        float rows[12];
+        masu_instance_rows(&in->now[instance], rows);
+        if (f->plan->needs.query)
+            s->live[i] = (uint8_t)masu_trace_places(rows);
+        else
+            (void)masu_trace_top_place(&s->tree, i, rows); /* one without an inverse is not seen */
+    }
+}
+
+/* Whether what instances are measured from, or the tree over them, has changed. */
+static int update(masu_reflections *s, const masu_frame_data *f) {
+    if (!f->plan->needs.query) return masu_trace_top_update(&s->tree, s->origin) != MASU_TRACE_SAME;
+    int moved = memcmp(s->previous_origin, s->origin, sizeof s->origin) != 0;
+    memcpy(s->previous_origin, s->origin, sizeof s->origin);
+    return moved;
+}
+
+static void rows_of(const struct masu_instance_data *from, const double origin[3], float to[3][4]) {
+    const float *rows[3] = {from->row0, from->row1, from->row2};
+    for (uint32_t k = 0; k < 3; k++) {
+        memcpy(to[k], rows[k], 3 * sizeof(float));
+        to[k][3] = (float)((double)rows[k][3] - origin[k]);
+    }
+}
+
+/* All of a slot, where anything has changed since it was written last: a frame in which nothing moves writes
+ * nothing. */
+void masu_reflections_write_instances(masu_reflections *s, const masu_instances *in,
+                                      const masu_frame_data *f) {
+    const masu_frame_plan *plan = f->plan;
+    if (!plan->needs.traced) return;
+    place(s, in, f);
+    int changed = update(s, f);
+    /* What has moved stands still one frame later: that is a change of where it was. */
+    if (changed || in->dirty_count || !s->versions) s->versions++;
+    if (s->slot_version[f->slot] == s->versions) return;
+    s->slot_version[f->slot] = s->versions;
+    unsigned char *to = masu_frame_slot(f, MASU_BUFFER_TRACE_FRAME);
+    uint64_t at = masu_trace_rows_at(&plan->scene, plan->needs.query);
+    uint32_t header[4] = {0, 0, 0, (uint32_t)(at / 16)};
+    if (plan->needs.query)
+        memcpy(to, header, sizeof header);
+    else
+        masu_trace_top_write(&s->tree, to);
+    memcpy(to + 12, &header[3], 4);
+    for (uint32_t i = 0; i < plan->scene.trace_instances; i++) {
+        uint32_t instance = s->traced[i];
+        const struct masu_instance_data *now = &in->now[instance];
+        const struct masu_instance_data *before = &in->previous[instance];
+        float both[2][3][4];
+        rows_of(now, s->origin, both[0]);
+        rows_of(f->cut ? now : before, s->origin, both[1]);
+        memcpy(to + at + i * sizeof both, both, sizeof both);
+        if (plan->needs.query) {
+            masu_ray_write_instance(f->device, f->slot, i, in->meshes[instance], s->live[i],
+                                    both[0]);
+        }
+    }
+}
+
+/* ---- The frame ------------------------------------------------------------------------------- */
+
+/* Where traced things are measured from: the origin, or where the eye is far out a point near it that rarely
+ * moves, as the SDF's (sdf.c). */
+static void origin_of(const double eye[3], double origin[3]) {
+    int far = 0;
+    for (uint32_t k = 0; k < 3; k++) far |= fabs(eye[k]) >= MASU_ANCHOR_FROM;
+    for (uint32_t k = 0; k < 3; k++)
+        origin[k] = far ? floor(eye[k] / MASU_ANCHOR_GRID + 0.5) * MASU_ANCHOR_GRID : 0.0;
+}
+
+void masu_reflections_read(masu_reflections *s, masu_frame_data *f) {
+    struct masu_frame_uniforms *u = &f->u;
+    if (!f->plan->needs.reflections) return;
+    const masu_rung_plan *rp = masu_frame_rung_plan(f);
+    origin_of(f->eye, s->origin);
+    for (uint32_t k = 0; k < 3; k++) {
+        u->trace_anchor[k] = (float)s->origin[k];
+        u->trace_eye[k] = (float)(f->eye[k] - s->origin[k]);
+    }
+    u->trace_anchor[3] = f->plan->scene.trace_distance;
+    if (!f->cut && s->history) {
+        u->history[1] = s->history_size[0];
+        u->history[2] = s->history_size[1];
+    }
+    if (!s->full_history) u->history[3] |= MASU_HISTORY_NO_FINE;
+    /* Of the previous frame counts what it has kept. */
+    s->full_history = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP_FINE);
+    s->history = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP) ||
+                 masu_has_pass(&rp->active, MASU_PASS_SPECULAR_ACCUMULATE);
+    s->history_size[0] = rp->render_width;
+    s->history_size[1] = rp->render_height;
+}

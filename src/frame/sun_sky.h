@@ -1,0 +1,28 @@
+/* sun_sky.h: sun, sky and fog of a frame: what the host gives or the scene has, checked, and what follows
+ * from an analytic sky. */
+#ifndef MASU_SUN_SKY_H
+#define MASU_SUN_SKY_H
+
+#include "frame/frame_data.h"
+#include "frame/sky.h"
+#include "scene/view.h"
+
+typedef struct masu_sun_sky {
+    masu_blob_environment environment;
+    float environment_sh[9][3];             /* of an environment map */
+    masu_sky *sky;                          /* of no length where the plan has no analytic sky */
+    uint64_t slot_updates[MASU_MAX_FLIGHT]; /* sky->sun_updates that the slot has; 0: a gradient */
+} masu_sun_sky;
+
+void masu_sun_sky_lay(masu_sun_sky *s, masu_arena *arena, const masu_frame_plan *plan);
+void masu_sun_sky_keep(masu_sun_sky *s, const masu_scene_view *v);
+/* The scene's. */
+masu_light masu_sun_sky_light(const masu_sun_sky *s);
+
+/* Checks the light of a frame, after its camera; what does not follow from an analytic sky into the
+ * uniforms. */
+masu_result masu_sun_sky_read(const masu_sun_sky *s, masu_frame_data *f, masu_detail *detail);
+/* The frame's analytic sky, or that it has none, to the slot; its light into the uniforms. */
+void masu_sun_sky_write(masu_sun_sky *s, masu_frame_data *f);
+
+#endif

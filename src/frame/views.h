@@ -1,0 +1,37 @@
+/* views.h: what a frame looks from: the camera, and the sun for each cascade of its shadow map (or, for
+ * the numbers alone, for all of the scene). */
+#ifndef MASU_VIEWS_H
+#define MASU_VIEWS_H
+
+#include "frame/shadow.h"
+#include "scene/cull.h"
+
+/* What LODs are chosen by: lod.h. */
+typedef struct masu_lod_view {
+    double eye[3], forward[3];
+    double widest; /* cosine of the angle from the middle of the picture to its corners */
+    float pixels, threshold;
+} masu_lod_view;
+
+/* What stage 2 of culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
+typedef struct masu_stage2_view {
+    float clip[16], eye[4], atlas[4], near_distance, margin, blind, bias;
+    uint32_t turn, trimmed;
+    float reach, reserved;
+} masu_stage2_view;
+_Static_assert(sizeof(masu_stage2_view) == 4 * MASU_CULL_VIEW_WORDS, "stage 2 view");
+
+typedef struct masu_views {
+    masu_cull_view planes[MASU_MAX_VIEWS]; /* of stage 1 of culling */
+    masu_stage2_view stage2[MASU_MAX_VIEWS];
+    masu_lod_view lod; /* the camera's */
+} masu_views;
+
+/* Whether a frame draws a view: the camera's always, of the cascades those that are due. */
+int masu_view_draws(const masu_frame_data *f, uint32_t view);
+
+/* Sets up the views of a frame; after its cascades. */
+void masu_views_set(masu_views *v, const masu_bounds *bounds, const masu_shadow *s,
+                    const masu_frame_data *f);
+
+#endif

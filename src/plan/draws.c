@@ -1,0 +1,86 @@
+/* draws.c: see draws.h. */
+#include "plan/draws.h"
+
+void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan) {
+    uint64_t lods = plan->lods ? plan->scene.lods : 0;
+    draws->batches =
+        masu_arena_take(arena, "batches", plan->scene.meshes + lods, sizeof *draws->batches, 8);
+}
+
+/* A form of a mesh that has instances. */
+static masu_batch *add_batch(masu_draws *draws, const masu_scene_view *v, uint32_t first_primitive,
+                             uint32_t primitives, uint32_t first, uint32_t instances) {
+    masu_batch *b = &draws->batches[draws->batch_count];
+    *b = (masu_batch){.first_primitive = first_primitive,
+                      .draw_count = primitives,
+                      .first_instance = first,
+                      .instance_count = instances};
+    if (draws->batch_count) {
+        b->first_draw = b[-1].first_draw + b[-1].draw_count;
+        b->first_listed = b[-1].first_listed + b[-1].instance_count;
+    }
+    for (uint32_t p = 0; p < primitives; p++) {
+        const masu_blob_primitive *one = &v->primitives[first_primitive + p];
+        if (v->materials[one->material].flags & MASU_MATERIAL_IS_BLEND) {
+            b->blended++; /* drawn as transparents */
+        } else {
+            b->triangles += one->index_count / 3;
+        }
+    }
+    draws->batch_count++;
+    draws->large_count += instances > 64;
+    return b;
+}
+
+static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
+    const masu_scene *scene = &plan->scene;
+    uint32_t from = 0;
+    for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
+        uint32_t first, first_lod,
+            end = masu_scene_mesh_instances(v, scene->instances, mesh, from, &first);
+        from = end;
+        const masu_blob_mesh *what = &v->meshes[mesh];
+        if (end == first || !what->primitive_count) continue;
+        masu_batch *b =
+            add_batch(draws, v, what->first_primitive, what->primitive_count, first, end - first);
+        if (!plan->lods) continue;
+        b->lod_count = masu_scene_mesh_lods(v, scene->lods, mesh, &first_lod);
+        b->first_lod = first_lod;
+        for (uint32_t l = 0; l < b->lod_count; l++) {
+            (void)add_batch(draws, v, v->lods[first_lod + l].first_primitive, what->primitive_count,
+                            first, end - first);
+        }
+    }
+}
+
+/* A blended thing: a slot, and its texture set among those of all. */
+static void add_transparent(masu_draws *draws, const masu_blob_material *material) {
+    uint32_t i = 0;
+    draws->transparent_count++;
+    if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return;
+    while (i < draws->transparent_set_count && draws->transparent_sets[i] != material->texture_set)
+        i++;
+    if (i == draws->transparent_set_count && i < MASU_TRANSPARENT_SETS_MAX)
+        draws->transparent_sets[draws->transparent_set_count++] = material->texture_set;
+}
+
+static void add_transparents(masu_draws *draws, const masu_scene *scene, const masu_scene_view *v) {
+    for (uint32_t i = 0; i < scene->instances; i++) {
+        const masu_blob_mesh *mesh = &v->meshes[v->instances[i].mesh];
+        for (uint32_t p = 0; p < mesh->primitive_count; p++) {
+            const masu_blob_material *material =
+                &v->materials[v->primitives[mesh->first_primitive + p].material];
+            if (material->flags & MASU_MATERIAL_IS_BLEND) add_transparent(draws, material);
+        }
+    }
+}
+
+void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
+    add_batches(draws, plan, v);
+    if (plan->needs.transparents) add_transparents(draws, &plan->scene, v);
+}
+
+VkRect2D masu_atlas_part(uint32_t part) {
+    if (part) return (VkRect2D){{0, MASU_ATLAS_CAMERA_HEIGHT}, {MASU_ATLAS_SUN, MASU_ATLAS_SUN}};
+    return (VkRect2D){{0, 0}, {MASU_ATLAS_CAMERA_WIDTH, MASU_ATLAS_CAMERA_HEIGHT}};
+}

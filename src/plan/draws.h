@@ -1,0 +1,44 @@
+/* draws.h: what the recordings draw, in their order: the forms of placed meshes, then what is blended.
+ * Made once of scene and plan; record.c records it, and src/frame/visible.c, occlusion.c and
+ * transparents.c say in each frame how many instances a draw has.
+ *
+ * The renderer owns it; its batches lie in the host block. Nothing here fails. */
+#ifndef MASU_DRAWS_H
+#define MASU_DRAWS_H
+
+#include "base/arena.h"
+#include "plan/plan.h"
+#include "scene/view.h"
+
+/* The ways to draw polygons with textures; those without have the pass's own pipeline. Alpha-tested ones
+ * have theirs, so that only they lose the early depth test. */
+enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
+
+#define MASU_TRANSPARENT_WORDS 6u /* of a slot in the buffer of drawn instances */
+
+/* A form of a placed mesh: its instances, and one draw for each of its primitives. The mesh itself comes
+ * first, then its LODs, if the plan has any, the finer first. */
+typedef struct masu_batch {
+    uint32_t first_primitive, first_draw, draw_count;
+    uint32_t first_instance, instance_count;
+    uint32_t first_listed;         /* where in a view's lists its own begins */
+    uint32_t first_lod, lod_count; /* of the mesh itself: its LODs */
+    uint32_t blended;              /* of the draws those of blended materials: never recorded */
+    uint64_t triangles;            /* of one instance, without those */
+} masu_batch;
+
+typedef struct masu_draws {
+    masu_batch *batches;
+    uint32_t batch_count, large_count; /* large: of over 64 instances */
+    /* Slots of blended things, and the texture sets of each. */
+    uint32_t transparent_count, transparent_set_count;
+    uint32_t transparent_sets[MASU_TRANSPARENT_SETS_MAX];
+} masu_draws;
+
+void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan);
+void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v);
+
+/* A part of the atlas of occluders: 0 is the camera's, 1 the sun's. */
+VkRect2D masu_atlas_part(uint32_t part);
+
+#endif

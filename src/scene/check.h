@@ -1,0 +1,27 @@
+/* check.h: the checks of what is in the sections of a blob, a family in each check_*.c, and what
+ * masu_scene tells of them. They build on each other, and masu_scene_bind calls them in this order. */
+#ifndef MASU_SCENE_CHECK_H
+#define MASU_SCENE_CHECK_H
+
+#include "masu.h"
+#include "scene/reader.h"
+
+/* Vertices, primitives, meshes, their LODs, instances. */
+masu_result masu_check_geometry(reader *r);
+/* What culling believes: groups of instances, occluders. pairs: of an occluder and an instance of its
+ * mesh. */
+masu_result masu_check_groups(reader *r);
+masu_result masu_check_occluders(reader *r, uint64_t *pairs);
+/* Materials but for their textures, the camera path, sun, shadow, lights, probes, sky and fog. */
+masu_result masu_check_looks(reader *r);
+void masu_look_at_looks(const reader *r, masu_scene *out);
+/* Textures, and what materials say of them. */
+masu_result masu_check_textures(reader *r);
+/* The SDF: its numbers and its code. */
+masu_result masu_check_sdf(reader *r);
+void masu_look_at_sdf(const reader *r, masu_scene *out);
+/* What rays are traced through. */
+masu_result masu_check_trace(reader *r);
+void masu_look_at_trace(const reader *r, masu_scene *out);
+
+#endif

@@ -1,0 +1,68 @@
+/* view.h: a validated blob as C sees it: a pointer to each section, and what is asked of them together.
+ * Nothing is checked here: reader.c and check_*.c have done so. */
+#ifndef MASU_SCENE_VIEW_H
+#define MASU_SCENE_VIEW_H
+
+#include "scene/blob.h"
+#include "scene/cull.h"
+
+/* Sections of a validated blob; absent ones are NULL with count 0. */
+typedef struct masu_scene_view {
+    const masu_blob_vertex *vertices;
+    const uint32_t *indices;
+    const masu_blob_primitive *primitives;
+    const masu_blob_mesh *meshes;
+    const masu_blob_instance *instances;
+    const masu_blob_group *groups;
+    const uint32_t *group_items;
+    const masu_blob_lod *lods;
+    const masu_blob_occluder *occluders;
+    const masu_blob_material *materials;
+    uint64_t material_count;
+    const masu_blob_camera_key *camera_keys;
+    const masu_blob_environment *environment;
+    const masu_blob_shadow *shadow; /* NULL: none */
+    const masu_blob_sdf *sdf;       /* NULL: none */
+    const masu_blob_sdf_param *sdf_params;
+    const float *slots;
+    uint64_t slot_count;
+    const float *texcoords;
+    const masu_blob_texture *textures;
+    const masu_blob_texture_set *texture_sets;
+    const unsigned char *texels;
+    const masu_blob_meso *meso;
+    const masu_blob_light *lights;
+    const masu_blob_probes *probes; /* NULL: none */
+    const uint32_t *probe_data;
+    uint64_t probe_words;
+    const masu_blob_environment_map *environment_map; /* NULL: none */
+    const uint32_t *environment_texels;
+    const masu_blob_reflections *reflections; /* NULL: none */
+    const masu_blob_trace_texture *trace_textures;
+    const uint32_t *trace_texels;
+    const masu_blob_trace_node *trace_nodes; /* NULL: no rays; nor are the next three */
+    const masu_blob_trace_triangle *trace_triangles;
+    const masu_blob_trace_mesh *trace_meshes;
+    const uint32_t *trace_instances;
+    struct {
+        const uint32_t *words; /* NULL: none */
+        uint64_t count;
+    } code[MASU_BLOB_KIND_COUNT]; /* the SPIR-V sections, by kind */
+    const char *names;
+    uint64_t name_bytes;
+} masu_scene_view;
+
+/* World box of an instance as the scene places it. */
+masu_cull_box masu_scene_box(const masu_scene_view *view, uint32_t instance);
+
+/* The coarser forms of a mesh, finest first: `*first` is the first one's index in view->lods, the
+ * result how many there are (0 to MASU_BLOB_LODS_MAX). */
+uint32_t masu_scene_mesh_lods(const masu_scene_view *view, uint32_t lod_count, uint32_t mesh,
+                              uint32_t *first);
+
+/* Range of instances [first, first + count) that place mesh `mesh`: instances are sorted by mesh.
+ * `from` is where the search starts; returns the end. */
+uint32_t masu_scene_mesh_instances(const masu_scene_view *view, uint32_t instance_count,
+                                   uint32_t mesh, uint32_t from, uint32_t *first);
+
+#endif
