@@ -3,6 +3,7 @@
 
 #include "scene/blob.h"
 #include "base/error.h"
+#include "plan/desc.h"
 #include "frame/lights.h"
 #include "plan/output.h"
 #include "device/ray_query.h"
