@@ -4,6 +4,7 @@
 #include "scene/blob.h"
 #include "base/error.h"
 #include "plan/buffers.h"
+#include "plan/desc.h"
 #include "plan/output.h"
 
 #include <math.h>

@@ -10,6 +10,7 @@
 
 #include "plan/desc.h"
 #include "plan/frame.h"
+#include "plan/limits.h"
 #include "masu.h"
 
 /* Timestamps of a frame: one before the first pass and one after each; of the governor the first and

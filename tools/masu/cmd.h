@@ -55,9 +55,10 @@ bool masu_rays_option(masu_cli *cli, masu_session_desc *d);
             id, 0                                                                                  \
     }
 
-/* --aa WAY. A preset of SMAA alone where `smaa`. */
-bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa);
-#define MASU_AA_WAYS "off, fxaa (one pass), or SMAA at low, medium, high, ultra"
+/* Reads the option's value as that knob, with the words and the range of MASU_KNOBS. On false the
+ * mistake has been reported. MASU_WORD_LIST: the words, for the help, MASU_AA_WORDS(MASU_WORD_LIST). */
+bool masu_knob_option(const masu_cli *cli, const char *knob, masu_rung *rung);
+#define MASU_WORD_LIST(name, value, word, text) " " word
 
 /* --ladder FILE|auto|off; NULL: it was not given. Sets the ladder, or the rungs out of a file; returns
  * an exit code. */

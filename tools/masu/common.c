@@ -1,6 +1,7 @@
 /* common.c: see cmd.h. */
 #include "masu/cmd.h"
 
+#include "bench/sweep/knobs.h"
 #include "bench/sweep/ladder_file.h"
 #include "bench/measure/picture.h"
 #include "image.h"
@@ -28,12 +29,18 @@ bool masu_rays_option(masu_cli *cli, masu_session_desc *d) {
     return true;
 }
 
-bool masu_aa_option(masu_cli *cli, bool smaa, masu_aa *aa) {
-    static const char *const names[] = {"off", "fxaa", "low", "medium", "high", "ultra", NULL};
-    uint32_t first = smaa ? 2 : 0, way = 0;
-    if (!masu_cli_choice(cli, names + first, &way)) return false;
-    *aa = (masu_aa)(MASU_AA_OFF + first + way);
-    return true;
+bool masu_knob_option(const masu_cli *cli, const char *knob, masu_rung *rung) {
+    const masu_knob *k = masu_knob_find(knob, strlen(knob));
+    masu_rung read = *rung;
+    const char *end = masu_knob_from_text(k, cli->value, &read);
+    if (end && !*end) {
+        *rung = read;
+        return true;
+    }
+    char range[200];
+    masu_knob_range(k, range, sizeof range);
+    masu_cli_usage_error("%s: needed is %s, given is '%s'", cli->option, range, cli->value);
+    return false;
 }
 
 int masu_ladder_option(const char *given, masu_desc *desc) {

@@ -2,11 +2,13 @@
  * what was left out and why. */
 #include "masu/cmd.h"
 
+#include "bench/sweep/knobs.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT, OPTION_RAYS, OPTION_LADDER };
+enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT, OPTION_RAYS, OPTION_LADDER, OPTION_KNOBS };
 
 static const char *format_name(VkFormat format) {
     switch (format) {
@@ -206,6 +208,13 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
     return masu_json_write(root, "-");
 }
 
+static int print_knobs(const masu_cli *cli) {
+    if (cli->value && strcmp(cli->value, "md") != 0)
+        return masu_cli_usage_error("--knobs is for a terminal, --knobs=md Markdown; not '%s'", cli->value);
+    (cli->value ? masu_knobs_document : masu_knobs_print)(stdout);
+    return MASU_CLI_OK;
+}
+
 static int run(masu_cli *cli) {
     masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
                            .host = {.ray_query = true}};
@@ -227,6 +236,7 @@ static int run(masu_cli *cli) {
             if (!masu_rays_option(cli, &d)) return MASU_CLI_USAGE;
             continue;
         case OPTION_JSON: json = true; continue;
+        case OPTION_KNOBS: return print_knobs(cli);
         case OPTION_LADDER: ladder = cli->value; continue;
         case MASU_CLI_ARGUMENT:
             if (d.scene_path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
@@ -257,6 +267,8 @@ static const masu_cli_option options[] = {
      "output size in pixels, at most 16384 a side and 64 Mi in all\n(default 1920x1080)",
      OPTION_SIZE, 0},
     {"json", NULL, "print JSON", OPTION_JSON, 0},
+    {"knobs", "[=md]", "instead: every knob of a rung and every limit, as text or as docs/knobs.md",
+     OPTION_KNOBS, 0},
     {"ladder", "FILE|auto|off",
      "the rungs: those of a ladder.json of masu bench; auto, those measured for scenes of this\n"
      "class; off, 1, 0.8 and 0.4 of the size (default off)", OPTION_LADDER, 0},

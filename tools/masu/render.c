@@ -4,6 +4,8 @@
 
 #include "alloc_count.h"
 #include "bench/measure/picture.h"
+#include "bench/sweep/knobs.h"
+#include "bench/sweep/settings.h"
 #include "clock.h"
 #include "image.h"
 
@@ -38,6 +40,7 @@ enum {
     OPTION_TRUTH,
     OPTION_RAYS,
     OPTION_AA,
+    OPTION_SETTING,
     OPTION_TARGET,
     OPTION_LADDER,
     OPTION_TIMES
@@ -420,9 +423,8 @@ static bool read_exposure(masu_cli *cli, masu_desc *desc, render_options *o) {
 /* Options that turn one knob of every rung; those that are not given leave it as the ladder has it. */
 typedef struct turned {
     bool march_given, cull_given, lod_given, aa_given;
-    uint32_t march, cull;
-    double lod_error;
-    masu_aa aa;
+    uint32_t cull;
+    masu_rung to;
 } turned;
 
 /* Eight rungs from the full size to 0.4 of it, each 13 % smaller than the one before. */
@@ -439,11 +441,11 @@ static void turn(masu_desc *d, const turned *t) {
     *d = masu_desc_resolved(d);
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung *rung = &d->rungs[r];
-        if (t->march_given) rung->march = (masu_march)t->march;
+        if (t->march_given) rung->march = t->to.march;
         if (t->cull_given) rung->frustum = t->cull < 2 ? MASU_ON : MASU_OFF;
         if (t->cull_given) rung->occlusion = t->cull % 2 ? MASU_OFF : MASU_ON;
-        if (t->lod_given) rung->lod_error = (float)t->lod_error;
-        if (t->aa_given) rung->aa = t->aa;
+        if (t->lod_given) rung->lod_error = t->to.lod_error;
+        if (t->aa_given) rung->aa = t->to.aa;
     }
 }
 
@@ -470,19 +472,24 @@ static bool open_rungs(masu_session_desc *d, const render_options *o, const turn
     return false;
 }
 
+static bool read_setting(const masu_cli *cli, masu_desc *desc) {
+    char error[600];
+    desc->rung_count = 1;
+    if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
+    masu_cli_usage_error("%s", error);
+    return false;
+}
+
 static int run(masu_cli *cli) {
     masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
                            .host = {.ray_query = true}};
     render_options o = {.frames = 1, .time_step = 1.0 / 60.0};
-    static const char *const marches[] = {"auto",         "plain",     "fragment", "seed",
-                                          "cone8",        "cones",     "checkerboard",
-                                          "unpruned",     NULL};
     static const char *const tones[] = {"auto", "none", "aces", "neutral", NULL};
     static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
     uint32_t poison = 0, tone = 0, casters = 0;
     turned knobs = {0};
     const char *ladder = NULL;
-    bool frames = false, step = false, fixed = false;
+    bool frames = false, step = false, fixed = false, setting = false;
     const char *own = NULL; /* an option about what --truth has its own mind of */
     for (;;) {
         int id = masu_cli_next(cli);
@@ -527,7 +534,7 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_MARCH:
             own = "--march";
-            if (!masu_cli_choice(cli, marches, &knobs.march)) return MASU_CLI_USAGE;
+            if (!masu_knob_option(cli, "march", &knobs.to)) return MASU_CLI_USAGE;
             knobs.march_given = true;
             continue;
         case OPTION_CULL:
@@ -545,7 +552,7 @@ static int run(masu_cli *cli) {
         }
         case OPTION_LOD_ERROR:
             own = "--lod-error";
-            if (!masu_cli_double(cli, -1e9, 1e9, &knobs.lod_error)) return MASU_CLI_USAGE;
+            if (!masu_knob_option(cli, "lod_error", &knobs.to)) return MASU_CLI_USAGE;
             knobs.lod_given = true;
             continue;
         case OPTION_SUN:
@@ -561,8 +568,17 @@ static int run(masu_cli *cli) {
             continue;
         case OPTION_AA:
             own = "--aa";
-            if (!masu_aa_option(cli, false, &knobs.aa)) return MASU_CLI_USAGE;
+            if (!masu_knob_option(cli, "aa", &knobs.to)) return MASU_CLI_USAGE;
             knobs.aa_given = true;
+            continue;
+        case OPTION_SETTING:
+            own = "--setting";
+            if (!strcmp(cli->value, "help")) {
+                masu_knobs_print(stdout);
+                return MASU_CLI_OK;
+            }
+            if (!read_setting(cli, &d.desc)) return MASU_CLI_USAGE;
+            setting = true;
             continue;
         case OPTION_TONE:
             if (!masu_cli_choice(cli, tones, &tone)) return MASU_CLI_USAGE;
@@ -607,6 +623,10 @@ static int run(masu_cli *cli) {
         return masu_cli_usage_error("%s draws one moment: no %s",
                                     o.positions ? "--truth" : "--reference, a frame for each ray,",
                                     frames ? "--frames" : "--time-step");
+    }
+    if (setting && (ladder || o.target_ms > 0.0)) {
+        return masu_cli_usage_error("--setting draws one rung: no %s",
+                                    ladder ? "--ladder" : "--target-ms");
     }
     if (o.rays) o.frames = o.rays, o.time_step = 0.0;
     int code = check(&d, &o);
@@ -653,7 +673,10 @@ static const masu_cli_option options[] = {
      OPTION_TRUTH, 0},
     {"rung", "R", "quality: a rung of the ladder, 0 the best (default 0)",
      OPTION_RUNG, 0},
-    {"aa", "WAY", "anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
+    {"setting", "NAME|help",
+     "instead of a ladder one rung, by the name that masu bench gives it: scale=0.5+aa=fxaa;\n"
+     "help: all knobs, their values and what they cost", OPTION_SETTING, 0},
+    {"aa", "WAY", "anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)", OPTION_AA, 0},
     {"target-ms", "MS",
      "let the governor choose among the rungs of the ladder, for frames of so long, or follow\n"
      "--rung of these; prints what it has seen and done", OPTION_TARGET, 0},
@@ -667,8 +690,8 @@ static const masu_cli_option options[] = {
     {"stats", "FILE.json", "times, counts, memory, allocations of the frames; - for stdout",
      OPTION_STATS, 0},
     {"march", "WAY",
-     "auto, cone8, cones, unpruned; plain, fragment, seed, checkerboard need a blob baked\n"
-     "with --variants (default auto)",
+     "how the SDF is marched:" MASU_MARCH_WORDS(MASU_WORD_LIST) ";\n"
+     "plain, fragment, seed, checkerboard need a blob baked with --variants (default auto)",
      OPTION_MARCH, 0},
     {"cull", "STAGES", "both, frustum, occlusion or none: the picture stays the same (default both)",
      OPTION_CULL, 0},

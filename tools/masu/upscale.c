@@ -14,8 +14,7 @@ enum {
     OPTION_SHARPNESS,
     OPTION_NO_RCAS,
     OPTION_EASU,
-    OPTION_AA,
-    OPTION_SMAA
+    OPTION_AA
 };
 
 /* Runs the passes over `rgba` and leaves the result in the session's target. */
@@ -111,24 +110,11 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
     return code;
 }
 
-static bool easu_of(const char *name, masu_easu *easu) {
-    static const char *const names[] = {[MASU_EASU_FULL] = "full",
-                                        [MASU_EASU_FAST] = "fast",
-                                        [MASU_EASU_BILINEAR] = "bilinear"};
-    for (int i = MASU_EASU_FULL; i <= MASU_EASU_BILINEAR; i++) {
-        if (strcmp(name, names[i])) continue;
-        *easu = (masu_easu)i;
-        return true;
-    }
-    return false;
-}
-
 static int run(masu_cli *cli) {
     masu_session_desc d = {
         .desc = {.targets = {.storage = 1}, .rung_count = 1, .rungs = {{.sharpness = 0.2f}}}};
     masu_rung *rung = &d.desc.rungs[0];
     const char *files[2] = {NULL, NULL};
-    double stops = 0.2;
     rung->upscale = MASU_ON;
     rung->sharpen = MASU_ON;
     for (;;) {
@@ -142,17 +128,14 @@ static int run(masu_cli *cli) {
             if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
             continue;
         case OPTION_SHARPNESS:
-            if (!masu_cli_double(cli, 0.0, 64.0, &stops)) return MASU_CLI_USAGE;
+            if (!masu_knob_option(cli, "sharpness", rung)) return MASU_CLI_USAGE;
             continue;
         case OPTION_AA:
-        case OPTION_SMAA:
-            if (!masu_aa_option(cli, id == OPTION_SMAA, &rung->aa)) return MASU_CLI_USAGE;
+            if (!masu_knob_option(cli, "aa", rung)) return MASU_CLI_USAGE;
             continue;
         case OPTION_NO_RCAS: rung->sharpen = MASU_OFF; continue;
         case OPTION_EASU:
-            if (!easu_of(cli->value, &rung->easu))
-                return masu_cli_usage_error("--easu is full, fast or bilinear, not '%s'",
-                                            cli->value);
+            if (!masu_knob_option(cli, "easu", rung)) return MASU_CLI_USAGE;
             continue;
         case MASU_CLI_ARGUMENT:
             if (files[0] && files[1])
@@ -168,7 +151,6 @@ static int run(masu_cli *cli) {
         return masu_cli_usage_error("an input and an output file are needed");
     if (!d.desc.output.width && rung->aa <= MASU_AA_OFF)
         return masu_cli_usage_error("--size WxH is needed");
-    rung->sharpness = (float)stops;
     d.host.message = masu_print_message;
     return upscale_file(&d, files[0], files[1]);
 }
@@ -177,11 +159,11 @@ static const masu_cli_option options[] = {
     {"size", "WxH", "output size in pixels, at most 16384 a side and 64 Mi in all", OPTION_SIZE, 0},
     {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)",
      OPTION_SHARPNESS, 0},
-    {"aa", "WAY", "first anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
-    {"smaa", "PRESET", "the same: low, medium, high, ultra", OPTION_SMAA, 0},
+    {"aa", "WAY", "first anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)", OPTION_AA, 0},
     {"no-rcas", NULL, "EASU alone", OPTION_NO_RCAS, 0},
-    {"easu", "WAY", "full (default), fast: edges looked at once, or bilinear: for comparison",
-     OPTION_EASU, 0},
+    {"easu", "WAY",
+     "how to upscale:" MASU_EASU_WORDS(MASU_WORD_LIST) " (default full); fast looks at edges once,\n"
+     "bilinear is for comparison", OPTION_EASU, 0},
     {"output", "FILE.png", "the output, instead of the second argument", OPTION_OUTPUT, 'o'},
     MASU_DEVICE_OPTIONS,
     {NULL, NULL, NULL, 0, 0}};
