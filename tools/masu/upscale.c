@@ -1,6 +1,7 @@
 /* upscale.c: `masu upscale`: anti-aliasing and FSR1 on a PNG, by exactly the passes that a frame ends
  * with. */
 #include "masu/cmd.h"
+#include "masu/options.h"
 
 #include "image.h"
 
@@ -8,15 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    OPTION_OUTPUT = 1,
-    OPTION_SIZE,
-    OPTION_SHARPNESS,
-    OPTION_NO_RCAS,
-    OPTION_EASU,
-    OPTION_AA,
-    OPTION_SMAA
-};
+typedef struct options {
+    masu_session_desc d;
+    const char *output;
+    double sharpness;
+    bool no_rcas;
+    uint32_t easu;
+    masu_aa aa;
+} options;
 
 /* Runs the passes over `rgba` and leaves the result in the session's target. */
 static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_t width,
@@ -111,86 +111,54 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
     return code;
 }
 
-static bool easu_of(const char *name, masu_easu *easu) {
-    static const char *const names[] = {[MASU_EASU_FULL] = "full",
-                                        [MASU_EASU_FAST] = "fast",
-                                        [MASU_EASU_BILINEAR] = "bilinear"};
-    for (int i = MASU_EASU_FULL; i <= MASU_EASU_BILINEAR; i++) {
-        if (strcmp(name, names[i])) continue;
-        *easu = (masu_easu)i;
-        return true;
-    }
-    return false;
-}
+/* ---- Command line ---------------------------------------------------------------------------- */
+
+static bool read_aa(masu_cli *cli, void *to) { return masu_read_aa(cli, false, &((options *)to)->aa); }
+static bool read_smaa(masu_cli *cli, void *to) { return masu_read_aa(cli, true, &((options *)to)->aa); }
+
+static const char *const easu_names[] = {"full", "fast", "bilinear", NULL};
+static const masu_easu easus[] = {MASU_EASU_FULL, MASU_EASU_FAST, MASU_EASU_BILINEAR};
+
+static const masu_option rows[] = {
+    MASU_OUTPUT_SIZE_ROW(options, d.desc.output),
+    MASU_REAL(options, sharpness, "sharpness", "STOPS", 0.0, 64.0,
+              "RCAS strength: 0 is sharpest, each stop halves it"),
+    MASU_OWN("aa", "WAY", read_aa, "first anti-aliasing: " MASU_AA_WAYS " (default off)"),
+    MASU_OWN("smaa", "PRESET", read_smaa, "the same: low, medium, high, ultra"),
+    MASU_FLAG(options, no_rcas, "no-rcas", "EASU alone"),
+    MASU_CHOICE(options, easu, "easu", "WAY", easu_names,
+                "full, fast: edges looked at once, or bilinear: for comparison"),
+    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.png",
+              "the output, instead of the second argument"),
+     .letter = 'o'},
+    MASU_DEVICE_ROWS(options, d.host),
+    {.name = NULL}};
 
 static int run(masu_cli *cli) {
-    masu_session_desc d = {
-        .desc = {.targets = {.storage = 1}, .rung_count = 1, .rungs = {{.sharpness = 0.2f}}}};
-    masu_rung *rung = &d.desc.rungs[0];
-    const char *files[2] = {NULL, NULL};
-    double stops = 0.2;
-    rung->upscale = MASU_ON;
-    rung->sharpen = MASU_ON;
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &d.host)) continue;
-        switch (id) {
-        case OPTION_OUTPUT:
-            if (!masu_output_file(cli, &files[1])) return cli->exit_code;
-            continue;
-        case OPTION_SIZE:
-            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_SHARPNESS:
-            if (!masu_cli_double(cli, 0.0, 64.0, &stops)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_AA:
-        case OPTION_SMAA:
-            if (!masu_aa_option(cli, id == OPTION_SMAA, &rung->aa)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_NO_RCAS: rung->sharpen = MASU_OFF; continue;
-        case OPTION_EASU:
-            if (!easu_of(cli->value, &rung->easu))
-                return masu_cli_usage_error("--easu is full, fast or bilinear, not '%s'",
-                                            cli->value);
-            continue;
-        case MASU_CLI_ARGUMENT:
-            if (files[0] && files[1])
-                return masu_cli_usage_error("one input and one output: '%s'", cli->value);
-            files[files[0] ? 1 : 0] = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!files[0] || !files[1])
-        return masu_cli_usage_error("an input and an output file are needed");
-    if (!d.desc.output.width && rung->aa <= MASU_AA_OFF)
+    options o = {.d = {.desc = {.targets = {.storage = 1}, .rung_count = 1},
+                       .host = {.message = masu_print_message}},
+                 .sharpness = 0.2};
+    masu_given given = {.most = 2, .excess = "one input and one output"};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    const char *to = o.output ? o.output : given.arguments[1];
+    if (o.output && given.count > 1)
+        return masu_cli_usage_error("one input and one output: '%s'", given.arguments[1]);
+    if (!given.count || !to) return masu_cli_usage_error("an input and an output file are needed");
+    if (!o.d.desc.output.width && o.aa <= MASU_AA_OFF)
         return masu_cli_usage_error("--size WxH is needed");
-    rung->sharpness = (float)stops;
-    d.host.message = masu_print_message;
-    return upscale_file(&d, files[0], files[1]);
+    o.d.desc.rungs[0] = (masu_rung){.upscale = MASU_ON,
+                                    .sharpen = o.no_rcas ? MASU_OFF : MASU_ON,
+                                    .sharpness = (float)o.sharpness,
+                                    .easu = easus[o.easu],
+                                    .aa = o.aa};
+    return upscale_file(&o.d, given.arguments[0], to);
 }
-
-static const masu_cli_option options[] = {
-    {"size", "WxH", "output size in pixels, at most 16384 a side and 64 Mi in all", OPTION_SIZE, 0},
-    {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)",
-     OPTION_SHARPNESS, 0},
-    {"aa", "WAY", "first anti-aliasing: " MASU_AA_WAYS " (default off)", OPTION_AA, 0},
-    {"smaa", "PRESET", "the same: low, medium, high, ultra", OPTION_SMAA, 0},
-    {"no-rcas", NULL, "EASU alone", OPTION_NO_RCAS, 0},
-    {"easu", "WAY", "full (default), fast: edges looked at once, or bilinear: for comparison",
-     OPTION_EASU, 0},
-    {"output", "FILE.png", "the output, instead of the second argument", OPTION_OUTPUT, 'o'},
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
 
 const masu_cli_command masu_cmd_upscale = {
     .name = "upscale",
     .arguments = "IN.png OUT.png --size WxH|--aa WAY [options]",
     .summary = "upscale a picture by FSR1 (EASU, RCAS), smooth its edges by SMAA",
-    .options = options,
     .details = "The picture is taken as it is: already display-encoded (sRGB), as FSR1 wants it. "
                "Alpha goes through the\n"
                "same passes as a picture of its own. With --aa and no other --size than the picture's "

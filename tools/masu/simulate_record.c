@@ -1,6 +1,6 @@
-/* plant_record.c: times of a scene along its path, for `masu plant`: each moment is drawn at
+/* simulate_record.c: times of a scene along its path, for `masu simulate`: each moment is drawn at
  * every scale in turn, so that what else the machine does falls on all of them alike. */
-#include "masu/plant_record.h"
+#include "masu/simulate_record.h"
 
 #include "clock.h"
 
@@ -32,7 +32,7 @@ static bool measure(masu_session *s, uint32_t rung, double time, double *ms, cha
     return true;
 }
 
-static int record(masu_session *s, const masu_plant_record *r, FILE *f) {
+static int record(masu_session *s, const masu_simulate_record *r, FILE *f) {
     char error[1024];
     double ms[SCALES];
     fprintf(f, "# %s, %" PRIu32 "x%" PRIu32 ", %s: ms from submit to fence at these scales\nframe",
@@ -55,7 +55,7 @@ static int record(masu_session *s, const masu_plant_record *r, FILE *f) {
     return MASU_CLI_OK;
 }
 
-int masu_plant_record_run(const masu_plant_record *r) {
+int masu_simulate_record_run(const masu_simulate_record *r) {
     static masu_session s;
     static const float scales[SCALES] = {1.0f, 0.8f, 0.6f, 0.4f};
     char error[1024];

@@ -1,11 +1,11 @@
-/* ao_bench.c: `masu ao-bench`: ambient occlusion in screen space beside rays (bench/study/ao.h), for
+/* study_ao.c: `masu study ao`: ambient occlusion in screen space beside rays (bench/study/ao.h), for
  * several numbers of samples, at half and at full size, with and without the mean over 4x4 texels:
  * errors, times, and how much of it moves when the camera moves by an eighth of a pixel.
  *
  * Four renderers, one for each size and filter, a rung for each number of samples. The points that are
  * compared are those of the picture: every stride-th pixel, placed by its depth, with its normal. Times
  * are the least of the runs, all ways in turn. Nothing is judged. */
-#include "masu/cmd.h"
+#include "masu/study.h"
 
 #include "bench/study/ao.h"
 #include "image.h"
@@ -16,18 +16,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum {
-    OPTION_SIZE = 1,
-    OPTION_CSV,
-    OPTION_RUNS,
-    OPTION_RAYS,
-    OPTION_STRIDE,
-    OPTION_TIME,
-    OPTION_RADIUS,
-    OPTION_TRUTH,
-    OPTION_IMAGES
-};
 
 enum { OFF, RUNGS = 7, MOVES = 8, WAYS = 4 };
 static const uint32_t samples[RUNGS][2] = {{0, 0}, {1, 4}, {2, 4}, {1, 8}, {2, 8}, {4, 8}, {4, 16}};
@@ -40,11 +28,13 @@ static const struct {
                 {"full", "nearest", 1, 1}};
 
 typedef struct options {
-    const char *path, *csv, *truth, *images;
-    VkExtent2D size;
-    uint32_t runs, rays, stride;
-    double time, radius;
+    masu_study_options study;
+    uint32_t rays;
+    double radius;
 } options;
+
+static options given = {.study = {.size = {640, 360}, .runs = 5, .stride = 3}, .rays = 256};
+static const masu_study_options *const o = &given.study;
 
 typedef struct point {
     uint32_t x, y;
@@ -57,7 +47,6 @@ typedef struct row {
 } row;
 
 typedef struct bench {
-    const options *o;
     masu_session s[WAYS];
     masu_camera camera;
     masu_truth field;
@@ -75,13 +64,13 @@ typedef struct bench {
 } bench;
 
 static bool failed(bench *b, const char *text) {
-    if (text != b->error) snprintf(b->error, sizeof b->error, "%s: %s", b->o->path, text);
+    if (text != b->error) snprintf(b->error, sizeof b->error, "%s: %s", o->scene, text);
     return false;
 }
 
 static bool draw(bench *b, uint32_t way, uint32_t rung, const masu_camera *camera,
                  masu_commands *commands) {
-    masu_frame_desc f = {.camera = camera, .rung = rung, .time = b->o->time};
+    masu_frame_desc f = {.camera = camera, .rung = rung, .time = o->time};
     return masu_session_frame(&b->s[way], &f, true, commands, b->error, sizeof b->error);
 }
 
@@ -123,7 +112,7 @@ static eye eye_of(const bench *b) {
         e.up[k] = e.right[i] * e.forward[j] - e.right[j] * e.forward[i];
     }
     e.tan_y = tan((double)b->camera.fov_y / 2);
-    e.tan_x = e.tan_y * b->o->size.width / b->o->size.height;
+    e.tan_x = e.tan_y * o->size.width / o->size.height;
     float near = b->camera.near_distance;
     e.near = (double)(near != 0.0f ? near : masu_scene_look(&b->scene).environment->near_distance);
     return e;
@@ -133,13 +122,13 @@ static bool open_truth(bench *b) {
     size_t bytes = 0;
     masu_detail detail;
     char path[4096];
-    if (!masu_file_read(b->o->path, (size_t)2 << 30, &b->blob, &bytes, b->error, sizeof b->error))
+    if (!masu_file_read(o->scene, (size_t)2 << 30, &b->blob, &bytes, b->error, sizeof b->error))
         return false;
     if (masu_scene_bind(b->blob, bytes, &b->scene, &detail)) return failed(b, detail.text);
     if (b->scene.sdf) {
-        const char *truth = b->o->truth;
-        if (!truth && masu_truth_path(b->o->path, path, sizeof path)) truth = path;
-        if (!masu_view_of(&b->scene, &b->camera, b->o->time, b->o->size.width, b->o->size.height,
+        const char *truth = o->field;
+        if (!truth && masu_truth_path(o->scene, path, sizeof path)) truth = path;
+        if (!masu_view_of(&b->scene, &b->camera, o->time, o->size.width, o->size.height,
                           &b->view, b->error, sizeof b->error) ||
             !masu_truth_open(truth, &b->field, b->error, sizeof b->error)) {
             return false;
@@ -153,7 +142,7 @@ static bool open_truth(bench *b) {
 static bool trace(bench *b, uint32_t slot) {
     masu_readback_image depths, normals;
     eye e = eye_of(b);
-    const VkExtent2D size = b->o->size;
+    const VkExtent2D size = o->size;
     double sum = 0;
     if (masu_readback(b->s[0].m, slot, MASU_READBACK_DEPTH, &depths) ||
         masu_readback(b->s[0].m, slot, MASU_READBACK_NORMAL, &normals)) {
@@ -163,9 +152,9 @@ static bool trace(bench *b, uint32_t slot) {
     b->differences = calloc((size_t)size.width * size.height, sizeof *b->differences);
     b->before = calloc((size_t)size.width * size.height, sizeof *b->before);
     if (!b->points || !b->differences || !b->before) return failed(b, "out of memory");
-    for (uint32_t y = b->o->stride / 2; y < size.height; y += b->o->stride) {
+    for (uint32_t y = o->stride / 2; y < size.height; y += o->stride) {
         masu_cli_progress("rays, row %u of %u", y, size.height);
-        for (uint32_t x = b->o->stride / 2; x < size.width; x += b->o->stride) {
+        for (uint32_t x = o->stride / 2; x < size.width; x += o->stride) {
             float depth, n[3];
             uint32_t texel;
             double at[3], normal[3], u, v, z;
@@ -181,8 +170,8 @@ static bool trace(bench *b, uint32_t slot) {
                 normal[k] = (double)n[k];
             }
             point *p = &b->points[b->count];
-            *p = (point){x, y, masu_ao_seen(&b->world, at, normal, 1e-4 * z + 1e-3 * b->o->radius,
-                                            b->o->radius, b->o->rays, b->count)};
+            *p = (point){x, y, masu_ao_seen(&b->world, at, normal, 1e-4 * z + 1e-3 * given.radius,
+                                            given.radius, given.rays, b->count)};
             sum += p->truth;
             b->count++;
         }
@@ -216,55 +205,55 @@ static void compare(bench *b, const masu_readback_image *image, row *r) {
     r->worst = b->differences[b->count - 1];
 }
 
-static bool save(bench *b, const char *name, const uint8_t *rgba) {
-    char path[4096];
-    const char *last = strrchr(b->o->path, '/');
-    const char *scene = last ? last + 1 : b->o->path;
-    snprintf(path, sizeof path, "%s/%.*s.%s.png", b->o->images, (int)strcspn(scene, "."), scene, name);
-    return masu_image_save_png(path, rgba, b->o->size.width, b->o->size.height, 0, b->error,
-                               sizeof b->error);
+/* DIR/SCENE.NAME.png */
+static void image_path(const char *name, char *path, size_t size) {
+    char scene[256];
+    masu_study_scene_name(o->scene, scene, sizeof scene);
+    snprintf(path, size, "%s/%s.%s.png", o->images, scene, name);
 }
 
 /* The seen part as grey, and the lit picture. */
 static bool save_all(bench *b, uint32_t way, uint32_t rung, const masu_readback_image *image) {
-    char name[64];
+    char name[64], path[4096];
     masu_headless_target *t = &b->s[way].targets[0];
-    size_t pixels = (size_t)b->o->size.width * b->o->size.height;
-    uint8_t *grey = malloc(4 * pixels);
-    if (!grey) return failed(b, "out of memory");
-    for (size_t i = 0; i < pixels; i++) {
-        uint32_t x = (uint32_t)(i % b->o->size.width), y = (uint32_t)(i / b->o->size.width);
-        memset(grey + 4 * i, (int)(seen_at(image, x, y) * 255 + 0.5), 3);
-        grey[4 * i + 3] = 255;
+    VkExtent2D size = o->size;
+    float *seen = malloc((size_t)size.width * size.height * sizeof *seen);
+    if (!seen) return failed(b, "out of memory");
+    for (uint32_t y = 0, i = 0; y < size.height; y++) {
+        for (uint32_t x = 0; x < size.width; x++, i++) seen[i] = (float)seen_at(image, x, y);
     }
     snprintf(name, sizeof name, "ao_%s_%s_%ux%u", ways[way].size, ways[way].filter, samples[rung][0],
              samples[rung][1]);
-    bool good = save(b, name, grey);
-    free(grey);
+    image_path(name, path, sizeof path);
+    bool good = masu_study_save_grey(path, seen, size, b->error, sizeof b->error);
+    free(seen);
     snprintf(name, sizeof name, "lit_%s_%s_%ux%u", ways[way].size, ways[way].filter, samples[rung][0],
              samples[rung][1]);
+    image_path(name, path, sizeof path);
     return good && masu_headless_target_read(&b->s[way].host, t, b->error, sizeof b->error) &&
-           save(b, name, t->mapped);
+           masu_image_save_png(path, t->mapped, size.width, size.height, 0, b->error,
+                               sizeof b->error);
 }
 
 /* A grey picture of the rays, a square of stride x stride pixels for each. */
 static bool save_truth(bench *b) {
-    size_t pixels = (size_t)b->o->size.width * b->o->size.height;
-    uint8_t *grey = malloc(4 * pixels);
-    if (!grey) return failed(b, "out of memory");
-    memset(grey, 255, 4 * pixels);
+    char path[4096];
+    VkExtent2D size = o->size;
+    size_t pixels = (size_t)size.width * size.height;
+    float *seen = malloc(pixels * sizeof *seen);
+    if (!seen) return failed(b, "out of memory");
+    for (size_t i = 0; i < pixels; i++) seen[i] = 1.0f;
     for (uint32_t i = 0; i < b->count; i++) {
-        uint32_t half = b->o->stride / 2;
-        for (uint32_t y = b->points[i].y - half; y <= b->points[i].y + half; y++) {
-            for (uint32_t x = b->points[i].x - half; x <= b->points[i].x + half; x++) {
-                if (x >= b->o->size.width || y >= b->o->size.height) continue;
-                memset(grey + 4 * ((size_t)y * b->o->size.width + x),
-                       (int)(b->points[i].truth * 255 + 0.5), 3);
-            }
+        const point *p = &b->points[i];
+        uint32_t half = o->stride / 2;
+        for (uint32_t y = p->y - half; y <= p->y + half && y < size.height; y++) {
+            for (uint32_t x = p->x - half; x <= p->x + half && x < size.width; x++)
+                seen[(size_t)y * size.width + x] = (float)p->truth;
         }
     }
-    bool good = save(b, "truth", grey);
-    free(grey);
+    image_path("truth", path, sizeof path);
+    bool good = masu_study_save_grey(path, seen, size, b->error, sizeof b->error);
+    free(seen);
     return good;
 }
 
@@ -278,7 +267,7 @@ static bool move(bench *b, uint32_t way, uint32_t rung) {
     uint64_t count = 0;
     for (uint32_t m = 0; m <= MOVES; m++) {
         masu_camera c = b->camera;
-        double step = middle * m / MOVES * 2 * e.tan_y / b->o->size.height;
+        double step = middle * m / MOVES * 2 * e.tan_y / o->size.height;
         for (int k = 0; k < 3; k++) c.position[k] += e.right[k] * step;
         if (!draw(b, way, rung, &c, &commands)) return false;
         if (m == 0) {
@@ -306,13 +295,13 @@ static bool look(bench *b) {
     for (uint32_t way = 0; way < WAYS; way++) {
         for (uint32_t r = 0; r < RUNGS; r++) {
             if (!draw(b, way, r, &b->camera, &commands)) return false;
-            if (!way && !r && (!trace(b, commands.slot) || (b->o->images && !save_truth(b))))
+            if (!way && !r && (!trace(b, commands.slot) || (o->images && !save_truth(b))))
                 return false;
             masu_cli_progress("%s, %s, %ux%u", ways[way].size, ways[way].filter, samples[r][0],
                               samples[r][1]);
             masu_readback_image image = occlusion(b, way, r, commands.slot);
             compare(b, &image, &b->rows[way][r]);
-            if (b->o->images && !save_all(b, way, r, &image)) return false;
+            if (o->images && !save_all(b, way, r, &image)) return false;
             if (!move(b, way, r)) return false;
         }
     }
@@ -320,8 +309,8 @@ static bool look(bench *b) {
 }
 
 static bool time_all(bench *b) {
-    for (uint32_t run = 0; run <= b->o->runs; run++) {
-        masu_cli_progress("timing, round %u of %u", run, b->o->runs);
+    for (uint32_t run = 0; run <= o->runs; run++) {
+        masu_cli_progress("timing, round %u of %u", run, o->runs);
         for (uint32_t i = 0; i < WAYS * RUNGS; i++) {
             uint32_t k = (i + run * 5) % (WAYS * RUNGS), way = k % WAYS, rung = k / WAYS;
             masu_commands commands;
@@ -343,36 +332,66 @@ static bool time_all(bench *b) {
     return true;
 }
 
-static bool print(bench *b) {
-    const masu_headless *host = &b->s[0].host;
-    VkPhysicalDeviceProperties properties;
-    vkGetPhysicalDeviceProperties(host->physical, &properties);
-    FILE *f = b->o->csv && strcmp(b->o->csv, "-") != 0 ? fopen(b->o->csv, "w") : stdout;
-    if (!f) return failed(b, "the CSV file cannot be written");
-    fprintf(f, "scene,radius,size,filter,slices,steps,taps_per_pixel,rmse,mean,correlation,p99,worst,"
-               "moving,ao_ms,upsample_ms,truth_mean,points,rays,width,height,driver\n");
-    for (uint32_t r = 0; r < RUNGS; r++) {
-        for (uint32_t way = 0; way < (r == OFF ? 1 : WAYS); way++) {
-            const row *w = &b->rows[way][r];
-            double taps = 2.0 * samples[r][0] * samples[r][1] / (ways[way].full ? 1 : 4);
-            fprintf(f, "%s,%g,%s,%s,%u,%u,%g,%.4f,%+.4f,%.4f,%.3f,%.3f,%.5f,%.2f,%.2f,%.4f,%u,%u,%u,%u,"
-                       "\"%s\"\n",
-                    b->o->path, b->o->radius, r == OFF ? "off" : ways[way].size, ways[way].filter,
-                    samples[r][0], samples[r][1], taps, w->rmse, w->mean, w->correlation, w->p99,
-                    w->worst, w->moving, w->ao_ms, w->upsample_ms, b->truth_mean, b->count, b->o->rays,
-                    b->o->size.width, b->o->size.height, properties.deviceName);
-        }
-    }
-    return f == stdout || !fclose(f) || failed(b, "the CSV file cannot be written");
+static const masu_column columns[] = {
+    {"scene", NULL, NULL, NULL},
+    {"radius", "%g", NULL, NULL},
+    {"size", NULL, "size", NULL},
+    {"filter", NULL, "filter", NULL},
+    {"slices", "%.0f", "slices", "%.0f"},
+    {"steps", "%.0f", "steps", "%.0f"},
+    {"taps_per_pixel", "%g", "taps/pixel", "%g"},
+    {"rmse", "%.4f", "rmse", "%.4f"},
+    {"mean", "%+.4f", "mean", "%+.4f"},
+    {"correlation", "%.4f", "correlation", "%.4f"},
+    {"p99", "%.3f", "p99", "%.3f"},
+    {"worst", "%.3f", "worst", "%.3f"},
+    {"moving", "%.5f", "moving", "%.5f"},
+    {"ao_ms", "%.2f", "ao ms", "%.2f"},
+    {"upsample_ms", "%.2f", "upsample", "%.2f"},
+    {"truth_mean", "%.4f", NULL, NULL},
+    {"points", "%.0f", NULL, NULL},
+    {"rays", "%.0f", NULL, NULL},
+    {"width", "%.0f", NULL, NULL},
+    {"height", "%.0f", NULL, NULL},
+    {"driver", "\"", NULL, NULL},
+    {NULL, NULL, NULL, NULL}};
+
+static void add_row(masu_table *t, const bench *b, uint32_t way, uint32_t rung) {
+    const row *w = &b->rows[way][rung];
+    double taps = 2.0 * samples[rung][0] * samples[rung][1] / (ways[way].full ? 1 : 4);
+    const double numbers[] = {samples[rung][0], samples[rung][1], taps,       w->rmse,
+                              w->mean,          w->correlation,   w->p99,     w->worst,
+                              w->moving,        w->ao_ms,         w->upsample_ms,
+                              b->truth_mean,    b->count,         given.rays, o->size.width,
+                              o->size.height};
+    masu_table_text(t, o->scene);
+    masu_table_number(t, given.radius);
+    masu_table_text(t, rung == OFF ? "off" : ways[way].size);
+    masu_table_text(t, ways[way].filter);
+    masu_table_numbers(t, numbers, sizeof numbers / sizeof *numbers);
+    masu_table_text(t, b->s[0].host.properties.deviceName);
 }
 
-static bool open_sessions(bench *b, const masu_headless_desc *host, uint32_t *opened) {
+static int print(const bench *b) {
+    masu_table t;
+    masu_table_open(&t, columns, "n/a");
+    for (uint32_t r = 0; r < RUNGS; r++) {
+        for (uint32_t way = 0; way < (r == OFF ? 1 : WAYS); way++) add_row(&t, b, way, r);
+    }
+    fprintf(o->text, "%s, %ux%u, radius %g m, %u points of %u rays, mean %.4f; %s\n", o->scene,
+            o->size.width, o->size.height, given.radius, b->count, given.rays, b->truth_mean,
+            b->s[0].host.driver);
+    masu_table_print(&t, o->text);
+    return masu_table_close(&t, o->csv);
+}
+
+static bool open_sessions(bench *b, uint32_t *opened) {
     for (uint32_t way = 0; way < WAYS; way++) {
         masu_session_desc d;
         memset(&d, 0, sizeof d);
-        d.scene_path = b->o->path;
-        d.host = *host;
-        d.desc.output = b->o->size;
+        d.scene_path = o->scene;
+        d.host = o->host;
+        d.desc.output = o->size;
         d.desc.targets.storage = 1;
         d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_NORMAL | MASU_READBACK_OCCLUSION;
         d.desc.debug = (masu_debug){.timestamps = 1,
@@ -391,31 +410,32 @@ static bool open_sessions(bench *b, const masu_headless_desc *host, uint32_t *op
     return true;
 }
 
-static int bench_scene(options *o, const masu_headless_desc *host) {
+/* Of the rays: the scene's, or the one that is given where it has none. */
+static bool choose_radius(bench *b) {
+    double own = (double)b->scene.occlusion_radius;
+    if (!(given.radius > 0)) given.radius = own;
+    if (!(given.radius > 0))
+        return failed(b, "asks for no ambient occlusion, and --radius is not given");
+    if (own > 0 && own != given.radius)
+        return failed(b, "has a radius of its own, --radius is for scenes that have none");
+    return true;
+}
+
+static int run(void) {
     static bench b;
     uint32_t opened = 0;
-    memset(&b, 0, sizeof b);
-    b.o = o;
-    bool good = open_sessions(&b, host, &opened);
+    bool good = open_sessions(&b, &opened);
     if (good && masu_camera_at(b.s[0].m, o->time, &b.camera))
         good = failed(&b, "the scene has no camera");
-    good = good && open_truth(&b);
-    if (good && !(o->radius > 0)) o->radius = (double)b.scene.occlusion_radius;
-    if (good && !(o->radius > 0))
-        good = failed(&b, "asks for no ambient occlusion, and --radius is not given");
-    if (good && b.scene.occlusion_radius > 0.0f && (double)b.scene.occlusion_radius != o->radius)
-        good = failed(&b, "has a radius of its own, --radius is for scenes that have none");
-    good = good && look(&b) && time_all(&b);
+    good = good && open_truth(&b) && choose_radius(&b) && look(&b) && time_all(&b);
     masu_cli_progress_clear();
-    good = good && print(&b);
-    if (!good) masu_cli_error("%s", b.error);
+    int code = good ? print(&b) : masu_cli_error("%s", b.error);
     masu_ao_close(&b.world);
     masu_truth_close(&b.field);
     free(b.blob);
     free(b.points);
     free(b.differences);
     free(b.before);
-    int code = good ? MASU_CLI_OK : MASU_CLI_FAILURE;
     for (uint32_t way = 0; way < opened; way++) {
         masu_session_close(&b.s[way]);
         code = masu_finish_validation(&b.s[way].host, code);
@@ -423,72 +443,31 @@ static int bench_scene(options *o, const masu_headless_desc *host) {
     return code;
 }
 
-static int run(masu_cli *cli) {
-    options o = {.size = {640, 360}, .runs = 5, .rays = 256, .stride = 3};
-    masu_headless_desc host = {.message = masu_print_message};
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &host)) continue;
-        switch (id) {
-        case OPTION_SIZE:
-            if (!masu_output_size(cli, &o.size)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_CSV:
-            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
-            continue;
-        case OPTION_RUNS:
-            if (!masu_cli_uint(cli, 1, 10000, &o.runs)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_RAYS:
-            if (!masu_cli_uint(cli, 1, 1000000, &o.rays)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_STRIDE:
-            if (!masu_cli_uint(cli, 1, 1023, &o.stride)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_TIME:
-            if (!masu_cli_double(cli, -1e9, 1e9, &o.time)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_RADIUS:
-            if (!masu_cli_double(cli, 1e-3, 1e6, &o.radius)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_TRUTH: o.truth = cli->value; continue;
-        case OPTION_IMAGES: o.images = cli->value; continue;
-        case MASU_CLI_ARGUMENT:
-            if (o.path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
-            o.path = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!o.path) return masu_cli_usage_error("no scene is given");
-    o.stride |= 1; /* an even one would see one pixel of each texel of half size alone */
-    return bench_scene(&o, &host);
-}
+static const masu_option rows[] = {
+    MASU_STUDY_SIZE,
+    MASU_STUDY_CSV,
+    MASU_STUDY_RUNS(1, 10000),
+    MASU_UINT(options, rays, "rays", 1, 1000000, "rays of each point"),
+    MASU_STUDY_STRIDE,
+    MASU_STUDY_TIME,
+    MASU_REAL(options, radius, "radius", "METRES", 1e-3, 1e6,
+              "of the rays, for scenes whose SDF alone occludes"),
+    MASU_STUDY_FIELD,
+    MASU_STUDY_IMAGES("write the seen part and the lit picture of every way there, as PNG"),
+    MASU_STUDY_DEVICE,
+    MASU_STUDY_END};
 
-static const masu_cli_option list[] = {
-    {"size", "WxH", "size in pixels (default 640x360)", OPTION_SIZE, 0},
-    {"csv", "FILE", "where to write (default: standard output)", OPTION_CSV, 0},
-    {"runs", "N", "timed frames of each way (default 5)", OPTION_RUNS, 0},
-    {"rays", "N", "rays of each point (default 256)", OPTION_RAYS, 0},
-    {"stride", "S", "compare every S-th pixel of every S-th row, odd (default 3)", OPTION_STRIDE, 0},
-    {"time", "SECONDS", "moment of the scene (default 0)", OPTION_TIME, 0},
-    {"radius", "METRES", "of the rays, for scenes whose SDF alone occludes", OPTION_RADIUS, 0},
-    {"truth", "FILE.so", "the SDF in double precision (default: SCENE.truth.so)", OPTION_TRUTH, 0},
-    {"images", "FOLDER", "write the seen part and the lit picture of every way there", OPTION_IMAGES,
-     0},
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
-
-const masu_cli_command masu_cmd_ao_bench = {
-    .name = "ao-bench",
+const masu_study masu_study_ao = {
+    .name = "ao",
+    .purpose = "ambient occlusion in screen space against rays",
     .arguments = "SCENE.masu [options]",
-    .summary = "measure ambient occlusion in screen space against rays",
-    .options = list,
+    .scenes_min = 1,
+    .scenes_max = 1,
+    .options = rows,
+    .given = &given.study,
+    .run = run,
     .details =
-        "One line of CSV for each number of slices and steps, size and filter; the line \"off\" is "
-        "the picture without.\nrmse, mean: of the seen part less that of the rays; p99, worst: of its "
-        "size; moving: root mean square of the\nchange when the camera moves by an eighth of a "
-        "pixel. Scenes with polygons and an SDF have no truth.\n",
-    .run = run};
+        "One row for each number of slices and steps, size and filter; the row \"off\" is the picture\n"
+        "without. rmse, mean: of the seen part less that of the rays; p99, worst: of its size; moving:\n"
+        "root mean square of the change when the camera moves by an eighth of a pixel. Scenes with\n"
+        "polygons and an SDF have no truth.\n"};

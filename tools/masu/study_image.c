@@ -1,12 +1,12 @@
-/* image_error.c: `masu image-error`: how far each chain of the finished picture
- * (anti-aliasing, upscaling, sharpening, at some render sizes) is from the picture without
- * shortcuts, and what it costs.
+/* study_image.c: `masu study image`: how far each chain of the finished picture (anti-aliasing,
+ * upscaling, sharpening, at some render sizes) is from the picture without shortcuts, and what it
+ * costs.
  *
  * The truth is that of `masu render --truth`. A chain is a row of the table below, and a rung of
  * a renderer; as many as a renderer takes are drawn in turns. The picture is that of a scene at
  * rest, after as many frames as the filters of reflections need; times are the least of frames in
  * turns. Nothing is judged. */
-#include "masu/cmd.h"
+#include "masu/study.h"
 
 #include "bench/measure/picture.h"
 #include "clock.h"
@@ -18,18 +18,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum {
-    OPTION_FRAMES = 1,
-    OPTION_RUNS,
-    OPTION_SCALES,
-    OPTION_ONLY,
-    OPTION_IMAGES,
-    OPTION_CSV,
-    OPTION_PPD,
-    OPTION_ANISOTROPY,
-    OPTION_RAYS
-};
 
 /* coarse: mips of the render size instead of the output's, as an upscaler would have them that
  * nobody told. */
@@ -76,14 +64,21 @@ static const chain upscaled[] = {
 enum { SCALES_MOST = 8, ROWS_MOST = SCALES_MOST * COUNT(upscaled) };
 
 typedef struct options {
-    const char *path, *csv, *truth, *images, *only;
-    VkExtent2D size;
-    uint32_t positions, rays, frames, runs;
-    double time, ppd, anisotropy, scales[SCALES_MOST];
-    uint32_t scale_count;
-    masu_headless_desc host;
+    masu_study_options study;
+    double ppd, anisotropy, scales[SCALES_MOST];
+    uint32_t scale_count, rays;
+    masu_headless_desc host; /* with what --rays asks for */
     masu_switch ray_query;
 } options;
+
+static options given = {.study = {.size = {640, 360},
+                                  .frames = 32,
+                                  .runs = 9,
+                                  .truth = {NULL, MASU_PICTURE_POSITIONS, MASU_PICTURE_RAYS}},
+                        .ppd = MASU_FLIP_PPD,
+                        .scales = {1.0, 0.8, 0.5, 0.4},
+                        .scale_count = 4};
+static const masu_study_options *const o = &given.study;
 
 typedef struct row {
     const chain *of;
@@ -95,7 +90,6 @@ typedef struct row {
 } row;
 
 typedef struct bench {
-    const options *o;
     uint8_t *truth;
     float *map;
     uint32_t pixels, row_count;
@@ -105,16 +99,16 @@ typedef struct bench {
 } bench;
 
 static bool failed(bench *b, const char *text) {
-    snprintf(b->error, sizeof b->error, "%s: %s", b->o->path, text);
+    snprintf(b->error, sizeof b->error, "%s: %s", o->scene, text);
     return false;
 }
 
 /* ---- The truth ------------------------------------------------------------------------------- */
 
-static masu_session_desc session_of(const options *o) {
-    masu_session_desc d = masu_picture_session(o->path, o->size, &o->host);
-    d.desc.ray_query = o->ray_query;
-    d.desc.vulkan.max_anisotropy = (float)o->anisotropy; /* of the chains: the truth takes none */
+static masu_session_desc session_of(void) {
+    masu_session_desc d = masu_picture_session(o->scene, o->size, &given.host);
+    d.desc.ray_query = given.ray_query;
+    d.desc.vulkan.max_anisotropy = (float)given.anisotropy; /* of the chains: the truth takes none */
     return d;
 }
 
@@ -125,12 +119,11 @@ static void close_session(bench *b, masu_session *s) {
 }
 
 static bool find_truth(bench *b) {
-    const options *o = b->o;
-    masu_session_desc d = session_of(o);
-    masu_picture_want truth = {.path = o->truth,
+    masu_session_desc d = session_of();
+    masu_picture_want truth = {.path = o->truth.path,
                                .time = o->time,
-                               .positions = o->positions,
-                               .rays = o->rays,
+                               .positions = o->truth.positions,
+                               .rays = o->truth.rays,
                                .progress = masu_cli_progress_text};
     bool good = masu_picture_find(&d, &truth, b->truth, b->error, sizeof b->error);
     b->messages += truth.messages;
@@ -140,14 +133,13 @@ static bool find_truth(bench *b) {
 /* ---- Chains ---------------------------------------------------------------------------------- */
 
 static void plan_rows(bench *b) {
-    const options *o = b->o;
-    for (uint32_t i = 0; i < o->scale_count; i++) {
-        bool whole = o->scales[i] >= 1.0;
+    for (uint32_t i = 0; i < given.scale_count; i++) {
+        bool whole = given.scales[i] >= 1.0;
         const chain *chains = whole ? native : upscaled;
         size_t count = whole ? COUNT(native) : COUNT(upscaled);
         for (size_t k = 0; k < count; k++) {
             if (o->only && !strstr(chains[k].name, o->only)) continue;
-            b->rows[b->row_count++] = (row){.of = &chains[k], .scale = o->scales[i]};
+            b->rows[b->row_count++] = (row){.of = &chains[k], .scale = given.scales[i]};
         }
     }
 }
@@ -165,9 +157,9 @@ static uint32_t batch_of(const bench *b, uint32_t first) {
 
 static bool frame_of(bench *b, masu_session *s, uint32_t rung, bool cut, masu_commands *commands) {
     masu_camera camera;
-    if (masu_camera_at(s->m, b->o->time, &camera)) return failed(b, "the scene has no camera");
+    if (masu_camera_at(s->m, o->time, &camera)) return failed(b, "the scene has no camera");
     masu_frame_desc frame = {
-        .camera = &camera, .time = b->o->time, .time_step = 1.0f / 60.0f, .rung = rung, .cut = cut};
+        .camera = &camera, .time = o->time, .time_step = 1.0f / 60.0f, .rung = rung, .cut = cut};
     return masu_session_frame(s, &frame, true, commands, b->error, sizeof b->error);
 }
 
@@ -175,22 +167,13 @@ static bool save(bench *b, const row *r, const uint8_t *rgba) {
     char path[4096], name[64];
     snprintf(name, sizeof name, "%s", r->of->name);
     for (char *c = name; *c; c++) *c = *c == ' ' ? '-' : *c;
-    snprintf(path, sizeof path, "%s/%s.%.2f.%s.png", b->o->images, b->scene, r->scale, name);
-    if (!masu_image_save_png(path, rgba, b->o->size.width, b->o->size.height, 0, b->error,
+    snprintf(path, sizeof path, "%s/%s.%.2f.%s.png", o->images, b->scene, r->scale, name);
+    if (!masu_image_save_png(path, rgba, o->size.width, o->size.height, 0, b->error,
                              sizeof b->error)) {
         return false;
     }
-    uint8_t *grey = malloc(4 * (size_t)b->pixels);
-    if (!grey) return failed(b, "out of memory");
-    for (uint32_t i = 0; i < b->pixels; i++) {
-        memset(grey + 4 * (size_t)i, (int)(255.0f * fminf(b->map[i], 1.0f) + 0.5f), 3);
-        grey[4 * (size_t)i + 3] = 255;
-    }
-    snprintf(path, sizeof path, "%s/%s.%.2f.%s.flip.png", b->o->images, b->scene, r->scale, name);
-    bool good = masu_image_save_png(path, grey, b->o->size.width, b->o->size.height, 0, b->error,
-                                    sizeof b->error);
-    free(grey);
-    return good;
+    snprintf(path, sizeof path, "%s/%s.%.2f.%s.flip.png", o->images, b->scene, r->scale, name);
+    return masu_study_save_grey(path, b->map, o->size, b->error, sizeof b->error);
 }
 
 /* A scene that traces no reflections looks the same in every frame. */
@@ -198,7 +181,7 @@ static bool compare(bench *b, masu_session *s, uint32_t rung, row *r) {
     masu_plan_info plan;
     masu_plan_of(s->m, &plan);
     r->render = (VkExtent2D){plan.rungs[rung].render_width, plan.rungs[rung].render_height};
-    uint32_t frames = s->scene.reflections ? b->o->frames : 1;
+    uint32_t frames = s->scene.reflections ? o->frames : 1;
     masu_commands commands;
     masu_cli_progress("%s at %.2f", r->of->name, r->scale);
     for (uint32_t k = 0; k < frames; k++) {
@@ -207,12 +190,12 @@ static bool compare(bench *b, masu_session *s, uint32_t rung, row *r) {
     if (!masu_headless_target_read(&s->host, &s->targets[0], b->error, sizeof b->error))
         return false;
     const uint8_t *shown = s->targets[0].mapped;
-    VkExtent2D size = b->o->size;
-    if (!masu_metric_flip(b->truth, shown, size.width, size.height, b->o->ppd, b->map, &r->flip))
+    VkExtent2D size = o->size;
+    if (!masu_metric_flip(b->truth, shown, size.width, size.height, given.ppd, b->map, &r->flip))
         return failed(b, "out of memory");
     r->rmse = masu_metric_rmse(b->truth, shown, size.width, size.height);
     r->ssim = masu_metric_ssim(b->truth, shown, size.width, size.height);
-    return !b->o->images || save(b, r, shown);
+    return !o->images || save(b, r, shown);
 }
 
 /* The passes behind the tone curve. */
@@ -232,8 +215,8 @@ static void least(double *value, double candidate) {
 
 /* One more run than asked for: the first after another rung's is dropped with the warm-up. */
 static bool measure(bench *b, masu_session *s, uint32_t first, uint32_t count) {
-    for (uint32_t run = 0; run <= b->o->runs && b->o->runs; run++) {
-        masu_cli_progress("timing, run %u of %u", run, b->o->runs);
+    for (uint32_t run = 0; run <= o->runs && o->runs; run++) {
+        masu_cli_progress("timing, run %u of %u", run, o->runs);
         for (uint32_t k = 0; k < count; k++) {
             masu_commands commands;
             masu_stats_info stats;
@@ -251,9 +234,9 @@ static bool measure(bench *b, masu_session *s, uint32_t first, uint32_t count) {
 
 static bool run_batch(bench *b, uint32_t first, uint32_t count) {
     static masu_session s;
-    masu_session_desc d = session_of(b->o);
+    masu_session_desc d = session_of();
     const row *r = &b->rows[first];
-    d.desc.debug.timestamps = b->o->runs != 0;
+    d.desc.debug.timestamps = o->runs != 0;
     d.desc.debug.mip_bias = r->of->coarse ? -log2f((float)r->scale) : 0.0f;
     d.desc.rung_count = count;
     for (uint32_t k = 0; k < count; k++) {
@@ -271,48 +254,67 @@ static bool run_batch(bench *b, uint32_t first, uint32_t count) {
 
 /* ---- Out ------------------------------------------------------------------------------------- */
 
-static void print_table(const bench *b) {
-    printf("%s at %ux%u, %.3g s, truth of %u positions, %.1f pixels per degree; %s\n", b->scene,
-           b->o->size.width, b->o->size.height, b->o->time, b->o->positions, b->o->ppd, b->driver);
-    printf("%-6s %-24s %9s %8s %8s %8s %7s %7s %9s %9s\n", "scale", "chain", "render", "flip",
-           "flip p99", "rmse/255", "psnr", "ssim", "chain ms", "frame ms");
-    for (uint32_t i = 0; i < b->row_count; i++) {
-        const row *r = &b->rows[i];
-        char size[32];
-        snprintf(size, sizeof size, "%ux%u", r->render.width, r->render.height);
-        printf("%-6.2f %-24s %9s %8.4f %8.4f %8.2f %7.2f %7.4f %9.2f %9.2f\n", r->scale,
-               r->of->name, size, r->flip.mean, r->flip.p99, 255.0 * r->rmse,
-               masu_metric_psnr(r->rmse), r->ssim, r->chain_ms, r->wall_ms);
-    }
+static const masu_column columns[] = {
+    {"scene", NULL, NULL, NULL},
+    {"scale", "%g", "scale", "%.2f"},
+    {"chain", NULL, "chain", NULL},
+    {NULL, NULL, "render", NULL},
+    {"render_width", "%.0f", NULL, NULL},
+    {"render_height", "%.0f", NULL, NULL},
+    {"flip", "%.6f", "flip", "%.4f"},
+    {"flip_p99", "%.6f", "flip p99", "%.4f"},
+    {"flip_max", "%.6f", NULL, NULL},
+    {"rmse", "%.6f", NULL, NULL},
+    {NULL, NULL, "rmse/255", "%.2f"},
+    {"psnr_db", "%.4f", "psnr", "%.2f"},
+    {"ssim", "%.6f", "ssim", "%.4f"},
+    {"chain_gpu_ms", "%.4f", "chain ms", "%.2f"},
+    {"gpu_ms", "%.4f", NULL, NULL},
+    {"wall_ms", "%.4f", "frame ms", "%.2f"},
+    {"positions", "%.0f", NULL, NULL},
+    {"rays", "%.0f", NULL, NULL},
+    {"frames", "%.0f", NULL, NULL},
+    {"runs", "%.0f", NULL, NULL},
+    {"width", "%.0f", NULL, NULL},
+    {"height", "%.0f", NULL, NULL},
+    {"time", "%g", NULL, NULL},
+    {"ppd", "%.2f", NULL, NULL},
+    {"driver", "\"", NULL, NULL},
+    {NULL, NULL, NULL, NULL}};
+
+static void add_row(masu_table *t, const bench *b, const row *r) {
+    char size[32];
+    snprintf(size, sizeof size, "%ux%u", r->render.width, r->render.height);
+    const double numbers[] = {
+        r->render.width,    r->render.height, r->flip.mean,   r->flip.p99,  r->flip.max, r->rmse,
+        255.0 * r->rmse,    masu_metric_psnr(r->rmse),        r->ssim,      r->chain_ms, r->gpu_ms,
+        r->wall_ms,         o->truth.positions, o->truth.rays, o->frames,   o->runs,
+        o->size.width,      o->size.height,   o->time,        given.ppd};
+    masu_table_text(t, b->scene);
+    masu_table_number(t, r->scale);
+    masu_table_text(t, r->of->name);
+    masu_table_text(t, size);
+    masu_table_numbers(t, numbers, COUNT(numbers));
+    masu_table_text(t, b->driver);
 }
 
-static bool write_csv(bench *b) {
-    FILE *f = fopen(b->o->csv, "w");
-    if (!f) return failed(b, "the CSV file cannot be written");
-    fprintf(
-        f, "scene,scale,chain,render_width,render_height,flip,flip_p99,flip_max,rmse,psnr_db,ssim,"
-           "chain_gpu_ms,gpu_ms,wall_ms,positions,rays,frames,runs,width,height,time,ppd,driver\n");
-    for (uint32_t i = 0; i < b->row_count; i++) {
-        const row *r = &b->rows[i];
-        fprintf(f,
-                "%s,%g,%s,%u,%u,%.6f,%.6f,%.6f,%.6f,%.4f,%.6f,%.4f,%.4f,%.4f,%u,%u,%u,%u,%u,%u,%g,%"
-                ".2f,\"%s\"\n",
-                b->scene, r->scale, r->of->name, r->render.width, r->render.height, r->flip.mean,
-                r->flip.p99, r->flip.max, r->rmse, masu_metric_psnr(r->rmse), r->ssim, r->chain_ms,
-                r->gpu_ms, r->wall_ms, b->o->positions, b->o->rays, b->o->frames, b->o->runs,
-                b->o->size.width, b->o->size.height, b->o->time, b->o->ppd, b->driver);
-    }
-    return !fclose(f) || failed(b, "the CSV file cannot be written");
+static int print(const bench *b) {
+    masu_table t;
+    masu_table_open(&t, columns, "n/a");
+    for (uint32_t i = 0; i < b->row_count; i++) add_row(&t, b, &b->rows[i]);
+    fprintf(o->text, "%s at %ux%u, %.3g s, truth of %u positions, %.1f pixels per degree; %s\n",
+            b->scene, o->size.width, o->size.height, o->time, o->truth.positions, given.ppd,
+            b->driver);
+    masu_table_print(&t, o->text);
+    return masu_table_close(&t, o->csv);
 }
 
-static int image_error(const options *o) {
+static int run(void) {
     static bench b;
-    memset(&b, 0, sizeof b);
-    b.o = o;
+    given.host = o->host;
+    masu_use_rays(given.rays, &given.ray_query, &given.host);
     b.pixels = o->size.width * o->size.height;
-    const char *last = strrchr(o->path, '/');
-    const char *name = last ? last + 1 : o->path;
-    snprintf(b.scene, sizeof b.scene, "%.*s", (int)strcspn(name, "."), name);
+    masu_study_scene_name(o->scene, b.scene, sizeof b.scene);
     plan_rows(&b);
     if (!b.row_count) return masu_cli_usage_error("no chain's name contains '%s'", o->only);
     b.truth = malloc(4 * (size_t)b.pixels);
@@ -322,25 +324,25 @@ static int image_error(const options *o) {
     for (uint32_t i = 0; i < b.row_count && good; i += batch_of(&b, i))
         good = run_batch(&b, i, batch_of(&b, i));
     masu_cli_progress_clear();
-    if (good) print_table(&b);
-    good = good && (!o->csv || write_csv(&b));
+    int code = good ? print(&b) : masu_cli_error("%s", b.error);
     free(b.truth);
     free(b.map);
-    if (!good) return masu_cli_error("%s", b.error);
-    return b.messages ? masu_cli_error("the validation layer has reported %u messages", b.messages)
-                      : MASU_CLI_OK;
+    if (!code && b.messages)
+        code = masu_cli_error("the validation layer has reported %u messages", b.messages);
+    return code;
 }
 
 /* ---- Command line ---------------------------------------------------------------------------- */
 
 /* "1,0.8,0.4" */
-static bool read_scales(const masu_cli *cli, options *o) {
+static bool read_scales(masu_cli *cli, void *options_) {
+    options *to = options_;
     const char *at = cli->value;
-    for (o->scale_count = 0; o->scale_count < SCALES_MOST; at++) {
+    for (to->scale_count = 0; to->scale_count < SCALES_MOST; at++) {
         char *end;
         double scale = strtod(at, &end);
         if (end == at || !(scale > 0.0 && scale <= 1.0)) break;
-        o->scales[o->scale_count++] = scale;
+        to->scales[to->scale_count++] = scale;
         if (!*end) return true;
         if (*end != ',') break;
         at = end;
@@ -350,90 +352,35 @@ static bool read_scales(const masu_cli *cli, options *o) {
     return false;
 }
 
-static int run(masu_cli *cli) {
-    static masu_session_desc rays;
-    options o = {.size = {640, 360},
-                 .positions = MASU_PICTURE_POSITIONS,
-                 .rays = MASU_PICTURE_RAYS,
-                 .frames = 32,
-                 .ppd = MASU_FLIP_PPD,
-                 .runs = 9,
-                 .scales = {1.0, 0.8, 0.5, 0.4},
-                 .scale_count = 4,
-                 .host = {.message = masu_print_message, .ray_query = true}};
-    const masu_truth_places truth = {&o.size, &o.time, &o.truth, &o.positions, &o.rays};
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &o.host)) continue;
-        int read = masu_truth_option(cli, id, &truth);
-        if (read < 0) return MASU_CLI_USAGE;
-        if (read) continue;
-        switch (id) {
-        case OPTION_FRAMES:
-            if (!masu_cli_uint(cli, 1, 10000, &o.frames)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_ANISOTROPY:
-            if (!masu_cli_double(cli, 1.0, 64.0, &o.anisotropy)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_PPD:
-            if (!masu_cli_double(cli, 1.0, 1000.0, &o.ppd)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_RUNS:
-            if (!masu_cli_uint(cli, 0, 999, &o.runs)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_SCALES:
-            if (!read_scales(cli, &o)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_ONLY: o.only = cli->value; continue;
-        case OPTION_IMAGES: o.images = cli->value; continue;
-        case OPTION_CSV:
-            if (!masu_output_file(cli, &o.csv)) return cli->exit_code;
-            continue;
-        case OPTION_RAYS:
-            if (!masu_rays_option(cli, &rays)) return MASU_CLI_USAGE;
-            o.ray_query = rays.desc.ray_query;
-            o.host.ray_query = rays.host.ray_query;
-            continue;
-        case MASU_CLI_ARGUMENT:
-            if (o.path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
-            o.path = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!o.path) return masu_cli_usage_error("no scene is given");
-    return image_error(&o);
-}
+static const masu_option rows[] = {
+    MASU_STUDY_SIZE,
+    MASU_STUDY_TIME,
+    MASU_STUDY_TRUTH,
+    MASU_STUDY_FRAMES(10000, "at rest, before a picture with reflections is taken"),
+    MASU_REAL(options, ppd, "ppd", "N", 1.0, 1000.0,
+              "pixels per degree of sight, for FLIP: 67 at 0.7 m before 3840 on 0.7 m"),
+    MASU_STUDY_RUNS(0, 999),
+    MASU_OWN("scales", "S,...", read_scales, "of the render size (default 1,0.8,0.5,0.4)"),
+    MASU_TEXT(options, study.only, "only", "TEXT", "chains with that in their name"),
+    MASU_REAL(options, anisotropy, "anisotropy", "N", 1.0, 64.0,
+              "samples of the chains' textures along the longer axis (default 1)"),
+    MASU_STUDY_IMAGES("the pictures, and the maps of FLIP, as PNG"),
+    MASU_STUDY_CSV,
+    MASU_RAYS_ROW(options, rays),
+    MASU_STUDY_DEVICE,
+    MASU_STUDY_END};
 
-static const masu_cli_option list[] = {
-    MASU_TRUTH_OPTIONS("0"),
-    {"frames", "N", "at rest, before a picture with reflections is taken (default 32)",
-     OPTION_FRAMES, 0},
-    {"ppd", "N",
-     "pixels per degree of sight, for FLIP: 67 at 0.7 m before 3840 on 0.7 m (default 67)",
-     OPTION_PPD, 0},
-    {"runs", "N", "timed frames of each chain; 0: none (default 9)", OPTION_RUNS, 0},
-    {"scales", "S,...", "of the render size (default 1,0.8,0.5,0.4)", OPTION_SCALES, 0},
-    {"only", "TEXT", "chains with that in their name", OPTION_ONLY, 0},
-    {"anisotropy", "N", "samples of the chains' textures along the longer axis (default 1)",
-     OPTION_ANISOTROPY, 0},
-    {"images", "DIR", "the pictures, and the maps of FLIP, as PNG", OPTION_IMAGES, 0},
-    {"csv", "FILE", "the rows as CSV", OPTION_CSV, 0},
-    MASU_RAYS_OPTION(OPTION_RAYS),
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
-
-const masu_cli_command masu_cmd_image_error = {
-    .name = "image-error",
+const masu_study masu_study_image = {
+    .name = "image",
+    .purpose = "anti-aliasing, upscaling and sharpening against the picture without shortcuts",
     .arguments = "SCENE.masu [options]",
-    .summary =
-        "measure anti-aliasing, upscaling and sharpening against the picture without shortcuts",
-    .options = list,
+    .scenes_min = 1,
+    .scenes_max = 1,
+    .options = rows,
+    .given = &given.study,
+    .run = run,
     .details = "The truth is that of masu render --truth. RMSE, PSNR and SSIM are of the shown\n"
                "8 bits. Chain ms: GPU time of all behind the tone curve; frame ms: wall time from\n"
                "masu_frame to the fence, with a full barrier around each pass; both the least of "
                "the runs, in\n"
-               "which all chains of a renderer take turns.\n",
-    .run = run};
+               "which all chains of a renderer take turns.\n"};

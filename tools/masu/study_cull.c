@@ -1,7 +1,7 @@
-/* cull_bench.c: `masu cull-bench`: what stage 1 of culling costs on one core, and how many plane
- * tests the tree saves, on a path through a scene or through a town of boxes made up here. No device
- * is opened. Times are printed and judged by nobody: machines differ. */
-#include "masu/cmd.h"
+/* study_cull.c: `masu study cull`: what frustum culling costs on one core, and how many plane tests the
+ * tree saves, on a path through a scene or through a town of boxes made up here. No device is opened.
+ * Times are printed and judged by nobody: machines differ. */
+#include "masu/study.h"
 
 #include "bake/scene/groups.h"
 #include "clock.h"
@@ -14,7 +14,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_BOXES = 1, OPTION_FRAMES, OPTION_JSON };
+typedef struct options {
+    masu_study_options study;
+    uint32_t boxes;
+} options;
+
+static options given = {.study = {.frames = 600}, .boxes = 8000};
 
 /* What is culled, in plain memory. */
 typedef struct field {
@@ -213,8 +218,9 @@ static figures measure(field *f, const masu_blob_camera_key *keys, uint32_t key_
     return out;
 }
 
-static int print(const field *f, const figures *r, uint32_t frames, bool json) {
-    if (json) {
+static int print(const field *f, const figures *r) {
+    uint32_t frames = given.study.frames;
+    if (given.study.json) {
         return masu_json_write(
             json_pack("{s:I, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "boxes",
                       (json_int_t)f->count, "groups", (json_int_t)f->groups, "frames",
@@ -234,7 +240,7 @@ static int print(const field *f, const figures *r, uint32_t frames, bool json) {
     return MASU_CLI_OK;
 }
 
-static int bench_scene(const char *path, uint32_t frames, bool json) {
+static int cull_scene(const char *path) {
     uint8_t *bytes = NULL;
     size_t count = 0;
     char error[1024];
@@ -251,54 +257,33 @@ static int bench_scene(const char *path, uint32_t frames, bool json) {
         masu_scene_view v = masu_scene_look(&scene);
         field f = {.count = scene.instances, .groups = scene.groups, .grouped = scene.group_items};
         fill(&f, v.instances, v.meshes, v.groups, v.group_items);
-        figures r = measure(&f, v.camera_keys, scene.camera_keys, frames);
-        code = print(&f, &r, frames, json);
+        figures r = measure(&f, v.camera_keys, scene.camera_keys, given.study.frames);
+        code = print(&f, &r);
         release(&f);
     }
     free(bytes);
     return code;
 }
 
-static int run(masu_cli *cli) {
-    uint32_t boxes = 8000, frames = 600;
-    bool json = false;
-    const char *path = NULL;
-    for (;;) {
-        switch (masu_cli_next(cli)) {
-        case OPTION_BOXES:
-            if (!masu_cli_uint(cli, 1, 1000000, &boxes)) return MASU_CLI_USAGE;
-            break;
-        case OPTION_FRAMES:
-            if (!masu_cli_uint(cli, 1, 100000, &frames)) return MASU_CLI_USAGE;
-            break;
-        case OPTION_JSON: json = true; break;
-        case MASU_CLI_ARGUMENT:
-            if (path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
-            path = cli->value;
-            break;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        case MASU_CLI_END: {
-            if (path) return bench_scene(path, frames, json);
-            field f = {0};
-            make_town(boxes, &f);
-            figures r = measure(&f, NULL, 0, frames);
-            int code = print(&f, &r, frames, json);
-            release(&f);
-            return code;
-        }
-        }
-    }
+static int run(void) {
+    if (given.study.scene) return cull_scene(given.study.scene);
+    field f = {0};
+    make_town(given.boxes, &f);
+    figures r = measure(&f, NULL, 0, given.study.frames);
+    int code = print(&f, &r);
+    release(&f);
+    return code;
 }
 
-static const masu_cli_option options[] = {
-    {"boxes", "N", "boxes of the town (default 8000)", OPTION_BOXES, 0},
-    {"frames", "N", "views along the path (default 600)", OPTION_FRAMES, 0},
-    {"json", NULL, "print JSON", OPTION_JSON, 0},
-    {NULL, NULL, NULL, 0, 0}};
+static const masu_option rows[] = {
+    MASU_UINT(options, boxes, "boxes", 1, 1000000, "boxes of the town"),
+    MASU_STUDY_FRAMES(100000, "views along the path"), MASU_STUDY_JSON, MASU_STUDY_END};
 
-const masu_cli_command masu_cmd_cull_bench = {
-    .name = "cull-bench",
+const masu_study masu_study_cull = {
+    .name = "cull",
+    .purpose = "frustum culling on one core: a scene's path, or a town of boxes",
     .arguments = "[SCENE.masu] [options]",
-    .summary = "measure frustum culling on one core: a scene's path, or a town of boxes",
-    .options = options,
+    .scenes_max = 1,
+    .options = rows,
+    .given = &given.study,
     .run = run};

@@ -1,4 +1,4 @@
-/* bench/study/image.c: `masu bench-image`: what a frame does to the finished picture, timed:
+/* study_upscale.c: `masu study upscale`: what a frame does to the finished picture, timed:
  * upscaling and sharpening, by the library's rungs, and beside them shaders of the bench's own.
  *
  * A case is a row of the table below: a rung, which the library runs on the picture as it does in a
@@ -7,7 +7,7 @@
  * the device's timestamps, which Mesa 22.3's lavapipe is known to get wrong: a case where the two
  * differ by more than a tenth and 0.2 ms is marked. Then each picture is compared with that of the
  * case it is like. Nothing is judged. */
-#include "masu/cmd.h"
+#include "masu/study.h"
 
 #include "bench/study/image.h"
 #include "clock.h"
@@ -24,8 +24,6 @@
 #include "easu_fast_bytes_half_comp.spv.h"
 #include "easu_gather_comp.spv.h"
 #include "rcas_bytes_comp.spv.h"
-
-enum { OPTION_SIZE = 1, OPTION_FROM, OPTION_RUNS, OPTION_CSV, OPTION_ONLY, OPTION_OUTPUT };
 
 #define SPIRV(name) masu_spv_##name, sizeof masu_spv_##name
 #define RCAS_02 0.870550563f /* exp2(-0.2) */
@@ -75,10 +73,12 @@ static const bench_case cases[] = {
 enum { CASES = sizeof cases / sizeof *cases, RUNS_MOST = 99 };
 
 typedef struct options {
-    const char *path, *csv, *only, *output;
-    VkExtent2D from, to;
-    uint32_t runs;
+    masu_study_options study;
+    VkExtent2D from;
 } options;
+
+static options given = {.study = {.size = {1920, 1080}, .runs = 9}, .from = {960, 540}};
+static const masu_study_options *const o = &given.study;
 
 typedef struct subject {
     masu_renderer *m; /* of a rung */
@@ -93,13 +93,14 @@ typedef struct subject {
 } subject;
 
 typedef struct bench {
-    const options *o;
     masu_session s; /* the device and a target */
     masu_headless_source source;
     subject subjects[CASES];
-    bool on[CASES];
+    uint32_t only; /* bit: case */
     char error[1024];
 } bench;
+
+static bool on(const bench *b, uint32_t i) { return b->only >> i & 1u; }
 
 /* ---- The picture ----------------------------------------------------------------------------- */
 
@@ -128,14 +129,14 @@ static void make_picture(uint8_t *rgba, uint32_t width, uint32_t height) {
 }
 
 static bool make_source(bench *b) {
-    uint32_t width = b->o->from.width, height = b->o->from.height;
+    uint32_t width = given.from.width, height = given.from.height;
     struct masu_image image = {0};
     uint8_t *made = NULL;
     bool good;
-    if (b->o->path) {
-        if (!masu_image_load_png(b->o->path, &image, b->error, sizeof b->error)) return false;
+    if (o->scene) {
+        if (!masu_image_load_png(o->scene, &image, b->error, sizeof b->error)) return false;
         if (image.width != width || image.height != height) {
-            snprintf(b->error, sizeof b->error, "%s is %ux%u, --from says %ux%u", b->o->path,
+            snprintf(b->error, sizeof b->error, "%s is %ux%u, --from says %ux%u", o->scene,
                      image.width, image.height, width, height);
             masu_image_free(&image);
             return false;
@@ -162,7 +163,7 @@ static bool open_rung(bench *b, const bench_case *c, subject *u) {
     masu_detail detail;
     masu_memory need;
     masu_commands commands;
-    d.source = (masu_source){b->source.view, b->o->from.width, b->o->from.height,
+    d.source = (masu_source){b->source.view, given.from.width, given.from.height,
                              VK_FORMAT_R8G8B8A8_UNORM};
     d.rung_count = 1;
     d.rungs[0] = c->rung;
@@ -186,7 +187,7 @@ static bool open_rung(bench *b, const bench_case *c, subject *u) {
 static bool open_case(bench *b, uint32_t i) {
     const bench_case *c = &cases[i];
     if (!c->chain[0].words) return open_rung(b, c, &b->subjects[i]);
-    return masu_bench_chain_open(&b->s.host, c->chain, &b->source, b->o->from, &b->s.targets[0],
+    return masu_bench_chain_open(&b->s.host, c->chain, &b->source, given.from, &b->s.targets[0],
                                  false, &b->subjects[i].chain, b->error, sizeof b->error);
 }
 
@@ -196,11 +197,11 @@ static bool count_early(bench *b, uint32_t i) {
     double wall, gpu;
     b->subjects[i].early = -1;
     if (!stages[0].words) return true;
-    bool good = masu_bench_chain_open(&b->s.host, stages, &b->source, b->o->from, &b->s.targets[0],
+    bool good = masu_bench_chain_open(&b->s.host, stages, &b->source, given.from, &b->s.targets[0],
                                       true, &chain, b->error, sizeof b->error) &&
                 masu_bench_chain_run(&chain, &wall, &gpu, b->error, sizeof b->error);
-    uint32_t across = (b->o->to.width + MASU_GROUP - 1) / MASU_GROUP;
-    uint32_t down = (b->o->to.height + MASU_GROUP - 1) / MASU_GROUP;
+    uint32_t across = (o->size.width + MASU_GROUP - 1) / MASU_GROUP;
+    uint32_t down = (o->size.height + MASU_GROUP - 1) / MASU_GROUP;
     if (good) {
         uint64_t count = masu_bench_chain_count(&chain, MASU_COUNTER_EASU_TILES_EARLY);
         b->subjects[i].early = (double)count / ((double)across * down);
@@ -237,7 +238,7 @@ static bool run_case(bench *b, uint32_t i, bool kept) {
 }
 
 static bool keep_picture(bench *b, uint32_t i) {
-    size_t bytes = (size_t)b->o->to.width * b->o->to.height * 4;
+    size_t bytes = (size_t)o->size.width * o->size.height * 4;
     subject *u = &b->subjects[i];
     char path[512];
     if (!run_case(b, i, false) ||
@@ -249,19 +250,19 @@ static bool keep_picture(bench *b, uint32_t i) {
         return false;
     }
     memcpy(u->pixels, b->s.targets[0].mapped, bytes);
-    if (!b->o->output) return true;
-    snprintf(path, sizeof path, "%s-%s.png", b->o->output, cases[i].name);
-    return masu_image_save_png(path, u->pixels, b->o->to.width, b->o->to.height, 0, b->error,
+    if (!o->images) return true;
+    snprintf(path, sizeof path, "%s/%s.png", o->images, cases[i].name);
+    return masu_image_save_png(path, u->pixels, o->size.width, o->size.height, 0, b->error,
                                sizeof b->error);
 }
 
 static bool compare(bench *b, uint32_t i) {
     subject *u = &b->subjects[i], *like = NULL;
-    uint32_t width = b->o->to.width, height = b->o->to.height;
+    uint32_t width = o->size.width, height = o->size.height;
     masu_flip flip;
     u->rms = -1;
     for (uint32_t k = 0; k < CASES && cases[i].like; k++) {
-        if (b->on[k] && !strcmp(cases[k].name, cases[i].like)) like = &b->subjects[k];
+        if (on(b, k) && !strcmp(cases[k].name, cases[i].like)) like = &b->subjects[k];
     }
     if (!like) return true;
     u->rms = 255 * masu_metric_rmse(like->pixels, u->pixels, width, height);
@@ -290,109 +291,88 @@ static double least_of(double *v, uint32_t n) {
 }
 
 /* Of compulsory traffic: each image once, read or written. */
-static double bytes_per_pixel(const options *o, const bench_case *c) {
-    double in = (double)o->from.width * o->from.height, out = (double)o->to.width * o->to.height;
+static double bytes_per_pixel(const bench_case *c) {
+    double in = (double)given.from.width * given.from.height;
+    double out = (double)o->size.width * o->size.height;
     return 4 * in / out + 4 + 8.0 * c->middle;
 }
 
-static void print_rows(bench *b, FILE *f, bool csv) {
+static const masu_column columns[] = {
+    {"case", NULL, "case", NULL},
+    {"driver", "\"", NULL, NULL},
+    {"ms_min", "%.3f", "ms", "%.2f"},
+    {"ms_median", "%.3f", "median", "%.2f"},
+    {"ratio", "%.3f", "ratio", "%.2f"},
+    {"gpu_ms_min", "%.3f", "by timestamps", "%.2f"},
+    {NULL, NULL, "", NULL},
+    {"plausible", "%.0f", NULL, NULL},
+    {"fetches", "%.3g", "fetches/px", "%.3g"},
+    {"bytes", "%.3g", "bytes/px", "%.3g"},
+    {"tiles_early", "%.4f", "tiles early", "%.3f"},
+    {"rms", "%.4f", "rms/255", "%.2f"},
+    {"max", "%.0f", "most/255", "%.0f"},
+    {"flip", "%.5f", "FLIP", "%.4f"},
+    {NULL, NULL, NULL, NULL}};
+
+static void add_row(masu_table *t, bench *b, uint32_t i, double *base) {
+    subject *u = &b->subjects[i];
+    bool alike = u->rms >= 0;
+    double wall = 1e3 * least_of(u->wall, u->runs), gpu = 1e3 * least_of(u->gpu, u->runs);
+    bool plausible = fabs(wall - gpu) <= 0.1 * wall + 0.2;
+    if (*base == 0) *base = wall;
+    masu_table_text(t, cases[i].name);
+    masu_table_text(t, b->s.host.driver);
+    masu_table_number(t, wall);
+    masu_table_number(t, 1e3 * u->wall[u->runs / 2]);
+    masu_table_number(t, wall / *base);
+    masu_table_number(t, gpu);
+    masu_table_text(t, plausible ? "" : "(?)");
+    masu_table_number(t, plausible);
+    masu_table_number(t, cases[i].fetches);
+    masu_table_number(t, bytes_per_pixel(&cases[i]));
+    masu_table_number(t, u->early >= 0 ? u->early : (double)NAN);
+    masu_table_number(t, alike ? u->rms : (double)NAN);
+    masu_table_number(t, alike ? u->most : (double)NAN);
+    masu_table_number(t, alike ? u->flip : (double)NAN);
+}
+
+static int print(bench *b) {
+    masu_table t;
     double base = 0;
-    if (csv) {
-        fprintf(f, "case,driver,ms_min,ms_median,ratio,gpu_ms_min,plausible,fetches,bytes,tiles_"
-                   "early,rms,max,flip\n");
-    } else {
-        fprintf(f, "%s\n%ux%u to %ux%u, %u runs in turns\n\n", b->s.host.driver, b->o->from.width,
-                b->o->from.height, b->o->to.width, b->o->to.height, b->o->runs);
-        fprintf(
-            f,
-            "| case | ms | median | ratio | by timestamps | fetches/px | bytes/px | tiles early | "
-            "rms/255 | most/255 | FLIP |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-    }
+    masu_table_open(&t, columns, "");
     for (uint32_t i = 0; i < CASES; i++) {
-        if (!b->on[i]) continue;
-        subject *u = &b->subjects[i];
-        double wall = 1e3 * least_of(u->wall, u->runs), gpu = 1e3 * least_of(u->gpu, u->runs);
-        double median = 1e3 * u->wall[u->runs / 2];
-        bool plausible = fabs(wall - gpu) <= 0.1 * wall + 0.2;
-        char early[16] = "";
-        if (u->early >= 0) snprintf(early, sizeof early, csv ? "%.4f" : "%.3f", u->early);
-        char errors[64];
-        snprintf(errors, sizeof errors, csv ? ",," : " | | |");
-        if (u->rms >= 0)
-            snprintf(errors, sizeof errors, csv ? "%.4f,%u,%.5f" : " %.2f | %u | %.4f |", u->rms,
-                     u->most, u->flip);
-        if (base == 0) base = wall;
-        if (csv) {
-            fprintf(f, "%s,\"%s\",%.3f,%.3f,%.3f,%.3f,%d,%.3g,%.3g,%s,%s\n", cases[i].name,
-                    b->s.host.driver, wall, median, wall / base, gpu, plausible, cases[i].fetches,
-                    bytes_per_pixel(b->o, &cases[i]), early, errors);
-        } else {
-            fprintf(f, "| %s | %.2f | %.2f | %.2f | %.2f%s | %.3g | %.3g | %s |%s\n", cases[i].name,
-                    wall, median, wall / base, gpu, plausible ? "" : " (?)", cases[i].fetches,
-                    bytes_per_pixel(b->o, &cases[i]), early, errors);
-        }
+        if (on(b, i)) add_row(&t, b, i, &base);
     }
+    fprintf(o->text, "%s\n%ux%u to %ux%u, %u runs in turns\n", b->s.host.driver, given.from.width,
+            given.from.height, o->size.width, o->size.height, o->runs);
+    masu_table_print(&t, o->text);
+    return masu_table_close(&t, o->csv);
 }
 
-static bool write_csv(bench *b) {
-    if (!b->o->csv) return true;
-    FILE *f = strcmp(b->o->csv, "-") ? fopen(b->o->csv, "w") : stdout;
-    bool good = f != NULL;
-    if (f) print_rows(b, f, true);
-    if (f && f != stdout) good = !fclose(f);
-    if (!good) snprintf(b->error, sizeof b->error, "cannot write %s", b->o->csv);
-    return good;
-}
-
-/* Whether the list of names, with commas between, has that one. */
-static bool listed(const char *list, const char *name, size_t n) {
-    for (const char *at = list; *at; at += strcspn(at, ","), at += *at == ',') {
-        if (strcspn(at, ",") == n && !strncmp(at, name, n)) return true;
-    }
-    return false;
-}
-
-static bool wanted(const options *o, const char *name) {
-    return !o->only || listed(o->only, name, strlen(name));
-}
-
-/* The first of the list that is no case, as which an empty list counts; NULL: all are. */
-static const char *unknown(const char *list) {
-    if (!*list) return list;
-    for (const char *at = list; *at; at += strcspn(at, ","), at += *at == ',') {
-        bool known = false;
-        for (uint32_t i = 0; i < CASES && !known; i++)
-            known = listed(cases[i].name, at, strcspn(at, ","));
-        if (!known) return at;
-    }
-    return NULL;
-}
-
-static bool measure(bench *b, const masu_headless_desc *host) {
-    masu_session_desc d = {.desc = {.output = b->o->to, .targets = {.storage = 1}},
-                           .host = *host,
+static bool measure(bench *b) {
+    masu_session_desc d = {.desc = {.output = o->size, .targets = {.storage = 1}},
+                           .host = o->host,
                            .no_renderer = true};
     bool good = masu_session_open(&d, &b->s, b->error, sizeof b->error) && make_source(b);
     for (uint32_t i = 0; i < CASES && good; i++) {
-        b->on[i] = wanted(b->o, cases[i].name) && (!cases[i].half || b->s.host.float16);
-        good = !b->on[i] || (open_case(b, i) && count_early(b, i));
+        if (cases[i].half && !b->s.host.float16) b->only &= ~(1u << i);
+        good = !on(b, i) || (open_case(b, i) && count_early(b, i));
     }
-    for (uint32_t run = 0; run <= b->o->runs && good; run++) {
-        for (uint32_t i = 0; i < CASES && good; i++) good = !b->on[i] || run_case(b, i, run > 0);
+    for (uint32_t run = 0; run <= o->runs && good; run++) {
+        for (uint32_t i = 0; i < CASES && good; i++) good = !on(b, i) || run_case(b, i, run > 0);
     }
-    for (uint32_t i = 0; i < CASES && good; i++) good = !b->on[i] || keep_picture(b, i);
-    for (uint32_t i = 0; i < CASES && good; i++) good = !b->on[i] || compare(b, i);
+    for (uint32_t i = 0; i < CASES && good; i++) good = !on(b, i) || keep_picture(b, i);
+    for (uint32_t i = 0; i < CASES && good; i++) good = !on(b, i) || compare(b, i);
     return good;
 }
 
-static int bench_image(const options *o, const masu_headless_desc *host) {
+static int run(void) {
     static bench b;
-    memset(&b, 0, sizeof b);
-    b.o = o;
-    bool good = measure(&b, host);
-    if (good && (!o->csv || strcmp(o->csv, "-"))) print_rows(&b, stdout, false);
-    good = good && write_csv(&b);
-    int code = good ? MASU_CLI_OK : masu_cli_error("%s", b.error);
+    const char *names[CASES];
+    for (uint32_t i = 0; i < CASES; i++) names[i] = cases[i].name;
+    b.only = (1u << CASES) - 1;
+    if (o->only && !masu_read_names("--only", o->only, names, CASES, &b.only)) return MASU_CLI_USAGE;
+    int code = measure(&b) ? print(&b) : masu_cli_error("%s", b.error);
     masu_headless_settle(&b.s.host);
     for (uint32_t i = 0; i < CASES; i++) {
         masu_destroy(b.subjects[i].m);
@@ -406,58 +386,22 @@ static int bench_image(const options *o, const masu_headless_desc *host) {
     return code;
 }
 
-static int run(masu_cli *cli) {
-    options o = {.from = {960, 540}, .to = {1920, 1080}, .runs = 9};
-    masu_headless_desc host = {.message = masu_print_message};
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &host)) continue;
-        switch (id) {
-        case OPTION_SIZE:
-            if (!masu_output_size(cli, &o.to)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_FROM:
-            if (!masu_output_size(cli, &o.from)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_RUNS:
-            if (!masu_cli_uint(cli, 1, RUNS_MOST, &o.runs)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_CSV:
-            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
-            continue;
-        case OPTION_ONLY: o.only = cli->value; continue;
-        case OPTION_OUTPUT:
-            if (!masu_output_file(cli, &o.output)) return cli->exit_code;
-            continue;
-        case MASU_CLI_ARGUMENT:
-            if (o.path) return masu_cli_usage_error("one picture at a time: '%s'", cli->value);
-            o.path = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    const char *bad = o.only ? unknown(o.only) : NULL;
-    if (bad)
-        return masu_cli_usage_error("--only: there is no case '%.*s'", (int)strcspn(bad, ","), bad);
-    return bench_image(&o, &host);
-}
+static const masu_option rows[] = {
+    MASU_SIZE(options, from, "from", "size of the picture"),
+    MASU_STUDY_SIZE,
+    MASU_STUDY_RUNS(1, RUNS_MOST),
+    MASU_STUDY_ONLY,
+    MASU_STUDY_IMAGES("write what each case makes there, CASE.png"),
+    MASU_STUDY_CSV,
+    MASU_STUDY_DEVICE,
+    MASU_STUDY_END};
 
-static const masu_cli_option list[] = {
-    {"from", "WxH", "size of the picture (default 960x540)", OPTION_FROM, 0},
-    {"size", "WxH", "output size (default 1920x1080)", OPTION_SIZE, 0},
-    {"runs", "N", "of each case after the first, at most 99 (default 9)", OPTION_RUNS, 0},
-    {"only", "CASE,...", "these cases alone", OPTION_ONLY, 0},
-    {"output", "NAME", "write what each case makes to NAME-CASE.png", OPTION_OUTPUT, 'o'},
-    {"csv", "FILE", "write the rows as CSV; -: to stdout", OPTION_CSV, 0},
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
-
-const masu_cli_command masu_cmd_bench_image = {
-    .name = "bench-image",
+const masu_study masu_study_upscale = {
+    .name = "upscale",
+    .purpose = "what is done to the finished picture, upscaling and sharpening: times, errors",
     .arguments = "[IN.png] [options]",
-    .summary = "time what is done to the finished picture: upscaling, sharpening",
-    .options = list,
-    .details = "Without a picture one is made: a third ramp, a third discs, a third noise.\n",
-    .run = run};
+    .scenes_max = 1,
+    .options = rows,
+    .given = &given.study,
+    .run = run,
+    .details = "Without a picture one is made: a third ramp, a third discs, a third noise.\n"};

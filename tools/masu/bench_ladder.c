@@ -1,6 +1,6 @@
-/* ladder.c: `masu ladder`: what `masu bench` has measured, as a table to read or as the table that
- * the library is built with. */
-#include "masu/cmd.h"
+/* bench_ladder.c: `masu bench --ladder`: what `masu bench` has measured, as a table to read or as the
+ * table that the library is built with. */
+#include "masu/bench.h"
 
 #include "bench/sweep/knobs.h"
 #include "bench/sweep/ladder.h"
@@ -10,9 +10,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
-
-enum { OPTION_C = 1 };
-enum { FILES_MOST = 64 };
 
 static void print_table(const char *path, const masu_ladder_file *l) {
     printf("%s: %s at %ux%u, by %s%s%s\n  %s\n", path, l->scene, l->width, l->height, l->clock,
@@ -111,7 +108,7 @@ static void print_class(const char *path, uint32_t scene_class, const masu_ladde
     printf("        },\n");
 }
 
-static int print_c(char *const *arguments, uint32_t count) {
+static int print_c(const char *const *arguments, uint32_t count) {
     static masu_ladder_file ladders[MASU_SCENE_CLASSES];
     const char *paths[MASU_SCENE_CLASSES] = {NULL};
     char error[1024];
@@ -151,45 +148,15 @@ static int print_c(char *const *arguments, uint32_t count) {
     return MASU_CLI_OK;
 }
 
-static int run(masu_cli *cli) {
-    char *arguments[FILES_MOST];
-    uint32_t count = 0;
-    bool c = false;
-    for (;;) {
-        switch (masu_cli_next(cli)) {
-        case OPTION_C: c = true; continue;
-        case MASU_CLI_ARGUMENT:
-            if (count == FILES_MOST)
-                return masu_cli_usage_error("more than %d files", (int)FILES_MOST);
-            arguments[count++] = (char *)(uintptr_t)cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!count) return masu_cli_usage_error("no ladder is given");
-    if (c) return print_c(arguments, count);
-    for (uint32_t i = 0; i < count; i++) {
+int masu_bench_ladder(const masu_given *given, bool c) {
+    if (!given->count) return masu_cli_usage_error("no ladder is given");
+    if (c) return print_c(given->arguments, given->count);
+    for (uint32_t i = 0; i < given->count; i++) {
         static masu_ladder_file ladder;
         char error[1024];
-        if (!masu_ladder_read(arguments[i], &ladder, error, sizeof error))
+        if (!masu_ladder_read(given->arguments[i], &ladder, error, sizeof error))
             return masu_cli_error("%s", error);
-        print_table(arguments[i], &ladder);
+        print_table(given->arguments[i], &ladder);
     }
     return MASU_CLI_OK;
 }
-
-static const masu_cli_option options[] = {
-    {"c", NULL,
-     "print src/quality/ladder_tables.h, the ladders that the library is built with; each file is given "
-     "as\n"
-     "CLASS=FILE: polygons, world, sdf, both, or one of them with -traced",
-     OPTION_C, 0},
-    {NULL, NULL, NULL, 0, 0}};
-
-const masu_cli_command masu_cmd_ladder = {.name = "ladder",
-                                          .arguments = "LADDER.json... [options]",
-                                          .summary = "print ladders that masu bench has measured",
-                                          .options = options,
-                                          .run = run};

@@ -1,9 +1,8 @@
-/* light_bench.c: `masu light-bench`: one view of a scene with so many of its local lights on, with
+/* study_lights.c: `masu study lights`: one view of a scene with so many of its punctual lights on, with
  * lists by tile and with every pixel asking all of them: the pictures must be the same in every bit,
- * and times and counts stand beside each other. All measurements take turns, and of the repetitions
- * the least time counts. Times are judged by nobody; pictures are: where they differ, the exit code
- * is 1. */
-#include "masu/cmd.h"
+ * and times and counts stand beside each other. All measurements take turns, and of the runs the least
+ * time counts. Times are judged by nobody; pictures are: where they differ, the exit code is 1. */
+#include "masu/study.h"
 
 #include "clock.h"
 
@@ -12,19 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_SIZE = 1, OPTION_REPEAT, OPTION_TIME, OPTION_JSON };
-
 enum { TILES, ALL, WAYS }; /* rungs */
+static const char *const names[WAYS] = {"tiles", "all"};
 #define STEPS 5u
 static const uint32_t steps[STEPS] = {0, 8, 64, 256, 1024};
 
-typedef struct options {
-    const char *path;
-    VkExtent2D size;
-    uint32_t repeat;
-    double time;
-    bool json;
-} options;
+static masu_study_options given = {.size = {960, 540}, .runs = 5};
+static const masu_study_options *const o = &given;
 
 typedef struct measure {
     double light_ms, tiles_ms;  /* least */
@@ -34,7 +27,6 @@ typedef struct measure {
 } measure;
 
 typedef struct bench {
-    const options *o;
     masu_session s;
     masu_local_light_state *states;
     uint32_t counts[STEPS], step_count;
@@ -64,7 +56,7 @@ static double pass_ms(const masu_stats_info *stats, const char *name) {
 }
 
 static bool draw(bench *b, uint32_t step, uint32_t way, bool first) {
-    masu_frame_desc f = {.rung = way, .time = b->o->time};
+    masu_frame_desc f = {.rung = way, .time = o->time};
     masu_commands commands;
     masu_stats_info stats;
     measure *m = &b->results[step][way];
@@ -72,7 +64,7 @@ static bool draw(bench *b, uint32_t step, uint32_t way, bool first) {
     (void)masu_stats(b->s.m, commands.slot, &stats);
     double light = pass_ms(&stats, "light") + pass_ms(&stats, "light_occluded");
     double tiles = pass_ms(&stats, "light_tiles");
-    double pixels = (double)b->o->size.width * b->o->size.height;
+    double pixels = (double)o->size.width * o->size.height;
     if (!first) {
         m->light_ms = fmin(m->light_ms, light);
         m->tiles_ms = fmin(m->tiles_ms, tiles);
@@ -108,36 +100,52 @@ static bool draw_all(bench *b, uint32_t rounds, bool counts) {
     return true;
 }
 
+static json_t *row_json(const bench *b, uint32_t i) {
+    const measure *m = &b->results[i / WAYS][i % WAYS];
+    return json_pack("{s:i, s:i, s:s, s:f, s:f, s:f, s:f, s:f}", "lights",
+                     (int)b->counts[i / WAYS], "in_view", (int)m->in_view, "lists", names[i % WAYS],
+                     "light_ms", m->light_ms, "tiles_ms", m->tiles_ms, "asked_per_pixel", m->tests,
+                     "lit_per_pixel", m->shaded, "full_tiles", m->full);
+}
+
+static const masu_column columns[] = {
+    {"lights", "%.0f", "lights", "%.0f"},
+    {"in_view", "%.0f", "in view", "%.0f"},
+    {"lists", NULL, "lists", NULL},
+    {"light_ms", "%.4f", "light ms", "%.2f"},
+    {"tiles_ms", "%.4f", "tiles ms", "%.2f"},
+    {"asked_per_pixel", "%.4f", "asked/pixel", "%.2f"},
+    {"lit_per_pixel", "%.4f", "lit/pixel", "%.2f"},
+    {"full_tiles", "%.0f", "full", "%.0f"},
+    {NULL, NULL, NULL, NULL}};
+
 static int print(const bench *b) {
-    static const char *const names[WAYS] = {"tiles", "all"};
-    json_t *rows = json_array();
-    if (!b->o->json) {
-        printf("%s, %ux%u, least of %u\n  %6s %7s %-5s %9s %9s %11s %11s %6s\n", b->o->path,
-               b->o->size.width, b->o->size.height, b->o->repeat, "lights", "in view", "",
-               "light ms", "tiles ms", "asked/pixel", "lit/pixel", "full");
-    }
-    for (uint32_t i = 0; i < b->step_count * WAYS; i++) {
-        const measure *m = &b->results[i / WAYS][i % WAYS];
-        if (!b->o->json) {
-            printf("  %6u %7u %-5s %9.2f %9.2f %11.2f %11.2f %6.0f\n", b->counts[i / WAYS],
-                   m->in_view, names[i % WAYS], m->light_ms, m->tiles_ms, m->tests, m->shaded,
-                   m->full);
-        }
-        json_array_append_new(rows, json_pack("{s:i, s:i, s:s, s:f, s:f, s:f, s:f, s:f}", "lights",
-                                              (int)b->counts[i / WAYS], "in_view", (int)m->in_view,
-                                              "lists", names[i % WAYS], "light_ms", m->light_ms,
-                                              "tiles_ms", m->tiles_ms, "asked_per_pixel", m->tests,
-                                              "lit_per_pixel", m->shaded, "full_tiles", m->full));
-    }
-    if (b->o->json) {
-        return masu_json_write(json_pack("{s:s, s:o, s:b, s:o}", "scene", b->o->path, "device",
+    if (o->json) {
+        json_t *rows = json_array();
+        for (uint32_t i = 0; i < b->step_count * WAYS; i++)
+            json_array_append_new(rows, row_json(b, i));
+        return masu_json_write(json_pack("{s:s, s:o, s:b, s:o}", "scene", o->scene, "device",
                                          masu_json_device(&b->s.host), "different",
                                          (int)b->different, "rows", rows),
                                "-");
     }
-    json_decref(rows);
-    printf("  pictures %s\n", b->different ? "differ" : "are the same");
-    return MASU_CLI_OK;
+    masu_table t;
+    masu_table_open(&t, columns, "");
+    for (uint32_t i = 0; i < b->step_count * WAYS; i++) {
+        const measure *m = &b->results[i / WAYS][i % WAYS];
+        masu_table_number(&t, b->counts[i / WAYS]);
+        masu_table_number(&t, m->in_view);
+        masu_table_text(&t, names[i % WAYS]);
+        masu_table_number(&t, m->light_ms);
+        masu_table_number(&t, m->tiles_ms);
+        masu_table_number(&t, m->tests);
+        masu_table_number(&t, m->shaded);
+        masu_table_number(&t, m->full);
+    }
+    fprintf(o->text, "%s, %ux%u, least of %u\n", o->scene, o->size.width, o->size.height, o->runs);
+    masu_table_print(&t, o->text);
+    fprintf(o->text, "  pictures %s\n", b->different ? "differ" : "are the same");
+    return masu_table_close(&t, o->csv);
 }
 
 static bool keep_lights(bench *b) {
@@ -156,12 +164,12 @@ static bool keep_lights(bench *b) {
 }
 
 /* Counting costs time: first a round that counts and compares, then those that are timed. */
-static bool measure_scene(bench *b, const masu_headless_desc *host, bool counts, int *code) {
+static bool measure_scene(bench *b, bool counts, int *code) {
     masu_session_desc d;
     memset(&d, 0, sizeof d);
-    d.scene_path = b->o->path;
-    d.host = *host;
-    d.desc.output = b->o->size;
+    d.scene_path = o->scene;
+    d.host = o->host;
+    d.desc.output = o->size;
     d.desc.targets.storage = 1;
     d.desc.debug = (masu_debug){.counters = counts, .timestamps = !counts};
     d.desc.rung_count = WAYS;
@@ -169,11 +177,11 @@ static bool measure_scene(bench *b, const masu_headless_desc *host, bool counts,
     if (!masu_session_open(&d, &b->s, b->error, sizeof b->error)) return false;
     bool good = false;
     if (!b->s.scene.lights || !b->s.scene.camera_keys) {
-        snprintf(b->error, sizeof b->error, "%s: has no lights or no camera path", b->o->path);
+        snprintf(b->error, sizeof b->error, "%s: has no lights or no camera path", o->scene);
     } else if (!keep_lights(b)) {
         snprintf(b->error, sizeof b->error, "out of memory");
     } else {
-        good = draw_all(b, counts ? 1 : b->o->repeat, counts);
+        good = draw_all(b, counts ? 1 : o->runs, counts);
     }
     if (good && !counts) *code = print(b);
     masu_session_close(&b->s);
@@ -181,62 +189,29 @@ static bool measure_scene(bench *b, const masu_headless_desc *host, bool counts,
     return good;
 }
 
-static int bench_scene(const options *o, const masu_headless_desc *host) {
+static int run(void) {
     static bench b;
     int code = MASU_CLI_OK;
     memset(&b, 0, sizeof b);
-    b.o = o;
-    if (!measure_scene(&b, host, true, &code) || !measure_scene(&b, host, false, &code)) {
+    if (!measure_scene(&b, true, &code) || !measure_scene(&b, false, &code)) {
         code = masu_cli_error("%s", b.error);
     } else if (b.different) {
-        code = masu_cli_error("%s: tiles change the picture", o->path);
+        code = masu_cli_error("%s: tiles change the picture", o->scene);
     }
     free(b.states);
     return code;
 }
 
-static int run(masu_cli *cli) {
-    options o = {.size = {960, 540}, .repeat = 5};
-    masu_headless_desc host = {.message = masu_print_message};
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &host)) continue;
-        switch (id) {
-        case OPTION_SIZE:
-            if (!masu_output_size(cli, &o.size)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_REPEAT:
-            if (!masu_cli_uint(cli, 1, 1000, &o.repeat)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_TIME:
-            if (!masu_cli_double(cli, -1e9, 1e9, &o.time)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_JSON: o.json = true; continue;
-        case MASU_CLI_ARGUMENT:
-            if (o.path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
-            o.path = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!o.path) return masu_cli_usage_error("no scene is given");
-    return bench_scene(&o, &host);
-}
+static const masu_option rows[] = {MASU_STUDY_SIZE, MASU_STUDY_RUNS(1, 1000), MASU_STUDY_TIME,
+                                   MASU_STUDY_CSV,  MASU_STUDY_JSON,          MASU_STUDY_DEVICE,
+                                   MASU_STUDY_END};
 
-static const masu_cli_option list[] = {
-    {"size", "WxH", "size in pixels (default 960x540)", OPTION_SIZE, 0},
-    {"repeat", "N", "times that each is drawn; the least time counts (default 5)", OPTION_REPEAT,
-     0},
-    {"time", "SECONDS", "where on the camera's path (default 0)", OPTION_TIME, 0},
-    {"json", NULL, "print JSON", OPTION_JSON, 0},
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
-
-const masu_cli_command masu_cmd_light_bench = {
-    .name = "light-bench",
+const masu_study masu_study_lights = {
+    .name = "lights",
+    .purpose = "a view with more and more of its punctual lights, with tiles and without",
     .arguments = "SCENE.masu [options]",
-    .summary = "a view with more and more of its local lights, with tiles and without: times",
-    .options = list,
+    .scenes_min = 1,
+    .scenes_max = 1,
+    .options = rows,
+    .given = &given,
     .run = run};
