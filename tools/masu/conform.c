@@ -19,6 +19,7 @@ typedef struct options {
     uint32_t first, of, runs, rays;
     bool rays_given, list;
     char suite_file[MASU_DATA_PATH], scene_folder[MASU_DATA_PATH]; /* as found */
+    char suite_name[256]; /* in results: the same wherever it was found */
     masu_headless_desc host;
 } options;
 
@@ -127,7 +128,7 @@ static int conform(const options *o) {
     char error[1024];
     if (!masu_file_read(o->suite_file, SUITE_BYTES_MAX, &text, &bytes, error, sizeof error))
         return masu_cli_error("%s", error);
-    bool good = masu_suite_parse(o->suite_file, (const char *)text, bytes, &suite, error, sizeof error);
+    bool good = masu_suite_parse(o->suite_name, (const char *)text, bytes, &suite, error, sizeof error);
     free(text);
     if (!good) return masu_cli_error("%s", error);
     uint32_t count = 0;
@@ -154,7 +155,9 @@ static int conform(const options *o) {
 /* A name, as `smoke`, is that of a suite beside the program; all else is a file. An exit code. */
 static int find_suite(options *o) {
     const char *name = o->suite;
-    if (strchr(name, '/') || strchr(name, '.')) {
+    bool file = strchr(name, '/') || strchr(name, '.');
+    snprintf(o->suite_name, sizeof o->suite_name, file ? "%s" : "suites/%s.json", name);
+    if (file) {
         snprintf(o->suite_file, sizeof o->suite_file, "%s", name);
         return MASU_CLI_OK;
     }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# masu plant: the table, the CSV's columns, plots where gnuplot is, and what it refuses.
+# masu simulate: the table, the CSV's columns, plots where gnuplot is, and what it refuses.
 set -u
 masu=${BUILD:-build}/bin/masu
 folder=$(mktemp -d)
@@ -14,31 +14,31 @@ fail() {
 # refuses CODE TEXT ARGUMENTS...: that exit code, and a line that has TEXT
 refuses() {
     local out code
-    out=$("$masu" plant "${@:3}" 2>&1 > /dev/null)
+    out=$("$masu" simulate "${@:3}" 2>&1 > /dev/null)
     code=$?
-    [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "plant ${*:3}: exit code $code, $out"
+    [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "simulate ${*:3}: exit code $code, $out"
 }
 
-"$masu" plant --quiet --seeds 2 --csv "$folder/all.csv" tools/simulate/traces/city.csv || fail 'plant fails'
+"$masu" simulate --quiet --seeds 2 --csv "$folder/all.csv" tools/simulate/traces/city.csv || fail 'simulate fails'
 [ "$(head -1 "$folder/all.csv" | cut -d, -f1-7)" = \
-    plant,controller,frames,over_budget,changes,mean_scale,settle_frames ] || fail 'the CSV has other columns'
+    model,controller,frames,over_budget,changes,mean_scale,settle_frames ] || fail 'the CSV has other columns'
 for name in standard constant step_4x lies_lavapipe city; do
     for controller in masu three_state filament unreal; do
         grep -q "^$name,$controller,[0-9]*,[0-9.]*,[0-9.]*,0\.[4-9][0-9]*\|^$name,$controller,[0-9]*,[0-9.]*,[0-9.]*,1\." \
             "$folder/all.csv" || fail "the CSV has no row of $name, $controller"
     done
 done
-# No controller leaves the ladder on any plant.
+# No controller leaves the ladder on any model.
 awk -F, 'NR > 1 && $NF != 0 { print; bad = 1 } END { exit bad }' "$folder/all.csv" || fail 'invalid scales'
 
-[ "$("$masu" plant --plant constant --controller masu --seeds 1 | wc -l)" = 4 ] || fail 'the table is not four lines'
+[ "$("$masu" simulate --model constant --controller masu --seeds 1 | wc -l)" = 4 ] || fail 'the table is not four lines'
 
 if command -v gnuplot > /dev/null; then
-    "$masu" plant --quiet --seeds 1 --plant constant --plots "$folder/plots" || fail 'plots fail'
+    "$masu" simulate --quiet --seeds 1 --model constant --plots "$folder/plots" || fail 'plots fail'
     grep -q '</svg>' "$folder/plots/constant.svg" || fail 'there is no whole constant.svg'
 fi
 
-refuses 2 "there is no plant 'no'" --plant no
+refuses 2 "there is no model 'no'" --model no
 refuses 2 --controller --controller no
 refuses 2 --seeds --seeds 0
 refuses 1 "$folder/missing.csv" "$folder/missing.csv"
