@@ -236,141 +236,295 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 #define MASU_MAX_CASCADES 4u
 #define MASU_MAX_REFRESH 64u
 
-typedef enum masu_switch { MASU_AUTO = 0, MASU_OFF = 1, MASU_ON = 2 } masu_switch;
+/* ---- Knobs ----------------------------------------------------------------------------------- */
 
-/* How the SDF is marched. AUTO is the fast way; the others are for comparisons and need a blob that
- * was baked with --variants (else masu_init fails with MASU_ERROR_SCENE). */
-typedef enum masu_march {
-    MASU_MARCH_AUTO = 0,
-    MASU_MARCH_PLAIN = 1,        /* each pixel by itself, compute */
-    MASU_MARCH_FRAGMENT = 2,     /* each pixel by itself, fragment shader; scenes without polygons */
-    MASU_MARCH_SEED = 3,         /* two-phase checkerboard with capped, unchecked restarts */
-    MASU_MARCH_CONE8 = 4,        /* 8x8 cones alone */
-    MASU_MARCH_CONES = 5,        /* 8x8, then 4x4 cones */
-    MASU_MARCH_CHECKERBOARD = 6, /* 8x8 cones, then two-phase with provably safe restarts */
-    MASU_MARCH_UNPRUNED = 7      /* as AUTO, every tile with all parts */
-} masu_march;
+/* Words that a knob can be set to: enumerator, value, its name in ladder.json, in suites and on the
+ * command line, what it means. */
+#define MASU_SWITCH_WORDS(X)                                                                       \
+    X(MASU_AUTO, 0, "auto", "as the knob says")                                                    \
+    X(MASU_OFF, 1, "off", "")                                                                      \
+    X(MASU_ON, 2, "on", "")
+
+/* How the SDF is marched. All but AUTO are for comparison; those marked * need a blob baked with
+ * --variants, else masu_init fails with MASU_ERROR_SCENE. */
+#define MASU_MARCH_WORDS(X)                                                                        \
+    X(MASU_MARCH_AUTO, 0, "auto", "the fast way, tile by tile with the parts that matter there")   \
+    X(MASU_MARCH_PLAIN, 1, "plain", "* each pixel by itself, in a compute shader")                 \
+    X(MASU_MARCH_FRAGMENT, 2, "fragment",                                                          \
+      "* each pixel by itself, in a fragment shader; only without polygons")                       \
+    X(MASU_MARCH_SEED, 3, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
+    X(MASU_MARCH_CONE8, 4, "cone8", "cones of 8x8 pixels alone")                                   \
+    X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
+    X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
+      "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
+    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
 
 /* How the picture is upscaled. */
-typedef enum masu_easu {
-    MASU_EASU_AUTO = 0,    /* FULL */
-    MASU_EASU_FULL = 1,    /* FSR1's EASU, as AMD has published it */
-    MASU_EASU_FAST = 2,    /* edges looked at once instead of four times; and where the four texels around
-                              a pixel differ by at most 1/255, it is their bilinear mean, which is within
-                              1/255 of FULL. README and docs/DESIGN.md have the errors elsewhere */
-    MASU_EASU_BILINEAR = 3 /* the four texels around: for comparison */
-} masu_easu;
+#define MASU_EASU_WORDS(X)                                                                         \
+    X(MASU_EASU_AUTO, 0, "auto", "full")                                                           \
+    X(MASU_EASU_FULL, 1, "full", "FSR1's EASU as AMD published it")                                \
+    X(MASU_EASU_FAST, 2, "fast",                                                                   \
+      "edges are looked for once instead of four times, and where the four texels around a pixel"  \
+      " differ by at most 1/255 their bilinear mean is taken, which is within 1/255 of full"       \
+      " (errors elsewhere: docs/DESIGN.md)")                                                       \
+    X(MASU_EASU_BILINEAR, 3, "bilinear", "the four texels around, for comparison")
 
-/* Anti-aliasing of what is shown, before it is upscaled. SMAA 1x in four settings: from what contrast on
- * there is an edge (0.15, 0.1, 0.1, 0.05), how far its ends are looked for (8, 16, 32, 64 pixels), from
- * HIGH on diagonals and corners too. FXAA is one pass that looks at the nearest pixels alone. Both blend
- * light, not encoded values. A picture without edges costs SMAA its first pass. */
-typedef enum masu_aa {
-    MASU_AA_AUTO = 0, /* OFF */
-    MASU_AA_OFF = 1,
-    MASU_AA_FXAA = 2,
-    MASU_AA_SMAA_LOW = 3,
-    MASU_AA_SMAA_MEDIUM = 4,
-    MASU_AA_SMAA_HIGH = 5,
-    MASU_AA_SMAA_ULTRA = 6
-} masu_aa;
+/* Anti-aliasing of the shaded picture, before it is upscaled. All blend linear colour. */
+#define MASU_AA_WORDS(X)                                                                           \
+    X(MASU_AA_AUTO, 0, "auto", "off")                                                              \
+    X(MASU_AA_OFF, 1, "off", "")                                                                   \
+    X(MASU_AA_FXAA, 2, "fxaa", "one pass that looks at the nearest pixels alone")                  \
+    X(MASU_AA_SMAA_LOW, 3, "smaa-low",                                                             \
+      "SMAA 1x: edges from a contrast of 0.15 on, followed for 8 pixels")                          \
+    X(MASU_AA_SMAA_MEDIUM, 4, "smaa-medium", "from 0.1 on, for 16 pixels")                         \
+    X(MASU_AA_SMAA_HIGH, 5, "smaa-high", "from 0.1 on, for 32 pixels; diagonals and corners too")  \
+    X(MASU_AA_SMAA_ULTRA, 6, "smaa-ultra", "from 0.05 on, for 64 pixels; diagonals and corners too")
+
+#define MASU_WORD_ENUM(name, value, word, text) name = value,
+typedef enum masu_switch { MASU_SWITCH_WORDS(MASU_WORD_ENUM) } masu_switch;
+typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
+typedef enum masu_easu { MASU_EASU_WORDS(MASU_WORD_ENUM) } masu_easu;
+typedef enum masu_aa { MASU_AA_WORDS(MASU_WORD_ENUM) } masu_aa;
+#undef MASU_WORD_ENUM
+
+/* A number for each cascade. */
+typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
+
+/* What a knob takes to change anything: name, where it is so, and what is said where it is not. */
+#define MASU_KNOB_USES(X)                                                                          \
+    X(ALWAYS, "everywhere", "")                                                                    \
+    X(UPSCALED, "rungs that upscale", "nothing is upscaled")                                       \
+    X(SHARPEN, "rungs that would sharpen, or do", "nothing is sharpened")                          \
+    X(SHARPENED, "rungs that sharpen", "nothing is sharpened")                                     \
+    X(SDF, "scenes with an SDF", "the scene has no SDF")                                           \
+    X(POLYGONS, "scenes with polygons", "the scene has no polygons")                               \
+    X(OCCLUDERS, "scenes with occluders", "the scene has no occluders")                            \
+    X(LODS, "scenes whose meshes have LODs", "the scene's meshes have no coarser forms")           \
+    X(AO, "scenes with ambient occlusion in screen space",                                         \
+      "the scene asks for no ambient occlusion")                                                   \
+    X(SHADOWS, "scenes with a shadow map", "the scene has no shadow map")                          \
+    X(LIGHTS, "scenes with punctual lights", "the scene has no local lights")                      \
+    X(SPECULAR, "scenes with traced reflections", "no reflections are traced")
+
+typedef enum masu_knob_use {
+#define MASU_KNOB_USE_ENUM(name, where, missing) MASU_USE_##name,
+    MASU_KNOB_USES(MASU_KNOB_USE_ENUM)
+#undef MASU_KNOB_USE_ENUM
+} masu_knob_use;
+
+/* Every knob of a rung: a row each, in this order in masu_rung, in names of settings, in files and
+ * tables. A row is all that a new knob takes; `make docs-tables` then writes docs/knobs.md anew.
+ *
+ *   NUMBER(type, name, min, max, what 0 becomes, where it is of use, unit, what it does, cost)
+ *   WORD(type, name, where it is of use, what it does, cost)
+ *
+ * 0 is always taken: it becomes the number of its column or, where that is 0 too, means what the
+ * text says. All other numbers lie within min and max. The word of 0 is AUTO, told in the text. */
+#define MASU_KNOBS(NUMBER, WORD)                                                                   \
+    /* Size and upscaling. Render size is in pixels per axis; all that is shaded has it. */        \
+    NUMBER(float, scale, 0, 1, 1, ALWAYS, "",                                                      \
+           "Render size / output size, per axis. Ignored with a source image.",                    \
+           "Time of the passes before upscaling, and their images, grow with its square.")         \
+    WORD(masu_switch, upscale, UPSCALED,                                                           \
+         "EASU. AUTO: where the render size differs from the output size. OFF is an error there.", \
+         "A pass of the output size.")                                                             \
+    WORD(masu_easu, easu, UPSCALED, "How the picture is upscaled. AUTO: full.",                    \
+         "Full takes the most time, then fast, then bilinear.")                                    \
+    WORD(masu_switch, sharpen, SHARPEN,                                                            \
+         "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                         \
+         "A pass of the output size.")                                                             \
+    NUMBER(float, sharpness, 0, 64, 0, SHARPENED, "stops",                                         \
+           "How much less RCAS sharpens: 0 is sharpest, each stop halves it (AMD's definition).",  \
+           "None.")                                                                                \
+    WORD(masu_switch, fuse, UPSCALED,                                                              \
+         "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"         \
+         " deep_color. AUTO: off.",                                                                \
+         "1.13 times the time of upscaling; saves the image between the two.")                     \
+    WORD(masu_aa, aa, ALWAYS, "Anti-aliasing, before upscaling. AUTO: off.",                       \
+         "Device bytes per pixel of the render size: SMAA 4.5, FXAA 4, of which other images may"  \
+         " share all but SMAA's last 0.5. SMAA takes two passes, of which a picture without edges" \
+         " costs the first; FXAA takes one.")                                                      \
+    /* Geometry. */                                                                                \
+    WORD(masu_march, march, SDF, "How the SDF is marched. AUTO: the fast way.",                    \
+         "All others take longer.")                                                                \
+    NUMBER(uint32_t, march_steps, 1, 2048, 2048, SDF, "steps",                                     \
+           "Most SDF steps per ray. A ray that uses them up ends where it is.",                    \
+           "Time of rays that graze surfaces.")                                                    \
+    WORD(masu_switch, frustum, POLYGONS,                                                           \
+         "Leaves out instances outside of the view; the picture is the same. AUTO: on.",           \
+         "Tests on the host; saves draws.")                                                        \
+    WORD(masu_switch, occlusion, OCCLUDERS,                                                        \
+         "Leaves out instances hidden by occluders; the picture is the same. AUTO: on, if the"     \
+         " scene has occluders.",                                                                  \
+         "Passes that draw the occluders and test against them; memory: limits.instances.")        \
+    NUMBER(float, lod_error, -1e9, 1e9, 1, LODS, "pixels",                                         \
+           "How far, at the render size, a surface may be from its place where an LOD of its mesh" \
+           " is drawn. Below 0: the finest form alone.",                                           \
+           "Triangles: the larger, the fewer.")                                                    \
+    /* Ambient occlusion in screen space, at half the render size. */                              \
+    WORD(masu_switch, ao, AO, "Ambient occlusion in screen space. AUTO: on.",                      \
+         "2 * slices * steps samples per texel of half the render size.")                          \
+    NUMBER(uint32_t, ao_slices, 1, 8, 2, AO, "", "Directions that are looked along.",              \
+           "Samples grow with it.")                                                                \
+    NUMBER(uint32_t, ao_steps, 1, 16, 8, AO, "", "Samples on either side of a slice.",             \
+           "Samples grow with it.")                                                                \
+    /* The sun's shadow map. A rung that asks for more than the scene has gets what it has. */     \
+    NUMBER(uint32_t, shadow_cascades, 1, MASU_MAX_CASCADES, 0, SHADOWS, "",                        \
+           "Cascades. 0: the scene's.", "A pass each, and its part of the map.")                   \
+    NUMBER(uint32_t, shadow_resolution, 16, 8192, 0, SHADOWS, "texels",                            \
+           "Along an edge of a cascade. 0: the scene's.",                                          \
+           "4 n^2 device bytes for each cascade.")                                                 \
+    NUMBER(float, shadow_distance, 0, 1e9, 0, SHADOWS, "m",                                        \
+           "View depth where shadows end. 0: the scene's.",                                        \
+           "Instances in the cascades: the farther, the more.")                                    \
+    NUMBER(masu_per_cascade, shadow_refresh, 1, MASU_MAX_REFRESH, 1, SHADOWS, "frames",            \
+           "Each cascade is drawn anew every so many frames, and at once after a cut or when the"  \
+           " view has left it. In between, what moves leaves its shadow behind.",                  \
+           "Saves draws. Any above 1 keeps the map's memory from being shared with other images"   \
+           " and doubles the rung's recordings.")                                                  \
+    WORD(masu_switch, light_tiles, LIGHTS,                                                         \
+         "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO: on,"  \
+         " if the scene has any.",                                                                 \
+         "A pass over the tiles; saves work at each pixel where lights are many.")                 \
+    /* Traced reflections, at half the render size: one ray per 2x2 pixels, then filters. */       \
+    WORD(masu_switch, specular, SPECULAR,                                                          \
+         "Traced reflections. AUTO: on, if a surface is glossy enough and the device has the"      \
+         " storage buffers for it.",                                                               \
+         "The rays, and the passes and images of all that follows.")                               \
+    NUMBER(float, specular_cutoff, 0, 1, 0, SPECULAR, "",                                          \
+           "Perceptual roughness from which surfaces reflect the sky or the probes instead; both"  \
+           " are blended from 3/4 of it on. 0: the scene's.",                                      \
+           "Pixels that trace: the higher, the more.")                                             \
+    WORD(masu_switch, specular_reuse, SPECULAR,                                                    \
+         "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on.",      \
+         "A pass of specular_reuse_taps.")                                                         \
+    WORD(masu_switch, specular_temporal, SPECULAR, "Temporal accumulation. AUTO: on.",             \
+         "A pass, and images that outlive the frame.")                                             \
+    WORD(masu_switch, specular_fine, SPECULAR,                                                     \
+         "A full-resolution history for smooth surfaces, and for 2x2 pixels that are not one"      \
+         " surface; only with specular_temporal. AUTO: on.",                                       \
+         "A pass, and an image that outlives the frame.")                                          \
+    WORD(masu_switch, specular_filter, SPECULAR,                                                   \
+         "The spatial filter, as wide as noise is left. AUTO: on.",                                \
+         "A pass of specular_filter_taps.")                                                        \
+    WORD(masu_switch, specular_taa, SPECULAR,                                                      \
+         "Evens out what still flickers; only with specular_temporal. AUTO: on.",                  \
+         "A pass, and an image that outlives the frame.")                                          \
+    NUMBER(uint32_t, specular_reuse_taps, 1, 16, 8, SPECULAR, "",                                  \
+           "Neighbours that specular_reuse looks at.", "Time of its pass.")                        \
+    NUMBER(uint32_t, specular_filter_taps, 1, 32, 12, SPECULAR, "",                                \
+           "Neighbours that specular_filter looks at.", "Time of its pass.")                       \
+    NUMBER(uint32_t, specular_frames, 1, 240, 32, SPECULAR, "1/60 s",                              \
+           "How far back the temporal accumulation reaches.", "None.")
 
 /* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen
- * freshly every frame. */
+ * freshly every frame. All zero: the size of the output, all that the scene has use for, no
+ * anti-aliasing. */
 typedef struct masu_rung {
-    float scale; /* render size / output size per axis, 0 < scale <= 1; 0: 1.0. Ignored with a
-                    source image */
-    masu_switch upscale; /* AUTO: when the render size differs from the output size */
-    masu_switch sharpen; /* RCAS. AUTO: when EASU runs, full or fast */
-    float sharpness;     /* RCAS strength in stops, 0..64: 0 is sharpest, each stop halves it (AMD's
-                             definition) */
-    masu_march march;
-    uint32_t march_steps; /* most SDF steps per ray, 1..2048; 0: 2048 */
-    masu_switch frustum; /* instances outside of the picture are not drawn, which the picture does not
-                            show. AUTO: on */
-    masu_switch occlusion; /* nor those that occluders hide. AUTO: on, if the scene has occluders */
-    float lod_error; /* how far a surface may be from its place where a coarser form of its mesh is
-                        drawn, pixels of the render size, at most 1e9; 0: 1. Below 0: no coarser forms */
-    /* Ambient occlusion in screen space, of scenes that ask for it. AUTO: on. A rung's samples per
-     * texel of half the render size are 2 * slices * steps. */
-    masu_switch ao;
-    uint32_t ao_slices; /* at most 8; 0: 2 */
-    uint32_t ao_steps;  /* on either side of a slice, at most 16; 0: 8 */
-    /* The sun's shadow map, of scenes that have one. What asks for more than the scene has gets what
-     * the scene has; 0: that too. */
-    uint32_t shadow_cascades;   /* at most 4 */
-    uint32_t shadow_resolution; /* texels along an edge of a cascade, 16..8192 */
-    float shadow_distance;      /* view depth where shadows end, metres, > 0 */
-    /* Each cascade is drawn anew every so many frames, 1..64; 0: 1. In between it stays as it was
-     * drawn, and what moves leaves its shadow behind. Drawn at once all the same: after a cut, and
-     * when the view has left it. Any above 1 keeps the map's memory from being shared with other
-     * images, and doubles the rung's recordings. */
-    uint32_t shadow_refresh[MASU_MAX_CASCADES];
-    masu_switch light_tiles; /* each pixel asks the local lights of its tile alone, which the picture
-                                does not show. AUTO: on, if the scene has any */
-    /* Traced reflections at half the render size, of scenes that ask for them. AUTO: on, if anything is
-     * glossy enough and the device has the storage buffers for it. */
-    masu_switch specular;
-    float specular_cutoff; /* perceptual roughness from which surfaces mirror the sky or the probes
-                              instead, 0..1; 0: the scene's. Both are blended from 3/4 of it on */
-    /* What is done to the traced rays, one per 2x2 pixels, before they are shown. AUTO: on. */
-    masu_switch specular_reuse;    /* each texel weighs the hits of its neighbours, too, while its mean is young */
-    masu_switch specular_temporal; /* and what was seen in the frames before */
-    masu_switch specular_fine;     /* smooth surfaces, and 2x2 pixels that are not one surface: a mean over
-                                      frames for each pixel; only with specular_temporal */
-    masu_switch specular_filter;   /* the mean over neighbours, as far as noise is left */
-    masu_switch specular_taa;      /* what still flickers is evened out; only with specular_temporal */
-    uint32_t specular_reuse_taps;  /* neighbours, at most 16; 0: 8 */
-    uint32_t specular_filter_taps; /* neighbours, at most 32; 0: 12 */
-    uint32_t specular_frames;      /* how far back the mean over frames reaches, in 1/60 s, at most 240;
-                                      0: 32 */
-    masu_easu easu; /* how it is upscaled, where it is */
-    masu_aa aa; /* SMAA of n pixels of the render size takes 4.5 n bytes more on the device, FXAA 4 n,
-                   which other images may share but for the last 0.5 n */
-    masu_switch fuse; /* EASU (full) and RCAS in one pass where both run: the same picture, without the
-                         image between them, for 1.13 times the upscaling. With deep_color
-                          there are two all the same. AUTO: off */
+#define MASU_KNOB_FIELD(type, name, ...) type name;
+    MASU_KNOBS(MASU_KNOB_FIELD, MASU_KNOB_FIELD)
+#undef MASU_KNOB_FIELD
 } masu_rung;
 
-/* Most of each thing that a scene may have; 0: no limit. Memory is sized by what the scene has, so
- * a limit is a promise to the port that no scene of its will need more. A scene that has more is
- * refused with MASU_ERROR_LIMIT naming the field; masu_peaks() returns what was used under the same
- * names. */
+/* The same as data, for settings menus and files. */
+typedef struct masu_word {
+    const char *word; /* "smaa-high" */
+    const char *name; /* of the enumerator, "MASU_AA_SMAA_HIGH" */
+    const char *text; /* may be empty */
+    uint32_t value;
+} masu_word;
+
+typedef enum masu_knob_kind {
+    MASU_KNOB_FLOAT = 0,
+    MASU_KNOB_COUNT = 1, /* a uint32_t */
+    MASU_KNOB_WORD = 2   /* an enum: its value is the place in `words` */
+} masu_knob_kind;
+
+typedef struct masu_knob {
+    const char *name; /* of the field of masu_rung */
+    masu_knob_kind kind;
+    uint32_t offset;       /* of the field, bytes */
+    uint32_t values;       /* of 4 bytes each: 1, or one for each cascade */
+    double min, max, zero; /* the row's; of a WORD the first, the last and AUTO */
+    masu_knob_use use;
+    const char *where;   /* "scenes with an SDF" */
+    const char *missing; /* "the scene has no SDF" */
+    const char *unit;    /* may be empty */
+    const char *text, *cost;
+    const masu_word *words; /* of a WORD, by value; else NULL */
+    uint32_t word_count;
+} masu_knob;
+
+/* All of them, in order; behind the last one a row whose name is NULL. Constant. */
+MASU_API const masu_knob *masu_knob_table(void);
+
+/* One of a knob's values, 0 .. values - 1, and how it is changed, which checks no range. A value
+ * that is not there is 0 and cannot be set. */
+MASU_API double masu_knob_get(const masu_knob *knob, const masu_rung *rung, uint32_t value);
+MASU_API void masu_knob_set(const masu_knob *knob, masu_rung *rung, uint32_t value, double to);
+
+/* 1: masu_init takes it: 0, or within min and max; of a COUNT or WORD whole numbers alone. */
+MASU_API int masu_knob_takes(const masu_knob *knob, double to);
+
+/* How much of each thing a scene may have: a row each. Name, the maximum of any scene (0: what a
+ * blob holds), what each costs.
+ *
+ * Memory is sized by what the scene has: a limit is a promise to the port that no scene of its own
+ * will need more. masu_peaks() returns what is used under the same names. */
+#define MASU_LIMITS(X)                                                                             \
+    X(vertices, 0, "16 bytes each, device")                                                        \
+    X(indices, 0, "4 bytes each, device")                                                          \
+    X(materials, 0, "48 bytes each, device")                                                       \
+    X(instances, 0,                                                                                \
+      "52 bytes each per frame in flight, device, and 98 bytes each, host; with velocities 100"    \
+      " and 146. With occlusion 32 more on the device, 4 once, and 8 for each of its occluders;"   \
+      " with a shadow map for each cascade 4 more, with occlusion 12 and 4 once. With LODs 1 more" \
+      " on the host, and on the device for each LOD of its mesh and each view 4 (8 with"           \
+      " occlusion)")                                                                               \
+    X(sdf_params, MASU_MAX_SDF_PARAMS, "16 bytes each, host")                                      \
+    X(shadow_cascades, MASU_MAX_CASCADES, "of the shadow map, as the largest rung has it")         \
+    X(shadow_resolution, 8192, "texels along an edge of a cascade; n take 4 n^2 bytes, device")    \
+    X(probes, 0,                                                                                   \
+      "light probes: 48 bytes each, 56 more for each set, and its map of distances; device")       \
+    X(textures, 0, "pictures with their mip chains; texture_bytes has their cost")                 \
+    X(texture_bytes, 0,                                                                            \
+      "of texels on the device, as blocks or decoded, whichever is used; the device may add"       \
+      " padding")                                                                                  \
+    /* Nor more than 65536 times their texture sets, of which there are at most 64. */             \
+    X(transparents, 4096,                                                                          \
+      "blended primitives, counted for each instance: 76 bytes each, host; 24, and 20 for each"    \
+      " texture set of theirs, per frame in flight, device")                                       \
+    X(lights, 4096,                                                                                \
+      "punctual lights: 80 bytes each per frame in flight, device, and 80 bytes each, host")       \
+    X(trace_triangles, 0,                                                                          \
+      "that rays meet: 16 bytes each, and for each about a quarter of a node of 48, device")       \
+    X(trace_instances, 0,                                                                          \
+      "that rays meet: 208 bytes each per frame in flight, device, and about 200 bytes each, host")
+
+#define MASU_LIMIT_FIELD(name, ...) uint64_t name;
+
+/* 0: no limit. A scene that needs more is refused with MASU_ERROR_LIMIT, which names the field. */
 typedef struct masu_limits {
-    uint64_t vertices;   /* 16 bytes each, device */
-    uint64_t indices;    /* 4 bytes each, device */
-    uint64_t materials;  /* 48 bytes each, device */
-    uint64_t instances;  /* 52 bytes each per frame in flight, device, and 98 bytes each, host; with
-                            velocities 100 and 146. With occlusion 32 more on the device, 4 once,
-                            and 8 for each of its occluders; with a shadow map for each cascade 4
-                            more, with occlusion 12 and 4 once. With LODs 1 more on the host, and on
-                            the device for each LOD of its mesh and each view 4 (8 with occlusion) */
-    uint64_t sdf_params; /* 16 bytes each, host; no scene has more than 256 */
-    uint64_t shadow_cascades;   /* of the shadow map, as the largest rung has it */
-    uint64_t shadow_resolution; /* a cascade of n has 4 n^2 bytes, device */
-    uint64_t probes;        /* light probes: for each 48 bytes, and 56 more of each set, and its map of
-                               distances; device */
-    uint64_t textures;      /* pictures with their mip chains */
-    uint64_t texture_bytes; /* of texels on the device, as blocks or decoded, whichever is used;
-                               the device may add padding */
-    uint64_t transparents; /* blended primitives, counted for each instance: 76 bytes each, host; 24,
-                              and 20 for each texture set of theirs, per frame in flight, device. No
-                              scene has more than 4096, nor more than 65536 times their sets */
-    uint64_t lights; /* local ones: 80 bytes each per frame in flight, device, and 80 bytes each, host;
-                        no scene has more than 4096 */
-    uint64_t trace_triangles; /* that rays meet: 16 bytes each, and for each about a quarter of a node of
-                                 48, device */
-    uint64_t trace_instances; /* that rays meet: 208 bytes each per frame in flight, device, and about 200
-                                 bytes each, host */
+    MASU_LIMITS(MASU_LIMIT_FIELD)
 } masu_limits;
 
 typedef struct masu_peak_info {
-    uint64_t vertices, indices, materials, instances, sdf_params;
-    uint64_t shadow_cascades, shadow_resolution, textures, texture_bytes, transparents, lights;
-    uint64_t trace_triangles, trace_instances;
+    MASU_LIMITS(MASU_LIMIT_FIELD)
     uint64_t host_bytes;   /* of the host block */
     uint64_t device_bytes; /* of all device blocks */
 } masu_peak_info;
+#undef MASU_LIMIT_FIELD
+
+/* The same as data. */
+typedef struct masu_limit {
+    const char *name; /* of the field of masu_limits and masu_peak_info */
+    uint32_t offset;  /* in both, bytes */
+    uint64_t max;     /* of any scene; 0: none */
+    const char *text;
+} masu_limit;
+
+/* All of them, in order; behind the last one a row whose name is NULL. Constant. */
+MASU_API const masu_limit *masu_limit_table(void);
 
 /* Device memory roles. On unified memory all of it is one block of role MASU_ROLE_DEVICE. */
 typedef enum masu_role {
@@ -1007,7 +1161,7 @@ typedef struct masu_stats_info {
  * MASU_INCOMPLETE: the slot has not been used yet. */
 MASU_API masu_result masu_stats(const masu_renderer *renderer, uint32_t slot, masu_stats_info *out);
 
-/* The most of each thing that the renderer has held. Paste it into masu_limits. */
+/* How much of each thing the renderer holds: to be pasted into masu_limits. */
 MASU_API void masu_peaks(const masu_renderer *renderer, masu_peak_info *out);
 
 typedef struct masu_readback_image {

@@ -694,21 +694,10 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
 }
 
 void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
-    const masu_scene *s = &m->plan.scene;
-    *out = (masu_peak_info){.vertices = s->vertices,
-                            .indices = s->indices,
-                            .materials = s->materials,
-                            .instances = s->instances,
-                            .sdf_params = s->sdf_params,
-                            .shadow_cascades = m->plan.cascades,
-                            .shadow_resolution = m->plan.cascade_size,
-                            .textures = s->textures,
-                            .texture_bytes = masu_scene_texture_bytes(&m->plan.desc),
-                            .transparents = s->transparents,
-                            .lights = s->lights,
-                            .trace_triangles = s->trace_triangles,
-                            .trace_instances = s->trace_instances,
-                            .host_bytes = m->arena.used};
+    const masu_limits held = masu_limits_needed(&m->plan.desc);
+#define PEAK(name, ...) .name = held.name,
+    *out = (masu_peak_info){MASU_LIMITS(PEAK).host_bytes = m->arena.used};
+#undef PEAK
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++)
         out->device_bytes += m->plan.blocks[role].bytes;
 }

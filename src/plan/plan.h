@@ -8,7 +8,9 @@
 #ifndef MASU_PLAN_H
 #define MASU_PLAN_H
 
+#include "plan/desc.h"
 #include "plan/frame.h"
+#include "plan/limits.h"
 #include "masu.h"
 
 /* Timestamps of a frame: one before the first pass and one after each; of the governor the first and
@@ -183,9 +185,6 @@ int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t ca
 /* Size of an image or of a pass of a rung. */
 VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
                             VkExtent2D render);
-/* Bytes of the scene's texels as this description has them on the device. */
-uint64_t masu_scene_texture_bytes(const masu_desc *desc);
-
 /* The format of an image in this plan. */
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
 

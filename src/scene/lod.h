@@ -12,8 +12,6 @@
 
 #include "scene/blob.h"
 
-#define MASU_LOD_PIXELS 1.0f /* the error that a picture may show, unless its rung says another */
-
 /* The largest factor by which the rows of a 3x4 transform lengthen anything, or more: the Frobenius
  * norm, at most the root of three too large. Not finite for a transform that is not. */
 float masu_lod_scale(const float transform[12]);

@@ -179,8 +179,8 @@ static void check_ladder(const char *folder) {
         assert_true(fabs(json_number_value(json_object_get(rung, "flip")) - row->flip) < 1e-9);
         assert_true(before >= MASU_LADDER_APART * ratio && ratio > 0);
         before = ratio;
-        for (uint32_t k = 0; masu_knob_name(k); k++)
-            assert_non_null(json_object_get(knobs, masu_knob_name(k)));
+        for (const masu_knob *k = masu_knob_table(); k->name; k++)
+            assert_non_null(json_object_get(knobs, k->name));
         double scale = json_number_value(json_object_get(knobs, "scale"));
         assert_true(fabs(floor(64 * scale + 0.5) - row->render_width) <= 1);
     }

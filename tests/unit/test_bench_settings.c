@@ -10,6 +10,7 @@
 
 #include "bench/sweep/settings.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static masu_setting settings[MASU_SETTINGS_MOST];
@@ -195,7 +196,7 @@ static void knobs_are_printed_as_json(void **state) {
     const masu_rung rung = {
         .scale = 0.5f, .aa = MASU_AA_FXAA, .ao_steps = 4, .shadow_refresh = {1, 2, 4, 8}};
     uint32_t seen = 0;
-    for (uint32_t k = 0; masu_knob_name(k); k++) {
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         static const char *const wanted[][2] = {{"scale", "0.5"},
                                                 {"aa", "\"fxaa\""},
                                                 {"ao_steps", "4"},
@@ -204,7 +205,7 @@ static void knobs_are_printed_as_json(void **state) {
         char text[64];
         masu_knob_json(k, &rung, text, sizeof text);
         for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
-            if (strcmp(masu_knob_name(k), wanted[i][0]) != 0) continue;
+            if (strcmp(k->name, wanted[i][0]) != 0) continue;
             assert_string_equal(text, wanted[i][1]);
             seen++;
         }
@@ -213,18 +214,34 @@ static void knobs_are_printed_as_json(void **state) {
     assert_int_equal(masu_setting_period(&rung), 8);
 }
 
-/* Names lead back to the rung, of every setting that is measured. */
-static void names_are_read_again(void **state) {
-    (void)state;
-    char error[256], name[MASU_SETTING_ID];
+static void check_names_read_again(uint32_t count) {
+    char error[600], name[MASU_SETTING_ID];
     masu_rung rung;
-    uint32_t count = masu_settings_make(false, settings);
     for (uint32_t i = 0; i < count; i++) {
+        if (settings[i].dropped[0]) continue;
         if (!masu_setting_parse(settings[i].id, &rung, error, sizeof error)) fail_msg("%s", error);
         if (memcmp(&rung, &settings[i].rung, sizeof rung) != 0)
             fail_msg("%s is another rung", settings[i].id);
         masu_setting_name(&rung, name);
         assert_string_equal(name, settings[i].id);
+    }
+}
+
+/* Names lead back to the rung, of every setting that is measured: before and after they are fitted to a
+ * scene whose numbers are not round. */
+static void names_are_read_again(void **state) {
+    (void)state;
+    static const char *const passes[] = {"ao", "specular_guide", "cascade_0"};
+    const masu_plan_info plan = plan_with(passes, 3);
+    char error[600], name[MASU_SETTING_ID];
+    masu_rung rung;
+    masu_scene scene = everything;
+    scene.shadow_distance = 81.2345f;
+    for (int quick = 0; quick < 2; quick++) {
+        uint32_t count = masu_settings_make(quick, settings);
+        check_names_read_again(count);
+        masu_settings_fit(settings, count, &scene, &plan);
+        check_names_read_again(count);
     }
     /* In any order; values of all kinds. */
     assert_true(masu_setting_parse("ao_steps=3+lod_error=-1+shadow_refresh=1-2-4-8+scale=0.625+"
@@ -235,26 +252,63 @@ static void names_are_read_again(void **state) {
                               "shadow_distance=1e+09+shadow_refresh=1-2-4-8");
 }
 
+/* Both ends and the middle of each knob, by itself and all together. */
+static void every_knob_has_its_part_of_a_name(void **state) {
+    (void)state;
+    char error[600], name[1024], part[64];
+    for (int n = 0; n < 3; n++) {
+        masu_rung all, rung, read;
+        size_t used = 0;
+        masu_setting_parse("base", &all, error, sizeof error);
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            masu_setting_parse("base", &rung, error, sizeof error);
+            double value = n == 0 ? k->min : n == 1 ? k->max : k->min + (k->max - k->min) / 3.0;
+            if (k->kind != MASU_KNOB_FLOAT) value = (double)(uint32_t)value;
+            for (uint32_t i = 0; i < k->values; i++) {
+                masu_knob_set(k, &rung, i, value);
+                masu_knob_set(k, &all, i, value);
+            }
+            masu_knob_text(k, &rung, part, sizeof part);
+            used += (size_t)snprintf(name + used, sizeof name - used, "%s%s=%s", used ? "+" : "",
+                                     k->name, part);
+            const char *end = masu_knob_from_text(k, part, &read);
+            assert_true(end && !*end);
+            assert_false(masu_knob_differs(k, &read, &rung));
+        }
+        if (!masu_setting_parse(name, &read, error, sizeof error)) fail_msg("%s", error);
+        assert_memory_equal(&read, &all, sizeof read);
+    }
+}
+
 static void names_that_are_none_are_refused(void **state) {
     (void)state;
     static const char *const bad[][2] = {{"", "''"},
                                          {"scale", "'scale'"},
-                                         {"scale=", "'scale='"},
-                                         {"scale=half", "'scale=half'"},
-                                         {"scale=nan", "'scale=nan'"},
-                                         {"scale=inf", "'scale=inf'"},
-                                         {"scale=0.5x", "'scale=0.5x'"},
+                                         {"scale=", "scale: needed is a number from 0 to 1, given is ''"},
+                                         {"scale=half", "given is 'half'"},
+                                         {"scale=nan", "given is 'nan'"},
+                                         {"scale=inf", "given is 'inf'"},
+                                         {"scale=0.5x", "given is '0.5x'"},
+                                         {"scale=1.5", "given is '1.5'"},
+                                         {"scale=1e+09", "given is '1e'"},
+                                         {"aa=off+lod_error=1e+10", "lod_error: needed is"},
                                          {"scale=0.5+", "''"},
                                          {"scale=0.5+scale=0.4", "'scale=0.4' comes twice"},
-                                         {"aa=smaa", "'aa=smaa'"},
-                                         {"aa=smaa-high2", "'aa=smaa-high2'"},
+                                         {"aa=smaa", "given is 'smaa'"},
+                                         {"aa=high", "aa: needed is one of auto, off, fxaa, smaa-low"},
+                                         {"aa=smaa-high2", "given is 'smaa-high2'"},
                                          {"base+aa=fxaa", "'base'"},
                                          {"speed=3", "'speed=3'"},
-                                         {"ao_steps=-1", "'ao_steps=-1'"},
-                                         {"ao_steps=99999999999", "'ao_steps=99999999999'"},
-                                         {"shadow_refresh=1-2-4", "'shadow_refresh=1-2-4'"}};
+                                         {"ao_steps=-1", "given is '-1'"},
+                                         {"ao_steps= 1", "given is ' 1'"},
+                                         {"ao_steps=17", "ao_steps: needed is a whole number from 0 to 16"},
+                                         {"ao_steps=99999999999", "given is '99999999999'"},
+                                         {"shadow_resolution=8",
+                                          "needed is 0 or a whole number from 16 to 8192"},
+                                         {"shadow_refresh=1-2-4", "4 whole numbers, each from 0 to 64"},
+                                         {"shadow_refresh=1-2-4-65", "given is '1-2-4-65'"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        char error[256] = "";
+        char error[600] = "";
         masu_rung rung;
         if (masu_setting_parse(bad[i][0], &rung, error, sizeof error))
             fail_msg("'%s' is taken", bad[i][0]);
@@ -273,6 +327,7 @@ int main(void) {
         cmocka_unit_test(plans_are_compared_by_passes_sizes_and_bytes),
         cmocka_unit_test(knobs_are_printed_as_json),
         cmocka_unit_test(names_are_read_again),
+        cmocka_unit_test(every_knob_has_its_part_of_a_name),
         cmocka_unit_test(names_that_are_none_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -51,7 +51,7 @@ static void a_whole_case_is_read(void **state) {
         "true,"
         "   \"exact_memory\": true, \"same\": [\"poison\", \"again\"], \"needs\": [\"float16\"],"
         "   \"flight\": 3,"
-        "   \"rung\": {\"scale\": 0.8, \"aa\": \"high\", \"march\": \"cones\", \"easu\": \"fast\","
+        "   \"rung\": {\"scale\": 0.8, \"aa\": \"smaa-high\", \"march\": \"cones\", \"easu\": \"fast\","
         "             \"specular\": \"off\", \"ao_steps\": 5},"
         "   \"budget\": {\"host_bytes\": 1000, \"ms_ratio\": {\"warn\": 2, \"fail\": 3}},"
         "   \"counts\": {\"sdf_evals\": {\"warn\": 7}}, \"at_least\": {\"draws\": 2}},"
@@ -127,14 +127,16 @@ static void a_bad_case_is_named_with_its_key(void **state) {
         {"\"scale\": 1", "case 'one': scale: there is no such key"},
         {"\"rung\": {\"scael\": 1}", "case 'one': rung.scael: there is no such key"},
         {"\"rung\": {\"scale\": 1.5}",
-         "rung.scale: needed is a number from 0.01 to 1, given is 1.5"},
+         "rung.scale: needed is a number from 0 to 1, given is 1.5"},
         {"\"rung\": {\"scale\": \"half\"}",
-         "rung.scale: needed is a number from 0.01 to 1, given is 'half'"},
+         "rung.scale: needed is a number from 0 to 1, given is 'half'"},
         {"\"rung\": {\"aa\": \"smaa\"}",
-         "rung.aa: needed is one of auto, off, fxaa, low, medium, high, ultra, "
+         "rung.aa: needed is one of auto, off, fxaa, smaa-low, smaa-medium, smaa-high, smaa-ultra, "
          "given is 'smaa'"},
         {"\"rung\": {\"ao\": true}", "rung.ao: needed is one of auto, off, on, given is true"},
         {"\"rung\": {\"march_steps\": 4.5}", "rung.march_steps: needed is a whole number"},
+        {"\"rung\": {\"shadow_distance\": 2e9}", "needed is a number from 0 to 1000000000"},
+        {"\"rung\": {\"shadow_refresh\": [1, 2]}", "needed is an array of 4 whole numbers"},
         {"\"rung\": 3", "rung: needed is an object, given is 3"},
         {"\"frames\": -1", "frames: needed is a whole number from 1 to 100000, given is -1"},
         {"\"time\": null",

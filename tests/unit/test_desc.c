@@ -7,11 +7,15 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h>
 
+#include "bench/sweep/knobs.h"
+#include "frame/transparents.h"
 #include "plan/plan.h"
+#include "scene/blob.h"
 #include "support/desc.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -80,54 +84,16 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(frames_in_flight);
     SAME(rung_count);
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
-        SAME(rungs[r].scale);
-        SAME(rungs[r].upscale);
-        SAME(rungs[r].easu);
-        SAME(rungs[r].fuse);
-        SAME(rungs[r].sharpen);
-        SAME(rungs[r].sharpness);
-        SAME(rungs[r].march);
-        SAME(rungs[r].march_steps);
-        SAME(rungs[r].frustum);
-        SAME(rungs[r].occlusion);
-        SAME(rungs[r].ao);
-        SAME(rungs[r].ao_slices);
-        SAME(rungs[r].ao_steps);
-        SAME(rungs[r].shadow_cascades);
-        SAME(rungs[r].shadow_resolution);
-        SAME(rungs[r].shadow_distance);
-        for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) SAME(rungs[r].shadow_refresh[k]);
-        SAME(rungs[r].lod_error);
-        SAME(rungs[r].light_tiles);
-        SAME(rungs[r].specular);
-        SAME(rungs[r].specular_cutoff);
-        SAME(rungs[r].specular_reuse);
-        SAME(rungs[r].specular_temporal);
-        SAME(rungs[r].specular_fine);
-        SAME(rungs[r].specular_filter);
-        SAME(rungs[r].specular_taa);
-        SAME(rungs[r].specular_reuse_taps);
-        SAME(rungs[r].specular_filter_taps);
-        SAME(rungs[r].specular_frames);
-        SAME(rungs[r].aa);
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            if (masu_knob_differs(k, &a->rungs[r], &b->rungs[r]))
+                fail_msg("rungs[%u].%s differs", r, k->name);
+        }
         SAME(flips[r]);
         SAME(governor.costs[r]);
     }
     SAME(ladder);
-    SAME(limits.vertices);
-    SAME(limits.indices);
-    SAME(limits.materials);
-    SAME(limits.instances);
-    SAME(limits.sdf_params);
-    SAME(limits.shadow_cascades);
-    SAME(limits.shadow_resolution);
-    SAME(limits.probes);
-    SAME(limits.textures);
-    SAME(limits.texture_bytes);
-    SAME(limits.transparents);
-    SAME(limits.lights);
-    SAME(limits.trace_triangles);
-    SAME(limits.trace_instances);
+#define SAME_LIMIT(name, ...) SAME(limits.name);
+    MASU_LIMITS(SAME_LIMIT)
     SAME(vulkan.texture_compression_bc);
     SAME(vulkan.max_anisotropy);
     SAME(vulkan.ray_query);
@@ -229,6 +195,15 @@ static uint64_t no_clock(void *user) {
     return 0;
 }
 
+/* Not 0, and taken. */
+static double some_value(const masu_knob *k, uint32_t n) {
+    double floor_ = k->kind == MASU_KNOB_FLOAT || k->min > 1.0 ? k->min : 1.0;
+    double value = k->kind == MASU_KNOB_FLOAT ? floor_ + (k->max - floor_) * (n + 1) / 17.0
+                                              : floor_ + n % (uint32_t)(k->max - floor_ + 1.0);
+    assert_true(masu_knob_takes(k, value) && value != 0.0);
+    return value;
+}
+
 static masu_desc full_desc(void) {
     static VkAllocationCallbacks allocator;
     masu_desc d = scene_desc(RASTER, 320, 200);
@@ -252,14 +227,14 @@ static masu_desc full_desc(void) {
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
         d.flips[r] = 0.1f * (float)r;
         d.governor.costs[r] = 1.0f + (float)r;
-        d.rungs[r] =
-            (masu_rung){0.1f * (float)(r + 1), MASU_ON, MASU_OFF, (float)r, (masu_march)r, r + 1,
-                        MASU_OFF, MASU_ON, 0.5f + (float)r, MASU_ON, r + 1, r + 2, r % 5, 100 + r,
-                        (float)r, {r + 1, 2, 3, 4}, MASU_OFF, MASU_ON, 0.25f, MASU_ON, MASU_OFF,
-                         MASU_ON, MASU_OFF, MASU_ON, r + 1, r + 2, r + 3, (masu_easu)(r % 4),
-                         (masu_aa)(r % 7), MASU_ON};
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            for (uint32_t i = 0; i < k->values; i++)
+                masu_knob_set(k, &d.rungs[r], i, some_value(k, r + i));
+        }
     }
-    d.limits = (masu_limits){9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22};
+    uint64_t limit = 9;
+#define SET_LIMIT(name, ...) d.limits.name = limit++;
+    MASU_LIMITS(SET_LIMIT)
     d.host_budget = 14;
     d.device_budget = 15;
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -412,65 +387,126 @@ static void a_bad_source_is_named(void **state) {
     BAD("source.height", d = source_desc(10, 16385));
 }
 
-static void a_bad_rung_is_named(void **state) {
+/* Each value of each knob in each rung: refused by the knob's name. */
+static void a_knob_out_of_its_range_is_named(void **state) {
     (void)state;
-    const float nan = (float)NAN, infinity = (float)INFINITY;
-    BAD("rungs[].scale", d.rungs[0].scale = -0.5f);
-    BAD("rungs[].scale", d.rungs[1].scale = 1.0001f);
-    BAD("rungs[].scale", d.rungs[1].scale = nan);
-    BAD("rungs[].scale", d.rungs[1].scale = infinity);
-    BAD("rungs[].scale", d.rungs[1].scale = -infinity);
-    BAD("rungs[].sharpness", d.rungs[1].sharpness = -0.1f);
-    BAD("rungs[].sharpness", d.rungs[0].sharpness = nan);
-    BAD("rungs[].sharpness", d.rungs[0].sharpness = infinity);
-    BAD("rungs[].march_steps", d.rungs[1].march_steps = 2049);
-    BAD("rungs[].march_steps", d.rungs[1].march_steps = UINT32_MAX);
-    BAD("rungs[].march", d.rungs[1].march = (masu_march)(MASU_MARCH_UNPRUNED + 1));
-    BAD("rungs[].march", d.rungs[0].march = (masu_march)-1);
-    BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)3);
-    BAD("rungs[].easu", d.rungs[1].easu = (masu_easu)(MASU_EASU_BILINEAR + 1));
-    BAD("rungs[].easu", d.rungs[0].easu = (masu_easu)-1);
-    BAD("rungs[].fuse", d.rungs[1].fuse = (masu_switch)3);
-    BAD("half_floats", d.half_floats = (masu_switch)3);
-    BAD("rungs[].upscale", d.rungs[1].upscale = (masu_switch)-1);
-    BAD("rungs[].sharpen", d.rungs[1].sharpen = (masu_switch)3);
-    BAD("rungs[].occlusion", d.rungs[1].occlusion = (masu_switch)3);
-    BAD("rungs[].light_tiles", d.rungs[1].light_tiles = (masu_switch)3);
-    BAD("rungs[].ao", d.rungs[1].ao = (masu_switch)3);
-    BAD("rungs[].ao_slices", d.rungs[1].ao_slices = 9);
-    BAD("rungs[].ao_slices", d.rungs[0].ao_slices = UINT32_MAX);
-    BAD("rungs[].ao_steps", d.rungs[1].ao_steps = 17);
-    BAD("rungs[].specular_reuse", d.rungs[1].specular_reuse = (masu_switch)3);
-    BAD("rungs[].specular_temporal", d.rungs[1].specular_temporal = (masu_switch)3);
-    BAD("rungs[].specular_fine", d.rungs[1].specular_fine = (masu_switch)3);
-    BAD("rungs[].specular_filter", d.rungs[1].specular_filter = (masu_switch)-1);
-    BAD("rungs[].specular_taa", d.rungs[0].specular_taa = (masu_switch)3);
-    BAD("rungs[].specular_reuse_taps", d.rungs[1].specular_reuse_taps = 17);
-    BAD("rungs[].specular_filter_taps", d.rungs[1].specular_filter_taps = 33);
-    BAD("rungs[].specular_frames", d.rungs[1].specular_frames = 241);
-    BAD("rungs[].aa", d.rungs[0].aa = (masu_aa)(MASU_AA_SMAA_ULTRA + 1));
-    BAD("rungs[].aa", d.rungs[1].aa = (masu_aa)-1);
-    BAD("rungs[].lod_error", d.rungs[1].lod_error = nan);
-    BAD("rungs[].lod_error", d.rungs[0].lod_error = infinity);
-    BAD("rungs[].lod_error", d.rungs[1].lod_error = -infinity);
-    BAD("rungs[].frustum", d.rungs[1].frustum = (masu_switch)3);
-    BAD("rungs[].shadow_cascades", d.rungs[1].shadow_cascades = 5);
-    BAD("rungs[].shadow_resolution", d.rungs[1].shadow_resolution = 15);
-    BAD("rungs[].shadow_resolution", d.rungs[1].shadow_resolution = 8193);
-    BAD("rungs[].specular", d.rungs[1].specular = (masu_switch)3);
-    BAD("rungs[].specular_cutoff", d.rungs[1].specular_cutoff = -0.01f);
-    BAD("rungs[].specular_cutoff", d.rungs[1].specular_cutoff = 1.01f);
-    BAD("rungs[].specular_cutoff", d.rungs[1].specular_cutoff = nan);
-    BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = -1.0f);
-    BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = nan);
-    BAD("rungs[].shadow_distance", d.rungs[1].shadow_distance = infinity);
-    BAD("rungs[].shadow_refresh", d.rungs[1].shadow_refresh[0] = 65);
-    BAD("rungs[].shadow_refresh", d.rungs[0].shadow_refresh[3] = UINT32_MAX);
+    const double nan = (double)NAN, infinity = (double)INFINITY;
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+        double bad[6];
+        char what[80];
+        uint32_t count = 0;
+        snprintf(what, sizeof what, "rungs[].%s", k->name);
+        if (k->kind == MASU_KNOB_FLOAT) {
+            bad[count++] = nan, bad[count++] = infinity, bad[count++] = -infinity;
+            bad[count++] = k->max + 1e-4 * fabs(k->max), bad[count++] = k->min - 1e-4 * k->max;
+        } else {
+            bad[count++] = k->max + 1.0, bad[count++] = UINT32_MAX;
+            if (k->min > 1.0) bad[count++] = 1.0, bad[count++] = k->min - 1.0;
+        }
+        for (uint32_t n = 0; n < count * 2 * k->values; n++) {
+            uint32_t rung = n / count % 2, value = n / count / 2;
+            assert_false(masu_knob_takes(k, bad[n % count]));
+            BAD(what, masu_knob_set(k, &d.rungs[rung], value, bad[n % count]));
+        }
+    }
     masu_desc d = scene_desc(RASTER, 64, 64);
     static masu_frame_plan plan;
     d.rung_count = 1;
-    d.rungs[1].scale = nan; /* behind the count */
+    d.rungs[1].scale = (float)NAN; /* behind the count */
     compile(&d, &plan);
+    BAD("half_floats", d.half_floats = (masu_switch)3);
+}
+
+/* What says which knob: as a whole and once in words, for each kind. */
+static void a_refused_knob_says_what_it_takes(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    static const struct {
+        const char *knob;
+        double value;
+        const char *text;
+        uint64_t needed, given;
+    } rows[] = {
+        {"scale", 1.5, "rungs[1].scale is 1.5, allowed are 0 to 1", 0, 0},
+        {"lod_error", -2e9, "rungs[1].lod_error is -2000000000 pixels, allowed are -1000000000 to "
+                            "1000000000", 0, 0},
+        {"march_steps", 2049, "rungs[1].march_steps is 2049 steps, allowed are 0 to 2048", 2048, 2049},
+        {"shadow_resolution", 8,
+         "rungs[1].shadow_resolution is 8 texels, allowed are 0 and 16 to 8192", 16, 8},
+        {"aa", 7, "rungs[1].aa is 7, allowed are 0 to 6", 6, 7}};
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        masu_desc d = scene_desc(RASTER | SDF, 640, 480);
+        masu_detail detail;
+        d.rung_count = 2;
+        const masu_knob *k = masu_knob_find(rows[i].knob, strlen(rows[i].knob));
+        masu_knob_set(k, &d.rungs[1], 0, rows[i].value);
+        assert_int_equal(masu_compile(&d, 256, 64, &plan, &detail), MASU_ERROR_ARGUMENT);
+        assert_string_equal(detail.text, rows[i].text);
+        assert_int_equal(detail.needed, rows[i].needed);
+        assert_int_equal(detail.given, rows[i].given);
+    }
+}
+
+/* What shaders and scene files are built for is what the table promises. */
+static void ranges_are_those_of_shaders_and_blobs(void **state) {
+    (void)state;
+    static const struct {
+        const char *knob;
+        double min, max;
+    } rows[] = {{"march_steps", 1, MASU_MARCH_STEPS_MAX},
+                {"ao_slices", 1, MASU_AO_SLICES_MAX},
+                {"ao_steps", 1, MASU_AO_STEPS_MAX},
+                {"specular_reuse_taps", 1, MASU_REUSE_TAPS_MAX},
+                {"specular_filter_taps", 1, MASU_FILTER_TAPS_MAX},
+                {"specular_frames", 1, MASU_SPECULAR_FRAMES_MAX},
+                {"shadow_resolution", MASU_SHADOW_SIZE_MIN, MASU_SHADOW_SIZE_MAX}};
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        const masu_knob *k = masu_knob_find(rows[i].knob, strlen(rows[i].knob));
+        assert_non_null(k);
+        assert_true(k->min == rows[i].min && k->max == rows[i].max);
+    }
+    static const struct {
+        const char *limit;
+        uint64_t max;
+    } limits[] = {{"shadow_resolution", MASU_SHADOW_SIZE_MAX},
+                  {"transparents", MASU_TRANSPARENTS_MAX},
+                  {"lights", MASU_BLOB_LIGHTS_MAX}};
+    for (size_t i = 0; i < COUNT(limits); i++) {
+        const masu_limit *l = masu_limit_table();
+        while (l->name && strcmp(l->name, limits[i].limit)) l++;
+        assert_non_null(l->name);
+        assert_int_equal(l->max, limits[i].max);
+    }
+}
+
+/* Tables that programs walk: every field of masu_rung and masu_limits, once, with its texts. */
+static void tables_have_every_field_once(void **state) {
+    (void)state;
+    uint32_t end = 0;
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+        assert_int_equal(k->offset, end);
+        end += 4 * k->values;
+        assert_true(k->text[0] && k->cost[0] && k->where[0] && k->min < k->max);
+        assert_true(masu_knob_takes(k, 0.0) && masu_knob_takes(k, k->zero));
+        assert_true(masu_knob_takes(k, k->min) && masu_knob_takes(k, k->max));
+        assert_int_equal(k->kind == MASU_KNOB_WORD, k->words != NULL);
+        for (uint32_t w = 0; w < k->word_count; w++) {
+            assert_int_equal(k->words[w].value, w);
+            assert_true(k->words[w].word[0] && !strncmp(k->words[w].name, "MASU_", 5));
+        }
+        if (k->words) assert_string_equal(k->words[0].word, "auto");
+        masu_rung rung = {.scale = 0.5f};
+        masu_knob_set(k, &rung, k->values, 1.0); /* behind the last: nothing */
+        assert_true(masu_knob_get(k, &rung, k->values) == 0.0 && rung.scale == 0.5f);
+    }
+    assert_int_equal(end, sizeof(masu_rung));
+    end = 0;
+    for (const masu_limit *l = masu_limit_table(); l->name; l++) {
+        assert_int_equal(l->offset, end);
+        end += sizeof(uint64_t);
+        assert_true(l->text[0]);
+    }
+    assert_int_equal(end, sizeof(masu_limits));
 }
 
 static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
@@ -563,16 +599,17 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     d.targets.count = MASU_MAX_TARGETS;
     d.frames_in_flight = MASU_MAX_FLIGHT;
     d.readback = MASU_READBACK_ALL;
-    d.rungs[0] = (masu_rung){1e-30f, MASU_ON, MASU_ON, 64.0f, MASU_MARCH_AUTO, 1,
-                             MASU_ON, MASU_ON, 1e9f, MASU_ON, 8, 16,
-                             4,       8192,    1e30f, {1, 64, 64, 64}, MASU_ON,
-                             MASU_ON, 1.0f, MASU_ON, MASU_ON, MASU_ON, MASU_ON, MASU_ON,
-                              1, 1, 1, MASU_EASU_FULL, MASU_AA_SMAA_ULTRA, MASU_ON};
-    d.rungs[1] = (masu_rung){1.0f, MASU_OFF, MASU_OFF, 0.0f, MASU_MARCH_AUTO, 256,
-                             MASU_OFF, MASU_OFF, -1e9f, MASU_OFF, 1, 1,
-                             1,        16,       1e-30f, {64, 0, 0, 0}, MASU_OFF,
-                             MASU_OFF, 1e-30f, MASU_OFF, MASU_OFF, MASU_OFF, MASU_OFF, MASU_OFF,
-                              1, 1, 1, MASU_EASU_BILINEAR, MASU_AA_OFF, MASU_OFF};
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+        for (uint32_t i = 0; i < k->values; i++) {
+            masu_knob_set(k, &d.rungs[0], i, k->max);
+            masu_knob_set(k, &d.rungs[1], i, k->min > 0.0 || k->min < 0.0 ? k->min : 1.0);
+        }
+    }
+    d.rungs[0].scale = 1e-30f, d.rungs[1].scale = 1.0f;
+    d.rungs[0].march = d.rungs[1].march = MASU_MARCH_AUTO; /* the rest takes another blob */
+    d.rungs[1].upscale = d.rungs[1].occlusion = MASU_OFF;
+    d.rungs[0].shadow_distance = 1e9f, d.rungs[1].shadow_distance = 1e-30f;
+    d.rungs[1].specular_cutoff = 1e-30f;
     compile(&d, &plan);
     d.targets.count = 1;
     d.frames_in_flight = 1;
@@ -597,31 +634,25 @@ static void refusals_say_what_was_given_and_what_is_allowed(void **state) {
 static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
     (void)state;
     static const struct {
-        const char *what;
-        size_t offset;
+        const char *name;
         uint64_t needed;
-    } rows[] = {
-        {"limits.vertices", offsetof(masu_limits, vertices), 11},
-        {"limits.indices", offsetof(masu_limits, indices), 15},
-        {"limits.materials", offsetof(masu_limits, materials), 2},
-        {"limits.instances", offsetof(masu_limits, instances), 3},
-        {"limits.sdf_params", offsetof(masu_limits, sdf_params), 2},
-        {"limits.shadow_cascades", offsetof(masu_limits, shadow_cascades), 3},
-        {"limits.shadow_resolution", offsetof(masu_limits, shadow_resolution), 1024},
-        {"limits.probes", offsetof(masu_limits, probes), 6},
-        {"limits.textures", offsetof(masu_limits, textures), 4},
-        {"limits.texture_bytes", offsetof(masu_limits, texture_bytes), 1000},
-        {"limits.transparents", offsetof(masu_limits, transparents), 6},
-        {"limits.lights", offsetof(masu_limits, lights), 5},
-        {"limits.trace_triangles", offsetof(masu_limits, trace_triangles), 12},
-        {"limits.trace_instances", offsetof(masu_limits, trace_instances), 2},
-    };
+    } rows[] = {{"vertices", 11},       {"indices", 15},
+                {"materials", 2},       {"instances", 3},
+                {"sdf_params", 2},      {"shadow_cascades", 3},
+                {"shadow_resolution", 1024}, {"probes", 6},
+                {"textures", 4},        {"texture_bytes", 1000},
+                {"transparents", 6},    {"lights", 5},
+                {"trace_triangles", 12}, {"trace_instances", 2}};
     static masu_frame_plan plan;
-    assert_int_equal(sizeof(masu_limits), COUNT(rows) * sizeof(uint64_t));
-    for (size_t i = 0; i < COUNT(rows); i++) {
+    const masu_limit *l = masu_limit_table();
+    for (size_t i = 0; l->name; l++, i++) {
         masu_desc d = scene_desc(RASTER | SDF, 640, 480);
         masu_detail detail;
+        char what[80];
+        assert_true(i < COUNT(rows)); /* a new limit takes a row here */
+        assert_string_equal(l->name, rows[i].name);
         uint64_t limit = rows[i].needed;
+        snprintf(what, sizeof what, "limits.%s", l->name);
         support_scene.shadow_cascades = 3;
         support_scene.shadow_resolution = 1024;
         support_scene.transparents = 6, support_scene.transparent_sets = 1;
@@ -629,11 +660,14 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         support_scene.lights = 5;
         support_scene.trace_triangles = 12;
         support_scene.trace_instances = 2;
-        memcpy((char *)&d.limits + rows[i].offset, &limit, sizeof limit);
+        masu_desc is = masu_desc_resolved(&d);
+        const masu_limits needed = masu_limits_needed(&is);
+        assert_memory_equal((const char *)&needed + l->offset, &limit, sizeof limit);
+        memcpy((char *)&d.limits + l->offset, &limit, sizeof limit);
         compile(&d, &plan); /* exactly enough */
         limit--;
-        memcpy((char *)&d.limits + rows[i].offset, &limit, sizeof limit);
-        assert_refused(&d, MASU_ERROR_LIMIT, rows[i].what);
+        memcpy((char *)&d.limits + l->offset, &limit, sizeof limit);
+        assert_refused(&d, MASU_ERROR_LIMIT, what);
         assert_int_equal(masu_compile(&d, 1, 1, &plan, &detail), MASU_ERROR_LIMIT);
         assert_int_equal(detail.needed, rows[i].needed);
         assert_int_equal(detail.given, limit);
@@ -743,7 +777,10 @@ int main(void) {
         cmocka_unit_test(a_storage_target_of_another_format_is_named),
         cmocka_unit_test(scene_and_source_exclude_each_other),
         cmocka_unit_test(a_bad_source_is_named),
-        cmocka_unit_test(a_bad_rung_is_named),
+        cmocka_unit_test(a_knob_out_of_its_range_is_named),
+        cmocka_unit_test(a_refused_knob_says_what_it_takes),
+        cmocka_unit_test(ranges_are_those_of_shaders_and_blobs),
+        cmocka_unit_test(tables_have_every_field_once),
         cmocka_unit_test(meshes_too_large_for_occlusion_are_a_limit),
         cmocka_unit_test(a_march_that_the_blob_has_no_code_for_is_a_scene_error),
         cmocka_unit_test(a_march_as_fragment_shader_beside_polygons_is_refused_in_one_line),

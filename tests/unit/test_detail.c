@@ -128,12 +128,13 @@ static const masu_blob_lod forms[3] = {{0, 0, 0.01f, 0}, {0, 0, 0.1f, 0}, {0, 0,
 static void the_coarsest_form_within_the_threshold_is_chosen(void **state) {
     (void)state;
     const float pixels = 935.307f; /* 1080 in 60 degrees */
+    const float threshold = 1.0f;
     for (int i = 0; i < 3; i++) {
-        float depth = forms[i].error * pixels / MASU_LOD_PIXELS;
-        assert_int_equal(masu_lod_choose(forms, 3, 1, depth * 0.999f, pixels, MASU_LOD_PIXELS), i);
-        assert_int_equal(masu_lod_choose(forms, 3, 1, depth * 1.001f, pixels, MASU_LOD_PIXELS),
+        float depth = forms[i].error * pixels / threshold;
+        assert_int_equal(masu_lod_choose(forms, 3, 1, depth * 0.999f, pixels, threshold), i);
+        assert_int_equal(masu_lod_choose(forms, 3, 1, depth * 1.001f, pixels, threshold),
                          i + 1);
-        assert_int_equal(masu_lod_choose(forms, 3, 2, depth * 1.999f, pixels, MASU_LOD_PIXELS), i);
+        assert_int_equal(masu_lod_choose(forms, 3, 2, depth * 1.999f, pixels, threshold), i);
     }
     assert_int_equal(masu_lod_choose(forms, 0, 1, 1e9f, pixels, 1), 0);
     assert_int_equal(masu_lod_choose(forms, 3, 1, 1e9f, pixels, 1), 3);

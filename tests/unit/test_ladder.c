@@ -92,8 +92,8 @@ static void tables_are_well_formed(void **state) {
         for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
             const masu_rung *rung = &l->rungs[r];
             if (r >= l->count) {
-                for (uint32_t k = 0; k < MASU_KNOBS; k++)
-                    assert_false(masu_knob_differs(&masu_knobs[k], rung, &zero));
+                for (const masu_knob *k = masu_knob_table(); k->name; k++)
+                    assert_false(masu_knob_differs(k, rung, &zero));
                 continue;
             }
             assert_true(l->ratios[r] > 0 && l->flips[r] >= 0 && l->flips[r] <= 1);
@@ -248,8 +248,8 @@ static void a_host_may_take_it_and_change_it(void **state) {
     assert_int_equal(masu_ladder_of(d.scene, &own, NULL), MASU_OK);
     own = masu_desc_resolved(&own);
     for (uint32_t r = 0; r < is.rung_count; r++) {
-        for (uint32_t k = 0; k < MASU_KNOBS; k++)
-            assert_false(masu_knob_differs(&masu_knobs[k], &own.rungs[r], &is.rungs[r]));
+        for (const masu_knob *k = masu_knob_table(); k->name; k++)
+            assert_false(masu_knob_differs(k, &own.rungs[r], &is.rungs[r]));
     }
 }
 
@@ -389,11 +389,11 @@ static size_t write_text(const masu_rung *rungs, uint32_t count) {
                               "%s{\"setting\": \"s%u\", \"ratio\": %.3f, \"wall_ms\": 5.0, "
                               "\"gpu_ms\": 0.0, \"flip\": %.3f, \"rmse\": %u.5, \"knobs\": {",
                               r ? ", " : "", r, 1.0 - 0.1 * r, 0.1 + 0.1 * r, r);
-        for (uint32_t k = 0; masu_knob_name(k); k++) {
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             char value[64];
             masu_knob_json(k, &rungs[r], value, sizeof value);
-            n += (size_t)snprintf(text + n, sizeof text - n, "%s\"%s\": %s", k ? ", " : "",
-                                  masu_knob_name(k), value);
+            n += (size_t)snprintf(text + n, sizeof text - n, "%s\"%s\": %s",
+                                  k > masu_knob_table() ? ", " : "", k->name, value);
         }
         n += (size_t)snprintf(text + n, sizeof text - n, "}}");
     }
@@ -409,9 +409,9 @@ static void check_round_trip(const masu_rung *rungs, uint32_t count) {
     if (!masu_ladder_parse("l.json", text, n, &f, error, sizeof error)) fail_msg("%s", error);
     assert_int_equal(f.count, count);
     for (uint32_t r = 0; r < count; r++) {
-        for (uint32_t k = 0; k < MASU_KNOBS; k++) {
-            if (masu_knob_differs(&masu_knobs[k], &rungs[r], &f.rungs[r]))
-                fail_msg("rung %u: %s comes back otherwise", r, masu_knobs[k].name);
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            if (masu_knob_differs(k, &rungs[r], &f.rungs[r]))
+                fail_msg("rung %u: %s comes back otherwise", r, k->name);
         }
     }
 }
@@ -419,19 +419,14 @@ static void check_round_trip(const masu_rung *rungs, uint32_t count) {
 static masu_rung any_rung(uint64_t *random) {
     masu_rung rung;
     memset(&rung, 0, sizeof rung);
-    for (uint32_t k = 0; k < MASU_KNOBS; k++) {
-        const masu_knob *knob = &masu_knobs[k];
-        assert_non_null(knob->name);
-        uint32_t values[MASU_MAX_CASCADES];
-        for (uint32_t i = 0; i < MASU_MAX_CASCADES; i++)
-            values[i] = (uint32_t)support_random_in(random, 0, (uint64_t)knob->high);
-        float scalar = (float)(knob->low + (knob->high - knob->low) *
-                                               (double)(support_random(random) >> 11) * 0x1p-53);
-        if (knob->least > 0 && values[0] < knob->least) values[0] = 0;
-        if (knob->kind == MASU_KNOB_WORD)
-            values[0] = (uint32_t)support_random_in(random, 0, knob->words->count - 1);
-        if (knob->kind == MASU_KNOB_SCALAR) memcpy(values, &scalar, sizeof scalar);
-        memcpy((char *)&rung + knob->offset, values, masu_knob_bytes(knob));
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+        for (uint32_t i = 0; i < k->values; i++) {
+            double share = (double)(support_random(random) >> 11) * 0x1p-53;
+            double value = k->kind == MASU_KNOB_FLOAT
+                               ? k->min + (k->max - k->min) * share
+                               : (double)support_random_in(random, 0, (uint64_t)k->max);
+            masu_knob_set(k, &rung, i, masu_knob_takes(k, value) ? value : 0.0);
+        }
     }
     return rung;
 }
@@ -504,7 +499,7 @@ static void mistakes_are_named_in_one_line(void **state) {
         {"\"march_steps\": 0", "\"march_steps\": -1", "given is -1"},
         {"\"shadow_resolution\": 0", "\"shadow_resolution\": 8",
          "needed is 0 or a whole number from 16 to 8192, given is 8"},
-        {"[0, 0, 0, 0]", "[0, 0, 0]", "shadow_refresh: needed is an array of four"},
+        {"[0, 0, 0, 0]", "[0, 0, 0]", "shadow_refresh: needed is an array of 4"},
         {"[0, 0, 0, 0]", "[0, 0, 0, 65]", "shadow_refresh"},
         {"\"ratio\": 0.900", "\"ratio\": 1.0",
          "rungs[1]: ratio: needed is less than that of the "

@@ -1,6 +1,8 @@
 /* suite.c: see suite.h. */
 #include "conform/suite.h"
 
+#include "bench/sweep/knobs.h"
+
 #include <fnmatch.h>
 #include <math.h>
 #include <stdarg.h>
@@ -74,20 +76,6 @@ static bool wrong(const place *at, const char *key, const char *format, ...) {
     return false;
 }
 
-/* What a value is, as it is said in messages. */
-static const char *given(const json_t *value, char *text, size_t size) {
-    if (json_is_number(value)) {
-        snprintf(text, size, "%.10g", json_number_value(value));
-    } else if (json_is_string(value)) {
-        snprintf(text, size, "'%.60s'", json_string_value(value));
-    } else {
-        static const char *const names[] = {"an object", "an array", "a string", "a number",
-                                            "a number",  "true",     "false",    "null"};
-        snprintf(text, size, "%s", value ? names[json_typeof(value)] : "nothing");
-    }
-    return text;
-}
-
 static bool read_number(const place *at, const char *key, const json_t *value, double low,
                         double high, bool whole, double *out) {
     char text[80];
@@ -97,7 +85,7 @@ static bool read_number(const place *at, const char *key, const json_t *value, d
         return true;
     }
     return wrong(at, key, "needed is a %snumber from %.10g to %.10g, given is %s",
-                 whole ? "whole " : "", low, high, given(value, text, sizeof text));
+                 whole ? "whole " : "", low, high, masu_json_given(value, text, sizeof text));
 }
 
 static bool read_count(const place *at, const char *key, const json_t *value, uint32_t low,
@@ -112,7 +100,7 @@ static bool read_flag(const place *at, const char *key, const json_t *value, boo
     char text[80];
     if (!json_is_boolean(value))
         return wrong(at, key, "needed is true or false, given is %s",
-                     given(value, text, sizeof text));
+                     masu_json_given(value, text, sizeof text));
     *out = json_is_true(value);
     return true;
 }
@@ -121,7 +109,7 @@ static bool read_string(const place *at, const char *key, const json_t *value, c
     char text[80];
     if (!json_is_string(value) || !json_string_length(value)) {
         return wrong(at, key, "needed is a string that is not empty, given is %s",
-                     given(value, text, sizeof text));
+                     masu_json_given(value, text, sizeof text));
     }
     *out = json_string_value(value);
     return true;
@@ -130,7 +118,7 @@ static bool read_string(const place *at, const char *key, const json_t *value, c
 static bool read_object(const place *at, const char *key, const json_t *value) {
     char text[80];
     return json_is_object(value) ||
-           wrong(at, key, "needed is an object, given is %s", given(value, text, sizeof text));
+           wrong(at, key, "needed is an object, given is %s", masu_json_given(value, text, sizeof text));
 }
 
 /* One of the names; their numbers begin at 0. */
@@ -146,7 +134,7 @@ static bool read_choice(const place *at, const char *key, const json_t *value,
         snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
     }
     return wrong(at, key, "needed is one of %s, given is %s", list,
-                 given(value, text, sizeof text));
+                 masu_json_given(value, text, sizeof text));
 }
 
 /* A list of names, each a bit. */
@@ -154,7 +142,7 @@ static bool read_names(const place *at, const char *key, const json_t *value,
                        const char *const *names, uint32_t *out) {
     char text[80];
     if (!json_is_array(value))
-        return wrong(at, key, "needed is an array, given is %s", given(value, text, sizeof text));
+        return wrong(at, key, "needed is an array, given is %s", masu_json_given(value, text, sizeof text));
     *out = 0;
     for (size_t i = 0; i < json_array_size(value); i++) {
         uint32_t bit = 0;
@@ -172,89 +160,17 @@ static bool unknown(const place *at, const char *group, const char *key) {
 
 /* ---- Rungs ----------------------------------------------------------------------------------- */
 
-typedef enum kind { REAL, WHOLE, SWITCH, MARCH, EASU, AA } kind;
-static const char *const switch_names[] = {"auto", "off", "on", NULL};
-static const char *const march_names[] = {"auto",  "plain",        "fragment", "seed", "cone8",
-                                          "cones", "checkerboard", "unpruned", NULL};
-static const char *const easu_names[] = {"auto", "full", "fast", "bilinear", NULL};
-static const char *const aa_names[] = {"auto",   "off",  "fxaa",  "low",
-                                       "medium", "high", "ultra", NULL};
-
-#define FIELD(name, kind, low, high)                                                               \
-    { #name, kind, offsetof(masu_rung, name), low, high }
-static const struct {
-    const char *name;
-    kind kind;
-    size_t at;
-    double low, high;
-} rung_fields[] = {
-    FIELD(scale, REAL, 0.01, 1.0),
-    FIELD(upscale, SWITCH, 0, 0),
-    FIELD(sharpen, SWITCH, 0, 0),
-    FIELD(sharpness, REAL, 0.0, 64.0),
-    FIELD(march, MARCH, 0, 0),
-    FIELD(march_steps, WHOLE, 0, 2048),
-    FIELD(frustum, SWITCH, 0, 0),
-    FIELD(occlusion, SWITCH, 0, 0),
-    FIELD(lod_error, REAL, -1e9, 1e9),
-    FIELD(ao, SWITCH, 0, 0),
-    FIELD(ao_slices, WHOLE, 0, 8),
-    FIELD(ao_steps, WHOLE, 0, 16),
-    FIELD(shadow_cascades, WHOLE, 0, 4),
-    FIELD(shadow_resolution, WHOLE, 0, 8192),
-    FIELD(shadow_distance, REAL, 0.0, 1e9),
-    FIELD(light_tiles, SWITCH, 0, 0),
-    FIELD(specular, SWITCH, 0, 0),
-    FIELD(specular_cutoff, REAL, 0.0, 1.0),
-    FIELD(specular_reuse, SWITCH, 0, 0),
-    FIELD(specular_temporal, SWITCH, 0, 0),
-    FIELD(specular_fine, SWITCH, 0, 0),
-    FIELD(specular_filter, SWITCH, 0, 0),
-    FIELD(specular_taa, SWITCH, 0, 0),
-    FIELD(specular_reuse_taps, WHOLE, 0, 16),
-    FIELD(specular_filter_taps, WHOLE, 0, 32),
-    FIELD(specular_frames, WHOLE, 0, 240),
-    FIELD(easu, EASU, 0, 0),
-    FIELD(aa, AA, 0, 0),
-    FIELD(fuse, SWITCH, 0, 0),
-};
-
-static bool read_field(const place *at, size_t f, const char *key, const json_t *value,
-                       masu_rung *rung) {
-    static const char *const *const names[] = {
-        [SWITCH] = switch_names, [MARCH] = march_names, [EASU] = easu_names, [AA] = aa_names};
-    char *field = (char *)rung + rung_fields[f].at;
-    kind kind = rung_fields[f].kind;
-    double number = 0.0;
-    uint32_t choice = 0;
-    if (kind == REAL || kind == WHOLE) {
-        if (!read_number(at, key, value, rung_fields[f].low, rung_fields[f].high, kind == WHOLE,
-                         &number)) {
-            return false;
-        }
-        float real = (float)number;
-        uint32_t whole = kind == WHOLE ? (uint32_t)number : 0;
-        memcpy(field, kind == REAL ? (void *)&real : (void *)&whole, 4);
-        return true;
-    }
-    if (!read_choice(at, key, value, names[kind], &choice)) return false;
-    _Static_assert(sizeof(masu_switch) == 4 && sizeof(masu_aa) == 4,
-                   "enums are as wide as uint32_t");
-    memcpy(field, &choice, 4);
-    return true;
-}
-
 static bool read_rung(const place *at, const json_t *value, masu_rung *rung) {
     const char *key;
     json_t *member;
     if (!read_object(at, "rung", value)) return false;
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
-        char name[80];
-        size_t f = 0, n = sizeof rung_fields / sizeof *rung_fields;
-        while (f < n && strcmp(rung_fields[f].name, key)) f++;
-        if (f == n) return unknown(at, "rung", key);
+        char name[80], error[300];
+        const masu_knob *k = masu_knob_find(key, strlen(key));
+        if (!k) return unknown(at, "rung", key);
         snprintf(name, sizeof name, "rung.%s", key);
-        if (!read_field(at, f, name, member, rung)) return false;
+        if (!masu_knob_from_json(k, member, rung, error, sizeof error))
+            return wrong(at, name, "%s", error);
     }
     return true;
 }
@@ -345,7 +261,7 @@ static bool read_pair(const place *at, const char *key, const json_t *value, uin
     char text[80];
     if (!json_is_array(value) || json_array_size(value) != 2) {
         return wrong(at, key, "needed are two numbers in an array, given is %s",
-                     given(value, text, sizeof text));
+                     masu_json_given(value, text, sizeof text));
     }
     return read_count(at, key, json_array_get(value, 0), low, high, a) &&
            read_count(at, key, json_array_get(value, 1), low, high, b);
@@ -544,7 +460,7 @@ static bool read_case(place *at, size_t number, const json_t *value, const masu_
     if (!sizes) return check_case(at, &c) && append(at, &c);
     if (!json_is_array(sizes) || !json_array_size(sizes)) {
         return wrong(at, "sizes", "needed is an array of sizes, given is %s",
-                     given(sizes, text, sizeof text));
+                     masu_json_given(sizes, text, sizeof text));
     }
     if (json_object_get(value, "size")) return wrong(at, "sizes", "given is 'size' as well");
     for (size_t i = 0; i < json_array_size(sizes); i++) {

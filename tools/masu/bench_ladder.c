@@ -65,11 +65,11 @@ static void print_rung(const masu_rung *rung) {
     static const masu_rung zero;
     size_t column = (size_t)printf("              {");
     const char *between = "";
-    for (uint32_t k = 0; k < MASU_KNOBS; k++) {
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         char value[64], text[120];
-        if (!masu_knob_differs(&masu_knobs[k], rung, &zero)) continue;
+        if (!masu_knob_differs(k, rung, &zero)) continue;
         masu_knob_c(k, rung, value, sizeof value);
-        int n = snprintf(text, sizeof text, ".%s = %s", masu_knobs[k].name, value);
+        int n = snprintf(text, sizeof text, ".%s = %s", k->name, value);
         if (*between && column + (size_t)n > 94) {
             column = (size_t)printf(",\n               ") - 2;
             between = "";

@@ -1,6 +1,7 @@
 /* options.c: see options.h. */
 #include "masu/options.h"
 
+#include "bench/sweep/knobs.h"
 #include "bench/sweep/ladder_file.h"
 #include "image.h"
 
@@ -29,6 +30,20 @@ static bool read_file(masu_cli *cli, const char **path) {
     return false;
 }
 
+static bool read_knob(const masu_cli *cli, const char *name, masu_rung *rung) {
+    const masu_knob *knob = masu_knob_find(name, strlen(name));
+    masu_rung read = *rung;
+    const char *end = masu_knob_from_text(knob, cli->value, &read);
+    if (end && !*end) {
+        *rung = read;
+        return true;
+    }
+    char range[200];
+    masu_knob_range(knob, range, sizeof range);
+    masu_cli_usage_error("%s: needed is %s, given is '%s'", cli->option, range, cli->value);
+    return false;
+}
+
 static bool read_row(masu_cli *cli, const masu_option *row, void *options) {
     void *to = (char *)options + row->at;
     switch (row->take) {
@@ -42,6 +57,7 @@ static bool read_row(masu_cli *cli, const masu_option *row, void *options) {
         return read_file(cli, to);
     case MASU_TAKE_FILE: return read_file(cli, to);
     case MASU_TAKE_CHOICE: return masu_cli_choice(cli, row->names, to);
+    case MASU_TAKE_KNOB: return read_knob(cli, row->knob, to);
     case MASU_TAKE_OWN: return row->read(cli, options);
     }
     return false;
@@ -147,14 +163,6 @@ int masu_use_ladder(const char *given, masu_desc *desc) {
     if (!masu_ladder_read(given, &file, error, sizeof error)) return masu_cli_error("%s", error);
     masu_ladder_give(&file, desc);
     return MASU_CLI_OK;
-}
-
-bool masu_read_aa(masu_cli *cli, bool smaa, masu_aa *aa) {
-    static const char *const names[] = {"off", "fxaa", "low", "medium", "high", "ultra", NULL};
-    uint32_t first = smaa ? 2 : 0, way = 0;
-    if (!masu_cli_choice(cli, names + first, &way)) return false;
-    *aa = (masu_aa)(MASU_AA_OFF + first + way);
-    return true;
 }
 
 bool masu_read_names(const char *option, const char *list, const char *const *names, uint32_t count,

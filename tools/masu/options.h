@@ -19,6 +19,7 @@ typedef enum masu_take {
     MASU_TAKE_FILE,   /* const char *: will be written; whether it can be is found out at once */
     MASU_TAKE_OUTPUT, /* the same, or "-" for stdout */
     MASU_TAKE_CHOICE, /* uint32_t: which of the names */
+    MASU_TAKE_KNOB,   /* masu_rung: that knob, with the words and the range of MASU_KNOBS */
     MASU_TAKE_OWN     /* what `read` makes of it */
 } masu_take;
 
@@ -31,8 +32,9 @@ typedef struct masu_option {
     size_t at; /* in the command's struct */
     double min, max;
     const char *const *names; /* NULL at the end */
-    /* MASU_TAKE_OWN: cli->value into the command's struct. On false the mistake has been reported,
-     * and cli->exit_code is what to return, if it is not MASU_CLI_USAGE. */
+    const char *knob;
+    /* MASU_TAKE_OWN: cli->value into the command's struct. On false the command ends: a mistake has been
+     * reported; or where there is nothing else to do, cli->exit_code is set to MASU_CLI_OK. */
     bool (*read)(masu_cli *cli, void *options);
 } masu_option;
 
@@ -55,6 +57,8 @@ typedef struct masu_option {
     { MASU_ROW(type, member, MASU_TAKE_OUTPUT, name, value, help) }
 #define MASU_CHOICE(type, member, name, value, names_, help)                                       \
     { MASU_ROW(type, member, MASU_TAKE_CHOICE, name, value, help), .names = (names_) }
+#define MASU_KNOB(type, member, name, value, knob_, help)                                          \
+    { MASU_ROW(type, member, MASU_TAKE_KNOB, name, value, help), .knob = (knob_) }
 #define MASU_OWN(name_, value_, read_, help_)                                                      \
     { .name = (name_), .value = (value_), .help = (help_), .take = MASU_TAKE_OWN, .read = (read_) }
 
@@ -91,9 +95,8 @@ int masu_use_ladder(const char *given, masu_desc *desc);
 #define MASU_MOMENT_ROW(type, member)                                                              \
     MASU_REAL(type, member, "time", "SECONDS", -1e9, 1e9, "moment of the scene and its camera")
 
-/* For masu_option.read: which way of anti-aliasing; a preset of SMAA alone where `smaa`. */
-bool masu_read_aa(masu_cli *cli, bool smaa, masu_aa *aa);
-#define MASU_AA_WAYS "off, fxaa (one pass), or SMAA at low, medium, high, ultra"
+/* The words of a knob, for its help: MASU_AA_WORDS(MASU_WORD_LIST). */
+#define MASU_WORD_LIST(name, value, word, text) " " word
 
 /* A picture without shortcuts, with which others are compared. */
 typedef struct masu_truth_options {

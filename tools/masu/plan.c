@@ -2,6 +2,8 @@
  * what was left out and why. With --model: what its passes would take on classes of GPU. */
 #include "masu/plan.h"
 
+#include "bench/sweep/knobs.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -219,6 +221,18 @@ static int plan(masu_plan_options *o) {
     return code;
 }
 
+/* Prints, and that is all. */
+static bool print_knobs(masu_cli *cli, void *to) {
+    (void)to;
+    if (cli->value && strcmp(cli->value, "md") != 0) {
+        masu_cli_usage_error("--knobs is for a terminal, --knobs=md Markdown; not '%s'", cli->value);
+        return false;
+    }
+    (cli->value ? masu_knobs_document : masu_knobs_print)(stdout);
+    cli->exit_code = MASU_CLI_OK;
+    return false;
+}
+
 static bool read_split(masu_cli *cli, void *to) {
     (void)cli;
     ((masu_plan_options *)to)->d.desc.deny.unified_memory = 1;
@@ -228,6 +242,8 @@ static bool read_split(masu_cli *cli, void *to) {
 static const masu_option rows[] = {
     MASU_OUTPUT_SIZE_ROW(masu_plan_options, d.desc.output),
     MASU_FLAG(masu_plan_options, json, "json", "print JSON"),
+    MASU_OWN("knobs", "[=md]", print_knobs,
+             "instead: every knob of a rung and every limit, as text or as docs/knobs.md"),
     MASU_LADDER_ROW(masu_plan_options, ladder, "1, 0.8 and 0.4 of the size (default off)"),
     MASU_UINT(masu_plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
               "1 to 3 (default 2)"),

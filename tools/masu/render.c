@@ -5,6 +5,8 @@
 
 #include "alloc_count.h"
 #include "bench/measure/picture.h"
+#include "bench/sweep/knobs.h"
+#include "bench/sweep/settings.h"
 #include "clock.h"
 #include "image.h"
 
@@ -187,11 +189,11 @@ static void turn(masu_desc *d, const masu_turned *t) {
     *d = masu_desc_resolved(d);
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung *rung = &d->rungs[r];
-        if (t->march_given) rung->march = (masu_march)t->march;
+        if (t->march_given) rung->march = t->to.march;
         if (t->cull_given) rung->frustum = t->cull < 2 ? MASU_ON : MASU_OFF;
         if (t->cull_given) rung->occlusion = t->cull % 2 ? MASU_OFF : MASU_ON;
-        if (t->lod_given) rung->lod_error = (float)t->lod_error;
-        if (t->aa != MASU_AA_AUTO) rung->aa = t->aa;
+        if (t->lod_given) rung->lod_error = t->to.lod_error;
+        if (t->aa_given) rung->aa = t->to.aa;
     }
 }
 
@@ -232,8 +234,19 @@ static bool read_truth(masu_cli *cli, void *to) {
     return !cli->value || masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, &o->positions);
 }
 
-static bool read_aa(masu_cli *cli, void *to) {
-    return masu_read_aa(cli, false, &((masu_render_options *)to)->turned.aa);
+/* The one rung, or on `help` what it may be made of. */
+static bool read_setting(masu_cli *cli, void *to) {
+    masu_desc *desc = &((masu_render_options *)to)->d.desc;
+    char error[600];
+    if (!strcmp(cli->value, "help")) {
+        masu_knobs_print(stdout);
+        cli->exit_code = MASU_CLI_OK;
+        return false;
+    }
+    desc->rung_count = 1;
+    if (masu_setting_parse(cli->value, &desc->rungs[0], error, sizeof error)) return true;
+    masu_cli_usage_error("%s", error);
+    return false;
 }
 
 static bool read_sun(masu_cli *cli, void *to) {
@@ -251,8 +264,6 @@ static bool read_exposure(masu_cli *cli, void *to) {
     return metered || !strcmp(cli->value, "fixed") || masu_cli_double(cli, 1e-6, 1e6, &o->exposure);
 }
 
-static const char *const marches[] = {"auto",  "plain",        "fragment", "seed", "cone8",
-                                      "cones", "checkerboard", "unpruned", NULL};
 static const char *const tones[] = {"auto", "none", "aces", "neutral", NULL};
 static const char *const stages[] = {"both", "frustum", "occlusion", "none", NULL};
 
@@ -271,7 +282,11 @@ static const masu_option rows[] = {
              "64), each at full size and at the most exact; reflections by 1024 rays in all, or --reference=N"),
     MASU_UINT(masu_render_options, rung, "rung", 0, MASU_MAX_RUNGS - 1,
               "quality: a rung of the ladder, 0 the best (default 0)"),
-    MASU_OWN("aa", "WAY", read_aa, "anti-aliasing: " MASU_AA_WAYS " (default off)"),
+    MASU_OWN("setting", "NAME|help", read_setting,
+             "instead of a ladder one rung, by the name that masu bench gives it: scale=0.5+aa=fxaa;\n"
+             "help: all knobs, their values and what they cost"),
+    MASU_KNOB(masu_render_options, turned.to, "aa", "WAY", "aa",
+              "anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)"),
     MASU_REAL(masu_render_options, target_ms, "target-ms", "MS", 1.0, 1000.0,
               "let the governor choose among the rungs of the ladder, for frames of so long, or follow\n"
               "--rung of these; prints what it has seen and done"),
@@ -285,12 +300,12 @@ static const masu_option rows[] = {
               "between frames"),
     MASU_TEXT(masu_render_options, stats, "stats", "FILE.json",
               "times, counts, memory, allocations of the frames; - for stdout"),
-    MASU_CHOICE(masu_render_options, turned.march, "march", "WAY", marches,
-                "auto, cone8, cones, unpruned; plain, fragment, seed, checkerboard need a blob baked\n"
-                "with --variants"),
+    MASU_KNOB(masu_render_options, turned.to, "march", "WAY", "march",
+              "how the SDF is marched:" MASU_MARCH_WORDS(MASU_WORD_LIST) ";\n"
+              "plain, fragment, seed, checkerboard need a blob baked with --variants (default auto)"),
     MASU_CHOICE(masu_render_options, turned.cull, "cull", "STAGES", stages,
                 "both, frustum, occlusion or none: the picture stays the same"),
-    MASU_REAL(masu_render_options, turned.lod_error, "lod-error", "PIXELS", -1e9, 1e9,
+    MASU_KNOB(masu_render_options, turned.to, "lod-error", "PIXELS", "lod_error",
               "how wrong a surface may be drawn by a coarser form of its mesh; below 0: none (default 1)"),
     MASU_FLAG(masu_render_options, casters, "casters",
               "cull for the sun too, for the numbers of --stats"),
@@ -319,10 +334,11 @@ static const masu_option rows[] = {
 /* What does not go together, and what is missing; an exit code. */
 static int check(const masu_render_options *o, const masu_given *given) {
     /* About what --truth has its own mind of. */
-    static const char *const decided[] = {"stats",      "rung",      "march", "cull",
-                                          "anisotropy", "lod-error", "aa",    "times",
-                                          "target-ms",  "ladder",    NULL};
+    static const char *const decided[] = {"stats", "rung",      "setting", "aa",        "march",
+                                          "cull",  "lod-error", "ladder",  "target-ms", "times",
+                                          "anisotropy", NULL};
     static const char *const moving[] = {"frames", "time-step", NULL};
+    static const char *const choosing[] = {"ladder", "target-ms", NULL};
     const char *own = masu_first_given(given, rows, decided);
     const char *move = masu_first_given(given, rows, moving);
     if (o->positions && own)
@@ -332,6 +348,9 @@ static int check(const masu_render_options *o, const masu_given *given) {
                                     o->positions ? "--truth" : "--reference, a frame for each ray,",
                                     move);
     }
+    const char *choice = masu_first_given(given, rows, choosing);
+    if (masu_is_given(given, rows, "setting") && choice)
+        return masu_cli_usage_error("--setting draws one rung: no --%s", choice);
     if (!given->count) return masu_cli_usage_error("no scene is given");
     if (!o->output && !o->stats && !o->times && !(o->target_ms > 0.0))
         return masu_cli_usage_error("none of --output, --stats, --times, --target-ms is given");
@@ -351,6 +370,7 @@ static int describe(masu_render_options *o, const masu_given *given) {
     o->d.scene_path = given->arguments[0];
     o->turned.march_given = masu_is_given(given, rows, "march");
     o->turned.cull_given = masu_is_given(given, rows, "cull");
+    o->turned.aa_given = masu_is_given(given, rows, "aa");
     o->turned.lod_given = masu_is_given(given, rows, "lod-error");
     if (o->rays) o->frames = o->rays, o->time_step = 0.0;
     d->tone = (masu_tone)o->tone;

@@ -6,10 +6,9 @@
 
 /* Options that turn one knob of every rung; those that are not given leave it as the ladder has it. */
 typedef struct masu_turned {
-    bool march_given, cull_given, lod_given;
-    uint32_t march, cull;
-    double lod_error;
-    masu_aa aa; /* MASU_AA_AUTO: not given */
+    bool march_given, cull_given, lod_given, aa_given;
+    uint32_t cull;
+    masu_rung to;
 } masu_turned;
 
 typedef struct masu_render_options {

@@ -85,20 +85,27 @@ void masu_table_numbers(masu_table *t, const double *values, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) masu_table_number(t, values[i]);
 }
 
+/* As wide as the heading and every cell below it. */
+static int width_of(const masu_table *t, uint32_t column) {
+    size_t width = strlen(t->columns[column].heading);
+    for (uint32_t i = 0; i < t->rows; i++) {
+        size_t length = strlen(t->cells[(size_t)i * t->count + column]);
+        if (length > width) width = length;
+    }
+    return (int)width;
+}
+
 void masu_table_print(masu_table *t, FILE *f) {
+    uint32_t last = t->count;
     if (t->failed) return;
+    for (uint32_t c = 0; c < t->count; c++) last = t->columns[c].heading ? c : last;
     for (uint32_t r = 0; r <= t->rows; r++) { /* the first is that of the headings */
-        const char *between = "  ";
-        for (uint32_t c = 0; c < t->count; c++) {
+        for (uint32_t c = 0; c <= last && last < t->count; c++) {
             const char *heading = t->columns[c].heading;
             if (!heading) continue;
-            size_t width = strlen(heading);
-            for (uint32_t i = 0; i < t->rows; i++) {
-                size_t length = strlen(t->cells[(size_t)i * t->count + c]);
-                if (length > width) width = length;
-            }
             const char *text = r ? t->cells[(size_t)(r - 1) * t->count + c] : heading;
-            fprintf(f, c ? "%s%*s" : "%s%-*s", between, (int)width, text);
+            bool left = !t->columns[c].shown;
+            fprintf(f, left ? "  %-*s" : "  %*s", left && c == last ? 0 : width_of(t, c), text);
         }
         fputc('\n', f);
     }

@@ -15,7 +15,7 @@ typedef struct masu_column {
     const char *csv;     /* name in the CSV; NULL: it is not there */
     const char *form;    /* there: "%.4f" of a number; of text NULL, or "\"": always in quotes */
     const char *heading; /* of the table; NULL: it is not shown */
-    const char *shown;   /* there: "%.2f"; unused by text */
+    const char *shown;   /* there: "%.2f" of a number; of text NULL */
 } masu_column;
 
 enum { MASU_TABLE_CELL = 96 };
@@ -37,7 +37,7 @@ void masu_table_text(masu_table *t, const char *text);
 void masu_table_number(masu_table *t, double value); /* NAN: it is absent */
 void masu_table_numbers(masu_table *t, const double *values, uint32_t count);
 
-/* The rows since the last call, the first column to the left and the others to the right. */
+/* The rows since the last call: text to the left, numbers to the right. */
 void masu_table_print(masu_table *t, FILE *f);
 
 /* Writes the CSV, "-" to stdout, NULL nowhere; frees. Returns an exit code, having reported a

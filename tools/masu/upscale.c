@@ -12,10 +12,7 @@
 typedef struct options {
     masu_session_desc d;
     const char *output;
-    double sharpness;
     bool no_rcas;
-    uint32_t easu;
-    masu_aa aa;
 } options;
 
 /* Runs the passes over `rgba` and leaves the result in the session's target. */
@@ -113,21 +110,16 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
 
 /* ---- Command line ---------------------------------------------------------------------------- */
 
-static bool read_aa(masu_cli *cli, void *to) { return masu_read_aa(cli, false, &((options *)to)->aa); }
-static bool read_smaa(masu_cli *cli, void *to) { return masu_read_aa(cli, true, &((options *)to)->aa); }
-
-static const char *const easu_names[] = {"full", "fast", "bilinear", NULL};
-static const masu_easu easus[] = {MASU_EASU_FULL, MASU_EASU_FAST, MASU_EASU_BILINEAR};
-
 static const masu_option rows[] = {
     MASU_OUTPUT_SIZE_ROW(options, d.desc.output),
-    MASU_REAL(options, sharpness, "sharpness", "STOPS", 0.0, 64.0,
-              "RCAS strength: 0 is sharpest, each stop halves it"),
-    MASU_OWN("aa", "WAY", read_aa, "first anti-aliasing: " MASU_AA_WAYS " (default off)"),
-    MASU_OWN("smaa", "PRESET", read_smaa, "the same: low, medium, high, ultra"),
+    MASU_KNOB(options, d.desc.rungs[0], "sharpness", "STOPS", "sharpness",
+              "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)"),
+    MASU_KNOB(options, d.desc.rungs[0], "aa", "WAY", "aa",
+              "first anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)"),
     MASU_FLAG(options, no_rcas, "no-rcas", "EASU alone"),
-    MASU_CHOICE(options, easu, "easu", "WAY", easu_names,
-                "full, fast: edges looked at once, or bilinear: for comparison"),
+    MASU_KNOB(options, d.desc.rungs[0], "easu", "WAY", "easu",
+              "how to upscale:" MASU_EASU_WORDS(MASU_WORD_LIST) " (default full); fast looks at edges\n"
+              "once, bilinear is for comparison"),
     {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.png",
               "the output, instead of the second argument"),
      .letter = 'o'},
@@ -135,9 +127,13 @@ static const masu_option rows[] = {
     {.name = NULL}};
 
 static int run(masu_cli *cli) {
-    options o = {.d = {.desc = {.targets = {.storage = 1}, .rung_count = 1},
-                       .host = {.message = masu_print_message}},
-                 .sharpness = 0.2};
+    options o = {.d = {.desc = {.targets = {.storage = 1},
+                                .rung_count = 1,
+                                .rungs = {{.upscale = MASU_ON,
+                                           .sharpen = MASU_ON,
+                                           .sharpness = 0.2f}}},
+                       .host = {.message = masu_print_message}}};
+    masu_rung *rung = &o.d.desc.rungs[0];
     masu_given given = {.most = 2, .excess = "one input and one output"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
@@ -145,13 +141,9 @@ static int run(masu_cli *cli) {
     if (o.output && given.count > 1)
         return masu_cli_usage_error("one input and one output: '%s'", given.arguments[1]);
     if (!given.count || !to) return masu_cli_usage_error("an input and an output file are needed");
-    if (!o.d.desc.output.width && o.aa <= MASU_AA_OFF)
+    if (!o.d.desc.output.width && rung->aa <= MASU_AA_OFF)
         return masu_cli_usage_error("--size WxH is needed");
-    o.d.desc.rungs[0] = (masu_rung){.upscale = MASU_ON,
-                                    .sharpen = o.no_rcas ? MASU_OFF : MASU_ON,
-                                    .sharpness = (float)o.sharpness,
-                                    .easu = easus[o.easu],
-                                    .aa = o.aa};
+    if (o.no_rcas) rung->sharpen = MASU_OFF;
     return upscale_file(&o.d, given.arguments[0], to);
 }
 

@@ -4,105 +4,10 @@
 #include "bench/sweep/knobs.h"
 #include "image.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- Knobs ----------------------------------------------------------------------------------- */
-
-/* What a value is, as it is said in messages. */
-static const char *given(const json_t *value, char *text, size_t size) {
-    static const char *const names[] = {"an object", "an array", "a string", "a number",
-                                        "a number",  "true",     "false",    "null"};
-    if (json_is_number(value)) {
-        snprintf(text, size, "%.10g", json_number_value(value));
-    } else if (json_is_string(value)) {
-        snprintf(text, size, "'%.60s'", json_string_value(value));
-    } else {
-        snprintf(text, size, "%s", value ? names[json_typeof(value)] : "nothing");
-    }
-    return text;
-}
-
-static bool fits(const masu_knob *k, const json_t *value) {
-    double v = json_number_value(value);
-    if (!json_is_number(value) || !(v >= k->low && v <= k->high)) return false;
-    if (k->kind != MASU_KNOB_SCALAR && v != floor(v)) return false;
-    return k->least <= 0.0 || v <= k->low || v >= k->least;
-}
-
-static bool read_words(const masu_knob *k, const json_t *value, uint32_t *out) {
-    for (uint32_t w = 0; w < k->words->count && json_is_string(value); w++) {
-        if (strcmp(k->words->words[w], json_string_value(value)) != 0) continue;
-        *out = w;
-        return true;
-    }
-    return false;
-}
-
-static bool read_refresh(const masu_knob *k, const json_t *value, masu_rung *rung) {
-    if (!json_is_array(value) || json_array_size(value) != MASU_MAX_CASCADES) return false;
-    for (size_t i = 0; i < MASU_MAX_CASCADES; i++) {
-        if (!fits(k, json_array_get(value, i))) return false;
-    }
-    for (size_t i = 0; i < MASU_MAX_CASCADES; i++)
-        rung->shadow_refresh[i] = (uint32_t)json_number_value(json_array_get(value, i));
-    return true;
-}
-
-static void needed(const masu_knob *k, char *text, size_t size) {
-    if (k->kind == MASU_KNOB_WORD) {
-        size_t used = (size_t)snprintf(text, size, "one of");
-        for (uint32_t w = 0; w < k->words->count && used < size; w++) {
-            used += (size_t)snprintf(text + used, size - used, "%s %s", w ? "," : "",
-                                     k->words->words[w]);
-        }
-        return;
-    }
-    const char *what = k->kind == MASU_KNOB_SCALAR   ? "a number"
-                       : k->kind == MASU_KNOB_NUMBER ? "a whole number"
-                                                     : "an array of four whole numbers";
-    if (k->least > 0) {
-        snprintf(text, size, "0 or %s from %.10g to %.10g", what, k->least, k->high);
-    } else {
-        snprintf(text, size, "%s from %.10g to %.10g", what, k->low, k->high);
-    }
-}
-
-bool masu_knob_read(uint32_t i, const json_t *value, masu_rung *rung, char *error,
-                    size_t error_size) {
-    const masu_knob *k = &masu_knobs[i];
-    char wish[160], is[80];
-    bool good = false;
-    uint32_t number = 0;
-    float scalar = 0.0f;
-    switch (k->kind) {
-    case MASU_KNOB_SCALAR:
-        good = fits(k, value);
-        if (good) scalar = (float)json_number_value(value);
-        if (good) memcpy((char *)rung + k->offset, &scalar, sizeof scalar);
-        break;
-    case MASU_KNOB_NUMBER:
-        good = fits(k, value);
-        if (good) number = (uint32_t)json_number_value(value);
-        if (good) memcpy((char *)rung + k->offset, &number, sizeof number);
-        break;
-    case MASU_KNOB_WORD:
-        good = read_words(k, value, &number);
-        if (good) memcpy((char *)rung + k->offset, &number, sizeof number);
-        break;
-    case MASU_KNOB_REFRESH: good = read_refresh(k, value, rung); break;
-    }
-    if (good) return true;
-    needed(k, wish, sizeof wish);
-    snprintf(error, error_size, "%s: needed is %s, given is %s", k->name, wish,
-             given(value, is, sizeof is));
-    return false;
-}
-
-/* ---- Files ----------------------------------------------------------------------------------- */
 
 typedef struct place {
     const char *file;
@@ -132,7 +37,7 @@ static bool read_text(const place *at, const json_t *object, const char *key, ch
     char is[80];
     const json_t *value = json_object_get(object, key);
     if (!json_is_string(value) || !json_string_length(value))
-        return wrong(at, "%s: needed is a text, given is %s", key, given(value, is, sizeof is));
+        return wrong(at, "%s: needed is a text, given is %s", key, masu_json_given(value, is, sizeof is));
     snprintf(out, size, "%s", json_string_value(value));
     for (char *c = out; *c; c++) {
         if (*c < ' ' || *c == 127 || strchr("\"\\*?", *c)) *c = '.';
@@ -150,7 +55,7 @@ static bool read_number(const place *at, const json_t *object, const char *key, 
         return true;
     }
     return wrong(at, "%s: needed is a number from %.4g to %.4g, given is %s", key, low, high,
-                 given(value, is, sizeof is));
+                 masu_json_given(value, is, sizeof is));
 }
 
 /* Every key is one of the list, which NULL ends. */
@@ -170,12 +75,12 @@ static bool read_knobs(const place *at, const json_t *knobs, masu_rung *rung) {
     json_t *value;
     char error[300], is[80];
     if (!json_is_object(knobs))
-        return wrong(at, "knobs: needed is an object, given is %s", given(knobs, is, sizeof is));
+        return wrong(at, "knobs: needed is an object, given is %s", masu_json_given(knobs, is, sizeof is));
     json_object_foreach((json_t *)(uintptr_t)knobs, key, value) {
-        uint32_t k = 0;
-        while (k < MASU_KNOBS && strcmp(masu_knobs[k].name, key)) k++;
-        if (k == MASU_KNOBS) return wrong(at, "%.60s: there is no such knob", key);
-        if (!masu_knob_read(k, value, rung, error, sizeof error)) return wrong(at, "%s", error);
+        const masu_knob *k = masu_knob_find(key, strlen(key));
+        if (!k) return wrong(at, "%.60s: there is no such knob", key);
+        if (!masu_knob_from_json(k, value, rung, error, sizeof error))
+            return wrong(at, "%s: %s", k->name, error);
     }
     return true;
 }
@@ -186,7 +91,7 @@ static bool read_rung(const place *at, const json_t *value, masu_ladder_file *ou
     int r = at->rung;
     char is[80];
     if (!json_is_object(value))
-        return wrong(at, "needed is an object, given is %s", given(value, is, sizeof is));
+        return wrong(at, "needed is an object, given is %s", masu_json_given(value, is, sizeof is));
     out->rmses[r] = -1.0;
     if (!known_keys(at, value, keys) ||
         !read_text(at, value, "setting", out->settings[r], sizeof out->settings[r]) ||
@@ -211,7 +116,7 @@ static bool read_ladder(place *at, const json_t *root, masu_ladder_file *out) {
     double width = 0, height = 0;
     char is[80];
     if (!json_is_object(root))
-        return wrong(at, "needed is an object, given is %s", given(root, is, sizeof is));
+        return wrong(at, "needed is an object, given is %s", masu_json_given(root, is, sizeof is));
     const json_t *rungs = json_object_get(root, "rungs"), *error = json_object_get(root, "error");
     if (!known_keys(at, root, keys) ||
         !read_text(at, root, "scene", out->scene, sizeof out->scene) ||
@@ -226,7 +131,7 @@ static bool read_ladder(place *at, const json_t *root, masu_ladder_file *out) {
         return false;
     }
     if (!json_is_string(error) || strcmp(json_string_value(error), "flip") != 0)
-        return wrong(at, "error: needed is 'flip', given is %s", given(error, is, sizeof is));
+        return wrong(at, "error: needed is 'flip', given is %s", masu_json_given(error, is, sizeof is));
     out->width = (uint32_t)width;
     out->height = (uint32_t)height;
     size_t n = json_array_size(rungs);

@@ -10,8 +10,6 @@
 
 #include "masu.h"
 
-#include <jansson.h>
-
 typedef struct masu_ladder_file {
     char scene[80], driver[200], clock[16];
     char date[12]; /* "2026-11-22"; empty: not said */
@@ -23,11 +21,6 @@ typedef struct masu_ladder_file {
     double flips[MASU_MAX_RUNGS];
     double rmses[MASU_MAX_RUNGS]; /* below 0: not said */
 } masu_ladder_file;
-
-/* One knob out of JSON, as masu_knob_json writes it. False: `error` says what was needed and given;
- * the rung is as before. */
-bool masu_knob_read(uint32_t knob, const json_t *value, masu_rung *rung, char *error,
-                    size_t error_size);
 
 /* `name` is the file's, for messages. On false `error` holds one line, and *out is undefined. */
 bool masu_ladder_parse(const char *name, const char *text, size_t bytes, masu_ladder_file *out,

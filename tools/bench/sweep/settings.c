@@ -2,8 +2,8 @@
 #include "bench/sweep/settings.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -12,19 +12,6 @@
 
 /* AMD's own choice for its "quality" pictures, and that of the library's own rungs. */
 static const masu_rung base_rung = {.scale = 1.0f, .sharpness = 0.2f};
-
-/* Short: it is part of file names. */
-static void knob_text(const masu_knob *k, const masu_rung *rung, char *out, size_t size) {
-    const uint32_t *r = rung->shadow_refresh;
-    switch (k->kind) {
-    case MASU_KNOB_SCALAR: snprintf(out, size, "%.4g", masu_knob_scalar(k, rung)); break;
-    case MASU_KNOB_NUMBER: snprintf(out, size, "%u", masu_knob_number(k, rung)); break;
-    case MASU_KNOB_WORD:
-        snprintf(out, size, "%s", k->words->words[masu_knob_number(k, rung)]);
-        break;
-    case MASU_KNOB_REFRESH: snprintf(out, size, "%u-%u-%u-%u", r[0], r[1], r[2], r[3]); break;
-    }
-}
 
 uint32_t masu_setting_period(const masu_rung *rung) {
     uint32_t most = 1;
@@ -37,90 +24,59 @@ uint32_t masu_setting_period(const masu_rung *rung) {
 void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
     size_t used = 0;
     snprintf(out, MASU_SETTING_ID, "base");
-    for (uint32_t i = 0; i < MASU_KNOBS; i++) {
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         char text[64];
-        if (!masu_knob_differs(&masu_knobs[i], rung, &base_rung) || used >= MASU_SETTING_ID) continue;
-        knob_text(&masu_knobs[i], rung, text, sizeof text);
+        if (!masu_knob_differs(k, rung, &base_rung) || used >= MASU_SETTING_ID) continue;
+        masu_knob_text(k, rung, text, sizeof text);
         used += (size_t)snprintf(out + used, MASU_SETTING_ID - used, "%s%s=%s", used ? "+" : "",
-                                 masu_knobs[i].name, text);
+                                 k->name, text);
     }
 }
 
 /* ---- Names read ------------------------------------------------------------------------------- */
 
-/* The knob whose name `text` begins with, up to its '='. */
-static const masu_knob *knob_at(const char *text) {
-    for (uint32_t i = 0; i < MASU_KNOBS; i++) {
-        size_t n = strlen(masu_knobs[i].name);
-        if (!strncmp(text, masu_knobs[i].name, n) && text[n] == '=') return &masu_knobs[i];
+static bool wrong(const char *name, char *error, size_t error_size, const char *format, ...) {
+    char text[360];
+    va_list arguments;
+    va_start(arguments, format);
+    if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
+    va_end(arguments);
+    snprintf(error, error_size, "setting '%.150s': %s", name, text);
+    return false;
+}
+
+#define ONE(...) +1
+_Static_assert(0 MASU_KNOBS(ONE, ONE) <= 64, "a bit for each knob that was seen");
+
+/* A value ends with its number, with which a '+' may belong ("1e+09"), or else at the next '+'. */
+static bool read_part(const char *name, const char **at, masu_rung *rung, uint64_t *seen,
+                      char *error, size_t error_size) {
+    char range[200];
+    size_t length = strcspn(*at, "=+");
+    int part = (int)strcspn(*at, "+");
+    if (part > 60) part = 60;
+    const masu_knob *k = (*at)[length] == '=' ? masu_knob_find(*at, length) : NULL;
+    if (!k) return wrong(name, error, error_size, "'%.*s' is no knob with a value", part, *at);
+    uint64_t bit = 1ull << (k - masu_knob_table());
+    if (*seen & bit) return wrong(name, error, error_size, "'%.*s' comes twice", part, *at);
+    *seen |= bit;
+    const char *value = *at + length + 1, *end = masu_knob_from_text(k, value, rung);
+    if (!end || (*end && *end != '+')) {
+        masu_knob_range(k, range, sizeof range);
+        return wrong(name, error, error_size, "%s: needed is %s, given is '%.*s'", k->name, range,
+                     part - (int)length - 1 > 0 ? part - (int)length - 1 : 0, value);
     }
-    return NULL;
+    *at = end;
+    return true;
 }
 
-static const char *read_word(const char *text, const masu_knob *k, uint32_t *out) {
-    size_t n = strcspn(text, "+");
-    for (uint32_t i = 0; i < k->words->count; i++) {
-        if (strlen(k->words->words[i]) != n || strncmp(k->words->words[i], text, n) != 0) continue;
-        *out = i;
-        return text + n;
-    }
-    return NULL;
-}
-
-/* strtoul takes signs and spaces as well. */
-static const char *read_number(const char *text, uint32_t *out) {
-    char *end;
-    if (*text < '0' || *text > '9') return NULL;
-    unsigned long value = strtoul(text, &end, 10);
-    *out = (uint32_t)value;
-    return value <= UINT32_MAX ? end : NULL;
-}
-
-/* A value's end, or NULL. "1e+09" is one number: a '+' ends a value only where a number does. */
-static const char *read_value(const char *text, const masu_knob *k, masu_rung *rung) {
-    uint32_t values[MASU_MAX_CASCADES] = {0};
-    const char *end = text;
-    char *after;
-    float scalar;
-    switch (k->kind) {
-    case MASU_KNOB_SCALAR:
-        scalar = strtof(text, &after);
-        if (after == text || !isfinite(scalar) || !strchr("-.0123456789", *text)) return NULL;
-        memcpy(values, &scalar, sizeof scalar);
-        end = after;
-        break;
-    case MASU_KNOB_NUMBER: end = read_number(text, values); break;
-    case MASU_KNOB_WORD: end = read_word(text, k, values); break;
-    case MASU_KNOB_REFRESH:
-        for (uint32_t i = 0; i < MASU_MAX_CASCADES && end; i++) {
-            if (i && *end++ != '-') return NULL;
-            end = read_number(end, &values[i]);
-        }
-        break;
-    }
-    if (end) memcpy((char *)rung + k->offset, values, masu_knob_bytes(k));
-    return end;
-}
-
-bool masu_setting_parse(const char *text, masu_rung *out, char *error, size_t error_size) {
+bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t error_size) {
     uint64_t seen = 0;
     *out = base_rung;
-    if (!strcmp(text, "base")) return true;
-    for (const char *at = text;;) {
-        const masu_knob *k = knob_at(at);
-        const char *end = k ? read_value(at + strlen(k->name) + 1, k, out) : NULL;
-        int n = (int)strcspn(at, "+");
-        uint64_t bit = k ? 1ull << (k - masu_knobs) : 0;
-        if (!end || (*end && *end != '+') || (seen & bit)) {
-            snprintf(error, error_size, "setting '%.150s': '%.*s' %s", text, n < 60 ? n : 60, at,
-                     !k           ? "is no knob with a value"
-                     : seen & bit ? "comes twice"
-                                  : "has no value of that knob");
-            return false;
-        }
-        if (!*end) return true;
-        seen |= bit;
-        at = end + 1;
+    if (!strcmp(name, "base")) return true;
+    for (const char *at = name;; at++) {
+        if (!read_part(name, &at, out, &seen, error, error_size)) return false;
+        if (!*at) return true;
     }
 }
 
@@ -226,10 +182,8 @@ typedef struct list {
 static masu_rung rung_of(const masu_rung *turned, float scale) {
     masu_rung rung = base_rung;
     static const masu_rung zero;
-    for (uint32_t i = 0; i < MASU_KNOBS; i++) {
-        if (masu_knob_differs(&masu_knobs[i], turned, &zero)) {
-            masu_knob_copy(&masu_knobs[i], &rung, turned);
-        }
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+        if (masu_knob_differs(k, turned, &zero)) masu_knob_copy(k, &rung, turned);
     }
     rung.scale = scale;
     return rung;
@@ -302,20 +256,22 @@ static const char *useless(const masu_knob *k, const masu_rung *rung, const masu
     bool upscaled = rung->scale < 1.0f || rung->upscale == MASU_ON;
     bool by_default = upscaled && rung->easu != MASU_EASU_BILINEAR;
     bool sharpened = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && by_default);
+    bool used = true;
     switch (k->use) {
-    case MASU_USE_SDF: return scene->sdf ? NULL : "the scene has no SDF";
-    case MASU_USE_AO: return has_pass(base, "ao") ? NULL : "the scene asks for no ambient occlusion";
-    case MASU_USE_SPECULAR: return has_pass(base, "specular_") ? NULL : "no reflections are traced";
-    case MASU_USE_SHADOWS: return has_pass(base, "cascade_") ? NULL : "the scene has no shadow map";
-    case MASU_USE_LODS: return scene->lods ? NULL : "the scene's meshes have no coarser forms";
-    case MASU_USE_OCCLUDERS: return scene->placed_occluders ? NULL : "the scene has no occluders";
-    case MASU_USE_POLYGONS: return scene->instances ? NULL : "the scene has no polygons";
-    case MASU_USE_LIGHTS: return scene->lights ? NULL : "the scene has no local lights";
-    case MASU_USE_UPSCALED: return upscaled ? NULL : "nothing is upscaled";
-    case MASU_USE_SHARPEN: return by_default || rung->sharpen == MASU_ON ? NULL : "nothing is sharpened";
-    case MASU_USE_SHARPENED: return sharpened ? NULL : "nothing is sharpened";
-    default: return NULL;
+    case MASU_USE_ALWAYS: return NULL;
+    case MASU_USE_SDF: used = scene->sdf; break;
+    case MASU_USE_AO: used = has_pass(base, "ao"); break;
+    case MASU_USE_SPECULAR: used = has_pass(base, "specular_"); break;
+    case MASU_USE_SHADOWS: used = has_pass(base, "cascade_"); break;
+    case MASU_USE_LODS: used = scene->lods; break;
+    case MASU_USE_OCCLUDERS: used = scene->placed_occluders; break;
+    case MASU_USE_POLYGONS: used = scene->instances; break;
+    case MASU_USE_LIGHTS: used = scene->lights; break;
+    case MASU_USE_UPSCALED: used = upscaled; break;
+    case MASU_USE_SHARPEN: used = by_default || rung->sharpen == MASU_ON; break;
+    case MASU_USE_SHARPENED: used = sharpened; break;
     }
+    return used ? NULL : k->missing;
 }
 
 static void refit_parent(masu_setting *s, const masu_setting *all, uint32_t count,
@@ -349,10 +305,10 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
         const char *why = NULL;
         memcpy(old[i], s->id, sizeof old[i]);
         scene_values(&s->rung, scene, &why);
-        for (uint32_t k = 0; k < MASU_KNOBS; k++) {
-            const char *no = useless(&masu_knobs[k], &s->rung, scene, base);
-            if (!no || !masu_knob_differs(&masu_knobs[k], &s->rung, &base_rung)) continue;
-            masu_knob_copy(&masu_knobs[k], &s->rung, &base_rung);
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            const char *no = useless(k, &s->rung, scene, base);
+            if (!no || !masu_knob_differs(k, &s->rung, &base_rung)) continue;
+            masu_knob_copy(k, &s->rung, &base_rung);
             why = why ? why : no;
         }
         char fitted[MASU_SETTING_ID];

@@ -39,7 +39,7 @@ bool masu_settings_same_plan(const masu_plan_info *a, const masu_plan_info *b);
 void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]);
 
 /* The other way round, knobs in any order. False: `error` says in one line which part is no knob with
- * a value, or comes twice. Whether a renderer takes the values is masu_init's to say. */
+ * a value or comes twice, or what values the knob takes and what was given. */
 bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t error_size);
 
 /* Frames after which the slowest cascade has been drawn again. */

@@ -44,10 +44,10 @@ static char *read_text(const char *path) {
 
 static json_t *knobs_json(const masu_rung *rung) {
     json_t *knobs = json_object();
-    for (uint32_t k = 0; masu_knob_name(k); k++) {
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
         char text[64];
         masu_knob_json(k, rung, text, sizeof text);
-        json_object_set_new(knobs, masu_knob_name(k), json_loads(text, JSON_DECODE_ANY, NULL));
+        json_object_set_new(knobs, k->name, json_loads(text, JSON_DECODE_ANY, NULL));
     }
     return knobs;
 }

@@ -1,0 +1,133 @@
+/* desc.c: see desc.h. */
+#include "plan/desc.h"
+
+#include "base/error.h"
+#include "plan/output.h"
+#include "quality/governor.h"
+#include "quality/knobs.h"
+#include "quality/ladder.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Defaults -------------------------------------------------------------------------------- */
+
+masu_desc masu_desc_resolved(const masu_desc *desc) {
+    masu_desc d;
+    memset(&d, 0, sizeof d);
+    if (desc) d = *desc;
+    if (d.frames_in_flight == 0) d.frames_in_flight = 2;
+    masu_ladder_defaults(&d);
+    if (d.rung_count == 0) {
+        d.rung_count = 3;
+        d.rungs[0] = (masu_rung){.scale = 1.0f};
+        d.rungs[1] = (masu_rung){.scale = 0.8f, .sharpness = 0.2f};
+        d.rungs[2] = (masu_rung){.scale = 0.4f, .sharpness = 0.2f};
+    }
+    for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
+        masu_rung_defaults(&d.rungs[r]);
+        if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
+            d.rungs[r].specular_cutoff = d.scene->specular_cutoff;
+    }
+    masu_governor_defaults(&d.governor, d.rung_count);
+    if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
+    if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
+        d.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    }
+    masu_output_defaults(&d);
+    return d;
+}
+
+/* ---- Checks ---------------------------------------------------------------------------------- */
+
+static masu_result bad_range(masu_detail *detail, const char *what, uint64_t given, uint64_t low,
+                             uint64_t high) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, given < low ? low : high, given,
+                     "%s is %llu, allowed are %llu to %llu", what, (unsigned long long)given,
+                     (unsigned long long)low, (unsigned long long)high);
+}
+
+static int final_layout_known(VkImageLayout layout) {
+    return layout == VK_IMAGE_LAYOUT_GENERAL || layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL ||
+           layout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL ||
+           layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL ||
+           layout == VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
+}
+
+masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
+    const masu_targets *t = &d->targets;
+    if (d->rung_count > MASU_MAX_RUNGS) {
+        return bad_range(detail, "rung_count", d->rung_count, 1, MASU_MAX_RUNGS);
+    }
+    if (d->frames_in_flight > MASU_MAX_FLIGHT) {
+        return bad_range(detail, "frames_in_flight", d->frames_in_flight, 1, MASU_MAX_FLIGHT);
+    }
+    if (d->output.width < 1 || d->output.width > 16384) {
+        return bad_range(detail, "output.width", d->output.width, 1, 16384);
+    }
+    if (d->output.height < 1 || d->output.height > 16384) {
+        return bad_range(detail, "output.height", d->output.height, 1, 16384);
+    }
+    if (t->count < 1 || t->count > MASU_MAX_TARGETS) {
+        return bad_range(detail, "targets.count", t->count, 1, MASU_MAX_TARGETS);
+    }
+    for (uint32_t i = 0; i < t->count; i++) {
+        if (!t->images || !t->images[i] || (t->storage && (!t->views || !t->views[i]))) {
+            const char *what = t->images && t->images[i] ? "targets.views" : "targets.images";
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, what, t->count, i, "%s[%u] is NULL", what,
+                             i);
+        }
+    }
+    if (!final_layout_known(t->final_layout)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.final_layout",
+                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, (uint64_t)t->final_layout,
+                         "targets.final_layout %d is none that a picture is used in",
+                         (int)t->final_layout);
+    }
+    if (!d->scene && !d->source.view) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
+                         "neither scene nor source.view is given: nothing to draw");
+    }
+    if (d->scene && d->source.view) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "source.view", 0, 1,
+                         "scene and source.view exclude each other");
+    }
+    if (d->source.view) {
+        if (d->source.width < 1 || d->source.width > 16384) {
+            return bad_range(detail, "source.width", d->source.width, 1, 16384);
+        }
+        if (d->source.height < 1 || d->source.height > 16384) {
+            return bad_range(detail, "source.height", d->source.height, 1, 16384);
+        }
+    }
+    if (d->vulkan.max_anisotropy != 0.0f &&
+        !(d->vulkan.max_anisotropy >= 1.0f && d->vulkan.max_anisotropy <= 64.0f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "vulkan.max_anisotropy", 1, 0,
+                         "vulkan.max_anisotropy is %g, allowed are 0 and 1 to 64",
+                         (double)d->vulkan.max_anisotropy);
+    }
+    if (!(fabsf(d->debug.mip_bias) <= 16.0f)) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "debug.mip_bias", 0, 0,
+                         "debug.mip_bias is %g levels, allowed are -16 to 16",
+                         (double)d->debug.mip_bias);
+    }
+    if ((unsigned)d->ladder > MASU_ON)
+        return bad_range(detail, "ladder", (unsigned)d->ladder, MASU_AUTO, MASU_ON);
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (d->flips[r] >= 0.0f && d->flips[r] <= 1.0f) continue;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "flips", 0, 0,
+                         "flips[%u] is %g, allowed are 0 to 1", r, (double)d->flips[r]);
+    }
+    if ((unsigned)d->half_floats > MASU_ON)
+        return bad_range(detail, "half_floats", (unsigned)d->half_floats, MASU_AUTO, MASU_ON);
+    if ((unsigned)d->ray_query > MASU_ON)
+        return bad_range(detail, "ray_query", (unsigned)d->ray_query, MASU_AUTO, MASU_ON);
+    if (d->readback & ~(uint32_t)MASU_READBACK_ALL) {
+        return bad_range(detail, "readback", d->readback, 0, MASU_READBACK_ALL);
+    }
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        masu_result result = masu_rung_check(&d->rungs[r], r, detail);
+        if (result) return result;
+    }
+    return masu_output_check(d, detail);
+}

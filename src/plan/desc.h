@@ -1,0 +1,14 @@
+/* desc.h: the description that a host gives: its defaults and its ranges. masu_desc_resolved (masu.h)
+ * turns zeros into defaults; the check takes what it returns. Knobs have theirs in quality/knobs.h,
+ * limits in plan/limits.h.
+ *
+ * Pure functions: no Vulkan call, no allocation, nothing kept. */
+#ifndef MASU_DESC_H
+#define MASU_DESC_H
+
+#include "masu.h"
+
+/* MASU_ERROR_ARGUMENT: a field is missing or out of its range, and the detail names it. */
+masu_result masu_desc_check(const masu_desc *d, masu_detail *detail);
+
+#endif

@@ -1,0 +1,89 @@
+/* limits.c: see limits.h. */
+#include "plan/limits.h"
+
+#include "base/error.h"
+#include "frame/transparents.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define LIMIT_ROW(id, most, costs)                                                                 \
+    {.name = #id, .offset = offsetof(masu_limits, id), .max = (most), .text = costs},
+static const masu_limit limits[] = {MASU_LIMITS(LIMIT_ROW){.name = NULL}};
+
+/* As masu_detail.what has them. */
+#define WHAT(name, ...) "limits." #name,
+static const char *const whats[] = {MASU_LIMITS(WHAT)};
+
+/* A limit and its peak are at one place. */
+#define SAME_PLACE(name, ...)                                                                      \
+    _Static_assert(offsetof(masu_limits, name) == offsetof(masu_peak_info, name), #name);
+MASU_LIMITS(SAME_PLACE)
+
+const masu_limit *masu_limit_table(void) { return limits; }
+
+/* ---- Needs ----------------------------------------------------------------------------------- */
+
+void masu_shadow_peak(const masu_desc *d, uint32_t *cascades, uint32_t *size) {
+    *cascades = *size = 0;
+    for (uint32_t r = 0; r < d->rung_count && d->scene && d->scene->shadow_cascades; r++) {
+        uint32_t n = masu_at_most(d->rungs[r].shadow_cascades, d->scene->shadow_cascades);
+        uint32_t s = masu_at_most(d->rungs[r].shadow_resolution, d->scene->shadow_resolution);
+        if (*cascades < n) *cascades = n;
+        if (*size < s) *size = s;
+    }
+}
+
+int masu_takes_blocks(const masu_desc *d) {
+    return d->vulkan.texture_compression_bc && !d->deny.compressed_textures;
+}
+
+uint64_t masu_scene_texture_bytes(const masu_desc *d) {
+    if (!d->scene) return 0;
+    return masu_takes_blocks(d) ? d->scene->texture_bytes : d->scene->texture_bytes_decoded;
+}
+
+/* What the scene has under the name of the limit, but for what its rungs or the device decide. */
+masu_limits masu_limits_needed(const masu_desc *d) {
+    static const masu_limits none;
+    if (!d->scene) return none;
+#define SCENE_HAS(name, ...) .name = d->scene->name,
+    masu_limits needed = {MASU_LIMITS(SCENE_HAS)};
+#undef SCENE_HAS
+    uint32_t cascades, size;
+    masu_shadow_peak(d, &cascades, &size);
+    needed.shadow_cascades = cascades;
+    needed.shadow_resolution = size;
+    needed.texture_bytes = masu_scene_texture_bytes(d);
+    return needed;
+}
+
+/* ---- Checks ---------------------------------------------------------------------------------- */
+
+static masu_result check(const char *what, uint64_t needed, uint64_t limit, masu_detail *detail) {
+    if (!limit || needed <= limit) return MASU_OK;
+    return masu_fail(detail, MASU_ERROR_LIMIT, what, needed, limit,
+                     "%s: the scene needs %llu, the limit is %llu", what,
+                     (unsigned long long)needed, (unsigned long long)limit);
+}
+
+static uint64_t value_of(const masu_limits *of, uint32_t i) {
+    uint64_t value;
+    memcpy(&value, (const char *)of + limits[i].offset, sizeof value);
+    return value;
+}
+
+masu_result masu_limits_check(const masu_desc *d, masu_detail *detail) {
+    const masu_limits needed = masu_limits_needed(d);
+    masu_result result = MASU_OK;
+    for (uint32_t i = 0; limits[i].name && !result; i++) {
+        result = check(whats[i], value_of(&needed, i), value_of(&d->limits, i), detail);
+        if (!result) result = check(whats[i], value_of(&needed, i), limits[i].max, detail);
+    }
+    if (result || !d->scene) return result;
+    uint64_t sets = d->scene->transparent_sets;
+    result = check("transparent texture sets", sets, MASU_TRANSPARENT_SETS_MAX, detail);
+    if (result) return result;
+    return check("transparents times their texture sets", needed.transparents * sets,
+                 MASU_TRANSPARENT_DRAWS_MAX, detail);
+}

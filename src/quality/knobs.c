@@ -1,0 +1,132 @@
+/* knobs.c: see knobs.h. */
+#include "quality/knobs.h"
+
+#include "base/error.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* ---- The table ------------------------------------------------------------------------------- */
+
+#define WORD_ROW(name, value, word, text) {word, #name, text, value},
+static const masu_word switch_words[] = {MASU_SWITCH_WORDS(WORD_ROW)};
+static const masu_word march_words[] = {MASU_MARCH_WORDS(WORD_ROW)};
+static const masu_word easu_words[] = {MASU_EASU_WORDS(WORD_ROW)};
+static const masu_word aa_words[] = {MASU_AA_WORDS(WORD_ROW)};
+
+/* What the C type of a row says of it: kind, and the words of an enum. */
+#define KIND_float MASU_KNOB_FLOAT
+#define KIND_uint32_t MASU_KNOB_COUNT
+#define KIND_masu_per_cascade MASU_KNOB_COUNT
+#define WORDS_masu_switch switch_words
+#define WORDS_masu_march march_words
+#define WORDS_masu_easu easu_words
+#define WORDS_masu_aa aa_words
+
+#define USE_TEXTS(name, where, missing)                                                            \
+    static const char where_##name[] = where, missing_##name[] = missing;
+MASU_KNOB_USES(USE_TEXTS)
+
+/* A value is four bytes, whatever it is. */
+#define FIELD(type, name)                                                                          \
+    .offset = offsetof(masu_rung, name), .values = sizeof(((masu_rung *)0)->name) / 4
+#define NUMBER_ROW(type, id, low, high, becomes, of, is, does, costs)                              \
+    {.name = #id,                                                                                  \
+     .kind = KIND_##type,                                                                          \
+     FIELD(type, id),                                                                              \
+     .min = (low),                                                                                 \
+     .max = (high),                                                                                \
+     .zero = (becomes),                                                                            \
+     .use = MASU_USE_##of,                                                                         \
+     .where = where_##of,                                                                          \
+     .missing = missing_##of,                                                                      \
+     .unit = is,                                                                                   \
+     .text = does,                                                                                 \
+     .cost = costs},
+#define WORD_ROW_OF(type, id, of, does, costs)                                                     \
+    {.name = #id,                                                                                  \
+     .kind = MASU_KNOB_WORD,                                                                       \
+     FIELD(type, id),                                                                              \
+     .max = sizeof(WORDS_##type) / sizeof *(WORDS_##type) - 1,                                     \
+     .use = MASU_USE_##of,                                                                         \
+     .where = where_##of,                                                                          \
+     .missing = missing_##of,                                                                      \
+     .unit = "",                                                                                   \
+     .text = does,                                                                                 \
+     .cost = costs,                                                                                \
+     .words = WORDS_##type,                                                                        \
+     .word_count = sizeof(WORDS_##type) / sizeof *(WORDS_##type)},
+
+static const masu_knob knobs[] = {MASU_KNOBS(NUMBER_ROW, WORD_ROW_OF){.name = NULL}};
+
+/* What is wrong with a knob, as masu_detail.what has it. */
+#define WHAT(type, name, ...) "rungs[]." #name,
+static const char *const whats[] = {MASU_KNOBS(WHAT, WHAT)};
+
+const masu_knob *masu_knob_table(void) { return knobs; }
+
+/* ---- Values ---------------------------------------------------------------------------------- */
+
+/* Enums of four bytes are read and written as numbers, too. */
+_Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_march) == 4 &&
+                   sizeof(masu_easu) == 4 && sizeof(masu_aa) == 4,
+               "every value of a knob has four bytes");
+
+double masu_knob_get(const masu_knob *k, const masu_rung *rung, uint32_t value) {
+    const char *at = (const char *)rung + k->offset + 4 * (size_t)value;
+    uint32_t number;
+    float real;
+    if (value >= k->values) return 0.0;
+    memcpy(&number, at, sizeof number);
+    memcpy(&real, at, sizeof real);
+    return k->kind == MASU_KNOB_FLOAT ? (double)real : (double)number;
+}
+
+void masu_knob_set(const masu_knob *k, masu_rung *rung, uint32_t value, double to) {
+    char *at = (char *)rung + k->offset + 4 * (size_t)value;
+    if (value >= k->values) return;
+    if (k->kind == MASU_KNOB_FLOAT) {
+        float real = (float)to;
+        memcpy(at, &real, sizeof real);
+    } else {
+        uint32_t number = to > 0.0 ? to < (double)UINT32_MAX ? (uint32_t)to : UINT32_MAX : 0;
+        memcpy(at, &number, sizeof number);
+    }
+}
+
+int masu_knob_takes(const masu_knob *k, double to) {
+    if (k->kind != MASU_KNOB_FLOAT && to != floor(to)) return 0;
+    return (to >= k->min && to <= k->max) || to == 0.0;
+}
+
+/* ---- Rungs ----------------------------------------------------------------------------------- */
+
+void masu_rung_defaults(masu_rung *rung) {
+    for (const masu_knob *k = knobs; k->name; k++) {
+        for (uint32_t i = 0; i < k->values; i++) {
+            if (k->zero != 0.0 && masu_knob_get(k, rung, i) == 0.0)
+                masu_knob_set(k, rung, i, k->zero);
+        }
+    }
+}
+
+/* The bound that a number is beyond, for those that are whole. */
+static masu_result refuse(const masu_knob *k, uint32_t r, double is, masu_detail *detail) {
+    int whole = k->kind != MASU_KNOB_FLOAT;
+    uint64_t given = whole ? (uint64_t)is : 0;
+    uint64_t needed = !whole ? 0 : (uint64_t)(is < k->min ? k->min : k->max);
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, whats[k - knobs], needed, given,
+                     "rungs[%u].%s is %.10g%s%s, allowed are %s%.10g to %.10g", r, k->name, is,
+                     k->unit[0] ? " " : "", k->unit, k->min > 0.0 ? "0 and " : "", k->min, k->max);
+}
+
+masu_result masu_rung_check(const masu_rung *rung, uint32_t r, masu_detail *detail) {
+    for (const masu_knob *k = knobs; k->name; k++) {
+        for (uint32_t i = 0; i < k->values; i++) {
+            double is = masu_knob_get(k, rung, i);
+            if (!masu_knob_takes(k, is)) return refuse(k, r, is, detail);
+        }
+    }
+    return MASU_OK;
+}
