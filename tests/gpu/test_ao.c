@@ -1,5 +1,5 @@
 /* test_ao.c: ambient occlusion in screen space against the truth of scenes that have one in closed form
- * (a corner of three planes, a ball on a floor), that truth against the rays of masu ao-bench, and what
+ * (a corner of three planes, a ball on a floor), that truth against the rays of masu study ao, and what
  * must hold whatever the error: planes hide nothing of themselves, a camera at rest sees a picture at
  * rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion is kept, and
  * scenes that do not ask have none of it. */
@@ -150,7 +150,7 @@ static int surface_at(const masu_camera *c, double near, uint32_t i, surface *ou
 }
 
 typedef struct errors {
-    /* rays, none: root mean square of what masu ao-bench's truth is off by, and a 1 everywhere. */
+    /* rays, none: root mean square of what masu study ao's truth is off by, and a 1 everywhere. */
     double rmse, mean, worst, rays, none;
     uint32_t count;
 } errors;

@@ -17,10 +17,11 @@
 
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
-    static const char *const commands[] = {"",     "render",      "upscale",
-                                           "plan", "bench", "march-bench", "cull-bench", "draw-bench",
-                                           "light-bench", "trace-bench", "bench-image",
-                                           "conform"};
+    static const char *const commands[] = {
+        "",         "render",        "upscale",     "compare",           "plan",       "bench",
+        "study",    "conform",       "simulate",    "study march",       "study cull", "study draw",
+        "study ao", "study lights",  "study image", "study reflections", "study rays",
+        "study upscale", "study baseline"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(cli_run("%s --help", commands[i]), 0);
         assert_true(strlen(cli_out) > 200);
@@ -31,11 +32,11 @@ static void help_and_version_are_there_for_every_command(void **state) {
 }
 
 /* Times are not looked at: a line for each case, with numbers that add up. */
-static void bench_image_has_a_line_for_each_case(void **state) {
+static void the_upscale_study_has_a_line_for_each_case(void **state) {
     (void)state;
     static const char *const names[] = {"easu+rcas", "easu", "easu-fast+rcas", "easu-fast",
                                         "bilinear",  "gather"};
-    assert_int_equal(cli_run("bench-image --from 32x24 --size 64x48 --runs 2 --csv -"), 0);
+    assert_int_equal(cli_run("study upscale --from 32x24 --size 64x48 --runs 2 --csv -"), 0);
     assert_non_null(strstr(cli_out, "case,driver,ms_min,ms_median,ratio,"));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char start[64];
@@ -47,19 +48,19 @@ static void bench_image_has_a_line_for_each_case(void **state) {
         assert_int_equal(sscanf(row, "\",%lf,%lf,%lf,%lf", &least, &median, &ratio, &gpu), 4);
         assert_true(least > 0 && median >= least && ratio > 0 && (i || ratio == 1));
     }
-    assert_int_equal(cli_run("bench-image --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
-    assert_non_null(strstr(cli_out, "| easu |"));
-    assert_non_null(strstr(cli_out, "| bilinear |"));
-    assert_null(strstr(cli_out, "| gather |"));
-    assert_int_equal(cli_run("bench-image --only easu,bicubic"), 2);
+    assert_int_equal(cli_run("study upscale --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
+    assert_non_null(strstr(cli_out, "\n  easu  "));
+    assert_non_null(strstr(cli_out, "\n  bilinear  "));
+    assert_null(strstr(cli_out, "\n  gather  "));
+    assert_int_equal(cli_run("study upscale --only easu,bicubic"), 2);
     cli_complained("bicubic");
-    assert_int_equal(cli_run("bench-image --only="), 2);
+    assert_int_equal(cli_run("study upscale --only="), 2);
     cli_complained("only");
-    assert_int_equal(cli_run("bench-image --csv %s/none/x.csv", cli_dir), 1);
-    cli_complained("cannot write");
-    assert_int_equal(cli_run("bench-image --runs 0"), 2);
+    assert_int_equal(cli_run("study upscale --csv %s/none/x.csv", cli_dir), 1);
+    cli_complained("none/x.csv");
+    assert_int_equal(cli_run("study upscale --runs 0"), 2);
     cli_complained("runs");
-    assert_int_equal(cli_run("bench-image %s/none.png", cli_dir), 1);
+    assert_int_equal(cli_run("study upscale %s/none.png", cli_dir), 1);
     cli_complained("none.png");
 }
 
@@ -256,25 +257,25 @@ static void ladders_are_read_shown_and_built_in(void **state) {
     write_ladder("l.json", "0.5", "");
     write_ladder("bad.json", "1.5", "");
     write_ladder("near.json", "0.99", "");
-    assert_int_equal(cli_run("ladder %s/l.json", cli_dir), 0);
+    assert_int_equal(cli_run("bench --ladder %s/l.json", cli_dir), 0);
     assert_non_null(strstr(cli_out, "a.masu at 32x24, by wall, 2026-01-02"));
     assert_non_null(strstr(cli_out, "     1  0.500  0.2500    5.00  scale=0.5"));
-    assert_int_equal(cli_run("ladder %s/bad.json", cli_dir), 1);
+    assert_int_equal(cli_run("bench --ladder %s/bad.json", cli_dir), 1);
     cli_complained("rungs[1]: ratio: needed is less than that of the rung before, 1, given is 1.5");
-    assert_int_equal(cli_run("ladder"), 2);
+    assert_int_equal(cli_run("bench --ladder"), 2);
     cli_complained("no ladder");
     /* As tables of the library. */
-    assert_int_equal(cli_run("ladder --c both=%s/l.json", cli_dir), 0);
+    assert_int_equal(cli_run("bench --ladder --c both=%s/l.json", cli_dir), 0);
     assert_non_null(strstr(cli_out, "[MASU_SCENE_BOTH] ="));
     assert_non_null(strstr(cli_out, "{.scale = 1.0f, .aa = MASU_AA_SMAA_LOW},"));
     assert_non_null(strstr(cli_out, "{.scale = 0.5f, .march_steps = 64, .shadow_refresh = {1, 2, 4, 8}},"));
     assert_non_null(strstr(cli_out, ".ratios = {1.0f, 0.5f},"));
     assert_non_null(strstr(cli_out, ".flips = {0.1f, 0.25f},"));
-    assert_int_equal(cli_run("ladder --c %s/l.json", cli_dir), 2);
+    assert_int_equal(cli_run("bench --ladder --c %s/l.json", cli_dir), 2);
     cli_complained("--c takes CLASS=FILE");
-    assert_int_equal(cli_run("ladder --c many=%s/l.json", cli_dir), 2);
+    assert_int_equal(cli_run("bench --ladder --c many=%s/l.json", cli_dir), 2);
     cli_complained("--c takes CLASS=FILE");
-    assert_int_equal(cli_run("ladder --c sdf=%s/l.json sdf=%s/l.json", cli_dir, cli_dir), 2);
+    assert_int_equal(cli_run("bench --ladder --c sdf=%s/l.json sdf=%s/l.json", cli_dir, cli_dir), 2);
     cli_complained("two ladders of one class");
     /* What not every scene of a class, or device, can do. */
     static const char *const refused[] = {"march\": \"plain", "specular\": \"on", "occlusion\": \"on",
@@ -284,11 +285,11 @@ static void ladders_are_read_shown_and_built_in(void **state) {
         snprintf(knob, sizeof knob, i < 4 ? ", \"%s\"" : ", \"%s\": 0.25",
                  i < 4 ? refused[i] : i == 4 ? "shadow_distance" : "specular_cutoff");
         write_ladder("refused.json", "0.5", knob);
-        assert_int_equal(cli_run("ladder %s/refused.json", cli_dir), 0);
-        assert_int_equal(cli_run("ladder --c sdf=%s/refused.json", cli_dir), 1);
+        assert_int_equal(cli_run("bench --ladder %s/refused.json", cli_dir), 0);
+        assert_int_equal(cli_run("bench --ladder --c sdf=%s/refused.json", cli_dir), 1);
         cli_complained("rungs[1]: ");
     }
-    assert_int_equal(cli_run("ladder --c sdf=%s/near.json", cli_dir), 1);
+    assert_int_equal(cli_run("bench --ladder --c sdf=%s/near.json", cli_dir), 1);
     cli_complained("needed is 1.04 times less than the rung before, 1, given is 0.99");
     /* In programs. */
     assert_int_equal(cli_run("plan %s --size 32x24 --ladder %s/l.json", scene, cli_dir), 0);
@@ -340,29 +341,29 @@ static void rays_choose_what_finds_polygons(void **state) {
     assert_int_equal(cli_run("plan %s --rays sometimes", scene_path("mirrors")), 2);
 }
 
-static void light_bench_compares_pictures_and_counts_lights(void **state) {
+static void the_lights_study_compares_pictures_and_counts_lights(void **state) {
     (void)state;
-    assert_int_equal(cli_run("light-bench %s --size 64x40 --repeat 1 --quiet --validate",
+    assert_int_equal(cli_run("study lights %s --size 64x40 --runs 1 --quiet --validate",
                           scene_path("night")),
                      0);
     assert_non_null(strstr(cli_out, "pictures are the same"));
-    assert_non_null(strstr(cli_out, "   256 "));
-    assert_int_equal(cli_run("light-bench %s --size 16x16 --repeat 2 --json --quiet",
+    assert_non_null(strstr(cli_out, "\n     256 "));
+    assert_int_equal(cli_run("study lights %s --size 16x16 --runs 2 --json --quiet",
                           scene_path("night")),
                      0);
     assert_non_null(strstr(cli_out, "\"asked_per_pixel\""));
-    assert_int_equal(cli_run("light-bench"), 2);
+    assert_int_equal(cli_run("study lights"), 2);
     cli_complained("no scene");
-    assert_int_equal(cli_run("light-bench %s", scene_path("spheres")), 1);
+    assert_int_equal(cli_run("study lights %s", scene_path("spheres")), 1);
     cli_complained("has no lights");
 }
 
-static void trace_bench_agrees_with_embree(void **state) {
+static void the_rays_study_agrees_with_embree(void **state) {
     (void)state;
     static const char *const flat[] = {"", "--flat"};
     for (int i = 0; i < 2; i++) {
         unsigned rays = 0, mismatches = 9;
-        assert_int_equal(cli_run("trace-bench %s --size 96x64 --repeat 2 --quiet --validate --csv - %s",
+        assert_int_equal(cli_run("study rays %s --size 96x64 --runs 2 --quiet --validate --csv - %s",
                               scene_path("test_trace"), flat[i]),
                          0);
         assert_int_equal(strncmp(cli_out, "scene,kind,backend,rays,mrays_s,embree_mrays_s,ratio,"
@@ -377,28 +378,28 @@ static void trace_bench_agrees_with_embree(void **state) {
         assert_int_equal(sscanf(row, "specular,compute,%u,%*f,%*f,%*f,%u", &rays, &mismatches), 2);
         assert_true(rays > 1000 && mismatches < 10);
     }
-    assert_int_equal(cli_run("trace-bench"), 2);
+    assert_int_equal(cli_run("study rays"), 2);
     cli_complained("no scene");
-    assert_int_equal(cli_run("trace-bench %s", scene_path("night")), 1);
+    assert_int_equal(cli_run("study rays %s", scene_path("night")), 1);
     cli_complained("nothing is traced");
 }
 
-static void draw_bench_compares_pictures_and_counts_triangles(void **state) {
+static void the_draw_study_compares_pictures_and_counts_triangles(void **state) {
     (void)state;
-    assert_int_equal(cli_run("draw-bench %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
+    assert_int_equal(cli_run("study draw %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
                           scene_path("test_town")),
                      0);
     assert_non_null(strstr(cli_out, "4 frames, least of 1"));
     assert_non_null(strstr(cli_out, "pictures: 0 of 4 frames differ"));
-    assert_non_null(strstr(cli_out, "1.00x  5042\n")); /* neither stage: all of the town */
-    assert_int_equal(cli_run("draw-bench %s --size 64x40 --frames 2 --repeat 2 --json --quiet",
+    assert_non_null(strstr(cli_out, " 1.00x  5042\n")); /* neither stage: all of the town */
+    assert_int_equal(cli_run("study draw %s --size 64x40 --frames 2 --runs 2 --json --quiet",
                           scene_path("test_shadows")),
                      0);
     assert_non_null(strstr(cli_out, "\"different_frames\": 0"));
     assert_non_null(strstr(cli_out, "\"triangles_stage1\""));
-    assert_int_equal(cli_run("draw-bench"), 2);
+    assert_int_equal(cli_run("study draw"), 2);
     cli_complained("no scene");
-    assert_int_equal(cli_run("draw-bench %s", scene_path("spheres")), 1);
+    assert_int_equal(cli_run("study draw %s", scene_path("spheres")), 1);
     cli_complained("has no instances");
 }
 
@@ -498,15 +499,15 @@ static void the_example_of_the_readme_draws(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_and_version_are_there_for_every_command),
-        cmocka_unit_test(bench_image_has_a_line_for_each_case),
+        cmocka_unit_test(the_upscale_study_has_a_line_for_each_case),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
         cmocka_unit_test(bad_scene_files_are_named_with_their_fault),
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing),
         cmocka_unit_test(an_unknown_device_lists_those_that_are_there),
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
-        cmocka_unit_test(draw_bench_compares_pictures_and_counts_triangles),
-        cmocka_unit_test(trace_bench_agrees_with_embree),
-        cmocka_unit_test(light_bench_compares_pictures_and_counts_lights),
+        cmocka_unit_test(the_draw_study_compares_pictures_and_counts_triangles),
+        cmocka_unit_test(the_rays_study_agrees_with_embree),
+        cmocka_unit_test(the_lights_study_compares_pictures_and_counts_lights),
         cmocka_unit_test(ladders_are_read_shown_and_built_in),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
         cmocka_unit_test(the_governor_reports_what_it_has_done),

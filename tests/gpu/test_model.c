@@ -1,4 +1,4 @@
-/* test_model.c: `masu model` on a driver: shaders with counters count what they run, bytes of known
+/* test_model.c: `masu plan --model` on a driver: shaders with counters count what they run, bytes of known
  * passes are those that follow from sizes, sums are sums, and rungs have the rows that they run. */
 #include "support/support.h"
 
@@ -227,7 +227,7 @@ static void test_command_line(void **state) {
     snprintf(arguments, sizeof arguments,
              "%s --size 64x48 --csv %s/m.csv --html-fragment %s/m.xhtml",
              scene_path("test_sphere_mesh"), cli_dir, cli_dir);
-    assert_int_equal(cli_run("model %s", arguments), 0);
+    assert_int_equal(cli_run("plan --model %s", arguments), 0);
     cli_take("out", text, sizeof text);
     assert_non_null(strstr(text, "COMPUTED"));
     assert_non_null(strstr(text, "tonemap"));
@@ -235,20 +235,19 @@ static void test_command_line(void **state) {
     assert_non_null(strstr(text, "\nCOMPUTED,test_sphere_mesh.masu,64,48,0,"));
     cli_take("m.xhtml", text, sizeof text);
     assert_non_null(strstr(text, "<caption>COMPUTED"));
-    assert_int_equal(cli_run("model"), 2);
-    snprintf(arguments, sizeof arguments, "%s --ladder %s/none.json --rungs default",
-             scene_path("test_sphere_mesh"), cli_dir);
-    assert_int_equal(cli_run("model %s", arguments), 2);
+    assert_int_equal(cli_run("plan --model"), 2);
+    snprintf(arguments, sizeof arguments, "%s --ladder auto", scene_path("test_sphere_mesh"));
+    assert_int_equal(cli_run("plan --model %s", arguments), 2);
     snprintf(arguments, sizeof arguments, "%s --ladder %s/none.json",
              scene_path("test_sphere_mesh"), cli_dir);
-    assert_int_equal(cli_run("model %s", arguments), 1);
+    assert_int_equal(cli_run("plan --model %s", arguments), 1);
     cli_take("err", text, sizeof text);
     assert_non_null(strstr(text, "none.json"));
     const char *bad = write_file(
         "bad.json", LADDER_HEAD "{\"setting\": \"a\", \"ratio\": 1, \"flip\": 0, "
                                 "\"knobs\": {\"aa\": \"many\"}}]}");
     snprintf(arguments, sizeof arguments, "%s --ladder %s", scene_path("test_sphere_mesh"), bad);
-    assert_int_equal(cli_run("model %s", arguments), 1);
+    assert_int_equal(cli_run("plan --model %s", arguments), 1);
     cli_take("err", text, sizeof text);
     assert_non_null(strstr(text, "bad.json: rungs[0]: aa"));
 }

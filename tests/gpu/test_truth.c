@@ -214,7 +214,7 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     close_session(&s);
 }
 
-/* masu image-error: a row for each chain, and what is smaller is farther from the truth. */
+/* masu study image: a row for each chain, and what is smaller is farther from the truth. */
 static void the_table_is_made(void **state) {
     (void)state;
     char command[2048], line[4096], path[] = "/tmp/masu-truth-XXXXXX";
@@ -222,7 +222,7 @@ static void the_table_is_made(void **state) {
     int fd = mkstemp(path);
     assert_true(fd >= 0);
     snprintf(command, sizeof command,
-             "%s/bin/masu image-error %s --size 96x64 --positions 4 --runs 1 --scales 1,0.8,0.4 "
+             "%s/bin/masu study image %s --size 96x64 --positions 4 --runs 1 --scales 1,0.8,0.4 "
              "--csv %s "
              "--validate >/dev/null 2>&1",
              build ? build : "build", scene_path("test_truth"), path);

@@ -98,7 +98,10 @@ bool masu_options_read(masu_cli *cli, const masu_option *rows, void *options, ma
         const masu_option *row = &rows[count];
         char value[96];
         print_default(row, options, value, sizeof value);
-        snprintf(help[count], HELP_MAX, *value ? "%s (default %s)" : "%s", row->help, value);
+        size_t length = strlen(row->help);
+        const char *between = length && row->help[length - 1] == '\n' ? "" : " ";
+        snprintf(help[count], HELP_MAX, *value ? "%s%s(default %s)" : "%s", row->help, between,
+                 value);
         list[count] =
             (masu_cli_option){row->name, row->value, help[count], (int)count + 1, row->letter};
     }

@@ -4,7 +4,7 @@
 #include "masu/simulate_record.h"
 #include "masu/table.h"
 
-#include "simulate/plant.h"
+#include "simulate/simulate.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -19,11 +19,11 @@
 #define CONTROLLERS_MOST 8u
 
 typedef struct options {
-    const char *csv, *plots, *plant, *controller;
+    const char *csv, *plots, *model, *controller;
     uint32_t seeds;
     masu_simulate_record record;
     uint32_t trace_count;
-    plant_trace traces[TRACES_MOST];
+    sim_trace traces[TRACES_MOST];
 } options;
 
 /* Means over the seeds. */
@@ -33,11 +33,11 @@ typedef struct row {
     uint32_t invalid;
 } row;
 
-static row measure(const plant *p, const plant_controller *c, uint32_t seeds) {
+static row measure(const sim_model *p, const sim_controller *c, uint32_t seeds) {
     row out = {0};
     double n = seeds;
     for (uint32_t seed = 1; seed <= seeds; seed++) {
-        plant_result r = plant_run(p, c, seed, NULL, NULL);
+        sim_result r = sim_run(p, c, seed, NULL, NULL);
         out.over += r.over / n;
         out.changes += r.changes / n;
         out.late += r.late_changes / n;
@@ -56,17 +56,17 @@ static row measure(const plant *p, const plant_controller *c, uint32_t seeds) {
 
 /* Times above, scales below, a line for each controller; all data inline, so that gnuplot reads no
  * file of ours. */
-static void plot(FILE *to, const char *folder, const plant *p, const plant_controller *const *list,
+static void plot(FILE *to, const char *folder, const sim_model *p, const sim_controller *const *list,
                  uint32_t count) {
-    static plant_frame frames[CONTROLLERS_MOST][PLANT_FRAMES_MOST];
-    for (uint32_t c = 0; c < count; c++) plant_run(p, list[c], 1, frames[c], NULL);
+    static sim_frame frames[CONTROLLERS_MOST][SIM_FRAMES_MOST];
+    for (uint32_t c = 0; c < count; c++) sim_run(p, list[c], 1, frames[c], NULL);
     fprintf(to, "set output \"%s/%s.svg\"\nset multiplot layout 2,1 title \"%s: %s\" noenhanced\n",
             folder, p->name, p->name, p->what);
     for (uint32_t half = 0; half < 2; half++) {
         fprintf(to, "unset arrow\nset xrange [0:%" PRIu32 "]\n", p->frames);
         if (!half) {
             fprintf(to, "set arrow from graph 0, first %.3f to graph 1, first %.3f nohead dt 2\n",
-                    plant_budget(p), plant_budget(p));
+                    sim_budget(p), sim_budget(p));
         }
         fprintf(to, "set ylabel \"%s\"\nset yrange [%s]\nplot ",
                 half ? "scale" : "ms (dashed: budget)", half ? "0.35:1.05" : "0:*");
@@ -76,7 +76,7 @@ static void plot(FILE *to, const char *folder, const plant *p, const plant_contr
                     line == 1 ? "2" : "0.7", line, list[line - 1]->name, line > 1 ? ", " : "\n");
         }
         for (uint32_t c = 0; c < count; c++) {
-            const plant_frame *of = frames[count - 1 - c];
+            const sim_frame *of = frames[count - 1 - c];
             for (uint32_t f = 0; f < p->frames; f++)
                 fprintf(to, "%" PRIu32 " %.3f\n", f, half ? of[f].scale : of[f].ms);
             fprintf(to, "e\n");
@@ -130,7 +130,7 @@ static const masu_column columns[] = {
     {NULL, NULL, "", NULL},
     {NULL, NULL, NULL, NULL}};
 
-static void add_row(masu_table *t, const plant *p, const char *name, const row *r, uint32_t seeds) {
+static void add_row(masu_table *t, const sim_model *p, const char *name, const row *r, uint32_t seeds) {
     char settle[32] = "never";
     if (r->unsettled < seeds) snprintf(settle, sizeof settle, "%.1f", r->settle);
     const double numbers[] = {p->frames, r->over, r->changes, r->late, r->scale};
@@ -144,18 +144,18 @@ static void add_row(masu_table *t, const plant *p, const char *name, const row *
 }
 
 /* The table is printed model by model: the best scale that anything could hold stands below each. */
-static void run_model(const plant *p, const options *o, masu_table *t, FILE *plots) {
-    const plant_controller *list[CONTROLLERS_MOST];
+static void run_model(const sim_model *p, const options *o, masu_table *t, FILE *plots) {
+    const sim_controller *list[CONTROLLERS_MOST];
     uint32_t count = 0;
-    for (uint32_t c = 0; c < plant_controller_count; c++) {
-        if (o->controller && strcmp(o->controller, plant_controllers[c].name) != 0) continue;
-        list[count++] = &plant_controllers[c];
-        row r = measure(p, &plant_controllers[c], o->seeds);
-        add_row(t, p, plant_controllers[c].name, &r, o->seeds);
+    for (uint32_t c = 0; c < sim_controller_count; c++) {
+        if (o->controller && strcmp(o->controller, sim_controllers[c].name) != 0) continue;
+        list[count++] = &sim_controllers[c];
+        row r = measure(p, &sim_controllers[c], o->seeds);
+        add_row(t, p, sim_controllers[c].name, &r, o->seeds);
     }
     if (!masu_cli_quiet()) {
         masu_table_print(t, stdout);
-        printf("  oracle: %.4f\n", plant_oracle(p));
+        printf("  oracle: %.4f\n", sim_oracle(p));
     }
     if (plots) plot(plots, o->plots, p, list, count);
 }
@@ -167,15 +167,15 @@ static int run_all(const options *o) {
     masu_table_open(&t, columns, "");
     if (!masu_cli_quiet()) {
         printf("Means of %" PRIu32 " seeds. late: changes from %u frames after the event on.\n",
-               o->seeds, PLANT_SETTLED);
+               o->seeds, SIM_SETTLED);
     }
-    for (uint32_t i = 0; i < plant_count; i++) {
-        if (!o->plant || !strcmp(o->plant, plant_list[i].name))
-            run_model(&plant_list[i], o, &t, plots);
+    for (uint32_t i = 0; i < sim_model_count; i++) {
+        if (!o->model || !strcmp(o->model, sim_models[i].name))
+            run_model(&sim_models[i], o, &t, plots);
     }
     for (uint32_t i = 0; i < o->trace_count; i++) {
-        plant p = plant_of_trace(&o->traces[i]);
-        if (!o->plant || !strcmp(o->plant, p.name)) run_model(&p, o, &t, plots);
+        sim_model p = sim_of_trace(&o->traces[i]);
+        if (!o->model || !strcmp(o->model, p.name)) run_model(&p, o, &t, plots);
     }
     int code = plots ? close_gnuplot(plots, o) : MASU_CLI_OK;
     return masu_table_close(&t, o->csv) | code;
@@ -184,9 +184,9 @@ static int run_all(const options *o) {
 /* ---- Command line ---------------------------------------------------------------------------- */
 
 static bool is_known(const options *o) {
-    if (!o->plant || plant_find(o->plant)) return true;
+    if (!o->model || sim_find(o->model)) return true;
     for (uint32_t i = 0; i < o->trace_count; i++) {
-        if (!strcmp(o->plant, o->traces[i].name)) return true;
+        if (!strcmp(o->model, o->traces[i].name)) return true;
     }
     return false;
 }
@@ -194,7 +194,7 @@ static bool is_known(const options *o) {
 static bool read_controller(masu_cli *cli, void *to) {
     const char *names[CONTROLLERS_MOST + 1] = {NULL};
     uint32_t controller = 0;
-    for (uint32_t c = 0; c < plant_controller_count; c++) names[c] = plant_controllers[c].name;
+    for (uint32_t c = 0; c < sim_controller_count; c++) names[c] = sim_controllers[c].name;
     if (!masu_cli_choice(cli, names, &controller)) return false;
     ((options *)to)->controller = names[controller];
     return true;
@@ -205,13 +205,13 @@ static const masu_option rows[] = {
     MASU_TEXT(options, plots, "plots", "DIR",
               "times and scales of each model as DIR/MODEL.svg, with gnuplot"),
     MASU_UINT(options, seeds, "seeds", 1, 10000, "runs of each, with other noise"),
-    MASU_TEXT(options, plant, "model", "NAME", "this one alone"),
+    MASU_TEXT(options, model, "model", "NAME", "this one alone"),
     MASU_OWN("controller", "NAME", read_controller, "this one alone"),
     MASU_TEXT(options, record.scene, "record", "SCENE.masu",
               "draw the scene along its path at four scales and write the times to TRACE.csv\n"
               "instead"),
     MASU_SIZE(options, record.size, "size", "of the recording"),
-    MASU_UINT(options, record.frames, "frames", 2, PLANT_FRAMES_MOST, "of the recording"),
+    MASU_UINT(options, record.frames, "frames", 2, SIM_FRAMES_MOST, "of the recording"),
     MASU_REAL(options, record.time_step, "time-step", "SECONDS", 0.0, 1e6, "of the recording"),
     MASU_DEVICE_ROWS(options, record.host),
     {.name = NULL}};
@@ -229,11 +229,11 @@ static int run(masu_cli *cli) {
     }
     for (; o.trace_count < given.count; o.trace_count++) {
         char error[512];
-        if (!plant_trace_read(given.arguments[o.trace_count], &o.traces[o.trace_count], error,
+        if (!sim_trace_read(given.arguments[o.trace_count], &o.traces[o.trace_count], error,
                               sizeof error))
             return masu_cli_error("%s", error);
     }
-    if (!is_known(&o)) return masu_cli_usage_error("there is no model '%s'", o.plant);
+    if (!is_known(&o)) return masu_cli_usage_error("there is no model '%s'", o.model);
     signal(SIGPIPE, SIG_IGN); /* gnuplot may not be there to read */
     return run_all(&o);
 }

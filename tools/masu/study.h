@@ -27,7 +27,7 @@ typedef struct masu_study_options {
 
 typedef struct masu_study {
     const char *name, *purpose;
-    const char *arguments; /* of the usage line, before "[options]" */
+    const char *arguments; /* of the usage line */
     uint32_t scenes_min, scenes_max;
     const masu_option *options;
     masu_study_options *given;
@@ -42,12 +42,12 @@ typedef struct masu_study {
                 "the rows as CSV, with more columns; - for stdout, and no table")
 #define MASU_STUDY_RUNS(min, max)                                                                  \
     MASU_UINT(masu_study_options, runs, "runs", min, max,                                          \
-              min ? "times that each is measured; the least time counts"                           \
-                  : "times that each is measured, of which the least time counts; 0: no times")
+              min ? "times that each is measured; the least counts"                                \
+                  : "times that each is measured; the least counts; 0: not at all")
 #define MASU_STUDY_FRAMES(max, help) MASU_UINT(masu_study_options, frames, "frames", 1, max, help)
 #define MASU_STUDY_STRIDE                                                                          \
     MASU_UINT(masu_study_options, stride, "stride", 1, 1023,                                       \
-              "compare every N-th pixel of every N-th row, odd: an even N is raised by one")
+              "compare every N-th pixel of every N-th row; an even N is raised by one")
 #define MASU_STUDY_TIME MASU_MOMENT_ROW(masu_study_options, time)
 #define MASU_STUDY_IMAGES(help) MASU_TEXT(masu_study_options, images, "images", "DIR", help)
 #define MASU_STUDY_ONLY MASU_TEXT(masu_study_options, only, "only", "NAME,...", "these rows alone")
@@ -66,7 +66,7 @@ extern const masu_study masu_study_march, masu_study_cull, masu_study_draw, masu
 /* The name of the scene's file without its folder and from its first dot on. */
 void masu_study_scene_name(const char *path, char *name, size_t size);
 
-/* Mean-free grey as PNG: `value` of each pixel, from 0 to 1 and cut there. */
+/* As grey PNG: a value of each pixel, cut to 0..1. */
 bool masu_study_save_grey(const char *path, const float *values, VkExtent2D size, char *error,
                           size_t error_size);
 

@@ -1,10 +1,10 @@
-/* study_baseline.c: `masu study baseline`: settings beside a plain renderer, at their own errors and at
- * equal error: the command line of bench/study/whole.h, and its tables. */
+/* study_baseline.c: `masu study baseline`: settings beside a baseline renderer, at their own errors and at
+ * equal error: the command line of bench/study/baseline.h, and its tables. */
 #include "masu/study.h"
 
 #include "bench/sweep/ladder_file.h"
 #include "bench/measure/picture.h"
-#include "bench/study/whole.h"
+#include "bench/study/baseline.h"
 #include "image.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 
 typedef struct options {
     masu_study_options study;
-    masu_rung rungs[MASU_WHOLE_SETTINGS];
+    masu_rung rungs[MASU_BASELINE_SETTINGS];
     uint32_t rung_count, most;
     bool curve, own_march;
     const char *ladder;
@@ -29,7 +29,7 @@ static const masu_study_options *const o = &given.study;
 
 /* ---- Tables ---------------------------------------------------------------------------------- */
 
-/* Shown: with how many samples the plain renderer is as near to the truth (k), and how many times as
+/* Shown: with how many samples the baseline is as near to the truth (k), and how many times as
  * long as the setting it then takes (b). */
 static const masu_column columns[] = {
     {"scene", NULL, NULL, NULL},
@@ -77,22 +77,22 @@ static const masu_column columns[] = {
     {"driver", "\"", NULL, NULL},
     {NULL, NULL, NULL, NULL}};
 
-static void add_equal(masu_table *t, const masu_whole *w, const masu_whole_entry *e, int metric) {
+static void add_equal(masu_table *t, const masu_baseline *w, const masu_baseline_entry *e, int metric) {
     uint32_t k = e->samples[metric];
     char samples[16] = "", ratio[24] = "";
     masu_table_number(t, k);
-    masu_table_number(t, k ? masu_whole_equal(w, e, k) : 0.0);
+    masu_table_number(t, k ? masu_baseline_equal(w, e, k) : 0.0);
     if (!e->plain) {
         snprintf(samples, sizeof samples, "%s%u", k ? "" : ">", k ? k : given.most);
         snprintf(ratio, sizeof ratio, "%s%.2f", k ? "" : ">",
-                 masu_whole_equal(w, e, k ? k : given.most));
+                 masu_baseline_equal(w, e, k ? k : given.most));
     }
     masu_table_text(t, samples);
     masu_table_text(t, o->runs || e->plain ? ratio : "-");
 }
 
-static void add_row(masu_table *t, const masu_whole *w, uint32_t entry) {
-    const masu_whole_entry *e = &w->entries[entry];
+static void add_row(masu_table *t, const masu_baseline *w, uint32_t entry) {
+    const masu_baseline_entry *e = &w->entries[entry];
     const double *errors = e->errors.of;
     const bool shown = entry == 0 || !e->plain;
     char size[32];
@@ -106,8 +106,8 @@ static void add_row(masu_table *t, const masu_whole *w, uint32_t entry) {
     masu_table_text(t, size);
     masu_table_numbers(t, asked, sizeof asked / sizeof *asked);
     masu_table_text(t, w->march);
-    for (int p = 0; p < MASU_WHOLE_PHASES; p++) {
-        const masu_whole_time *time = &e->times[p];
+    for (int p = 0; p < MASU_BASELINE_PHASES; p++) {
+        const masu_baseline_time *time = &e->times[p];
         const double times[] = {time->wall_ms,
                                 time->gpu_ms,
                                 time->ratio,
@@ -118,47 +118,47 @@ static void add_row(masu_table *t, const masu_whole *w, uint32_t entry) {
                                 o->runs ? time->ratio : (double)NAN};
         masu_table_numbers(t, times, sizeof times / sizeof *times);
     }
-    masu_table_number(t, errors[MASU_WHOLE_FLIP]);
-    masu_table_number(t, errors[MASU_WHOLE_RMSE]);
-    masu_table_number(t, 1.0 - errors[MASU_WHOLE_SSIM]);
-    masu_table_number(t, shown ? errors[MASU_WHOLE_FLIP] : (double)NAN);
-    masu_table_number(t, shown ? 255.0 * errors[MASU_WHOLE_RMSE] : (double)NAN);
-    masu_table_number(t, shown ? 1.0 - errors[MASU_WHOLE_SSIM] : (double)NAN);
-    for (int m = 0; m < MASU_WHOLE_METRICS; m++) add_equal(t, w, e, m);
+    masu_table_number(t, errors[MASU_BASELINE_FLIP]);
+    masu_table_number(t, errors[MASU_BASELINE_RMSE]);
+    masu_table_number(t, 1.0 - errors[MASU_BASELINE_SSIM]);
+    masu_table_number(t, shown ? errors[MASU_BASELINE_FLIP] : (double)NAN);
+    masu_table_number(t, shown ? 255.0 * errors[MASU_BASELINE_RMSE] : (double)NAN);
+    masu_table_number(t, shown ? 1.0 - errors[MASU_BASELINE_SSIM] : (double)NAN);
+    for (int m = 0; m < MASU_BASELINE_METRICS; m++) add_equal(t, w, e, m);
     const double counts[] = {(double)e->evals,          (double)e->occlusion_evals,
                              (double)e->specular_rays,  (double)e->specular_nodes,
                              (double)e->specular_evals, (double)e->light_tests,
                              (double)e->draws,          (double)e->triangles,
-                             e->plain ? masu_whole_spare(e) : 0.0};
+                             e->plain ? masu_baseline_spare(e) : 0.0};
     masu_table_numbers(t, counts, sizeof counts / sizeof *counts);
     masu_table_text(t, w->driver);
 }
 
-static void print_head(const masu_whole *w) {
+static void print_head(const masu_baseline *w) {
     fprintf(o->text, "%s at %ux%u, %.4g s, truth of %u places and %u rays; %s\n", w->scene,
             o->size.width, o->size.height, o->time, o->truth.positions, o->truth.rays, w->driver);
     fprintf(o->text,
-            "plain: march %s; of its time %.1f %% in passes that no plain renderer needs, %.1f %% in "
+            "plain: march %s; of its time %.1f %% in passes that no baseline renderer needs, %.1f %% in "
             "what k samples need once\n",
-            w->march, 100.0 * masu_whole_spare(&w->entries[0]),
-            100.0 * masu_whole_once(&w->entries[0]));
+            w->march, 100.0 * masu_baseline_spare(&w->entries[0]),
+            100.0 * masu_baseline_once(&w->entries[0]));
     fprintf(o->text, "a: plain time / own; b: the same with the samples that equal error takes; both in "
                      "motion\n");
 }
 
-static void print_points(const masu_whole *w) {
+static void print_points(const masu_baseline *w) {
     fprintf(o->text, "plain by samples%s: flip rmse ssim:",
             given.own_march || !strcmp(w->march, "none") ? "" : ", marched as Masu does");
     for (uint32_t p = 0; p < w->point_count; p++) {
-        const masu_whole_point *at = &w->points[p];
+        const masu_baseline_point *at = &w->points[p];
         fprintf(o->text, "%s %u: %.4f %.2f %.4f", p ? ";" : "", at->samples,
-                at->errors.of[MASU_WHOLE_FLIP], 255.0 * at->errors.of[MASU_WHOLE_RMSE],
-                1.0 - at->errors.of[MASU_WHOLE_SSIM]);
+                at->errors.of[MASU_BASELINE_FLIP], 255.0 * at->errors.of[MASU_BASELINE_RMSE],
+                1.0 - at->errors.of[MASU_BASELINE_SSIM]);
     }
     fprintf(o->text, "\n");
 }
 
-/* Of the plain renderer and the first setting. 0 is what is not there, or not counted: the fragment
+/* Of the baseline and the first setting. 0 is what is not there, or not counted: the fragment
  * march counts nothing. */
 static void add_pair(masu_table *t, const char *name, double a, double b) {
     if (!(a > 0.0) && !(b > 0.0)) return;
@@ -168,8 +168,8 @@ static void add_pair(masu_table *t, const char *name, double a, double b) {
 }
 
 /* Where the time went. The passes are the same rows in both plans. */
-static int print_passes(const masu_whole *w) {
-    const masu_whole_entry *a = &w->entries[0], *b = &w->entries[w->plain_count];
+static int print_passes(const masu_baseline *w) {
+    const masu_baseline_entry *a = &w->entries[0], *b = &w->entries[w->plain_count];
     const masu_column pair[] = {{NULL, NULL, "pass, ms", NULL},
                                 {NULL, NULL, "plain", "%.3f"},
                                 {NULL, NULL, b->name, "%.3f"},
@@ -182,8 +182,8 @@ static int print_passes(const masu_whole *w) {
     return masu_table_close(&t, NULL);
 }
 
-static int print_counts(const masu_whole *w) {
-    const masu_whole_entry *a = &w->entries[0], *b = &w->entries[w->plain_count];
+static int print_counts(const masu_baseline *w) {
+    const masu_baseline_entry *a = &w->entries[0], *b = &w->entries[w->plain_count];
     const masu_column pair[] = {{NULL, NULL, "of one frame", NULL},
                                 {NULL, NULL, "plain", "%.7g"},
                                 {NULL, NULL, b->name, "%.7g"},
@@ -209,8 +209,8 @@ static int print_counts(const masu_whole *w) {
 
 static bool add_rung(options *to, const char *name) {
     char error[512];
-    if (to->rung_count == MASU_WHOLE_SETTINGS) {
-        masu_cli_usage_error("more than %u settings", MASU_WHOLE_SETTINGS);
+    if (to->rung_count == MASU_BASELINE_SETTINGS) {
+        masu_cli_usage_error("more than %u settings", MASU_BASELINE_SETTINGS);
         return false;
     }
     if (!masu_setting_parse(name, &to->rungs[to->rung_count], error, sizeof error)) {
@@ -228,8 +228,8 @@ static int add_ladder(void) {
     char error[1024];
     if (!masu_ladder_read(given.ladder, &ladder, error, sizeof error))
         return masu_cli_error("%s", error);
-    if (given.rung_count + ladder.count > MASU_WHOLE_SETTINGS)
-        return masu_cli_usage_error("more than %u settings", MASU_WHOLE_SETTINGS);
+    if (given.rung_count + ladder.count > MASU_BASELINE_SETTINGS)
+        return masu_cli_usage_error("more than %u settings", MASU_BASELINE_SETTINGS);
     for (uint32_t i = 0; i < ladder.count; i++) given.rungs[given.rung_count++] = ladder.rungs[i];
     return MASU_CLI_OK;
 }
@@ -251,7 +251,7 @@ static int choose_rungs(void) {
     return code;
 }
 
-static int print(const masu_whole *w) {
+static int print(const masu_baseline *w) {
     masu_table t;
     masu_table_open(&t, columns, "0");
     for (uint32_t i = 0; i < w->entry_count; i++) add_row(&t, w, i);
@@ -264,11 +264,11 @@ static int print(const masu_whole *w) {
 }
 
 static int run(void) {
-    static masu_whole w;
+    static masu_baseline w;
     char error[4096];
     int code = choose_rungs();
     if (code) return code;
-    const masu_whole_desc d = {.scene_path = o->scene,
+    const masu_baseline_desc d = {.scene_path = o->scene,
                                .truth_path = o->truth.path,
                                .image_dir = o->images,
                                .size = o->size,
@@ -284,10 +284,10 @@ static int run(void) {
                                .rung_count = given.rung_count,
                                .host = o->host,
                                .progress = masu_cli_progress_text};
-    bool good = masu_whole_run(&d, &w, error, sizeof error);
+    bool good = masu_baseline_run(&d, &w, error, sizeof error);
     masu_cli_progress_clear();
     if (!good) return masu_cli_error("%s", error);
-    if (w.entries[0].times[MASU_WHOLE_MOTION].plausible < 0.9 && o->runs)
+    if (w.entries[0].times[MASU_BASELINE_MOTION].plausible < 0.9 && o->runs)
         masu_cli_warn("timestamps do not fit the wall clock: passes mean little");
     code = print(&w);
     return w.messages ? masu_cli_error("the validation layer has reported %u messages", w.messages)
@@ -300,11 +300,11 @@ static const masu_option rows[] = {
     MASU_STUDY_TRUTH,
     MASU_STUDY_FRAMES(10000, "in motion before a picture is taken"),
     MASU_STUDY_RUNS(0, MASU_SAMPLES_MAX),
-    MASU_UINT(options, most, "most", 1, MASU_WHOLE_SAMPLES,
-              "samples a pixel that the plain renderer may have"),
+    MASU_UINT(options, most, "most", 1, MASU_BASELINE_SAMPLES,
+              "samples a pixel that the baseline may have"),
     MASU_FLAG(options, curve, "curve", "its error with 1, 2, 4, ... of them, needed or not"),
     MASU_FLAG(options, own_march, "own-march",
-              "equal error with the plain renderer's own march, which stops at 0.1 of a pixel, and\n"
+              "equal error with the baseline's own march, which stops at 0.1 of a pixel, and\n"
               "not with Masu's at the plain one's time"),
     MASU_OWN("rung", "SETTING", read_rung,
              "as masu bench names it: scale=0.5+aa=fxaa; up to 8 times (default: seven of\n"
@@ -317,7 +317,7 @@ static const masu_option rows[] = {
 
 const masu_study masu_study_baseline = {
     .name = "baseline",
-    .purpose = "whole frames against a plain renderer, at equal error too",
+    .purpose = "whole frames against a baseline renderer, at equal error too",
     .arguments = "SCENE.masu [options]",
     .scenes_min = 1,
     .scenes_max = 1,
@@ -333,5 +333,5 @@ const masu_study masu_study_baseline = {
         "shadow maps are drawn once.\n"
         "k is 1 where a single plain frame is at least as near: b is then a.\n"
         "ms is the least wall time from masu_frame to the fence, with a full barrier around each\n"
-        "pass. Scenes with an SDF are to be baked with --variants: else the plain renderer\n"
+        "pass. Scenes with an SDF are to be baked with --variants: else the baseline\n"
         "has Masu's own march.\n"};

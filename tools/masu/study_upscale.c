@@ -9,7 +9,7 @@
  * case it is like. Nothing is judged. */
 #include "masu/study.h"
 
-#include "bench/study/image.h"
+#include "bench/study/upscale.h"
 #include "clock.h"
 #include "image.h"
 #include "metric/flip.h"

@@ -1,5 +1,5 @@
-/* whole.c: see whole.h. */
-#include "bench/study/whole.h"
+/* baseline.c: see baseline.h. */
+#include "bench/study/baseline.h"
 
 #include "bench/measure/motion.h"
 #include "bench/measure/picture.h"
@@ -18,17 +18,17 @@
 enum { SETTLE_FRAMES = 4, COUNT_FRAMES = 3 };
 
 typedef struct timing {
-    masu_samples of[MASU_WHOLE_PHASES];
+    masu_samples of[MASU_BASELINE_PHASES];
     uint64_t frame; /* drawn in motion since the picture */
 } timing;
 
-typedef struct whole {
-    const masu_whole_desc *d;
-    masu_whole *out;
-    masu_session sessions[MASU_WHOLE_ENTRIES], other; /* may not move, and are large */
-    bool opened[MASU_WHOLE_ENTRIES];
-    timing timings[MASU_WHOLE_ENTRIES];
-    masu_rung rungs[MASU_WHOLE_ENTRIES];
+typedef struct bench {
+    const masu_baseline_desc *d;
+    masu_baseline *out;
+    masu_session sessions[MASU_BASELINE_ENTRIES], other; /* may not move, and are large */
+    bool opened[MASU_BASELINE_ENTRIES];
+    timing timings[MASU_BASELINE_ENTRIES];
+    masu_rung rungs[MASU_BASELINE_ENTRIES];
     uint32_t plain_for; /* samples that `other` is open for, a plain one; 0: it is not */
     masu_march plain_march;
     bool textured, remembers;
@@ -36,14 +36,14 @@ typedef struct whole {
     uint8_t *truth, *picture;
     char *error;
     size_t error_size;
-} whole;
+} bench;
 
-static bool failed(whole *w, const char *text) {
+static bool failed(bench *w, const char *text) {
     snprintf(w->error, w->error_size, "%s: %s", w->d->scene_path, text);
     return false;
 }
 
-static void say(const whole *w, const char *what, const char *name) {
+static void say(const bench *w, const char *what, const char *name) {
     char text[MASU_SETTING_ID + 64];
     if (!w->d->progress) return;
     snprintf(text, sizeof text, "%s%s%s", what, name[0] ? ": " : "", name);
@@ -52,7 +52,7 @@ static void say(const whole *w, const char *what, const char *name) {
 
 /* ---- Sessions -------------------------------------------------------------------------------- */
 
-masu_rung masu_whole_plain(const masu_scene *scene, const char **march) {
+masu_rung masu_baseline_rung(const masu_scene *scene, const char **march) {
     masu_rung rung = {.scale = 1.0f,
                       .upscale = MASU_OFF,
                       .sharpen = MASU_OFF,
@@ -74,12 +74,12 @@ masu_rung masu_whole_plain(const masu_scene *scene, const char **march) {
     return rung;
 }
 
-static masu_session_desc session_of(const whole *w) {
+static masu_session_desc session_of(const bench *w) {
     return masu_picture_session(w->d->scene_path, w->d->size, &w->d->host);
 }
 
 /* samples: what the mips of a plain one are for. */
-static masu_session_desc entry_desc(const whole *w, uint32_t e, uint32_t samples) {
+static masu_session_desc entry_desc(const bench *w, uint32_t e, uint32_t samples) {
     masu_session_desc d = session_of(w);
     d.desc.rung_count = 1;
     d.desc.rungs[0] = w->rungs[e];
@@ -91,19 +91,19 @@ static masu_session_desc entry_desc(const whole *w, uint32_t e, uint32_t samples
     return d;
 }
 
-static void close_session(whole *w, masu_session *s) {
+static void close_session(bench *w, masu_session *s) {
     masu_session_close(s);
     w->out->messages += s->host.messages;
 }
 
-static void close_entries(whole *w) {
-    for (uint32_t e = 0; e < MASU_WHOLE_ENTRIES; e++) {
+static void close_entries(bench *w) {
+    for (uint32_t e = 0; e < MASU_BASELINE_ENTRIES; e++) {
         if (w->opened[e]) close_session(w, &w->sessions[e]);
         w->opened[e] = false;
     }
 }
 
-static bool open_entries(whole *w) {
+static bool open_entries(bench *w) {
     for (uint32_t e = 0; e < w->out->entry_count; e++) {
         masu_session_desc d = entry_desc(w, e, 1);
         masu_plan_info plan;
@@ -119,9 +119,9 @@ static bool open_entries(whole *w) {
 }
 
 /* What the scene is, and with it the entries. */
-static bool find_entries(whole *w) {
+static bool find_entries(bench *w) {
     masu_session_desc d = session_of(w);
-    masu_whole *out = w->out;
+    masu_baseline *out = w->out;
     d.no_renderer = true;
     if (!masu_session_open(&d, &w->other, w->error, w->error_size)) return false;
     const masu_scene *scene = &w->other.scene;
@@ -130,7 +130,7 @@ static bool find_entries(whole *w) {
     w->remembers = scene->reflections || scene->metered;
     out->plain_count = scene->occlusion_radius > 0.0f ? 2 : 1;
     for (uint32_t e = 0; e < out->plain_count; e++) {
-        w->rungs[e] = masu_whole_plain(scene, &out->march);
+        w->rungs[e] = masu_baseline_rung(scene, &out->march);
         out->entries[e].plain = true;
         snprintf(out->entries[e].name, MASU_SETTING_ID, "%s", e ? "plain, ao as ours" : "plain");
     }
@@ -146,11 +146,11 @@ static bool find_entries(whole *w) {
 
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
-static bool draw(whole *w, masu_session *s, double time, bool cut, masu_commands *commands) {
+static bool draw(bench *w, masu_session *s, double time, bool cut, masu_commands *commands) {
     return masu_motion_frame(s, 0, time, cut, commands, w->error, w->error_size);
 }
 
-static bool save(whole *w, const char *name, const uint8_t *rgba) {
+static bool save(bench *w, const char *name, const uint8_t *rgba) {
     char path[4096];
     if (!w->d->image_dir) return true;
     snprintf(path, sizeof path, "%s/%s.%s.png", w->d->image_dir, w->out->scene, name);
@@ -158,18 +158,18 @@ static bool save(whole *w, const char *name, const uint8_t *rgba) {
                                w->error_size);
 }
 
-static bool compare(whole *w, const uint8_t *shown, masu_whole_errors *out) {
+static bool compare(bench *w, const uint8_t *shown, masu_baseline_errors *out) {
     VkExtent2D size = w->d->size;
     masu_flip flip;
     if (!masu_metric_flip(w->truth, shown, size.width, size.height, 0, NULL, &flip))
         return failed(w, "out of memory");
-    out->of[MASU_WHOLE_FLIP] = flip.mean;
-    out->of[MASU_WHOLE_RMSE] = masu_metric_rmse(w->truth, shown, size.width, size.height);
-    out->of[MASU_WHOLE_SSIM] = 1.0 - masu_metric_ssim(w->truth, shown, size.width, size.height);
+    out->of[MASU_BASELINE_FLIP] = flip.mean;
+    out->of[MASU_BASELINE_RMSE] = masu_metric_rmse(w->truth, shown, size.width, size.height);
+    out->of[MASU_BASELINE_SSIM] = 1.0 - masu_metric_ssim(w->truth, shown, size.width, size.height);
     return true;
 }
 
-static bool draw_setting(whole *w, uint32_t e) {
+static bool draw_setting(bench *w, uint32_t e) {
     masu_session *s = &w->sessions[e];
     const masu_motion motion = {w->d->time, w->d->frames, w->remembers};
     uint64_t next = 0;
@@ -185,7 +185,7 @@ static bool draw_setting(whole *w, uint32_t e) {
 /* Mips belong to a renderer: where there are textures, one is made for each k. Culling and tiles of
  * lights are not seen in a picture (tests/gpu/test_culling.c, test_lights.c), and save most of the
  * time in a large world. */
-static bool open_plain(whole *w, uint32_t k, masu_march march) {
+static bool open_plain(bench *w, uint32_t k, masu_march march) {
     bool kept = w->plain_for == k || (w->plain_for && !w->textured);
     if (kept && w->plain_march == march) return true;
     masu_session_desc d = entry_desc(w, 0, k);
@@ -200,13 +200,13 @@ static bool open_plain(whole *w, uint32_t k, masu_march march) {
     return true;
 }
 
-static void close_plain(whole *w) {
+static void close_plain(bench *w) {
     if (w->plain_for) close_session(w, &w->other);
     w->plain_for = 0;
 }
 
 /* The mean of k plain frames, in w->picture. */
-static bool draw_plain(whole *w, uint32_t k, masu_march march, masu_whole_errors *out) {
+static bool draw_plain(bench *w, uint32_t k, masu_march march, masu_baseline_errors *out) {
     masu_frame_desc frame = {.time = w->d->time};
     char text[64];
     snprintf(text, sizeof text, "%u samples", k);
@@ -218,7 +218,7 @@ static bool draw_plain(whole *w, uint32_t k, masu_march march, masu_whole_errors
 
 /* ---- Equal error ----------------------------------------------------------------------------- */
 
-uint32_t masu_whole_least(uint32_t most, int (*enough)(void *user, uint32_t k), void *user) {
+uint32_t masu_baseline_least(uint32_t most, int (*enough)(void *user, uint32_t k), void *user) {
     uint32_t low = 0, high = 1; /* low: not enough */
     for (;;) {
         int answer = enough(user, high);
@@ -241,12 +241,12 @@ uint32_t masu_whole_least(uint32_t most, int (*enough)(void *user, uint32_t k), 
 }
 
 typedef struct search {
-    whole *w;
+    bench *w;
     int metric;
     double wanted;
 } search;
 
-static const masu_whole_point *find_point(const masu_whole *out, uint32_t k) {
+static const masu_baseline_point *find_point(const masu_baseline *out, uint32_t k) {
     for (uint32_t i = 0; i < out->point_count; i++) {
         if (out->points[i].samples == k) return &out->points[i];
     }
@@ -254,19 +254,19 @@ static const masu_whole_point *find_point(const masu_whole *out, uint32_t k) {
 }
 
 /* Of the pictures in which samples are counted. */
-static masu_march counted_march(const whole *w) {
+static masu_march counted_march(const bench *w) {
     return w->d->own_march ? w->rungs[0].march : MASU_MARCH_AUTO;
 }
 
-static const masu_whole_point *plain_point(whole *w, uint32_t k) {
-    const masu_whole_point *known = find_point(w->out, k);
+static const masu_baseline_point *plain_point(bench *w, uint32_t k) {
+    const masu_baseline_point *known = find_point(w->out, k);
     char name[64];
     if (known) return known;
-    if (w->out->point_count == MASU_WHOLE_POINTS) {
+    if (w->out->point_count == MASU_BASELINE_POINTS) {
         failed(w, "too many counts of samples");
         return NULL;
     }
-    masu_whole_point *p = &w->out->points[w->out->point_count];
+    masu_baseline_point *p = &w->out->points[w->out->point_count];
     snprintf(name, sizeof name, "plain.%u", k);
     p->samples = k;
     if (!draw_plain(w, k, counted_march(w), &p->errors) || !save(w, name, w->picture)) return NULL;
@@ -276,16 +276,16 @@ static const masu_whole_point *plain_point(whole *w, uint32_t k) {
 
 static int is_enough(void *user, uint32_t k) {
     const search *s = user;
-    const masu_whole_point *p = plain_point(s->w, k);
+    const masu_baseline_point *p = plain_point(s->w, k);
     return p ? p->errors.of[s->metric] <= s->wanted : -1;
 }
 
-static bool find_equals(whole *w) {
-    masu_whole *out = w->out;
+static bool find_equals(bench *w) {
+    masu_baseline *out = w->out;
     for (uint32_t e = out->plain_count; e < out->entry_count; e++) {
-        for (int m = 0; m < MASU_WHOLE_METRICS; m++) {
+        for (int m = 0; m < MASU_BASELINE_METRICS; m++) {
             search s = {w, m, out->entries[e].errors.of[m]};
-            out->entries[e].samples[m] = masu_whole_least(w->d->most, is_enough, &s);
+            out->entries[e].samples[m] = masu_baseline_least(w->d->most, is_enough, &s);
             if (out->entries[e].samples[m] == UINT32_MAX) return false;
         }
     }
@@ -294,7 +294,7 @@ static bool find_equals(whole *w) {
 
 /* ---- Times ----------------------------------------------------------------------------------- */
 
-static void keep_passes(masu_whole_entry *e, const masu_stats_info *stats) {
+static void keep_passes(masu_baseline_entry *e, const masu_stats_info *stats) {
     e->pass_count = stats->pass_count;
     for (uint32_t p = 0; p < stats->pass_count; p++) {
         double ms = (double)stats->pass_ns[p] / 1e6;
@@ -304,7 +304,7 @@ static void keep_passes(masu_whole_entry *e, const masu_stats_info *stats) {
 }
 
 /* Where a cascade is drawn in each n-th frame only, the mean of n frames. */
-static bool sample(whole *w, uint32_t e, int phase, bool kept) {
+static bool sample(bench *w, uint32_t e, int phase, bool kept) {
     masu_session *s = &w->sessions[e];
     timing *t = &w->timings[e];
     bool plain = w->out->entries[e].plain;
@@ -313,24 +313,24 @@ static bool sample(whole *w, uint32_t e, int phase, bool kept) {
     for (uint32_t k = 0; k < period; k++) {
         masu_commands commands;
         masu_stats_info stats;
-        if (phase == MASU_WHOLE_MOTION) t->frame++;
+        if (phase == MASU_BASELINE_MOTION) t->frame++;
         uint64_t start = masu_clock_ns(NULL);
         if (!draw(w, s, w->d->time + (double)t->frame / 60.0, plain, &commands)) return false;
         wall += (double)(masu_clock_ns(NULL) - start) / 1e6;
         if (masu_stats(s->m, commands.slot, &stats) || !stats.timed) continue;
         gpu += (double)stats.gpu_ns / 1e6;
-        if (kept && phase == MASU_WHOLE_MOTION) keep_passes(&w->out->entries[e], &stats);
+        if (kept && phase == MASU_BASELINE_MOTION) keep_passes(&w->out->entries[e], &stats);
     }
     if (kept) masu_samples_add(&t->of[phase], wall, gpu, period);
     return true;
 }
 
-static bool time_phase(whole *w, int phase) {
-    uint32_t settle = phase == MASU_WHOLE_REST ? SETTLE_FRAMES : 0;
+static bool time_phase(bench *w, int phase) {
+    uint32_t settle = phase == MASU_BASELINE_REST ? SETTLE_FRAMES : 0;
     for (uint32_t run = 0; run <= w->d->runs; run++) {
         char text[64];
         snprintf(text, sizeof text, "round %u of %u", run, w->d->runs);
-        say(w, phase == MASU_WHOLE_REST ? "timing at rest" : "timing in motion", text);
+        say(w, phase == MASU_BASELINE_REST ? "timing at rest" : "timing in motion", text);
         for (uint32_t e = 0; e < w->out->entry_count; e++) {
             for (uint32_t k = 0; run == 0 && k < settle && !w->out->entries[e].plain; k++) {
                 if (!sample(w, e, phase, false)) return false;
@@ -341,20 +341,20 @@ static bool time_phase(whole *w, int phase) {
     return true;
 }
 
-static void sum_up(whole *w, int phase) {
+static void sum_up(bench *w, int phase) {
     uint32_t n = w->d->runs;
     for (uint32_t e = w->out->entry_count;
          e-- > 0;) { /* the plain one last: ratios are to its rounds */
         const masu_samples *plain = &w->timings[0].of[phase];
         masu_samples *own = &w->timings[e].of[phase];
-        masu_whole_time *t = &w->out->entries[e].times[phase];
+        masu_baseline_time *t = &w->out->entries[e].times[phase];
         t->ratio = masu_samples_ratio(own->wall, plain->wall, n);
         t->gpu_ratio = masu_samples_ratio(own->gpu, plain->gpu, n);
         t->plausible = (double)own->plausible / own->count;
     }
     for (uint32_t e = 0; e < w->out->entry_count; e++) {
         masu_samples *own = &w->timings[e].of[phase];
-        masu_whole_time *t = &w->out->entries[e].times[phase];
+        masu_baseline_time *t = &w->out->entries[e].times[phase];
         masu_samples_sort(own);
         t->wall_ms = own->wall[0];
         t->gpu_ms = own->gpu[0];
@@ -362,8 +362,8 @@ static void sum_up(whole *w, int phase) {
     }
 }
 
-static bool time_all(whole *w) {
-    for (int phase = 0; phase < MASU_WHOLE_PHASES && w->d->runs; phase++) {
+static bool time_all(bench *w) {
+    for (int phase = 0; phase < MASU_BASELINE_PHASES && w->d->runs; phase++) {
         if (!time_phase(w, phase)) return false;
         sum_up(w, phase);
     }
@@ -371,7 +371,7 @@ static bool time_all(whole *w) {
 }
 
 /* Names that begin like one of these. */
-static double share_of(const masu_whole_entry *e, const char *const *names, size_t count) {
+static double share_of(const masu_baseline_entry *e, const char *const *names, size_t count) {
     double all = 0.0, sum = 0.0;
     for (uint32_t p = 0; p < e->pass_count; p++) {
         bool named = false;
@@ -383,27 +383,27 @@ static double share_of(const masu_whole_entry *e, const char *const *names, size
     return all > 0.0 ? sum / all : 0.0;
 }
 
-double masu_whole_spare(const masu_whole_entry *plain) {
+double masu_baseline_spare(const masu_baseline_entry *plain) {
     static const char *const names[] = {"update_previous", "velocity", "sdf_velocity",
                                         "specular_accumulate"};
     return share_of(plain, names, sizeof names / sizeof *names);
 }
 
-double masu_whole_once(const masu_whole_entry *plain) {
+double masu_baseline_once(const masu_baseline_entry *plain) {
     static const char *const names[] = {"update", "cascade_"};
     return share_of(plain, names, sizeof names / sizeof *names);
 }
 
-double masu_whole_equal(const masu_whole *whole, const masu_whole_entry *setting, uint32_t k) {
-    double again = k ? (double)(k - 1) * (1.0 - masu_whole_once(&whole->entries[0])) : 0.0;
-    return setting->times[MASU_WHOLE_MOTION].ratio * (1.0 + again);
+double masu_baseline_equal(const masu_baseline *b, const masu_baseline_entry *setting, uint32_t k) {
+    double again = k ? (double)(k - 1) * (1.0 - masu_baseline_once(&b->entries[0])) : 0.0;
+    return setting->times[MASU_BASELINE_MOTION].ratio * (1.0 + again);
 }
 
 /* ---- Counts ---------------------------------------------------------------------------------- */
 
-static bool count_entry(whole *w, uint32_t e) {
+static bool count_entry(bench *w, uint32_t e) {
     masu_session_desc d = entry_desc(w, e, 1);
-    masu_whole_entry *entry = &w->out->entries[e];
+    masu_baseline_entry *entry = &w->out->entries[e];
     masu_commands commands;
     masu_stats_info stats;
     d.desc.debug.counters = 1;
@@ -430,7 +430,7 @@ static bool count_entry(whole *w, uint32_t e) {
     return good;
 }
 
-static bool count_all(whole *w) {
+static bool count_all(bench *w) {
     for (uint32_t e = 0; e < w->out->entry_count; e++) {
         if (!count_entry(w, e)) return false;
     }
@@ -439,7 +439,7 @@ static bool count_all(whole *w) {
 
 /* ---- All ------------------------------------------------------------------------------------- */
 
-static bool find_truth(whole *w) {
+static bool find_truth(bench *w) {
     masu_session_desc d = session_of(w);
     masu_picture_want want = {.path = w->d->truth_path,
                               .time = w->d->time,
@@ -451,7 +451,7 @@ static bool find_truth(whole *w) {
     return good && save(w, "truth", w->truth);
 }
 
-static bool draw_settings(whole *w) {
+static bool draw_settings(bench *w) {
     for (uint32_t e = w->out->plain_count; e < w->out->entry_count; e++) {
         if (!draw_setting(w, e)) return false;
     }
@@ -459,8 +459,8 @@ static bool draw_settings(whole *w) {
 }
 
 /* The second plain one is there for its time alone. */
-static bool find_errors(whole *w) {
-    const masu_whole_point *first = plain_point(w, 1);
+static bool find_errors(bench *w) {
+    const masu_baseline_point *first = plain_point(w, 1);
     bool good = first != NULL;
     if (good) w->out->entries[0].errors = first->errors;
     if (good && w->rungs[0].march != counted_march(w)) {
@@ -472,7 +472,7 @@ static bool find_errors(whole *w) {
     return good && find_equals(w);
 }
 
-static bool run(whole *w) {
+static bool run(bench *w) {
     bool good = find_entries(w) && find_truth(w) && count_all(w) && open_entries(w) &&
                 draw_settings(w) && time_all(w);
     close_entries(w);
@@ -481,8 +481,8 @@ static bool run(whole *w) {
     return good;
 }
 
-bool masu_whole_run(const masu_whole_desc *desc, masu_whole *out, char *error, size_t error_size) {
-    static whole w;
+bool masu_baseline_run(const masu_baseline_desc *desc, masu_baseline *out, char *error, size_t error_size) {
+    static bench w;
     memset(&w, 0, sizeof w);
     memset(out, 0, sizeof *out);
     w.d = desc;
@@ -493,8 +493,8 @@ bool masu_whole_run(const masu_whole_desc *desc, masu_whole *out, char *error, s
     const char *slash = strrchr(desc->scene_path, '/');
     const char *name = slash ? slash + 1 : desc->scene_path;
     snprintf(out->scene, sizeof out->scene, "%.*s", (int)strcspn(name, "."), name);
-    if (!desc->rung_count || desc->rung_count > MASU_WHOLE_SETTINGS || !desc->most ||
-        desc->most > MASU_WHOLE_SAMPLES || desc->runs > MASU_SAMPLES_MAX || !desc->frames) {
+    if (!desc->rung_count || desc->rung_count > MASU_BASELINE_SETTINGS || !desc->most ||
+        desc->most > MASU_BASELINE_SAMPLES || desc->runs > MASU_SAMPLES_MAX || !desc->frames) {
         return failed(&w, "settings, samples, frames or runs out of range");
     }
     w.truth = malloc(4 * (size_t)w.pixels);

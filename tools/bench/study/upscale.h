@@ -1,12 +1,12 @@
-/* image.h: a chain of compute shaders from one picture to another, as the frame's passes are
- * bound but outside of the library: what `masu bench-image` puts beside the library's own rungs.
+/* upscale.h: a chain of compute shaders from one picture to another, as the frame's passes are
+ * bound but outside of the library: what `masu study upscale` puts beside the library's own rungs.
  *
  * A stage reads binding 0 of set 1 (the stage before, clamped to its edge, nearest texel), writes
  * binding 1; set 0 has nothing but the counters; push constants are those of the frame. The chain
  * owns its objects; the host, the source and the target are the caller's. Functions that can fail
  * return false and write one line to `error`. */
-#ifndef MASU_BENCH_IMAGE_H
-#define MASU_BENCH_IMAGE_H
+#ifndef MASU_BENCH_UPSCALE_H
+#define MASU_BENCH_UPSCALE_H
 
 #include "headless.h"
 #include "shared/masu_shared.h"

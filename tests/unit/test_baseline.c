@@ -1,5 +1,5 @@
-/* test_whole.c: what `masu whole-bench` is made of, without a device: the search for the least
- * count of samples, medians over rounds, and what the plain renderer is. */
+/* test_baseline.c: what `masu study baseline` is made of, without a device: the search for the least
+ * count of samples, medians over rounds, and what the baseline is. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "bench/study/whole.h"
+#include "bench/study/baseline.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,7 +28,7 @@ static void the_least_is_found(void **state) {
     for (uint32_t most = 1; most <= 200; most++) {
         for (uint32_t from = 1; from <= 210; from++) {
             step s = {.from = from};
-            uint32_t k = masu_whole_least(most, from_on, &s);
+            uint32_t k = masu_baseline_least(most, from_on, &s);
             assert_true(s.most_asked <= most);
             assert_true(s.asked <= 16);
             if (from > most) {
@@ -40,9 +40,9 @@ static void the_least_is_found(void **state) {
         }
     }
     step s = {.from = 9, .fails_at = 4};
-    assert_int_equal(masu_whole_least(64, from_on, &s), UINT32_MAX);
+    assert_int_equal(masu_baseline_least(64, from_on, &s), UINT32_MAX);
     s = (step){.from = 11, .fails_at = 12};
-    assert_int_equal(masu_whole_least(64, from_on, &s), UINT32_MAX);
+    assert_int_equal(masu_baseline_least(64, from_on, &s), UINT32_MAX);
 }
 
 /* A machine that is twice as slow in every other round changes no ratio of rounds. */
@@ -79,7 +79,7 @@ static void the_plain_renderer_takes_no_short_cut(void **state) {
                  {{.instances = 2}, MASU_MARCH_AUTO, "none"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const char *name;
-        masu_rung r = masu_whole_plain(&cases[i].scene, &name);
+        masu_rung r = masu_baseline_rung(&cases[i].scene, &name);
         assert_int_equal(r.march, cases[i].march);
         assert_string_equal(name, cases[i].name);
         assert_true(r.frustum == MASU_OFF && r.occlusion == MASU_OFF && r.light_tiles == MASU_OFF);
@@ -91,28 +91,28 @@ static void the_plain_renderer_takes_no_short_cut(void **state) {
 /* Of 8 ms 2 are the cascades': 3 samples take 8 + 2 * 6. */
 static void shadow_maps_are_drawn_once(void **state) {
     (void)state;
-    static masu_whole w;
-    masu_whole_entry *plain = &w.entries[0], *own = &w.entries[1];
+    static masu_baseline w;
+    masu_baseline_entry *plain = &w.entries[0], *own = &w.entries[1];
     plain->pass_count = 3;
     plain->pass_names[0] = "gbuffer", plain->pass_ms[0] = 6.0;
     plain->pass_names[1] = "cascade_0", plain->pass_ms[1] = 1.5;
     plain->pass_names[2] = "cascade_1", plain->pass_ms[2] = 0.5;
-    own->times[MASU_WHOLE_MOTION].ratio = 2.0;
-    assert_true(fabs(masu_whole_once(plain) - 0.25) < 1e-12);
-    assert_true(fabs(masu_whole_equal(&w, own, 1) - 2.0) < 1e-12);
-    assert_true(fabs(masu_whole_equal(&w, own, 3) - 5.0) < 1e-12);
+    own->times[MASU_BASELINE_MOTION].ratio = 2.0;
+    assert_true(fabs(masu_baseline_once(plain) - 0.25) < 1e-12);
+    assert_true(fabs(masu_baseline_equal(&w, own, 1) - 2.0) < 1e-12);
+    assert_true(fabs(masu_baseline_equal(&w, own, 3) - 5.0) < 1e-12);
 }
 
 static void spare_passes_are_told(void **state) {
     (void)state;
-    masu_whole_entry e;
+    masu_baseline_entry e;
     memset(&e, 0, sizeof e);
-    assert_true(masu_whole_spare(&e) <= 0.0);
+    assert_true(masu_baseline_spare(&e) <= 0.0);
     e.pass_count = 3;
     e.pass_names[0] = "march_plain", e.pass_ms[0] = 6.0;
     e.pass_names[1] = "sdf_velocity", e.pass_ms[1] = 1.5;
     e.pass_names[2] = "specular_accumulate", e.pass_ms[2] = 0.5;
-    assert_true(fabs(masu_whole_spare(&e) - 0.25) < 1e-12);
+    assert_true(fabs(masu_baseline_spare(&e) - 0.25) < 1e-12);
 }
 
 int main(void) {

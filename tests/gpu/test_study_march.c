@@ -1,4 +1,4 @@
-/* test_march_bench.c: `masu march-bench` on a sphere whose truth is a few lines of C, compiled
+/* test_study_march.c: `masu study march` on a sphere whose truth is a few lines of C, compiled
  * here: the numbers, the CSV, and the shading in double precision against the GPU's picture. */
 #include "support/support.h"
 
@@ -56,7 +56,7 @@ static int shell(const char *format, ...) {
 
 static int bench(const char *arguments) {
     const char *build = getenv("BUILD");
-    int code = shell("%s/bin/masu march-bench %s --quiet >%s/out 2>%s/err </dev/null",
+    int code = shell("%s/bin/masu study march %s --quiet >%s/out 2>%s/err </dev/null",
                      build ? build : "build", arguments, dir, dir);
     read_text("out", out_text, sizeof out_text);
     read_text("err", err_text, sizeof err_text);
@@ -211,5 +211,5 @@ int main(void) {
         cmocka_unit_test(what_is_missing_is_said),
         cmocka_unit_test(a_choice_of_ways_is_drawn_and_may_go_untimed),
     };
-    return cmocka_run_group_tests_name("march_bench", tests, make_truth, remove_dir);
+    return cmocka_run_group_tests_name("study_march", tests, make_truth, remove_dir);
 }

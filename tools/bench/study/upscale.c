@@ -1,5 +1,5 @@
-/* image.c: see image.h. */
-#include "bench/study/image.h"
+/* upscale.c: see upscale.h. */
+#include "bench/study/upscale.h"
 
 #include "clock.h"
 
