@@ -145,9 +145,9 @@ static void rows_are_written(void **state) {
     (void)state;
     int code = cli_run("study baseline %s --size 32x18 --positions 2 --reference 2 --frames 2 --runs 1 "
                        "--most 1 --rung scale=0.5 --csv %s/w.csv --validate",
-                       scene_path("test_truth"), cli_dir);
+                       scene_path("test_truth"), scratch);
     if (code) fail_msg("exit code %d, %s", code, cli_err);
-    char *text = cli_read("w.csv");
+    char *text = read_file(in_scratch("w.csv"), NULL);
     uint32_t rows = 0, columns = 0, n = 1;
     bool quoted = false;
     for (const char *c = text; *c; c++) {
@@ -171,5 +171,5 @@ int main(void) {
         cmocka_unit_test(bad_input_is_one_line),
         cmocka_unit_test(rows_are_written),
     };
-    return cmocka_run_group_tests(tests, cli_make_dir, cli_remove_dir);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -1,6 +1,8 @@
 /* test_study_march.c: `masu study march` on a sphere whose truth is a few lines of C, compiled
  * here: the numbers, the CSV, and the shading in double precision against the GPU's picture. */
 #include "support/support.h"
+#include "support/files.h"
+#include "support/cli.h"
 
 #include "bench/measure/run.h"
 #include "image.h"
@@ -9,10 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-
-static char dir[] = "/tmp/masu-bench-XXXXXX";
-static char out_text[1 << 16], err_text[1 << 14];
 
 static const char *const sphere_text =
     "#include <math.h>\n"
@@ -34,50 +32,13 @@ static const char *const sphere_text =
     "    for (int i = 0; i < 8; i++) out[i] = m[i];\n"
     "}\n";
 
-static void read_text(const char *name, char *text, size_t size) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    text[fread(text, 1, size - 1, f)] = 0;
-    fclose(f);
-}
-
-static int shell(const char *format, ...) {
-    char command[2048];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(command, sizeof command, format, args);
-    va_end(args);
-    int status = system(command);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-static int bench(const char *arguments) {
-    const char *build = getenv("BUILD");
-    int code = shell("%s/bin/masu study march %s --quiet >%s/out 2>%s/err </dev/null",
-                     build ? build : "build", arguments, dir, dir);
-    read_text("out", out_text, sizeof out_text);
-    read_text("err", err_text, sizeof err_text);
-    return code;
-}
+static int bench(const char *arguments) { return cli_run("study march %s --quiet", arguments); }
 
 static int make_truth(void **state) {
-    (void)state;
-    char path[256];
-    const char *cc = getenv("CC");
-    if (!mkdtemp(dir)) return 1;
-    snprintf(path, sizeof path, "%s/sphere.c", dir);
-    FILE *f = fopen(path, "wb");
-    if (!f || fputs(sphere_text, f) < 0 || fclose(f)) return 1;
-    return shell("%s -shared -fPIC -O2 -o %s/sphere.so %s/sphere.c -lm", cc && *cc ? cc : "cc", dir,
-                 dir);
-}
-
-static int remove_dir(void **state) {
-    (void)state;
-    return shell("rm -rf %s", dir);
+    if (make_scratch(state)) return 1;
+    write_text("sphere.c", sphere_text);
+    return shell("%s -shared -fPIC -O2 -o %s/sphere.so %s/sphere.c -lm", c_compiler(), scratch,
+                 scratch);
 }
 
 /* The field of that name in the line of that variant. */
@@ -101,7 +62,7 @@ static const char *csv_field(const char *csv, const char *variant, const char *c
 }
 
 static double number(const char *variant, const char *column) {
-    return strtod(csv_field(out_text, variant, column), NULL);
+    return strtod(csv_field(cli_out, variant, column), NULL);
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
@@ -111,15 +72,15 @@ static void a_sphere_is_measured(void **state) {
     char arguments[1024];
     snprintf(arguments, sizeof arguments,
              "%s --truth %s/sphere.so --size 64x48 --csv %s/a.csv --validate",
-             scene_path("test_sphere_sdf"), dir, dir);
-    if (bench(arguments)) fail_msg("%s", err_text);
-    assert_string_equal(err_text, "");
-    assert_non_null(strstr(out_text, "plain_fragment"));
-    assert_non_null(strstr(out_text, "truth: 3072 rays, 0 undecided"));
-    read_text("a.csv", out_text, sizeof out_text);
+             scene_path("test_sphere_sdf"), scratch, scratch);
+    if (bench(arguments)) fail_msg("%s", cli_err);
+    assert_string_equal(cli_err, "");
+    assert_non_null(strstr(cli_out, "plain_fragment"));
+    assert_non_null(strstr(cli_out, "truth: 3072 rays, 0 undecided"));
+    take_text("a.csv", cli_out, sizeof cli_out);
     static const char *const first =
         "scene,variant,evals_per_px,ms,ratio_vs_best_plain,hitmiss_pct,depth_off_pct,flip,";
-    assert_int_equal(strncmp(out_text, first, strlen(first)), 0);
+    assert_int_equal(strncmp(cli_out, first, strlen(first)), 0);
     assert_in_range((uint64_t)(100 * number("masu", "evals_per_px")), 200, 2000);
     assert_true(number("masu", "ms") > 0);
     assert_true(number("masu", "hits") > 500);
@@ -133,8 +94,8 @@ static void a_sphere_is_measured(void **state) {
     assert_true(fabs(number("masu", "checker_z")) < 3);
     for (int v = 0; v < MASU_BENCH_VARIANTS; v++)
         assert_string_equal(
-            csv_field(out_text, masu_bench_names[v], "truth_pixels"),
-            strcmp(csv_field(out_text, masu_bench_names[v], "hits"), "n/a") ? "3072" : "n/a");
+            csv_field(cli_out, masu_bench_names[v], "truth_pixels"),
+            strcmp(csv_field(cli_out, masu_bench_names[v], "hits"), "n/a") ? "3072" : "n/a");
 }
 
 /* The truth is shaded as the GPU shades: away from the rim no byte is off by more than 2. */
@@ -143,12 +104,12 @@ static void the_shaded_truth_is_the_picture(void **state) {
     enum { W = 120, H = 90 };
     char arguments[1024], path[256], error[ERROR_SIZE];
     snprintf(arguments, sizeof arguments, "%s --truth %s/sphere.so --size %dx%d --images %s",
-             scene_path("test_sphere_sdf"), dir, W, H, dir);
-    if (bench(arguments)) fail_msg("%s", err_text);
+             scene_path("test_sphere_sdf"), scratch, W, H, scratch);
+    if (bench(arguments)) fail_msg("%s", cli_err);
     struct masu_image image[2];
     static const char *const names[2] = {"truth", "masu"};
     for (int i = 0; i < 2; i++) {
-        snprintf(path, sizeof path, "%s/test_sphere_sdf.%s.png", dir, names[i]);
+        snprintf(path, sizeof path, "%s/test_sphere_sdf.%s.png", scratch, names[i]);
         assert_ok(masu_image_load_png(path, &image[i], error, sizeof error));
         assert_int_equal(image[i].width, W);
         assert_int_equal(image[i].height, H);
@@ -170,19 +131,19 @@ static void what_is_missing_is_said(void **state) {
     (void)state;
     char arguments[1024];
     snprintf(arguments, sizeof arguments, "%s --size 32x24 --csv %s/b.csv",
-             scene_path("test_sphere_sdf"), dir);
-    if (bench(arguments)) fail_msg("%s", err_text);
-    assert_non_null(strstr(out_text, "truth: none"));
-    read_text("b.csv", out_text, sizeof out_text);
-    assert_string_equal(csv_field(out_text, "masu", "flip"), "n/a");
+             scene_path("test_sphere_sdf"), scratch);
+    if (bench(arguments)) fail_msg("%s", cli_err);
+    assert_non_null(strstr(cli_out, "truth: none"));
+    take_text("b.csv", cli_out, sizeof cli_out);
+    assert_string_equal(csv_field(cli_out, "masu", "flip"), "n/a");
     assert_true(number("masu", "evals_per_px") > 2);
     snprintf(arguments, sizeof arguments, "%s --size 32x24", scene_path("test_sphere_mesh"));
     assert_int_equal(bench(arguments), 1);
-    assert_non_null(strstr(err_text, "has no SDF"));
+    assert_non_null(strstr(cli_err, "has no SDF"));
     snprintf(arguments, sizeof arguments, "%s --size 32x24 --truth %s/none.so",
-             scene_path("test_sphere_sdf"), dir);
+             scene_path("test_sphere_sdf"), scratch);
     assert_int_equal(bench(arguments), 1);
-    assert_non_null(strstr(err_text, "none.so"));
+    assert_non_null(strstr(cli_err, "none.so"));
     assert_int_equal(bench(""), 2);
     snprintf(arguments, sizeof arguments, "%s --runs 8", scene_path("test_sphere_sdf"));
     assert_int_equal(bench(arguments), 2);
@@ -192,16 +153,16 @@ static void a_choice_of_ways_is_drawn_and_may_go_untimed(void **state) {
     (void)state;
     char arguments[1024];
     snprintf(arguments, sizeof arguments, "%s --size 32x24 --runs 0 --only masu,unpruned --csv %s/c.csv",
-             scene_path("test_sphere_sdf"), dir);
-    if (bench(arguments)) fail_msg("%s", err_text);
-    read_text("c.csv", out_text, sizeof out_text);
+             scene_path("test_sphere_sdf"), scratch);
+    if (bench(arguments)) fail_msg("%s", cli_err);
+    take_text("c.csv", cli_out, sizeof cli_out);
     assert_true(number("masu", "evals_per_px") > 1);
     assert_true(number("unpruned", "evals_per_px") > 1);
-    assert_string_equal(csv_field(out_text, "masu", "ms"), "n/a");
-    assert_string_equal(csv_field(out_text, "cone8", "evals_per_px"), "n/a");
+    assert_string_equal(csv_field(cli_out, "masu", "ms"), "n/a");
+    assert_string_equal(csv_field(cli_out, "cone8", "evals_per_px"), "n/a");
     snprintf(arguments, sizeof arguments, "%s --only masu,seeds", scene_path("test_sphere_sdf"));
     assert_int_equal(bench(arguments), 2);
-    assert_non_null(strstr(err_text, "\"seeds\""));
+    assert_non_null(strstr(cli_err, "\"seeds\""));
 }
 
 int main(void) {
@@ -211,5 +172,5 @@ int main(void) {
         cmocka_unit_test(what_is_missing_is_said),
         cmocka_unit_test(a_choice_of_ways_is_drawn_and_may_go_untimed),
     };
-    return cmocka_run_group_tests_name("study_march", tests, make_truth, remove_dir);
+    return cmocka_run_group_tests_name("study_march", tests, make_truth, remove_scratch);
 }
