@@ -314,108 +314,122 @@ typedef enum masu_knob_use {
 
 /* Every knob of a rung: a row each, in this order in masu_rung, in names of settings, in files and
  * tables. A row is all that a new knob takes; `make docs-tables` then writes docs/knobs.md anew.
- *
- *   NUMBER(type, name, min, max, what 0 becomes, where it is of use, unit, what it does, cost)
- *   WORD(type, name, where it is of use, what it does, cost)
+ * Below its columns stand what the knob does and what it costs.
  *
  * 0 is always taken: it becomes the number of its column or, where that is 0 too, means what the
- * text says. All other numbers lie within min and max. The word of 0 is AUTO, told in the text. */
+ * text says. All other numbers lie within min and max. WORD takes the words of its enum, of which 0
+ * is AUTO: the text says what that is. */
+/* clang-format off */
 #define MASU_KNOBS(NUMBER, WORD)                                                                   \
+    /*     type              name                  min   max   0 is  of use in  unit          */   \
     /* Size and upscaling. Render size is in pixels per axis; all that is shaded has it. */        \
-    NUMBER(float, scale, 0, 1, 1, ALWAYS, "",                                                      \
+    NUMBER(float,            scale,                0,    1,    1,    ALWAYS,    "",                \
            "Render size / output size, per axis. Ignored with a source image.",                    \
            "Time of the passes before upscaling, and their images, grow with its square.")         \
-    WORD(masu_switch, upscale, UPSCALED,                                                           \
-         "EASU. AUTO: where the render size differs from the output size. OFF is an error there.", \
-         "A pass of the output size.")                                                             \
-    WORD(masu_easu, easu, UPSCALED, "How the picture is upscaled. AUTO: full.",                    \
-         "Full takes the most time, then fast, then bilinear.")                                    \
-    WORD(masu_switch, sharpen, SHARPEN,                                                            \
-         "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                         \
-         "A pass of the output size.")                                                             \
-    NUMBER(float, sharpness, 0, 64, 0, SHARPENED, "stops",                                         \
+    WORD(  masu_switch,      upscale,                                UPSCALED,                     \
+           "EASU. AUTO: where the render size differs from the output size. OFF is an error"       \
+           " there.",                                                                              \
+           "A pass of the output size.")                                                           \
+    WORD(  masu_easu,        easu,                                   UPSCALED,                     \
+           "How the picture is upscaled. AUTO: full.",                                             \
+           "Full takes the most time, then fast, then bilinear.")                                  \
+    WORD(  masu_switch,      sharpen,                                SHARPEN,                      \
+           "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                       \
+           "A pass of the output size.")                                                           \
+    NUMBER(float,            sharpness,            0,    64,   0,    SHARPENED, "stops",           \
            "How much less RCAS sharpens: 0 is sharpest, each stop halves it (AMD's definition).",  \
            "None.")                                                                                \
-    WORD(masu_switch, fuse, UPSCALED,                                                              \
-         "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"         \
-         " deep_color. AUTO: off.",                                                                \
-         "1.13 times the time of upscaling; saves the image between the two.")                     \
-    WORD(masu_aa, aa, ALWAYS, "Anti-aliasing, before upscaling. AUTO: off.",                       \
-         "Device bytes per pixel of the render size: SMAA 4.5, FXAA 4, of which other images may"  \
-         " share all but SMAA's last 0.5. SMAA takes two passes, of which a picture without edges" \
-         " costs the first; FXAA takes one.")                                                      \
+    WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
+           "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
+           " deep_color. AUTO: off.",                                                              \
+           "1.13 times the time of upscaling; saves the image between the two.")                   \
+    WORD(  masu_aa,          aa,                                     ALWAYS,                       \
+           "Anti-aliasing, before upscaling. AUTO: off.",                                          \
+           "Device bytes per pixel of the render size: SMAA 4.5, FXAA 4, of which other images"    \
+           " may share all but SMAA's last 0.5. SMAA takes two passes, of which a picture"         \
+           " without edges costs the first; FXAA takes one.")                                      \
     /* Geometry. */                                                                                \
-    WORD(masu_march, march, SDF, "How the SDF is marched. AUTO: the fast way.",                    \
-         "All others take longer.")                                                                \
-    NUMBER(uint32_t, march_steps, 1, 2048, 2048, SDF, "steps",                                     \
+    WORD(  masu_march,       march,                                  SDF,                          \
+           "How the SDF is marched. AUTO: the fast way.",                                          \
+           "All others took longer where they were measured (docs/DESIGN.md).")                    \
+    NUMBER(uint32_t,         march_steps,          1,    2048, 2048, SDF,       "steps",           \
            "Most SDF steps per ray. A ray that uses them up ends where it is.",                    \
-           "Time of rays that graze surfaces.")                                                    \
-    WORD(masu_switch, frustum, POLYGONS,                                                           \
-         "Leaves out instances outside of the view; the picture is the same. AUTO: on.",           \
-         "Tests on the host; saves draws.")                                                        \
-    WORD(masu_switch, occlusion, OCCLUDERS,                                                        \
-         "Leaves out instances hidden by occluders; the picture is the same. AUTO: on, if the"     \
-         " scene has occluders.",                                                                  \
-         "Passes that draw the occluders and test against them; memory: limits.instances.")        \
-    NUMBER(float, lod_error, -1e9, 1e9, 1, LODS, "pixels",                                         \
-           "How far, at the render size, a surface may be from its place where an LOD of its mesh" \
-           " is drawn. Below 0: the finest form alone.",                                           \
+           "Time of rays that graze surfaces: the more, the longer.")                              \
+    WORD(  masu_switch,      frustum,                                POLYGONS,                     \
+           "Leaves out instances outside of the view; the picture is the same. AUTO: on.",         \
+           "Tests on the host; saves draws.")                                                      \
+    WORD(  masu_switch,      occlusion,                              OCCLUDERS,                    \
+           "Leaves out instances hidden by occluders; the picture is the same. AUTO: on, if the"   \
+           " scene has occluders.",                                                                \
+           "Passes that draw the occluders and test against them; memory: limits.instances.")      \
+    NUMBER(float,            lod_error,            -1e9, 1e9,  1,    LODS,      "pixels",          \
+           "How far, at the render size, a surface may be from its place where an LOD of its"      \
+           " mesh is drawn. Below 0: the finest form alone.",                                      \
            "Triangles: the larger, the fewer.")                                                    \
     /* Ambient occlusion in screen space, at half the render size. */                              \
-    WORD(masu_switch, ao, AO, "Ambient occlusion in screen space. AUTO: on.",                      \
-         "2 * slices * steps samples per texel of half the render size.")                          \
-    NUMBER(uint32_t, ao_slices, 1, 8, 2, AO, "", "Directions that are looked along.",              \
+    WORD(  masu_switch,      ao,                                     AO,                           \
+           "Ambient occlusion in screen space. AUTO: on.",                                         \
+           "2 * slices * steps samples per texel of half the render size.")                        \
+    NUMBER(uint32_t,         ao_slices,            1,    8,    2,    AO,        "",                \
+           "Directions that are looked along.",                                                    \
            "Samples grow with it.")                                                                \
-    NUMBER(uint32_t, ao_steps, 1, 16, 8, AO, "", "Samples on either side of a slice.",             \
+    NUMBER(uint32_t,         ao_steps,             1,    16,   8,    AO,        "",                \
+           "Samples on either side of a slice.",                                                   \
            "Samples grow with it.")                                                                \
     /* The sun's shadow map. A rung that asks for more than the scene has gets what it has. */     \
-    NUMBER(uint32_t, shadow_cascades, 1, MASU_MAX_CASCADES, 0, SHADOWS, "",                        \
-           "Cascades. 0: the scene's.", "A pass each, and its part of the map.")                   \
-    NUMBER(uint32_t, shadow_resolution, 16, 8192, 0, SHADOWS, "texels",                            \
+    NUMBER(uint32_t,         shadow_cascades,      1,    4,    0,    SHADOWS,   "",                \
+           "Cascades. 0: the scene's.",                                                            \
+           "A pass each, and its part of the map.")                                                \
+    NUMBER(uint32_t,         shadow_resolution,    16,   8192, 0,    SHADOWS,   "texels",          \
            "Along an edge of a cascade. 0: the scene's.",                                          \
            "4 n^2 device bytes for each cascade.")                                                 \
-    NUMBER(float, shadow_distance, 0, 1e9, 0, SHADOWS, "m",                                        \
+    NUMBER(float,            shadow_distance,      0,    1e9,  0,    SHADOWS,   "m",               \
            "View depth where shadows end. 0: the scene's.",                                        \
            "Instances in the cascades: the farther, the more.")                                    \
-    NUMBER(masu_per_cascade, shadow_refresh, 1, MASU_MAX_REFRESH, 1, SHADOWS, "frames",            \
+    NUMBER(masu_per_cascade, shadow_refresh,       1,    64,   1,    SHADOWS,   "frames",          \
            "Each cascade is drawn anew every so many frames, and at once after a cut or when the"  \
            " view has left it. In between, what moves leaves its shadow behind.",                  \
            "Saves draws. Any above 1 keeps the map's memory from being shared with other images"   \
            " and doubles the rung's recordings.")                                                  \
-    WORD(masu_switch, light_tiles, LIGHTS,                                                         \
-         "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO: on,"  \
-         " if the scene has any.",                                                                 \
-         "A pass over the tiles; saves work at each pixel where lights are many.")                 \
+    WORD(  masu_switch,      light_tiles,                            LIGHTS,                       \
+           "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO:"    \
+           " on, if the scene has any.",                                                           \
+           "A pass over the tiles; saves work at each pixel where lights are many.")               \
     /* Traced reflections, at half the render size: one ray per 2x2 pixels, then filters. */       \
-    WORD(masu_switch, specular, SPECULAR,                                                          \
-         "Traced reflections. AUTO: on, if a surface is glossy enough and the device has the"      \
-         " storage buffers for it.",                                                               \
-         "The rays, and the passes and images of all that follows.")                               \
-    NUMBER(float, specular_cutoff, 0, 1, 0, SPECULAR, "",                                          \
+    WORD(  masu_switch,      specular,                               SPECULAR,                     \
+           "Traced reflections. AUTO: on, if a surface is glossy enough and the device has the"    \
+           " storage buffers for it.",                                                             \
+           "The rays, and the passes and images of all that follows.")                             \
+    NUMBER(float,            specular_cutoff,      0,    1,    0,    SPECULAR,  "",                \
            "Perceptual roughness from which surfaces reflect the sky or the probes instead; both"  \
            " are blended from 3/4 of it on. 0: the scene's.",                                      \
            "Pixels that trace: the higher, the more.")                                             \
-    WORD(masu_switch, specular_reuse, SPECULAR,                                                    \
-         "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on.",      \
-         "A pass of specular_reuse_taps.")                                                         \
-    WORD(masu_switch, specular_temporal, SPECULAR, "Temporal accumulation. AUTO: on.",             \
-         "A pass, and images that outlive the frame.")                                             \
-    WORD(masu_switch, specular_fine, SPECULAR,                                                     \
-         "A full-resolution history for smooth surfaces, and for 2x2 pixels that are not one"      \
-         " surface; only with specular_temporal. AUTO: on.",                                       \
-         "A pass, and an image that outlives the frame.")                                          \
-    WORD(masu_switch, specular_filter, SPECULAR,                                                   \
-         "The spatial filter, as wide as noise is left. AUTO: on.",                                \
-         "A pass of specular_filter_taps.")                                                        \
-    WORD(masu_switch, specular_taa, SPECULAR,                                                      \
-         "Evens out what still flickers; only with specular_temporal. AUTO: on.",                  \
-         "A pass, and an image that outlives the frame.")                                          \
-    NUMBER(uint32_t, specular_reuse_taps, 1, 16, 8, SPECULAR, "",                                  \
-           "Neighbours that specular_reuse looks at.", "Time of its pass.")                        \
-    NUMBER(uint32_t, specular_filter_taps, 1, 32, 12, SPECULAR, "",                                \
-           "Neighbours that specular_filter looks at.", "Time of its pass.")                       \
-    NUMBER(uint32_t, specular_frames, 1, 240, 32, SPECULAR, "1/60 s",                              \
-           "How far back the temporal accumulation reaches.", "None.")
+    WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
+           "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on.",    \
+           "A pass of specular_reuse_taps.")                                                       \
+    WORD(  masu_switch,      specular_temporal,                      SPECULAR,                     \
+           "Temporal accumulation. AUTO: on.",                                                     \
+           "A pass, and images that outlive the frame.")                                           \
+    WORD(  masu_switch,      specular_fine,                          SPECULAR,                     \
+           "A full-resolution history for smooth surfaces, and for 2x2 pixels that are not one"    \
+           " surface; only with specular_temporal. AUTO: on.",                                     \
+           "A pass, and an image that outlives the frame.")                                        \
+    WORD(  masu_switch,      specular_filter,                        SPECULAR,                     \
+           "The spatial filter, as wide as noise is left. AUTO: on.",                              \
+           "A pass of specular_filter_taps.")                                                      \
+    WORD(  masu_switch,      specular_taa,                           SPECULAR,                     \
+           "Evens out what still flickers; only with specular_temporal. AUTO: on.",                \
+           "A pass, and an image that outlives the frame.")                                        \
+    NUMBER(uint32_t,         specular_reuse_taps,  1,    16,   8,    SPECULAR,  "",                \
+           "Neighbours that specular_reuse looks at.",                                             \
+           "Time of its pass.")                                                                    \
+    NUMBER(uint32_t,         specular_filter_taps, 1,    32,   12,   SPECULAR,  "",                \
+           "Neighbours that specular_filter looks at.",                                            \
+           "Time of its pass.")                                                                    \
+    NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
+           "How far back the temporal accumulation reaches, in frames of 1/60 s.",                 \
+           "None.")
+/* clang-format on */
 
 /* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen
  * freshly every frame. All zero: the size of the output, all that the scene has use for, no

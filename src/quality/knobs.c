@@ -113,12 +113,13 @@ void masu_rung_defaults(masu_rung *rung) {
 
 /* The bound that a number is beyond, for those that are whole. */
 static masu_result refuse(const masu_knob *k, uint32_t r, double is, masu_detail *detail) {
-    int whole = k->kind != MASU_KNOB_FLOAT;
+    int whole = k->kind != MASU_KNOB_FLOAT, gap = k->min > (whole ? 1.0 : 0.0); /* beside 0 */
     uint64_t given = whole ? (uint64_t)is : 0;
     uint64_t needed = !whole ? 0 : (uint64_t)(is < k->min ? k->min : k->max);
     return masu_fail(detail, MASU_ERROR_ARGUMENT, whats[k - knobs], needed, given,
-                     "rungs[%u].%s is %.10g%s%s, allowed are %s%.10g to %.10g", r, k->name, is,
-                     k->unit[0] ? " " : "", k->unit, k->min > 0.0 ? "0 and " : "", k->min, k->max);
+                     "rungs[%u].%s is %.10g%s%s, allowed are %s%.6g to %.6g", r, k->name, is,
+                     k->unit[0] ? " " : "", k->unit, gap ? "0 and " : "",
+                     gap || k->min < 0.0 ? k->min : 0.0, k->max);
 }
 
 masu_result masu_rung_check(const masu_rung *rung, uint32_t r, masu_detail *detail) {

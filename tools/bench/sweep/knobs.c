@@ -96,7 +96,7 @@ static bool has_gap(const masu_knob *k) {
 /* The numbers that it takes: "0 to 1", "0, 16 to 8192". */
 static void numbers_text(const masu_knob *k, char *out, size_t size) {
     double min = has_gap(k) || k->min < 0.0 ? k->min : 0.0;
-    snprintf(out, size, "%s%.10g to %.10g", has_gap(k) ? "0, " : "", min, k->max);
+    snprintf(out, size, "%s%.6g to %.6g", has_gap(k) ? "0, " : "", min, k->max);
 }
 
 static size_t words_text(const masu_knob *k, char *out, size_t size) {
@@ -120,7 +120,7 @@ void masu_knob_range(const masu_knob *k, char *out, size_t size) {
     if (k->values > 1)
         snprintf(out, size, "%u whole numbers, each from %s", k->values, text);
     else if (has_gap(k))
-        snprintf(out, size, "0 or %s from %.10g to %.10g", what, k->min, k->max);
+        snprintf(out, size, "0 or %s from %.6g to %.6g", what, k->min, k->max);
     else
         snprintf(out, size, "%s from %s", what, text);
 }
@@ -236,14 +236,14 @@ static void print_wrapped(FILE *to, const char *text, int indent, size_t width) 
 }
 
 static void values_of(const masu_knob *k, char *out, size_t size) {
-    if (k->kind == MASU_KNOB_WORD)
+    char numbers[80];
+    if (k->kind == MASU_KNOB_WORD) {
         words_text(k, out, size);
-    else
-        numbers_text(k, out, size);
-    size_t used = strlen(out);
-    if (k->values > 1)
-        used += (size_t)snprintf(out + used, size - used, ", %u of them", k->values);
-    if (k->unit[0] && used < size) snprintf(out + used, size - used, " %s", k->unit);
+        return;
+    }
+    numbers_text(k, numbers, sizeof numbers);
+    int n = k->values > 1 ? snprintf(out, size, "%u of ", k->values) : 0;
+    snprintf(out + n, size - (size_t)n, "%s%s%s", numbers, k->unit[0] ? " " : "", k->unit);
 }
 
 void masu_knobs_print(FILE *to) {
@@ -271,7 +271,11 @@ static void document_words(FILE *to) {
         bool seen = !k->words;
         for (const masu_knob *o = masu_knob_table(); o < k; o++) seen = seen || o->words == k->words;
         if (seen) continue;
-        fprintf(to, "\n| `%s` | enumerator | |\n|---|---|---|\n", k->name);
+        fprintf(to, "\n`%s`", k->name);
+        for (const masu_knob *o = k + 1; o->name; o++) {
+            if (o->words == k->words) fprintf(to, ", `%s`", o->name);
+        }
+        fprintf(to, ":\n\n| word | enumerator | |\n|---|---|---|\n");
         for (uint32_t w = 0; w < k->word_count; w++) {
             fprintf(to, "| %s | `%s` | %s |\n", k->words[w].word, k->words[w].name,
                     k->words[w].text);
