@@ -98,7 +98,7 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
 lib: $(BUILD)/lib/libmasu.a ## build build/lib/libmasu.a alone
-tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso
+tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso
 shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
@@ -150,32 +150,32 @@ fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 
 # An hour on a CPU driver. Of docs/report are kept: ladders.txt, and of each scene the page, the rows, the ladder,
 # what was measured.
-# Those of a scene alone: REPORT_ARGS_NAME; there the time of forza's path at which a car is near, and
+# Those of a scene alone: BENCH_ARGS_NAME; there the time of forza's path at which a car is near, and
 # fewer rays for the truth where a frame takes long.
-.PHONY: report
-REPORT ?= engine mirrors wet_city worlds/city forza textures city_shadows
-REPORT_ARGS ?= --size 320x180
-REPORT_ARGS_forza ?= --time 146.5 --reference 256
-REPORT_ARGS_wet_city ?= --reference 256
+.PHONY: bench
+BENCH ?= engine mirrors wet_city worlds/city forza textures city_shadows
+BENCH_ARGS ?= --size 320x180
+BENCH_ARGS_forza ?= --time 146.5 --reference 256
+BENCH_ARGS_wet_city ?= --reference 256
 # A name is that of a scene or of a world; where both have it, the scene's: worlds/city is the other. The
 # folder march has the scenes with all ways to march, and beside them what depth is compared with.
-report_file = $(BUILD)/$(if $(findstring /,$(1)),,$(if $(wildcard scenes/$(1).json),scenes/,worlds/))$(1)
-report_truth = $(patsubst %,$(BUILD)/%.truth.so,$(filter march/%,$(REPORT)))
-report_needs = $(BUILD)/bin/masu $(foreach s,$(REPORT),$(call report_file,$(s)).masu) $(report_truth)
-report_bench = $(BUILD)/bin/masu bench $(call report_file,$(1)).masu $(REPORT_ARGS) \
-    $(REPORT_ARGS_$(subst /,-,$(1)))
-report: $(report_needs) ## error against run time: docs/report/SCENE/index.html: REPORT='engine worlds/city' REPORT_ARGS=
+bench_file = $(BUILD)/$(if $(findstring /,$(1)),,$(if $(wildcard scenes/$(1).json),scenes/,worlds/))$(1)
+bench_truth = $(patsubst %,$(BUILD)/%.truth.so,$(filter march/%,$(BENCH)))
+bench_needs = $(BUILD)/bin/masu $(foreach s,$(BENCH),$(call bench_file,$(s)).masu) $(bench_truth)
+bench_scene = $(BUILD)/bin/masu bench $(call bench_file,$(1)).masu $(BENCH_ARGS) \
+    $(BENCH_ARGS_$(subst /,-,$(1)))
+bench: $(bench_needs) ## error against run time: docs/report/SCENE/index.html: BENCH='engine worlds/city' BENCH_ARGS=
 	$(V)mkdir -p docs/report
-	$(V)$(foreach s,$(REPORT),$(call report_bench,$(s)) --out docs/report/$(subst /,-,$(s)) &&) true
-	$(V)$(BUILD)/bin/masu ladder docs/report/*/ladder.json > docs/report/ladders.txt
+	$(V)$(foreach s,$(BENCH),$(call bench_scene,$(s)) --out docs/report/$(subst /,-,$(s)) &&) true
+	$(V)$(BUILD)/bin/masu bench --ladder docs/report/*/ladder.json > docs/report/ladders.txt
 
 # Whether the rungs hold on this machine, today. Nothing in docs/report is touched.
-report_again = if [ -d $(2) ]; then rm -rf $(3) && $(call report_bench,$(1)) --rungs-of $(2) --out $(3) && \
+bench_again = if [ -d $(2) ]; then rm -rf $(3) && $(call bench_scene,$(1)) --rungs-of $(2) --out $(3) && \
     $(BUILD)/bin/masu bench $(2) --against $(3); else echo "masu: there is no $(2)"; fi
-.PHONY: report-again
-report-again: $(report_needs) ## measure the rungs of docs/report again, and compare error and time ratio: REPORT=
+.PHONY: bench-again
+bench-again: $(bench_needs) ## measure the rungs of docs/report again, and compare error and time ratio: BENCH=
 	$(V)mkdir -p $(BUILD)/again
-	$(V)$(foreach s,$(REPORT),$(call report_again,$(s),docs/report/$(subst /,-,$(s)),$(BUILD)/again/$(subst /,-,$(s))) &&) true
+	$(V)$(foreach s,$(BENCH),$(call bench_again,$(s),docs/report/$(subst /,-,$(s)),$(BUILD)/again/$(subst /,-,$(s))) &&) true
 
 # Classes of scenes, and the folder that each one's ladder was measured into; folders that are not
 # there are left out. A class without one has the ladder of the nearest class: worlds-city is of a place in
@@ -189,8 +189,8 @@ ladders: $(BUILD)/bin/masu ## write src/quality/ladder_tables.h from docs/report
 	    f=$(LADDER_FOLDER)/$${l#*=}/ladder.json; \
 	    if [ -f "$$f" ]; then files="$$files $${l%%=*}=$$f"; else echo "masu: there is no $$f"; fi; \
 	done; \
-	[ "$$files" ] || { echo "masu: no ladder to take; see make report" >&2; exit 1; }; \
-	$(BUILD)/bin/masu ladder --c $$files > $(BUILD)/ladder_tables.h && \
+	[ "$$files" ] || { echo "masu: no ladder to take; see make bench" >&2; exit 1; }; \
+	$(BUILD)/bin/masu bench --ladder --c $$files > $(BUILD)/ladder_tables.h && \
 	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
 
 coverage: ## run the tests with gcov and print the lines executed of each file of src/
@@ -213,9 +213,12 @@ compdb: ## write compile_commands.json (with bear)
 	$(V)command -v bear > /dev/null || { echo "masu: compdb needs bear" >&2; exit 1; }
 	+$(V)bear -- $(MAKE) --no-print-directory -B all $(UNIT_TESTS) $(GPU_TESTS)
 
-.PHONY: install install-lib install-tools uninstall
+.PHONY: install install-lib install-tools install-data uninstall
 root = $(DESTDIR)$(PREFIX)
-install: install-lib install-tools ## install to DESTDIR/PREFIX, by default /usr/local
+# What masu conform takes besides itself. Baking takes minutes and is nobody's surprise: scenes are installed
+# that are there.
+SMOKE_SCENES := $(sort $(shell sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json))
+install: install-lib install-tools install-data ## install to DESTDIR/PREFIX, by default /usr/local
 install-lib: lib ## install header, library and masu.pc
 	$(V)install -d "$(root)/include" "$(root)/lib/pkgconfig"
 	$(V)install -m 644 include/masu.h "$(root)/include/masu.h"
@@ -226,9 +229,20 @@ install-tools: tools ## install masu, masu-bake, masu-sdfc and masu-meso
 	$(V)install -d "$(root)/bin"
 	$(V)install -m 755 $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-sdfc \
 	    $(BUILD)/bin/masu-meso "$(root)/bin"
+install-data: $(SUITES) ## install the suites of masu conform, and the scenes of smoke that are baked
+	$(V)install -d "$(root)/share/masu/suites"
+	$(V)install -m 644 $(SUITES) "$(root)/share/masu/suites"
+	$(V)missing=; for s in $(SMOKE_SCENES); do \
+	    if [ -f $(BUILD)/scenes/$$s.masu ]; then install -d "$(root)/share/masu/scenes" && \
+	        install -m 644 $(BUILD)/scenes/$$s.masu "$(root)/share/masu/scenes" || exit 1; \
+	    else missing="$$missing $$s"; fi; \
+	done; [ -z "$$missing" ] || \
+	    echo "masu: not baked, so not installed:$$missing; 'make scenes install' gives masu conform its scenes"
 uninstall: ## remove what install has put there
 	$(V)cd "$(root)" && rm -f include/masu.h lib/libmasu.a lib/pkgconfig/masu.pc
 	$(V)cd "$(root)" && rm -f bin/masu bin/masu-bake bin/masu-sdfc bin/masu-meso
+	$(V)cd "$(root)" && rm -f $(SUITES:$(BUILD)/%=share/masu/%) $(SMOKE_SCENES:%=share/masu/scenes/%.masu)
+	$(V)cd "$(root)" && rmdir share/masu/scenes share/masu/suites share/masu 2> /dev/null || true
 
 .PHONY: clean help
 clean: ## remove what was built, of all configurations; keeps build/drivers

@@ -1,6 +1,6 @@
 /*
  * march_plain.comp: the baseline: every pixel by itself, from the near plane, all parts. Kept for
- * the report (masu march-bench); Compiled by masu-bake together with the scene's field. MASU_HAS_RASTER says whether polygons limit it.
+ * the report (masu study march); Compiled by masu-bake together with the scene's field. MASU_HAS_RASTER says whether polygons limit it.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

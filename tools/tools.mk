@@ -37,6 +37,13 @@ $(BUILD)/bin/masu-sdfc: LIBS = -lm
 $(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc) $(call tool_archive,cli)
 	$(link)
 
+# ---- Suites: beside the programs, where masu conform looks for them ------------------------------
+
+SUITES := $(patsubst %,$(BUILD)/%,$(wildcard suites/*.json))
+$(BUILD)/suites/%.json: suites/%.json
+	@mkdir -p $(@D)
+	$(V)cp $< $@
+
 # ---- Tables in documents -------------------------------------------------------------------------
 
 # Committed, for readers; tests/scripts/docs_tables.sh fails where they are not what the headers say.
@@ -105,7 +112,7 @@ $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(KEEP_LOADED) $(BUILD)/lib/libma
 	$(link)
 EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-# For masu march-bench: each .sdf scene with all ways to march it, and its double-precision truth
+# For masu study march: each .sdf scene with all ways to march it, and its double-precision truth
 # beside it. Not part of `all` or of the tests.
 MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))
 
@@ -122,26 +129,44 @@ $(BUILD)/march/%.truth.c: scenes/%.sdf $(BUILD)/bin/masu-sdfc
 	@echo "  TRUTH   $@"
 	$(V)$(CC) -std=c11 -O2 -w -shared -fPIC -o $@ $< -lm
 
-.PHONY: march-bench
-MARCH_ARGS ?= --size 960x540
-march-bench: $(BUILD)/bin/masu $(MARCH_SCENES) $(MARCH_SCENES:.masu=.truth.so) ## measure the ways to march the SDF: MARCH_ARGS='--size 960x540 --csv FILE'
-	$(V)$(BUILD)/bin/masu march-bench $(MARCH_SCENES) $(MARCH_ARGS)
-
-# For masu whole-bench: scenes with the plain march; WHOLE: folders and names below $(BUILD). The worlds are
-# measured if they are baked (make worlds). Forza is seen beside a car.
+# Scenes with the plain march, for masu study baseline.
 $(BUILD)/march/engine.masu: scenes/engine.json scenes/engine.glsl $(BUILD)/bin/masu-bake
 	@mkdir -p $(@D)
 	@echo "  BAKE    $< --variants"
 	$(V)$(BUILD)/bin/masu-bake $< -o $@ --variants --quiet
 
-.PHONY: whole-bench
-WHOLE ?= march/engine march/city march/wet_city scenes/mirrors \
-    $(patsubst $(BUILD)/%.masu,%,$(wildcard $(WORLDS:%=$(BUILD)/worlds/%.masu)))
-WHOLE_ARGS ?= --size 640x360
-whole-bench: $(BUILD)/bin/masu $(WHOLE:%=$(BUILD)/%.masu) ## whole frames against a plain renderer, on scenes and worlds: WHOLE='march/city' WHOLE_ARGS=
-	$(V)mkdir -p $(BUILD)/whole
-	$(V)for s in $(WHOLE); do \
-	    time=1; [ $$s != worlds/forza ] || time=146.5; to=$(BUILD)/whole/$$(echo $$s | tr / -); \
-	    $(BUILD)/bin/masu whole-bench $(BUILD)/$$s.masu --time $$time --truth $$to.truth.png \
-	        --csv $$to.csv $(WHOLE_ARGS) || exit 1; \
+# ---- Studies -------------------------------------------------------------------------------------
+
+# masu study $(STUDY) on each of its scenes, folders and names below $(BUILD), with STUDY_ARGS. The worlds
+# are measured if they are baked (make worlds); forza is seen beside a car. Those of `march` are one run,
+# which sums them up; `upscale` has a picture of its own.
+.PHONY: study
+STUDY ?= march
+baked_worlds = $(patsubst $(BUILD)/%.masu,%,$(wildcard $(WORLDS:%=$(BUILD)/worlds/%.masu)))
+SCENES_march       := $(MARCH_SCENES:$(BUILD)/%.masu=%)
+SCENES_cull        := scenes/test_town $(baked_worlds)
+SCENES_draw        := scenes/engine $(baked_worlds)
+SCENES_lights      := scenes/night
+SCENES_ao          := scenes/engine
+SCENES_reflections := scenes/mirrors
+SCENES_rays        := scenes/test_trace scenes/mirrors
+SCENES_image       := scenes/engine
+SCENES_baseline    := march/engine march/city march/wet_city scenes/mirrors $(baked_worlds)
+STUDY_SCENES ?= $(SCENES_$(STUDY))
+study_blobs = $(STUDY_SCENES:%=$(BUILD)/%.masu)
+study_truths = $(if $(filter march,$(STUDY)),$(study_blobs:.masu=.truth.so))
+study: $(BUILD)/bin/masu $(study_blobs) $(study_truths) ## masu study on its scenes: STUDY=march STUDY_SCENES='march/city' STUDY_ARGS=
+ifeq ($(STUDY),march)
+	$(V)$(BUILD)/bin/masu study march $(study_blobs) $(STUDY_ARGS)
+else ifeq ($(STUDY),upscale)
+	$(V)$(BUILD)/bin/masu study upscale $(STUDY_ARGS)
+else
+	$(V)mkdir -p $(BUILD)/study
+	$(V)for s in $(STUDY_SCENES); do \
+	    set -- ; [ $(STUDY) != baseline ] || { \
+	        time=1; [ $$s != worlds/forza ] || time=146.5; \
+	        to=$(BUILD)/study/baseline-$$(echo $$s | tr / -); \
+	        set -- --time $$time --truth $$to.truth.png --csv $$to.csv; }; \
+	    $(BUILD)/bin/masu study $(STUDY) $(BUILD)/$$s.masu "$$@" $(STUDY_ARGS) || exit 1; \
 	done
+endif

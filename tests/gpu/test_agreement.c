@@ -2,24 +2,13 @@
  * as SDF, and a box that cuts through an SDF sphere, both against rays intersected in double
  * precision. */
 #include "support/support.h"
+#include "reference/vec.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { W = 256, H = 192 };
-
-typedef struct vec {
-    double x, y, z;
-} vec;
-
-static vec add(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static vec scale(vec a, double s) { return (vec){a.x * s, a.y * s, a.z * s}; }
-static double dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static vec cross(vec a, vec b) {
-    return (vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-static vec unit(vec a) { return scale(a, 1.0 / sqrt(dot(a, a))); }
 
 /* ---- Rays in double precision ---------------------------------------------------------------- */
 
@@ -32,10 +21,10 @@ static eye make_eye(const masu_camera *c, uint32_t width, uint32_t height) {
     double tangent = tan((double)c->fov_y / 2);
     eye e = {.position = {c->position[0], c->position[1], c->position[2]},
              .forward =
-                 unit((vec){(double)c->forward[0], (double)c->forward[1], (double)c->forward[2]})};
-    vec right = unit(cross(e.forward, (vec){0, 1, 0}));
-    e.up = scale(cross(right, e.forward), tangent);
-    e.right = scale(right, tangent * width / height);
+                 vec_unit(vec_of(c->forward))};
+    vec right = vec_unit(vec_cross(e.forward, (vec){0, 1, 0}));
+    e.up = vec_scale(vec_cross(right, e.forward), tangent);
+    e.right = vec_scale(right, tangent * width / height);
     e.pixel = 2 * tangent / height;
     return e;
 }
@@ -43,13 +32,13 @@ static eye make_eye(const masu_camera *c, uint32_t width, uint32_t height) {
 /* Through pixel coordinates (x, y), the centre of the first pixel being (0.5, 0.5); length 1 in
  * view depth. */
 static vec ray_through(const eye *e, double x, double y) {
-    return add(e->forward, add(scale(e->right, 2 * x / W - 1), scale(e->up, 1 - 2 * y / H)));
+    return vec_add(e->forward, vec_add(vec_scale(e->right, 2 * x / W - 1), vec_scale(e->up, 1 - 2 * y / H)));
 }
 
 /* View depth of the first hit with a sphere around the origin, or -1. */
 static double hit_sphere(const eye *e, vec d, double radius) {
-    double a = dot(d, d), b = dot(e->position, d),
-           c = dot(e->position, e->position) - radius * radius;
+    double a = vec_dot(d, d), b = vec_dot(e->position, d),
+           c = vec_dot(e->position, e->position) - radius * radius;
     double root = b * b - a * c;
     return root < 0 ? -1 : (-b - sqrt(root)) / a;
 }
@@ -58,7 +47,7 @@ static double hit_sphere(const eye *e, vec d, double radius) {
 static double hit_box(const eye *e, vec d, const vec axes[3], double half) {
     double enter = 0, leave = 1e30;
     for (int i = 0; i < 3; i++) {
-        double o = dot(e->position, axes[i]), v = dot(d, axes[i]);
+        double o = vec_dot(e->position, axes[i]), v = vec_dot(d, axes[i]);
         double a = (-half - o) / v, b = (half - o) / v;
         enter = fmax(enter, fmin(a, b));
         leave = fmin(leave, fmax(a, b));
@@ -68,9 +57,9 @@ static double hit_box(const eye *e, vec d, const vec axes[3], double half) {
 
 /* Signed distance of the ray from the sphere's silhouette, in pixels: positive outside. */
 static double silhouette_pixels(const eye *e, vec d, double radius) {
-    double along = -dot(e->position, d) / dot(d, d);
-    vec nearest = add(e->position, scale(d, along));
-    return (sqrt(dot(nearest, nearest)) - radius) / (e->pixel * along);
+    double along = -vec_dot(e->position, d) / vec_dot(d, d);
+    vec nearest = vec_add(e->position, vec_scale(d, along));
+    return (sqrt(vec_dot(nearest, nearest)) - radius) / (e->pixel * along);
 }
 
 /* ---- Pictures -------------------------------------------------------------------------------- */
@@ -89,15 +78,9 @@ static void take_picture(masu_session *s, const masu_frame_desc *frame, picture 
     assert_int_equal(image.width, W);
     assert_int_equal(image.height, H);
     assert_int_equal(image.format, VK_FORMAT_R32_SFLOAT);
-    float near_distance = frame->camera->near_distance;
-    for (uint32_t i = 0; i < W * H; i++) {
-        float d = ((const float *)image.pixels)[i];
-        p->depth[i] = d > 0.0f ? near_distance / d : 0.0f;
-    }
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_NORMAL, &image), MASU_OK);
-    memcpy(p->normal, image.pixels, sizeof p->normal);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_ALBEDO, &image), MASU_OK);
-    memcpy(p->albedo, image.pixels, sizeof p->albedo);
+    view_depths(image.pixels, frame->camera, p->depth, W * H);
+    memcpy(p->normal, read_image(s, commands.slot, MASU_READBACK_NORMAL), sizeof p->normal);
+    memcpy(p->albedo, read_image(s, commands.slot, MASU_READBACK_ALBEDO), sizeof p->albedo);
 }
 
 static void open_for_pictures(masu_session *s, const char *scene) {
@@ -161,8 +144,8 @@ static void compare_with_truth(const picture *p, const eye *e, double radius, do
             worst_beyond = fmax(worst_beyond, fabs(got / truth - 1) - slack);
             float n[3];
             masu_unpack_normal(p->normal[y * W + x], n);
-            vec true_normal = unit(add(e->position, scale(d, truth)));
-            double cosine = dot(true_normal, (vec){(double)n[0], (double)n[1], (double)n[2]});
+            vec true_normal = vec_unit(vec_add(e->position, vec_scale(d, truth)));
+            double cosine = vec_dot(true_normal, (vec){(double)n[0], (double)n[1], (double)n[2]});
             worst_angle = fmax(worst_angle, acos(fmin(1, cosine)) * 57.29578);
         }
     }
@@ -242,13 +225,13 @@ static void the_nearer_of_polygon_and_sdf_wins_at_every_pixel(void **state) {
     masu_session s;
     open_for_pictures(&s, "test_both");
     /* A rotation of our own, so that the test knows it: about (1, 2, 3) by 0.8. */
-    vec k = unit((vec){1, 2, 3});
+    vec k = vec_unit((vec){1, 2, 3});
     double cosine = cos(0.8), sine = sin(0.8);
     vec columns[3], unit_axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int i = 0; i < 3; i++) {
         vec v = unit_axes[i];
-        columns[i] = add(add(scale(v, cosine), scale(cross(k, v), sine)),
-                         scale(k, dot(k, v) * (1 - cosine)));
+        columns[i] = vec_add(vec_add(vec_scale(v, cosine), vec_scale(vec_cross(k, v), sine)),
+                         vec_scale(k, vec_dot(k, v) * (1 - cosine)));
     }
     float rows[12] = {(float)columns[0].x, (float)columns[1].x, (float)columns[2].x, 0,
                       (float)columns[0].y, (float)columns[1].y, (float)columns[2].y, 0,

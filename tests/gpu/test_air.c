@@ -1,6 +1,7 @@
 /* test_air.c: fog in the picture. Each pixel with fog, against the same pixel without and what a numeric
  * integral in double along its ray says that the fog leaves of it and adds. */
 #include "support/support.h"
+#include "support/floats.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,23 +13,12 @@ enum { SIDE = 96, PIXELS = SIDE * SIDE };
 static masu_session s;
 static float clear[4 * PIXELS], foggy[4 * PIXELS], depths[PIXELS];
 
-static float half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    float v =
-        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
-    if (exponent == 31) v = NAN;
-    return h & 0x8000 ? -v : v;
-}
-
 static void render(const masu_camera *camera, const masu_light *light, float *hdr) {
     masu_frame_desc frame = {.camera = camera, .light = light};
     masu_commands commands;
-    masu_readback_image image;
     draw(&s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
-    memcpy(depths, image.pixels, sizeof depths);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
-    for (uint32_t i = 0; i < 4 * PIXELS; i++) hdr[i] = half(((const uint16_t *)image.pixels)[i]);
+    memcpy(depths, read_image(&s, commands.slot, MASU_READBACK_DEPTH), sizeof depths);
+    floats_of_halves(read_image(&s, commands.slot, MASU_READBACK_HDR), hdr, 4 * PIXELS);
 }
 
 static double integral(const masu_light *l, double height, double climb, double end) {

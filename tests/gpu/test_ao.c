@@ -1,8 +1,9 @@
 /* test_ao.c: ambient occlusion in screen space against the truth of scenes that have one in closed form
- * (a corner of three planes, a ball on a floor), that truth against the rays of masu ao-bench, and what
+ * (a corner of three planes, a ball on a floor), that truth against the rays of masu study ao, and what
  * must hold whatever the error: planes hide nothing of themselves, a camera at rest sees a picture at
  * rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion is kept, and
  * scenes that do not ask have none of it. */
+#include "support/files.h"
 #include "support/shadow.h"
 
 #include "bench/study/ao.h"
@@ -13,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { W = 160, H = 120, RAYS = 512 };
 
@@ -30,18 +30,12 @@ static void bake_ao(const char *name, double radius, const char *members) {
     } else {
         snprintf(json, sizeof json, "{%s}", members);
     }
-    shadow_bake(name, json);
-}
-
-static const char *path_of(const char *name) {
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s.masu", shadow_dir(), name);
-    return path;
+    bake_scene(name, json);
 }
 
 static void open_ao(const char *name, uint32_t width, uint32_t height, const masu_rung *rung) {
     masu_session_desc d = test_desc(NULL, width, height);
-    d.scene_path = path_of(name);
+    d.scene_path = baked_scene(name);
     d.desc.readback = MASU_READBACK_ALL;
     d.desc.rung_count = 1;
     if (rung) d.desc.rungs[0] = *rung;
@@ -54,15 +48,6 @@ static void draw_from(const masu_camera *camera) {
     draw(&s, &frame, &commands, NULL);
     slot = commands.slot;
 }
-
-static const void *image(masu_readback_bits which) {
-    masu_readback_image out;
-    assert_int_equal(masu_readback(s.m, slot, which, &out), MASU_OK);
-    return out.pixels;
-}
-
-static double sun_of(const uint32_t *texels, uint32_t i) { return (texels[i] & 0xFFFF) / 65535.0; }
-static double seen_of(const uint32_t *texels, uint32_t i) { return (texels[i] >> 16) / 65535.0; }
 
 static const char corner[] =
     "\"models\": [{\"mesh\": {\"box\": {\"size\": [20, 1, 20]}}, \"translate\": [10, -0.5, 10]},"
@@ -125,8 +110,8 @@ typedef struct surface {
 
 /* 0: the sky. */
 static int surface_at(const masu_camera *c, double near, uint32_t i, surface *out) {
-    const float *depths = image(MASU_READBACK_DEPTH);
-    const uint32_t *normals = image(MASU_READBACK_NORMAL);
+    const float *depths = read_image(&s, slot, MASU_READBACK_DEPTH);
+    const uint32_t *normals = read_image(&s, slot, MASU_READBACK_NORMAL);
     double f[3], length = 0, flat, right[3], up[3], n[3];
     float unpacked[3];
     if (!(depths[i] > 0)) return 0;
@@ -150,7 +135,7 @@ static int surface_at(const masu_camera *c, double near, uint32_t i, surface *ou
 }
 
 typedef struct errors {
-    /* rays, none: root mean square of what masu ao-bench's truth is off by, and a 1 everywhere. */
+    /* rays, none: root mean square of what masu study ao's truth is off by, and a 1 everywhere. */
     double rmse, mean, worst, rays, none;
     uint32_t count;
 } errors;
@@ -165,14 +150,14 @@ static errors compare(const char *name, double (*at)(const double *, const doubl
     size_t bytes = 0;
     char error[ERROR_SIZE];
     assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
-    assert_ok(masu_file_read(path_of(name), 1u << 30, &blob, &bytes, error, sizeof error));
+    assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
     assert_ok(masu_ao_open(&scene, &world, error, sizeof error));
-    const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+    const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
     for (uint32_t i = 0; i < W * H; i += 3) {
         surface p;
         if (!surface_at(&camera, 0.05, i, &p)) continue;
-        double truth = true_seen(at, p.at, p.normal, radius), d = seen_of(seen, i) - truth;
+        double truth = true_seen(at, p.at, p.normal, radius), d = ambient_share(seen, i) - truth;
         /* SwiftShader's depths put points of a large floor more than a millimetre below it. */
         double rays = masu_ao_seen(&world, p.at, p.normal, 5e-3, radius, 256, i);
         e.rmse += d * d;
@@ -244,8 +229,8 @@ static void a_plane_hides_nothing_of_itself(void **state) {
         bake_ao("floor", radii[i], floor_alone);
         open_ao("floor", 256, 192, NULL);
         draw_from(NULL);
-        const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-        const float *depths = image(MASU_READBACK_DEPTH);
+        const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
+        const float *depths = read_image(&s, slot, MASU_READBACK_DEPTH);
         uint32_t sky = 0, surface = 0, low = 0;
         double least = 1, sum = 0;
         for (uint32_t k = 0; k < 256 * 192; k++) {
@@ -256,9 +241,9 @@ static void a_plane_hides_nothing_of_itself(void **state) {
                 continue;
             }
             surface++;
-            least = fmin(least, seen_of(seen, k));
-            sum += seen_of(seen, k);
-            low += seen_of(seen, k) < 0.985;
+            least = fmin(least, ambient_share(seen, k));
+            sum += ambient_share(seen, k);
+            low += ambient_share(seen, k) < 0.985;
         }
         close_session(&s);
         print_message("radius %g: seen part of a plane %.4f at least, %.4f in the mean, %u of %u below "
@@ -281,7 +266,7 @@ static void a_camera_at_rest_sees_a_picture_at_rest(void **state) {
         frame.time = i * 0.37;
         draw(&s, &frame, &commands, NULL);
         slot = commands.slot;
-        const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+        const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
         if (i) assert_memory_equal(seen, before, sizeof before);
         memcpy(before, seen, sizeof before);
     }
@@ -303,12 +288,12 @@ static void a_camera_that_creeps_changes_it_little(void **state) {
     for (int i = 0; i < 17; i++) {
         camera.position[0] = x + i / 8.0 * 2.6 * 2 * tan((double)camera.fov_y / 2) / H;
         draw_from(&camera);
-        const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-        const uint32_t *normals = image(MASU_READBACK_NORMAL);
+        const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
+        const uint32_t *normals = read_image(&s, slot, MASU_READBACK_NORMAL);
         for (uint32_t k = 0; k < W * H; k++) {
             float n[3];
             masu_unpack_normal(normals[k], n);
-            double now = seen_of(seen, k), d = fabs(now - before[k]);
+            double now = ambient_share(seen, k), d = fabs(now - before[k]);
             /* The ball's outline moves over the pixels: there it may jump. */
             if (i && n[1] > 0.999f) squares += d * d, most = fmax(most, d), jumps += d > 0.1, count++;
             before[k] = now;
@@ -329,7 +314,7 @@ static void nothing_outside_of_the_rectangle_is_looked_at(void **state) {
     bake_ao("corner", 1, corner);
     for (uint32_t poison = 0; poison < 3; poison++) {
         masu_session_desc d = test_desc(NULL, W, H);
-        d.scene_path = path_of("corner");
+        d.scene_path = baked_scene("corner");
         d.desc.readback = MASU_READBACK_OCCLUSION;
         d.desc.debug.poison = poison;
         d.desc.rung_count = 2;
@@ -363,19 +348,16 @@ static const char sdf_members[] =
 static void of_both_occlusions_the_lesser_counts(void **state) {
     (void)state;
     static uint32_t own[W * H], screen[W * H];
-    char text[512], path[256];
-    snprintf(path, sizeof path, "%s/ao.sdf", shadow_dir());
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    fputs("part ground = plane((0, 1, 0), 0);\npart a = translate((0, 0.6, 0), sphere(0.6));\n"
-          "part b = translate((0.9, 0.3, 0.3), box((0.3, 0.3, 0.3)));\n", f);
-    assert_int_equal(fclose(f), 0);
+    char text[512];
+    write_text("ao.sdf",
+               "part ground = plane((0, 1, 0), 0);\npart a = translate((0, 0.6, 0), sphere(0.6));\n"
+               "part b = translate((0.9, 0.3, 0.3), box((0.3, 0.3, 0.3)));\n");
     for (int i = 0; i < 3; i++) { /* its own, by the screen, both */
         snprintf(text, sizeof text, sdf_members, i == 1 ? "" : ", \"ambient_occlusion\": {}");
         bake_ao("field", i ? 1 : 0, text);
         open_ao("field", W, H, NULL);
         draw_from(NULL);
-        const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
+        const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
         uint32_t less = 0;
         for (uint32_t k = 0; k < W * H && i == 2; k++) {
             uint32_t a = own[k] >> 16, b = screen[k] >> 16;
@@ -388,13 +370,6 @@ static void of_both_occlusions_the_lesser_counts(void **state) {
     }
 }
 
-static uint32_t active(const masu_plan_info *plan, const char *name) {
-    for (uint32_t p = 0; p < plan->pass_count; p++)
-        if (!strcmp(plan->passes[p].name, name)) return plan->passes[p].active;
-    fail_msg("there is no pass %s", name);
-    return 0;
-}
-
 static void scenes_that_do_not_ask_have_none_of_it(void **state) {
     (void)state;
     static masu_plan_info plan;
@@ -404,17 +379,17 @@ static void scenes_that_do_not_ask_have_none_of_it(void **state) {
     for (int i = 0; i < 3; i++) { /* asks for none, asks but the rung has it off, has it */
         masu_session_desc d = test_desc(NULL, W, H);
         bake_ao("corner", i ? 1 : 0, corner);
-        d.scene_path = path_of("corner");
+        d.scene_path = baked_scene("corner");
         d.desc.rung_count = 1;
         d.desc.rungs[0].ao = i == 1 ? MASU_OFF : MASU_AUTO;
         d.desc.readback = MASU_READBACK_OCCLUSION;
         open_session(&s, &d);
         draw_rung(&s, 0, lit[i]);
         masu_plan_of(s.m, &plan);
-        assert_int_equal(active(&plan, "ao"), i == 2);
-        assert_int_equal(active(&plan, "ao_upsample"), i == 2);
-        assert_int_equal(active(&plan, "light"), i < 2);
-        assert_int_equal(active(&plan, "light_occluded"), i == 2);
+        assert_int_equal(pass_of(&plan, "ao")->active, i == 2);
+        assert_int_equal(pass_of(&plan, "ao_upsample")->active, i == 2);
+        assert_int_equal(pass_of(&plan, "light")->active, i < 2);
+        assert_int_equal(pass_of(&plan, "light_occluded")->active, i == 2);
         assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_OCCLUSION, &out),
                          i == 2 ? MASU_OK : MASU_ERROR_ARGUMENT);
         for (uint32_t k = 0; k < plan.image_count; k++) {
@@ -462,13 +437,11 @@ static void extremes_give_finite_pixels(void **state) {
             uint32_t pixels = sizes[k].width * sizes[k].height;
             open_ao("extreme", sizes[k].width, sizes[k].height, k % 2 ? &rung : NULL);
             draw_from(NULL);
-            const uint16_t *hdr = image(MASU_READBACK_HDR);
-            masu_stats_info stats;
+            const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
             for (uint32_t c = 0; c < 4 * pixels; c++) assert_true((hdr[c] & 0x7C00) != 0x7C00);
-            assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
-            assert_int_equal(stats.replaced, 0);
-            const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-            for (uint32_t p = 0; p < pixels; p++) assert_true(sun_of(seen, p) > 0.999);
+            assert_int_equal(stats_of(&s, 0).replaced, 0);
+            const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
+            for (uint32_t p = 0; p < pixels; p++) assert_true(sun_share(seen, p) > 0.999);
             close_session(&s);
         }
     }
@@ -486,5 +459,5 @@ int main(void) {
         cmocka_unit_test(scenes_that_do_not_ask_have_none_of_it),
         cmocka_unit_test(extremes_give_finite_pixels),
     };
-    return cmocka_run_group_tests_name("ao", tests, shadow_folder, shadow_folder_away);
+    return cmocka_run_group_tests_name("ao", tests, make_scratch, remove_scratch);
 }

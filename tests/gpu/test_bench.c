@@ -34,7 +34,7 @@ static void said(const char *part) {
 
 static masu_row *rows_of(const char *folder, uint32_t *count) {
     char path[256], error[512];
-    snprintf(path, sizeof path, "%s/%s", cli_dir, folder);
+    snprintf(path, sizeof path, "%s/%s", scratch, folder);
     masu_row *rows = masu_sweep_rows(path, count, error, sizeof error);
     if (!rows) fail_msg("%s", error);
     return rows;
@@ -45,7 +45,7 @@ static masu_row *rows_of(const char *folder, uint32_t *count) {
 /* Tags close in the order in which they were opened, values of attributes are quoted, and no '<' or
  * lone '&' stands elsewhere: what XML asks for, but for names. */
 static void check_markup(const char *name) {
-    char *text = cli_read(name), stack[64][32];
+    char *text = read_file(in_scratch(name), NULL), stack[64][32];
     uint32_t depth = 0, elements = 0;
     for (const char *c = text; *c;) {
         if (*c == '&' && strcspn(c, ";") > 8) fail_msg("%s: a lone &", name);
@@ -130,7 +130,7 @@ static void check_rows(const char *folder, uint32_t least) {
         const masu_row *r = &rows[i];
         char name[300];
         snprintf(name, sizeof name, "%s/pictures/%s.png", folder, r->setting);
-        assert_true(cli_exists(name));
+        assert_true(is_in_scratch(name));
         assert_true(r->wall_min > 0 && r->wall_p50 >= r->wall_min && r->wall_p99 >= r->wall_p50);
         assert_true(fabs(r->least_ratio - r->wall_min / r->base_wall_min) < 1e-6 * r->least_ratio);
         assert_true(r->ratio > 0 && r->plausible >= 0 && r->plausible <= 1);
@@ -155,7 +155,7 @@ static void check_ladder(const char *folder) {
     masu_ladder_point points[MASU_SETTINGS_MOST];
     masu_row *rows = rows_of(folder, &count);
     char path[256];
-    snprintf(path, sizeof path, "%s/%s/ladder.json", cli_dir, folder);
+    snprintf(path, sizeof path, "%s/%s/ladder.json", scratch, folder);
     json_t *root = json_load_file(path, 0, NULL);
     assert_non_null(root);
     const json_t *list = json_object_get(root, "rungs");
@@ -190,7 +190,7 @@ static void check_ladder(const char *folder) {
 
 static void a_folder_has_rows_rungs_and_a_page(void **state) {
     (void)state;
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), cli_dir), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 0);
     check_rows("whole", 10);
     check_ladder("whole");
     check_markup("whole/index.html");
@@ -203,13 +203,13 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
     assert_true(rows[0].hitmiss_pct <= 0 && rows[0].depth_mean_px <= 0);
     assert_true(few->hitmiss_pct > 0 && few->hitmiss_pct < 5 && few->depth_mean_px > 0);
     free(rows);
-    if (cli_exists("whole/plots/front.svg")) {
+    if (is_in_scratch("whole/plots/front.svg")) {
         check_markup("whole/plots/front.svg");
         check_markup("whole/plots/techniques.svg");
     } else {
         assert_non_null(strstr(cli_err, "no gnuplot"));
     }
-    char *page = cli_read("whole/index.html");
+    char *page = read_file(in_scratch("whole/index.html"), NULL);
     assert_non_null(strstr(page, "data:image/png;base64,iVBOR"));
     assert_null(strstr(page, "src=\"h")); /* nothing from elsewhere */
     assert_non_null(strstr(page, "The ladder"));
@@ -224,7 +224,7 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
     assert_true(sheet < strstr(page, "<h2>Pictures"));
     free(page);
     /* The scene has an SDF and polygons, and no shadow map or reflections. */
-    char *json = cli_read("whole/sweep.json");
+    char *json = read_file(in_scratch("whole/sweep.json"), NULL);
     assert_non_null(strstr(json, "march_steps=64"));
     assert_non_null(strstr(json, "the scene has no shadow map"));
     assert_non_null(strstr(json, "no reflections are traced"));
@@ -236,19 +236,19 @@ static void a_folder_has_rows_rungs_and_a_page(void **state) {
 static void two_folders_are_compared(void **state) {
     (void)state;
     char *text;
-    assert_int_equal(bench("%s/whole --against %s/whole", cli_dir, cli_dir), 0);
+    assert_int_equal(bench("%s/whole --against %s/whole", scratch, scratch), 0);
     assert_non_null(strstr(cli_out, "worst: FLIP +0.00 %"));
     assert_non_null(strstr(cli_out, ", 0 without a row"));
-    assert_int_equal(bench("%s/whole --against %s/whole --csv %s/csv", cli_dir, cli_dir, cli_dir), 0);
+    assert_int_equal(bench("%s/whole --against %s/whole --csv %s/csv", scratch, scratch, scratch), 0);
     assert_string_equal(cli_out, "");
-    text = cli_read("csv");
+    text = read_file(in_scratch("csv"), NULL);
     assert_int_equal(strncmp(text, "rung,setting,", 13), 0);
     free(text);
-    assert_int_equal(bench("%s/whole --against %s/none", cli_dir, cli_dir), 1);
+    assert_int_equal(bench("%s/whole --against %s/none", scratch, scratch), 1);
     said("sweep.json");
-    assert_int_equal(bench("--against %s/whole", cli_dir), 2);
+    assert_int_equal(bench("--against %s/whole", scratch), 2);
     said("--against");
-    assert_int_equal(bench("a.masu --csv %s/csv --out %s/x", cli_dir, cli_dir), 2);
+    assert_int_equal(bench("a.masu --csv %s/csv --out %s/x", scratch, scratch), 2);
     said("--csv");
 }
 
@@ -260,12 +260,12 @@ static void reflections_have_an_error_of_their_own(void **state) {
     for (int i = 0; i < 3; i++) {
         assert_int_equal(bench("%s " SMALL " --reference 16 --runs 1 --shard %d/16 --validate"
                                " --truth %s/mirror.png --out %s/mirror%d",
-                               scene, i ? 9 + i : 0, cli_dir, cli_dir, i),
+                               scene, i ? 9 + i : 0, scratch, scratch, i),
                          0);
     }
-    assert_true(cli_exists("mirror.pfm") && cli_exists("mirror.specular.pfm"));
+    assert_true(is_in_scratch("mirror.pfm") && is_in_scratch("mirror.specular.pfm"));
     assert_int_equal(
-        bench("--merge %s/mirror0 %s/mirror1 %s/mirror2 --out %s/mirrors", cli_dir, cli_dir, cli_dir, cli_dir), 0);
+        bench("--merge %s/mirror0 %s/mirror1 %s/mirror2 --out %s/mirrors", scratch, scratch, scratch, scratch), 0);
     masu_row *rows = rows_of("mirrors", &count);
     assert_int_equal(count, 3);
     check_columns(rows, count, true, true);
@@ -277,7 +277,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
     /* What was drawn first, read again from the files beside the truth. */
     assert_int_equal(bench("%s " SMALL " --reference 16 --runs 1 --shard 0/16"
                            " --truth %s/mirror.png --out %s/again",
-                           scene, cli_dir, cli_dir),
+                           scene, scratch, scratch),
                      0);
     masu_row *read = rows_of("again", &again);
     assert_int_equal(again, 1);
@@ -292,16 +292,15 @@ static void reflections_have_an_error_of_their_own(void **state) {
 static void ways_to_march_and_what_depth_is_compared_with(void **state) {
     (void)state;
     char path[512];
-    const char *build = getenv("BUILD");
-    snprintf(path, sizeof path, "%s/stiff/blend.masu", build ? build : "build");
+    snprintf(path, sizeof path, "%s/stiff/blend.masu", build_dir());
     assert_int_equal(bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/few",
-                           scene_path("test_both"), cli_dir),
+                           scene_path("test_both"), scratch),
                      0);
     /* One row is a page, too: with plots that have no arrow. */
-    assert_int_equal(bench("--merge %s/few --out %s/lone", cli_dir, cli_dir), 0);
+    assert_int_equal(bench("--merge %s/few --out %s/lone", scratch, scratch), 0);
     check_markup("lone/index.html");
     check_ladder("lone");
-    char *text = cli_read("few/sweep.json");
+    char *text = read_file(in_scratch("few/sweep.json"), NULL);
     json_t *root = json_loads(text, 0, NULL);
     assert_non_null(root);
     json_t *one;
@@ -316,8 +315,8 @@ static void ways_to_march_and_what_depth_is_compared_with(void **state) {
     json_decref(root);
     free(text);
     assert_int_equal(
-        bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/exact", path, cli_dir), 0);
-    text = cli_read("exact/sweep.json");
+        bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/exact", path, scratch), 0);
+    text = read_file(in_scratch("exact/sweep.json"), NULL);
     assert_non_null(strstr(text, "double precision"));
     free(text);
     uint32_t count;
@@ -335,12 +334,12 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     uint32_t before, after;
     masu_row *old = rows_of("whole", &before);
     char path[256];
-    snprintf(path, sizeof path, "%s/whole/results.csv", cli_dir);
-    char *text = cli_read("whole/results.csv"), *cut = text + strlen(text) - 1;
+    snprintf(path, sizeof path, "%s/whole/results.csv", scratch);
+    char *text = read_file(in_scratch("whole/results.csv"), NULL), *cut = text + strlen(text) - 1;
     for (int lines = 0; lines < 3; cut -= lines < 3) lines += *cut == '\n';
     assert_int_equal(truncate(path, cut - text - 20), 0);
     free(text);
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), cli_dir), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 0);
     assert_non_null(strstr(cli_out, "3 settings measured"));
     masu_row *rows = rows_of("whole", &after);
     assert_int_equal(after, before);
@@ -351,12 +350,12 @@ static void a_run_that_was_stopped_goes_on(void **state) {
     check_rows("whole", 10);
     free(rows);
     free(old);
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), cli_dir), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_both"), scratch), 0);
     assert_non_null(strstr(cli_out, " 0 settings measured"));
-    assert_int_equal(bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), cli_dir),
+    assert_int_equal(bench("%s " SMALL " --time 2 --out %s/whole", scene_path("test_both"), scratch),
                      1);
     said("another sweep");
-    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_truth"), cli_dir), 1);
+    assert_int_equal(bench("%s " SMALL " --out %s/whole", scene_path("test_truth"), scratch), 1);
     said("another sweep");
 }
 
@@ -367,11 +366,11 @@ static void shards_together_are_the_whole(void **state) {
     for (int i = 0; i < 2; i++) {
         assert_int_equal(bench("%s " SMALL
                                " --shard %d/2 --truth %s/whole/truth.png --out %s/part%d",
-                               scene, i, cli_dir, cli_dir, i),
+                               scene, i, scratch, scratch, i),
                          0);
-        assert_false(cli_exists(i ? "part1/index.html" : "part0/index.html"));
+        assert_false(is_in_scratch(i ? "part1/index.html" : "part0/index.html"));
     }
-    assert_int_equal(bench("--merge %s/part1 %s/part0 --out %s/merged", cli_dir, cli_dir, cli_dir), 0);
+    assert_int_equal(bench("--merge %s/part1 %s/part0 --out %s/merged", scratch, scratch, scratch), 0);
     masu_row *a = rows_of("whole", &whole), *b = rows_of("merged", &merged);
     free(rows_of("part1", &part));
     assert_int_equal(merged, whole);
@@ -385,16 +384,16 @@ static void shards_together_are_the_whole(void **state) {
     free(a);
     free(b);
     check_rows("merged", 10);
-    assert_true(cli_exists("merged/truth.png") && cli_exists("merged/machine.json"));
+    assert_true(is_in_scratch("merged/truth.png") && is_in_scratch("merged/machine.json"));
     check_ladder("merged");
     check_markup("merged/index.html");
     /* What is merged into itself stays; what is not of the same sweep is refused. */
-    assert_int_equal(bench("--merge %s/merged --out %s/merged --quiet", cli_dir, cli_dir), 0);
+    assert_int_equal(bench("--merge %s/merged --out %s/merged --quiet", scratch, scratch), 0);
     assert_string_equal(cli_out, "");
-    assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, cli_dir), 0);
-    assert_int_equal(bench("--merge %s/merged %s/other --out %s/both", cli_dir, cli_dir, cli_dir), 1);
+    assert_int_equal(bench("%s --quick --size 48x27 --shard 0/20 --out %s/other", scene, scratch), 0);
+    assert_int_equal(bench("--merge %s/merged %s/other --out %s/both", scratch, scratch, scratch), 1);
     said("another sweep");
-    assert_int_equal(bench("--merge %s/none --out %s/both2", cli_dir, cli_dir), 1);
+    assert_int_equal(bench("--merge %s/none --out %s/both2", scratch, scratch), 1);
     said("sweep.json");
 }
 
@@ -402,7 +401,7 @@ static void shards_together_are_the_whole(void **state) {
 static void slow_shadows_are_timed_over_their_whole_period(void **state) {
     (void)state;
     assert_int_equal(bench("%s " SMALL " --runs 1 --shard 8/13 --validate --out %s/slow",
-                           scene_path("test_shadows"), cli_dir),
+                           scene_path("test_shadows"), scratch),
                      0);
     uint32_t count;
     masu_row *rows = rows_of("slow", &count);
@@ -415,7 +414,7 @@ static void slow_shadows_are_timed_over_their_whole_period(void **state) {
 static masu_setting_list rungs_in(const char *folder) {
     masu_setting_list rungs;
     char path[256], error[512];
-    snprintf(path, sizeof path, "%s/%s", cli_dir, folder);
+    snprintf(path, sizeof path, "%s/%s", scratch, folder);
     if (!masu_report_rungs(path, &rungs, error, sizeof error)) fail_msg("%s", error);
     return rungs;
 }
@@ -425,7 +424,7 @@ static void check_steady(const char *folder, const masu_row *old, uint32_t old_c
     char name[256], error[512];
     uint32_t count, steady_count;
     snprintf(name, sizeof name, "%s/steady.csv", folder);
-    char *text = cli_read(name);
+    char *text = read_file(in_scratch(name), NULL);
     masu_row *rows = rows_of(folder, &count);
     masu_row *steady = masu_rows_read(text, &steady_count, error, sizeof error);
     const masu_setting_list rungs = rungs_in(folder);
@@ -455,7 +454,7 @@ static void check_steady(const char *folder, const masu_row *old, uint32_t old_c
 static masu_row *table_of(const char *folder, const char *file, uint32_t *count) {
     char name[256], error[512];
     snprintf(name, sizeof name, "%s/%s", folder, file);
-    char *text = cli_read(name);
+    char *text = read_file(in_scratch(name), NULL);
     masu_row *rows = masu_rows_read(text, count, error, sizeof error);
     if (!rows) fail_msg("%s: %s", name, error);
     free(text);
@@ -465,7 +464,7 @@ static masu_row *table_of(const char *folder, const char *file, uint32_t *count)
 static void write_table(const char *folder, const char *file, const masu_row *rows,
                         uint32_t count) {
     char path[512];
-    snprintf(path, sizeof path, "%s/%s/%s", cli_dir, folder, file);
+    snprintf(path, sizeof path, "%s/%s/%s", scratch, folder, file);
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     assert_true(masu_rows_header(f) > 0);
@@ -503,16 +502,16 @@ static void rungs_are_timed_again(void **state) {
     write_table("whole", "results.csv", table, count);
     masu_row *old = rows_of("whole", &before);
     assert_true(spoilt(masu_rows_find(old, before, quick)));
-    assert_false(cli_exists("whole/steady.csv"));
-    assert_int_equal(bench("%s " SMALL " --steady 0.2 --validate --out %s/whole", scene, cli_dir), 0);
+    assert_false(is_in_scratch("whole/steady.csv"));
+    assert_int_equal(bench("%s " SMALL " --steady 0.2 --validate --out %s/whole", scene, scratch), 0);
     check_steady("whole", old, before);
     check_ladder("whole");
     masu_row *rows = rows_of("whole", &count);
     assert_false(spoilt(masu_rows_find(rows, count, quick)));
-    char *first = cli_read("whole/steady.csv");
-    assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene, cli_dir), 0);
+    char *first = read_file(in_scratch("whole/steady.csv"), NULL);
+    assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene, scratch), 0);
     cli_said("; 0 timed again");
-    char *second = cli_read("whole/steady.csv");
+    char *second = read_file(in_scratch("whole/steady.csv"), NULL);
     assert_string_equal(first, second);
     free(first);
     free(second);
@@ -529,9 +528,9 @@ static void a_row_without_its_picture_is_measured_again(void **state) {
     const char *setting = "scale=0.4"; /* it has been timed again */
     masu_row *old = rows_of("whole", &before);
     spoil("whole", "steady.csv", setting);
-    snprintf(path, sizeof path, "%s/whole/pictures/%s.png", cli_dir, setting);
+    snprintf(path, sizeof path, "%s/whole/pictures/%s.png", scratch, setting);
     assert_int_equal(unlink(path), 0);
-    assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene_path("test_both"), cli_dir), 0);
+    assert_int_equal(bench("%s " SMALL " --steady 0.2 --out %s/whole", scene_path("test_both"), scratch), 0);
     cli_said(": 1 settings measured");
     masu_row *rows = rows_of("whole", &after);
     assert_int_equal(after, before);
@@ -564,14 +563,14 @@ static void both_tables_are_joined_and_forgotten_together(void **state) {
     (void)state;
     char path[512];
     uint32_t count, steady;
-    assert_int_equal(bench("--merge %s/whole --out %s/joined", cli_dir, cli_dir), 0);
+    assert_int_equal(bench("--merge %s/whole --out %s/joined", scratch, scratch), 0);
     check_same_table("whole", "joined", "results.csv");
     check_same_table("whole", "joined", "steady.csv");
     /* Times of a row that is gone are gone with it, though its picture is there. */
     spoil("joined", "steady.csv", NULL);
-    snprintf(path, sizeof path, "%s/joined/results.csv", cli_dir);
+    snprintf(path, sizeof path, "%s/joined/results.csv", scratch);
     assert_int_equal(unlink(path), 0);
-    assert_int_equal(bench("%s " SMALL " --out %s/joined", scene_path("test_both"), cli_dir), 0);
+    assert_int_equal(bench("%s " SMALL " --out %s/joined", scene_path("test_both"), scratch), 0);
     masu_row *rows = rows_of("joined", &count);
     free(table_of("joined", "steady.csv", &steady));
     assert_int_equal(steady, 0);
@@ -587,7 +586,7 @@ static void rungs_alone_are_measured_elsewhere(void **state) {
     uint32_t count, whole_count;
     bool base = false;
     assert_int_equal(bench("%s " SMALL " --rungs-of %s/whole --steady 0.2 --out %s/alone", scene,
-                           cli_dir, cli_dir),
+                           scratch, scratch),
                      0);
     masu_row *rows = rows_of("alone", &count), *whole = rows_of("whole", &whole_count);
     for (uint32_t i = 0; i < rungs.count; i++) {
@@ -600,7 +599,7 @@ static void rungs_alone_are_measured_elsewhere(void **state) {
     assert_int_equal(count, rungs.count + !base);
     check_steady("alone", rows, count);
     check_markup("alone/index.html");
-    assert_int_equal(bench("%s/whole --against %s/alone", cli_dir, cli_dir), 0);
+    assert_int_equal(bench("%s/whole --against %s/alone", scratch, scratch), 0);
     assert_non_null(strstr(cli_out, ", 0 without a row"));
     free(rows);
     free(whole);
@@ -617,9 +616,9 @@ static void make_odd(void) {
     masu_row odd = *quick;
     snprintf(odd.setting, sizeof odd.setting, "scale=0.3");
     odd.ratio = odd.gpu_ratio = 0.5;
-    snprintf(path, sizeof path, "%s/odd", cli_dir);
+    snprintf(path, sizeof path, "%s/odd", scratch);
     assert_int_equal(mkdir(path, 0777), 0);
-    snprintf(path, sizeof path, "%s/odd/results.csv", cli_dir);
+    snprintf(path, sizeof path, "%s/odd/results.csv", scratch);
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     const masu_row *base = masu_rows_find(rows, count, "base");
@@ -627,9 +626,9 @@ static void make_odd(void) {
     assert_true(masu_rows_write(f, &odd) > 0);
     assert_int_equal(fclose(f), 0);
     free(rows);
-    char *text = cli_read("whole/sweep.json");
+    char *text = read_file(in_scratch("whole/sweep.json"), NULL);
     for (char *at = text; (at = strstr(at, "scale=0.4\"")); at++) at[8] = '3';
-    cli_write("odd/sweep.json", text, strlen(text));
+    write_text("odd/sweep.json", text);
     free(text);
 }
 
@@ -637,25 +636,25 @@ static void rungs_of_no_use_are_refused(void **state) {
     (void)state;
     make_odd();
     assert_int_equal(bench("%s " SMALL " --rungs-of %s/odd --out %s/y", scene_path("test_both"),
-                           cli_dir, cli_dir),
+                           scratch, scratch),
                      1);
     said("scale=0.3 is none of its settings");
     assert_int_equal(bench("%s " SMALL " --rungs-of %s/none --out %s/y", scene_path("test_both"),
-                           cli_dir, cli_dir),
+                           scratch, scratch),
                      1);
     said("none: sweep.json");
-    assert_false(cli_exists("y"));
-    assert_int_equal(bench("a.masu --out %s/y --steady -1", cli_dir), 2);
+    assert_false(is_in_scratch("y"));
+    assert_int_equal(bench("a.masu --out %s/y --steady -1", scratch), 2);
     said("steady");
-    assert_int_equal(bench("a.masu --out %s/y --steady 1 --shard 0/2", cli_dir), 2);
+    assert_int_equal(bench("a.masu --out %s/y --steady 1 --shard 0/2", scratch), 2);
     said("--steady");
-    assert_int_equal(bench("a.masu --out %s/y --rungs-of %s/y", cli_dir, cli_dir), 2);
+    assert_int_equal(bench("a.masu --out %s/y --rungs-of %s/y", scratch, scratch), 2);
     said("one folder");
     assert_int_equal(bench("%s --quick --size 32x18 --rungs-of %s/whole --out %s/z",
-                           scene_path("test_both"), cli_dir, cli_dir),
+                           scene_path("test_both"), scratch, scratch),
                      1);
     said("\"width\" in sweep.json");
-    assert_int_equal(bench("--merge --rungs-of %s/odd %s/whole --out %s/y", cli_dir, cli_dir, cli_dir), 2);
+    assert_int_equal(bench("--merge --rungs-of %s/odd %s/whole --out %s/y", scratch, scratch, scratch), 2);
     said("--rungs-of");
 }
 
@@ -663,25 +662,25 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     (void)state;
     assert_int_equal(bench("--help"), 0);
     assert_non_null(strstr(cli_out, "--shard"));
-    assert_int_equal(bench("--out %s/x", cli_dir), 2);
+    assert_int_equal(bench("--out %s/x", scratch), 2);
     said("no scene");
-    assert_int_equal(bench("--merge --out %s/x", cli_dir), 2);
+    assert_int_equal(bench("--merge --out %s/x", scratch), 2);
     said("no folder");
     assert_int_equal(bench("a.masu"), 2);
     said("--out");
-    assert_int_equal(bench("a.masu b.masu --out %s/x", cli_dir), 2);
+    assert_int_equal(bench("a.masu b.masu --out %s/x", scratch), 2);
     said("b.masu");
     static const char *const shards[] = {"2/2", "1", "/", "1/", "-1/2", "0/0", "1/2x"};
     for (size_t i = 0; i < sizeof shards / sizeof *shards; i++) {
-        assert_int_equal(bench("a.masu --out %s/x --shard %s", cli_dir, shards[i]), 2);
+        assert_int_equal(bench("a.masu --out %s/x --shard %s", scratch, shards[i]), 2);
         said("shard");
     }
-    assert_int_equal(bench("a.masu --out %s/x --runs 0", cli_dir), 2);
+    assert_int_equal(bench("a.masu --out %s/x --runs 0", scratch), 2);
     said("runs");
-    assert_int_equal(bench("%s/none.masu --out %s/x --quick", cli_dir, cli_dir), 1);
+    assert_int_equal(bench("%s/none.masu --out %s/x --quick", scratch, scratch), 1);
     said("none.masu");
-    assert_false(cli_exists("x"));
-    assert_int_equal(bench("%s --out %s/no/such --quick", scene_path("test_both"), cli_dir), 1);
+    assert_false(is_in_scratch("x"));
+    assert_int_equal(bench("%s --out %s/no/such --quick", scene_path("test_both"), scratch), 1);
     said("no/such");
 }
 
@@ -701,5 +700,5 @@ int main(void) {
         cmocka_unit_test(rungs_of_no_use_are_refused),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
     };
-    return cmocka_run_group_tests(tests, cli_make_dir, cli_remove_dir);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -5,6 +5,8 @@
 #include "shared/masu_shared.h"
 #include "split_sum.h"
 #include "support/support.h"
+#include "support/random.h"
+#include "support/floats.h"
 #include "support/compute.h"
 
 #include "brdf_comp.spv.h"
@@ -40,17 +42,8 @@ static void run(test_case *cases, test_result *results, uint32_t count, uint32_t
 
 static uint64_t state = 1;
 
-static uint32_t bits(void) {
-    uint64_t z = state += 0x9E3779B97F4A7C15u;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return (uint32_t)(z ^ z >> 31);
-}
-
-static float unit(void) { return (float)(bits() >> 8) / 16777216.0f; }
-
 static void direction(float out[4]) {
-    double z = (double)unit(), phi = 6.283185307179586 * (double)unit();
+    double z = (double)random_float(&state), phi = 6.283185307179586 * (double)random_float(&state);
     z = fmax(z * z, 1e-3);
     out[0] = (float)(sqrt(1 - z * z) * cos(phi));
     out[1] = (float)(sqrt(1 - z * z) * sin(phi));
@@ -59,19 +52,19 @@ static void direction(float out[4]) {
 }
 
 static test_case any_case(void) {
-    test_case c = {.albedo = {unit(), unit(), unit()}, .roughness = unit(), .specular = unit()};
-    c.metallic = bits() & 1 ? 0 : unit();
-    c.coat = bits() & 1 ? 0 : unit();
-    c.coat_roughness = unit();
+    test_case c = {.albedo = {random_float(&state), random_float(&state), random_float(&state)}, .roughness = random_float(&state), .specular = random_float(&state)};
+    c.metallic = random_word(&state) & 1 ? 0 : random_float(&state);
+    c.coat = random_word(&state) & 1 ? 0 : random_float(&state);
+    c.coat_roughness = random_float(&state);
     c.normal[2] = 1;
     direction(c.view);
     direction(c.light);
     /* Half of them near the mirror direction, where a lobe is. */
-    if (bits() & 1) {
+    if (random_word(&state) & 1) {
         double spread = 0.3 * (double)(c.roughness * c.roughness), size = 0;
         for (int k = 0; k < 3; k++) {
             double l = k == 2 ? (double)c.view[k] : -(double)c.view[k];
-            c.light[k] = (float)(l + spread * ((double)unit() - 0.5));
+            c.light[k] = (float)(l + spread * ((double)random_float(&state) - 0.5));
         }
         if (c.light[2] < 1e-3f) c.light[2] = 1e-3f;
         for (int k = 0; k < 3; k++) size += (double)c.light[k] * (double)c.light[k];
@@ -229,13 +222,13 @@ static void test_any_bits(void **unused) {
     for (; count < MANY; count++) {
         uint32_t words[sizeof(test_case) / 4];
         for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
-            words[k] = bits();
-            if (bits() % 8 == 0) words[k] |= 0x7F800000u; /* NaN or Inf */
+            words[k] = random_word(&state);
+            if (random_word(&state) % 8 == 0) words[k] |= 0x7F800000u; /* NaN or Inf */
         }
         memcpy(&cases[count], words, sizeof words);
         if (count % 4 == 0) { /* only one thing is odd */
             test_case c = any_case();
-            ((uint32_t *)(void *)&c)[bits() % (sizeof c / 4)] = words[0];
+            ((uint32_t *)(void *)&c)[random_word(&state) % (sizeof c / 4)] = words[0];
             cases[count] = c;
         }
     }
@@ -249,14 +242,6 @@ static void test_any_bits(void **unused) {
 /* ---- Whole frames ---------------------------------------------------------------------------- */
 
 enum { W = 160, H = 90 };
-
-static float half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    if (exponent == 31) return NAN;
-    float v =
-        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
-    return h & 0x8000 ? -v : v;
-}
 
 /* scenes/surfaces.json under the sun alone, from the G-buffer's own texels: plain surfaces and those with
  * a coat. The rest is the half float of the picture. */
@@ -284,9 +269,7 @@ static void test_frame(void **unused) {
                   {MASU_READBACK_NORMAL, normals, sizeof normals},
                   {MASU_READBACK_HDR, hdr, sizeof hdr}};
     for (size_t i = 0; i < 3; i++) {
-        masu_readback_image image;
-        assert_int_equal(masu_readback(s.m, commands.slot, images[i].bit, &image), MASU_OK);
-        memcpy(images[i].to, image.pixels, images[i].bytes);
+        memcpy(images[i].to, read_image(&s, commands.slot, images[i].bit), images[i].bytes);
     }
     close_session(&s);
     double sun[3] = {0.3, 0.6, 0.742}, size = sqrt(0.3 * 0.3 + 0.6 * 0.6 + 0.742 * 0.742);
@@ -294,7 +277,7 @@ static void test_frame(void **unused) {
     uint32_t counts[2] = {0, 0};
     for (int k = 0; k < 3; k++) sun[k] /= size;
     for (int i = 0; i < W * H; i++) {
-        for (int k = 0; k < 3; k++) assert_true(isfinite(half(hdr[4 * i + k])));
+        for (int k = 0; k < 3; k++) assert_true(isfinite(half_float(hdr[4 * i + k])));
         if (!normals[i]) continue;
         float unpacked[3];
         masu_unpack_normal(normals[i], unpacked);
@@ -324,7 +307,7 @@ static void test_frame(void **unused) {
         brdf_eval(masu_split_sum, &surface, to_v, to_l, expected);
         for (int k = 0; k < 3; k++) {
             double off =
-                fabs((double)half(hdr[4 * i + k]) - 2 * expected[k]) / (0.05 + 2 * expected[k]);
+                fabs(half_float(hdr[4 * i + k]) - 2 * expected[k]) / (0.05 + 2 * expected[k]);
             worst[coated] = fmax(worst[coated], off);
             sum[coated] += off;
         }

@@ -17,10 +17,11 @@
 
 static void help_and_version_are_there_for_every_command(void **state) {
     (void)state;
-    static const char *const commands[] = {"",     "render",      "upscale",
-                                           "plan", "bench", "march-bench", "cull-bench", "draw-bench",
-                                           "light-bench", "trace-bench", "bench-image",
-                                           "conform"};
+    static const char *const commands[] = {
+        "",         "render",        "upscale",     "compare",           "plan",       "bench",
+        "study",    "conform",       "simulate",    "study march",       "study cull", "study draw",
+        "study ao", "study lights",  "study image", "study reflections", "study rays",
+        "study upscale", "study baseline"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(cli_run("%s --help", commands[i]), 0);
         assert_true(strlen(cli_out) > 200);
@@ -31,11 +32,11 @@ static void help_and_version_are_there_for_every_command(void **state) {
 }
 
 /* Times are not looked at: a line for each case, with numbers that add up. */
-static void bench_image_has_a_line_for_each_case(void **state) {
+static void the_upscale_study_has_a_line_for_each_case(void **state) {
     (void)state;
     static const char *const names[] = {"easu+rcas", "easu", "easu-fast+rcas", "easu-fast",
                                         "bilinear",  "gather"};
-    assert_int_equal(cli_run("bench-image --from 32x24 --size 64x48 --runs 2 --csv -"), 0);
+    assert_int_equal(cli_run("study upscale --from 32x24 --size 64x48 --runs 2 --csv -"), 0);
     assert_non_null(strstr(cli_out, "case,driver,ms_min,ms_median,ratio,"));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char start[64];
@@ -47,19 +48,19 @@ static void bench_image_has_a_line_for_each_case(void **state) {
         assert_int_equal(sscanf(row, "\",%lf,%lf,%lf,%lf", &least, &median, &ratio, &gpu), 4);
         assert_true(least > 0 && median >= least && ratio > 0 && (i || ratio == 1));
     }
-    assert_int_equal(cli_run("bench-image --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
-    assert_non_null(strstr(cli_out, "| easu |"));
-    assert_non_null(strstr(cli_out, "| bilinear |"));
-    assert_null(strstr(cli_out, "| gather |"));
-    assert_int_equal(cli_run("bench-image --only easu,bicubic"), 2);
+    assert_int_equal(cli_run("study upscale --only easu,bilinear --from 32x24 --size 64x48 --runs 1"), 0);
+    assert_non_null(strstr(cli_out, "\n  easu  "));
+    assert_non_null(strstr(cli_out, "\n  bilinear  "));
+    assert_null(strstr(cli_out, "\n  gather  "));
+    assert_int_equal(cli_run("study upscale --only easu,bicubic"), 2);
     cli_complained("bicubic");
-    assert_int_equal(cli_run("bench-image --only="), 2);
+    assert_int_equal(cli_run("study upscale --only="), 2);
     cli_complained("only");
-    assert_int_equal(cli_run("bench-image --csv %s/none/x.csv", cli_dir), 1);
-    cli_complained("cannot write");
-    assert_int_equal(cli_run("bench-image --runs 0"), 2);
+    assert_int_equal(cli_run("study upscale --csv %s/none/x.csv", scratch), 1);
+    cli_complained("none/x.csv");
+    assert_int_equal(cli_run("study upscale --runs 0"), 2);
     cli_complained("runs");
-    assert_int_equal(cli_run("bench-image %s/none.png", cli_dir), 1);
+    assert_int_equal(cli_run("study upscale %s/none.png", scratch), 1);
     cli_complained("none.png");
 }
 
@@ -70,37 +71,37 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     cli_complained("no scene");
     assert_int_equal(cli_run("render %s", scene), 2);
     cli_complained("--output");
-    assert_int_equal(cli_run("render %s -o %s/x.png --rung 3", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --rung 3", scene, scratch), 2);
     cli_complained("rung 3");
-    assert_int_equal(cli_run("render %s -o %s/x.png --size 0x9", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --size 0x9", scene, scratch), 2);
     cli_complained("size");
-    assert_int_equal(cli_run("render %s -o %s/x.png --size 99999x9", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --size 99999x9", scene, scratch), 2);
     cli_complained("size");
-    assert_int_equal(cli_run("render %s -o %s/x.png --bogus", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --bogus", scene, scratch), 2);
     cli_complained("--bogus");
-    assert_int_equal(cli_run("render %s -o %s/x.png --reference=0", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --reference=0", scene, scratch), 2);
     cli_complained("reference");
-    assert_int_equal(cli_run("render %s -o %s/x.png --reference --frames 2", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --reference --frames 2", scene, scratch), 2);
     cli_complained("--frames");
-    assert_int_equal(cli_run("render %s -o %s/#.png --reference", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/#.png --reference", scene, scratch), 2);
     cli_complained("many");
-    assert_int_equal(cli_run("render %s -o %s/x.png --frames 0", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --frames 0", scene, scratch), 2);
     cli_complained("frames");
-    assert_int_equal(cli_run("render %s -o %s/x.png --exposure bright", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --exposure bright", scene, scratch), 2);
     cli_complained("exposure");
-    assert_int_equal(cli_run("render %s -o %s/x.png --exposure 0", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --exposure 0", scene, scratch), 2);
     cli_complained("exposure");
-    assert_int_equal(cli_run("render %s -o %s/x.png --tone film", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --tone film", scene, scratch), 2);
     cli_complained("tone");
     assert_int_equal(cli_run("upscale a.png b.png"), 2);
     cli_complained("--size");
     assert_int_equal(cli_run("upscale a.png b.png --aa off"), 2);
     cli_complained("--size");
-    assert_int_equal(cli_run("render %s -o %s/x.png --aa most", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --aa most", scene, scratch), 2);
     cli_complained("--aa: needed is one of auto, off, fxaa, smaa-low");
-    assert_int_equal(cli_run("render %s -o %s/x.png --setting scale=2", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --setting scale=2", scene, scratch), 2);
     cli_complained("scale: needed is a number from 0 to 1, given is '2'");
-    assert_int_equal(cli_run("render %s -o %s/x.png --setting base --ladder auto", scene, cli_dir), 2);
+    assert_int_equal(cli_run("render %s -o %s/x.png --setting base --ladder auto", scene, scratch), 2);
     cli_complained("no --ladder");
     assert_int_equal(cli_run("upscale a.png --size 4x4"), 2);
     cli_complained("output");
@@ -108,7 +109,7 @@ static void wrong_command_lines_are_exit_code_2(void **state) {
     cli_complained("'slow'");
     assert_int_equal(cli_run("paint"), 2);
     cli_complained("paint");
-    assert_false(cli_exists("x.png"));
+    assert_false(is_in_scratch("x.png"));
 }
 
 static void bad_scene_files_are_named_with_their_fault(void **state) {
@@ -119,43 +120,43 @@ static void bad_scene_files_are_named_with_their_fault(void **state) {
     size_t n = fread(blob, 1, sizeof blob, f);
     fclose(f);
     assert_true(n > 1000 && n < sizeof blob);
-    assert_int_equal(cli_run("render %s/none.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    assert_int_equal(cli_run("render %s/none.masu -o %s/x.png", scratch, scratch), 1);
     cli_complained("none.masu");
-    assert_int_equal(cli_run("render %s -o %s/x.png", cli_dir, cli_dir), 1);
-    cli_complained(cli_dir);
-    cli_write("empty.masu", blob, 0);
-    assert_int_equal(cli_run("render %s/empty.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    assert_int_equal(cli_run("render %s -o %s/x.png", scratch, scratch), 1);
+    cli_complained(scratch);
+    write_bytes("empty.masu", blob, 0);
+    assert_int_equal(cli_run("render %s/empty.masu -o %s/x.png", scratch, scratch), 1);
     cli_complained("empty.masu");
-    cli_write("cut.masu", blob, n - 100);
-    assert_int_equal(cli_run("render %s/cut.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    write_bytes("cut.masu", blob, n - 100);
+    assert_int_equal(cli_run("render %s/cut.masu -o %s/x.png", scratch, scratch), 1);
     cli_complained("truncated");
     blob[4] ^= 0x40; /* version */
-    cli_write("version.masu", blob, n);
-    assert_int_equal(cli_run("plan %s/version.masu", cli_dir), 1);
+    write_bytes("version.masu", blob, n);
+    assert_int_equal(cli_run("plan %s/version.masu", scratch), 1);
     cli_complained("version");
     blob[4] ^= 0x40;
     blob[n / 2] ^= 1;
-    cli_write("damaged.masu", blob, n);
-    assert_int_equal(cli_run("render %s/damaged.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    write_bytes("damaged.masu", blob, n);
+    assert_int_equal(cli_run("render %s/damaged.masu -o %s/x.png", scratch, scratch), 1);
     cli_complained("damaged");
-    cli_write("text.masu",
+    write_bytes("text.masu",
                 "not a scene, but long enough to hold the header of one, and a bit more", 70);
-    assert_int_equal(cli_run("render %s/text.masu -o %s/x.png", cli_dir, cli_dir), 1);
+    assert_int_equal(cli_run("render %s/text.masu -o %s/x.png", scratch, scratch), 1);
     cli_complained("not a Masu scene");
-    assert_false(cli_exists("x.png"));
+    assert_false(is_in_scratch("x.png"));
 }
 
 static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    assert_int_equal(cli_run("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, cli_dir),
+    assert_int_equal(cli_run("render %s -o %s/no/such/folder.png --size 16x16 --quiet", scene, scratch),
                      1);
     cli_complained("folder.png");
-    cli_write("old.png", "old", 3);
-    assert_int_equal(cli_run("upscale %s/none.png %s/old.png --size 8x8", cli_dir, cli_dir), 1);
+    write_bytes("old.png", "old", 3);
+    assert_int_equal(cli_run("upscale %s/none.png %s/old.png --size 8x8", scratch, scratch), 1);
     cli_complained("none.png");
     char text[16];
-    cli_take("old.png", text, sizeof text);
+    take_text("old.png", text, sizeof text);
     assert_string_equal(text, "old");
     assert_int_equal(cli_run("render %s -o /dev/full --size 16x16 --quiet", scene), 1);
     cli_complained("/dev/full");
@@ -165,12 +166,12 @@ static void an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing(vo
 
 static void an_unknown_device_lists_those_that_are_there(void **state) {
     (void)state;
-    assert_int_equal(cli_run("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), cli_dir),
+    assert_int_equal(cli_run("render %s -o %s/x.png --device nonesuch", scene_path("test_both"), scratch),
                      1);
     cli_complained("nonesuch");
     assert_non_null(strstr(cli_err, "0 '"));
     assert_int_equal(
-        cli_run("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), cli_dir),
+        cli_run("render %s -o %s/x.png --device 0 --size 16x16 --quiet", scene_path("test_both"), scratch),
         0);
 }
 
@@ -179,12 +180,12 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
     const char *scene = scene_path("test_both");
     assert_int_equal(
         cli_run("render %s -o %s/a.png --size 64x48 --stats %s/a.json --frames 3 --validate --quiet",
-             scene, cli_dir, cli_dir),
+             scene, scratch, scratch),
         0);
     assert_string_equal(cli_err, "");
     struct masu_image image;
     char path[256], error[ERROR_SIZE];
-    snprintf(path, sizeof path, "%s/a.png", cli_dir);
+    snprintf(path, sizeof path, "%s/a.png", scratch);
     assert_ok(masu_image_load_png(path, &image, error, sizeof error));
     assert_int_equal(image.width, 64);
     assert_int_equal(image.height, 48);
@@ -197,20 +198,20 @@ static void render_writes_the_picture_and_its_numbers_under_validation(void **st
                                        "\"sdf_evals\"",
                                        "\"timestamps_plausible\"",
                                        "\"median\""};
-    cli_take("a.json", cli_out, sizeof cli_out);
+    take_text("a.json", cli_out, sizeof cli_out);
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (!strstr(cli_out, keys[i])) fail_msg("%s is not in the statistics", keys[i]);
     }
     assert_null(strstr(cli_out, "\"exposure\"")); /* nothing is metered */
     assert_int_equal(cli_run("render %s -o %s/a.png --size 64x48 --stats - --exposure auto --tone neutral "
                           "--dither --validate --quiet",
-                          scene, cli_dir),
+                          scene, scratch),
                      0);
     assert_non_null(strstr(cli_out, "\"exposure\""));
     assert_non_null(strstr(cli_out, "\"meter\""));
-    assert_int_equal(cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, cli_dir),
+    assert_int_equal(cli_run("render %s -o %s/f-###.png --size 16x16 --frames 2 --quiet", scene, scratch),
                      0);
-    assert_true(cli_exists("f-000.png") && cli_exists("f-001.png") && !cli_exists("f-002.png"));
+    assert_true(is_in_scratch("f-000.png") && is_in_scratch("f-001.png") && !is_in_scratch("f-002.png"));
 }
 
 /* A target of a second fits whatever the machine does. */
@@ -219,15 +220,15 @@ static void the_governor_reports_what_it_has_done(void **state) {
     const char *scene = scene_path("test_sphere_sdf");
     assert_int_equal(cli_run("render %s --target-ms 1000 --ladder off --frames 12 --size 32x24 --times %s/t.csv "
                           "--stats %s/g.json",
-                          scene, cli_dir, cli_dir),
+                          scene, scratch, scratch),
                      0);
     assert_non_null(strstr(cli_out, "governor: target 1000.00 ms, 0 of 12 frames over it"));
     assert_non_null(strstr(cli_out, "rung 0, scale 1.000:    12 frames"));
     assert_non_null(strstr(cli_out, "rung 7, scale 0.400:     0 frames"));
-    cli_take("t.csv", cli_out, sizeof cli_out);
+    take_text("t.csv", cli_out, sizeof cli_out);
     assert_non_null(strstr(cli_out, "frame,time,rung,scale,gpu_ms,wall_ms,reason\n0,0.0000,0,1.0000,"));
     assert_non_null(strstr(cli_out, "the best rung fits"));
-    cli_take("g.json", cli_out, sizeof cli_out);
+    take_text("g.json", cli_out, sizeof cli_out);
     assert_non_null(strstr(cli_out, "\"predicted_ms\""));
     assert_int_equal(cli_run("render %s --target-ms 5 --ladder off --rung 3 --frames 5 --size 32x24", scene), 0);
     assert_non_null(strstr(cli_out, "rung 3, scale 0.675:     5 frames"));
@@ -247,7 +248,7 @@ static void write_ladder(const char *name, const char *second_ratio, const char 
              "\"flip\": 0.25, \"rmse\": 5, \"knobs\": {\"scale\": 0.5, \"march_steps\": 64, "
              "\"shadow_refresh\": [1, 2, 4, 8]%s}}]}",
              second_ratio, knob);
-    cli_write(name, text, strlen(text));
+    write_text(name, text);
 }
 
 static void ladders_are_read_shown_and_built_in(void **state) {
@@ -256,25 +257,25 @@ static void ladders_are_read_shown_and_built_in(void **state) {
     write_ladder("l.json", "0.5", "");
     write_ladder("bad.json", "1.5", "");
     write_ladder("near.json", "0.99", "");
-    assert_int_equal(cli_run("ladder %s/l.json", cli_dir), 0);
+    assert_int_equal(cli_run("bench --ladder %s/l.json", scratch), 0);
     assert_non_null(strstr(cli_out, "a.masu at 32x24, by wall, 2026-01-02"));
     assert_non_null(strstr(cli_out, "     1  0.500  0.2500    5.00  scale=0.5"));
-    assert_int_equal(cli_run("ladder %s/bad.json", cli_dir), 1);
+    assert_int_equal(cli_run("bench --ladder %s/bad.json", scratch), 1);
     cli_complained("rungs[1]: ratio: needed is less than that of the rung before, 1, given is 1.5");
-    assert_int_equal(cli_run("ladder"), 2);
+    assert_int_equal(cli_run("bench --ladder"), 2);
     cli_complained("no ladder");
     /* As tables of the library. */
-    assert_int_equal(cli_run("ladder --c both=%s/l.json", cli_dir), 0);
+    assert_int_equal(cli_run("bench --ladder --c both=%s/l.json", scratch), 0);
     assert_non_null(strstr(cli_out, "[MASU_SCENE_BOTH] ="));
     assert_non_null(strstr(cli_out, "{.scale = 1.0f, .aa = MASU_AA_SMAA_LOW},"));
     assert_non_null(strstr(cli_out, "{.scale = 0.5f, .march_steps = 64, .shadow_refresh = {1, 2, 4, 8}},"));
     assert_non_null(strstr(cli_out, ".ratios = {1.0f, 0.5f},"));
     assert_non_null(strstr(cli_out, ".flips = {0.1f, 0.25f},"));
-    assert_int_equal(cli_run("ladder --c %s/l.json", cli_dir), 2);
+    assert_int_equal(cli_run("bench --ladder --c %s/l.json", scratch), 2);
     cli_complained("--c takes CLASS=FILE");
-    assert_int_equal(cli_run("ladder --c many=%s/l.json", cli_dir), 2);
+    assert_int_equal(cli_run("bench --ladder --c many=%s/l.json", scratch), 2);
     cli_complained("--c takes CLASS=FILE");
-    assert_int_equal(cli_run("ladder --c sdf=%s/l.json sdf=%s/l.json", cli_dir, cli_dir), 2);
+    assert_int_equal(cli_run("bench --ladder --c sdf=%s/l.json sdf=%s/l.json", scratch, scratch), 2);
     cli_complained("two ladders of one class");
     /* What not every scene of a class, or device, can do. */
     static const char *const refused[] = {"march\": \"plain", "specular\": \"on", "occlusion\": \"on",
@@ -284,29 +285,29 @@ static void ladders_are_read_shown_and_built_in(void **state) {
         snprintf(knob, sizeof knob, i < 4 ? ", \"%s\"" : ", \"%s\": 0.25",
                  i < 4 ? refused[i] : i == 4 ? "shadow_distance" : "specular_cutoff");
         write_ladder("refused.json", "0.5", knob);
-        assert_int_equal(cli_run("ladder %s/refused.json", cli_dir), 0);
-        assert_int_equal(cli_run("ladder --c sdf=%s/refused.json", cli_dir), 1);
+        assert_int_equal(cli_run("bench --ladder %s/refused.json", scratch), 0);
+        assert_int_equal(cli_run("bench --ladder --c sdf=%s/refused.json", scratch), 1);
         cli_complained("rungs[1]: ");
     }
-    assert_int_equal(cli_run("ladder --c sdf=%s/near.json", cli_dir), 1);
+    assert_int_equal(cli_run("bench --ladder --c sdf=%s/near.json", scratch), 1);
     cli_complained("needed is 1.04 times less than the rung before, 1, given is 0.99");
     /* In programs. */
-    assert_int_equal(cli_run("plan %s --size 32x24 --ladder %s/l.json", scene, cli_dir), 0);
+    assert_int_equal(cli_run("plan %s --size 32x24 --ladder %s/l.json", scene, scratch), 0);
     assert_non_null(strstr(cli_out, "1  renders 16x12, "));
     assert_non_null(strstr(cli_out, "time 0.500, FLIP 0.2500"));
     assert_int_equal(cli_run("plan %s --size 32x24 --ladder auto", scene), 0);
     assert_non_null(strstr(cli_out, "class: both; its ladder is that of "));
     assert_int_equal(cli_run("render %s --target-ms 1000 --frames 3 --size 32x24 --ladder %s/l.json",
-                          scene, cli_dir),
+                          scene, scratch),
                      0);
     assert_non_null(strstr(cli_out, "rung 1, scale 0.500:     0 frames"));
     assert_null(strstr(cli_out, "rung 2"));
-    assert_int_equal(cli_run("render %s -o %s/l.png --rung 1 --size 32x24 --ladder auto", scene, cli_dir), 0);
+    assert_int_equal(cli_run("render %s -o %s/l.png --rung 1 --size 32x24 --ladder auto", scene, scratch), 0);
     assert_int_equal(cli_run("render %s -o %s/l.png --rung 2 --size 32x24 --ladder %s/l.json --quiet",
-                          scene, cli_dir, cli_dir),
+                          scene, scratch, scratch),
                      2);
     cli_complained("--rung 2 does not exist, there are 0 to 1");
-    assert_int_equal(cli_run("render %s -o %s/l.png --size 32x24 --ladder %s/bad.json", scene, cli_dir, cli_dir), 1);
+    assert_int_equal(cli_run("render %s -o %s/l.png --size 32x24 --ladder %s/bad.json", scene, scratch, scratch), 1);
     cli_complained("bad.json: rungs[1]: ratio");
 }
 
@@ -317,7 +318,7 @@ static void a_setting_is_drawn_by_its_name(void **state) {
     const char *scene = scene_path("test_both");
     char ladder[300], name[256], error[ERROR_SIZE];
     write_ladder("l.json", "0.5", "");
-    snprintf(ladder, sizeof ladder, "--ladder %s/l.json --rung 0", cli_dir);
+    snprintf(ladder, sizeof ladder, "--ladder %s/l.json --rung 0", scratch);
     const char *const pairs[][2] = {{ladder, "--setting aa=smaa-low+sharpness=0"},
                                     {"--aa smaa-high", "--setting sharpness=0+aa=smaa-high"},
                                     {"--rung 2", "--setting scale=0.4"},
@@ -325,7 +326,7 @@ static void a_setting_is_drawn_by_its_name(void **state) {
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         struct masu_image images[2];
         for (int k = 0; k < 2; k++) {
-            snprintf(name, sizeof name, "%s/setting%d.png", cli_dir, k);
+            snprintf(name, sizeof name, "%s/setting%d.png", scratch, k);
             assert_int_equal(
                 cli_run("render %s -o %s --size 64x48 --time 1 %s", scene, name, pairs[i][k]), 0);
             assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
@@ -363,29 +364,29 @@ static void rays_choose_what_finds_polygons(void **state) {
     assert_int_equal(cli_run("plan %s --rays sometimes", scene_path("mirrors")), 2);
 }
 
-static void light_bench_compares_pictures_and_counts_lights(void **state) {
+static void the_lights_study_compares_pictures_and_counts_lights(void **state) {
     (void)state;
-    assert_int_equal(cli_run("light-bench %s --size 64x40 --repeat 1 --quiet --validate",
+    assert_int_equal(cli_run("study lights %s --size 64x40 --runs 1 --quiet --validate",
                           scene_path("night")),
                      0);
     assert_non_null(strstr(cli_out, "pictures are the same"));
-    assert_non_null(strstr(cli_out, "   256 "));
-    assert_int_equal(cli_run("light-bench %s --size 16x16 --repeat 2 --json --quiet",
+    assert_non_null(strstr(cli_out, "\n     256 "));
+    assert_int_equal(cli_run("study lights %s --size 16x16 --runs 2 --json --quiet",
                           scene_path("night")),
                      0);
     assert_non_null(strstr(cli_out, "\"asked_per_pixel\""));
-    assert_int_equal(cli_run("light-bench"), 2);
+    assert_int_equal(cli_run("study lights"), 2);
     cli_complained("no scene");
-    assert_int_equal(cli_run("light-bench %s", scene_path("spheres")), 1);
+    assert_int_equal(cli_run("study lights %s", scene_path("spheres")), 1);
     cli_complained("has no lights");
 }
 
-static void trace_bench_agrees_with_embree(void **state) {
+static void the_rays_study_agrees_with_embree(void **state) {
     (void)state;
     static const char *const flat[] = {"", "--flat"};
     for (int i = 0; i < 2; i++) {
         unsigned rays = 0, mismatches = 9;
-        assert_int_equal(cli_run("trace-bench %s --size 96x64 --repeat 2 --quiet --validate --csv - %s",
+        assert_int_equal(cli_run("study rays %s --size 96x64 --runs 2 --quiet --validate --csv - %s",
                               scene_path("test_trace"), flat[i]),
                          0);
         assert_int_equal(strncmp(cli_out, "scene,kind,backend,rays,mrays_s,embree_mrays_s,ratio,"
@@ -400,28 +401,28 @@ static void trace_bench_agrees_with_embree(void **state) {
         assert_int_equal(sscanf(row, "specular,compute,%u,%*f,%*f,%*f,%u", &rays, &mismatches), 2);
         assert_true(rays > 1000 && mismatches < 10);
     }
-    assert_int_equal(cli_run("trace-bench"), 2);
+    assert_int_equal(cli_run("study rays"), 2);
     cli_complained("no scene");
-    assert_int_equal(cli_run("trace-bench %s", scene_path("night")), 1);
+    assert_int_equal(cli_run("study rays %s", scene_path("night")), 1);
     cli_complained("nothing is traced");
 }
 
-static void draw_bench_compares_pictures_and_counts_triangles(void **state) {
+static void the_draw_study_compares_pictures_and_counts_triangles(void **state) {
     (void)state;
-    assert_int_equal(cli_run("draw-bench %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
+    assert_int_equal(cli_run("study draw %s --size 64x40 --frames 4 --turn 50 --quiet --validate",
                           scene_path("test_town")),
                      0);
     assert_non_null(strstr(cli_out, "4 frames, least of 1"));
     assert_non_null(strstr(cli_out, "pictures: 0 of 4 frames differ"));
-    assert_non_null(strstr(cli_out, "1.00x  5042\n")); /* neither stage: all of the town */
-    assert_int_equal(cli_run("draw-bench %s --size 64x40 --frames 2 --repeat 2 --json --quiet",
+    assert_non_null(strstr(cli_out, " 1.00x  5042\n")); /* neither stage: all of the town */
+    assert_int_equal(cli_run("study draw %s --size 64x40 --frames 2 --runs 2 --json --quiet",
                           scene_path("test_shadows")),
                      0);
     assert_non_null(strstr(cli_out, "\"different_frames\": 0"));
     assert_non_null(strstr(cli_out, "\"triangles_stage1\""));
-    assert_int_equal(cli_run("draw-bench"), 2);
+    assert_int_equal(cli_run("study draw"), 2);
     cli_complained("no scene");
-    assert_int_equal(cli_run("draw-bench %s", scene_path("spheres")), 1);
+    assert_int_equal(cli_run("study draw %s", scene_path("spheres")), 1);
     cli_complained("has no instances");
 }
 
@@ -434,12 +435,12 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     struct masu_image image;
     masu_pattern_fill(MASU_PATTERN_PHOTO, 1, IW, IH, in);
     for (uint32_t i = 0; i < IW * IH; i++) in[4 * i + 3] = (uint8_t)(i % IW * 6);
-    snprintf(from, sizeof from, "%s/in.png", cli_dir);
+    snprintf(from, sizeof from, "%s/in.png", scratch);
     assert_ok(masu_image_save_png(from, in, IW, IH, 0, error, sizeof error));
     assert_int_equal(
-        cli_run("upscale %s %s/up.png --size %ux%u --no-rcas", from, cli_dir, (unsigned)OW, (unsigned)OH),
+        cli_run("upscale %s %s/up.png --size %ux%u --no-rcas", from, scratch, (unsigned)OW, (unsigned)OH),
         0);
-    snprintf(from, sizeof from, "%s/up.png", cli_dir);
+    snprintf(from, sizeof from, "%s/up.png", scratch);
     assert_ok(masu_image_load_png(from, &image, error, sizeof error));
     masu_ref_from_rgba8(in, IW, IH, 0, rgb);
     for (uint32_t i = 0; i < IW * IH * 3; i++) alpha[i] = (float)in[i / 3 * 4 + 3] / 255.0f;
@@ -456,7 +457,7 @@ static void upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha(void 
     static const char *const stops[] = {"0", "2"};
     for (size_t i = 0; i < 2; i++) {
         assert_int_equal(
-            cli_run("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", cli_dir, cli_dir, stops[i]), 0);
+            cli_run("upscale %s/in.png %s/up.png --size 70x49 --sharpness %s", scratch, scratch, stops[i]), 0);
         assert_ok(masu_image_load_png(from, &image, error, sizeof error));
         memcpy(sharp[i], image.rgba, sizeof sharp[i]);
         masu_image_free(&image);
@@ -478,7 +479,7 @@ static void upscale_smooths_edges(void **state) {
     char name[256], error[ERROR_SIZE];
     struct masu_image image;
     masu_pattern_fill(MASU_PATTERN_HARD_EDGES, 1, W, H, in);
-    snprintf(name, sizeof name, "%s/edges.png", cli_dir);
+    snprintf(name, sizeof name, "%s/edges.png", scratch);
     assert_ok(masu_image_save_png(name, in, W, H, 0, error, sizeof error));
     struct masu_ref_image from = {rgb, W, H, 0};
     struct masu_ref_smaa with = masu_ref_smaa_preset(2);
@@ -488,15 +489,15 @@ static void upscale_smooths_edges(void **state) {
     masu_ref_smaa_blend(&from, weights, smooth);
     masu_ref_to_rgba8(smooth, W, H, want);
     assert_true(max_difference(in, want, BYTES) > 20);
-    snprintf(name, sizeof name, "%s/smooth.png", cli_dir);
+    snprintf(name, sizeof name, "%s/smooth.png", scratch);
     for (size_t i = 0; i < 2; i++) {
-        assert_int_equal(cli_run("upscale %s/edges.png %s %s", cli_dir, name, ways[i]), 0);
+        assert_int_equal(cli_run("upscale %s/edges.png %s %s", scratch, name, ways[i]), 0);
         assert_ok(masu_image_load_png(name, &image, error, sizeof error));
         assert_true(image.width == W && image.height == H);
         assert_true(max_difference(image.rgba, want, BYTES) <= 2);
         masu_image_free(&image);
     }
-    assert_int_equal(cli_run("upscale %s/edges.png %s --aa fxaa --size 100x76", cli_dir, name), 0);
+    assert_int_equal(cli_run("upscale %s/edges.png %s --aa fxaa --size 100x76", scratch, name), 0);
     assert_ok(masu_image_load_png(name, &image, error, sizeof error));
     assert_true(image.width == 2 * W && image.height == 2 * H);
     masu_image_free(&image);
@@ -504,16 +505,14 @@ static void upscale_smooths_edges(void **state) {
 
 static void the_example_of_the_readme_draws(void **state) {
     (void)state;
-    char command[1024], error[ERROR_SIZE];
-    const char *build = getenv("BUILD");
+    char error[ERROR_SIZE];
     struct masu_image image;
-    snprintf(command, sizeof command, "%s/examples/minimal %s %s/example.png >%s/out",
-             build ? build : "build", scene_path("test_both"), cli_dir, cli_dir);
-    assert_int_equal(system(command), 0);
-    cli_take("out", cli_out, sizeof cli_out);
+    assert_int_equal(shell("%s/examples/minimal %s %s/example.png >%s/out", build_dir(),
+                           scene_path("test_both"), scratch, scratch),
+                     0);
+    take_text("out", cli_out, sizeof cli_out);
     assert_non_null(strstr(cli_out, "bytes host"));
-    snprintf(command, sizeof command, "%s/example.png", cli_dir);
-    assert_ok(masu_image_load_png(command, &image, error, sizeof error));
+    assert_ok(masu_image_load_png(in_scratch("example.png"), &image, error, sizeof error));
     assert_int_equal(image.width, 1280);
     masu_image_free(&image);
 }
@@ -521,15 +520,15 @@ static void the_example_of_the_readme_draws(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_and_version_are_there_for_every_command),
-        cmocka_unit_test(bench_image_has_a_line_for_each_case),
+        cmocka_unit_test(the_upscale_study_has_a_line_for_each_case),
         cmocka_unit_test(wrong_command_lines_are_exit_code_2),
         cmocka_unit_test(bad_scene_files_are_named_with_their_fault),
         cmocka_unit_test(an_output_that_cannot_be_written_leaves_nothing_and_harms_nothing),
         cmocka_unit_test(an_unknown_device_lists_those_that_are_there),
         cmocka_unit_test(render_writes_the_picture_and_its_numbers_under_validation),
-        cmocka_unit_test(draw_bench_compares_pictures_and_counts_triangles),
-        cmocka_unit_test(trace_bench_agrees_with_embree),
-        cmocka_unit_test(light_bench_compares_pictures_and_counts_lights),
+        cmocka_unit_test(the_draw_study_compares_pictures_and_counts_triangles),
+        cmocka_unit_test(the_rays_study_agrees_with_embree),
+        cmocka_unit_test(the_lights_study_compares_pictures_and_counts_lights),
         cmocka_unit_test(ladders_are_read_shown_and_built_in),
         cmocka_unit_test(a_setting_is_drawn_by_its_name),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
@@ -539,5 +538,5 @@ int main(void) {
         cmocka_unit_test(upscale_runs_the_passes_of_the_frame_on_a_file_and_keeps_alpha),
         cmocka_unit_test(upscale_smooths_edges),
     };
-    return cmocka_run_group_tests_name("cli", tests, cli_make_dir, cli_remove_dir);
+    return cmocka_run_group_tests_name("cli", tests, make_scratch, remove_scratch);
 }

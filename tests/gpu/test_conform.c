@@ -15,22 +15,21 @@ static void write_suite(const char *cases) {
                      "{\"format\": 1, \"defaults\": {\"scene\": \"test_both\", \"size\": [32, 24],"
                      " \"budget\": {\"allocations\": 0}}, \"cases\": [%s]}",
                      cases);
-    cli_write("suite.json", text, (size_t)n);
+    write_bytes("suite.json", text, (size_t)n);
 }
 
 /* Runs `masu conform ARGUMENTS`. */
 static int conform(const char *format, ...) {
     char command[256];
-    const char *build = getenv("BUILD");
     va_list args;
-    snprintf(command, sizeof command, "conform --scenes %s/scenes", build ? build : "build");
+    snprintf(command, sizeof command, "conform --scenes %s/scenes", build_dir());
     va_start(args, format);
     int code = cli_run_list(command, format, args);
     va_end(args);
     return code;
 }
 
-static int planted(const char *more) { return conform("--suite %s/suite.json %s", cli_dir, more); }
+static int planted(const char *more) { return conform("--suite %s/suite.json %s", scratch, more); }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
 
@@ -98,12 +97,12 @@ static void a_failure_is_replayed_by_its_token(void **state) {
         "{\"name\": \"near\", \"rung\": {\"occlusion\": \"off\"}, \"error\": {\"against\": "
         "\"good\", "
         "\"pixels\": 0}}");
-    snprintf(more, sizeof more, "--junit %s/out.xml", cli_dir);
+    snprintf(more, sizeof more, "--junit %s/out.xml", scratch);
     assert_int_equal(planted(more), 1);
     cli_said("5 cases: 2 passed, 0 quality warnings, 0 not supported, 0 resource errors, 3 failed");
     cli_said("fail             other");
     cli_said("pass             near");
-    cli_take("out.xml", xml, sizeof xml);
+    take_text("out.xml", xml, sizeof xml);
     assert_non_null(strstr(xml, "tests=\"5\" failures=\"3\" errors=\"0\" skipped=\"0\""));
     assert_non_null(strstr(xml, "name=\"far &lt;&amp;&gt; &apos;off&apos; (33x25)\""));
     take_failure(why[0], token[0], sizeof why[0]);
@@ -166,6 +165,12 @@ static void parts_and_lists(void **state) {
     assert_int_equal(conform("--list --case 'memory.*' --fraction 1,2"), 0);
     assert_null(strstr(cli_out, "64x48"));
     assert_int_equal(conform("--list --suite suites/full.json"), 0);
+    static char by_file[sizeof cli_out];
+    snprintf(by_file, sizeof by_file, "%s", cli_out);
+    assert_int_equal(conform("--list --suite full"), 0); /* by its name, beside the program */
+    assert_string_equal(cli_out, by_file);
+    assert_int_equal(conform("--list --suite none"), 1);
+    cli_complained("suites/none.json");
     assert_int_equal(conform("--case nonesuch"), 2);
     cli_complained("nonesuch");
     static const char *const bad[] = {"4,4", "1", "-1,4", "1,2,3", "0,0", "a,b"};
@@ -183,7 +188,7 @@ static void parts_and_lists(void **state) {
 
 static void what_is_no_suite_is_refused_in_one_line(void **state) {
     (void)state;
-    assert_int_equal(conform("--suite %s/none.json", cli_dir), 1);
+    assert_int_equal(conform("--suite %s/none.json", scratch), 1);
     cli_complained("none.json");
     write_suite("{\"name\": \"a\", \"rung\": {\"scale\": 2}}");
     assert_int_equal(planted(""), 1);
@@ -208,5 +213,5 @@ int main(void) {
         cmocka_unit_test(parts_and_lists),
         cmocka_unit_test(what_is_no_suite_is_refused_in_one_line),
     };
-    return cmocka_run_group_tests_name("conform", tests, cli_make_dir, cli_remove_dir);
+    return cmocka_run_group_tests_name("conform", tests, make_scratch, remove_scratch);
 }

@@ -1,5 +1,6 @@
 /* test_culling.c: what is not drawn cannot be seen: pictures with and without culling are the same
  * in every bit, wherever the camera turns and whatever moves, and less is drawn. */
+#include "support/files.h"
 #include "support/shadow.h"
 
 #include <math.h>
@@ -41,17 +42,8 @@ static masu_stats_info draw_frame(masu_session *s, uint32_t frame, uint32_t rung
     masu_camera c = path(frame);
     masu_frame_desc f = {.camera = &c, .rung = rung, .cut = frame % 60 == 59};
     masu_commands commands;
-    masu_stats_info stats;
     draw(s, &f, &commands, out);
-    assert_int_equal(masu_stats(s->m, commands.slot, &stats), MASU_OK);
-    return stats;
-}
-
-static void move(masu_session *s, const char *name, float x, float y, float z, float size) {
-    masu_instance i = masu_instance_find(s->m, name);
-    const float rows[12] = {size, 0, 0, x, 0, size, 0, y, 0, 0, size, z};
-    assert_int_not_equal(i.id, 0);
-    assert_int_equal(masu_instance_set_transform(s->m, i, rows), MASU_OK);
+    return stats_of(s, commands.slot);
 }
 
 static void compare_path(masu_session *s, uint32_t frames, int moving) {
@@ -59,10 +51,10 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
     for (uint32_t frame = 0; frame < frames; frame++) {
         if (moving) {
             float t = (float)frame;
-            move(s, "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
+            move_instance(s, "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
             /* These stand in groups, which do not know where they are now; a house hides as well. */
-            move(s, "late1", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, 2.0f);
-            move(s, "b17/block", 20.0f * sinf(t * 0.11f), 0.0f, 30.0f,
+            move_instance(s, "late1", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, 2.0f);
+            move_instance(s, "b17/block", 20.0f * sinf(t * 0.11f), 0.0f, 30.0f,
                  frame % 20 < 10 ? 3.0f : 0.0f);
         }
         for (uint32_t way = 0; way < WAYS; way++) {
@@ -139,7 +131,7 @@ static void velocities_are_the_same_without_culling(void **state) {
             masu_frame_desc f = {.camera = &c, .rung = i ? NEITHER : BOTH};
             masu_commands commands;
             masu_readback_image image;
-            move(&s[i], "ball3", (float)c.position[0] + 4.0f * c.forward[0],
+            move_instance(&s[i], "ball3", (float)c.position[0] + 4.0f * c.forward[0],
                  1.0f + 0.1f * (float)frame, (float)c.position[2] + 4.0f * c.forward[2], 1.0f);
             draw(&s[i], &f, &commands, NULL);
             assert_int_equal(masu_readback(s[i].m, commands.slot, MASU_READBACK_VELOCITY, &image),
@@ -159,24 +151,16 @@ static void velocities_are_the_same_without_culling(void **state) {
 /* The town with a shadow map, which the test bakes. */
 static void bake_shadows(void) {
     assert_int_equal(
-        shadow_shell("sed -e 's#\"test_block.obj\"#\"'\"$PWD\"'/scenes/test_block.obj\"#' "
+        shell("sed -e 's#\"test_block.obj\"#\"'\"$PWD\"'/scenes/test_block.obj\"#' "
                      "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
                      "\"resolution\": 192, \"distance\": 90}, #' "
                      "tests/scenes/test_town.json > %s/town.json",
-                     shadow_dir()),
+                     scratch),
         0);
-    assert_int_equal(shadow_shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet",
-                                  getenv("BUILD") ? getenv("BUILD") : "build", shadow_dir(),
-                                  shadow_dir()),
+    assert_int_equal(shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet",
+                                  build_dir(), scratch,
+                                  scratch),
                      0);
-}
-
-static void read_image(masu_session *s, uint32_t slot, masu_readback_bits which, uint8_t *out,
-                       size_t bytes) {
-    masu_readback_image image;
-    assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
-    assert_int_equal(image.width * image.height * 4, bytes);
-    memcpy(out, image.pixels, bytes);
 }
 
 /* Each way of culling in a renderer of its own: what a slow cascade has kept is of that way alone. The
@@ -184,13 +168,11 @@ static void read_image(masu_session *s, uint32_t slot, masu_readback_bits which,
  * every bit. Others lack what casts no shadow into the picture: how much of the sun each pixel sees is
  * the same, and so is the picture. */
 static void compare_shadows(uint32_t frames, const uint32_t refresh[3], uint64_t casters[WAYS]) {
-    static char file[128];
     static uint8_t map[2][3 * 192 * 192 * 4], lit[2][W * H * 4];
     masu_session s[WAYS];
-    snprintf(file, sizeof file, "%s/town.masu", shadow_dir());
     for (uint32_t way = 0; way < WAYS; way++) {
         masu_session_desc d = test_desc(NULL, W, H);
-        d.scene_path = file;
+        d.scene_path = baked_scene("town");
         d.desc.rung_count = 1;
         d.desc.readback = MASU_READBACK_SHADOW_MAP | MASU_READBACK_OCCLUSION;
         d.host.validate = way == BOTH;
@@ -210,14 +192,13 @@ static void compare_shadows(uint32_t frames, const uint32_t refresh[3], uint64_t
         for (uint32_t way = WAYS; way-- > 0;) {
             masu_frame_desc f = {.camera = &c, .light = &light, .cut = frame % 60 == 59};
             masu_commands commands;
-            masu_stats_info stats;
-            move(&s[way], "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
-            move(&s[way], "late1", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, 2.0f);
+            move_instance(&s[way], "ball2", 30.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
+            move_instance(&s[way], "late1", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, 2.0f);
             draw(&s[way], &f, &commands, pixels[way]);
-            assert_int_equal(masu_stats(s[way].m, commands.slot, &stats), MASU_OK);
+            masu_stats_info stats = stats_of(&s[way], commands.slot);
             uint32_t one = way != NEITHER;
-            read_image(&s[way], commands.slot, MASU_READBACK_SHADOW_MAP, map[one], sizeof map[0]);
-            read_image(&s[way], commands.slot, MASU_READBACK_OCCLUSION, lit[one], sizeof lit[0]);
+            memcpy(map[one], read_image(&s[way], commands.slot, MASU_READBACK_SHADOW_MAP), sizeof map[0]);
+            memcpy(lit[one], read_image(&s[way], commands.slot, MASU_READBACK_OCCLUSION), sizeof lit[0]);
             assert_int_equal(stats.view_count, 4);
             uint64_t all = 0;
             for (uint32_t v = 1; v < 4; v++) {
@@ -263,5 +244,5 @@ int main(void) {
         cmocka_unit_test(velocities_are_the_same_without_culling),
         cmocka_unit_test(shadows_are_the_same_without_culling),
     };
-    return cmocka_run_group_tests_name("culling", tests, shadow_folder, shadow_folder_away);
+    return cmocka_run_group_tests_name("culling", tests, make_scratch, remove_scratch);
 }

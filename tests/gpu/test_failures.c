@@ -22,7 +22,7 @@ static int open_scene(const char *scene) {
     d.desc.readback = MASU_READBACK_ALL;
     open_session(&s, &d);
     assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
-    block = aligned_alloc(64, (s.need.host_bytes + 63) / 64 * 64 + 4096);
+    block = host_block(s.need.host_bytes + 4096);
     return 0;
 }
 

@@ -2,6 +2,8 @@
  * the picture that it is at the origin: coverage, depth, material and velocity. The scene is written
  * and baked here, with another offset each time; without anchors the same comparison fails. */
 #include "support/support.h"
+#include "support/files.h"
+#include "support/floats.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,8 +11,6 @@
 #include <string.h>
 
 enum { W = 128, H = 72 };
-
-static char dir[] = "/tmp/masu-far-XXXXXX";
 
 /* Where the middle of what is seen stands from the offset: where the anchor goes over to the next
  * point of its grid, so that small movements of the camera move it. */
@@ -47,48 +47,20 @@ typedef struct picture {
     double velocity[W * H][4];
 } picture;
 
-static int make_dir(void **state) {
-    (void)state;
-    return mkdtemp(dir) ? 0 : 1;
-}
-
-static int remove_dir(void **state) {
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", dir);
-    return system(command);
-}
-
-static void write_file(const char *name, const char *content) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_true(fputs(content, f) >= 0);
-    assert_int_equal(fclose(f), 0);
-}
-
 /* The blob, baked when it is asked for first. member: of the SDF's description, or "". */
 static const char *baked(int offset, const char *member) {
-    static char scene[4096], json[1024], path[256], command[1024];
-    const char *build = getenv("BUILD");
-    snprintf(path, sizeof path, "%s/%d-%zu.masu", dir, offset, strlen(member));
-    FILE *there_already = fopen(path, "rb");
-    if (there_already) {
-        fclose(there_already);
-        return path;
-    }
+    static char scene[4096], json[1024], name[64], blob[80];
+    snprintf(name, sizeof name, "%d-%zu", offset, strlen(member));
+    snprintf(blob, sizeof blob, "%s.masu", name);
+    if (is_in_scratch(blob)) return in_scratch(blob);
     snprintf(scene, sizeof scene, text, offset, MIDDLE, -offset, offset, MIDDLE);
-    write_file("s.sdf", scene);
+    write_text("s.sdf", scene);
     snprintf(json, sizeof json,
              "{\"camera\": {\"near\": 0.1}, \"sdf\": {\"source\": \"s.sdf\", \"bounds\": "
              "[[%d, -2, %d], [%d, 8, %d]], \"max_distance\": 100%s}}",
              offset + MIDDLE - 40, -offset - 40, offset + MIDDLE + 40, -offset + 40, member);
-    write_file("s.json", json);
-    snprintf(command, sizeof command, "%s/bin/masu-bake %s/s.json -o %s --quiet",
-             build ? build : "build", dir, path);
-    assert_int_equal(system(command), 0);
-    return path;
+    bake_scene(name, json);
+    return baked_scene(name);
 }
 
 static void open_at(masu_session *s, int offset, const char *member) {
@@ -99,16 +71,9 @@ static void open_at(masu_session *s, int offset, const char *member) {
     open_session(s, &d);
 }
 
-static double half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    double v = exponent ? ldexp(mantissa + 1024, exponent - 25) : ldexp(mantissa, -24);
-    return h & 0x8000 ? -v : v;
-}
-
 /* Frame 0 or 1 of a camera that goes past the middle, while the crate moves and the ball grows. */
 static void take(masu_session *s, int offset, int number, picture *p) {
     masu_commands commands;
-    masu_readback_image image;
     float radius = 0.5f + 0.03f * (float)number;
     masu_camera c = {.position = {offset + MIDDLE - 0.04 + 0.08 * number, 1.4, -offset + 5.0},
                      .forward = {0.02f * (float)number, -0.25f, -1},
@@ -117,18 +82,10 @@ static void take(masu_session *s, int offset, int number, picture *p) {
     masu_frame_desc frame = {
         .camera = &c, .time = 0.5 + 0.1 * number, .sdf_params = &radius, .sdf_param_count = 1};
     draw(s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
-    for (uint32_t i = 0; i < W * H; i++) {
-        float d = ((const float *)image.pixels)[i];
-        p->depth[i] = d > 0.0f ? c.near_distance / d : 0.0f;
-    }
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_ALBEDO, &image), MASU_OK);
-    memcpy(p->albedo, image.pixels, sizeof p->albedo);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
-    for (uint32_t i = 0; i < W * H; i++) {
-        for (int k = 0; k < 4; k++)
-            p->velocity[i][k] = half(((const uint16_t *)image.pixels)[4 * i + k]);
-    }
+    view_depths(read_image(s, commands.slot, MASU_READBACK_DEPTH), &c, p->depth, W * H);
+    memcpy(p->albedo, read_image(s, commands.slot, MASU_READBACK_ALBEDO), sizeof p->albedo);
+    const uint16_t *velocity = read_image(s, commands.slot, MASU_READBACK_VELOCITY);
+    for (uint32_t i = 0; i < 4 * W * H; i++) p->velocity[i / 4][i % 4] = half_float(velocity[i]);
 }
 
 /* The other picture has a surface of that depth and material within a pixel: at a silhouette, where
@@ -253,5 +210,5 @@ int main(void) {
         cmocka_unit_test(without_anchors_it_does_not),
         cmocka_unit_test(the_plan_says_whether_it_is_anchored),
     };
-    return cmocka_run_group_tests_name("far", tests, make_dir, remove_dir);
+    return cmocka_run_group_tests_name("far", tests, make_scratch, remove_scratch);
 }

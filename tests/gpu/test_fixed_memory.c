@@ -1,5 +1,6 @@
 /* test_fixed_memory.c: the promise of the box: known before, never grown, nothing outside. */
 #include "support/support.h"
+#include "support/random.h"
 #include "support/wrap.h"
 
 #include "alloc_count.h"
@@ -97,10 +98,9 @@ static void the_block_is_used_to_the_byte(void **state) {
     assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
     size_t bytes = (size_t)s.need.host_bytes, room = (bytes + 3 * 64) / 64 * 64;
     unsigned char *outer = aligned_alloc(64, room + 64), *block = outer + 64;
-    uint32_t noise = 12345;
+    uint64_t noise = 12345;
     for (size_t i = 0; i < room + 64; i++) {
-        noise = noise * 1664525u + 1013904223u;
-        outer[i] = (unsigned char)(noise >> 24);
+        outer[i] = (unsigned char)random_word(&noise);
     }
     unsigned char *copy = malloc(room + 64);
     memcpy(copy, outer, room + 64);
@@ -144,9 +144,9 @@ static void query_and_use(const char *scene) {
     masu_session s;
     d.no_renderer = true;
     open_session(&s, &d);
-    uint32_t random = 7;
+    uint64_t seed = 7;
     for (uint32_t i = 0; i < 24; i++) {
-        random = random * 1664525u + 1013904223u;
+        uint32_t random = random_word(&seed);
         masu_desc q = s.desc;
         q.frames_in_flight = 1 + (random >> 8) % 3;
         q.rung_count = 1 + (random >> 12) % 4;
@@ -162,7 +162,7 @@ static void query_and_use(const char *scene) {
         assert_int_equal(masu_memory_query(&q, &need, NULL), MASU_OK);
         assert_true(need.transient_lower_bound <= need.transient_aliased);
         assert_true(need.transient_aliased <= need.transient_unaliased);
-        void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
+        void *block = host_block(need.host_bytes);
         assert_int_equal(masu_init(&q, block, need.host_bytes, &m, NULL), MASU_OK);
         masu_peak_info peaks;
         masu_peaks(m, &peaks);

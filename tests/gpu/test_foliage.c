@@ -93,12 +93,9 @@ static double drawn(double texels, double x) {
                           .up = {(float)sin(ROLL), (float)cos(ROLL), 0},
                           .fov_y = 0.7f};
     masu_frame_desc frame = {.camera = &camera};
-    masu_commands commands;
-    masu_readback_image image;
-    draw(&s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
+    const float *depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
     uint32_t there = 0;
-    for (uint32_t i = 0; i < PIXELS; i++) there += ((const float *)image.pixels)[i] > 0;
+    for (uint32_t i = 0; i < PIXELS; i++) there += depth[i] > 0;
     return (double)there / PIXELS;
 }
 

@@ -206,7 +206,7 @@ static void memory_of_the_host_works(void **state) {
         masu_detail detail;
         masu_renderer *none = NULL;
         s.desc.device_blocks[MASU_ROLE_DEVICE].bytes--;
-        void *block = aligned_alloc(64, (s.need.host_bytes + 63) / 64 * 64);
+        void *block = host_block(s.need.host_bytes);
         assert_int_equal(masu_init(&s.desc, block, s.need.host_bytes, &none, &detail),
                          MASU_ERROR_MEMORY);
         assert_null(none);

@@ -153,7 +153,7 @@ static void memory_is_planned_once_for_all_rungs(void **state) {
         d.no_renderer = true;
         open_session(&s, &d);
         assert_int_equal(masu_memory_query(&s.desc, &need, NULL), MASU_OK);
-        void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
+        void *block = host_block(need.host_bytes);
         masu_renderer *m = NULL;
         masu_peak_info peaks;
         assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, NULL), MASU_OK);

@@ -1,10 +1,14 @@
 /* test_lights.c: local lights. What a light does to a pixel is what a sun of that direction and colour
  * would do, with both from the reference in double precision (tests/reference/lights.h); lists by
  * tile change no bit of any picture; nothing is out of bounds; what the host may set and what not. */
+#include "support/files.h"
+#include "support/floats.h"
+#include "support/random.h"
 #include "support/shadow.h"
 
 #include "scene/blob.h"
 #include "reference/lights.h"
+#include "reference/vec.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,15 +29,7 @@ static void add(const char *format, ...) {
     assert_true(used < sizeof json);
 }
 
-static uint32_t random_state;
-
-static double in(double low, double high) {
-    random_state = random_state * 1664525u + 1013904223u;
-    return low + (high - low) * (random_state >> 8) / (double)(1 << 24);
-}
-
-/* By magnitude. */
-static double spread(double low, double high) { return exp(in(log(low), log(high))); }
+static uint64_t seed;
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
@@ -43,29 +39,24 @@ static void begin_scene(double size) {
     add("{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": %g, \"size_z\": %g}}, "
         "\"material\": {\"roughness\": 0.9}}",
         60 * size, 60 * size);
-    random_state = 11;
+    seed = 11;
     for (int i = 0; i < 24; i++) {
-        double at[3] = {in(-9, 9), in(0.2, 2), in(-9, 9)}, s = in(0.3, 1.4);
+        double at[3] = {random_between(&seed, -9, 9), random_between(&seed, 0.2, 2), random_between(&seed, -9, 9)}, s = random_between(&seed, 0.3, 1.4);
         add(", {\"mesh\": {\"%s}, \"name\": \"thing%d\", \"scale\": %g, "
             "\"translate\": [%g, %g, %g], \"material\": {\"base_color\": [%g, %g, %g], "
             "\"roughness\": %g, \"metallic\": %d}}",
             i % 2 ? "box\": {\"size\": [1, 1.5, 1]}" : "sphere\": {\"subdivisions\": 3}", i,
-            s * size, at[0] * size, at[1] * size, at[2] * size, in(0, 1), in(0, 1), in(0, 1),
-            in(0, 1), i % 5 == 0);
+            s * size, at[0] * size, at[1] * size, at[2] * size, random_between(&seed, 0, 1), random_between(&seed, 0, 1), random_between(&seed, 0, 1),
+            random_between(&seed, 0, 1), i % 5 == 0);
     }
     add("], \"ambient\": [0, 0, 0], \"sun\": {\"intensity\": 0}, "
         "\"sky\": {\"zenith\": [0, 0, 0], \"horizon\": [0, 0, 0]}, ");
 }
 
 static void add_sdf(void) {
-    char path[128];
-    snprintf(path, sizeof path, "%s/balls.sdf", shadow_dir());
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    fputs("part a = translate((1.5, 1, 1), sphere(0.8));\n"
-          "part b = translate((-2, 0.7, 3), box((0.6, 0.7, 0.5)));\n",
-          f);
-    fclose(f);
+    write_text("balls.sdf",
+               "part a = translate((1.5, 1, 1), sphere(0.8));\n"
+               "part b = translate((-2, 0.7, 3), box((0.6, 0.7, 0.5)));\n");
     add("\"sdf\": {\"source\": \"balls.sdf\", \"bounds\": [[-6, -1, -6], [6, 4, 6]]}, ");
 }
 
@@ -73,15 +64,15 @@ static void add_sdf(void) {
 static void add_lights(uint32_t count, double size, double low, double high) {
     add("\"lights\": [");
     for (uint32_t i = 0; i < count; i++) {
-        double range = spread(low, high) * size, outer = i % 7 ? in(2, 80) : in(80, 180);
+        double range = random_spread(&seed, low, high) * size, outer = i % 7 ? random_between(&seed, 2, 80) : random_between(&seed, 80, 180);
         add("%s{\"type\": \"%s\", \"name\": \"l%u\", \"position\": [%.9g, %.9g, %.9g], "
             "\"color\": [%g, %g, %g], \"intensity\": %g, \"range\": %.9g, \"radius\": %g",
-            i ? ", " : "", i % 3 ? "point" : "spot", i, in(-12, 12) * size, in(-1, 5) * size,
-            in(-12, 12) * size, in(0, 1), in(0, 1), in(0, 1),
-            fmin(in(0.1, 2) * range * range / 4, 1e9), range, 0.01 * size);
+            i ? ", " : "", i % 3 ? "point" : "spot", i, random_between(&seed, -12, 12) * size, random_between(&seed, -1, 5) * size,
+            random_between(&seed, -12, 12) * size, random_between(&seed, 0, 1), random_between(&seed, 0, 1), random_between(&seed, 0, 1),
+            fmin(random_between(&seed, 0.1, 2) * range * range / 4, 1e9), range, 0.01 * size);
         if (i % 3 == 0)
-            add(", \"direction\": [%g, %g, %g], \"outer\": %g, \"inner\": %g", in(-1, 1), in(-1, 1),
-                in(-1, 1) + 0.01, outer, outer * in(0, 1));
+            add(", \"direction\": [%g, %g, %g], \"outer\": %g, \"inner\": %g", random_between(&seed, -1, 1), random_between(&seed, -1, 1),
+                random_between(&seed, -1, 1) + 0.01, outer, outer * random_between(&seed, 0, 1));
         add("}");
     }
     add("]}");
@@ -92,7 +83,6 @@ static void add_lights(uint32_t count, double size, double low, double high) {
 typedef struct pictures {
     masu_session s;
     uint32_t width, height;
-    char path[256];
 } pictures;
 
 enum { TILES, ALL_LIGHTS, UNCULLED, WAYS }; /* rungs */
@@ -102,9 +92,8 @@ static void open_pictures(pictures *p, const char *scene, uint32_t width, uint32
     memset(p, 0, sizeof *p);
     p->width = width;
     p->height = height;
-    snprintf(p->path, sizeof p->path, "%s/%s.masu", shadow_dir(), scene);
     masu_session_desc d = test_desc(NULL, width, height);
-    d.scene_path = p->path;
+    d.scene_path = baked_scene(scene);
     d.host.validate = validate;
     d.desc.readback = MASU_READBACK_HDR | MASU_READBACK_DEPTH | MASU_READBACK_NORMAL;
     d.desc.frames_in_flight = 1;
@@ -119,27 +108,17 @@ static const uint16_t *take(pictures *p, const masu_camera *camera, const masu_l
                             uint32_t rung, masu_stats_info *stats) {
     masu_frame_desc frame = {.camera = camera, .light = sun, .rung = rung};
     masu_commands commands;
-    masu_readback_image image;
-    masu_stats_info own;
     draw(&p->s, &frame, &commands, NULL);
-    if (!stats) stats = &own;
-    assert_int_equal(masu_stats(p->s.m, commands.slot, stats), MASU_OK);
-    assert_int_equal(stats->replaced, 0);
-    assert_int_equal(masu_readback(p->s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
-    assert_int_equal(image.row_bytes, p->width * 8);
-    return image.pixels;
-}
-
-static double half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    double v = exponent ? ldexp(mantissa + 1024, exponent - 25) : ldexp(mantissa, -24);
-    return h & 0x8000 ? -v : v;
+    masu_stats_info own = stats_of(&p->s, commands.slot);
+    assert_int_equal(own.replaced, 0);
+    if (stats) *stats = own;
+    return read_image(&p->s, commands.slot, MASU_READBACK_HDR);
 }
 
 static uint64_t lit_pixels(const uint16_t *hdr, uint64_t pixels) {
     uint64_t lit = 0;
     for (uint64_t i = 0; i < pixels; i++) {
-        lit += half(hdr[4 * i]) + half(hdr[4 * i + 1]) + half(hdr[4 * i + 2]) > 1e-4;
+        lit += half_float(hdr[4 * i]) + half_float(hdr[4 * i + 1]) + half_float(hdr[4 * i + 2]) > 1e-4;
         for (int k = 0; k < 3; k++) assert_true((hdr[4 * i + (uint64_t)k] & 0x7C00u) != 0x7C00u);
     }
     return lit;
@@ -156,12 +135,12 @@ static masu_camera look(double x, double y, double z, double fx, double fy, doub
 
 static void set_random(pictures *p, uint32_t lights, double size) {
     for (uint32_t i = 0; i < 8 && lights; i++) {
-        masu_local_light handle = {1 + (uint32_t)in(0, lights - 0.01)};
+        masu_local_light handle = {1 + (uint32_t)random_between(&seed, 0, lights - 0.01)};
         masu_local_light_state state;
         assert_int_equal(masu_local_light_get(p->s.m, handle, &state), MASU_OK);
-        for (int k = 0; k < 3; k++) state.position[k] = in(-12, 12) * size;
+        for (int k = 0; k < 3; k++) state.position[k] = random_between(&seed, -12, 12) * size;
         state.position[1] *= 0.3;
-        state.range = (float)(spread(0.01, 30) * size);
+        state.range = (float)(random_spread(&seed, 0.01, 30) * size);
         assert_int_equal(masu_local_light_set(p->s.m, handle, &state), MASU_OK);
     }
 }
@@ -175,8 +154,8 @@ static void compare_ways(pictures *p, uint32_t lights, uint32_t frames, double s
     static uint16_t first[WAYS][4 * 256 * 256];
     uint64_t pixels = (uint64_t)p->width * p->height;
     for (uint32_t f = 0; f < frames; f++) {
-        masu_camera c = look(in(-10, 10) * size, in(0.3, 6) * size, in(-10, 10) * size, in(-1, 1),
-                             in(-1, 0.2), in(-1, 1), f % 4 ? in(0.3, 1.6) : in(0.01, 3.05));
+        masu_camera c = look(random_between(&seed, -10, 10) * size, random_between(&seed, 0.3, 6) * size, random_between(&seed, -10, 10) * size, random_between(&seed, -1, 1),
+                             random_between(&seed, -1, 0.2), random_between(&seed, -1, 1), f % 4 ? random_between(&seed, 0.3, 1.6) : random_between(&seed, 0.01, 3.05));
         masu_stats_info stats[WAYS];
         c.near_distance = (float)near;
         set_random(p, lights, size);
@@ -204,7 +183,7 @@ static void bake_many(const char *name, uint32_t lights, double size, double low
     begin_scene(size);
     if (size == 1) add_sdf();
     add_lights(lights, size, low, high);
-    shadow_bake(name, json);
+    bake_scene(name, json);
 }
 
 static void tiles_change_no_bit(void **state) {
@@ -225,7 +204,7 @@ static void tiles_change_no_bit(void **state) {
         pictures p;
         bake_many("many", cases[i].lights, cases[i].size, cases[i].low, cases[i].high);
         open_pictures(&p, "many", cases[i].width, cases[i].height, i == 1);
-        random_state = 100 + (uint32_t)i;
+        seed = 100 + (uint32_t)i;
         compare_ways(&p, cases[i].lights, cases[i].frames, cases[i].size, cases[i].near, &sum);
         close_session(&p.s);
         double pixels = (double)cases[i].width * cases[i].height * cases[i].frames;
@@ -247,17 +226,6 @@ static void tiles_change_no_bit(void **state) {
 
 /* ---- Against the truth ----------------------------------------------------------------------- */
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void unit(double v[3]) {
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; k++) v[k] /= length;
-}
-
 /* The point under a pixel, by its depth; 0: none. */
 static int point_at(const pictures *p, const masu_camera *c, const float *depths, uint32_t x,
                     uint32_t y, double out[3]) {
@@ -265,10 +233,10 @@ static int point_at(const pictures *p, const masu_camera *c, const float *depths
     float depth = depths[y * p->width + x];
     if (!(depth > 0.0f)) return 0;
     for (int k = 0; k < 3; k++) f[k] = (double)c->forward[k];
-    unit(f);
-    cross(f, up, r);
-    unit(r);
-    cross(r, f, u);
+    unit3(f);
+    cross3(f, up, r);
+    unit3(r);
+    cross3(r, f, u);
     double z = (double)c->near_distance / (double)depth, tan_y = tan((double)c->fov_y / 2);
     double a = ((x + 0.5) / p->width * 2 - 1) * tan_y * p->width / p->height;
     double b = ((y + 0.5) / p->height * 2 - 1) * tan_y;
@@ -305,16 +273,14 @@ static error_info compare_light(pictures *p, const masu_camera *c,
     masu_local_light_state dark = *state;
     masu_ref_light ref = reference_of(state);
     masu_light sun = no_sun();
-    masu_readback_image image;
     error_info e = {0};
     memset(dark.color, 0, sizeof dark.color);
     assert_int_equal(masu_local_light_set(p->s.m, one, state), MASU_OK);
     memcpy(local, take(p, c, &sun, TILES, NULL), (size_t)p->width * p->height * 8);
-    assert_int_equal(masu_readback(p->s.m, 0, MASU_READBACK_DEPTH, &image), MASU_OK);
-    memcpy(depths, image.pixels, (size_t)p->width * p->height * 4);
+    memcpy(depths, read_image(&p->s, 0, MASU_READBACK_DEPTH), (size_t)p->width * p->height * 4);
     assert_int_equal(masu_local_light_set(p->s.m, off, &dark), MASU_OK);
     for (uint32_t n = 0; n < 30; n++) {
-        uint32_t x = (uint32_t)in(0, p->width - 0.01), y = (uint32_t)in(0, p->height - 0.01);
+        uint32_t x = (uint32_t)random_between(&seed, 0, p->width - 0.01), y = (uint32_t)random_between(&seed, 0, p->height - 0.01);
         double at[3], l[3], color[3];
         if (!point_at(p, c, depths, x, y, at)) continue;
         int reached = masu_ref_light_reaches(&ref, at, l, color);
@@ -326,7 +292,7 @@ static error_info compare_light(pictures *p, const masu_camera *c,
         }
         const uint16_t *should = take(p, c, &sun, TILES, NULL) + 4 * ((size_t)y * p->width + x);
         for (int k = 0; k < 3; k++) {
-            double a = half(is[k]), b = half(should[k]);
+            double a = half_float(is[k]), b = half_float(should[k]);
             if (!reached && a != 0.0)
                 fail_msg("%u %u is lit by what does not reach it: %g", x, y, a);
             if (b > 1e-3) e.most = fmax(e.most, fabs(a - b) / b);
@@ -362,7 +328,7 @@ static void a_light_is_a_sun_of_its_direction(void **state) {
     begin_scene(1);
     add_sdf();
     add_lights(1, 1, 1, 2);
-    shadow_bake("one", json);
+    bake_scene("one", json);
     open_pictures(&p, "one", 96, 64, 1);
     masu_camera c = look(3, 3.5, 9, -3, -3, -9, 0.9);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -375,7 +341,7 @@ static void a_light_is_a_sun_of_its_direction(void **state) {
             s.direction[k] = (float)cases[i].direction[k];
             s.color[k] = (float)(cases[i].color * (1 - 0.3 * k));
         }
-        random_state = 7 + (uint32_t)i;
+        seed = 7 + (uint32_t)i;
         error_info e = compare_light(&p, &c, &s);
         print_message("%-28s largest error %.2e of %u components lit, %u pixels\n", cases[i].what,
                       e.most, e.lit, e.compared);
@@ -404,7 +370,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
     begin_scene(1);
     add_sdf();
     add_lights(1, 1, 1, 2);
-    shadow_bake("one", json);
+    bake_scene("one", json);
     open_pictures(&p, "one", 64, 48, 1);
     masu_camera c = look(3, 3.5, 9, -3, -3, -9, 0.9);
     masu_local_light one = {1};
@@ -470,7 +436,7 @@ static void bad_values_are_refused_with_a_line(void **state) {
     pictures p;
     begin_scene(1);
     add_lights(2, 1, 1, 2);
-    shadow_bake("two", json);
+    bake_scene("two", json);
     open_pictures(&p, "two", 16, 16, 1);
     masu_local_light light = masu_local_light_find(p.s.m, "l0");
     masu_local_light_state good, is;
@@ -528,7 +494,7 @@ static void a_light_moves_with_its_instance(void **state) {
     begin_scene(1);
     add("\"lights\": [{\"type\": \"spot\", \"position\": [0, 0.5, 2], \"direction\": [0, -0.5, 1], "
         "\"outer\": 40, \"intensity\": 30, \"instance\": \"thing3\", \"name\": \"lamp\"}]}");
-    shadow_bake("lamp", json);
+    bake_scene("lamp", json);
     open_pictures(&p, "lamp", 64, 48, 1);
     masu_camera c = look(3, 6, 9, -3, -6, -9, 1.2);
     masu_instance car = masu_instance_find(p.s.m, "thing3");
@@ -571,7 +537,7 @@ static void a_scene_without_lights_has_no_pass_for_them(void **state) {
         masu_memory_row rows[96];
         begin_scene(1);
         add_lights(lights, 1, 1, 2);
-        shadow_bake("few", json);
+        bake_scene("few", json);
         open_pictures(&p, "few", 16, 16, 1);
         masu_plan_of(p.s.m, &plan);
         uint32_t passes = 0, buffers = 0, n = masu_memory_report(p.s.m, rows, 96);
@@ -601,5 +567,5 @@ int main(void) {
         cmocka_unit_test(a_light_moves_with_its_instance),
         cmocka_unit_test(a_scene_without_lights_has_no_pass_for_them),
     };
-    return cmocka_run_group_tests(tests, shadow_folder, shadow_folder_away);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -42,24 +42,10 @@ static masu_camera path(uint32_t frame) {
 static masu_stats_info draw_frame(masu_session *s, const masu_camera *c, uint32_t way, int cut) {
     masu_frame_desc f = {.camera = c, .rung = way, .cut = (uint32_t)cut};
     masu_commands commands;
-    masu_stats_info stats;
-    masu_readback_image depth;
     draw(s, &f, &commands, pixels[way]);
-    assert_int_equal(masu_stats(s->m, commands.slot, &stats), MASU_OK);
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &depth), MASU_OK);
-    for (uint32_t y = 0; y < H; y++) {
-        const float *row = (const float *)(const void *)((const uint8_t *)depth.pixels +
-                                                         y * depth.row_bytes);
-        for (uint32_t x = 0; x < W; x++) covered[way][y * W + x] = row[x] > 0.0f;
-    }
-    return stats;
-}
-
-static void move(masu_session *s, const char *name, float x, float y, float z, float size) {
-    masu_instance i = masu_instance_find(s->m, name);
-    const float rows[12] = {size, 0, 0, x, 0, size, 0, y, 0, 0, size, z};
-    assert_int_not_equal(i.id, 0);
-    assert_int_equal(masu_instance_set_transform(s->m, i, rows), MASU_OK);
+    const float *depth = read_image(s, commands.slot, MASU_READBACK_DEPTH);
+    for (uint32_t i = 0; i < W * H; i++) covered[way][i] = depth[i] > 0.0f;
+    return stats_of(s, commands.slot);
 }
 
 /* How many pixels `b` does not have that lie 2 pixels deep in `a`: an error of one pixel, and one for
@@ -86,9 +72,9 @@ static void compare_path(masu_session *s, uint32_t frames, int moving) {
         masu_camera c = path(frame);
         if (moving) {
             float t = (float)frame;
-            move(s, "ball17", 20.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
-            move(s, "large2", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, frame % 20 < 10 ? 1.5f : 0.1f);
-            move(s, "wall1", 20.0f * sinf(t * 0.11f), 0.0f, 20.0f, 2.0f);
+            move_instance(s, "ball17", 20.0f * sinf(t * 0.2f), 1.0f, 30.0f * cosf(t * 0.13f), 1.0f);
+            move_instance(s, "large2", 25.0f * cosf(t * 0.3f), 3.0f, 3.0f, frame % 20 < 10 ? 1.5f : 0.1f);
+            move_instance(s, "wall1", 20.0f * sinf(t * 0.11f), 0.0f, 20.0f, 2.0f);
         }
         for (uint32_t way = 0; way < WAYS; way++) {
             masu_stats_info stats = draw_frame(s, &c, way, frame % 60 == 0);

@@ -1,6 +1,7 @@
 /* test_meaning.c: what goes in comes out: constants of the field, time, camera path, materials,
  * light, exposure, and what is said to the log. */
 #include "support/support.h"
+#include "support/floats.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,24 +20,9 @@ static void open_scene(const char *scene, uint32_t steps) {
     open_session(&s, &d);
 }
 
-static const void *image_of(const masu_frame_desc *frame, masu_readback_bits which, uint8_t *ldr) {
-    masu_commands commands;
-    masu_readback_image image;
-    draw(&s, frame, &commands, ldr);
-    assert_int_equal(masu_readback(s.m, commands.slot, which, &image), MASU_OK);
-    return image.pixels;
-}
-
 /* View depth at the middle of the picture. */
 static float depth_at_centre(const masu_frame_desc *frame) {
-    return 0.1f / ((const float *)image_of(frame, MASU_READBACK_DEPTH, NULL))[CENTRE];
-}
-
-static float half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    float v =
-        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
-    return h & 0x8000 ? -v : v;
+    return 0.1f / ((const float *)draw_image(&s, frame, MASU_READBACK_DEPTH, NULL))[CENTRE];
 }
 
 static void a_field_of_lipschitz_constant_3_is_stepped_by_a_third(void **state) {
@@ -47,7 +33,7 @@ static void a_field_of_lipschitz_constant_3_is_stepped_by_a_third(void **state) 
     assert_float_equal(depth_at_centre(&frame), 3.0f, 1e-3f);
     assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
     /* Steps three times too long would walk through the rim, or far into the sphere. */
-    const float *depth = image_of(&frame, MASU_READBACK_DEPTH, NULL);
+    const float *depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
     uint32_t hits = 0;
     for (uint32_t i = 0; i < W * H; i++) {
         if (depth[i] <= 0) continue;
@@ -99,7 +85,7 @@ static void materials_arrive_in_the_g_buffer(void **state) {
     masu_frame_desc frame = {0};
     uint32_t seen[2] = {0};
     open_scene("test_both", 0);
-    const uint8_t *albedo = image_of(&frame, MASU_READBACK_ALBEDO, NULL);
+    const uint8_t *albedo = draw_image(&s, &frame, MASU_READBACK_ALBEDO, NULL);
     for (uint32_t i = 0; i < W * H; i++, albedo += 4) {
         for (int which = 0; which < 2; which++) {
             const float *color = which ? sphere : box;
@@ -124,7 +110,7 @@ static void the_sun_lights_as_the_formulas_say(void **state) {
                               .sky_horizon = {0, 0, 0}};
     masu_frame_desc frame = {.light = &light};
     open_scene("test_scaled_field", 0);
-    const uint16_t *hdr = (const uint16_t *)image_of(&frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
+    const uint16_t *hdr = (const uint16_t *)draw_image(&s, &frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
     static const double albedo[3] = {0.25, 0.5, 1.0};
     double n_l = 0.8, alpha = 0.25, n_h = 0.8 + 1;
     double length = sqrt(0.6 * 0.6 + 1.8 * 1.8);
@@ -136,18 +122,18 @@ static void the_sun_lights_as_the_formulas_say(void **state) {
         double sun =
             (double)light.sun_color[c] * n_l * (albedo[c] * (1 - fresnel) + fresnel * lobe);
         double ambient = (double)light.ambient[c] * (albedo[c] + 0.04 * 0.5);
-        assert_float_equal(half(hdr[c]), (float)(sun + ambient), (float)(0.05 * (sun + ambient)));
+        assert_float_equal((float)half_float(hdr[c]), (float)(sun + ambient), (float)(0.05 * (sun + ambient)));
     }
     /* The same light from behind leaves the ambient alone. */
     masu_light behind = light;
     behind.sun_direction[2] = -0.8f, behind.sun_direction[1] = 0, behind.sun_direction[0] = 0;
     frame.light = &behind;
-    hdr = (const uint16_t *)image_of(&frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
-    assert_float_equal(half(hdr[0]), 0.1f * (0.25f + 0.02f), 0.003f);
+    hdr = (const uint16_t *)draw_image(&s, &frame, MASU_READBACK_HDR, NULL) + 4 * CENTRE;
+    assert_float_equal((float)half_float(hdr[0]), 0.1f * (0.25f + 0.02f), 0.003f);
     /* What glows is as bright as it says, whatever the light. */
     uint32_t glowing = 0;
-    hdr = image_of(&frame, MASU_READBACK_HDR, NULL);
-    for (uint32_t i = 0; i < W * H; i++) glowing += fabsf(half(hdr[4 * i]) - 4.0f) < 0.1f;
+    hdr = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
+    for (uint32_t i = 0; i < W * H; i++) glowing += fabs(half_float(hdr[4 * i]) - 4) < 0.1;
     assert_true(glowing > 50);
     close_session(&s);
 }
@@ -159,15 +145,15 @@ static void exposure_is_a_factor_and_the_curve_rises_to_white(void **state) {
         .sun_direction = {0, 0, 1}, .sun_color = {0.5f, 0.25f, 0.125f}, .exposure = 2};
     masu_frame_desc frame = {.light = &light};
     open_scene("test_sphere_sdf", 0);
-    image_of(&frame, MASU_READBACK_HDR, a);
+    draw_image(&s, &frame, MASU_READBACK_HDR, a);
     for (int k = 0; k < 3; k++) light.sun_color[k] *= 2;
     light.exposure = 0; /* 1 */
-    const uint16_t *hdr = image_of(&frame, MASU_READBACK_HDR, b);
+    const uint16_t *hdr = draw_image(&s, &frame, MASU_READBACK_HDR, b);
     assert_true(max_difference(a, b, sizeof a) <= 1);
     /* The curve, in double, at every pixel. */
     for (uint32_t i = 0; i < W * H; i++) {
         for (int k = 0; k < 3; k++) {
-            double x = (double)half(hdr[4 * i + k]);
+            double x = half_float(hdr[4 * i + k]);
             double y = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
             y = fmin(1, fmax(0, y));
             double code = y <= 0.0031308 ? 12.92 * y : 1.055 * pow(y, 1 / 2.4) - 0.055;

@@ -35,7 +35,7 @@ static uint32_t draw_with(masu_session *s, const masu_session_desc *d, masu_memo
     without.no_renderer = true;
     open_session(s, &without);
     assert_int_equal(masu_memory_query(&s->desc, need, NULL), MASU_OK);
-    s->block = aligned_alloc(64, (need->host_bytes + 63) / 64 * 64);
+    s->block = host_block(need->host_bytes);
     masu_detail detail;
     if (masu_init(&s->desc, s->block, need->host_bytes, &s->m, &detail))
         fail_msg("%s", detail.text);
@@ -116,7 +116,7 @@ static void a_block_of_the_host_that_cannot_serve_is_refused(void **state) {
                                  .allocationSize = role->bytes + 4096,
                                  .memoryTypeIndex = role->type};
     VkDeviceMemory memory;
-    void *mapped = NULL, *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
+    void *mapped = NULL, *block = host_block(need.host_bytes);
     assert_int_equal(vkAllocateMemory(s.host.device, &info, NULL, &memory), VK_SUCCESS);
     assert_int_equal(vkMapMemory(s.host.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
     masu_device_block *given = &s.desc.device_blocks[MASU_ROLE_DEVICE];

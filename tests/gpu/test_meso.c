@@ -1,6 +1,7 @@
 /* test_meso.c: shaders/brdf/meso.glsl on the GPU is tools/meso/model.c, and finite for anything. */
 #include "meso/model.h"
 #include "support/support.h"
+#include "support/random.h"
 #include "support/compute.h"
 
 #include "meso_comp.spv.h"
@@ -24,15 +25,8 @@ static test_result results[MANY];
 
 static uint64_t state = 1;
 
-static uint32_t bits(void) {
-    uint64_t z = state += 0x9E3779B97F4A7C15u;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return (uint32_t)(z ^ z >> 31);
-}
-
 static float between(double low, double high) {
-    return (float)(low + (high - low) * (double)(bits() >> 8) / 16777216.0);
+    return (float)(low + (high - low) * (double)random_float(&state));
 }
 
 static void direction(float out[4]) {
@@ -115,16 +109,16 @@ static void test_total(void **unused) {
     for (int i = 0; i < MANY; i++) {
         test_case *c = &cases[i];
         static const float limit[] = {-1000, -1, -1e-30f, 0, 1e-40f, 1, 1000};
-        for (uint32_t k = 0; k < MASU_MESO_NUMBERS; k++) c->curves[k] = limit[bits() % 7];
-        c->curves[3] = bits() & 1 ? 1 : 0;
-        for (uint32_t k = 11; k < 16; k += 4) c->curves[k] = bits() & 1 ? 4 : 0;
+        for (uint32_t k = 0; k < MASU_MESO_NUMBERS; k++) c->curves[k] = limit[random_word(&state) % 7];
+        c->curves[3] = random_word(&state) & 1 ? 1 : 0;
+        for (uint32_t k = 11; k < 16; k += 4) c->curves[k] = random_word(&state) & 1 ? 4 : 0;
         direction(c->view);
         direction(c->light);
         direction(c->normal);
-        if (bits() & 1) memcpy(c->normal, c->view, 3 * sizeof(float));
-        if (bits() & 1) c->view[0] = c->view[2] = 0, c->view[1] = 1;
-        c->normal[3] = bits() & 1 ? 1 : 0;
-        for (int k = 0; k < 4; k++) c->color[k] = bits() & 1 ? 1 : 0;
+        if (random_word(&state) & 1) memcpy(c->normal, c->view, 3 * sizeof(float));
+        if (random_word(&state) & 1) c->view[0] = c->view[2] = 0, c->view[1] = 1;
+        c->normal[3] = random_word(&state) & 1 ? 1 : 0;
+        for (int k = 0; k < 4; k++) c->color[k] = random_word(&state) & 1 ? 1 : 0;
     }
     run();
     for (int i = 0; i < MANY; i++) {

@@ -1,4 +1,4 @@
-/* test_model.c: `masu model` on a driver: shaders with counters count what they run, bytes of known
+/* test_model.c: `masu plan --model` on a driver: shaders with counters count what they run, bytes of known
  * passes are those that follow from sizes, sums are sums, and rungs have the rows that they run. */
 #include "support/support.h"
 
@@ -22,13 +22,6 @@ static const char ladder[] =
     LADDER_HEAD "{\"setting\": \"all\", \"ratio\": 1.0, \"flip\": 0.1, \"knobs\": {\"scale\": 1}},\n"
                 "{\"setting\": \"half\", \"ratio\": 0.5, \"flip\": 0.2, "
                 "\"knobs\": {\"scale\": 0.5, \"specular\": \"off\"}}]}";
-
-static const char *write_file(const char *name, const char *text) {
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", cli_dir, name);
-    cli_write(name, text, strlen(text));
-    return path;
-}
 
 static void model_of(const char *scene, const char *path, uint32_t width, uint32_t height,
                      uint32_t drawn_width, uint32_t drawn_height, masu_model *out) {
@@ -156,7 +149,7 @@ static void assert_near(double given, double wanted, double part) {
 static void test_bytes_of_known_passes(void **state) {
     static masu_model m, larger;
     (void)state;
-    const char *path = write_file("ladder.json", ladder);
+    const char *path = write_text("ladder.json", ladder);
     model_of("mirrors", path, 96, 64, 96, 64, &m);
     assert_int_equal(m.rung_count, 2);
     check_sums(&m);
@@ -226,30 +219,29 @@ static void test_command_line(void **state) {
     (void)state;
     snprintf(arguments, sizeof arguments,
              "%s --size 64x48 --csv %s/m.csv --html-fragment %s/m.xhtml",
-             scene_path("test_sphere_mesh"), cli_dir, cli_dir);
-    assert_int_equal(cli_run("model %s", arguments), 0);
-    cli_take("out", text, sizeof text);
+             scene_path("test_sphere_mesh"), scratch, scratch);
+    assert_int_equal(cli_run("plan --model %s", arguments), 0);
+    take_text("out", text, sizeof text);
     assert_non_null(strstr(text, "COMPUTED"));
     assert_non_null(strstr(text, "tonemap"));
-    cli_take("m.csv", text, sizeof text);
+    take_text("m.csv", text, sizeof text);
     assert_non_null(strstr(text, "\nCOMPUTED,test_sphere_mesh.masu,64,48,0,"));
-    cli_take("m.xhtml", text, sizeof text);
+    take_text("m.xhtml", text, sizeof text);
     assert_non_null(strstr(text, "<caption>COMPUTED"));
-    assert_int_equal(cli_run("model"), 2);
-    snprintf(arguments, sizeof arguments, "%s --ladder %s/none.json --rungs default",
-             scene_path("test_sphere_mesh"), cli_dir);
-    assert_int_equal(cli_run("model %s", arguments), 2);
+    assert_int_equal(cli_run("plan --model"), 2);
+    snprintf(arguments, sizeof arguments, "%s --ladder auto", scene_path("test_sphere_mesh"));
+    assert_int_equal(cli_run("plan --model %s", arguments), 2);
     snprintf(arguments, sizeof arguments, "%s --ladder %s/none.json",
-             scene_path("test_sphere_mesh"), cli_dir);
-    assert_int_equal(cli_run("model %s", arguments), 1);
-    cli_take("err", text, sizeof text);
+             scene_path("test_sphere_mesh"), scratch);
+    assert_int_equal(cli_run("plan --model %s", arguments), 1);
+    take_text("err", text, sizeof text);
     assert_non_null(strstr(text, "none.json"));
-    const char *bad = write_file(
+    const char *bad = write_text(
         "bad.json", LADDER_HEAD "{\"setting\": \"a\", \"ratio\": 1, \"flip\": 0, "
                                 "\"knobs\": {\"aa\": \"many\"}}]}");
     snprintf(arguments, sizeof arguments, "%s --ladder %s", scene_path("test_sphere_mesh"), bad);
-    assert_int_equal(cli_run("model %s", arguments), 1);
-    cli_take("err", text, sizeof text);
+    assert_int_equal(cli_run("plan --model %s", arguments), 1);
+    take_text("err", text, sizeof text);
     assert_non_null(strstr(text, "bad.json: rungs[0]: aa"));
 }
 
@@ -258,5 +250,5 @@ int main(void) {
         cmocka_unit_test(test_loop_is_counted), cmocka_unit_test(test_same_picture),
         cmocka_unit_test(test_bytes_of_known_passes), cmocka_unit_test(test_sdf_rungs),
         cmocka_unit_test(test_command_line)};
-    return cmocka_run_group_tests(tests, cli_make_dir, cli_remove_dir);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

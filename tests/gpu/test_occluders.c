@@ -4,6 +4,7 @@
  * between them; near planes that cut them open), or gaps that are narrower than a texel of the
  * atlas. */
 #include "support/support.h"
+#include "support/random.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,13 +15,6 @@ enum { ON, OFF };
 
 static uint8_t albedo[2][PIXELS_MOST * 4], depth[2][PIXELS_MOST * 4];
 static uint64_t seed;
-
-static double uniform(double low, double high) {
-    uint64_t z = seed += 0x9E3779B97F4A7C15u; /* splitmix64 */
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return low + (high - low) * ((double)((z ^ z >> 31) >> 11) * 0x1p-53);
-}
 
 static void open_scene(masu_session *s, uint32_t width, uint32_t height) {
     masu_session_desc d = test_desc("test_occluders", width, height);
@@ -34,9 +28,7 @@ static void open_scene(masu_session *s, uint32_t width, uint32_t height) {
 static void place(masu_session *s, const char *kind, uint32_t i, const float rows[12]) {
     char name[16];
     (void)snprintf(name, sizeof name, "%s%u", kind, i);
-    masu_instance instance = masu_instance_find(s->m, name);
-    assert_int_not_equal(instance.id, 0);
-    assert_int_equal(masu_instance_set_transform(s->m, instance, rows), MASU_OK);
+    place_instance(s, name, rows);
 }
 
 static void place_box(masu_session *s, const char *kind, uint32_t i, double x, double y, double z,
@@ -44,16 +36,6 @@ static void place_box(masu_session *s, const char *kind, uint32_t i, double x, d
     const float rows[12] = {(float)w, 0, 0, (float)x, 0, (float)h, 0, (float)y, 0, 0, (float)d,
                             (float)z};
     place(s, kind, i, rows);
-}
-
-static void keep(masu_session *s, uint32_t slot, masu_readback_bits which, uint8_t *to) {
-    masu_readback_image image;
-    assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
-    assert_true(image.width * image.height <= PIXELS_MOST);
-    for (uint32_t y = 0; y < image.height; y++) {
-        memcpy(to + (size_t)y * image.width * 4,
-               (const uint8_t *)image.pixels + y * image.row_bytes, image.width * 4);
-    }
 }
 
 /* Draws both ways; the same in every pixel. Returns the numbers of the one with occlusion. */
@@ -65,9 +47,9 @@ static masu_stats_info compare(masu_session *s, const masu_camera *c, int cut, c
         masu_frame_desc f = {.camera = c, .rung = way, .cut = (uint32_t)cut};
         masu_commands commands;
         draw(s, &f, &commands, NULL);
-        assert_int_equal(masu_stats(s->m, commands.slot, &stats[way]), MASU_OK);
-        keep(s, commands.slot, MASU_READBACK_ALBEDO, albedo[way]);
-        keep(s, commands.slot, MASU_READBACK_DEPTH, depth[way]);
+        stats[way] = stats_of(s, commands.slot);
+        memcpy(albedo[way], read_image(s, commands.slot, MASU_READBACK_ALBEDO), bytes);
+        memcpy(depth[way], read_image(s, commands.slot, MASU_READBACK_DEPTH), bytes);
     }
     for (size_t i = 0; i < bytes; i += 4) {
         /* Albedo is not defined where nothing is. */
@@ -85,8 +67,8 @@ static masu_stats_info compare(masu_session *s, const masu_camera *c, int cut, c
 
 /* Unit vectors across each other, by turning about the three axes. */
 static void turn(double out[3][3]) {
-    double a[3] = {uniform(0, 6.3), uniform(0, 6.3), uniform(0, 6.3)};
-    if (uniform(0, 1) < 0.3) a[0] = a[1] = a[2] = 0;
+    double a[3] = {random_between(&seed, 0, 6.3), random_between(&seed, 0, 6.3), random_between(&seed, 0, 6.3)};
+    if (random_between(&seed, 0, 1) < 0.3) a[0] = a[1] = a[2] = 0;
     memset(out, 0, 9 * sizeof out[0][0]);
     for (int i = 0; i < 3; i++) out[i][i] = 1;
     for (int axis = 0; axis < 3; axis++) {
@@ -105,16 +87,16 @@ static void place_random(masu_session *s, const char *kind, uint32_t i, double s
     float rows[12];
     turn(axes);
     for (int k = 0; k < 3; k++) {
-        scale[k] = exp(uniform(log(size * 0.1), log(size)));
-        if (uniform(0, 1) < 0.1) scale[k] = -scale[k];
-        if (uniform(0, 1) < 0.02) scale[k] = 0;
+        scale[k] = exp(random_between(&seed, log(size * 0.1), log(size)));
+        if (random_between(&seed, 0, 1) < 0.1) scale[k] = -scale[k];
+        if (random_between(&seed, 0, 1) < 0.02) scale[k] = 0;
     }
     for (int r = 0; r < 3; r++) {
         for (int k = 0; k < 3; k++) {
             rows[4 * r + k] = (float)(axes[k][r] * scale[k]);
             if (i % 5 == 0 && k) rows[4 * r + k] += 0.5f * rows[4 * r]; /* sheared */
         }
-        rows[4 * r + 3] = (float)(around[r] + uniform(-space, space));
+        rows[4 * r + 3] = (float)(around[r] + random_between(&seed, -space, space));
     }
     place(s, kind, i, rows);
 }
@@ -139,18 +121,18 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
     open_scene(&s, width, height);
     for (uint64_t t = 0; t < trials; t++) {
         seed = t * 977 + width;
-        double far = uniform(0, 1) < 0.2 ? 1e5 : 0, center[3] = {far, 0, -far};
-        double space = exp(uniform(log(3), log(60)));
+        double far = random_between(&seed, 0, 1) < 0.2 ? 1e5 : 0, center[3] = {far, 0, -far};
+        double space = exp(random_between(&seed, log(3), log(60)));
         for (uint32_t i = 0; i < WALLS; i++) place_random(&s, "wall", i, space, space, center);
         for (uint32_t i = 0; i < THINGS; i++)
             place_random(&s, "thing", i, space, space * 0.2, center);
         for (uint32_t view = 0; view < 3; view++) {
-            masu_camera c = {.fov_y = (float)uniform(0.2, view ? 1.5 : 2.8),
-                             .near_distance = (float)(view == 1 ? uniform(0.1, space * 0.3) : 0.05)};
+            masu_camera c = {.fov_y = (float)random_between(&seed, 0.2, view ? 1.5 : 2.8),
+                             .near_distance = (float)(view == 1 ? random_between(&seed, 0.1, space * 0.3) : 0.05)};
             for (int k = 0; k < 3; k++) {
-                c.position[k] = center[k] + uniform(-1.5, 1.5) * space * (view ? 1.0 : 0.3);
+                c.position[k] = center[k] + random_between(&seed, -1.5, 1.5) * space * (view ? 1.0 : 0.3);
                 c.forward[k] = (float)(center[k] - c.position[k] +
-                                       uniform(-0.5, 0.5) * space);
+                                       random_between(&seed, -0.5, 0.5) * space);
             }
             /* A cut, then frames that remember. */
             for (int frame = 0; frame < 2; frame++) {
@@ -196,13 +178,13 @@ static void gaps_narrower_than_a_texel_are_looked_through(void **state) {
     uint32_t through = 0, hidden = 0;
     for (uint32_t n = 0; n < 240; n++) {
         seed = n;
-        double gap = n % 8 == 0 ? -0.01 : uniform(0.0, 1.0) * 20.0 / 192.0;
-        double at = uniform(-6.0, 6.0), depth_of = n % 2 ? 0.0 : uniform(0.0, 3.0);
+        double gap = n % 8 == 0 ? -0.01 : random_between(&seed, 0.0, 1.0) * 20.0 / 192.0;
+        double at = random_between(&seed, -6.0, 6.0), depth_of = n % 2 ? 0.0 : random_between(&seed, 0.0, 3.0);
         double height = 30.0, width = 6.0;
         int lying = n % 3 == 2; /* above each other */
         double low = at - gap / 2 - width / 2, high = at + gap / 2 + width / 2;
         if (lying) {
-            double y = uniform(-0.3, 0.3), g = gap / 3;
+            double y = random_between(&seed, -0.3, 0.3), g = gap / 3;
             place_box(&s, "wall", 0, 0, y - g / 2 - 2, -10.0, 40, 4, 0.02);
             place_box(&s, "wall", 1, 0, y + g / 2 + 2, -10.0, 40, 4, 0.02);
         } else {
@@ -266,10 +248,10 @@ static void what_stands_before_a_slanted_wall_is_drawn(void **state) {
     place(&s, "wall", 3, wall);
     for (uint32_t n = 0; n < 150; n++) {
         seed = n;
-        double u = uniform(0.1, 0.95);
+        double u = random_between(&seed, 0.1, 0.95);
         double x = a[0] + u * (b[0] - a[0]), z = a[1] + u * (b[1] - a[1]);
         /* 1 to 6 % nearer than the wall, a third of a texel wide. */
-        double nearer = uniform(0.94, 0.99), size = -z * 0.0035;
+        double nearer = random_between(&seed, 0.94, 0.99), size = -z * 0.0035;
         place_box(&s, "thing", 1, x * nearer, 0, z * nearer, size, 4 * size, size * 0.1);
         (void)compare(&s, &c, n % 5 == 0, "thing", n);
         seen += colours_seen((size_t)GAP_W * GAP_H) > 1;

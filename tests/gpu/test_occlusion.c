@@ -5,6 +5,7 @@
  * The scenes of scenes/ are baked here again with the options; the fields of the truth come from the
  * SDF compiler and go through the C compiler. The table of errors is printed (docs/DESIGN.md). */
 #include "support/support.h"
+#include "support/files.h"
 
 #include "bench/measure/truth.h"
 #include "reference/occlusion.h"
@@ -13,87 +14,38 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 enum { W = 160, H = 90 };
 
-static char dir[] = "/tmp/masu-occlusion-XXXXXX";
 static masu_session s;
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-static int shell(const char *format, ...) {
-    char command[2048];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(command, sizeof command, format, args);
-    va_end(args);
-    int status = system(command);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-static const char *build_dir(void) {
-    const char *build = getenv("BUILD");
-    return build ? build : "build";
-}
-
-static void write_file(const char *name, const char *text) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_true(fputs(text, f) >= 0);
-    assert_int_equal(fclose(f), 0);
-}
-
-/* Bakes `json` to NAME.masu. */
-static void bake(const char *name, const char *json) {
-    char file[64];
-    snprintf(file, sizeof file, "%s.json", name);
-    write_file(file, json);
-    if (shell("%s/bin/masu-bake %s/%s.json -o %s/%s.masu --quiet", build_dir(), dir, name, dir, name))
-        fail_msg("%s.json cannot be baked", name);
-}
-
 /* scenes/NAME.json with more members of its "sdf". */
 static void bake_with(const char *name, const char *options) {
-    static char text[1 << 14], json[1 << 15];
+    static char json[1 << 15];
     char path[256], root[1024];
     snprintf(path, sizeof path, "scenes/%s.json", name);
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    text[fread(text, 1, sizeof text - 1, f)] = 0;
-    fclose(f);
+    char *text = read_file(path, NULL);
     static const char before[] = "\"source\": \"";
     char *source = strstr(text, before);
     assert_non_null(source);
     assert_non_null(getcwd(root, sizeof root));
     snprintf(json, sizeof json, "%.*s%s%s%s/scenes/%s", (int)(source - text), text, options, before, root,
              source + strlen(before));
-    bake(name, json);
+    free(text);
+    bake_scene(name, json);
 }
 
 static void open_scene(const char *name, uint32_t width, uint32_t height, int unpruned) {
-    static char path[256];
     masu_session_desc d = test_desc(NULL, width, height);
-    snprintf(path, sizeof path, "%s/%s.masu", dir, name);
-    d.scene_path = path;
+    d.scene_path = baked_scene(name);
     d.desc.readback = MASU_READBACK_ALL;
     d.desc.rung_count = 1;
     d.desc.rungs[0].march = unpruned ? MASU_MARCH_UNPRUNED : MASU_MARCH_AUTO;
     open_session(&s, &d);
 }
-
-static const void *image(masu_readback_bits which) {
-    masu_readback_image out;
-    assert_int_equal(masu_readback(s.m, 0, which, &out), MASU_OK);
-    return out.pixels;
-}
-
-static double sun_of(const uint32_t *texels, uint32_t i) { return (texels[i] & 0xFFFF) / 65535.0; }
-static double ambient_of(const uint32_t *texels, uint32_t i) { return (texels[i] >> 16) / 65535.0; }
 
 static void draw_once(void) {
     masu_frame_desc frame = {0};
@@ -103,18 +55,10 @@ static void draw_once(void) {
 
 /* The session has let go of its blob: the scene is read again. */
 static void look_at(const char *name, const masu_camera *camera, masu_view *view) {
-    char path[256], error[ERROR_SIZE];
+    char error[ERROR_SIZE];
     masu_scene scene;
-    snprintf(path, sizeof path, "%s/%s.masu", dir, name);
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    assert_int_equal(fseek(f, 0, SEEK_END), 0);
-    size_t bytes = (size_t)ftell(f);
-    rewind(f);
-    void *blob = aligned_alloc(16, (bytes + 15) / 16 * 16);
-    assert_non_null(blob);
-    assert_int_equal(fread(blob, 1, bytes, f), bytes);
-    fclose(f);
+    size_t bytes;
+    void *blob = read_file(baked_scene(name), &bytes);
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);
     assert_ok(masu_view_of(&scene, camera, 0, W, H, view, error, sizeof error));
     free(blob);
@@ -139,9 +83,9 @@ static double rmse(const errors *e) { return e->count ? sqrt(e->squares / e->cou
 
 static void compare(const masu_truth *truth, const masu_view *view, double tangent, uint32_t stride,
                     errors *sun, errors *ambient) {
-    const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-    const uint32_t *normals = image(MASU_READBACK_NORMAL);
-    const float *depths = image(MASU_READBACK_DEPTH);
+    const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
+    const uint32_t *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
+    const float *depths = read_image(&s, 0, MASU_READBACK_DEPTH);
     masu_ref_field field = {truth->step, view->params, view->time, {0}, {0}};
     memcpy(field.low, view->sdf_min, sizeof field.low);
     memcpy(field.high, view->sdf_max, sizeof field.high);
@@ -162,12 +106,12 @@ static void compare(const masu_truth *truth, const masu_view *view, double tange
             }
             if (ambient)
                 note(ambient, masu_ref_ambient_seen(&field, p, hit.normal, 1, 1024),
-                     ambient_of(seen, at));
+                     ambient_share(seen, at));
             if (n_l <= 0.02) continue; /* the sun hardly matters there */
             note(sun,
                  masu_ref_sun_seen(&field, p, hit.normal, view->sun_direction, tangent,
                                    view->max_distance, 256),
-                 sun_of(seen, at));
+                 sun_share(seen, at));
         }
     }
 }
@@ -194,7 +138,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         bake_with(name, options);
         if (shell("test -e %s/%s.so || { %s/bin/masu-sdfc scenes/%s.sdf --c %s/%s.c --quiet && "
                   "%s -std=c11 -O2 -w -shared -fPIC -o %s/%s.so %s/%s.c -lm; }",
-                  dir, name, build_dir(), name, dir, name, cc && *cc ? cc : "cc", dir, name, dir,
+                  scratch, name, build_dir(), name, scratch, name, cc && *cc ? cc : "cc", scratch, name, scratch,
                   name))
             fail_msg("no truth of %s", name);
         masu_truth truth;
@@ -202,12 +146,12 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         masu_camera camera;
         masu_stats_info stats;
         errors sun = {0}, ambient = {0};
-        snprintf(path, sizeof path, "%s/%s.so", dir, name);
+        snprintf(path, sizeof path, "%s/%s.so", scratch, name);
         assert_ok(masu_truth_open(path, &truth, error, sizeof error));
         open_scene(name, W, H, 0);
         draw_once();
         assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        stats = stats_of(&s, 0);
         look_at(name, &camera, &view);
         int both = i == 0 || strcmp(name, stated[i - 1].scene) != 0;
         compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), 5, &sun,
@@ -238,7 +182,7 @@ static void bake_sdf(const char *name, const char *sdf, const char *models, cons
     char text[1024], json[2048];
     snprintf(text, sizeof text, "let k = %g;\n%s", scale, sdf);
     snprintf(json, sizeof json, "%s.sdf", name);
-    write_file(json, text);
+    write_text(json, text);
     snprintf(json, sizeof json,
              "{%s \"camera\": {\"fov_y\": 50, \"near\": %g, \"keys\": [{\"position\": [0, %g, %g], "
              "\"target\": [0, 0, 0]}]}, \"sun\": {%s}, \"ambient\": [0.25, 0.25, 0.25], "
@@ -246,7 +190,7 @@ static void bake_sdf(const char *name, const char *sdf, const char *models, cons
              "\"max_distance\": %g, %s}}",
              models, 0.05 * scale, 3 * scale, 5 * scale, sun, name, -40 * scale, -3 * scale,
              -40 * scale, 40 * scale, 20 * scale, 40 * scale, 200 * scale, options);
-    bake(name, json);
+    bake_scene(name, json);
 }
 
 static const char *const plain_sun = "\"azimuth\": 70, \"elevation\": 40";
@@ -267,8 +211,8 @@ static void nothing_shadows_itself(void **state) {
         bake_sdf("alone", fields[i / 2], "", plain_sun, scale, options);
         open_scene("alone", 256, 192, 0);
         draw_once();
-        const uint32_t *seen = image(MASU_READBACK_OCCLUSION), *normals = image(MASU_READBACK_NORMAL);
-        const float *depths = image(MASU_READBACK_DEPTH);
+        const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION), *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
+        const float *depths = read_image(&s, 0, MASU_READBACK_DEPTH);
         uint32_t looked = 0, dark = 0, closed = 0;
         for (uint32_t k = 0; k < 256 * 192; k++) {
             float n[3];
@@ -278,8 +222,8 @@ static void nothing_shadows_itself(void **state) {
                          (double)n[2] * cos(e) * cos(a);
             if (!(depths[k] > 0) || n_l < 0.02) continue;
             looked++;
-            dark += sun_of(seen, k) < 0.999;
-            closed += ambient_of(seen, k) < 0.98;
+            dark += sun_share(seen, k) < 0.999;
+            closed += ambient_share(seen, k) < 0.98;
         }
         close_session(&s);
         /* The normal of an edge is between those of its faces: the box loses some sky there. */
@@ -301,14 +245,14 @@ static void what_is_out_of_sight_casts_its_shadow(void **state) {
              "", "\"direction\": [-12, 8, 0]", 1, hard);
     open_scene("aside", 128, 96, 0);
     draw_once();
-    const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-    const uint32_t *normals = image(MASU_READBACK_NORMAL);
+    const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
+    const uint32_t *normals = read_image(&s, 0, MASU_READBACK_NORMAL);
     uint32_t dark = 0;
-    for (uint32_t k = 0; k < 128 * 96; k++) dark += normals[k] && sun_of(seen, k) < 0.1;
-    assert_true(sun_of(seen, 48 * 128 + 64) < 0.01); /* the origin: on the line to the sun */
+    for (uint32_t k = 0; k < 128 * 96; k++) dark += normals[k] && sun_share(seen, k) < 0.1;
+    assert_true(sun_share(seen, 48 * 128 + 64) < 0.01); /* the origin: on the line to the sun */
     /* An ellipse of half axes 1.5 and 1.5 / sin(33.7 degrees) at distance 5.8, near enough. */
     assert_in_range(dark, 300, 4000);
-    assert_true(sun_of(seen, 90 * 128 + 120) > 0.99);
+    assert_true(sun_share(seen, 90 * 128 + 120) > 0.99);
     close_session(&s);
 }
 
@@ -327,15 +271,15 @@ static void lists_leave_out_nothing_that_matters(void **state) {
         for (int all = 0; all < 2; all++) {
             open_scene(scenes[i], W, H, all);
             draw_once();
-            const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-            const float *depths = image(MASU_READBACK_DEPTH);
-            assert_int_equal(masu_stats(s.m, 0, &stats[all]), MASU_OK);
+            const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
+            const float *depths = read_image(&s, 0, MASU_READBACK_DEPTH);
+            stats[all] = stats_of(&s, 0);
             if (!all) memcpy(listed, seen, sizeof listed);
             for (uint32_t k = 0; k < W * H && all; k++) {
                 if (!(depths[k] > 0)) continue;
                 surface++;
-                sun += fabs(sun_of(seen, k) - sun_of(listed, k)) > 0.1;
-                ambient += fabs(ambient_of(seen, k) - ambient_of(listed, k)) > 0.02;
+                sun += fabs(sun_share(seen, k) - sun_share(listed, k)) > 0.1;
+                ambient += fabs(ambient_share(seen, k) - ambient_share(listed, k)) > 0.02;
             }
             close_session(&s);
         }
@@ -357,23 +301,16 @@ static void an_sdf_shadows_polygons(void **state) {
              "\"direction\": [0, 1, 0], \"color\": [1, 1, 1]", 1, hard);
     open_scene("floor", 128, 96, 0);
     draw_once();
-    const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-    const uint16_t *hdr = image(MASU_READBACK_HDR);
+    const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
+    const uint16_t *hdr = read_image(&s, 0, MASU_READBACK_HDR);
     const uint32_t shadow = 48 * 128 + 64, light = 48 * 128 + 6;
-    assert_true(sun_of(seen, shadow) < 0.001);
-    assert_true(ambient_of(seen, shadow) < 1.0 && ambient_of(seen, shadow) > 0.5);
-    assert_true(sun_of(seen, light) > 0.999);
-    assert_true(ambient_of(seen, light) > 0.99);
+    assert_true(sun_share(seen, shadow) < 0.001);
+    assert_true(ambient_share(seen, shadow) < 1.0 && ambient_share(seen, shadow) > 0.5);
+    assert_true(sun_share(seen, light) > 0.999);
+    assert_true(ambient_share(seen, light) > 0.99);
     /* Halves order like their bits. */
     assert_true(hdr[4 * shadow] > 0 && hdr[4 * shadow] < hdr[4 * light]);
     close_session(&s);
-}
-
-static const masu_plan_pass *pass_of(const masu_plan_info *plan, const char *name) {
-    for (uint32_t p = 0; p < plan->pass_count; p++)
-        if (!strcmp(plan->passes[p].name, name)) return &plan->passes[p];
-    fail_msg("there is no pass %s", name);
-    return NULL;
 }
 
 static uint64_t image_bytes(const masu_plan_info *plan, const char *name) {
@@ -394,7 +331,7 @@ static void a_scene_that_does_not_ask_has_none_of_it(void **state) {
         open_scene("spheres", 64, 48, 0);
         draw_once();
         masu_plan_of(s.m, &plan);
-        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        stats = stats_of(&s, 0);
         assert_int_equal(pass_of(&plan, "sdf_occlusion")->active, i > 0);
         assert_int_equal(pass_of(&plan, "light_occluded")->active, i > 0);
         assert_int_equal(pass_of(&plan, "light")->active, i == 0);
@@ -423,32 +360,22 @@ static void extremes_give_finite_pixels(void **state) {
         bake_with(scenes[i / 2], options[i % 2]);
         open_scene(scenes[i / 2], 64, 48, 0);
         draw_once();
-        const uint32_t *seen = image(MASU_READBACK_OCCLUSION);
-        const uint16_t *hdr = image(MASU_READBACK_HDR);
-        const float *depths = image(MASU_READBACK_DEPTH);
+        const uint32_t *seen = read_image(&s, 0, MASU_READBACK_OCCLUSION);
+        const uint16_t *hdr = read_image(&s, 0, MASU_READBACK_HDR);
+        const float *depths = read_image(&s, 0, MASU_READBACK_DEPTH);
         uint32_t surface = 0;
         double lit = 0;
         for (uint32_t k = 0; k < 64 * 48; k++) {
             for (int c = 0; c < 4; c++) assert_true((hdr[4 * k + c] & 0x7C00) != 0x7C00);
             if (!(depths[k] > 0)) continue;
             surface++;
-            lit += sun_of(seen, k);
+            lit += sun_share(seen, k);
         }
         assert_true(surface > 100);
         /* A ray of a millimetre leaves all but the terminator in the sun. */
         if (i % 2 && i / 2) assert_true(lit > 0.9 * surface);
         close_session(&s);
     }
-}
-
-static int make_dir(void **state) {
-    (void)state;
-    return mkdtemp(dir) ? 0 : 1;
-}
-
-static int remove_dir(void **state) {
-    (void)state;
-    return shell("rm -rf %s", dir);
 }
 
 int main(void) {
@@ -461,5 +388,5 @@ int main(void) {
         cmocka_unit_test(extremes_give_finite_pixels),
         cmocka_unit_test(the_error_against_the_truth_is_as_stated),
     };
-    return cmocka_run_group_tests_name("occlusion", tests, make_dir, remove_dir);
+    return cmocka_run_group_tests_name("occlusion", tests, make_scratch, remove_scratch);
 }

@@ -2,6 +2,7 @@
  * 8 bits between tone curve and target cost; hostile input of the chain of colour passes. */
 #include "reference/tone.h"
 #include "support/support.h"
+#include "support/floats.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,14 +10,6 @@
 
 enum { W = 32, H = 24 };
 static masu_session s;
-
-static double half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    double v = exponent == 31 ? (mantissa ? (double)NAN : (double)INFINITY)
-               : exponent     ? ldexp(mantissa + 1024, exponent - 25)
-                              : ldexp(mantissa, -24);
-    return h & 0x8000 ? -v : v;
-}
 
 /* A scene in whose picture is nothing but sky of one colour: looked at from outside, away from it. */
 static masu_session_desc sky_desc(uint32_t width, uint32_t height) {
@@ -76,7 +69,7 @@ static void pixel(VkFormat format, const uint8_t *at, double out[3], double step
         memcpy(h, at, 8);
         assert_int_equal(h[3], 0x3C00);
         for (int c = 0; c < 3; c++) {
-            out[c] = half(h[c]);
+            out[c] = half_float(h[c]);
             step[c] = fmax(out[c], 1e-4) / 1024; /* of a half; what is lit is one, too */
         }
         return;
@@ -333,16 +326,14 @@ static void ramp(int dither, uint8_t *rgba, uint32_t side, double *rms, uint32_t
     d.desc.readback = MASU_READBACK_HDR;
     open_session(&s, &d);
     draw_sky(high, low, 0, rgba);
-    masu_readback_image image;
-    assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_HDR, &image), MASU_OK);
-    const uint16_t *hdr = image.pixels;
+    const uint16_t *hdr = read_image(&s, 0, MASU_READBACK_HDR);
     double sum = 0;
     for (uint32_t y = 0; y < side; y += 8) {
         for (uint32_t x = 0; x < side; x += 8) {
             double error = 0;
             for (uint32_t k = 0; k < 64; k++) {
                 uint32_t at = 4 * ((y + k / 8) * side + x + k % 8);
-                error += rgba[at] - 255 * masu_ref_srgb_encode(half(hdr[at]));
+                error += rgba[at] - 255 * masu_ref_srgb_encode(half_float(hdr[at]));
             }
             sum += error / 64 * (error / 64);
         }
@@ -420,13 +411,11 @@ static void dither_is_the_reference_and_depends_on_the_frame_alone(void **state)
         d.desc.readback = MASU_READBACK_HDR;
         open_session(&s, &d);
         for (uint32_t f = 0; f < 3; f++) draw_sky(high, low, 0, runs[i][f]);
-        masu_readback_image image;
-        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_HDR, &image), MASU_OK); /* of frame 2 */
-        const uint16_t *hdr = image.pixels;
+        const uint16_t *hdr = read_image(&s, 0, MASU_READBACK_HDR); /* of frame 2 */
         uint32_t other = 0;
         for (uint32_t k = 0; k < W * H; k++) {
             for (uint32_t c = 0; c < 3; c++) {
-                double v = masu_ref_srgb_encode(half(hdr[4 * k + c]));
+                double v = masu_ref_srgb_encode(half_float(hdr[4 * k + c]));
                 other += masu_ref_dither(v, 255, k % W, k / W, 2, c) != runs[i][2][4 * k + c];
             }
         }
@@ -471,7 +460,7 @@ static void deeper_colour_is_nearer_to_the_truth(void **state) {
     for (uint32_t k = 0; k < 4 * SIDE * SIDE; k++) {
         if (k % 4 == 3) continue;
         for (int i = 0; i < 2; i++) {
-            double error = rgba[i][k] - 255 * half(truth[k]);
+            double error = rgba[i][k] - 255 * half_float(truth[k]);
             rms[i] += error * error / (3.0 * SIDE * SIDE);
             error = rgba[i][k] - rgba[2][k];
             native[i] += error * error / (3.0 * SIDE * SIDE);
@@ -544,24 +533,11 @@ static void upscale(const uint16_t *halves, uint8_t *out) {
     assert_ok(masu_headless_source_of(&s.host, VK_FORMAT_R16G16B16A16_SFLOAT, halves, IN_W, IN_H,
                                       IN_W, IN_H, 0, &source, error, sizeof error));
     masu_desc d = s.desc;
-    masu_memory need;
-    masu_detail detail;
-    masu_renderer *m;
-    masu_commands commands;
-    masu_frame_desc frame = {0};
+    d.output = (VkExtent2D){OUT_W, OUT_H};
     d.source = (masu_source){.view = source.view, .width = IN_W, .height = IN_H};
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.sharpen = MASU_ON};
-    if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
-    void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
-    if (masu_init(&d, block, need.host_bytes, &m, &detail)) fail_msg("%s", detail.text);
-    assert_int_equal(masu_load(m, &commands), MASU_OK);
-    assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
-    assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
-    assert_ok(masu_headless_target_read(&s.host, &s.targets[0], error, sizeof error));
-    memcpy(out, s.targets[0].mapped, 4 * OUT_W * OUT_H);
-    masu_destroy(m);
-    free(block);
+    draw_rungs_of(&s, &d, &out, NULL);
     masu_headless_source_destroy(&s.host, &source);
 }
 
@@ -570,9 +546,7 @@ static void a_broken_pixel_stays_in_its_footprint(void **state) {
     static const uint16_t hostile[] = {0x7E00, 0xFE00, 0x7C00, 0xFC00, 0xBC00, 0x7BFF, 0x8000, 0x0001};
     static uint16_t halves[4 * IN_W * IN_H];
     static uint8_t good[4 * OUT_W * OUT_H], bad[4 * OUT_W * OUT_H];
-    masu_session_desc d = test_desc(NULL, OUT_W, OUT_H);
-    d.no_renderer = true;
-    open_session(&s, &d);
+    open_device(&s);
     for (uint32_t i = 0; i < 4 * IN_W * IN_H; i++) /* 0.25 to 0.97 */
         halves[i] = i % 4 == 3 ? 0x3C00 : (uint16_t)(0x3400 + i * 2654435761u % 0x7C0);
     upscale(halves, good);

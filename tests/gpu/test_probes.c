@@ -3,6 +3,9 @@
  * are dispatched here by hand, on the grid of a real scene. Then whole frames, under the validation
  * layer: a room is darker with its probes, and the sun's colour comes back from its walls. */
 #include "support/support.h"
+#include "support/files.h"
+#include "support/random.h"
+#include "support/floats.h"
 
 #include "bake/light/probe_light.h"
 #include "scene/scene.h"
@@ -195,38 +198,20 @@ static void dispatch(uint32_t probes) {
     vkFreeCommandBuffers(device, b.s.host.pool, 1, &cmd);
 }
 
-static void *read_blob(const char *path, size_t *bytes) {
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    assert_int_equal(fseek(f, 0, SEEK_END), 0);
-    *bytes = (size_t)ftell(f);
-    rewind(f);
-    void *blob = aligned_alloc(16, (*bytes + 15) / 16 * 16);
-    assert_non_null(blob);
-    assert_int_equal(fread(blob, 1, *bytes, f), *bytes);
-    fclose(f);
-    return blob;
-}
-
-static float number(uint32_t *state) {
-    *state = *state * 1664525u + 1013904223u;
-    return (float)(*state >> 8) / 16777216.0f;
-}
-
 static void set_points(const masu_blob_probes *p) {
     static const float odd[] = {0, -0.0f, 1e-40f, 1e30f, -1e30f, INFINITY, -INFINITY, NAN};
     float(*points)[4] = b.buffers[PLACES].mapped;
-    uint32_t random = 77;
+    uint64_t random = 77;
     for (uint32_t i = 0; i < POINTS; i++) {
-        float z = number(&random) * 2 - 1, a = number(&random) * 6.2831853f, r = sqrtf(1 - z * z);
+        float z = random_float(&random) * 2 - 1, a = random_float(&random) * 6.2831853f, r = sqrtf(1 - z * z);
         const float n[3] = {r * cosf(a), r * sinf(a), z};
         for (int k = 0; k < 3; k++) {
             /* From two cells outside of the grid to two on the other side. */
             float cells = (float)p->counts[k] + 4;
-            points[2 * i][k] = p->origin[k] + p->spacing[k] * (number(&random) * cells - 2.5f);
+            points[2 * i][k] = p->origin[k] + p->spacing[k] * (random_float(&random) * cells - 2.5f);
             points[2 * i + 1][k] = n[k];
             if (i >= POINTS - 512) {
-                uint32_t which = (uint32_t)(number(&random) * 16);
+                uint32_t which = (uint32_t)(random_float(&random) * 16);
                 if (which < 8) points[2 * i + (i & 1)][k] = odd[which];
             }
         }
@@ -238,7 +223,7 @@ static void set_points(const masu_blob_probes *p) {
 static void the_gpu_says_what_the_twin_says(void **state) {
     (void)state;
     size_t bytes;
-    void *blob = read_blob(scene_path("probe_room"), &bytes);
+    void *blob = read_file(scene_path("probe_room"), &bytes);
     masu_scene scene;
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);
     masu_scene_view v = masu_scene_look(&scene);
@@ -319,8 +304,6 @@ static void the_gpu_says_what_the_twin_says(void **state) {
 
 /* ---- Whole frames ---------------------------------------------------------------------------- */
 
-static float half(uint16_t h) { return masu_probe_half(h); }
-
 enum { W = 96, H = 64 };
 
 /* Mean radiance of the picture under that light. */
@@ -335,7 +318,7 @@ static void mean_of(masu_session *s, const masu_light *light, double mean[3]) {
         for (uint32_t k = 0; k < 3; k++) {
             uint16_t h = ((const uint16_t *)hdr.pixels)[4 * i + k];
             assert_true((h & 0x7C00) != 0x7C00);
-            mean[k] += (double)half(h) / (W * H);
+            mean[k] += half_float(h) / (W * H);
         }
     }
 }

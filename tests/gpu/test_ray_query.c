@@ -567,7 +567,7 @@ static void a_structure_that_cannot_be_made_leaves_nothing_behind(void **state) 
     d.no_renderer = true;
     open_session(&s, &d);
     assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
-    void *block = aligned_alloc(64, (s.need.host_bytes + 63) / 64 * 64);
+    void *block = host_block(s.need.host_bytes);
     for (uint64_t k = 1; k < 1000; k++) {
         wrap_reset();
         wrap.fail_at = k;

@@ -3,6 +3,7 @@
  * 256 over its disc; no acne, how much light leaks in at the foot of a caster, SDF and polygons
  * together. The figures are printed (docs/DESIGN.md). test_shadow_frames.c has what holds from
  * frame to frame. */
+#include "support/files.h"
 #include "support/shadow.h"
 
 #include <math.h>
@@ -43,7 +44,7 @@ static void finish(const char *name, const char *last, uint32_t resolution, cons
     add("%s], \"sun\": {\"shadows\": {\"cascades\": 2, \"resolution\": %u, \"distance\": 40}}, "
         "\"camera\": {\"near\": 0.1}%s}",
         last, resolution, more);
-    shadow_bake(name, json);
+    bake_scene(name, json);
 }
 
 static uint32_t next(uint32_t *r) {
@@ -106,7 +107,7 @@ static errors compare(const masu_camera *camera) {
                 continue;
             double texel = shadow_texel(&t, camera, &p, (double)camera->near_distance, &cascade);
             if (!(texel > 0) || p.z > 0.9 * (double)t.scene.shadow_distance) continue;
-            double is = shadow_seen(seen, y * t.width + x);
+            double is = sun_share(seen, y * t.width + x);
             int truth = shadow_truth(&t, &p);
             e.looked++;
             if (fabs(is - truth) > 0.5) {
@@ -172,7 +173,7 @@ static uint32_t dark_in_the_sun(const masu_camera *camera, uint32_t *looked) {
         if (!shadow_point_at(&t, camera, depths, i % t.width, i / t.width, &p)) continue;
         if (!p.faces || p.n_l < 0.01 || !shadow_truth(&t, &p)) continue;
         ++*looked;
-        dark += shadow_seen(seen, i) < 0.99;
+        dark += sun_share(seen, i) < 0.99;
     }
     return dark;
 }
@@ -259,7 +260,7 @@ static void shadows_begin_at_the_foot_of_their_caster(void **state) {
                 double texel = shadow_texel(&t, &behind, &p, 0.1, &cascade);
                 if (fabs(p.at[2]) > 10 * texel || fabs(p.at[0]) > 1) continue; /* no other edge */
                 ground++;
-                if (shadow_seen(seen, k) > 0.5) leak = fmax(leak, -p.at[2] / texel);
+                if (sun_share(seen, k) > 0.5) leak = fmax(leak, -p.at[2] / texel);
             }
             print_message("%s, sun %d: lit up to %.2f texels behind the foot, of %u pixels\n",
                           i ? "box" : "sheet", elevation, leak, ground);
@@ -298,7 +299,7 @@ static void a_sheet_above_the_ground_casts_from_a_few_texels_on(void **state) {
             const float *depths = shadow_image(&t, MASU_READBACK_DEPTH);
             for (uint32_t j = 0; j < 64 * 48; j++) {
                 inside += depths[j] > 0;
-                lit += shadow_seen(seen, j) > 0.5;
+                lit += sun_share(seen, j) > 0.5;
             }
             assert_int_equal(inside, 64 * 48);
             if (lit) lost[i] = height / shadow_texel(&t, &low, &p, 0.001, &cascade);
@@ -320,10 +321,10 @@ static void sdf_and_polygons_shadow_each_other(void **state) {
     (void)state;
     static uint32_t seen[3][W * H];
     static float depths[W * H];
-    static const char field[] = "part ball = translate((-1.2, 0.8, 0), sphere(0.8));\\n";
+    static const char field[] = "part ball = translate((-1.2, 0.8, 0), sphere(0.8));\n";
     for (int i = 0; i < 3; i++) {
         char text[2048];
-        assert_int_equal(shadow_shell("printf '%s' > %s/ball.sdf", field, shadow_dir()), 0);
+        write_text("ball.sdf", field);
         snprintf(
             text, sizeof text,
             "{\"models\": [%s, {\"mesh\": {\"box\": {\"size\": [0.7, 3, 0.7]}}, \"translate\": "
@@ -333,7 +334,7 @@ static void sdf_and_polygons_shadow_each_other(void **state) {
             GROUND,
             i != 0 ? ", \"shadows\": {\"cascades\": 2, \"resolution\": 512, \"distance\": 40}" : "",
             i != 1 ? ", \"shadows\": {}, \"ambient_occlusion\": {}" : "");
-        shadow_bake("both", text);
+        bake_scene("both", text);
         shadow_open(&t, "both", W, H, NULL);
         shadow_draw(&t, &above, 0);
         memcpy(seen[i], shadow_image(&t, MASU_READBACK_OCCLUSION), sizeof seen[i]);
@@ -343,8 +344,8 @@ static void sdf_and_polygons_shadow_each_other(void **state) {
     uint32_t on_ball = 0, by_ball = 0, by_box = 0;
     for (uint32_t k = 0; k < W * H; k++) {
         if (!(depths[k] > 0)) continue;
-        double sdf = shadow_seen(seen[0], k), map = shadow_seen(seen[1], k);
-        assert_true(fabs(shadow_seen(seen[2], k) - sdf * map) < 2e-4);
+        double sdf = sun_share(seen[0], k), map = sun_share(seen[1], k);
+        assert_true(fabs(sun_share(seen[2], k) - sdf * map) < 2e-4);
         assert_int_equal(seen[2][k] >> 16, seen[0][k] >> 16);
         assert_int_equal(seen[1][k] >> 16, 0xFFFF);
         by_ball += sdf < 0.1;
@@ -367,5 +368,5 @@ int main(void) {
         cmocka_unit_test(sdf_and_polygons_shadow_each_other),
         cmocka_unit_test(the_error_against_the_truth_is_as_stated),
     };
-    return cmocka_run_group_tests_name("shadow", tests, shadow_folder, shadow_folder_away);
+    return cmocka_run_group_tests_name("shadow", tests, make_scratch, remove_scratch);
 }

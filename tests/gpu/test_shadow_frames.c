@@ -1,6 +1,7 @@
 /* test_shadow_frames.c: the shadow map from frame to frame: texels that do not change while the
  * view moves, cascades that are not drawn in every frame, rungs with cascades of their own; far
  * from the origin; what a plan has of it and when it is refused. */
+#include "support/files.h"
 #include "support/shadow.h"
 
 #include <math.h>
@@ -29,7 +30,7 @@ static void bake(const char *name, double x, double z, const char *shadows, cons
         "{\"mesh\": {\"box\": {\"size\": [3, 6, 3]}}, \"translate\": [%.4f, 3, %.4f]}],"
         "\"camera\": {\"near\": 0.125}, \"sun\": {\"azimuth\": 70, \"elevation\": 35%s}%s}",
         x, z, x - 1.5, z, x + 1.5, z - 1.0, x - 6.0, z - 9.0, shadows, more);
-    shadow_bake(name, json);
+    bake_scene(name, json);
 }
 
 #define SHADOWS ", \"shadows\": {\"cascades\": 3, \"resolution\": 256, \"distance\": 40}"
@@ -164,7 +165,6 @@ static uint32_t differing(const uint32_t *a, const uint32_t *b) {
 static void a_pace_changes_nothing_that_stands_still(void **state) {
     (void)state;
     static const masu_rung rung = {.shadow_refresh = {1, 3, 8}};
-    static char path[256];
     shadow_open(&t, "still", W, H, &rung);
     shadow_draw(&t, &home, 0);
     take(map_a, seen_a);
@@ -175,10 +175,9 @@ static void a_pace_changes_nothing_that_stands_still(void **state) {
         assert_memory_equal(seen_a, seen_b, sizeof seen_a);
     }
     shadow_close(&t);
-    snprintf(path, sizeof path, "%s/still.masu", shadow_dir());
     for (uint32_t poison = 1; poison <= 2; poison++) {
         masu_session_desc d = test_desc(NULL, W, H);
-        d.scene_path = path;
+        d.scene_path = baked_scene("still");
         d.desc.readback = MASU_READBACK_OCCLUSION | MASU_READBACK_SHADOW_MAP;
         d.desc.rung_count = 1;
         d.desc.rungs[0] = rung;
@@ -251,7 +250,7 @@ static void a_flight_with_slow_cascades_keeps_its_shadows(void **state) {
             take(NULL, r ? seen_b : frames[i]);
             uint32_t other = 0;
             for (uint32_t k = 0; k < W * H && r; k++)
-                other += fabs(shadow_seen(seen_b, k) - shadow_seen(frames[i], k)) > 0.5;
+                other += fabs(sun_share(seen_b, k) - sun_share(frames[i], k)) > 0.5;
             if (other > worst) worst = other;
         }
         shadow_close(&t);
@@ -272,12 +271,10 @@ static const masu_rung ladder[] = {
 static void rungs_by_turns_show_what_each_shows_alone(void **state) {
     (void)state;
     static uint32_t alone[3][W * H];
-    static char path[256];
-    snprintf(path, sizeof path, "%s/still.masu", shadow_dir());
     for (int all = 0; all < 2; all++) {
         for (uint32_t r = 0; r < (all ? 1u : 3u); r++) {
             masu_session_desc d = test_desc(NULL, W, H);
-            d.scene_path = path;
+            d.scene_path = baked_scene("still");
             d.desc.readback = MASU_READBACK_OCCLUSION;
             d.desc.rung_count = all ? 3 : 1;
             for (uint32_t k = 0; k < 3; k++) d.desc.rungs[k] = ladder[all ? k : r];
@@ -314,8 +311,8 @@ static void a_million_metres_away_it_is_the_same(void **state) {
     }
     uint32_t dark = 0, other = 0, off = 0;
     for (uint32_t k = 0; k < W * H; k++) {
-        double d = fabs(shadow_seen(seen_a, k) - shadow_seen(seen_b, k));
-        dark += shadow_seen(seen_a, k) < 0.5;
+        double d = fabs(sun_share(seen_a, k) - sun_share(seen_b, k));
+        dark += sun_share(seen_a, k) < 0.5;
         off += d > 0.02;
         other += d > 0.5;
     }
@@ -344,8 +341,8 @@ static void a_caster_however_far_leaves_the_others_their_shadows(void **state) {
         take(NULL, i ? seen_b : seen_a);
         uint32_t dark = 0, other = 0;
         for (uint32_t k = 0; k < W * H; k++) {
-            dark += shadow_seen(seen_a, k) < 0.5;
-            other += i && fabs(shadow_seen(seen_a, k) - shadow_seen(seen_b, k)) > 0.02;
+            dark += sun_share(seen_a, k) < 0.5;
+            other += i && fabs(sun_share(seen_a, k) - sun_share(seen_b, k)) > 0.02;
         }
         print_message("at %g: %u pixels differ, %u are dark\n", (double)places[i][0], other, dark);
         assert_true(dark > 200 && other * 2000 < W * H);
@@ -364,13 +361,6 @@ static int has_row(const char *name) {
     return 0;
 }
 
-static int runs(const masu_plan_info *plan, const char *name) {
-    for (uint32_t p = 0; p < plan->pass_count; p++)
-        if (!strcmp(plan->passes[p].name, name)) return plan->passes[p].active != 0;
-    fail_msg("there is no pass %s", name);
-    return 0;
-}
-
 static void only_scenes_that_ask_have_any_of_it(void **state) {
     (void)state;
     static masu_plan_info plan;
@@ -378,10 +368,9 @@ static void only_scenes_that_ask_have_any_of_it(void **state) {
         "{\"sdf\": {\"source\": \"ball.sdf\", \"bounds\": [[-3, -1, -3], [3, 3, 3]]}, "
         "\"sun\": {\"shadows\": {}}}";
     uint64_t bytes[4];
-    assert_int_equal(shadow_shell("printf 'part b = sphere(1);\\n' > %s/ball.sdf", shadow_dir()),
-                     0);
+    write_text("ball.sdf", "part b = sphere(1);\n");
     bake("none", 0, 0, "", "");
-    shadow_bake("sdf", sdf);
+    bake_scene("sdf", sdf);
     static const char *const names[] = {"none", "sdf", "still", "still"};
     static const masu_rung slow = {.shadow_refresh = {1, 1, 2}};
     for (int i = 0; i < 4; i++) {
@@ -390,11 +379,11 @@ static void only_scenes_that_ask_have_any_of_it(void **state) {
         shadow_draw(&t, &home, 0);
         masu_plan_of(t.s.m, &plan);
         bytes[i] = plan.memory.device_bytes;
-        assert_int_equal(runs(&plan, "cascade_0"), i >= 2);
-        assert_int_equal(runs(&plan, "cascade_2"), i >= 2);
-        assert_int_equal(runs(&plan, "cascade_3"), 0);
-        assert_int_equal(runs(&plan, "shadow"), i >= 2);
-        assert_int_equal(runs(&plan, "light_occluded"), i >= 2);
+        assert_int_equal(pass_of(&plan, "cascade_0")->active, i >= 2);
+        assert_int_equal(pass_of(&plan, "cascade_2")->active, i >= 2);
+        assert_int_equal(pass_of(&plan, "cascade_3")->active, 0);
+        assert_int_equal(pass_of(&plan, "shadow")->active, i >= 2);
+        assert_int_equal(pass_of(&plan, "light_occluded")->active, i >= 2);
         assert_int_equal(has_row("shadow uniforms") != 0, i >= 2);
         assert_int_equal(has_row("occlusion") != 0, i >= 2);
         assert_int_equal(has_row("shadow_map"), i < 2 ? 0 : i == 2 ? 2 : 1); /* transient or not */
@@ -411,18 +400,16 @@ static void only_scenes_that_ask_have_any_of_it(void **state) {
 
 static void what_exceeds_a_limit_is_named(void **state) {
     (void)state;
-    static char path[256];
     static const struct {
         const char *what;
         uint64_t cascades, resolution;
         masu_result result;
     } cases[] = {{"limits.shadow_cascades", 2, 0, MASU_ERROR_LIMIT},
                  {"limits.shadow_resolution", 0, SIZE - 1, MASU_ERROR_LIMIT}};
-    snprintf(path, sizeof path, "%s/still.masu", shadow_dir());
     for (int i = 0; i < 3; i++) {
         char error[ERROR_SIZE];
         masu_session_desc d = test_desc(NULL, W, H);
-        d.scene_path = path;
+        d.scene_path = baked_scene("still");
         d.desc.limits.shadow_cascades = i < 2 ? cases[i].cascades : 3;
         d.desc.limits.shadow_resolution = i < 2 ? cases[i].resolution : SIZE;
         if (i == 2) {
@@ -435,10 +422,9 @@ static void what_exceeds_a_limit_is_named(void **state) {
         assert_string_equal(t.s.detail.what, cases[i].what);
     }
     bake("large", 0, 0, ", \"shadows\": {\"cascades\": 3, \"resolution\": 8192}", "");
-    snprintf(path, sizeof path, "%s/large.masu", shadow_dir());
     char error[ERROR_SIZE];
     masu_session_desc d = test_desc(NULL, W, H);
-    d.scene_path = path;
+    d.scene_path = baked_scene("large");
     assert_false(masu_session_open(&d, &t.s, error, sizeof error)); /* an image of 24,576 texels */
     assert_int_equal(t.s.detail.result, MASU_ERROR_DEVICE);
     assert_string_equal(t.s.detail.what, "maxImageDimension2D");
@@ -458,5 +444,5 @@ int main(void) {
         cmocka_unit_test(only_scenes_that_ask_have_any_of_it),
         cmocka_unit_test(what_exceeds_a_limit_is_named),
     };
-    return cmocka_run_group_tests_name("shadow_frames", tests, shadow_folder, shadow_folder_away);
+    return cmocka_run_group_tests_name("shadow_frames", tests, make_scratch, remove_scratch);
 }

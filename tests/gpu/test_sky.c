@@ -3,15 +3,15 @@
  * light of the sky on a matt sphere, and that a renderer which may have such a sky draws a gradient as
  * one that may not.
  */
-#define _XOPEN_SOURCE 700 /* mkdtemp */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "image.h"
 #include "support/support.h"
+#include "support/files.h"
+#include "support/floats.h"
 
 #include "frame/sky.h"
 
@@ -21,12 +21,6 @@
 
 static masu_session s;
 static masu_sky sky;
-
-static float half(uint16_t h) {
-    int e = h >> 10 & 31, m = h & 1023;
-    float v = e ? ldexpf((float)(m | 1024), e - 25) : ldexpf((float)m, -24);
-    return h & 0x8000 ? -v : v;
-}
 
 static masu_light light_at(double elevation, double azimuth, float turbidity) {
     double e = elevation * PI / 180, a = azimuth * PI / 180;
@@ -46,12 +40,9 @@ static void open_sky(const char *scene, uint32_t analytic) {
 
 static void images(const masu_frame_desc *frame, const uint16_t **hdr, const float **depth) {
     masu_commands commands;
-    masu_readback_image image;
     draw(&s, frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
-    *hdr = image.pixels;
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
-    *depth = image.pixels;
+    *hdr = read_image(&s, commands.slot, MASU_READBACK_HDR);
+    *depth = read_image(&s, commands.slot, MASU_READBACK_DEPTH);
 }
 
 /* Unit vector through the middle of a pixel of a camera at z = 4 that looks along -z, up by `tilt`. */
@@ -94,7 +85,7 @@ static void pixels_of_the_sky_are_what_the_tables_say(void **state) {
                 masu_sky_radiance(&sky.uniforms, d, want);
                 seen++;
                 for (int c = 0; c < 3; c++) {
-                    double got = (double)half(hdr[4 * i + (uint32_t)c]), w = (double)want[c];
+                    double got = half_float(hdr[4 * i + (uint32_t)c]), w = (double)want[c];
                     worst = fmax(worst, fabs(got - w) / (w + 1e-4));
                 }
             }
@@ -128,7 +119,7 @@ static void a_matt_surface_shows_the_irradiance(void **state) {
         masu_sky_irradiance_at(&sky.irradiance, n, want);
         seen++;
         for (int c = 0; c < 3; c++) {
-            double got = (double)half(hdr[4 * i + (uint32_t)c]), w = 0.64 * (double)want[c];
+            double got = half_float(hdr[4 * i + (uint32_t)c]), w = 0.64 * (double)want[c];
             worst = fmax(worst, fabs(got - w) / w);
         }
     }
@@ -208,30 +199,20 @@ static void write_picture(const char *path) {
     assert_ok(masu_image_save_pfm(path, rgb, WIDE, HIGH, 3, error, sizeof error));
 }
 
-static void bake_picture(const char *folder, char *scene, size_t size) {
+static void bake_picture(void) {
     static const char json[] =
         "{\"models\": [{\"mesh\": {\"sphere\": {\"radius\": 1, \"subdivisions\": 6}}, \"material\": "
         "{\"base_color\": [0.64, 0.64, 0.64], \"roughness\": 1, \"specular\": 0}}], \"sun\": "
         "{\"intensity\": 0}, \"environment\": {\"file\": \"sky.pfm\", \"scale\": 2, \"size\": 64}}";
-    char path[256], command[1024], error[256];
-    const char *build = getenv("BUILD");
-    (void)snprintf(path, sizeof path, "%s/sky.pfm", folder);
-    write_picture(path);
-    (void)snprintf(path, sizeof path, "%s/sky.json", folder);
-    assert_ok(masu_file_write(path, json, sizeof json - 1, error, sizeof error));
-    (void)snprintf(scene, size, "%s/sky.masu", folder);
-    (void)snprintf(command, sizeof command, "'%s/bin/masu-bake' '%s' -o '%s' --quiet",
-                   build ? build : "build", path, scene);
-    assert_int_equal(system(command), 0);
+    write_picture(in_scratch("sky.pfm"));
+    bake_scene("sky", json);
 }
 
 static void a_picture_is_seen_and_lights(void **state) {
     (void)state;
-    char folder[] = "/tmp/masu_sky_XXXXXX", scene[256], path[256];
-    assert_non_null(mkdtemp(folder));
-    bake_picture(folder, scene, sizeof scene);
+    bake_picture();
     masu_session_desc d = test_desc(NULL, W, H);
-    d.scene_path = scene;
+    d.scene_path = in_scratch("sky.masu");
     d.desc.readback = MASU_READBACK_HDR | MASU_READBACK_DEPTH;
     d.desc.rung_count = 1;
     double sky_error = 0, light_error = 0;
@@ -250,7 +231,7 @@ static void a_picture_is_seen_and_lights(void **state) {
             if (depth[i] > 0 && root < 0.1) continue;
             for (int k = 0; k < 3; k++) n[k] = (float)(t * (double)ray[k] + (k == 2 ? 4 : 0));
             for (int c = 0; c < 3; c++) {
-                double got = (double)half(hdr[4 * i + (uint32_t)c]);
+                double got = half_float(hdr[4 * i + (uint32_t)c]);
                 if (depth[i] > 0) {
                     light_error = fmax(light_error, fabs(got - 0.64 * linear_sky(n, c, 2.0 / 3)));
                     lit++;
@@ -263,12 +244,6 @@ static void a_picture_is_seen_and_lights(void **state) {
     close_session(&s);
     print_message("a picture's sky is off by %.4f, its light by %.4f\n", sky_error, light_error);
     assert_true(sky_error < 0.01 && light_error < 0.005 && lit > 1000);
-    static const char *const names[] = {"sky.pfm", "sky.json", "sky.masu"};
-    for (int i = 0; i < 3; i++) {
-        (void)snprintf(path, sizeof path, "%s/%s", folder, names[i]);
-        unlink(path);
-    }
-    rmdir(folder);
 }
 
 int main(void) {
@@ -279,5 +254,5 @@ int main(void) {
         cmocka_unit_test(a_picture_is_seen_and_lights),
         cmocka_unit_test(a_sky_that_was_not_planned_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

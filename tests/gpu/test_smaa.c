@@ -14,18 +14,17 @@
 
 #define MOST ((size_t)160 * 120)
 #define PRESETS 4
+enum { WAYS = 5 }; /* FXAA and the presets: as many rungs at the most */
 
 static masu_session s; /* a device without a renderer; each job makes its own */
 
-static int open_device(void **state) {
+static int open_group(void **state) {
     (void)state;
-    masu_session_desc d = test_desc(NULL, 8, 8);
-    d.no_renderer = true;
-    open_session(&s, &d);
+    open_device(&s);
     return 0;
 }
 
-static int close_device(void **state) {
+static int close_group(void **state) {
     (void)state;
     close_session(&s);
     return 0;
@@ -38,41 +37,16 @@ static int close_device(void **state) {
 static void run_view(VkImageView view, uint32_t width, uint32_t height, const masu_rung *rungs,
                      uint32_t count, uint32_t out_width, uint32_t out_height, uint8_t *const *out,
                      uint64_t *tiles) {
-    char error[ERROR_SIZE];
-    masu_headless_target target;
-    assert_ok(masu_headless_target_create(&s.host, out_width, out_height, VK_FORMAT_R8G8B8A8_UNORM,
-                                          true, &target, error, sizeof error));
+    masu_stats_info stats[WAYS];
     masu_desc d = s.desc;
     d.output = (VkExtent2D){out_width, out_height};
-    d.targets.images = &target.image;
-    d.targets.views = &target.view;
     d.source = (masu_source){.view = view, .width = width, .height = height};
     d.rung_count = count;
     memcpy(d.rungs, rungs, count * sizeof *rungs);
     d.debug.counters = 1;
     d.debug.poison = 1;
-    masu_memory need;
-    masu_detail detail;
-    masu_renderer *m;
-    masu_commands commands;
-    masu_stats_info stats;
-    if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
-    void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
-    if (masu_init(&d, block, need.host_bytes, &m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(m, &commands) == MASU_INCOMPLETE)
-        assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
-    for (uint32_t r = 0; r < count; r++) {
-        masu_frame_desc frame = {.rung = r};
-        assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
-        assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
-        assert_int_equal(masu_stats(m, commands.slot, &stats), MASU_OK);
-        assert_ok(masu_headless_target_read(&s.host, &target, error, sizeof error));
-        memcpy(out[r], target.mapped, (size_t)out_width * out_height * 4);
-        if (tiles) tiles[r] = stats.smaa_tiles;
-    }
-    masu_destroy(m);
-    free(block);
-    masu_headless_target_destroy(&s.host, &target);
+    draw_rungs_of(&s, &d, out, stats);
+    for (uint32_t r = 0; r < count && tiles; r++) tiles[r] = stats[r].smaa_tiles;
 }
 
 /* The same of pixels in the corner of a larger image full of `beyond`. */
@@ -97,7 +71,6 @@ static uint64_t run(const uint8_t *rgba, uint32_t width, uint32_t height, masu_a
 }
 
 /* All of them: FXAA, then SMAA from LOW to ULTRA. */
-enum { WAYS = 5 };
 static const masu_rung ways[WAYS] = {{.aa = MASU_AA_FXAA},
                                      {.aa = MASU_AA_SMAA_LOW},
                                      {.aa = MASU_AA_SMAA_MEDIUM},
@@ -537,5 +510,5 @@ int main(void) {
         cmocka_unit_test(a_scene_is_smoothed_as_its_picture_is),
         cmocka_unit_test(a_smaller_rung_reads_nothing_of_a_larger_one),
     };
-    return cmocka_run_group_tests_name("smaa", tests, open_device, close_device);
+    return cmocka_run_group_tests_name("smaa", tests, open_group, close_group);
 }

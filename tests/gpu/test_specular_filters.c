@@ -1,6 +1,7 @@
 /* test_specular_filters.c: the filters of reflections (shaders/specular_reuse.comp and those behind it): nearer
  * to the truth than each fewer of them, at rest and in motion; a world of one colour stays it, whatever it is
  * made of; nothing that is not finite lives on; the frame rate, another render size and a cut. */
+#include "support/files.h"
 #include "support/shadow.h"
 
 #include "bench/study/specular.h"
@@ -76,17 +77,17 @@ static void make_fence(char *text, size_t size) {
 
 static int make_scenes(void **state) {
     static char fence[16384];
-    if (shadow_folder(state)) return 1;
+    if (make_scratch(state)) return 1;
     make_fence(fence, sizeof fence);
-    shadow_bake("fence", fence);
-    shadow_bake("filters", spheres);
-    shadow_bake("furnace", furnace);
+    bake_scene("fence", fence);
+    bake_scene("filters", spheres);
+    bake_scene("furnace", furnace);
     return 0;
 }
 
 static masu_session_desc desc_of(const char *name) {
     static char path[256];
-    snprintf(path, sizeof path, "%s/%s.masu", shadow_dir(), name);
+    snprintf(path, sizeof path, "%s/%s.masu", scratch, name);
     masu_session_desc d = test_desc(NULL, W, H);
     d.scene_path = path;
     d.desc.readback =
@@ -318,5 +319,5 @@ int main(void) {
         cmocka_unit_test(a_white_world_stays_white),
         cmocka_unit_test(what_other_images_left_behind_is_not_seen),
     };
-    return cmocka_run_group_tests_name("specular_filters", tests, make_scenes, shadow_folder_away);
+    return cmocka_run_group_tests_name("specular_filters", tests, make_scenes, remove_scratch);
 }

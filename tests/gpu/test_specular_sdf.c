@@ -1,11 +1,14 @@
 /* test_specular_sdf.c: rays of reflections and the SDF: each ray's hit against the scene's field in double
  * precision, from surfaces that the truth has found too; rays that begin in a solid, hold any bits, meet slots
  * of any bits; what moves; and pictures: SDF and polygons in each other's mirrors. */
+#include "support/floats.h"
+#include "support/random.h"
 #include "support/reflect.h"
 #include "support/stiff.h"
 
 #include "bench/measure/truth.h"
 #include "scene/scene.h"
+#include "reference/vec.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,36 +24,6 @@ static struct {
 } own;
 
 static uint64_t state;
-
-static uint32_t bits(void) {
-    uint64_t z = state += 0x9E3779B97F4A7C15u;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return (uint32_t)(z ^ z >> 31);
-}
-
-static double unit(void) { return (double)(bits() >> 8) / 16777216.0; }
-
-static float as_float(uint32_t word) {
-    float f;
-    memcpy(&f, &word, sizeof f);
-    return f;
-}
-
-static uint32_t as_word(float f) {
-    uint32_t word;
-    memcpy(&word, &f, sizeof word);
-    return word;
-}
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void normalize(double v[3]) {
-    double n = sqrt(dot(v, v));
-    for (int i = 0; i < 3; i++) v[i] /= n;
-}
 
 /* ---- Words as the shaders pack them ---------------------------------------------------------- */
 
@@ -80,7 +53,7 @@ static void unpack_direction(uint32_t word, double d[3]) {
         d[0] = (1 - fabs(p[1])) * (p[0] < 0 ? -1 : 1);
         d[1] = (1 - fabs(p[0])) * (p[1] < 0 ? -1 : 1);
     }
-    normalize(d);
+    unit3(d);
 }
 
 /* ---- A scene and rays in it ------------------------------------------------------------------ */
@@ -159,7 +132,7 @@ static beginning beginning_of(const stage *s, uint32_t i) {
     float n[3];
     pixel_of(i, &x, &y);
     masu_view_ray ray = masu_view_ray_at(&s->view, x, y);
-    b.z = s->view.near_distance / (double)as_float(own.guide[2 * i + 1] & ~7u);
+    b.z = s->view.near_distance / (double)float_of_bits(own.guide[2 * i + 1] & ~7u);
     b.pixel = 2 * s->view.tan_y / s->view.height;
     double most = b.z * ray.z_scale;
     masu_unpack_normal(own.guide[2 * i] & 0x3FFFFFF, n);
@@ -179,13 +152,13 @@ static void make_rays(const stage *s, double rough, double inside, uint32_t ever
     state = 1;
     for (uint32_t i = 0; i < TEXELS; i++) {
         uint32_t x, y;
-        uint32_t k = bits() & 3;
+        uint32_t k = random_word(&state) & 3;
         own.guide[2 * i] = 0;
         own.guide[2 * i + 1] = k;
         own.ray[2 * i] = own.ray[2 * i + 1] = 0;
-        bool met = bits() % 4 == 0;
-        float at = (float)(6 * unit());
-        const uint32_t polygon[4] = {as_word(met ? at : -1.0f), 7, 9, 11};
+        bool met = random_word(&state) % 4 == 0;
+        float at = (float)(6 * (double)random_float(&state));
+        const uint32_t polygon[4] = {bits_of_float(met ? at : -1.0f), 7, 9, 11};
         memcpy(own.before + 4 * i, polygon, sizeof polygon);
         if (i % every) continue;
         pixel_of(i, &x, &y);
@@ -195,14 +168,14 @@ static void make_rays(const stage *s, double rough, double inside, uint32_t ever
         if (seen.kind != MASU_TRUTH_HIT) continue;
         float depth = (float)(s->view.near_distance * ray.z_scale / (seen.t + inside));
         own.guide[2 * i] = pack_normal(seen.normal) | (uint32_t)(63 * rough) << 26;
-        own.guide[2 * i + 1] = (as_word(depth) & ~7u) | k;
-        double d[3], along = dot(ray.direction, seen.normal), up = 0;
+        own.guide[2 * i + 1] = (bits_of_float(depth) & ~7u) | k;
+        double d[3], along = dot3(ray.direction, seen.normal), up = 0;
         for (int c = 0; c < 3; c++) {
-            d[c] = ray.direction[c] - 2 * along * seen.normal[c] + rough * (2 * unit() - 1);
+            d[c] = ray.direction[c] - 2 * along * seen.normal[c] + rough * (2 * (double)random_float(&state) - 1);
             up += d[c] * seen.normal[c];
         }
         for (int c = 0; c < 3 && up < 0; c++) d[c] -= 2 * up * seen.normal[c];
-        normalize(d);
+        unit3(d);
         own.ray[2 * i] = pack_direction(d);
     }
 }
@@ -245,7 +218,7 @@ static figures compare(const stage *s) {
             continue;
         }
         beginning b = beginning_of(s, i);
-        float polygon = as_float(own.before[4 * i]), t = as_float(own.hit[4 * i]);
+        float polygon = float_of_bits(own.before[4 * i]), t = float_of_bits(own.hit[4 * i]);
         masu_view from = s->view;
         masu_view_ray ray = {.z_scale = 1, .pixel = b.pixel, .limit = s->view.max_distance};
         for (int k = 0; k < 3; k++) {
@@ -271,7 +244,7 @@ static figures compare(const stage *s) {
         double m[8], sine = 0, cosine = 0;
         masu_unpack_normal(own.hit[4 * i + 2], n);
         double u[3] = {(double)n[0], (double)n[1], (double)n[2]};
-        cosine = dot(u, truth.normal);
+        cosine = dot3(u, truth.normal);
         sine = sqrt(fmax(0, 1 - cosine * cosine));
         own.off[both] = fabs((double)t - truth.t) / (b.pixel * (b.z + truth.t));
         own.angle[both++] = atan2(sine, cosine) * 57.29577951308232;
@@ -366,7 +339,7 @@ static void leaving_parts_out_changes_nothing(void **unused) {
     trace(&s, false);
     assert_true(s.job.evals <= evals);
     for (uint32_t i = 0; i < TEXELS; i++) {
-        float a = as_float(own.all[4 * i]), b = as_float(own.hit[4 * i]);
+        float a = float_of_bits(own.all[4 * i]), b = float_of_bits(own.hit[4 * i]);
         other += own.all[4 * i + 1] != own.hit[4 * i + 1] || fabsf(a - b) > 1e-3f * (1 + a);
     }
     printf("  %u of %d rays differ, %.1f and %.1f evaluations\n", other, TEXELS,
@@ -382,13 +355,13 @@ static void who_begins_in_a_solid_has_met_it(void **unused) {
     trace(&s, false);
     uint32_t inside = 0, met = 0, at_once = 0;
     for (uint32_t i = 0; i < TEXELS; i++) {
-        if (own.guide[2 * i + 1] <= 7 || as_float(own.before[4 * i]) >= 0) continue;
+        if (own.guide[2 * i + 1] <= 7 || float_of_bits(own.before[4 * i]) >= 0) continue;
         beginning b = beginning_of(&s, i);
         for (int k = 0; k < 3; k++) b.point[k] += b.normal[k] * b.lift;
         if (!(s.truth.step(s.view.params, 0, b.point) < -b.z * b.pixel)) continue;
         inside++;
         met += sdf_wins(i);
-        at_once += sdf_wins(i) && (double)as_float(own.hit[4 * i]) < 0.7 * b.z * b.pixel;
+        at_once += sdf_wins(i) && (double)float_of_bits(own.hit[4 * i]) < 0.7 * b.z * b.pixel;
     }
     printf("  %u rays begin inside, %u meet something, %u there\n", inside, met, at_once);
     assert_true(inside > TEXELS / 20);
@@ -410,7 +383,7 @@ static void rays_without_steps_miss(void **unused) {
         if (!sdf_wins(i)) continue;
         beginning b = beginning_of(&s, i);
         hits++;
-        at_once += (double)as_float(own.hit[4 * i]) < 4 * b.z * b.pixel;
+        at_once += (double)float_of_bits(own.hit[4 * i]) < 4 * b.z * b.pixel;
     }
     printf("  3 steps: %.1f %% wrong, %.1f %% unconverged, %u of %u hits near the start\n",
            100.0 * f.wrong / f.rays, 100.0 * (double)s.job.unconverged / f.rays, at_once, hits);
@@ -461,7 +434,7 @@ static void a_part_that_moves_says_by_how_much(void **unused) {
 static void check_sane(const stage *s, const char *what) {
     for (uint32_t i = 0; i < TEXELS; i++) {
         if (!memcmp(own.hit + 4 * i, own.before + 4 * i, 16)) continue;
-        float t = as_float(own.hit[4 * i]), n[3], before = as_float(own.before[4 * i]);
+        float t = float_of_bits(own.hit[4 * i]), n[3], before = float_of_bits(own.before[4 * i]);
         if (!isfinite(t) || !(t >= 0) || !sdf_wins(i)) fail_msg("%s: texel %u: %g", what, i, (double)t);
         if (before >= 0 && !(t <= before)) fail_msg("%s: texel %u: behind the polygon", what, i);
         masu_unpack_normal(own.hit[4 * i + 2], n);
@@ -477,18 +450,18 @@ static void any_bits_give_finite_hits(void **unused) {
     for (int i = 0; i < 2; i++) {
         stage s = open_stage(scenes[i], &around);
         state = 5;
-        for (uint32_t k = 0; k < 2 * TEXELS; k++) own.guide[k] = bits(), own.ray[k] = bits();
-        for (uint32_t k = 0; k < 4 * TEXELS; k++) own.before[k] = bits();
+        for (uint32_t k = 0; k < 2 * TEXELS; k++) own.guide[k] = random_word(&state), own.ray[k] = random_word(&state);
+        for (uint32_t k = 0; k < 4 * TEXELS; k++) own.before[k] = random_word(&state);
         trace(&s, false);
         check_sane(&s, "bits");
         make_rays(&s, 0.3, 0, 1);
         uint32_t from = 8 * s.blob.sdf->part_count; /* what numbers parts and forms is made by masu-bake */
         for (uint32_t k = from; k < s.job.slot_count; k++)
-            if (bits() % 3 == 0) own.slots[k] = senseless[bits() % 8];
+            if (random_word(&state) % 3 == 0) own.slots[k] = senseless[random_word(&state) % 8];
         trace(&s, false);
         check_sane(&s, "slots");
         for (uint32_t k = 0; k < from; k++)
-            if (k % 8 < 5) own.slots[k] = senseless[bits() % 8];
+            if (k % 8 < 5) own.slots[k] = senseless[random_word(&state) % 8];
         trace(&s, false);
         check_sane(&s, "bounds");
         close_stage(&s);
@@ -561,7 +534,7 @@ static int ball_on(const double from[3], const double d[3]) {
     for (size_t i = 0; i < sizeof balls / sizeof *balls; i++) {
         double to[3] = {balls[i].center[0] - from[0], balls[i].center[1] - from[1],
                         balls[i].center[2] - from[2]};
-        double along = dot(to, d), off = sqrt(fmax(0, dot(to, to) - along * along));
+        double along = dot3(to, d), off = sqrt(fmax(0, dot3(to, to) - along * along));
         if (fabs(off - balls[i].radius) < 0.17) return -1;
         if (off < balls[i].radius) {
             double at = along - sqrt(balls[i].radius * balls[i].radius - off * off);
@@ -569,12 +542,6 @@ static int ball_on(const double from[3], const double d[3]) {
         }
     }
     return color;
-}
-
-static double half(uint16_t h) {
-    int e = h >> 10 & 31, m = h & 1023;
-    double v = e ? ldexp(1024 + m, e - 25) : ldexp(m, -24);
-    return h >> 15 ? -v : v;
 }
 
 static void polygons_and_sdf_mirror_each_other_and_the_nearest_wins(void **unused) {
@@ -591,13 +558,13 @@ static void polygons_and_sdf_mirror_each_other_and_the_nearest_wins(void **unuse
         double x = ((i % WIDE + 0.5) / WIDE * 2 - 1) * tan_y * WIDE / HIGH;
         double y = 1 - (i / WIDE + 0.5) / HIGH * 2;
         double c = sqrt(0.5), d[3] = {x, -c + y * tan_y * c, -c - y * tan_y * c};
-        normalize(d);
+        unit3(d);
         if (d[1] > -0.05 || ball_on(eye, d) != 2) continue;
         double t = -eye[1] / d[1], at[3] = {eye[0] + d[0] * t, 0, eye[2] + d[2] * t};
         double up[3] = {d[0], -d[1], d[2]};
         int color = ball_on(at, up);
         if (color < 0 || fabs(at[0]) < 0.25) continue;
-        double r = half(hdr[4 * i]), g = half(hdr[4 * i + 1]);
+        double r = half_float(hdr[4 * i]), g = half_float(hdr[4 * i + 1]);
         int is = fmax(r, g) < 0.05 ? 2 : g > r;
         count[at[0] > 0][color]++;
         wrong[at[0] > 0][color] += is != color;

@@ -7,32 +7,25 @@
  * away, one at z = 0.5 sees it 1.5 away in front of itself: with twice the tangent of its field of
  * view that is the same picture turned left to right.
  */
-#define _XOPEN_SOURCE 700 /* mkstemp */
 #include "support/support.h"
+#include "support/files.h"
+#include "support/floats.h"
 
 #include "scene/blob.h"
 #include "image.h"
 #include "scene/scene.h"
+#include "reference/tone.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE };
 #define SCENE "test_mirror_textures"
 
 static masu_session s;
 static float mirrored[PIXELS][3], direct[PIXELS][3];
-
-static float half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    float v =
-        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
-    if (exponent == 31) v = NAN;
-    return h & 0x8000 ? -v : v;
-}
 
 static void open_scene(const char *path) {
     masu_session_desc d = test_desc(SCENE, SIDE, SIDE);
@@ -46,12 +39,10 @@ static void open_scene(const char *path) {
 static void look(masu_camera camera, float out[PIXELS][3]) {
     masu_frame_desc frame = {.camera = &camera, .cut = 1};
     masu_commands commands;
-    masu_readback_image image;
     draw(&s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
-    const uint16_t *hdr = image.pixels;
+    const uint16_t *hdr = read_image(&s, commands.slot, MASU_READBACK_HDR);
     for (uint32_t i = 0; i < PIXELS; i++) {
-        for (uint32_t k = 0; k < 3; k++) out[i][k] = half(hdr[4 * i + k]);
+        for (uint32_t k = 0; k < 3; k++) out[i][k] = (float)half_float(hdr[4 * i + k]);
     }
 }
 
@@ -87,11 +78,6 @@ static double compare(const char *what, double *mean) {
 
 /* ---- gradient.png: red and green rise along x and y ------------------------------------------- */
 
-static double linear(double byte) {
-    double v = byte / 255;
-    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-}
-
 static int wrapped(int i, int size, uint32_t wrap) {
     if (wrap == 1) return i < 0 ? 0 : i >= size ? size - 1 : i;
     int period = wrap ? 2 * size : size, k = ((i % period) + period) % period;
@@ -106,7 +92,7 @@ static double gradient(double at, uint32_t level, uint32_t wrap) {
         int i = wrapped((int)floor(x) + k, size, wrap);
         double texel = 0, part = x - floor(x);
         for (int j = i << level; j < (i + 1) << level; j++)
-            texel += linear(floor(j / 63.0 * 255 + 0.5));
+            texel += masu_ref_srgb_decode(floor(j / 63.0 * 255 + 0.5) / 255);
         sum += texel / (1 << level) * (k ? part : 1 - part);
     }
     return sum;
@@ -120,7 +106,7 @@ static double compare_source(const char *what, double tile, uint32_t level, cons
     for (uint32_t i = 0; i < PIXELS; i++) {
         double u = tile * (0.5 + 0.9 * ((i % SIDE + 0.5) / SIDE - 0.5));
         double v = tile * (0.5 - 0.9 * ((i / SIDE + 0.5) / SIDE - 0.5));
-        double want[3] = {gradient(u, level, wrap[0]), gradient(v, level, wrap[1]), linear(128)};
+        double want[3] = {gradient(u, level, wrap[0]), gradient(v, level, wrap[1]), masu_ref_srgb_decode(128 / 255.0)};
         for (uint32_t k = 0; k < 3; k++) {
             double error = fabs(want[k] - (double)mirrored[i][k]);
             if (!(error <= worst)) worst = error;
@@ -140,27 +126,21 @@ static masu_scene scene; /* as read_blob has found it */
 static masu_scene_view view;
 
 static void read_blob(void) {
-    char error[ERROR_SIZE];
     masu_detail detail;
     free(blob);
-    assert_ok(masu_file_read(scene_path(SCENE), 1 << 26, &blob, &blob_bytes, error, sizeof error));
+    blob = read_file(scene_path(SCENE), &blob_bytes);
     assert_int_equal(masu_scene_bind(blob, blob_bytes, &scene, &detail), MASU_OK);
     view = masu_scene_look(&scene);
 }
 
 /* Opens the blob as it has been changed in place. */
 static void open_changed(void) {
-    char path[] = "/tmp/masu-mirrors-XXXXXX";
     masu_blob_header h;
     memcpy(&h, blob, sizeof h);
     h.hash = masu_fnv1a64(blob + sizeof h, blob_bytes - sizeof h);
     memcpy(blob, &h, sizeof h);
-    int file = mkstemp(path);
-    assert_true(file >= 0);
-    assert_int_equal(write(file, blob, blob_bytes), blob_bytes);
-    close(file);
-    open_scene(path);
-    unlink(path);
+    write_bytes("changed.masu", blob, blob_bytes);
+    open_scene(in_scratch("changed.masu"));
 }
 
 static void *find(uint32_t kind) {
@@ -331,5 +311,5 @@ int main(void) {
         cmocka_unit_test(through_holes_a_mirror_shows_what_is_behind),
         cmocka_unit_test(without_pictures_factors_are_seen),
     };
-    return cmocka_run_group_tests_name("specular_textures", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("specular_textures", tests, make_scratch, remove_scratch);
 }

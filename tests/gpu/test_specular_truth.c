@@ -10,6 +10,8 @@
 #include "bench/study/shade.h"
 #include "image.h"
 #include "scene/scene.h"
+#include "support/files.h"
+#include "support/floats.h"
 #include "support/shadow.h"
 
 #include <math.h>
@@ -27,14 +29,6 @@ static uint32_t frames_of(uint32_t frames) {
     const char *driver = getenv("MASU_TEST_DRIVER");
     if (!driver || !strstr(driver, "swiftshader")) return frames;
     return frames / 8 > 48 ? frames / 8 : 48;
-}
-
-static float half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    if (exponent == 31) return NAN;
-    float v =
-        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
-    return h & 0x8000 ? -v : v;
 }
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
@@ -77,16 +71,10 @@ static const char sunny[] =
     "{\"base_color\": [0.9, 0.9, 0.9], \"roughness\": 0.4, \"metallic\": 0.6}}], "
     "\"sun\": {\"azimuth\": 40, \"elevation\": 40, \"intensity\": 2}, \"ambient\": [0.3, 0.33, 0.4], " SKY VIEW "}";
 
-static const char *path_of(const char *name) {
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s.masu", shadow_dir(), name);
-    return path;
-}
-
 static void open_scene(const char *name, uint32_t width, uint32_t height, const masu_rung *rung,
                        uint32_t reference) {
     masu_session_desc d = test_desc(NULL, width, height);
-    d.scene_path = path_of(name);
+    d.scene_path = baked_scene(name);
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL |
                       MASU_READBACK_HDR;
     d.desc.rung_count = 1;
@@ -102,18 +90,6 @@ static void draw_frames(uint32_t frames, const masu_light *light) {
         draw(&s, &frame, &commands, NULL);
         slot = commands.slot;
     }
-}
-
-static const void *image(masu_readback_bits which) {
-    masu_readback_image out;
-    assert_int_equal(masu_readback(s.m, slot, which, &out), MASU_OK);
-    return out.pixels;
-}
-
-static masu_stats_info stats_of(void) {
-    masu_stats_info stats;
-    assert_int_equal(masu_stats(s.m, slot, &stats), MASU_OK);
-    return stats;
 }
 
 /* ---- Against the tracer ---------------------------------------------------------------------- */
@@ -140,10 +116,10 @@ static group *group_of(uint32_t key) {
 /* The frame drawn last against rays; `off` times the roughness, which must be seen if it is not 1. */
 static void compare(const char *name, const masu_ref_mirror *m, const double coat[2], uint32_t frames,
                     uint32_t rays, double off) {
-    const float *depth = image(MASU_READBACK_DEPTH);
-    const uint8_t *albedo = image(MASU_READBACK_ALBEDO);
-    const uint32_t *normal = image(MASU_READBACK_NORMAL);
-    const uint16_t *hdr = image(MASU_READBACK_HDR);
+    const float *depth = read_image(&s, slot, MASU_READBACK_DEPTH);
+    const uint8_t *albedo = read_image(&s, slot, MASU_READBACK_ALBEDO);
+    const uint32_t *normal = read_image(&s, slot, MASU_READBACK_NORMAL);
+    const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
     memset(groups, 0, sizeof groups);
     for (uint32_t k = 0; k < W * H; k++) {
         uint32_t i = k * 1009 % (W * H); /* all over the picture, for what shows in many */
@@ -162,7 +138,7 @@ static void compare(const char *name, const masu_ref_mirror *m, const double coa
         surface.coat_roughness = coat[1] * off;
         masu_ref_estimate e = masu_ref_mirrored(m, &surface, rays, i + 1);
         for (int c = 0; c < 3; c++) {
-            double gpu = (double)half(hdr[4 * i + c]) - lit[c];
+            double gpu = half_float(hdr[4 * i + c]) - lit[c];
             double rounded = 0.002 * e.mean[c] + 0.0005 * lit[c];
             double se2 = e.variance[c] / rays + e.variance[c] / frames + rounded * rounded;
             double z2 = (gpu - e.mean[c]) * (gpu - e.mean[c]) / se2;
@@ -210,16 +186,16 @@ static void tracer(const char *name, const char *json, uint32_t materials, const
     masu_camera camera;
     char error[ERROR_SIZE];
     double chi, far, worst;
-    shadow_bake(name, json);
+    bake_scene(name, json);
     open_scene(name, W, H, NULL, 1);
     assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
     draw_frames(frames, NULL);
-    assert_int_equal(stats_of().replaced, 0);
+    assert_int_equal(stats_of(&s, slot).replaced, 0);
     masu_scene scene;
     masu_detail detail;
     uint8_t *blob = NULL;
     size_t bytes = 0;
-    assert_ok(masu_file_read(path_of(name), 1u << 30, &blob, &bytes, error, sizeof error));
+    assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
     assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
     assert_ok(masu_ref_mirror_open(&scene, &camera, W, H, &m, error, sizeof error));
     compare(name, &m, coat, frames, RAYS, 1);
@@ -316,15 +292,15 @@ static void furnace_with(const char *how, uint32_t reference, uint32_t frames, d
     double worst = 0, worst_pixel = 0;
     open_scene("furnace", 100, 60, NULL, reference);
     draw_frames(frames, NULL);
-    const uint16_t *hdr = image(MASU_READBACK_HDR);
-    const float *depth = image(MASU_READBACK_DEPTH);
+    const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
+    const float *depth = read_image(&s, slot, MASU_READBACK_DEPTH);
     for (int b = 0; b < 15; b++) sum[b] = high[b] = 0, low[b] = 1e9, pixels[b] = 0;
     for (uint32_t i = 0; i < 100 * 60; i++) {
         if (!(depth[i] > 0.0f)) continue;
         uint32_t b = ball_of(i % 100, i / 100);
         assert_true(b < 15);
         for (int c = 0; c < 3; c++) {
-            double x = (double)half(hdr[4 * i + c]);
+            double x = half_float(hdr[4 * i + c]);
             assert_true(isfinite(x));
             sum[b] += x / 3;
             low[b] = fmin(low[b], x);
@@ -332,7 +308,7 @@ static void furnace_with(const char *how, uint32_t reference, uint32_t frames, d
         }
         pixels[b]++;
     }
-    assert_int_equal(stats_of().replaced, 0);
+    assert_int_equal(stats_of(&s, slot).replaced, 0);
     close_session(&s);
     for (int b = 0; b < 15; b++) {
         print_message("  furnace, %s, ball %2d: %u pixels, mean %.4f, %.4f to %.4f\n", how, b, pixels[b],
@@ -347,7 +323,7 @@ static void furnace_with(const char *how, uint32_t reference, uint32_t frames, d
 
 static void all_light_comes_back_in_the_white_furnace(void **state) {
     (void)state;
-    shadow_bake("furnace", furnace);
+    bake_scene("furnace", furnace);
     uint32_t frames = frames_of(128);
     furnace_with("reference", 1, frames, 0.05 * 128.0 / frames);
     furnace_with("frames", 0, 2, 0.01);
@@ -377,11 +353,11 @@ static void only_tiles_that_mirror_are_traced(void **state) {
                  {{.scale = 1, .specular = MASU_OFF}, 0, 0, 0},
                  {{.scale = 1, .specular_cutoff = 1}, 0, 64, 64 * 64},
                  {{.scale = 1, .specular_cutoff = 0.2f}, 1, 64, 64 * 64}};
-    shadow_bake("plates", plates);
+    bake_scene("plates", plates);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         open_scene("plates", 128, 128, &cases[i].rung, cases[i].reference);
         draw_frames(2, NULL);
-        masu_stats_info stats = stats_of();
+        masu_stats_info stats = stats_of(&s, slot);
         print_message("  cut-off %.2f: %u tiles, %u rays\n", (double)cases[i].rung.specular_cutoff,
                       (uint32_t)stats.specular_tiles, (uint32_t)stats.specular_rays);
         assert_int_equal(stats.specular_tiles, cases[i].tiles);
@@ -404,20 +380,20 @@ static const char bright[] =
 static void pixels_are_finite(void **state) {
     (void)state;
     static uint16_t pictures[3][4 * 100 * 60];
-    shadow_bake("bright", bright);
+    bake_scene("bright", bright);
     for (uint32_t reference = 0; reference < 2; reference++) {
         for (uint32_t poison = 0; poison < 3; poison++) {
             masu_session_desc d = test_desc(NULL, 100, 60);
-            d.scene_path = path_of("bright");
+            d.scene_path = baked_scene("bright");
             d.desc.readback = MASU_READBACK_HDR;
             d.desc.rung_count = 1;
             d.desc.debug.reference = reference;
             d.desc.debug.poison = poison;
             open_session(&s, &d);
             draw_frames(3, NULL);
-            const uint16_t *hdr = image(MASU_READBACK_HDR);
+            const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
             for (uint32_t i = 0; i < 4 * 100 * 60; i++) {
-                assert_true(isfinite(half(hdr[i])) && half(hdr[i]) >= 0.0f);
+                assert_true(isfinite(half_float(hdr[i])) && half_float(hdr[i]) >= 0);
                 pictures[poison][i] = hdr[i];
             }
             close_session(&s);
@@ -442,10 +418,10 @@ static void materials_of_nan_give_finite_pixels(void **state) {
     (void)state;
     static const uint32_t bits[] = {0x7FC00000u, 0x7F800000u, 0xFF800000u, 0x00000001u, 0xC2C80000u};
     char error[ERROR_SIZE];
-    shadow_bake("bright", bright);
+    bake_scene("bright", bright);
     for (uint32_t reference = 0; reference < 2; reference++) {
         masu_session_desc d = test_desc(NULL, 100, 60);
-        d.scene_path = path_of("bright");
+        d.scene_path = baked_scene("bright");
         d.desc.readback = MASU_READBACK_HDR;
         d.desc.rung_count = 1;
         d.desc.debug.reference = reference;
@@ -477,9 +453,9 @@ static void materials_of_nan_give_finite_pixels(void **state) {
                 raster[i] = traced[16 * m + k] = bits[b];
             }
             draw_frames(2, NULL);
-            const uint16_t *hdr = image(MASU_READBACK_HDR);
+            const uint16_t *hdr = read_image(&s, slot, MASU_READBACK_HDR);
             for (uint32_t i = 0; i < 4 * 100 * 60; i++)
-                assert_true(isfinite(half(hdr[i])) && half(hdr[i]) >= 0.0f);
+                assert_true(isfinite(half_float(hdr[i])) && half_float(hdr[i]) >= 0);
         }
         masu_destroy(s.m);
         s.m = NULL;
@@ -498,5 +474,5 @@ int main(void) {
         cmocka_unit_test(pixels_are_finite),
         cmocka_unit_test(materials_of_nan_give_finite_pixels),
     };
-    return cmocka_run_group_tests(tests, shadow_folder, shadow_folder_away);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

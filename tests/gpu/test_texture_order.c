@@ -54,16 +54,6 @@ static void open_variant(masu_session *s, int variant, uint32_t readback) {
     assert_ok(masu_session_start(s, error, sizeof error));
 }
 
-static void keep(masu_session *s, uint32_t slot, masu_readback_bits which, void *to) {
-    masu_readback_image image;
-    assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
-    assert_true(image.width == W && image.height == H);
-    for (uint32_t y = 0; y < H; y++) {
-        memcpy((uint8_t *)to + (size_t)y * W * 4,
-               (const uint8_t *)image.pixels + y * image.row_bytes, W * 4);
-    }
-}
-
 /* All ways, along the camera's path; depth is left in kept[variant]. */
 static void draw_variant(int variant, uint32_t readback) {
     masu_session s;
@@ -77,8 +67,8 @@ static void draw_variant(int variant, uint32_t readback) {
             masu_stats_info stats;
             uint32_t to = way != NEITHER;
             draw(&s, &f, &commands, NULL);
-            keep(&s, commands.slot, MASU_READBACK_ALBEDO, albedo[to]);
-            keep(&s, commands.slot, MASU_READBACK_DEPTH, depth[to]);
+            memcpy(albedo[to], read_image(&s, commands.slot, MASU_READBACK_ALBEDO), sizeof albedo[to]);
+            memcpy(depth[to], read_image(&s, commands.slot, MASU_READBACK_DEPTH), sizeof depth[to]);
             assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
             drawn[way] += stats.triangles;
             if (memcmp(albedo[0], albedo[to], sizeof albedo[0]) ||

@@ -2,10 +2,13 @@
  * their bias, blocks taken by the device and blocks decoded on the host, masks, normal maps, light,
  * grazing views, memory. */
 #include "support/support.h"
+#include "support/floats.h"
 
 #include "scene/blob.h"
 #include "image.h"
 #include "reference/brdf.h"
+#include "reference/tone.h"
+#include "reference/vec.h"
 #include "scene/scene.h"
 #include "split_sum.h"
 #include "scene/texture.h"
@@ -40,28 +43,7 @@ static void open_textured(const char *scene, int decoded, float scale) {
     open_session(&s, &d);
 }
 
-static const void *image_of(const masu_frame_desc *frame, masu_readback_bits which) {
-    masu_commands commands;
-    masu_readback_image image;
-    draw(&s, frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, which, &image), MASU_OK);
-    return image.pixels;
-}
-
-static float half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    float v =
-        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
-    if (exponent == 31) v = NAN;
-    return h & 0x8000 ? -v : v;
-}
-
 /* ---- The reference: texels of the blob, in linear light -------------------------------------- */
-
-static double linear(uint8_t c) {
-    double v = c / 255.0;
-    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-}
 
 typedef struct mip {
     uint32_t width, height;
@@ -89,7 +71,7 @@ static mip mip_of(uint32_t texture, uint32_t level) {
                 block);
             for (uint32_t k = 0; k < 4 && srgb; k++) {
                 uint8_t c = block[4 * (y % 4 * 4 + x % 4) + k];
-                out.rgba[4 * ((size_t)y * out.width + x) + k] = k < 3 ? linear(c) : c / 255.0;
+                out.rgba[4 * ((size_t)y * out.width + x) + k] = k < 3 ? masu_ref_srgb_decode(c / 255.0) : c / 255.0;
             }
         }
     }
@@ -127,7 +109,7 @@ static double compare_face_on(double texels, uint32_t render, uint32_t level, ui
                               double *mean) {
     masu_camera camera = face_on(texels, render);
     masu_frame_desc frame = {.camera = &camera};
-    const uint8_t *got = image_of(&frame, MASU_READBACK_ALBEDO);
+    const uint8_t *got = draw_image(&s, &frame, MASU_READBACK_ALBEDO, NULL);
     mip m = mip_of(0, level);
     double worst = 0, sum = 0;
     *compared = 0;
@@ -266,7 +248,7 @@ static void a_floor_to_the_horizon_is_finite_and_grey(void **state) {
     for (int decoded = 0; decoded < 2; decoded++) {
         masu_frame_desc frame = {0};
         open_textured("test_texture_floor", decoded, 1.0f);
-        const uint8_t *albedo = image_of(&frame, MASU_READBACK_ALBEDO);
+        const uint8_t *albedo = draw_image(&s, &frame, MASU_READBACK_ALBEDO, NULL);
         double sum = 0;
         uint32_t count = 0;
         for (uint32_t y = SIDE * 3 / 4; y < SIDE; y++) {
@@ -278,9 +260,9 @@ static void a_floor_to_the_horizon_is_finite_and_grey(void **state) {
         }
         print_message("checker at a grazing angle: %.4f of 0.5\n", sum / count);
         assert_true(fabs(sum / count - 0.5) < 0.03);
-        const uint16_t *hdr = image_of(&frame, MASU_READBACK_HDR);
+        const uint16_t *hdr = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
         for (uint32_t i = 0; i < 4 * PIXELS; i++) {
-            assert_true(isfinite(half(hdr[i])) && half(hdr[i]) >= 0);
+            assert_true(isfinite(half_float(hdr[i])) && half_float(hdr[i]) >= 0);
         }
         masu_stats_info stats;
         assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
@@ -297,7 +279,7 @@ static void a_mask_has_the_silhouette_of_its_alpha(void **state) {
         masu_camera camera = {.position = {0, 0, 3.2}, .forward = {0, 0, -1}, .fov_y = 0.7f};
         masu_frame_desc frame = {.camera = &camera};
         open_textured("test_texture_mask", decoded, 1.0f);
-        const float *depth = image_of(&frame, MASU_READBACK_DEPTH);
+        const float *depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
         masu_scene_view v = masu_scene_look(&look);
         uint32_t texture = 0;
         while (v.textures[texture].format != MASU_TEXTURE_BC3_SRGB) texture++;
@@ -323,7 +305,7 @@ static void a_mask_has_the_silhouette_of_its_alpha(void **state) {
         assert_true(fabs(there - area) < 0.03 * area);
         /* The same picture without its alpha is all there. */
         camera.position[0] = 3;
-        depth = image_of(&frame, MASU_READBACK_DEPTH);
+        depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
         uint32_t whole = 0;
         for (uint32_t i = 0; i < PIXELS; i++) whole += depth[i] > 0;
         assert_true(fabs(whole - 4 / (pixel * pixel)) < 0.03 * whole);
@@ -338,7 +320,7 @@ static void a_mask_keeps_its_area_with_distance(void **state) {
     for (double distance = 3; distance < 30; distance *= 1.5) {
         masu_camera camera = {.position = {0, 0, distance}, .forward = {0, 0, -1}, .fov_y = 0.7f};
         masu_frame_desc frame = {.camera = &camera};
-        const float *depth = image_of(&frame, MASU_READBACK_DEPTH);
+        const float *depth = draw_image(&s, &frame, MASU_READBACK_DEPTH, NULL);
         double pixel = 2 * distance * tan(0.35) / SIDE;
         uint32_t there = 0;
         for (uint32_t y = 0; y < SIDE; y++) {
@@ -354,44 +336,35 @@ static void a_mask_keeps_its_area_with_distance(void **state) {
 
 /* ---- Normal maps ----------------------------------------------------------------------------- */
 
-typedef struct vec {
-    double x, y, z;
-} vec;
-
-static vec scaled(vec a, double f) { return (vec){a.x * f, a.y * f, a.z * f}; }
-static vec plus(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static double dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static vec unit(vec a) { return scaled(a, 1 / sqrt(dot(a, a))); }
-
 /* Where the pixel's ray from (0, 0, 8) meets the unit sphere about (x, 0, 0); 0: it does not. */
 static int hit(uint32_t px, uint32_t py, double center, vec *normal, vec *view) {
     double half_size = tan(0.25);
-    vec ray = unit((vec){(2 * (px + 0.5) / SIDE - 1) * half_size,
+    vec ray = vec_unit((vec){(2 * (px + 0.5) / SIDE - 1) * half_size,
                          (1 - 2 * (py + 0.5) / SIDE) * half_size, -1});
     vec from = {-center, 0, 8};
-    double b = dot(ray, from), disc = b * b - dot(from, from) + 1;
+    double b = vec_dot(ray, from), disc = b * b - vec_dot(from, from) + 1;
     if (disc < 0) return 0;
-    *normal = plus(from, scaled(ray, -b - sqrt(disc)));
-    *view = scaled(ray, -1);
+    *normal = vec_add(from, vec_scale(ray, -b - sqrt(disc)));
+    *view = vec_scale(ray, -1);
     return 1;
 }
 
 /* The left sphere leans by 30 degrees to where its picture's right is: east, as seen from outside;
  * the right one, which is mirrored, up. */
 static vec bent(int right, vec n) {
-    vec east = unit((vec){n.z, 0, -n.x}),
-        north = unit((vec){-n.x * n.y, 1 - n.y * n.y, -n.z * n.y});
-    return plus(scaled(right ? north : east, sin(3.14159265358979 / 6)),
-                scaled(n, cos(3.14159265358979 / 6)));
+    vec east = vec_unit((vec){n.z, 0, -n.x}),
+        north = vec_unit((vec){-n.x * n.y, 1 - n.y * n.y, -n.z * n.y});
+    return vec_add(vec_scale(right ? north : east, sin(3.14159265358979 / 6)),
+                vec_scale(n, cos(3.14159265358979 / 6)));
 }
 
 /* light.comp in double: sun alone, no metal. The model has its normal along z. */
 static double lit(vec n, vec v, vec l, double albedo, double roughness) {
     brdf_surface surface = {{albedo, albedo, albedo}, roughness, 0, 0.5, 0, 0};
-    vec x = unit((vec){n.z, 0, -n.x}), y = {n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z,
+    vec x = vec_unit((vec){n.z, 0, -n.x}), y = {n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z,
                                             n.x * x.y - n.y * x.x};
-    const double towards_v[3] = {dot(x, v), dot(y, v), dot(n, v)};
-    const double towards_l[3] = {dot(x, l), dot(y, l), dot(n, l)};
+    const double towards_v[3] = {vec_dot(x, v), vec_dot(y, v), vec_dot(n, v)};
+    const double towards_l[3] = {vec_dot(x, l), vec_dot(y, l), vec_dot(n, l)};
     double out[3];
     brdf_eval(masu_split_sum, &surface, towards_v, towards_l, out);
     return out[0];
@@ -402,11 +375,11 @@ static void normal_maps_lean_as_their_pictures_say(void **state) {
     masu_camera camera = {.position = {0, 0, 8}, .forward = {0, 0, -1}, .fov_y = 0.5f};
     masu_light light = {.sun_direction = {0.4f, 0.5f, 0.77f}, .sun_color = {2, 2, 2}};
     masu_frame_desc frame = {.camera = &camera, .light = &light};
-    vec sun = unit((vec){0.4, 0.5, 0.77});
+    vec sun = vec_unit((vec){0.4, 0.5, 0.77});
     open_textured("test_texture_normals", 0, 1.0f);
     static uint32_t normals[PIXELS];
-    memcpy(normals, image_of(&frame, MASU_READBACK_NORMAL), sizeof normals);
-    const uint16_t *hdr = image_of(&frame, MASU_READBACK_HDR);
+    memcpy(normals, draw_image(&s, &frame, MASU_READBACK_NORMAL, NULL), sizeof normals);
+    const uint16_t *hdr = draw_image(&s, &frame, MASU_READBACK_HDR, NULL);
     double worst = 0, sum = 0, dark = 0, dim = 0;
     uint32_t count = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -416,15 +389,15 @@ static void normal_maps_lean_as_their_pictures_say(void **state) {
             if (!hit(i % SIDE, i / SIDE, right ? 1.2 : -1.2, &n, &view)) continue;
             vec want = bent(right, n);
             /* The poles have no east; rims are turned to the viewer, or not covered. */
-            if (fabs(n.y) > 0.85 || dot(n, view) < 0.3 || dot(want, view) < 0.2) continue;
+            if (fabs(n.y) > 0.85 || vec_dot(n, view) < 0.3 || vec_dot(want, view) < 0.2) continue;
             masu_unpack_normal(normals[i], got);
             vec g = {(double)got[0], (double)got[1], (double)got[2]};
-            double degrees = acos(fmin(dot(g, want), 1)) * 57.29578;
+            double degrees = acos(fmin(vec_dot(g, want), 1)) * 57.29578;
             if (degrees > worst) worst = degrees;
             sum += degrees;
             count++;
             double expected = 2 * lit(want, view, sun, 0.4, 0.5);
-            double found = (double)half(hdr[4 * i + 1]);
+            double found = half_float(hdr[4 * i + 1]);
             dark = fmax(dark, fabs(found - expected) / (0.05 + expected));
             dim += fabs(found - expected) / (0.05 + expected);
         }
@@ -481,7 +454,7 @@ static void the_demo_draws_finite_pixels_at_every_rung(void **state) {
         assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
         const uint16_t *hdr = image.pixels;
         for (uint32_t i = 0; i < 4 * image.width * image.height; i++) {
-            assert_true(isfinite(half(hdr[i])));
+            assert_true(isfinite(half_float(hdr[i])));
         }
         masu_stats_info stats;
         assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);

@@ -3,6 +3,8 @@
 #include "reference/tone.h"
 #include "shared/masu_shared.h"
 #include "support/support.h"
+#include "support/random.h"
+#include "support/floats.h"
 #include "support/compute.h"
 
 #include "tone_comp.spv.h"
@@ -17,6 +19,7 @@ typedef struct test_result {
 enum { CASES_MAX = 4096 };
 static float cases[CASES_MAX][4];
 static test_result results[CASES_MAX];
+static uint64_t seed = 7;
 
 static void run(uint32_t count, float most) {
     uint32_t push[4] = {count, 0, 0, 0};
@@ -27,15 +30,9 @@ static void run(uint32_t count, float most) {
     compute_run(masu_spv_tone_comp, sizeof masu_spv_tone_comp, buffers, 2, push, (count + 63) / 64);
 }
 
-static uint32_t random_bits(void) {
-    static uint64_t state = 7;
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(state >> 32);
-}
-
 /* Spread over 2^-20 to 2^14, now and then black. */
 static float random_radiance(void) {
-    uint32_t r = random_bits();
+    uint32_t r = random_word(&seed);
     return r % 16 ? exp2f((float)(r >> 8) / 16777216.0f * 34.0f - 20.0f) : 0.0f;
 }
 
@@ -158,12 +155,6 @@ static void bins_are_eighths_of_octaves(void **state) {
 enum { W = 32, H = 24 };
 static masu_session s;
 
-static double half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    double v = exponent ? ldexp(mantissa + 1024, exponent - 25) : ldexp(mantissa, -24);
-    return h & 0x8000 ? -v : v;
-}
-
 static void open_metered(const masu_exposure *exposure) {
     masu_session_desc d = test_desc("test_sphere_mesh", W, H);
     d.desc.rung_count = 1;
@@ -190,11 +181,9 @@ static float exposed(float scale, float step, int cut, uint8_t *pixels, double *
     assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
     if (mean) {
         static double rgb[W * H][3];
-        masu_readback_image image;
-        assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
-        const uint16_t *hdr = image.pixels;
+        const uint16_t *hdr = read_image(&s, commands.slot, MASU_READBACK_HDR);
         for (uint32_t i = 0; i < W * H; i++) {
-            for (int c = 0; c < 3; c++) rgb[i][c] = half(hdr[4 * i + (uint32_t)c]);
+            for (int c = 0; c < 3; c++) rgb[i][c] = half_float(hdr[4 * i + (uint32_t)c]);
         }
         assert_true(masu_ref_meter(rgb[0], W * H, 3, (double)low, (double)high, mean) > W * H / 2);
     }
@@ -292,7 +281,7 @@ static void a_scene_may_ask_for_it(void **state) {
         assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_HDR, &image), MASU_OK);
         const uint16_t *hdr = image.pixels;
         for (uint32_t i = 0; i < W * H; i++) {
-            for (uint32_t c = 0; c < 3; c++) rgb[i][c] = half(hdr[4 * i + c]);
+            for (uint32_t c = 0; c < 3; c++) rgb[i][c] = half_float(hdr[4 * i + c]);
         }
         assert_true(masu_ref_meter(rgb[0], W * H, 3, 0.1, 0.1, &mean) > 0);
         double wanted = 2 * 0.18 / exp2(mean); /* the scene's factor is 2 */

@@ -12,6 +12,7 @@
  * there may be none. A crack between triangles would hide in that rule, so closed meshes are asked
  * by themselves: from inside no ray gets out. */
 #include "support/support.h"
+#include "support/random.h"
 #include "support/compute.h"
 
 #include "shared/masu_shared.h"
@@ -20,6 +21,7 @@
 #include "trace_mask_comp.spv.h"
 #include "trace_rays_comp.spv.h"
 #include "trace_rays_counted_comp.spv.h"
+#include "reference/vec.h"
 
 #include <embree3/rtcore.h>
 
@@ -68,16 +70,13 @@ typedef struct world {
 } world;
 
 static world w;
-static uint32_t state_of_random = 1;
+static uint64_t seed = 1;
 
-static float uniform(float low, float high) { /* PCG (O'Neill 2014) */
-    state_of_random = state_of_random * 747796405u + 2891336453u;
-    uint32_t x =
-        ((state_of_random >> ((state_of_random >> 28) + 4)) ^ state_of_random) * 277803737u;
-    return low + (high - low) * (float)(((x >> 22) ^ x) * 0x1p-32);
+static float number(float low, float high) {
+    return (float)random_between(&seed, (double)low, (double)high);
 }
 
-static uint32_t below(uint32_t n) { return (uint32_t)(uniform(0, 1) * (float)n) % n; }
+static uint32_t below(uint32_t n) { return (uint32_t)(number(0, 1) * (float)n) % n; }
 
 /* ---- Meshes ---------------------------------------------------------------------------------- */
 
@@ -135,10 +134,10 @@ static void add_soup(uint32_t count, float size, float middle) {
     for (uint32_t i = 0; i < count; i++) {
         float at[3];
         uint32_t v[3];
-        for (int k = 0; k < 3; k++) at[k] = uniform(-1, 1);
+        for (int k = 0; k < 3; k++) at[k] = number(-1, 1);
         for (int c = 0; c < 3; c++) {
-            v[c] = vertex(middle + at[0] + uniform(-size, size), at[1] + uniform(-size, size),
-                          at[2] + uniform(-size, size));
+            v[c] = vertex(middle + at[0] + number(-size, size), at[1] + number(-size, size),
+                          at[2] + number(-size, size));
         }
         triangle(v[0], v[1], v[2]);
     }
@@ -149,11 +148,11 @@ static void add_needles(uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
         float a[3], b[3];
         for (int k = 0; k < 3; k++) {
-            a[k] = uniform(-1, 1);
-            b[k] = uniform(-1, 1);
+            a[k] = number(-1, 1);
+            b[k] = number(-1, 1);
         }
         triangle(vertex(a[0], a[1], a[2]), vertex(b[0], b[1], b[2]),
-                 vertex(b[0] + uniform(-1e-5f, 1e-5f), b[1] + 2e-5f, b[2]));
+                 vertex(b[0] + number(-1e-5f, 1e-5f), b[1] + 2e-5f, b[2]));
     }
 }
 
@@ -250,7 +249,7 @@ static void throw_in(uint32_t mesh) {
     double q[4], length = 0;
     float m[12];
     for (int k = 0; k < 4; k++) {
-        q[k] = (double)uniform(-1, 1);
+        q[k] = (double)number(-1, 1);
         length += q[k] * q[k];
     }
     for (int k = 0; k < 4; k++) q[k] /= sqrt(length);
@@ -260,9 +259,9 @@ static void throw_in(uint32_t mesh) {
         2 * (x * y + z * r),     1 - 2 * (x * x + z * z), 2 * (y * z - x * r),
         2 * (x * z - y * r),     2 * (y * z + x * r),     1 - 2 * (x * x + y * y)};
     for (int c = 0; c < 3; c++) {
-        double scale = exp((double)uniform(-1.5f, 1.5f)) * (below(3) ? 1 : -1);
+        double scale = exp((double)number(-1.5f, 1.5f)) * (below(3) ? 1 : -1);
         for (int k = 0; k < 3; k++) m[4 * k + c] = (float)(turn[3 * k + c] * scale);
-        m[4 * c + 3] = 0.125f * rintf(8 * uniform(-12, 12));
+        m[4 * c + 3] = 0.125f * rintf(8 * number(-12, 12));
     }
     place(mesh, m);
 }
@@ -328,7 +327,7 @@ static uint32_t triangle_of(uint32_t instance) {
 
 /* On a triangle: anywhere, on an edge, at a corner. */
 static void point_on(uint32_t instance, uint32_t of, uint32_t where, double out[3]) {
-    double p[3][3], u = (double)uniform(0, 1), v = (double)uniform(0, 1);
+    double p[3][3], u = (double)number(0, 1), v = (double)number(0, 1);
     for (int c = 0; c < 3; c++)
         world_point(instance, w.vertices[w.triangles[of].vertex[c]].position, p[c]);
     if (u + v > 1) {
@@ -358,7 +357,7 @@ static void make_ray(ray *r, uint32_t i) {
     double at[3], other[3];
     *r = (ray){.t_max = 1e30f};
     point_on(instance, of, 0, at);
-    for (int k = 0; k < 3; k++) r->origin[k] = (float)at[k] + uniform(-20, 20);
+    for (int k = 0; k < 3; k++) r->origin[k] = (float)at[k] + number(-20, 20);
     if (kind < 3) { /* from anywhere at anything */
         aim(r, at, 0);
     } else if (kind < 5) { /* at corners and edges, and a unit in the last place beside */
@@ -372,12 +371,12 @@ static void make_ray(ray *r, uint32_t i) {
             r->direction[k] = below(2) ? 0.0f : -0.0f;
         }
         r->direction[axis] = below(2) ? 1.0f : -1.0f;
-        r->origin[axis] -= r->direction[axis] * uniform(0, 30);
+        r->origin[axis] -= r->direction[axis] * number(0, 30);
     } else if (kind < 8) { /* from a surface */
         point_on(instance, of, 0, at);
         for (int k = 0; k < 3; k++) {
             r->origin[k] = (float)at[k];
-            r->direction[k] = uniform(-1, 1);
+            r->direction[k] = number(-1, 1);
         }
         r->t_min = 1e-4f * (1 + fabsf(r->origin[0]));
     } else if (kind == 8) { /* grazing */
@@ -387,7 +386,7 @@ static void make_ray(ray *r, uint32_t i) {
         aim(r, other, 1);
     } else { /* short ones */
         aim(r, at, 0);
-        r->t_max = uniform(0.5f, 1.5f);
+        r->t_max = number(0.5f, 1.5f);
     }
     /* The shader's limits are not what is asked here. */
     float most =
@@ -433,15 +432,6 @@ typedef struct verdict {
     bool found;          /* a grown triangle is hit at the t in question */
 } verdict;
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static void judge_triangle(const ray *r, uint32_t instance, uint32_t of, float t, verdict *v) {
     double d[3], p[3][3], n[3], e[3][3], size = 0, length = 0;
     for (int k = 0; k < 3; k++) d[k] = (double)r->direction[k];
@@ -457,27 +447,27 @@ static void judge_triangle(const ray *r, uint32_t instance, uint32_t of, float t
             size = fmax(size, fmax(fabs(p[c][k]), fmax(most, fabs((double)r->origin[k]))));
         }
     }
-    length = sqrt(dot(d, d));
+    length = sqrt(dot3(d, d));
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 3; k++) e[c][k] = p[(c + 1) % 3][k] - p[c][k];
-    cross(e[0], e[1], n);
-    double slope = dot(n, d), area = sqrt(dot(n, n));
+    cross3(e[0], e[1], n);
+    double slope = dot3(n, d), area = sqrt(dot3(n, n));
     if (!(area > 0)) return;
     double margin = MARGIN * size, cosine = fabs(slope) / (area * length);
-    double at = dot(n, p[0]) / slope, inside = (double)INFINITY;
+    double at = dot3(n, p[0]) / slope, inside = (double)INFINITY;
     for (int c = 0; c < 3; c++) { /* distance of the ray's line from the edge's, inwards */
         double across[3];
-        cross(e[c], d, across);
-        double s = -dot(across, p[c]) / (sqrt(dot(across, across)) + 1e-300);
+        cross3(e[c], d, across);
+        double s = -dot3(across, p[c]) / (sqrt(dot3(across, across)) + 1e-300);
         inside = fmin(inside, slope > 0 ? -s : s);
     }
     /* t is a mean of the corners', by weights whose error is that of an edge function over the
      * area. */
     double off = 0, first = (double)INFINITY, last = -(double)INFINITY;
     for (int c = 0; c < 3; c++) {
-        double across[3], along = dot(p[c], d) / (length * length);
-        cross(p[c], d, across);
-        off = fmax(off, dot(across, across) / (length * length));
+        double across[3], along = dot3(p[c], d) / (length * length);
+        cross3(p[c], d, across);
+        off = fmax(off, dot3(across, across) / (length * length));
         first = fmin(first, along);
         last = fmax(last, along);
     }
@@ -507,14 +497,14 @@ static bool comes_near(const ray *r, uint32_t instance) {
         for (int k = 0; k < 3; k++) p[k] = c >> k & 1 ? b->high[k] : b->low[k];
         world_point(instance, p, corner);
         for (int k = 0; k < 3; k++) corner[k] -= middle[k];
-        radius = fmax(radius, dot(corner, corner));
+        radius = fmax(radius, dot3(corner, corner));
     }
     for (int k = 0; k < 3; k++) {
         d[k] = (double)r->direction[k];
         middle[k] -= (double)r->origin[k];
     }
-    cross(middle, d, across);
-    return dot(across, across) <= 1.1 * radius * dot(d, d);
+    cross3(middle, d, across);
+    return dot3(across, across) <= 1.1 * radius * dot3(d, d);
 }
 
 /* Whether an answer stands, by the rule above. */
@@ -654,7 +644,7 @@ static void no_ray_leaves_a_closed_mesh(void **state) {
         set_world(origin);
         for (uint32_t i = 0; i < count; i++) {
             double at[3], from[3];
-            float inside[3] = {uniform(-0.5f, 0.5f), uniform(-0.5f, 0.5f), uniform(-0.5f, 0.5f)};
+            float inside[3] = {number(-0.5f, 0.5f), number(-0.5f, 0.5f), number(-0.5f, 0.5f)};
             rays[i] = (ray){.t_max = 1e30f};
             world_point(0, inside, from);
             point_on(0, triangle_of(0), i % 3, at);
@@ -735,7 +725,7 @@ static void a_hook_lets_rays_pass(void **state) {
     move_to(PLANES, 0, 0, 0);
     set_world(origin);
     for (uint32_t i = 0; i < COUNT; i++) {
-        rays[i] = (ray){.origin = {uniform(-0.9f, 0.9f), 2, uniform(-0.9f, 0.9f)},
+        rays[i] = (ray){.origin = {number(-0.9f, 0.9f), 2, number(-0.9f, 0.9f)},
                         .direction = {0, i % 2 ? -1 : -0.5f, 0},
                         .t_max = 1e30f};
     }

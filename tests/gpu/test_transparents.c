@@ -3,6 +3,10 @@
  * them; none, one and 256 of them. The panes are quads of z = const that glow and are not lit, so that
  * their colour is known; their scenes are written here. */
 #include "support/support.h"
+#include "support/blob.h"
+#include "support/files.h"
+#include "support/random.h"
+#include "support/floats.h"
 
 #include "scene/blob.h"
 #include "image.h"
@@ -11,7 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, PANES_MAX = 256 };
 
@@ -27,36 +30,41 @@ static uint32_t pane_count;
 static uint64_t seed;
 static float picture[4 * PIXELS], base[4 * PIXELS];
 
-static double unit(void) { /* splitmix64 */
-    uint64_t z = seed += 0x9E3779B97F4A7C15u;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
-static float half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    float v =
-        exponent ? ldexpf((float)(mantissa + 1024), exponent - 25) : ldexpf((float)mantissa, -24);
-    if (exponent == 31) v = NAN;
-    return h & 0x8000 ? -v : v;
-}
-
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-static void add(uint8_t *blob, uint64_t *at, uint32_t kind, uint32_t stride, uint64_t count,
-                const void *data) {
-    masu_blob_header *h = (masu_blob_header *)(void *)blob;
+/* A blob of its sections, in rising kind. */
+typedef struct panes_blob {
+    _Alignas(16) uint8_t bytes[1 << 19];
+    uint64_t end;
+} panes_blob;
+
+static panes_blob blob;
+
+static void begin_blob(void) {
+    memset(&blob, 0, sizeof blob);
+    blob.end = (sizeof(masu_blob_header) + 8 * sizeof(masu_blob_section) + 15) & ~(uint64_t)15;
+}
+
+static void add(uint32_t kind, uint32_t stride, uint64_t count, const void *data) {
+    masu_blob_header *h = (masu_blob_header *)(void *)blob.bytes;
     masu_blob_section *section =
-        (masu_blob_section *)(void *)(blob + sizeof *h) + h->section_count++;
-    *section = (masu_blob_section){kind, stride, *at, count};
-    memcpy(blob + *at, data, count * stride);
-    *at = (*at + count * stride + 15) & ~(uint64_t)15;
+        (masu_blob_section *)(void *)(blob.bytes + sizeof *h) + h->section_count++;
+    assert_true(blob.end + count * stride <= sizeof blob.bytes);
+    *section = (masu_blob_section){kind, stride, blob.end, count};
+    memcpy(blob.bytes + blob.end, data, count * stride);
+    blob.end = (blob.end + count * stride + 15) & ~(uint64_t)15;
+}
+
+static void end_blob(const char *name) {
+    masu_blob_header *h = (masu_blob_header *)(void *)blob.bytes;
+    h->magic = MASU_BLOB_MAGIC;
+    h->version = MASU_BLOB_VERSION;
+    support_blob_seal(blob.bytes, blob.end);
+    write_bytes(name, blob.bytes, blob.end);
 }
 
 /* A mesh of two triangles for each pane, with a material and an instance of its own. */
-static void write_scene(const char *path) {
-    static uint8_t blob[1 << 19];
+static void write_scene(const char *name) {
     static uint32_t indices[6 * (PANES_MAX + 1)];
     static masu_blob_primitive primitives[PANES_MAX + 1];
     static masu_blob_mesh meshes[PANES_MAX + 1];
@@ -95,26 +103,17 @@ static void write_scene(const char *path) {
                                          .sky_zenith = {0.5f, 0.5f, 0.5f},
                                          .sky_horizon = {0.5f, 0.5f, 0.5f}};
     masu_blob_camera_key key = {.position = {0, 0, 10}, .fov_y = 1};
-    memset(blob, 0, sizeof blob);
-    masu_blob_header *h = (masu_blob_header *)(void *)blob;
     uint32_t n = pane_count;
-    uint64_t at = (sizeof *h + 8 * sizeof(masu_blob_section) + 15) & ~(uint64_t)15;
-    add(blob, &at, MASU_BLOB_VERTICES, sizeof *vertices, 4, vertices);
-    add(blob, &at, MASU_BLOB_INDICES, sizeof *indices, 6 * n, indices);
-    add(blob, &at, MASU_BLOB_PRIMITIVES, sizeof *primitives, n, primitives);
-    add(blob, &at, MASU_BLOB_MESHES, sizeof *meshes, n, meshes);
-    add(blob, &at, MASU_BLOB_INSTANCES, sizeof *instances, n, instances);
-    add(blob, &at, MASU_BLOB_MATERIALS, sizeof *materials, n, materials);
-    add(blob, &at, MASU_BLOB_CAMERA_KEYS, sizeof key, 1, &key);
-    add(blob, &at, MASU_BLOB_ENVIRONMENT, sizeof environment, 1, &environment);
-    h->magic = MASU_BLOB_MAGIC;
-    h->version = MASU_BLOB_VERSION;
-    h->bytes = at;
-    h->hash = masu_fnv1a64(blob + sizeof *h, at - sizeof *h);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(blob, 1, at, f), at);
-    assert_int_equal(fclose(f), 0);
+    begin_blob();
+    add(MASU_BLOB_VERTICES, sizeof *vertices, 4, vertices);
+    add(MASU_BLOB_INDICES, sizeof *indices, 6 * n, indices);
+    add(MASU_BLOB_PRIMITIVES, sizeof *primitives, n, primitives);
+    add(MASU_BLOB_MESHES, sizeof *meshes, n, meshes);
+    add(MASU_BLOB_INSTANCES, sizeof *instances, n, instances);
+    add(MASU_BLOB_MATERIALS, sizeof *materials, n, materials);
+    add(MASU_BLOB_CAMERA_KEYS, sizeof key, 1, &key);
+    add(MASU_BLOB_ENVIRONMENT, sizeof environment, 1, &environment);
+    end_blob(name);
 }
 
 static masu_session_desc panes_desc(const char *path) {
@@ -126,14 +125,9 @@ static masu_session_desc panes_desc(const char *path) {
 }
 
 static void open_panes(void) {
-    char path[] = "/tmp/masu-panes-XXXXXX";
-    int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
-    write_scene(path);
-    masu_session_desc d = panes_desc(path);
+    write_scene("panes.masu");
+    masu_session_desc d = panes_desc(in_scratch("panes.masu"));
     open_session(&s, &d);
-    assert_int_equal(unlink(path), 0);
 }
 
 static void move(uint32_t i) {
@@ -146,12 +140,9 @@ static void move(uint32_t i) {
 static masu_stats_info render(const masu_camera *camera, float *hdr) {
     masu_frame_desc frame = {.camera = camera};
     masu_commands commands;
-    masu_readback_image image;
-    masu_stats_info stats;
     draw(&s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
-    for (uint32_t i = 0; i < 4 * PIXELS; i++) hdr[i] = half(((const uint16_t *)image.pixels)[i]);
-    assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
+    floats_of_halves(read_image(&s, commands.slot, MASU_READBACK_HDR), hdr, 4 * PIXELS);
+    masu_stats_info stats = stats_of(&s, commands.slot);
     assert_int_equal(stats.replaced, 0);
     return stats;
 }
@@ -160,13 +151,13 @@ static masu_stats_info render(const masu_camera *camera, float *hdr) {
 static void random_panes(uint32_t count) {
     pane_count = count;
     for (uint32_t i = 0; i < count; i++) {
-        panes[i] = (pane){.x = 6 * unit() - 3,
-                          .y = 6 * unit() - 3,
-                          .z = 8 * unit() - 4,
-                          .half = 0.4 + 1.6 * unit(),
-                          .opacity = (float)(1 + (int)(30 * unit())) / 32,
-                          .additive = unit() < 0.2};
-        for (uint32_t k = 0; k < 3; k++) panes[i].color[k] = (float)(1 + (int)(31 * unit())) / 32;
+        panes[i] = (pane){.x = 6 * random_unit(&seed) - 3,
+                          .y = 6 * random_unit(&seed) - 3,
+                          .z = 8 * random_unit(&seed) - 4,
+                          .half = 0.4 + 1.6 * random_unit(&seed),
+                          .opacity = (float)(1 + (int)(30 * random_unit(&seed))) / 32,
+                          .additive = random_unit(&seed) < 0.2};
+        for (uint32_t k = 0; k < 3; k++) panes[i].color[k] = (float)(1 + (int)(31 * random_unit(&seed))) / 32;
     }
 }
 
@@ -249,13 +240,13 @@ static void panes_are_blended_the_farthest_first(void **state) {
         double worst = 0;
         uint32_t compared, least = PIXELS;
         for (int turn = 0; turn < 4; turn++) {
-            masu_camera camera = camera_at(2 * unit() - 1, 2 * unit() - 1, 9);
+            masu_camera camera = camera_at(2 * random_unit(&seed) - 1, 2 * random_unit(&seed) - 1, 9);
             masu_stats_info stats = render(&camera, picture);
             assert_true(stats.transparents <= counts[c] && stats.draws == 0);
             worst = fmax(worst, compare(&camera, &compared));
             if (compared < least) least = compared;
             for (uint32_t i = 0; i < pane_count; i++) { /* another order from the next frame on */
-                panes[i].z = 8 * unit() - 4;
+                panes[i].z = 8 * random_unit(&seed) - 4;
                 move(i);
             }
         }
@@ -274,9 +265,9 @@ static void what_adds_up_does_so_in_any_order(void **state) {
     random_panes(100);
     for (uint32_t i = 0; i < pane_count; i++) {
         panes[i].additive = 1;
-        panes[i].half = 2 + unit();
+        panes[i].half = 2 + random_unit(&seed);
         panes[i].opacity = 0.5f;
-        for (uint32_t k = 0; k < 3; k++) panes[i].color[k] = (float)(int)(3 * unit()) / 32;
+        for (uint32_t k = 0; k < 3; k++) panes[i].color[k] = (float)(int)(3 * random_unit(&seed)) / 32;
     }
     open_panes();
     masu_camera camera =
@@ -287,7 +278,7 @@ static void what_adds_up_does_so_in_any_order(void **state) {
     render(&camera, picture);
     for (int turn = 0; turn < 3; turn++) {
         for (uint32_t i = 0; i < pane_count; i++) {
-            panes[i].z = -panes[i].z + (turn ? unit() : 0);
+            panes[i].z = -panes[i].z + (turn ? random_unit(&seed) : 0);
             move(i);
         }
         render(&camera, other);
@@ -353,7 +344,7 @@ static void walls_hide_what_is_behind_them(void **state) {
     assert_true(compared > PIXELS / 4 && worst <= 2.0 / 255);
     for (uint32_t i = 0; i < 30; i++) { /* all of them behind it */
         if (i == 11) continue;
-        panes[i].z = -2 - unit();
+        panes[i].z = -2 - random_unit(&seed);
         panes[i].x *= 0.2, panes[i].y *= 0.2, panes[i].half = 0.5;
         move(i);
     }
@@ -384,7 +375,7 @@ static void a_pane_cuts_an_sdf_and_polygons_alike(void **state) {
         draw(&s, &frame, &commands, NULL);
         assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
         float *to = there ? picture : base;
-        for (uint32_t i = 0; i < 4 * PIXELS; i++) to[i] = half(((const uint16_t *)image.pixels)[i]);
+        floats_of_halves(image.pixels, to, 4 * PIXELS);
         assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
         memcpy(depth[there], image.pixels, sizeof depth[there]);
         assert_int_equal(masu_stats(s.m, commands.slot, &stats), MASU_OK);
@@ -414,10 +405,8 @@ static void a_pane_cuts_an_sdf_and_polygons_alike(void **state) {
 
 static void place(const char *name, double x, double y, double z, float rows[12]) {
     const float all[12] = {1, 0, 0, (float)x, 0, 0, 1, (float)y, 0, -1, 0, (float)z};
-    masu_instance instance = masu_instance_find(s.m, name);
-    assert_true(instance.id != 0);
     memcpy(rows, all, sizeof all);
-    assert_int_equal(masu_instance_set_transform(s.m, instance, rows), MASU_OK);
+    place_instance(&s, name, rows);
 }
 
 /* The picture under a sky of that radiance; the sun is behind the camera. */
@@ -429,10 +418,8 @@ static void under_sky(float sky, float *hdr) {
                               .sky_horizon = {sky, sky, sky}};
     masu_frame_desc frame = {.light = &light, .cut = 1};
     masu_commands commands;
-    masu_readback_image image;
     draw(&s, &frame, &commands, NULL);
-    assert_int_equal(masu_readback(s.m, commands.slot, MASU_READBACK_HDR, &image), MASU_OK);
-    for (uint32_t i = 0; i < 4 * PIXELS; i++) hdr[i] = half(((const uint16_t *)image.pixels)[i]);
+    floats_of_halves(read_image(&s, commands.slot, MASU_READBACK_HDR), hdr, 4 * PIXELS);
 }
 
 /* Two panes of different texture sets: what each adds and takes follows from how it looks before black
@@ -493,8 +480,7 @@ static void panes_of_different_sets_take_turns(void **state) {
 }
 
 /* Two faces of one mesh, the near one towards the viewer, the far one away from him, in either order. */
-static void write_faces(const char *path, int near_first) {
-    static uint8_t blob[1 << 14];
+static void write_faces(const char *name, int near_first) {
     static const uint32_t orders[2][12] = {{0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7},
                                            {4, 5, 6, 4, 6, 7, 0, 2, 1, 0, 3, 2}};
     masu_blob_vertex vertices[8];
@@ -521,25 +507,16 @@ static void write_faces(const char *path, int near_first) {
     masu_blob_environment environment = {
         .sun_direction = {-0.8944272f, 0, 0.4472136f}, .sun_color = {2, 2, 2}, .exposure = 1, .near_distance = 0.1f};
     masu_blob_camera_key key = {.position = {0, 0, 10}, .fov_y = 0.5f};
-    memset(blob, 0, sizeof blob);
-    masu_blob_header *h = (masu_blob_header *)(void *)blob;
-    uint64_t at = (sizeof *h + 8 * sizeof(masu_blob_section) + 15) & ~(uint64_t)15;
-    add(blob, &at, MASU_BLOB_VERTICES, sizeof *vertices, 8, vertices);
-    add(blob, &at, MASU_BLOB_INDICES, sizeof **orders, 12, orders[near_first]);
-    add(blob, &at, MASU_BLOB_PRIMITIVES, sizeof primitive, 1, &primitive);
-    add(blob, &at, MASU_BLOB_MESHES, sizeof mesh, 1, &mesh);
-    add(blob, &at, MASU_BLOB_INSTANCES, sizeof instance, 1, &instance);
-    add(blob, &at, MASU_BLOB_MATERIALS, sizeof material, 1, &material);
-    add(blob, &at, MASU_BLOB_CAMERA_KEYS, sizeof key, 1, &key);
-    add(blob, &at, MASU_BLOB_ENVIRONMENT, sizeof environment, 1, &environment);
-    h->magic = MASU_BLOB_MAGIC;
-    h->version = MASU_BLOB_VERSION;
-    h->bytes = at;
-    h->hash = masu_fnv1a64(blob + sizeof *h, at - sizeof *h);
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(blob, 1, at, file), at);
-    assert_int_equal(fclose(file), 0);
+    begin_blob();
+    add(MASU_BLOB_VERTICES, sizeof *vertices, 8, vertices);
+    add(MASU_BLOB_INDICES, sizeof **orders, 12, orders[near_first]);
+    add(MASU_BLOB_PRIMITIVES, sizeof primitive, 1, &primitive);
+    add(MASU_BLOB_MESHES, sizeof mesh, 1, &mesh);
+    add(MASU_BLOB_INSTANCES, sizeof instance, 1, &instance);
+    add(MASU_BLOB_MATERIALS, sizeof material, 1, &material);
+    add(MASU_BLOB_CAMERA_KEYS, sizeof key, 1, &key);
+    add(MASU_BLOB_ENVIRONMENT, sizeof environment, 1, &environment);
+    end_blob(name);
 }
 
 /* A closed thing is right in itself, whatever the order of its triangles. The sun is low: the leaning
@@ -548,14 +525,9 @@ static void the_far_side_of_a_thing_comes_first(void **state) {
     (void)state;
     static float pictures[2][4 * PIXELS];
     for (int near_first = 0; near_first < 2; near_first++) {
-        char path[] = "/tmp/masu-faces-XXXXXX";
-        int file = mkstemp(path);
-        assert_true(file >= 0);
-        close(file);
-        write_faces(path, near_first);
-        masu_session_desc d = panes_desc(path);
+        write_faces("faces.masu", near_first);
+        masu_session_desc d = panes_desc(in_scratch("faces.masu"));
         open_session(&s, &d);
-        assert_int_equal(unlink(path), 0);
         render(NULL, pictures[near_first]);
         close_session(&s);
     }
@@ -579,5 +551,5 @@ int main(void) {
         cmocka_unit_test(panes_of_different_sets_take_turns),
         cmocka_unit_test(the_far_side_of_a_thing_comes_first),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -3,6 +3,7 @@
  * pixel; and the table of errors is made. The scene's box and SDF share an edge at x = -0.013 on
  * the plane z = -5, glowing before black: the box above y = 0, the SDF below. */
 #include "support/support.h"
+#include "support/files.h"
 
 #include "bench/measure/picture.h"
 
@@ -214,20 +215,15 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     close_session(&s);
 }
 
-/* masu image-error: a row for each chain, and what is smaller is farther from the truth. */
+/* masu study image: a row for each chain, and what is smaller is farther from the truth. */
 static void the_table_is_made(void **state) {
     (void)state;
-    char command[2048], line[4096], path[] = "/tmp/masu-truth-XXXXXX";
-    const char *build = getenv("BUILD");
-    int fd = mkstemp(path);
-    assert_true(fd >= 0);
-    snprintf(command, sizeof command,
-             "%s/bin/masu image-error %s --size 96x64 --positions 4 --runs 1 --scales 1,0.8,0.4 "
-             "--csv %s "
-             "--validate >/dev/null 2>&1",
-             build ? build : "build", scene_path("test_truth"), path);
-    assert_int_equal(system(command), 0);
-    FILE *f = fopen(path, "r");
+    char line[4096];
+    assert_int_equal(shell("%s/bin/masu study image %s --size 96x64 --positions 4 --runs 1 "
+                           "--scales 1,0.8,0.4 --csv %s --validate >/dev/null 2>&1",
+                           build_dir(), scene_path("test_truth"), in_scratch("table.csv")),
+                     0);
+    FILE *f = fopen(in_scratch("table.csv"), "r");
     assert_non_null(f);
     double whole = -1, small = -1, flip, scale;
     uint32_t rows = 0;
@@ -240,7 +236,6 @@ static void the_table_is_made(void **state) {
         if (!strcmp(name, "bilinear") && scale < 0.5) small = flip;
     }
     fclose(f);
-    remove(path);
     assert_true(rows >= 24);
     assert_true(whole > 0 && small > whole);
 }
@@ -254,5 +249,5 @@ int main(void) {
         cmocka_unit_test(an_edge_is_as_wide_as_it_covers),
         cmocka_unit_test(the_table_is_made),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

@@ -3,11 +3,12 @@
  * ratios from 1 to 2.5, garbage around the valid rectangle. */
 #include "support/support.h"
 
-#include "bench/study/image.h"
+#include "bench/study/upscale.h"
 #include "easu_fast_bytes_counted_comp.spv.h"
 #include "easu_fast_counted_comp.spv.h"
 #include "reference/fsr1.h"
 #include "reference/patterns.h"
+#include "reference/tone.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,15 +25,13 @@ typedef struct job {
 
 static masu_session s; /* a device without a renderer; each job makes its own */
 
-static int open_device(void **state) {
+static int open_group(void **state) {
     (void)state;
-    masu_session_desc d = test_desc(NULL, 8, 8);
-    d.no_renderer = true;
-    open_session(&s, &d);
+    open_device(&s);
     return 0;
 }
 
-static int close_device(void **state) {
+static int close_group(void **state) {
     (void)state;
     close_session(&s);
     return 0;
@@ -42,16 +41,11 @@ static int close_device(void **state) {
 static void run_gpu(const job *j, const void *texels, uint32_t beyond, uint8_t *out) {
     char error[ERROR_SIZE];
     masu_headless_source source;
-    masu_headless_target target;
     assert_ok(masu_headless_source_of(
         &s.host, j->format ? j->format : VK_FORMAT_R8G8B8A8_UNORM, texels, j->in_w, j->in_h,
         j->in_w + 19, j->in_h + 7, beyond, &source, error, sizeof error));
-    assert_ok(masu_headless_target_create(&s.host, j->out_w, j->out_h, VK_FORMAT_R8G8B8A8_UNORM,
-                                          true, &target, error, sizeof error));
     masu_desc d = s.desc;
     d.output = (VkExtent2D){j->out_w, j->out_h};
-    d.targets.images = &target.image;
-    d.targets.views = &target.view;
     d.source = (masu_source){source.view, j->in_w, j->in_h, j->format};
     d.half_floats = j->half;
     d.rung_count = 1;
@@ -60,22 +54,7 @@ static void run_gpu(const job *j, const void *texels, uint32_t beyond, uint8_t *
                              .sharpness = j->stops,
                              .easu = j->easu,
                              .fuse = j->fuse};
-    masu_memory need;
-    masu_detail detail;
-    masu_renderer *m;
-    masu_commands commands;
-    masu_frame_desc frame = {0};
-    if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
-    void *block = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
-    if (masu_init(&d, block, need.host_bytes, &m, &detail)) fail_msg("%s", detail.text);
-    assert_int_equal(masu_load(m, &commands), MASU_OK);
-    assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
-    assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
-    assert_ok(masu_headless_target_read(&s.host, &target, error, sizeof error));
-    memcpy(out, target.mapped, (size_t)j->out_w * j->out_h * 4);
-    masu_destroy(m);
-    free(block);
-    masu_headless_target_destroy(&s.host, &target);
+    draw_rungs_of(&s, &d, &out, NULL);
     masu_headless_source_destroy(&s.host, &source);
 }
 
@@ -290,11 +269,6 @@ static void an_input_known_to_have_8_bits_gives_the_same_picture(void **state) {
     }
 }
 
-static float linear(uint8_t c) {
-    float v = (float)c / 255.0f;
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
 /* What an sRGB view gives is linear, and is filtered as it is: masu.h says so. */
 static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state) {
     (void)state;
@@ -314,7 +288,8 @@ static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state
                  MASU_AUTO};
         masu_pattern_fill(MASU_PATTERN_PHOTO, 1, j.in_w, j.in_h, in);
         for (uint32_t i = 0; i < j.in_w * j.in_h; i++) {
-            for (uint32_t c = 0; c < 3; c++) rgb[3 * i + c] = linear(in[4 * i + c]);
+            for (uint32_t c = 0; c < 3; c++) 
+                rgb[3 * i + c] = (float)masu_ref_srgb_decode(in[4 * i + c] / 255.0);
         }
         run_gpu(&j, in, 0, gpu);
         reference_of_floats(&j, rgb, cpu);
@@ -572,5 +547,5 @@ int main(void) {
         cmocka_unit_test(fast_easu_counts_the_tiles_that_leave_early),
         cmocka_unit_test(a_scene_says_how_many_tiles_left_early),
     };
-    return cmocka_run_group_tests_name("upscale", tests, open_device, close_device);
+    return cmocka_run_group_tests_name("upscale", tests, open_group, close_group);
 }

@@ -3,6 +3,9 @@
  * itself by the C that masu-sdfc writes of the scene, compiled here), seen by the previous camera,
  * and compared in pixels. tests/scenes/test_velocity.sdf says how its parts move. */
 #include "support/support.h"
+#include "support/files.h"
+#include "support/floats.h"
+#include "reference/vec.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -15,54 +18,27 @@ enum { SKY, MOVER, GROWER, MORPHER, GROUND, BOX, KINDS }; /* parts as in the com
 static const char *const kind_names[KINDS] = {"sky",     "mover",  "grower",
                                               "morpher", "ground", "polygon"};
 
-typedef struct vec {
-    double x, y, z;
-} vec;
-
-static vec add(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static vec scale(vec a, double s) { return (vec){a.x * s, a.y * s, a.z * s}; }
-static vec sub(vec a, vec b) { return add(a, scale(b, -1)); }
-static double dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static vec cross(vec a, vec b) {
-    return (vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-static vec unit(vec a) { return scale(a, 1.0 / sqrt(dot(a, a))); }
-
 static vec turned(vec p, vec axis, double angle) {
-    vec k = unit(axis);
-    return add(add(scale(p, cos(angle)), scale(cross(k, p), sin(angle))),
-               scale(k, dot(k, p) * (1 - cos(angle))));
+    vec k = vec_unit(axis);
+    return vec_add(vec_add(vec_scale(p, cos(angle)), vec_scale(vec_cross(k, p), sin(angle))),
+               vec_scale(k, vec_dot(k, p) * (1 - cos(angle))));
 }
 
 /* ---- The scene's fields in double precision -------------------------------------------------- */
 
-static char dir[] = "/tmp/masu-velocity-XXXXXX";
 static void *library;
 static double (*part_distance)(const double *params, double time, const double p[3], int part);
 static int (*nearest_part)(const double *params, double time, const double p[3]);
 
-static int shell(const char *format, ...) {
-    char command[1024];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(command, sizeof command, format, args);
-    va_end(args);
-    return system(command);
-}
-
 static int make_truth(void **state) {
-    (void)state;
-    const char *build = getenv("BUILD"), *cc = getenv("CC");
-    char path[256];
-    if (!mkdtemp(dir)) return 1;
+    if (make_scratch(state)) return 1;
     if (shell("%s/bin/masu-sdfc tests/scenes/test_velocity.sdf --c %s/t.c --quiet --pairs 100",
-              build ? build : "build", dir) ||
-        shell("%s -std=c11 -O2 -w -shared -fPIC -o %s/t.so %s/t.c -lm", cc && *cc ? cc : "cc", dir,
-              dir)) {
+              build_dir(), scratch) ||
+        shell("%s -std=c11 -O2 -w -shared -fPIC -o %s/t.so %s/t.c -lm", c_compiler(), scratch,
+              scratch)) {
         return 1;
     }
-    snprintf(path, sizeof path, "%s/t.so", dir);
-    library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    library = dlopen(in_scratch("t.so"), RTLD_NOW | RTLD_LOCAL);
     if (!library) return 1;
     void *symbol = dlsym(library, "masu_truth_part_distance");
     memcpy(&part_distance, &symbol, sizeof symbol);
@@ -72,9 +48,8 @@ static int make_truth(void **state) {
 }
 
 static int remove_truth(void **state) {
-    (void)state;
     if (library) dlclose(library);
-    return shell("rm -rf %s", dir);
+    return remove_scratch(state);
 }
 
 /* ---- One moment ------------------------------------------------------------------------------ */
@@ -94,9 +69,9 @@ static double field(const moment *m, vec p, int kind) {
 
 static vec gradient(const moment *m, vec p, int kind) {
     double h = 1e-6;
-    return (vec){field(m, add(p, (vec){h, 0, 0}), kind) - field(m, add(p, (vec){-h, 0, 0}), kind),
-                 field(m, add(p, (vec){0, h, 0}), kind) - field(m, add(p, (vec){0, -h, 0}), kind),
-                 field(m, add(p, (vec){0, 0, h}), kind) - field(m, add(p, (vec){0, 0, -h}), kind)};
+    return (vec){field(m, vec_add(p, (vec){h, 0, 0}), kind) - field(m, vec_add(p, (vec){-h, 0, 0}), kind),
+                 field(m, vec_add(p, (vec){0, h, 0}), kind) - field(m, vec_add(p, (vec){0, -h, 0}), kind),
+                 field(m, vec_add(p, (vec){0, 0, h}), kind) - field(m, vec_add(p, (vec){0, 0, -h}), kind)};
 }
 
 typedef struct eye {
@@ -107,35 +82,35 @@ typedef struct eye {
 static eye eye_of(const masu_camera *c) {
     eye e = {.position = {c->position[0], c->position[1], c->position[2]},
              .forward =
-                 unit((vec){(double)c->forward[0], (double)c->forward[1], (double)c->forward[2]}),
+                 vec_unit(vec_of(c->forward)),
              .tan_y = tan((double)c->fov_y / 2)};
     e.tan_x = e.tan_y * W / H;
-    e.right = unit(cross(e.forward, (vec){0, 1, 0}));
-    e.up = cross(e.right, e.forward);
+    e.right = vec_unit(vec_cross(e.forward, (vec){0, 1, 0}));
+    e.up = vec_cross(e.right, e.forward);
     return e;
 }
 
 static vec ray_through(const eye *e, double x, double y) {
-    return add(e->forward, add(scale(e->right, (2 * x / W - 1) * e->tan_x),
-                               scale(e->up, (1 - 2 * y / H) * e->tan_y)));
+    return vec_add(e->forward, vec_add(vec_scale(e->right, (2 * x / W - 1) * e->tan_x),
+                               vec_scale(e->up, (1 - 2 * y / H) * e->tan_y)));
 }
 
 /* Pixel coordinates of a direction from the eye. */
 static void project(const eye *e, vec rel, double *x, double *y, double *z) {
-    *z = dot(rel, e->forward);
-    *x = (dot(rel, e->right) / *z / e->tan_x + 1) * W / 2;
-    *y = (1 - dot(rel, e->up) / *z / e->tan_y) * H / 2;
+    *z = vec_dot(rel, e->forward);
+    *x = (vec_dot(rel, e->right) / *z / e->tan_x + 1) * W / 2;
+    *y = (1 - vec_dot(rel, e->up) / *z / e->tan_y) * H / 2;
 }
 
 /* ---- What moved where ------------------------------------------------------------------------ */
 
 static vec mover_in(double t, vec p) {
-    vec q = sub(p, (vec){-1.6 + 0.3 * t, 0.2 * t, 0.1 * t});
-    return scale(turned(q, (vec){0.3, 1, 0.2}, -0.5 * t), 1 / (1 + 0.1 * t));
+    vec q = vec_sub(p, (vec){-1.6 + 0.3 * t, 0.2 * t, 0.1 * t});
+    return vec_scale(turned(q, (vec){0.3, 1, 0.2}, -0.5 * t), 1 / (1 + 0.1 * t));
 }
 
 static vec mover_out(double t, vec q) {
-    return add(turned(scale(q, 1 + 0.1 * t), (vec){0.3, 1, 0.2}, 0.5 * t),
+    return vec_add(turned(vec_scale(q, 1 + 0.1 * t), (vec){0.3, 1, 0.2}, 0.5 * t),
                (vec){-1.6 + 0.3 * t, 0.2 * t, 0.1 * t});
 }
 
@@ -145,12 +120,12 @@ static vec row(const float *rows, int i) {
 
 /* The matrices of this test turn and move, no more. */
 static vec box_before(const moment *now, const moment *was, vec p) {
-    vec q = sub(p, (vec){(double)now->rows[3], (double)now->rows[7], (double)now->rows[11]});
-    vec own = add(scale(row(now->rows, 0), q.x),
-                  add(scale(row(now->rows, 1), q.y), scale(row(now->rows, 2), q.z)));
-    return (vec){dot(row(was->rows, 0), own) + (double)was->rows[3],
-                 dot(row(was->rows, 1), own) + (double)was->rows[7],
-                 dot(row(was->rows, 2), own) + (double)was->rows[11]};
+    vec q = vec_sub(p, (vec){(double)now->rows[3], (double)now->rows[7], (double)now->rows[11]});
+    vec own = vec_add(vec_scale(row(now->rows, 0), q.x),
+                  vec_add(vec_scale(row(now->rows, 1), q.y), vec_scale(row(now->rows, 2), q.z)));
+    return (vec){vec_dot(row(was->rows, 0), own) + (double)was->rows[3],
+                 vec_dot(row(was->rows, 1), own) + (double)was->rows[7],
+                 vec_dot(row(was->rows, 2), own) + (double)was->rows[11]};
 }
 
 /* The surface that was along the normal: steps of the field's change over its slope until nothing is
@@ -159,19 +134,19 @@ static vec box_before(const moment *now, const moment *was, vec p) {
 static vec surface_before(const moment *now, const moment *was, vec p, int kind) {
     double level = field(now, p, kind);
     for (int i = 0; i < 30; i++) {
-        vec g = scale(gradient(was, p, kind), 1 / 2e-6);
-        p = sub(p, scale(g, (field(was, p, kind) - level) / dot(g, g)));
+        vec g = vec_scale(gradient(was, p, kind), 1 / 2e-6);
+        p = vec_sub(p, vec_scale(g, (field(was, p, kind) - level) / vec_dot(g, g)));
     }
     return p;
 }
 
 /* Within two pixels of an edge of a surface that changes, "along the normal" says nothing. */
 static int at_crease(const moment *m, vec p, double reach) {
-    vec n = unit(gradient(m, p, MORPHER));
+    vec n = vec_unit(gradient(m, p, MORPHER));
     for (int i = 0; i < 6; i++) {
         double s = i & 1 ? reach : -reach;
         vec o = i < 2 ? (vec){s, 0, 0} : i < 4 ? (vec){0, s, 0} : (vec){0, 0, s};
-        if (dot(n, unit(gradient(m, add(p, o), MORPHER))) < 0.9) return 1;
+        if (vec_dot(n, vec_unit(gradient(m, vec_add(p, o), MORPHER))) < 0.9) return 1;
     }
     return 0;
 }
@@ -181,7 +156,7 @@ static vec before(const moment *now, const moment *was, vec p, int kind) {
     case MOVER: return mover_out(was->time, mover_in(now->time, p));
     case GROWER: {
         vec c = {0, 0.2, 0};
-        return add(p, scale(unit(sub(p, c)), (double)was->radius - (double)now->radius));
+        return vec_add(p, vec_scale(vec_unit(vec_sub(p, c)), (double)was->radius - (double)now->radius));
     }
     case MORPHER: return surface_before(now, was, p, kind);
     case BOX: return box_before(now, was, p);
@@ -195,12 +170,6 @@ typedef struct picture {
     float depth[W * H]; /* view depth, 0: nothing */
     double velocity[W * H][4];
 } picture;
-
-static double half(uint16_t h) {
-    int exponent = h >> 10 & 31, mantissa = h & 1023;
-    double v = exponent ? ldexp(mantissa + 1024, exponent - 25) : ldexp(mantissa, -24);
-    return h & 0x8000 ? -v : v;
-}
 
 static void open_moving(masu_session *s, const char *scene, uint32_t flights) {
     masu_session_desc d = test_desc(scene, W, H);
@@ -217,22 +186,15 @@ static void take(masu_session *s, const moment *m, uint32_t cut, picture *p) {
     masu_frame_desc frame = {
         .camera = &m->camera, .time = m->time, .cut = cut, .sdf_params = &m->radius};
     frame.sdf_param_count = s->scene.sdf_params;
-    assert_int_equal(
-        masu_instance_set_transform(s->m, masu_instance_find(s->m, "box"), m->rows), MASU_OK);
+    place_instance(s, "box", m->rows);
     draw(s, &frame, &commands, NULL);
     if (!p) return;
-    assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_DEPTH, &image), MASU_OK);
-    for (uint32_t i = 0; i < W * H; i++) {
-        float d = ((const float *)image.pixels)[i];
-        p->depth[i] = d > 0.0f ? m->camera.near_distance / d : 0.0f;
-    }
+    view_depths(read_image(s, commands.slot, MASU_READBACK_DEPTH), &m->camera, p->depth, W * H);
     assert_int_equal(masu_readback(s->m, commands.slot, MASU_READBACK_VELOCITY, &image), MASU_OK);
     assert_int_equal(image.format, VK_FORMAT_R16G16B16A16_SFLOAT);
     assert_int_equal(image.row_bytes, W * 8);
-    for (uint32_t i = 0; i < W * H; i++) {
-        for (int k = 0; k < 4; k++)
-            p->velocity[i][k] = half(((const uint16_t *)image.pixels)[4 * i + k]);
-    }
+    const uint16_t *velocity = image.pixels;
+    for (uint32_t i = 0; i < 4 * W * H; i++) p->velocity[i / 4][i % 4] = half_float(velocity[i]);
 }
 
 static int kind_at(const masu_session *s, const moment *m, vec p, double z) {
@@ -258,7 +220,7 @@ static errors compare(const masu_session *s, const picture *p, const moment *now
         vec d = ray_through(&a, x, y), rel = d;
         int kind = SKY;
         if (z > 0) {
-            vec at = add(a.position, scale(d, z));
+            vec at = vec_add(a.position, vec_scale(d, z));
             kind = kind_at(s, now, at, z);
             if (kind == MORPHER && was->time != now->time &&
                 (at_crease(now, at, 4 * a.tan_y / H * z) ||
@@ -266,7 +228,7 @@ static errors compare(const masu_session *s, const picture *p, const moment *now
                 e.creases++;
                 continue;
             }
-            rel = sub(before(now, was, at, kind), b.position);
+            rel = vec_sub(before(now, was, at, kind), b.position);
         }
         project(&b, rel, &px, &py, &pz);
         assert_true(p->velocity[i][3] == 1.0);
@@ -447,16 +409,13 @@ static void every_way_to_march_has_velocities(void **state) {
     static picture p;
     static const masu_march marches[] = {MASU_MARCH_CONE8, MASU_MARCH_UNPRUNED, MASU_MARCH_PLAIN,
                                          MASU_MARCH_SEED, MASU_MARCH_CHECKERBOARD};
-    char path[256];
-    const char *build = getenv("BUILD");
-    snprintf(path, sizeof path, "%s/variants.masu", dir);
     assert_int_equal(shell("%s/bin/masu-bake tests/scenes/test_velocity.json -o %s --variants --quiet",
-                           build ? build : "build", path),
+                           build_dir(), baked_scene("variants")),
                      0);
     for (size_t i = 0; i < sizeof marches / sizeof *marches; i++) {
         masu_session s;
         masu_session_desc d = test_desc(NULL, W, H);
-        d.scene_path = path;
+        d.scene_path = baked_scene("variants");
         d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
         d.desc.rung_count = 1;
         d.desc.rungs[0].march = marches[i];
@@ -500,9 +459,9 @@ static void a_field_by_hand_is_followed_along_its_normal(void **state) {
     for (int i = 0; i < W * H; i++) {
         if (!(depth[i] > 0)) continue;
         double x = i % W + 0.5, y = i / W + 0.5, px, py, pz;
-        vec p = add(e.position, scale(ray_through(&e, x, y), 0.1 / (double)depth[i]));
-        project(&e, sub(scale(unit(p), sqrt(dot(p, p)) - 0.1), e.position), &px, &py, &pz);
-        worst = fmax(worst, hypot(half(texels[4 * i]) - (px - x), half(texels[4 * i + 1]) - (py - y)));
+        vec p = vec_add(e.position, vec_scale(ray_through(&e, x, y), 0.1 / (double)depth[i]));
+        project(&e, vec_sub(vec_scale(vec_unit(p), sqrt(vec_dot(p, p)) - 0.1), e.position), &px, &py, &pz);
+        worst = fmax(worst, hypot(half_float(texels[4 * i]) - (px - x), half_float(texels[4 * i + 1]) - (py - y)));
         longest = fmax(longest, hypot(px - x, py - y));
     }
     print_message("  longest motion %.2f px, off by %.4f px\n", longest, worst);

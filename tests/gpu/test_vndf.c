@@ -2,6 +2,7 @@
  * text compiled as C, which tests/unit has tested, and total: finite directions, weights of 0..1,
  * for whatever is given. */
 #include "support/support.h"
+#include "support/random.h"
 #include "support/compute.h"
 
 #include "vndf_comp.spv.h"
@@ -49,24 +50,15 @@ static void run(uint32_t count) {
 
 static uint64_t state = 1;
 
-static uint32_t bits(void) {
-    uint64_t z = state += 0x9E3779B97F4A7C15u;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return (uint32_t)(z ^ z >> 31);
-}
-
-static float unit(void) { return (float)(bits() >> 8) / 16777216.0f; }
-
 static void direction(float low, float out[3]) {
-    double z = (double)low + (1 - (double)low) * (double)unit(), phi = 6.283185307 * (double)unit();
+    double z = (double)low + (1 - (double)low) * (double)random_float(&state), phi = 6.283185307 * (double)random_float(&state);
     out[0] = (float)(sqrt(1 - z * z) * cos(phi));
     out[1] = (float)(sqrt(1 - z * z) * sin(phi));
     out[2] = (float)z;
 }
 
 static test_case any_case(void) {
-    test_case c = {.roughness = unit(), .u = {unit(), unit()}};
+    test_case c = {.roughness = random_float(&state), .u = {random_float(&state), random_float(&state)}};
     float other[3];
     direction(0.002f, c.view);
     direction(-1, c.normal);
@@ -74,7 +66,7 @@ static test_case any_case(void) {
     c.other[0] = other[0];
     c.other[1] = other[1];
     c.other_z = other[2];
-    for (int k = 0; k < 3; k++) c.noise[k] = bits();
+    for (int k = 0; k < 3; k++) c.noise[k] = random_word(&state);
     return c;
 }
 
@@ -187,13 +179,13 @@ static void any_bits_are_total(void **unused) {
     for (uint32_t i = 0; i < MANY; i++) {
         uint32_t words[sizeof(test_case) / 4];
         for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
-            words[k] = bits();
-            if (bits() % 8 == 0) words[k] |= 0x7F800000u; /* NaN or Inf */
+            words[k] = random_word(&state);
+            if (random_word(&state) % 8 == 0) words[k] |= 0x7F800000u; /* NaN or Inf */
         }
         memcpy(&cases[i], words, sizeof words);
         if (i % 4 == 0) { /* only one thing is odd */
             cases[i] = any_case();
-            ((uint32_t *)(void *)&cases[i])[bits() % 12] = words[0];
+            ((uint32_t *)(void *)&cases[i])[random_word(&state) % 12] = words[0];
         }
     }
     assert_total(MANY, "bits");

@@ -2,6 +2,7 @@
 #include "brdf.h"
 
 #include "shared/masu_shared.h"
+#include "reference/vec.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,9 +10,6 @@
 #define PI 3.14159265358979323846
 
 static double unit_range(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
-static double dot3(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 static double alpha_of(double roughness) {
     double r = roughness > MASU_TABLE_SMOOTHEST ? roughness : MASU_TABLE_SMOOTHEST;
     return r * r;

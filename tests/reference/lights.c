@@ -1,18 +1,16 @@
 /* lights.c: see lights.h. */
 #include "reference/lights.h"
+#include "reference/vec.h"
 
 #include <math.h>
 
 #define PI 3.14159265358979323846
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Angle between two vectors by both of its legs: exact for small and for large ones. */
 static double angle_between(const double a[3], const double b[3]) {
-    double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    return atan2(sqrt(dot(c, c)), dot(a, b));
+    double c[3];
+    cross3(a, b, c);
+    return atan2(sqrt(dot3(c, c)), dot3(a, b));
 }
 
 /* Share of a spot's light at an angle from its axis. The edges are angles; in between it goes by their
@@ -29,7 +27,7 @@ int masu_ref_light_reaches(const masu_ref_light *light, const double at[3], doub
                            double color[3]) {
     double to[3], away[3], distance;
     for (int k = 0; k < 3; k++) to[k] = light->position[k] - at[k];
-    distance = sqrt(dot(to, to));
+    distance = sqrt(dot3(to, to));
     for (int k = 0; k < 3; k++) {
         l[k] = distance > 0.0 ? to[k] / distance : 0.0;
         away[k] = -to[k];

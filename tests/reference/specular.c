@@ -5,26 +5,12 @@
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
 #include "split_sum.h"
+#include "reference/vec.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int k = 0; k < 3; k++)
-        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
-static double unit(double v[3]) {
-    double length = sqrt(dot(v, v));
-    for (int k = 0; k < 3; k++) v[k] /= length > 0 ? length : 1;
-    return length;
-}
 
 /* ---- The scene ------------------------------------------------------------------------------- */
 
@@ -34,7 +20,7 @@ static void decode(const int16_t packed[2], double n[3]) {
     n[2] = 1 - fabs(x) - fabs(y);
     n[0] = n[2] >= 0 ? x : (1 - fabs(y)) * (x >= 0 ? 1 : -1);
     n[1] = n[2] >= 0 ? y : (1 - fabs(x)) * (y >= 0 ? 1 : -1);
-    (void)unit(n);
+    (void)unit3(n);
 }
 
 /* By the inverse of the matrix, transposed; up to its determinant, whose sign counts. */
@@ -43,13 +29,13 @@ static void stand(const float t[12], double n[3]) {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) row[i][k] = (double)t[4 * i + k];
     for (int i = 0; i < 3; i++) {
-        cross(row[(i + 1) % 3], row[(i + 2) % 3], c);
-        out[i] = dot(c, n);
+        cross3(row[(i + 1) % 3], row[(i + 2) % 3], c);
+        out[i] = dot3(c, n);
     }
-    cross(row[1], row[2], c);
-    double sign = dot(c, row[0]) < 0 ? -1 : 1;
+    cross3(row[1], row[2], c);
+    double sign = dot3(c, row[0]) < 0 ? -1 : 1;
     for (int k = 0; k < 3; k++) n[k] = sign * out[k];
-    (void)unit(n);
+    (void)unit3(n);
 }
 
 static const char *unknown(const masu_scene *scene, const masu_scene_view *v) {
@@ -121,12 +107,12 @@ static void shares(const masu_ref_triangle *t, const double p[3], double out[3])
         f[k] = t->c[k] - t->a[k];
         g[k] = p[k] - t->a[k];
     }
-    cross(e, f, n);
-    double area = dot(n, n);
-    cross(g, f, c);
-    out[1] = dot(c, n) / area;
-    cross(e, g, c);
-    out[2] = dot(c, n) / area;
+    cross3(e, f, n);
+    double area = dot3(n, n);
+    cross3(g, f, c);
+    out[1] = dot3(c, n) / area;
+    cross3(e, g, c);
+    out[2] = dot3(c, n) / area;
     out[0] = 1 - out[1] - out[2];
 }
 
@@ -141,16 +127,16 @@ bool masu_ref_seen(const masu_ref_mirror *m, const double from[3], const double 
     shares(triangle, p, share);
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 3; k++) n[k] += share[c] * m->normals[hit][c][k];
-    (void)unit(n);
+    (void)unit3(n);
     /* Both sides are lit: the vertices' normal on the side that is seen; what of it still points away is
      * taken off. */
     if (!masu_ref_normal(triangle, n, flat)) return false;
-    if (dot(flat, back) < 0)
+    if (dot3(flat, back) < 0)
         for (int k = 0; k < 3; k++) n[k] = -n[k];
-    double away = -dot(n, back);
+    double away = -dot3(n, back);
     if (away > 0) {
         for (int k = 0; k < 3; k++) n[k] += away * back[k];
-        (void)unit(n);
+        (void)unit3(n);
     }
     masu_shade_exact(&m->view, direction, n, m->looks[hit], out, mirrored);
     for (int k = 0; k < 3; k++) out[k] += mirrored[k];
@@ -173,7 +159,7 @@ bool masu_ref_surface_of(const masu_ref_mirror *m, uint32_t x, uint32_t y, float
         s->at[k] = m->view.eye[k] + ray.direction[k] * ray.z_scale * z;
         s->look[k] = (albedo[k] / 255.0) * (albedo[k] / 255.0);
     }
-    (void)unit(s->normal);
+    (void)unit3(s->normal);
     s->width = z * 2 * m->view.tan_y / m->view.height;
     s->look[3] = albedo[3] / 255.0;
     s->look[7] = (normal >> 26 & 15) / 15.0;
@@ -236,9 +222,9 @@ masu_ref_estimate masu_ref_mirrored(const masu_ref_mirror *m, const masu_ref_sur
     double far = 0, brightest = 0;
     uint64_t state = seed * UINT64_C(0xD1342543DE82EF95) + 1;
     if (fabs(s->normal[0]) > 0.8) tangent[0] = 0, tangent[1] = 1;
-    cross(s->normal, tangent, across);
-    (void)unit(across);
-    cross(across, s->normal, tangent);
+    cross3(s->normal, tangent, across);
+    (void)unit3(across);
+    cross3(across, s->normal, tangent);
     for (int k = 0; k < 3; k++) {
         v[k] = -s->direction[k];
         far = fmax(far, fmax(fabs(s->at[k]), fabs(s->at[k] - m->view.eye[k])));
@@ -246,7 +232,7 @@ masu_ref_estimate masu_ref_mirrored(const masu_ref_mirror *m, const masu_ref_sur
     }
     for (int k = 0; k < 3; k++)
         from[k] = s->at[k] + s->normal[k] * (0.125 * s->width + 9.6e-7 * far);
-    double n_v = fmax(dot(s->normal, v), 1e-4);
+    double n_v = fmax(dot3(s->normal, v), 1e-4);
     double metallic = s->look[7], f90 = 1 + (fmin(50 * brightest, 1) - 1) * metallic;
     for (uint32_t i = 0; i < rays; i++) {
         lobe base = {.alpha = alpha_of(s->look[3]), .n_v = n_v}, coat = base;
@@ -257,9 +243,9 @@ masu_ref_estimate masu_ref_mirrored(const masu_ref_mirror *m, const masu_ref_sur
         double h[3], l[3];
         for (int k = 0; k < 3; k++)
             h[k] = n_h * s->normal[k] + r * (cos(phi) * tangent[k] + sin(phi) * across[k]);
-        double h_v = dot(h, v);
+        double h_v = dot3(h, v);
         for (int k = 0; k < 3; k++) l[k] = 2 * h_v * h[k] - v[k];
-        double n_l = dot(s->normal, l);
+        double n_l = dot3(s->normal, l);
         if (!(h_v > 0 && n_l > 0)) continue;
         base.tan2 = coat.tan2 = tan2, base.n_h = coat.n_h = n_h, base.n_l = coat.n_l = n_l;
         double pdf = density(&base), worth = value(&base), coated = 0, steep = pow(fmax(1 - h_v, 0), 5);

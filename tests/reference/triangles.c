@@ -2,6 +2,7 @@
 #include "triangles.h"
 
 #include "scene/scene.h"
+#include "reference/vec.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,16 +12,6 @@ enum { LEAF = 4 };
 
 static void sub(const double a[3], const double b[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = a[i] - b[i];
-}
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* ---- The scene ------------------------------------------------------------------------------- */
@@ -124,16 +115,16 @@ static double meet(const masu_ref_triangle *t, const double from[3], const doubl
     double e[3], f[3], p[3], q[3], s[3];
     sub(t->b, t->a, e);
     sub(t->c, t->a, f);
-    cross(d, f, p);
-    double det = dot(e, p);
+    cross3(d, f, p);
+    double det = dot3(e, p);
     if (det == 0) return -1;
     sub(from, t->a, s);
-    double u = dot(s, p) / det;
+    double u = dot3(s, p) / det;
     if (!(u >= 0 && u <= 1)) return -1;
-    cross(s, e, q);
-    double v = dot(d, q) / det;
+    cross3(s, e, q);
+    double v = dot3(d, q) / det;
     if (!(v >= 0 && u + v <= 1)) return -1;
-    return dot(f, q) / det;
+    return dot3(f, q) / det;
 }
 
 static int passes(const masu_ref_node *n, const double from[3], const double d[3], double low,
@@ -185,10 +176,10 @@ int masu_ref_normal(const masu_ref_triangle *triangle, const double towards[3], 
     double e[3], f[3];
     sub(triangle->b, triangle->a, e);
     sub(triangle->c, triangle->a, f);
-    cross(e, f, out);
-    double length = sqrt(dot(out, out));
+    cross3(e, f, out);
+    double length = sqrt(dot3(out, out));
     if (!(length > 0)) return 0;
-    double sign = dot(out, towards) < 0 ? -1 : 1;
+    double sign = dot3(out, towards) < 0 ? -1 : 1;
     for (int k = 0; k < 3; k++) out[k] *= sign / length;
     return 1;
 }
@@ -199,10 +190,10 @@ double masu_ref_sun_share(const masu_ref_triangles *scene, const double point[3]
     int least = fabs(sun[0]) < fabs(sun[1]) ? 0 : 1, free_rays = 0;
     if (fabs(sun[2]) < fabs(sun[least])) least = 2;
     double axis[3] = {least == 0, least == 1, least == 2};
-    cross(sun, axis, u);
-    double length = sqrt(dot(u, u));
+    cross3(sun, axis, u);
+    double length = sqrt(dot3(u, u));
     for (int k = 0; k < 3; k++) u[k] /= length;
-    cross(sun, u, v);
+    cross3(sun, u, v);
     /* Neighbours in the same plane are not in the way. */
     double off = 1e-9 * fmax(1, fmax(fabs(point[0]), fmax(fabs(point[1]), fabs(point[2]))));
     for (int i = 0; i < rays; i++) {

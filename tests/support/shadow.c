@@ -1,92 +1,28 @@
 /* shadow.c: see shadow.h. */
+#include "support/files.h"
 #include "support/shadow.h"
 
 #include "scene/scene.h"
+#include "reference/vec.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-static char dir[64];
-
-int shadow_shell(const char *format, ...) {
-    char command[2048];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(command, sizeof command, format, args);
-    va_end(args);
-    int status = system(command);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-int shadow_folder(void **state) {
-    (void)state;
-    snprintf(dir, sizeof dir, "/tmp/masu-shadow-XXXXXX");
-    return mkdtemp(dir) ? 0 : 1;
-}
-
-const char *shadow_dir(void) { return dir; }
-
-int shadow_folder_away(void **state) {
-    (void)state;
-    return shadow_shell("rm -rf %s", dir);
-}
-
-static const char *build_dir(void) {
-    const char *build = getenv("BUILD");
-    return build ? build : "build";
-}
-
-static void write_file(const char *name, const char *text) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_true(fputs(text, f) >= 0);
-    assert_int_equal(fclose(f), 0);
-}
-
-void shadow_bake(const char *name, const char *json) {
-    char file[64];
-    snprintf(file, sizeof file, "%s.json", name);
-    write_file(file, json);
-    if (shadow_shell("%s/bin/masu-bake %s/%s -o %s/%s.masu --quiet", build_dir(), dir, file, dir,
-                     name))
-        fail_msg("%s cannot be baked", file);
-}
-
-static void *read_blob(const char *path, size_t *bytes) {
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    assert_int_equal(fseek(f, 0, SEEK_END), 0);
-    *bytes = (size_t)ftell(f);
-    rewind(f);
-    void *blob = aligned_alloc(16, (*bytes + 15) / 16 * 16);
-    assert_non_null(blob);
-    assert_int_equal(fread(blob, 1, *bytes, f), *bytes);
-    fclose(f);
-    return blob;
-}
 
 void shadow_open(shadow_test *t, const char *name, uint32_t width, uint32_t height,
                  const masu_rung *rung) {
-    static char path[256];
     size_t bytes;
-    snprintf(path, sizeof path, "%s/%s.masu", dir, name);
     memset(t, 0, sizeof *t);
     t->width = width;
     t->height = height;
     masu_session_desc d = test_desc(NULL, width, height);
-    d.scene_path = path;
+    d.scene_path = baked_scene(name);
     d.desc.readback = MASU_READBACK_ALL & ~(uint32_t)MASU_READBACK_VELOCITY;
     d.desc.rung_count = 1;
     if (rung) d.desc.rungs[0] = *rung;
     open_session(&t->s, &d);
-    void *blob = read_blob(path, &bytes);
+    void *blob = read_file(baked_scene(name), &bytes);
     assert_int_equal(masu_scene_bind(blob, bytes, &t->scene, NULL), MASU_OK);
     masu_scene_view v = masu_scene_look(&t->scene);
     double length = 0;
@@ -135,29 +71,16 @@ const void *shadow_image(shadow_test *t, masu_readback_bits which) {
     return out.pixels;
 }
 
-double shadow_seen(const uint32_t *occlusion, uint32_t pixel) {
-    return (occlusion[pixel] & 0xFFFF) / 65535.0;
-}
-
 /* ---- The truth ------------------------------------------------------------------------------- */
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void unit(double v[3]) {
-    double length = sqrt(dot(v, v));
-    for (int k = 0; k < 3; k++) v[k] /= length;
-}
 
 /* Direction of a pixel's ray, of view depth 1. */
 static void ray_of(const shadow_test *t, const masu_camera *c, uint32_t x, uint32_t y,
                    double out[3]) {
     double f[3], r[3], u[3];
     for (int k = 0; k < 3; k++) f[k] = (double)c->forward[k];
-    unit(f);
+    unit3(f);
     r[0] = -f[2], r[1] = 0, r[2] = f[0]; /* forward x up, up is +y */
-    unit(r);
+    unit3(r);
     u[0] = r[1] * f[2] - r[2] * f[1];
     u[1] = r[2] * f[0] - r[0] * f[2];
     u[2] = r[0] * f[1] - r[1] * f[0];
@@ -181,8 +104,8 @@ int shadow_point_at(const shadow_test *t, const masu_camera *c, const float *dep
         back[k] = -d[k];
     }
     if (!masu_ref_normal(&t->world.triangles[hit], t->sun, out->normal)) return 0;
-    out->n_l = dot(out->normal, t->sun);
-    out->faces = dot(out->normal, back) > 0;
+    out->n_l = dot3(out->normal, t->sun);
+    out->faces = dot3(out->normal, back) > 0;
     return 1;
 }
 
@@ -198,7 +121,7 @@ double shadow_texel(const shadow_test *t, const masu_camera *c, const shadow_poi
         v.sun[k] = t->sun[k];
         v.casters[0][k] = 1;
     }
-    unit(v.forward);
+    unit3(v.forward);
     v.tan2 = x * x + y * y;
     v.near_distance = near_distance;
     uint32_t n = t->scene.shadow_cascades, size = t->scene.shadow_resolution;
@@ -212,7 +135,7 @@ double shadow_texel(const shadow_test *t, const masu_camera *c, const shadow_poi
         double d[3], far = 0;
         for (int i = 0; i < 3; i++) d[i] = p->at[i] - cascade_k.center[i];
         for (int i = 0; i < 2; i++)
-            far = fmax(far, fabs(dot(cascade_k.axis[i], d)) / cascade_k.half);
+            far = fmax(far, fabs(dot3(cascade_k.axis[i], d)) / cascade_k.half);
         /* The next one has a share in the last tenth. */
         *cascade = k;
         if (far <= 0.9 - 3.0 / size || (k + 1 == n && far <= 1)) return 2 * cascade_k.half / size;
@@ -233,7 +156,7 @@ double shadow_edge(const shadow_test *t, const shadow_point *p, double texel, do
             shadow_point q = *p;
             double a = i * (3.14159265358979 / 12), r = 0.25 * ring * texel, d[3];
             for (int k = 0; k < 3; k++) d[k] = r * (axis[0][k] * cos(a) + axis[1][k] * sin(a));
-            double along = -dot(p->normal, d) / p->n_l;
+            double along = -dot3(p->normal, d) / p->n_l;
             for (int k = 0; k < 3; k++) q.at[k] += d[k] + along * t->sun[k];
             if (shadow_truth(t, &q) != is) return 0.25 * ring;
         }

@@ -18,15 +18,6 @@ typedef struct shadow_test {
     int own_light; /* else the scene's */
 } shadow_test;
 
-/* A folder for scenes; to be used as the group's setup and teardown. */
-int shadow_folder(void **state);
-int shadow_folder_away(void **state);
-const char *shadow_dir(void);
-int shadow_shell(const char *format, ...);
-
-/* Bakes a scene description, and says why where it cannot. */
-void shadow_bake(const char *name, const char *json);
-
 /* A session with all readbacks, one rung, and the truth's triangles. rung: NULL for defaults. */
 void shadow_open(shadow_test *t, const char *name, uint32_t width, uint32_t height,
                  const masu_rung *rung);
@@ -37,7 +28,6 @@ void shadow_draw(shadow_test *t, const masu_camera *camera, uint32_t cut);
 /* From here on the sun stands there, for the GPU and for the truth. Degrees. */
 void shadow_sun(shadow_test *t, double azimuth, double elevation);
 const void *shadow_image(shadow_test *t, masu_readback_bits which);
-double shadow_seen(const uint32_t *occlusion, uint32_t pixel); /* the sun's share */
 
 /* The surface under a pixel. */
 typedef struct shadow_point {

@@ -1,5 +1,6 @@
 /* stiff.c: see stiff.h. One case at a time; its buffers are static, of the largest
  * picture that a case may have. */
+#include "support/files.h"
 #include "support/stiff.h"
 
 #include "bench/measure/truth.h"
@@ -22,8 +23,7 @@ static struct {
 
 const char *stiff_path(const char *name) {
     static char path[512];
-    const char *build = getenv("BUILD");
-    snprintf(path, sizeof path, "%s/stiff/%s", build ? build : "build", name);
+    snprintf(path, sizeof path, "%s/stiff/%s", build_dir(), name);
     return path;
 }
 

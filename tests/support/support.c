@@ -1,6 +1,8 @@
 /* support.c: see support.h. */
 #include "support/support.h"
 
+#include "support/files.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +10,8 @@
 const char *scene_path(const char *name) {
     static char paths[4][512];
     static uint32_t next;
-    const char *build = getenv("BUILD");
     char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/scenes/%s.masu", build ? build : "build", name);
+    snprintf(path, sizeof paths[0], "%s/scenes/%s.masu", build_dir(), name);
     return path;
 }
 
@@ -57,6 +58,96 @@ void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels) {
     masu_frame_desc frame = {.rung = rung};
     masu_commands commands;
     draw(s, &frame, &commands, pixels);
+}
+
+const void *read_image(const masu_session *s, uint32_t slot, masu_readback_bits which) {
+    masu_readback_image image;
+    assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
+    uint32_t texel = image.format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
+    assert_int_equal(image.row_bytes, image.width * texel);
+    return image.pixels;
+}
+
+const void *draw_image(masu_session *s, const masu_frame_desc *frame, masu_readback_bits which,
+                       uint8_t *pixels) {
+    masu_commands commands;
+    draw(s, frame, &commands, pixels);
+    return read_image(s, commands.slot, which);
+}
+
+void view_depths(const void *depth, const masu_camera *camera, float *out, size_t pixels) {
+    for (size_t i = 0; i < pixels; i++) {
+        float d = ((const float *)depth)[i];
+        out[i] = d > 0.0f ? camera->near_distance / d : 0.0f;
+    }
+}
+
+masu_stats_info stats_of(const masu_session *s, uint32_t slot) {
+    masu_stats_info stats;
+    assert_int_equal(masu_stats(s->m, slot, &stats), MASU_OK);
+    return stats;
+}
+
+void place_instance(masu_session *s, const char *name, const float rows[12]) {
+    masu_instance instance = masu_instance_find(s->m, name);
+    assert_int_not_equal(instance.id, 0);
+    assert_int_equal(masu_instance_set_transform(s->m, instance, rows), MASU_OK);
+}
+
+void move_instance(masu_session *s, const char *name, float x, float y, float z, float size) {
+    const float rows[12] = {size, 0, 0, x, 0, size, 0, y, 0, 0, size, z};
+    place_instance(s, name, rows);
+}
+
+const masu_plan_pass *pass_of(const masu_plan_info *plan, const char *name) {
+    for (uint32_t p = 0; p < plan->pass_count; p++)
+        if (!strcmp(plan->passes[p].name, name)) return &plan->passes[p];
+    fail_msg("there is no pass %s", name);
+    return NULL;
+}
+
+void open_device(masu_session *s) {
+    masu_session_desc d = test_desc(NULL, 8, 8);
+    d.no_renderer = true;
+    open_session(s, &d);
+}
+
+void *host_block(uint64_t bytes) {
+    void *block = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    assert_non_null(block);
+    return block;
+}
+
+void draw_rungs_of(masu_session *s, const masu_desc *desc, uint8_t *const *out,
+                   masu_stats_info *stats) {
+    char error[ERROR_SIZE];
+    masu_headless_target target;
+    masu_desc d = *desc;
+    masu_memory need;
+    masu_detail detail;
+    masu_renderer *m;
+    masu_commands commands;
+    assert_ok(masu_headless_target_create(&s->host, d.output.width, d.output.height,
+                                          VK_FORMAT_R8G8B8A8_UNORM, true, &target, error,
+                                          sizeof error));
+    d.targets.images = &target.image;
+    d.targets.views = &target.view;
+    if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
+    void *block = host_block(need.host_bytes);
+    if (masu_init(&d, block, need.host_bytes, &m, &detail)) fail_msg("%s", detail.text);
+    while (masu_load(m, &commands) == MASU_INCOMPLETE)
+        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+    for (uint32_t r = 0; r < d.rung_count; r++) {
+        masu_frame_desc frame = {.rung = r};
+        assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
+        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+        if (stats) assert_int_equal(masu_stats(m, commands.slot, &stats[r]), MASU_OK);
+        assert_ok(masu_headless_target_read(&s->host, &target, error, sizeof error));
+        memcpy(out[r], target.mapped, (size_t)target.width * target.height * 4);
+    }
+    masu_destroy(m);
+    free(block);
+    masu_headless_target_destroy(&s->host, &target);
 }
 
 uint32_t max_difference(const uint8_t *a, const uint8_t *b, size_t bytes) {

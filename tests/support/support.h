@@ -1,4 +1,5 @@
-/* support.h: what the GPU tests share: sessions under the validation layer, and pictures compared.
+/* support.h: what the GPU tests share: sessions under the validation layer, renderers on their
+ * devices, what a frame leaves to be read, and pictures compared.
  *
  * Every session validates (core and synchronisation); a message fails the test that closes it. The
  * driver is the one that the environment names: tests/run.sh runs each program once per driver. */
@@ -30,6 +31,41 @@ void close_session(masu_session *s);
 void draw(masu_session *s, const masu_frame_desc *frame, masu_commands *commands, uint8_t *pixels);
 /* The same with nothing but a rung. */
 void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels);
+
+/* An image of the frame in that slot, which has no gaps between rows; valid until the slot's next. */
+const void *read_image(const masu_session *s, uint32_t slot, masu_readback_bits which);
+/* draw and read_image. */
+const void *draw_image(masu_session *s, const masu_frame_desc *frame, masu_readback_bits which,
+                       uint8_t *pixels);
+/* Of a depth image: view depths, 0 where nothing is. */
+void view_depths(const void *depth, const masu_camera *camera, float *out, size_t pixels);
+masu_stats_info stats_of(const masu_session *s, uint32_t slot);
+
+/* Places an instance, which must be there: by its matrix, or unturned at a point in a size. */
+void place_instance(masu_session *s, const char *name, const float rows[12]);
+void move_instance(masu_session *s, const char *name, float x, float y, float z, float size);
+
+/* What a texel of MASU_READBACK_OCCLUSION says: how much is seen of the sun, and of ambient light. */
+static inline double sun_share(const uint32_t *occlusion, uint32_t pixel) {
+    return (occlusion[pixel] & 0xFFFF) / 65535.0;
+}
+static inline double ambient_share(const uint32_t *occlusion, uint32_t pixel) {
+    return (occlusion[pixel] >> 16) / 65535.0;
+}
+
+/* The row of a pass; there must be one. */
+const masu_plan_pass *pass_of(const masu_plan_info *plan, const char *name);
+
+/* A device without a renderer, for a test that makes its own. */
+void open_device(masu_session *s);
+
+/* Host memory as masu_init wants it; free(). */
+void *host_block(uint64_t bytes);
+
+/* A renderer of its own on the device of a session, with a target of the size d->output: one frame
+ * with each rung, its pixels to out[rung], its numbers to stats[rung] unless that is NULL. */
+void draw_rungs_of(masu_session *s, const masu_desc *d, uint8_t *const *out,
+                   masu_stats_info *stats);
 
 /* Largest difference of any byte. */
 uint32_t max_difference(const uint8_t *a, const uint8_t *b, size_t bytes);

@@ -22,14 +22,6 @@
 
 typedef masu_bake_vec3 vec3;
 
-static double uniform(uint64_t *state) {
-    return (double)(support_random(state) >> 11) / 9007199254740992.0;
-}
-
-static double between(uint64_t *state, double low, double high) {
-    return low + (high - low) * uniform(state);
-}
-
 /* ---- an own judge ---- */
 
 /* Distance from p to a triangle by its seven features, written apart from tools/bake/mesh/surface.c. */
@@ -59,7 +51,7 @@ static double own_distance_all(const vec3 (*t)[3], size_t count, vec3 p) {
 }
 
 static vec3 point_on(uint64_t *state, const vec3 t[3]) {
-    double u = uniform(state), v = uniform(state);
+    double u = random_unit(state), v = random_unit(state);
     if (u + v > 1) {
         u = 1 - u;
         v = 1 - v;
@@ -169,13 +161,13 @@ static void distances_are_those_of_the_nearest_triangle(void **state) {
     for (int round = 0; round < 50; round++) {
         vec3 t[60][3];
         for (int i = 0; i < 180; i++) {
-            t[i / 3][i % 3] = masu_bake_v3(between(&random, -1, 1), between(&random, -1, 1),
-                                           round % 5 ? between(&random, -1, 1) : 0);
+            t[i / 3][i % 3] = masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                                           round % 5 ? random_between(&random, -1, 1) : 0);
         }
         size_t count = (size_t)support_random_in(&random, 1, 60);
         masu_bake_surface s = masu_bake_surface_make((const vec3(*)[3])t, count);
         for (int i = 0; i < 100; i++) {
-            vec3 p = {between(&random, -2, 2), between(&random, -2, 2), between(&random, -2, 2)};
+            vec3 p = {random_between(&random, -2, 2), random_between(&random, -2, 2), random_between(&random, -2, 2)};
             double got = masu_bake_surface_distance(&s, p, NULL);
             double want = own_distance_all((const vec3(*)[3])t, count, p);
             assert_true(fabs(got - want) < 1e-9);
@@ -190,10 +182,10 @@ static void a_deviation_is_a_bound_and_not_much_more(void **state) {
     for (int round = 0; round < 40; round++) {
         vec3 a[12][3], b[12][3];
         for (int i = 0; i < 36; i++) {
-            a[i / 3][i % 3] = masu_bake_v3(between(&random, -1, 1), between(&random, -1, 1),
-                                           between(&random, -1, 1));
-            b[i / 3][i % 3] = masu_bake_v3(between(&random, -1, 1), between(&random, -1, 1),
-                                           between(&random, -1, 1));
+            a[i / 3][i % 3] = masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                                           random_between(&random, -1, 1));
+            b[i / 3][i % 3] = masu_bake_v3(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                                           random_between(&random, -1, 1));
         }
         masu_bake_surface from = masu_bake_surface_make((const vec3(*)[3])a, 12);
         masu_bake_surface to = masu_bake_surface_make((const vec3(*)[3])b, 12);
@@ -315,7 +307,7 @@ static void errors_of_lods_are_bounds(void **state) {
 
 static vec3 point_of_box(uint64_t *state, const masu_blob_occluder *o) {
     double p[3];
-    for (int k = 0; k < 3; k++) p[k] = between(state, (double)o->low[k], (double)o->high[k]);
+    for (int k = 0; k < 3; k++) p[k] = random_between(state, (double)o->low[k], (double)o->high[k]);
     int face = (int)support_random_in(state, 0, 5);
     p[face / 2] = (double)(face & 1 ? o->high : o->low)[face / 2];
     return masu_bake_v3(p[0], p[1], p[2]);
@@ -334,9 +326,9 @@ static bool hides(const masu_bake_content *c, const masu_blob_occluder *o, uint3
     bool hidden = true;
     for (int i = 0; i < 3000 && hidden; i++) {
         vec3 p = point_of_box(&random, o);
-        vec3 d = {between(&random, -1, 1), between(&random, -1, 1), between(&random, -1, 1)};
+        vec3 d = {random_between(&random, -1, 1), random_between(&random, -1, 1), random_between(&random, -1, 1)};
         if (!masu_bake_normalize(&d)) continue;
-        vec3 eye = masu_bake_mad(middle, d, radius * between(&random, 1, 5));
+        vec3 eye = masu_bake_mad(middle, d, radius * random_between(&random, 1, 5));
         hidden = false;
         for (size_t t = 0; t < COUNT_OF(mesh) && !hidden; t++) {
             hidden = crosses(eye, p, TRIANGLES(mesh)[t]);
@@ -378,11 +370,11 @@ static void occluders_lie_inside(void **state) {
         masu_bake_content c = {0};
         masu_bake_occluder_report report = {0};
         s.count = 0;
-        vec3 low = {between(&random, -9, 0), between(&random, -9, 0), between(&random, -9, 0)};
-        vec3 high = {between(&random, 1, 9), between(&random, 1, 9), between(&random, 1, 9)};
+        vec3 low = {random_between(&random, -9, 0), random_between(&random, -9, 0), random_between(&random, -9, 0)};
+        vec3 high = {random_between(&random, 1, 9), random_between(&random, 1, 9), random_between(&random, 1, 9)};
         if (round % 4 == 0)
-            torus(&s, between(&random, 4, 9), between(&random, 1, 3), 24, 10, round % 8);
-        if (round % 4 == 1) masu_bake_sphere(&c, between(&random, 1, 9), 3, 0);
+            torus(&s, random_between(&random, 4, 9), random_between(&random, 1, 3), 24, 10, round % 8);
+        if (round % 4 == 1) masu_bake_sphere(&c, random_between(&random, 1, 9), 3, 0);
         if (round % 4 ==
             2) { /* a box of many faces in one that is open, so only the inner counts */
             cuboid(&s, low, high, 3);
@@ -522,8 +514,8 @@ static void merging_shows_the_same_triangles_in_small_meshes(void **state) {
         cuboid(&s, masu_bake_v3(0, 0, 0), masu_bake_v3(1, 1, 1), -1);
         add_mesh(&c, &s, "brick");
         masu_blob_instance *n = &MASU_BAKE_INSTANCES(&c)[i];
-        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)between(&random, -50, 50);
-        n->transform[5] = (float)between(&random, 0.5, 3);
+        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)random_between(&random, -50, 50);
+        n->transform[5] = (float)random_between(&random, 0.5, 3);
     }
     s.count = 0;
     torus(&s, 4, 1, 32, 12, false);
@@ -617,7 +609,7 @@ static void merging_carries_texture_coordinates(void **state) {
                        MASU_BLOB_NONE, MASU_BLOB_NONE);
     for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_INSTANCES); i++) {
         masu_blob_instance *n = &MASU_BAKE_INSTANCES(&c)[i];
-        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)between(&random, -50, 50);
+        for (int k = 0; k < 3; k++) n->transform[4 * k + 3] = (float)random_between(&random, -50, 50);
         if (i % 3 == 1) n->transform[0] = -2; /* mirrored: corners change their order */
     }
     masu_bake_buffer before = mapped_corners(&c);

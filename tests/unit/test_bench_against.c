@@ -11,30 +11,12 @@
 #include "bench/sweep/against.h"
 #include "bench/sweep/machine.h"
 #include "bench/sweep/sweep.h"
+#include "support/files.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-static char dir[] = "/tmp/masu-test-XXXXXX";
-
-static const char *in(const char *name) {
-    static char paths[4][128];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", dir, name);
-    return path;
-}
-
-static void write_text(const char *folder, const char *name, const char *text) {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s/%s", dir, folder, name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    assert_true(fputs(text, f) >= 0);
-    assert_int_equal(fclose(f), 0);
-}
 
 typedef struct line {
     const char *setting;
@@ -43,7 +25,7 @@ typedef struct line {
 
 static void write_rows(const char *folder, const line *lines, uint32_t count) {
     char path[256];
-    snprintf(path, sizeof path, "%s/%s/results.csv", dir, folder);
+    snprintf(path, sizeof path, "%s/%s/results.csv", scratch, folder);
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     assert_true(masu_rows_header(f) > 0);
@@ -68,13 +50,19 @@ static const char ladder_json[] =
     "{\"clock\": \"%s\", \"rungs\": [{\"setting\": \"base\"}, {\"setting\": \"aa=fxaa\"},"
     " {\"setting\": \"scale=0.5\"}, {\"setting\": \"ao=off\"}]}";
 
+static void write_in(const char *folder, const char *file, const char *text) {
+    char name[64];
+    snprintf(name, sizeof name, "%s/%s", folder, file);
+    write_text(name, text);
+}
+
 static void make_folder(const char *name, const char *clock) {
     char text[512];
-    mkdir(in(name), 0777);
+    mkdir(in_scratch(name), 0777);
     snprintf(text, sizeof text, sweep_json, name); /* drivers may differ */
-    write_text(name, "sweep.json", text);
+    write_in(name, "sweep.json", text);
     snprintf(text, sizeof text, ladder_json, clock);
-    write_text(name, "ladder.json", text);
+    write_in(name, "ladder.json", text);
 }
 
 static const line here[] = {{"base", 0.03, 1.0, 1.0},
@@ -85,20 +73,12 @@ static const line there[] = {
     {"ao=off", 0, 0.6, 1.0}, {"scale=0.5", 0.1, 0.25, 0.25}, {"base", 0.03, 1.0, 1.0}};
 
 static int make_dirs(void **state) {
-    (void)state;
-    if (!mkdtemp(dir)) return 1;
+    if (make_scratch(state)) return 1;
     make_folder("here", "timestamps");
     make_folder("there", "wall");
     write_rows("here", here, 4);
     write_rows("there", there, 3);
     return 0;
-}
-
-static int remove_dirs(void **state) {
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", dir);
-    return system(command);
 }
 
 static void near(double value, double wanted) {
@@ -109,7 +89,7 @@ static void differences_by_hand(void **state) {
     (void)state;
     masu_against a;
     char error[8192];
-    if (!masu_against_compare(in("here"), in("there"), &a, error, sizeof error))
+    if (!masu_against_compare(in_scratch("here"), in_scratch("there"), &a, error, sizeof error))
         fail_msg("%s", error);
     assert_int_equal(a.count, 4);
     assert_int_equal(a.missing, 1);
@@ -123,14 +103,14 @@ static void differences_by_hand(void **state) {
     assert_int_equal(a.worst_flip, 2);
     assert_int_equal(a.worst_time, 3);
     make_folder("there", "timestamps");
-    assert_true(masu_against_compare(in("here"), in("there"), &a, error, sizeof error));
+    assert_true(masu_against_compare(in_scratch("here"), in_scratch("there"), &a, error, sizeof error));
     assert_true(a.by_timestamps);
     near(a.rungs[2].time_off, 0);
     near(a.rungs[3].time_off, -0.2);
     assert_int_equal(a.worst_time, 3);
     make_folder("there", "wall");
     /* The same folder twice: nothing is off, and nothing is missing. */
-    assert_true(masu_against_compare(in("here"), in("here"), &a, error, sizeof error));
+    assert_true(masu_against_compare(in_scratch("here"), in_scratch("here"), &a, error, sizeof error));
     assert_int_equal(a.missing, 0);
     for (uint32_t i = 0; i < a.count; i++) {
         near(a.rungs[i].flip_off, 0);
@@ -144,7 +124,7 @@ static void what_is_printed(void **state) {
     (void)state;
     masu_against a;
     char error[8192], text[4096];
-    assert_true(masu_against_compare(in("here"), in("there"), &a, error, sizeof error));
+    assert_true(masu_against_compare(in_scratch("here"), in_scratch("there"), &a, error, sizeof error));
     FILE *f = tmpfile();
     assert_non_null(f);
     assert_true(masu_against_print(f, &a, false) > 0);
@@ -163,7 +143,7 @@ static void what_is_printed(void **state) {
 static void refused(const char *a, const char *b, const char *why) {
     masu_against out;
     char error[8192] = "";
-    assert_false(masu_against_compare(in(a), in(b), &out, error, sizeof error));
+    assert_false(masu_against_compare(in_scratch(a), in_scratch(b), &out, error, sizeof error));
     if (!strstr(error, why)) fail_msg("'%s' is not in: %s", why, error);
     assert_null(strchr(error, '\n'));
 }
@@ -173,17 +153,17 @@ static void folders_that_do_not_belong_together(void **state) {
     make_folder("other", "wall");
     refused("here", "none", "sweep.json");
     refused("none", "here", "sweep.json");
-    write_text("other", "sweep.json", "{\"hash\": \"4567\"}");
+    write_text("other/sweep.json", "{\"hash\": \"4567\"}");
     refused("here", "other", "hash");
     make_folder("other", "wall");
-    write_text("other", "ladder.json", "[1");
+    write_text("other/ladder.json", "[1");
     refused("here", "other", "ladder.json");
-    write_text("other", "ladder.json", "{\"rungs\": []}");
+    write_text("other/ladder.json", "{\"rungs\": []}");
     refused("other", "here", "rungs");
-    write_text("other", "ladder.json", "{\"rungs\": [{}]}");
+    write_text("other/ladder.json", "{\"rungs\": [{}]}");
     refused("other", "here", "setting");
     make_folder("other", "wall");
-    write_text("other", "results.csv", "setting,old\n");
+    write_text("other/results.csv", "setting,old\n");
     refused("here", "other", "results.csv");
 }
 
@@ -207,38 +187,38 @@ static void runs_are_added_merged_and_read(void **state) {
     (void)state;
     char error[4096];
     masu_machine m, read;
-    mkdir(in("m1"), 0777);
-    mkdir(in("m2"), 0777);
+    mkdir(in_scratch("m1"), 0777);
+    mkdir(in_scratch("m2"), 0777);
     masu_machine_here("some \"driver\"", &m);
     assert_true(m.cpu[0] && m.threads > 0 && strlen(m.date) == 20);
-    assert_false(masu_machine_read(in("m1"), 0, &read));
-    assert_true(masu_machine_append(in("m1"), &m, error, sizeof error));
+    assert_false(masu_machine_read(in_scratch("m1"), 0, &read));
+    assert_true(masu_machine_append(in_scratch("m1"), &m, error, sizeof error));
     m.date[15] = m.date[15] == '0' ? '1' : '0'; /* a minute later: the same run, as far as it says */
-    assert_true(masu_machine_append(in("m1"), &m, error, sizeof error));
-    assert_false(masu_machine_read(in("m1"), 1, &read));
+    assert_true(masu_machine_append(in_scratch("m1"), &m, error, sizeof error));
+    assert_false(masu_machine_read(in_scratch("m1"), 1, &read));
     snprintf(m.date, sizeof m.date, "another day");
-    assert_true(masu_machine_append(in("m1"), &m, error, sizeof error));
-    assert_true(masu_machine_append(in("m2"), &m, error, sizeof error));
+    assert_true(masu_machine_append(in_scratch("m1"), &m, error, sizeof error));
+    assert_true(masu_machine_append(in_scratch("m2"), &m, error, sizeof error));
     snprintf(m.date, sizeof m.date, "a third");
-    assert_true(masu_machine_append(in("m2"), &m, error, sizeof error));
-    assert_true(masu_machine_merge(in("m1"), in("m2"), error, sizeof error));
-    assert_true(masu_machine_merge(in("m1"), in("none"), error, sizeof error));
+    assert_true(masu_machine_append(in_scratch("m2"), &m, error, sizeof error));
+    assert_true(masu_machine_merge(in_scratch("m1"), in_scratch("m2"), error, sizeof error));
+    assert_true(masu_machine_merge(in_scratch("m1"), in_scratch("none"), error, sizeof error));
     static const char *const dates[] = {NULL, "another day", "a third"}; /* one was in both */
     for (uint32_t i = 0; i < 3; i++) {
-        assert_true(masu_machine_read(in("m1"), i, &read));
+        assert_true(masu_machine_read(in_scratch("m1"), i, &read));
         assert_string_equal(read.cpu, m.cpu);
         assert_string_equal(read.driver, "some \"driver\"");
         assert_int_equal(read.threads, m.threads);
         if (dates[i]) assert_string_equal(read.date, dates[i]);
     }
-    assert_false(masu_machine_read(in("m1"), 3, &read));
-    write_text("m2", "machine.json", "{}");
-    assert_false(masu_machine_append(in("m2"), &m, error, sizeof error));
+    assert_false(masu_machine_read(in_scratch("m1"), 3, &read));
+    write_text("m2/machine.json", "{}");
+    assert_false(masu_machine_append(in_scratch("m2"), &m, error, sizeof error));
     assert_non_null(strstr(error, "machine.json"));
-    assert_false(masu_machine_read(in("m2"), 0, &read));
-    masu_machine_forget(in("m2"));
-    masu_machine_forget(in("none"));
-    assert_true(masu_machine_append(in("m2"), &m, error, sizeof error));
+    assert_false(masu_machine_read(in_scratch("m2"), 0, &read));
+    masu_machine_forget(in_scratch("m2"));
+    masu_machine_forget(in_scratch("none"));
+    assert_true(masu_machine_append(in_scratch("m2"), &m, error, sizeof error));
 }
 
 int main(void) {
@@ -249,5 +229,5 @@ int main(void) {
         cmocka_unit_test(what_a_cpu_is_called),
         cmocka_unit_test(runs_are_added_merged_and_read),
     };
-    return cmocka_run_group_tests_name("bench against", tests, make_dirs, remove_dirs);
+    return cmocka_run_group_tests_name("bench against", tests, make_dirs, remove_scratch);
 }

@@ -95,10 +95,6 @@ static void test_furnace(void **state) {
     }
 }
 
-static double random_unit(uint64_t *seed) {
-    return (double)(support_random(seed) >> 11) / 9007199254740992.0;
-}
-
 static brdf_surface any_surface(uint64_t *seed) {
     brdf_surface s;
     for (int k = 0; k < 3; k++) s.albedo[k] = random_unit(seed);

@@ -16,6 +16,7 @@
 #include "support/bind.h"
 #include "support/random.h"
 #include "support/dry_renderer.h"
+#include "reference/vec.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -102,25 +103,9 @@ static void keys_that_cross_over_keep_a_direction(void **state) {
 
 /* ---- The camera's uniforms ------------------------------------------------------------------- */
 
-static double dot3(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross3(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void unit3(const float v[3], double out[3]) {
-    double d[3] = {(double)v[0], (double)v[1], (double)v[2]};
-    double length = sqrt(dot3(d, d));
-    for (int k = 0; k < 3; k++) out[k] = d[k] / length;
-}
-
-static void renormalise(double v[3]) {
-    double length = sqrt(dot3(v, v));
-    for (int k = 0; k < 3; k++) v[k] /= length;
+static void direction_of(const float v[3], double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = (double)v[k];
+    unit3(out);
 }
 
 /* clip = matrix * (rel, 1) */
@@ -131,39 +116,35 @@ static void project(const struct masu_frame_uniforms *u, const double rel[3], do
     }
 }
 
-static float random_float(uint64_t *random, float low, float high) {
-    return low + (high - low) * (float)(support_random(random) >> 40) / 16777216.0f;
-}
-
 static void the_matrix_projects_as_a_camera_does(void **state) {
     (void)state;
     uint64_t random = 5;
     make_renderer(SUPPORT_ALL, 0);
     for (int n = 0; n < 500; n++) {
-        masu_camera c = {.fov_y = random_float(&random, 0.1f, 2.5f),
-                         .near_distance = random_float(&random, 0.01f, 2.0f)};
+        masu_camera c = {.fov_y = (float)random_between(&random, 0.1, 2.5),
+                         .near_distance = (float)random_between(&random, 0.01, 2.0)};
         for (int k = 0; k < 3; k++) {
-            c.position[k] = (double)random_float(&random, -100.0f, 100.0f);
-            c.forward[k] = random_float(&random, -3.0f, 3.0f);
-            c.up[k] = random_float(&random, -3.0f, 3.0f);
+            c.position[k] = random_between(&random, -100.0, 100.0);
+            c.forward[k] = (float)random_between(&random, -3.0, 3.0);
+            c.up[k] = (float)random_between(&random, -3.0, 3.0);
         }
-        for (int k = 0; k < 2 && n % 2; k++) c.jitter[k] = random_float(&random, -1.0f, 1.0f);
+        for (int k = 0; k < 2 && n % 2; k++) c.jitter[k] = (float)random_between(&random, -1.0, 1.0);
         double left = 2.0 * (double)c.jitter[0] / 1280.0, above = 2.0 * (double)c.jitter[1] / 720.0;
         double forward[3], wish[3], right[3], up[3], clip[4];
-        unit3(c.forward, forward);
-        unit3(c.up, wish);
+        direction_of(c.forward, forward);
+        direction_of(c.up, wish);
         if (fabs(dot3(forward, wish)) > 0.99) continue; /* all but parallel */
         cross3(forward, wish, right);
-        renormalise(right);
+        unit3(right);
         cross3(right, forward, up);
         double tan_y = tan((double)c.fov_y / 2.0), tan_x = tan_y * 1280.0 / 720.0;
         masu_frame_desc f = {.camera = &c};
         write_good(&f, 0);
         struct masu_frame_uniforms u = uniforms(0);
         for (int p = 0; p < 8; p++) {
-            double x = (double)random_float(&random, -2.0f, 2.0f);
-            double y = (double)random_float(&random, -2.0f, 2.0f);
-            double z = (double)random_float(&random, 0.1f, 50.0f), rel[3];
+            double x = random_between(&random, -2.0, 2.0);
+            double y = random_between(&random, -2.0, 2.0);
+            double z = random_between(&random, 0.1, 50.0), rel[3];
             for (int k = 0; k < 3; k++) {
                 rel[k] = z * (forward[k] + x * tan_x * right[k] + y * tan_y * up[k]);
             }
@@ -213,9 +194,9 @@ static void looking_straight_up_or_down_needs_no_up(void **state) {
         write_good(&f, 0);
         struct masu_frame_uniforms u = uniforms(0);
         double right[3], up[3], forward[3];
-        unit3(u.right, right);
-        unit3(u.up, up);
-        unit3(u.forward, forward);
+        direction_of(u.right, right);
+        direction_of(u.up, up);
+        direction_of(u.forward, forward);
         assert_near(dot3(right, up), 0.0, 1e-6);
         assert_near(dot3(right, forward), 0.0, 1e-6);
         assert_near(dot3(up, forward), 0.0, 1e-6);

@@ -24,14 +24,10 @@
 
 static uint64_t seed;
 
-static double uniform(double low, double high) {
-    return low + (high - low) * ((double)(support_random(&seed) >> 11) * 0x1p-53);
-}
-
 static double sign(void) { return support_random(&seed) & 1 ? 1.0 : -1.0; }
 
 static double magnitude(double low, double high) {
-    return sign() * exp(uniform(log(low), log(high)));
+    return sign() * exp(random_between(&seed, log(low), log(high)));
 }
 
 /* ---- The exact test -------------------------------------------------------------------------- */
@@ -93,15 +89,15 @@ static void random_camera(double span, masu_cull_view *view, exact_view *exact) 
     static const double fovs[] = {0.001, 0.7, 1.5, 3.1};
     double eye[3], forward[3];
     for (uint32_t k = 0; k < 3; k++) {
-        eye[k] = uniform(-span, span);
-        forward[k] = uniform(-1.0, 1.0);
+        eye[k] = random_between(&seed, -span, span);
+        forward[k] = random_between(&seed, -1.0, 1.0);
     }
     if (support_random(&seed) % 4 == 0) { /* along an axis */
         memset(forward, 0, sizeof forward);
         forward[support_random(&seed) % 3] = sign();
     }
-    camera(eye, forward, fovs[support_random(&seed) % COUNT(fovs)], uniform(0.1, 10.0),
-           support_random(&seed) % 2 ? 0.1 : exp(uniform(log(1e-9), log(1e9))), view, exact);
+    camera(eye, forward, fovs[support_random(&seed) % COUNT(fovs)], random_between(&seed, 0.1, 10.0),
+           support_random(&seed) % 2 ? 0.1 : exp(random_between(&seed, log(1e-9), log(1e9))), view, exact);
 }
 
 /* The six planes of the box |axis[i].(x - center)| <= half[i]; axes need not be unit vectors. */
@@ -122,9 +118,9 @@ static void random_ortho(double span, masu_cull_view *view, exact_view *exact) {
     double center[3], axis[3][3], half[3];
     exact->count = 6;
     for (uint32_t i = 0; i < 3; i++) {
-        center[i] = uniform(-span, span);
+        center[i] = random_between(&seed, -span, span);
         half[i] = fabs(magnitude(1e-3, 2 * span));
-        for (uint32_t k = 0; k < 3; k++) axis[i][k] = uniform(-1.0, 1.0);
+        for (uint32_t k = 0; k < 3; k++) axis[i][k] = random_between(&seed, -1.0, 1.0);
     }
     set_box_planes(view, center, (const double(*)[3])axis, half);
     for (uint32_t p = 0; p < 6; p++) {
@@ -141,11 +137,11 @@ static masu_cull_box random_box(double span) {
                                 (float)NAN, (float)INFINITY, (float)-INFINITY};
     masu_cull_box b;
     uint64_t kind = support_random(&seed) % 8;
-    double size = exp(uniform(log(1e-6), log(4 * span)));
+    double size = exp(random_between(&seed, log(1e-6), log(4 * span)));
     for (uint32_t k = 0; k < 3; k++) {
-        b.center[k] = (float)(kind == 1 ? magnitude(1e-3, 1e7) : uniform(-span, span));
+        b.center[k] = (float)(kind == 1 ? magnitude(1e-3, 1e7) : random_between(&seed, -span, span));
         b.half[k] = (float)(kind == 2 ? 0.0 : kind == 3 ? fabs(magnitude(1e-6, 1e6))
-                                                        : uniform(0.0, size));
+                                                        : random_between(&seed, 0.0, size));
         if (kind == 0 && support_random(&seed) % 2) {
             b.half[k] = fabsf(odd[support_random(&seed) % COUNT(odd)]);
         }
@@ -263,7 +259,7 @@ static void a_million_boxes_against_the_exact_test(void **state) {
     const uint32_t batch = 1000;
     uint64_t tried = 0, exact_kept = 0, kept = 0, falsely = 0;
     for (uint64_t round = 0; round < 1000; round++) {
-        double span = exp(uniform(log(1.0), log(1e6)));
+        double span = exp(random_between(&seed, log(1.0), log(1e6)));
         masu_cull_view view;
         exact_view exact;
         seed = 0x1000 + round;
@@ -386,7 +382,7 @@ static void a_placed_box_holds_what_floats_make_of_its_points(void **state) {
         for (uint32_t corner = 0; corner < 9; corner++) {
             float p[3];
             for (uint32_t k = 0; k < 3; k++) {
-                p[k] = corner == 8 ? low[k] + (high[k] - low[k]) * (float)uniform(0.0, 0.999)
+                p[k] = corner == 8 ? low[k] + (high[k] - low[k]) * (float)random_between(&seed, 0.0, 0.999)
                                    : corner >> k & 1 ? high[k] : low[k];
             }
             for (uint32_t i = 0; i < 3; i++) {
@@ -441,8 +437,8 @@ static void build_town(field *f, uint64_t number) {
     seed = number;
     for (uint32_t i = 0; i < FIELD; i++) {
         for (uint32_t k = 0; k < 3; k++) {
-            boxes[i].center[k] = (float)uniform(k == 1 ? 0.0 : -500.0, k == 1 ? 60.0 : 500.0);
-            boxes[i].half[k] = (float)exp(uniform(log(0.2), log(8.0)));
+            boxes[i].center[k] = (float)random_between(&seed, k == 1 ? 0.0 : -500.0, k == 1 ? 60.0 : 500.0);
+            boxes[i].half[k] = (float)exp(random_between(&seed, log(0.2), log(8.0)));
         }
     }
     qsort(boxes, FIELD, sizeof *boxes, by_place);
@@ -461,7 +457,7 @@ static void the_tree_keeps_what_one_by_one_keeps(void **state) {
     field *tree = &fields[0], *flat = &fields[1];
     static const uint32_t leaves[] = {1, 3, 16};
     for (uint64_t round = 0; round < 300; round++) {
-        double span = exp(uniform(log(1.0), log(1e6)));
+        double span = exp(random_between(&seed, log(1.0), log(1e6)));
         uint32_t count = 1 + (uint32_t)(round * 7 % 1500);
         seed = 0x300000 + round;
         start(tree, count);
@@ -576,7 +572,7 @@ static void simd_and_plain_agree_in_every_bit(void **state) {
         masu_cull_view view;
         exact_view exact;
         seed = 0x770000 + round;
-        double span = exp(uniform(log(1.0), log(1e6)));
+        double span = exp(random_between(&seed, log(1.0), log(1e6)));
         uint32_t count = 1 + (uint32_t)(support_random(&seed) % 2000);
         random_camera(span, &view, &exact);
         if (round % 2) random_ortho(span, &view, &exact);

@@ -119,10 +119,6 @@ static void detail_without_meshes_is_refused(void **state) {
 
 /* ---- choosing ---- */
 
-static double uniform(uint64_t *state) {
-    return (double)(support_random(state) >> 11) / 9007199254740992.0;
-}
-
 static const masu_blob_lod forms[3] = {{0, 0, 0.01f, 0}, {0, 0, 0.1f, 0}, {0, 0, 1.0f, 0}};
 
 static void the_coarsest_form_within_the_threshold_is_chosen(void **state) {
@@ -158,8 +154,8 @@ static void farther_is_never_finer_and_never_over_the_threshold(void **state) {
     (void)state;
     uint64_t random = 7;
     for (int i = 0; i < 100000; i++) {
-        float depth = (float)exp(12.0 * uniform(&random) - 2.0);
-        float scale = (float)exp(4.0 * uniform(&random) - 2.0);
+        float depth = (float)exp(12.0 * random_unit(&random) - 2.0);
+        float scale = (float)exp(4.0 * random_unit(&random) - 2.0);
         uint32_t near = masu_lod_choose(forms, 3, scale, depth, 935, 0.5f);
         assert_true(masu_lod_choose(forms, 3, scale, depth * 1.5f, 935, 0.5f) >= near);
         if (near) {
@@ -175,9 +171,9 @@ static void the_scale_bounds_every_direction(void **state) {
     for (int i = 0; i < 20000; i++) {
         float t[12];
         double d[3], length = 0, moved = 0;
-        for (int k = 0; k < 12; k++) t[k] = (float)(4 * uniform(&random) - 2);
+        for (int k = 0; k < 12; k++) t[k] = (float)(4 * random_unit(&random) - 2);
         for (int k = 0; k < 3; k++) {
-            d[k] = 2 * uniform(&random) - 1;
+            d[k] = 2 * random_unit(&random) - 1;
             length += d[k] * d[k];
         }
         for (int k = 0; k < 3; k++) {

@@ -17,29 +17,12 @@
 
 #include "bake/light/environment.h"
 #include "image.h"
+#include "support/files.h"
 #include "support/random.h"
 
 #define PI 3.14159265358979323846
 #define WIDE 256u
 #define HIGH 128u
-
-static char directory[] = "/tmp/masu_environment_XXXXXX";
-static char path[128];
-
-static int make_directory(void **state) {
-    (void)state;
-    return mkdtemp(directory) ? 0 : -1;
-}
-
-static int remove_directory(void **state) {
-    (void)state;
-    return rmdir(directory);
-}
-
-static const char *file_named(const char *name) {
-    (void)snprintf(path, sizeof path, "%s/%s", directory, name);
-    return path;
-}
 
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
@@ -255,8 +238,7 @@ static size_t write_rgbe(uint8_t *out, int runs) {
 }
 
 static int loads(const uint8_t *bytes, size_t n, masu_bake_panorama *p) {
-    char error[256];
-    assert_true(masu_file_write(file_named("a.hdr"), bytes, n, error, sizeof error));
+    const char *path = write_bytes("a.hdr", bytes, n);
     int good = masu_bake_load_panorama(path, p);
     unlink(path);
     return good;
@@ -291,7 +273,8 @@ static void pfm_files_are_read_and_what_is_no_light_refused(void **state) {
     char error[256];
     masu_bake_panorama p;
     float rgb[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-    assert_true(masu_image_save_pfm(file_named("a.pfm"), rgb, 2, 2, 3, error, sizeof error));
+    const char *path = in_scratch("a.pfm");
+    assert_true(masu_image_save_pfm(path, rgb, 2, 2, 3, error, sizeof error));
     assert_true(masu_bake_load_panorama(path, &p));
     assert_memory_equal(p.rgb, rgb, sizeof rgb);
     free(p.rgb);
@@ -302,8 +285,8 @@ static void pfm_files_are_read_and_what_is_no_light_refused(void **state) {
         assert_false(masu_bake_load_panorama(path, &p));
     }
     unlink(path);
-    assert_false(masu_bake_load_panorama(file_named("a.exr"), &p));
-    assert_false(masu_bake_load_panorama(file_named("none.hdr"), &p));
+    assert_false(masu_bake_load_panorama(in_scratch("a.exr"), &p));
+    assert_false(masu_bake_load_panorama(in_scratch("none.hdr"), &p));
 }
 
 int main(void) {
@@ -316,5 +299,5 @@ int main(void) {
         cmocka_unit_test(radiance_files_are_read_and_damaged_ones_refused),
         cmocka_unit_test(pfm_files_are_read_and_what_is_no_light_refused),
     };
-    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+    return cmocka_run_group_tests(tests, make_scratch, remove_empty_scratch);
 }

@@ -29,10 +29,6 @@ static float masu_exp2(double x) { return exp2f(clamp(x, -126, 126)); }
 #include "light/fog.glsl"
 #pragma GCC diagnostic pop
 
-static double unit(uint64_t *seed) {
-    return (double)support_random_in(seed, 0, 1 << 24) / (1 << 24);
-}
-
 /* Simpson's rule; pieces so short that the density changes by a fortieth or less in each. */
 static double integral(double density, double falloff, double height, double climb, double from,
                        double to) {
@@ -53,13 +49,13 @@ static void depths_are_those_of_numeric_integrals(void **state) {
     double worst = 0, relative = 0;
     int seen = 0;
     for (int i = 0; i < 4000; i++) {
-        float density = (float)pow(10, -5 + 5 * unit(&seed));
-        float falloff = (float)pow(10, -4 + 4 * unit(&seed));
-        float height = (float)(200 * unit(&seed) - 50),
-              start = (float)(i % 3 ? 0 : 30 * unit(&seed));
-        float climb = (float)(2 * unit(&seed) - 1), far = (float)pow(10, 4 * unit(&seed));
+        float density = (float)pow(10, -5 + 5 * random_unit(&seed));
+        float falloff = (float)pow(10, -4 + 4 * random_unit(&seed));
+        float height = (float)(200 * random_unit(&seed) - 50),
+              start = (float)(i % 3 ? 0 : 30 * random_unit(&seed));
+        float climb = (float)(2 * random_unit(&seed) - 1), far = (float)pow(10, 4 * random_unit(&seed));
         if (i % 4 == 0)
-            climb = (float)((double)climb * pow(10, -8 * unit(&seed))); /* near the horizon */
+            climb = (float)((double)climb * pow(10, -8 * random_unit(&seed))); /* near the horizon */
         if (i % 64 == 0) climb = 0;
         double want = integral((double)density, (double)falloff, (double)height, (double)climb,
                                (double)start, (double)far);
@@ -83,10 +79,10 @@ static void a_ray_to_the_sky_is_one_of_great_length(void **state) {
     uint64_t seed = 6;
     double worst = 0;
     for (int i = 0; i < 1500; i++) {
-        float density = (float)pow(10, -4 + 3 * unit(&seed));
-        float falloff = (float)pow(10, -2 + 2 * unit(&seed));
-        float height = (float)(100 * unit(&seed)), climb = (float)pow(10, -2 * unit(&seed));
-        float start = (float)(20 * unit(&seed));
+        float density = (float)pow(10, -4 + 3 * random_unit(&seed));
+        float falloff = (float)pow(10, -2 + 2 * random_unit(&seed));
+        float height = (float)(100 * random_unit(&seed)), climb = (float)pow(10, -2 * random_unit(&seed));
+        float start = (float)(20 * random_unit(&seed));
         double want =
             integral((double)density, (double)falloff, (double)height, (double)climb, (double)start,
                      (double)start + 40 / ((double)falloff * (double)climb));
@@ -119,8 +115,8 @@ static void fog_is_the_same_both_ways_and_adds_up(void **state) {
     (void)state;
     uint64_t seed = 7;
     for (int i = 0; i < 1500; i++) {
-        float falloff = (float)pow(10, -4 + 3 * unit(&seed)), height = (float)(20 * unit(&seed));
-        float climb = (float)(2 * unit(&seed) - 1), far = (float)(100 * unit(&seed));
+        float falloff = (float)pow(10, -4 + 3 * random_unit(&seed)), height = (float)(20 * random_unit(&seed));
+        float climb = (float)(2 * random_unit(&seed) - 1), far = (float)(100 * random_unit(&seed));
         float there = masu_fog_depth(0.0001f, falloff, height, climb, 0, far);
         float back = masu_fog_depth(0.0001f, falloff, height + climb * far, -climb, 0, far);
         float near = masu_fog_depth(0.0001f, falloff, height, climb, 0, far / 3);

@@ -12,29 +12,29 @@
 #include <cmocka.h>
 
 #include "quality/governor.h"
-#include "simulate/plant.h"
+#include "simulate/simulate.h"
 #include "support/random.h"
 
 #define SEEDS 20u
-#define SETTLED PLANT_SETTLED
+#define SETTLED SIM_SETTLED
 
-static const plant_controller *const ours = &plant_controllers[0];
+static const sim_controller *const ours = &sim_controllers[0];
 
-static const plant *named(const char *name) {
-    const plant *p = plant_find(name);
-    if (!p) fail_msg("there is no plant '%s'", name);
+static const sim_model *named(const char *name) {
+    const sim_model *p = sim_find(name);
+    if (!p) fail_msg("there is no model '%s'", name);
     return p;
 }
 
-/* ---- The standard plant
+/* ---- The standard model
  * ------------------------------------------------------------------------ */
 
-static plant_result mean_of(const plant *p, const plant_controller *c, uint32_t seeds, double *over,
+static sim_result mean_of(const sim_model *p, const sim_controller *c, uint32_t seeds, double *over,
                             double *changes) {
-    plant_result sum = {0};
+    sim_result sum = {0};
     *over = *changes = 0.0;
     for (uint32_t seed = 1; seed <= seeds; seed++) {
-        plant_result r = plant_run(p, c, seed, NULL, NULL);
+        sim_result r = sim_run(p, c, seed, NULL, NULL);
         *over += (double)r.over / seeds;
         *changes += (double)r.changes / seeds;
         sum.mean_scale += r.mean_scale / seeds;
@@ -43,34 +43,34 @@ static plant_result mean_of(const plant *p, const plant_controller *c, uint32_t 
     return sum;
 }
 
-static void keeps_the_bar_on_the_standard_plant(void **state) {
+static void keeps_the_bar_on_the_standard_model(void **state) {
     (void)state;
     double over, changes;
-    plant_result r = mean_of(named("standard"), ours, SEEDS, &over, &changes);
+    sim_result r = mean_of(named("standard"), ours, SEEDS, &over, &changes);
     if (over > 15.0 || changes > 32.0 || r.mean_scale < 0.68) {
         fail_msg("%.1f frames over the budget, %.1f changes, mean scale %.4f", over, changes,
                  r.mean_scale);
     }
-    assert_true(plant_oracle(named("standard")) < 0.73); /* nobody can do much better */
+    assert_true(sim_oracle(named("standard")) < 0.73); /* nobody can do much better */
 }
 
 /* Beside every rival: not one of them misses fewer frames by more than four (a slow drift costs
  * those: it is followed with the least of margins), or changes less by more than four. */
 static void misses_fewer_frames_than_its_rivals(void **state) {
-    static const char *const plants[] = {
+    static const char *const models[] = {
         "standard", "latency_1", "latency_2", "constant", "step_4x",    "step_1.8x", "sine_50",
         "sine_100", "sine_200",  "sine_400",  "burst",    "scenes",     "walk",      "noise_10",
         "noise_20", "noise_30",  "spikes",    "thermal",  "clock_flips"};
     (void)state;
-    for (size_t i = 0; i < sizeof plants / sizeof *plants; i++) {
+    for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
         double over, changes;
-        mean_of(named(plants[i]), ours, 6, &over, &changes);
-        for (uint32_t k = 1; k < plant_controller_count; k++) {
+        mean_of(named(models[i]), ours, 6, &over, &changes);
+        for (uint32_t k = 1; k < sim_controller_count; k++) {
             double rival, rival_changes;
-            mean_of(named(plants[i]), &plant_controllers[k], 6, &rival, &rival_changes);
+            mean_of(named(models[i]), &sim_controllers[k], 6, &rival, &rival_changes);
             if (over > rival + 4.0 || changes > rival_changes + 4.0) {
-                fail_msg("%s: %.1f over and %.1f changes, %s has %.1f and %.1f", plants[i], over,
-                         changes, plant_controllers[k].name, rival, rival_changes);
+                fail_msg("%s: %.1f over and %.1f changes, %s has %.1f and %.1f", models[i], over,
+                         changes, sim_controllers[k].name, rival, rival_changes);
             }
         }
     }
@@ -87,14 +87,14 @@ static void settles_under_every_constant_load(void **state) {
     (void)state;
     for (uint32_t i = 0; i < 500; i++) {
         for (uint32_t e = 0; e < 3; e++) {
-            plant p = {"constant",
+            sim_model p = {"constant",
                        "",
                        .frames = 1200,
                        .a = 1.0 + 0.2 * i,
                        .exponent = exponents[e],
                        .event = e ? 600 - SETTLED : 0,
                        .rungs = i % 5 ? 16 : 3};
-            plant_result r = plant_run(&p, ours, i + 1, NULL, NULL);
+            sim_result r = sim_run(&p, ours, i + 1, NULL, NULL);
             if (r.late_changes > (e ? 1 : 0)) {
                 fail_msg("load %.1f, cost s^%.1f: %u changes after frame %u", p.a, exponents[e],
                          r.late_changes, p.event + SETTLED);
@@ -107,9 +107,9 @@ static void changes_seldom_under_noise(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed <= 40; seed++) {
         for (uint32_t i = 0; i < 3; i++) {
-            plant p = {"noise", "", .frames = 1500, .a = 10.0 + 2.0 * seed,
+            sim_model p = {"noise", "", .frames = 1500, .a = 10.0 + 2.0 * seed,
                        .noise = (const double[]){0.10, 0.20, 0.30}[i]};
-            plant_result r = plant_run(&p, ours, seed, NULL, NULL);
+            sim_result r = sim_run(&p, ours, seed, NULL, NULL);
             uint32_t most = i ? 12 : 2;
             if (r.late_changes > most || (p.a < 70.0 && r.over > 4 + p.frames / 50)) {
                 fail_msg("noise %.2f, load %.0f: %u changes after frame %u, %u frames over",
@@ -124,7 +124,7 @@ static void changes_seldom_under_noise(void **state) {
 
 static void settles_soon_after_a_step(void **state) {
     static const struct {
-        const char *plant;
+        const char *model;
         int32_t most;
     } steps[] = {
         {"standard", 12},    {"step_4x", 12},      {"step_1.8x", 10},     {"missing_5", 15},
@@ -136,9 +136,9 @@ static void settles_soon_after_a_step(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
         for (uint32_t seed = 1; seed <= 2 * SEEDS; seed++) {
-            plant_result r = plant_run(named(steps[i].plant), ours, seed, NULL, NULL);
+            sim_result r = sim_run(named(steps[i].model), ours, seed, NULL, NULL);
             if (r.settle < 0 || r.settle > steps[i].most) {
-                fail_msg("%s, seed %u: settles after %d frames, not within %d", steps[i].plant,
+                fail_msg("%s, seed %u: settles after %d frames, not within %d", steps[i].model,
                          seed, r.settle, steps[i].most);
             }
         }
@@ -148,10 +148,10 @@ static void settles_soon_after_a_step(void **state) {
 /* The rung that a fall goes to is at most one below that which is kept in the end. */
 static void does_not_overshoot(void **state) {
     (void)state;
-    const plant *p = named("step_1.8x");
+    const sim_model *p = named("step_1.8x");
     for (uint32_t seed = 1; seed <= 2 * SEEDS; seed++) {
-        plant_frame frames[PLANT_FRAMES_MOST];
-        plant_run(p, ours, seed, frames, NULL);
+        sim_frame frames[SIM_FRAMES_MOST];
+        sim_run(p, ours, seed, frames, NULL);
         uint32_t lowest = 0, last = frames[p->frames - 1].rung;
         for (uint32_t f = p->event; f < p->frames; f++)
             if (frames[f].rung > lowest) lowest = frames[f].rung;
@@ -162,18 +162,18 @@ static void does_not_overshoot(void **state) {
 /* 95 % of what the load allows within 90 frames of its drop; and the first rise within 40,
  * however long it has been too high: nothing winds up. */
 static void comes_back(void **state) {
-    static const char *const plants[] = {"step_down", "overload"};
+    static const char *const models[] = {"step_down", "overload"};
     (void)state;
     for (uint32_t i = 0; i < 2; i++) {
-        const plant *p = named(plants[i]);
-        plant low = *p;
+        const sim_model *p = named(models[i]);
+        sim_model low = *p;
         low.frames = 400;
         low.load = NULL;
         low.a = p->b;
-        double ideal = plant_oracle(&low);
+        double ideal = sim_oracle(&low);
         for (uint32_t seed = 1; seed <= SEEDS; seed++) {
-            plant_frame frames[PLANT_FRAMES_MOST];
-            plant_run(p, ours, seed, frames, NULL);
+            sim_frame frames[SIM_FRAMES_MOST];
+            sim_run(p, ours, seed, frames, NULL);
             uint32_t first = 0, full = 0;
             for (uint32_t f = p->event; f < p->frames; f++) {
                 if (!first && frames[f].rung < frames[f - 1].rung) first = f - p->event;
@@ -192,24 +192,24 @@ static void comes_back(void **state) {
 
 /* For 60 frames of a constant load: at most one rung, at most 5 % of the frames over the budget. */
 static void is_not_moved_by_lies(void **state) {
-    static const plant_lie lies[] = {PLANT_TENTH,    PLANT_LAVAPIPE, PLANT_FROZEN, PLANT_ZERO,
-                                     PLANT_NEGATIVE, PLANT_HUGE,     PLANT_NAN,    PLANT_MICRO,
-                                     PLANT_NANO,     PLANT_SECONDS,  PLANT_GARBAGE};
+    static const sim_lie lies[] = {SIM_TENTH,    SIM_LAVAPIPE, SIM_FROZEN, SIM_ZERO,
+                                     SIM_NEGATIVE, SIM_HUGE,     SIM_NAN,    SIM_MICRO,
+                                     SIM_NANO,     SIM_SECONDS,  SIM_GARBAGE};
     (void)state;
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
         for (uint32_t seed = 1; seed <= SEEDS; seed++) {
-            for (uint32_t wall = lies[i] == PLANT_GARBAGE; wall < 2; wall++) {
-                plant_frame frames[PLANT_FRAMES_MOST];
-                plant p = {"lies",           "",
+            for (uint32_t wall = lies[i] == SIM_GARBAGE; wall < 2; wall++) {
+                sim_frame frames[SIM_FRAMES_MOST];
+                sim_model p = {"lies",           "",
                            .frames = 700,    .a = 20.0 + seed,
                            .lie = lies[i],   .lie_from = 300,
                            .lie_until = 360, .wall = wall};
-                plant_run(&p, ours, seed, frames, NULL);
+                sim_run(&p, ours, seed, frames, NULL);
                 uint32_t low = 99, high = 0, over = 0;
                 for (uint32_t f = 299; f < 460; f++) {
                     if (frames[f].rung < low) low = frames[f].rung;
                     if (frames[f].rung > high) high = frames[f].rung;
-                    over += frames[f].ms > PLANT_BUDGET;
+                    over += frames[f].ms > SIM_BUDGET;
                 }
                 if (high - low > 1 || over > 8) {
                     fail_msg("lie %d, seed %u, wall %u: rungs %u to %u, %u frames over",
@@ -224,12 +224,12 @@ static void spikes_change_nothing(void **state) {
     (void)state;
     uint32_t changes = 0, pairs = 0;
     for (uint32_t seed = 1; seed <= 2 * SEEDS; seed++) {
-        plant p = *named("spikes");
+        sim_model p = *named("spikes");
         p.a = 20.0 + seed;
-        plant_frame frames[PLANT_FRAMES_MOST];
-        plant_result r = plant_run(&p, ours, seed, frames, NULL);
+        sim_frame frames[SIM_FRAMES_MOST];
+        sim_result r = sim_run(&p, ours, seed, frames, NULL);
         for (uint32_t f = 20; f < p.frames; f++) /* two in a row are what a step looks like */
-            pairs += frames[f].ms > 2.0 * PLANT_BUDGET && frames[f - 1].ms > 2.0 * PLANT_BUDGET;
+            pairs += frames[f].ms > 2.0 * SIM_BUDGET && frames[f - 1].ms > 2.0 * SIM_BUDGET;
         changes += r.late_changes;
     }
     if (changes > 2 * pairs) fail_msg("%u changes for %u pairs of spikes", changes, pairs);
@@ -239,7 +239,7 @@ static void spikes_change_nothing(void **state) {
 /* Timestamps that the wall contradicts: found out for good, and said so. */
 static void reports_what_it_trusts(void **state) {
     static const struct {
-        const char *plant;
+        const char *model;
         masu_governor_source source;
         float unit;
     } cases[] = {{"constant", MASU_GOVERNOR_SOURCE_GPU, 1.0f},
@@ -250,25 +250,25 @@ static void reports_what_it_trusts(void **state) {
                  {"unit_s", MASU_GOVERNOR_SOURCE_GPU, 1e3f}};
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        plant_state s;
+        sim_state s;
         masu_governor_info info;
-        plant_run(named(cases[i].plant), ours, 1, NULL, &s);
+        sim_run(named(cases[i].model), ours, 1, NULL, &s);
         masu_governor_report(&s.governor, &info);
         if (info.source != cases[i].source || fabsf(info.unit / cases[i].unit - 1.0f) > 1e-6f) {
-            fail_msg("%s: source %d, unit %g", cases[i].plant, (int)info.source, (double)info.unit);
+            fail_msg("%s: source %d, unit %g", cases[i].model, (int)info.source, (double)info.unit);
         }
     }
 }
 
-/* The parts of the model, where the plant knows them. */
+/* The parts of the model, where the model knows them. */
 static void finds_the_fixed_part(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed <= SEEDS; seed++) {
-        plant_state s;
-        plant_run(named("step_4x"), ours, seed, NULL, &s);
+        sim_state s;
+        sim_run(named("step_4x"), ours, seed, NULL, &s);
         masu_governor_info info;
         masu_governor_report(&s.governor, &info);
-        for (uint32_t r = 8; r < PLANT_RUNGS; r++) { /* from 0.61 down: where it has been */
+        for (uint32_t r = 8; r < SIM_RUNGS; r++) { /* from 0.61 down: where it has been */
             double truth = 2.0 + 40.0 * pow(0.4, r / 7.5);
             double error = masu_governor_predict(&s.governor, r) / truth - 1.0;
             if (fabs(error) > 0.1) fail_msg("seed %u, rung %u: off by %.3f", seed, r, error);
@@ -298,7 +298,7 @@ static double any_time(uint64_t *random) {
 static void stays_sound_under_a_million_samples(void **state) {
     (void)state;
     masu_governor g;
-    masu_governor_rung ladder[PLANT_RUNGS];
+    masu_governor_rung ladder[SIM_RUNGS];
     uint64_t random = 3, frame = 0;
     for (uint32_t i = 0; i < 1000000; i++) {
         if (i % 5000 == 0) {
@@ -338,14 +338,14 @@ static void stays_sound_under_a_million_samples(void **state) {
     }
 }
 
-static void no_plant_makes_it_emit_an_invalid_rung(void **state) {
+static void no_model_makes_it_emit_an_invalid_rung(void **state) {
     (void)state;
-    for (uint32_t i = 0; i < plant_count; i++) {
+    for (uint32_t i = 0; i < sim_model_count; i++) {
         for (uint32_t seed = 1; seed <= 5; seed++) {
-            plant_frame frames[PLANT_FRAMES_MOST];
-            plant_result r = plant_run(&plant_list[i], ours, seed, frames, NULL);
-            masu_governor_rung ladder[PLANT_RUNGS];
-            uint32_t rungs = plant_ladder(&plant_list[i], ladder);
+            sim_frame frames[SIM_FRAMES_MOST];
+            sim_result r = sim_run(&sim_models[i], ours, seed, frames, NULL);
+            masu_governor_rung ladder[SIM_RUNGS];
+            uint32_t rungs = sim_ladder(&sim_models[i], ladder);
             for (uint32_t f = 0; f < r.frames; f++) assert_true(frames[f].rung < rungs);
             assert_int_equal(r.invalid, 0);
         }
@@ -497,22 +497,22 @@ static void learns_from_fixed_passes(void **state) {
 static void misses_least_on_recorded_scenes(void **state) {
     static const char *const paths[] = {"tools/simulate/traces/engine.csv",
                                         "tools/simulate/traces/city.csv"};
-    static plant_trace trace;
+    static sim_trace trace;
     (void)state;
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         char error[256];
-        if (!plant_trace_read(paths[i], &trace, error, sizeof error)) fail_msg("%s", error);
-        plant p = plant_of_trace(&trace);
-        plant_result r = plant_run(&p, ours, 1, NULL, NULL), unreal = {0};
-        for (uint32_t k = 1; k < plant_controller_count; k++) {
-            if (!strcmp(plant_controllers[k].name, "unreal"))
-                unreal = plant_run(&p, &plant_controllers[k], 1, NULL, NULL);
+        if (!sim_trace_read(paths[i], &trace, error, sizeof error)) fail_msg("%s", error);
+        sim_model p = sim_of_trace(&trace);
+        sim_result r = sim_run(&p, ours, 1, NULL, NULL), unreal = {0};
+        for (uint32_t k = 1; k < sim_controller_count; k++) {
+            if (!strcmp(sim_controllers[k].name, "unreal"))
+                unreal = sim_run(&p, &sim_controllers[k], 1, NULL, NULL);
         }
         if (4 * r.over > 3 * unreal.over || 2 * r.changes > unreal.changes ||
-            r.mean_scale < 0.55 * plant_oracle(&p)) {
+            r.mean_scale < 0.55 * sim_oracle(&p)) {
             fail_msg(
                 "%s: %u of %u frames over, %u changes, mean scale %.3f of %.3f; unreal: %u, %u",
-                paths[i], r.over, r.frames, r.changes, r.mean_scale, plant_oracle(&p), unreal.over,
+                paths[i], r.over, r.frames, r.changes, r.mean_scale, sim_oracle(&p), unreal.over,
                 unreal.changes);
         }
     }
@@ -520,7 +520,7 @@ static void misses_least_on_recorded_scenes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_the_bar_on_the_standard_plant),
+        cmocka_unit_test(keeps_the_bar_on_the_standard_model),
         cmocka_unit_test(misses_fewer_frames_than_its_rivals),
         cmocka_unit_test(settles_under_every_constant_load),
         cmocka_unit_test(changes_seldom_under_noise),
@@ -532,7 +532,7 @@ int main(void) {
         cmocka_unit_test(reports_what_it_trusts),
         cmocka_unit_test(finds_the_fixed_part),
         cmocka_unit_test(stays_sound_under_a_million_samples),
-        cmocka_unit_test(no_plant_makes_it_emit_an_invalid_rung),
+        cmocka_unit_test(no_model_makes_it_emit_an_invalid_rung),
         cmocka_unit_test(keeps_its_modes_and_range),
         cmocka_unit_test(says_why),
         cmocka_unit_test(a_cut_is_believed_at_once),

@@ -28,6 +28,7 @@
 
 #include "image.h"
 #include "reference/patterns.h"
+#include "support/files.h"
 
 /* Made by another encoder (zlib, by hand), so that reader and writer cannot share a mistake. */
 
@@ -60,30 +61,18 @@ static const uint8_t filtered_png[] = {
     0x23, 0x67, 0x96, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82,
 };
 
-static char directory[64];
 static char error[256];
 
 static int make_directory(void **state)
 {
-    (void)state;
-    strcpy(directory, "/tmp/masu_test_image_XXXXXX");
     memset(error, 0, sizeof error);
-    return mkdtemp(directory) ? 0 : -1;
-}
-
-static const char *in_directory(const char *name)
-{
-    static char path[2][128];
-    static int turn;
-    turn ^= 1;
-    (void)snprintf(path[turn], sizeof path[turn], "%s/%s", directory, name);
-    return path[turn];
+    return make_scratch(state);
 }
 
 static int files_in_directory(void)
 {
     int count = 0;
-    DIR *dir = opendir(directory);
+    DIR *dir = opendir(scratch);
     assert_non_null(dir);
     for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
         count += entry->d_name[0] != '.';
@@ -95,20 +84,11 @@ static int files_in_directory(void)
 /* Tests call their files by these names only, so that any other one is a leftover. */
 static int remove_directory(void **state)
 {
-    (void)state;
     static const char *const known[] = { "a.png", "b.png", "a.pfm", "a.bin", "link.png", "pipe" };
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        (void)unlink(in_directory(known[i]));
+        (void)unlink(in_scratch(known[i]));
     }
-    return rmdir(directory);
-}
-
-static void write_raw(const char *path, const void *bytes, size_t count)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, count, file), count);
-    assert_int_equal(fclose(file), 0);
+    return remove_empty_scratch(state);
 }
 
 static void assert_error_mentions(const char *path, const char *reason)
@@ -120,10 +100,9 @@ static void assert_error_mentions(const char *path, const char *reason)
 
 static void assert_png_is_refused(const void *bytes, size_t count, const char *reason)
 {
-    const char *path = in_directory("a.png");
+    const char *path = write_bytes("a.png", bytes, count);
     struct masu_image image;
     memset(&image, 0x5A, sizeof image);
-    write_raw(path, bytes, count);
     assert_false(masu_image_load_png(path, &image, error, sizeof error));
     assert_null(image.rgba);
     assert_int_equal(image.width, 0);
@@ -136,7 +115,7 @@ static void a_png_comes_back_as_it_was_written(void **state)
 {
     (void)state;
     static const uint32_t sizes[][2] = { { 1, 1 }, { 7, 5 }, { 1, 300 }, { 300, 1 }, { 64, 48 } };
-    const char *path = in_directory("a.png");
+    const char *path = in_scratch("a.png");
     for (int p = 0; p < MASU_PATTERN_COUNT; p++) {
         for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
             uint32_t w = sizes[s][0], h = sizes[s][1];
@@ -163,7 +142,7 @@ static void a_png_comes_back_as_it_was_written(void **state)
 static void padding_between_rows_is_not_written(void **state)
 {
     (void)state;
-    const char *path = in_directory("a.png");
+    const char *path = in_scratch("a.png");
     uint8_t padded[3 * 20];
     memset(padded, 0xEE, sizeof padded);
     for (uint32_t i = 0; i < 3 * 4 * 4; i++) {
@@ -183,18 +162,18 @@ static void padding_between_rows_is_not_written(void **state)
 static void other_kinds_of_png_arrive_as_8_bit_rgba(void **state)
 {
     (void)state;
-    const char *path = in_directory("a.png");
+    const char *path = in_scratch("a.png");
     struct masu_image image;
 
     static const uint8_t palette[] = { 255, 0, 0,   255, 0,   255, 0,   255,
                                        0,   0, 255, 255, 255, 255, 255, 128 };
-    write_raw(path, palette_png, sizeof palette_png);
+    write_bytes("a.png", palette_png, sizeof palette_png);
     assert_true(masu_image_load_png(path, &image, error, sizeof error));
     assert_memory_equal(image.rgba, palette, sizeof palette);
     masu_image_free(&image);
 
     static const uint8_t grey[] = { 0x12, 0x12, 0x12, 255, 0xFE, 0xFE, 0xFE, 255 };
-    write_raw(path, grey16_png, sizeof grey16_png);
+    write_bytes("a.png", grey16_png, sizeof grey16_png);
     assert_true(masu_image_load_png(path, &image, error, sizeof error));
     assert_int_equal(image.width, 2);
     assert_int_equal(image.height, 1);
@@ -203,7 +182,7 @@ static void other_kinds_of_png_arrive_as_8_bit_rgba(void **state)
 
     static const uint8_t filtered[] = { 10, 20, 30, 255, 40, 60, 80, 255,
                                         11, 22, 33, 255, 44, 66, 88, 255 };
-    write_raw(path, filtered_png, sizeof filtered_png);
+    write_bytes("a.png", filtered_png, sizeof filtered_png);
     assert_true(masu_image_load_png(path, &image, error, sizeof error));
     assert_memory_equal(image.rgba, filtered, sizeof filtered);
     masu_image_free(&image);
@@ -289,7 +268,7 @@ static void a_sealed_but_senseless_png_is_refused(void **state)
 static void a_picture_of_a_forbidden_size_is_not_written(void **state)
 {
     (void)state;
-    const char *path = in_directory("a.png");
+    const char *path = in_scratch("a.png");
     uint8_t pixel[4] = { 0 };
     float value = 0.0f;
     assert_false(masu_image_save_png(path, pixel, 0, 1, 0, error, sizeof error));
@@ -311,7 +290,7 @@ static void a_pfm_comes_back_bit_for_bit(void **state)
     (void)state;
     static const uint32_t special[] = { 0x7FC01234u, 0xFF800000u, 0x80000000u, 0x00000001u,
                                         0x3F800000u, 0x7F7FFFFFu };
-    const char *path = in_directory("a.pfm");
+    const char *path = in_scratch("a.pfm");
     for (uint32_t channels = 1; channels <= 3; channels += 2) {
         float values[5 * 4 * 3];
         for (uint32_t i = 0; i < 5 * 4 * channels; i++) {
@@ -336,7 +315,7 @@ static void a_pfm_has_the_documented_bytes(void **state)
     (void)state;
     static const uint8_t expected[] = "Pf\n1 2\n-1.0\n\x00\x00\x00\xC0\x00\x00\x80\x3F";
     static const float values[2] = { 1.0f, -2.0f }; /* top, bottom */
-    const char *path = in_directory("a.pfm");
+    const char *path = in_scratch("a.pfm");
     uint8_t *bytes;
     size_t count;
     assert_true(masu_image_save_pfm(path, values, 1, 2, 1, error, sizeof error));
@@ -351,8 +330,8 @@ static void a_big_endian_pfm_is_read(void **state)
     (void)state;
     static const uint8_t file[] = "PF 1 1 1.0 \x3F\x80\x00\x00\x40\x00\x00\x00\xC0\x40\x00\x00";
     struct masu_image image;
-    write_raw(in_directory("a.pfm"), file, sizeof file - 1);
-    assert_true(masu_image_load_pfm(in_directory("a.pfm"), &image, error, sizeof error));
+    write_bytes("a.pfm", file, sizeof file - 1);
+    assert_true(masu_image_load_pfm(in_scratch("a.pfm"), &image, error, sizeof error));
     assert_true(image.values[0] == 1.0f && image.values[1] == 2.0f && image.values[2] == -3.0f);
     masu_image_free(&image);
 }
@@ -378,10 +357,10 @@ static void a_damaged_pfm_is_refused(void **state)
         { "PF\n1 1\n-1.0\n.............", "needs 12 bytes of samples, has 13" },
         { "Pf\n2 1\n-1.0\n", "needs 8 bytes of samples, has 0" },
     };
-    const char *path = in_directory("a.pfm");
+    const char *path = in_scratch("a.pfm");
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct masu_image image;
-        write_raw(path, cases[i].text, strlen(cases[i].text));
+        write_bytes("a.pfm", cases[i].text, strlen(cases[i].text));
         int loaded = masu_image_load_pfm(path, &image, error, sizeof error);
         if (loaded || image.values) {
             fail_msg("case %zu was accepted", i);
@@ -396,33 +375,33 @@ static void a_missing_file_is_named(void **state)
 {
     (void)state;
     struct masu_image image;
-    const char *path = in_directory("a.png");
+    const char *path = in_scratch("a.png");
     assert_false(masu_image_load_png(path, &image, error, sizeof error));
     assert_error_mentions(path, "No such file");
     assert_false(masu_image_load_pfm(path, &image, error, sizeof error));
     assert_error_mentions(path, "No such file");
-    assert_false(masu_image_load_png(directory, &image, error, sizeof error));
-    assert_error_mentions(directory, "not a regular file");
+    assert_false(masu_image_load_png(scratch, &image, error, sizeof error));
+    assert_error_mentions(scratch, "not a regular file");
 }
 
 static void an_unwritable_place_is_named_and_left_alone(void **state)
 {
     (void)state;
     uint8_t pixel[4] = { 1, 2, 3, 4 };
-    const char *path = in_directory("nowhere/a.png");
+    const char *path = in_scratch("nowhere/a.png");
     assert_false(masu_image_save_png(path, pixel, 1, 1, 0, error, sizeof error));
     assert_error_mentions(path, "No such file");
-    assert_false(masu_image_save_png(directory, pixel, 1, 1, 0, error, sizeof error));
-    assert_error_mentions(directory, "directory");
+    assert_false(masu_image_save_png(scratch, pixel, 1, 1, 0, error, sizeof error));
+    assert_error_mentions(scratch, "directory");
     assert_int_equal(files_in_directory(), 0);
 }
 
 static void a_failed_write_keeps_the_old_file_and_no_other(void **state)
 {
     (void)state;
-    const char *path = in_directory("a.bin");
+    const char *path = in_scratch("a.bin");
     static const uint8_t large[100000];
-    write_raw(path, "old", 3);
+    write_bytes("a.bin", "old", 3);
 
     /* The limit makes the write stop half-way, as a full disk does. */
     struct rlimit before;
@@ -448,7 +427,7 @@ static void a_failed_write_keeps_the_old_file_and_no_other(void **state)
 static void a_write_replaces_the_file_whole(void **state)
 {
     (void)state;
-    const char *path = in_directory("a.bin");
+    const char *path = in_scratch("a.bin");
     mode_t mask = umask(0027);
     assert_true(masu_file_write(path, "a longer first text", 19, error, sizeof error));
     (void)umask(mask);
@@ -472,18 +451,18 @@ static void a_write_replaces_the_file_whole(void **state)
 static void a_link_is_followed_and_a_pipe_is_not_replaced(void **state)
 {
     (void)state;
-    const char *link = in_directory("link.png");
-    assert_true(masu_file_write(in_directory("b.png"), "1", 1, error, sizeof error));
+    const char *link = in_scratch("link.png");
+    assert_true(masu_file_write(in_scratch("b.png"), "1", 1, error, sizeof error));
     assert_int_equal(symlink("b.png", link), 0);
     assert_true(masu_file_write(link, "22", 2, error, sizeof error));
     struct stat info;
     assert_int_equal(lstat(link, &info), 0);
     assert_true(S_ISLNK(info.st_mode));
-    assert_int_equal(stat(in_directory("b.png"), &info), 0);
+    assert_int_equal(stat(in_scratch("b.png"), &info), 0);
     assert_int_equal(info.st_size, 2);
 
     /* A pipe stands for all that is not a regular file; think of a replaced /dev/null. */
-    const char *pipe = in_directory("pipe");
+    const char *pipe = in_scratch("pipe");
     assert_int_equal(mkfifo(pipe, 0600), 0);
     int reader = open(pipe, O_RDONLY | O_NONBLOCK);
     assert_true(reader >= 0);
@@ -498,16 +477,16 @@ static void a_link_is_followed_and_a_pipe_is_not_replaced(void **state)
 static void reading_respects_the_limit(void **state)
 {
     (void)state;
-    const char *path = in_directory("a.bin");
+    const char *path = in_scratch("a.bin");
     uint8_t *bytes;
     size_t count;
-    write_raw(path, "12345", 5);
+    write_bytes("a.bin", "12345", 5);
     assert_true(masu_file_read(path, 5, &bytes, &count, error, sizeof error));
     free(bytes);
     assert_false(masu_file_read(path, 4, &bytes, &count, error, sizeof error));
     assert_null(bytes);
     assert_error_mentions(path, "5 bytes, more than the limit of 4");
-    write_raw(path, "", 0);
+    write_bytes("a.bin", "", 0);
     assert_true(masu_file_read(path, 4, &bytes, &count, error, sizeof error));
     assert_int_equal(count, 0);
     free(bytes);
@@ -519,9 +498,9 @@ static void the_error_buffer_may_be_short_or_absent(void **state)
     struct masu_image image;
     char tiny[8];
     memset(tiny, 'x', sizeof tiny);
-    assert_false(masu_image_load_png(in_directory("a.png"), &image, tiny, 4));
+    assert_false(masu_image_load_png(in_scratch("a.png"), &image, tiny, 4));
     assert_memory_equal(tiny, "/tm\0xxxx", 8);
-    assert_false(masu_image_load_png(in_directory("a.png"), &image, NULL, 0));
+    assert_false(masu_image_load_png(in_scratch("a.png"), &image, NULL, 0));
     masu_image_free(&image);
 }
 

@@ -21,6 +21,7 @@
 #include "quality/ladder.h"
 #include "plan/plan.h"
 #include "support/desc.h"
+#include "support/files.h"
 #include "support/random.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -291,11 +292,10 @@ static void check_shared(const masu_desc *whole) {
 
 static void every_ladder_fits_every_baked_scene(void **state) {
     (void)state;
-    const char *build = getenv("BUILD");
     char pattern[512], error[1024];
     glob_t found;
     uint32_t scenes = 0, classes = 0;
-    snprintf(pattern, sizeof pattern, "%s/scenes/*.masu", build ? build : "build");
+    snprintf(pattern, sizeof pattern, "%s/scenes/*.masu", build_dir());
     assert_int_equal(glob(pattern, 0, NULL, &found), 0);
     for (size_t i = 0; i < found.gl_pathc; i++) {
         uint8_t *bytes;
@@ -379,7 +379,7 @@ enum { TEXT_ROOM = 32768 };
 static char text[TEXT_ROOM];
 
 /* A ladder.json as masu bench writes it. */
-static size_t write_text(const masu_rung *rungs, uint32_t count) {
+static size_t written(const masu_rung *rungs, uint32_t count) {
     size_t n = (size_t)snprintf(
         text, sizeof text,
         "{\"scene\": \"a.masu\", \"hash\": \"00\", \"driver\": \"D 1.0\", \"width\": 320, "
@@ -405,7 +405,7 @@ static size_t write_text(const masu_rung *rungs, uint32_t count) {
 static void check_round_trip(const masu_rung *rungs, uint32_t count) {
     static masu_ladder_file f;
     char error[1024] = "";
-    size_t n = write_text(rungs, count);
+    size_t n = written(rungs, count);
     if (!masu_ladder_parse("l.json", text, n, &f, error, sizeof error)) fail_msg("%s", error);
     assert_int_equal(f.count, count);
     for (uint32_t r = 0; r < count; r++) {
@@ -447,7 +447,7 @@ static void what_is_written_reads_back_knob_for_knob(void **state) {
     }
     masu_ladder_file f;
     char error[1024];
-    size_t bytes = write_text(rungs, 4);
+    size_t bytes = written(rungs, 4);
     assert_true(masu_ladder_parse("l.json", text, bytes, &f, error, sizeof error));
     masu_desc d = scene_desc(RASTER, 64, 48);
     d.rungs[6].scale = 0.5f, d.governor.costs[6] = 2.0f;
@@ -518,12 +518,12 @@ static void mistakes_are_named_in_one_line(void **state) {
         {"\"width\": 320", "\"width\": 0", "width: needed is a number from 1 to"},
         {"\"rungs\": [", "\"rungs\": 3, \"hash2\": [", "there is no such key"},
     };
-    write_text(rungs, 2);
+    written(rungs, 2);
     for (size_t i = 0; i < COUNT(rows); i++)
         expect_error(rows[i].find, rows[i].replace, rows[i].says);
-    write_text(rungs, 9);
+    written(rungs, 9);
     expect_error("s8", "s8", "rungs: needed is an array of 1 to 8, given are 9");
-    write_text(rungs, 0);
+    written(rungs, 0);
     expect_error("[]", "[]", "given are 0");
     static masu_ladder_file f;
     char error[1024] = "";
@@ -532,7 +532,7 @@ static void mistakes_are_named_in_one_line(void **state) {
     assert_false(masu_ladder_read("there/is/none.json", &f, error, sizeof error));
     assert_non_null(strstr(error, "there/is/none.json"));
     /* Texts end up in comments and constants of C. */
-    write_text(rungs, 1);
+    written(rungs, 1);
     char *at = strstr(text, "D 1.0");
     memcpy(at, "*/ ?\b", 5);
     assert_false(masu_ladder_parse("l.json", text, strlen(text), &f, error, sizeof error));
@@ -550,7 +550,7 @@ static void damaged_files_are_refused_or_good(void **state) {
     char error[1024];
     uint64_t random = 3;
     uint32_t accepted = 0;
-    size_t n = write_text(rungs, 2);
+    size_t n = written(rungs, 2);
     for (size_t i = 0; i < n; i++)
         assert_false(masu_ladder_parse("l.json", text, i, &f, error, sizeof error));
     for (uint32_t i = 0; i < 20000; i++) {

@@ -15,30 +15,24 @@
 
 #include "scene/punctual_light.h"
 #include "reference/lights.h"
+#include "support/random.h"
 
 #define PI 3.14159265358979323846
 
-static uint32_t random_state = 1;
-
-static double in(double low, double high) {
-    random_state = random_state * 1664525u + 1013904223u;
-    return low + (high - low) * (random_state >> 8) / (double)(1 << 24);
-}
-
-static double spread(double low, double high) { return exp(in(log(low), log(high))); }
+static uint64_t seed = 1;
 
 static masu_local_light_state random_light(int i) {
-    masu_local_light_state s = {.range = (float)spread(1e-6, 1e9),
-                                .radius = (float)spread(1e-6, 1e3),
+    masu_local_light_state s = {.range = (float)random_spread(&seed, 1e-6, 1e9),
+                                .radius = (float)random_spread(&seed, 1e-6, 1e3),
                                 .color = {1, 0.5f, 0},
                                 .spot = i % 3 != 0};
     for (int k = 0; k < 3; k++) {
-        s.position[k] = in(-1, 1) * spread(1e-3, 1e9);
-        s.direction[k] = (float)in(-1, 1);
+        s.position[k] = random_between(&seed, -1, 1) * random_spread(&seed, 1e-3, 1e9);
+        s.direction[k] = (float)random_between(&seed, -1, 1);
     }
     if (s.spot) {
-        s.outer = (float)(i % 5 ? in(0.01, PI) : spread(1e-6, 0.01));
-        s.inner = s.outer * (float)in(0, 1);
+        s.outer = (float)(i % 5 ? random_between(&seed, 0.01, PI) : random_spread(&seed, 1e-6, 0.01));
+        s.inner = s.outer * (float)random_between(&seed, 0, 1);
     }
     return s;
 }
@@ -58,7 +52,7 @@ static masu_ref_light reference_of(const masu_local_light_state *s) {
 
 /* A point that the light may reach: within its range, and mostly within its cone. */
 static void point_of(const masu_local_light_state *s, double out[3]) {
-    double d[3], length = 0, reach = (double)s->range * (random_state & 256 ? in(0, 1) : 0.99999);
+    double d[3], length = 0, reach = (double)s->range * (seed & 256 ? random_between(&seed, 0, 1) : 0.99999);
     double wide = s->spot ? 1.2 * tan(fmin((double)s->outer, 1.5)) : 3;
     for (int k = 0; k < 3; k++) {
         d[k] = s->spot ? (double)s->direction[k] : 0;
@@ -68,7 +62,7 @@ static void point_of(const masu_local_light_state *s, double out[3]) {
     double own = length;
     length = 0;
     for (int k = 0; k < 3; k++) {
-        d[k] = (own > 0 ? d[k] / own : 0) + wide * in(-1, 1);
+        d[k] = (own > 0 ? d[k] / own : 0) + wide * random_between(&seed, -1, 1);
         length += d[k] * d[k];
     }
     for (int k = 0; k < 3; k++) out[k] = s->position[k] + d[k] / sqrt(length) * reach;
@@ -111,7 +105,7 @@ static void a_bound_holds_all_that_is_reached(void **state) {
 static void make_camera(float clip[16], double right[3], double up[3], double forward[3],
                         double tan_x, double tan_y) {
     double length;
-    for (int k = 0; k < 3; k++) forward[k] = in(-1, 1), right[k] = in(-1, 1);
+    for (int k = 0; k < 3; k++) forward[k] = random_between(&seed, -1, 1), right[k] = random_between(&seed, -1, 1);
     length = sqrt(forward[0] * forward[0] + forward[1] * forward[1] + forward[2] * forward[2]);
     for (int k = 0; k < 3; k++) forward[k] = (double)(float)(forward[k] / length);
     up[0] = right[1] * forward[2] - right[2] * forward[1];
@@ -137,7 +131,7 @@ static void what_is_left_out_lights_nothing_in_the_picture(void **state) {
     for (int i = 0; i < 4000; i++) {
         float clip[16];
         double right[3], up[3], forward[3];
-        double tan_y = i % 4 ? in(0.1, 2) : spread(5e-4, 48), tan_x = tan_y * spread(0.1, 10);
+        double tan_y = i % 4 ? random_between(&seed, 0.1, 2) : random_spread(&seed, 5e-4, 48), tan_x = tan_y * random_spread(&seed, 0.1, 10);
         make_camera(clip, right, up, forward, tan_x, tan_y);
         masu_local_light_state s = random_light(i);
         masu_ref_light ref = reference_of(&s);

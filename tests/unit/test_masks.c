@@ -28,22 +28,18 @@ static float levels[MIPS][4 * TEXELS];
 static uint8_t alphas[WAYS][MIPS][TEXELS];
 static unsigned char blocks[TEXELS];
 
-static double unit(uint64_t *seed) {
-    return (double)support_random_in(seed, 0, 1 << 24) / (1 << 24);
-}
-
 static void draw(int picture) {
     static uint8_t fine[FINE * FINE];
     static const int counts[PICTURES] = {33, 60, 60, 1, 220};
     uint64_t seed = 7 + (uint64_t)picture;
     memset(fine, 0, sizeof fine);
     for (int n = 0; n < counts[picture]; n++) {
-        double x = unit(&seed) * FINE, y = unit(&seed) * FINE, turn = unit(&seed) * 6.2832;
+        double x = random_unit(&seed) * FINE, y = random_unit(&seed) * FINE, turn = random_unit(&seed) * 6.2832;
         double a = 90, b = 2.2; /* half axes of an ellipse */
-        if (picture == 0) a = 60 * (0.6 + 0.6 * unit(&seed)), b = 0.4 * a;
-        if (picture == 1) a = 200 * (0.5 + unit(&seed)), b = 5 + 5 * unit(&seed), turn *= 0.1;
+        if (picture == 0) a = 60 * (0.6 + 0.6 * random_unit(&seed)), b = 0.4 * a;
+        if (picture == 1) a = 200 * (0.5 + random_unit(&seed)), b = 5 + 5 * random_unit(&seed), turn *= 0.1;
         if (picture == 3) a = b = 0.36 * FINE, x = y = FINE / 2;
-        if (picture == 4) a = b = 3 + 6 * unit(&seed);
+        if (picture == 4) a = b = 3 + 6 * random_unit(&seed);
         int reach = (int)a + 1;
         for (int j = -reach; j <= reach; j++) {
             for (int i = -reach; i <= reach; i++) {
@@ -144,7 +140,7 @@ static double seen(int way, double lod) {
     double f = lod - m;
     uint64_t seed = 99;
     for (uint32_t i = 0; i < count; i++) {
-        double u = unit(&seed), v = unit(&seed), a = sample(alphas[way][m], SIDE >> m, u, v);
+        double u = random_unit(&seed), v = random_unit(&seed), a = sample(alphas[way][m], SIDE >> m, u, v);
         if (f > 0) a += f * (sample(alphas[way][m + 1], SIDE >> (m + 1), u, v) - a);
         there += a >= CUTOFF;
     }
@@ -216,7 +212,7 @@ static void compression_moves_no_texel_across_the_cut_off(void **state) {
     uint32_t moved = 0, plain = 0;
     for (int kind = 0; kind < 3; kind++) { /* noise; nearly the cut-off; nearly there or not */
         for (uint32_t i = 0; i < TEXELS; i++) {
-            float a = (float)unit(&seed);
+            float a = (float)random_unit(&seed);
             if (kind == 1) a = (124.0f + 8.0f * a) / 255.0f;
             if (kind == 2) a = a < 0.5f ? 0.1f * a : 1 - 0.1f * a;
             levels[0][4 * i + 3] = a;

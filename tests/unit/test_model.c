@@ -13,6 +13,7 @@
 #include "model/write.h"
 #include "model/spirv_cost.h"
 #include "model/spirv_tally.h"
+#include "support/files.h"
 #include "support/spirv.h"
 
 #include "bilinear_comp.spv.h"
@@ -26,23 +27,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* ---- Costs ----------------------------------------------------------------------------------- */
 
 static masu_spirv_cost cost_of_source(const char *body) {
-    char path[] = "/tmp/masu_model_XXXXXX";
+    char text[1024];
     spirv_module m;
-    int handle = mkstemp(path);
-    FILE *f = handle >= 0 ? fdopen(handle, "w") : NULL;
-    assert_non_null(f);
-    fprintf(f,
-            "#version 450\nlayout(set = 0, binding = 0) buffer B { vec4 a, b, c; mat3 m; uvec4 u; "
-            "ivec4 i; };\nvoid main() { %s }\n",
-            body);
-    assert_int_equal(fclose(f), 0);
-    int good = spirv_compile(path, "-S comp", &m);
-    remove(path);
+    snprintf(text, sizeof text,
+             "#version 450\nlayout(set = 0, binding = 0) buffer B { vec4 a, b, c; mat3 m; uvec4 u; "
+             "ivec4 i; };\nvoid main() { %s }\n",
+             body);
+    int good = spirv_compile(write_text("cost.comp", text), "", &m);
     if (!good) fail_msg("does not compile: %s", body);
     masu_spirv_cost cost = masu_spirv_cost_straight(&m);
     spirv_free(&m);
@@ -118,21 +113,13 @@ static bool counts_of(const masu_tally *t, masu_tally_kind kind, uint32_t set, u
 }
 
 static masu_tally tally(const uint32_t *words, size_t bytes) {
-    char path[] = "/tmp/masu_model_XXXXXX", command[200];
     masu_tally t;
     spirv_module m;
     assert_true(masu_tally_make(words, bytes / 4, 3, 0, &t));
     assert_true(spirv_from_words(t.words, t.word_count, &m));
     spirv_free(&m);
-    int handle = mkstemp(path);
-    FILE *f = handle >= 0 ? fdopen(handle, "wb") : NULL;
-    assert_non_null(f);
-    assert_int_equal(fwrite(t.words, 4, t.word_count, f), t.word_count);
-    assert_int_equal(fclose(f), 0);
-    snprintf(command, sizeof command, "spirv-val --target-env vulkan1.1 %s", path);
-    int code = system(command);
-    remove(path);
-    assert_int_equal(code, 0);
+    const char *path = write_bytes("counted.spv", t.words, (size_t)t.word_count * 4);
+    assert_int_equal(shell("spirv-val --target-env vulkan1.1 %s", path), 0);
     free(t.words);
     return t;
 }
@@ -268,5 +255,5 @@ int main(void) {
         cmocka_unit_test(test_costs),         cmocka_unit_test(test_easu),
         cmocka_unit_test(test_counters),      cmocka_unit_test(test_sheet),
         cmocka_unit_test(test_says_computed)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

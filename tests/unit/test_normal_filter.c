@@ -3,6 +3,7 @@
  * roughness that tools/bake/texture/texture.c gives the mip. */
 #include "bake/texture/texel.h"
 #include "reference/brdf.h"
+#include "reference/vec.h"
 #include "split_sum.h"
 
 #include <math.h>
@@ -38,15 +39,6 @@ static const relief reliefs[] = {
 };
 enum { RELIEFS = sizeof reliefs / sizeof *reliefs };
 
-static void unit(double v[3]) {
-    double size = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; k++) v[k] /= size;
-}
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void make(const relief *r, texel out[TEXELS]) {
     const double turn = 6.283185307179586 / SIDE;
     for (int i = 0; i < TEXELS; i++) {
@@ -55,7 +47,7 @@ static void make(const relief *r, texel out[TEXELS]) {
         out[i].n[0] = r->height * (cos(a) + (r->waves_y ? 0.7 * sin(b) : 0));
         out[i].n[1] = r->height * (r->waves_y ? 0.8 * sin(a + 1) - 0.5 * cos(b) : 0);
         out[i].n[2] = 1;
-        unit(out[i].n);
+        unit3(out[i].n);
         out[i].roughness = (i % SIDE / 2 + i / SIDE / 2) % 2 ? r->rough : r->smooth;
     }
 }
@@ -64,12 +56,12 @@ static void make(const relief *r, texel out[TEXELS]) {
 static double shade(const double n[3], double roughness, const double v[3], const double l[3]) {
     brdf_surface s = {{0.5, 0.5, 0.5}, roughness, 1, 0.5, 0, 0};
     double x[3] = {n[2], 0, -n[0]}, y[3], out[3];
-    unit(x);
+    unit3(x);
     y[0] = n[1] * x[2] - n[2] * x[1];
     y[1] = n[2] * x[0] - n[0] * x[2];
     y[2] = n[0] * x[1] - n[1] * x[0];
-    const double to_v[3] = {dot(x, v), dot(y, v), dot(n, v)};
-    const double to_l[3] = {dot(x, l), dot(y, l), dot(n, l)};
+    const double to_v[3] = {dot3(x, v), dot3(y, v), dot3(n, v)};
+    const double to_l[3] = {dot3(x, l), dot3(y, l), dot3(n, l)};
     brdf_eval(masu_split_sum, &s, to_v, to_l, out);
     return out[0];
 }
@@ -97,8 +89,8 @@ static void compare(const texel *t, double out[WAYS]) {
         roughness += t[i].roughness / TEXELS;
         alpha2 += pow(t[i].roughness, 4) / TEXELS;
     }
-    float length = (float)sqrt(dot(mean, mean));
-    unit(mean);
+    float length = (float)sqrt(dot3(mean, mean));
+    unit3(mean);
     const double rough[WAYS] = {roughness, (double)masu_texel_rougher((float)roughness, length),
                                 (double)masu_texel_rougher((float)pow(alpha2, 0.25), length)};
     for (int view = 0; view < 3; view++) {

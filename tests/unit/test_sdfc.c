@@ -21,6 +21,7 @@
 
 #include "sdfc/sdfc.h"
 #include "sdfc/internal.h"
+#include "support/files.h"
 #include "support/random.h"
 
 #define FEATURES "tests/unit/features.sdf"
@@ -39,42 +40,7 @@ typedef struct scene {
     void (*material)(int, double *);
 } scene;
 
-static char folder[] = "/tmp/masu-test-sdfc-XXXXXX";
 static scene features;
-
-static char *path_of(const char *name) {
-    static char path[2][128];
-    static int turn;
-    turn = !turn;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-    return path[turn];
-}
-
-static void write_text(const char *name, const char *text) {
-    FILE *file = fopen(path_of(name), "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-}
-
-static char *read_text(const char *path, size_t *bytes) {
-    FILE *file = fopen(path, "rb");
-    char *text = malloc(MASU_SDFC_SOURCE_MAX);
-    assert_non_null(file);
-    assert_non_null(text);
-    *bytes = fread(text, 1, MASU_SDFC_SOURCE_MAX, file);
-    fclose(file);
-    return text;
-}
-
-static int run(const char *format, ...) {
-    char command[1024];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(command, sizeof command, format, arguments);
-    va_end(arguments);
-    return system(command);
-}
 
 static void assert_compiles(const char *text, size_t bytes, masu_sdfc_result *result) {
     char error[2048];
@@ -97,18 +63,16 @@ static void *symbol(void *library, const char *name) {
 
 static int load_features(void **state) {
     size_t bytes;
-    (void)state;
-    assert_non_null(mkdtemp(folder));
-    char *text = read_text(FEATURES, &bytes);
+    if (make_scratch(state)) return 1;
+    char *text = read_file(FEATURES, &bytes);
     assert_compiles(text, bytes, &features.result);
     free(text);
     write_text("truth.c", features.result.c);
-    const char *compiler = getenv("CC");
     assert_int_equal(
-        run("%s -std=c11 -Wall -Wextra -Werror -Wno-unused-function -O1 -shared -fPIC %s -o %s -lm",
-            compiler && *compiler ? compiler : "cc", path_of("truth.c"), path_of("truth.so")),
+        shell("%s -std=c11 -Wall -Wextra -Werror -Wno-unused-function -O1 -shared -fPIC %s -o %s -lm",
+            c_compiler(), in_scratch("truth.c"), in_scratch("truth.so")),
         0);
-    features.library = dlopen(path_of("truth.so"), RTLD_NOW);
+    features.library = dlopen(in_scratch("truth.so"), RTLD_NOW);
     assert_non_null(features.library);
     LOAD(&features, distance, "masu_truth_distance");
     LOAD(&features, step, "masu_truth_step");
@@ -122,7 +86,7 @@ static int unload_features(void **state) {
     (void)state;
     masu_sdfc_release(&features.result);
     if (features.library) dlclose(features.library);
-    return run("rm -rf %s", folder);
+    return remove_scratch(state);
 }
 
 static int part_named(const char *name) {
@@ -351,14 +315,10 @@ static const struct {
                 {"menger", f_menger, SIGN},
                 {"mixed", f_mixed, SIGN}};
 
-static double between(uint64_t *seed, double low, double high) {
-    return low + (high - low) * (double)(support_random(seed) >> 11) / 9007199254740992.0;
-}
-
 static void near_part(uint64_t *seed, int part, double p[3]) {
     const masu_sdfc_part *at = &features.result.parts[part];
     if (!(at->radius >= 0)) return;
-    for (int k = 0; k < 3; k++) p[k] = at->center[k] + between(seed, -1, 1) * at->radius;
+    for (int k = 0; k < 3; k++) p[k] = at->center[k] + random_between(seed, -1, 1) * at->radius;
 }
 
 static void values_are_those_of_the_formulas(void **state) {
@@ -369,7 +329,7 @@ static void values_are_those_of_the_formulas(void **state) {
         int part = part_named(formulas[i].part), solid = 0;
         for (int n = 0; n < POINTS; n++) {
             double reach = n % 2 ? 2 : 12, p[3];
-            for (int k = 0; k < 3; k++) p[k] = between(&seed, -reach, reach);
+            for (int k = 0; k < 3; k++) p[k] = random_between(&seed, -reach, reach);
             if (n % 4 == 1) near_part(&seed, part, p);
             double f = features.part_distance(params, 0, p, part);
             double g = formulas[i].f(p[0], p[1], p[2]);
@@ -402,10 +362,10 @@ static void constants_and_bounds_hold_for_the_C(void **state) {
         const masu_sdfc_part *part = &features.result.parts[i];
         bool estimate = !strcmp(part->name, "mandelbulb");
         for (int n = 0; n < POINTS; n++) {
-            double p[3], q[3], params[2] = {between(&seed, 0.2, 1), between(&seed, -1, 1)};
-            double time = between(&seed, 0, 10), by = pow(10, between(&seed, -5, 0.5));
-            for (int k = 0; k < 3; k++) p[k] = between(&seed, -6, 6);
-            for (int k = 0; k < 3; k++) q[k] = p[k] + by * between(&seed, -1, 1);
+            double p[3], q[3], params[2] = {random_between(&seed, 0.2, 1), random_between(&seed, -1, 1)};
+            double time = random_between(&seed, 0, 10), by = pow(10, random_between(&seed, -5, 0.5));
+            for (int k = 0; k < 3; k++) p[k] = random_between(&seed, -6, 6);
+            for (int k = 0; k < 3; k++) q[k] = p[k] + by * random_between(&seed, -1, 1);
             double f = features.part_distance(params, time, p, (int)i);
             double g = features.part_distance(params, time, q, (int)i);
             double most = part->lipschitz * apart(p, q) * (1 + 1e-9) + 1e-9;
@@ -429,7 +389,7 @@ static void the_scene_is_the_union_of_its_parts(void **state) {
     for (int n = 0; n < 200; n++) {
         double p[3], least = SDFC_INFINITY, step = SDFC_INFINITY, out[8];
         int nearest = -1;
-        for (int k = 0; k < 3; k++) p[k] = between(&seed, -8, 8);
+        for (int k = 0; k < 3; k++) p[k] = random_between(&seed, -8, 8);
         for (uint32_t i = 0; i < features.result.part_count; i++) {
             double f = features.part_distance(params, 2, p, (int)i);
             least = fmin(least, f);
@@ -452,10 +412,10 @@ static void assert_glsl_compiles(const masu_sdfc_result *result) {
     static const char *const options[] = {"", "-DMASU_SDF_ASCENDING"};
     write_text("sdf_scene.glsl", result->glsl);
     for (int i = 0; i < 2; i++) {
-        int code = run("glslangValidator --quiet -V %s --target-env vulkan1.1 -Ishaders -I%s "
+        int code = shell("glslangValidator --quiet -V %s --target-env vulkan1.1 -Ishaders -I%s "
                        "-o %s/x.spv tests/unit/sdfc_wrap.comp && "
                        "spirv-val --target-env vulkan1.1 %s/x.spv",
-                       options[i], folder, folder, folder);
+                       options[i], scratch, scratch, scratch);
         assert_int_equal(code, 0);
     }
 }
@@ -591,7 +551,7 @@ static void the_box_of_the_parts_follows_the_parameters(void **state) {
 static void the_same_text_gives_the_same_result(void **state) {
     (void)state;
     size_t bytes;
-    char *text = read_text(FEATURES, &bytes);
+    char *text = read_file(FEATURES, &bytes);
     masu_sdfc_result again;
     assert_compiles(text, bytes, &again);
     assert_string_equal(again.glsl, features.result.glsl);

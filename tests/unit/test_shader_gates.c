@@ -23,27 +23,11 @@
 
 #include "image.h"
 #include "scene/scene.h"
+#include "support/files.h"
 #include "support/loops.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 #define SETS_MOST 3u
-
-static char directory[] = "/tmp/masu_gates_XXXXXX";
-
-static const char *build_folder(void) {
-    const char *build = getenv("BUILD");
-    return build ? build : "build";
-}
-
-static int make_directory(void **state) {
-    (void)state;
-    return mkdtemp(directory) ? 0 : -1;
-}
-
-static int remove_directory(void **state) {
-    (void)state;
-    return rmdir(directory);
-}
 
 /* Paths that fit a pattern below $BUILD, or below the root of the tree; at least one. */
 static glob_t find(const char *root, const char *pattern) {
@@ -82,17 +66,8 @@ static uint32_t assert_passes(const spirv_module *m, const char *name) {
     "layout(set = 0, binding = 0) buffer B { int n; uint u; float x; };\n" declarations            \
     "void main() {\n" body "}\n"
 
-static void write_file(const char *name, const char *text, char path[128]) {
-    (void)snprintf(path, 128, "%s/%s", directory, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
 static void compile(const char *text, spirv_module *m) {
-    char path[128];
-    write_file("test.comp", text, path);
+    const char *path = write_text("test.comp", text);
     if (!spirv_compile(path, "", m)) fail_msg("does not compile: %s", text);
     assert_int_equal(remove(path), 0);
 }
@@ -246,7 +221,7 @@ static void every_shader_of_the_library_passes(void **state) {
         const char *name = sources.gl_pathv[i] + strlen("shaders/");
         size_t stem = strcspn(name, ".");
         char path[512];
-        (void)snprintf(path, sizeof path, "%s/gen/%.*s_%s.spv", build_folder(), (int)stem, name,
+        (void)snprintf(path, sizeof path, "%s/gen/%.*s_%s.spv", build_dir(), (int)stem, name,
                        name + stem + 1);
         spirv_module m;
         if (needs_a_field(name)) continue; /* below */
@@ -261,7 +236,7 @@ static void every_shader_of_the_library_passes(void **state) {
     for (size_t i = 0; i < COUNT(second); i++) {
         spirv_module m;
         char path[512];
-        (void)snprintf(path, sizeof path, "%s/gen/%s.spv", build_folder(), second[i]);
+        (void)snprintf(path, sizeof path, "%s/gen/%s.spv", build_dir(), second[i]);
         if (!spirv_from_file(path, &m)) fail_msg("%s is missing or no SPIR-V", path);
         loops += assert_passes(&m, second[i]);
         spirv_free(&m);
@@ -273,16 +248,11 @@ static void every_shader_of_the_library_passes(void **state) {
 
 /* sdf_scene.glsl as masu-bake writes it: a number for each parameter, the field, and what masu-sdfc
  * would have added. Which number does not matter here. */
-static void write_field(const char *field, char path[128]) {
+static const char *write_field(const char *field) {
     static char text[1 << 16];
     char name[128];
     size_t at = 0, length;
-    FILE *file = fopen(field, "r");
-    assert_non_null(file);
-    static char source[1 << 20];
-    length = fread(source, 1, sizeof source - 1, file);
-    assert_int_equal(fclose(file), 0);
-    source[length] = '\0';
+    char *source = read_file(field, NULL);
     for (const char *p = source; (p = strstr(p, "MASU_PARAM_")); p += length) {
         length = strspn(p, "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
         (void)snprintf(name, sizeof name, "%.*s", (int)length, p);
@@ -290,22 +260,22 @@ static void write_field(const char *field, char path[128]) {
                                name, name);
         assert_true(at < sizeof text);
     }
+    free(source);
     (void)snprintf(text + at, sizeof text - at,
                    "#include \"%s\"\n"
                    "#include \"sdf/hand_written.glsl\"\n",
                    field);
-    write_file("sdf_scene.glsl", text, path);
+    return write_text("sdf_scene.glsl", text);
 }
 
 /* With sdf_scene.glsl in the test's directory. Returns the loops. */
 static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
     uint32_t loops = 0;
-    char chosen[128];
-    write_file("sdf_options.glsl",
+    const char *chosen =
+        write_text("sdf_options.glsl",
                "#define MASU_SHADOWS 1\n#define MASU_AMBIENT_OCCLUSION 1\n"
                "#define MASU_SUN_TANGENT 0.01\n#define MASU_SHADOW_DISTANCE 100.0\n"
-               "#define MASU_AO_RADIUS 1.0\n#define MASU_AO_STRENGTH 1.0\n",
-               chosen);
+               "#define MASU_AO_RADIUS 1.0\n#define MASU_AO_STRENGTH 1.0\n");
     for (size_t i = 0; i < COUNT(scene_shaders); i++) {
         if (scene_shaders[i].dynamic && !dynamic) continue;
         for (int raster = 0; raster < scene_shaders[i].sides; raster++) {
@@ -315,7 +285,7 @@ static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
             (void)snprintf(name, sizeof name, "%s %s with %s", scene_shaders[i].source,
                            scene_shaders[i].define, field);
             (void)snprintf(options, sizeof options, "-Ishaders -I. -I%s -DMASU_HAS_RASTER=%d %s",
-                           directory, raster, scene_shaders[i].define);
+                           scratch, raster, scene_shaders[i].define);
             if (!spirv_compile(path, options, &m)) fail_msg("%s does not compile", name);
             uint32_t found = assert_passes(&m, name);
             if (found < scene_shaders[i].loops) fail_msg("%s: %u loops only", name, found);
@@ -332,8 +302,7 @@ static void scene_shaders_pass_with_every_field_of_the_scenes(void **state) {
     glob_t fields = find("scenes", "*.glsl");
     uint32_t loops = 0;
     for (size_t i = 0; i < fields.gl_pathc; i++) {
-        char wrapper[128];
-        write_field(fields.gl_pathv[i], wrapper);
+        const char *wrapper = write_field(fields.gl_pathv[i]);
         loops += assert_scene_shaders_pass(fields.gl_pathv[i], 0);
         assert_int_equal(remove(wrapper), 0);
     }
@@ -344,14 +313,13 @@ static void scene_shaders_pass_with_every_field_of_the_scenes(void **state) {
 /* Every feature of the language, slots that change among them. */
 static void scene_shaders_pass_with_what_masu_sdfc_writes(void **state) {
     (void)state;
-    char command[512], wrapper[128];
-    (void)snprintf(wrapper, sizeof wrapper, "%s/sdf_scene.glsl", directory);
     uint32_t loops = 0;
     for (int anchored = 0; anchored < 2; anchored++) {
-        (void)snprintf(command, sizeof command,
-                       "%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 tests/unit/features.sdf %s",
-                       build_folder(), wrapper, anchored ? "--anchored" : "");
-        assert_int_equal(system(command), 0);
+        const char *wrapper = in_scratch("sdf_scene.glsl");
+        assert_int_equal(
+            shell("%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 tests/unit/features.sdf %s",
+                  build_dir(), wrapper, anchored ? "--anchored" : ""),
+            0);
         loops += assert_scene_shaders_pass("features.sdf", 1);
         assert_int_equal(remove(wrapper), 0);
     }
@@ -360,13 +328,13 @@ static void scene_shaders_pass_with_what_masu_sdfc_writes(void **state) {
 
 /* Words of march.comp with the field of a .sdf file, and its loops. */
 static size_t march_words(const char *sdf, uint32_t *loops) {
-    char command[512], options[256], wrapper[128];
+    char options[256];
+    const char *wrapper = in_scratch("sdf_scene.glsl");
     spirv_module m;
-    (void)snprintf(wrapper, sizeof wrapper, "%s/sdf_scene.glsl", directory);
-    (void)snprintf(command, sizeof command, "%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 %s",
-                   build_folder(), wrapper, sdf);
-    assert_int_equal(system(command), 0);
-    (void)snprintf(options, sizeof options, "-Ishaders -I%s -DMASU_HAS_RASTER=0", directory);
+    assert_int_equal(shell("%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 %s", build_dir(), wrapper,
+                           sdf),
+                     0);
+    (void)snprintf(options, sizeof options, "-Ishaders -I%s -DMASU_HAS_RASTER=0", scratch);
     assert_true(spirv_compile("shaders/march.comp", options, &m));
     size_t words = m.word_count;
     *loops = assert_passes(&m, sdf);
@@ -377,11 +345,11 @@ static size_t march_words(const char *sdf, uint32_t *loops) {
 
 static void a_march_has_the_code_that_its_scene_needs(void **state) {
     (void)state;
-    char one[128], two[128];
-    write_file("one.sdf", "part a = sphere(1);\n", one);
-    write_file("two.sdf", "part a = sphere(1);\npart b = box((1, 2, 3));\n", two);
+    write_text("one.sdf", "part a = sphere(1);\n");
+    write_text("two.sdf", "part a = sphere(1);\npart b = box((1, 2, 3));\n");
     uint32_t loops[4];
-    size_t single = march_words(one, &loops[0]), pair = march_words(two, &loops[1]);
+    size_t single = march_words(in_scratch("one.sdf"), &loops[0]);
+    size_t pair = march_words(in_scratch("two.sdf"), &loops[1]);
     size_t parts = march_words("tests/scenes/parts300.sdf", &loops[2]);
     size_t city = march_words("scenes/city.sdf", &loops[3]);
     printf("march.comp: %zu words with a sphere, %zu with a box too, %zu with 300 parts, %zu with "
@@ -391,13 +359,13 @@ static void a_march_has_the_code_that_its_scene_needs(void **state) {
     /* None over parts: those of march.comp itself. */
     assert_int_equal(loops[0], loops[1]);
     assert_true(loops[2] > loops[0]);
-    assert_int_equal(remove(one), 0);
-    assert_int_equal(remove(two), 0);
+    assert_int_equal(remove(in_scratch("one.sdf")), 0);
+    assert_int_equal(remove(in_scratch("two.sdf")), 0);
 }
 
 static void the_code_in_every_baked_scene_passes(void **state) {
     (void)state;
-    glob_t scenes = find(build_folder(), "scenes/*.masu");
+    glob_t scenes = find(build_dir(), "scenes/*.masu");
     uint32_t loops = 0, modules = 0;
     for (size_t i = 0; i < scenes.gl_pathc; i++) {
         uint8_t *bytes;
@@ -449,5 +417,5 @@ int main(void) {
         cmocka_unit_test(a_march_has_the_code_that_its_scene_needs),
         cmocka_unit_test(the_code_in_every_baked_scene_passes),
     };
-    return cmocka_run_group_tests_name("shader_gates", tests, make_directory, remove_directory);
+    return cmocka_run_group_tests_name("shader_gates", tests, make_scratch, remove_empty_scratch);
 }

@@ -15,20 +15,13 @@
 #include "support/desc.h"
 #include "support/random.h"
 #include "support/dry_renderer.h"
+#include "reference/vec.h"
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double random_in(uint64_t *r, double low, double high) {
-    return low + (high - low) * (double)support_random_in(r, 0, 1u << 30) / (double)(1u << 30);
-}
-
-static void random_unit(uint64_t *r, double out[3]) {
+static void random_direction(uint64_t *r, double out[3]) {
     double length = 0;
     while (!(length > 0.01 && length < 1)) {
-        for (int i = 0; i < 3; i++) out[i] = random_in(r, -1, 1);
-        length = dot(out, out);
+        for (int i = 0; i < 3; i++) out[i] = random_between(r, -1, 1);
+        length = dot3(out, out);
     }
     for (int i = 0; i < 3; i++) out[i] /= sqrt(length);
 }
@@ -36,14 +29,14 @@ static void random_unit(uint64_t *r, double out[3]) {
 static masu_shadow_view random_view(uint64_t *r, double far) {
     masu_shadow_view v;
     memset(&v, 0, sizeof v);
-    random_unit(r, v.forward);
-    random_unit(r, v.sun);
-    v.tan2 = pow(random_in(r, 0.05, 3), 2);
-    v.near_distance = random_in(r, 0.01, 1);
+    random_direction(r, v.forward);
+    random_direction(r, v.sun);
+    v.tan2 = pow(random_between(r, 0.05, 3), 2);
+    v.near_distance = random_between(r, 0.01, 1);
     for (int i = 0; i < 3; i++) {
-        v.eye[i] = random_in(r, -far, far);
-        v.casters[0][i] = v.eye[i] - random_in(r, 0, 500);
-        v.casters[1][i] = v.eye[i] + random_in(r, 0, 500);
+        v.eye[i] = random_between(r, -far, far);
+        v.casters[0][i] = v.eye[i] - random_between(r, 0, 500);
+        v.casters[1][i] = v.eye[i] + random_between(r, 0, 500);
     }
     return v;
 }
@@ -56,11 +49,11 @@ static void axes_are_orthonormal_for_any_sun(void **state) {
     uint64_t r = 1;
     for (int i = 0; i < 1000; i++) {
         double sun[3], axis[3][3];
-        random_unit(&r, sun);
+        random_direction(&r, sun);
         if (i < 5) memcpy(sun, suns[i], sizeof sun);
         masu_shadow_axes(sun, axis);
         for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++) assert_true(fabs(dot(axis[a], axis[b]) - (a == b)) < 1e-8);
+            for (int b = 0; b < 3; b++) assert_true(fabs(dot3(axis[a], axis[b]) - (a == b)) < 1e-8);
         assert_memory_equal(axis[2], sun, sizeof sun);
     }
 }
@@ -69,8 +62,8 @@ static void splits_rise_and_end_at_the_distance(void **state) {
     (void)state;
     uint64_t r = 2;
     for (int i = 0; i < 1000; i++) {
-        double near_distance = random_in(&r, 1e-6, 10), distance = random_in(&r, 1e-3, 1000);
-        double lambda = random_in(&r, 0, 1), last = 0;
+        double near_distance = random_between(&r, 1e-6, 10), distance = random_between(&r, 1e-3, 1000);
+        double lambda = random_between(&r, 0, 1), last = 0;
         uint32_t n = (uint32_t)support_random_in(&r, 1, 4);
         for (uint32_t k = 0; k < n; k++) {
             double split = masu_shadow_split(near_distance, distance, lambda, k, n);
@@ -91,7 +84,7 @@ static void each_cascade_holds_the_view_up_to_its_depth(void **state) {
     uint64_t r = 3;
     for (int i = 0; i < 2000; i++) {
         masu_shadow_view v = random_view(&r, i % 2 ? 10 : 1e7);
-        double depth = random_in(&r, 0.5, 500), tangent = sqrt(v.tan2), right[3], up[3];
+        double depth = random_between(&r, 0.5, 500), tangent = sqrt(v.tan2), right[3], up[3];
         uint32_t size = (uint32_t)support_random_in(&r, 16, 4096);
         masu_cascade c = masu_cascade_fit(&v, depth, i % 3 ? 0 : 0.1, size);
         double axis[3][3];
@@ -106,15 +99,15 @@ static void each_cascade_holds_the_view_up_to_its_depth(void **state) {
                     p[j] += depth * (v.forward[j] + tangent * (right[j] * cos(a) + up[j] * sin(a)));
             }
             double most = 1 - 3.0 / size + 1e-7;
-            assert_true(fabs(dot(c.axis[0], p)) <= c.half * most);
-            assert_true(fabs(dot(c.axis[1], p)) <= c.half * most);
-            assert_true(dot(c.axis[2], p) >= -c.behind && dot(c.axis[2], p) <= c.ahead);
+            assert_true(fabs(dot3(c.axis[0], p)) <= c.half * most);
+            assert_true(fabs(dot3(c.axis[1], p)) <= c.half * most);
+            assert_true(dot3(c.axis[2], p) >= -c.behind && dot3(c.axis[2], p) <= c.ahead);
         }
         /* Towards the sun it reaches to the last of the casters. */
         for (int k = 0; k < 8; k++) {
             double p[3];
             for (int j = 0; j < 3; j++) p[j] = v.casters[k >> j & 1][j] - c.center[j];
-            assert_true(dot(c.axis[2], p) <= c.ahead * (1 + 1e-9));
+            assert_true(dot3(c.axis[2], p) <= c.ahead * (1 + 1e-9));
         }
     }
 }
@@ -144,12 +137,12 @@ static void centres_lie_on_a_grid_of_texels(void **state) {
         uint32_t same = 0;
         for (int k = 0; k < 50; k++) {
             masu_shadow_view next = v;
-            for (int j = 0; j < 3; j++) next.eye[j] += random_in(&r, -0.02, 0.02) * texel;
+            for (int j = 0; j < 3; j++) next.eye[j] += random_between(&r, -0.02, 0.02) * texel;
             masu_cascade c = masu_cascade_fit(&next, 40, 0, 512);
             double d[3];
             for (int j = 0; j < 3; j++) d[j] = c.center[j] - before.center[j];
             for (int a = 0; a < 2; a++) {
-                double step = dot(c.axis[a], d) / texel;
+                double step = dot3(c.axis[a], d) / texel;
                 assert_true(fabs(step - floor(step + 0.5)) < 1e-4 && fabs(step) < 1.5);
             }
             same += !memcmp(c.center, before.center, sizeof c.center);
@@ -165,13 +158,13 @@ static void what_a_cascade_still_holds_is_told(void **state) {
     masu_cascade drawn = masu_cascade_fit(&v, 30, 0.1, 256);
     for (int i = 0; i < 500; i++) {
         masu_shadow_view next = v;
-        double by[3], far = random_in(&r, 0, 0.4) * drawn.radius;
-        random_unit(&r, by);
+        double by[3], far = random_between(&r, 0, 0.4) * drawn.radius;
+        random_direction(&r, by);
         for (int j = 0; j < 3; j++) next.eye[j] += by[j] * far;
         masu_cascade wanted = masu_cascade_fit(&next, 30, 0.1, 256);
         int holds = masu_cascade_holds(&drawn, &wanted);
         if (far < 0.08 * drawn.radius) assert_true(holds);
-        double across = hypot(dot(drawn.axis[0], by), dot(drawn.axis[1], by)) * far;
+        double across = hypot(dot3(drawn.axis[0], by), dot3(drawn.axis[1], by)) * far;
         if (across > 0.17 * drawn.radius) assert_false(holds);
     }
     masu_cascade other = masu_cascade_fit(&v, 30, 0.1, 128);
@@ -197,7 +190,7 @@ static void drawn_and_looked_up_is_the_same_place(void **state) {
         for (int a = 0; a < 3; a++) {
             double drawn = a == 2 ? (double)u.rect[2][3] : 0, seen = (double)rows[a][3];
             for (int j = 0; j < 3; j++) {
-                double p = v.eye[j] + random_in(&r, -20, 20);
+                double p = v.eye[j] + random_between(&r, -20, 20);
                 drawn += (double)rows[a][j] *
                          (p - (double)u.origin_hi[2][j] - (double)u.origin_lo[2][j]);
                 seen += (double)rows[a][j] * (p - v.eye[j]);
@@ -312,7 +305,7 @@ static void casters_that_move_away_stay_in_reach(void **state) {
     for (uint32_t k = 0; k < 2; k++) {
         double p[3] = {1e6, 502, 0};
         for (int j = 0; j < 3; j++) p[j] -= m.shadow.cascades[k].center[j];
-        assert_true(dot(m.shadow.cascades[k].axis[2], p) <= m.shadow.cascades[k].ahead);
+        assert_true(dot3(m.shadow.cascades[k].axis[2], p) <= m.shadow.cascades[k].ahead);
     }
     rows[3] = 3e38f; /* finite, as is asked */
     assert_int_equal(masu_instance_set_transform(&m, i, rows), MASU_OK);

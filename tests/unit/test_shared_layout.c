@@ -17,6 +17,7 @@
 #include <cmocka.h>
 
 #include "shared/masu_shared.h"
+#include "support/files.h"
 #include "support/spirv.h"
 
 #define MEMBERS_MOST 24u
@@ -96,8 +97,7 @@ static glob_t shaders; /* the library's, with debug names */
 static int find_shaders(void **state) {
     (void)state;
     char pattern[512];
-    const char *build = getenv("BUILD");
-    (void)snprintf(pattern, sizeof pattern, "%s/gen/*_????.spv", build ? build : "build");
+    (void)snprintf(pattern, sizeof pattern, "%s/gen/*_????.spv", build_dir());
     return glob(pattern, 0, NULL, &shaders);
 }
 

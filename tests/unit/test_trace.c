@@ -21,8 +21,8 @@
 static const double zero[3] = {0, 0, 0};
 static uint64_t seed;
 
-static float random_float(float low, float high) {
-    return low + (high - low) * (float)((double)(support_random(&seed) >> 11) * 0x1p-53);
+static float number(float low, float high) {
+    return (float)random_between(&seed, (double)low, (double)high);
 }
 
 /* ---- Shapes ---------------------------------------------------------------------------------- */
@@ -145,12 +145,12 @@ static masu_trace_box *clouds(uint32_t items, int kind) {
     masu_trace_box *boxes = malloc((items + 1) * sizeof *boxes);
     for (uint32_t i = 0; i < items; i++) {
         for (int k = 0; k < 3; k++) {
-            float at = random_float(-100, 100), size = random_float(0, 3);
+            float at = number(-100, 100), size = number(0, 3);
             if (kind == 1) at = 5, size = 0; /* all the same point */
             if (kind == 2)
                 at = k ? 0.0f : ldexpf(1.0f, (int)(i % 120) - 70); /* ever farther apart */
-            if (kind == 3) at = 1e6f + random_float(0, 1), size = 1e-3f;
-            if (kind == 4) at = random_float(-9e14f, 9e14f);
+            if (kind == 3) at = 1e6f + number(0, 1), size = 1e-3f;
+            if (kind == 4) at = number(-9e14f, 9e14f);
             if (kind == 5) size = i % 7 ? 0.01f : 300.0f;
             if (kind == 6) at = 0, size = (float)i; /* one in the other */
             boxes[i].low[k] = at - size;
@@ -229,7 +229,7 @@ static float (*transforms)[12];
 
 static void random_transform(float m[12], float reach) {
     for (int i = 0; i < 12; i++)
-        m[i] = i % 4 == 3 ? random_float(-reach, reach) : random_float(-2, 2);
+        m[i] = i % 4 == 3 ? number(-reach, reach) : number(-2, 2);
 }
 
 static void make(uint32_t count, float reach) {

@@ -76,10 +76,6 @@ static masu_view_ray ray_along(double x, double y, double z) {
                            .limit = 1e7};
 }
 
-static double uniform(uint64_t *seed) {
-    return (double)(support_random(seed) >> 11) / 9007199254740992.0;
-}
-
 /* ---- The march ------------------------------------------------------------------------------- */
 
 /* First crossing with a sphere, or -1; miss: by how much the ray passes it, in radii. */
@@ -154,7 +150,7 @@ static void a_grazed_plane_is_hit_to_its_horizon(void **state) {
     v.max_distance = 1e6;
     uint64_t seed = 11;
     for (int i = 0; i < 400; i++) {
-        double angle = 0.17 * pow(6e-5, uniform(&seed)), turn = 6.28 * uniform(&seed);
+        double angle = 0.17 * pow(6e-5, random_unit(&seed)), turn = 6.28 * random_unit(&seed);
         masu_view_ray r = ray_along(cos(angle) * sin(turn), -sin(angle), -cos(angle) * cos(turn));
         masu_truth_sample s;
         masu_truth_march(&truth, &v, &r, &s);

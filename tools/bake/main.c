@@ -304,7 +304,7 @@ int main(int argc, char **argv) {
     static const masu_cli_option options[] = {
         {"output", "FILE", "where the blob goes; replaced only by a complete one", OPTION_OUTPUT,
          'o'},
-        {"variants", NULL, "add the other ways to march the SDF, for masu march-bench",
+        {"variants", NULL, "add the other ways to march the SDF, for masu study march",
          OPTION_VARIANTS, 0},
         {"no-textures", NULL, "leave textures out; the materials' factors stay", OPTION_NO_TEXTURES,
          0},

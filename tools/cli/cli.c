@@ -124,13 +124,13 @@ static void print_command_help(const masu_cli_command *command) {
     if (command->details) printf("\n%s", command->details);
 }
 
-static void print_program_help(const masu_cli_program *program) {
-    printf("%s: %s\n\nUsage: %s COMMAND [arguments] [options]\n\nCommands:\n", program->name,
-           program->summary, program->name);
-    for (const masu_cli_command *const *c = program->commands; *c; c++) {
+static void print_commands(const char *summary, const masu_cli_command *const *commands) {
+    printf("%s: %s\n\nUsage: %s COMMAND [arguments] [options]\n\nCommands:\n", state.name, summary,
+           state.name);
+    for (const masu_cli_command *const *c = commands; *c; c++) {
         printf("  %-12s %s\n", (*c)->name, (*c)->summary);
     }
-    printf("\n`%s COMMAND --help` explains a command.\n", program->name);
+    printf("\n`%s COMMAND --help` explains a command.\n", state.name);
 }
 
 /* ---- options ---- */
@@ -299,32 +299,23 @@ bool masu_cli_choice(const masu_cli *cli, const char *const *names, uint32_t *in
 
 /* ---- main ---- */
 
-static int run_command(masu_cli *cli) {
-    if (cli->command->name) {
-        snprintf(state.name, sizeof state.name, "%s %s", cli->program->name, cli->command->name);
-    }
-    return cli->command->run(cli);
-}
-
-static int dispatch(masu_cli *cli) {
-    const masu_cli_program *program = cli->program;
-    cli->command = program->commands[0];
-    if (!cli->command->name) return run_command(cli);
-    if (cli->argc < 2) return masu_cli_usage_error("no command given");
+int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command *const *commands) {
+    if (cli->next >= cli->argc) return masu_cli_usage_error("no command given");
     const char *word = cli->argv[cli->next++];
     if (strcmp(word, "-h") == 0 || strcmp(word, "--help") == 0) {
-        print_program_help(program);
+        print_commands(summary, commands);
         return MASU_CLI_OK;
     }
     if (strcmp(word, "--version") == 0) {
-        printf("%s %s\n", program->name, program->version);
+        printf("%s %s\n", cli->program->name, cli->program->version);
         return MASU_CLI_OK;
     }
-    for (const masu_cli_command *const *c = program->commands; *c; c++) {
-        if (strcmp((*c)->name, word) == 0) {
-            cli->command = *c;
-            return run_command(cli);
-        }
+    for (const masu_cli_command *const *c = commands; *c; c++) {
+        if (strcmp((*c)->name, word) != 0) continue;
+        size_t used = strlen(state.name);
+        snprintf(state.name + used, sizeof state.name - used, " %s", word);
+        cli->command = *c;
+        return cli->command->run(cli);
     }
     return masu_cli_usage_error("unknown command \"%s\"", word);
 }
@@ -332,7 +323,9 @@ static int dispatch(masu_cli *cli) {
 int masu_cli_main(const masu_cli_program *program, int argc, char **argv) {
     masu_cli cli = {.program = program, .argc = argc, .next = 1, .argv = argv};
     snprintf(state.name, sizeof state.name, "%s", program->name);
-    int exit_code = dispatch(&cli);
+    cli.command = program->commands[0];
+    int exit_code = cli.command->name ? masu_cli_commands(&cli, program->summary, program->commands)
+                                      : cli.command->run(&cli);
     masu_cli_progress_clear();
     if (fflush(stdout) != 0 || ferror(stdout)) {
         int code = masu_cli_error("cannot write to standard output: %s", strerror(errno));

@@ -94,6 +94,9 @@ struct masu_cli {
  * to stdout (a full disk) exit code 1. */
 int masu_cli_main(const masu_cli_program *program, int argc, char **argv);
 
+/* For a command that has commands of its own, `masu study march`: its run function calls this. */
+int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command *const *commands);
+
 /* The next option's id, or MASU_CLI_ARGUMENT, _END or _EXIT. */
 int masu_cli_next(masu_cli *cli);
 

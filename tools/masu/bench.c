@@ -1,7 +1,7 @@
 /* bench.c: `masu bench`: every quality level of a scene, a measured error beside a measured
  * time: the command line of bench/sweep/sweep.h, which measures, and bench/sweep/report.h, which makes rungs,
  * plots and a page of it. */
-#include "masu/cmd.h"
+#include "masu/bench.h"
 
 #include "bench/sweep/against.h"
 #include "bench/measure/picture.h"
@@ -13,33 +13,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    OPTION_OUT = 1,
-    OPTION_FRAMES,
-    OPTION_RUNS,
-    OPTION_SHARD,
-    OPTION_MERGE,
-    OPTION_QUICK,
-    OPTION_STEADY,
-    OPTION_RUNGS_OF,
-    OPTION_AGAINST,
-    OPTION_CSV
-};
-
-enum { PARTS_MOST = 64 };
-
 typedef struct options {
     masu_sweep_desc sweep;
+    masu_truth_options truth;
     masu_setting_list only;
-    const char *arguments[PARTS_MOST], *against, *rungs_of, *csv;
-    uint32_t count;
-    bool merge, steady; /* --steady is given */
+    masu_given given;
+    const char *against, *rungs_of, *csv;
+    bool merge, ladder, c, steady; /* --steady is given */
 } options;
 
 /* The model sheet of the ladder, which the report has made: the page is then written once more. */
 static void model(const options *o) {
     char error[4096];
-    masu_model_desc d = {.scene_path = o->arguments[0],
+    masu_model_desc d = {.scene_path = o->given.arguments[0],
                          .size = {1920, 1080},
                          .drawn = masu_count_size(o->sweep.size),
                          .time = o->sweep.time,
@@ -82,7 +68,7 @@ static int report(const options *o) {
 
 static int merge(const options *o) {
     char error[4096];
-    if (!masu_sweep_merge(o->sweep.folder, o->arguments, o->count, error, sizeof error))
+    if (!masu_sweep_merge(o->sweep.folder, o->given.arguments, o->given.count, error, sizeof error))
         return masu_cli_error("%s", error);
     return report(o);
 }
@@ -90,8 +76,8 @@ static int merge(const options *o) {
 static int against(const options *o) {
     masu_against result;
     char error[8192];
-    if (o->count != 1) return masu_cli_usage_error("--against needs one folder besides its own");
-    if (!masu_against_compare(o->arguments[0], o->against, &result, error, sizeof error))
+    if (o->given.count != 1) return masu_cli_usage_error("--against needs one folder besides its own");
+    if (!masu_against_compare(o->given.arguments[0], o->against, &result, error, sizeof error))
         return masu_cli_error("%s", error);
     bool to_file = o->csv && strcmp(o->csv, "-") != 0;
     FILE *f = to_file ? fopen(o->csv, "w") : stdout;
@@ -130,7 +116,7 @@ static int sweep(options *o) {
         o->sweep.only = &o->only;
         o->sweep.like = o->rungs_of;
     }
-    o->sweep.scene_path = o->arguments[0];
+    o->sweep.scene_path = o->given.arguments[0];
     o->sweep.progress = masu_cli_progress_text;
     masu_sweep_desc *d = &o->sweep; /* what has not been given is 0 */
     if (!d->size.width) d->size = d->quick ? (VkExtent2D){128, 72} : (VkExtent2D){640, 360};
@@ -157,7 +143,8 @@ static int sweep(options *o) {
 }
 
 /* "0/4" */
-static bool read_shard(const masu_cli *cli, masu_sweep_desc *d) {
+static bool read_shard(masu_cli *cli, void *to) {
+    masu_sweep_desc *d = &((options *)to)->sweep;
     char *end;
     const char *text = cli->value;
     unsigned long shard = strtoul(text, &end, 10);
@@ -174,111 +161,99 @@ bad:
     return false;
 }
 
-static bool read_option(const masu_cli *cli, int id, options *o) {
-    masu_sweep_desc *d = &o->sweep;
-    switch (id) {
-    case OPTION_OUT: d->folder = cli->value; return true;
-    case OPTION_FRAMES: return masu_cli_uint(cli, 1, 10000, &d->frames);
-    case OPTION_RUNS: return masu_cli_uint(cli, 1, MASU_SWEEP_RUNS_MAX, &d->runs);
-    case OPTION_SHARD: return read_shard(cli, d);
-    case OPTION_MERGE: o->merge = true; return true;
-    case OPTION_STEADY: o->steady = true; return masu_cli_double(cli, 0.0, 3600.0, &d->steady);
-    case OPTION_RUNGS_OF: o->rungs_of = cli->value; return true;
-    case OPTION_QUICK: d->quick = true; return true;
-    case OPTION_AGAINST: o->against = cli->value; return true;
-    case OPTION_CSV: o->csv = cli->value; return true;
-    case MASU_CLI_ARGUMENT:
-        if (o->count == PARTS_MOST) {
-            masu_cli_usage_error("more than %d folders", PARTS_MOST);
-            return false;
-        }
-        o->arguments[o->count++] = cli->value;
-        return true;
-    default: return false;
-    }
+static const masu_option rows[] = {
+    {MASU_ROW(options, sweep.folder, MASU_TAKE_TEXT, "out", "DIR",
+              "folder of the results; one with a part of the same sweep is gone on with"),
+     .letter = 'o'},
+    MASU_SIZE(options, sweep.size, "size", "output size (default 640x360)"),
+    MASU_MOMENT_ROW(options, sweep.time),
+    MASU_TRUTH_ROWS(options, truth),
+    MASU_UINT(options, sweep.frames, "frames", 1, 10000,
+              "in motion before a picture is taken, where one depends on those before\n"
+              "(default 32)"),
+    MASU_UINT(options, sweep.runs, "runs", 1, MASU_SWEEP_RUNS_MAX,
+              "timed frames of each setting (default 9)"),
+    MASU_REAL(options, sweep.steady, "steady", "SECONDS", 0.0, 3600.0,
+              "that each seven rungs of the ladder are timed again when all is\n"
+              "measured; 0: not at all (default 60)"),
+    MASU_TEXT(options, rungs_of, "rungs-of", "DIR2",
+              "measure the base and the rungs of that folder's ladder alone: to see\n"
+              "on another day whether they hold (--against)"),
+    MASU_OWN("shard", "I/N", read_shard,
+             "measure each N-th setting alone, from the I-th on, 0 to N - 1; no report"),
+    MASU_FLAG(options, merge, "merge",
+              "join DIR... of shards in --out, and write the report; a run with SCENE.masu and\n"
+              "that --out then times the rungs again"),
+    MASU_TEXT(options, against, "against", "DIR2",
+              "compare each rung of the folder DIR with the same setting there: error and\n"
+              "time ratio of the two, and the worst"),
+    MASU_TEXT(options, csv, "csv", "FILE", "of --against: write it as CSV, - is standard output"),
+    MASU_FLAG(options, ladder, "ladder", "print the ladders LADDER.json... that have been measured"),
+    MASU_FLAG(options, c, "c",
+              "of --ladder: print src/quality/ladder_tables.h, the ladders that the library is\n"
+              "built with; each file is given as CLASS=FILE: polygons, world, sdf, both, or one\n"
+              "of them with -traced"),
+    MASU_FLAG(options, sweep.quick, "quick",
+              "few settings, 128x72, 4 positions, 8 frames, 2 runs, no rungs again: a test"),
+    MASU_DEVICE_ROWS(options, sweep.host),
+    {.name = NULL}};
+
+/* What does not go together; an exit code. */
+static int check(const options *o) {
+    const bool apart = o->against || o->merge;
+    if (o->rungs_of && apart)
+        return masu_cli_usage_error("--rungs-of is of measuring: not with --against or --merge");
+    if (o->steady && (apart || o->sweep.shards > 1))
+        return masu_cli_usage_error("--steady needs all settings and their scene: not with --shard, "
+                                    "--merge or --against");
+    if (o->rungs_of && o->sweep.folder && !strcmp(o->rungs_of, o->sweep.folder))
+        return masu_cli_usage_error("--rungs-of and --out are one folder");
+    if (o->ladder && (apart || o->rungs_of || o->sweep.folder))
+        return masu_cli_usage_error("--ladder prints what is measured: not with %s",
+                                    o->against        ? "--against"
+                                    : o->merge        ? "--merge"
+                                    : o->rungs_of     ? "--rungs-of"
+                                                      : "--out");
+    if (o->c && !o->ladder) return masu_cli_usage_error("--c is of --ladder");
+    if (o->csv && !o->against) return masu_cli_usage_error("--csv is of --against");
+    return MASU_CLI_OK;
 }
 
 static int run(masu_cli *cli) {
-    static options o;
-    masu_sweep_desc *d = &o.sweep;
-    const masu_truth_places truth = {&d->size, &d->time, &d->truth_path, &d->positions, &d->rays};
-    o = (options){.sweep = {.time = 1.0,
-                            .rays = MASU_PICTURE_RAYS,
-                            .shards = 1,
-                            .host = {.message = masu_print_message}}};
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (id == MASU_CLI_EXIT) return cli->exit_code;
-        if (id == MASU_CLI_END) break;
-        if (masu_device_option(cli, id, &o.sweep.host)) continue;
-        int read = masu_truth_option(cli, id, &truth);
-        if (read < 0) return MASU_CLI_USAGE;
-        if (read) continue;
-        if (!read_option(cli, id, &o)) return MASU_CLI_USAGE;
-    }
-    if (o.rungs_of && (o.against || o.merge))
-        return masu_cli_usage_error("--rungs-of is of measuring: not with --against or --merge");
-    if (o.steady && (o.against || o.merge || o.sweep.shards > 1))
-        return masu_cli_usage_error("--steady needs all settings and their scene: not with --shard, "
-                                    "--merge or --against");
-    if (o.rungs_of && o.sweep.folder && !strcmp(o.rungs_of, o.sweep.folder))
-        return masu_cli_usage_error("--rungs-of and --out are one folder");
+    static options o = {
+        .sweep = {.time = 1.0, .shards = 1, .host = {.message = masu_print_message}},
+        .truth = {.rays = MASU_PICTURE_RAYS},
+        .given = {.most = MASU_ARGUMENTS_MAX, .excess = "more than 64 folders"}};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &o.given, &code)) return code;
+    o.steady = masu_is_given(&o.given, rows, "steady");
+    o.sweep.truth_path = o.truth.path;
+    o.sweep.positions = o.truth.positions;
+    o.sweep.rays = o.truth.rays;
+    code = check(&o);
+    if (code) return code;
+    if (o.ladder) return masu_bench_ladder(&o.given, o.c);
     if (o.against) return against(&o);
-    if (o.csv) return masu_cli_usage_error("--csv is of --against");
-    if (!o.count)
+    if (!o.given.count)
         return masu_cli_usage_error(o.merge ? "no folder to merge is given" : "no scene is given");
     if (!o.sweep.folder) return masu_cli_usage_error("--out is missing");
     if (o.merge) return merge(&o);
-    if (o.count > 1) return masu_cli_usage_error("one scene at a time: '%s'", o.arguments[1]);
+    if (o.given.count > 1)
+        return masu_cli_usage_error("one scene at a time: '%s'", o.given.arguments[1]);
     return sweep(&o);
 }
 
-static const masu_cli_option list[] = {
-    {"out", "DIR", "folder of the results; one with a part of the same sweep is gone on with",
-     OPTION_OUT, 'o'},
-    MASU_TRUTH_OPTIONS("1"),
-    {"frames", "N",
-     "in motion before a picture is taken, where one depends on those before\n"
-     "(default 32)",
-     OPTION_FRAMES, 0},
-    {"runs", "N", "timed frames of each setting (default 9)", OPTION_RUNS, 0},
-    {"steady", "SECONDS",
-     "that each seven rungs of the ladder are timed again when all is\n"
-     "measured; 0: not at all (default 60)",
-     OPTION_STEADY, 0},
-    {"rungs-of", "DIR2",
-     "measure the base and the rungs of that folder's ladder alone: to see\n"
-     "on another day whether they hold (--against)",
-     OPTION_RUNGS_OF, 0},
-    {"shard", "I/N", "measure each N-th setting alone, from the I-th on, 0 to N - 1; no report",
-     OPTION_SHARD, 0},
-    {"merge", NULL,
-     "join DIR... of shards in --out, and write the report; a run with SCENE.masu and\n"
-     "that --out then times the rungs again",
-     OPTION_MERGE, 0},
-    {"against", "DIR2",
-     "compare each rung of the folder DIR with the same setting there: error and\n"
-     "time ratio of the two, and the worst",
-     OPTION_AGAINST, 0},
-    {"csv", "FILE", "of --against: write it as CSV, - is standard output", OPTION_CSV, 0},
-    {"quick", NULL,
-     "few settings, 128x72, 4 positions, 8 frames, 2 runs, no rungs again: a test",
-     OPTION_QUICK, 0},
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
-
 const masu_cli_command masu_cmd_bench = {
     .name = "bench",
-    .arguments =
-        "SCENE.masu --out DIR [options], or --merge DIR... --out DIR, or DIR --against DIR2",
+    .arguments = "SCENE.masu --out DIR [options], or --merge DIR... --out DIR, or DIR --against DIR2,\n"
+                 "       or --ladder LADDER.json...",
     .summary = "measure each quality level: error against run time, and the rungs worth having",
-    .options = list,
     .details =
-        "--truth is DIR/truth.png unless it is given.\n"
+        "--truth is DIR/truth.png unless it is given; --positions are 64.\n"
         "Into DIR: results.csv, a row per setting; steady.csv, the rungs timed again; ladder.json,\n"
         "the rungs of the Pareto front; index.html, one page with tables, plots and pictures;\n"
         "plots/ if there is gnuplot;\n"
-        "model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu model), computed.\n"
+        "model.csv, model.xhtml: the model sheet of these rungs at 1080p (masu plan --model), computed.\n"
         "Where NAME.truth.so lies beside NAME.masu (code, as trusted as this program), surfaces are\n"
         "compared with it. A setting's time is that of frames at rest, in turns with the base\n"
         "setting (all defaults, no upscaling); its picture is the last of some frames in motion.\n",

@@ -1,93 +1,11 @@
 /* common.c: see cmd.h. */
 #include "masu/cmd.h"
 
-#include "bench/sweep/knobs.h"
-#include "bench/sweep/ladder_file.h"
-#include "bench/measure/picture.h"
 #include "image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-bool masu_device_option(masu_cli *cli, int id, masu_headless_desc *host) {
-    switch (id) {
-    case MASU_OPTION_DEVICE: host->device = cli->value; return true;
-    case MASU_OPTION_VALIDATE: host->validate = true; return true;
-    case MASU_OPTION_GPU_AV: host->gpu_av = true; return true;
-    default: return false;
-    }
-}
-
-bool masu_rays_option(masu_cli *cli, masu_session_desc *d) {
-    static const char *const ways[] = {"auto", "compute", "query", NULL};
-    static const masu_switch switches[] = {MASU_AUTO, MASU_OFF, MASU_ON};
-    uint32_t way = 0;
-    if (!masu_cli_choice(cli, ways, &way)) return false;
-    d->desc.ray_query = switches[way];
-    d->host.ray_query = switches[way] != MASU_OFF;
-    return true;
-}
-
-bool masu_knob_option(const masu_cli *cli, const char *knob, masu_rung *rung) {
-    const masu_knob *k = masu_knob_find(knob, strlen(knob));
-    masu_rung read = *rung;
-    const char *end = masu_knob_from_text(k, cli->value, &read);
-    if (end && !*end) {
-        *rung = read;
-        return true;
-    }
-    char range[200];
-    masu_knob_range(k, range, sizeof range);
-    masu_cli_usage_error("%s: needed is %s, given is '%s'", cli->option, range, cli->value);
-    return false;
-}
-
-int masu_ladder_option(const char *given, masu_desc *desc) {
-    static masu_ladder_file file;
-    char error[1024];
-    desc->ladder = !given ? MASU_AUTO : strcmp(given, "auto") ? MASU_OFF : MASU_ON;
-    if (!given || !strcmp(given, "auto") || !strcmp(given, "off")) return MASU_CLI_OK;
-    if (!masu_ladder_read(given, &file, error, sizeof error)) return masu_cli_error("%s", error);
-    masu_ladder_give(&file, desc);
-    return MASU_CLI_OK;
-}
-
-bool masu_output_size(const masu_cli *cli, VkExtent2D *size) {
-    if (!masu_cli_extent(cli, MASU_IMAGE_SIDE_MAX, &size->width, &size->height)) return false;
-    if ((uint64_t)size->width * size->height <= MASU_IMAGE_PIXELS_MAX) return true;
-    masu_cli_usage_error("%s %s: more than %u pixels", cli->option, cli->value,
-                         MASU_IMAGE_PIXELS_MAX);
-    return false;
-}
-
-int masu_truth_option(const masu_cli *cli, int id, const masu_truth_places *to) {
-    bool good = true;
-    switch (id) {
-    case MASU_OPTION_SIZE: good = masu_output_size(cli, to->size); break;
-    case MASU_OPTION_TIME: good = masu_cli_double(cli, -1e9, 1e9, to->time); break;
-    case MASU_OPTION_TRUTH: *to->path = cli->value; break;
-    case MASU_OPTION_POSITIONS:
-        good = masu_cli_uint(cli, 1, MASU_PICTURE_POSITIONS_MAX, to->positions);
-        break;
-    case MASU_OPTION_REFERENCE: good = masu_cli_uint(cli, 1, 1000000, to->rays); break;
-    default: return 0;
-    }
-    return good ? 1 : -1;
-}
-
-bool masu_output_file(masu_cli *cli, const char **path) {
-    char error[4096];
-    *path = cli->value;
-    if (masu_file_writable(cli->value, error, sizeof error)) return true;
-    cli->exit_code = masu_cli_error("%s", error);
-    return false;
-}
-
-bool masu_output_file_or_stdout(masu_cli *cli, const char **path) {
-    *path = cli->value;
-    return !strcmp(cli->value, "-") || masu_output_file(cli, path);
-}
 
 void masu_print_message(void *user, const char *text) {
     (void)user;

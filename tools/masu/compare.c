@@ -2,6 +2,7 @@
  * use (metric/image.h, metric/flip.h). tests/scripts/compare.sh holds them against other people's
  * programs. Opens no device; nothing is judged. */
 #include "masu/cmd.h"
+#include "masu/options.h"
 
 #include "image.h"
 #include "metric/flip.h"
@@ -11,7 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_MAP = 1, OPTION_PPD, OPTION_JSON };
+typedef struct options {
+    const char *map, *json;
+    double ppd;
+} options;
 
 typedef struct differences {
     double rmse, psnr, ssim;
@@ -49,8 +53,7 @@ static int write_json(const differences *d, const char *path) {
     return masu_json_write(root, path);
 }
 
-static int compare(const char *const files[2], double ppd, const char *map_path,
-                   const char *json_path) {
+static int compare(const char *const files[2], const options *o) {
     struct masu_image images[2];
     differences d;
     char error[4096] = "no memory for the comparison";
@@ -63,63 +66,42 @@ static int compare(const char *const files[2], double ppd, const char *map_path,
         good = false;
     }
     float *map = NULL;
-    if (good && map_path) {
+    if (good && o->map) {
         map = malloc(sizeof *map * images[0].width * images[0].height);
         good = map != NULL;
     }
-    good = good && measure(&images[0], &images[1], ppd, map, &d);
-    if (good && map_path) good = save_map(map_path, map, &images[1], error, sizeof error);
+    good = good && measure(&images[0], &images[1], o->ppd, map, &d);
+    if (good && o->map) good = save_map(o->map, map, &images[1], error, sizeof error);
     free(map);
     masu_image_free(&images[0]);
     masu_image_free(&images[1]);
     if (!good) return masu_cli_error("%s", error);
-    if (json_path) return write_json(&d, json_path);
+    if (o->json) return write_json(&d, o->json);
     printf("RMSE %.4f of 255, PSNR %.3f dB, SSIM %.5f, FLIP %.5f (p99 %.4f, most %.4f)\n",
            255.0 * d.rmse, d.psnr, d.ssim, d.flip.mean, d.flip.p99, d.flip.max);
     return MASU_CLI_OK;
 }
 
-static int run(masu_cli *cli) {
-    const char *files[2] = {NULL, NULL}, *map = NULL, *json = NULL;
-    double ppd = 0.0;
-    for (;;) {
-        switch (masu_cli_next(cli)) {
-        case OPTION_MAP:
-            if (!masu_output_file(cli, &map)) return cli->exit_code;
-            continue;
-        case OPTION_JSON:
-            if (!masu_output_file_or_stdout(cli, &json)) return cli->exit_code;
-            continue;
-        case OPTION_PPD:
-            if (!masu_cli_double(cli, 1.0, 1000.0, &ppd)) return MASU_CLI_USAGE;
-            continue;
-        case MASU_CLI_ARGUMENT:
-            if (files[0] && files[1])
-                return masu_cli_usage_error("one reference and one picture: '%s'", cli->value);
-            files[files[0] ? 1 : 0] = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!files[0] || !files[1])
-        return masu_cli_usage_error("a reference and a picture are needed");
-    return compare(files, ppd, map, json);
-}
+static const masu_option rows[] = {
+    MASU_FILE(options, map, "map", "FILE.png",
+              "write FLIP of each pixel there, black where there is no difference"),
+    MASU_REAL(options, ppd, "ppd", "N", 1.0, 1000.0,
+              "pixels per degree of sight, 1 to 1000 (default 67.02: 0.7 m before a 4K screen)"),
+    MASU_OUTPUT(options, json, "json", "FILE", "write the numbers there instead, - for stdout"),
+    {.name = NULL}};
 
-static const masu_cli_option list[] = {
-    {"map", "FILE.png", "write FLIP of each pixel there, black where there is no difference",
-     OPTION_MAP, 0},
-    {"ppd", "N", "pixels per degree of sight, 1 to 1000 (default 67.02: 0.7 m before a 4K screen)",
-     OPTION_PPD, 0},
-    {"json", "FILE", "write the numbers there instead, - for stdout", OPTION_JSON, 0},
-    {NULL, NULL, NULL, 0, 0}};
+static int run(masu_cli *cli) {
+    options o = {.ppd = 0.0};
+    masu_given given = {.most = 2, .excess = "one reference and one picture"};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    if (given.count < 2) return masu_cli_usage_error("a reference and a picture are needed");
+    return compare(given.arguments, &o);
+}
 
 const masu_cli_command masu_cmd_compare = {
     .name = "compare",
     .arguments = "REFERENCE.png PICTURE.png [options]",
     .summary = "how far a picture is from another: RMSE, PSNR, SSIM, FLIP",
-    .options = list,
     .details = "Pictures are taken as sRGB-encoded, alpha is ignored. SSIM is that of luma.\n",
     .run = run};

@@ -1,6 +1,8 @@
 /* conform.c: `masu conform`: a suite of cases with fixed budgets and error limits, and whether
  * this device and this build keep them. */
 #include "masu/cmd.h"
+#include "masu/data.h"
+#include "masu/options.h"
 
 #include "conform/report.h"
 #include "image.h"
@@ -9,30 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    OPTION_SUITE = 1,
-    OPTION_SCENES,
-    OPTION_LIST,
-    OPTION_CASE,
-    OPTION_FRACTION,
-    OPTION_REPLAY,
-    OPTION_JUNIT,
-    OPTION_CSV,
-    OPTION_IMAGES,
-    OPTION_RUNS,
-    OPTION_RAYS
-};
-
 #define SUITE_BYTES_MAX ((size_t)4 << 20)
 
-typedef struct conform_options {
-    const char *suite, *scenes, *glob, *replay, *junit, *csv, *images;
-    const char *rays; /* as given, for the replay line */
-    uint32_t first, of, runs;
-    bool list;
-    masu_session_desc rays_desc;
+typedef struct options {
+    const char *suite, *scenes; /* as given */
+    const char *glob, *replay, *junit, *csv, *images;
+    uint32_t first, of, runs, rays;
+    bool rays_given, list;
+    char suite_file[MASU_DATA_PATH], scene_folder[MASU_DATA_PATH]; /* as found */
+    char suite_name[256]; /* in results: the same wherever it was found */
     masu_headless_desc host;
-} conform_options;
+} options;
 
 typedef void (*writer)(FILE *f, const masu_suite *suite, const masu_conform_result *results,
                        uint32_t n, const char *driver);
@@ -57,10 +46,10 @@ static int write_file(const char *path, writer write, const masu_suite *suite,
 }
 
 /* The same settings, as a shell takes them. */
-static char *command_of(const conform_options *o) {
+static char *command_of(const options *o) {
     const char *const given[][2] = {{" --suite ", o->suite},
                                     {" --scenes ", o->scenes},
-                                    {" --rays ", o->rays},
+                                    {" --rays ", o->rays_given ? masu_ray_ways[o->rays] : NULL},
                                     {" --device ", o->host.device}};
     char *text = NULL;
     size_t bytes = 0;
@@ -79,16 +68,17 @@ static char *command_of(const conform_options *o) {
     return NULL;
 }
 
-static int run_cases(const conform_options *o, const masu_suite *suite, const bool *marks,
+static int run_cases(const options *o, const masu_suite *suite, const bool *marks,
                      masu_conform_result *results, uint32_t count) {
     static masu_conform c;
     char error[1024];
     c = (masu_conform){.suite = suite,
-                       .scenes = o->scenes,
+                       .scenes = o->scene_folder,
                        .images = o->images,
                        .host = o->host,
-                       .ray_query = o->rays_desc.desc.ray_query,
                        .runs = o->runs};
+    masu_headless_desc asked = o->host; /* each case asks for ray queries by itself */
+    masu_use_rays(o->rays, &c.ray_query, &asked);
     if (!masu_conform_open(&c, error, sizeof error)) return masu_cli_error("%s", error);
     char *command = command_of(o);
     uint32_t n = 0;
@@ -115,7 +105,7 @@ static int run_cases(const conform_options *o, const masu_suite *suite, const bo
     return code || failed ? MASU_CLI_FAILURE : MASU_CLI_OK;
 }
 
-static int mark(const conform_options *o, const masu_suite *suite, bool *marks, uint32_t *count) {
+static int mark(const options *o, const masu_suite *suite, bool *marks, uint32_t *count) {
     char error[512];
     if (o->replay) {
         int32_t at = masu_replay_find(suite, o->replay, error, sizeof error);
@@ -131,14 +121,14 @@ static int mark(const conform_options *o, const masu_suite *suite, bool *marks, 
     return MASU_CLI_OK;
 }
 
-static int conform(const conform_options *o) {
+static int conform(const options *o) {
     masu_suite suite;
     uint8_t *text = NULL;
     size_t bytes = 0;
     char error[1024];
-    if (!masu_file_read(o->suite, SUITE_BYTES_MAX, &text, &bytes, error, sizeof error))
+    if (!masu_file_read(o->suite_file, SUITE_BYTES_MAX, &text, &bytes, error, sizeof error))
         return masu_cli_error("%s", error);
-    bool good = masu_suite_parse(o->suite, (const char *)text, bytes, &suite, error, sizeof error);
+    bool good = masu_suite_parse(o->suite_name, (const char *)text, bytes, &suite, error, sizeof error);
     free(text);
     if (!good) return masu_cli_error("%s", error);
     uint32_t count = 0;
@@ -160,9 +150,42 @@ static int conform(const conform_options *o) {
     return code;
 }
 
+/* ---- Files ----------------------------------------------------------------------------------- */
+
+/* A name, as `smoke`, is that of a suite beside the program; all else is a file. An exit code. */
+static int find_suite(options *o) {
+    const char *name = o->suite;
+    bool file = strchr(name, '/') || strchr(name, '.');
+    snprintf(o->suite_name, sizeof o->suite_name, file ? "%s" : "suites/%s.json", name);
+    if (file) {
+        snprintf(o->suite_file, sizeof o->suite_file, "%s", name);
+        return MASU_CLI_OK;
+    }
+    char folder[MASU_DATA_PATH];
+    if (!masu_data_folder("suites", folder)) {
+        return masu_cli_error("no suites are beside this program: %s; --suite FILE.json names one",
+                              folder);
+    }
+    snprintf(o->suite_file, sizeof o->suite_file, "%.3500s/%.500s.json", folder, name);
+    return MASU_CLI_OK;
+}
+
+/* An exit code. */
+static int find_scenes(options *o) {
+    if (o->scenes) {
+        snprintf(o->scene_folder, sizeof o->scene_folder, "%s", o->scenes);
+        return MASU_CLI_OK;
+    }
+    if (masu_data_folder("scenes", o->scene_folder)) return MASU_CLI_OK;
+    return masu_cli_error("no baked scenes are beside this program: %s; `make scenes install` in Masu's "
+                          "sources bakes and installs them, --scenes DIR names others",
+                          o->scene_folder);
+}
+
 /* ---- Command line ---------------------------------------------------------------------------- */
 
-static bool read_fraction(const masu_cli *cli, conform_options *o) {
+static bool read_fraction(masu_cli *cli, void *to) {
+    options *o = to;
     int read = 0;
     if (sscanf(cli->value, "%9u,%9u%n", &o->first, &o->of, &read) == 2 && !cli->value[read] &&
         cli->value[0] != '-' && o->first < o->of) {
@@ -173,72 +196,43 @@ static bool read_fraction(const masu_cli *cli, conform_options *o) {
     return false;
 }
 
-static int run(masu_cli *cli) {
-    conform_options o = {
-        .suite = "suites/smoke.json", .scenes = "build/scenes", .of = 1, .runs = 9};
-    const char *parts = NULL;
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &o.host)) continue;
-        switch (id) {
-        case OPTION_SUITE: o.suite = cli->value; continue;
-        case OPTION_SCENES: o.scenes = cli->value; continue;
-        case OPTION_LIST: o.list = true; continue;
-        case OPTION_CASE:
-            o.glob = cli->value;
-            parts = "--case";
-            continue;
-        case OPTION_FRACTION:
-            if (!read_fraction(cli, &o)) return MASU_CLI_USAGE;
-            parts = "--fraction";
-            continue;
-        case OPTION_REPLAY: o.replay = cli->value; continue;
-        case OPTION_JUNIT:
-            if (!masu_output_file_or_stdout(cli, &o.junit)) return cli->exit_code;
-            continue;
-        case OPTION_CSV:
-            if (!masu_output_file_or_stdout(cli, &o.csv)) return cli->exit_code;
-            continue;
-        case OPTION_IMAGES: o.images = cli->value; continue;
-        case OPTION_RUNS:
-            if (!masu_cli_uint(cli, 1, 999, &o.runs)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_RAYS:
-            if (!masu_rays_option(cli, &o.rays_desc)) return MASU_CLI_USAGE;
-            o.rays = cli->value;
-            continue;
-        case MASU_CLI_ARGUMENT:
-            return masu_cli_usage_error("'%s': a suite is given by --suite", cli->value);
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (o.replay && parts) return masu_cli_usage_error("--replay names one case: no %s", parts);
-    return conform(&o);
-}
+static const masu_option rows[] = {
+    MASU_TEXT(options, suite, "suite", "NAME|FILE.json",
+              "the cases: smoke or full, which come with the program, or a file"),
+    MASU_TEXT(options, scenes, "scenes", "DIR",
+              "where baked scenes are (default: those beside the program)"),
+    MASU_FLAG(options, list, "list", "print the cases instead of running them"),
+    MASU_TEXT(options, glob, "case", "GLOB", "only cases of such names, as in 'memory.*'"),
+    MASU_OWN("fraction", "I,N", read_fraction, "of these each N-th from the I-th on, from 0"),
+    MASU_TEXT(options, replay, "replay", "TOKEN", "the one case that a failure has named so"),
+    MASU_OUTPUT(options, junit, "junit", "FILE.xml", "the results as JUnit XML"),
+    MASU_OUTPUT(options, csv, "csv", "FILE.csv",
+                "the results with all that was measured; - for stdout"),
+    MASU_TEXT(options, images, "images", "DIR", "the picture of each case, as PNG"),
+    MASU_UINT(options, runs, "runs", 1, 999,
+              "timed frames in each of up to four rounds, where a case has a limit"),
+    MASU_RAYS_ROW(options, rays),
+    MASU_DEVICE_ROWS(options, host),
+    {.name = NULL}};
 
-static const masu_cli_option list[] = {
-    {"suite", "FILE.json", "the cases (default suites/smoke.json)", OPTION_SUITE, 0},
-    {"scenes", "DIR", "where baked scenes are (default build/scenes)", OPTION_SCENES, 0},
-    {"list", NULL, "print the cases instead of running them", OPTION_LIST, 0},
-    {"case", "GLOB", "only cases of such names, as in 'memory.*'", OPTION_CASE, 0},
-    {"fraction", "I,N", "of these each N-th from the I-th on, from 0", OPTION_FRACTION, 0},
-    {"replay", "TOKEN", "the one case that a failure has named so", OPTION_REPLAY, 0},
-    {"junit", "FILE.xml", "the results as JUnit XML", OPTION_JUNIT, 0},
-    {"csv", "FILE.csv", "the results with all that was measured; - for stdout", OPTION_CSV, 0},
-    {"images", "DIR", "the picture of each case, as PNG", OPTION_IMAGES, 0},
-    {"runs", "N", "timed frames in each of up to four rounds, where a case has a limit (default 9)",
-     OPTION_RUNS, 0},
-    MASU_RAYS_OPTION(OPTION_RAYS),
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
+static int run(masu_cli *cli) {
+    static const char *const parts[] = {"case", "fraction", NULL};
+    static options o = {.suite = "smoke", .of = 1, .runs = 9};
+    masu_given given = {.most = 0, .excess = "a suite is given by --suite"};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    const char *part = masu_first_given(&given, rows, parts);
+    if (o.replay && part) return masu_cli_usage_error("--replay names one case: no --%s", part);
+    o.rays_given = masu_is_given(&given, rows, "rays");
+    code = find_suite(&o);
+    if (!code && !o.list) code = find_scenes(&o);
+    return code ? code : conform(&o);
+}
 
 const masu_cli_command masu_cmd_conform = {
     .name = "conform",
-    .arguments = "[--suite FILE.json] [options]",
+    .arguments = "[--suite NAME|FILE.json] [options]",
     .summary = "pass or fail against fixed budgets: memory, counts, errors, allocations",
-    .options = list,
     .details =
         "Verdicts: pass, quality warning, not supported, resource error, fail. Exit code 0: none\n"
         "of the last two. docs/conform.md describes suites. Times are ratios to a fixed piece of\n"

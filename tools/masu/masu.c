@@ -1,4 +1,5 @@
-/* masu.c: the `masu` program: one file cmd_NAME.c per command. */
+/* masu.c: the `masu` program: one file NAME.c per command, one file
+ * study_NAME.c per study. */
 #include "cli/cli.h"
 #include "masu/cmd.h"
 
@@ -8,17 +9,9 @@
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
 int main(int argc, char **argv) {
-    static const masu_cli_command *const commands[] = {&masu_cmd_render, &masu_cmd_upscale,
-                                                       &masu_cmd_plan, &masu_cmd_bench,
-                                                       &masu_cmd_model, &masu_cmd_march_bench,
-                                                       &masu_cmd_cull_bench, &masu_cmd_draw_bench,
-                                                       &masu_cmd_light_bench, &masu_cmd_ao_bench,
-                                                       &masu_cmd_specular_bench,
-                                                       &masu_cmd_trace_bench,
-                                                       &masu_cmd_bench_image,
-                                                       &masu_cmd_image_error, &masu_cmd_compare,
-                                                       &masu_cmd_whole_bench, &masu_cmd_plant,
-                                                       &masu_cmd_conform, &masu_cmd_ladder, NULL};
+    static const masu_cli_command *const commands[] = {
+        &masu_cmd_render, &masu_cmd_upscale, &masu_cmd_compare, &masu_cmd_plan,     &masu_cmd_bench,
+        &masu_cmd_study,  &masu_cmd_conform, &masu_cmd_simulate, NULL};
     static const masu_cli_program program = {
         .name = "masu",
         .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),

@@ -1,14 +1,12 @@
 /* plan.c: `masu plan`: the compiled frame of a scene: passes, resources, bytes, aliasing, and
- * what was left out and why. */
-#include "masu/cmd.h"
+ * what was left out and why. With --model: what its passes would take on classes of GPU. */
+#include "masu/plan.h"
 
 #include "bench/sweep/knobs.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { OPTION_SIZE = 1, OPTION_JSON, OPTION_FLIGHT, OPTION_SPLIT, OPTION_RAYS, OPTION_LADDER, OPTION_KNOBS };
 
 static const char *format_name(VkFormat format) {
     switch (format) {
@@ -208,79 +206,82 @@ static int print_json(const masu_session *s, const masu_plan_info *p, const char
     return masu_json_write(root, "-");
 }
 
-static int print_knobs(const masu_cli *cli) {
-    if (cli->value && strcmp(cli->value, "md") != 0)
-        return masu_cli_usage_error("--knobs is for a terminal, --knobs=md Markdown; not '%s'", cli->value);
-    (cli->value ? masu_knobs_document : masu_knobs_print)(stdout);
-    return MASU_CLI_OK;
-}
-
-static int run(masu_cli *cli) {
-    masu_session_desc d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
-                           .host = {.ray_query = true}};
-    const char *ladder = NULL;
-    bool json = false;
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &d.host)) continue;
-        switch (id) {
-        case OPTION_SIZE:
-            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_FLIGHT:
-            if (!masu_cli_uint(cli, 1, MASU_MAX_FLIGHT, &d.desc.frames_in_flight))
-                return MASU_CLI_USAGE;
-            continue;
-        case OPTION_SPLIT: d.desc.deny.unified_memory = 1; continue;
-        case OPTION_RAYS:
-            if (!masu_rays_option(cli, &d)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_JSON: json = true; continue;
-        case OPTION_KNOBS: return print_knobs(cli);
-        case OPTION_LADDER: ladder = cli->value; continue;
-        case MASU_CLI_ARGUMENT:
-            if (d.scene_path) return masu_cli_usage_error("one scene at a time: '%s'", cli->value);
-            d.scene_path = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!d.scene_path) return masu_cli_usage_error("no scene is given");
-    int code = masu_ladder_option(ladder, &d.desc);
-    if (code) return code;
-    d.host.message = masu_print_message;
+static int plan(masu_plan_options *o) {
     static masu_session s;
     char error[1024];
-    if (!masu_session_open(&d, &s, error, sizeof error)) return masu_cli_error("%s", error);
-    masu_plan_info plan;
-    masu_plan_of(s.m, &plan);
-    code = json ? print_json(&s, &plan, d.scene_path) : print_text(&s, &plan, d.scene_path);
+    int code = masu_use_ladder(o->ladder, &o->d.desc);
+    if (code) return code;
+    masu_use_rays(o->rays, &o->d.desc.ray_query, &o->d.host);
+    if (!masu_session_open(&o->d, &s, error, sizeof error)) return masu_cli_error("%s", error);
+    masu_plan_info info;
+    masu_plan_of(s.m, &info);
+    code = o->json ? print_json(&s, &info, o->d.scene_path) : print_text(&s, &info, o->d.scene_path);
     code = masu_finish_validation(&s.host, code);
     masu_session_close(&s);
     return code;
 }
 
-static const masu_cli_option options[] = {
-    {"size", "WxH",
-     "output size in pixels, at most 16384 a side and 64 Mi in all\n(default 1920x1080)",
-     OPTION_SIZE, 0},
-    {"json", NULL, "print JSON", OPTION_JSON, 0},
-    {"knobs", "[=md]", "instead: every knob of a rung and every limit, as text or as docs/knobs.md",
-     OPTION_KNOBS, 0},
-    {"ladder", "FILE|auto|off",
-     "the rungs: those of a ladder.json of masu bench; auto, those measured for scenes of this\n"
-     "class; off, 1, 0.8 and 0.4 of the size (default off)", OPTION_LADDER, 0},
-    {"frames-in-flight", "N", "1 to 3 (default 2)", OPTION_FLIGHT, 0},
-    {"split-memory", NULL, "one block per memory role, even on unified memory", OPTION_SPLIT, 0},
-    MASU_RAYS_OPTION(OPTION_RAYS),
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
+/* Prints, and that is all. */
+static bool print_knobs(masu_cli *cli, void *to) {
+    (void)to;
+    if (cli->value && strcmp(cli->value, "md") != 0) {
+        masu_cli_usage_error("--knobs is for a terminal, --knobs=md Markdown; not '%s'", cli->value);
+        return false;
+    }
+    (cli->value ? masu_knobs_document : masu_knobs_print)(stdout);
+    cli->exit_code = MASU_CLI_OK;
+    return false;
+}
+
+static bool read_split(masu_cli *cli, void *to) {
+    (void)cli;
+    ((masu_plan_options *)to)->d.desc.deny.unified_memory = 1;
+    return true;
+}
+
+static const masu_option rows[] = {
+    MASU_OUTPUT_SIZE_ROW(masu_plan_options, d.desc.output),
+    MASU_FLAG(masu_plan_options, json, "json", "print JSON"),
+    MASU_OWN("knobs", "[=md]", print_knobs,
+             "instead: every knob of a rung and every limit, as text or as docs/knobs.md"),
+    MASU_LADDER_ROW(masu_plan_options, ladder, "1, 0.8 and 0.4 of the size (default off)"),
+    MASU_UINT(masu_plan_options, d.desc.frames_in_flight, "frames-in-flight", 1, MASU_MAX_FLIGHT,
+              "1 to 3 (default 2)"),
+    MASU_OWN("split-memory", NULL, read_split, "one block per memory role, even on unified memory"),
+    MASU_RAYS_ROW(masu_plan_options, rays),
+    MASU_FLAG(masu_plan_options, model, "model",
+              "compute each pass's bytes, operations, and least time on five classes of GPU instead"),
+    MASU_SIZE(masu_plan_options, drawn, "drawn",
+              "of --model: size of the frames that are counted (default: half of --size)"),
+    MASU_REAL(masu_plan_options, time, "time", "SECONDS", -1e9, 1e9,
+              "of --model: moment of the scene and its camera"),
+    MASU_FILE(masu_plan_options, csv, "csv", "FILE", "of --model: write every pass of every rung"),
+    MASU_FILE(masu_plan_options, fragment, "html-fragment", "FILE",
+              "of --model: write the tables as one <section> of XHTML"),
+    MASU_DEVICE_ROWS(masu_plan_options, d.host),
+    {.name = NULL}};
+
+static int run(masu_cli *cli) {
+    static const char *const of_model[] = {"drawn", "time", "csv", "html-fragment", NULL};
+    static const char *const of_plan[] = {"json", "frames-in-flight", "split-memory", "rays", NULL};
+    masu_plan_options o = {.d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
+                                 .host = {.message = masu_print_message}},
+                           .time = 1.0};
+    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    if (!given.count) return masu_cli_usage_error("no scene is given");
+    o.d.scene_path = given.arguments[0];
+    const char *other = masu_first_given(&given, rows, o.model ? of_plan : of_model);
+    if (other) return masu_cli_usage_error("--%s is %s --model", other, o.model ? "not of" : "of");
+    return o.model ? masu_plan_model(&o) : plan(&o);
+}
 
 const masu_cli_command masu_cmd_plan = {
     .name = "plan",
-    .arguments = "SCENE.masu [options]",
+    .arguments = "SCENE.masu [--model] [options]",
     .summary = "print a scene's passes, images, memory, and what was left out",
-    .options = options,
+    .details = "--model draws each rung with counters in all shaders, and divides what is counted by what\n"
+               "GPUs of five classes can do. All times are computed: no GPU of these classes is needed or\n"
+               "asked.\n",
     .run = run};

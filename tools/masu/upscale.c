@@ -1,6 +1,7 @@
 /* upscale.c: `masu upscale`: anti-aliasing and FSR1 on a PNG, by exactly the passes that a frame ends
  * with. */
 #include "masu/cmd.h"
+#include "masu/options.h"
 
 #include "image.h"
 
@@ -8,14 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    OPTION_OUTPUT = 1,
-    OPTION_SIZE,
-    OPTION_SHARPNESS,
-    OPTION_NO_RCAS,
-    OPTION_EASU,
-    OPTION_AA
-};
+typedef struct options {
+    masu_session_desc d;
+    const char *output;
+    bool no_rcas;
+} options;
 
 /* Runs the passes over `rgba` and leaves the result in the session's target. */
 static bool upscale(const masu_session_desc *given, const uint8_t *rgba, uint32_t width,
@@ -110,69 +108,49 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
     return code;
 }
 
-static int run(masu_cli *cli) {
-    masu_session_desc d = {
-        .desc = {.targets = {.storage = 1}, .rung_count = 1, .rungs = {{.sharpness = 0.2f}}}};
-    masu_rung *rung = &d.desc.rungs[0];
-    const char *files[2] = {NULL, NULL};
-    rung->upscale = MASU_ON;
-    rung->sharpen = MASU_ON;
-    for (;;) {
-        int id = masu_cli_next(cli);
-        if (masu_device_option(cli, id, &d.host)) continue;
-        switch (id) {
-        case OPTION_OUTPUT:
-            if (!masu_output_file(cli, &files[1])) return cli->exit_code;
-            continue;
-        case OPTION_SIZE:
-            if (!masu_output_size(cli, &d.desc.output)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_SHARPNESS:
-            if (!masu_knob_option(cli, "sharpness", rung)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_AA:
-            if (!masu_knob_option(cli, "aa", rung)) return MASU_CLI_USAGE;
-            continue;
-        case OPTION_NO_RCAS: rung->sharpen = MASU_OFF; continue;
-        case OPTION_EASU:
-            if (!masu_knob_option(cli, "easu", rung)) return MASU_CLI_USAGE;
-            continue;
-        case MASU_CLI_ARGUMENT:
-            if (files[0] && files[1])
-                return masu_cli_usage_error("one input and one output: '%s'", cli->value);
-            files[files[0] ? 1 : 0] = cli->value;
-            continue;
-        case MASU_CLI_EXIT: return cli->exit_code;
-        default: break;
-        }
-        break;
-    }
-    if (!files[0] || !files[1])
-        return masu_cli_usage_error("an input and an output file are needed");
-    if (!d.desc.output.width && rung->aa <= MASU_AA_OFF)
-        return masu_cli_usage_error("--size WxH is needed");
-    d.host.message = masu_print_message;
-    return upscale_file(&d, files[0], files[1]);
-}
+/* ---- Command line ---------------------------------------------------------------------------- */
 
-static const masu_cli_option options[] = {
-    {"size", "WxH", "output size in pixels, at most 16384 a side and 64 Mi in all", OPTION_SIZE, 0},
-    {"sharpness", "STOPS", "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)",
-     OPTION_SHARPNESS, 0},
-    {"aa", "WAY", "first anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)", OPTION_AA, 0},
-    {"no-rcas", NULL, "EASU alone", OPTION_NO_RCAS, 0},
-    {"easu", "WAY",
-     "how to upscale:" MASU_EASU_WORDS(MASU_WORD_LIST) " (default full); fast looks at edges once,\n"
-     "bilinear is for comparison", OPTION_EASU, 0},
-    {"output", "FILE.png", "the output, instead of the second argument", OPTION_OUTPUT, 'o'},
-    MASU_DEVICE_OPTIONS,
-    {NULL, NULL, NULL, 0, 0}};
+static const masu_option rows[] = {
+    MASU_OUTPUT_SIZE_ROW(options, d.desc.output),
+    MASU_KNOB(options, d.desc.rungs[0], "sharpness", "STOPS", "sharpness",
+              "RCAS strength: 0 is sharpest, each stop halves it (default 0.2)"),
+    MASU_KNOB(options, d.desc.rungs[0], "aa", "WAY", "aa",
+              "first anti-aliasing:" MASU_AA_WORDS(MASU_WORD_LIST) " (default off)"),
+    MASU_FLAG(options, no_rcas, "no-rcas", "EASU alone"),
+    MASU_KNOB(options, d.desc.rungs[0], "easu", "WAY", "easu",
+              "how to upscale:" MASU_EASU_WORDS(MASU_WORD_LIST) " (default full); fast looks at edges\n"
+              "once, bilinear is for comparison"),
+    {MASU_ROW(options, output, MASU_TAKE_FILE, "output", "FILE.png",
+              "the output, instead of the second argument"),
+     .letter = 'o'},
+    MASU_DEVICE_ROWS(options, d.host),
+    {.name = NULL}};
+
+static int run(masu_cli *cli) {
+    options o = {.d = {.desc = {.targets = {.storage = 1},
+                                .rung_count = 1,
+                                .rungs = {{.upscale = MASU_ON,
+                                           .sharpen = MASU_ON,
+                                           .sharpness = 0.2f}}},
+                       .host = {.message = masu_print_message}}};
+    masu_rung *rung = &o.d.desc.rungs[0];
+    masu_given given = {.most = 2, .excess = "one input and one output"};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    const char *to = o.output ? o.output : given.arguments[1];
+    if (o.output && given.count > 1)
+        return masu_cli_usage_error("one input and one output: '%s'", given.arguments[1]);
+    if (!given.count || !to) return masu_cli_usage_error("an input and an output file are needed");
+    if (!o.d.desc.output.width && rung->aa <= MASU_AA_OFF)
+        return masu_cli_usage_error("--size WxH is needed");
+    if (o.no_rcas) rung->sharpen = MASU_OFF;
+    return upscale_file(&o.d, given.arguments[0], to);
+}
 
 const masu_cli_command masu_cmd_upscale = {
     .name = "upscale",
     .arguments = "IN.png OUT.png --size WxH|--aa WAY [options]",
     .summary = "upscale a picture by FSR1 (EASU, RCAS), smooth its edges by SMAA",
-    .options = options,
     .details = "The picture is taken as it is: already display-encoded (sRGB), as FSR1 wants it. "
                "Alpha goes through the\n"
                "same passes as a picture of its own. With --aa and no other --size than the picture's "

@@ -1,4 +1,4 @@
-/* write.h: `masu model`: the sheet made (count.h, sheet.h) and written, as
+/* write.h: `masu plan --model`: the sheet made (count.h, sheet.h) and written, as
  * text, as CSV, and as a part of an XHTML page. Each says that it is computed. */
 #ifndef MASU_MODEL_WRITE_H
 #define MASU_MODEL_WRITE_H

@@ -2,7 +2,7 @@
  * one face. Those of others see what they see at home: a time per frame, and not at which scale
  * it was measured. Their scales are continuous and are snapped to the ladder, so that changes
  * mean the same. */
-#include "simulate/plant.h"
+#include "simulate/simulate.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,15 +10,15 @@
 /* ---- Ours
  * -------------------------------------------------------------------------------------- */
 
-static void masu_init_state(plant_state *s, const masu_governor_rung *ladder, uint32_t rungs,
+static void masu_init_state(sim_state *s, const masu_governor_rung *ladder, uint32_t rungs,
                             double budget) {
     const masu_governor_desc desc = {.mode = MASU_GOVERNOR_ON, .target_ms = (float)budget};
     masu_governor_init(&s->governor, &desc, ladder, rungs);
 }
-static void masu_take(plant_state *s, const masu_governor_sample *k) {
+static void masu_take(sim_state *s, const masu_governor_sample *k) {
     masu_governor_sample_in(&s->governor, k);
 }
-static uint32_t masu_choose(plant_state *s, uint64_t frame, double *scale) {
+static uint32_t masu_choose(sim_state *s, uint64_t frame, double *scale) {
     (void)scale;
     return masu_governor_pick(&s->governor, frame);
 }
@@ -28,7 +28,7 @@ static uint32_t masu_choose(plant_state *s, uint64_t frame, double *scale) {
 
 #define OWN_SCALE UINT32_MAX
 
-static void rival_init(plant_state *s, const masu_governor_rung *ladder, uint32_t rungs,
+static void rival_init(sim_state *s, const masu_governor_rung *ladder, uint32_t rungs,
                        double budget) {
     (void)ladder, (void)rungs;
     memset(s, 0, sizeof *s);
@@ -46,16 +46,16 @@ static double snap(double scale) {
 
 /* Three scales; every third frame the last time decides: over 16.67 ms one down, below 11.11 ms one
  * up (the rule of the seed's F0V2, which begins at 0.8). */
-static void three_init(plant_state *s, const masu_governor_rung *ladder, uint32_t rungs,
+static void three_init(sim_state *s, const masu_governor_rung *ladder, uint32_t rungs,
                        double budget) {
     rival_init(s, ladder, rungs, budget);
     s->rival.settings = 1;
 }
-static void three_take(plant_state *s, const masu_governor_sample *k) {
+static void three_take(sim_state *s, const masu_governor_sample *k) {
     s->rival.level = plain_time(k);
     s->rival.count++;
 }
-static uint32_t three_choose(plant_state *s, uint64_t frame, double *scale) {
+static uint32_t three_choose(sim_state *s, uint64_t frame, double *scale) {
     static const double scales[] = {1.0, 0.8, 0.4};
     if (frame % 3 == 0 && s->rival.count) {
         if (s->rival.level > s->rival.budget && s->rival.settings < 2)
@@ -79,7 +79,7 @@ static double median(const double *values, uint32_t n) {
 
 /* Filament: median of 15 times, a PID with dead band whose output changes the area (View.cpp,
  * FrameInfo.cpp: the constants). Its scale ends at 0.5 at home, at 0.4 here. */
-static void filament_take(plant_state *s, const masu_governor_sample *k, double headroom) {
+static void filament_take(sim_state *s, const masu_governor_sample *k, double headroom) {
     double ms = plain_time(k);
     if (!(ms > 0.0)) return;
     s->rival.history[s->rival.count++ % 15] = ms;
@@ -95,13 +95,13 @@ static void filament_take(plant_state *s, const masu_governor_sample *k, double 
     if (scale < 0.4 || scale > 1.0) s->rival.integral -= error; /* frozen at the ends */
     s->rival.scale = fmax(fmin(scale, 1.0), 0.4);
 }
-static void filament_take_0(plant_state *s, const masu_governor_sample *k) {
+static void filament_take_0(sim_state *s, const masu_governor_sample *k) {
     filament_take(s, k, 0.0);
 }
-static void filament_take_10(plant_state *s, const masu_governor_sample *k) {
+static void filament_take_10(sim_state *s, const masu_governor_sample *k) {
     filament_take(s, k, 0.1);
 }
-static uint32_t rival_choose(plant_state *s, uint64_t frame, double *scale) {
+static uint32_t rival_choose(sim_state *s, uint64_t frame, double *scale) {
     (void)frame;
     *scale = snap(s->rival.scale);
     return OWN_SCALE;
@@ -110,7 +110,7 @@ static uint32_t rival_choose(plant_state *s, uint64_t frame, double *scale) {
 /* Unreal: mean of 16 times with weights 0.9^age, 10 % headroom, at least 8 frames between changes,
  * changes under 2 % left out, rises by 0.9 of the way, panic after two frames over the budget
  * (DynamicResolution.cpp, DynamicRenderScaling.h: the constants). The model is time ~ area. */
-static void unreal_take(plant_state *s, const masu_governor_sample *k) {
+static void unreal_take(sim_state *s, const masu_governor_sample *k) {
     double ms = plain_time(k);
     if (!(ms > 0.0)) return;
     s->rival.history[s->rival.count++ % 16] = ms;
@@ -134,10 +134,10 @@ static void unreal_take(plant_state *s, const masu_governor_sample *k) {
     s->rival.held = s->rival.count = s->rival.over = 0; /* times of the old scale count no more */
 }
 
-const plant_controller plant_controllers[] = {
+const sim_controller sim_controllers[] = {
     {"masu", masu_init_state, masu_take, masu_choose},
     {"three_state", three_init, three_take, three_choose},
     {"filament", rival_init, filament_take_0, rival_choose},
     {"filament_10", rival_init, filament_take_10, rival_choose},
     {"unreal", rival_init, unreal_take, rival_choose}};
-const uint32_t plant_controller_count = sizeof plant_controllers / sizeof *plant_controllers;
+const uint32_t sim_controller_count = sizeof sim_controllers / sizeof *sim_controllers;

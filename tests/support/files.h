@@ -1,0 +1,39 @@
+/* files.h: files and folders of tests: a scratch folder for a group, what is written to it and read
+ * back, programs run in a shell, scenes baked from a text. Whatever goes wrong fails the test. */
+#ifndef SUPPORT_FILES_H
+#define SUPPORT_FILES_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/* The scratch folder. make_scratch gives a new one; as the set-up of a group, or of each test. */
+extern char scratch[];
+int make_scratch(void **state);
+int remove_scratch(void **state);
+int remove_empty_scratch(void **state); /* fails if anything is left in it */
+
+/* Path of a file in it; static storage, four names at a time. */
+const char *in_scratch(const char *name);
+
+/* Writes a file to it; returns its path, as in_scratch does. */
+const char *write_bytes(const char *name, const void *bytes, size_t count);
+const char *write_text(const char *name, const char *text);
+bool is_in_scratch(const char *name);
+
+/* A whole file, aligned as masu_scene_bind wants it, with a 0 behind it; free(). bytes may be NULL. */
+void *read_file(const char *path, size_t *bytes);
+
+/* $BUILD, or build; $CC, or cc. */
+const char *build_dir(void);
+const char *c_compiler(void);
+
+/* Runs a command; returns its exit code. */
+int shell(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int shell_list(const char *format, va_list arguments);
+
+/* Bakes a scene description to NAME.masu of the scratch folder. */
+void bake_scene(const char *name, const char *json);
+const char *baked_scene(const char *name); /* its path; static storage, four names at a time */
+
+#endif

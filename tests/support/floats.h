@@ -1,0 +1,36 @@
+/* floats.h: floats and their bits, and halves as the images of a frame hold them. */
+#ifndef SUPPORT_FLOATS_H
+#define SUPPORT_FLOATS_H
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* A float of 16 bits; NaN and infinities as such. */
+static inline double half_float(uint16_t half) {
+    int exponent = half >> 10 & 31, mantissa = half & 1023;
+    double v = exponent == 31 ? (mantissa ? (double)NAN : (double)INFINITY)
+               : exponent     ? ldexp(mantissa + 1024, exponent - 25)
+                              : ldexp(mantissa, -24);
+    return half & 0x8000 ? -v : v;
+}
+
+/* All channels of a picture of halves. */
+static inline void floats_of_halves(const void *halves, float *out, size_t count) {
+    for (size_t i = 0; i < count; i++) out[i] = (float)half_float(((const uint16_t *)halves)[i]);
+}
+
+static inline float float_of_bits(uint32_t bits) {
+    float f;
+    memcpy(&f, &bits, sizeof f);
+    return f;
+}
+
+static inline uint32_t bits_of_float(float f) {
+    uint32_t bits;
+    memcpy(&bits, &f, sizeof bits);
+    return bits;
+}
+
+#endif

@@ -1,0 +1,50 @@
+/* render.h: what `masu render` is asked for and what it measures; render.c draws, render_stats.c tells. */
+#ifndef MASU_CMD_RENDER_H
+#define MASU_CMD_RENDER_H
+
+#include "masu/cmd.h"
+
+/* Options that turn one knob of every rung; those that are not given leave it as the ladder has it. */
+typedef struct masu_turned {
+    bool march_given, cull_given, lod_given, aa_given;
+    uint32_t cull;
+    masu_rung to;
+} masu_turned;
+
+typedef struct masu_render_options {
+    masu_session_desc d;
+    masu_turned turned;
+    const char *output, *stats, *times, *ladder;
+    double target_ms; /* of the governor; 0: there is none */
+    uint32_t frames, rung, ray_way, tone;
+    uint32_t rays;      /* per pixel of the reference, a frame each; 0: no reference */
+    uint32_t positions; /* of each pixel in the truth; 0: no truth */
+    double time, time_step;
+    double sun[2], turbidity; /* azimuth and elevation, degrees */
+    double exposure;          /* 0: the scene's */
+    double anisotropy;
+    bool own_sun, casters, poison, split, dither;
+} masu_render_options;
+
+/* One measured frame. */
+typedef struct masu_sample {
+    double wall_ms, gpu_ms;
+    uint32_t rung;
+    const char *reason; /* of the governor */
+    double pass_ms[MASU_MAX_PASSES];
+    uint64_t library_allocs, driver_allocs, driver_callbacks;
+} masu_sample;
+
+/* --stats: JSON of `n` samples and the last frame's counts. An exit code. */
+int masu_render_stats(const masu_session *s, const masu_render_options *o, const masu_sample *samples,
+                      uint32_t n, const masu_stats_info *last);
+
+/* --times: a row of CSV for each frame. An exit code. */
+int masu_render_times(const masu_session *s, const masu_render_options *o,
+                      const masu_sample *samples);
+
+/* What the governor has seen and done, to stdout. */
+void masu_render_governor(const masu_session *s, const masu_render_options *o,
+                          const masu_sample *samples, const masu_governor_info *g);
+
+#endif
