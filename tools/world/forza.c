@@ -12,8 +12,8 @@
  *            from above ("high"): their times are printed */
 #include "world/world.h"
 
-#include "bake/scene/file.h"
-#include "bake/scene/import.h"
+#include "bake/base/file.h"
+#include "bake/import/import.h"
 #include "cli/cli.h"
 
 #include <math.h>
@@ -115,8 +115,7 @@ static ground triangles_of(const masu_bake_content *piece) {
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_INSTANCES); i++) {
         const masu_blob_instance *n = &MASU_BAKE_INSTANCES(piece)[i];
         const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(piece)[n->mesh];
-        masu_bake_affine a;
-        for (int k = 0; k < 12; k++) a.m[k] = (double)n->transform[k];
+        masu_bake_affine a = masu_bake_transform(n);
         for (uint32_t j = 0; j < mesh->primitive_count; j++) {
             const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(piece)[mesh->first_primitive + j];
             for (uint32_t k = 0; k < p->index_count; k++) {

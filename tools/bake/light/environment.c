@@ -7,16 +7,16 @@
  * Sampling, EGSR 2008), so that a bright spot is neither missed nor hit alone. */
 #include "bake/light/environment.h"
 
-#include "bake/scene/file.h"
+#include "bake/base/file.h"
 #include "cli/cli.h"
 #include "image.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define SAMPLES 512
-#define SIZE_DEFAULT 256
 #define BYTES_MAX (512u * 1024u * 1024u)
 #define RADIANCE_MAX 65408.0 /* of 9995 texels */
 #define PI MASU_BAKE_PI
@@ -441,40 +441,4 @@ void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
     }
     masu_bake_append(&content->section[MASU_BLOB_ENVIRONMENT_MAP], &map, sizeof map);
     for (uint32_t i = 0; i < source.levels; i++) free(source.level[i]);
-}
-
-/* ---- JSON ------------------------------------------------------------------------------------ */
-
-bool masu_bake_read_environment(const masu_bake_json *scene, const char *directory,
-                                masu_bake_content *content) {
-    static const char *const members[] = {"file", "rotate", "scale", "size", NULL};
-    masu_bake_json at = masu_bake_json_member(scene, "environment");
-    const char *file = NULL;
-    double rotate = 0, scale = 1, size = SIZE_DEFAULT;
-    if (!at.value) return true;
-    if (!masu_bake_json_object(&at, members) || !masu_bake_json_string(&at, "file", &file) ||
-        !masu_bake_json_number(&at, "rotate", -360, 360, &rotate) ||
-        !masu_bake_json_number(&at, "scale", 1e-6, 1e6, &scale) ||
-        !masu_bake_json_number(&at, "size", 8, 1024, &size)) {
-        return false;
-    }
-    if (!file) return masu_bake_json_wrong(&at, "needs \"file\"");
-    if (masu_bake_json_has(scene, "sky") || masu_bake_json_has(scene, "ambient"))
-        return masu_bake_json_wrong(&at, "is sky and ambient light: without \"sky\" and \"ambient\"");
-    uint32_t edge = (uint32_t)size;
-    if (edge != size || (edge & (edge - 1))) {
-        masu_bake_json where = masu_bake_json_member(&at, "size");
-        return masu_bake_json_wrong(&where, "expected a power of two");
-    }
-    char *path = NULL;
-    masu_bake_panorama p;
-    if (file[0] != '/' && strcmp(directory, ".") != 0) path = masu_bake_join(directory, file);
-    bool good = masu_bake_load_panorama(path ? path : file, &p);
-    free(path);
-    if (!good) return false;
-    p.turn = rotate * (PI / 180);
-    p.factor = scale;
-    masu_bake_add_environment(&p, edge, content);
-    free(p.rgb);
-    return true;
 }

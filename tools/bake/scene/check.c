@@ -1,7 +1,7 @@
 /* check.c: what another process has handed over, checked before any of its indices is
  * followed. The rules are those of blob.h for geometry, instances and materials; the finished scene
  * is judged by the runtime's own reader, masu_scene_bind. */
-#include "bake/scene/content.h"
+#include "bake/scene/check.h"
 #include "frame/lights.h"
 
 static bool finite_all(const float *values, size_t count) {

@@ -49,13 +49,16 @@ static uint32_t tag_of(masu_bake_content *content, const char *path, size_t leng
     return count;
 }
 
-uint32_t masu_bake_group(masu_bake_content *content, const char *path) {
+bool masu_bake_group_path(const char *path) {
     uint32_t levels = 1;
     for (const char *c = path; *c; c++) {
-        if (*c == '/' && (c == path || c[1] == '/' || !c[1])) return MASU_BLOB_NONE;
+        if (*c == '/' && (c == path || c[1] == '/' || !c[1])) return false;
         levels += *c == '/';
     }
-    if (!*path || levels > MASU_BAKE_GROUP_LEVELS) return MASU_BLOB_NONE;
+    return *path && levels <= MASU_BAKE_GROUP_LEVELS;
+}
+
+uint32_t masu_bake_group(masu_bake_content *content, const char *path) {
     uint32_t tag = MASU_BLOB_NONE;
     for (const char *c = path;; c++) {
         if (*c == '/' || !*c) tag = tag_of(content, path, (size_t)(c - path), tag);

@@ -1,8 +1,8 @@
 /* sdf.c: compiling the scene's march shader; see sdf.h. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/shader/sdf.h"
-#include "bake/scene/file.h"
-#include "bake/scene/process.h"
+#include "bake/base/file.h"
+#include "bake/base/process.h"
 #include "bake/shader/try.h"
 #include "cli/cli.h"
 #include "scene_sources.h"
