@@ -71,9 +71,8 @@ static bool build_scene(const masu_bake_description *d, const masu_bake_options 
     }
     masu_bake_build_look(&d->look, &bounds, content);
     if (!add_environment_map(&d->environment, content)) return false;
-    return !d->sdf.source ||
-           masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
-                                   d->reflections.wanted, options->variants);
+    return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
+                                                     d->reflections.wanted, options->variants);
 }
 
 static bool build_probes(const masu_bake_description *d, const masu_bake_options *options,

@@ -109,8 +109,8 @@ static uint32_t element_of(masu_bake_content *content, const masu_blob_meso *m) 
 
 /* The changes, with the numbers that their pictures and curves have in the scene. */
 static masu_bake_overrides settle(store *s, const masu_bake_model *model) {
-    masu_bake_overrides out = {
-        masu_bake_take(&s->pool, model->change_count * sizeof *out.items), model->change_count};
+    masu_bake_overrides out = {masu_bake_take(&s->pool, model->change_count * sizeof *out.items),
+                               model->change_count};
     for (size_t i = 0; i < out.count; i++) {
         const masu_bake_material_change *change = &model->changes[i];
         masu_bake_override *o = &out.items[i];
@@ -210,10 +210,9 @@ static bool add_occluder(const store *s, const masu_bake_model *model, uint64_t 
         if (model->hides == MASU_BAKE_HIDES_WHOLE && !masu_bake_is_box(content, mesh, &box)) {
             char where[160];
             snprintf(where, sizeof where, "%s.occluder", model->where);
-            return masu_bake_wrong(s->description, where,
-                                   "the mesh \"%s\" is no box: give two corners",
-                                   masu_bake_name_text(content,
-                                                       MASU_BAKE_MESHES(content)[mesh].name));
+            return masu_bake_wrong(
+                s->description, where, "the mesh \"%s\" is no box: give two corners",
+                masu_bake_name_text(content, MASU_BAKE_MESHES(content)[mesh].name));
         }
         (void)masu_bake_add_occluder(content, mesh, box); /* it may have it already */
     }

@@ -20,7 +20,7 @@
 #include "bake/light/probes.h"
 #include "bake/mesh/bvh.h"
 #include "bake/mesh/shape.h"
-#include "bake/options.h"
+#include "bake/description/options.h"
 #include "bake/scene/piece.h"
 #include "bake/shader/sdf.h"
 
@@ -35,12 +35,17 @@ typedef struct masu_bake_material_change {
 
 /* What the longest side of the model's box is scaled to, and where the box goes. */
 typedef struct masu_bake_fit {
-    bool wanted, center, base; /* the box's centre, or the middle of its lower face, comes to `at` */
-    double size;               /* metres; 0: as it is */
+    bool wanted, center,
+        base;    /* the box's centre, or the middle of its lower face, comes to `at` */
+    double size; /* metres; 0: as it is */
     masu_bake_vec3 at;
 } masu_bake_fit;
 
-typedef enum masu_bake_hides { MASU_BAKE_HIDES_NOTHING, MASU_BAKE_HIDES_WHOLE, MASU_BAKE_HIDES_BOX } masu_bake_hides;
+typedef enum masu_bake_hides {
+    MASU_BAKE_HIDES_NOTHING,
+    MASU_BAKE_HIDES_WHOLE,
+    MASU_BAKE_HIDES_BOX
+} masu_bake_hides;
 
 typedef struct masu_bake_model {
     const char *where; /* in the description, for errors: "models[3]"; "": the whole of it */
@@ -49,8 +54,8 @@ typedef struct masu_bake_model {
     const char *name;  /* before the instances' names, or NULL */
     const char *group; /* "outer/inner", or NULL */
     bool moving;
-    double merge;  /* cell size, metres; 0: as the file has it */
-    double lights; /* factor of its lights' colours; 0: without them */
+    double merge;               /* cell size, metres; 0: as the file has it */
+    double lights;              /* factor of its lights' colours; 0: without them */
     masu_bake_affine placement; /* scale and rotation, before the fit */
     masu_bake_fit fit;
     masu_bake_vec3 translation;

@@ -33,10 +33,21 @@ const char *masu_bake_model_path(const masu_bake_reader *r, const char *name) {
 /* ---- the scene ---- */
 
 static bool read_members(const masu_bake_json *scene, masu_bake_reader *r) {
-    static const char *const members[] = {"models",    "camera", "sun",      "ambient",
-                                          "sky",       "fog",    "exposure", "sdf",
-                                          "lods",      "occluders", "probes", "lights",
-                                          "ambient_occlusion", "environment", "reflections",
+    static const char *const members[] = {"models",
+                                          "camera",
+                                          "sun",
+                                          "ambient",
+                                          "sky",
+                                          "fog",
+                                          "exposure",
+                                          "sdf",
+                                          "lods",
+                                          "occluders",
+                                          "probes",
+                                          "lights",
+                                          "ambient_occlusion",
+                                          "environment",
+                                          "reflections",
                                           NULL};
     if (!masu_bake_json_object(scene, members) || !masu_bake_read_detail(scene, r) ||
         !masu_bake_read_probes(scene, r) || !masu_bake_read_reflections(scene, r) ||

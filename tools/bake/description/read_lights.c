@@ -66,7 +66,8 @@ static bool read_light(const masu_bake_json *at, masu_bake_reader *r, masu_bake_
     if (!masu_bake_json_has(at, "position")) return masu_bake_json_wrong(at, "needs \"position\"");
     color = masu_bake_v3(color.x * intensity, color.y * intensity, color.z * intensity);
     if (fmax(color.x, fmax(color.y, color.z)) > MASU_BAKE_LIGHT_COLOR_MAX)
-        return masu_bake_json_wrong(at, "color times intensity is above %g", MASU_BAKE_LIGHT_COLOR_MAX);
+        return masu_bake_json_wrong(at, "color times intensity is above %g",
+                                    MASU_BAKE_LIGHT_COLOR_MAX);
     double range = masu_bake_light_range(color);
     if (!masu_bake_json_number(at, "range", 0, 1e9, &range)) return false;
     masu_bake_store(position, light.position);

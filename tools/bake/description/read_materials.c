@@ -152,8 +152,7 @@ static bool read_meso(const masu_bake_json *material, masu_bake_reader *r,
     if (!at.value) return true;
     if (!json_is_string(at.value)) return read_curves(&at, &change->meso);
     masu_bake_json file = {.file = masu_bake_path(r, json_string_value(at.value))};
-    bool good =
-        masu_bake_json_load(file.file, &file.value) && read_curves(&file, &change->meso);
+    bool good = masu_bake_json_load(file.file, &file.value) && read_curves(&file, &change->meso);
     if (file.value) json_decref(file.value);
     return good;
 }
@@ -163,18 +162,13 @@ static bool read_meso(const masu_bake_json *material, masu_bake_reader *r,
 static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
                         masu_bake_material_change *change) {
     masu_bake_override *out = &change->value;
-    static const char *const members[] = {"base_color",     "roughness",
-                                          "metallic",       "emissive",
-                                          "alpha",          "base_color_map",
-                                          "normal_map",     "roughness_map",
-                                          "metallic_map",   "emissive_map",
-                                          "opacity_map",    "surface_map",
-                                          "alpha_cutoff",   "occlusion_map",
-                                          "specular",       "coat",
-                                          "coat_roughness", "detail",
-                                          "match",          "opacity",
-                                          "blend",          "meso",
-                                          NULL};
+    static const char *const members[] = {
+        "base_color",     "roughness",      "metallic",    "emissive",
+        "alpha",          "base_color_map", "normal_map",  "roughness_map",
+        "metallic_map",   "emissive_map",   "opacity_map", "surface_map",
+        "alpha_cutoff",   "occlusion_map",  "specular",    "coat",
+        "coat_roughness", "detail",         "match",       "opacity",
+        "blend",          "meso",           NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
@@ -188,8 +182,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_number(at, "coat", 0, 1, &coat) ||
         !masu_bake_json_number(at, "coat_roughness", 0, 1, &coat_roughness) ||
         !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
-        !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) ||
-        !read_meso(at, r, change) ||
+        !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
         return false;
     }

@@ -20,8 +20,8 @@ static bool read_sphere(const masu_bake_json *at, masu_bake_shape *out) {
     if (subdivisions != floor(subdivisions)) {
         return masu_bake_json_wrong(at, "subdivisions must be a whole number");
     }
-    *out = (masu_bake_shape){
-        MASU_BAKE_SPHERE, {radius, radius, radius}, (uint32_t)subdivisions, tile};
+    *out =
+        (masu_bake_shape){MASU_BAKE_SPHERE, {radius, radius, radius}, (uint32_t)subdivisions, tile};
     return true;
 }
 
@@ -147,8 +147,7 @@ static bool read_group(const masu_bake_json *model, masu_bake_reader *r, masu_ba
         return false;
     }
     if (!path) return true;
-    if (out->moving)
-        return masu_bake_json_wrong(model, "what is \"moving\" is in no \"group\"");
+    if (out->moving) return masu_bake_json_wrong(model, "what is \"moving\" is in no \"group\"");
     if (!masu_bake_group_path(path)) {
         masu_bake_json at = masu_bake_json_member(model, "group");
         return masu_bake_json_wrong(&at, "must be 1 to %u names with / between them",
@@ -212,10 +211,10 @@ static bool read_source(const masu_bake_json *model, masu_bake_reader *r, const 
 
 static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const json_t **written,
                        masu_bake_model *out) {
-    static const char *const members[] = {"file",   "mesh",     "name",  "group", "moving",
-                                          "translate", "rotate",   "rotate_y", "scale", "fit",
-                                          "material",  "materials", "occluder", "merge",
-                                          "lights",    "traced",   NULL};
+    static const char *const members[] = {"file",      "mesh",      "name",     "group", "moving",
+                                          "translate", "rotate",    "rotate_y", "scale", "fit",
+                                          "material",  "materials", "occluder", "merge", "lights",
+                                          "traced",    NULL};
     const char *name = NULL;
     out->where = masu_bake_take_text(&r->out->pool, model->where);
     out->lights = 1;
@@ -238,8 +237,7 @@ bool masu_bake_read_models(const masu_bake_json *scene, masu_bake_reader *r) {
     out->model_count = json_array_size(models.value);
     out->models = masu_bake_take(&out->pool, out->model_count * sizeof *out->models);
     out->shapes = masu_bake_take(&out->pool, out->model_count * sizeof *out->shapes);
-    const json_t **written =
-        masu_bake_take(&out->pool, out->model_count * sizeof *written);
+    const json_t **written = masu_bake_take(&out->pool, out->model_count * sizeof *written);
     for (size_t i = 0; i < out->model_count; i++) {
         masu_bake_json model = masu_bake_json_element(&models, i);
         if (!read_model(&model, r, written, &out->models[i])) return false;

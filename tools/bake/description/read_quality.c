@@ -86,10 +86,12 @@ bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_reader *r) {
     if (!probes.value) return true;
     s->wanted = true;
     return masu_bake_json_object(&probes, members) && read_bounds(&probes, s) &&
-           read_spacing(&probes, s) && masu_bake_json_whole(&probes, "rays", 16, 1u << 16, &s->rays) &&
+           read_spacing(&probes, s) &&
+           masu_bake_json_whole(&probes, "rays", 16, 1u << 16, &s->rays) &&
            masu_bake_json_whole(&probes, "bounces", 1, 32, &s->bounces) &&
            masu_bake_json_whole(&probes, "sky_bands", 1, 3, &s->sky_bands) &&
-           masu_bake_json_whole(&probes, "visibility", 0, MASU_PROBE_VISIBILITY_MAX, &s->visibility) &&
+           masu_bake_json_whole(&probes, "visibility", 0, MASU_PROBE_VISIBILITY_MAX,
+                                &s->visibility) &&
            masu_bake_json_number(&probes, "bias", 0, 1, &s->bias) && read_suns(&probes, s);
 }
 
@@ -101,16 +103,17 @@ bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reader *r
     masu_bake_json at = masu_bake_json_member(scene, "reflections");
     double side = out->texture_size;
     out->wanted = at.value != NULL;
-    bool good = !at.value || (masu_bake_json_object(&at, members) &&
-                         masu_bake_json_number(&at, "smallest", 0, 1e9, &out->smallest) &&
-                         masu_bake_json_number(&at, "cutoff", 0, 1, &out->cutoff) &&
-                         masu_bake_json_number(&at, "distance", 1e-3, 1e9, &out->distance) &&
-                         masu_bake_json_number(&at, "texture_size", 0, MASU_TRACE_TEXTURE_MAX, &side));
+    bool good =
+        !at.value || (masu_bake_json_object(&at, members) &&
+                      masu_bake_json_number(&at, "smallest", 0, 1e9, &out->smallest) &&
+                      masu_bake_json_number(&at, "cutoff", 0, 1, &out->cutoff) &&
+                      masu_bake_json_number(&at, "distance", 1e-3, 1e9, &out->distance) &&
+                      masu_bake_json_number(&at, "texture_size", 0, MASU_TRACE_TEXTURE_MAX, &side));
     uint32_t size = good ? (uint32_t)side : 0;
     if (good && ((double)size != side || size & (size - 1))) {
         masu_bake_json member = masu_bake_json_member(&at, "texture_size");
-        good = masu_bake_json_wrong(&member, "is %g, and must be 0 or a power of two up to %u", side,
-                                    MASU_TRACE_TEXTURE_MAX);
+        good = masu_bake_json_wrong(&member, "is %g, and must be 0 or a power of two up to %u",
+                                    side, MASU_TRACE_TEXTURE_MAX);
     }
     out->texture_size = size;
     return good;

@@ -121,8 +121,7 @@ bool masu_bake_read_sdf(const masu_bake_json *scene, masu_bake_reader *r) {
     masu_bake_json bounds = masu_bake_json_member(&sdf, "bounds");
     if (!masu_bake_json_object(&sdf, members) || !masu_bake_json_string(&sdf, "source", &source))
         return false;
-    if (!bounds.value)
-        return masu_bake_json_wrong(&sdf, "needs \"bounds\": [[x,y,z],[x,y,z]]");
+    if (!bounds.value) return masu_bake_json_wrong(&sdf, "needs \"bounds\": [[x,y,z],[x,y,z]]");
     if (!masu_bake_json_box(&bounds, &out->bounds) ||
         !masu_bake_json_number(&sdf, "lipschitz", 1e-3, 1e6, &out->lipschitz) ||
         !masu_bake_json_number(&sdf, "max_distance", 1e-3, 1e15, &out->max_distance) ||

@@ -37,7 +37,8 @@ static bool read_key(const masu_bake_json *at, double fov_y, masu_blob_camera_ke
     if (!masu_bake_json_has(at, "position") || !masu_bake_json_has(at, "target")) {
         return masu_bake_json_wrong(at, "needs \"position\" and \"target\"");
     }
-    *key = (masu_blob_camera_key){.time = (float)time, .fov_y = (float)(fov_y * (MASU_BAKE_PI / 180.0))};
+    *key = (masu_blob_camera_key){.time = (float)time,
+                                  .fov_y = (float)(fov_y * (MASU_BAKE_PI / 180.0))};
     masu_bake_store(position, key->position);
     masu_bake_store(target, key->target);
     if (memcmp(key->position, key->target, sizeof key->position) == 0) {
@@ -220,7 +221,8 @@ bool masu_bake_read_environment(const masu_bake_json *scene, masu_bake_reader *r
     }
     if (!file) return masu_bake_json_wrong(&at, "needs \"file\"");
     if (masu_bake_json_has(scene, "sky") || masu_bake_json_has(scene, "ambient"))
-        return masu_bake_json_wrong(&at, "is sky and ambient light: without \"sky\" and \"ambient\"");
+        return masu_bake_json_wrong(&at,
+                                    "is sky and ambient light: without \"sky\" and \"ambient\"");
     uint32_t edge = (uint32_t)size;
     if (edge != size || (edge & (edge - 1))) {
         masu_bake_json where = masu_bake_json_member(&at, "size");

@@ -21,21 +21,23 @@ static void report(masu_import *m) {
     if (m->texture_count) {
         m->textures.bytes -= 2; /* the last ", " */
         masu_bake_append(&m->textures, "", 1);
-        masu_import_format(w, "textures that nothing is made of: %s%s\n", (const char *)m->textures.data,
-                      m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
+        masu_import_format(w, "textures that nothing is made of: %s%s\n",
+                           (const char *)m->textures.data,
+                           m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
     }
     if (m->turned) {
         masu_import_format(w, "%u meshes have textures that are turned: they are not\n", m->turned);
     }
     if (m->unmapped) {
-        masu_import_format(w,
-                      "%u meshes have textures but no texture coordinates: they get the colour "
-                      "of one texel\n",
-                      m->unmapped);
+        masu_import_format(
+            w,
+            "%u meshes have textures but no texture coordinates: they get the colour "
+            "of one texel\n",
+            m->unmapped);
     }
     if (m->other_lights) {
         masu_import_format(w, "%u lights are neither points nor spots: there is nothing of them\n",
-                      m->other_lights);
+                           m->other_lights);
     }
     if (m->skins || m->source->mNumAnimations) {
         masu_bake_append_text(w, "animation is not supported, the rest pose is used\n");
@@ -143,10 +145,10 @@ void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_ba
     }
     const char *dot = strrchr(path, '.');
     masu_import m = {.source = scene,
-               .path = path,
-               .wanted = textures,
-               .piece = piece,
-               .gltf = dot && (!strcmp(dot, ".gltf") || !strcmp(dot, ".glb")),
-               .warnings = warnings};
+                     .path = path,
+                     .wanted = textures,
+                     .piece = piece,
+                     .gltf = dot && (!strcmp(dot, ".gltf") || !strcmp(dot, ".glb")),
+                     .warnings = warnings};
     convert(&m, error);
 }

@@ -13,7 +13,7 @@
 #ifndef MASU_BAKE_ASSIMP_H
 #define MASU_BAKE_ASSIMP_H
 
-#include "bake/import/import.h"
+#include "bake/import/model.h"
 
 #include <assimp/scene.h>
 
@@ -53,7 +53,7 @@ typedef struct masu_import {
     masu_bake_textures wanted;
     masu_bake_content *piece;
     masu_bake_buffer *warnings;
-    masu_blob_primitive *parts; /* primitives as converted, before meshes group them */
+    masu_blob_primitive *parts;    /* primitives as converted, before meshes group them */
     masu_import_range *mesh_parts; /* by aiMesh: its range of parts */
     bool *mesh_done, *mesh_used;
     masu_import_set **sets; /* by aiMesh: sets that begin with it */
@@ -87,9 +87,5 @@ void masu_import_report_losses(masu_import *m);
 bool masu_import_walk(masu_import *m, bool convert);
 /* A file may hold meshes and no nodes: each is then shown once, where it is. */
 void masu_import_show_all(masu_import *m);
-
-/* The child's part. Leaves warnings, one per line, and on failure an error. */
-void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_bake_content *piece,
-                          masu_bake_buffer *warnings, masu_bake_buffer *error);
 
 #endif

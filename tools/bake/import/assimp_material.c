@@ -140,7 +140,8 @@ static void convert_alpha(const struct aiMaterial *from, masu_bake_maps *maps) {
     double cutoff = 0.5;
     if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS) {
         mode.data[masu_import_length(&mode) < (int)sizeof mode.data ? masu_import_length(&mode)
-                                                               : (int)sizeof mode.data - 1] = 0;
+                                                                    : (int)sizeof mode.data - 1] =
+            0;
         maps->alpha = strcmp(mode.data, "MASK") == 0    ? MASU_BAKE_ALPHA_MASK
                       : strcmp(mode.data, "BLEND") == 0 ? MASU_BAKE_ALPHA_BLEND
                                                         : MASU_BAKE_ALPHA_OPAQUE;
@@ -264,8 +265,8 @@ static void convert_color(const struct aiMaterial *from, masu_blob_material *to,
         if (!linear && get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), diffuse) &&
             fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {
             for (int i = 0; i < 3; i++) {
-                to->base_color[i] =
-                    masu_import_clamped(decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
+                to->base_color[i] = masu_import_clamped(
+                    decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
             }
             return;
         }
@@ -296,7 +297,8 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
     if (get_factor(from, KEY(AI_MATKEY_METALLIC_FACTOR), &value)) {
         to->metallic = masu_import_clamped(value, 0, 1);
     }
-    if (get_factor(from, KEY(AI_MATKEY_CLEARCOAT_FACTOR), &value)) to->coat = masu_import_clamped(value, 0, 1);
+    if (get_factor(from, KEY(AI_MATKEY_CLEARCOAT_FACTOR), &value))
+        to->coat = masu_import_clamped(value, 0, 1);
     if (to->coat > 0 && get_factor(from, KEY(AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR), &value)) {
         to->coat_roughness = masu_import_clamped(value, 0, 1);
     }
@@ -323,7 +325,8 @@ uint32_t masu_import_material(masu_import *m, unsigned index) {
     masu_bake_maps maps = convert_maps(m, from);
     /* One number under two names in some formats, so not their product. */
     alpha = alpha < opacity ? alpha : opacity;
-    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK && alpha < 0.999) {
+    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK &&
+        alpha < 0.999) {
         maps.alpha = MASU_BAKE_ALPHA_BLEND;
         to.opacity = masu_import_clamped(alpha, 0, 1);
     }
@@ -331,7 +334,7 @@ uint32_t masu_import_material(masu_import *m, unsigned index) {
     struct aiString name = {0};
     aiGetMaterialString(from, AI_MATKEY_NAME, &name);
     name.data[masu_import_length(&name) < (int)sizeof name.data ? masu_import_length(&name)
-                                                           : (int)sizeof name.data - 1] = '\0';
+                                                                : (int)sizeof name.data - 1] = '\0';
     uint32_t result = masu_bake_mapped_material(m->piece, &to, &maps, name.data);
     m->material[index] = result + 1;
     return result;

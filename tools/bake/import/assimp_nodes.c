@@ -50,8 +50,9 @@ static uint32_t mesh_of(masu_import *m, const unsigned *meshes, unsigned count) 
     masu_import_set *g = masu_bake_allocate(sizeof *g);
     uint32_t to = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
     *g = (masu_import_set){meshes, count, 0, m->sets[first]};
-    g->mesh = masu_bake_mesh(m->piece, from, to - from,
-                             masu_bake_name(m->piece, name->data, (size_t)masu_import_length(name)));
+    g->mesh =
+        masu_bake_mesh(m->piece, from, to - from,
+                       masu_bake_name(m->piece, name->data, (size_t)masu_import_length(name)));
     m->sets[first] = g;
     return g->mesh;
 }
@@ -82,20 +83,24 @@ static bool convert_light(const struct aiLight *from, const struct aiNode *node,
     masu_bake_vec3 ahead = {(double)from->mDirection.x, (double)from->mDirection.y,
                             (double)from->mDirection.z};
     masu_bake_vec3 at = masu_bake_apply(space, own);
-    masu_bake_vec3 direction = masu_bake_sub(masu_bake_apply(space, masu_bake_mad(own, ahead, 1)), at);
+    masu_bake_vec3 direction =
+        masu_bake_sub(masu_bake_apply(space, masu_bake_mad(own, ahead, 1)), at);
     if (from->mType != aiLightSource_POINT && from->mType != aiLightSource_SPOT) return false;
     if (!masu_bake_sane(at)) return false;
     to->position[0] = (float)at.x, to->position[1] = (float)at.y, to->position[2] = (float)at.z;
-    for (int k = 0; k < 3; k++) to->color[k] = masu_import_clamped((double)color[k] / MASU_BAKE_PI, 0, 1e9);
+    for (int k = 0; k < 3; k++)
+        to->color[k] = masu_import_clamped((double)color[k] / MASU_BAKE_PI, 0, 1e9);
     to->radius = 0.01f;
     const struct aiMetadata *about = node->mMetaData;
-    for (unsigned i = 0; about && about->mKeys && about->mValues && i < about->mNumProperties; i++) {
+    for (unsigned i = 0; about && about->mKeys && about->mValues && i < about->mNumProperties;
+         i++) {
         const struct aiMetadataEntry *e = &about->mValues[i];
         if (masu_import_length(&about->mKeys[i]) != 14 || !e->mData ||
             memcmp(about->mKeys[i].data, "PBR_LightRange", 14) != 0) {
             continue;
         }
-        if (e->mType == AI_FLOAT) to->range = masu_import_clamped((double)*(const float *)e->mData, 0, 1e9);
+        if (e->mType == AI_FLOAT)
+            to->range = masu_import_clamped((double)*(const float *)e->mData, 0, 1e9);
     }
     if (from->mType == aiLightSource_POINT) return true;
     to->type = MASU_LIGHT_SPOT;
@@ -134,9 +139,8 @@ static void convert_lights(masu_import *m, const struct aiNode *node, const masu
 static bool make_instance(masu_import *m, const visit *v, const masu_bake_affine *world,
                           uint32_t *instance) {
     const struct aiNode *node = v->node;
-    uint32_t mesh = node->mMeshes && node->mNumMeshes
-                        ? mesh_of(m, node->mMeshes, node->mNumMeshes)
-                        : MASU_BLOB_NONE;
+    uint32_t mesh = node->mMeshes && node->mNumMeshes ? mesh_of(m, node->mMeshes, node->mNumMeshes)
+                                                      : MASU_BLOB_NONE;
     if (mesh == MASU_BLOB_NONE) return false;
     size_t length = (size_t)masu_import_length(&node->mName);
     uint32_t name = masu_bake_name(m->piece, node->mName.data, length);

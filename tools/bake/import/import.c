@@ -5,7 +5,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include "bake/import/import.h"
 #include "bake/base/process.h"
-#include "bake/import/assimp.h"
 #include "bake/scene/check.h"
 #include "cli/cli.h"
 
@@ -147,7 +146,7 @@ static bool readable(const char *path) {
 
 static bool receive(const char *path, masu_bake_textures textures, masu_bake_content *piece,
                     masu_bake_buffer *output, masu_bake_buffer *warnings, masu_bake_buffer *error) {
-    import wanted = {path, textures};
+import wanted = {path, textures };
     masu_bake_result result =
         masu_bake_fork(import_in_child, &wanted, MASU_BAKE_IMPORT_SECONDS, output);
     if (result.end != MASU_BAKE_EXITED || !take_piece(output, piece, warnings, error)) {

@@ -9,19 +9,11 @@
 #ifndef MASU_BAKE_IMPORT_H
 #define MASU_BAKE_IMPORT_H
 
-#include "bake/scene/content.h"
+#include "bake/import/model.h"
 
 #define MASU_BAKE_IMPORT_SECONDS 120
 /* Address space for importing, to which 16 times the file's size is added. */
 #define MASU_BAKE_IMPORT_MEMORY ((rlim_t)3 << 29)
-
-/* Whether texture coordinates and textures are wanted. FORCED: coordinates even where the file's
- * materials have no textures, because the scene gives some. */
-typedef enum masu_bake_textures {
-    MASU_BAKE_TEXTURES_WANTED,
-    MASU_BAKE_TEXTURES_FORCED,
-    MASU_BAKE_TEXTURES_OFF
-} masu_bake_textures;
 
 /* Fills `piece`. On false the error has been reported; losses are reported as warnings. */
 bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece);

@@ -224,8 +224,7 @@ uint32_t masu_bake_pack_9995(const double rgb[3]) {
 }
 
 void masu_bake_unpack_9995(uint32_t texel, double out[3]) {
-    for (uint32_t c = 0; c < 3; c++)
-        out[c] = ldexp(texel >> 9 * c & 511, (int)(texel >> 27) - 24);
+    for (uint32_t c = 0; c < 3; c++) out[c] = ldexp(texel >> 9 * c & 511, (int)(texel >> 27) - 24);
 }
 
 /* Across an edge of the square lies the same edge, the other way round. */
@@ -389,7 +388,7 @@ static void blur(const pyramid *p, const lobe_sample *lobe, uint32_t n, const do
 
 /* Irradiance / pi by the normal (Ramamoorthi and Hanrahan, SIGGRAPH 2001), over src/frame/sky.h's basis. */
 static void project(const masu_bake_panorama *p, float sh[9][4]) {
-    static const double scale[9] = {0.25,       0.5,        0.5,        0.5,     15.0 / 16,
+    static const double scale[9] = {0.25,      0.5,       0.5,      0.5,      15.0 / 16,
                                     15.0 / 16, 15.0 / 16, 5.0 / 64, 15.0 / 64};
     double sum[9][3] = {{0}}, light[3];
     for (uint32_t y = 0; y < p->height; y++) {
@@ -398,8 +397,14 @@ static void project(const masu_bake_panorama *p, float sh[9][4]) {
         for (uint32_t x = 0; x < p->width; x++) {
             double azimuth = p->turn + (0.5 - (x + 0.5) / p->width) * 2 * PI;
             const double d[3] = {flat * sin(azimuth), up, flat * cos(azimuth)};
-            const double basis[9] = {1,           d[0],        d[1],        d[2],
-                                     d[0] * d[1], d[1] * d[2], d[2] * d[0], 3 * up * up - 1,
+            const double basis[9] = {1,
+                                     d[0],
+                                     d[1],
+                                     d[2],
+                                     d[0] * d[1],
+                                     d[1] * d[2],
+                                     d[2] * d[0],
+                                     3 * up * up - 1,
                                      d[0] * d[0] - d[2] * d[2]};
             const float *pixel = p->rgb + 3 * ((size_t)y * p->width + x);
             for (uint32_t c = 0; c < 3; c++)

@@ -1,6 +1,6 @@
 /* bvh.c: see bvh.h. */
-#include "bake/base/process.h"
 #include "bake/mesh/bvh.h"
+#include "bake/base/process.h"
 
 #include "bake/texture/trace_texture.h"
 

@@ -154,9 +154,7 @@ void masu_bake_plane(masu_bake_content *piece, double size_x, double size_z, dou
 void masu_bake_make_shape(const masu_bake_shape *shape, bool mapped, masu_bake_content *piece) {
     double tile = mapped ? shape->tile : 0;
     switch (shape->kind) {
-    case MASU_BAKE_SPHERE:
-        masu_bake_sphere(piece, shape->size.x, shape->subdivisions, tile);
-        break;
+    case MASU_BAKE_SPHERE: masu_bake_sphere(piece, shape->size.x, shape->subdivisions, tile); break;
     case MASU_BAKE_BOX: masu_bake_cuboid(piece, shape->size, tile); break;
     case MASU_BAKE_PLANE: masu_bake_plane(piece, shape->size.x, shape->size.z, tile); break;
     }

@@ -25,7 +25,8 @@ typedef struct masu_bake_content {
     masu_bake_buffer image_text; /* their names, each with its NUL */
     masu_bake_buffer image_data; /* files that lie inside a model */
     float sdf_glossiest;         /* least roughness of the SDF's surfaces */
-    masu_bake_buffer traced;     /* what the scene says of the first so many instances: bake/mesh/bvh.h */
+    masu_bake_buffer
+        traced; /* what the scene says of the first so many instances: bake/mesh/bvh.h */
     /* Small pictures of the textures, where rays are traced: bake/texture/trace_texture.h. */
     masu_bake_buffer pictures;       /* masu_bake_trace_row */
     masu_bake_buffer picture_texels; /* uint32_t */
@@ -63,7 +64,7 @@ typedef struct masu_bake_maps {
     uint8_t alpha;                   /* MASU_BAKE_ALPHA_*; AUTO: the picture decides */
     uint8_t additive;                /* with ALPHA_BLEND: adds its light, hides nothing */
     uint8_t wrap[2];                 /* as in masu_blob_texture_set */
-    uint8_t reserved[4]; /* no padding: it is compared as bytes */
+    uint8_t reserved[4];             /* no padding: it is compared as bytes */
     float cutoff, normal_scale;
 } masu_bake_maps;
 

@@ -117,8 +117,8 @@ static void gather(builder *b, uint32_t count, size_t instances) {
         if (!used[g]) continue;
         for (size_t k = 0; k < b->own[g].count; k++) boxes[k] = b->things[b->own[g].first + k].box;
         range *own = &b->own[groups[g].reserved == MASU_BLOB_NONE ? count : groups[g].reserved];
-        b->things[own->first + own->count++] = (thing){
-            masu_cull_around(boxes, (uint32_t)b->own[g].count), 0, MASU_BLOB_NONE, g};
+        b->things[own->first + own->count++] =
+            (thing){masu_cull_around(boxes, (uint32_t)b->own[g].count), 0, MASU_BLOB_NONE, g};
     }
     free(boxes);
     free(used);
@@ -155,7 +155,7 @@ static size_t split(thing *things, size_t n, uint32_t level) {
     }
     for (size_t i = 0; i < n; i++) things[i].key = (double)things[i].box.center[axis];
     qsort(things, n, sizeof *things, by_key);
-    if (level >= MASU_CULL_DEPTH / 2) return n / 2; /* halves keep the tree shallow */
+    if (level >= MASU_CULL_DEPTH / 2) return n / 2;      /* halves keep the tree shallow */
     double *cost = masu_bake_allocate(n * sizeof *cost); /* of a split behind each thing */
     masu_cull_box grown[2] = {things[0].box, things[0].box};
     for (size_t i = 0; i < n; i++) {

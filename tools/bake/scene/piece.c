@@ -18,10 +18,10 @@ static bool same_override(const masu_bake_override *a, const masu_bake_override 
            x->roughness == y->roughness && x->metallic == y->metallic &&
            a->specular == b->specular && a->coat == b->coat &&
            a->coat_roughness == b->coat_roughness && x->specular == y->specular &&
-           x->coat == y->coat && x->coat_roughness == y->coat_roughness &&
-           a->meso == b->meso && x->meso == y->meso && a->opacity == b->opacity &&
-           x->opacity == y->opacity && a->detail == b->detail &&
-           memcmp(x->detail, y->detail, sizeof x->detail) == 0 && strcmp(a->match, b->match) == 0;
+           x->coat == y->coat && x->coat_roughness == y->coat_roughness && a->meso == b->meso &&
+           x->meso == y->meso && a->opacity == b->opacity && x->opacity == y->opacity &&
+           a->detail == b->detail && memcmp(x->detail, y->detail, sizeof x->detail) == 0 &&
+           strcmp(a->match, b->match) == 0;
 }
 
 bool masu_bake_overrides_equal(const masu_bake_overrides *a, const masu_bake_overrides *b) {
@@ -43,8 +43,7 @@ static bool matches(const masu_bake_content *piece, uint32_t index, const masu_b
     const char *name = masu_bake_name_text(piece, MASU_BAKE_MATERIALS(piece)[index].name);
     if (!*o->match || fnmatch(o->match, name, 0) == 0) return true;
     if (image == MASU_BLOB_NONE) return false;
-    const char *path =
-        (const char *)piece->image_text.data + MASU_BAKE_IMAGES(piece)[image].name;
+    const char *path = (const char *)piece->image_text.data + MASU_BAKE_IMAGES(piece)[image].name;
     return fnmatch(o->match, last_part(path), 0) == 0;
 }
 
@@ -230,7 +229,8 @@ void masu_bake_detach_lights(masu_bake_content *piece) {
     for (uint64_t i = 0; i < count; i++) {
         masu_blob_light light = lights[i];
         masu_bake_affine to = masu_bake_identity();
-        if (light.parent != MASU_BLOB_NONE) to = masu_bake_transform(&MASU_BAKE_INSTANCES(piece)[light.parent]);
+        if (light.parent != MASU_BLOB_NONE)
+            to = masu_bake_transform(&MASU_BAKE_INSTANCES(piece)[light.parent]);
         light.parent = MASU_BLOB_NONE;
         if (move(&light, &to)) lights[kept++] = light;
     }
@@ -244,7 +244,8 @@ const char *masu_bake_place_lights(masu_bake_content *scene, const masu_bake_con
         masu_blob_light light = MASU_BAKE_LIGHTS(piece)[i];
         light.name = copied_name(scene, piece, light.name, prefix);
         double color[3];
-        for (int k = 0; k < 3; k++) color[k] = fmin((double)light.color[k] * factor, MASU_BAKE_LIGHT_COLOR_MAX);
+        for (int k = 0; k < 3; k++)
+            color[k] = fmin((double)light.color[k] * factor, MASU_BAKE_LIGHT_COLOR_MAX);
         masu_bake_store(masu_bake_v3(color[0], color[1], color[2]), light.color);
         if (light.range == 0.0f)
             light.range = (float)masu_bake_light_range(masu_bake_v3f(light.color));

@@ -81,13 +81,12 @@ bool masu_bake_write_stats(const masu_bake_options *options, const masu_bake_con
         bounds =
             json_pack("[[f,f,f],[f,f,f]]", b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z);
     }
-    json_t *root =
-        json_pack("{s:s, s:I, s:I, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:f, s:I}", "input", options->input,
-                  "version", (json_int_t)header.version, "bytes", (json_int_t)header.bytes, "hash",
-                  hash, "triangles", (json_int_t)t.triangles, "drawn_triangles",
-                  (json_int_t)t.drawn_triangles, "warnings", (json_int_t)masu_cli_warnings(),
-                  "bounds", bounds, "sections", sections, "detail", detail_json(report),
-                  "seconds", seconds, "peak_bytes", (json_int_t)peak_memory());
+    json_t *root = json_pack(
+        "{s:s, s:I, s:I, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:f, s:I}", "input", options->input,
+        "version", (json_int_t)header.version, "bytes", (json_int_t)header.bytes, "hash", hash,
+        "triangles", (json_int_t)t.triangles, "drawn_triangles", (json_int_t)t.drawn_triangles,
+        "warnings", (json_int_t)masu_cli_warnings(), "bounds", bounds, "sections", sections,
+        "detail", detail_json(report), "seconds", seconds, "peak_bytes", (json_int_t)peak_memory());
     if (root && report->reflected)
         json_object_set_new(root, "reflections", reflections_json(&report->reflections));
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;

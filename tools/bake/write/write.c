@@ -40,9 +40,8 @@ bool masu_bake_write(const masu_bake_options *options, const masu_bake_content *
     masu_cli_progress("writing %s", options->output);
     bool good = accepted(options->input, &blob) &&
                 masu_bake_write_file(options->output, blob.data, blob.bytes) &&
-                (!options->stats ||
-                 masu_bake_write_stats(options, content, &blob, report,
-                                       masu_bake_seconds() - started));
+                (!options->stats || masu_bake_write_stats(options, content, &blob, report,
+                                                          masu_bake_seconds() - started));
     masu_cli_progress_clear();
     if (good && !masu_cli_quiet()) masu_bake_print_summary(options->output, content, blob.bytes);
     masu_bake_release(&blob);
