@@ -17,10 +17,10 @@
 #ifndef MASU_BAKE_DESCRIPTION_H
 #define MASU_BAKE_DESCRIPTION_H
 
+#include "bake/description/options.h"
 #include "bake/light/probes.h"
 #include "bake/mesh/bvh.h"
 #include "bake/mesh/shape.h"
-#include "bake/description/options.h"
 #include "bake/scene/piece.h"
 #include "bake/shader/sdf.h"
 

@@ -1,13 +1,15 @@
 /* content.h: a scene while it is being baked: one growing array per section of the blob.
  *
  * The same structure holds a whole scene, one imported model and one procedural shape. Pieces are
- * built apart (a model even in another process, see import.c), checked, and appended to the
+ * built apart (a model even in another process, see bake/import), checked, and appended to the
  * scene with a placement. Elements are the blob's own structs, so writing is copying.
  *
- *   content.c   the arrays, names, materials, appending a piece, order of instances
- *   bake/mesh/triangles.c      triangles of unknown quality -> welded vertices, normals, primitives
+ *   content.c   the arrays, names, materials, bounds, order of instances
+ *   piece.c     pieces placed in a scene, with what the scene changes of their materials
  *   check.c     the rules of blob.h, before a piece from another process is trusted
+ *   groups.c    what is culled together
  *
+ * Whoever declares a content owns it, and releases it.
  * Running out of memory ends the program with a message; nothing else here can fail unless it says
  * so. */
 #ifndef MASU_BAKE_CONTENT_H
