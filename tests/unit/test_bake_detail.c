@@ -15,9 +15,11 @@
 #include <cmocka.h>
 
 #include "bake/mesh/detail.h"
+#include "bake/mesh/triangles.h"
 #include "bake/mesh/occluders.h"
-#include "bake/scene/shape.h"
+#include "bake/mesh/shape.h"
 #include "bake/mesh/surface.h"
+#include "bake/scene/check.h"
 #include "support/random.h"
 
 typedef masu_bake_vec3 vec3;

@@ -13,8 +13,8 @@
 
 #include "bake/light/path.h"
 #include "bake/light/probes.h"
-#include "bake/scene/scene.h"
-#include "bake/scene/shape.h"
+#include "bake/build/look.h"
+#include "bake/mesh/shape.h"
 #include "bake/light/probe_light.h"
 #include "support/random.h"
 
@@ -49,7 +49,8 @@ static masu_bake_content room(bool wall) {
     if (wall) add_box(&c, V(-2, 0, -0.1), V(2, 3, 0.1), 0.7f, 0.7f, 0.7f, 0);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = masu_bake_bounds(&c, &identity);
-    masu_bake_default_look(&bounds, &c);
+    masu_bake_look look = masu_bake_default_look();
+    masu_bake_build_look(&look, &bounds, &c);
     masu_bake_sort_instances(&c);
     return c;
 }
@@ -140,7 +141,8 @@ static void nothing_in_the_way_leaves_the_sky(void **state) {
     add_box(&c, V(-1e-3, -1000, -1e-3), V(1e-3, -999.9, 1e-3), 1, 1, 1, 0);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = masu_bake_bounds(&c, &identity);
-    masu_bake_default_look(&bounds, &c);
+    masu_bake_look look = masu_bake_default_look();
+    masu_bake_build_look(&look, &bounds, &c);
     masu_bake_probe_settings s = settings(1);
     masu_bake_probe_report report;
     bake_room(&c, &s, &report);

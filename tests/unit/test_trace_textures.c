@@ -14,10 +14,10 @@
 
 #include <cmocka.h>
 
-#include "bake/scene/blob.h"
+#include "bake/write/blob.h"
 #include "bake/mesh/bvh.h"
-#include "bake/scene/scene.h"
-#include "bake/scene/shape.h"
+#include "bake/build/look.h"
+#include "bake/mesh/shape.h"
 #include "bake/texture/texture.h"
 #include "bake/texture/trace_texture.h"
 #include "masu.h"
@@ -88,7 +88,8 @@ static masu_bake_content make(uint32_t side) {
     add_plane(&c, image[UNSEEN], MASU_BLOB_NONE, MASU_BLOB_NONE, 6, false);
     masu_bake_affine identity = masu_bake_identity();
     masu_bake_box bounds = masu_bake_bounds(&c, &identity);
-    masu_bake_default_look(&bounds, &c);
+    masu_bake_look look = masu_bake_default_look();
+    masu_bake_build_look(&look, &bounds, &c);
     assert_true(masu_bake_make_textures(&c, NULL));
     masu_bake_sort_instances(&c);
     assert_true(masu_bake_make_bvh(&c, &wanted, &report));

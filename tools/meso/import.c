@@ -2,7 +2,7 @@
  * colours are taken, textures are not. */
 #include "meso/input.h"
 
-#include "bake/scene/import.h"
+#include "bake/import/import.h"
 #include "cli/cli.h"
 
 static void take_primitive(const masu_bake_content *piece, const masu_blob_primitive *p,
@@ -27,8 +27,7 @@ static void take_instance(const masu_bake_content *piece, uint64_t i, double sca
                           masu_bake_vec3 low, masu_meso_patch *patch) {
     const masu_blob_instance *instance = &MASU_BAKE_INSTANCES(piece)[i];
     const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(piece)[instance->mesh];
-    masu_bake_affine world;
-    for (int k = 0; k < 12; k++) world.m[k] = (double)instance->transform[k];
+    masu_bake_affine world = masu_bake_transform(instance);
     for (uint32_t j = 0; j < mesh->primitive_count; j++) {
         take_primitive(piece, &MASU_BAKE_PRIMITIVES(piece)[mesh->first_primitive + j], &world,
                        scale, low, patch);

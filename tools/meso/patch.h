@@ -15,7 +15,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "bake/scene/math.h"
+#include "bake/base/math.h"
 
 /* Bounds of what is taken: a period of 2048 x 2048 heights. */
 #define MASU_MESO_VERTICES_MAX (1u << 23)

@@ -33,7 +33,7 @@ typedef struct masu_meso_verdict {
     double filtered_mean[MASU_MESO_WAYS]; /* the same of the mean over all lights, signed */
     /* The same of CURVES for each of masu_meso_mip_size. */
     double mip_mean[MASU_MESO_MIPS];
-    double filtered_diffuse;              /* the same of CURVES without the specular terms */
+    double filtered_diffuse; /* the same of CURVES without the specular terms */
 } masu_meso_verdict;
 
 typedef struct masu_meso_bin {

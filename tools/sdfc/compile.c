@@ -116,6 +116,7 @@ static void compile(sdfc *c, uint32_t pairs, masu_sdfc_result *out) {
     for (int i = 0; i < 3 && c->anchored; i++) c->anchor_expr[i] = sdfc_anchor_expr(c, i);
     for (int i = 0; i < c->part_count; i++) sdfc_lower(c, &c->parts[i]);
     sdfc_group_parts(c);
+    sdfc_assign_slots(c);
     if (pairs != UINT32_MAX) sdfc_check(c, pairs ? pairs : 20000);
     sdfc_emit(c);
     fill_result(c, out);

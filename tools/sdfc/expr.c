@@ -41,10 +41,11 @@ int sdfc_param_expr(sdfc *c, int param) {
 
 int sdfc_time_expr(sdfc *c) {
     if (c->time_expr < 0) {
-        c->time_expr = add_expr(
-            c, (sdfc_expr){
-                   .op = SDFC_TIME, .dynamic = true, .timed = true, .low = -SDFC_INFINITY,
-                   .high = SDFC_INFINITY});
+        c->time_expr = add_expr(c, (sdfc_expr){.op = SDFC_TIME,
+                                               .dynamic = true,
+                                               .timed = true,
+                                               .low = -SDFC_INFINITY,
+                                               .high = SDFC_INFINITY});
     }
     return c->time_expr;
 }

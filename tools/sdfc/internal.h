@@ -78,10 +78,10 @@ typedef struct sdfc_token {
 /* ---- expressions ---- */
 
 typedef struct sdfc_expr {
-    int op, a[3]; /* PARAM: a[0] is its index */
-    bool dynamic;  /* depends on parameters, time or the anchor */
-    bool timed;    /* on parameters or time */
-    bool anchored; /* on the anchor */
+    int op, a[3];            /* PARAM: a[0] is its index */
+    bool dynamic;            /* depends on parameters, time or the anchor */
+    bool timed;              /* on parameters or time */
+    bool anchored;           /* on the anchor */
     double value, low, high; /* value: at the parameters' defaults and time 0 */
 } sdfc_expr;
 
@@ -181,7 +181,7 @@ typedef struct sdfc_group {
     int first_part, part_count;
     int *slot_of_arg; /* -1: a literal */
     int slot_count;
-    bool flat; /* half-spaces: f is affine in the point */
+    bool flat;  /* half-spaces: f is affine in the point */
     bool moves; /* a root transform of its parts changes */
 } sdfc_group;
 
@@ -252,8 +252,8 @@ typedef struct sdfc {
     sdfc_group *groups;
     int group_count, group_capacity;
     uint32_t slot_count;
-    int flat_parts; /* the last ones */
-    int box[2][3]; /* low and high side of the listed parts: expressions, or -1 */
+    int flat_parts;          /* the last ones */
+    int box[2][3];           /* low and high side of the listed parts: expressions, or -1 */
     uint32_t box_slot[2][3]; /* of those that change */
     uint32_t *dynamic_slots; /* pairs: slot, expression */
     int dynamic_count, dynamic_capacity;
@@ -288,7 +288,7 @@ void *sdfc_take(sdfc *c, size_t count, size_t size); /* zeros */
 int sdfc_number(sdfc *c, double value);
 int sdfc_param_expr(sdfc *c, int param);
 int sdfc_time_expr(sdfc *c);
-int sdfc_anchor_expr(sdfc *c, int axis); /* 0 but in the GLSL of an anchored scene */
+int sdfc_anchor_expr(sdfc *c, int axis);              /* 0 but in the GLSL of an anchored scene */
 int sdfc_apply(sdfc *c, int op, int x, int y, int z); /* unused operands: 0 */
 /* The values of all expressions for these parameters and this time. */
 void sdfc_evaluate(const sdfc *c, const double *params, double time, double *values);
@@ -321,7 +321,10 @@ int sdfc_parse_shape(sdfc *c);
 void sdfc_analyse(sdfc *c, int shape); /* fills in facts and extra */
 void sdfc_lower(sdfc *c, sdfc_part *part);
 int sdfc_box_side(sdfc *c, int axis, bool high); /* around the listed parts; -1: endless */
-void sdfc_group_parts(sdfc *c);
+/* Whether the movements around all else in a part change with time. */
+bool sdfc_root_moves(const sdfc *c, const sdfc_program *p);
+void sdfc_group_parts(sdfc *c);  /* by form, and orders them */
+void sdfc_assign_slots(sdfc *c); /* after that */
 void sdfc_emit(sdfc *c);
 void sdfc_check(sdfc *c, uint32_t pairs);
 void sdfc_free(sdfc *c); /* and all it has taken */

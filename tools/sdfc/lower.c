@@ -1,7 +1,7 @@
 /* lower.c: a part's tree of shapes becomes functions of straight-line operations on numbers.
  * Points travel from the outside in as three variables, distances come back as one. What a
  * parameter of the scene or a literal of the text contributes is an argument, by number: two parts
- * with the same operations and different arguments share their code (sdfc_group_parts).
+ * with the same operations and different arguments share their code (group.c).
  *
  * In an anchored scene the GLSL's points are relative to an anchor, which may be a million metres
  * from the origin. So a point carries an offset that is still to be added to it, at first the
@@ -216,7 +216,7 @@ static void add_root_step(lowering *l, int kind, int first, int count) {
 }
 
 /* It matters where it changes: only then has it carried the part. */
-static bool root_moves(const sdfc *c, const sdfc_program *p) {
+bool sdfc_root_moves(const sdfc *c, const sdfc_program *p) {
     for (int i = 0; i < p->root_count; i++) {
         int count = p->root[i].kind == SDFC_KIND_ROTATE ? 9 : 3;
         for (int k = 0; k < count; k++) {
@@ -230,7 +230,7 @@ static bool root_moves(const sdfc *c, const sdfc_program *p) {
  * arguments where nothing of all this changes with time: nothing has moved. */
 static void gather_root(lowering *l, const point *p, bool ends) {
     if (!has_offset(p)) return;
-    bool timed = !ends || root_moves(l->c, l->program);
+    bool timed = !ends || sdfc_root_moves(l->c, l->program);
     for (int i = 0; i < 3; i++) timed = timed || l->c->exprs[offset_of(l, p, i)].timed;
     if (!timed) return;
     int first = l->program->arg_count;
@@ -386,6 +386,60 @@ static int lower_joined(lowering *l, const sdfc_shape *s, point p) {
     return d;
 }
 
+static int lower_scale(lowering *l, const sdfc_shape *s, point p, bool root) {
+    const int *n = s->number;
+    int next = l->program->arg_count;
+    int a[3] = {argument(l, n[0]), 0, 0};
+    for (int i = 1; i < 3; i++) a[i] = n[i] == n[0] ? a[0] : argument(l, n[i]);
+    int x = OP(l, mul, p.x, a[0]), y = OP(l, mul, p.y, a[1]), z = OP(l, mul, p.z, a[2]);
+    if (root) {
+        add_root_step(l, SDFC_KIND_SCALE, next, 1);
+        sdfc_root_step *step = &l->program->root[l->program->root_count - 1];
+        for (int i = 0; i < 3; i++) step->arg[i] = ~a[i];
+    }
+    point q = {x, y, z, {0}};
+    for (int i = 0; i < 3; i++) {
+        if (p.offset[i]) {
+            q.offset[i] = 1 + sdfc_apply(l->c, SDFC_mul, p.offset[i] - 1, n[i], 0);
+        }
+    }
+    int d = lower(l, s->child[0], q);
+    int k = argument(l, n[3]);
+    return s->extra[0] != 0 ? OP(l, unscale, d, k, p.x, p.y, p.z) : OP(l, mul, d, k);
+}
+
+static int lower_mirror(lowering *l, const sdfc_shape *s, point p) {
+    const sdfc *c = l->c;
+    const int *n = s->number;
+    for (int i = 0; i < 3; i++) {
+        if (fabs(c->exprs[n[i]].value) != 1) continue;
+        int v = OP(l, abs, i == 0 ? p.x : i == 1 ? p.y : p.z);
+        if (c->exprs[n[i]].value < 0) v = OP(l, neg, v);
+        return lower(l, s->child[0],
+                     (point){i == 0 ? v : p.x, i == 1 ? v : p.y, i == 2 ? v : p.z, {0}});
+    }
+    int x = argument(l, n[0]), y = argument(l, n[1]);
+    return lower(l, s->child[0], reflect(l, p, x, y, argument(l, n[2])));
+}
+
+static int lower_displace(lowering *l, const sdfc_shape *s, point p) {
+    const int *n = s->number;
+    int d = lower(l, s->child[0], p), a = argument(l, n[0]);
+    int x = argument(l, n[1]), y = argument(l, n[2]);
+    p = settled(l, p);
+    int w = OP(l, waves, p.x, p.y, p.z, x, y, argument(l, n[3]));
+    return OP(l, add, d, OP(l, mul, w, a));
+}
+
+static int lower_displace_noise(lowering *l, const sdfc_shape *s, point p) {
+    const int *n = s->number;
+    int d = lower(l, s->child[0], p), a = argument(l, n[0]), k = argument(l, n[1]);
+    p = settled(l, p);
+    int x = OP(l, mul, p.x, k), y = OP(l, mul, p.y, k);
+    int w = OP(l, noise, x, y, OP(l, mul, p.z, k));
+    return OP(l, add, d, OP(l, mul, w, a));
+}
+
 /* ---- primitives ---- */
 
 /* An operation whose operands are the point and the first `count` numbers. */
@@ -488,35 +542,8 @@ static int lower(lowering *l, int shape, point p) {
         if (root) add_root_step(l, SDFC_KIND_ROTATE, next, 9);
         return lower(l, first, turned);
     }
-    case SDFC_KIND_SCALE: {
-        int a[3] = {argument(l, n[0]), 0, 0};
-        for (int i = 1; i < 3; i++) a[i] = n[i] == n[0] ? a[0] : argument(l, n[i]);
-        int x = OP(l, mul, p.x, a[0]), y = OP(l, mul, p.y, a[1]), z = OP(l, mul, p.z, a[2]);
-        if (root) {
-            add_root_step(l, SDFC_KIND_SCALE, next, 1);
-            sdfc_root_step *step = &l->program->root[l->program->root_count - 1];
-            for (int i = 0; i < 3; i++) step->arg[i] = ~a[i];
-        }
-        point q = {x, y, z, {0}};
-        for (int i = 0; i < 3; i++) {
-            if (p.offset[i]) {
-                q.offset[i] = 1 + sdfc_apply(c, SDFC_mul, p.offset[i] - 1, n[i], 0);
-            }
-        }
-        int d = lower(l, first, q);
-        int k = argument(l, n[3]);
-        return s->extra[0] != 0 ? OP(l, unscale, d, k, p.x, p.y, p.z) : OP(l, mul, d, k);
-    }
-    case SDFC_KIND_MIRROR: {
-        for (int i = 0; i < 3; i++) {
-            if (fabs(c->exprs[n[i]].value) != 1) continue;
-            int v = OP(l, abs, i == 0 ? p.x : i == 1 ? p.y : p.z);
-            if (c->exprs[n[i]].value < 0) v = OP(l, neg, v);
-            return lower(l, first, (point){i == 0 ? v : p.x, i == 1 ? v : p.y, i == 2 ? v : p.z, {0}});
-        }
-        int x = argument(l, n[0]), y = argument(l, n[1]);
-        return lower(l, first, reflect(l, p, x, y, argument(l, n[2])));
-    }
+    case SDFC_KIND_SCALE: return lower_scale(l, s, p, root);
+    case SDFC_KIND_MIRROR: return lower_mirror(l, s, p);
     case SDFC_KIND_REPEAT:
     case SDFC_KIND_REPEAT_LIMITED: return lower_repeat(l, s, p);
     case SDFC_KIND_POLAR: return lower_polar(l, s, p);
@@ -535,20 +562,8 @@ static int lower(lowering *l, int shape, point p) {
         int d = lower(l, first, p);
         return OP(l, sub, d, argument(l, n[0]));
     }
-    case SDFC_KIND_DISPLACE: {
-        int d = lower(l, first, p), a = argument(l, n[0]);
-        int x = argument(l, n[1]), y = argument(l, n[2]);
-        p = settled(l, p);
-        int w = OP(l, waves, p.x, p.y, p.z, x, y, argument(l, n[3]));
-        return OP(l, add, d, OP(l, mul, w, a));
-    }
-    case SDFC_KIND_DISPLACE_NOISE: {
-        int d = lower(l, first, p), a = argument(l, n[0]), k = argument(l, n[1]);
-        p = settled(l, p);
-        int x = OP(l, mul, p.x, k), y = OP(l, mul, p.y, k);
-        int w = OP(l, noise, x, y, OP(l, mul, p.z, k));
-        return OP(l, add, d, OP(l, mul, w, a));
-    }
+    case SDFC_KIND_DISPLACE: return lower_displace(l, s, p);
+    case SDFC_KIND_DISPLACE_NOISE: return lower_displace_noise(l, s, p);
     case SDFC_KIND_MORPH: {
         int a = lower(l, first, p), b = lower(l, s->child[1], p);
         return OP(l, mix, a, b, argument(l, n[0]));
@@ -573,341 +588,4 @@ void sdfc_lower(sdfc *c, sdfc_part *part) {
         variables += 3 + part->program.functions[i].count;
     }
     part->program.variable_count = variables;
-}
-
-/* ---- parts of the same form ---- */
-
-static bool same_user(const sdfc *c, int a, int b) {
-    const sdfc_user *u = &c->users[a], *v = &c->users[b];
-    return u->glsl_offset == v->glsl_offset && u->c_offset == v->c_offset;
-}
-
-static bool same_form(const sdfc *c, const sdfc_program *a, const sdfc_program *b) {
-    if (a->function_count != b->function_count || a->arg_count != b->arg_count) return false;
-    if (a->root_count != b->root_count) return false;
-    if (a->root_count && memcmp(a->root, b->root, (size_t)a->root_count * sizeof *a->root)) {
-        return false;
-    }
-    for (int i = 0; i < a->function_count; i++) {
-        const sdfc_function *f = &a->functions[i], *g = &b->functions[i];
-        if (f->count != g->count || f->result != g->result) return false;
-        for (int k = 0; k < f->count; k++) {
-            sdfc_instr x = f->instrs[k];
-            const sdfc_instr *y = &g->instrs[k];
-            if (x.op == SDFC_CALL_USER && y->op == SDFC_CALL_USER && same_user(c, x.aux, y->aux)) {
-                x.aux = y->aux;
-            }
-            if (memcmp(&x, y, sizeof x) != 0) return false;
-        }
-    }
-    return true;
-}
-
-static uint32_t form_hash(const sdfc_program *p) {
-    uint32_t h = 2166136261u;
-    for (int i = 0; i < p->function_count; i++) {
-        for (int k = 0; k < p->functions[i].count; k++) {
-            h = (h ^ (uint32_t)p->functions[i].instrs[k].op) * 16777619u;
-        }
-    }
-    return (h ^ (uint32_t)p->arg_count) * 16777619u;
-}
-
-/* An argument is a literal where all parts of the form agree on a constant. */
-static void choose_slots(sdfc *c, int group) {
-    sdfc_group *g = &c->groups[group];
-    const sdfc_program *first = &c->parts[g->first_part].program;
-    g->slot_of_arg = sdfc_take(c, (size_t)first->arg_count, sizeof(int));
-    for (int a = 0; a < first->arg_count; a++) g->slot_of_arg[a] = -1;
-    for (int i = g->first_part; i < c->part_count; i++) {
-        if (c->parts[i].group != group) continue;
-        const sdfc_program *p = &c->parts[i].program;
-        for (int a = 0; a < p->arg_count; a++) {
-            int e = p->args[a];
-            if (!sdfc_constant(c, e) || c->exprs[e].value != c->exprs[first->args[a]].value) {
-                g->slot_of_arg[a] = 0;
-            }
-        }
-    }
-    for (int a = 0; a < first->arg_count; a++) {
-        if (g->slot_of_arg[a] == 0) g->slot_of_arg[a] = g->slot_count++;
-    }
-}
-
-static void add_dynamic(sdfc *c, uint32_t slot, int expr) {
-    c->dynamic_slots = sdfc_grow(c, c->dynamic_slots, c->dynamic_count, &c->dynamic_capacity,
-                                 2 * sizeof *c->dynamic_slots, MASU_SDFC_SLOTS_MAX, "slots");
-    c->dynamic_slots[2 * c->dynamic_count] = slot;
-    c->dynamic_slots[2 * c->dynamic_count + 1] = (uint32_t)expr;
-    c->dynamic_count++;
-}
-
-static void set_slot(sdfc *c, uint32_t slot, int expr) {
-    c->initial[slot] = c->exprs[expr].value;
-    if (c->exprs[expr].dynamic) add_dynamic(c, slot, expr);
-}
-
-/* ---- slots that depend on the anchor alone ---- */
-
-/* factor . anchor + term, folded into the period if that is not 0. */
-typedef struct affine {
-    sdfc_place sum;
-    bool known;
-} affine;
-
-static affine affine_of(const sdfc *c, int e, const affine *all) {
-    const sdfc_expr *x = &c->exprs[e];
-    affine r = {.known = false}, a = all[x->a[0]], b = all[x->a[1]];
-    bool sums = a.known && b.known && a.sum.period == 0 && b.sum.period == 0;
-    switch (x->op) {
-    case SDFC_CONST: return (affine){{.term = x->value}, true};
-    case SDFC_ANCHOR:
-        r.sum.factor[x->a[0]] = 1;
-        r.known = true;
-        return r;
-    case SDFC_add:
-    case SDFC_sub:
-    case SDFC_neg: {
-        double s = x->op == SDFC_add ? 1 : -1;
-        if (x->op == SDFC_neg) b = a, a = (affine){.known = true}, sums = b.known;
-        for (int i = 0; i < 3; i++) a.sum.factor[i] += s * b.sum.factor[i];
-        a.sum.term += s * b.sum.term;
-        if (x->op == SDFC_neg) a.sum.period = b.sum.period, a.sum.inverse = b.sum.inverse;
-        a.known = sums;
-        return a;
-    }
-    case SDFC_mul: {
-        bool first = sdfc_constant(c, x->a[0]);
-        double s = c->exprs[x->a[first ? 0 : 1]].value;
-        if (first) a = b;
-        for (int i = 0; i < 3; i++) a.sum.factor[i] *= s;
-        a.sum.term *= s;
-        a.known = sums && (first || sdfc_constant(c, x->a[1]));
-        return a;
-    }
-    case SDFC_fold:
-        a.known = a.known && a.sum.period == 0 && sdfc_constant(c, x->a[1]) &&
-                  sdfc_constant(c, x->a[2]);
-        a.sum.period = c->exprs[x->a[1]].value;
-        a.sum.inverse = c->exprs[x->a[2]].value;
-        return a;
-    default: return r;
-    }
-}
-
-/* A number and what a float leaves of it. */
-static void put_pair(double *to, double v) {
-    to[0] = (double)(float)v;
-    to[1] = v - to[0];
-}
-
-/* Takes them out of the code that the update runs, and lays them behind the slots. */
-static void gather_places(sdfc *c) {
-    affine *all = sdfc_take(c, (size_t)c->expr_count, sizeof *all);
-    free(c->scratch);
-    c->scratch = all;
-    for (int i = 0; i < c->expr_count; i++) all[i] = affine_of(c, i, all);
-    int kept = 0;
-    for (int i = 0; i < c->dynamic_count; i++) {
-        uint32_t slot = c->dynamic_slots[2 * i], e = c->dynamic_slots[2 * i + 1];
-        if (all[e].known) {
-            c->places = sdfc_grow(c, c->places, c->place_count, &c->place_capacity,
-                                  sizeof *c->places, MASU_SDFC_SLOTS_MAX, "slots");
-            c->places[c->place_count] = all[e].sum;
-            c->places[c->place_count++].slot = slot;
-        } else {
-            c->dynamic_slots[2 * kept] = slot;
-            c->dynamic_slots[2 * kept++ + 1] = e;
-        }
-    }
-    c->dynamic_count = kept;
-    long slots = (long)c->slot_count + (long)c->place_count * SDFC_PLACE_SLOTS;
-    if (slots > MASU_SDFC_SLOTS_MAX) {
-        sdfc_fail(c, c->parts[c->part_count - 1].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
-    }
-    double *initial = sdfc_take(c, (size_t)slots, sizeof *initial);
-    memcpy(initial, c->initial, c->slot_count * sizeof *initial);
-    free(c->initial);
-    c->initial = initial;
-    c->place_base = c->slot_count;
-    for (int i = 0; i < c->place_count; i++) {
-        const sdfc_place *p = &c->places[i];
-        double *to = initial + c->place_base + i * SDFC_PLACE_SLOTS;
-        to[0] = p->slot;
-        for (int k = 0; k < 3; k++) put_pair(to + 1 + 2 * k, p->factor[k]);
-        put_pair(to + 7, p->term);
-        put_pair(to + 9, p->period);
-        to[11] = p->inverse;
-    }
-    c->slot_count = (uint32_t)slots;
-}
-
-/* A translation by something that changes, around all else. */
-static void find_motion(sdfc *c, sdfc_part *p) {
-    const sdfc_shape *s = &c->shapes[p->shape];
-    if (s->kind != SDFC_KIND_TRANSLATE) return;
-    const sdfc_facts f = c->shapes[s->child[0]].facts;
-    int by[3] = {s->number[0], s->number[1], s->number[2]};
-    bool dynamic = false;
-    for (int i = 0; i < 3; i++) dynamic = dynamic || c->exprs[by[i]].dynamic;
-    if (!dynamic || !isfinite(f.radius)) return;
-    p->moves = true;
-    p->moving_radius = f.radius;
-    for (int i = 0; i < 3; i++) {
-        p->moving_center[i] = sdfc_apply(c, SDFC_add, by[i], sdfc_number(c, f.center[i]), by[i]);
-    }
-}
-
-static void fill_record(sdfc *c, int part) {
-    sdfc_part *p = &c->parts[part];
-    const sdfc_facts *f = &c->shapes[p->shape].facts;
-    uint32_t at = (uint32_t)part * MASU_SDFC_PART_SLOTS;
-    double *record = c->initial + at;
-    find_motion(c, p);
-    bool ends = p->moves || isfinite(f->radius);
-    double slack = 0; /* fp32 rounds the centre by up to 2^-24 of it */
-    for (int i = 0; i < 3; i++) {
-        double most = fabs(f->center[i]);
-        record[i] = ends ? f->center[i] : 0;
-        int center = -1;
-        if (p->moves) {
-            const sdfc_expr *e = &c->exprs[p->moving_center[i]];
-            most = fmin(fmax(fabs(e->low), fabs(e->high)), 1e4);
-            center = p->moving_center[i];
-        }
-        if (c->anchored && ends) {
-            /* Rounded relative to the anchor, which classify allows for. */
-            if (!p->moves) most = 0, center = sdfc_number(c, f->center[i]);
-            center = sdfc_apply(c, SDFC_sub, center, c->anchor_expr[i], 0);
-        }
-        if (center >= 0) set_slot(c, at + (uint32_t)i, center);
-        slack += ends ? most * 2.4e-7 : 0;
-    }
-    double radius = p->moves ? p->moving_radius : f->radius;
-    record[3] = ends ? radius * (1 + 2.4e-7) + slack : -1;
-    record[4] = 1 / f->lipschitz * (1 - 1.2e-7);
-    if (f->lipschitz == 1) record[4] = 1;
-    record[5] = p->group;
-    record[6] = p->slot_base;
-    record[7] = p->material;
-}
-
-/* Whether the form's field is affine in the point: a half-space, however it is placed. The march
- * meets it in closed form. */
-static bool is_flat(const sdfc_program *p) {
-    if (p->function_count != 1) return false;
-    const sdfc_function *f = &p->functions[0];
-    for (int i = 0; i < f->count; i++) {
-        const sdfc_instr *at = &f->instrs[i];
-        int points = at->op == SDFC_dot3                                              ? 3
-                     : at->op == SDFC_sub || at->op == SDFC_mul || at->op == SDFC_neg ? 1
-                                                                                      : 0;
-        if (!points) return false;
-        for (int k = 0; k < sdfc_ops[at->op].operands; k++) {
-            if ((at->operand[k] >= 0) != (k < points)) return false;
-        }
-    }
-    return f->count > 0 && f->result >= 0;
-}
-
-/* Flat forms last: lists of parts never hold them. */
-static void order_groups(sdfc *c) {
-    int *place = sdfc_take(c, (size_t)c->group_count, sizeof *place), count = 0;
-    free(c->scratch);
-    c->scratch = place;
-    sdfc_group *ordered = sdfc_take(c, (size_t)c->group_count, sizeof *ordered);
-    for (int flat = 0; flat < 2; flat++) {
-        for (int g = 0; g < c->group_count; g++) {
-            if (c->groups[g].flat != (flat != 0)) continue;
-            if (flat) c->flat_parts += c->groups[g].part_count;
-            place[g] = count;
-            ordered[count++] = c->groups[g];
-        }
-    }
-    for (int i = 0; i < c->part_count; i++) c->parts[i].group = place[c->parts[i].group];
-    free(c->groups);
-    c->groups = ordered;
-    c->group_capacity = c->group_count;
-}
-
-/* Parts of one form stand together, else in the order of the text: the march can then go through
- * the forms one after another. */
-static void order_parts(sdfc *c) {
-    sdfc_part *ordered = sdfc_take(c, (size_t)c->part_count, sizeof *ordered);
-    int count = 0;
-    for (int g = 0; g < c->group_count; g++) {
-        int first = count;
-        for (int i = c->groups[g].first_part; i < c->part_count; i++) {
-            if (c->parts[i].group == g) ordered[count++] = c->parts[i];
-        }
-        c->groups[g].first_part = first;
-    }
-    free(c->parts);
-    c->parts = ordered;
-    c->part_capacity = c->part_count;
-}
-
-void sdfc_group_parts(sdfc *c) {
-    uint32_t *hashes = sdfc_take(c, (size_t)c->part_count, sizeof *hashes);
-    c->scratch = hashes;
-    for (int i = 0; i < c->part_count; i++) {
-        sdfc_part *p = &c->parts[i];
-        hashes[i] = form_hash(&p->program);
-        p->group = -1;
-        for (int g = 0; g < c->group_count && p->group < 0; g++) {
-            int first = c->groups[g].first_part;
-            if (hashes[first] == hashes[i] && same_form(c, &c->parts[first].program, &p->program)) {
-                p->group = g;
-            }
-        }
-        if (p->group < 0) {
-            c->groups = sdfc_grow(c, c->groups, c->group_count, &c->group_capacity,
-                                  sizeof *c->groups, MASU_SDFC_PARTS_MAX, "forms");
-            c->groups[c->group_count] =
-                (sdfc_group){.first_part = i, .flat = is_flat(&p->program)};
-            p->group = c->group_count++;
-        }
-        c->groups[p->group].part_count++;
-        c->groups[p->group].moves = c->groups[p->group].moves || root_moves(c, &p->program);
-    }
-    order_groups(c);
-    order_parts(c);
-    for (int g = 0; g < c->group_count; g++) choose_slots(c, g);
-    long slots = (long)c->part_count * MASU_SDFC_PART_SLOTS +
-                 (long)c->material_count * MASU_SDFC_MATERIAL_SLOTS;
-    for (int i = 0; i < c->part_count; i++) {
-        c->parts[i].slot_base = (uint32_t)slots;
-        slots += c->groups[c->parts[i].group].slot_count;
-        if (slots > MASU_SDFC_SLOTS_MAX) {
-            sdfc_fail(c, c->parts[i].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
-        }
-    }
-    for (int i = 0; i < 6; i++) {
-        int side = c->box[i / 3][i % 3] = sdfc_box_side(c, i % 3, i >= 3);
-        if (side >= 0 && c->exprs[side].dynamic) c->box_slot[i / 3][i % 3] = (uint32_t)slots++;
-    }
-    if (slots > MASU_SDFC_SLOTS_MAX) {
-        sdfc_fail(c, c->parts[c->part_count - 1].token, "more than %d slots", MASU_SDFC_SLOTS_MAX);
-    }
-    c->slot_count = (uint32_t)slots;
-    c->initial = sdfc_take(c, (size_t)slots, sizeof *c->initial);
-    for (int i = 0; i < 6; i++) {
-        uint32_t slot = c->box_slot[i / 3][i % 3];
-        if (slot) set_slot(c, slot, c->box[i / 3][i % 3]);
-    }
-    for (int m = 0; m < c->material_count; m++) {
-        uint32_t base =
-            (uint32_t)(c->part_count * MASU_SDFC_PART_SLOTS + m * MASU_SDFC_MATERIAL_SLOTS);
-        for (uint32_t k = 0; k < 8; k++) set_slot(c, base + k, c->materials[m].value[k]);
-    }
-    for (int i = 0; i < c->part_count; i++) {
-        const sdfc_part *p = &c->parts[i];
-        const sdfc_group *g = &c->groups[p->group];
-        fill_record(c, i);
-        for (int a = 0; a < p->program.arg_count; a++) {
-            if (g->slot_of_arg[a] < 0) continue;
-            set_slot(c, p->slot_base + (uint32_t)g->slot_of_arg[a], p->program.args[a]);
-        }
-    }
-    if (c->anchored) gather_places(c);
 }

@@ -1,7 +1,7 @@
 /* main.c: the program masu-sdfc: a .sdf file in, GLSL, C and the table of parts out; see sdfc.h and
  * docs/sdf.md. Without outputs it only checks. */
-#include "sdfc/sdfc.h"
 #include "cli/cli.h"
+#include "sdfc/sdfc.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -111,7 +111,8 @@ int main(int argc, char **argv) {
         {"c", "FILE", "write the distance in double precision, C11", OPTION_C, 0},
         {"table", "FILE", "write parts, bounds and parameters as JSON", OPTION_TABLE, 0},
         {"pairs", "N", "random pairs tried per form (20000)", OPTION_PAIRS, 0},
-        {"anchored", NULL, "keep the precision of the GLSL far from the origin", OPTION_ANCHORED, 0},
+        {"anchored", NULL, "keep the precision of the GLSL far from the origin", OPTION_ANCHORED,
+         0},
         {NULL, NULL, NULL, 0, 0},
     };
     static const masu_cli_command command = {

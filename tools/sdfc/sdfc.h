@@ -63,8 +63,8 @@ typedef struct masu_sdfc_result {
     uint32_t param_count;
     float *slots; /* initial values: parameters at their defaults, time 0 */
     uint32_t slot_count;
-    bool dynamic;  /* slots depend on parameters or time */
-    bool anchored; /* slots depend on the anchor */
+    bool dynamic;     /* slots depend on parameters or time */
+    bool anchored;    /* slots depend on the anchor */
     double glossiest; /* least roughness that a part which does not shine may have; 1: all do */
 } masu_sdfc_result;
 

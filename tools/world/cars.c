@@ -9,8 +9,8 @@
  * and its own height. */
 #include "world/world.h"
 
-#include "bake/scene/file.h"
-#include "bake/scene/import.h"
+#include "bake/base/file.h"
+#include "bake/import/import.h"
 #include "cli/cli.h"
 
 #include <stdlib.h>

@@ -12,8 +12,8 @@
  *            from above ("high"): their times are printed */
 #include "world/world.h"
 
-#include "bake/scene/file.h"
-#include "bake/scene/import.h"
+#include "bake/base/file.h"
+#include "bake/import/import.h"
 #include "cli/cli.h"
 
 #include <math.h>
@@ -115,8 +115,7 @@ static ground triangles_of(const masu_bake_content *piece) {
     for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_INSTANCES); i++) {
         const masu_blob_instance *n = &MASU_BAKE_INSTANCES(piece)[i];
         const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(piece)[n->mesh];
-        masu_bake_affine a;
-        for (int k = 0; k < 12; k++) a.m[k] = (double)n->transform[k];
+        masu_bake_affine a = masu_bake_transform(n);
         for (uint32_t j = 0; j < mesh->primitive_count; j++) {
             const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(piece)[mesh->first_primitive + j];
             for (uint32_t k = 0; k < p->index_count; k++) {
@@ -204,18 +203,18 @@ static void grounds(FILE *out) {
     static const struct {
         const char *picture, *relief;
         double u, v;
-    } rows[] = {{"Road.png", "asphalt", 35, 11},      {"GRAS2B.png", "grass", 10.5, 8.4},
-                {"RSGRAS_n.png", "grass", 15, 1},     {"SAND_n.png", "gravel", 8.8, 8.8},
-                {"RSSAND_n.png", "gravel", 5.3, 1},   {"SANDT_n.png", "gravel", 10, 6.2}};
+    } rows[] = {{"Road.png", "asphalt", 35, 11},    {"GRAS2B.png", "grass", 10.5, 8.4},
+                {"RSGRAS_n.png", "grass", 15, 1},   {"SAND_n.png", "gravel", 8.8, 8.8},
+                {"RSSAND_n.png", "gravel", 5.3, 1}, {"SANDT_n.png", "gravel", 10, 6.2}};
     fputs(",\n     \"materials\": [", out);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         const char *r = rows[i].relief;
-        fprintf(out,
-                "%s\n      {\"match\": \"%s\", \"roughness\": 1, \"normal_map\": \"%s_normal.png\", "
-                "\"roughness_map\": \"%s_rough.png\",\n       \"occlusion_map\": \"%s_ao.png\", "
-                "\"meso\": \"%s.json\", \"detail\": [%g, %g]}",
-                i ? "," : "", rows[i].picture, r, r, r, r, 4 * rows[i].u,
-                4 * rows[i].v);
+        fprintf(
+            out,
+            "%s\n      {\"match\": \"%s\", \"roughness\": 1, \"normal_map\": \"%s_normal.png\", "
+            "\"roughness_map\": \"%s_rough.png\",\n       \"occlusion_map\": \"%s_ao.png\", "
+            "\"meso\": \"%s.json\", \"detail\": [%g, %g]}",
+            i ? "," : "", rows[i].picture, r, r, r, r, 4 * rows[i].u, 4 * rows[i].v);
     }
     fputs("]", out);
 }
@@ -223,10 +222,9 @@ static void grounds(FILE *out) {
 static bool write_scene(const track *t, ground *g, const char *folder, const char *torcs) {
     FILE *out = masu_world_create(folder, "forza.json");
     if (!out) return false;
-    fprintf(
-        out,
-        "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 128",
-        torcs);
+    fprintf(out,
+            "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 128",
+            torcs);
     grounds(out);
     fputs("}", out);
     if (!cars(t, g, torcs, out)) return fclose(out), false;
@@ -253,12 +251,12 @@ static bool write_scene(const track *t, ground *g, const char *folder, const cha
           "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 300}},\n"
           "  \"sky\": {\"turbidity\": 3, \"ground\": [0.12, 0.13, 0.1]}, \"exposure\": 0.8,\n"
           "  \"ambient_occlusion\": {\"radius\": 1.5}, \"reflections\": {\"cutoff\": 0.4},\n"
-          "  \"fog\": {\"visibility\": 8000, \"falloff\": 0.004},\n  \"lods\": 3,\n  \"occluders\": 4\n}\n",
+          "  \"fog\": {\"visibility\": 8000, \"falloff\": 0.004},\n  \"lods\": 3,\n  "
+          "\"occluders\": 4\n}\n",
           out);
     if (!masu_cli_quiet()) {
         printf("%s/forza.json: a lap of %.0f m; crowd at %.0f s, high at %.0f s, cars at %.0f s\n",
-               folder,
-               t->points[t->count - 1].along, end, end + 10, end + 20);
+               folder, t->points[t->count - 1].along, end, end + 10, end + 20);
     }
     return masu_world_close(out, folder, "forza.json");
 }

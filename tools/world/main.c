@@ -1,7 +1,7 @@
 /* main.c: masu-world writes the folder of a world, ready for masu-bake; see world.h. */
-#include "world/world.h"
 #include "cli/cli.h"
 #include "masu.h"
+#include "world/world.h"
 
 #include <errno.h>
 #include <string.h>

@@ -11,7 +11,7 @@
 #ifndef MASU_WORLD_H
 #define MASU_WORLD_H
 
-#include "bake/scene/math.h"
+#include "bake/base/math.h"
 
 #include <stdbool.h>
 #include <stddef.h>

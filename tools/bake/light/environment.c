@@ -7,16 +7,16 @@
  * Sampling, EGSR 2008), so that a bright spot is neither missed nor hit alone. */
 #include "bake/light/environment.h"
 
-#include "bake/scene/file.h"
+#include "bake/base/file.h"
 #include "cli/cli.h"
 #include "image.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define SAMPLES 512
-#define SIZE_DEFAULT 256
 #define BYTES_MAX (512u * 1024u * 1024u)
 #define RADIANCE_MAX 65408.0 /* of 9995 texels */
 #define PI MASU_BAKE_PI
@@ -224,8 +224,7 @@ uint32_t masu_bake_pack_9995(const double rgb[3]) {
 }
 
 void masu_bake_unpack_9995(uint32_t texel, double out[3]) {
-    for (uint32_t c = 0; c < 3; c++)
-        out[c] = ldexp(texel >> 9 * c & 511, (int)(texel >> 27) - 24);
+    for (uint32_t c = 0; c < 3; c++) out[c] = ldexp(texel >> 9 * c & 511, (int)(texel >> 27) - 24);
 }
 
 /* Across an edge of the square lies the same edge, the other way round. */
@@ -389,7 +388,7 @@ static void blur(const pyramid *p, const lobe_sample *lobe, uint32_t n, const do
 
 /* Irradiance / pi by the normal (Ramamoorthi and Hanrahan, SIGGRAPH 2001), over src/frame/sky.h's basis. */
 static void project(const masu_bake_panorama *p, float sh[9][4]) {
-    static const double scale[9] = {0.25,       0.5,        0.5,        0.5,     15.0 / 16,
+    static const double scale[9] = {0.25,      0.5,       0.5,      0.5,      15.0 / 16,
                                     15.0 / 16, 15.0 / 16, 5.0 / 64, 15.0 / 64};
     double sum[9][3] = {{0}}, light[3];
     for (uint32_t y = 0; y < p->height; y++) {
@@ -398,8 +397,14 @@ static void project(const masu_bake_panorama *p, float sh[9][4]) {
         for (uint32_t x = 0; x < p->width; x++) {
             double azimuth = p->turn + (0.5 - (x + 0.5) / p->width) * 2 * PI;
             const double d[3] = {flat * sin(azimuth), up, flat * cos(azimuth)};
-            const double basis[9] = {1,           d[0],        d[1],        d[2],
-                                     d[0] * d[1], d[1] * d[2], d[2] * d[0], 3 * up * up - 1,
+            const double basis[9] = {1,
+                                     d[0],
+                                     d[1],
+                                     d[2],
+                                     d[0] * d[1],
+                                     d[1] * d[2],
+                                     d[2] * d[0],
+                                     3 * up * up - 1,
                                      d[0] * d[0] - d[2] * d[2]};
             const float *pixel = p->rgb + 3 * ((size_t)y * p->width + x);
             for (uint32_t c = 0; c < 3; c++)
@@ -441,40 +446,4 @@ void masu_bake_add_environment(const masu_bake_panorama *p, uint32_t size,
     }
     masu_bake_append(&content->section[MASU_BLOB_ENVIRONMENT_MAP], &map, sizeof map);
     for (uint32_t i = 0; i < source.levels; i++) free(source.level[i]);
-}
-
-/* ---- JSON ------------------------------------------------------------------------------------ */
-
-bool masu_bake_read_environment(const masu_bake_json *scene, const char *directory,
-                                masu_bake_content *content) {
-    static const char *const members[] = {"file", "rotate", "scale", "size", NULL};
-    masu_bake_json at = masu_bake_json_member(scene, "environment");
-    const char *file = NULL;
-    double rotate = 0, scale = 1, size = SIZE_DEFAULT;
-    if (!at.value) return true;
-    if (!masu_bake_json_object(&at, members) || !masu_bake_json_string(&at, "file", &file) ||
-        !masu_bake_json_number(&at, "rotate", -360, 360, &rotate) ||
-        !masu_bake_json_number(&at, "scale", 1e-6, 1e6, &scale) ||
-        !masu_bake_json_number(&at, "size", 8, 1024, &size)) {
-        return false;
-    }
-    if (!file) return masu_bake_json_wrong(&at, "needs \"file\"");
-    if (masu_bake_json_has(scene, "sky") || masu_bake_json_has(scene, "ambient"))
-        return masu_bake_json_wrong(&at, "is sky and ambient light: without \"sky\" and \"ambient\"");
-    uint32_t edge = (uint32_t)size;
-    if (edge != size || (edge & (edge - 1))) {
-        masu_bake_json where = masu_bake_json_member(&at, "size");
-        return masu_bake_json_wrong(&where, "expected a power of two");
-    }
-    char *path = NULL;
-    masu_bake_panorama p;
-    if (file[0] != '/' && strcmp(directory, ".") != 0) path = masu_bake_join(directory, file);
-    bool good = masu_bake_load_panorama(path ? path : file, &p);
-    free(path);
-    if (!good) return false;
-    p.turn = rotate * (PI / 180);
-    p.factor = scale;
-    masu_bake_add_environment(&p, edge, content);
-    free(p.rgb);
-    return true;
 }

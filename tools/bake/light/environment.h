@@ -7,7 +7,6 @@
 #define MASU_BAKE_ENVIRONMENT_H
 
 #include "bake/scene/content.h"
-#include "bake/scene/json.h"
 
 typedef struct masu_bake_panorama {
     uint32_t width, height;
@@ -33,9 +32,5 @@ uint32_t masu_bake_pack_9995(const double rgb[3]);
 void masu_bake_unpack_9995(uint32_t texel, double out[3]);
 void masu_bake_environment_at(const masu_blob_environment_map *map, const uint32_t *texels,
                               const double direction[3], double roughness, double out[3]);
-
-/* The scene's "environment". directory: of the scene file. */
-bool masu_bake_read_environment(const masu_bake_json *scene, const char *directory,
-                                masu_bake_content *content);
 
 #endif

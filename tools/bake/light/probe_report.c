@@ -7,9 +7,9 @@
  * by the mean of the truth; bias: the mean error by it; worst: the error that 1 in 20 points exceeds. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/light/path.h"
+#include "bake/light/probe_light.h"
 #include "bake/light/probes.h"
 #include "cli/cli.h"
-#include "bake/light/probe_light.h"
 
 #include <stdio.h>
 #include <stdlib.h>

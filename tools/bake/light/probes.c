@@ -2,131 +2,24 @@
  * order depend on its place in the grid alone. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/light/probes.h"
+#include "bake/base/process.h"
 #include "bake/light/path.h"
-#include "cli/cli.h"
 #include "bake/light/probe_light.h"
+#include "cli/cli.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define PROBES_WISHED 2048.0
 #define COEFFICIENTS 27u
 #define DISTANCE_MOST 1.5f /* of a cell's diagonal: what is farther hides nothing in a cell */
 /* A probe from which more of the rays than this meet the backs of surfaces is inside of something. */
 #define BACKS_MOST 0.25f
-#define SUNS_APART 0.017 /* radians: nearer ones cannot be told apart */
 
 masu_bake_probe_settings masu_bake_probe_defaults(void) {
     return (masu_bake_probe_settings){
         .rays = 1024, .bounces = 8, .sky_bands = 3, .visibility = 8, .bias = 0.25};
-}
-
-/* ---- settings ---- */
-
-static bool read_whole(const masu_bake_json *at, const char *name, uint32_t low, uint32_t high,
-                       uint32_t *out) {
-    double value = *out;
-    if (!masu_bake_json_number(at, name, low, high, &value)) return false;
-    if (value != floor(value)) {
-        masu_bake_json where = masu_bake_json_member(at, name);
-        return masu_bake_json_wrong(&where, "expected a whole number");
-    }
-    *out = (uint32_t)value;
-    return true;
-}
-
-static bool read_suns(const masu_bake_json *probes, masu_bake_probe_settings *s) {
-    masu_bake_json suns = masu_bake_json_member(probes, "suns");
-    if (!suns.value) return true;
-    if (!masu_bake_json_array(&suns, 0)) return false;
-    size_t count = json_array_size(suns.value);
-    if (count > MASU_PROBE_SUNS_MAX) {
-        return masu_bake_json_wrong(&suns, "%zu suns, at most %u", count, MASU_PROBE_SUNS_MAX);
-    }
-    s->has_suns = true;
-    s->suns = (uint32_t)count;
-    for (size_t i = 0; i < count; i++) {
-        static const char *const members[] = {"azimuth", "elevation", NULL};
-        masu_bake_json at = masu_bake_json_element(&suns, i);
-        double a = 0, e = 45;
-        if (!masu_bake_json_object(&at, members) ||
-            !masu_bake_json_number(&at, "azimuth", -360, 360, &a) ||
-            !masu_bake_json_number(&at, "elevation", -90, 90, &e)) {
-            return false;
-        }
-        a *= MASU_BAKE_PI / 180.0;
-        e *= MASU_BAKE_PI / 180.0;
-        s->sun[i][0] = (float)(cos(e) * sin(a));
-        s->sun[i][1] = (float)sin(e);
-        s->sun[i][2] = (float)(cos(e) * cos(a));
-        s->sun[i][3] = 0;
-        for (size_t k = 0; k < i; k++) {
-            double c = masu_bake_dot(masu_bake_v3f(s->sun[i]), masu_bake_v3f(s->sun[k]));
-            if (c < cos(SUNS_APART)) continue;
-            return masu_bake_json_wrong(&at, "within a degree of suns[%zu]", k);
-        }
-    }
-    return true;
-}
-
-static bool read_bounds(const masu_bake_json *probes, masu_bake_probe_settings *s) {
-    masu_bake_json bounds = masu_bake_json_member(probes, "bounds");
-    const double most = MASU_BAKE_COORDINATE_MAX;
-    if (!bounds.value) return true;
-    if (!masu_bake_json_array(&bounds, 2)) return false;
-    if (json_array_size(bounds.value) != 2) {
-        return masu_bake_json_wrong(&bounds, "expected two corners");
-    }
-    masu_bake_json low = masu_bake_json_element(&bounds, 0);
-    masu_bake_json high = masu_bake_json_element(&bounds, 1);
-    masu_bake_box *b = &s->bounds;
-    if (!masu_bake_json_vec3(&low, NULL, -most, most, &b->low) ||
-        !masu_bake_json_vec3(&high, NULL, -most, most, &b->high)) {
-        return false;
-    }
-    if (!(b->low.x < b->high.x && b->low.y < b->high.y && b->low.z < b->high.z)) {
-        return masu_bake_json_wrong(&bounds, "the first corner must be the lower one");
-    }
-    s->has_bounds = true;
-    return true;
-}
-
-static bool read_spacing(const masu_bake_json *probes, masu_bake_probe_settings *s) {
-    s->has_spacing = masu_bake_json_has(probes, "spacing");
-    s->has_counts = masu_bake_json_has(probes, "counts");
-    masu_bake_vec3 counts = {0, 0, 0};
-    if (!masu_bake_json_vec3(probes, "spacing", 1e-3, 1e6, &s->spacing) ||
-        !masu_bake_json_vec3(probes, "counts", 1, MASU_PROBE_COUNT_MAX, &counts)) {
-        return false;
-    }
-    if (s->has_spacing && s->has_counts) {
-        return masu_bake_json_wrong(probes, "give either \"spacing\" or \"counts\"");
-    }
-    const double n[3] = {counts.x, counts.y, counts.z};
-    for (int k = 0; k < 3; k++) {
-        if (n[k] != floor(n[k])) {
-            masu_bake_json at = masu_bake_json_member(probes, "counts");
-            return masu_bake_json_wrong(&at, "expected whole numbers");
-        }
-        s->counts[k] = (uint32_t)n[k];
-    }
-    return true;
-}
-
-bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_probe_settings *s) {
-    static const char *const members[] = {"bounds", "spacing",    "counts", "rays",      "bounces",
-                                          "suns",   "visibility", "bias",   "sky_bands", NULL};
-    masu_bake_json probes = masu_bake_json_member(scene, "probes");
-    if (!probes.value) return true;
-    s->wanted = true;
-    return masu_bake_json_object(&probes, members) && read_bounds(&probes, s) &&
-           read_spacing(&probes, s) && read_whole(&probes, "rays", 16, 1u << 16, &s->rays) &&
-           read_whole(&probes, "bounces", 1, 32, &s->bounces) &&
-           read_whole(&probes, "sky_bands", 1, 3, &s->sky_bands) &&
-           read_whole(&probes, "visibility", 0, MASU_PROBE_VISIBILITY_MAX, &s->visibility) &&
-           masu_bake_json_number(&probes, "bias", 0, 1, &s->bias) && read_suns(&probes, s);
 }
 
 /* ---- the grid ---- */
@@ -400,16 +293,10 @@ static void write_sets(work *w, masu_blob_probes *p, masu_bake_buffer *out) {
     }
 }
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
-
 bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_settings *s,
                            const masu_bake_trace *trace, masu_bake_probe_report *report) {
     masu_blob_probes p = {.sky_sets = s->sky_bands * s->sky_bands, .visibility = s->visibility};
-    double started = now();
+    double started = masu_bake_seconds();
     if (!place(content, s, &p)) return false;
     set_suns(content, s, &p);
     uint32_t count = p.counts[0] * p.counts[1] * p.counts[2];
@@ -447,6 +334,6 @@ bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_set
     report->rays = atomic_load(&w.rays);
     report->bytes = out->bytes;
     report->triangles = masu_bake_trace_triangles(trace);
-    report->seconds = now() - started;
+    report->seconds = masu_bake_seconds() - started;
     return true;
 }

@@ -4,7 +4,6 @@
 #ifndef MASU_BAKE_PROBES_H
 #define MASU_BAKE_PROBES_H
 
-#include "bake/scene/json.h"
 #include "bake/mesh/trace.h"
 
 typedef struct masu_bake_probe_settings {
@@ -30,9 +29,6 @@ typedef struct masu_bake_probe_report {
 } masu_bake_probe_report;
 
 masu_bake_probe_settings masu_bake_probe_defaults(void);
-
-/* The scene's "probes"; absent: nothing is changed. False after reporting. */
-bool masu_bake_read_probes(const masu_bake_json *scene, masu_bake_probe_settings *settings);
 
 /* Appends PROBES and PROBE_DATA. Textures have been made, if there are any. False after reporting. */
 bool masu_bake_make_probes(masu_bake_content *content, const masu_bake_probe_settings *settings,

@@ -1,5 +1,6 @@
 /* bvh.c: see bvh.h. */
 #include "bake/mesh/bvh.h"
+#include "bake/base/process.h"
 
 #include "bake/texture/trace_texture.h"
 
@@ -10,7 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 typedef struct baker {
     masu_bake_content *content;
@@ -20,40 +20,17 @@ typedef struct baker {
     double cost;                /* times triangles */
 } baker;
 
-/* ---- What the scene says --------------------------------------------------------------------- */
-
-bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reflections *out) {
-    static const char *const members[] = {"smallest", "cutoff", "distance", "texture_size", NULL};
-    masu_bake_json at = masu_bake_json_member(scene, "reflections");
-    *out = (masu_bake_reflections){
-        .wanted = at.value != NULL, .smallest = -1, .cutoff = 0.5, .distance = 1e4};
-    double side = MASU_BAKE_TRACE_SIDE;
-    bool good = !at.value || (masu_bake_json_object(&at, members) &&
-                         masu_bake_json_number(&at, "smallest", 0, 1e9, &out->smallest) &&
-                         masu_bake_json_number(&at, "cutoff", 0, 1, &out->cutoff) &&
-                         masu_bake_json_number(&at, "distance", 1e-3, 1e9, &out->distance) &&
-                         masu_bake_json_number(&at, "texture_size", 0, MASU_TRACE_TEXTURE_MAX, &side));
-    uint32_t size = good ? (uint32_t)side : 0;
-    if (good && ((double)size != side || size & (size - 1))) {
-        masu_bake_json member = masu_bake_json_member(&at, "texture_size");
-        good = masu_bake_json_wrong(&member, "is %g, and must be 0 or a power of two up to %u", side,
-                                    MASU_TRACE_TEXTURE_MAX);
-    }
-    out->texture_size = size;
-    return good;
-}
-
-bool masu_bake_read_traced(const masu_bake_json *model, masu_bake_content *content,
-                           uint64_t first) {
-    bool traced = true;
-    if (!masu_bake_json_boolean(model, "traced", &traced)) return false;
-    if (!masu_bake_json_has(model, "traced")) return true;
+void masu_bake_mark_traced(masu_bake_content *content, uint64_t first, int traced) {
     uint64_t count = masu_bake_count(content, MASU_BLOB_INSTANCES);
+    if (traced == MASU_BAKE_TRACED_AUTO) return;
     if (content->traced.bytes < count)
         masu_bake_append(&content->traced, NULL, (size_t)(count - content->traced.bytes));
-    memset(content->traced.data + first, traced ? MASU_BAKE_TRACED_YES : MASU_BAKE_TRACED_NO,
-           (size_t)(count - first));
-    return true;
+    memset(content->traced.data + first, traced, (size_t)(count - first));
+}
+
+masu_bake_reflections masu_bake_reflection_defaults(void) {
+    return (masu_bake_reflections){
+        .smallest = -1, .cutoff = 0.5, .distance = 1e4, .texture_size = MASU_BAKE_TRACE_SIDE};
 }
 
 /* ---- Which instances ------------------------------------------------------------------------- */
@@ -254,11 +231,10 @@ static void add_reflections(masu_bake_content *content, const masu_bake_reflecti
 
 bool masu_bake_make_bvh(masu_bake_content *content, const masu_bake_reflections *wanted,
                         masu_bake_bvh_report *report) {
-    struct timespec from, to;
     memset(report, 0, sizeof *report);
     if (!wanted->wanted) return true;
     masu_cli_progress("building trees for rays");
-    clock_gettime(CLOCK_MONOTONIC, &from);
+    double started = masu_bake_seconds();
     baker b = {.content = content, .report = report};
     size_t count = (size_t)masu_bake_count(content, MASU_BLOB_INSTANCES);
     size_t meshes = (size_t)masu_bake_count(content, MASU_BLOB_MESHES);
@@ -278,9 +254,7 @@ bool masu_bake_make_bvh(masu_bake_content *content, const masu_bake_reflections 
     free(marks);
     masu_bake_release(&b.triangles);
     masu_bake_release(&b.boxes);
-    clock_gettime(CLOCK_MONOTONIC, &to);
-    report->seconds =
-        (double)(to.tv_sec - from.tv_sec) + (double)(to.tv_nsec - from.tv_nsec) * 1e-9;
+    report->seconds = masu_bake_seconds() - started;
     masu_cli_progress_clear();
     return good;
 }

@@ -8,7 +8,6 @@
 #define MASU_BAKE_BVH_H
 
 #include "bake/scene/content.h"
-#include "bake/scene/json.h"
 
 enum { MASU_BAKE_TRACED_AUTO, MASU_BAKE_TRACED_YES, MASU_BAKE_TRACED_NO };
 
@@ -33,11 +32,11 @@ typedef struct masu_bake_bvh_report {
     double seconds;
 } masu_bake_bvh_report;
 
-/* The scene's "reflections". False after reporting. */
-bool masu_bake_read_reflections(const masu_bake_json *scene, masu_bake_reflections *out);
+masu_bake_reflections masu_bake_reflection_defaults(void); /* none are wanted */
 
-/* A model's "traced", for the instances from `first` on. False after reporting. */
-bool masu_bake_read_traced(const masu_bake_json *model, masu_bake_content *content, uint64_t first);
+/* What the scene says of the instances from `first` on, the last that there are: one of
+ * MASU_BAKE_TRACED_*. */
+void masu_bake_mark_traced(masu_bake_content *content, uint64_t first, int traced);
 
 /* After masu_bake_sort_instances. False after reporting: more nodes than a blob may have. */
 bool masu_bake_make_bvh(masu_bake_content *content, const masu_bake_reflections *wanted,

@@ -1,7 +1,7 @@
 /* detail.h: what masu-bake makes of a scene's meshes so that less has to be drawn.
  *
  *   merge.c      many small static meshes of a model -> one mesh per material and cell
- *   lod.c        coarser forms of a mesh, each with a bound of its error
+ *   lod.c        LODs of a mesh, each with a bound of its error
  *   surface.c    distances, insides, closedness: the judge of LODs and of occluders
  *
  * What hides what is behind a mesh is in occluders.h. */
@@ -17,7 +17,7 @@
 #define MASU_BAKE_MERGE_TRIANGLES 256u
 const char *masu_bake_merge(masu_bake_content *piece, double cell);
 
-/* Adds up to `levels` coarser forms of each mesh. */
+/* Adds up to `levels` LODs to each mesh. */
 typedef struct masu_bake_lod_report {
     uint32_t meshes;    /* with at least one level */
     uint32_t levels;    /* in all */

@@ -1,4 +1,4 @@
-/* lod.c: coarser forms of meshes. For each level several candidates are made; the one with the
+/* lod.c: LODs of meshes. For each level several candidates are made; the one with the
  * least error that has few enough triangles is taken:
  *
  *   simplified   meshoptimizer's edge collapses, primitive by primitive

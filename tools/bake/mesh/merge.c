@@ -7,6 +7,8 @@
  * Vertices keep their bytes and texture coordinates but for place and normal, which move to the
  * model's space. */
 #include "bake/mesh/detail.h"
+#include "bake/mesh/triangles.h"
+#include "bake/scene/piece.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -30,14 +32,6 @@ static int by_cell(const void *a, const void *b) {
 
 static bool same_cell(const bit *a, const bit *b) {
     return a->material == b->material && memcmp(a->cell, b->cell, sizeof a->cell) == 0;
-}
-
-static masu_bake_affine transform_of(const masu_bake_content *piece, uint32_t instance) {
-    masu_bake_affine a;
-    for (int i = 0; i < 12; i++) {
-        a.m[i] = (double)MASU_BAKE_INSTANCES(piece)[instance].transform[i];
-    }
-    return a;
 }
 
 static masu_bake_vec3 decoded(const int16_t n[2]) { /* blob.md */
@@ -115,7 +109,7 @@ static const char *take_apart(const masu_bake_content *piece, double cell, masu_
             masu_bake_append(left, &i, sizeof i);
             continue;
         }
-        masu_bake_affine a = transform_of(piece, i);
+        masu_bake_affine a = masu_bake_transform(&MASU_BAKE_INSTANCES(piece)[i]);
         for (uint32_t j = 0; j < mesh->primitive_count; j++) {
             uint32_t at = mesh->first_primitive + j;
             const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(piece)[at];
@@ -152,7 +146,7 @@ static uint32_t vertex_of(masu_bake_content *out, const masu_bake_content *piece
     }
     table[slot] = (seam){from, p->vertex_count};
     masu_blob_vertex v = MASU_BAKE_VERTICES(piece)[vertex];
-    masu_bake_affine a = transform_of(piece, instance);
+    masu_bake_affine a = masu_bake_transform(&MASU_BAKE_INSTANCES(piece)[instance]);
     move_vertex(&v, &a);
     masu_bake_append(&out->section[MASU_BLOB_VERTICES], &v, sizeof v);
     const float *texcoords = MASU_BAKE_ARRAY(piece, MASU_BLOB_TEXCOORDS, const float);
@@ -177,7 +171,7 @@ static void put_together(masu_bake_content *out, const masu_bake_content *piece,
                              .material = bits[0].material};
     for (size_t i = 0; i < count; i++) {
         uint32_t first = MASU_BAKE_PRIMITIVES(piece)[bits[i].primitive].first_vertex;
-        masu_bake_affine a = transform_of(piece, bits[i].instance);
+        masu_bake_affine a = masu_bake_transform(&MASU_BAKE_INSTANCES(piece)[bits[i].instance]);
         for (uint32_t k = 0; k < 3; k++) {
             uint32_t corner = mirrors(&a) ? (3 - k) % 3 : k; /* the outside stays outside */
             uint32_t from = first + MASU_BAKE_INDICES(piece)[bits[i].first_index + corner];
@@ -225,7 +219,7 @@ static void keep(masu_bake_content *out, const masu_bake_content *piece, const u
                                             masu_bake_name(out, name, strlen(name)));
         }
         const char *name = masu_bake_name_text(piece, n->name);
-        masu_bake_affine a = transform_of(piece, left[i]);
+        masu_bake_affine a = masu_bake_transform(&MASU_BAKE_INSTANCES(piece)[left[i]]);
         masu_bake_instance(out, &a, moved[n->mesh], MASU_BLOB_NONE,
                            masu_bake_name(out, name, strlen(name)));
     }

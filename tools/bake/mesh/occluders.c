@@ -55,8 +55,8 @@ bool masu_bake_is_box(const masu_bake_content *content, uint32_t mesh, masu_bake
             uint32_t all = 7, none = 0, set = 0;
             for (uint32_t i = 0; i < 3; i++) {
                 uint32_t index = MASU_BAKE_INDICES(content)[p->first_index + t + i];
-                uint32_t c = corner_of(
-                    m, MASU_BAKE_VERTICES(content)[p->first_vertex + index].position);
+                uint32_t c =
+                    corner_of(m, MASU_BAKE_VERTICES(content)[p->first_vertex + index].position);
                 if (c == 8) return false;
                 all &= c;
                 none |= c;
@@ -123,9 +123,8 @@ static double *largest_scales(const masu_bake_content *content) {
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
         const masu_blob_instance *n = &MASU_BAKE_INSTANCES(content)[i];
         for (int k = 0; k < 3; k++) {
-            masu_bake_vec3 column =
-                masu_bake_v3((double)n->transform[k], (double)n->transform[4 + k],
-                             (double)n->transform[8 + k]);
+            masu_bake_vec3 column = masu_bake_v3(
+                (double)n->transform[k], (double)n->transform[4 + k], (double)n->transform[8 + k]);
             scales[n->mesh] = fmax(scales[n->mesh], masu_bake_length(column));
         }
     }

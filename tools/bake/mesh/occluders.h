@@ -23,8 +23,9 @@ void masu_bake_drop_occluders(masu_bake_content *content);
 /* Gives each mesh occluders that has none yet and whose second longest side is, at its largest
  * placement, at least `least` metres. */
 typedef struct masu_bake_occluder_report {
-    uint32_t given, whole, inside; /* meshes with occluders: of the scene, boxes themselves, others */
-    uint32_t dropped;              /* nothing could be proven to lie inside */
+    uint32_t given, whole,
+        inside;       /* meshes with occluders: of the scene, boxes themselves, others */
+    uint32_t dropped; /* nothing could be proven to lie inside */
     uint32_t too_small;
 } masu_bake_occluder_report;
 void masu_bake_make_occluders(masu_bake_content *content, double least,

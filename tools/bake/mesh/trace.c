@@ -172,8 +172,7 @@ static void turn(const masu_bake_content *content, const masu_blob_primitive *p,
 
 static void add_primitive(masu_bake_trace *trace, const masu_bake_content *content,
                           const masu_blob_primitive *p, const masu_blob_instance *instance) {
-    masu_bake_affine a;
-    for (int i = 0; i < 12; i++) a.m[i] = (double)instance->transform[i];
+    masu_bake_affine a = masu_bake_transform(instance);
     const double *m = a.m;
     bool mirror = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
                       m[2] * (m[4] * m[9] - m[5] * m[8]) <

@@ -1,7 +1,7 @@
 /* check.c: what another process has handed over, checked before any of its indices is
  * followed. The rules are those of blob.h for geometry, instances and materials; the finished scene
  * is judged by the runtime's own reader, masu_scene_bind. */
-#include "bake/scene/content.h"
+#include "bake/scene/check.h"
 #include "scene/punctual_light.h"
 
 static bool finite_all(const float *values, size_t count) {
@@ -136,8 +136,9 @@ static const char *check_maps(const masu_bake_content *c) {
                 return "a map of no picture";
             }
         }
-        if (m->gloss > 1 || m->additive > 1 || m->alpha > MASU_BAKE_ALPHA_BLEND || m->wrap[0] > 2 || m->wrap[1] > 2 ||
-            !in_range(&m->cutoff, 1, 0, 1) || !in_range(&m->normal_scale, 1, -16, 16)) {
+        if (m->gloss > 1 || m->additive > 1 || m->alpha > MASU_BAKE_ALPHA_BLEND || m->wrap[0] > 2 ||
+            m->wrap[1] > 2 || !in_range(&m->cutoff, 1, 0, 1) ||
+            !in_range(&m->normal_scale, 1, -16, 16)) {
             return "a map out of range";
         }
     }

@@ -1,10 +1,7 @@
-/* content.c: the arrays of a scene being baked, and how pieces come together; see
- * content.h. */
+/* content.c: the arrays of a scene being baked; see content.h. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/scene/content.h"
-#include "cli/cli.h"
 
-#include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,48 +55,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_TRACE_TEXELS] = sizeof(uint32_t),
 };
 
-/* ---- arrays ---- */
-
-static void out_of_memory(void) {
-    masu_cli_error("out of memory");
-    exit(MASU_CLI_FAILURE); /* in an importing child, which must not return either, harmless */
-}
-
-void *masu_bake_allocate(size_t bytes) {
-    void *memory = malloc(bytes ? bytes : 1);
-    if (!memory) out_of_memory();
-    return memory;
-}
-
-void *masu_bake_append(masu_bake_buffer *buffer, const void *data, size_t bytes) {
-    if (bytes > SIZE_MAX / 2 - buffer->bytes) out_of_memory();
-    size_t needed = buffer->bytes + bytes;
-    if (needed > buffer->capacity || !buffer->data) {
-        size_t capacity = buffer->capacity + buffer->capacity / 2;
-        if (capacity < needed) capacity = needed;
-        if (capacity < 256) capacity = 256;
-        unsigned char *grown = realloc(buffer->data, capacity);
-        if (!grown) out_of_memory();
-        buffer->data = grown;
-        buffer->capacity = capacity;
-    }
-    unsigned char *at = buffer->data + buffer->bytes;
-    if (data)
-        memcpy(at, data, bytes);
-    else
-        memset(at, 0, bytes);
-    buffer->bytes = needed;
-    return at;
-}
-
-void masu_bake_append_text(masu_bake_buffer *buffer, const char *text) {
-    masu_bake_append(buffer, text, strlen(text));
-}
-
-void masu_bake_release(masu_bake_buffer *buffer) {
-    free(buffer->data);
-    *buffer = (masu_bake_buffer){0};
-}
+/* ---- sections ---- */
 
 uint32_t masu_bake_stride(uint32_t kind) { return strides[kind]; }
 
@@ -264,181 +220,10 @@ uint32_t masu_bake_instance(masu_bake_content *content, const masu_bake_affine *
     return (uint32_t)(masu_bake_count(content, MASU_BLOB_INSTANCES) - 1);
 }
 
-static masu_bake_affine instance_transform(const masu_blob_instance *instance) {
+masu_bake_affine masu_bake_transform(const masu_blob_instance *instance) {
     masu_bake_affine a;
     for (int i = 0; i < 12; i++) a.m[i] = (double)instance->transform[i];
     return a;
-}
-
-/* ---- placing a piece ---- */
-
-/* The file of a path, without folders. */
-static const char *last_part(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-static bool matches(const masu_bake_content *piece, uint32_t index, const masu_bake_override *o) {
-    uint32_t image = MASU_BAKE_MAPS_OF(piece)[index].image[MASU_BAKE_BASE];
-    const char *name = masu_bake_name_text(piece, MASU_BAKE_MATERIALS(piece)[index].name);
-    if (!*o->match || fnmatch(o->match, name, 0) == 0) return true;
-    if (image == MASU_BLOB_NONE) return false;
-    const char *path =
-        (const char *)piece->image_text.data + MASU_BAKE_IMAGES(piece)[image].name;
-    return fnmatch(o->match, last_part(path), 0) == 0;
-}
-
-static void apply_override(const masu_bake_override *o, masu_blob_material *to,
-                           masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
-    const masu_blob_material *v = &o->value;
-    if (o->base_color) memcpy(to->base_color, v->base_color, sizeof v->base_color);
-    if (o->roughness) to->roughness = v->roughness;
-    if (o->metallic) to->metallic = v->metallic;
-    if (o->specular) to->specular = v->specular;
-    if (o->coat) to->coat = v->coat;
-    if (o->coat_roughness) to->coat_roughness = v->coat_roughness;
-    if (o->meso) to->meso = v->meso;
-    if (o->detail) memcpy(to->detail, v->detail, sizeof v->detail);
-    if (o->opacity) to->opacity = v->opacity;
-    if (o->emissive) memcpy(to->emissive, v->emissive, sizeof v->emissive);
-    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
-        if (!o->map[i]) continue;
-        maps->image[i] = o->maps.image[i];
-        maps->channel[i] = o->maps.channel[i];
-        own[i] = true;
-    }
-    if (o->map[MASU_BAKE_ROUGHNESS]) maps->gloss = 0;
-    if (o->alpha) {
-        maps->alpha = o->maps.alpha;
-        maps->additive = o->maps.additive;
-    } else if (o->opacity && v->opacity < 1.0f) {
-        maps->alpha = MASU_BAKE_ALPHA_BLEND;
-    }
-    if (o->cutoff) maps->cutoff = o->maps.cutoff;
-}
-
-static uint32_t placed_material(masu_bake_content *scene, const masu_bake_content *piece,
-                                uint32_t index, const masu_bake_overrides *overrides) {
-    masu_blob_material material = MASU_BAKE_MATERIALS(piece)[index];
-    const char *name = masu_bake_name_text(piece, material.name);
-    masu_bake_maps maps = MASU_BAKE_MAPS_OF(piece)[index];
-    bool own[MASU_BAKE_MAPS] = {false}; /* the scene's picture, not the piece's */
-    for (size_t i = 0; i < overrides->count; i++) {
-        if (!matches(piece, index, &overrides->items[i])) continue;
-        apply_override(&overrides->items[i], &material, &maps, own);
-    }
-    for (int i = 0; i < MASU_BAKE_MAPS; i++) {
-        if (own[i] || maps.image[i] == MASU_BLOB_NONE) continue;
-        const masu_bake_image *from = &MASU_BAKE_IMAGES(piece)[maps.image[i]];
-        maps.image[i] =
-            masu_bake_add_image(scene, (const char *)piece->image_text.data + from->name, from,
-                                piece->image_data.data + from->data);
-    }
-    return masu_bake_mapped_material(scene, &material, &maps, name);
-}
-
-static uint32_t copied_name(masu_bake_content *scene, const masu_bake_content *piece, uint32_t name,
-                            const char *prefix) {
-    const char *own = masu_bake_name_text(piece, name);
-    if (!prefix || !*prefix) return masu_bake_name(scene, own, strlen(own));
-    masu_bake_buffer text = {0};
-    masu_bake_append_text(&text, prefix);
-    if (*own) {
-        masu_bake_append_text(&text, "/");
-        masu_bake_append_text(&text, own);
-    }
-    uint32_t offset = masu_bake_name(scene, (const char *)text.data, text.bytes);
-    masu_bake_release(&text);
-    return offset;
-}
-
-/* Primitives and meshes of the piece, with its materials as overridden. Returns the first mesh. */
-static uint32_t place_meshes(masu_bake_content *scene, const masu_bake_content *piece,
-                             uint32_t first_vertex, uint32_t first_index,
-                             const masu_bake_overrides *overrides) {
-    uint32_t first_primitive = (uint32_t)masu_bake_count(scene, MASU_BLOB_PRIMITIVES);
-    uint32_t first_mesh = (uint32_t)masu_bake_count(scene, MASU_BLOB_MESHES);
-    uint64_t materials = masu_bake_count(piece, MASU_BLOB_MATERIALS);
-    uint32_t *material_map = masu_bake_allocate((size_t)materials * sizeof *material_map);
-    for (uint32_t i = 0; i < materials; i++) {
-        material_map[i] = placed_material(scene, piece, i, overrides);
-    }
-    for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_PRIMITIVES); i++) {
-        masu_blob_primitive p = MASU_BAKE_PRIMITIVES(piece)[i];
-        p.first_index += first_index;
-        p.first_vertex += first_vertex;
-        p.material = material_map[p.material];
-        masu_bake_append(&scene->section[MASU_BLOB_PRIMITIVES], &p, sizeof p);
-    }
-    for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MESHES); i++) {
-        masu_blob_mesh m = MASU_BAKE_MESHES(piece)[i];
-        m.first_primitive += first_primitive;
-        m.name = copied_name(scene, piece, m.name, NULL);
-        masu_bake_append(&scene->section[MASU_BLOB_MESHES], &m, sizeof m);
-    }
-    free(material_map);
-    return first_mesh;
-}
-
-/* The largest counts that the runtime takes, after adding the piece. */
-static const char *room_for(const masu_bake_content *scene, const masu_bake_content *piece) {
-    static const struct {
-        uint32_t kind;
-        const char *problem;
-    } rows[] = {
-        {MASU_BLOB_VERTICES, "more than 2^31 - 1 vertices"},
-        {MASU_BLOB_INDICES, "more than 2^31 - 1 indices"},
-        {MASU_BLOB_PRIMITIVES, "more than 2^31 - 1 primitives"},
-        {MASU_BLOB_MESHES, "more than 2^31 - 1 meshes"},
-        {MASU_BLOB_INSTANCES, "more than 2^31 - 1 instances"},
-        {MASU_BLOB_MATERIALS, "more than 2^31 - 1 materials"},
-    };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        uint64_t sum = masu_bake_count(scene, rows[i].kind) + masu_bake_count(piece, rows[i].kind);
-        if (sum > INT32_MAX) return rows[i].problem;
-    }
-    return NULL;
-}
-
-static uint32_t copy_section(masu_bake_content *scene, const masu_bake_content *piece,
-                             uint32_t kind) {
-    uint32_t first = (uint32_t)masu_bake_count(scene, kind);
-    masu_bake_append(&scene->section[kind], piece->section[kind].data, piece->section[kind].bytes);
-    return first;
-}
-
-const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
-                            masu_bake_residence *residence, const masu_bake_affine *placement,
-                            const masu_bake_overrides *overrides, const char *prefix) {
-    const char *problem = room_for(scene, piece);
-    if (problem) return problem;
-    if (!residence->has_vertices) {
-        residence->first_vertex = copy_section(scene, piece, MASU_BLOB_VERTICES);
-        copy_section(scene, piece, MASU_BLOB_TEXCOORDS);
-        residence->has_vertices = true;
-    }
-    uint32_t first_mesh = residence->first_mesh;
-    if (!residence->has_meshes) {
-        /* Two primitives share no indices (src/scene/scene.c): other materials, other indices. */
-        uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
-        first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, overrides);
-        residence->first_mesh = first_mesh;
-        residence->has_meshes = true;
-    }
-    uint32_t first_instance = (uint32_t)masu_bake_count(scene, MASU_BLOB_INSTANCES);
-    for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_INSTANCES); i++) {
-        const masu_blob_instance *from = &MASU_BAKE_INSTANCES(piece)[i];
-        masu_bake_affine own = instance_transform(from);
-        masu_bake_affine world = masu_bake_multiply(placement, &own);
-        uint32_t parent = from->parent;
-        if (parent != MASU_BLOB_NONE) parent += first_instance;
-        uint32_t name = copied_name(scene, piece, from->name, prefix);
-        if (masu_bake_instance(scene, &world, first_mesh + from->mesh, parent, name) ==
-            MASU_BLOB_NONE) {
-            return "a transform that is not finite or moves beyond 1e15";
-        }
-    }
-    return NULL;
 }
 
 masu_bake_box masu_bake_bounds(const masu_bake_content *content,
@@ -447,7 +232,7 @@ masu_bake_box masu_bake_bounds(const masu_bake_content *content,
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
         const masu_blob_instance *instance = &MASU_BAKE_INSTANCES(content)[i];
         const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(content)[instance->mesh];
-        masu_bake_affine own = instance_transform(instance);
+        masu_bake_affine own = masu_bake_transform(instance);
         masu_bake_affine world = masu_bake_multiply(placement, &own);
         for (uint32_t j = 0; j < mesh->primitive_count; j++) {
             const masu_blob_primitive *p =

@@ -1,33 +1,23 @@
 /* content.h: a scene while it is being baked: one growing array per section of the blob.
  *
  * The same structure holds a whole scene, one imported model and one procedural shape. Pieces are
- * built apart (a model even in another process, see import.c), checked, and appended to the
+ * built apart (a model even in another process, see bake/import), checked, and appended to the
  * scene with a placement. Elements are the blob's own structs, so writing is copying.
  *
- *   content.c   the arrays, names, materials, appending a piece, order of instances
- *   bake/mesh/mesh.c      triangles of unknown quality -> welded vertices, normals, primitives
+ *   content.c   the arrays, names, materials, bounds, order of instances
+ *   piece.c     pieces placed in a scene, with what the scene changes of their materials
  *   check.c     the rules of blob.h, before a piece from another process is trusted
+ *   groups.c    what is culled together
  *
+ * Whoever declares a content owns it, and releases it.
  * Running out of memory ends the program with a message; nothing else here can fail unless it says
  * so. */
 #ifndef MASU_BAKE_CONTENT_H
 #define MASU_BAKE_CONTENT_H
 
-#include "bake/scene/math.h"
+#include "bake/base/buffer.h"
+#include "bake/base/math.h"
 #include "scene/blob.h"
-
-#include <stddef.h>
-
-typedef struct masu_bake_buffer {
-    unsigned char *data;
-    size_t bytes, capacity;
-} masu_bake_buffer;
-
-/* Appends (data NULL: zeros) and returns the new bytes, which stay put until the next append. */
-void *masu_bake_append(masu_bake_buffer *buffer, const void *data, size_t bytes);
-void masu_bake_append_text(masu_bake_buffer *buffer, const char *text); /* without its NUL */
-void masu_bake_release(masu_bake_buffer *buffer);
-void *masu_bake_allocate(size_t bytes); /* never NULL; free() it */
 
 typedef struct masu_bake_content {
     masu_bake_buffer section[MASU_BLOB_KIND_COUNT]; /* by masu_blob_kind */
@@ -37,7 +27,8 @@ typedef struct masu_bake_content {
     masu_bake_buffer image_text; /* their names, each with its NUL */
     masu_bake_buffer image_data; /* files that lie inside a model */
     float sdf_glossiest;         /* least roughness of the SDF's surfaces */
-    masu_bake_buffer traced;     /* what the scene says of the first so many instances: bake/mesh/bvh.h */
+    masu_bake_buffer
+        traced; /* what the scene says of the first so many instances: bake/mesh/bvh.h */
     /* Small pictures of the textures, where rays are traced: bake/texture/trace_texture.h. */
     masu_bake_buffer pictures;       /* masu_bake_trace_row */
     masu_bake_buffer picture_texels; /* uint32_t */
@@ -75,7 +66,7 @@ typedef struct masu_bake_maps {
     uint8_t alpha;                   /* MASU_BAKE_ALPHA_*; AUTO: the picture decides */
     uint8_t additive;                /* with ALPHA_BLEND: adds its light, hides nothing */
     uint8_t wrap[2];                 /* as in masu_blob_texture_set */
-    uint8_t reserved[4]; /* no padding: it is compared as bytes */
+    uint8_t reserved[4];             /* no padding: it is compared as bytes */
     float cutoff, normal_scale;
 } masu_bake_maps;
 
@@ -119,82 +110,13 @@ uint32_t masu_bake_mesh(masu_bake_content *content, uint32_t first_primitive, ui
 uint32_t masu_bake_instance(masu_bake_content *content, const masu_bake_affine *transform,
                             uint32_t mesh, uint32_t parent, uint32_t name);
 
-#define MASU_BAKE_MATCH 64u
-
-/* Replaces the fields that a scene gives; zero: none. */
-typedef struct masu_bake_override {
-    masu_blob_material value;
-    bool base_color, roughness, metallic, emissive, specular, coat, coat_roughness, meso;
-    masu_bake_maps maps; /* pictures of the scene, by its own numbers */
-    bool map[MASU_BAKE_MAPS], alpha, cutoff, detail, opacity;
-    char match[MASU_BAKE_MATCH]; /* of the material's name or its colour's picture; "": all */
-} masu_bake_override;
-
-/* Applied one after the other. */
-typedef struct masu_bake_overrides {
-    masu_bake_override *items;
-    size_t count;
-} masu_bake_overrides;
-
-/* Where a piece already lies in the scene, for the second and later placements with the same
- * override. Zero at first; with another override, one whose has_meshes is false again. */
-typedef struct masu_bake_residence {
-    uint32_t first_vertex, first_mesh;
-    bool has_vertices, has_meshes;
-} masu_bake_residence;
-
-/* Appends `piece` to `scene`: vertices and meshes where the residence says that they are missing,
- * instances every time. `prefix` goes before the instances' names; may be NULL. Returns NULL or what is
- * wrong. */
-const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *piece,
-                            masu_bake_residence *residence, const masu_bake_affine *placement,
-                            const masu_bake_overrides *overrides, const char *prefix);
-
-/* The same of a piece's lights, after it; those of instances stay with them. factor: of their colours;
- * 0: without them. A range of 0 becomes masu_bake_light_range's. Returns NULL or what is wrong. */
-const char *masu_bake_place_lights(masu_bake_content *scene, const masu_bake_content *piece,
-                                   const masu_bake_affine *placement, uint32_t first_instance,
-                                   double factor, const char *prefix);
-/* Where instances go, their lights stay behind: into the piece's own space. */
-void masu_bake_detach_lights(masu_bake_content *piece);
-/* Where a white surface that faces a light of that colour has a radiance of a hundredth, metres. */
-double masu_bake_light_range(masu_bake_vec3 color);
+/* Object space to the space of the content. */
+masu_bake_affine masu_bake_transform(const masu_blob_instance *instance);
 
 /* Box of everything the instances show under `placement`, from the vertices themselves. */
 masu_bake_box masu_bake_bounds(const masu_bake_content *content, const masu_bake_affine *placement);
 
 /* Orders instances by mesh (stable) and rewrites parents. */
 void masu_bake_sort_instances(masu_bake_content *content);
-
-/* Triangles of unknown quality become one or more primitives at the end of `content`. */
-typedef struct masu_bake_triangles {
-    const float *positions; /* 3 per vertex */
-    const float *normals;   /* 3 per vertex, or NULL */
-    const float *texcoords; /* 2 per vertex, v down the picture, or NULL */
-    bool repeats;           /* their textures repeat: whole turns may be taken off */
-    uint32_t vertex_count;
-    const uint32_t *indices;
-    uint64_t index_count; /* a rest behind the last full triangle is ignored */
-    uint32_t material;
-} masu_bake_triangles;
-
-typedef struct masu_bake_losses {
-    uint64_t triangles;     /* looked at */
-    uint64_t bad_index;     /* dropped: an index beyond the vertices */
-    uint64_t bad_position;  /* dropped: NaN, infinite or absurdly far */
-    uint64_t degenerate;    /* dropped: no area */
-    uint64_t bad_normals;   /* vertices whose normal had to be made from the triangles */
-    uint64_t bad_texcoords; /* corners whose texture coordinates became 0 */
-} masu_bake_losses;
-
-/* False: over 2^31 - 1 vertices or indices in all. */
-bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangles *triangles,
-                             masu_bake_losses *losses);
-
-/* Unit vector to two signed normalised components; blob.md gives the mapping. */
-void masu_bake_encode_normal(masu_bake_vec3 normal, int16_t out[2]);
-
-/* NULL, or the first rule of blob.h that the piece breaks. */
-const char *masu_bake_check(const masu_bake_content *piece);
 
 #endif

@@ -49,13 +49,16 @@ static uint32_t tag_of(masu_bake_content *content, const char *path, size_t leng
     return count;
 }
 
-uint32_t masu_bake_group(masu_bake_content *content, const char *path) {
+bool masu_bake_group_path(const char *path) {
     uint32_t levels = 1;
     for (const char *c = path; *c; c++) {
-        if (*c == '/' && (c == path || c[1] == '/' || !c[1])) return MASU_BLOB_NONE;
+        if (*c == '/' && (c == path || c[1] == '/' || !c[1])) return false;
         levels += *c == '/';
     }
-    if (!*path || levels > MASU_BAKE_GROUP_LEVELS) return MASU_BLOB_NONE;
+    return *path && levels <= MASU_BAKE_GROUP_LEVELS;
+}
+
+uint32_t masu_bake_group(masu_bake_content *content, const char *path) {
     uint32_t tag = MASU_BLOB_NONE;
     for (const char *c = path;; c++) {
         if (*c == '/' || !*c) tag = tag_of(content, path, (size_t)(c - path), tag);
@@ -114,8 +117,8 @@ static void gather(builder *b, uint32_t count, size_t instances) {
         if (!used[g]) continue;
         for (size_t k = 0; k < b->own[g].count; k++) boxes[k] = b->things[b->own[g].first + k].box;
         range *own = &b->own[groups[g].reserved == MASU_BLOB_NONE ? count : groups[g].reserved];
-        b->things[own->first + own->count++] = (thing){
-            masu_cull_around(boxes, (uint32_t)b->own[g].count), 0, MASU_BLOB_NONE, g};
+        b->things[own->first + own->count++] =
+            (thing){masu_cull_around(boxes, (uint32_t)b->own[g].count), 0, MASU_BLOB_NONE, g};
     }
     free(boxes);
     free(used);
@@ -152,7 +155,7 @@ static size_t split(thing *things, size_t n, uint32_t level) {
     }
     for (size_t i = 0; i < n; i++) things[i].key = (double)things[i].box.center[axis];
     qsort(things, n, sizeof *things, by_key);
-    if (level >= MASU_CULL_DEPTH / 2) return n / 2; /* halves keep the tree shallow */
+    if (level >= MASU_CULL_DEPTH / 2) return n / 2;      /* halves keep the tree shallow */
     double *cost = masu_bake_allocate(n * sizeof *cost); /* of a split behind each thing */
     masu_cull_box grown[2] = {things[0].box, things[0].box};
     for (size_t i = 0; i < n; i++) {

@@ -11,8 +11,9 @@
 #define MASU_BAKE_MOVING 0xFFFFFFFEu /* moves in every frame: in no group */
 #define MASU_BAKE_GROUP_LEVELS 8u    /* of a path */
 
-/* The tag of "outer/inner", with its outer groups added as needed. MASU_BLOB_NONE: an empty part, or
- * too many. */
+/* Whether "outer/inner" is 1 to MASU_BAKE_GROUP_LEVELS names. */
+bool masu_bake_group_path(const char *path);
+/* The tag of such a path, with its outer groups added as needed. */
 uint32_t masu_bake_group(masu_bake_content *content, const char *path);
 
 /* The tree over the instances, which are sorted by mesh by now. */

@@ -1,13 +1,13 @@
 /* sdf.c: compiling the scene's march shader; see sdf.h. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/shader/sdf.h"
-#include "bake/scene/file.h"
-#include "bake/scene/process.h"
+#include "bake/base/file.h"
+#include "bake/base/process.h"
 #include "bake/shader/try.h"
 #include "cli/cli.h"
 #include "scene_sources.h"
-#include "shared/masu_shared.h"
 #include "sdfc/sdfc.h"
+#include "shared/masu_shared.h"
 
 #include <errno.h>
 #include <math.h>
@@ -140,11 +140,13 @@ static bool compile_scene(const char *path, masu_bake_content *content, masu_bak
 /* Constants and not data: what a scene does not ask for is then not in its code. */
 static bool write_occlusion(const char *directory, const masu_bake_occlusion *o) {
     char text[512];
-    int n = snprintf(text, sizeof text, "#define MASU_SHADOWS %d\n#define MASU_AMBIENT_OCCLUSION %d\n",
-                     o->shadows, o->ambient);
-    n += snprintf(text + n, sizeof text - (size_t)n,
-                  "#define MASU_SUN_TANGENT float(%.9g)\n#define MASU_SHADOW_DISTANCE float(%.9g)\n",
-                  tan(o->sun_radius), o->distance);
+    int n =
+        snprintf(text, sizeof text, "#define MASU_SHADOWS %d\n#define MASU_AMBIENT_OCCLUSION %d\n",
+                 o->shadows, o->ambient);
+    n +=
+        snprintf(text + n, sizeof text - (size_t)n,
+                 "#define MASU_SUN_TANGENT float(%.9g)\n#define MASU_SHADOW_DISTANCE float(%.9g)\n",
+                 tan(o->sun_radius), o->distance);
     n += snprintf(text + n, sizeof text - (size_t)n,
                   "#define MASU_AO_RADIUS float(%.9g)\n#define MASU_AO_STRENGTH float(%.9g)\n",
                   o->radius, o->strength);
@@ -335,8 +337,7 @@ static const struct {
     {"march_seed.comp", NULL, "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
     {"march_checkerboard.comp", NULL, "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
      VARIANT},
-    {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV,
-     WITHOUT_RASTER},
+    {"march_fragment.frag", NULL, "frag.raw", "frag.spv", MASU_BLOB_FRAGMENT_SPIRV, WITHOUT_RASTER},
     {"sdf_occlusion.comp", NULL, "occl.raw", "occl.spv", MASU_BLOB_OCCLUSION_SPIRV, OCCLUSION},
     {"specular_trace_sdf.comp", NULL, "mirror.raw", "mirror.spv", MASU_BLOB_TRACE_SDF_SPIRV,
      REFLECTED_STILL},
@@ -379,8 +380,7 @@ static bool try_blocks(const masu_sdfc_result *scene, const char *directory, cha
 }
 
 bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
-                             const masu_bake_occlusion *occlusion, bool reflected,
-                             bool variants) {
+                             const masu_bake_occlusion *occlusion, bool reflected, bool variants) {
     const char *directory = masu_bake_temporary_directory();
     if (!directory) return false;
     char *scene_directory = masu_bake_directory_of(glsl_path);
@@ -394,7 +394,8 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                 (!darkens || write_occlusion(directory, occlusion));
     for (size_t i = 0; i < sizeof scene_shaders / sizeof *scene_shaders && good; i++) {
         bool anchored = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->anchored != 0;
-        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, reflected, variants, has_raster))
+        if (!wanted(scene_shaders[i].when, dynamic, anchored, darkens, reflected, variants,
+                    has_raster))
             continue;
         paths p = {masu_bake_join(directory, scene_shaders[i].source),
                    masu_bake_join(directory, scene_shaders[i].raw),

@@ -3,7 +3,7 @@
  * hundred-thousandth is no violation. */
 #include "bake/shader/try.h"
 
-#include "bake/scene/process.h"
+#include "bake/base/process.h"
 #include "bake/shader/spirv.h"
 #include "cli/cli.h"
 

@@ -2,7 +2,7 @@
  * text of what is wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/texture/image.h"
-#include "bake/scene/process.h"
+#include "bake/base/process.h"
 #include "cli/cli.h"
 
 #include <errno.h>

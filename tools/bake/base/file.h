@@ -1,0 +1,27 @@
+/* file.h: files that masu-bake reads and writes whole, and the temporary ones it cleans up.
+ *
+ * Output is written beside its final name and renamed: a reader sees the old file or the new one,
+ * never a part. Everything temporary is gone after exit(), whatever the reason. Functions that can
+ * fail report the error themselves. */
+#ifndef MASU_BAKE_FILE_H
+#define MASU_BAKE_FILE_H
+
+#include "bake/base/buffer.h"
+
+#include <stdbool.h>
+
+/* Reads a regular file of at most `limit` bytes; adds a NUL that is not counted. */
+bool masu_bake_read_file(const char *path, size_t limit, masu_bake_buffer *out);
+
+/* Replaces `path`; a device or pipe (/dev/null, /dev/stdout) is written straight into. */
+bool masu_bake_write_file(const char *path, const void *data, size_t bytes);
+
+/* A new empty directory; removed with all it holds at exit. NULL after an error. */
+const char *masu_bake_temporary_directory(void);
+
+/* "DIRECTORY/NAME"; free() it. */
+char *masu_bake_join(const char *directory, const char *name);
+/* The directory of a path, "." if it has none; free() it. */
+char *masu_bake_directory_of(const char *path);
+
+#endif

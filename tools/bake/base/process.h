@@ -1,0 +1,47 @@
+/* process.h: work that masu-bake does in a child process, because it may crash, hang or eat
+ * memory: importing a model (a library that parses hostile files) and running the shader tools.
+ *
+ * The child's output comes back through a pipe while the parent keeps a clock. A signal that should
+ * end masu-bake (Ctrl-C, TERM, HUP) ends the child first and then leaves through exit(), so that
+ * temporary files are removed. */
+#ifndef MASU_BAKE_PROCESS_H
+#define MASU_BAKE_PROCESS_H
+
+#include "bake/base/buffer.h"
+
+#include <stdbool.h>
+
+enum masu_bake_end {
+    MASU_BAKE_EXITED,   /* code: the exit status */
+    MASU_BAKE_SIGNALED, /* code: the signal */
+    MASU_BAKE_TIMEOUT,  /* killed after its time; code: the seconds */
+    MASU_BAKE_NO_CHILD  /* fork or pipe failed; code: errno */
+};
+
+typedef struct masu_bake_result {
+    enum masu_bake_end end;
+    int code;
+} masu_bake_result;
+
+/* Of a clock that never goes back. */
+double masu_bake_seconds(void);
+
+/* Called once at the start of main. */
+void masu_bake_catch_signals(void);
+
+/* Runs body(argument, fd) in a forked child; what it writes to fd lands in `output`. The child
+ * ends with status 0 when body returns. Its standard output and, outside sanitizer builds, its
+ * standard error go nowhere. */
+masu_bake_result masu_bake_fork(void (*body)(void *argument, int fd), void *argument,
+                                unsigned seconds, masu_bake_buffer *output);
+
+/* Runs a program found in PATH, never through a shell; both its output streams land in `output`.
+ * A program that cannot be started exits with MASU_BAKE_CANNOT_START. */
+masu_bake_result masu_bake_run(const char *const *arguments, unsigned seconds,
+                               masu_bake_buffer *output);
+#define MASU_BAKE_CANNOT_START 127
+
+/* For bodies: writes all of it, or ends the child when the parent is gone. */
+void masu_bake_send(int fd, const void *data, size_t bytes);
+
+#endif

@@ -1,0 +1,115 @@
+/* build.c: the steps of building; see build.h. The order matters: occluders are of meshes as they
+ * are and then looked for in their LODs; the box of all instances frames the camera; the SDF's shader
+ * depends on whether there are polygons; textures say which materials are masked or blended, before
+ * occluders are dropped and trees are grown; instances are sorted before anything is kept by their
+ * number. */
+#include "bake/build/build.h"
+#include "bake/build/look.h"
+#include "bake/build/parts.h"
+#include "bake/light/environment.h"
+#include "bake/scene/groups.h"
+#include "bake/texture/texture.h"
+#include "bake/texture/trace_texture.h"
+#include "cli/cli.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define REPORT_POINTS 1024u
+#define REPORT_RAYS 4096u
+
+static void make_detail(const masu_bake_description *d, masu_bake_content *content,
+                        masu_bake_report *report) {
+    masu_cli_progress("making occluders and LODs");
+    masu_bake_make_occluders(content, d->occluders, &report->occluders);
+    masu_bake_make_lods(content, d->lods, &report->lods);
+    masu_bake_prove_occluders(content);
+}
+
+/* All of the SDF but its shader. */
+static void add_sdf(const masu_bake_sdf *sdf, masu_bake_content *content) {
+    for (size_t i = 0; i < sdf->param_count; i++) {
+        const masu_bake_sdf_param *p = &sdf->params[i];
+        masu_blob_sdf_param param = {p->value, p->low, p->high,
+                                     masu_bake_name(content, p->name, strlen(p->name))};
+        masu_bake_append(&content->section[MASU_BLOB_SDF_PARAMS], &param, sizeof param);
+    }
+    masu_blob_sdf out = {.lipschitz = (float)sdf->lipschitz,
+                         .max_distance = (float)sdf->max_distance,
+                         .has_raster = masu_bake_count(content, MASU_BLOB_INSTANCES) > 0,
+                         .part_count = 1,
+                         .anchored = sdf->anchored};
+    masu_bake_store(sdf->bounds.low, out.bounds_min);
+    masu_bake_store(sdf->bounds.high, out.bounds_max);
+    masu_bake_append(&content->section[MASU_BLOB_SDF], &out, sizeof out);
+}
+
+static bool add_environment_map(const masu_bake_environment *e, masu_bake_content *content) {
+    masu_bake_panorama panorama;
+    if (!e->file) return true;
+    if (!masu_bake_load_panorama(e->file, &panorama)) return false;
+    panorama.turn = e->rotate * (MASU_BAKE_PI / 180);
+    panorama.factor = e->scale;
+    masu_bake_add_environment(&panorama, e->size, content);
+    free(panorama.rgb);
+    return true;
+}
+
+/* What is shown, and what it is shown in. */
+static bool build_scene(const masu_bake_description *d, const masu_bake_options *options,
+                        masu_bake_content *content, masu_bake_report *report) {
+    if (!masu_bake_build_models(d, options->textures, content)) return false;
+    make_detail(d, content, report);
+    masu_bake_affine identity = masu_bake_identity();
+    masu_bake_box bounds = masu_bake_bounds(content, &identity);
+    if (!masu_bake_build_lights(d, content)) return false;
+    if (d->sdf.source) {
+        add_sdf(&d->sdf, content);
+        /* Models say better than an endless world's bounds what the camera should look at. */
+        if (masu_bake_box_is_empty(&bounds)) bounds = d->sdf.bounds;
+    }
+    masu_bake_build_look(&d->look, &bounds, content);
+    if (!add_environment_map(&d->environment, content)) return false;
+    return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
+                                                     d->reflections.wanted, options->variants);
+}
+
+static bool build_probes(const masu_bake_description *d, const masu_bake_options *options,
+                         masu_bake_content *content) {
+    masu_bake_probe_settings probes = d->probes;
+    if (!probes.wanted && !options->probes) return true;
+    probes.wanted = true;
+    probes.threads = options->threads;
+    masu_bake_trace *trace = masu_bake_trace_make(content);
+    masu_bake_probe_report done = {0};
+    bool good = trace && masu_bake_make_probes(content, &probes, trace, &done);
+    masu_cli_progress_clear();
+    if (good && !masu_cli_quiet()) {
+        printf("%llu light probes (%llu inside of things), %llu bytes, %llu rays at %llu triangles "
+               "in %.2f s: %.2f million a second\n",
+               (unsigned long long)done.probes, (unsigned long long)done.invalid,
+               (unsigned long long)done.bytes, (unsigned long long)done.rays,
+               (unsigned long long)done.triangles, done.seconds,
+               (double)done.rays / done.seconds * 1e-6);
+    }
+    if (good && options->probe_report)
+        masu_bake_report_probes(content, &probes, trace, REPORT_POINTS, REPORT_RAYS);
+    masu_bake_trace_release(trace);
+    return good;
+}
+
+bool masu_bake_build(const masu_bake_description *d, const masu_bake_options *options,
+                     masu_bake_content *content, masu_bake_report *report) {
+    content->pictures_wanted = report->reflected = d->reflections.wanted;
+    content->picture_side = d->reflections.texture_size;
+    if (!build_scene(d, options, content, report)) return false;
+    if (!masu_bake_make_textures(content, options->texture_path)) return false;
+    masu_bake_sort_instances(content);
+    masu_bake_groups(content);
+    masu_bake_sort_occluders(content);
+    masu_bake_drop_occluders(content);
+    if (!masu_bake_make_bvh(content, &d->reflections, &report->reflections)) return false;
+    masu_bake_trace_textures(content);
+    return build_probes(d, options, content);
+}

@@ -1,0 +1,85 @@
+/* look.c: camera path, shadow map and environment of the blob: what the scene says of them, and by
+ * the box of what it shows what it leaves open; see build.h. */
+#include "bake/build/look.h"
+
+static double box_radius(const masu_bake_box *box) {
+    if (masu_bake_box_is_empty(box)) return 1.0;
+    masu_bake_vec3 extent = masu_bake_sub(box->high, box->low);
+    double most = fmax(fabs(box->low.x), fabs(box->high.x));
+    most = fmax(most, fmax(fabs(box->low.y), fabs(box->high.y)));
+    most = fmax(most, fmax(fabs(box->low.z), fabs(box->high.z)));
+    /* A scene of one point far away still needs a distance that its floats can express. */
+    return fmax(masu_bake_length(extent) / 2, fmax(most * 1e-5, 1e-3));
+}
+
+/* The sphere around the box fills the height of the picture. */
+static masu_blob_camera_key framing_key(const masu_bake_box *box, double fov_y) {
+    masu_bake_vec3 center = {0, 0, 0}, direction = {0.62, 0.42, 1.0};
+    if (!masu_bake_box_is_empty(box)) {
+        center = masu_bake_mad(box->low, masu_bake_sub(box->high, box->low), 0.5);
+    }
+    masu_bake_normalize(&direction);
+    double distance = box_radius(box) / sin(fov_y * (MASU_BAKE_PI / 360.0));
+    masu_blob_camera_key key = {.time = 0, .fov_y = (float)(fov_y * (MASU_BAKE_PI / 180.0))};
+    masu_bake_store(masu_bake_mad(center, direction, distance), key.position);
+    masu_bake_store(center, key.target);
+    return key;
+}
+
+static void add_camera(const masu_bake_look *l, const masu_bake_box *bounds,
+                       masu_bake_content *content) {
+    masu_bake_buffer *keys = &content->section[MASU_BLOB_CAMERA_KEYS];
+    masu_blob_camera_key key = framing_key(bounds, l->fov_y);
+    if (l->key_count)
+        masu_bake_append(keys, l->keys, l->key_count * sizeof *l->keys);
+    else
+        masu_bake_append(keys, &key, sizeof key);
+}
+
+/* The sun's shadow map is of polygons: without any it is left out. */
+static void add_shadow(const masu_bake_look *l, const masu_bake_box *bounds,
+                       masu_bake_content *content) {
+    double distance =
+        l->shadow_distance > 0 ? l->shadow_distance : fmin(6 * box_radius(bounds), 200);
+    masu_blob_shadow out = l->shadow;
+    out.distance = fmaxf((float)distance, 1e-3f);
+    if (l->shadows && masu_bake_count(content, MASU_BLOB_INSTANCES) > 0)
+        masu_bake_append(&content->section[MASU_BLOB_SHADOW], &out, sizeof out);
+}
+
+static void add_environment(const masu_bake_look *l, const masu_bake_box *bounds,
+                            masu_bake_content *content) {
+    double near = l->near > 0 ? l->near : fmin(fmax(box_radius(bounds) * 0.02, 1e-6), 1e6);
+    masu_bake_vec3 sun = l->sun_color;
+    if (l->turbidity > 0 && !l->own_sun_color) sun = masu_bake_v3(0, 0, 0);
+    masu_blob_environment e = {.exposure = (float)l->exposure,
+                               .metered = l->metered ? 1.0f : 0.0f,
+                               .brighten = (float)l->brighten,
+                               .darken = (float)l->darken,
+                               .near_distance = (float)near,
+                               .fog_density = (float)l->fog_density,
+                               .fog_height = (float)l->fog_height,
+                               .fog_falloff = (float)l->fog_falloff,
+                               .fog_start = (float)l->fog_start};
+    masu_bake_store(l->fog_color, e.fog_color);
+    masu_bake_store(l->sun_direction, e.sun_direction);
+    e.turbidity = (float)l->turbidity;
+    if (l->turbidity > 0) masu_bake_store(l->ground, e.ground);
+    masu_bake_store(
+        masu_bake_v3(sun.x * l->sun_intensity, sun.y * l->sun_intensity, sun.z * l->sun_intensity),
+        e.sun_color);
+    if (l->occlusion_radius > 0)
+        e.occlusion_radius =
+            fmaxf((float)l->occlusion_radius, 1e-3f); /* as the blob's check rounds */
+    masu_bake_store(l->ambient, e.ambient);
+    masu_bake_store(l->zenith, e.sky_zenith);
+    masu_bake_store(l->horizon, e.sky_horizon);
+    masu_bake_append(&content->section[MASU_BLOB_ENVIRONMENT], &e, sizeof e);
+}
+
+void masu_bake_build_look(const masu_bake_look *look, const masu_bake_box *bounds,
+                          masu_bake_content *content) {
+    add_camera(look, bounds, content);
+    add_shadow(look, bounds, content);
+    add_environment(look, bounds, content);
+}

@@ -1,0 +1,148 @@
+/* description.h: all that a scene description says, as plain values: every member checked, every
+ * default filled in that does not depend on what is in the files it names. Nothing is built yet: no
+ * model has been opened, nothing has a number in the blob. docs/scene.md is the reference of the
+ * members.
+ *
+ *   read.c            the file and its members, in order
+ *   read_models.c     models: files, meshes by formula, placements
+ *   read_materials.c  what a model's materials are changed to
+ *   read_view.c       camera, sun, sky, fog, exposure, environment map
+ *   read_lights.c     punctual lights
+ *   read_sdf.c        the SDF and its parameters
+ *   read_quality.c    LODs, occluders, probes, reflections
+ *
+ * The values, arrays and texts are the description's and live in its pool. A model without a scene
+ * has a description too: one model, all the rest by default. Reading can fail: a mistake is reported
+ * in one line with its place in the file, and nothing has been built by then. */
+#ifndef MASU_BAKE_DESCRIPTION_H
+#define MASU_BAKE_DESCRIPTION_H
+
+#include "bake/description/options.h"
+#include "bake/light/probes.h"
+#include "bake/mesh/bvh.h"
+#include "bake/mesh/shape.h"
+#include "bake/scene/piece.h"
+#include "bake/shader/sdf.h"
+
+#define MASU_BAKE_FOV_Y 40.0 /* degrees, where the scene says nothing */
+
+/* What a model's materials are changed to: the values, and what has no number in the scene yet. */
+typedef struct masu_bake_material_change {
+    masu_bake_override value;            /* map[i]: picture[i] is given */
+    const char *picture[MASU_BAKE_MAPS]; /* files */
+    masu_blob_meso meso;                 /* if value.meso */
+} masu_bake_material_change;
+
+/* What the longest side of the model's box is scaled to, and where the box goes. */
+typedef struct masu_bake_fit {
+    bool wanted, center,
+        base;    /* the box's centre, or the middle of its lower face, comes to `at` */
+    double size; /* metres; 0: as it is */
+    masu_bake_vec3 at;
+} masu_bake_fit;
+
+typedef enum masu_bake_hides {
+    MASU_BAKE_HIDES_NOTHING,
+    MASU_BAKE_HIDES_WHOLE,
+    MASU_BAKE_HIDES_BOX
+} masu_bake_hides;
+
+typedef struct masu_bake_model {
+    const char *where; /* in the description, for errors: "models[3]"; "": the whole of it */
+    const char *file;  /* NULL: by formula */
+    uint32_t shape;    /* of the description's shapes, without a file */
+    const char *name;  /* before the instances' names, or NULL */
+    const char *group; /* "outer/inner", or NULL */
+    bool moving;
+    double merge;               /* cell size, metres; 0: as the file has it */
+    double lights;              /* factor of its lights' colours; 0: without them */
+    masu_bake_affine placement; /* scale and rotation, before the fit */
+    masu_bake_fit fit;
+    masu_bake_vec3 translation;
+    masu_bake_hides hides;
+    masu_bake_box occluder; /* of HIDES_BOX: in object space */
+    int traced;             /* MASU_BAKE_TRACED_* */
+    masu_bake_material_change *changes;
+    size_t change_count;
+} masu_bake_model;
+
+typedef struct masu_bake_light {
+    const char *where;     /* as of models */
+    masu_blob_light value; /* without name and parent */
+    const char *name;      /* or NULL */
+    const char *instance;  /* that it hangs on, or NULL */
+} masu_bake_light;
+
+typedef struct masu_bake_look {
+    masu_blob_camera_key *keys; /* none: one that frames the scene */
+    size_t key_count;
+    double fov_y;                 /* degrees, of that one */
+    double near;                  /* metres; 0: by the scene's size */
+    masu_bake_vec3 sun_direction; /* towards the sun */
+    masu_bake_vec3 sun_color;
+    double sun_intensity;
+    bool own_sun_color;
+    bool shadows;
+    masu_blob_shadow shadow;
+    double shadow_distance; /* metres; 0: by the scene's size */
+    masu_bake_vec3 ambient, zenith, horizon, ground;
+    double turbidity; /* 0: the sky is two colours */
+    double exposure;
+    bool metered;
+    double brighten, darken; /* of a metered exposure, 1/s; 0: the renderer's default */
+    masu_bake_vec3 fog_color;
+    double fog_density, fog_height, fog_falloff, fog_start;
+    double occlusion_radius; /* of ambient occlusion, metres; 0: none */
+} masu_bake_look;
+
+typedef struct masu_bake_environment {
+    const char *file; /* NULL: no environment map */
+    double rotate;    /* degrees */
+    double scale;
+    uint32_t size; /* texels along an edge, a power of two */
+} masu_bake_environment;
+
+typedef struct masu_bake_sdf_param {
+    const char *name;
+    float value, low, high;
+} masu_bake_sdf_param;
+
+typedef struct masu_bake_sdf {
+    const char *source; /* NULL: no SDF */
+    masu_bake_box bounds;
+    double lipschitz, max_distance;
+    bool anchored;
+    masu_bake_occlusion occlusion;
+    masu_bake_sdf_param *params;
+    size_t param_count;
+} masu_bake_sdf;
+
+typedef struct masu_bake_description {
+    const char *file; /* that was read */
+    masu_bake_model *models;
+    size_t model_count;
+    masu_bake_shape *shapes; /* different ones */
+    size_t shape_count;
+    masu_bake_light *lights;
+    size_t light_count;
+    masu_bake_look look;
+    masu_bake_environment environment;
+    masu_bake_sdf sdf;
+    uint32_t lods;    /* of each mesh at most */
+    double occluders; /* for what is this large, metres; 0: none but those of models */
+    masu_bake_probe_settings probes;
+    masu_bake_reflections reflections;
+    masu_bake_pool pool;
+} masu_bake_description;
+
+/* Reads the scene, or makes the description of a model alone. False after reporting. What it fills
+ * is the caller's to release, whatever is returned. */
+bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out);
+void masu_bake_description_release(masu_bake_description *description);
+
+masu_bake_look masu_bake_default_look(void);
+
+/* For what is found wrong only while building: reports "file: where: message". Always false. */
+bool masu_bake_wrong(const masu_bake_description *d, const char *where, const char *format, ...);
+
+#endif

@@ -1,0 +1,23 @@
+/* options.h: what the command line asks of masu-bake, for its three steps. main.c fills it in; the
+ * texts are the command line's own. */
+#ifndef MASU_BAKE_OPTIONS_H
+#define MASU_BAKE_OPTIONS_H
+
+#include "bake/import/import.h"
+
+typedef struct masu_bake_options {
+    /* read */
+    const char *input;            /* a scene's .json, or a model */
+    const char *models_directory; /* what "@assimp/" stands for */
+    /* build */
+    masu_bake_textures textures; /* WANTED or OFF */
+    const char *texture_path;    /* folders with ':' between, or NULL */
+    bool variants;               /* with the marching variants for comparisons */
+    bool probes, probe_report;   /* also if the scene asks for none; judged by path tracing */
+    uint32_t threads;            /* that trace probes; 0: all processors */
+    /* write */
+    const char *output; /* the blob; NULL: none is written */
+    const char *stats;  /* or NULL */
+} masu_bake_options;
+
+#endif

@@ -1,0 +1,154 @@
+/* assimp.c: Assimp reads a file; see assimp.h. */
+#include "bake/import/assimp.h"
+#include "bake/base/file.h"
+#include "bake/import/acc.h"
+
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <string.h>
+
+/* Edges sharper than this stay sharp where normals have to be made. */
+#define CREASE_DEGREES 60.0f
+#define ACC_MAX ((size_t)512 << 20)
+
+static void report(masu_import *m) {
+    masu_bake_buffer *w = m->warnings;
+    masu_import_report_losses(m);
+    if (m->bad_nodes) {
+        masu_import_format(w, "%u nodes dropped: their transform is not finite\n", m->bad_nodes);
+    }
+    if (m->texture_count) {
+        m->textures.bytes -= 2; /* the last ", " */
+        masu_bake_append(&m->textures, "", 1);
+        masu_import_format(w, "textures that nothing is made of: %s%s\n",
+                           (const char *)m->textures.data,
+                           m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
+    }
+    if (m->turned) {
+        masu_import_format(w, "%u meshes have textures that are turned: they are not\n", m->turned);
+    }
+    if (m->unmapped) {
+        masu_import_format(
+            w,
+            "%u meshes have textures but no texture coordinates: they get the colour "
+            "of one texel\n",
+            m->unmapped);
+    }
+    if (m->other_lights) {
+        masu_import_format(w, "%u lights are neither points nor spots: there is nothing of them\n",
+                           m->other_lights);
+    }
+    if (m->skins || m->source->mNumAnimations) {
+        masu_bake_append_text(w, "animation is not supported, the rest pose is used\n");
+    }
+}
+
+static void *allocate_zeroed(size_t count, size_t size) {
+    void *memory = masu_bake_allocate(count * size);
+    memset(memory, 0, count * size);
+    return memory;
+}
+
+static void convert(masu_import *m, masu_bake_buffer *error) {
+    const struct aiScene *s = m->source;
+    unsigned meshes = s->mMeshes ? s->mNumMeshes : 0;
+    m->mesh_parts = allocate_zeroed(meshes, sizeof *m->mesh_parts);
+    m->mesh_done = allocate_zeroed(meshes, sizeof *m->mesh_done);
+    m->mesh_used = allocate_zeroed(meshes, sizeof *m->mesh_used);
+    m->sets = allocate_zeroed(meshes, sizeof *m->sets);
+    m->material = allocate_zeroed(s->mNumMaterials, sizeof *m->material);
+    bool finished = true;
+    if (s->mRootNode)
+        finished = masu_import_walk(m, true);
+    else
+        for (unsigned i = 0; i < meshes; i++) masu_import_mesh(m, i);
+    masu_bake_buffer parts = m->piece->section[MASU_BLOB_PRIMITIVES];
+    m->piece->section[MASU_BLOB_PRIMITIVES] = (masu_bake_buffer){0};
+    m->parts = (masu_blob_primitive *)(void *)parts.data;
+    if (!finished) {
+        masu_bake_append_text(error, "its nodes form a cycle, or are more than 4 million");
+    } else if (m->full) {
+        masu_bake_append_text(error, "more than 2^31 - 1 vertices or indices");
+    } else if (parts.bytes == 0) {
+        masu_bake_append_text(error, "it holds no triangles that could be drawn");
+        masu_import_report_losses(m);
+        if (m->warnings->bytes) { /* one line says why */
+            masu_bake_append_text(error, "; ");
+            const char *end = memchr(m->warnings->data, '\n', m->warnings->bytes);
+            size_t length = end ? (size_t)(end - (const char *)m->warnings->data) : 0;
+            masu_bake_append(error, m->warnings->data, length);
+        }
+    } else {
+        if (s->mRootNode)
+            masu_import_walk(m, false);
+        else
+            masu_import_show_all(m);
+        report(m);
+        if (masu_bake_count(m->piece, MASU_BLOB_INSTANCES) == 0) {
+            masu_bake_append_text(error, "no node shows its meshes with a finite transform");
+        }
+    }
+    masu_bake_release(&parts);
+}
+
+/* The library drops some of what is broken before we see it and says so in its log alone. Of its
+ * many remarks those are passed on that speak of lost data, each once, a few at most. */
+static void note_remark(const char *text, char *user) {
+    static const char *const losses[] = {"dropped", "out-of-range", "out of range", "discard"};
+    masu_bake_buffer *remarks = (masu_bake_buffer *)(void *)user;
+    const char *colon = strstr(text, ": "); /* behind "Warn,  T0" */
+    if (strncmp(text, "Warn", 4) != 0 || !colon) return;
+    bool lost = false;
+    for (size_t i = 0; i < sizeof losses / sizeof losses[0]; i++) {
+        lost = lost || strstr(colon, losses[i]);
+    }
+    int length = (int)strcspn(colon + 2, "\n");
+    masu_bake_buffer line = {0};
+    masu_bake_append_text(&line, "the importer says: ");
+    masu_import_name(&line, colon + 2, length < 200 ? length : 200);
+    masu_bake_append(&line, "\n", 2); /* with its NUL */
+    masu_bake_append(remarks, "", 1);
+    remarks->bytes--;
+    if (lost && remarks->bytes < 1000 &&
+        !strstr((const char *)remarks->data, (const char *)line.data)) {
+        masu_bake_append_text(remarks, (const char *)line.data);
+    }
+    masu_bake_release(&line);
+}
+
+void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_bake_content *piece,
+                          masu_bake_buffer *warnings, masu_bake_buffer *error) {
+    struct aiPropertyStore *properties = aiCreatePropertyStore();
+    if (properties) {
+        aiSetImportPropertyFloat(properties, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, CREASE_DEGREES);
+        aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+    }
+    /* Welding, dropping bad triangles and the like are done here, where every index is checked:
+     * each step of the library is one more that hostile data can break. */
+    unsigned flags = aiProcess_Triangulate | aiProcess_GenSmoothNormals;
+    struct aiLogStream log = {note_remark, (char *)(void *)warnings};
+    aiAttachLogStream(&log);
+    const struct aiScene *scene;
+    masu_bake_buffer whole = {0}, text = {0};
+    if (masu_bake_is_acc(path) && masu_bake_read_file(path, ACC_MAX, &whole)) {
+        masu_bake_strip_acc((const char *)whole.data, whole.bytes, &text);
+        scene = aiImportFileFromMemoryWithProperties((const char *)text.data, (unsigned)text.bytes,
+                                                     flags, "ac", properties);
+    } else {
+        scene = aiImportFileExWithProperties(path, flags, NULL, properties);
+    }
+    if (!scene) {
+        const char *why = aiGetErrorString();
+        masu_bake_append_text(error, why && *why ? why : "the importer gives no reason");
+        return; /* this process ends now: nothing is worth releasing */
+    }
+    const char *dot = strrchr(path, '.');
+    masu_import m = {.source = scene,
+                     .path = path,
+                     .wanted = textures,
+                     .piece = piece,
+                     .gltf = dot && (!strcmp(dot, ".gltf") || !strcmp(dot, ".glb")),
+                     .warnings = warnings};
+    convert(&m, error);
+}

@@ -1,0 +1,91 @@
+/* assimp.h: Assimp's picture of a model becomes ours; runs in a child process (import.h).
+ *
+ *   assimp.c            the library is called; what it lost is told
+ *   assimp_material.c   aiMaterial  -> factors, and names of pictures that bake/texture reads
+ *   assimp_mesh.c       aiMesh      -> one or more primitives (bake/mesh/triangles.c filters and welds)
+ *   assimp_nodes.c      aiNode with meshes -> an instance; nodes that show the same set of meshes share
+ *                       one mesh; aiLight -> a light of the nearest node above that is an instance
+ *   assimp_text.c       its strings, and lines of text
+ *
+ * Nothing that Assimp returns is believed: indices, counts of faces, strings and transforms are
+ * checked here, and what cannot be shown is counted and named in a warning. The process ends when the
+ * piece has been sent: little is released. */
+#ifndef MASU_BAKE_ASSIMP_H
+#define MASU_BAKE_ASSIMP_H
+
+#include "bake/import/model.h"
+
+#include <assimp/scene.h>
+
+#define MASU_IMPORT_NAMES_MAX 4 /* in one warning; the rest is counted */
+
+typedef struct masu_import_range {
+    uint32_t first, count;
+} masu_import_range;
+
+/* A set of aiMeshes that some node shows, and the masu mesh made for it. */
+typedef struct masu_import_set {
+    const unsigned *meshes;
+    unsigned count;
+    uint32_t mesh;
+    struct masu_import_set *next; /* another set with the same first mesh */
+} masu_import_set;
+
+/* What mesh/triangles.c could not use, over all meshes. */
+enum {
+    MASU_LOST_INDEX,
+    MASU_LOST_POSITION,
+    MASU_LOST_AREA,
+    MASU_LOST_NORMAL,
+    MASU_LOST_TEXCOORD,
+    MASU_LOSSES
+};
+
+typedef struct masu_import_loss {
+    uint64_t count;
+    uint32_t meshes;
+    masu_bake_buffer names; /* of the first few */
+} masu_import_loss;
+
+typedef struct masu_import {
+    const struct aiScene *source;
+    const char *path;
+    masu_bake_textures wanted;
+    masu_bake_content *piece;
+    masu_bake_buffer *warnings;
+    masu_blob_primitive *parts;    /* primitives as converted, before meshes group them */
+    masu_import_range *mesh_parts; /* by aiMesh: its range of parts */
+    bool *mesh_done, *mesh_used;
+    masu_import_set **sets; /* by aiMesh: sets that begin with it */
+    uint32_t *material;     /* by aiMaterial: index + 1, 0: not converted */
+    masu_bake_buffer textures;
+    masu_import_loss losses[MASU_LOSSES];
+    uint64_t triangles;
+    uint32_t texture_count, bad_nodes, skins, unmapped, turned;
+    uint32_t other_lights; /* neither points nor spots, or of no use */
+    bool full, gltf;
+} masu_import;
+
+/* ---- assimp_text.c ---- */
+
+void masu_import_format(masu_bake_buffer *buffer, const char *format, ...);
+int masu_import_length(const struct aiString *s);
+/* Names end up in lines of text: a line break in one must not start another. */
+void masu_import_name(masu_bake_buffer *buffer, const char *text, int length);
+/* NaN becomes `low`. */
+float masu_import_clamped(double value, double low, double high);
+
+/* ---- the others ---- */
+
+/* The piece's number of a material; one that there is not is the default one. */
+uint32_t masu_import_material(masu_import *m, unsigned index);
+/* Converts an aiMesh, once. */
+void masu_import_mesh(masu_import *m, unsigned index);
+void masu_import_report_losses(masu_import *m);
+/* Over all nodes. With `convert` their meshes are converted; without, then, instances and lights are
+ * made. False: the nodes form a cycle, or are too many. */
+bool masu_import_walk(masu_import *m, bool convert);
+/* A file may hold meshes and no nodes: each is then shown once, where it is. */
+void masu_import_show_all(masu_import *m);
+
+#endif

@@ -1,0 +1,341 @@
+/* assimp_material.c: materials and the names of their pictures; see assimp.h.
+ *
+ * glTF factors are linear; the colours of older formats (OBJ, AC3D) were chosen on a screen and are
+ * decoded from sRGB. A specular exponent n becomes the roughness (2 / (n + 2))^(1/4), at which GGX has
+ * the same lobe width. */
+#include "bake/import/assimp.h"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double decode_srgb(double c) {
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+static bool get_color(const struct aiMaterial *m, const char *key, double out[4]) {
+    struct aiColor4D c = {0, 0, 0, 1};
+    if (aiGetMaterialColor(m, key, 0, 0, &c) != aiReturn_SUCCESS) return false;
+    const ai_real values[4] = {c.r, c.g, c.b, c.a};
+    for (int i = 0; i < 4; i++) out[i] = (double)values[i];
+    return true;
+}
+
+static bool get_factor(const struct aiMaterial *m, const char *key, double *out) {
+    ai_real value = 0;
+    unsigned count = 1;
+    if (aiGetMaterialFloatArray(m, key, 0, 0, &value, &count) != aiReturn_SUCCESS || count < 1) {
+        return false;
+    }
+    *out = (double)value;
+    return true;
+}
+
+#define KEY(name) KEY_OF(name)       /* Assimp's macros are "key", type, index */
+#define KEY_OF(key, type, index) key /* and type and index are 0 for all of these */
+
+/* ---- textures ---- */
+
+/* The picture at `path`: "*3" or a name that the file embeds, else a file beside the model. */
+static uint32_t image_of(masu_import *m, const struct aiString *path) {
+    char text[sizeof path->data + 1];
+    int length = masu_import_length(path);
+    memcpy(text, path->data, (size_t)length);
+    text[length] = '\0';
+    const struct aiScene *s = m->source;
+    long number = -1;
+    if (text[0] == '*') {
+        char *end;
+        number = strtol(text + 1, &end, 10);
+        if (*end || end == text + 1) number = -1;
+    }
+    for (unsigned i = 0; i < s->mNumTextures && s->mTextures && number < 0; i++) {
+        const struct aiTexture *t = s->mTextures[i];
+        if (t && masu_import_length(&t->mFilename) == length && length &&
+            memcmp(t->mFilename.data, text, (size_t)length) == 0) {
+            number = (long)i;
+        }
+    }
+    masu_bake_buffer name = {0};
+    masu_bake_image about = {0};
+    const void *data = NULL;
+    if (number >= 0 && number < (long)s->mNumTextures && s->mTextures && s->mTextures[number] &&
+        s->mTextures[number]->pcData) {
+        const struct aiTexture *t = s->mTextures[number];
+        masu_import_format(&name, "%s:%ld", m->path, number);
+        data = t->pcData;
+        about.data_bytes = t->mWidth;
+        if (t->mHeight && t->mWidth <= 16384 && t->mHeight <= 16384) {
+            about.raw_width = t->mWidth;
+            about.raw_height = t->mHeight;
+            about.data_bytes = (uint64_t)t->mWidth * t->mHeight * 4;
+        }
+        if (about.data_bytes > (uint64_t)1 << 30) about.data_bytes = 0;
+    } else {
+        for (char *c = text; *c; c++) {
+            if (*c == '\\') *c = '/'; /* written where that was the separator */
+        }
+        if (text[0] != '/') {
+            const char *slash = strrchr(m->path, '/');
+            if (slash) masu_bake_append(&name, m->path, (size_t)(slash - m->path) + 1);
+        }
+        const char *from = text;
+        while (strncmp(from, "./", 2) == 0) from += 2;
+        masu_bake_append_text(&name, from);
+    }
+    masu_bake_append(&name, "", 1);
+    uint32_t image = masu_bake_add_image(m->piece, (const char *)name.data, &about, data);
+    masu_bake_release(&name);
+    return image;
+}
+
+typedef struct map_request {
+    int map;
+    enum aiTextureType type;
+    uint8_t channel;
+} map_request;
+
+static uint8_t wrap_of(const struct aiMaterial *from, const char *key, unsigned type) {
+    int mode = aiTextureMapMode_Wrap;
+    unsigned count = 1;
+    if (aiGetMaterialIntegerArray(from, key, type, 0, &mode, &count) != aiReturn_SUCCESS) return 0;
+    return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? 1
+           : mode == aiTextureMapMode_Mirror                                ? 2
+                                                                            : 0;
+}
+
+static bool take_map(masu_import *m, const struct aiMaterial *from, const map_request *wanted,
+                     masu_bake_maps *to) {
+    struct aiString path = {0};
+    if (to->image[wanted->map] != MASU_BLOB_NONE ||
+        aiGetMaterialTextureCount(from, wanted->type) == 0 ||
+        aiGetMaterialTexture(from, wanted->type, 0, &path, NULL, NULL, NULL, NULL, NULL, NULL) !=
+            aiReturn_SUCCESS ||
+        masu_import_length(&path) == 0) {
+        return false;
+    }
+    if (!masu_bake_has_maps(to)) { /* the first one speaks for all */
+        to->wrap[0] = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, wanted->type);
+        to->wrap[1] = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, wanted->type);
+    }
+    to->image[wanted->map] = image_of(m, &path);
+    to->channel[wanted->map] = wanted->channel;
+    return true;
+}
+
+static bool same_texture(const struct aiMaterial *m, enum aiTextureType a, enum aiTextureType b) {
+    struct aiString x = {0}, y = {0};
+    return aiGetMaterialTextureCount(m, a) && aiGetMaterialTextureCount(m, b) &&
+           aiGetMaterialTexture(m, a, 0, &x, NULL, NULL, NULL, NULL, NULL, NULL) ==
+               aiReturn_SUCCESS &&
+           aiGetMaterialTexture(m, b, 0, &y, NULL, NULL, NULL, NULL, NULL, NULL) ==
+               aiReturn_SUCCESS &&
+           masu_import_length(&x) == masu_import_length(&y) &&
+           memcmp(x.data, y.data, (size_t)masu_import_length(&x)) == 0;
+}
+
+static void convert_alpha(const struct aiMaterial *from, masu_bake_maps *maps) {
+    struct aiString mode = {0};
+    double cutoff = 0.5;
+    if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS) {
+        mode.data[masu_import_length(&mode) < (int)sizeof mode.data ? masu_import_length(&mode)
+                                                                    : (int)sizeof mode.data - 1] =
+            0;
+        maps->alpha = strcmp(mode.data, "MASK") == 0    ? MASU_BAKE_ALPHA_MASK
+                      : strcmp(mode.data, "BLEND") == 0 ? MASU_BAKE_ALPHA_BLEND
+                                                        : MASU_BAKE_ALPHA_OPAQUE;
+    }
+    if (get_factor(from, KEY(AI_MATKEY_GLTF_ALPHACUTOFF), &cutoff)) {
+        maps->cutoff = masu_import_clamped(cutoff, 0, 1);
+    }
+}
+
+static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from) {
+    static const map_request requests[] = {
+        {MASU_BAKE_BASE, aiTextureType_BASE_COLOR, 0},
+        {MASU_BAKE_BASE, aiTextureType_DIFFUSE, 0},
+        {MASU_BAKE_NORMAL, aiTextureType_NORMALS, 0},
+        {MASU_BAKE_NORMAL, aiTextureType_NORMAL_CAMERA, 0},
+        {MASU_BAKE_EMISSIVE, aiTextureType_EMISSIVE, 0},
+        {MASU_BAKE_EMISSIVE, aiTextureType_EMISSION_COLOR, 0},
+        {MASU_BAKE_OPACITY, aiTextureType_OPACITY, 0},
+        {MASU_BAKE_OCCLUSION, aiTextureType_AMBIENT_OCCLUSION, 0},
+    };
+    /* glTF has both in one picture: green and blue. */
+    static const map_request packed[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_UNKNOWN, 1},
+                                         {MASU_BAKE_METALLIC, aiTextureType_UNKNOWN, 2},
+                                         {MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 1},
+                                         {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 2}};
+    static const map_request apart[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 0},
+                                        {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 0}};
+    masu_bake_maps maps = masu_bake_no_maps();
+    if (m->wanted == MASU_BAKE_TEXTURES_OFF) return maps;
+    convert_alpha(from, &maps);
+    for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+        take_map(m, from, &requests[i], &maps);
+    }
+    struct aiString mode = {0};
+    bool gltf = aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
+    if (gltf || same_texture(from, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_METALNESS)) {
+        for (size_t i = 0; i < 4; i++) take_map(m, from, &packed[i], &maps);
+        /* What Assimp calls a light map is glTF's occlusion; of other formats it is baked light. */
+        static const map_request lightmap = {MASU_BAKE_OCCLUSION, aiTextureType_LIGHTMAP, 0};
+        if (gltf) take_map(m, from, &lightmap, &maps);
+    } else {
+        for (size_t i = 0; i < 2; i++) take_map(m, from, &apart[i], &maps);
+    }
+    double scale = 1;
+    ai_real value = 0;
+    unsigned count = 1;
+    if (aiGetMaterialFloatArray(from, _AI_MATKEY_GLTF_SCALE_BASE, aiTextureType_NORMALS, 0, &value,
+                                &count) == aiReturn_SUCCESS &&
+        count == 1) {
+        scale = (double)value;
+    }
+    maps.normal_scale = masu_import_clamped(scale, -16, 16);
+    return maps;
+}
+
+/* Types of texture that nothing is made of. */
+static bool is_used(int type) {
+    switch (type) {
+    case aiTextureType_BASE_COLOR:
+    case aiTextureType_DIFFUSE:
+    case aiTextureType_NORMALS:
+    case aiTextureType_NORMAL_CAMERA:
+    case aiTextureType_EMISSIVE:
+    case aiTextureType_EMISSION_COLOR:
+    case aiTextureType_OPACITY:
+    case aiTextureType_AMBIENT_OCCLUSION:
+    case aiTextureType_UNKNOWN:
+    case aiTextureType_DIFFUSE_ROUGHNESS:
+    case aiTextureType_METALNESS:
+    case aiTextureType_LIGHTMAP: return true;
+    default: return false;
+    }
+}
+
+static void note_textures(masu_import *m, const struct aiMaterial *material) {
+    for (int type = 1; type <= AI_TEXTURE_TYPE_MAX; type++) {
+        unsigned count = aiGetMaterialTextureCount(material, (enum aiTextureType)type);
+        if (is_used(type) && m->wanted != MASU_BAKE_TEXTURES_OFF) continue;
+        for (unsigned i = 0; i < count && i < 16; i++) {
+            struct aiString path = {0};
+            if (aiGetMaterialTexture(material, (enum aiTextureType)type, i, &path, NULL, NULL, NULL,
+                                     NULL, NULL, NULL) != aiReturn_SUCCESS) {
+                continue;
+            }
+            int length = masu_import_length(&path);
+            int skip = length > 60 ? length - 60 : 0; /* the end of a path says most */
+            masu_bake_buffer name = {0};
+            masu_bake_append_text(&name, skip ? "..." : "");
+            masu_import_name(&name, path.data + skip, length - skip);
+            masu_bake_append(&name, ", ", 3);
+            masu_bake_append(&m->textures, "", 1);
+            m->textures.bytes--;
+            if (!strstr((const char *)m->textures.data, (const char *)name.data) &&
+                m->texture_count++ < MASU_IMPORT_NAMES_MAX) {
+                masu_bake_append_text(&m->textures, (const char *)name.data);
+            }
+            masu_bake_release(&name);
+        }
+    }
+}
+
+static void convert_color(const struct aiMaterial *from, masu_blob_material *to, double *alpha) {
+    double c[4], gloss;
+    bool linear = get_color(from, KEY(AI_MATKEY_BASE_COLOR), c);
+    if (get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &gloss) &&
+        get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c)) {
+        linear = true; /* glTF's specular-glossiness extension keeps its colour there */
+    }
+    bool found = linear || get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), c);
+    for (int i = 0; found && i < 3; i++) {
+        double value = (double)masu_import_clamped(c[i], 0, 1);
+        to->base_color[i] = masu_import_clamped(linear ? value : decode_srgb(value), 0, 1);
+    }
+    if (found) *alpha = c[3];
+    double intensity = 1;
+    get_factor(from, KEY(AI_MATKEY_EMISSIVE_INTENSITY), &intensity);
+    if (get_color(from, KEY(AI_MATKEY_COLOR_EMISSIVE), c)) {
+        /* In older formats emission is mostly a way to brighten what is lit: the two were summed on the
+         * screen. Only what emits more than it reflects is a light. */
+        double diffuse[4] = {0, 0, 0, 1};
+        if (!linear && get_color(from, KEY(AI_MATKEY_COLOR_DIFFUSE), diffuse) &&
+            fmax(c[0], fmax(c[1], c[2])) <= fmax(diffuse[0], fmax(diffuse[1], diffuse[2]))) {
+            for (int i = 0; i < 3; i++) {
+                to->base_color[i] = masu_import_clamped(
+                    decode_srgb((double)masu_import_clamped(c[i] + diffuse[i], 0, 1)), 0, 1);
+            }
+            return;
+        }
+        for (int i = 0; i < 3; i++) {
+            double value = linear ? c[i] : decode_srgb((double)masu_import_clamped(c[i], 0, 1));
+            to->emissive[i] = masu_import_clamped(value * intensity, 0, 65504);
+        }
+    }
+}
+
+static bool is_gltf(const struct aiMaterial *from) {
+    struct aiString mode;
+    return aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
+}
+
+static void convert_shine(const struct aiMaterial *from, masu_blob_material *to) {
+    double value;
+    to->roughness = 1;
+    if (get_factor(from, KEY(AI_MATKEY_ROUGHNESS_FACTOR), &value)) {
+        to->roughness = masu_import_clamped(value, 0, 1);
+    } else if (get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &value)) {
+        to->roughness = masu_import_clamped(1 - value, 0, 1);
+    } else if (get_factor(from, KEY(AI_MATKEY_SHININESS), &value)) {
+        double exponent = (double)masu_import_clamped(value, 0, 1e9);
+        to->roughness = masu_import_clamped(pow(2 / (exponent + 2), 0.25), 0, 1);
+    }
+    to->metallic = 0;
+    if (get_factor(from, KEY(AI_MATKEY_METALLIC_FACTOR), &value)) {
+        to->metallic = masu_import_clamped(value, 0, 1);
+    }
+    if (get_factor(from, KEY(AI_MATKEY_CLEARCOAT_FACTOR), &value))
+        to->coat = masu_import_clamped(value, 0, 1);
+    if (to->coat > 0 && get_factor(from, KEY(AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR), &value)) {
+        to->coat_roughness = masu_import_clamped(value, 0, 1);
+    }
+    /* glTF's KHR_materials_specular: a share of the usual reflectance. What has a glossiness too is of the
+     * older extension, and means a colour. */
+    if (get_factor(from, KEY(AI_MATKEY_SPECULAR_FACTOR), &value) && is_gltf(from) &&
+        !get_factor(from, KEY(AI_MATKEY_GLOSSINESS_FACTOR), &(double){0})) {
+        to->specular = masu_import_clamped(0.5 * value, 0, 1);
+    }
+}
+
+uint32_t masu_import_material(masu_import *m, unsigned index) {
+    masu_blob_material to = masu_bake_default_material();
+    const struct aiScene *s = m->source;
+    if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) {
+        return masu_bake_material(m->piece, &to, "");
+    }
+    if (m->material[index]) return m->material[index] - 1;
+    const struct aiMaterial *from = s->mMaterials[index];
+    double alpha = 1, opacity = 1;
+    convert_color(from, &to, &alpha);
+    convert_shine(from, &to);
+    get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
+    masu_bake_maps maps = convert_maps(m, from);
+    /* One number under two names in some formats, so not their product. */
+    alpha = alpha < opacity ? alpha : opacity;
+    if (maps.alpha != MASU_BAKE_ALPHA_OPAQUE && maps.alpha != MASU_BAKE_ALPHA_MASK &&
+        alpha < 0.999) {
+        maps.alpha = MASU_BAKE_ALPHA_BLEND;
+        to.opacity = masu_import_clamped(alpha, 0, 1);
+    }
+    note_textures(m, from);
+    struct aiString name = {0};
+    aiGetMaterialString(from, AI_MATKEY_NAME, &name);
+    name.data[masu_import_length(&name) < (int)sizeof name.data ? masu_import_length(&name)
+                                                                : (int)sizeof name.data - 1] = '\0';
+    uint32_t result = masu_bake_mapped_material(m->piece, &to, &maps, name.data);
+    m->material[index] = result + 1;
+    return result;
+}

@@ -1,0 +1,144 @@
+/* assimp_mesh.c: meshes, and what of them cannot be drawn; see assimp.h. */
+#include "bake/import/assimp.h"
+#include "bake/mesh/triangles.h"
+
+#include <assimp/material.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void note_loss(masu_import *m, int kind, uint64_t count, const struct aiMesh *mesh) {
+    masu_import_loss *l = &m->losses[kind];
+    if (count == 0) return;
+    l->count += count;
+    if (l->meshes++ >= MASU_IMPORT_NAMES_MAX) return;
+    masu_bake_append_text(&l->names, l->meshes > 1 ? ", \"" : "\"");
+    masu_import_name(&l->names, mesh->mName.data, masu_import_length(&mesh->mName));
+    masu_bake_append_text(&l->names, "\"");
+}
+
+static void note_losses(masu_import *m, const struct aiMesh *mesh, const masu_bake_losses *lost) {
+    m->triangles += lost->triangles;
+    note_loss(m, MASU_LOST_INDEX, lost->bad_index, mesh);
+    note_loss(m, MASU_LOST_POSITION, lost->bad_position, mesh);
+    note_loss(m, MASU_LOST_AREA, lost->degenerate, mesh);
+    note_loss(m, MASU_LOST_NORMAL, lost->bad_normals, mesh);
+    note_loss(m, MASU_LOST_TEXCOORD, lost->bad_texcoords, mesh);
+}
+
+void masu_import_report_losses(masu_import *m) {
+    static const char *const what[MASU_LOSSES] = {
+        [MASU_LOST_INDEX] = "triangles left out, an index is out of range",
+        [MASU_LOST_POSITION] = "triangles left out, a vertex is not finite",
+        [MASU_LOST_AREA] = "triangles left out, they have no area",
+        [MASU_LOST_NORMAL] = "normals made new, they were not usable",
+        [MASU_LOST_TEXCOORD] = "texture coordinates set to 0, they were not finite or beyond 16384",
+    };
+    for (int kind = 0; kind < MASU_LOSSES; kind++) {
+        masu_import_loss *l = &m->losses[kind];
+        if (l->count == 0) continue;
+        masu_bake_append(&l->names, "", 1);
+        masu_import_format(m->warnings, "%llu ", (unsigned long long)l->count);
+        if (kind != MASU_LOST_NORMAL && kind != MASU_LOST_TEXCOORD) {
+            masu_import_format(m->warnings, "of %llu ", (unsigned long long)m->triangles);
+        }
+        masu_import_format(m->warnings, "%s (in %u meshes: ", what[kind], l->meshes);
+        masu_bake_append_text(m->warnings, (const char *)l->names.data);
+        masu_bake_append_text(m->warnings, l->meshes > MASU_IMPORT_NAMES_MAX ? ", ...)\n" : ")\n");
+        masu_bake_release(&l->names);
+    }
+}
+
+/* KHR_texture_transform and its like: scale, then move; turns are warned of. Assimp's v grows
+ * upwards. */
+static bool texture_transform(const masu_import *m, const struct aiMesh *mesh,
+                              struct aiUVTransform *out) {
+    const struct aiScene *s = m->source;
+    if (mesh->mMaterialIndex >= s->mNumMaterials || !s->mMaterials[mesh->mMaterialIndex]) {
+        return false;
+    }
+    static const enum aiTextureType types[] = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
+    for (int i = 0; i < 2; i++) {
+        if (aiGetMaterialUVTransform(s->mMaterials[mesh->mMaterialIndex],
+                                     AI_MATKEY_UVTRANSFORM(types[i], 0), out) == aiReturn_SUCCESS) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Two floats per vertex, v down the picture, of the channel that the base colour uses; NULL if the
+ * mesh has none. free() it. */
+static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
+    const struct aiScene *s = m->source;
+    int channel = 0;
+    unsigned count = 1;
+    if (mesh->mMaterialIndex < s->mNumMaterials && s->mMaterials[mesh->mMaterialIndex]) {
+        aiGetMaterialIntegerArray(s->mMaterials[mesh->mMaterialIndex],
+                                  AI_MATKEY_UVWSRC(aiTextureType_BASE_COLOR, 0), &channel, &count);
+    }
+    if (channel < 0 || channel >= AI_MAX_NUMBER_OF_TEXTURECOORDS ||
+        !mesh->mTextureCoords[channel]) {
+        channel = 0;
+    }
+    const struct aiVector3D *from = mesh->mTextureCoords[channel];
+    if (!from) {
+        m->unmapped++;
+        return NULL;
+    }
+    struct aiUVTransform transform;
+    bool moved = texture_transform(m, mesh, &transform);
+    if (moved && transform.mRotation != 0) m->turned++;
+    float *out = masu_bake_allocate((size_t)mesh->mNumVertices * 2 * sizeof *out);
+    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        double u = (double)from[i].x, v = (double)from[i].y;
+        if (moved) {
+            u = u * (double)transform.mScaling.x + (double)transform.mTranslation.x;
+            v = v * (double)transform.mScaling.y + (double)transform.mTranslation.y;
+        }
+        out[2 * i] = (float)u;
+        out[2 * i + 1] = (float)(1 - v);
+    }
+    return out;
+}
+
+void masu_import_mesh(masu_import *m, unsigned index) {
+    const struct aiMesh *mesh = m->source->mMeshes[index];
+    if (m->mesh_done[index] || !mesh) return;
+    m->mesh_done[index] = true;
+    m->mesh_parts[index].first = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
+    if (!mesh->mVertices || !mesh->mFaces || mesh->mNumVertices == 0 || m->full) return;
+    masu_bake_buffer indices = {0};
+    for (unsigned i = 0; i < mesh->mNumFaces; i++) {
+        const struct aiFace *face = &mesh->mFaces[i];
+        if (face->mNumIndices != 3 || !face->mIndices) continue; /* points and lines */
+        for (int k = 0; k < 3; k++) {
+            uint32_t corner = face->mIndices[k];
+            masu_bake_append(&indices, &corner, sizeof corner);
+        }
+    }
+    _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float), "Assimp built for double");
+    uint32_t material = masu_import_material(m, mesh->mMaterialIndex);
+    const masu_bake_maps *maps = &MASU_BAKE_MAPS_OF(m->piece)[material];
+    float *texcoords = NULL;
+    if (m->wanted == MASU_BAKE_TEXTURES_FORCED || masu_bake_has_maps(maps)) {
+        texcoords = texcoords_of(m, mesh);
+    }
+    masu_bake_triangles triangles = {
+        .positions = &mesh->mVertices->x,
+        .normals = mesh->mNormals ? &mesh->mNormals->x : NULL,
+        .vertex_count = mesh->mNumVertices,
+        .indices = (const uint32_t *)(const void *)indices.data,
+        .index_count = indices.bytes / sizeof(uint32_t),
+        .texcoords = texcoords,
+        .repeats = !maps->wrap[0] && !maps->wrap[1],
+        .material = material,
+    };
+    masu_bake_losses lost = {0};
+    if (!masu_bake_add_triangles(m->piece, &triangles, &lost)) m->full = true;
+    masu_bake_release(&indices);
+    free(texcoords);
+    note_losses(m, mesh, &lost);
+    if (mesh->mNumBones) m->skins++;
+    m->mesh_parts[index].count =
+        (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES) - m->mesh_parts[index].first;
+}

@@ -1,0 +1,210 @@
+/* assimp_nodes.c: nodes become instances, with the lights that hang on them; see assimp.h. */
+#include "bake/import/assimp.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* More nodes than any model has; a cycle among nodes ends here too. */
+#define NODES_MAX 4000000u
+#define LIGHTS_MAX 4096u /* looked for among the nodes */
+
+static bool same_set(const masu_import_set *g, const unsigned *meshes, unsigned count) {
+    return g->count == count && memcmp(g->meshes, meshes, count * sizeof *meshes) == 0;
+}
+
+/* The primitives of an aiMesh, once more. Two primitives share no indices (src/scene/scene.c): when a mesh
+ * is part of a second set, its indices are copied. */
+static void add_parts(masu_import *m, unsigned mesh) {
+    masu_bake_buffer *indices = &m->piece->section[MASU_BLOB_INDICES];
+    for (uint32_t i = 0; i < m->mesh_parts[mesh].count; i++) {
+        masu_blob_primitive part = m->parts[m->mesh_parts[mesh].first + i];
+        if (m->mesh_used[mesh]) {
+            size_t from = part.first_index * sizeof(uint32_t);
+            size_t bytes = part.index_count * sizeof(uint32_t);
+            part.first_index = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_INDICES);
+            masu_bake_append(indices, NULL, bytes);
+            memcpy(indices->data + indices->bytes - bytes, indices->data + from, bytes);
+        }
+        masu_bake_append(&m->piece->section[MASU_BLOB_PRIMITIVES], &part, sizeof part);
+    }
+    m->mesh_used[mesh] = true;
+}
+
+/* The masu mesh of a set of aiMeshes, or NONE if nothing of it can be drawn. */
+static uint32_t mesh_of(masu_import *m, const unsigned *meshes, unsigned count) {
+    unsigned total = m->source->mNumMeshes, first = total;
+    for (unsigned i = 0; i < count; i++) {
+        if (meshes[i] < total && m->mesh_parts[meshes[i]].count && first == total) {
+            first = meshes[i];
+        }
+    }
+    if (first == total) return MASU_BLOB_NONE;
+    for (const masu_import_set *g = m->sets[first]; g; g = g->next) {
+        if (same_set(g, meshes, count)) return g->mesh;
+    }
+    uint32_t from = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
+    for (unsigned i = 0; i < count; i++) {
+        if (meshes[i] < total) add_parts(m, meshes[i]);
+    }
+    const struct aiString *name = &m->source->mMeshes[first]->mName;
+    masu_import_set *g = masu_bake_allocate(sizeof *g);
+    uint32_t to = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
+    *g = (masu_import_set){meshes, count, 0, m->sets[first]};
+    g->mesh =
+        masu_bake_mesh(m->piece, from, to - from,
+                       masu_bake_name(m->piece, name->data, (size_t)masu_import_length(name)));
+    m->sets[first] = g;
+    return g->mesh;
+}
+
+typedef struct visit {
+    const struct aiNode *node;
+    masu_bake_affine parent; /* to world */
+    masu_bake_affine space;  /* to the object space of the parent instance; without one to world */
+    uint32_t parent_instance;
+} visit;
+
+static masu_bake_affine node_transform(const struct aiNode *node) {
+    const struct aiMatrix4x4 *t = &node->mTransformation;
+    const ai_real rows[12] = {t->a1, t->a2, t->a3, t->a4, t->b1, t->b2,
+                              t->b3, t->b4, t->c1, t->c2, t->c3, t->c4};
+    masu_bake_affine a;
+    for (int i = 0; i < 12; i++) a.m[i] = (double)rows[i];
+    return a;
+}
+
+/* glTF gives intensities; a white matt surface has the luminance of the intensity over pi and the
+ * squared distance. A range that is not given stays 0 until the factor of the placement is known. */
+static bool convert_light(const struct aiLight *from, const struct aiNode *node,
+                          const masu_bake_affine *space, masu_blob_light *to) {
+    const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
+    masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y,
+                          (double)from->mPosition.z};
+    masu_bake_vec3 ahead = {(double)from->mDirection.x, (double)from->mDirection.y,
+                            (double)from->mDirection.z};
+    masu_bake_vec3 at = masu_bake_apply(space, own);
+    masu_bake_vec3 direction =
+        masu_bake_sub(masu_bake_apply(space, masu_bake_mad(own, ahead, 1)), at);
+    if (from->mType != aiLightSource_POINT && from->mType != aiLightSource_SPOT) return false;
+    if (!masu_bake_sane(at)) return false;
+    to->position[0] = (float)at.x, to->position[1] = (float)at.y, to->position[2] = (float)at.z;
+    for (int k = 0; k < 3; k++)
+        to->color[k] = masu_import_clamped((double)color[k] / MASU_BAKE_PI, 0, 1e9);
+    to->radius = 0.01f;
+    const struct aiMetadata *about = node->mMetaData;
+    for (unsigned i = 0; about && about->mKeys && about->mValues && i < about->mNumProperties;
+         i++) {
+        const struct aiMetadataEntry *e = &about->mValues[i];
+        if (masu_import_length(&about->mKeys[i]) != 14 || !e->mData ||
+            memcmp(about->mKeys[i].data, "PBR_LightRange", 14) != 0) {
+            continue;
+        }
+        if (e->mType == AI_FLOAT)
+            to->range = masu_import_clamped((double)*(const float *)e->mData, 0, 1e9);
+    }
+    if (from->mType == aiLightSource_POINT) return true;
+    to->type = MASU_LIGHT_SPOT;
+    if (!masu_bake_normalize(&direction)) return false;
+    to->direction[0] = (float)direction.x;
+    to->direction[1] = (float)direction.y;
+    to->direction[2] = (float)direction.z;
+    to->outer = masu_import_clamped((double)from->mAngleOuterCone, 0, MASU_BAKE_PI / 2);
+    to->inner = masu_import_clamped((double)from->mAngleInnerCone, 0, (double)to->outer);
+    return true;
+}
+
+/* Assimp ties a light to the node of its name. */
+static void convert_lights(masu_import *m, const struct aiNode *node, const masu_bake_affine *space,
+                           uint32_t instance) {
+    const struct aiScene *s = m->source;
+    int length = masu_import_length(&node->mName);
+    if (!m->gltf || !s->mLights || length == 0) return;
+    for (unsigned i = 0; i < s->mNumLights && i < LIGHTS_MAX; i++) {
+        const struct aiLight *from = s->mLights[i];
+        if (!from || masu_import_length(&from->mName) != length ||
+            memcmp(from->mName.data, node->mName.data, (size_t)length) != 0) {
+            continue;
+        }
+        masu_blob_light light = {.parent = instance};
+        if (!convert_light(from, node, space, &light)) {
+            m->other_lights++;
+            continue;
+        }
+        light.name = masu_bake_name(m->piece, from->mName.data, (size_t)length);
+        masu_bake_append(&m->piece->section[MASU_BLOB_LIGHTS], &light, sizeof light);
+    }
+}
+
+/* False where the node shows nothing; *instance stays then. */
+static bool make_instance(masu_import *m, const visit *v, const masu_bake_affine *world,
+                          uint32_t *instance) {
+    const struct aiNode *node = v->node;
+    uint32_t mesh = node->mMeshes && node->mNumMeshes ? mesh_of(m, node->mMeshes, node->mNumMeshes)
+                                                      : MASU_BLOB_NONE;
+    if (mesh == MASU_BLOB_NONE) return false;
+    size_t length = (size_t)masu_import_length(&node->mName);
+    uint32_t name = masu_bake_name(m->piece, node->mName.data, length);
+    uint32_t made = masu_bake_instance(m->piece, world, mesh, v->parent_instance, name);
+    m->bad_nodes += made == MASU_BLOB_NONE;
+    if (made != MASU_BLOB_NONE) *instance = made;
+    return made != MASU_BLOB_NONE;
+}
+
+/* Depth first with a stack of our own: a deep chain of nodes must not use up the machine's. */
+bool masu_import_walk(masu_import *m, bool convert) {
+    masu_bake_buffer stack = {0};
+    visit start = {m->source->mRootNode, masu_bake_identity(), masu_bake_identity(),
+                   MASU_BLOB_NONE};
+    masu_bake_append(&stack, &start, sizeof start);
+    uint32_t visited = 0;
+    while (stack.bytes && visited++ < NODES_MAX) {
+        visit v;
+        stack.bytes -= sizeof v;
+        memcpy(&v, stack.data + stack.bytes, sizeof v);
+        if (!v.node) continue;
+        masu_bake_affine own = node_transform(v.node);
+        masu_bake_affine world = masu_bake_multiply(&v.parent, &own);
+        masu_bake_affine space = masu_bake_multiply(&v.space, &own);
+        uint32_t instance = v.parent_instance;
+        const unsigned *meshes = v.node->mMeshes;
+        unsigned count = meshes ? v.node->mNumMeshes : 0;
+        if (convert) {
+            for (unsigned i = 0; i < count; i++) {
+                if (meshes[i] < m->source->mNumMeshes) masu_import_mesh(m, meshes[i]);
+            }
+        } else {
+            if (make_instance(m, &v, &world, &instance)) space = masu_bake_identity();
+            convert_lights(m, v.node, &space, instance);
+        }
+        unsigned children = v.node->mChildren ? v.node->mNumChildren : 0;
+        if (children > NODES_MAX) break;
+        for (unsigned i = children; i > 0; i--) { /* reversed: the first child is popped first */
+            visit child = {v.node->mChildren[i - 1], world, space, instance};
+            masu_bake_append(&stack, &child, sizeof child);
+        }
+    }
+    bool finished = stack.bytes == 0;
+    masu_bake_release(&stack);
+    return finished;
+}
+
+void masu_import_show_all(masu_import *m) {
+    masu_bake_append_text(m->warnings, "no nodes; every mesh is shown once\n");
+    unsigned *order = masu_bake_allocate(m->source->mNumMeshes * sizeof *order);
+    masu_bake_affine identity = masu_bake_identity();
+    for (unsigned i = 0; i < m->source->mNumMeshes; i++) {
+        order[i] = i;
+        uint32_t mesh = mesh_of(m, &order[i], 1);
+        if (mesh != MASU_BLOB_NONE) {
+            masu_bake_instance(m->piece, &identity, mesh, MASU_BLOB_NONE, MASU_BLOB_NONE);
+        }
+    }
+    for (unsigned i = 0; i < m->source->mNumMeshes; i++) { /* they point into `order` */
+        while (m->sets[i]) {
+            masu_import_set *g = m->sets[i];
+            m->sets[i] = g->next;
+            free(g);
+        }
+    }
+    free(order);
+}

@@ -1,0 +1,459 @@
+/* analyse_operator.c: the facts of shapes made of others; see analyse.c. */
+#include "sdfc/facts.h"
+
+#include <string.h>
+
+/* ---- turning ---- */
+
+/* Rows of the inverse rotation: a turn by -angle. */
+static void axis_matrix(sdfc *c, sdfc_shape *s) {
+    int *n = s->number, m[9];
+    sdfc_unit_vector(c, s, n, "an axis");
+    int cosine = sdfc_apply1(c, SDFC_cos, n[3]), sine = sdfc_apply1(c, SDFC_sin, n[3]);
+    int rest = sdfc_apply2(c, SDFC_sub, sdfc_number(c, 1), cosine);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            int e = sdfc_apply2(c, SDFC_mul, sdfc_apply2(c, SDFC_mul, n[i], n[j]), rest);
+            if (i == j) {
+                e = sdfc_apply2(c, SDFC_add, e, cosine);
+            } else {
+                int k = 3 - i - j;
+                bool cyclic = (i + 1) % 3 == j;
+                e = sdfc_apply2(c, cyclic ? SDFC_add : SDFC_sub, e,
+                                sdfc_apply2(c, SDFC_mul, n[k], sine));
+            }
+            m[3 * i + j] = e;
+        }
+    }
+    memcpy(n, m, sizeof m);
+}
+
+/* The inverse of turns about the fixed axes x, then y, then z. */
+static void euler_matrix(sdfc *c, sdfc_shape *s) {
+    int *n = s->number, m[9];
+    int cs[3], sn[3], zero = sdfc_number(c, 0), one = sdfc_number(c, 1);
+    for (int i = 0; i < 3; i++) {
+        cs[i] = sdfc_apply1(c, SDFC_cos, n[i]);
+        sn[i] = sdfc_apply1(c, SDFC_sin, n[i]);
+    }
+    for (int i = 0; i < 9; i++) m[i] = i % 4 == 0 ? one : zero;
+    /* (Rz Ry Rx)^-1 = Rx^-1 Ry^-1 Rz^-1: multiply from the left by z, y, x */
+    for (int axis = 2; axis >= 0; axis--) {
+        int a = (axis + 1) % 3, b = (axis + 2) % 3, old[9];
+        memcpy(old, m, sizeof old);
+        for (int j = 0; j < 3; j++) {
+            m[3 * a + j] =
+                sdfc_apply2(c, SDFC_add, sdfc_apply2(c, SDFC_mul, cs[axis], old[3 * a + j]),
+                            sdfc_apply2(c, SDFC_mul, sn[axis], old[3 * b + j]));
+            m[3 * b + j] =
+                sdfc_apply2(c, SDFC_sub, sdfc_apply2(c, SDFC_mul, cs[axis], old[3 * b + j]),
+                            sdfc_apply2(c, SDFC_mul, sn[axis], old[3 * a + j]));
+        }
+    }
+    memcpy(n, m, sizeof m);
+}
+
+static void rotate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
+    bool constant = true;
+    for (int i = 0; i < 9; i++) constant = constant && sdfc_constant(c, s->number[i]);
+    unsigned kept = 0; /* a turn about y keeps the mirror in y */
+    for (int i = 0; i < 3; i++) {
+        if (sdfc_is(c, s->number[4 * i], 1)) kept |= 1u << i;
+    }
+    f->symmetric &= kept;
+    if (!constant) {
+        f->radius += sdfc_norm3(f->center);
+        memset(f->center, 0, sizeof f->center);
+        if (isfinite(f->radius))
+            sdfc_box_of_sphere(f);
+        else
+            f->box = SDFC_EVERYWHERE;
+        return;
+    }
+    sdfc_box b = f->box;
+    double center[3] = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        f->box.low[i] = f->box.high[i] = 0;
+        for (int j = 0; j < 3; j++) { /* the matrix is the inverse: its transpose turns forward */
+            double m = c->exprs[s->number[3 * j + i]].value;
+            center[i] += m * f->center[j];
+            if (m == 0) continue;
+            f->box.low[i] += m * (m > 0 ? b.low[j] : b.high[j]);
+            f->box.high[i] += m * (m > 0 ? b.high[j] : b.low[j]);
+        }
+        if (!(f->box.low[i] <= f->box.high[i])) {
+            f->box.low[i] = -SDFC_INFINITY;
+            f->box.high[i] = SDFC_INFINITY;
+        }
+    }
+    memcpy(f->center, center, sizeof center);
+    if (isfinite(f->radius) && !sdfc_bounded(&f->box)) sdfc_box_of_sphere(f);
+}
+
+/* ---- joining ---- */
+
+/* Fields of different constants are divided by them before a hard union, so that one stiff shape
+ * does not slow the others. Not before a blend: that would change its form. */
+static bool levelled(const sdfc *c, const sdfc_shape *s) {
+    if (s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_INTERSECTION &&
+        s->kind != SDFC_KIND_DIFFERENCE) {
+        return false;
+    }
+    for (int i = 1; i < s->children; i++) {
+        if (c->shapes[s->child[i]].facts.lipschitz != c->shapes[s->child[0]].facts.lipschitz) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static sdfc_facts joined(sdfc *c, sdfc_shape *s) {
+    bool level = levelled(c, s);
+    bool is_union = s->kind == SDFC_KIND_UNION || s->kind == SDFC_KIND_SMOOTH_UNION;
+    bool is_cut = s->kind == SDFC_KIND_DIFFERENCE || s->kind == SDFC_KIND_SMOOTH_DIFFERENCE;
+    sdfc_facts f = {0};
+    int boxes = 0;
+    s->extra[0] = level;
+    for (int i = 0; i < s->children; i++) {
+        sdfc_facts g = c->shapes[s->child[i]].facts;
+        if (level) {
+            g.growth /= g.lipschitz;
+            g.lipschitz = 1;
+        }
+        if (i == 0) {
+            f = g;
+            boxes = sdfc_bounded(&g.box);
+            continue;
+        }
+        f.lipschitz = fmax(f.lipschitz, g.lipschitz);
+        f.symmetric &= g.symmetric;
+        if (is_union) {
+            sdfc_join(&f, &g);
+            f.growth = fmin(f.growth, g.growth);
+        } else if (!is_cut) {
+            if (g.radius < f.radius) {
+                f.radius = g.radius;
+                memcpy(f.center, g.center, sizeof f.center);
+            }
+            for (int k = 0; k < 3; k++) {
+                double from = fmax(f.box.low[k], g.box.low[k]);
+                double to = fmin(f.box.high[k], g.box.high[k]);
+                f.box.low[k] = fmin(from, to);
+                f.box.high[k] = fmax(from, to);
+            }
+            f.growth = fmin(f.growth, g.growth);
+            boxes += sdfc_bounded(&g.box);
+        }
+    }
+    /* outside several boxes at once, one of the distances is 1 / sqrt(n) of the whole */
+    if (!is_union && !is_cut && boxes > 1) f.growth /= sqrt(fmin(boxes, 3));
+    if (s->kind == SDFC_KIND_SMOOTH_UNION) {
+        sdfc_widen(&f, (s->children - 1) * 0.25 * sdfc_size_of(c, s->number[0]) / f.growth);
+    }
+    if (s->kind == SDFC_KIND_SMOOTH_UNION || s->kind == SDFC_KIND_SMOOTH_INTERSECTION ||
+        s->kind == SDFC_KIND_SMOOTH_DIFFERENCE) {
+        s->number[1] = sdfc_apply1(c, SDFC_rcp, s->number[0]);
+    }
+    return f;
+}
+
+/* ---- moving ---- */
+
+static void translate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
+    double half[3];
+    for (int i = 0; i < 3; i++) {
+        int e = s->number[i];
+        f->box.low[i] += sdfc_low(c, e);
+        f->box.high[i] += sdfc_high(c, e);
+        if (!sdfc_is(c, e, 0)) f->symmetric &= ~(1u << i);
+        half[i] = (sdfc_high(c, e) - sdfc_low(c, e)) / 2;
+        if (isfinite(half[i]))
+            f->center[i] += sdfc_low(c, e) + half[i];
+        else
+            f->radius = SDFC_INFINITY;
+    }
+    if (isfinite(f->radius)) f->radius += sdfc_norm3(half);
+}
+
+static void scale_arguments(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int *n = s->number;
+    bool uniform = n[0] == n[1] && n[1] == n[2];
+    double least = SDFC_INFINITY, largest = 0;
+    for (int i = 0; i < 3; i++) {
+        if (sdfc_is(c, n[i], 0)) sdfc_fail(c, s->token, "scale: expected a factor other than 0");
+        if (!uniform && !(sdfc_low(c, n[i]) > 0)) {
+            sdfc_fail(c, s->token, "scale: expected three factors above 0");
+        }
+        double from = fmin(f->box.low[i] * sdfc_low(c, n[i]), f->box.low[i] * sdfc_high(c, n[i]));
+        double to = fmax(f->box.high[i] * sdfc_low(c, n[i]), f->box.high[i] * sdfc_high(c, n[i]));
+        if (sdfc_low(c, n[i]) < 0) {
+            double r = sdfc_corner(&f->box, i) * sdfc_most(c, n[i]);
+            from = -r;
+            to = r;
+        }
+        f->box.low[i] = from == from ? from : -SDFC_INFINITY;
+        f->box.high[i] = to == to ? to : SDFC_INFINITY;
+        least = fmin(least, sdfc_low(c, n[i]));
+        largest = fmax(largest, sdfc_most(c, n[i]));
+        /* the centre: of the interval of factors; the rest of it goes to the radius */
+    }
+    double moved = 0;
+    for (int i = 0; i < 3; i++) {
+        double a = f->center[i] * sdfc_low(c, n[i]), b = f->center[i] * sdfc_high(c, n[i]);
+        moved += (b - a) * (b - a) / 4;
+        f->center[i] = (a + b) / 2;
+    }
+    f->radius = f->radius * largest + sqrt(moved);
+    if (!isfinite(f->radius)) f->radius = SDFC_INFINITY;
+    if (!uniform) f->growth *= least / largest;
+    s->extra[0] = !(sdfc_low(c, n[0]) > 1e-30); /* uniform and possibly 0 */
+    int k = n[0];
+    if (!uniform) k = sdfc_apply2(c, SDFC_min, n[0], sdfc_apply2(c, SDFC_min, n[1], n[2]));
+    if (sdfc_low(c, k) < 0) k = sdfc_apply1(c, SDFC_abs, k);
+    for (int i = 0; i < 3; i++) n[i] = i && uniform ? n[0] : sdfc_apply1(c, SDFC_rcp, n[i]);
+    n[3] = k;
+}
+
+static void mirror_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int *n = s->number;
+    sdfc_unit_vector(c, s, n, "a normal");
+    double u[3], center[3];
+    unsigned kept = f->symmetric;
+    sdfc_facts g = *f;
+    for (int i = 0; i < 3; i++) u[i] = c->exprs[n[i]].value;
+    for (int i = 0; i < 3; i++) {
+        double from = 0, to = 0;
+        center[i] = 0;
+        for (int j = 0; j < 3; j++) {
+            double m = (i == j) - 2 * u[i] * u[j];
+            center[i] += m * f->center[j];
+            if (m == 0) continue;
+            from += m * (m > 0 ? f->box.low[j] : f->box.high[j]);
+            to += m * (m > 0 ? f->box.high[j] : f->box.low[j]);
+        }
+        g.box.low[i] = from <= to ? from : -SDFC_INFINITY;
+        g.box.high[i] = from <= to ? to : SDFC_INFINITY;
+        if (u[i] != 0 && fabs(u[i]) != 1) kept = 0;
+        if (fabs(u[i]) == 1) kept |= 1u << i;
+    }
+    memcpy(g.center, center, sizeof center);
+    sdfc_join(f, &g);
+    f->symmetric = kept;
+}
+
+/* ---- repeating ---- */
+
+static void keep_box(sdfc_shape *s, const sdfc_box *b) {
+    for (int i = 0; i < 3; i++) {
+        bool ends = isfinite(b->low[i]) && isfinite(b->high[i]);
+        s->extra[4 + i] = ends ? (b->low[i] + b->high[i]) / 2 : 0;
+        s->extra[7 + i] = ends ? (b->high[i] - b->low[i]) / 2 : 1e30;
+    }
+}
+
+/* extra: 0-2 what is done on each axis: 0 nothing, 1 a fold (the shape is its own mirror image, so
+ * the nearest cell is enough), 2 the own cell and its nearer neighbour; 3 the least that the cells
+ * not looked at can say; 4-9 the box of the shape in its cell; 10: the shape must be joined with it
+ * so that the former is true. */
+static void repeat_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int *n = s->number;
+    bool limited = s->kind == SDFC_KIND_REPEAT_LIMITED;
+    sdfc_box cell = f->box;
+    double rest = SDFC_INFINITY, times = 1;
+    for (int i = 0; i < 3; i++) {
+        s->extra[i] = 0;
+        if (sdfc_is(c, n[i], 0) || (limited && s->whole[i] == 1)) {
+            n[i] = sdfc_number(c, 0);
+            n[3 + i] = n[i];
+            continue;
+        }
+        double period = sdfc_low(c, n[i]);
+        if (!(period > 0) || !isfinite(sdfc_high(c, n[i]))) {
+            sdfc_fail(c, s->token, "%s: expected periods above 0, or 0 for none",
+                      sdfc_kind_names[s->kind]);
+        }
+        bool mirrored = f->symmetric >> i & 1;
+        double h = sdfc_corner(&f->box, i);
+        if (!mirrored && !(h <= period / 2 * (1 + 1e-9))) {
+            sdfc_fail(c, s->token,
+                      "%s: expected a shape within its cell (or symmetric in it): it reaches %g "
+                      "from the middle along %c, the cell %g",
+                      sdfc_kind_names[s->kind], h, 'x' + i, period / 2);
+        }
+        s->extra[i] = mirrored ? 1 : 2;
+        if (!mirrored) {
+            rest = fmin(rest, period - h);
+            times *= 2;
+            f->cost *= 2;
+            f->symmetric &= ~(1u << i);
+        }
+        double far = limited ? sdfc_high(c, n[i]) * 0.5 * (s->whole[i] - 1) : SDFC_INFINITY;
+        f->box.low[i] -= far;
+        f->box.high[i] += far;
+        n[3 + i] = sdfc_apply1(c, SDFC_rcp, n[i]);
+    }
+    sdfc_sphere_of_box(f);
+    s->extra[3] = rest * f->lipschitz;
+    s->extra[10] = times > 1 && f->growth < f->lipschitz;
+    keep_box(s, &cell);
+    if (times > 1) f->growth = f->lipschitz;
+}
+
+/* extra: 0: 0 nothing, 1 a fold, 2 two sectors, 3 two that are not all; 1 2 cosine and sine of
+ * half a sector; 4-10 as above, with the wedge of the sector */
+static void polar_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int count = s->whole[0];
+    const double pi = 3.14159265358979323846;
+    double half = pi / count;
+    keep_box(s, &f->box);
+    s->extra[1] = cos(half);
+    s->extra[2] = sin(half);
+    s->extra[0] = count == 1 ? 0 : f->symmetric & 4 ? 1 : count == 2 ? 2 : 3;
+    if (s->extra[0] == 3) {
+        double widest = sdfc_corner(&f->box, 2);
+        bool box_fits = f->box.low[0] >= 0 && widest * cos(half) <= f->box.low[0] * sin(half);
+        double side = fabs(f->center[2]) * cos(half) - f->center[0] * sin(half) + f->radius;
+        if (!box_fits && !(side <= 1e-9)) {
+            sdfc_fail(c, s->token,
+                      "polar: expected a shape within its sector of %g degrees around +x, or "
+                      "symmetric in z",
+                      360.0 / count);
+        }
+        s->extra[10] = f->growth < f->lipschitz || !box_fits;
+        f->growth = f->lipschitz;
+        sdfc_sphere_of_box(f); /* it is the box that the shape is joined with */
+    }
+    if (s->extra[0] >= 2) f->cost *= 2;
+    if (count > 1) {
+        double r = sdfc_reach(f, 0, 2);
+        f->radius += hypot(f->center[0], f->center[2]);
+        f->center[0] = f->center[2] = 0;
+        f->box.low[0] = f->box.low[2] = -r;
+        f->box.high[0] = f->box.high[2] = r;
+        f->symmetric &= 2;
+        if (s->extra[0] == 3) sdfc_sphere_of_box(f);
+    }
+}
+
+/* ---- bending ---- */
+
+/* Around an axis the map is a shear that grows with the distance, so the constant holds near the
+ * shape only. Further out than `margin` the distance to the cylinder around the shape takes over:
+ * max(cylinder, min(field / constant, margin)). extra: 0 constant, 1 margin, 2 radius, 3 4 middle
+ * and half length of the cylinder */
+static void bend_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int a = 0, b = s->kind == SDFC_KIND_TWIST ? 2 : 1, axis = 3 - a - b;
+    double radius = sdfc_reach(f, a, b), k = sdfc_most(c, s->number[0]);
+    if (!isfinite(radius) || !isfinite(k)) {
+        sdfc_fail(c, s->token, "%s: expected a shape with an end, and a rate with limits",
+                  sdfc_kind_names[s->kind]);
+    }
+    double margin = fmax(radius * 0.25, 1e-3), shear = k * (radius + margin);
+    double stretch = s->kind == SDFC_KIND_TWIST ? (shear + sqrt(shear * shear + 4)) / 2 : 1 + shear;
+    f->lipschitz *= stretch * (1 + 1e-12);
+    f->growth = f->lipschitz;
+    f->symmetric = 0;
+    f->box.low[a] = f->box.low[b] = -radius;
+    f->box.high[a] = f->box.high[b] = radius;
+    bool ends = isfinite(f->box.low[axis]) && isfinite(f->box.high[axis]);
+    s->extra[0] = f->lipschitz;
+    s->extra[1] = margin * f->lipschitz;
+    s->extra[2] = radius;
+    s->extra[3] = ends ? (f->box.low[axis] + f->box.high[axis]) / 2 : 0;
+    s->extra[4] = ends ? (f->box.high[axis] - f->box.low[axis]) / 2 : 1e30;
+    sdfc_sphere_of_box(f);
+}
+
+static void kaleidoscope_facts(sdfc *c, sdfc_shape *s, sdfc_facts *f) {
+    int *n = s->number, levels = s->whole[0];
+    double k = c->exprs[n[0]].value;
+    if (!sdfc_constant(c, n[0]) || !(k > 1 && k <= 16)) {
+        sdfc_fail(c, s->token,
+                  "kaleidoscope: expected a factor above 1, at most 16, known at "
+                  "compile time");
+    }
+    double shift[3] = {sdfc_most(c, n[1]), sdfc_most(c, n[2]), sdfc_most(c, n[3])};
+    double size = pow(k, -levels);
+    double r = fmin(sdfc_norm3((double[3]){sdfc_corner(&f->box, 0), sdfc_corner(&f->box, 1),
+                                           sdfc_corner(&f->box, 2)}),
+                    sdfc_norm3(f->center) + f->radius);
+    r = r * size + sdfc_norm3(shift) * (1 - size);
+    if (!isfinite(r)) r = SDFC_INFINITY;
+    for (int i = 1; i < 4; i++) n[i] = sdfc_apply2(c, SDFC_mul, n[i], sdfc_number(c, k - 1));
+    n[4] = sdfc_number(c, size);
+    f->box = sdfc_symmetric_box(r, r, r);
+    f->radius = r;
+    memset(f->center, 0, sizeof f->center);
+    f->symmetric = 7;
+    f->cost += 8.0 * levels;
+}
+
+/* ---- all of them ---- */
+
+static void elongate_facts(sdfc *c, const sdfc_shape *s, sdfc_facts *f) {
+    double by[3];
+    for (int i = 0; i < 3; i++) {
+        int e = s->number[i];
+        if (sdfc_low(c, e) < 0) sdfc_fail(c, s->token, "elongate: expected lengths from 0");
+        by[i] = sdfc_high(c, e);
+        f->box.low[i] -= by[i];
+        f->box.high[i] += by[i];
+    }
+    f->radius += sdfc_norm3(by);
+}
+
+sdfc_facts sdfc_operator_facts(sdfc *c, sdfc_shape *s) {
+    if (s->kind >= SDFC_KIND_UNION && s->kind <= SDFC_KIND_SMOOTH_DIFFERENCE) return joined(c, s);
+    sdfc_facts f = c->shapes[s->child[0]].facts;
+    int *n = s->number;
+    switch (s->kind) {
+    case SDFC_KIND_TRANSLATE: translate_facts(c, s, &f); break;
+    case SDFC_KIND_ROTATE:
+        axis_matrix(c, s);
+        rotate_facts(c, s, &f);
+        break;
+    case SDFC_KIND_ROTATE_EULER:
+        euler_matrix(c, s);
+        rotate_facts(c, s, &f);
+        break;
+    case SDFC_KIND_SCALE: scale_arguments(c, s, &f); break;
+    case SDFC_KIND_MIRROR: mirror_facts(c, s, &f); break;
+    case SDFC_KIND_REPEAT:
+    case SDFC_KIND_REPEAT_LIMITED: repeat_facts(c, s, &f); break;
+    case SDFC_KIND_POLAR: polar_facts(c, s, &f); break;
+    case SDFC_KIND_TWIST:
+    case SDFC_KIND_BEND: bend_facts(c, s, &f); break;
+    case SDFC_KIND_ELONGATE: elongate_facts(c, s, &f); break;
+    case SDFC_KIND_ONION:
+    case SDFC_KIND_ROUND: sdfc_widen(&f, sdfc_size_of(c, n[0]) / f.growth); break;
+    case SDFC_KIND_DISPLACE: {
+        double a = sdfc_most(c, n[0]),
+               k = fmax(sdfc_most(c, n[1]), fmax(sdfc_most(c, n[2]), sdfc_most(c, n[3])));
+        f.lipschitz += a * k;
+        f.symmetric = 0;
+        sdfc_widen(&f, a / f.growth);
+        break;
+    }
+    case SDFC_KIND_DISPLACE_NOISE: {
+        double a = sdfc_most(c, n[0]), k = sdfc_most(c, n[1]);
+        f.lipschitz += a * k * 3.4641016151377549;
+        f.symmetric = 0;
+        f.cost += 8;
+        sdfc_widen(&f, a / f.growth);
+        break;
+    }
+    case SDFC_KIND_MORPH: {
+        const sdfc_facts *g = &c->shapes[s->child[1]].facts;
+        f.lipschitz = fmax(f.lipschitz, g->lipschitz);
+        f.growth = fmin(f.growth, g->growth);
+        f.symmetric &= g->symmetric;
+        sdfc_join(&f, g);
+        n[0] = sdfc_apply2(c, SDFC_min, sdfc_apply2(c, SDFC_max, n[0], sdfc_number(c, 0)),
+                           sdfc_number(c, 1));
+        break;
+    }
+    case SDFC_KIND_KALEIDOSCOPE: kaleidoscope_facts(c, s, &f); break;
+    default: break;
+    }
+    return f;
+}

@@ -1,0 +1,430 @@
+/* emit_glsl.c: the scene's field as GLSL: its parts by number, the nearest of them in any order or in
+ * rising order, half-spaces in closed form, surfaces, root transforms, the update; see emit.h. */
+#include "sdfc/emit.h"
+
+static bool any_timed(const sdfc *c) {
+    for (int i = 0; i < c->dynamic_count; i++) {
+        if (c->exprs[c->dynamic_slots[2 * i + 1]].timed) return true;
+    }
+    return false;
+}
+
+/* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has several. */
+static void put_part_value(sdfc_writer *w, int g, const char *name, const char *point) {
+    const sdfc *c = w->c;
+    const sdfc_group *group = &c->groups[g];
+    if (group->part_count == 1) {
+        PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, %uu)", name, g, point, point,
+            point, c->parts[group->first_part].slot_base);
+        double safe = c->initial[group->first_part * MASU_SDFC_PART_SLOTS + 4];
+        if (safe != 1) {
+            PUT(w, " * ");
+            sdfc_put_number(w, safe);
+        }
+        PUT(w, ";\n");
+        return;
+    }
+    PUT(w, "        uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
+    PUT(w, "        uint base = uint(masu_slot(record + 6u));\n");
+    PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, base) * masu_slot(record + 4u);\n",
+        name, g, point, point, point);
+}
+
+/* How fast a half-space's field changes along d: its operations without what they add. */
+static void put_slope(sdfc_writer *w, int group) {
+    const sdfc_group *g = &w->c->groups[group];
+    const sdfc_program *p = &w->c->parts[g->first_part].program;
+    const sdfc_function *f = &p->functions[0];
+    PUT(w, "float masu_slope_%d(float x, float y, float z, uint base)\n{\n", group);
+    for (int k = 0; k < f->count; k++) {
+        const sdfc_instr *i = &f->instrs[k];
+        if (i->op == SDFC_sub) {
+            PUT(w, "    float v%d = ", 3 + k);
+            sdfc_put_operand(w, g, p, i->operand[0]);
+            PUT(w, ";\n");
+        } else {
+            sdfc_put_instr(w, group, p, i, 3 + k);
+        }
+    }
+    PUT(w, "    return ");
+    sdfc_put_operand(w, g, p, f->result);
+    PUT(w, ";\n}\n\n");
+}
+
+static void put_slot_base(sdfc_writer *w, int g) {
+    const sdfc_group *group = &w->c->groups[g];
+    if (group->part_count == 1)
+        PUT(w, "%uu", w->c->parts[group->first_part].slot_base);
+    else
+        PUT(w, "uint(masu_slot(part * %uu + 6u))", MASU_SDFC_PART_SLOTS);
+}
+
+/* Half-spaces along a ray, and their normals. No part has a field that is not a number. */
+static void put_flat(sdfc_writer *w) {
+    const sdfc *c = w->c;
+    for (int g = 0; g < c->group_count; g++) {
+        if (c->groups[g].flat) put_slope(w, g);
+    }
+    PUT(w,
+        "float masu_sdf_flat(vec3 o, vec3 d, float start, out uint nearest)\n{\n"
+        "    float first = 1e30;\n    nearest = %uu;\n",
+        (unsigned)(c->part_count - c->flat_parts));
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        if (!group->flat) continue;
+        PUT(w, "    for (uint part = %du; part < %du; part++) {\n", group->first_part,
+            group->first_part + group->part_count);
+        PUT(w, "        float h = masu_shape_%d(o.x, o.y, o.z, ", g);
+        put_slot_base(w, g);
+        PUT(w, ");\n        float slope = masu_slope_%d(d.x, d.y, d.z, ", g);
+        put_slot_base(w, g);
+        PUT(w, ");\n"
+               "        float t = h + slope * start <= 0.0 ? start : slope < 0.0 ? -h / slope : "
+               "1e30;\n"
+               "        nearest = t < first ? part : nearest;\n"
+               "        first = t < first ? t : first;\n    }\n");
+    }
+    PUT(w, "    return first;\n}\n\n"
+           "vec3 masu_sdf_flat_normal(uint part)\n{\n    vec3 n = vec3(0.0);\n");
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        if (!group->flat) continue;
+        PUT(w, "    if (part >= %du) {\n        n = vec3(", group->first_part);
+        for (int k = 0; k < 3; k++) {
+            PUT(w, "masu_slope_%d(%d.0, %d.0, %d.0, ", g, k == 0, k == 1, k == 2);
+            put_slot_base(w, g);
+            PUT(w, k < 2 ? "), " : "));\n    }\n");
+        }
+    }
+    PUT(w, "    return n;\n}\n\n");
+}
+
+/* The box around the listed parts. */
+static void put_box(sdfc_writer *w) {
+    const sdfc *c = w->c;
+    PUT(w, "void masu_sdf_box(out vec3 low, out vec3 high)\n{\n");
+    for (int side = 0; side < 2; side++) {
+        PUT(w, side ? "    high = vec3(" : "    low = vec3(");
+        for (int axis = 0; axis < 3; axis++) {
+            int e = c->box[side][axis];
+            if (axis) PUT(w, ", ");
+            if (c->box_slot[side][axis])
+                PUT(w, "masu_slot(%uu)", c->box_slot[side][axis]);
+            else
+                sdfc_put_number(w, e >= 0 ? c->exprs[e].value : side ? 1e30 : -1e30);
+        }
+        PUT(w, ");\n");
+    }
+    PUT(w, "}\n\n");
+}
+
+static void put_glsl_dispatch(sdfc_writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "float masu_sdf_part(uint part, vec3 p)\n{\n");
+    if (c->part_count == 1) {
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, %uu)", c->parts[0].slot_base);
+        if (c->initial[4] != 1) {
+            PUT(w, " * ");
+            sdfc_put_number(w, c->initial[4]);
+        }
+        PUT(w, ";\n}\n\n");
+        return;
+    }
+    PUT(w, "    uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
+    PUT(w, "    float safe = masu_slot(record + 4u);\n");
+    PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
+    if (c->group_count == 1) {
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, base) * safe;\n}\n\n");
+        return;
+    }
+    PUT(w, "    float d = 1e30;\n    switch (uint(masu_slot(record + 5u))) {\n");
+    for (int g = 0; g < c->group_count; g++) {
+        PUT(w, "    case %du: d = masu_shape_%d(p.x, p.y, p.z, base); break;\n", g, g);
+    }
+    PUT(w, "    }\n    return d * safe;\n}\n\n");
+}
+
+static void put_head(sdfc_writer *w) {
+    PUT(w, "float masu_sdf_with(vec3 p, out uint nearest)\n{\n    float d = 1e30;\n"
+           "    nearest = 0u;\n");
+}
+
+/* A part whose field is NaN is not there. */
+static void put_least(sdfc_writer *w) {
+    PUT(w, "        nearest = f < d ? part : nearest;\n        d = f < d ? f : d;\n");
+}
+
+/* The half-spaces count always, unless the includer meets them in closed form. */
+static void put_flat_least(sdfc_writer *w) {
+    const sdfc *c = w->c;
+    if (!c->flat_parts) return;
+    PUT(w, "#ifndef MASU_SDF_NO_FLAT\n");
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_group *group = &c->groups[g];
+        if (!group->flat) continue;
+        PUT(w, "    for (uint part = %du; part < %du; part++) {\n", group->first_part,
+            group->first_part + group->part_count);
+        put_part_value(w, g, "f", "p");
+        put_least(w);
+        PUT(w, "    }\n");
+    }
+    PUT(w, "#endif\n");
+}
+
+static void put_any_order(sdfc_writer *w) {
+    if (w->c->part_count == 1 && !w->c->flat_parts) {
+        PUT(w, "float masu_sdf_with(vec3 p, out uint nearest)\n{\n    nearest = 0u;\n"
+               "    float f = masu_part_count() > 0u ? masu_sdf_part(0u, p) : 1e30;\n"
+               "    return f < 1e30 ? f : 1e30;\n}\n");
+        return;
+    }
+    put_head(w);
+    PUT(w, "    uint count = masu_part_count();\n"
+           "    MASU_LOOP for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {\n"
+           "        if (i >= count) {\n            break;\n        }\n"
+           "        uint part = masu_part_at(i);\n        float f = masu_sdf_part(part, p);\n");
+    put_least(w);
+    PUT(w, "    }\n");
+    put_flat_least(w);
+    PUT(w, "    return d;\n}\n");
+}
+
+/* A part alone of its form. */
+static void put_only_part(sdfc_writer *w, int g) {
+    PUT(w, "    {\n");
+    put_part_value(w, g, "f", "p");
+    PUT(w, "        const uint part = %du;\n", w->c->groups[g].first_part);
+    put_least(w);
+    PUT(w, "    }\n");
+}
+
+/* Whether a tile that sees one of two parts nearly always sees both: each one's sphere holds the middle
+ * of the other's, well inside. */
+static bool share_a_place(const sdfc *c, int g, int h) {
+    const sdfc_part *p = &c->parts[c->groups[g].first_part],
+                    *q = &c->parts[c->groups[h].first_part];
+    const sdfc_facts *e = &c->shapes[p->shape].facts, *f = &c->shapes[q->shape].facts;
+    if (p->moves || q->moves || !isfinite(e->radius) || !isfinite(f->radius)) return false;
+    double distance = hypot(hypot(e->center[0] - f->center[0], e->center[1] - f->center[1]),
+                            e->center[2] - f->center[2]);
+    return distance < 0.5 * fmin(e->radius, f->radius);
+}
+
+/* Parts that are alone of their form and share a place are asked for together and evaluated one after
+ * the other: what they have in common, an angle around one axis for one, is then computed once.
+ * Wrong turn: one question for each part. In a tunnel of polar rings no tile leaves any out, and each
+ * had an arc tangent of its own: 1.4 times the time of the march. */
+static void put_place(sdfc_writer *w, int g, bool *put) {
+    const sdfc *c = w->c;
+    uint32_t bits[MASU_SDFC_MASKED_MAX / 32] = {0};
+    bool alone = c->part_count - c->flat_parts == 1;
+    for (int h = g; h < c->group_count; h++) {
+        const sdfc_group *group = &c->groups[h];
+        if (group->flat || group->part_count > 1 || put[h]) continue;
+        put[h] = h == g || share_a_place(c, g, h);
+        if (put[h]) bits[group->first_part / 32] |= 1u << group->first_part % 32;
+    }
+    if (alone) {
+        put_only_part(w, g);
+        return;
+    }
+    PUT(w, "    if (");
+    for (int word = 0, some = 0; word < MASU_SDFC_MASKED_MAX / 32; word++) {
+        if (!bits[word]) continue;
+        PUT(w, "%s(masu_part_bits(%d) & 0x%xu) != 0u", some++ ? " || " : "", word, bits[word]);
+    }
+    PUT(w, ") {\n");
+    for (int h = g; h < c->group_count; h++) {
+        int part = c->groups[h].first_part;
+        if (c->groups[h].part_count > 1 || !(bits[part / 32] >> part % 32 & 1u)) continue;
+        put_only_part(w, h);
+    }
+    PUT(w, "    }\n");
+}
+
+/* The parts of a form of several are found bit by bit. Wrong turn: lists of numbers in memory for a few
+ * parts as well. On lavapipe each lane fetches by itself, which cost more than the parts' own
+ * arithmetic. */
+static void put_masked_group(sdfc_writer *w, int g) {
+    const sdfc_group *group = &w->c->groups[g];
+    int first = group->first_part, end = first + group->part_count;
+    for (int word = first / 32; word * 32 < end; word++) {
+        int low = first > word * 32 ? first - word * 32 : 0;
+        int high = end < word * 32 + 32 ? end - word * 32 : 32;
+        uint32_t own = (high == 32 ? 0xFFFFFFFFu : (1u << high) - 1u) & ~((1u << low) - 1u);
+        PUT(w,
+            "    MASU_LOOP for (uint n = 0u, bits = masu_part_bits(%d) & 0x%xu; n < %du; n++) {\n",
+            word, own, high - low);
+        PUT(w,
+            "        if (bits == 0u) {\n            break;\n        }\n"
+            "        uint part = %du + masu_low_bit(bits);\n        bits &= bits - 1u;\n",
+            word * 32);
+        put_part_value(w, g, "f", "p");
+        put_least(w);
+        PUT(w, "    }\n");
+    }
+}
+
+static void put_listed_group(sdfc_writer *w, int g) {
+    const sdfc *c = w->c;
+    const sdfc_group *group = &c->groups[g];
+    int end = group->first_part + group->part_count;
+    PUT(w, "    MASU_LOOP for (uint n = 0u; n < %du; n++) {\n", group->part_count);
+    PUT(w, "        if (i >= count) {\n            break;\n        }\n"
+           "        uint part = masu_part_at(i);\n");
+    if (end < c->part_count - c->flat_parts) {
+        PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
+    }
+    put_part_value(w, g, "f", "p");
+    put_least(w);
+    PUT(w, "        i++;\n    }\n");
+}
+
+/* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
+ * costs its own form and not all of them. Needs a list in rising order, or bits. */
+static void put_ascending(sdfc_writer *w) {
+    const sdfc *c = w->c;
+    bool masked = c->part_count <= MASU_SDFC_MASKED_MAX, put[MASU_SDFC_MASKED_MAX] = {false};
+    put_head(w);
+    if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = 0u;\n");
+    for (int g = 0; g < c->group_count; g++) {
+        if (c->groups[g].flat) continue;
+        if (!masked)
+            put_listed_group(w, g);
+        else if (c->groups[g].part_count > 1)
+            put_masked_group(w, g);
+        else if (!put[g])
+            put_place(w, g, put);
+    }
+    put_flat_least(w);
+    PUT(w, "    return d;\n}\n");
+}
+
+/* ---- root transforms ---- */
+
+/* One step, inwards or outwards. The rows of a turn are orthonormal: its transpose undoes it. */
+static void put_root_step(sdfc_writer *w, int group, const sdfc_root_step *step, bool out) {
+    const sdfc_group *g = &w->c->groups[group];
+    const sdfc_program *p = &w->c->parts[g->first_part].program;
+    bool turn = step->kind == SDFC_KIND_ROTATE;
+    PUT(w, "        p = ");
+    if (!turn) PUT(w, step->kind == SDFC_KIND_SCALE ? "p * " : out ? "p + " : "p - ");
+    PUT(w, "vec3(");
+    for (int i = 0; i < 3; i++) {
+        if (i) PUT(w, ", ");
+        if (turn) {
+            PUT(w, "dot(p, vec3(");
+            for (int k = 0; k < 3; k++) {
+                if (k) PUT(w, ", ");
+                sdfc_put_operand(w, g, p, ~step->arg[out ? 3 * k + i : 3 * i + k]);
+            }
+            PUT(w, "))");
+        } else {
+            bool invert = step->kind == SDFC_KIND_SCALE && out;
+            if (invert) PUT(w, "masu_rcp(");
+            sdfc_put_operand(w, g, p, ~step->arg[i]);
+            if (invert) PUT(w, ")");
+        }
+    }
+    PUT(w, ");\n");
+}
+
+/* From the world into a part's own space, and out of it: the movements, turns and scalings that
+ * stand around all else in the part. Of parts where these do not change: nothing. */
+static void put_roots(sdfc_writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "#ifdef MASU_MOTION\nvec3 masu_sdf_root(uint part, vec3 p, bool out_of)\n{\n");
+    PUT(w, "    uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
+    PUT(w, "    uint form = uint(masu_slot(record + 5u));\n");
+    PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
+    for (int g = 0; g < c->group_count; g++) {
+        const sdfc_program *p = &c->parts[c->groups[g].first_part].program;
+        if (!c->groups[g].moves) continue;
+        PUT(w, "    if (form == %du && !out_of) {\n", g);
+        for (int i = 0; i < p->root_count; i++) put_root_step(w, g, &p->root[i], false);
+        PUT(w, "    }\n    if (form == %du && out_of) {\n", g);
+        for (int i = p->root_count; i-- > 0;) put_root_step(w, g, &p->root[i], true);
+        PUT(w, "    }\n");
+    }
+    PUT(w, "    return p;\n}\n#endif\n\n");
+}
+
+/* One slot of those that depend on the anchor alone; their constants are slots themselves. */
+static void put_places(sdfc_writer *w) {
+    PUT(w,
+        "#define MASU_SDF_PLACES %d\n"
+        "void masu_sdf_place(uint i)\n{\n"
+        "    uint at = %uu + i * %uu;\n"
+        "    vec2 v = vec2(masu_slot(at + 7u), masu_slot(at + 8u));\n"
+        "    for (int k = 0; k < 3; k++) {\n"
+        "        uint factor = at + 1u + 2u * uint(k);\n"
+        "        vec2 m = vec2(masu_slot(factor), masu_slot(factor + 1u));\n"
+        "        v = masu_wide_add(v, masu_wide_mul(m, vec2(masu_anchor(k), 0.0)));\n"
+        "    }\n"
+        "    if (masu_slot(at + 11u) != 0.0) {\n"
+        "        vec2 period = vec2(masu_slot(at + 9u), masu_slot(at + 10u));\n"
+        "        v = masu_wide_fold(v, period, vec2(masu_slot(at + 11u), 0.0));\n"
+        "    }\n"
+        "    masu_slot_write(uint(masu_slot(at)), v.x + v.y);\n}\n",
+        w->c->place_count, w->c->place_base, SDFC_PLACE_SLOTS);
+}
+
+void sdfc_put_glsl(sdfc_writer *w) {
+    sdfc *c = w->c;
+    PUT(w, "/* Made by masu-sdfc: %d parts of %d forms. */\n", c->part_count, c->group_count);
+    PUT(w, "#ifndef MASU_LOOP\n#define MASU_LOOP /* an includer's [[dont_unroll]] */\n#endif\n");
+    PUT(w, "#define MASU_SDF_PART_COUNT %d\n", c->part_count);
+    PUT(w, "#define MASU_SDF_LISTED_COUNT %d /* the rest are half-spaces */\n",
+        c->part_count - c->flat_parts);
+    PUT(w, "#define MASU_SDF_MASKED %d /* 1: lists of parts are bits */\n",
+        c->part_count <= MASU_SDFC_MASKED_MAX);
+    PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
+    PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", any_timed(c));
+    sdfc_put_users(w);
+    PUT(w, "#define real float\n#define TO_INT(x) int(x)\n");
+    sdfc_put_library(w, false);
+    PUT(w, "\n");
+    sdfc_put_shapes(w);
+    put_glsl_dispatch(w);
+    PUT(w,
+        "vec4 masu_sdf_bounds(uint part)\n{\n"
+        "    uint record = part * %uu;\n"
+        "    return vec4(masu_slot(record), masu_slot(record + 1u), masu_slot(record + 2u),\n"
+        "                masu_slot(record + 3u));\n}\n\n",
+        MASU_SDFC_PART_SLOTS);
+    put_box(w);
+    put_roots(w);
+    PUT(w, "#ifdef MASU_SDF_ASCENDING\n");
+    put_ascending(w);
+    PUT(w, "#else\n");
+    put_any_order(w);
+    PUT(w, "#endif\n\n"
+           "float masu_sdf(vec3 p)\n{\n    uint part;\n    return masu_sdf_with(p, part);\n}\n\n"
+           "uint masu_sdf_nearest(vec3 p)\n{\n    uint part;\n    masu_sdf_with(p, part);\n"
+           "    return part;\n}\n\n");
+    put_flat(w);
+    PUT(w,
+        "void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)\n{\n"
+        "    uint material = uint(masu_slot(part * %uu + 7u));\n"
+        "    uint at = %uu + material * %uu;\n"
+        "    s.albedo = vec3(masu_slot(at), masu_slot(at + 1u), masu_slot(at + 2u));\n"
+        "    s.roughness = masu_slot(at + 3u);\n"
+        "    s.emissive = vec3(masu_slot(at + 4u), masu_slot(at + 5u), masu_slot(at + 6u));\n"
+        "    s.metallic = masu_slot(at + 7u);\n}\n\n"
+        "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
+        "    masu_sdf_part_surface(masu_sdf_nearest(p), p, s);\n}\n\n",
+        MASU_SDFC_PART_SLOTS, (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
+        MASU_SDFC_MATERIAL_SLOTS);
+    PUT(w, "#ifdef MASU_SDF_SETUP\n");
+    bool has_mod = false;
+    for (int i = 0; i < c->expr_count; i++) {
+        has_mod = has_mod || (c->needed[i] && c->exprs[i].op == SDFC_mod);
+    }
+    if (has_mod) {
+        PUT(w, "real masu_h_mod%s\n%s\n", sdfc_ops[SDFC_mod].params, sdfc_ops[SDFC_mod].body);
+    }
+    if (c->place_count) put_places(w);
+    PUT(w, "void masu_sdf_update()\n{\n");
+    sdfc_put_update(w);
+    PUT(w, "}\n#endif\n#undef real\n#undef TO_INT\n");
+}

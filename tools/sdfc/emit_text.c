@@ -1,0 +1,314 @@
+/* emit_text.c: the lines that GLSL and C share; see emit.h. What no part uses is not written. */
+#include "sdfc/emit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- numbers and operands ---- */
+
+void sdfc_put_number(sdfc_writer *w, double v) {
+    char text[40];
+    if (v != v) v = 0;
+    if (v > 1e30) v = 1e30;
+    if (v < -1e30) v = -1e30;
+    snprintf(text, sizeof text, w->glsl ? "%.9g" : "%.17g", v);
+    bool whole = !strpbrk(text, ".e");
+    PUT(w, v < 0 ? "(%s%s)" : "%s%s", text, whole ? ".0" : "");
+}
+
+void sdfc_put_operand(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, int operand) {
+    if (operand >= 0) {
+        if (operand < 3)
+            PUT(w, "%c", 'x' + operand);
+        else
+            PUT(w, "v%d", operand);
+        return;
+    }
+    int a = ~operand, slot = g->slot_of_arg[a];
+    if (slot < 0)
+        sdfc_put_number(w, w->c->exprs[p->args[a]].value);
+    else
+        PUT(w, w->glsl ? "masu_slot(base + %du)" : "slot[base + %du]", slot);
+}
+
+/* ---- functions of the library ---- */
+
+static void mark_used(bool *used, int op) {
+    if (op <= SDFC_TIME || op >= SDFC_CALL_MIN || used[op]) return;
+    used[op] = true;
+    if (!sdfc_ops[op].body) return;
+    /* Bodies name others as masu_h_NAME; the library has them in the order of their use. */
+    for (const char *at = sdfc_ops[op].body; (at = strstr(at, "masu_h_"));) {
+        at += 7;
+        for (int other = SDFC_TIME + 1; other < op; other++) {
+            size_t length = strlen(sdfc_ops[other].name);
+            if (strncmp(at, sdfc_ops[other].name, length) == 0 && at[length] == '(') {
+                mark_used(used, other);
+            }
+        }
+    }
+}
+
+void sdfc_put_library(sdfc_writer *w, bool with_expressions) {
+    bool used[SDFC_OP_COUNT] = {false};
+    for (int g = 0; g < w->c->group_count; g++) {
+        const sdfc_program *p = &w->c->parts[w->c->groups[g].first_part].program;
+        for (int f = 0; f < p->function_count; f++) {
+            for (int i = 0; i < p->functions[f].count; i++) {
+                mark_used(used, p->functions[f].instrs[i].op);
+            }
+        }
+    }
+    if (with_expressions) {
+        for (int i = 0; i < w->c->expr_count; i++) {
+            if (w->c->needed[i]) mark_used(used, w->c->exprs[i].op);
+        }
+    }
+    for (int op = SDFC_TIME + 1; op < SDFC_CALL_MIN; op++) {
+        const sdfc_op_info *info = &sdfc_ops[op];
+        if (!used[op] || !info->body) continue;
+        PUT(w, "%sreal masu_h_%s%s\n", w->glsl ? "" : "static ", info->name, info->params);
+        sdfc_put_bytes(w->c, w->out, info->body, strlen(info->body));
+        PUT(w, "\n");
+    }
+}
+
+/* ---- shapes ---- */
+
+static void put_template(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                         const sdfc_instr *i) {
+    for (const char *t = sdfc_ops[i->op].text; *t; t++) {
+        if (*t == '$')
+            sdfc_put_operand(w, g, p, i->operand[*++t - '0']);
+        else
+            PUT(w, "%c", *t);
+    }
+}
+
+/* x - 0 and x * 1 with a literal: the shape that stands at the origin beside others that do not. */
+static bool does_nothing(const sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
+                         const sdfc_instr *i) {
+    if (i->op != SDFC_sub && i->op != SDFC_mul) return false;
+    if (i->operand[1] >= 0 || g->slot_of_arg[~i->operand[1]] >= 0) return false;
+    return w->c->exprs[p->args[~i->operand[1]]].value == (i->op == SDFC_mul ? 1 : 0);
+}
+
+static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const sdfc_program *p,
+                         const sdfc_instr *i, int variable) {
+    PUT(w, "    real v%d = 1e30;\n    for (int i = 0; i < %d; i++) {\n", variable, i->points);
+    for (int k = 0; k < 3; k++) {
+        PUT(w, "        real p%d = ", k);
+        if (i->select[k]) {
+            PUT(w, "(i & %d) != 0 ? ", 1 << (i->select[k] - 1));
+            sdfc_put_operand(w, g, p, i->operand[2 * k + 1]);
+            PUT(w, " : ");
+        }
+        sdfc_put_operand(w, g, p, i->operand[2 * k]);
+        PUT(w, ";\n");
+    }
+    PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base));\n    }\n", variable,
+        variable, group, i->aux);
+}
+
+void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc_instr *i,
+                    int variable) {
+    const sdfc_group *g = &w->c->groups[group];
+    if (i->op == SDFC_CALL_MIN) {
+        put_call_min(w, group, g, p, i, variable);
+        return;
+    }
+    PUT(w, "    real v%d = ", variable);
+    if (i->op == SDFC_CALL_USER) {
+        PUT(w, w->glsl ? "masu_user_%d(vec3(" : "masu_user_%d(", i->aux);
+        for (int k = 0; k < 3; k++) {
+            sdfc_put_operand(w, g, p, i->operand[k]);
+            PUT(w, k < 2 ? ", " : w->glsl ? "))" : ")");
+        }
+    } else if (does_nothing(w, g, p, i)) {
+        sdfc_put_operand(w, g, p, i->operand[0]);
+    } else if (sdfc_ops[i->op].text) {
+        put_template(w, g, p, i);
+    } else {
+        PUT(w, "masu_h_%s(", sdfc_ops[i->op].name);
+        for (int k = 0; k < sdfc_ops[i->op].operands; k++) {
+            if (k) PUT(w, ", ");
+            sdfc_put_operand(w, g, p, i->operand[k]);
+        }
+        PUT(w, ")");
+    }
+    PUT(w, ";\n");
+}
+
+static void put_function(sdfc_writer *w, int group, const sdfc_program *p, int function,
+                         bool root) {
+    const sdfc_function *f = &p->functions[function];
+    PUT(w, "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
+    if (!root) PUT(w, "_%d", function);
+    PUT(w, "(real x, real y, real z, uint base)\n{\n");
+    if (!w->glsl) PUT(w, "    (void)base;\n");
+    for (int k = 0; k < f->count; k++) sdfc_put_instr(w, group, p, &f->instrs[k], 3 + k);
+    PUT(w, "    return ");
+    sdfc_put_operand(w, &w->c->groups[group], p, f->result);
+    PUT(w, ";\n}\n\n");
+}
+
+bool sdfc_group_truth(const sdfc *c, int group) {
+    return c->shapes[c->parts[c->groups[group].first_part].shape].facts.truth;
+}
+
+/* A function is called by later ones only, but the first is the part's. */
+void sdfc_put_shapes(sdfc_writer *w) {
+    for (int g = 0; g < w->c->group_count; g++) {
+        const sdfc_part *part = &w->c->parts[w->c->groups[g].first_part];
+        const sdfc_program *p = &part->program;
+        if (!w->glsl && !sdfc_group_truth(w->c, g)) continue;
+        PUT(w, "/* %s%s */\n", part->name, w->c->groups[g].part_count > 1 ? " and others" : "");
+        for (int f = p->function_count; f-- > 0;) put_function(w, g, p, f, f == 0);
+    }
+}
+
+void sdfc_put_users(sdfc_writer *w) {
+    bool *used = sdfc_take(w->c, (size_t)w->c->user_count, sizeof *used);
+    free(w->c->scratch);
+    w->c->scratch = used;
+    for (int g = 0; g < w->c->group_count; g++) {
+        const sdfc_program *p = &w->c->parts[w->c->groups[g].first_part].program;
+        for (int f = 0; f < p->function_count; f++) {
+            for (int i = 0; i < p->functions[f].count; i++) {
+                const sdfc_instr *instr = &p->functions[f].instrs[i];
+                if (instr->op == SDFC_CALL_USER) used[instr->aux] = true;
+            }
+        }
+    }
+    for (int i = 0; i < w->c->user_count; i++) {
+        const sdfc_user *u = &w->c->users[i];
+        if (!used[i] || (!w->glsl && !u->has_c)) continue;
+        PUT(w,
+            w->glsl ? "float masu_user_%d(vec3 p)\n{"
+                    : "static double masu_user_%d(double x, double y, double z)\n{",
+            i);
+        if (!w->glsl) PUT(w, " (void)x; (void)y; (void)z;");
+        sdfc_put_bytes(w->c, w->out, w->c->text + (w->glsl ? u->glsl_offset : u->c_offset),
+                       w->glsl ? u->glsl_length : u->c_length);
+        PUT(w, "\n}\n\n");
+    }
+}
+
+/* ---- slots that change ---- */
+
+/* Which expressions the GLSL needs as one float, which as two. What depends on the anchor is large
+ * before it is small, and so is what it is added to: 1e6 + sin(time) in one float is off by 0.06. */
+enum { ONE_FLOAT = 1, TWO_FLOATS = 2 };
+
+static unsigned char *find_widths(sdfc *c) {
+    unsigned char *widths = sdfc_take(c, (size_t)c->expr_count, 1);
+    free(c->scratch);
+    c->scratch = widths;
+    for (int i = 0; i < c->dynamic_count; i++) {
+        uint32_t e = c->dynamic_slots[2 * i + 1];
+        widths[e] |= c->exprs[e].anchored ? TWO_FLOATS : ONE_FLOAT;
+    }
+    for (int i = c->expr_count; i-- > 0;) {
+        for (int k = 0; k < sdfc_ops[c->exprs[i].op].operands; k++) {
+            const sdfc_expr *a = &c->exprs[c->exprs[i].a[k]];
+            bool sums = a->op == SDFC_add || a->op == SDFC_sub || a->op == SDFC_mul ||
+                        a->op == SDFC_neg || a->anchored;
+            if (widths[i] & TWO_FLOATS) {
+                widths[c->exprs[i].a[k]] |= sums ? TWO_FLOATS : ONE_FLOAT;
+            }
+            if (widths[i] & ONE_FLOAT) widths[c->exprs[i].a[k]] |= ONE_FLOAT;
+        }
+    }
+    return widths;
+}
+
+static void put_wide(sdfc_writer *w, int e, const unsigned char *widths) {
+    const sdfc_expr *x = &w->c->exprs[e];
+    if (x->op == SDFC_CONST) {
+        double high = (double)(float)x->value;
+        PUT(w, "vec2(");
+        sdfc_put_number(w, high);
+        PUT(w, ", ");
+        sdfc_put_number(w, x->value - high);
+        PUT(w, ")");
+    } else if (widths[e] & TWO_FLOATS) {
+        PUT(w, "w%d", e);
+    } else {
+        PUT(w, "vec2(e%d, 0.0)", e);
+    }
+}
+
+/* Anchored expressions are made of these operations only (lower.c). */
+static void put_wide_expr(sdfc_writer *w, int i, const unsigned char *widths) {
+    const sdfc_expr *e = &w->c->exprs[i];
+    static const struct {
+        int op;
+        const char *name;
+    } names[] = {{SDFC_add, "masu_wide_add"},
+                 {SDFC_sub, "masu_wide_sub"},
+                 {SDFC_mul, "masu_wide_mul"},
+                 {SDFC_neg, "-"},
+                 {SDFC_fold, "masu_wide_fold"}};
+    PUT(w, "    vec2 w%d = ", i);
+    if (e->op == SDFC_ANCHOR) {
+        PUT(w, "vec2(masu_anchor(%d), 0.0);\n", e->a[0]);
+        return;
+    }
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        if (names[k].op == e->op) PUT(w, "%s(", names[k].name);
+    }
+    for (int k = 0; k < sdfc_ops[e->op].operands; k++) {
+        if (k) PUT(w, ", ");
+        put_wide(w, e->a[k], widths);
+    }
+    PUT(w, ");\n");
+}
+
+static void put_expr(sdfc_writer *w, int e) {
+    if (sdfc_constant(w->c, e))
+        sdfc_put_number(w, w->c->exprs[e].value);
+    else
+        PUT(w, "e%d", e);
+}
+
+void sdfc_put_update(sdfc_writer *w) {
+    sdfc *c = w->c;
+    const unsigned char *widths = w->glsl ? find_widths(c) : NULL;
+    for (int i = 0; i < c->expr_count; i++) {
+        const sdfc_expr *e = &c->exprs[i];
+        if (!c->needed[i] || e->op == SDFC_CONST) continue;
+        if (widths && widths[i] & TWO_FLOATS) put_wide_expr(w, i, widths);
+        if (widths && !(widths[i] & ONE_FLOAT)) continue;
+        PUT(w, "    real e%d = ", i);
+        if (e->op == SDFC_PARAM) {
+            PUT(w, "masu_param(%d)", e->a[0]);
+        } else if (e->op == SDFC_TIME) {
+            PUT(w, "masu_time()");
+        } else if (e->op == SDFC_ANCHOR) {
+            PUT(w, "0.0"); /* in C: the truth needs no anchor */
+        } else if (sdfc_ops[e->op].text) {
+            for (const char *t = sdfc_ops[e->op].text; *t; t++) {
+                if (*t == '$')
+                    put_expr(w, e->a[*++t - '0']);
+                else
+                    PUT(w, "%c", *t);
+            }
+        } else {
+            PUT(w, "masu_h_%s(", sdfc_ops[e->op].name);
+            for (int k = 0; k < sdfc_ops[e->op].operands; k++) {
+                if (k) PUT(w, ", ");
+                put_expr(w, e->a[k]);
+            }
+            PUT(w, ")");
+        }
+        PUT(w, ";\n");
+    }
+    for (int i = 0; i < c->dynamic_count; i++) {
+        uint32_t slot = c->dynamic_slots[2 * i], e = c->dynamic_slots[2 * i + 1];
+        if (w->glsl && c->exprs[e].anchored)
+            PUT(w, "    masu_slot_write(%uu, w%u.x + w%u.y);\n", slot, e, e);
+        else
+            PUT(w, w->glsl ? "    masu_slot_write(%uu, e%u);\n" : "    slot[%u] = e%u;\n", slot, e);
+    }
+}
