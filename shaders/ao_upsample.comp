@@ -13,7 +13,7 @@
  * nearest to the plane is taken alone.
  *
  * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
- * would count twice as a product (docs/DESIGN.md has the errors).
+ * would count twice as a product (docs/design/18-ambient-occlusion.md has the errors).
  *
  * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already; push.nearest: not 0:
  * each pixel takes its own texel, for comparison; push.size: pixels per texel, 2, or 1 for comparison.

@@ -3,7 +3,8 @@
  * with and without lists of parts, shadows on polygons, nothing of it in scenes that do not ask.
  *
  * The scenes of scenes/ are baked here again with the options; the fields of the truth come from the
- * SDF compiler and go through the C compiler. The table of errors is printed (docs/DESIGN.md). */
+ * SDF compiler and go through the C compiler. The table of errors is printed
+ * (docs/design/13-sdf-occlusion.md). */
 #include "support/support.h"
 #include "support/files.h"
 

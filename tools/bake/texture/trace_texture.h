@@ -9,8 +9,8 @@
 
 #include "bake/scene/content.h"
 
-/* Texels along the longer side of a picture, where the scene does not say (docs/DESIGN.md has what that
- * takes). 0: colours have no pictures. */
+/* Texels along the longer side of a picture, where the scene does not say; see
+ * docs/design/22-reflected-textures.md for what that takes. 0: colours have no pictures. */
 #define MASU_BAKE_TRACE_SIDE 64u
 
 /* A picture while it grows. */

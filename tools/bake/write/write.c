@@ -5,7 +5,7 @@
 #include "bake/write/blob.h"
 #include "bake/write/stats.h"
 #include "cli/cli.h"
-#include "frame/transparents.h"
+#include "plan/draws.h"
 
 /* The reader that will meet the blob is its judge: nothing is written that it, or every renderer,
  * would refuse. */
