@@ -96,7 +96,7 @@ testcase() {
 # $results/DRIVER/NAME.counts
 run() {
     local kind=$1 driver=$2 program=$3
-    local name log rc start seconds word test verdict=ok trouble='' ended='' died='' fault
+    local name log rc seconds user system cpu word test verdict=ok trouble='' ended='' died='' fault
     local p=0 f=0 s=0 k=0 tests=() notes=() arguments=()
     name=$(basename "$program" .sh)
     log=$results/$driver/$name.log
@@ -107,12 +107,16 @@ run() {
     local limit=$timeout
     [[ $program != */full/* ]] || limit=$((3 * timeout))
 
-    start=${EPOCHREALTIME/./}
-    # What bash says of a program that dies is said better below.
-    { timeout -k 10 "$limit" "$program" "${arguments[@]}" &> "$log" < /dev/null; } 2> /dev/null
-    rc=$?
-    seconds=$(((${EPOCHREALTIME/./} - start) / 10000))
-    seconds=$((seconds / 100)).$(printf %02d $((seconds % 100)))
+    # Of the three times the last line is taken: what bash says of a program that dies stands before
+    # them, and is said better below.
+    read -r rc seconds user system < <(
+        TIMEFORMAT='%2R %2U %2S'
+        { time timeout -k 10 "$limit" "$program" "${arguments[@]}" &> "$log" < /dev/null; } \
+            2> "$results/$driver/$name.times"
+        echo "$? $(tail -n 1 "$results/$driver/$name.times")"
+    )
+    cpu=$(awk "BEGIN { printf \"%.2f\", $user + $system }")
+    echo "$cpu $seconds $name $driver" > "$results/$driver/$name.times"
 
     if [ "$kind" = unit ] || [ "$kind" = gpu ]; then
         mapfile -t tests < <(awk "$read_cmocka" "$log")
@@ -165,8 +169,8 @@ run() {
 
     [ $p != 0 ] || verdict=skip
     [ $f = 0 ] || verdict=FAIL
-    printf '  %-4s  %-28s %-12s %4d passed, %d failed  %8s s\n' \
-        "$verdict" "$name" "$driver" $p $f "$seconds"
+    printf '  %-4s  %-28s %-12s %4d passed, %d failed  %8s s %8s s CPU\n' \
+        "$verdict" "$name" "$driver" $p $f "$seconds" "$cpu"
     for test in "${notes[@]}"; do
         echo "    $test"
         [ "$kind" = script ] || [ "$kind" = fuzz ] ||
@@ -269,6 +273,15 @@ read -r passed failed skipped known < <(cat "$results"/*/*.counts 2> /dev/null |
     cat "$results"/*/*.xml 2> /dev/null
     echo '</testsuites>'
 } > "$results/junit.xml"
+
+# Of the processor, too: what a program waits for on a busy machine says little of itself.
+slowest=$(cat "$results"/*/*.times 2> /dev/null | sort -rn | head -n 10)
+if [ "$(wc -l <<< "$slowest")" -gt 1 ]; then
+    echo "  the slowest, by seconds of the processor:"
+    while read -r cpu seconds name driver; do
+        printf '        %-28s %-12s %37s s %8s s CPU\n' "$name" "$driver" "$seconds" "$cpu"
+    done <<< "$slowest"
+fi
 
 [ $((skipped + known)) = 0 ] || echo "$skipped skipped, $known known faults of drivers"
 echo "$passed passed, $failed failed" | tee "$results/summary"
