@@ -574,8 +574,8 @@ static bool same_set(const group *g, const unsigned *meshes, unsigned count) {
     return g->count == count && memcmp(g->meshes, meshes, count * sizeof *meshes) == 0;
 }
 
-/* The primitives of an aiMesh, once more. Two primitives share no indices (src/scene/scene.c): when a mesh
- * is part of a second set, its indices are copied. */
+/* The primitives of an aiMesh, once more. Two primitives share no indices (src/scene/check_geometry.c): when a
+ * mesh is part of a second set, its indices are copied. */
 static void add_parts(model *m, unsigned mesh) {
     masu_bake_buffer *indices = &m->piece->section[MASU_BLOB_INDICES];
     for (uint32_t i = 0; i < m->mesh_parts[mesh].count; i++) {

@@ -419,7 +419,7 @@ const char *masu_bake_place(masu_bake_content *scene, const masu_bake_content *p
     }
     uint32_t first_mesh = residence->first_mesh;
     if (!residence->has_meshes) {
-        /* Two primitives share no indices (src/scene/scene.c): other materials, other indices. */
+        /* Two primitives share no indices (src/scene/check_geometry.c): other materials, others. */
         uint32_t first_index = copy_section(scene, piece, MASU_BLOB_INDICES);
         first_mesh = place_meshes(scene, piece, residence->first_vertex, first_index, overrides);
         residence->first_mesh = first_mesh;
