@@ -1,6 +1,8 @@
 /* stats.c: see stats.h. */
 #include "stats.h"
 
+#include "plan/buffers.h"
+
 #include "device/bind.h"
 #include "plan/desc.h"
 #include "shared/masu_shared.h"
@@ -26,6 +28,7 @@ static uint64_t stamp_ns(const masu_renderer *m, uint32_t slot, uint32_t from, u
 static int is_fixed_pass(uint32_t pass) {
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_OUTPUT:
+    case MASU_EXTENT_OUTPUT32:
     case MASU_EXTENT_ONE:
     case MASU_EXTENT_ATLAS:
     case MASU_EXTENT_KEPT:
@@ -44,7 +47,7 @@ int masu_slot_sample(const masu_renderer *m, uint32_t slot, masu_governor_sample
     if (held->frame == UINT64_MAX) return 0;
     if (stamps) out->gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;
     for (uint32_t p = 0; p + 2 <= stamps && stamps > 2; p++) {
-        if (is_fixed_pass(p) && m->plan.rungs[held->rung].active & MASU_PASS_BIT(p))
+        if (is_fixed_pass(p) && masu_has_pass(&m->plan.rungs[held->rung].active, p))
             out->fixed_ms += (double)stamp_ns(m, slot, p, p + 1) * 1e-6;
     }
     return 1;
@@ -61,7 +64,7 @@ static uint64_t counter(const masu_renderer *m, uint32_t slot, uint32_t index) {
 static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
     uint32_t stamps = masu_stamps(&m->plan.desc);
     for (uint32_t p = 0; p + 1 < stamps && stamps > 2; p++) {
-        if (m->plan.rungs[out->rung].active & MASU_PASS_BIT(p))
+        if (masu_has_pass(&m->plan.rungs[out->rung].active, p))
             out->pass_ns[p] = stamp_ns(m, slot, p, p + 1);
     }
     out->gpu_ns = stamp_ns(m, slot, 0, stamps - 1);
@@ -100,7 +103,7 @@ static void read_counters(const masu_renderer *m, uint32_t slot, masu_stats_info
     out->easu_tiles_early = counter(m, slot, MASU_COUNTER_EASU_TILES_EARLY);
     uint32_t exposure = (uint32_t)counter(m, slot, MASU_COUNTER_EXPOSURE);
     memcpy(&out->exposure, &exposure, sizeof exposure);
-    if (m->plan.rungs[out->rung].active >> MASU_PASS_CULL & 1u) read_stage2(m, slot, out);
+    if (masu_has_pass(&m->plan.rungs[out->rung].active, MASU_PASS_CULL)) read_stage2(m, slot, out);
 }
 
 masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
@@ -245,7 +248,7 @@ static void report_buffers(const masu_frame_plan *plan, report *to) {
         if (!p->bytes || b == MASU_BUFFER_POISON) continue;
         masu_memory_row row = device_row(plan, "buffer", p->name, p->role, p->count,
                                          p->memory_bytes, p->alignment, p->offset);
-        row.transient = (uint32_t)masu_is_of_loading(b);
+        row.transient = (uint32_t)masu_buffers[b].of_loading;
         add_row(to, row);
     }
 }

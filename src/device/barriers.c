@@ -20,6 +20,7 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
         return (masu_use){1, shader, VK_ACCESS_SHADER_READ_BIT,
                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     case MASU_READ_COPY:
+    case MASU_READ_BACK:
         return (masu_use){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0};
     case MASU_WRITE:
@@ -120,7 +121,7 @@ void masu_barrier_before(masu_recorder *rec, uint32_t pass) {
         masu_usage usage = (masu_usage)rec->rp->access[pass][a].usage;
         if (id == MASU_IMAGE_SOURCE) continue; /* the host's contract: readable already */
         masu_use next = masu_use_of(usage, masu_passes[pass].kind), *now = &rec->states[id];
-        if (id > MASU_IMAGE_COUNT) {
+        if (masu_is_buffer(id)) {
             /* A buffer. Its first use in a frame is behind the barrier at the frame's top. */
             if (now->used && (now->writes || next.writes)) {
                 from |= now->stages;

@@ -3,28 +3,17 @@
 
 #include "base/error.h"
 #include "device/ray_query.h"
+#include "plan/buffers.h"
 
 #include <string.h>
 
 /* ---- Storage buffers ------------------------------------------------------------------------- */
 
-/* What set 0 shows to compute shaders: counters, tiles, slots, tables; lights and their tiles; light
- * probes; of SMAA areas and tiles; the metered exposure; draws, drawn, seen; and what is traced, its
- * instances, vertices, texture coordinates and tiles. */
-#define PLAIN_BUFFERS 4u
-#define CULLING_BUFFERS 3u
-#define TRACE_BUFFERS 5u
-
-static uint32_t storage_buffers(const masu_frame_plan *plan) {
-    return PLAIN_BUFFERS + (plan->needs.lights ? 2u : 0u) + (plan->needs.probes ? 1u : 0u) +
-           (plan->needs.smoothing ? 2u : 0u) + (plan->needs.metered ? 1u : 0u);
-}
-
 /* Rungs that leave reflections to us go without where there are too few. */
 static masu_result drop_specular(masu_desc *desc, const masu_frame_plan *plan,
                                  const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
     uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
-    uint32_t needed = storage_buffers(plan) + TRACE_BUFFERS;
+    uint32_t needed = masu_plain_buffers(plan) + masu_group_buffers(plan, MASU_BINDING_TRACING);
     if (!plan->needs.reflections || has >= needed) return MASU_OK;
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].specular == MASU_ON) {
@@ -93,7 +82,8 @@ static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_d
 static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
                                   const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
     uint32_t has = limits->maxPerStageDescriptorStorageBuffers;
-    uint32_t plain = storage_buffers(plan), needed = plain + CULLING_BUFFERS;
+    uint32_t plain = masu_plain_buffers(plan);
+    uint32_t needed = plain + masu_group_buffers(plan, MASU_BINDING_CULLING);
     if (has < plain) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain,
                          has,
@@ -102,7 +92,8 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
                          "device has %u",
                          plain, has);
     }
-    if (plan->needs.reflections && desc_traces(desc)) needed += TRACE_BUFFERS;
+    if (plan->needs.reflections && desc_traces(desc))
+        needed += masu_group_buffers(plan, MASU_BINDING_TRACING);
     if (!plan->occlusion || has >= needed) return MASU_OK;
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         if (desc->rungs[r].occlusion == MASU_ON) {
@@ -120,13 +111,8 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
 /* What grows with the scene and is bound whole, and the widest dispatch over instances. */
 static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
                                 masu_detail *detail) {
-    static const masu_buffer_id ids[] = {
-        MASU_BUFFER_INSTANCES, MASU_BUFFER_DRAWN,       MASU_BUFFER_DRAWS,
-        MASU_BUFFER_SEEN,      MASU_BUFFER_PROBES,      MASU_BUFFER_LIGHT_TILES,
-        MASU_BUFFER_TRACE,     MASU_BUFFER_TRACE_FRAME, MASU_BUFFER_SMAA_TILES,
-        MASU_BUFFER_VERTICES,  MASU_BUFFER_TEXCOORDS};
-    for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
-        const masu_buffer_plan *b = &plan->buffers[ids[i]];
+    for (uint32_t i = 0; i < MASU_BUFFER_COUNT; i++) {
+        const masu_buffer_plan *b = &plan->buffers[i];
         uint64_t bytes = b->stride ? b->stride : b->bytes;
         if (bytes <= limits->maxStorageBufferRange ||
             !(b->usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT))

@@ -2,6 +2,8 @@
  * and the sets of textures. */
 #include "device/descriptors.h"
 
+#include "plan/buffers.h"
+
 #include "base/error.h"
 #include "device/ray_query.h"
 #include "scene/scene.h"
@@ -12,13 +14,14 @@ int masu_has_global_sets(const masu_frame_plan *plan) {
 
 static masu_result make_pool(masu_device *m, masu_detail *detail) {
     uint32_t flights = m->plan->desc.frames_in_flight, sets = m->plan->pass_sets;
+    /* The last is of ray queries alone. */
     VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4 * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 20 * flights},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, MASU_BIND_COUNT * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, MASU_BIND_COUNT * flights},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
          MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan->scene.texture_sets},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
-        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, flights}}; /* the last: ray queries alone */
+        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, flights}};
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = flights + sets + m->plan->scene.texture_sets,
                                        .poolSizeCount = m->plan->needs.query ? 5 : 4,
@@ -40,73 +43,39 @@ static masu_result allocate_set(masu_device *m, VkDescriptorSetLayout layout,
     return r ? masu_fail_vulkan(detail, r, "vkAllocateDescriptorSets") : MASU_OK;
 }
 
+/* A binding of one frame in flight. Code that reads a uniform buffer that the plan does not have is compiled
+ * away, but a set must be whole: it gets the frame's. */
+static void write_binding(masu_device *m, uint32_t flight, const masu_binding *row) {
+    masu_buffer_id id = row->buffer;
+    if (!m->plan->buffers[id].bytes && row->type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER)
+        id = MASU_BUFFER_FRAME;
+    const masu_buffer_plan *b = &m->plan->buffers[id];
+    if (!b->bytes) return; /* no pass of this plan looks at it */
+    VkDescriptorBufferInfo buffer = {m->objects.buffers[id],
+                                     flight * b->stride + (row->previous ? b->stride / 2 : 0),
+                                     b->range};
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = m->global_sets[flight],
+                                  .dstBinding = row->binding,
+                                  .descriptorCount = 1,
+                                  .descriptorType = row->type,
+                                  .pBufferInfo = &buffer};
+    m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+}
+
 static masu_result make_global_sets(masu_device *m, masu_detail *detail) {
-    static const struct {
-        uint32_t binding;
-        masu_buffer_id buffer;
-        VkDescriptorType type;
-        int previous; /* the half of a slot that is of the frame before */
-    } rows[] = {
-        {MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-        {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TILES, MASU_BUFFER_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-        {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-        {MASU_BIND_PROBES, MASU_BUFFER_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SHADOW, MASU_BUFFER_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-        {MASU_BIND_SKY, MASU_BUFFER_SKY, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-        {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_DRAWS, MASU_BUFFER_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TABLES, MASU_BUFFER_TABLES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_LIGHTS, MASU_BUFFER_LIGHTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_LIGHT_TILES, MASU_BUFFER_LIGHT_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE, MASU_BUFFER_TRACE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE_FRAME, MASU_BUFFER_TRACE_FRAME, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE_VERTICES, MASU_BUFFER_VERTICES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE_TEXCOORDS, MASU_BUFFER_TEXCOORDS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SPECULAR_TILES, MASU_BUFFER_SPECULAR_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SMAA_AREA, MASU_BUFFER_SMAA_AREA, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SMAA_TILES, MASU_BUFFER_SMAA_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_EXPOSURE, MASU_BUFFER_EXPOSURE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
+    masu_binding rows[MASU_BIND_COUNT];
+    masu_bindings(m->plan, rows);
     for (uint32_t f = 0; f < m->plan->desc.frames_in_flight && masu_has_global_sets(m->plan); f++) {
         masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
         if (result) return result;
-        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            /* Code that reads these is compiled away without them, but a set must be whole. */
-            masu_buffer_id id = rows[i].buffer;
-            if (id == MASU_BUFFER_SKY && !m->plan->needs.sky) id = MASU_BUFFER_FRAME;
-            const masu_buffer_plan *b = &m->plan->buffers[id];
-            if (!b->bytes) continue; /* no pass of this plan looks at it */
-            if (rows[i].previous && !m->plan->needs.velocity) continue;
-            int traces = rows[i].binding >= MASU_BIND_TRACE && rows[i].binding <= MASU_BIND_TOP_LEVEL;
-            if (traces && !m->plan->needs.reflections) continue;
-            if (rows[i].binding == MASU_BIND_TRACE_TEXCOORDS && !m->plan->scene.trace_colors) continue;
-            int polygons = rows[i].binding >= MASU_BIND_TRACE_FRAME &&
-                           rows[i].binding <= MASU_BIND_TRACE_TEXCOORDS;
-            if (polygons && !m->plan->needs.traced) continue;
-            if (rows[i].binding == MASU_BIND_DRAWS && !m->plan->occlusion) continue;
-            int halves = m->plan->needs.velocity && (id == MASU_BUFFER_FRAME || id == MASU_BUFFER_INSTANCES);
-            uint64_t bytes = b->stride ? b->stride : b->bytes;
-            if (halves) bytes /= 2;
-            VkDescriptorBufferInfo buffer = {m->objects.buffers[id],
-                                             f * b->stride + (rows[i].previous ? bytes : 0), bytes};
-            if (id == MASU_BUFFER_FRAME)
-                buffer.range = sizeof(struct masu_frame_uniforms);
-            if (id == MASU_BUFFER_SHADOW) buffer.range = sizeof(struct masu_shadow_uniforms);
-            if (id == MASU_BUFFER_SKY) buffer.range = sizeof(struct masu_sky_uniforms);
-            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                          .dstSet = m->global_sets[f],
-                                          .dstBinding = rows[i].binding,
-                                          .descriptorCount = 1,
-                                          .descriptorType = rows[i].type,
-                                          .pBufferInfo = &buffer};
-            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+        for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
+            if (!rows[i].bound || (rows[i].previous && !m->plan->needs.velocity)) continue;
+            if (rows[i].type == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR)
+                masu_ray_bind(m, m->global_sets[f]);
+            else
+                write_binding(m, f, &rows[i]);
         }
-        if (m->plan->needs.query) masu_ray_bind(m, m->global_sets[f]);
     }
     return MASU_OK;
 }
@@ -178,7 +147,7 @@ masu_result masu_make_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32
                                   VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
                                   masu_detail *detail) {
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!(rp->active & MASU_PASS_BIT(p)) || !masu_has_set(p)) continue;
+        if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
         uint32_t targets = m->plan->desc.targets.count, own = writes_target(rp, p) ? targets : 1;
         for (uint32_t t = 0; t < own; t++) {
             VkDescriptorSet *set = &m->pass_sets[(*next)++];

@@ -5,6 +5,7 @@
 #include "device/barriers.h"
 #include "device/bind.h"
 #include "device/ray_query.h"
+#include "plan/buffers.h"
 #include "scene/scene.h"
 #include "scene/trace_scene.h"
 #include "shared/masu_shared.h"
@@ -15,19 +16,13 @@
 
 /* ---- Chunks ---------------------------------------------------------------------------------- */
 
-static const masu_buffer_id resident[] = {
-    MASU_BUFFER_VERTICES,    MASU_BUFFER_INDICES,  MASU_BUFFER_TEXCOORDS, MASU_BUFFER_MATERIALS,
-    MASU_BUFFER_SLOTS,       MASU_BUFFER_TABLES,   MASU_BUFFER_PROBES,    MASU_BUFFER_TRACE,
-    MASU_BUFFER_RAY_INDICES, MASU_BUFFER_SMAA_AREA};
-
-#define RESIDENT_COUNT (sizeof resident / sizeof *resident)
-
 /* Chunks of resident buffers: none where the host can write them. */
 static uint32_t buffer_chunks(const masu_frame_plan *plan) {
     uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
     uint32_t chunks = 0;
-    for (size_t i = 0; i < RESIDENT_COUNT && plan->staged; i++) {
-        chunks += (uint32_t)((plan->buffers[resident[i]].bytes + step - 1) / step);
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT && plan->staged; b++) {
+        if (masu_buffers[b].loaded)
+            chunks += (uint32_t)((plan->buffers[b].bytes + step - 1) / step);
     }
     return chunks;
 }
@@ -56,12 +51,12 @@ static int is_build_chunk(const masu_frame_plan *plan, uint32_t index, uint32_t 
 
 masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
     uint64_t step = plan->buffers[MASU_BUFFER_STAGING].bytes;
-    for (size_t i = 0; i < RESIDENT_COUNT; i++) {
-        uint64_t bytes = plan->buffers[resident[i]].bytes;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        uint64_t bytes = masu_buffers[b].loaded ? plan->buffers[b].bytes : 0;
         uint32_t chunks = (uint32_t)((bytes + step - 1) / step);
         if (index < chunks) {
             uint64_t offset = index * step, left = bytes - offset;
-            return (masu_chunk){resident[i], offset, left < step ? left : step, bytes};
+            return (masu_chunk){(masu_buffer_id)b, offset, left < step ? left : step, bytes};
         }
         index -= chunks;
     }
@@ -214,44 +209,84 @@ static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned ch
     }
 }
 
+/* ---- A function for each LOADED of buffers.inc: all write a chunk of it ---------------------- */
+
+typedef struct source {
+    const masu_scene *scene;
+    const masu_scene_view *v;
+} source;
+
+static void copy(const void *from, masu_chunk chunk, unsigned char *to) {
+    memcpy(to, (const unsigned char *)from + chunk.offset, (size_t)chunk.bytes);
+}
+
+static void load_vertices(const source *s, masu_chunk chunk, unsigned char *to) {
+    copy(s->v->vertices, chunk, to);
+}
+
+static void load_indices(const source *s, masu_chunk chunk, unsigned char *to) {
+    copy(s->v->indices, chunk, to);
+}
+
+static void load_texcoords(const source *s, masu_chunk chunk, unsigned char *to) {
+    copy(s->v->texcoords, chunk, to);
+}
+
+static void load_smaa_area(const source *s, masu_chunk chunk, unsigned char *to) {
+    (void)s;
+    copy(masu_smaa_area, chunk, to);
+}
+
+static void load_tables(const source *s, masu_chunk chunk, unsigned char *to) {
+    write_tables(s->v, chunk, to);
+}
+
+static void load_probes(const source *s, masu_chunk chunk, unsigned char *to) {
+    write_probes(s->v, chunk, to);
+}
+
+static void load_trace(const source *s, masu_chunk chunk, unsigned char *to) {
+    masu_trace_write(s->scene, s->v, chunk.offset, chunk.bytes, to);
+}
+
+static void load_ray_indices(const source *s, masu_chunk chunk, unsigned char *to) {
+    masu_ray_write_indices(s->v, chunk.offset, chunk.bytes, to);
+}
+
+/* The buffer may hold two sets; both begin as the blob has them. */
+static void load_slots(const source *s, masu_chunk chunk, unsigned char *to) {
+    uint64_t size = s->v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
+    while (at < end) {
+        uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
+        memcpy(to + (at - chunk.offset), (const unsigned char *)s->v->slots + skip, (size_t)part);
+        at += part;
+    }
+}
+
+/* A chunk may cut a material in two when the staging buffer is small: convert whole, copy the part. */
+static void load_materials(const source *s, masu_chunk chunk, unsigned char *to) {
+    uint64_t size = sizeof(struct masu_material_data), at = chunk.offset, end = at + chunk.bytes;
+    while (at < end) {
+        struct masu_material_data d = material_element(s->v, at / size);
+        uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
+        memcpy(to + (at - chunk.offset), (const unsigned char *)&d + skip, (size_t)part);
+        at += part;
+    }
+}
+
+#define NOTHING NULL
+#define LOADED(name) load_##name
+static void (*const loads[MASU_BUFFER_COUNT])(const source *s, masu_chunk chunk,
+                                              unsigned char *to) = {
+#define BUFFER(ID, name, role, usage, slots, lifetime, loaded, ...) [MASU_BUFFER_##ID] = loaded,
+#include "plan/buffers.inc"
+#undef BUFFER
+};
+
 static void write_resident(const masu_scene *scene, const masu_scene_view *v, masu_chunk chunk,
                            unsigned char *to) {
-    if (chunk.buffer == MASU_BUFFER_VERTICES) {
-        memcpy(to, (const unsigned char *)v->vertices + chunk.offset, (size_t)chunk.bytes);
-    } else if (chunk.buffer == MASU_BUFFER_INDICES) {
-        memcpy(to, (const unsigned char *)v->indices + chunk.offset, (size_t)chunk.bytes);
-    } else if (chunk.buffer == MASU_BUFFER_TEXCOORDS) {
-        memcpy(to, (const unsigned char *)v->texcoords + chunk.offset, (size_t)chunk.bytes);
-    } else if (chunk.buffer == MASU_BUFFER_TABLES) {
-        write_tables(v, chunk, to);
-    } else if (chunk.buffer == MASU_BUFFER_SMAA_AREA) {
-        memcpy(to, (const unsigned char *)masu_smaa_area + chunk.offset, (size_t)chunk.bytes);
-    } else if (chunk.buffer == MASU_BUFFER_SLOTS) {
-        /* The buffer may hold two sets; both begin as the blob has them. */
-        uint64_t size = v->slot_count * sizeof(float), at = chunk.offset, end = at + chunk.bytes;
-        while (at < end) {
-            uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
-            memcpy(to + (at - chunk.offset), (const unsigned char *)v->slots + skip, (size_t)part);
-            at += part;
-        }
-    } else if (chunk.buffer == MASU_BUFFER_PROBES) {
-        write_probes(v, chunk, to);
-    } else if (chunk.buffer == MASU_BUFFER_TRACE) {
-        masu_trace_write(scene, v, chunk.offset, chunk.bytes, to);
-    } else if (chunk.buffer == MASU_BUFFER_RAY_INDICES) {
-        masu_ray_write_indices(v, chunk.offset, chunk.bytes, to);
-    } else if (chunk.buffer == MASU_BUFFER_MATERIALS) {
-        /* A chunk may cut a material in two when the staging buffer is small: convert whole, copy
-         * the part. */
-        uint64_t size = sizeof(struct masu_material_data), at = chunk.offset,
-                 end = at + chunk.bytes;
-        while (at < end) {
-            struct masu_material_data d = material_element(v, at / size);
-            uint64_t skip = at % size, part = size - skip < end - at ? size - skip : end - at;
-            memcpy(to + (at - chunk.offset), (const unsigned char *)&d + skip, (size_t)part);
-            at += part;
-        }
-    }
+    const source s = {scene, v};
+    loads[chunk.buffer](&s, chunk, to);
 }
 
 static void write_textures(masu_device *m, const masu_scene_view *v, unsigned char *to) {
@@ -266,12 +301,10 @@ static void write_textures(masu_device *m, const masu_scene_view *v, unsigned ch
 
 /* Where the host can write them, all at once. */
 static void write_in_place(const masu_device *m, const masu_scene_view *v) {
-    for (size_t i = 0; i < RESIDENT_COUNT; i++) {
-        uint64_t bytes = m->plan->buffers[resident[i]].bytes;
-        masu_chunk all = {resident[i], 0, bytes, bytes};
-        if (!m->plan->desc.scene && resident[i] != MASU_BUFFER_SMAA_AREA) continue;
-        if (all.bytes)
-            write_resident(&m->plan->scene, v, all, masu_buffer_pointer(m, resident[i], 0));
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        masu_chunk all = {(masu_buffer_id)b, 0, m->plan->buffers[b].bytes, m->plan->buffers[b].bytes};
+        if (!masu_buffers[b].loaded || !all.bytes) continue;
+        write_resident(&m->plan->scene, v, all, masu_buffer_pointer(m, all.buffer, 0));
     }
 }
 

@@ -2,6 +2,7 @@
 #include "device/memory.h"
 
 #include "base/error.h"
+#include "plan/buffers.h"
 #include "scene/scene.h"
 #include "scene/texture.h"
 
@@ -274,7 +275,7 @@ static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *
         masu_buffer_plan *buffer = &plan->buffers[b];
         if (!buffer->bytes || buffer->role != role || b == MASU_BUFFER_POISON) continue;
         block->address |= (buffer->usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
-        if (masu_is_of_loading(b)) continue; /* lay_images */
+        if (masu_buffers[b].of_loading) continue; /* lay_images */
         buffer->offset = masu_align_up(block->bytes, buffer->alignment);
         block->bytes = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
@@ -287,7 +288,7 @@ static uint64_t lay_loading(masu_frame_plan *plan, uint64_t start, masu_block_pl
     uint64_t end = start;
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
-        if (!buffer->bytes || !masu_is_of_loading(b)) continue;
+        if (!buffer->bytes || !masu_buffers[b].of_loading) continue;
         buffer->offset = masu_align_up(end, buffer->alignment);
         end = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
@@ -383,12 +384,10 @@ static uint64_t texture_staging(const masu_frame_plan *plan) {
 /* Resident buffers need a staging buffer exactly when the host cannot write where they live. */
 static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu_objects *objects,
                                   masu_detail *detail) {
-    uint64_t resident =
-        plan->buffers[MASU_BUFFER_VERTICES].bytes + plan->buffers[MASU_BUFFER_INDICES].bytes +
-        plan->buffers[MASU_BUFFER_MATERIALS].bytes + plan->buffers[MASU_BUFFER_SLOTS].bytes +
-        plan->buffers[MASU_BUFFER_TEXCOORDS].bytes + plan->buffers[MASU_BUFFER_TABLES].bytes +
-        plan->buffers[MASU_BUFFER_PROBES].bytes + plan->buffers[MASU_BUFFER_TRACE].bytes +
-        plan->buffers[MASU_BUFFER_RAY_INDICES].bytes + plan->buffers[MASU_BUFFER_SMAA_AREA].bytes;
+    uint64_t resident = 0;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        if (masu_buffers[b].loaded) resident += plan->buffers[b].bytes;
+    }
     uint64_t textures = texture_staging(plan);
     masu_buffer_plan *staging = &plan->buffers[MASU_BUFFER_STAGING];
     plan->staged = resident && !plan->blocks[MASU_ROLE_DEVICE].host_visible;

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "device/bind.h"
-#include "plan/ray_buffers.h"
 #include "scene/scene.h"
+#include "scene/trace_scene.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>

@@ -7,8 +7,8 @@
 #include "device/barriers.h"
 #include "device/descriptors.h"
 #include "device/load.h"
-#include "device/push.h"
 #include "device/ray_query.h"
+#include "plan/push.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
 
@@ -16,24 +16,46 @@
 
 /* ---- Passes ---------------------------------------------------------------------------------- */
 
-/* Stage 2 of culling: 64 invocations to a group, views in y: the camera, or the sun's. */
-static void record_culling(masu_recorder *rec, uint32_t pass, struct masu_push *push) {
+static uint32_t few_groups(const masu_recorder *rec) { return (rec->draws->batch_count + 63) / 64; }
+
+static masu_push_block push_of(const masu_recorder *rec, uint32_t pass) {
+    return masu_push_of(rec->m->plan, rec->rung, pass, few_groups(rec));
+}
+
+/* The list of tiles that an indirect pass runs for; MASU_BUFFER_COUNT: it runs for all. */
+static masu_buffer_id tiles_of(masu_image_extent extent) {
+    switch (extent) {
+    case MASU_EXTENT_TILES: return MASU_BUFFER_TILES;
+    case MASU_EXTENT_GLOSSY: return MASU_BUFFER_SPECULAR_TILES;
+    case MASU_EXTENT_EDGED: return MASU_BUFFER_SMAA_TILES;
+    default: return MASU_BUFFER_COUNT;
+    }
+}
+
+/* Workgroups of a direct dispatch. */
+static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_push_block *push) {
     const masu_frame_plan *plan = rec->m->plan;
-    uint32_t few = (rec->draws->batch_count + 63) / 64, groups = few + rec->draws->large_count;
-    uint32_t first = pass == MASU_PASS_CULL || pass == MASU_PASS_COMPACT ? 0 : 1;
-    if (masu_passes[pass].extent == MASU_EXTENT_KEPT) groups = (plan->scene.instances + 63) / 64;
-    push->index[1] = few;
-    push->index[2] = first;
-    rec->m->vk.CmdPushConstants(rec->cmd, rec->m->layouts[pass], VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                sizeof *push, push);
-    rec->m->vk.CmdDispatch(rec->cmd, groups, first ? plan->views - 1 : 1, 1);
+    uint32_t few = few_groups(rec), edge = MASU_GROUP;
+    /* Of culling views lie in y: the camera, or the sun's. */
+    uint32_t views = push->own.word[offsetof(struct masu_push_cull, view) / 4] ? plan->views - 1 : 1;
+    switch (masu_passes[pass].extent) {
+    case MASU_EXTENT_PROBES: return (VkExtent2D){(plan->scene.probes + 63) / 64, 1};
+    case MASU_EXTENT_KEPT: return (VkExtent2D){(plan->scene.instances + 63) / 64, views};
+    case MASU_EXTENT_BATCHES: return (VkExtent2D){few + rec->draws->large_count, views};
+    /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
+    case MASU_EXTENT_TILE:
+    case MASU_EXTENT_ONE: edge = 1; break;
+    case MASU_EXTENT_OUTPUT32: edge = MASU_FSR1_BLOCK; break;
+    default: break;
+    }
+    return (VkExtent2D){(push->sizes.output_width + edge - 1) / edge,
+                        (push->sizes.output_height + edge - 1) / edge};
 }
 
 static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
-    struct masu_push push = masu_push_constants(rec, pass);
+    masu_push_block push = push_of(rec, pass);
     VkPipelineLayout layout = rec->m->layouts[pass];
-    masu_image_extent extent = masu_passes[pass].extent;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
     if (masu_has_global_sets(rec->m->plan)) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
@@ -42,32 +64,24 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1,
                               &set, 0, NULL);
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
-    if (extent == MASU_EXTENT_TILES) {
-        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TILES], 0);
-        return;
+    masu_buffer_id tiles = tiles_of(masu_passes[pass].extent);
+    if (tiles != MASU_BUFFER_COUNT) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[tiles], 0);
+    } else {
+        VkExtent2D groups = groups_of(rec, pass, &push);
+        vk->CmdDispatch(rec->cmd, groups.width, groups.height, 1);
     }
-    if (extent == MASU_EXTENT_GLOSSY) {
-        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SPECULAR_TILES], 0);
-        return;
-    }
-    if (extent == MASU_EXTENT_EDGED) {
-        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SMAA_TILES], 0);
-        return;
-    }
-    if (extent == MASU_EXTENT_PROBES) {
-        vk->CmdDispatch(rec->cmd, (rec->m->plan->scene.probes + 63) / 64, 1, 1);
-        return;
-    }
-    if (extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES) {
-        record_culling(rec, pass, &push);
-        return;
-    }
-    /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
-    uint32_t group = extent == MASU_EXTENT_TILE || extent == MASU_EXTENT_ONE ? 1 : MASU_GROUP;
-    if (pass == MASU_PASS_FSR1) group = MASU_FSR1_BLOCK;
-    vk->CmdDispatch(rec->cmd, (push.output_width + group - 1) / group,
-                    (push.output_height + group - 1) / group, 1);
 }
+
+#define SAME_PLACE(member)                                                                         \
+    _Static_assert(offsetof(struct masu_push_cascade, member) ==                                   \
+                       offsetof(struct masu_push_gbuffer, member),                                 \
+                   "cascades are drawn as polygons are: " #member)
+SAME_PLACE(flags);
+SAME_PLACE(layers);
+SAME_PLACE(detail_u);
+SAME_PLACE(detail_v);
+SAME_PLACE(instances);
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
@@ -81,14 +95,14 @@ static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
 }
 
 /* A material's flags and layers into the push constants, and its textures bound where they are not
- * those of the draw before. index[0] is the pass's, index[1] the batch's. */
+ * those of the draw before. */
 static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
-                      const masu_blob_material *material, struct masu_push *push, uint32_t *bound) {
-    push->index[2] = (material->flags & 0xFFFFFFu) | material->occlusion_layer
-                                                         << MASU_MAP_OCCLUSION_SHIFT;
-    push->index[3] = material->layers;
-    push->param[1] = material->detail[0];
-    push->param[2] = material->detail[1];
+                      const masu_blob_material *material, struct masu_push_gbuffer *push, uint32_t *bound) {
+    push->flags = (material->flags & 0xFFFFFFu) | material->occlusion_layer
+                                                       << MASU_MAP_OCCLUSION_SHIFT;
+    push->layers = material->layers;
+    push->detail_u = material->detail[0];
+    push->detail_v = material->detail[1];
     if (*bound == material->texture_set) return;
     *bound = material->texture_set;
     rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
@@ -99,7 +113,7 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
  * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
  * that most of what they would hide or shade in vain is known already. */
-static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, struct masu_push push) {
+static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
     masu_scene_view v = masu_scene_look(m->plan->desc.scene);
@@ -119,26 +133,30 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, stru
         vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
-    int occlusion = (int)(rec->rp->active >> MASU_PASS_CULL & 1u);
+    int occlusion = masu_has_pass(&rec->rp->active, MASU_PASS_CULL);
     uint32_t lists = view * m->plan->listed;
     if (occlusion) lists += (uint32_t)m->plan->drawn.lists;
     VkDeviceSize commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
                             MASU_DRAWS_OF(m->plan, view, occlusion);
+    masu_push_block block = push_of(rec, pass);
+    struct masu_push_gbuffer push; /* a cascade is told the same, but its number for the material */
+    memcpy(&push, &block.own, sizeof push);
     for (uint32_t b = 0; b < rec->draws->batch_count; b++) {
         const masu_batch *batch = &rec->draws->batches[b];
-        push.index[1] = lists + batch->first_listed;
+        push.instances = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             uint32_t number = v.primitives[batch->first_primitive + d].material;
             if (sweep_of(&v.materials[number], view) != sweep) continue;
             if (!sun) {
                 uint32_t meso = v.materials[number].meso;
-                push.index[0] = number;
+                push.material = number;
                 /* The element of the buffer of materials where its curves begin; 0: none. */
-                push.param[3] =
-                    meso == MASU_BLOB_NONE ? 0.0f : (float)(v.material_count + 2 * (uint64_t)meso);
+                push.meso =
+                    meso == MASU_BLOB_NONE ? 0 : (uint32_t)(v.material_count + 2 * (uint64_t)meso);
             }
             if (sweep) bind_maps(rec, layout, &v.materials[number], &push, &bound);
-            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+            memcpy(&block.own, &push, sizeof push);
+            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
                                        commands +
                                            (VkDeviceSize)MASU_DRAW_BYTES * (batch->first_draw + d),
@@ -148,13 +166,8 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, stru
 }
 
 static void record_polygons(masu_recorder *rec, uint32_t pass) {
-    int sun = masu_is_cascade(pass);
-    /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets
-     * blurred it cannot bring back. */
-    struct masu_push push = masu_push_draw(rec, !sun);
-    if (sun) push.index[0] = pass - MASU_PASS_CASCADE_0; /* else of each draw its material */
     uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
-    for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep, push);
+    for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep);
 }
 
 /* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. */
@@ -166,7 +179,9 @@ static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
     VkDeviceSize zero = 0, at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
                                 m->plan->transparent_draws * MASU_DRAW_BYTES;
     const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
-    struct masu_push push = masu_push_draw(rec, 1);
+    masu_push_block block = push_of(rec, MASU_PASS_TRANSPARENTS);
+    struct masu_push_transparents push;
+    memcpy(&push, &block.own, sizeof push);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
                         m->pipelines[MASU_PASS_TRANSPARENTS]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 2,
@@ -177,8 +192,9 @@ static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     for (uint32_t k = 0; k < rec->draws->transparent_count; k++) {
-        push.index[1] = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
-        vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+        push.instances = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
+        memcpy(&block.own, &push, sizeof push);
+        vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         for (uint32_t c = 0; c < scene->transparent_sets; c++) {
             if (m->texture_layout && (k == 0 || scene->transparent_sets > 1)) {
                 vk->CmdBindDescriptorSets(
@@ -200,9 +216,9 @@ static void record_occluders(masu_recorder *rec) {
                           m->pipelines[MASU_PASS_OCCLUDERS]);
     m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL,
                                 1, &m->global_sets[rec->flight], 0, NULL);
-    struct masu_push push;
-    memset(&push, 0, sizeof push);
-    push.index[0] = (uint32_t)m->plan->drawn.header;
+    masu_push_block block = push_of(rec, MASU_PASS_OCCLUDERS);
+    struct masu_push_occluders push;
+    memcpy(&push, &block.own, sizeof push);
     for (uint32_t part = 0; part < MASU_ATLAS_PARTS(m->plan); part++) {
         VkRect2D area = masu_atlas_part(part);
         VkViewport viewport = {(float)area.offset.x,
@@ -211,10 +227,11 @@ static void record_occluders(masu_recorder *rec) {
                                (float)area.extent.height,
                                0.0f,
                                1.0f};
-        push.index[1] = part;
+        push.view = part;
+        memcpy(&block.own, &push, sizeof push);
         m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);
         m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
-        m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+        m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
                               rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
                                   MASU_OCCLUDER_DRAW(m->plan, part),
@@ -225,7 +242,7 @@ static void record_occluders(masu_recorder *rec) {
 /* One triangle over everything, for the SDF as a fragment shader. */
 static void record_fullscreen(masu_recorder *rec, uint32_t pass) {
     const masu_vk *vk = &rec->m->vk;
-    struct masu_push push = masu_push_constants(rec, pass);
+    masu_push_block push = push_of(rec, pass);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->layouts[pass],
                               MASU_SET_GLOBAL, 1, &rec->m->global_sets[rec->flight], 0, NULL);
@@ -385,7 +402,7 @@ static void record_prologue(masu_recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
                             MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
     }
-    int receivers = (int)(rec->rp->active >> MASU_PASS_RECEIVERS & 1u);
+    int receivers = masu_has_pass(&rec->rp->active, MASU_PASS_RECEIVERS);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
                             m->plan->receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
@@ -448,7 +465,7 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         int drawn = !masu_is_cascade(p) ||
                     masu_variant_draws(rec->rp, rec->variant, p - MASU_PASS_CASCADE_0);
-        if (rec->rp->active & MASU_PASS_BIT(p) && drawn) {
+        if (masu_has_pass(&rec->rp->active, p) && drawn) {
             begin_label(rec, masu_passes[p].name);
             masu_barrier_before(rec, p);
             if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets[p]);

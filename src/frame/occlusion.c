@@ -126,7 +126,7 @@ void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_views *
                           const masu_frame_data *f) {
     const masu_frame_plan *plan = f->plan;
     const masu_drawn_plan *d = &plan->drawn;
-    if (!(masu_frame_rung_plan(f)->active >> MASU_PASS_CULL & 1u)) return;
+    if (!masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_CULL)) return;
     uint32_t *words = drawn_words(f->device, f->slot), *header = words + d->header;
     masu_stage2_view stage2[MASU_MAX_VIEWS];
     memcpy(stage2, views->stage2, sizeof stage2);

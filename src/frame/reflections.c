@@ -124,9 +124,9 @@ void masu_reflections_read(masu_reflections *s, masu_frame_data *f) {
     }
     if (!s->full_history) u->history[3] |= MASU_HISTORY_NO_FINE;
     /* Of the previous frame counts what it has kept. */
-    s->full_history = (rp->active & MASU_PASS_BIT(MASU_PASS_SPECULAR_KEEP_FINE)) != 0;
-    s->history = (rp->active & (MASU_PASS_BIT(MASU_PASS_SPECULAR_KEEP) |
-                                MASU_PASS_BIT(MASU_PASS_SPECULAR_ACCUMULATE))) != 0;
+    s->full_history = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP_FINE);
+    s->history = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP) ||
+                 masu_has_pass(&rp->active, MASU_PASS_SPECULAR_ACCUMULATE);
     s->history_size[0] = rp->render_width;
     s->history_size[1] = rp->render_height;
 }

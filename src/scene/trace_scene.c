@@ -128,3 +128,7 @@ void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_
         at += part;
     }
 }
+
+uint32_t masu_ray_masks(const masu_scene *scene) {
+    return scene->trace_colors && scene->masks ? 1 : 0;
+}

@@ -34,4 +34,7 @@ uint64_t masu_trace_rows_at(const masu_scene *scene, int query);
 void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_t offset,
                       uint64_t bytes, unsigned char *to);
 
+/* 1: some of what is traced has holes: the permutation of the shader that looks them up. */
+uint32_t masu_ray_masks(const masu_scene *scene);
+
 #endif
