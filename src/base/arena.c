@@ -27,5 +27,3 @@ void *masu_arena_take(masu_arena *arena, const char *name, uint64_t count, uint6
     memset(arena->base + offset, 0, (size_t)bytes);
     return arena->base + offset;
 }
-
-int masu_arena_fits(const masu_arena *arena) { return arena->used <= arena->size; }

@@ -3,7 +3,7 @@
  *   base                                                   base + size
  *   | renderer | instance rows | dirty flags | sets | ... |
  *
- * One walk of masu_arena_take calls (src/masu.c, layout_host) serves both the size query and init:
+ * One walk of masu_arena_take calls (src/masu.c, lay_host) serves both the size query and init:
  * with base NULL the walk only counts, so the two cannot disagree. Nothing is ever given back: the
  * block is the caller's and ends as a whole. */
 #ifndef MASU_ARENA_H
@@ -36,8 +36,5 @@ void masu_arena_begin(masu_arena *arena, void *base, uint64_t size);
  * block lasts. */
 void *masu_arena_take(masu_arena *arena, const char *name, uint64_t count, uint64_t element_bytes,
                       uint64_t alignment);
-
-/* False when the walk has asked for more than the block has. */
-int masu_arena_fits(const masu_arena *arena);
 
 #endif

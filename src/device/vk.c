@@ -31,23 +31,7 @@ static const format_floor format_floors[] = {
      VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
 };
 
-static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
-    const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
-    if (vk->properties.apiVersion < VK_API_VERSION_1_1) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "Vulkan 1.1", VK_API_VERSION_1_1,
-                         vk->properties.apiVersion,
-                         "device '%s' offers Vulkan %u.%u, needed is 1.1",
-                         vk->properties.deviceName, VK_VERSION_MAJOR(vk->properties.apiVersion),
-                         VK_VERSION_MINOR(vk->properties.apiVersion));
-    }
-    VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    if ((vk->queue_family.queueFlags & wanted) != wanted) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "queue family with graphics and compute",
-                         wanted, vk->queue_family.queueFlags,
-                         "queue family %u of '%s' lacks graphics or compute (flags 0x%x)",
-                         desc->vulkan.queue_family, vk->properties.deviceName,
-                         vk->queue_family.queueFlags);
-    }
+static masu_result check_formats(const masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
     for (size_t i = 0; i < sizeof format_floors / sizeof *format_floors; i++) {
         VkFormatProperties p;
         memset(&p, 0, sizeof p);
@@ -73,11 +57,11 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
                          "device '%s' cannot blit or copy to targets.format %d",
                          vk->properties.deviceName, (int)target);
     }
-    if (desc->debug.timestamps && vk->queue_family.timestampValidBits == 0) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "debug.timestamps", 1, 0,
-                         "queue family %u of '%s' has no timestamps; leave debug.timestamps at 0",
-                         desc->vulkan.queue_family, vk->properties.deviceName);
-    }
+    return MASU_OK;
+}
+
+static masu_result check_sizes(const masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
+    const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     uint32_t widest =
         desc->output.width > desc->output.height ? desc->output.width : desc->output.height;
     if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
@@ -96,6 +80,32 @@ static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_de
                          limits->maxComputeWorkGroupCount[0]);
     }
     return MASU_OK;
+}
+
+static masu_result check_floor(const masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
+    if (vk->properties.apiVersion < VK_API_VERSION_1_1) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "Vulkan 1.1", VK_API_VERSION_1_1,
+                         vk->properties.apiVersion,
+                         "device '%s' offers Vulkan %u.%u, needed is 1.1",
+                         vk->properties.deviceName, VK_VERSION_MAJOR(vk->properties.apiVersion),
+                         VK_VERSION_MINOR(vk->properties.apiVersion));
+    }
+    VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    if ((vk->queue_family.queueFlags & wanted) != wanted) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "queue family with graphics and compute",
+                         wanted, vk->queue_family.queueFlags,
+                         "queue family %u of '%s' lacks graphics or compute (flags 0x%x)",
+                         desc->vulkan.queue_family, vk->properties.deviceName,
+                         vk->queue_family.queueFlags);
+    }
+    masu_result result = check_formats(desc, vk, detail);
+    if (result) return result;
+    if (desc->debug.timestamps && vk->queue_family.timestampValidBits == 0) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "debug.timestamps", 1, 0,
+                         "queue family %u of '%s' has no timestamps; leave debug.timestamps at 0",
+                         desc->vulkan.queue_family, vk->properties.deviceName);
+    }
+    return check_sizes(desc, vk, detail);
 }
 
 /* Where the host says that they are there: a driver that then does not know one is at fault. */

@@ -13,9 +13,9 @@ void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_fra
     uint32_t traced = plan->needs.traced ? plan->scene.trace_instances : 0;
     uint64_t tree = traced && !plan->needs.query ? masu_trace_top_bytes(traced) : 0;
     s->tree_memory = masu_arena_take(arena, "traced instances", tree, 1, 16);
-    s->traced = masu_arena_take(arena, "traced instances' numbers", traced, sizeof *s->traced, 4);
-    s->live = masu_arena_take(arena, "traced instances' flags", plan->needs.query ? traced : 0,
-                              sizeof *s->live, 1);
+    s->traced = masu_arena_take(arena, "traced ids", traced, sizeof *s->traced, 4);
+    s->live =
+        masu_arena_take(arena, "traced flags", plan->needs.query ? traced : 0, sizeof *s->live, 1);
 }
 
 void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,

@@ -42,7 +42,7 @@ void masu_transparents_lay(masu_transparents *s, masu_arena *arena, const masu_f
     uint32_t count = plan->scene.transparents;
     s->things = masu_arena_take(arena, "transparents", count, sizeof *s->things, 4);
     s->order =
-        masu_arena_take(arena, "transparents, sorted", 2 * (uint64_t)count, sizeof *s->order, 4);
+        masu_arena_take(arena, "transparents sorted", 2 * (uint64_t)count, sizeof *s->order, 4);
 }
 
 /* Which of the texture sets is a material's. */

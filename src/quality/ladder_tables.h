@@ -4,8 +4,6 @@
 #ifndef MASU_LADDER_TABLES_H
 #define MASU_LADDER_TABLES_H
 
-#include "quality/ladder.h"
-
 static const masu_ladder measured[MASU_SCENE_CLASSES] = {
     [MASU_SCENE_POLYGONS] =
         {.from = "textures.masu, 320x180, "

@@ -6,7 +6,8 @@
  *   +--------+---------------+---------+---------+-----     first byte; no pointers
  *   0        64              16-byte aligned, in table order, gaps zero and < 16 bytes each
  *
- * Rules a reader may rely on after masu_scene_bind has passed a blob (src/scene/scene.c checks each):
+ * Rules a reader may rely on after masu_scene_bind has passed a blob (reader.c and check_*.c check
+ * each):
  *  - header.bytes is the exact length; hash is FNV-1a 64 over everything behind the header;
  *  - each section kind appears at most once; stride is the sizeof of its struct here;
  *  - every float is finite; every index is in range; instances are sorted by mesh;

@@ -1,4 +1,4 @@
-/* check_trace.c: the checks of what rays are traced through: scene.c has the rest.
+/* check_trace.c: what rays are traced through.
  *
  * A walk through a tree that has passed ends, stays inside of its sections and needs no more than
  * MASU_TRACE_DEPTH_MAX words of stack, whatever the boxes say. The walk here takes the nodes in the

@@ -133,9 +133,9 @@ case ${config:-release} in
     release | debug) ;;
     *)
         library=$folder/libmasu.a
-        for source in src/*.c; do
+        for source in src/*.c src/*/*.c; do
             ${CC:-gcc} -std=c11 -O2 -fPIC -Iinclude -Isrc -Ishaders -I"${BUILD:-build}/gen" \
-                -c "$source" -o "$folder/$(basename "$source" .c).o" || failed=1
+                -c "$source" -o "$folder/$(basename "${source//\//_}" .c).o" || failed=1
         done
         rm "$folder/bad.o"
         ar rc "$library" "$folder"/*.o

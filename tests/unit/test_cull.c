@@ -52,7 +52,7 @@ static int kept_exactly(const exact_view *v, const masu_cull_box *b) {
     return 1;
 }
 
-/* A camera as src/frame/upload.c makes one, and its five planes as the GPU's matrix says. */
+/* A camera as src/frame/camera.c makes one, and its five planes as the GPU's matrix says. */
 static void camera(const double eye[3], const double forward[3], double fov, double aspect,
                    double near_distance, masu_cull_view *view, exact_view *exact) {
     double f[3], r[3], u[3], length = 0.0;

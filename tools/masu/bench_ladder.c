@@ -139,7 +139,7 @@ static int print_c(const char *const *arguments, uint32_t count) {
            "Written by\n"
            " * `make ladders` out of what `masu bench` has measured: not to be edited. */\n"
            "/* clang-format off */\n"
-           "#ifndef MASU_LADDER_TABLES_H\n#define MASU_LADDER_TABLES_H\n\n#include \"ladder.h\"\n\n"
+           "#ifndef MASU_LADDER_TABLES_H\n#define MASU_LADDER_TABLES_H\n\n"
            "static const masu_ladder measured[MASU_SCENE_CLASSES] = {\n");
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
         if (paths[c]) print_class(paths[c], c, &ladders[c]);

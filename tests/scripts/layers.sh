@@ -1,0 +1,144 @@
+#!/bin/bash
+# The house of the sources: a file of src/ includes and calls only what lies in its own folder or below,
+# no file needs another that needs it, none is too long to be one idea, and tools/ has folders alone.
+# Each rule is first shown something that breaks it.
+#
+# A node is a module, x.c with x.h. Includes are read from the text, calls from the object files.
+#
+# shellcheck disable=SC2317 # most functions are called through expect and expect_none
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failed=0
+LAYERS="base scene quality plan device frame"
+LONG=700
+
+# includes SRC: "module module" for each include of a file of SRC by another
+includes() {
+    (cd "$1" && find . -name '*.[ch]' -o -name '*.inc' | sed 's|^\./||' | sort) | while read -r file; do
+        sed -n 's/^[[:space:]]*#[[:space:]]*include "\([^"]*\)".*/\1/p' "$1/$file" |
+            while read -r other; do
+                [ -f "$1/$other" ] && [ "${file%.*}" != "${other%.*}" ] &&
+                    echo "${file%.*} ${other%.*}"
+            done
+    done | sort -u
+}
+
+# calls SRC OBJECTS: the same for each function or table that an object needs of another. Objects of
+# sources that are no more do not count.
+calls() {
+    (cd "$1" && find . -name '*.c' | sed 's|^\./||;s|\.c$||' | sort) | while read -r module; do
+        nm "$2/$module.o" | awk -v m="$module" '
+            NF == 2 && $1 == "U" { print "needs", $2, m }
+            NF == 3 && $2 ~ /[TDBRVW]/ { print "has", $3, m }'
+    done | awk '
+        $1 == "has" { owner[$2] = $3 }
+        $1 == "needs" { needs[++n] = $2; by[n] = $3 }
+        END {
+            for (i = 1; i <= n; i++)
+                if (needs[i] in owner && owner[needs[i]] != by[i]) print by[i], owner[needs[i]]
+        }' | sort -u
+}
+
+# upward: of edges "module module" those from a lower layer to a higher one. What lies in no folder is
+# the door, above all.
+upward() {
+    awk -v layers="$LAYERS" '
+        BEGIN { count = split(layers, name, " "); for (i = 1; i <= count; i++) rank[name[i]] = i }
+        function layer(module, part) {
+            if (split(module, part, "/") < 2) return count + 1
+            return part[1] in rank ? rank[part[1]] : 0
+        }
+        layer($1) == 0 || layer($2) == 0 { print $1, "->", $2, "(a folder that is no layer)"; next }
+        layer($2) > layer($1) { print $1, "->", $2 }'
+}
+
+# circles: the modules of edges that lie on one
+circles() { tsort 2>&1 > /dev/null | sed -n 's/^tsort: \([^ ]*\/\{0,1\}[^ ]*\)$/\1/p' | sort -u; }
+
+# long_files FOLDER...: those over the limit that do not say why at their head
+long_files() {
+    find "$@" -type f \( -name '*.[ch]' -o -name '*.inc' -o -name '*.glsl' -o -name '*.comp' \
+        -o -name '*.vert' -o -name '*.frag' \) | sort | while read -r file; do
+        lines=$(wc -l < "$file")
+        [ "$lines" -gt "$LONG" ] || continue
+        head -n 12 "$file" | grep -qE 'Over 700 lines: |not to be edited' || echo "$file: $lines lines"
+    done
+}
+
+# loose FOLDER: sources directly in it
+loose() { find "$1" -maxdepth 1 -name '*.[ch]' | sort; }
+
+# expect_none NAME COMMAND...: the command prints nothing
+expect_none() {
+    local found
+    found=$("${@:2}")
+    [ "$found" ] || return 0
+    echo "$1:"
+    printf '%s\n' "$found" | sed 's/^/  /'
+    failed=1
+}
+
+# expect COUNT COMMAND...: the command prints as many lines; else the rule cannot see
+expect() {
+    local count
+    count=$("${@:2}" | wc -l)
+    [ "$count" = "$1" ] && return
+    echo "self-test: ${*:2} finds $count, not $1"
+    failed=1
+}
+
+# of SRC OBJECTS COMMAND: the command over includes and calls together
+of() { { includes "$1" && calls "$1" "$2"; } | sort -u | "$3"; }
+
+# ---- The rules see what breaks them --------------------------------------------------------------
+
+bad=$folder/src
+mkdir -p "$bad/base" "$bad/scene" "$bad/frame" "$folder/tools/one"
+# Upwards a call (base/low) and an include (scene/up); circles of calls upwards (base/low, frame/high), of
+# includes (scene/one, two), and of an include and a call (scene/three, four).
+echo 'int masu_low(void);' > "$bad/base/low.h"
+printf '#include "base/low.h"\nint masu_high(void);\nint masu_low(void) { return masu_high(); }\n' \
+    > "$bad/base/low.c"
+echo 'int masu_high(void);' > "$bad/frame/high.h"
+printf '#include "frame/high.h"\n#include "base/low.h"\nint masu_high(void) { return 1; }\n' \
+    > "$bad/frame/high.c"
+printf '#include "frame/high.h"\n' > "$bad/scene/up.h"
+printf '#include "scene/two.h"\n' > "$bad/scene/one.h"
+printf '#include "scene/one.h"\n' > "$bad/scene/two.h"
+printf '#include "scene/four.h"\nint masu_three(void) { return 3; }\n' > "$bad/scene/three.c"
+printf 'int masu_three(void);\nint masu_four(void) { return masu_three(); }\n' > "$bad/scene/four.c"
+touch "$bad/scene/four.h"
+printf '#include "base/low.h"\nint masu_low(void);\nint main(void) { return masu_low(); }\n' \
+    > "$bad/masu.c"
+for source in base/low frame/high scene/three scene/four masu; do
+    mkdir -p "$folder/obj/$(dirname $source)"
+    ${CC:-gcc} -std=c11 -I"$bad" -c "$bad/$source.c" -o "$folder/obj/$source.o" || failed=1
+done
+expect 6 includes "$bad"
+expect 3 calls "$bad" "$folder/obj"
+expect 2 of "$bad" "$folder/obj" upward
+expect 6 of "$bad" "$folder/obj" circles # low and high, one and two, three and four
+mkdir "$bad/other" && printf '#include "base/low.h"\n' > "$bad/other/lost.h"
+expect 3 of "$bad" "$folder/obj" upward
+
+yes '/* a line */' | head -n 701 > "$folder/tools/one/long.c"
+{ echo '/* Over 700 lines: one table */' && cat "$folder/tools/one/long.c"; } > "$folder/tools/one/why.c"
+{ echo '/* written by a tool: not to be edited */' && cat "$folder/tools/one/long.c"; } \
+    > "$folder/tools/one/made.h"
+head -n 700 "$folder/tools/one/long.c" > "$folder/tools/one/short.comp"
+cp "$folder/tools/one/long.c" "$folder/tools/one/long.comp"
+expect 2 long_files "$folder/tools"
+touch "$folder/tools/drawer.c" "$folder/tools/one/kept.c"
+expect 1 loose "$folder/tools"
+
+# ---- The rules -----------------------------------------------------------------------------------
+
+objects=${BUILD:-build}/obj/src
+[ -f "$objects/masu.o" ] || { echo "there are no objects in $objects" && failed=1; }
+expect_none "upwards (layers: $LAYERS)" of src "$objects" upward
+expect_none 'modules on a circle of includes and calls' of src "$objects" circles
+expect_none "over $LONG lines without a reason ('Over 700 lines: why') at the head" \
+    long_files src shaders tools
+expect_none 'sources directly in tools/' loose tools
+exit $failed
