@@ -5,6 +5,7 @@
  * The scenes of scenes/ are baked here again with the options; the fields of the truth come from the
  * SDF compiler and go through the C compiler. The table of errors is printed (docs/DESIGN.md). */
 #include "support/support.h"
+#include "support/floats.h"
 #include "support/files.h"
 
 #include "bench/measure/truth.h"
@@ -74,7 +75,7 @@ typedef struct errors {
 static void note(errors *e, double truth, double is) {
     double d = fabs(is - truth);
     e->squares += d * d;
-    e->most = fmax(e->most, d);
+    e->most = worst_of(e->most, d);
     e->wrong += (truth == 0 || truth == 1) && d > 0.5;
     e->count++;
 }
