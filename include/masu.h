@@ -229,8 +229,8 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 #define MASU_MAX_RUNGS 8u
 #define MASU_MAX_TARGETS 8u
 #define MASU_MAX_FLIGHT 3u
-#define MASU_MAX_PASSES 64u
-#define MASU_MAX_RESOURCES 64u
+#define MASU_MAX_PASSES 128u
+#define MASU_MAX_RESOURCES 96u
 #define MASU_MAX_SDF_PARAMS 256u
 #define MASU_MAX_VIEWS 5u /* the camera and each cascade */
 #define MASU_MAX_CASCADES 4u

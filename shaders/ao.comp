@@ -26,12 +26,13 @@
  * of a rank-1 lattice, so that a 4x4 mean has 16 times as many of both. Nothing depends on time:
  * a camera at rest sees a picture at rest.
  *
- * param.x: radius, metres; param.y: most of it, as a share of the picture's height. index.x: slices;
- * index.y: samples on either side of each; index.z: pixels per texel, 2, or 1 for comparison.
+ * push.radius: radius, metres; push.reach: most of it, as a share of the picture's height. push.slices: slices;
+ * push.steps: samples on either side of each; push.size: pixels per texel, 2, or 1 for comparison.
  * Out: bits 0-9 seen part, bits 10-31 depth of the pixel (ao_texel.glsl).
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_ao
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -78,10 +79,10 @@ float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice
     float highest_f = slice.x;
     float hidden = 0.0;
     for (int i = 0; i < MASU_AO_STEPS_MAX; i++) {
-        if (uint(i) >= pc.index.y) {
+        if (uint(i) >= push.steps) {
             break;
         }
-        float share = (float(i) + phase) / float(pc.index.y);
+        float share = (float(i) + phase) / float(push.steps);
         vec2 at = floor(p.pixel + screen * max(share * share * reach, 1.0));
         if (!(all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, lens.size)))) {
             break; /* farther ones are outside as well */
@@ -91,7 +92,7 @@ float hidden_by(surface_point p, ao_lens lens, vec3 way, vec2 screen, vec2 slice
         float high = dot(to, p.normal) / length_n;
         float far = dot(to, along);
         float distance = length(to);
-        float weight = 1.0 - distance / pc.param.x;
+        float weight = 1.0 - distance / push.radius;
         if (!(z < ao_farthest) || !(high > 0.0) || !(weight > 0.0)) {
             continue;
         }
@@ -114,11 +115,11 @@ float seen_from(surface_point p, ao_lens lens, uvec2 texel)
     uint k = (5u * texel.x + 4u * texel.y) & 15u;
     float turn = (float(k) + 0.5) / 16.0;
     float phase = (float((7u * k) & 15u) + 0.5) / 16.0;
-    float reach = pc.param.x * lens.pixels.y / p.place.z;
+    float reach = push.radius * lens.pixels.y / p.place.z;
     if (!(reach > 1.0)) {
         return 1.0; /* all that could hide something is in this pixel */
     }
-    reach = min(reach, pc.param.y * lens.size.y);
+    reach = min(reach, push.reach * lens.size.y);
     /* Duff's frame (JCGT 6-1, 2017) about the direction to the eye, whose z is below 0. */
     vec3 e = p.eye;
     float a = 1.0 / (1.0 - e.z);
@@ -126,10 +127,10 @@ float seen_from(surface_point p, ao_lens lens, uvec2 texel)
     vec3 v = vec3(e.x * e.y * a, e.y * e.y * a - 1.0, -e.y);
     float hidden = 0.0;
     for (int i = 0; i < MASU_AO_SLICES_MAX; i++) {
-        if (uint(i) >= pc.index.x) {
+        if (uint(i) >= push.slices) {
             break;
         }
-        float phi = 3.14159265 * (float(i) + turn) / float(pc.index.x);
+        float phi = 3.14159265 * (float(i) + turn) / float(push.slices);
         vec3 way = u * cos(phi) + v * sin(phi);
         vec2 screen = (way.xy - p.slope * way.z) * lens.pixels;
         screen *= masu_rsqrt(dot(screen, screen));
@@ -143,7 +144,7 @@ float seen_from(surface_point p, ao_lens lens, uvec2 texel)
         in_slice.y = -in_slice.y;
         hidden += hidden_by(p, lens, -way, -screen, in_slice, length_n, reach, phase);
     }
-    return 1.0 - hidden / float(pc.index.x);
+    return 1.0 - hidden / float(push.slices);
 }
 
 void main()
@@ -152,7 +153,7 @@ void main()
     uvec2 texel = gl_GlobalInvocationID.xy;
     if (all(lessThan(texel, uvec2(pc.output_width, pc.output_height)))) {
         uvec2 size = uvec2(pc.render_width, pc.render_height);
-        uvec2 at = min(texel * pc.index.z, size - 1u);
+        uvec2 at = min(texel * push.size, size - 1u);
         float depth = texelFetch(depth_image, ivec2(at), 0).r;
         uint packed = texelFetch(normal_image, ivec2(at), 0).r;
         ao_lens lens = ao_lens_of(size);

@@ -15,11 +15,12 @@
  * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
  * would count twice as a product (docs/DESIGN.md has the errors).
  *
- * param.x: radius, metres. index.x: not 0: the occlusion image holds something already; index.y: not 0:
- * each pixel takes its own texel, for comparison; index.z: pixels per texel, 2, or 1 for comparison.
+ * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already; push.nearest: not 0:
+ * each pixel takes its own texel, for comparison; push.size: pixels per texel, 2, or 1 for comparison.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_ao_upsample
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -59,7 +60,7 @@ void load_texels(ao_lens lens, uvec2 last)
                           all(lessThan(from, ivec2(pc.output_width, pc.output_height)));
             from = inside ? from : ivec2(0);
             uint word = texelFetch(ao_image, from, 0).r;
-            uvec2 pixel = min(uvec2(from) * pc.index.z, last);
+            uvec2 pixel = min(uvec2(from) * push.size, last);
             float z = ao_view_z(ao_unpack_depth(word));
             bool there = inside && z < ao_farthest;
             texels[n] = vec4(ray_at(lens, pixel) * z, there ? ao_unpack_seen(word) : -1.0);
@@ -81,7 +82,7 @@ void main()
         vec4 plane_x, plane_y, plane_z, plane_w, tolerance;
         vec4 there;
         for (int k = 0; k < 4; k++) {
-            uvec2 at = min(texel * pc.index.z + uvec2(k & 1, k >> 1), last);
+            uvec2 at = min(texel * push.size + uvec2(k & 1, k >> 1), last);
             uint packed = texelFetch(normal_image, ivec2(at), 0).r;
             float z = ao_view_z(texelFetch(depth_image, ivec2(at), 0).r);
             vec3 normal = masu_unpack_normal(packed);
@@ -90,7 +91,7 @@ void main()
             plane_y[k] = normal.y;
             plane_z[k] = normal.z;
             plane_w[k] = dot(ray_at(lens, at) * z, normal);
-            tolerance[k] = 0.5 * float(pc.index.z) * lens.scale.y * z + 0.01 * pc.param.x;
+            tolerance[k] = 0.5 * float(push.size) * lens.scale.y * z + 0.01 * push.radius;
             there[k] = z < ao_farthest && lit ? 1.0 : 0.0;
         }
         vec4 sharp = 1.0 / (tolerance * tolerance);
@@ -122,15 +123,15 @@ void main()
         }
         bvec4 trusted = greaterThan(weights, vec4(1e-3));
         vec4 ambient = mix(fallback, sum / max(weights, 1e-3), trusted);
-        ambient = pc.index.y != 0u ? vec4(own) : ambient;
+        ambient = push.nearest != 0u ? vec4(own) : ambient;
         ambient = mix(vec4(1.0), ambient, greaterThan(there, vec4(0.0)));
         for (int k = 0; k < 4; k++) {
-            uvec2 at = texel * pc.index.z + uvec2(k & 1, k >> 1);
-            if (uint(k) >= pc.index.z * pc.index.z || any(greaterThan(at, last))) {
+            uvec2 at = texel * push.size + uvec2(k & 1, k >> 1);
+            if (uint(k) >= push.size * push.size || any(greaterThan(at, last))) {
                 continue;
             }
             vec2 kept = vec2(1.0);
-            if (pc.index.x != 0u) {
+            if (push.multiplies != 0u) {
                 kept = unpackUnorm2x16(imageLoad(occlusion_image, ivec2(at)).r);
             }
             kept.y = min(kept.y, masu_sane(ambient[k], 0.0, 1.0));

@@ -3,11 +3,12 @@
  * the four texels around a pixel, weighted by how near they are. One invocation for each output
  * pixel.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write, param.zw = input
+ * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input
  * size * (1 / output size).
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_bilinear
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
 #include "upscale/place.glsl"
@@ -30,7 +31,7 @@ void main()
     if (any(greaterThanEqual(at, to))) {
         return;
     }
-    masu_place place = masu_place_of(at, pc.param.zw);
+    masu_place place = masu_place_of(at, vec2(push.scale_x, push.scale_y));
     ivec2 f = place.texel;
     vec3 here = fetch(f), under = fetch(f + ivec2(0, 1));
     /* In differences: of four equal texels it is that texel, to the bit. */

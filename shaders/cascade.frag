@@ -1,16 +1,14 @@
 /*
  * cascade.frag: of masked polygons that the sun sees, what their alpha leaves; depth is the only
- * output. index.z: the material's flags, index.w: the layers of its maps.
+ * output. push.flags: the material's flags, push.layers: the layers of its maps.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_cascade
 #include "shared/masu_shared.h"
 #include "shared/pack.glsl"
 
-layout(push_constant) uniform Push
-{
-    masu_push pc;
-};
+#include "shared/push.glsl"
 
 #include "shared/maps.glsl"
 

@@ -1,6 +1,6 @@
 /*
  * cascade.vert: polygons as the sun sees them, for one cascade of the shadow map; a fragment shader
- * have only masks (MASU_TEXTURES). index.x is the cascade. Placed relative to the cascade's own centre, not to the
+ * have only masks (MASU_TEXTURES). push.cascade is the cascade. Placed relative to the cascade's own centre, not to the
  * eye: while the cascade stays where it is, so does every bit of its texels.
  *
  * A surface that is steep to the sun changes its depth within a texel, and would shadow itself: it is
@@ -10,6 +10,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_cascade
 #include "shared/masu_shared.h"
 #include "shared/polygons.glsl"
 
@@ -38,7 +39,7 @@ float slope_of(vec3 n, uint k)
 void main()
 {
     masu_instance_data m = instances[masu_instance_id()];
-    uint k = min(pc.index.x, uint(MASU_CASCADES_MAX - 1));
+    uint k = min(push.cascade, uint(MASU_CASCADES_MAX - 1));
     precise vec3 at = masu_seen_from(m, shadow.origin_hi[k].xyz, shadow.origin_lo[k].xyz);
     precise float x = dot(shadow.row0[k].xyz, at);
     precise float y = dot(shadow.row1[k].xyz, at);

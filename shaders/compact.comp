@@ -4,12 +4,13 @@
  * on what is hidden or on how invocations run.
  *
  * Placed meshes of few instances have one invocation each; for the others a group works off 64
- * instances at a time. Views in y. index.x: the header of src/frame/occlusion.c; index.y: groups of the
- * first kind; index.z: the first view.
+ * instances at a time. Views in y. push.header: the header of src/frame/occlusion.c; push.few: groups of the
+ * first kind; push.view: the first view.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define MASU_DRAWN_ACCESS
+#define MASU_PUSH masu_push_compact
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -48,7 +49,7 @@ void finish(uint view, batch b, uint count)
 void main()
 {
     masu_count_begin();
-    uint view = gl_WorkGroupID.y + pc.index.z, views = masu_cull_word(MASU_CULL_VIEWS);
+    uint view = gl_WorkGroupID.y + push.view, views = masu_cull_word(MASU_CULL_VIEWS);
     uint instance_count = masu_cull_word(MASU_CULL_INSTANCES);
     uint draw_count = masu_cull_word(MASU_CULL_DRAWS);
     uint marks = view * instance_count;
@@ -56,11 +57,11 @@ void main()
     uint to = masu_cull_word(MASU_CULL_LISTS) + from;
     uint draws_from = view * draw_count, draws_to = (views + view) * draw_count;
     uint lane = gl_LocalInvocationID.x;
-    bool small = gl_WorkGroupID.x < pc.index.y;
+    bool small = gl_WorkGroupID.x < push.few;
     uint number = gl_WorkGroupID.x * 64u + lane;
     bool mine = small && number < masu_cull_word(MASU_CULL_BATCH_COUNT);
     if (!small) {
-        number = drawn[masu_cull_word(MASU_CULL_LARGE) + gl_WorkGroupID.x - pc.index.y];
+        number = drawn[masu_cull_word(MASU_CULL_LARGE) + gl_WorkGroupID.x - push.few];
     }
     batch b = batch_of(small && !mine ? 0u : number);
     uint kept = draws[5u * (draws_from + b.first_draw) + 1u], count = 0u;

@@ -15,6 +15,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#define MASU_PUSH masu_push_cone
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -66,7 +67,7 @@ void main()
         masu_listed_box(box_low, box_high);
         bool empty = !masu_use_tile(tile.y * masu_tile_grid(pixels).x + tile.x, pixels);
         MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
-            if (empty || uint(i) >= pc.index.x || !(t < limit)) {
+            if (empty || uint(i) >= push.steps || !(t < limit)) {
                 break;
             }
             bool usable;

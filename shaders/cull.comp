@@ -11,10 +11,11 @@
  * alone looks at: of each texel of the sun's part of the atlas, receivers.comp has noted how far from
  * the sun the farthest surface in the picture is that looks into the cascade.
  *
- * index.x: the header of src/frame/occlusion.c; index.z: the first view.
+ * push.header: the header of src/frame/occlusion.c; push.view: the first view.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_cull
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -114,7 +115,7 @@ bool hidden(uint view, vec3 center, vec3 extent)
 void main()
 {
     masu_count_begin();
-    uint view = gl_WorkGroupID.y + pc.index.z;
+    uint view = gl_WorkGroupID.y + push.view;
     uint instance_count = masu_cull_word(MASU_CULL_INSTANCES);
     uint kept = masu_cull_word(MASU_CULL_KEPT) + view * (instance_count + 1u);
     if (gl_GlobalInvocationID.x < min(drawn[kept], instance_count)) {

@@ -12,11 +12,12 @@
  * that are correctly rounded by the standard and never fused or reordered, and with inputs and
  * scale made independent of the driver below, all drivers take the same side.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write, param.zw = input
+ * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input
  * size * (1 / output size).
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_easu
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
 #include "shared/unorm8.glsl"
@@ -40,7 +41,7 @@ void main()
     if (any(greaterThanEqual(at, uvec2(pc.output_width, pc.output_height)))) {
         return;
     }
-    masu_place place = masu_place_of(at, pc.param.zw);
+    masu_place place = masu_place_of(at, vec2(push.scale_x, push.scale_y));
     ivec2 f = place.texel;
     masu_taps t;
     t.b = fetch(f + ivec2(0, -1));

@@ -3,7 +3,7 @@
  * output pixel. With MASU_BYTES the input is known to have 8 bits; with MASU_COUNTED tiles that
  * leave early are counted.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write, param.zw = input
+ * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input
  * size * (1 / output size).
  */
 #version 450
@@ -11,6 +11,7 @@
 #ifdef MASU_HALF
 #extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
 #endif
+#define MASU_PUSH masu_push_easu_fast
 #include "shared/masu_shared.h"
 #ifdef MASU_COUNTED
 #include "shared/counters.glsl"
@@ -41,7 +42,7 @@ vec3 fetch(ivec2 at)
 
 vec3 upscaled(uvec2 at)
 {
-    masu_place place = masu_place_of(at, pc.param.zw);
+    masu_place place = masu_place_of(at, vec2(push.scale_x, push.scale_y));
     ivec2 f = place.texel;
     masu_taps t;
     t.f = fetch(f);

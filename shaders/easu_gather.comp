@@ -5,6 +5,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_easu
 #include "shared/masu_shared.h"
 #include "shared/store.glsl"
 #include "upscale/easu.glsl"
@@ -12,10 +13,7 @@
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-layout(push_constant) uniform Push
-{
-    masu_push pc;
-};
+#include "shared/push.glsl"
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
 layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform writeonly image2D target;
@@ -40,7 +38,7 @@ void main()
         return;
     }
     vec2 from = vec2(pc.render_width, pc.render_height);
-    masu_place place = masu_place_of(at, pc.param.zw);
+    masu_place place = masu_place_of(at, vec2(push.scale_x, push.scale_y));
     vec2 f = vec2(place.texel);
     masu_taps t;
     vec3 unused_0, unused_1;

@@ -8,11 +8,12 @@
  * 1 - exp(-speed dt) of the way: two frames of dt do what one of 2 dt does. A frame without a pixel that
  * counts leaves it where it is.
  *
- * Push constants: param = speed to brighten, to darken, least, most; index.xy = shares left out, of
+ * Push constants: push: speed to brighten, to darken, least, most; low and high = shares left out, of
  * 2^16, below and above.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_expose
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -51,8 +52,8 @@ void main()
     }
     /* At most 2^28 pixels: floats lose what is below 16 of them. */
     float pixels = float(all_pixels);
-    float low = pixels * (float(pc.index.x) / 65536.0);
-    float high = pixels * (1.0 - float(pc.index.y) / 65536.0);
+    float low = pixels * (float(push.low) / 65536.0);
+    float high = pixels * (1.0 - float(push.high) / 65536.0);
     float below = 0.0, weight = 0.0, sum = 0.0;
     for (uint k = 0u; k < uint(MASU_EXPOSURE_BINS); k++) {
         float n = float(counts[k]);
@@ -66,9 +67,9 @@ void main()
     float wanted = cut ? 0.0 : before;
     if (weight > 0.0) {
         wanted = masu_log2(MASU_EXPOSURE_KEY) - sum / weight;
-        wanted = clamp(wanted, masu_log2(pc.param.z), masu_log2(pc.param.w));
+        wanted = clamp(wanted, masu_log2(push.least), masu_log2(push.most));
     }
-    float speed = wanted > before ? pc.param.x : pc.param.y;
+    float speed = wanted > before ? push.brighten : push.darken;
     float share = 1.0 - masu_exp2(-1.44269504 * speed * max(frame.eye_lo.w, 0.0));
     float next = cut ? wanted : mix(before, wanted, share);
     adapted = next;

@@ -4,10 +4,11 @@
  * as 8 bits, and sharpens from there: the image between the passes, 8 bytes of traffic for each
  * output pixel, is not needed, and (BLOCK + 2)^2 / BLOCK^2 = 1.13 times the pixels are upscaled.
  *
- * Push constants: as easu.comp, and param.x as rcas.comp.
+ * Push constants: as easu.comp, and push.lobe as rcas.comp.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_fsr1
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
 #include "shared/unorm8.glsl"
@@ -33,7 +34,7 @@ vec3 fetch(ivec2 at)
 
 vec3 easu(uvec2 at)
 {
-    masu_place place = masu_place_of(at, pc.param.zw);
+    masu_place place = masu_place_of(at, vec2(push.scale_x, push.scale_y));
     ivec2 f = place.texel;
     masu_taps t;
     t.b = fetch(f + ivec2(0, -1));
@@ -75,7 +76,7 @@ void main()
         }
     }
     barrier();
-    float strength = masu_sane(pc.param.x, 0.0, 1.0);
+    float strength = masu_sane(push.lobe, 0.0, 1.0);
     for (int round = 0; round < block * block / group; round++) {
         int i = round * group + own;
         ivec2 at = ivec2(i % block, i / block);

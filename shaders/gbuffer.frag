@@ -1,11 +1,12 @@
 /*
- * gbuffer.frag: the material of a polygon into the G-buffer. index.x is the draw's material. With
- * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: index.z
- * its flags, index.w the layers of its maps, 8 bits each; param.x the bias of mip levels, param.yz the
+ * gbuffer.frag: the material of a polygon into the G-buffer. push.material is the draw's material. With
+ * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: push.flags
+ * its flags, push.layers the layers of its maps, 8 bits each; push.mip_bias the bias of mip levels, push.detail_* the
  * scale of texture coordinates of all maps but base colour and emissive.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_gbuffer
 #include "shared/masu_shared.h"
 #include "shared/pack.glsl"
 
@@ -22,10 +23,7 @@ layout(location = 2) out vec4 out_surface;
 layout(location = 2) in vec3 in_before;
 layout(location = MASU_VELOCITY_LOCATION) out vec4 out_velocity;
 #else
-layout(push_constant) uniform Push
-{
-    masu_push pc;
-};
+#include "shared/push.glsl"
 #endif
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly buffer Materials
@@ -49,7 +47,7 @@ layout(location = 1) out uint out_normal;
 /* The curves of the material's small relief, which lie behind the materials: their first element. */
 vec3 show_relief(vec3 normal, vec3 n, inout masu_surface s)
 {
-    uint at = uint(pc.param.w);
+    uint at = push.meso;
     masu_material_data low = materials[at];
     masu_material_data high = materials[at + 1u];
     masu_meso_curves curves = masu_meso_curves(low.base_color, low.emissive, low.more,
@@ -70,7 +68,7 @@ vec3 show_relief(vec3 normal, vec3 n, inout masu_surface s)
 
 void main()
 {
-    masu_material_data m = materials[pc.index.x];
+    masu_material_data m = materials[push.material];
     masu_surface s = masu_plain_surface(m.base_color.rgb, m.base_color.w);
     s.emissive = m.emissive.rgb;
     s.metallic = m.emissive.w;
@@ -91,7 +89,7 @@ void main()
     /* A face seen from behind is the same relief from below: all of its normal turns. */
     bent = dot(n, in_rel) > 0.0 ? -bent : bent;
 #ifdef MASU_SURFACE
-    if (pc.param.w > 0.0) {
+    if (push.meso > 0u) {
         bent = show_relief(bent, n, s);
     }
 #endif
@@ -99,7 +97,7 @@ void main()
 #else
     n = dot(n, in_rel) > 0.0 ? -n : n;
 #ifdef MASU_SURFACE
-    if (pc.param.w > 0.0) {
+    if (push.meso > 0u) {
         n = masu_normalize(show_relief(n, n, s), n);
     }
 #endif

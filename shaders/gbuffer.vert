@@ -10,6 +10,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_gbuffer
 #include "shared/masu_shared.h"
 #include "shared/polygons.glsl"
 

@@ -8,11 +8,12 @@
  * Surfaces as light/shade.glsl has them; what the air takes and adds (light/air.glsl) only in scenes
  * with fog. What of the mirrored light is traced is left out.
  *
- * index.x: not 0: there are lists of lights; param.x: roughness from which nothing is traced; index.w: not
+ * push.light_tiles: not 0: there are lists of lights; push.cutoff: roughness from which nothing is traced; push.accumulate: not
  * 0: debug.reference.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_light
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -28,7 +29,7 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
-layout(constant_id = 4) const bool reflections = false; /* some are traced: param.x, index.w */
+layout(constant_id = 4) const bool reflections = false; /* some are traced: push.cutoff, push.accumulate */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D albedo_image;
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D normal_image;
@@ -79,7 +80,7 @@ void add_lights(inout masu_lit lit, masu_surface s, masu_bsdf b, uvec2 at, vec3 
     uvec2 size = uvec2(pc.output_width, pc.output_height);
     uint lights = masu_light_count();
     uint list = masu_light_list(at / uint(MASU_TILE), size);
-    uint listed = pc.index.x != 0u ? masu_light_tiles[list] : MASU_TILE_ALL;
+    uint listed = push.light_tiles != 0u ? masu_light_tiles[list] : MASU_TILE_ALL;
     bool all_lights = listed == MASU_TILE_ALL;
     uint count = all_lights ? lights : min(listed, uint(MASU_TILE_LIGHTS_MAX));
     uint reached = 0u;
@@ -128,7 +129,7 @@ void main()
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
                 vec2 kept = vec2(1.0);
                 if (reflections) {
-                    kept = masu_kept_mirrors(s, pc.param.x, pc.index.w != 0u);
+                    kept = masu_kept_mirrors(s, push.cutoff, push.accumulate != 0u);
                 }
                 masu_lit lit = masu_shade(s, b, rel, arriving(at), kept);
 #ifdef MASU_LIGHTS

@@ -11,6 +11,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#define MASU_PUSH masu_push_march_seed
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -90,7 +91,7 @@ void main()
     if (all(lessThan(at, size))) {
         float raster = raster_at(at);
         ray r = pixel_ray(at, size, raster, z_scale);
-        t = capped(r, r.start, pc.index.x, 0.01);
+        t = capped(r, r.start, push.steps, 0.01);
         finish(at, r, t, z_scale, raster);
     }
     hits[me.y][me.x] = t;
@@ -115,7 +116,7 @@ void main()
         float fallback = -1.0;
         for (int i = 0; i < 4; i++) {
             if (hints[i] >= 0.0) {
-                float found = capped(r, hints[i], max(pc.index.x / 16u, 1u), 0.1);
+                float found = capped(r, hints[i], max(push.steps / 16u, 1u), 0.1);
                 nearest = found >= 0.0 && (nearest < 0.0 || found < nearest) ? found : nearest;
                 fallback = fallback < 0.0 ? hints[i] : min(fallback, hints[i]);
             }

@@ -12,10 +12,11 @@
  * product whether or not they are in front of the camera, so nothing needs to be clipped here. Every
  * line and plane carries a bound of its rounding: MASU_ROUND times the sum of the absolute terms.
  *
- * index.x: the header of src/frame/occlusion.c, index.y: the view.
+ * push.header: the header of src/frame/occlusion.c, push.view: the view.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_occluders
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"
 #include "shared/culling.glsl"
@@ -39,7 +40,7 @@ vec3 abs_cross(vec3 a, vec3 b)
 
 void main()
 {
-    uint view = pc.index.y;
+    uint view = push.view;
     uint at = masu_cull_view(view);
     mat4 clip = masu_cull_matrix(at + MASU_CULL_VIEW_CLIP);
     vec4 eye = masu_drawn_vec4(at + MASU_CULL_VIEW_EYE);

@@ -6,11 +6,12 @@
  * at most 0.8/255 and, unlike it, returns a constant picture unchanged. The scalar judge is
  * tests/reference/fsr1.c. No noise guard: the input is rendered, not filmed.
  *
- * Push constants: render_* = valid corner of the input = output_*, param.x = exp2(-stops), in 0..1,
+ * Push constants: render_* = valid corner of the input = output_*, push.lobe = exp2(-stops), in 0..1,
  * 1 the sharpest, 0 a copy.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_rcas
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
 #include "shared/unorm8.glsl"
@@ -35,6 +36,6 @@ void main()
     }
     vec3 sharpened = masu_rcas(fetch(at + ivec2(0, -1)), fetch(at + ivec2(-1, 0)), fetch(at),
                                fetch(at + ivec2(1, 0)), fetch(at + ivec2(0, 1)),
-                               masu_sane(pc.param.x, 0.0, 1.0));
+                               masu_sane(push.lobe, 0.0, 1.0));
     MASU_STORE_COLOR(target, at, sharpened);
 }

@@ -3,10 +3,11 @@
  * texel of its part of the occluder atlas, and of each cascade, the farthest, for cull.comp. Only what shadow.comp would look
  * up a shadow for counts; where rounding might let the two disagree, it counts.
  *
- * index.x: the header of src/frame/occlusion.c.
+ * push.header: the header of src/frame/occlusion.c.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_receivers
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"
 #include "shared/culling.glsl"

@@ -15,12 +15,13 @@
  * f is compared with f', not with 0: the march stops a little before the surface, and this distance
  * is no motion. A field that did not change is evaluated twice, by the same code, and gives 0.
  *
- * index.x not 0: the tiles' lists of parts are there.
+ * push.listed not 0: the tiles' lists of parts are there.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_MOTION 1
+#define MASU_PUSH masu_push_sdf_velocity
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -100,7 +101,7 @@ vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
     float t = frame.forward.w * z_scale / depth;
     vec3 p = world_at(direction, t);
     uvec2 tile = at / uint(MASU_TILE);
-    if (pc.index.x != 0u) {
+    if (push.listed != 0u) {
         masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
     }
     uint part = masu_sdf_nearest(p);

@@ -18,117 +18,31 @@ STAGES       := comp vert frag
 SHADERS := $(filter-out $(SCENE_SHADERS:%=shaders/%),$(wildcard $(STAGES:%=shaders/*.%)))
 SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
 
-# A shader compiled a second time with macros: NAME_STAGE of the second build, its file, the macros
-# with + between.
-SECOND_BUILDS := gbuffer_velocity_vert:gbuffer.vert:MASU_MOTION
-SECOND_BUILDS += gbuffer_velocity_frag:gbuffer.frag:MASU_MOTION
-SECOND_BUILDS += gbuffer_surface_frag:gbuffer.frag:MASU_SURFACE
-SECOND_BUILDS += gbuffer_velocity_surface_frag:gbuffer.frag:MASU_MOTION+MASU_SURFACE
-SECOND_BUILDS += gbuffer_textured_surface_frag:gbuffer.frag:MASU_TEXTURES+MASU_SURFACE
-SECOND_BUILDS += gbuffer_textured_velocity_surface_frag:gbuffer.frag:MASU_TEXTURES+MASU_MOTION+MASU_SURFACE
-SECOND_BUILDS += tonemap_deep_comp:tonemap.comp:MASU_DEEP
-SECOND_BUILDS += tonemap_metered_comp:tonemap.comp:MASU_METERED
-SECOND_BUILDS += tonemap_deep_metered_comp:tonemap.comp:MASU_DEEP+MASU_METERED
-SECOND_BUILDS += light_surface_comp:light.comp:MASU_SURFACE
-SECOND_BUILDS += light_probes_comp:light.comp:MASU_PROBES
-SECOND_BUILDS += light_probes_surface_comp:light.comp:MASU_PROBES+MASU_SURFACE
-SECOND_BUILDS += light_lights_comp:light.comp:MASU_LIGHTS
-SECOND_BUILDS += light_lights_surface_comp:light.comp:MASU_LIGHTS+MASU_SURFACE
-SECOND_BUILDS += light_lights_probes_comp:light.comp:MASU_LIGHTS+MASU_PROBES
-SECOND_BUILDS += light_lights_probes_surface_comp:light.comp:MASU_LIGHTS+MASU_PROBES+MASU_SURFACE
-SECOND_BUILDS += light_occluded_comp:light.comp:MASU_OCCLUSION
-SECOND_BUILDS += light_occluded_surface_comp:light.comp:MASU_OCCLUSION+MASU_SURFACE
-SECOND_BUILDS += light_occluded_probes_comp:light.comp:MASU_OCCLUSION+MASU_PROBES
-SECOND_BUILDS += light_occluded_probes_surface_comp:light.comp:MASU_OCCLUSION+MASU_PROBES+MASU_SURFACE
-SECOND_BUILDS += light_occluded_lights_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS
-SECOND_BUILDS += light_occluded_lights_surface_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS+MASU_SURFACE
-SECOND_BUILDS += light_occluded_lights_probes_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS+MASU_PROBES
-SECOND_BUILDS += light_occluded_lights_probes_surface_comp:light.comp:MASU_OCCLUSION+MASU_LIGHTS+MASU_PROBES+MASU_SURFACE
-SECOND_BUILDS += transparents_textured_vert:transparents.vert:MASU_TEXTURES
-SECOND_BUILDS += transparents_textured_frag:transparents.frag:MASU_TEXTURES
-SECOND_BUILDS += transparents_sun_frag:transparents.frag:MASU_SUN_MAP
-SECOND_BUILDS += transparents_textured_sun_frag:transparents.frag:MASU_TEXTURES+MASU_SUN_MAP
-SECOND_BUILDS += cascade_masked_vert:cascade.vert:MASU_TEXTURES
-SECOND_BUILDS += gbuffer_textured_vert:gbuffer.vert:MASU_TEXTURES
-SECOND_BUILDS += gbuffer_textured_frag:gbuffer.frag:MASU_TEXTURES
-SECOND_BUILDS += gbuffer_textured_velocity_vert:gbuffer.vert:MASU_TEXTURES+MASU_MOTION
-SECOND_BUILDS += gbuffer_textured_velocity_frag:gbuffer.frag:MASU_TEXTURES+MASU_MOTION
+# What follows from the rows of the frame's tables: bindings and push constants (tables.h), every shader's
+# permutations and how each is compiled. Rows are read by awk: nothing is compiled for it.
+TABLE_ROWS := shaders/tables.sh $(addprefix src/plan/,passes.inc axes.inc buffers.inc)
+$(BUILD)/gen/tables.h $(BUILD)/gen/permutations.h: $(BUILD)/gen/%.h: $(TABLE_ROWS)
+	@mkdir -p $(@D)
+	$(V)shaders/tables.sh $* > $@
 
-SECOND_BUILDS += specular_guide_surface_comp:specular_guide.comp:MASU_SURFACE
-SECOND_BUILDS += specular_query_masks_comp:specular_query.comp:MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_rays_surface_comp:specular_rays.comp:MASU_SURFACE
-SECOND_BUILDS += specular_composite_surface_comp:specular_composite.comp:MASU_SURFACE
-SECOND_BUILDS += specular_composite_fine_comp:specular_composite.comp:MASU_FINE
-SECOND_BUILDS += specular_composite_fine_surface_comp:specular_composite.comp:MASU_FINE+MASU_SURFACE
-SECOND_BUILDS += specular_keep_steady_comp:specular_keep.comp:MASU_STEADY
-SECOND_BUILDS += specular_shade_sun_comp:specular_shade.comp:MASU_SUN_MAP
-SECOND_BUILDS += specular_shade_lights_comp:specular_shade.comp:MASU_LIGHTS
-SECOND_BUILDS += specular_shade_lights_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_SUN_MAP
-SECOND_BUILDS += specular_shade_probes_comp:specular_shade.comp:MASU_PROBES
-SECOND_BUILDS += specular_shade_probes_sun_comp:specular_shade.comp:MASU_PROBES+MASU_SUN_MAP
-SECOND_BUILDS += specular_shade_lights_probes_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES
-SECOND_BUILDS += specular_shade_lights_probes_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES+MASU_SUN_MAP
-SECOND_BUILDS += specular_trace_masks_comp:specular_trace.comp:MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_comp:specular_shade.comp:MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_sun_comp:specular_shade.comp:MASU_SUN_MAP+MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_lights_comp:specular_shade.comp:MASU_LIGHTS+MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_lights_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_SUN_MAP+MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_probes_comp:specular_shade.comp:MASU_PROBES+MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_probes_sun_comp:specular_shade.comp:MASU_PROBES+MASU_SUN_MAP+MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_lights_probes_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES+MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_textures_lights_probes_sun_comp:specular_shade.comp:MASU_LIGHTS+MASU_PROBES+MASU_SUN_MAP+MASU_TRACE_TEXTURES
-SECOND_BUILDS += specular_shade_sdf_comp:specular_shade.comp:MASU_NO_POLYGONS
-SECOND_BUILDS += specular_shade_sdf_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_SUN_MAP
-SECOND_BUILDS += specular_shade_sdf_lights_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS
-SECOND_BUILDS += specular_shade_sdf_lights_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_SUN_MAP
-SECOND_BUILDS += specular_shade_sdf_probes_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_PROBES
-SECOND_BUILDS += specular_shade_sdf_probes_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_PROBES+MASU_SUN_MAP
-SECOND_BUILDS += specular_shade_sdf_lights_probes_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_PROBES
-SECOND_BUILDS += specular_shade_sdf_lights_probes_sun_comp:specular_shade.comp:MASU_NO_POLYGONS+MASU_LIGHTS+MASU_PROBES+MASU_SUN_MAP
-SECOND_BUILDS += easu_bytes_comp:easu.comp:MASU_BYTES
-SECOND_BUILDS += easu_scene_comp:easu.comp:MASU_BYTES+MASU_OUTPUT
-SECOND_BUILDS += easu_deep_comp:easu.comp:MASU_OUTPUT+MASU_DEEP
-SECOND_BUILDS += rcas_scene_comp:rcas.comp:MASU_BYTES+MASU_OUTPUT
-SECOND_BUILDS += rcas_deep_comp:rcas.comp:MASU_OUTPUT+MASU_DEEP
-SECOND_BUILDS += fsr1_scene_comp:fsr1.comp:MASU_BYTES+MASU_OUTPUT
-SECOND_BUILDS += easu_fast_bytes_comp:easu_fast.comp:MASU_BYTES
-SECOND_BUILDS += easu_fast_counted_comp:easu_fast.comp:MASU_COUNTED
-SECOND_BUILDS += easu_fast_bytes_counted_comp:easu_fast.comp:MASU_BYTES+MASU_COUNTED
-SECOND_BUILDS += easu_fast_scene_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT
-SECOND_BUILDS += easu_fast_deep_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP
-SECOND_BUILDS += easu_fast_scene_counted_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT+MASU_COUNTED
-SECOND_BUILDS += easu_fast_deep_counted_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP+MASU_COUNTED
-SECOND_BUILDS += easu_fast_half_comp:easu_fast.comp:MASU_HALF
-SECOND_BUILDS += easu_fast_bytes_half_comp:easu_fast.comp:MASU_BYTES+MASU_HALF
-SECOND_BUILDS += easu_fast_scene_half_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT+MASU_HALF
-SECOND_BUILDS += easu_fast_deep_half_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP+MASU_HALF
-SECOND_BUILDS += easu_fast_scene_half_counted_comp:easu_fast.comp:MASU_BYTES+MASU_OUTPUT+MASU_HALF+MASU_COUNTED
-SECOND_BUILDS += easu_fast_deep_half_counted_comp:easu_fast.comp:MASU_OUTPUT+MASU_DEEP+MASU_HALF+MASU_COUNTED
-SECOND_BUILDS += bilinear_scene_comp:bilinear.comp:MASU_OUTPUT
-SECOND_BUILDS += bilinear_deep_comp:bilinear.comp:MASU_OUTPUT+MASU_DEEP
-SECOND_BUILDS += fxaa_scene_comp:fxaa.comp:MASU_OUTPUT
-SECOND_BUILDS += fxaa_deep_comp:fxaa.comp:MASU_OUTPUT+MASU_DEEP
-SECOND_BUILDS += smaa_edges_scene_comp:smaa_edges.comp:MASU_OUTPUT
-SECOND_BUILDS += smaa_edges_deep_comp:smaa_edges.comp:MASU_OUTPUT+MASU_DEEP
-SECOND_BUILDS += smaa_blend_scene_comp:smaa_blend.comp:MASU_OUTPUT
-SECOND_BUILDS += smaa_blend_deep_comp:smaa_blend.comp:MASU_OUTPUT+MASU_DEEP
-SECOND_BUILDS += fsr1_bytes_comp:fsr1.comp:MASU_BYTES
-SECOND_BUILDS += rcas_bytes_comp:rcas.comp:MASU_BYTES
-SECOND_BUILDS += trace_rays_counted_comp:trace_rays.comp:MASU_TRACE_COUNTERS
+# Lines NAME_STAGE:FILE:MACRO+MACRO; those with macros have rules of their own. One more: rays for the tests
+# and for masu study, with counters.
+PERMUTATIONS := $(filter-out %:,$(shell shaders/tables.sh builds))
+PERMUTATIONS += trace_rays_counted_comp:trace_rays.comp:MASU_TRACE_COUNTERS
 
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
-SPIRV_HEADERS += $(foreach b,$(SECOND_BUILDS),$(BUILD)/gen/$(firstword $(subst :, ,$(b))).spv.h)
-GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h
+SPIRV_HEADERS += $(foreach b,$(PERMUTATIONS),$(BUILD)/gen/$(firstword $(subst :, ,$(b))).spv.h)
+GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/tables.h $(BUILD)/gen/permutations.h $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
 # $(1) the result without .spv (% for any), $(2) its source, $(3) macros or nothing
 define shader_rule
-$(BUILD)/gen/$(1).spv: $(2)
+$(BUILD)/gen/$(1).spv: $(2) | $(BUILD)/gen/tables.h
 	@mkdir -p $$(@D)
 	@echo "  GLSL    $$<"
-	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3))) -Ishaders \
+	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3))) -Ishaders -I$(BUILD)/gen \
 	    --depfile $$(@:.spv=.d) -o $$@ $$<
 	$$(V)sed -n 's/^[^:]*: *//p' $$(@:.spv=.d) | tr -s ' ' '\n' | \
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
@@ -136,7 +50,7 @@ $(BUILD)/gen/$(1).spv: $(2)
 endef
 $(foreach d,shaders tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
 field = $(word $(2),$(subst :, ,$(1)))
-$(foreach b,$(SECOND_BUILDS),$(eval $(call \
+$(foreach b,$(PERMUTATIONS),$(eval $(call \
     shader_rule,$(call field,$(b),1),shaders/$(call field,$(b),2),$(call field,$(b),3))))
 
 $(BUILD)/gen/%.opt.spv: $(BUILD)/gen/%.spv
@@ -150,7 +64,7 @@ $(BUILD)/gen/%.spv.h: $(BUILD)/gen/%.opt.spv
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;
 # hence the pragmas.
-SCENE_TEXTS := $(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h shaders/*/*.glsl)
+SCENE_TEXTS := $(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h shaders/*/*.glsl) $(BUILD)/gen/tables.h
 
 $(BUILD)/gen/scene_sources.h: $(SCENE_TEXTS) $(BUILD)/gen/scene_texts.list
 	$(V){ echo '/* Made from $(SCENE_TEXTS). */'; \
@@ -161,7 +75,7 @@ $(BUILD)/gen/scene_sources.h: $(SCENE_TEXTS) $(BUILD)/gen/scene_texts.list
 	    echo '    const char *text;'; \
 	    echo '} masu_scene_sources[] = {'; \
 	    for f in $(SCENE_TEXTS); do \
-	        echo "    {\"$${f#shaders/}\","; \
+	        name=$${f#shaders/}; echo "    {\"$${name#$(BUILD)/gen/}\","; \
 	        sed -e 's/[\\"?]/\\&/g' -e 's/.*/     "&\\n"/' "$$f"; echo '     ""},'; \
 	    done; \
 	    echo '};'; \
@@ -174,9 +88,9 @@ $(BUILD)/gen/scene_texts.list: force
 
 # The tables of shaders/brdf and the tile of shaders/noise. Objects wait for what is generated, so these
 # programs have none; the tables take 5 s, and minutes without -O2.
-$(BUILD)/tools/make_%: tools/generate/make_%.c shaders/shared/masu_shared.h
+$(BUILD)/tools/make_%: tools/generate/make_%.c shaders/shared/masu_shared.h $(BUILD)/gen/tables.h
 	@mkdir -p $(@D)
-	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools $< -lm -o $@
+	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(BUILD)/gen $< -lm -o $@
 $(BUILD)/tools/make_smaa_area: tools/generate/smaa_tables.h
 $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h: $(BUILD)/gen/%.h: $(BUILD)/tools/make_%
 	@mkdir -p $(@D)

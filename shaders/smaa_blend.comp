@@ -7,11 +7,12 @@
  * that have edges among them, a third of a busy tile, instead of waiting for those beside them that
  * have none.
  *
- * Push constants: render_* = size of the picture, index.x = steps of a search, two pixels each,
- * index.y = of a diagonal one, 0: diagonals are not looked for, param.x not 0: corners are kept.
+ * Push constants: render_* = size of the picture, push.steps = steps of a search, two pixels each,
+ * push.diagonal_steps = of a diagonal one, 0: diagonals are not looked for, push.corners not 0: corners are kept.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_smaa_blend
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"
 #include "shared/output.glsl"

@@ -7,11 +7,12 @@
  * where luma differs by a threshold, unless an edge beside it is more than twice as strong: that
  * one is what is seen. Every word of every tile is written: no edge of a frame before stays.
  *
- * Push constants: render_* = valid corner of the picture, output_* = tiles, param.x = threshold in
+ * Push constants: render_* = valid corner of the picture, output_* = tiles, push.threshold = threshold in
  * the steps of masu_smaa_luma.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_smaa_edges
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -64,7 +65,7 @@ void main()
     }
     barrier();
 
-    float threshold = pc.param.x;
+    float threshold = push.threshold;
     for (int k = 0; k < 4; k++) {
         ivec2 pixel = ivec2(gl_LocalInvocationID.xy) + MASU_GROUP * ivec2(k & 1, k >> 1);
         /* Beyond the picture its outermost pixels go on. */

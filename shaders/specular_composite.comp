@@ -9,11 +9,12 @@
  *
  * Of smooth surfaces each pixel has its own mean (MASU_FINE, specular_fine.comp), where there is one.
  *
- * param.x: roughness from which nothing is traced. index.w: 1: the mean of the reference instead, which
- * is weighted already. index.x: not 0: there are means of pixels.
+ * push.cutoff: roughness from which nothing is traced. push.accumulate: 1: the mean of the reference instead, which
+ * is weighted already. push.fine: not 0: there are means of pixels.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_specular_composite
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -88,13 +89,13 @@ void pixel(uvec2 at, uvec2 texel, uint number)
 {
     masu_pixel p = masu_pixel_at(at);
     float roughness = masu_traced_roughness(p.surface);
-    if (!(p.depth > 0.0) || !masu_is_traced(p.surface, pc.param.x, pc.index.w != 0u)) {
+    if (!(p.depth > 0.0) || !masu_is_traced(p.surface, push.cutoff, push.accumulate != 0u)) {
         return;
     }
     vec4 lit = imageLoad(hdr_image, ivec2(at));
     vec3 point = masu_guide_point(at, p.depth);
     vec3 mirrored;
-    if (pc.index.w != 0u) {
+    if (push.accumulate != 0u) {
         vec4 sum = texelFetch(specular_image, ivec2(texel), 0);
         mirrored = sum.rgb / max(sum.a, 1.0);
     } else {
@@ -109,7 +110,7 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         }
 #ifdef MASU_FINE
         masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
-        float fine = pc.index.x != 0u ? masu_fine_share(g, roughness) : 0.0;
+        float fine = push.fine != 0u ? masu_fine_share(g, roughness) : 0.0;
         if (fine > 0.0) {
             uint word = texelFetch(fine_image, ivec2(texel), 0)[number];
             if (word != masu_fine_none) {
@@ -123,7 +124,7 @@ void pixel(uvec2 at, uvec2 texel, uint number)
             }
         }
 #endif
-        mirrored = masu_traced_share(roughness, pc.param.x) * mirrors * light.rgb;
+        mirrored = masu_traced_share(roughness, push.cutoff) * mirrors * light.rgb;
     }
     if (foggy) { /* what it adds itself, light.comp has added */
         vec3 direction = masu_normalize(point, frame.forward.xyz);
@@ -139,10 +140,10 @@ void main()
     uvec2 texel = masu_specular_texel();
     uvec2 size = uvec2(pc.render_width, pc.render_height);
     for (uint k = 0u; k < 4u; k++) {
-        if (k >= pc.index.z * pc.index.z) {
+        if (k >= push.traced_size * push.traced_size) {
             break;
         }
-        uvec2 at = masu_guide_place(texel, k, pc.index.z);
+        uvec2 at = masu_guide_place(texel, k, push.traced_size);
         if (all(lessThan(at, size))) {
             pixel(at, texel, k);
         }

@@ -8,10 +8,11 @@
  * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
  * and not by the frame: what it leaves does not flicker.
  *
- * index.x: neighbours; index.y: not 0: there is a mean over frames.
+ * push.taps: neighbours; push.temporal: not 0: there is a mean over frames.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_specular_filter
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -74,13 +75,13 @@ void main()
                 float y = masu_luma(color);
                 float far = masu_sane(own.a, 0.0, 65504.0);
                 float frames = 1.0;
-                if (pc.index.y != 0u) {
+                if (push.temporal != 0u) {
                     uint age = texelFetch(age_image, ivec2(texel), 0).r;
                     far = masu_age_far(age);
                     frames = max(masu_age_frames(age), 1.0);
                 }
                 float sigma;
-                if (pc.index.y != 0u && frames > 4.0) {
+                if (push.temporal != 0u && frames > 4.0) {
                     sigma = masu_sqrt(masu_sane(own.a, 0.0, 65504.0) - y * y) *
                             masu_rsqrt(min(frames, 2.0 / masu_time_share(32.0)));
                 } else {
@@ -93,10 +94,10 @@ void main()
                 ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
                 vec4 sum = vec4(color, 1.0);
                 for (uint k = 0u; k < uint(MASU_FILTER_TAPS_MAX); k++) {
-                    if (k >= pc.index.x) {
+                    if (k >= push.taps) {
                         break;
                     }
-                    float share = (float(k) + 0.5) / float(pc.index.x);
+                    float share = (float(k) + 0.5) / float(push.taps);
                     float r = max(radius * sqrt(share), 1.0);
                     float angle = 2.3999632 * float(k) + 6.2831853 * turn;
                     ivec2 at = ivec2(texel) + ivec2(round(r * vec2(cos(angle), sin(angle))));

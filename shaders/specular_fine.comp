@@ -8,10 +8,11 @@
  * In motion the four are up to four frames old, and what is reflected has moved by another amount for each:
  * a mean is short then, the shorter the smoother the surface, and held to the colours of the 3x3 rays.
  *
- * index.x: how far back the mean reaches, 1/60 s.
+ * push.frames: how far back the mean reaches, 1/60 s.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_specular_fine
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -168,7 +169,7 @@ void main()
              * surface, maybe. */
             float own = max(floor((masu_age_frames(age.x) - 0.9) * 0.25), 0.0);
             /* A ray a quarter as often: the mean of a surface that has no other reaches back four times as far. */
-            float reach = max(float(pc.index.x) * (g.mixed ? 1.0 : 0.25), 1.0);
+            float reach = max(float(push.frames) * (g.mixed ? 1.0 : 0.25), 1.0);
             bool moving = any(greaterThan(abs(moved), vec2(0.05)));
             vec3 least = vec3(0.0);
             vec3 most = vec3(masu_most_radiance);

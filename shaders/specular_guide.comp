@@ -1,6 +1,6 @@
 /*
  * specular_guide.comp: which pixel of each 2x2 is traced in this frame, and the list of 8x8 texels in
- * which any is. Only surfaces smoother than param.x are; the passes behind this one run for the listed
+ * which any is. Only surfaces smoother than push.cutoff are; the passes behind this one run for the listed
  * tiles alone.
  *
  * A pixel that is not glossy is replaced by another one of its 2x2 that is: a rod one pixel wide would
@@ -8,6 +8,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_specular_guide
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -60,20 +61,20 @@ void main()
     uvec2 size = uvec2(pc.render_width, pc.render_height);
     if (masu_specular_inside(texel)) {
         uvec2 guide = uvec2(0u);
-        uint first = pc.index.z == 1u ? 0u : masu_guide_pixel(texel, frame.history.x);
+        uint first = push.traced_size == 1u ? 0u : masu_guide_pixel(texel, frame.history.x);
         for (uint k = 0u; k < 4u; k++) {
-            if (k >= pc.index.z * pc.index.z) {
+            if (k >= push.traced_size * push.traced_size) {
                 break;
             }
             uint pixel = first ^ k;
-            uvec2 at = masu_guide_place(texel, pixel, pc.index.z);
+            uvec2 at = masu_guide_place(texel, pixel, push.traced_size);
             if (any(greaterThanEqual(at, size))) {
                 continue;
             }
             masu_pixel p = masu_pixel_at(at);
-            if (p.depth > 0.0 && masu_is_traced(p.surface, pc.param.x, pc.index.w != 0u)) {
+            if (p.depth > 0.0 && masu_is_traced(p.surface, push.cutoff, push.accumulate != 0u)) {
                 guide = masu_pack_guide(p.normal, masu_traced_roughness(p.surface), p.depth, pixel,
-                                        pc.index.z == 2u && is_mixed(texel, pixel, p, at));
+                                        push.traced_size == 2u && is_mixed(texel, pixel, p, at));
                 break;
             }
         }

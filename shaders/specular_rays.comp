@@ -3,7 +3,7 @@
  * reflects to (brdf/vndf.glsl), by noise that is blue over texels and even over frames
  * (noise/sequence.glsl).
  *
- * With debug.reference (index.w) also what the ray's radiance is worth, by the lobes themselves and not
+ * With debug.reference (push.accumulate) also what the ray's radiance is worth, by the lobes themselves and not
  * their albedo: a surface with a coat has two, which take turns; the density is that of both. (Of the same
  * sequence another number must not choose: its steps are those of the first, and each lobe would be asked
  * in one and the same half of its directions.) A mirror's rays all go one way, which has no density: there
@@ -11,6 +11,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_specular_rays
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -45,8 +46,8 @@ vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
     float coat;
     masu_lobes(b, l, base, coat);
     vec3 local = masu_axes_in(f, l);
-    vec2 share = vec2(masu_traced_share(s.roughness, pc.param.x),
-                      masu_traced_share(s.coat_roughness, pc.param.x));
+    vec2 share = vec2(masu_traced_share(s.roughness, push.cutoff),
+                      masu_traced_share(s.coat_roughness, push.cutoff));
     float pdf = masu_vndf_pdf(v, local, b.alpha);
 #ifdef MASU_SURFACE
     if (turn != 0u) {
@@ -70,7 +71,7 @@ void main()
         masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
         uvec2 ray = uvec2(0u);
         if (g.there) {
-            uvec2 at = masu_guide_place(texel, g.pixel, pc.index.z);
+            uvec2 at = masu_guide_place(texel, g.pixel, push.traced_size);
             masu_pixel p = masu_pixel_at(at);
             vec3 n = masu_unpack_normal(p.normal);
             vec3 toward = masu_pixel_ray(at, uvec2(pc.render_width, pc.render_height));
@@ -79,11 +80,11 @@ void main()
             vec3 v_local = masu_axes_in(f, v);
             uint number = frame.history.x;
             uint word = noise_at(texel, 0u);
-            vec2 u = pc.index.z == 1u ? masu_noise2(word, number) : masu_turn_noise2(word, number);
+            vec2 u = push.traced_size == 1u ? masu_noise2(word, number) : masu_turn_noise2(word, number);
             float alpha = masu_alpha(masu_traced_roughness(p.surface));
             uint turn = 0u;
             masu_bsdf b;
-            if (pc.index.w != 0u) {
+            if (push.accumulate != 0u) {
                 b = masu_bsdf_make(p.surface, n, v);
                 if (p.surface.coat > 0.0) {
                     turn = 1u + ((number + noise_at(texel, 1u)) & 1u);
@@ -98,7 +99,7 @@ void main()
             vec3 kept = above ? l : l - 2.0 * dot(l, n) * n;
             ray.x = masu_pack_direction(kept);
             ray.y = floatBitsToUint(masu_sane(r.pdf, 1e-6, 1e9));
-            if (pc.index.w != 0u) {
+            if (push.accumulate != 0u) {
                 uint bits = masu_hash(masu_hash(number) ^ noise_at(texel, 2u));
                 ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn) : vec3(0.0),
                                          float(bits >> 8) * (1.0 / 16777216.0));

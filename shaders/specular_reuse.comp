@@ -12,10 +12,11 @@
  * what one texel did not ask its neighbours have. The texel's own ray always counts. What was mirrored back
  * up from below the surface (specular_rays) has no density that means anything, and tells nobody else.
  *
- * index.x: neighbours.
+ * push.taps: neighbours.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_specular_reuse
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -121,12 +122,12 @@ void main()
                                     frame.history.x);
             ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
             for (uint k = 0u; k < uint(MASU_REUSE_TAPS_MAX); k++) {
-                if (k >= pc.index.x) {
+                if (k >= push.taps) {
                     break;
                 }
                 float number = float(4u * k + quad) + turn.y;
                 float angle = 2.3999632 * float(4u * k + quad) + 6.2831853 * turn.x;
-                float r = radius * sqrt(number / float(4u * pc.index.x));
+                float r = radius * sqrt(number / float(4u * push.taps));
                 ivec2 at = ivec2(texel) + ivec2(round(r * vec2(cos(angle), sin(angle))));
                 if (at == ivec2(texel) || any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
                     continue;

@@ -10,11 +10,12 @@
  * shows a virtual point as far behind its surface as what is mirrored lies before it. That moves as the
  * mirror image of the thing, and with the mirror.
  *
- * index.w: 1: the reference: light is multiplied by what the ray is worth.
+ * push.accumulate: 1: the reference: light is multiplied by what the ray is worth.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of what is met may have a coat */
+#define MASU_PUSH masu_push_specular_shade
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -176,7 +177,7 @@ vec4 image_moved(vec3 point, vec3 along, float off, vec3 thing, vec3 eyes, vec2 
  * image moves less by as much, and the rest of its way with the surface. */
 uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
 {
-    uvec2 at = masu_guide_place(texel, g.pixel, pc.index.z);
+    uvec2 at = masu_guide_place(texel, g.pixel, push.traced_size);
     vec2 size = vec2(pc.render_width, pc.render_height);
     vec4 moved = texelFetch(velocity_image, ivec2(at), 0);
     if (!(moved.w > 0.0)) {
@@ -250,7 +251,7 @@ void main()
                 light.rgb = masu_through_air(light.rgb, direction,
                                              masu_air_depth_from(point, direction, t));
             }
-            if (pc.index.w != 0u) {
+            if (push.accumulate != 0u) {
                 light.rgb *= masu_unpack_shared(ray.y);
             } else {
                 moved = motion(texel, g, point, far, before);

@@ -11,10 +11,11 @@
  * alone would cut off what few rays meet and much light comes from; it is for what is left, and as wide as
  * the history's own noise.
  *
- * index.x: how far back the mean reaches, 1/60 s.
+ * push.frames: how far back the mean reaches, 1/60 s.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_specular_temporal
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -285,7 +286,7 @@ void main()
                         history.a = new_y * new_y + old_sigma * old_sigma;
                         frames = frames / most;
                     }
-                    float reach = h.g.roughness > masu_mirror_roughness ? float(pc.index.x) : 4.0;
+                    float reach = h.g.roughness > masu_mirror_roughness ? float(push.frames) : 4.0;
                     float share = max(1.0 / (frames + 1.0), masu_time_share(reach));
                     float alone = smoothstep(0.0, reuse_until, frames);
                     color = mix(color, masu_tamed(texelFetch(ray_image, h.texel, 0).rgb), alone);

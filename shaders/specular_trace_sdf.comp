@@ -4,11 +4,12 @@
  * MASU_MOTION where the field changes: then also by how much the point has moved since the frame before, as
  * far as its part moves, turns or grows as a whole (sdf_velocity.comp, step 1).
  *
- * index.x: most steps of a ray; index.y not 0: all parts for each, for comparison.
+ * push.steps: most steps of a ray; push.unpruned not 0: all parts for each, for comparison.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#define MASU_PUSH masu_push_specular_trace_sdf
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"

@@ -3,11 +3,12 @@
  * 0..1.
  *
  * shaders/shared/tone.glsl has the curves and encodings; output.glsl says why targets beyond white have
- * another one. Push constants: param.x = white, nits; param.y = the most that is shown, in whites.
+ * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OUTPUT
+#define MASU_PUSH masu_push_tonemap
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/output.glsl"
@@ -45,7 +46,7 @@ vec3 encoded(vec3 y)
     if (masu_encoding == MASU_OUTPUT_SRGB) {
         return vec3(masu_srgb_encode(y.r), masu_srgb_encode(y.g), masu_srgb_encode(y.b));
     }
-    vec3 nits = y * pc.param.x;
+    vec3 nits = y * push.white;
     nits = masu_encoding == MASU_OUTPUT_PQ ? masu_bt2020(nits) : nits;
     return vec3(masu_pq_encode(nits.r), masu_pq_encode(nits.g), masu_pq_encode(nits.b));
 }
@@ -56,10 +57,10 @@ void main()
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
         vec3 hdr = texelFetch(hdr_image, ivec2(at), 0).rgb;
-        vec3 y = curve(masu_exposed(hdr, exposure()), max(pc.param.y, 1.0));
+        vec3 y = curve(masu_exposed(hdr, exposure()), max(push.peak, 1.0));
 #ifdef MASU_DEEP
         if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* not through PQ and back */
-            vec3 white = min(y * pc.param.x, 1e4) * (1.0 / 80.0);
+            vec3 white = min(y * push.white, 1e4) * (1.0 / 80.0);
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(white), 1.0));
         } else {
             MASU_STORE_COLOR(ldr_image, at, encoded(y));

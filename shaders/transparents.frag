@@ -17,6 +17,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of them may have a coat */
+#define MASU_PUSH masu_push_transparents
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"

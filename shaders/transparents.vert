@@ -1,11 +1,12 @@
 /*
- * transparents.vert: one transparent thing, which index.y of the push constants finds: six words in
+ * transparents.vert: one transparent thing, which push.instances of the push constants finds: six words in
  * the buffer of drawn instances, written anew for each frame (src/frame/transparents.c): instance, material,
  * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along. Of what is
  * drawn twice the first instance is for what is turned away from the eye.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_transparents
 #include "shared/masu_shared.h"
 #include "shared/polygons.glsl"
 
@@ -26,15 +27,15 @@ layout(location = 2) flat out uvec4 out_thing; /* material, flags, layers; which
 
 void main()
 {
-    masu_instance_data m = instances[drawn[pc.index.y]];
+    masu_instance_data m = instances[drawn[push.instances]];
     vec3 rel = masu_seen_from(m, frame.eye_hi.xyz, frame.eye_lo.xyz);
     out_normal = masu_turned_normal(m);
     out_rel = rel;
-    out_thing = uvec4(drawn[pc.index.y + 1u], drawn[pc.index.y + 2u], drawn[pc.index.y + 3u],
+    out_thing = uvec4(drawn[push.instances + 1u], drawn[push.instances + 2u], drawn[push.instances + 3u],
                       uint(gl_InstanceIndex));
 #ifdef MASU_TEXTURES
     out_texcoord = texcoord;
-    out_detail = vec2(uintBitsToFloat(drawn[pc.index.y + 4u]), uintBitsToFloat(drawn[pc.index.y + 5u]));
+    out_detail = vec2(uintBitsToFloat(drawn[push.instances + 4u]), uintBitsToFloat(drawn[push.instances + 5u]));
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
 }

@@ -3,6 +3,7 @@
 #include "renderer.h"
 
 #include "base/error.h"
+#include "plan/buffers.h"
 #include "shared/masu_shared.h"
 
 #include <math.h>
@@ -538,6 +539,7 @@ static uint64_t stamp_ns(const masu_renderer *m, uint32_t slot, uint32_t from, u
 static int is_fixed_pass(uint32_t pass) {
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_OUTPUT:
+    case MASU_EXTENT_OUTPUT32:
     case MASU_EXTENT_ONE:
     case MASU_EXTENT_ATLAS:
     case MASU_EXTENT_KEPT:
@@ -557,7 +559,7 @@ static void tell_governor(masu_renderer *m, uint32_t slot) {
     if (sample.frame == UINT64_MAX) return;
     if (stamps) sample.gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;
     for (uint32_t p = 0; p + 2 <= stamps && stamps > 2; p++) {
-        if (is_fixed_pass(p) && m->plan.rungs[sample.rung].active & MASU_PASS_BIT(p))
+        if (is_fixed_pass(p) && masu_has_pass(&m->plan.rungs[sample.rung].active, p))
             sample.fixed_ms += (double)stamp_ns(m, slot, p, p + 1) * 1e-6;
     }
     m->slot_wall[slot] = 0.0;
@@ -575,7 +577,7 @@ static masu_result draw_frame(masu_renderer *m, const masu_frame_desc *frame, ui
         int culls = d->rungs[frame->rung].frustum != MASU_OFF;
         for (uint32_t v = 0; v < m->plan.views; v++) masu_write_visible(m, slot, v, culls);
         masu_write_transparents(m, slot);
-        if (m->plan.rungs[frame->rung].active >> MASU_PASS_CULL & 1u)
+        if (masu_has_pass(&m->plan.rungs[frame->rung].active, MASU_PASS_CULL))
             masu_write_stage2(m, slot, masu_is_cut(m, frame));
     }
     m->slot_frame[slot] = m->frame;
@@ -631,7 +633,7 @@ static uint64_t counter(const masu_renderer *m, uint32_t slot, uint32_t index) {
 static void read_times(const masu_renderer *m, uint32_t slot, masu_stats_info *out) {
     uint32_t stamps = masu_stamps(&m->plan.desc);
     for (uint32_t p = 0; p + 1 < stamps && stamps > 2; p++) {
-        if (m->plan.rungs[out->rung].active & MASU_PASS_BIT(p))
+        if (masu_has_pass(&m->plan.rungs[out->rung].active, p))
             out->pass_ns[p] = stamp_ns(m, slot, p, p + 1);
     }
     out->gpu_ns = stamp_ns(m, slot, 0, stamps - 1);
@@ -687,7 +689,7 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
         out->easu_tiles_early = counter(m, slot, MASU_COUNTER_EASU_TILES_EARLY);
         uint32_t exposure = (uint32_t)counter(m, slot, MASU_COUNTER_EXPOSURE);
         memcpy(&out->exposure, &exposure, sizeof exposure);
-        if (m->plan.rungs[out->rung].active >> MASU_PASS_CULL & 1u) read_stage2(m, slot, out);
+        if (masu_has_pass(&m->plan.rungs[out->rung].active, MASU_PASS_CULL)) read_stage2(m, slot, out);
     }
     if (m->queries) read_times(m, slot, out);
     return MASU_OK;
@@ -777,7 +779,7 @@ uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint3
         if (n < capacity) {
             rows[n] = device_row(&m->plan, "buffer", p->name, p->role, p->count, p->memory_bytes,
                                  p->alignment, p->offset);
-            rows[n].transient = (uint32_t)masu_is_of_loading(b);
+            rows[n].transient = (uint32_t)masu_buffers[b].of_loading;
         }
         n++;
     }

@@ -100,7 +100,7 @@ float least_ratio(lit_point p, vec3 towards, float tangent, inout uint evals)
     /* The surface itself covers what of the disc is below its horizon. */
     float least = min(dot(p.normal, towards) / tangent, 1.0);
     MASU_LOOP for (int i = 0; i < MASU_SHADOW_STEPS_MAX; i++) {
-        if (done || uint(i) >= pc.index.x) {
+        if (done || uint(i) >= push.steps) {
             break;
         }
         bool usable;

@@ -32,7 +32,7 @@
 #define MOST_LISTED 30
 #define MASU_OWN_PARTS (INVOCATIONS * MOST_LISTED / 2)
 #define MASU_OWN_PARTS_HALVES
-#define MASU_MARCH_STEPS min(pc.index.x, uint(MASU_REFLECTED_STEPS_MAX))
+#define MASU_MARCH_STEPS min(push.steps, uint(MASU_REFLECTED_STEPS_MAX))
 #include "sdf/trace.glsl"
 
 #define LEAVE_STEPS 4
@@ -92,7 +92,7 @@ bool use_parts_on(inout ray r, bool last)
     if (!(r.start < r.limit)) {
         return false;
     }
-    if (pc.index.y != 0u || MASU_SDF_LISTED_COUNT == 1) {
+    if (push.unpruned != 0u || MASU_SDF_LISTED_COUNT == 1) {
         return true;
     }
     uint count = 0u;

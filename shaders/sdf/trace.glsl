@@ -17,7 +17,7 @@
 #include "sdf/field.glsl"
 
 #ifndef MASU_MARCH_STEPS
-#define MASU_MARCH_STEPS pc.index.x
+#define MASU_MARCH_STEPS push.steps
 #endif
 
 /* Direction and width of a pixel's ray. */
@@ -104,7 +104,7 @@ march_end walk(ray r)
     float best_ratio = 2.0 * r.pixel;
     MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
         m.left = m.left || !(m.t < r.limit);
-        if (m.hit || m.left || uint(i) >= pc.index.x) {
+        if (m.hit || m.left || uint(i) >= push.steps) {
             break;
         }
         bool usable;

@@ -14,10 +14,10 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) MASU_DRAWN_ACCE
     uint drawn[];
 };
 
-/* A word of the header; index.x is where that begins. */
+/* A word of the header; push.header is where that begins. */
 uint masu_cull_word(uint i)
 {
-    return drawn[pc.index.x + i];
+    return drawn[push.header + i];
 }
 
 float masu_drawn_float(uint at)
@@ -38,7 +38,7 @@ vec4 masu_drawn_vec4(uint at)
 /* Where the numbers of a view begin. */
 uint masu_cull_view(uint view)
 {
-    return pc.index.x + MASU_CULL_HEADER + view * MASU_CULL_VIEW_WORDS;
+    return push.header + MASU_CULL_HEADER + view * MASU_CULL_VIEW_WORDS;
 }
 
 mat4 masu_cull_matrix(uint at)

@@ -11,10 +11,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame
     masu_frame_uniforms frame;
 };
 
-layout(push_constant) uniform Push
-{
-    masu_push pc;
-};
+#include "shared/push.glsl"
 
 /* Where a place in the picture, in pixels, lies between the sides of the unshifted one, -1 and 1: what the
  * camera's vectors are to be weighted with. Every ray starts with it; what is drawn gets the same shift

@@ -16,9 +16,9 @@
 /* Flags of the material, layers of its maps, how much more often than its colour the others repeat: the
  * push constants', or whoever includes this says. */
 #ifndef MASU_MAPS_FLAGS
-#define MASU_MAPS_FLAGS pc.index.z
-#define MASU_MAPS_LAYERS pc.index.w
-#define MASU_MAPS_DETAIL pc.param.yz
+#define MASU_MAPS_FLAGS push.flags
+#define MASU_MAPS_LAYERS push.layers
+#define MASU_MAPS_DETAIL vec2(push.detail_u, push.detail_v)
 #endif
 
 layout(constant_id = 0) const bool masked = false;
@@ -45,13 +45,13 @@ vec4 masu_base(vec2 at)
     if ((MASU_MAPS_FLAGS & MASU_MAP_BASE) == 0u) {
         return vec4(1.0);
     }
-    return texture(base_map, vec3(at, masu_layer(0u)), pc.param.x);
+    return texture(base_map, vec3(at, masu_layer(0u)), push.mip_bias);
 }
 
 /* Multiplies the factors of `s`; returns alpha. */
 float masu_sample_maps(vec2 at, inout masu_surface s)
 {
-    float bias = pc.param.x;
+    float bias = push.mip_bias;
     vec4 base = masu_base(at);
     s.albedo *= base.rgb;
     if ((MASU_MAPS_FLAGS & MASU_MAP_SURFACE) != 0u) {
@@ -93,7 +93,7 @@ vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
     if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
         return normal;
     }
-    vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), pc.param.x).rg;
+    vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), push.mip_bias).rg;
     /* 128 / 255 is zero: an even number of steps has no middle. */
     xy = clamp((xy * 255.0 - 128.0) / 127.0, -1.0, 1.0);
     float z = sqrt(max(1.0 - dot(xy, xy), 0.0));

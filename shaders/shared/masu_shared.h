@@ -31,44 +31,13 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* Pixels along an edge of what a workgroup of fsr1.comp makes. */
 #define MASU_FSR1_BLOCK 32
 
-/* Set 0, the same for every pass. Set 1 is derived from the pass's row in src/plan/frame.c. Set 2, of
+/* Set 0, the same for every pass: MASU_BIND_* follow from the rows of src/plan/buffers.inc. Set 1 is derived
+ * from the pass's row in src/plan/passes.inc. Set 2, of
  * gbuffer and the cascades: the textures of what is drawn, one binding per slot of blob.h's texture sets. With
  * three sets of the four that every device has, and 4 sampled images of 16 in a stage. */
 #define MASU_SET_GLOBAL 0
 #define MASU_SET_PASS 1
 #define MASU_SET_TEXTURES 2
-#define MASU_BIND_FRAME 0
-#define MASU_BIND_INSTANCES 1
-#define MASU_BIND_MATERIALS 2
-#define MASU_BIND_COUNTERS 3
-#define MASU_BIND_TILES 4
-#define MASU_BIND_SLOTS 5
-/* The frame before, where the plan keeps it: its uniforms and its instances. */
-#define MASU_BIND_PREVIOUS 6
-#define MASU_BIND_PREVIOUS_INSTANCES 7
-/* Numbers of the instances that are drawn: gl_InstanceIndex counts these. */
-#define MASU_BIND_DRAWN 8
-#define MASU_BIND_DRAWS 9 /* draw commands, as words */
-#define MASU_BIND_SEEN 10 /* a word for each view and instance: not 0: visible when last asked */
-/* The sun's shadow map, where the plan has one. */
-#define MASU_BIND_SHADOW 11
-/* What lights: each where the plan has it. */
-#define MASU_BIND_TABLES 12      /* directional albedos of the specular lobe */
-#define MASU_BIND_SKY 13         /* the analytic sky of the frame */
-#define MASU_BIND_LIGHTS 14      /* points and spots of the frame */
-#define MASU_BIND_LIGHT_TILES 15 /* which of them reach a tile */
-#define MASU_BIND_PROBES 16
-/* What rays are traced against, and the tiles that trace any: where the plan has reflections. */
-#define MASU_BIND_TRACE 17           /* nodes, triangles, materials, texels: of the scene */
-#define MASU_BIND_TRACE_FRAME 18     /* top level, instances: of the frame */
-#define MASU_BIND_TRACE_VERTICES 19
-#define MASU_BIND_TRACE_TEXCOORDS 20
-#define MASU_BIND_SPECULAR_TILES 21
-#define MASU_BIND_TOP_LEVEL 22 /* of ray queries */
-/* Of SMAA: where the plan has it. */
-#define MASU_BIND_SMAA_AREA 23
-#define MASU_BIND_SMAA_TILES 24
-#define MASU_BIND_EXPOSURE 25 /* where it is metered */
 
 /* Directional albedos of the specular lobe (shaders/brdf/tables.glsl, tools/generate/make_split_sum.c). A table
  * has TABLE_SIZE nodes over sqrt(N.V) from 0 to 1, and TABLE_ROWS rows over perceptual roughness from
@@ -423,13 +392,17 @@ struct masu_probe_grid {
     masu_vec4 sun_inverse[4 * MASU_PROBE_SUNS]; /* rows of 16 */
 };
 
+/* What every pass is told; behind it lies the struct of its own, which follows from its row in
+ * src/plan/passes.inc. */
 struct masu_push {
     masu_uint render_width; /* valid sub-rectangle of the pass's input images, texels from (0,0) */
     masu_uint render_height;
     masu_uint output_width; /* what the pass writes, texels from (0,0) */
     masu_uint output_height;
-    masu_vec4 param;  /* pass-specific; src/plan/frame.c names each next to the pass */
-    masu_uvec4 index; /* pass-specific integers */
+    masu_uint output_steps; /* of what writes the target: its steps, 10 bits each of red, green, blue; 0: as it is */
+    masu_uint output_flags; /* MASU_OUTPUT_* of the pass that comes last in its rung, else 0 */
 };
+
+#include "tables.h"
 
 #endif

@@ -4,8 +4,8 @@
  *
  * Between tone curve and target the picture is display-encoded, as EASU and RCAS want it: sRGB in
  * 0..1; for targets that go beyond white, SMPTE ST 2084 of nits, in 0..1 too. The pass that comes last
- * in its rung (index.w of the push constants) stores what the target wants: in linear encoding it
- * decodes, else it rounds to the target's steps, where index.z says so. Nothing before it does: EASU
+ * in its rung (output_flags of the push constants) stores what the target wants: in linear encoding it
+ * decodes, else it rounds to the target's steps, where output_steps says so. Nothing before it does: EASU
  * and RCAS would sharpen the noise.
  *
  * Dither: a step s of the target is taken with the share of the pixels that lies between: floor(v s +
@@ -37,13 +37,13 @@ layout(constant_id = 7) const bool masu_finishes = true; /* false: what comes la
 
 bool masu_is_last()
 {
-    return (pc.index.w & MASU_OUTPUT_LAST) != 0u;
+    return (pc.output_flags & MASU_OUTPUT_LAST) != 0u;
 }
 
 /* To the steps of the target; 0: as it is. */
 float masu_rounded(float v, uint steps, uint noise)
 {
-    bool dither = (pc.index.w & MASU_OUTPUT_DITHER) != 0u;
+    bool dither = (pc.output_flags & MASU_OUTPUT_DITHER) != 0u;
     float u = dither ? float(noise >> 8) * (1.0 / 16777216.0) : 0.5;
     float s = float(max(steps, 1u));
     precise float scaled = masu_sane(v, 0.0, 1.0) * s;
@@ -56,7 +56,7 @@ float masu_rounded(float v, uint steps, uint noise)
 vec3 masu_stepped(vec3 v, uvec2 at)
 {
     uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + frame.history.x * 0x9E3779B9u;
-    uint steps = pc.index.z;
+    uint steps = pc.output_steps;
     /* A third apart: what one channel has too much, the others have too little. */
     return vec3(masu_rounded(v.r, steps & 1023u, noise),
                 masu_rounded(v.g, steps >> 10 & 1023u, noise + 0x55555555u),
@@ -75,8 +75,8 @@ vec3 masu_output(vec3 v, uvec2 at)
     if (!masu_finishes) {
         return v;
     }
-    vec3 stepped = pc.index.z != 0u ? masu_stepped(v, at) : v;
-    return (pc.index.w & MASU_OUTPUT_SWAP) != 0u ? stepped.bgr : stepped;
+    vec3 stepped = pc.output_steps != 0u ? masu_stepped(v, at) : v;
+    return (pc.output_flags & MASU_OUTPUT_SWAP) != 0u ? stepped.bgr : stepped;
 }
 
 #ifdef MASU_DEEP
@@ -96,12 +96,7 @@ vec3 masu_nearest_half(vec3 v)
 
 #else /* a source image: as it is */
 
-#ifndef MASU_GLOBALS_GLSL
-layout(push_constant) uniform Push
-{
-    masu_push pc;
-};
-#endif
+#include "shared/push.glsl"
 
 #define MASU_STORE_COLOR(img, p, v) MASU_STORE_UNORM(img, p, vec4((v), 1.0))
 #endif

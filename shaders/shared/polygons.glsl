@@ -1,6 +1,6 @@
 /*
  * polygons.glsl: what every vertex shader of placed meshes begins with: which instance it is of, and
- * where that puts the vertex and its normal. A draw's instances are listed from index.y on in the
+ * where that puts the vertex and its normal. A draw's instances are listed from push.instances on in the
  * buffer of drawn instances.
  */
 #ifndef MASU_POLYGONS_GLSL
@@ -18,17 +18,14 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_DRAWN, std430) readonly buffer
     uint drawn[];
 };
 
-layout(push_constant) uniform Push
-{
-    masu_push pc;
-};
+#include "shared/push.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 oct_normal;
 
 uint masu_instance_id()
 {
-    return drawn[pc.index.y + uint(gl_InstanceIndex)];
+    return drawn[push.instances + uint(gl_InstanceIndex)];
 }
 
 /* Relative to an origin given as a float and what that leaves. */

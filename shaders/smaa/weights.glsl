@@ -133,12 +133,12 @@ vec2 masu_keep_corner(uint axis, ivec2 from, ivec2 to, int q, ivec2 ends)
  * other side on this one. */
 vec2 masu_straight_weights(uint axis, int p, int q)
 {
-    ivec2 ends = masu_line_ends(axis, p, q, 2 * int(pc.index.x) - 1);
+    ivec2 ends = masu_line_ends(axis, p, q, 2 * int(push.steps) - 1);
     int from = p - ends.x, to = p + ends.y + 1;
     uint left = masu_cross_at(axis, from, q - 1) + 2u * masu_cross_at(axis, from, q);
     uint right = masu_cross_at(axis, to, q - 1) + 2u * masu_cross_at(axis, to, q);
     vec2 weights = masu_straight_area(left + 4u * right, ends);
-    if (pc.param.x > 0.0) {
+    if (push.corners != 0u) {
         weights *= masu_keep_corner(axis, ivec2(from), ivec2(to), q, ends);
     }
     return weights;
@@ -162,7 +162,7 @@ uvec2 masu_edges_at(ivec2 p)
  * the end was not found, z: the last step had an edge above. */
 ivec3 masu_search_diagonal(ivec2 p, ivec2 way, int apart)
 {
-    int most = int(pc.index.y);
+    int most = int(push.diagonal_steps);
     ivec3 found = ivec3(-1, 1, 0);
     for (int n = 0; n < MASU_SMAA_DIAGONAL_STEPS_MAX; n++) {
         if (found.y == 0 || found.x >= most - 1) {
@@ -225,7 +225,7 @@ vec2 masu_diagonal_weights(ivec2 p, bool left_edge)
 vec4 masu_smaa_weights(ivec2 p, bool left_edge, bool top_edge)
 {
     vec4 weights = vec4(0.0);
-    if (top_edge && pc.index.y != 0u) {
+    if (top_edge && push.diagonal_steps != 0u) {
         weights.xy = masu_diagonal_weights(p, left_edge);
         if (weights.x + weights.y > 0.0) {
             return weights;

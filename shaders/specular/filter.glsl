@@ -73,7 +73,7 @@ bool masu_same_plane(vec3 away, vec3 normal, float width)
 /* How wide a traced texel is at a point. */
 float masu_texel_width(masu_guide g)
 {
-    return masu_specular_width(g) * float(pc.index.z);
+    return masu_specular_width(g) * float(push.traced_size);
 }
 
 /* 1 / radius of the surface, 0 of a flat or hollow one, by how the normals of the neighbours lean. The mean of

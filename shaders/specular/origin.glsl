@@ -11,7 +11,7 @@
 /* Relative to the eye, without the lift. */
 vec3 masu_specular_point(uvec2 texel, masu_guide g)
 {
-    return masu_guide_point(masu_guide_place(texel, g.pixel, pc.index.z), g.depth);
+    return masu_guide_point(masu_guide_place(texel, g.pixel, push.traced_size), g.depth);
 }
 
 /* A pixel's width at a point. */

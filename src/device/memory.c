@@ -2,6 +2,7 @@
 #include "device/memory.h"
 
 #include "base/error.h"
+#include "plan/buffers.h"
 #include "scene/scene.h"
 #include "scene/texture.h"
 
@@ -274,7 +275,7 @@ static void lay_buffers(masu_frame_plan *plan, masu_role role, masu_block_plan *
         masu_buffer_plan *buffer = &plan->buffers[b];
         if (!buffer->bytes || buffer->role != role || b == MASU_BUFFER_POISON) continue;
         block->address |= (buffer->usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
-        if (masu_is_of_loading(b)) continue; /* lay_images */
+        if (masu_buffers[b].of_loading) continue; /* lay_images */
         buffer->offset = masu_align_up(block->bytes, buffer->alignment);
         block->bytes = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);
@@ -287,7 +288,7 @@ static uint64_t lay_loading(masu_frame_plan *plan, uint64_t start, masu_block_pl
     uint64_t end = start;
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_buffer_plan *buffer = &plan->buffers[b];
-        if (!buffer->bytes || !masu_is_of_loading(b)) continue;
+        if (!buffer->bytes || !masu_buffers[b].of_loading) continue;
         buffer->offset = masu_align_up(end, buffer->alignment);
         end = buffer->offset + buffer->memory_bytes;
         add_to_block(block, buffer->alignment, buffer->type_bits);

@@ -1,316 +1,84 @@
-/* record.c: the table becomes descriptor sets and command buffers. One recording per (frame in
- * flight, rung, target, and where a rung draws cascades of the shadow map less often than every
- * frame: set of those that it draws), made once in masu_init and submitted again and again.
- *
- * Barriers are derived by walking the rung's accesses with, per image, the stage, access and layout
- * of its last use:
- *  - a read after a write, a write after anything, another layout, or the first read by a stage needs
- *    a barrier;
- *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image
- *    that shares bytes with it and was used before;
- *  - a full barrier at the top of the frame orders it behind the frame before, so no state crosses
- *    frames, but for an image whose content outlives them: it rests in the layout that shaders
- *    read, and comes from UNDEFINED only where the recording draws all that its rung reads of it.
- * Each pass gets at most one vkCmdPipelineBarrier. */
+/* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and
+ * where a rung draws cascades of the shadow map less often than every frame: set of those that it
+ * draws), made once in masu_init and submitted again and again. */
 #include "renderer.h"
 
 #include "base/error.h"
-#include "plan/output.h"
+#include "device/barriers.h"
+#include "device/descriptors.h"
+#include "plan/push.h"
 #include "shared/masu_shared.h"
 
-#include <math.h>
 #include <string.h>
-
-/* ---- Use of an image ------------------------------------------------------------------------- */
-
-typedef struct image_state {
-    int used; /* in this frame */
-    VkPipelineStageFlags stages;
-    VkAccessFlags access; /* what the last use did; writes are what must be made available */
-    VkImageLayout layout;
-    int writes;
-} image_state;
-
-static image_state state_of(masu_usage usage, masu_pass_kind kind) {
-    VkPipelineStageFlags shader = kind == MASU_PASS_GRAPHICS ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
-                                                             : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
-    VkPipelineStageFlags vertex =
-        kind == MASU_PASS_GRAPHICS ? VK_PIPELINE_STAGE_VERTEX_SHADER_BIT : 0;
-    switch (usage) {
-    case MASU_READ:
-        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT,
-                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
-    case MASU_READ_COPY:
-        return (image_state){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
-                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0};
-    case MASU_WRITE:
-    case MASU_UPDATE:
-        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_GENERAL, 1};
-    case MASU_READ_BUFFER:
-        return (image_state){1, shader | vertex | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-                             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
-                             VK_IMAGE_LAYOUT_UNDEFINED, 0};
-    case MASU_WRITE_BUFFER:
-        return (image_state){1, shader, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_UNDEFINED, 1};
-    case MASU_WRITE_COLOR:
-        return (image_state){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                             VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
-    case MASU_BLEND_COLOR:
-        return (image_state){1, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                             VK_ACCESS_COLOR_ATTACHMENT_READ_BIT |
-                                 VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, 1};
-    case MASU_WRITE_DEPTH:
-    case MASU_UPDATE_DEPTH:
-        return (image_state){1,
-                             VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
-                                 VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
-                             VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
-                                 VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, 1};
-    case MASU_WRITE_COPY:
-        return (image_state){1, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1};
-    case MASU_READ_STRUCTURE:
-        return (image_state){1, shader, VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR,
-                             VK_IMAGE_LAYOUT_UNDEFINED, 0};
-    case MASU_WRITE_STRUCTURE:
-        return (image_state){1, VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-                             VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR |
-                                 VK_ACCESS_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
-                             VK_IMAGE_LAYOUT_UNDEFINED, 1};
-    case MASU_USE_NONE: break;
-    }
-    return (image_state){0, 0, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0};
-}
-
-typedef struct recorder {
-    masu_renderer *m;
-    VkCommandBuffer cmd;
-    uint32_t flight, rung, target, variant;
-    masu_rung_plan *rp;
-    image_state states[MASU_RESOURCE_END]; /* images, then the buffers that rows name */
-    uint32_t barriers;
-} recorder;
-
-static VkImage image_handle(const recorder *rec, masu_image_id id) {
-    return id == MASU_IMAGE_TARGET ? rec->m->plan.desc.targets.images[rec->target]
-                                   : rec->m->objects.images[id];
-}
-
-static int share_bytes(const masu_image_plan *a, const masu_image_plan *b) {
-    return a->offset < b->offset + b->bytes && b->offset < a->offset + a->bytes;
-}
-
-/* What the first use of `id` has to wait for: the earlier tenants of its bytes. Without any, the
- * caller's own stage links it to the barrier at the top of the frame; TOP_OF_PIPE would not (it
- * chains with nothing before it). */
-static void add_tenants(const recorder *rec, masu_image_id id, VkPipelineStageFlags *stages,
-                        VkAccessFlags *access) {
-    const masu_image_plan *images = rec->m->plan.images;
-    for (uint32_t j = 1; j < MASU_IMAGE_SOURCE; j++) {
-        if (j == (uint32_t)id || !rec->states[j].used || !images[id].used ||
-            !share_bytes(&images[id], &images[j])) {
-            continue;
-        }
-        *stages |= rec->states[j].stages;
-        if (rec->states[j].writes) *access |= rec->states[j].access;
-    }
-}
-
-static VkImageMemoryBarrier image_barrier(const recorder *rec, masu_image_id id, VkAccessFlags from,
-                                          const image_state *to, VkImageLayout old_layout) {
-    int depth = id < MASU_IMAGE_SOURCE && masu_images[id].format == VK_FORMAT_D32_SFLOAT;
-    return (VkImageMemoryBarrier){
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = from,
-        .dstAccessMask = to->access,
-        .oldLayout = old_layout,
-        .newLayout = to->layout,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image_handle(rec, id),
-        .subresourceRange = {.aspectMask =
-                                 depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
-                             .levelCount = 1,
-                             .layerCount = 1}};
-}
-
-static void barrier_before(recorder *rec, uint32_t pass) {
-    VkImageMemoryBarrier barriers[MASU_PASS_ACCESSES];
-    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER};
-    uint32_t n = 0;
-    VkPipelineStageFlags from = 0, to = 0;
-    for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
-        masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
-        masu_usage usage = (masu_usage)rec->rp->access[pass][a].usage;
-        if (id == MASU_IMAGE_SOURCE) continue; /* the host's contract: readable already */
-        image_state next = state_of(usage, masu_passes[pass].kind), *now = &rec->states[id];
-        if (id > MASU_IMAGE_COUNT) {
-            /* A buffer. Its first use in a frame is behind the barrier at the frame's top. */
-            if (now->used && (now->writes || next.writes)) {
-                from |= now->stages;
-                to |= next.stages;
-                memory.srcAccessMask |= now->writes ? now->access : 0;
-                memory.dstAccessMask |= next.access;
-            } else {
-                next.stages |= now->stages;
-            }
-        } else if (!now->used) {
-            VkAccessFlags access = 0;
-            from |= next.stages;
-            add_tenants(rec, id, &from, &access);
-            barriers[n++] = image_barrier(rec, id, access, &next, VK_IMAGE_LAYOUT_UNDEFINED);
-            to |= next.stages;
-        } else if (now->layout != next.layout || now->writes || next.writes ||
-                   next.stages & ~now->stages) { /* a stage to which it is not visible yet */
-            from |= now->stages;
-            barriers[n++] =
-                image_barrier(rec, id, now->writes ? now->access : 0, &next, now->layout);
-            to |= next.stages;
-            /* Both have read it: a later writer waits for all of them. */
-            if (!now->writes && !next.writes && now->layout == next.layout)
-                next.stages |= now->stages;
-        } else {
-            next.stages |= now->stages; /* one more reader: a later writer waits for all of them */
-        }
-        *now = next;
-    }
-    if (!to) return;
-    rec->m->vk.CmdPipelineBarrier(rec->cmd, from, to, 0, memory.dstAccessMask != 0, &memory, 0,
-                                  NULL, n, barriers);
-    rec->barriers++;
-}
-
-static void memory_barrier(recorder *rec, VkPipelineStageFlags from, VkAccessFlags from_access,
-                           VkPipelineStageFlags to, VkAccessFlags to_access) {
-    VkMemoryBarrier b = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                         .srcAccessMask = from_access,
-                         .dstAccessMask = to_access};
-    rec->m->vk.CmdPipelineBarrier(rec->cmd, from, to, 0, 1, &b, 0, NULL, 0, NULL);
-    rec->barriers++;
-}
 
 /* ---- Passes ---------------------------------------------------------------------------------- */
 
-static struct masu_push push_constants(const recorder *rec, uint32_t pass) {
-    const masu_desc *d = &rec->m->plan.desc;
-    VkExtent2D render = {rec->rp->render_width, rec->rp->render_height};
-    VkExtent2D output = masu_plan_extent(&rec->m->plan, masu_passes[pass].extent, render);
-    VkExtent2D input = render; /* of the first image read that is not of blocks */
-    struct masu_push push;
-    memset(&push, 0, sizeof push);
-    for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
-        masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
-        if (rec->rp->access[pass][a].usage != MASU_READ) continue;
-        if (id == MASU_IMAGE_OCCLUDERS) continue;
-        if (masu_images[id].extent == MASU_EXTENT_OUTPUT) input = d->output;
-        break;
+static uint32_t few_groups(const masu_recorder *rec) { return (rec->m->batch_count + 63) / 64; }
+
+static masu_push_block push_of(const masu_recorder *rec, uint32_t pass) {
+    return masu_push_of(&rec->m->plan, rec->rung, pass, few_groups(rec));
+}
+
+/* The list of tiles that an indirect pass runs for; MASU_BUFFER_COUNT: it runs for all. */
+static masu_buffer_id tiles_of(masu_image_extent extent) {
+    switch (extent) {
+    case MASU_EXTENT_TILES: return MASU_BUFFER_TILES;
+    case MASU_EXTENT_GLOSSY: return MASU_BUFFER_SPECULAR_TILES;
+    case MASU_EXTENT_EDGED: return MASU_BUFFER_SMAA_TILES;
+    default: return MASU_BUFFER_COUNT;
     }
-    push.render_width = input.width;
-    push.render_height = input.height;
-    push.output_width = output.width;
-    push.output_height = output.height;
-    if (pass >= MASU_PASS_EASU && pass <= MASU_PASS_FSR1) { /* see upscale/place.glsl */
-        push.param[2] = (float)input.width * (1.0f / (float)output.width);
-        push.param[3] = (float)input.height * (1.0f / (float)output.height);
+}
+
+/* Workgroups of a direct dispatch. */
+static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_push_block *push) {
+    const masu_frame_plan *plan = &rec->m->plan;
+    uint32_t few = few_groups(rec), edge = MASU_GROUP;
+    /* Of culling views lie in y: the camera, or the sun's. */
+    uint32_t views = push->own.word[offsetof(struct masu_push_cull, view) / 4] ? plan->views - 1 : 1;
+    switch (masu_passes[pass].extent) {
+    case MASU_EXTENT_PROBES: return (VkExtent2D){(plan->scene.probes + 63) / 64, 1};
+    case MASU_EXTENT_KEPT: return (VkExtent2D){(plan->scene.instances + 63) / 64, views};
+    case MASU_EXTENT_BATCHES: return (VkExtent2D){few + rec->m->large_count, views};
+    /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
+    case MASU_EXTENT_TILE:
+    case MASU_EXTENT_ONE: edge = 1; break;
+    case MASU_EXTENT_OUTPUT32: edge = MASU_FSR1_BLOCK; break;
+    default: break;
     }
-    if (masu_passes[pass].params) masu_passes[pass].params(&d->rungs[rec->rung], &push);
-    masu_output_push(&rec->m->plan, rec->rp, pass, &push);
-    return push;
+    return (VkExtent2D){(push->sizes.output_width + edge - 1) / edge,
+                        (push->sizes.output_height + edge - 1) / edge};
 }
 
-/* Stage 2 of culling: 64 invocations to a group, views in y: the camera, or the sun's. */
-static void record_culling(recorder *rec, uint32_t pass, struct masu_push *push) {
-    const masu_frame_plan *plan = &rec->m->plan;
-    uint32_t few = (rec->m->batch_count + 63) / 64, groups = few + rec->m->large_count;
-    uint32_t first = pass == MASU_PASS_CULL || pass == MASU_PASS_COMPACT ? 0 : 1;
-    if (masu_passes[pass].extent == MASU_EXTENT_KEPT) groups = (plan->scene.instances + 63) / 64;
-    push->index[1] = few;
-    push->index[2] = first;
-    rec->m->vk.CmdPushConstants(rec->cmd, rec->m->layouts[pass], VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                sizeof *push, push);
-    rec->m->vk.CmdDispatch(rec->cmd, groups, first ? plan->views - 1 : 1, 1);
-}
-
-/* What the passes of ambient occlusion need of scene and description; the shaders name it. */
-static void ao_push(const recorder *rec, uint32_t pass, struct masu_push *push) {
-    const masu_frame_plan *plan = &rec->m->plan;
-    push->param[0] = plan->scene.occlusion_radius;
-    push->param[1] = (float)MASU_AO_REACH;
-    push->index[2] = plan->desc.debug.ao_full ? 1 : 2;
-    if (pass == MASU_PASS_AO) return;
-    push->index[0] = plan->needs.sdf_occlusion || plan->needs.shadow;
-    push->index[1] = plan->desc.debug.ao_nearest != 0;
-}
-
-static int is_specular(uint32_t pass) {
-    return pass >= MASU_PASS_SPECULAR_GUIDE && pass <= MASU_PASS_SPECULAR_COMPOSITE;
-}
-
-/* Of what reflections are traced: index.z pixels along an edge of a traced texel, index.w 1: of every
- * pixel, for comparison. */
-static void specular_push(const recorder *rec, struct masu_push *push) {
-    push->index[2] = rec->m->plan.desc.debug.reference ? 1 : 2;
-    push->index[3] = rec->m->plan.needs.accumulate != 0;
-    push->render_width = rec->rp->render_width;
-    push->render_height = rec->rp->render_height;
-}
-
-/* Set 0 is a scene's, but for what SMAA has in it. */
-static int has_global_sets(const masu_frame_plan *plan) {
-    return plan->needs.scene || plan->needs.smoothing;
-}
-
-static void record_compute(recorder *rec, uint32_t pass, VkDescriptorSet set) {
+static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
-    struct masu_push push = push_constants(rec, pass);
+    masu_push_block push = push_of(rec, pass);
     VkPipelineLayout layout = rec->m->layouts[pass];
-    masu_image_extent extent = masu_passes[pass].extent;
-    int culling = extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES;
-    if (culling || pass == MASU_PASS_RECEIVERS)
-        push.index[0] = (uint32_t)rec->m->plan.drawn.header;
-    if (pass == MASU_PASS_AO || pass == MASU_PASS_AO_UPSAMPLE) ao_push(rec, pass, &push);
-    if (is_specular(pass)) specular_push(rec, &push);
-    if (pass == MASU_PASS_LIGHT || pass == MASU_PASS_LIGHT_OCCLUDED)
-        push.index[3] = rec->m->plan.needs.accumulate != 0;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
-    if (has_global_sets(&rec->m->plan)) {
+    if (masu_has_global_sets(&rec->m->plan)) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
                                   1, &rec->m->global_sets[rec->flight], 0, NULL);
     }
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_PASS, 1,
                               &set, 0, NULL);
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
-    if (extent == MASU_EXTENT_TILES) {
-        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_TILES], 0);
-        return;
+    masu_buffer_id tiles = tiles_of(masu_passes[pass].extent);
+    if (tiles != MASU_BUFFER_COUNT) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[tiles], 0);
+    } else {
+        VkExtent2D groups = groups_of(rec, pass, &push);
+        vk->CmdDispatch(rec->cmd, groups.width, groups.height, 1);
     }
-    if (extent == MASU_EXTENT_GLOSSY) {
-        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SPECULAR_TILES], 0);
-        return;
-    }
-    if (extent == MASU_EXTENT_EDGED) {
-        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SMAA_TILES], 0);
-        return;
-    }
-    if (extent == MASU_EXTENT_PROBES) {
-        vk->CmdDispatch(rec->cmd, (rec->m->plan.scene.probes + 63) / 64, 1, 1);
-        return;
-    }
-    if (culling) {
-        record_culling(rec, pass, &push);
-        return;
-    }
-    /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
-    uint32_t group = extent == MASU_EXTENT_TILE || extent == MASU_EXTENT_ONE ? 1 : MASU_GROUP;
-    if (pass == MASU_PASS_FSR1) group = MASU_FSR1_BLOCK;
-    vk->CmdDispatch(rec->cmd, (push.output_width + group - 1) / group,
-                    (push.output_height + group - 1) / group, 1);
 }
+
+#define SAME_PLACE(member)                                                                         \
+    _Static_assert(offsetof(struct masu_push_cascade, member) ==                                   \
+                       offsetof(struct masu_push_gbuffer, member),                                 \
+                   "cascades are drawn as polygons are: " #member)
+SAME_PLACE(flags);
+SAME_PLACE(layers);
+SAME_PLACE(detail_u);
+SAME_PLACE(detail_v);
+SAME_PLACE(instances);
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
@@ -324,14 +92,14 @@ static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
 }
 
 /* A material's flags and layers into the push constants, and its textures bound where they are not
- * those of the draw before. index[0] is the pass's, index[1] the batch's. */
-static void bind_maps(recorder *rec, VkPipelineLayout layout, const masu_blob_material *material,
-                      struct masu_push *push, uint32_t *bound) {
-    push->index[2] = (material->flags & 0xFFFFFFu) |
-                     material->occlusion_layer << MASU_MAP_OCCLUSION_SHIFT;
-    push->index[3] = material->layers;
-    push->param[1] = material->detail[0];
-    push->param[2] = material->detail[1];
+ * those of the draw before. */
+static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
+                      const masu_blob_material *material, struct masu_push_gbuffer *push, uint32_t *bound) {
+    push->flags = (material->flags & 0xFFFFFFu) | material->occlusion_layer
+                                                       << MASU_MAP_OCCLUSION_SHIFT;
+    push->layers = material->layers;
+    push->detail_u = material->detail[0];
+    push->detail_v = material->detail[1];
     if (*bound == material->texture_set) return;
     *bound = material->texture_set;
     rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
@@ -342,7 +110,7 @@ static void bind_maps(recorder *rec, VkPipelineLayout layout, const masu_blob_ma
  * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
  * that most of what they would hide or shade in vain is known already. */
-static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct masu_push push) {
+static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
     const masu_renderer *m = rec->m;
     const masu_vk *vk = &m->vk;
     masu_scene_view v = masu_scene_look(m->plan.desc.scene);
@@ -362,27 +130,30 @@ static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct ma
         vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
-    int occlusion = (int)(rec->rp->active >> MASU_PASS_CULL & 1u);
+    int occlusion = masu_has_pass(&rec->rp->active, MASU_PASS_CULL);
     uint32_t lists = view * m->plan.listed;
     if (occlusion) lists += (uint32_t)m->plan.drawn.lists;
     VkDeviceSize commands = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
                             MASU_DRAWS_OF(&m->plan, view, occlusion);
+    masu_push_block block = push_of(rec, pass);
+    struct masu_push_gbuffer push; /* a cascade is told the same, but its number for the material */
+    memcpy(&push, &block.own, sizeof push);
     for (uint32_t b = 0; b < m->batch_count; b++) {
         const masu_batch *batch = &m->batches[b];
-        push.index[1] = lists + batch->first_listed;
+        push.instances = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             uint32_t number = v.primitives[batch->first_primitive + d].material;
             if (sweep_of(&v.materials[number], view) != sweep) continue;
             if (!sun) {
                 uint32_t meso = v.materials[number].meso;
-                push.index[0] = number;
+                push.material = number;
                 /* The element of the buffer of materials where its curves begin; 0: none. */
-                push.param[3] = meso == MASU_BLOB_NONE
-                                    ? 0.0f
-                                    : (float)(v.material_count + 2 * (uint64_t)meso);
+                push.meso =
+                    meso == MASU_BLOB_NONE ? 0 : (uint32_t)(v.material_count + 2 * (uint64_t)meso);
             }
             if (sweep) bind_maps(rec, layout, &v.materials[number], &push, &bound);
-            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+            memcpy(&block.own, &push, sizeof push);
+            vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
                                        commands +
                                            (VkDeviceSize)MASU_DRAW_BYTES * (batch->first_draw + d),
@@ -391,29 +162,13 @@ static void record_sweep(recorder *rec, uint32_t pass, uint32_t sweep, struct ma
     }
 }
 
-static float mip_bias(const recorder *rec) {
-    const masu_desc *d = &rec->m->plan.desc;
-    return (d->debug.no_bias ? 0.0f : log2f(d->rungs[rec->rung].scale)) + d->debug.mip_bias;
-}
-
-/* index[0] of the push constants: a draw's material, of a cascade its number. */
-static void record_polygons(recorder *rec, uint32_t pass) {
-    struct masu_push push;
-    memset(&push, 0, sizeof push);
-    push.output_width = push.render_width = rec->rp->render_width;
-    push.output_height = push.render_height = rec->rp->render_height;
-    if (masu_is_cascade(pass)) {
-        push.index[0] = pass - MASU_PASS_CASCADE_0;
-    } else { /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what
-              * EASU gets blurred it cannot bring back. */
-        push.param[0] = mip_bias(rec);
-    }
+static void record_polygons(masu_recorder *rec, uint32_t pass) {
     uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
-    for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep, push);
+    for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep);
 }
 
 /* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. */
-static void record_transparents(recorder *rec, VkDescriptorSet set) {
+static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
     const masu_renderer *m = rec->m;
     const masu_vk *vk = &m->vk;
     const masu_scene *scene = &m->plan.scene;
@@ -421,11 +176,9 @@ static void record_transparents(recorder *rec, VkDescriptorSet set) {
     VkDeviceSize zero = 0, at = rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
                                 m->plan.transparent_draws * MASU_DRAW_BYTES;
     const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
-    struct masu_push push;
-    memset(&push, 0, sizeof push);
-    push.output_width = push.render_width = rec->rp->render_width;
-    push.output_height = push.render_height = rec->rp->render_height;
-    push.param[0] = mip_bias(rec);
+    masu_push_block block = push_of(rec, MASU_PASS_TRANSPARENTS);
+    struct masu_push_transparents push;
+    memcpy(&push, &block.own, sizeof push);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
                         m->pipelines[MASU_PASS_TRANSPARENTS]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 2,
@@ -436,8 +189,9 @@ static void record_transparents(recorder *rec, VkDescriptorSet set) {
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     for (uint32_t k = 0; k < m->transparent_count; k++) {
-        push.index[1] = (uint32_t)m->plan.drawn.transparents + MASU_TRANSPARENT_WORDS * k;
-        vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+        push.instances = (uint32_t)m->plan.drawn.transparents + MASU_TRANSPARENT_WORDS * k;
+        memcpy(&block.own, &push, sizeof push);
+        vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         for (uint32_t c = 0; c < scene->transparent_sets; c++) {
             if (m->texture_layout && (k == 0 || scene->transparent_sets > 1)) {
                 vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
@@ -452,16 +206,16 @@ static void record_transparents(recorder *rec, VkDescriptorSet set) {
 }
 
 /* Each part of the atlas has its own. */
-static void record_occluders(recorder *rec) {
+static void record_occluders(masu_recorder *rec) {
     const masu_renderer *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
     m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
                           m->pipelines[MASU_PASS_OCCLUDERS]);
     m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL,
                                 1, &m->global_sets[rec->flight], 0, NULL);
-    struct masu_push push;
-    memset(&push, 0, sizeof push);
-    push.index[0] = (uint32_t)m->plan.drawn.header;
+    masu_push_block block = push_of(rec, MASU_PASS_OCCLUDERS);
+    struct masu_push_occluders push;
+    memcpy(&push, &block.own, sizeof push);
     for (uint32_t part = 0; part < MASU_ATLAS_PARTS(&m->plan); part++) {
         VkRect2D area = masu_atlas_part(part);
         VkViewport viewport = {(float)area.offset.x,
@@ -470,10 +224,11 @@ static void record_occluders(recorder *rec) {
                                (float)area.extent.height,
                                0.0f,
                                1.0f};
-        push.index[1] = part;
+        push.view = part;
+        memcpy(&block.own, &push, sizeof push);
         m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);
         m->vk.CmdSetScissor(rec->cmd, 0, 1, &area);
-        m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof push, &push);
+        m->vk.CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
                               rec->flight * m->plan.buffers[MASU_BUFFER_DRAWS].stride +
                                   MASU_OCCLUDER_DRAW(&m->plan, part),
@@ -482,9 +237,9 @@ static void record_occluders(recorder *rec) {
 }
 
 /* One triangle over everything, for the SDF as a fragment shader. */
-static void record_fullscreen(recorder *rec, uint32_t pass) {
+static void record_fullscreen(masu_recorder *rec, uint32_t pass) {
     const masu_vk *vk = &rec->m->vk;
-    struct masu_push push = push_constants(rec, pass);
+    masu_push_block push = push_of(rec, pass);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->layouts[pass],
                               MASU_SET_GLOBAL, 1, &rec->m->global_sets[rec->flight], 0, NULL);
@@ -493,7 +248,7 @@ static void record_fullscreen(recorder *rec, uint32_t pass) {
 }
 
 /* The part of its images that a graphics pass clears and draws. */
-static VkRect2D render_area(const recorder *rec, uint32_t pass) {
+static VkRect2D render_area(const masu_recorder *rec, uint32_t pass) {
     if (pass == MASU_PASS_OCCLUDERS)
         return (VkRect2D){{0, 0}, {MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT}};
     if (!masu_is_cascade(pass))
@@ -502,7 +257,7 @@ static VkRect2D render_area(const recorder *rec, uint32_t pass) {
                       {rec->rp->cascade_size, rec->rp->cascade_size}};
 }
 
-static void record_graphics(recorder *rec, uint32_t pass, VkDescriptorSet set) {
+static void record_graphics(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
     VkClearValue clear[5];
@@ -532,7 +287,7 @@ static void record_graphics(recorder *rec, uint32_t pass, VkDescriptorSet set) {
     vk->CmdEndRenderPass(rec->cmd);
 }
 
-static void record_readback(recorder *rec, uint32_t pass) {
+static void record_readback(masu_recorder *rec, uint32_t pass) {
     const masu_buffer_plan *buffer = &rec->m->plan.buffers[MASU_BUFFER_READBACK];
     for (uint32_t a = 0; a < rec->rp->access_count[pass]; a++) {
         masu_image_id id = (masu_image_id)rec->rp->access[pass][a].image;
@@ -554,7 +309,7 @@ static void record_readback(recorder *rec, uint32_t pass) {
     }
 }
 
-static void record_present(recorder *rec, uint32_t pass) {
+static void record_present(masu_recorder *rec, uint32_t pass) {
     const VkExtent2D size = rec->m->plan.desc.output;
     masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
     if (rec->m->plan.copies) {
@@ -562,9 +317,9 @@ static void record_present(recorder *rec, uint32_t pass) {
             .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
             .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
             .extent = {size.width, size.height, 1}};
-        rec->m->vk.CmdCopyImage(rec->cmd, image_handle(rec, from),
+        rec->m->vk.CmdCopyImage(rec->cmd, masu_recorded_image(rec, from),
                                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                image_handle(rec, MASU_IMAGE_TARGET),
+                                masu_recorded_image(rec, MASU_IMAGE_TARGET),
                                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
         return;
     }
@@ -573,21 +328,22 @@ static void record_present(recorder *rec, uint32_t pass) {
         .srcOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}},
         .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
         .dstOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}}};
-    rec->m->vk.CmdBlitImage(rec->cmd, image_handle(rec, from), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                            image_handle(rec, MASU_IMAGE_TARGET),
+    rec->m->vk.CmdBlitImage(rec->cmd, masu_recorded_image(rec, from),
+                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                            masu_recorded_image(rec, MASU_IMAGE_TARGET),
                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_NEAREST);
 }
 
 /* ---- A frame --------------------------------------------------------------------------------- */
 
-static void begin_label(const recorder *rec, const char *name) {
+static void begin_label(const masu_recorder *rec, const char *name) {
     if (!rec->m->vk.CmdBeginDebugUtilsLabelEXT || !rec->m->vk.CmdEndDebugUtilsLabelEXT) return;
     VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
                                   .pLabelName = name};
     rec->m->vk.CmdBeginDebugUtilsLabelEXT(rec->cmd, &label);
 }
 
-static void end_label(const recorder *rec) {
+static void end_label(const masu_recorder *rec) {
     if (!rec->m->vk.CmdBeginDebugUtilsLabelEXT || !rec->m->vk.CmdEndDebugUtilsLabelEXT) return;
     rec->m->vk.CmdEndDebugUtilsLabelEXT(rec->cmd);
 }
@@ -595,7 +351,7 @@ static void end_label(const recorder *rec) {
 /* Query `index` of this flight. The full barrier keeps later work from starting before the stamp is
  * written, and earlier work from ending after it: without it a driver may overlap passes and each
  * time would mean little. */
-static void timestamp(recorder *rec, uint32_t index) {
+static void timestamp(masu_recorder *rec, uint32_t index) {
     if (!rec->m->queries) return;
     if (!rec->m->plan.desc.debug.timestamps) { /* the governor's two cost no barrier */
         if (index != 0 && index != MASU_PASS_COUNT) return;
@@ -604,9 +360,9 @@ static void timestamp(recorder *rec, uint32_t index) {
                                      rec->flight * (MASU_PASS_COUNT + 1) + (index ? 1 : 0));
         return;
     }
-    memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
-                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                   VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+    masu_memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                        VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     rec->m->vk.CmdWriteTimestamp(rec->cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, rec->m->queries,
                                  rec->flight * (MASU_PASS_COUNT + 1) + index);
 }
@@ -614,12 +370,12 @@ static void timestamp(recorder *rec, uint32_t index) {
 /* NaN or infinity, read as fp32, fp16 or unorm alike. */
 static uint32_t poison_word(uint32_t kind) { return kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
 
-static void record_prologue(recorder *rec) {
+static void record_prologue(masu_recorder *rec) {
     const masu_renderer *m = rec->m;
     int counters = m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes;
-    memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
-                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                   VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+    masu_memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                        VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     if (counters) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS], 0, VK_WHOLE_SIZE,
                             0);
@@ -643,16 +399,16 @@ static void record_prologue(recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
                             MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
     }
-    int receivers = (int)(rec->rp->active >> MASU_PASS_RECEIVERS & 1u);
+    int receivers = masu_has_pass(&rec->rp->active, MASU_PASS_RECEIVERS);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
                             m->plan.receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
     if (counters || receivers || tiled || m->plan.needs.metered ||
         m->plan.buffers[MASU_BUFFER_POISON].bytes) {
-        memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                       VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                       VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+        masu_memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                            VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                            VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     }
     if (m->queries) {
         m->vk.CmdResetQueryPool(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1),
@@ -660,35 +416,12 @@ static void record_prologue(recorder *rec) {
     }
 }
 
-/* An image that outlives the frame begins it as the one before has left it, except where nothing of
- * it is needed any more. */
-static void find_persistent(recorder *rec) {
-    int all = rec->variant + 1 == rec->rp->variants;
-    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
-        if (!rec->m->plan.images[i].persistent || (all && !masu_images[i].kept)) continue;
-        rec->states[i] = state_of(MASU_READ, MASU_PASS_COMPUTE);
-    }
-}
-
-static void leave_persistent(recorder *rec) {
-    image_state rest = state_of(MASU_READ, MASU_PASS_COMPUTE);
-    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
-        const image_state *now = &rec->states[i];
-        if (!rec->m->plan.images[i].persistent || now->layout == rest.layout) continue;
-        VkImageMemoryBarrier b =
-            image_barrier(rec, (masu_image_id)i, now->writes ? now->access : 0, &rest, now->layout);
-        rec->m->vk.CmdPipelineBarrier(rec->cmd, now->stages, rest.stages, 0, 0, NULL, 0, NULL, 1,
-                                      &b);
-        rec->barriers++;
-    }
-}
-
-static void record_epilogue(recorder *rec) {
+static void record_epilogue(masu_recorder *rec) {
     const masu_renderer *m = rec->m;
     const masu_buffer_plan *readback = &m->plan.buffers[MASU_BUFFER_READBACK];
     if (m->plan.desc.debug.counters && m->plan.buffers[MASU_BUFFER_COUNTERS].bytes) {
-        memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                       VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+        masu_memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                            VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
         VkBufferCopy copy = {0, rec->flight * readback->stride,
                              m->plan.buffers[MASU_BUFFER_COUNTERS].bytes};
         m->vk.CmdCopyBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_COUNTERS],
@@ -696,42 +429,42 @@ static void record_epilogue(recorder *rec) {
     }
     if (m->queries) {
         /* Copied by the GPU, so that masu_stats is a read of memory and no call into the driver. */
-        m->vk.CmdCopyQueryPoolResults(rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1),
-                                      masu_stamps(&m->plan.desc),
-                                      m->objects.buffers[MASU_BUFFER_READBACK],
-                                      rec->flight * readback->stride + m->plan.readback_times,
-                                      sizeof(uint64_t),
-                                      VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+        m->vk.CmdCopyQueryPoolResults(
+            rec->cmd, m->queries, rec->flight * (MASU_PASS_COUNT + 1), masu_stamps(&m->plan.desc),
+            m->objects.buffers[MASU_BUFFER_READBACK],
+            rec->flight * readback->stride + m->plan.readback_times, sizeof(uint64_t),
+            VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
     }
     if (readback->bytes) {
-        memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                       VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+        masu_memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                            VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
     }
     /* The target to where the host wants it, visible to whatever comes next. */
-    const image_state *target = &rec->states[MASU_IMAGE_TARGET];
-    image_state last = {1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
-                        m->plan.desc.targets.final_layout, 0};
+    const masu_use *target = &rec->states[MASU_IMAGE_TARGET];
+    masu_use last = {1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
+                     m->plan.desc.targets.final_layout, 0};
     VkImageMemoryBarrier b =
-        image_barrier(rec, MASU_IMAGE_TARGET, target->access, &last, target->layout);
+        masu_image_barrier(rec, MASU_IMAGE_TARGET, target->access, &last, target->layout);
     m->vk.CmdPipelineBarrier(rec->cmd, target->stages, last.stages, 0, 0, NULL, 0, NULL, 1, &b);
     rec->barriers++;
 }
 
-/* sets: the rung's, of this target; see make_pass_sets for the order. */
-static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu_detail *detail) {
+/* sets: the rung's, of this target; see masu_make_pass_sets for the order. */
+static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
+                                masu_detail *detail) {
     const masu_renderer *m = rec->m;
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkResult r = m->vk.BeginCommandBuffer(rec->cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
     record_prologue(rec);
-    find_persistent(rec);
+    masu_find_persistent(rec);
     timestamp(rec, 0);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         int drawn = !masu_is_cascade(p) ||
                     masu_variant_draws(rec->rp, rec->variant, p - MASU_PASS_CASCADE_0);
-        if (rec->rp->active & MASU_PASS_BIT(p) && drawn) {
+        if (masu_has_pass(&rec->rp->active, p) && drawn) {
             begin_label(rec, masu_passes[p].name);
-            barrier_before(rec, p);
+            masu_barrier_before(rec, p);
             if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets[p]);
             if (p == MASU_PASS_READBACK) record_readback(rec, p);
             if (p == MASU_PASS_PRESENT) record_present(rec, p);
@@ -742,197 +475,10 @@ static masu_result record_frame(recorder *rec, const VkDescriptorSet *sets, masu
         }
         timestamp(rec, p + 1);
     }
-    leave_persistent(rec);
+    masu_leave_persistent(rec);
     record_epilogue(rec);
     r = m->vk.EndCommandBuffer(rec->cmd);
     return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
-}
-
-/* ---- Descriptor sets ------------------------------------------------------------------------- */
-
-static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
-    uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
-    VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4 * flights},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 20 * flights},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-         MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan.scene.texture_sets},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
-        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, flights}}; /* the last: ray queries alone */
-    VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = flights + sets + m->plan.scene.texture_sets,
-                                       .poolSizeCount = m->plan.needs.query ? 5 : 4,
-                                       .pPoolSizes = sizes};
-    VkResult r =
-        m->vk.CreateDescriptorPool(m->vk.device, &info, m->vk.allocator, &m->descriptor_pool);
-    return MASU_FAILED(r, m->descriptor_pool)
-               ? masu_fail_vulkan(detail, r, "vkCreateDescriptorPool")
-               : MASU_OK;
-}
-
-static masu_result allocate_set(masu_renderer *m, VkDescriptorSetLayout layout,
-                                VkDescriptorSet *set, masu_detail *detail) {
-    VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                        .descriptorPool = m->descriptor_pool,
-                                        .descriptorSetCount = 1,
-                                        .pSetLayouts = &layout};
-    VkResult r = m->vk.AllocateDescriptorSets(m->vk.device, &info, set);
-    return r ? masu_fail_vulkan(detail, r, "vkAllocateDescriptorSets") : MASU_OK;
-}
-
-static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
-    static const struct {
-        uint32_t binding;
-        masu_buffer_id buffer;
-        VkDescriptorType type;
-        int previous; /* the half of a slot that is of the frame before */
-    } rows[] = {
-        {MASU_BIND_FRAME, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-        {MASU_BIND_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_MATERIALS, MASU_BUFFER_MATERIALS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_COUNTERS, MASU_BUFFER_COUNTERS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TILES, MASU_BUFFER_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SLOTS, MASU_BUFFER_SLOTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_PREVIOUS, MASU_BUFFER_FRAME, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-        {MASU_BIND_PREVIOUS_INSTANCES, MASU_BUFFER_INSTANCES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-        {MASU_BIND_PROBES, MASU_BUFFER_PROBES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SHADOW, MASU_BUFFER_SHADOW, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-        {MASU_BIND_SKY, MASU_BUFFER_SKY, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 0},
-        {MASU_BIND_DRAWN, MASU_BUFFER_DRAWN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_DRAWS, MASU_BUFFER_DRAWS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SEEN, MASU_BUFFER_SEEN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TABLES, MASU_BUFFER_TABLES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_LIGHTS, MASU_BUFFER_LIGHTS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_LIGHT_TILES, MASU_BUFFER_LIGHT_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE, MASU_BUFFER_TRACE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE_FRAME, MASU_BUFFER_TRACE_FRAME, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE_VERTICES, MASU_BUFFER_VERTICES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_TRACE_TEXCOORDS, MASU_BUFFER_TEXCOORDS, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SPECULAR_TILES, MASU_BUFFER_SPECULAR_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SMAA_AREA, MASU_BUFFER_SMAA_AREA, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_SMAA_TILES, MASU_BUFFER_SMAA_TILES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},
-        {MASU_BIND_EXPOSURE, MASU_BUFFER_EXPOSURE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}};
-    for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && has_global_sets(&m->plan); f++) {
-        masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
-        if (result) return result;
-        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            /* Code that reads these is compiled away without them, but a set must be whole. */
-            masu_buffer_id id = rows[i].buffer;
-            if (id == MASU_BUFFER_SKY && !m->plan.needs.sky) id = MASU_BUFFER_FRAME;
-            const masu_buffer_plan *b = &m->plan.buffers[id];
-            if (!b->bytes) continue; /* no pass of this plan looks at it */
-            if (rows[i].previous && !m->plan.needs.velocity) continue;
-            int traces = rows[i].binding >= MASU_BIND_TRACE && rows[i].binding <= MASU_BIND_TOP_LEVEL;
-            if (traces && !m->plan.needs.reflections) continue;
-            if (rows[i].binding == MASU_BIND_TRACE_TEXCOORDS && !m->plan.scene.trace_colors) continue;
-            int polygons = rows[i].binding >= MASU_BIND_TRACE_FRAME &&
-                           rows[i].binding <= MASU_BIND_TRACE_TEXCOORDS;
-            if (polygons && !m->plan.needs.traced) continue;
-            if (rows[i].binding == MASU_BIND_DRAWS && !m->plan.occlusion) continue;
-            int halves = m->plan.needs.velocity && (id == MASU_BUFFER_FRAME || id == MASU_BUFFER_INSTANCES);
-            uint64_t bytes = b->stride ? b->stride : b->bytes;
-            if (halves) bytes /= 2;
-            VkDescriptorBufferInfo buffer = {m->objects.buffers[id],
-                                             f * b->stride + (rows[i].previous ? bytes : 0), bytes};
-            if (id == MASU_BUFFER_FRAME)
-                buffer.range = sizeof(struct masu_frame_uniforms);
-            if (id == MASU_BUFFER_SHADOW) buffer.range = sizeof(struct masu_shadow_uniforms);
-            if (id == MASU_BUFFER_SKY) buffer.range = sizeof(struct masu_sky_uniforms);
-            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                          .dstSet = m->global_sets[f],
-                                          .dstBinding = rows[i].binding,
-                                          .descriptorCount = 1,
-                                          .descriptorType = rows[i].type,
-                                          .pBufferInfo = &buffer};
-            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
-        }
-        if (m->plan.needs.query) masu_ray_bind(m, m->global_sets[f]);
-    }
-    return MASU_OK;
-}
-
-/* A slot without a texture gets one of the others: the shader does not look at it, but a set must be
- * whole. */
-static masu_result make_texture_sets(masu_renderer *m, masu_detail *detail) {
-    masu_scene_view v = {0};
-    if (m->plan.scene.texture_sets) v = masu_scene_look(&m->plan.scene);
-    for (uint32_t i = 0; i < m->plan.scene.texture_sets; i++) {
-        const masu_blob_texture_set *from = &v.texture_sets[i];
-        masu_result result = allocate_set(m, m->texture_layout, &m->texture_sets[i], detail);
-        if (result) return result;
-        uint32_t any = 0;
-        while (from->texture[any] == MASU_BLOB_NONE) any++;
-        for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
-            uint32_t given = from->texture[slot];
-            if (given == MASU_BLOB_NONE) given = from->texture[any];
-            VkDescriptorImageInfo image = {.sampler =
-                                               m->samplers[from->wrap[0] + 3 * from->wrap[1]],
-                                           .imageView = m->plan.textures[given].view,
-                                           .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                          .dstSet = m->texture_sets[i],
-                                          .dstBinding = slot,
-                                          .descriptorCount = 1,
-                                          .descriptorType =
-                                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                          .pImageInfo = &image};
-            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
-        }
-    }
-    return MASU_OK;
-}
-
-static int writes_target(const masu_rung_plan *rp, uint32_t pass) {
-    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
-        if (rp->access[pass][a].image == MASU_IMAGE_TARGET) return 1;
-    }
-    return 0;
-}
-
-static void write_pass_set(masu_renderer *m, const masu_rung_plan *rp, uint32_t pass,
-                           uint32_t target, VkDescriptorSet set) {
-    uint32_t binding = 0;
-    for (int writes = 0; writes < 2; writes++) {
-        for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
-            if (!masu_access_binds(rp->access[pass][a], writes)) continue;
-            uint32_t id = rp->access[pass][a].image;
-            VkDescriptorImageInfo image = {
-                .imageView =
-                    id == MASU_IMAGE_TARGET ? m->plan.desc.targets.views[target] : m->views[id],
-                .imageLayout =
-                    writes ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                          .dstSet = set,
-                                          .dstBinding = binding++,
-                                          .descriptorCount = 1,
-                                          .descriptorType =
-                                              writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-                                                     : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                          .pImageInfo = &image};
-            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
-        }
-    }
-}
-
-/* Sets of all rungs, in the order (rung, pass, target); a pass that does not write the target has
- * one for all targets. `next` walks the renderer's array in that order. Fills sets[target][pass] of
- * one rung. */
-static masu_result make_pass_sets(masu_renderer *m, const masu_rung_plan *rp, uint32_t *next,
-                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
-                                  masu_detail *detail) {
-    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!(rp->active & MASU_PASS_BIT(p)) || !masu_has_set(p)) continue;
-        uint32_t targets = m->plan.desc.targets.count, own = writes_target(rp, p) ? targets : 1;
-        for (uint32_t t = 0; t < own; t++) {
-            VkDescriptorSet *set = &m->pass_sets[(*next)++];
-            masu_result result = allocate_set(m, m->pass_layouts[p], set, detail);
-            if (result) return result;
-            write_pass_set(m, rp, p, t, *set);
-            sets[t][p] = *set;
-        }
-        for (uint32_t t = own; t < targets; t++) sets[t][p] = sets[0][p];
-    }
-    return MASU_OK;
 }
 
 /* ---- All recordings -------------------------------------------------------------------------- */
@@ -981,12 +527,12 @@ static void record_textures(masu_renderer *m, VkCommandBuffer cmd, masu_texture_
 /* The images that the first frame finds as if another had left them; what is in them is not looked
  * at. */
 static void record_kept(masu_renderer *m, VkCommandBuffer cmd) {
-    image_state rest = state_of(MASU_READ, MASU_PASS_COMPUTE);
-    recorder rec = {.m = m, .cmd = cmd};
+    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);
+    masu_recorder rec = {.m = m, .cmd = cmd};
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (!m->plan.images[i].used || !masu_images[i].kept) continue;
         VkImageMemoryBarrier b =
-            image_barrier(&rec, (masu_image_id)i, 0, &rest, VK_IMAGE_LAYOUT_UNDEFINED);
+            masu_image_barrier(&rec, (masu_image_id)i, 0, &rest, VK_IMAGE_LAYOUT_UNDEFINED);
         m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0, NULL, 0,
                                  NULL, 1, &b);
     }
@@ -1042,9 +588,7 @@ static masu_result make_queries(masu_renderer *m, masu_detail *detail) {
 masu_result masu_record(masu_renderer *m, masu_detail *detail) {
     const masu_desc *d = &m->plan.desc;
     uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan.recordings;
-    masu_result result = make_pool(m, detail);
-    if (!result) result = make_global_sets(m, detail);
-    if (!result) result = make_texture_sets(m, detail);
+    masu_result result = masu_make_sets(m, detail);
     if (!result) result = make_queries(m, detail);
     if (!result) result = make_command_buffers(m, d->frames_in_flight * recordings, detail);
     uint32_t next = 0;
@@ -1052,17 +596,17 @@ masu_result masu_record(masu_renderer *m, masu_detail *detail) {
         VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
         memset(sets, 0, sizeof sets);
         masu_rung_plan *rp = &m->plan.rungs[r];
-        result = make_pass_sets(m, rp, &next, sets, detail);
+        result = masu_make_pass_sets(m, rp, &next, sets, detail);
         uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
         for (uint32_t i = 0; i < d->frames_in_flight * own && !result; i++) {
             uint32_t f = i / own, t = i % own / rp->variants;
-            recorder rec = {.m = m,
-                            .cmd = m->frames[f * recordings + rp->first_recording + i % own],
-                            .flight = f,
-                            .rung = r,
-                            .target = t,
-                            .variant = i % rp->variants,
-                            .rp = rp};
+            masu_recorder rec = {.m = m,
+                                 .cmd = m->frames[f * recordings + rp->first_recording + i % own],
+                                 .flight = f,
+                                 .rung = r,
+                                 .target = t,
+                                 .variant = i % rp->variants,
+                                 .rp = rp};
             result = record_frame(&rec, sets[t], detail);
             rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }

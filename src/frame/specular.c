@@ -223,10 +223,10 @@ void masu_write_reflections(masu_renderer *m, const masu_frame_desc *f, const do
     }
     if (!m->fine_before) u->history[3] |= MASU_HISTORY_NO_FINE;
     /* Of the frame before counts what it has kept. */
-    m->fine_before = (rp->active & MASU_PASS_BIT(MASU_PASS_SPECULAR_KEEP_FINE)) != 0;
+    m->fine_before = masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP_FINE);
     m->traced_before =
-        (rp->active & (MASU_PASS_BIT(MASU_PASS_SPECULAR_KEEP) |
-                       MASU_PASS_BIT(MASU_PASS_SPECULAR_ACCUMULATE))) != 0;
+        masu_has_pass(&rp->active, MASU_PASS_SPECULAR_KEEP) ||
+        masu_has_pass(&rp->active, MASU_PASS_SPECULAR_ACCUMULATE);
     m->traced_size[0] = rp->render_width;
     m->traced_size[1] = rp->render_height;
 }

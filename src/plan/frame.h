@@ -1,9 +1,6 @@
-/* frame.h: what a row of the frame table is. The table itself is in frame.c.
- *
- * A row names its images in order; barriers, layouts, descriptor bindings, image usage flags,
- * lifetimes, memory aliasing, labels, timestamps and the printed plan are all derived from it
- * (plan.c, record.c). The reads of a compute row become combined image samplers at bindings 0..R-1
- * of set 1, its writes storage images at R..R+W-1, in the row's order. */
+/* frame.h: what the rows of the frame's tables are. The tables themselves are passes.inc, images.inc,
+ * buffers.inc and axes.inc beside it; each says at its head what its columns mean. Here they become enums and
+ * constant arrays; plan.c, buffers.c, push.c and src/device derive the rest. */
 #ifndef MASU_FRAME_H
 #define MASU_FRAME_H
 
@@ -11,63 +8,32 @@
 #include "masu.h"
 #include "shared/masu_shared.h"
 
+/* Images, and behind them the buffers, of which rows say what they read and write for barriers' sake. */
 typedef enum masu_image_id {
     MASU_IMAGE_NONE = 0,
-    MASU_IMAGE_ALBEDO,      /* sqrt of linear albedo; roughness */
-    MASU_IMAGE_NORMAL,      /* packed octahedral normal, metallic, flags */
-    MASU_IMAGE_DEPTH,       /* raster depth, reverse-Z */
-    MASU_IMAGE_SCENE_DEPTH, /* the nearer of raster and SDF, same encoding */
-    MASU_IMAGE_OCCLUDERS,   /* depth of occluders, the farthest of each texel */
-    MASU_IMAGE_CONE8,       /* free distance along the rays of each 8x8 block */
-    MASU_IMAGE_CONE4,       /* the same of each 4x4 block */
-    MASU_IMAGE_SURFACE,     /* specular, coat, what small relief leaves; see pack.glsl */
-    MASU_IMAGE_VELOCITY,    /* where the surface was in the frame before */
-    MASU_IMAGE_SHADOW_MAP,  /* depth along the sun, the cascades side by side */
-    MASU_IMAGE_AO,          /* seen part of the ambient light at half size, and depth: ao_texel.glsl */
-    MASU_IMAGE_OCCLUSION,   /* 2 x 16 bit unorm: seen part of the sun, of the ambient light */
-    MASU_IMAGE_SPECULAR_GUIDE,   /* of reflections, at half size: which pixel, its normal, depth */
-    MASU_IMAGE_SPECULAR_RAY,     /* direction, density */
-    MASU_IMAGE_SPECULAR_HIT,     /* what the ray meets */
-    MASU_IMAGE_SPECULAR_LIGHT,   /* radiance along it, distance */
-    MASU_IMAGE_SPECULAR_MOTION,  /* of what is seen in the mirror, pixels */
-    MASU_IMAGE_SPECULAR_REUSED,  /* the same, with the neighbours' rays */
-    MASU_IMAGE_SPECULAR_MEAN,    /* over frames: radiance, mean square of its luma */
-    MASU_IMAGE_SPECULAR_AGE,     /* how many frames, distance, motion of what is seen: filter.glsl */
-    MASU_IMAGE_SPECULAR_FINE,    /* of each of the 2x2 pixels: radiance over frames, smooth surfaces */
-    MASU_IMAGE_SPECULAR_SMOOTH,  /* over neighbours: radiance */
-    MASU_IMAGE_SPECULAR_STEADY,  /* what is shown: radiance */
-    MASU_IMAGE_SPECULAR_OLD_GUIDE, /* as the frame before has left them */
-    MASU_IMAGE_SPECULAR_OLD_MEAN,
-    MASU_IMAGE_SPECULAR_OLD_AGE,
-    MASU_IMAGE_SPECULAR_OLD_STEADY,
-    MASU_IMAGE_SPECULAR_OLD_FINE,
-    MASU_IMAGE_SPECULAR_SUM,     /* over frames, for comparison: radiance times weight, frames */
-    MASU_IMAGE_HDR,         /* linear radiance */
-    MASU_IMAGE_LDR,         /* display-encoded colour, render size */
-    MASU_IMAGE_SMOOTH,      /* the same or the host's input, anti-aliased */
-    MASU_IMAGE_UPSCALED,    /* display-encoded colour, output size */
-    MASU_IMAGE_FINAL,       /* what a blit takes to a target that is no storage image */
-    MASU_IMAGE_SOURCE,      /* the host's input, upscaling only */
-    MASU_IMAGE_TARGET,      /* the host's output */
-    MASU_IMAGE_COUNT,
-    MASU_RESOURCE_TILES, /* not images: buffers of set 0, in rows for their barriers alone */
-    MASU_RESOURCE_SLOTS,
-    MASU_RESOURCE_SEEN,
-    MASU_RESOURCE_DRAWS,
-    MASU_RESOURCE_PROBES,
-    MASU_RESOURCE_LIGHT_TILES,
-    MASU_RESOURCE_SPECULAR_TILES,
-    MASU_RESOURCE_TOP_LEVEL, /* of ray queries */
-    MASU_RESOURCE_SMAA_TILES,
-    MASU_RESOURCE_EXPOSURE,
-    MASU_RESOURCE_END,
-    /* Stand-ins that plan.c resolves per rung: the image of that class that the latest active row
-     * has written. */
-    MASU_LATEST_DEPTH = 64,
-    MASU_LATEST_COLOR,
-    MASU_LATEST_SPECULAR,
-    MASU_UNSMOOTHED /* ldr, without a scene source */
+#define IMAGE(ID, ...) MASU_IMAGE_##ID,
+#include "plan/images.inc"
+#undef IMAGE
+    MASU_IMAGE_COUNT
 } masu_image_id;
+
+typedef enum masu_buffer_id {
+#define BUFFER(ID, ...) MASU_BUFFER_##ID,
+#include "plan/buffers.inc"
+#undef BUFFER
+    MASU_BUFFER_COUNT
+} masu_buffer_id;
+
+/* What an access may name: an image, a buffer, or a stand-in, which plan.c resolves per rung: the image of
+ * a class that the latest pass has written, or the one that was the latest before. */
+#define MASU_RESOURCE(buffer) (MASU_IMAGE_COUNT + (buffer))
+#define MASU_RESOURCE_END MASU_RESOURCE(MASU_BUFFER_COUNT)
+#define MASU_LATEST(class_of) (MASU_RESOURCE_END + (class_of))
+#define MASU_BEFORE(class_of) (MASU_RESOURCE_END + MASU_CLASS_COUNT + (class_of))
+
+static inline int masu_is_buffer(uint32_t resource) {
+    return resource >= MASU_RESOURCE(0) && resource < MASU_RESOURCE_END;
+}
 
 typedef enum masu_image_class {
     MASU_CLASS_OTHER,
@@ -80,6 +46,7 @@ typedef enum masu_image_class {
 typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
+    MASU_EXTENT_OUTPUT32, /* the same, a workgroup for 32x32 pixels */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
     MASU_EXTENT_BLOCK8,
@@ -103,6 +70,7 @@ typedef struct masu_image_row {
     masu_image_class class_of;
     uint32_t readback; /* masu_readback_bits that asks for it */
     int kept;          /* the next frame reads what this one has left in it */
+    const char *content;
 } masu_image_row;
 
 typedef enum masu_usage {
@@ -110,6 +78,7 @@ typedef enum masu_usage {
     MASU_READ,        /* sampled */
     MASU_READ_BUFFER, /* storage buffer, or arguments of the row's indirect dispatch */
     MASU_READ_COPY,   /* transfer source */
+    MASU_READ_BACK,   /* the same, of what desc.readback asks for */
     MASU_READ_STRUCTURE, /* of ray queries: binding of set 0 */
     MASU_WRITE,       /* storage, whole sub-rectangle, earlier content is lost */
     MASU_UPDATE,      /* storage, some texels, the rest is kept */
@@ -132,9 +101,11 @@ typedef enum masu_pass_kind {
 #define MASU_PASS_ACCESSES 12u
 
 typedef struct masu_access {
-    uint8_t image; /* masu_image_id or a stand-in */
+    uint8_t image; /* masu_image_id, MASU_RESOURCE of a buffer, or a stand-in */
     uint8_t usage; /* masu_usage */
 } masu_access;
+
+_Static_assert(MASU_BEFORE(MASU_CLASS_COUNT) <= 256, "an access names its resource in 8 bits");
 
 /* What the scene and the description need, computed once; the `decide` of each row looks at nothing
  * else. */
@@ -176,91 +147,57 @@ typedef struct masu_needs {
     int specular;    /* reflections are traced */
     int reuse, temporal, fine, filter, taa; /* what is done to them */
     int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */
+    masu_rung rung; /* itself */
     masu_march march;
     masu_easu easu; /* never AUTO */
     uint32_t cascades; /* of the shadow map */
 } masu_needs;
 
+/* What a graphics pass draws, and with it the state of its pipelines. */
+typedef enum masu_geometry {
+    MASU_GEOMETRY_NONE,
+    MASU_GEOMETRY_POLYGONS, /* colour and depth */
+    MASU_GEOMETRY_CASCADE,  /* depth alone */
+    MASU_GEOMETRY_BLENDED,  /* over what is there, back to front */
+    MASU_GEOMETRY_BOXES,    /* made up by the vertex shader; depth alone */
+    MASU_GEOMETRY_SCREEN    /* one triangle over everything */
+} masu_geometry;
+
 typedef struct masu_pass_row {
-    const char *name; /* also the shader's file name; cascade_N are all of cascade.vert */
+    const char *name;
     const char *purpose;
     masu_pass_kind kind;
     masu_image_extent extent; /* size of the dispatch */
     /* Returns whether the pass runs, and why, in a few words. */
     int (*decide)(const masu_needs *needs, const char **why);
-    /* Pass-specific push constants of a rung; NULL: none. */
-    void (*params)(const masu_rung *rung, struct masu_push *push);
-    masu_access access[MASU_PASS_ACCESSES];
+    masu_geometry geometry;
     uint32_t code; /* masu_blob_kind of the scene's own SPIR-V; 0: the library's */
+    masu_access access[MASU_PASS_ACCESSES];
 } masu_pass_row;
 
 typedef enum masu_pass_id {
-    MASU_PASS_OCCLUDERS,
-    MASU_PASS_CULL,
-    MASU_PASS_COMPACT,
-    MASU_PASS_GBUFFER,
-    MASU_PASS_UPDATE,
-    MASU_PASS_UPDATE_PREVIOUS,
-    MASU_PASS_CLASSIFY,
-    MASU_PASS_CONE8,
-    MASU_PASS_CONE4,
-    MASU_PASS_MARCH,
-    MASU_PASS_MARCH_CHECKERBOARD,
-    MASU_PASS_MARCH_PLAIN,
-    MASU_PASS_MARCH_SEED,
-    MASU_PASS_MARCH_FRAGMENT,
-    MASU_PASS_VELOCITY,
-    MASU_PASS_SDF_VELOCITY,
-    MASU_PASS_RECEIVERS,
-    MASU_PASS_CULL_CASTERS,
-    MASU_PASS_COMPACT_CASTERS,
-    MASU_PASS_CASCADE_0, /* one after the other */
-    MASU_PASS_CASCADE_1,
-    MASU_PASS_CASCADE_2,
-    MASU_PASS_CASCADE_3,
-    MASU_PASS_SDF_OCCLUSION,
-    MASU_PASS_SHADOW,
-    MASU_PASS_PROBES,
-    MASU_PASS_LIGHT_TILES,
-    MASU_PASS_AO,
-    MASU_PASS_AO_UPSAMPLE,
-    MASU_PASS_LIGHT,
-    MASU_PASS_LIGHT_OCCLUDED,
-    MASU_PASS_SPECULAR_GUIDE,
-    MASU_PASS_SPECULAR_RAYS,
-    MASU_PASS_SPECULAR_TRACE,
-    MASU_PASS_SPECULAR_STRUCTURE,
-    MASU_PASS_SPECULAR_QUERY,
-    MASU_PASS_SPECULAR_TRACE_SDF,
-    MASU_PASS_SPECULAR_SHADE,
-    MASU_PASS_SPECULAR_REUSE,
-    MASU_PASS_SPECULAR_TEMPORAL,
-    MASU_PASS_SPECULAR_FINE,
-    MASU_PASS_SPECULAR_FILTER,
-    MASU_PASS_SPECULAR_TAA,
-    MASU_PASS_SPECULAR_KEEP,
-    MASU_PASS_SPECULAR_KEEP_FINE,
-    MASU_PASS_SPECULAR_ACCUMULATE,
-    MASU_PASS_SPECULAR_COMPOSITE,
-    MASU_PASS_TRANSPARENTS,
-    MASU_PASS_READBACK,
-    MASU_PASS_METER,
-    MASU_PASS_EXPOSE,
-    MASU_PASS_TONEMAP,
-    MASU_PASS_FXAA,
-    MASU_PASS_SMAA_EDGES,
-    MASU_PASS_SMAA_BLEND,
-    MASU_PASS_EASU,
-    MASU_PASS_EASU_FAST,
-    MASU_PASS_BILINEAR,
-    MASU_PASS_FSR1,
-    MASU_PASS_RCAS,
-    MASU_PASS_PRESENT,
+#define PASS(ID, ...) MASU_PASS_##ID,
+#include "plan/passes.inc"
+#undef PASS
     MASU_PASS_COUNT
 } masu_pass_id;
 
-/* The bit of a pass in a mask of passes. */
-#define MASU_PASS_BIT(pass) ((uint64_t)1 << (pass))
+/* Passes as a set. */
+#define MASU_PASS_WORDS ((MASU_PASS_COUNT + 63) / 64)
+typedef struct masu_pass_set {
+    uint64_t words[MASU_PASS_WORDS];
+} masu_pass_set;
+
+static inline int masu_has_pass(const masu_pass_set *set, uint32_t pass) {
+    return (int)(set->words[pass / 64] >> pass % 64 & 1u);
+}
+
+static inline void masu_add_pass(masu_pass_set *set, uint32_t pass) {
+    set->words[pass / 64] |= (uint64_t)1 << pass % 64;
+}
+
+_Static_assert(MASU_PASS_COUNT <= MASU_MAX_PASSES, "masu_plan_info holds every pass");
+_Static_assert(MASU_IMAGE_COUNT <= MASU_MAX_RESOURCES, "masu_plan_info holds every image");
 
 extern const masu_image_row masu_images[MASU_IMAGE_COUNT];
 extern const masu_pass_row masu_passes[MASU_PASS_COUNT];
@@ -269,6 +206,17 @@ int masu_usage_writes(masu_usage usage);
 
 /* Whether it is a cascade of the shadow map: it does not run in every frame. */
 int masu_is_cascade(uint32_t pass);
+
+/* Whether a rung of such needs has an image: the last column but one of images.inc. */
+int masu_has_image(const masu_needs *needs, uint32_t image);
+
+/* Whether the sun or the ambient light reaches surfaces only in part, and an image says how much. */
+int masu_is_occluded(const masu_needs *needs);
+
+static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
+
+/* Whether a way to march works on lists of parts by tile. */
+int masu_march_has_tiles(masu_march march);
 
 /* Whether a row's images are bound as set 1: those of compute rows, and of what is drawn over them. */
 int masu_has_set(uint32_t pass);

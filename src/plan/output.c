@@ -182,40 +182,28 @@ VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image) {
     return color && plan->deep ? VK_FORMAT_R16G16B16A16_SFLOAT : row->format;
 }
 
-static int writes_color(const masu_rung_plan *rung, uint32_t pass) {
+/* The image of displayed colour that a compute pass writes, all of it or a part; 0: none. */
+static uint32_t written_color(const masu_rung_plan *rung, uint32_t pass) {
     if (masu_passes[pass].kind != MASU_PASS_COMPUTE) return 0;
     for (uint32_t a = 0; a < rung->access_count[pass]; a++) {
         masu_access access = rung->access[pass][a];
-        int writes = access.usage == MASU_WRITE || pass == MASU_PASS_SMAA_BLEND;
+        int writes = access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
         if (access.image >= MASU_IMAGE_COUNT || !writes) continue;
-        if (masu_images[access.image].class_of == MASU_CLASS_COLOR) return 1;
+        if (masu_images[access.image].class_of == MASU_CLASS_COLOR) return access.image;
     }
     return 0;
 }
 
 void masu_output_push(const masu_frame_plan *plan, const masu_rung_plan *rung, uint32_t pass,
                       struct masu_push *push) {
-    if (pass == MASU_PASS_EXPOSE) {
-        const masu_exposure *e = &plan->desc.exposure;
-        const float params[4] = {e->brighten, e->darken, e->least, e->most};
-        for (uint32_t i = 0; i < 4; i++) push->param[i] = params[i];
-        push->index[0] = e->low > 0.0f ? (uint32_t)(e->low * 65536.0f) : 0;
-        push->index[1] = e->high > 0.0f ? (uint32_t)(e->high * 65536.0f) : 0;
-    }
-    if (!plan->needs.scene || !writes_color(rung, pass)) return;
-    uint32_t last = pass;
+    uint32_t image = written_color(rung, pass);
+    if (!plan->needs.scene || !image) return;
     for (uint32_t p = pass + 1; p < MASU_PASS_COUNT; p++) {
-        if (writes_color(rung, p)) last = p;
+        /* What only some tiles of the image are written by shares the writing. */
+        int shares = masu_passes[p].extent == MASU_EXTENT_EDGED && written_color(rung, p) == image;
+        if (written_color(rung, p) && !shares) return;
     }
-    if (pass == MASU_PASS_TONEMAP) {
-        const masu_targets *t = &plan->desc.targets;
-        push->param[0] = t->white;
-        push->param[1] = t->encoding == MASU_ENCODING_SRGB ? 1.0f : t->peak / t->white;
-    }
-    /* These two share the writing. */
-    if (last == MASU_PASS_SMAA_BLEND && pass == MASU_PASS_SMAA_EDGES) last = pass;
-    if (last != pass) return;
     const uint32_t *steps = plan->output.steps;
-    push->index[2] = steps[0] | steps[1] << 10 | steps[2] << 20;
-    push->index[3] = plan->output.flags;
+    push->output_steps = steps[0] | steps[1] << 10 | steps[2] << 20;
+    push->output_flags = plan->output.flags;
 }

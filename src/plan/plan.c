@@ -3,14 +3,8 @@
 
 #include "scene/blob.h"
 #include "base/error.h"
-#include "quality/governor.h"
-#include "quality/ladder.h"
-#include "frame/lights.h"
-#include "scene/lod.h"
+#include "plan/buffers.h"
 #include "plan/output.h"
-#include "device/ray_query.h"
-#include "frame/specular.h"
-#include "frame/transparents.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,291 +17,6 @@ uint32_t masu_format_bytes(VkFormat format) {
     case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
     default: return 4;
     }
-}
-
-/* Of ambient occlusion: where more samples stop to pay (docs/DESIGN.md). */
-#define MASU_AO_SLICES 2
-#define MASU_AO_STEPS 8
-
-/* Of reflections: neighbours of the two filters, and how far back the mean over frames reaches. */
-#define MASU_REUSE_TAPS 8
-#define MASU_FILTER_TAPS 12
-#define MASU_SPECULAR_FRAMES 32
-
-/* ---- Defaults -------------------------------------------------------------------------------- */
-
-masu_desc masu_desc_resolved(const masu_desc *desc) {
-    masu_desc d;
-    memset(&d, 0, sizeof d);
-    if (desc) d = *desc;
-    if (d.frames_in_flight == 0) d.frames_in_flight = 2;
-    masu_ladder_defaults(&d);
-    if (d.rung_count == 0) {
-        d.rung_count = 3;
-        d.rungs[0] = (masu_rung){.scale = 1.0f};
-        d.rungs[1] = (masu_rung){.scale = 0.8f, .sharpness = 0.2f};
-        d.rungs[2] = (masu_rung){.scale = 0.4f, .sharpness = 0.2f};
-    }
-    for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
-        if (d.rungs[r].scale == 0.0f) d.rungs[r].scale = 1.0f;
-        if (d.rungs[r].march_steps == 0) d.rungs[r].march_steps = MASU_MARCH_STEPS_MAX;
-        for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
-            if (d.rungs[r].shadow_refresh[k] == 0) d.rungs[r].shadow_refresh[k] = 1;
-        }
-        if (d.rungs[r].ao_slices == 0) d.rungs[r].ao_slices = MASU_AO_SLICES;
-        if (d.rungs[r].ao_steps == 0) d.rungs[r].ao_steps = MASU_AO_STEPS;
-        if (d.rungs[r].lod_error == 0.0f) d.rungs[r].lod_error = MASU_LOD_PIXELS;
-        if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
-            d.rungs[r].specular_cutoff = d.scene->specular_cutoff;
-        if (d.rungs[r].specular_reuse_taps == 0) d.rungs[r].specular_reuse_taps = MASU_REUSE_TAPS;
-        if (d.rungs[r].specular_filter_taps == 0) d.rungs[r].specular_filter_taps = MASU_FILTER_TAPS;
-        if (d.rungs[r].specular_frames == 0) d.rungs[r].specular_frames = MASU_SPECULAR_FRAMES;
-    }
-    masu_governor_defaults(&d.governor, d.rung_count);
-    if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
-    if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
-        d.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    }
-    masu_output_defaults(&d);
-    return d;
-}
-
-/* ---- Checks ---------------------------------------------------------------------------------- */
-
-static masu_result bad_range(masu_detail *detail, const char *what, uint64_t given, uint64_t low,
-                             uint64_t high) {
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, given < low ? low : high, given,
-                     "%s is %llu, allowed are %llu to %llu", what, (unsigned long long)given,
-                     (unsigned long long)low, (unsigned long long)high);
-}
-
-static masu_result check_rung(const masu_desc *d, uint32_t r, masu_detail *detail) {
-    const masu_rung *rung = &d->rungs[r];
-    if (!(rung->scale > 0.0f && rung->scale <= 1.0f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].scale", 1, 0,
-                         "rungs[%u].scale is %g, allowed are 0 < scale <= 1", r,
-                         (double)rung->scale);
-    }
-    if (!(rung->sharpness >= 0.0f && rung->sharpness <= 64.0f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].sharpness", 0, 0,
-                         "rungs[%u].sharpness is %g stops, allowed are 0 to 64", r,
-                         (double)rung->sharpness);
-    }
-    if (!(rung->lod_error >= -1e9f && rung->lod_error <= 1e9f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].lod_error", 1, 0,
-                         "rungs[%u].lod_error is %g pixels, allowed are -1e9 to 1e9", r,
-                         (double)rung->lod_error);
-    }
-    if (rung->march_steps > MASU_MARCH_STEPS_MAX) {
-        return bad_range(detail, "rungs[].march_steps", rung->march_steps, 1, MASU_MARCH_STEPS_MAX);
-    }
-    if ((unsigned)rung->march > MASU_MARCH_UNPRUNED) {
-        return bad_range(detail, "rungs[].march", (unsigned)rung->march, 0, MASU_MARCH_UNPRUNED);
-    }
-    if ((unsigned)rung->easu > MASU_EASU_BILINEAR) {
-        return bad_range(detail, "rungs[].easu", (unsigned)rung->easu, 0, MASU_EASU_BILINEAR);
-    }
-    if (rung->shadow_cascades > MASU_MAX_CASCADES) {
-        return bad_range(detail, "rungs[].shadow_cascades", rung->shadow_cascades, 0,
-                         MASU_MAX_CASCADES);
-    }
-    if (rung->shadow_resolution && (rung->shadow_resolution < MASU_SHADOW_SIZE_MIN ||
-                                    rung->shadow_resolution > MASU_SHADOW_SIZE_MAX)) {
-        return bad_range(detail, "rungs[].shadow_resolution", rung->shadow_resolution,
-                         MASU_SHADOW_SIZE_MIN, MASU_SHADOW_SIZE_MAX);
-    }
-    if (!(rung->shadow_distance >= 0.0f && rung->shadow_distance <= 1e30f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].shadow_distance", 0, 0,
-                         "rungs[%u].shadow_distance is %g m, allowed are 0 to 1e30", r,
-                         (double)rung->shadow_distance);
-    }
-    for (uint32_t k = 0; k < MASU_MAX_CASCADES; k++) {
-        if (rung->shadow_refresh[k] <= MASU_MAX_REFRESH) continue;
-        return bad_range(detail, "rungs[].shadow_refresh", rung->shadow_refresh[k], 0,
-                         MASU_MAX_REFRESH);
-    }
-    if (!(rung->specular_cutoff >= 0.0f && rung->specular_cutoff <= 1.0f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].specular_cutoff", 0, 0,
-                         "rungs[%u].specular_cutoff is %g, allowed are 0 to 1", r,
-                         (double)rung->specular_cutoff);
-    }
-    if (rung->ao_slices > MASU_AO_SLICES_MAX)
-        return bad_range(detail, "rungs[].ao_slices", rung->ao_slices, 0, MASU_AO_SLICES_MAX);
-    if (rung->ao_steps > MASU_AO_STEPS_MAX)
-        return bad_range(detail, "rungs[].ao_steps", rung->ao_steps, 0, MASU_AO_STEPS_MAX);
-    const struct {
-        const char *name;
-        uint32_t value, most;
-    } counts[] = {{"rungs[].specular_reuse_taps", rung->specular_reuse_taps, MASU_REUSE_TAPS_MAX},
-                  {"rungs[].specular_filter_taps", rung->specular_filter_taps, MASU_FILTER_TAPS_MAX},
-                  {"rungs[].specular_frames", rung->specular_frames, MASU_SPECULAR_FRAMES_MAX}};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-        if (counts[i].value > counts[i].most)
-            return bad_range(detail, counts[i].name, counts[i].value, 0, counts[i].most);
-    }
-    if ((unsigned)rung->aa > MASU_AA_SMAA_ULTRA)
-        return bad_range(detail, "rungs[].aa", (unsigned)rung->aa, 0, MASU_AA_SMAA_ULTRA);
-    const masu_switch switches[] = {rung->upscale,   rung->sharpen,     rung->frustum,
-                                    rung->occlusion, rung->light_tiles, rung->ao,
-                                    rung->specular,  rung->specular_reuse,
-                                    rung->specular_temporal, rung->specular_filter,
-                                    rung->specular_taa, rung->specular_fine,
-                                    rung->fuse};
-    static const char *const names[] = {"rungs[].upscale",   "rungs[].sharpen",
-                                        "rungs[].frustum",   "rungs[].occlusion",
-                                        "rungs[].light_tiles", "rungs[].ao",
-                                        "rungs[].specular",  "rungs[].specular_reuse",
-                                        "rungs[].specular_temporal", "rungs[].specular_filter",
-                                        "rungs[].specular_taa", "rungs[].specular_fine",
-                                        "rungs[].fuse"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if ((unsigned)switches[i] <= MASU_ON) continue;
-        return bad_range(detail, names[i], (unsigned)switches[i], MASU_AUTO, MASU_ON);
-    }
-    return MASU_OK;
-}
-
-static int final_layout_known(VkImageLayout layout) {
-    return layout == VK_IMAGE_LAYOUT_GENERAL || layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL ||
-           layout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL ||
-           layout == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL ||
-           layout == VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
-}
-
-static masu_result check_desc(const masu_desc *d, masu_detail *detail) {
-    const masu_targets *t = &d->targets;
-    if (d->rung_count > MASU_MAX_RUNGS) {
-        return bad_range(detail, "rung_count", d->rung_count, 1, MASU_MAX_RUNGS);
-    }
-    if (d->frames_in_flight > MASU_MAX_FLIGHT) {
-        return bad_range(detail, "frames_in_flight", d->frames_in_flight, 1, MASU_MAX_FLIGHT);
-    }
-    if (d->output.width < 1 || d->output.width > 16384) {
-        return bad_range(detail, "output.width", d->output.width, 1, 16384);
-    }
-    if (d->output.height < 1 || d->output.height > 16384) {
-        return bad_range(detail, "output.height", d->output.height, 1, 16384);
-    }
-    if (t->count < 1 || t->count > MASU_MAX_TARGETS) {
-        return bad_range(detail, "targets.count", t->count, 1, MASU_MAX_TARGETS);
-    }
-    for (uint32_t i = 0; i < t->count; i++) {
-        if (!t->images || !t->images[i] || (t->storage && (!t->views || !t->views[i]))) {
-            const char *what = t->images && t->images[i] ? "targets.views" : "targets.images";
-            return masu_fail(detail, MASU_ERROR_ARGUMENT, what, t->count, i, "%s[%u] is NULL", what,
-                             i);
-        }
-    }
-    if (!final_layout_known(t->final_layout)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "targets.final_layout",
-                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, (uint64_t)t->final_layout,
-                         "targets.final_layout %d is none that a picture is used in",
-                         (int)t->final_layout);
-    }
-    if (!d->scene && !d->source.view) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
-                         "neither scene nor source.view is given: nothing to draw");
-    }
-    if (d->scene && d->source.view) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "source.view", 0, 1,
-                         "scene and source.view exclude each other");
-    }
-    if (d->source.view) {
-        if (d->source.width < 1 || d->source.width > 16384) {
-            return bad_range(detail, "source.width", d->source.width, 1, 16384);
-        }
-        if (d->source.height < 1 || d->source.height > 16384) {
-            return bad_range(detail, "source.height", d->source.height, 1, 16384);
-        }
-    }
-    if (d->vulkan.max_anisotropy != 0.0f &&
-        !(d->vulkan.max_anisotropy >= 1.0f && d->vulkan.max_anisotropy <= 64.0f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "vulkan.max_anisotropy", 1, 0,
-                         "vulkan.max_anisotropy is %g, allowed are 0 and 1 to 64",
-                         (double)d->vulkan.max_anisotropy);
-    }
-    if (!(fabsf(d->debug.mip_bias) <= 16.0f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "debug.mip_bias", 0, 0,
-                         "debug.mip_bias is %g levels, allowed are -16 to 16",
-                         (double)d->debug.mip_bias);
-    }
-    if ((unsigned)d->ladder > MASU_ON)
-        return bad_range(detail, "ladder", (unsigned)d->ladder, MASU_AUTO, MASU_ON);
-    for (uint32_t r = 0; r < d->rung_count; r++) {
-        if (d->flips[r] >= 0.0f && d->flips[r] <= 1.0f) continue;
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "flips", 0, 0,
-                         "flips[%u] is %g, allowed are 0 to 1", r, (double)d->flips[r]);
-    }
-    if ((unsigned)d->half_floats > MASU_ON)
-        return bad_range(detail, "half_floats", (unsigned)d->half_floats, MASU_AUTO, MASU_ON);
-    if ((unsigned)d->ray_query > MASU_ON)
-        return bad_range(detail, "ray_query", (unsigned)d->ray_query, MASU_AUTO, MASU_ON);
-    if (d->readback & ~(uint32_t)MASU_READBACK_ALL) {
-        return bad_range(detail, "readback", d->readback, 0, MASU_READBACK_ALL);
-    }
-    for (uint32_t r = 0; r < d->rung_count; r++) {
-        masu_result result = check_rung(d, r, detail);
-        if (result) return result;
-    }
-    return masu_output_check(d, detail);
-}
-
-static uint32_t least(uint32_t wish, uint32_t has) { return wish && wish < has ? wish : has; }
-
-/* Cascades of the rung that has most of them, and the edge of the largest. */
-static void most_shadow(const masu_desc *d, uint32_t *cascades, uint32_t *size) {
-    *cascades = *size = 0;
-    for (uint32_t r = 0; r < d->rung_count && d->scene && d->scene->shadow_cascades; r++) {
-        uint32_t n = least(d->rungs[r].shadow_cascades, d->scene->shadow_cascades);
-        uint32_t s = least(d->rungs[r].shadow_resolution, d->scene->shadow_resolution);
-        if (*cascades < n) *cascades = n;
-        if (*size < s) *size = s;
-    }
-}
-
-static int takes_blocks(const masu_desc *d) {
-    return d->vulkan.texture_compression_bc && !d->deny.compressed_textures;
-}
-
-uint64_t masu_scene_texture_bytes(const masu_desc *d) {
-    if (!d->scene) return 0;
-    return takes_blocks(d) ? d->scene->texture_bytes : d->scene->texture_bytes_decoded;
-}
-
-static masu_result check_limits(const masu_desc *d, masu_detail *detail) {
-    const masu_scene *s = d->scene;
-    uint32_t cascades, cascade_size;
-    most_shadow(d, &cascades, &cascade_size);
-    if (!s) return MASU_OK;
-    const struct {
-        const char *name;
-        uint64_t limit, needed;
-    } rows[] = {{"limits.vertices", d->limits.vertices, s->vertices},
-                {"limits.indices", d->limits.indices, s->indices},
-                {"limits.materials", d->limits.materials, s->materials},
-                {"limits.instances", d->limits.instances, s->instances},
-                {"limits.sdf_params", d->limits.sdf_params, s->sdf_params},
-                {"limits.probes", d->limits.probes, s->probes},
-                {"limits.shadow_cascades", d->limits.shadow_cascades, cascades},
-                {"limits.shadow_resolution", d->limits.shadow_resolution, cascade_size},
-                {"limits.textures", d->limits.textures, s->textures},
-                {"limits.texture_bytes", d->limits.texture_bytes, masu_scene_texture_bytes(d)},
-                {"limits.lights", d->limits.lights, s->lights},
-                {"limits.transparents", d->limits.transparents, s->transparents},
-                {"limits.trace_triangles", d->limits.trace_triangles, s->trace_triangles},
-                {"limits.trace_instances", d->limits.trace_instances, s->trace_instances},
-                {"limits.transparents", MASU_TRANSPARENTS_MAX, s->transparents},
-                {"transparent texture sets", MASU_TRANSPARENT_SETS_MAX, s->transparent_sets},
-                {"transparents times their texture sets", MASU_TRANSPARENT_DRAWS_MAX,
-                 (uint64_t)s->transparents * s->transparent_sets}};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        if (rows[i].limit && rows[i].needed > rows[i].limit) {
-            return masu_fail(detail, MASU_ERROR_LIMIT, rows[i].name, rows[i].needed, rows[i].limit,
-                             "%s: the scene needs %llu, the limit is %llu", rows[i].name,
-                             (unsigned long long)rows[i].needed, (unsigned long long)rows[i].limit);
-        }
-    }
-    return MASU_OK;
 }
 
 /* ---- One rung -------------------------------------------------------------------------------- */
@@ -378,8 +87,8 @@ static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
     const masu_rung *rung = &plan->desc.rungs[r];
     rp->variants = 1;
     if (plan->needs.shadow) {
-        rp->cascades = least(rung->shadow_cascades, plan->scene.shadow_cascades);
-        rp->cascade_size = least(rung->shadow_resolution, plan->scene.shadow_resolution);
+        rp->cascades = masu_at_most(rung->shadow_cascades, plan->scene.shadow_cascades);
+        rp->cascade_size = masu_at_most(rung->shadow_resolution, plan->scene.shadow_resolution);
     }
     for (uint32_t k = 0; k < rp->cascades; k++) {
         if (rung->shadow_refresh[k] == 1) continue;
@@ -392,81 +101,83 @@ static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
     plan->recordings += rp->variants * plan->desc.targets.count;
 }
 
-/* Which concrete image an access of the table means in this rung, or NONE if there is no such image
- * in this plan. */
-static masu_image_id resolve(uint8_t image, const masu_image_id latest[MASU_CLASS_COUNT]) {
-    if (image == MASU_LATEST_DEPTH) return latest[MASU_CLASS_DEPTH];
-    if (image == MASU_LATEST_COLOR) return latest[MASU_CLASS_COLOR];
-    if (image == MASU_LATEST_SPECULAR) return latest[MASU_CLASS_SPECULAR];
-    return (masu_image_id)image;
+/* Which resource an access of the table means in a rung: itself, or of a stand-in the image of the class that the
+ * latest pass has written, or the one before that. 0: there is none. */
+typedef struct latest {
+    uint8_t image[MASU_CLASS_COUNT], before[MASU_CLASS_COUNT];
+} latest;
+
+static uint8_t resolve(uint8_t resource, const latest *l) {
+    if (resource < MASU_RESOURCE_END) return resource;
+    if (resource < MASU_BEFORE(0)) return l->image[resource - MASU_LATEST(0)];
+    return l->before[resource - MASU_BEFORE(0)];
 }
 
-static int keeps_access(const masu_frame_plan *plan, masu_pass_id pass, masu_image_id image) {
-    if (image == MASU_IMAGE_NONE) return 0;
-    if (image == MASU_IMAGE_VELOCITY && !plan->needs.velocity) return 0;
-    if (image == MASU_IMAGE_SURFACE && !plan->needs.surface) return 0;
-    if (image == MASU_IMAGE_SPECULAR_OLD_STEADY && !plan->needs.steady) return 0;
-    if (image == MASU_IMAGE_SPECULAR_FINE && !plan->needs.finest) return 0;
-    if (pass != MASU_PASS_SHADOW && pass != MASU_PASS_READBACK && !masu_is_cascade(pass) &&
-        image == MASU_IMAGE_SHADOW_MAP) {
-        return plan->needs.shadow;
+/* Whether a rung has what an access names: an image, or a buffer that a pass and not the host has written. */
+static int keeps_access(const masu_frame_plan *plan, uint8_t resource, masu_usage usage) {
+    const masu_needs *n = &plan->needs;
+    switch (resource) {
+    case MASU_IMAGE_NONE: return 0;
+    case MASU_RESOURCE(MASU_BUFFER_DRAWS): return n->occlusion;
+    case MASU_RESOURCE(MASU_BUFFER_PROBES): return n->probes;
+    case MASU_RESOURCE(MASU_BUFFER_EXPOSURE): return n->metered;
+    case MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES): return n->light_tiles;
+    default: break;
     }
-    /* It asks which pixels are polygons; without polygons nobody has written that depth. */
-    if (pass == MASU_PASS_SDF_VELOCITY && image == MASU_IMAGE_DEPTH) return plan->needs.raster;
-    if (pass == MASU_PASS_READBACK && image == MASU_IMAGE_OCCLUSION && !plan->needs.sdf_occlusion &&
-        !plan->needs.shadow && !plan->needs.ao) {
-        return 0; /* nothing of this rung writes it */
-    }
-    if (pass == MASU_PASS_READBACK) {
-        return (masu_images[image].readback & plan->desc.readback) != 0;
-    }
-    return 1;
+    if (masu_is_buffer(resource)) return 1;
+    if (usage == MASU_READ_BACK && !(masu_images[resource].readback & plan->desc.readback)) return 0;
+    return masu_has_image(n, resource);
+}
+
+static void write_latest(latest *l, uint8_t image) {
+    masu_image_class class_of = masu_images[image].class_of;
+    if (l->image[class_of] == image) return;
+    l->before[class_of] = l->image[class_of];
+    l->image[class_of] = image;
 }
 
 static void compile_rung(masu_frame_plan *plan, uint32_t r) {
     masu_rung_plan *rp = &plan->rungs[r];
-    masu_image_id latest[MASU_CLASS_COUNT] = {MASU_IMAGE_NONE};
-    if (!plan->needs.scene) latest[MASU_CLASS_COLOR] = MASU_IMAGE_SOURCE;
-    int last_color_pass = -1, last_color_access = 0;
-    for (int p = 0; p < MASU_PASS_COUNT; p++) {
+    latest l = {{0}, {0}};
+    if (!plan->needs.scene) l.image[MASU_CLASS_COLOR] = MASU_IMAGE_SOURCE;
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         const masu_pass_row *row = &masu_passes[p];
         const char *why = "";
         int runs = row->decide(&plan->needs, &why);
-        if (r == 0 || (runs && !(plan->rungs[0].active & MASU_PASS_BIT(p)))) plan->why[p] = why;
+        if (r == 0 || (runs && !masu_has_pass(&plan->rungs[0].active, p))) plan->why[p] = why;
         if (!runs) continue;
-        rp->active |= MASU_PASS_BIT(p);
+        masu_add_pass(&rp->active, p);
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
-            masu_image_id image = resolve(row->access[a].image, latest);
-            if (row->access[a].image == MASU_UNSMOOTHED)
-                image = plan->needs.scene ? MASU_IMAGE_LDR : MASU_IMAGE_SOURCE;
-            if (image == (masu_image_id)MASU_RESOURCE_DRAWS && !plan->needs.occlusion) {
-                continue; /* the host has written them */
-            }
-            if (image == MASU_RESOURCE_PROBES && !plan->needs.probes) continue;
-            if (image == (masu_image_id)MASU_RESOURCE_EXPOSURE && !plan->needs.metered) continue;
-            if (image == (masu_image_id)MASU_RESOURCE_LIGHT_TILES && !plan->needs.light_tiles)
-                continue;
-            if (image < MASU_IMAGE_COUNT && !keeps_access(plan, (masu_pass_id)p, image)) continue;
-            rp->access[p][rp->access_count[p]++] =
-                (masu_access){(uint8_t)image, row->access[a].usage};
-            if (!masu_usage_writes((masu_usage)row->access[a].usage)) continue;
-            if (image > MASU_IMAGE_COUNT) continue;
-            latest[masu_images[image].class_of] = image;
-            if (masu_images[image].class_of == MASU_CLASS_COLOR) {
-                last_color_pass = p;
-                last_color_access = (int)rp->access_count[p] - 1;
-            }
+            masu_usage usage = (masu_usage)row->access[a].usage;
+            uint8_t resource = resolve(row->access[a].image, &l);
+            if (!keeps_access(plan, resource, usage)) continue;
+            rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
+            if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
         }
     }
-    /* The last colour pass writes the target itself (a blit, where there is one, does so anyway), and so do
-     * those before it whose image it only completes. */
-    if (last_color_pass < 0) return;
-    uint8_t last = rp->access[last_color_pass][last_color_access].image;
-    for (int p = 0; p <= last_color_pass; p++) {
+    /* The last colour pass writes the target itself (a blit, where there is one, does so anyway), and so does
+     * every pass that has to do with the same image. */
+    uint8_t last = l.image[MASU_CLASS_COLOR];
+    for (uint32_t p = 0; p < MASU_PASS_COUNT && last != MASU_IMAGE_SOURCE; p++) {
         for (uint32_t a = 0; a < rp->access_count[p]; a++) {
             if (rp->access[p][a].image == last) rp->access[p][a].image = MASU_IMAGE_TARGET;
         }
     }
+}
+
+int masu_reads(const masu_frame_plan *plan, uint32_t pass, masu_image_id image) {
+    const masu_rung_plan *rp = masu_first_rung(plan, pass);
+    for (uint32_t a = 0; rp && a < rp->access_count[pass]; a++) {
+        if (rp->access[pass][a].image == image && rp->access[pass][a].usage == MASU_READ) return 1;
+    }
+    return 0;
+}
+
+const masu_rung_plan *masu_first_rung(const masu_frame_plan *plan, uint32_t pass) {
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        if (masu_has_pass(&plan->rungs[r].active, pass)) return &plan->rungs[r];
+    }
+    return NULL;
 }
 
 /* ---- All rungs ------------------------------------------------------------------------------- */
@@ -474,7 +185,8 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
 static VkImageUsageFlags usage_flag(masu_usage usage) {
     switch (usage) {
     case MASU_READ: return VK_IMAGE_USAGE_SAMPLED_BIT;
-    case MASU_READ_COPY: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    case MASU_READ_COPY:
+    case MASU_READ_BACK: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     case MASU_WRITE:
     case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
     case MASU_WRITE_COLOR:
@@ -512,299 +224,10 @@ static void gather_images(masu_frame_plan *plan) {
                 if (image->height < size.height) image->height = size.height;
                 image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
             }
-            if (!(rp->active & MASU_PASS_BIT(p)) || !masu_has_set(p)) continue;
+            if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
             plan->pass_sets += writes_target ? plan->desc.targets.count : 1;
         }
     }
-}
-
-static void lay_drawn(masu_frame_plan *plan) {
-    const masu_scene *s = plan->desc.scene;
-    masu_drawn_plan *d = &plan->drawn;
-    uint64_t lists = (uint64_t)plan->views * plan->listed, next = lists;
-    uint64_t forms = s->meshes + (plan->lods ? (uint64_t)s->lods : 0);
-    if (plan->occlusion) {
-        const struct {
-            uint64_t *offset, words;
-        } rows[] = {{&d->header, MASU_CULL_HEADER + plan->views * MASU_CULL_VIEW_WORDS},
-                    {&d->lists, lists},
-                    {&d->kept, (uint64_t)plan->views * (s->instances + (uint64_t)1)},
-                    {&d->batches, 4 * forms},
-                    {&d->large, forms},
-                    {&d->boxes, 6 * (uint64_t)s->instances},
-                    {&d->occluders, 6 * (uint64_t)s->occluders},
-                    {&d->pairs, 2 * (uint64_t)MASU_ATLAS_PARTS(plan) * s->placed_occluders}};
-        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            *rows[i].offset = next;
-            next += rows[i].words;
-        }
-    }
-    d->transparents = next;
-    d->words = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
-}
-
-static void size_light_buffers(masu_frame_plan *plan, uint64_t storage_alignment) {
-    masu_buffer_plan *lights = &plan->buffers[MASU_BUFFER_LIGHTS];
-    masu_buffer_plan *tiles = &plan->buffers[MASU_BUFFER_LIGHT_TILES];
-    lights->count = plan->scene.lights;
-    lights->stride = masu_align_up(
-        sizeof(masu_light_header) + lights->count * sizeof(struct masu_local_light_data),
-        storage_alignment);
-    lights->bytes = plan->desc.frames_in_flight * lights->stride;
-    tiles->count = 1; /* it is bound even where all rungs go without */
-    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
-        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
-        VkExtent2D grid = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
-        uint64_t words = (uint64_t)grid.width * grid.height *
-                         MASU_LIGHT_LIST_WORDS(plan->scene.lights);
-        if (plan->desc.rungs[r].light_tiles != MASU_OFF && words > tiles->count)
-            tiles->count = words;
-    }
-    tiles->bytes = tiles->count * sizeof(uint32_t);
-}
-
-/* The scene that rays meet: what stays, and of each frame in flight what moves. */
-static void size_trace_buffers(masu_frame_plan *plan, uint64_t storage_alignment) {
-    masu_buffer_plan *b = plan->buffers;
-    const masu_scene *s = plan->desc.scene;
-    b[MASU_BUFFER_TRACE].count = masu_trace_scene_bytes(s) / 16;
-    b[MASU_BUFFER_TRACE].bytes = 16 * b[MASU_BUFFER_TRACE].count;
-    if (plan->needs.traced) {
-        b[MASU_BUFFER_TRACE_FRAME].count = s->trace_instances;
-        b[MASU_BUFFER_TRACE_FRAME].stride =
-            masu_align_up(masu_trace_slot_bytes(s, plan->needs.query), storage_alignment);
-        b[MASU_BUFFER_TRACE_FRAME].bytes =
-            plan->desc.frames_in_flight * b[MASU_BUFFER_TRACE_FRAME].stride;
-    }
-    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
-        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
-        VkExtent2D traced = masu_plan_extent(plan, MASU_EXTENT_TRACED, render);
-        uint64_t words = MASU_TILES_HEADER + (uint64_t)((traced.width + MASU_GROUP - 1) / MASU_GROUP) *
-                                                 ((traced.height + MASU_GROUP - 1) / MASU_GROUP);
-        if (words > b[MASU_BUFFER_SPECULAR_TILES].count) b[MASU_BUFFER_SPECULAR_TILES].count = words;
-    }
-    b[MASU_BUFFER_SPECULAR_TILES].bytes =
-        b[MASU_BUFFER_SPECULAR_TILES].count * sizeof(uint32_t);
-}
-
-/* Returns the bytes of one readback slot that counters take. */
-static uint64_t size_counters(masu_frame_plan *plan) {
-    masu_buffer_plan *counters = &plan->buffers[MASU_BUFFER_COUNTERS];
-    counters->count = 2 * MASU_COUNTER_COUNT;
-    counters->bytes = 2 * MASU_COUNTER_COUNT * sizeof(uint32_t);
-    return plan->desc.debug.counters ? masu_align_up(counters->bytes, 16) : 0;
-}
-
-static int has_smaa(const masu_rung *rung) { return rung->aa >= MASU_AA_SMAA_LOW; }
-
-static void size_smaa_buffers(masu_frame_plan *plan) {
-    masu_buffer_plan *area = &plan->buffers[MASU_BUFFER_SMAA_AREA];
-    masu_buffer_plan *tiles = &plan->buffers[MASU_BUFFER_SMAA_TILES];
-    area->count = MASU_SMAA_AREA_WORDS;
-    area->bytes = area->count * sizeof(uint32_t);
-    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
-        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
-        VkExtent2D grid = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
-        uint64_t words =
-            MASU_TILES_HEADER + (uint64_t)grid.width * grid.height * (1 + MASU_SMAA_WORDS);
-        if (has_smaa(&plan->desc.rungs[r]) && words > tiles->count) tiles->count = words;
-    }
-    tiles->bytes = tiles->count * sizeof(uint32_t);
-}
-
-/* What only a scene needs. Returns the bytes of one readback slot that its counters take. */
-static uint64_t size_scene_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
-                                   uint64_t storage_alignment) {
-    masu_buffer_plan *b = plan->buffers;
-    const masu_scene *s = plan->desc.scene;
-    uint64_t flights = plan->desc.frames_in_flight;
-    b[MASU_BUFFER_TABLES].count =
-        plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS;
-    b[MASU_BUFFER_TABLES].count +=
-        masu_blob_environment_texels(s->environment_size, s->environment_mips);
-    b[MASU_BUFFER_TABLES].bytes = b[MASU_BUFFER_TABLES].count * sizeof(uint32_t);
-    /* With the frame before: each slot has two halves, its own and that of the frame before it. */
-    uint64_t halves = plan->needs.velocity ? 2 : 1;
-    b[MASU_BUFFER_FRAME].count = halves * flights;
-    b[MASU_BUFFER_FRAME].stride =
-        halves * masu_align_up(sizeof(struct masu_frame_uniforms), uniform_alignment);
-    b[MASU_BUFFER_FRAME].bytes = flights * b[MASU_BUFFER_FRAME].stride;
-    if (plan->needs.shadow) {
-        b[MASU_BUFFER_SHADOW].count = flights;
-        b[MASU_BUFFER_SHADOW].stride =
-            masu_align_up(sizeof(struct masu_shadow_uniforms), uniform_alignment);
-        b[MASU_BUFFER_SHADOW].bytes = flights * b[MASU_BUFFER_SHADOW].stride;
-    }
-    if (plan->needs.sky) {
-        b[MASU_BUFFER_SKY].count = flights;
-        b[MASU_BUFFER_SKY].stride =
-            masu_align_up(sizeof(struct masu_sky_uniforms), uniform_alignment);
-        b[MASU_BUFFER_SKY].bytes = flights * b[MASU_BUFFER_SKY].stride;
-    }
-    for (uint32_t r = 0; r < plan->desc.rung_count && s->sdf; r++) {
-        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
-        VkExtent2D tiles = masu_extent_of(MASU_EXTENT_TILE, render, plan->desc.output);
-        uint64_t list = s->sdf_parts <= MASU_TILE_MASKED_MAX ? (s->sdf_parts + 31) / 32
-                                                             : 1 + MASU_TILE_PARTS_MAX;
-        uint64_t words = MASU_TILES_HEADER + (uint64_t)tiles.width * tiles.height * (1 + list);
-        if (words > b[MASU_BUFFER_TILES].count) b[MASU_BUFFER_TILES].count = words;
-    }
-    b[MASU_BUFFER_TILES].bytes = b[MASU_BUFFER_TILES].count * sizeof(uint32_t);
-    if (plan->needs.reflections) size_trace_buffers(plan, storage_alignment);
-    if (s->lights) size_light_buffers(plan, storage_alignment);
-    if (s->instances) {
-        b[MASU_BUFFER_INSTANCES].count *= halves;
-        b[MASU_BUFFER_INSTANCES].stride =
-            halves * masu_align_up((uint64_t)s->instances * sizeof(struct masu_instance_data),
-                                   storage_alignment);
-        b[MASU_BUFFER_INSTANCES].bytes = flights * b[MASU_BUFFER_INSTANCES].stride;
-        lay_drawn(plan);
-        b[MASU_BUFFER_DRAWS].count = (uint64_t)plan->views * plan->draws;
-        if (plan->occlusion)
-            b[MASU_BUFFER_DRAWS].count = 2 * b[MASU_BUFFER_DRAWS].count + MASU_ATLAS_PARTS(plan);
-        plan->transparent_draws = b[MASU_BUFFER_DRAWS].count;
-        b[MASU_BUFFER_DRAWS].count += (uint64_t)s->transparents * s->transparent_sets;
-        b[MASU_BUFFER_DRAWS].stride =
-            masu_align_up(b[MASU_BUFFER_DRAWS].count * MASU_DRAW_BYTES, storage_alignment);
-        b[MASU_BUFFER_DRAWS].bytes = flights * b[MASU_BUFFER_DRAWS].stride;
-        if (plan->occlusion) b[MASU_BUFFER_SEEN].count = (uint64_t)plan->views * s->instances;
-        if (plan->receivers) {
-            plan->receivers = b[MASU_BUFFER_SEEN].count;
-            b[MASU_BUFFER_SEEN].count += (uint64_t)plan->cascades * MASU_RECEIVER_WORDS;
-        }
-        b[MASU_BUFFER_SEEN].bytes = b[MASU_BUFFER_SEEN].count * sizeof(uint32_t);
-        b[MASU_BUFFER_DRAWN].count = plan->drawn.words;
-        b[MASU_BUFFER_DRAWN].stride =
-            masu_align_up(b[MASU_BUFFER_DRAWN].count * sizeof(uint32_t), storage_alignment);
-        b[MASU_BUFFER_DRAWN].bytes = flights * b[MASU_BUFFER_DRAWN].stride;
-    }
-    return size_counters(plan);
-}
-
-/* Images of a readback slot from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer.
- * Returns the end. */
-static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
-    for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
-        if (!(plan->desc.readback & 1u << i)) continue;
-        plan->readback_offset[i] = slot;
-        uint64_t bytes = 0; /* the depth may live in either of two images: the larger counts */
-        for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
-            if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
-            uint64_t v = (uint64_t)plan->images[id].width * plan->images[id].height *
-                         masu_format_bytes(masu_plan_format(plan, id));
-            if (v > bytes) bytes = v;
-        }
-        slot = masu_align_up(slot + bytes, 16);
-    }
-    return slot;
-}
-
-static void size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
-                         uint64_t storage_alignment) {
-    masu_buffer_plan *b = plan->buffers;
-    const masu_scene *s = plan->desc.scene;
-    uint64_t flights = plan->desc.frames_in_flight;
-    VkBufferUsageFlags dst = VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                       storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    b[MASU_BUFFER_VERTICES] = (masu_buffer_plan){.name = "vertices",
-                                                 .usage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | dst,
-                                                 .count = s ? s->vertices : 0};
-    b[MASU_BUFFER_VERTICES].bytes = b[MASU_BUFFER_VERTICES].count * sizeof(masu_blob_vertex);
-    b[MASU_BUFFER_INDICES] = (masu_buffer_plan){.name = "indices",
-                                                .usage = VK_BUFFER_USAGE_INDEX_BUFFER_BIT | dst,
-                                                .count = s ? s->indices : 0};
-    b[MASU_BUFFER_INDICES].bytes = b[MASU_BUFFER_INDICES].count * sizeof(uint32_t);
-    b[MASU_BUFFER_TEXCOORDS] =
-        (masu_buffer_plan){.name = "texture coordinates",
-                           .usage = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | dst,
-                           .count = s && s->texture_arrays ? s->vertices : 0};
-    b[MASU_BUFFER_TEXCOORDS].bytes = b[MASU_BUFFER_TEXCOORDS].count * 2 * sizeof(float);
-    b[MASU_BUFFER_MATERIALS] = (masu_buffer_plan){
-        .name = "materials", .usage = storage | dst, .count = s ? s->materials : 0};
-    b[MASU_BUFFER_MATERIALS].bytes =
-        b[MASU_BUFFER_MATERIALS].count * sizeof(struct masu_material_data);
-    /* The curves of small reliefs lie behind the materials, two elements each. */
-    if (s) b[MASU_BUFFER_MATERIALS].bytes += s->meso * sizeof(masu_blob_meso);
-    b[MASU_BUFFER_COUNTERS] = (masu_buffer_plan){
-        .name = "counters", .usage = storage | dst | VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
-    b[MASU_BUFFER_SLOTS] = (masu_buffer_plan){
-        .name = "slots", .usage = storage | dst, .count = s && s->sdf ? s->sdf_slots : 0};
-    /* A second set, as of the frame before. */
-    if (plan->needs.velocity && plan->needs.dynamic) b[MASU_BUFFER_SLOTS].count *= 2;
-    b[MASU_BUFFER_SLOTS].bytes = b[MASU_BUFFER_SLOTS].count * sizeof(float);
-    b[MASU_BUFFER_TABLES] = (masu_buffer_plan){.name = "tables", .usage = storage | dst};
-    b[MASU_BUFFER_PROBES] = (masu_buffer_plan){
-        .name = "light probes", .usage = storage | dst, .count = s ? s->probes : 0};
-    if (s && s->probes) {
-        b[MASU_BUFFER_PROBES].bytes =
-            sizeof(masu_blob_probes) +
-            (masu_align_up(s->probe_words, 4) + (uint64_t)s->probes * MASU_PROBE_LIT_WORDS) *
-                sizeof(uint32_t);
-    }
-    b[MASU_BUFFER_EXPOSURE] = (masu_buffer_plan){
-        .name = "exposure",
-        .usage = storage | dst,
-        .count = plan->needs.metered ? MASU_EXPOSURE_HEADER + MASU_EXPOSURE_BINS : 0};
-    b[MASU_BUFFER_EXPOSURE].bytes = b[MASU_BUFFER_EXPOSURE].count * sizeof(uint32_t);
-    b[MASU_BUFFER_TILES] = (masu_buffer_plan){
-        .name = "tiles", .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
-    b[MASU_BUFFER_FRAME] = (masu_buffer_plan){.name = "frame uniforms",
-                                              .role = MASU_ROLE_UPLOAD,
-                                              .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
-    b[MASU_BUFFER_SHADOW] = (masu_buffer_plan){.name = "shadow uniforms",
-                                               .role = MASU_ROLE_UPLOAD,
-                                               .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
-    b[MASU_BUFFER_SKY] = (masu_buffer_plan){.name = "sky uniforms",
-                                            .role = MASU_ROLE_UPLOAD,
-                                            .usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT};
-    b[MASU_BUFFER_TRACE] = (masu_buffer_plan){.name = "traced scene", .usage = storage | dst};
-    b[MASU_BUFFER_TRACE_FRAME] = (masu_buffer_plan){
-        .name = "traced instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
-    b[MASU_BUFFER_SPECULAR_TILES] =
-        (masu_buffer_plan){.name = "specular tiles",
-                           .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
-    b[MASU_BUFFER_SMAA_AREA] = (masu_buffer_plan){.name = "SMAA areas", .usage = storage | dst};
-    b[MASU_BUFFER_SMAA_TILES] =
-        (masu_buffer_plan){.name = "SMAA tiles",
-                           .usage = storage | dst | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
-    masu_ray_buffers(plan);
-    if (plan->needs.traced) {
-        b[MASU_BUFFER_VERTICES].usage |= storage;
-        if (s->trace_colors) b[MASU_BUFFER_TEXCOORDS].usage |= storage;
-    }
-    b[MASU_BUFFER_LIGHTS] =
-        (masu_buffer_plan){.name = "lights", .role = MASU_ROLE_UPLOAD, .usage = storage};
-    b[MASU_BUFFER_LIGHT_TILES] = (masu_buffer_plan){.name = "light tiles", .usage = storage};
-    b[MASU_BUFFER_INSTANCES] = (masu_buffer_plan){.name = "instances",
-                                                  .role = MASU_ROLE_UPLOAD,
-                                                  .usage = storage,
-                                                  .count = s ? s->instances : 0};
-    b[MASU_BUFFER_DRAWS] = (masu_buffer_plan){.name = "draw commands",
-                                              .role = MASU_ROLE_UPLOAD,
-                                              .usage = VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
-    if (plan->occlusion) b[MASU_BUFFER_DRAWS].usage |= storage;
-    b[MASU_BUFFER_SEEN] = (masu_buffer_plan){.name = "seen", .usage = storage | dst};
-    b[MASU_BUFFER_DRAWN] =
-        (masu_buffer_plan){.name = "drawn instances", .role = MASU_ROLE_UPLOAD, .usage = storage};
-    b[MASU_BUFFER_STAGING] = (masu_buffer_plan){
-        .name = "staging", .role = MASU_ROLE_UPLOAD, .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT};
-    b[MASU_BUFFER_READBACK] =
-        (masu_buffer_plan){.name = "readback", .role = MASU_ROLE_READBACK, .usage = dst};
-    b[MASU_BUFFER_POISON] = (masu_buffer_plan){.name = "poison", .usage = dst};
-    uint64_t slot = 0;
-    if (s) slot = size_scene_buffers(plan, uniform_alignment, storage_alignment);
-    if (plan->needs.smoothing) {
-        slot = size_counters(plan);
-        size_smaa_buffers(plan);
-    }
-    if (masu_stamps(&plan->desc)) {
-        plan->readback_times = slot;
-        slot = masu_align_up(slot + masu_stamps(&plan->desc) * sizeof(uint64_t), 16);
-    }
-    slot = lay_readback_images(plan, slot);
-    b[MASU_BUFFER_READBACK].stride = slot;
-    b[MASU_BUFFER_READBACK].bytes = flights * slot;
-    b[MASU_BUFFER_READBACK].count = flights;
 }
 
 /* Whether a rung has ambient occlusion in screen space, and whether any has. */
@@ -854,8 +277,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     memset(plan, 0, sizeof *plan);
     plan->desc = masu_desc_resolved(desc);
     masu_desc *d = &plan->desc;
-    masu_result result = check_desc(d, detail);
-    if (!result) result = check_limits(d, detail);
+    masu_result result = masu_desc_check(d, detail);
+    if (!result) result = masu_limits_check(d, detail);
     if (result) return result;
     if (d->scene) {
         plan->scene = *d->scene;
@@ -863,7 +286,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades && !wants_ao(d))
             d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
         if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
-        plan->compressed = takes_blocks(d);
+        plan->compressed = masu_takes_blocks(d);
     } else {
         d->readback = 0; /* the images that could be asked for are the scene's */
     }
@@ -892,10 +315,10 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d),
                                .blit = !d->targets.storage};
-    for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= has_smaa(&d->rungs[r]);
+    for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
-    most_shadow(d, &plan->cascades, &plan->cascade_size);
+    masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
     /* The sun's: each cascade, else all of the scene. */
     uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
     plan->views = plan->needs.raster ? 1 + suns : 1;
@@ -920,6 +343,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              r, rp->render_width, rp->render_height, d->output.width,
                              d->output.height);
         }
+        plan->needs.rung = d->rungs[r];
         plan->needs.march = d->rungs[r].march;
         if (plan->needs.sdf && plan->needs.raster && plan->needs.march == MASU_MARCH_FRAGMENT) {
             return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
@@ -966,24 +390,15 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         compile_rung(plan, r);
     }
     gather_images(plan);
-    size_buffers(plan, uniform_alignment, storage_alignment);
+    masu_size_buffers(plan, uniform_alignment, storage_alignment);
     return MASU_OK;
 }
 
 /* ---- Export ---------------------------------------------------------------------------------- */
 
-static const char *image_name(uint8_t image) {
-    if (image == MASU_RESOURCE_TILES) return "tiles";
-    if (image == MASU_RESOURCE_SLOTS) return "slots";
-    if (image == MASU_RESOURCE_SEEN) return "seen";
-    if (image == MASU_RESOURCE_DRAWS) return "draws";
-    if (image == MASU_RESOURCE_PROBES) return "light probes";
-    if (image == MASU_RESOURCE_LIGHT_TILES) return "light tiles";
-    if (image == MASU_RESOURCE_SPECULAR_TILES) return "specular tiles";
-    if (image == MASU_RESOURCE_TOP_LEVEL) return "top level";
-    if (image == MASU_RESOURCE_SMAA_TILES) return "SMAA tiles";
-    if (image == MASU_RESOURCE_EXPOSURE) return "exposure";
-    return image < MASU_IMAGE_COUNT ? masu_images[image].name : NULL;
+static const char *resource_name(uint8_t resource) {
+    if (masu_is_buffer(resource)) return masu_buffers[resource - MASU_RESOURCE(0)].name;
+    return masu_images[resource].name;
 }
 
 void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out) {
@@ -1033,14 +448,14 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
         int named = 0;
         for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
             const masu_rung_plan *rp = &plan->rungs[r];
-            if (!(rp->active & MASU_PASS_BIT(p))) continue;
+            if (!masu_has_pass(&rp->active, p)) continue;
             pass->active |= 1u << r;
             out->rungs[r].dispatches++;
             if (named) continue;
             named = 1;
             uint32_t reads = 0, writes = 0;
             for (uint32_t a = 0; a < rp->access_count[p]; a++) {
-                const char *name = image_name(rp->access[p][a].image);
+                const char *name = resource_name(rp->access[p][a].image);
                 if (masu_usage_writes((masu_usage)rp->access[p][a].usage)) {
                     if (writes < 6) pass->writes[writes++] = name;
                 } else if (reads < 12) {

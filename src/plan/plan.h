@@ -8,6 +8,7 @@
 #ifndef MASU_PLAN_H
 #define MASU_PLAN_H
 
+#include "plan/desc.h"
 #include "plan/frame.h"
 #include "masu.h"
 
@@ -34,50 +35,11 @@ typedef struct masu_rung_plan {
     uint32_t slow; /* bit per cascade that is not drawn in every frame */
     /* A recording for each set of slow cascades, per target; the last draws them all. */
     uint32_t variants, first_recording;
-    uint64_t active; /* MASU_PASS_BIT of each */
+    masu_pass_set active;
     uint32_t access_count[MASU_PASS_COUNT];
     masu_access access[MASU_PASS_COUNT][MASU_PASS_ACCESSES]; /* stand-ins resolved */
     uint32_t barriers;                                       /* counted while recording */
 } masu_rung_plan;
-
-typedef enum masu_buffer_id {
-    MASU_BUFFER_VERTICES,
-    MASU_BUFFER_INDICES,
-    MASU_BUFFER_TEXCOORDS, /* of scenes with textures */
-    MASU_BUFFER_MATERIALS,
-    MASU_BUFFER_COUNTERS,
-    MASU_BUFFER_SLOTS,     /* of the SDF: its parts as data */
-    MASU_BUFFER_TABLES,    /* directional albedos; masu_shared.h has the layout; then the texels of a sky
-                              from a picture, if it is from one */
-    MASU_BUFFER_EXPOSURE,  /* that the picture asks for, and what it is made of; outlives frames */
-    MASU_BUFFER_PROBES,    /* light probes: what was baked, then the light of the frame */
-    MASU_BUFFER_TILES,     /* of the SDF: which parts matter where; masu_shared.h has the layout */
-    MASU_BUFFER_FRAME,     /* one masu_frame_uniforms per frame in flight */
-    MASU_BUFFER_INSTANCES, /* one array per frame in flight */
-    MASU_BUFFER_DRAWS,     /* per frame in flight and view: an indirect command for each draw */
-    MASU_BUFFER_DRAWN,     /* per frame in flight and view: numbers of the instances drawn */
-    MASU_BUFFER_SEEN,      /* what stage 2 of culling knows of each instance; outlives frames */
-    MASU_BUFFER_SHADOW,    /* one masu_shadow_uniforms per frame in flight */
-    MASU_BUFFER_SKY,       /* one masu_sky_uniforms per frame in flight */
-    MASU_BUFFER_LIGHTS,    /* per frame in flight: local lights that may be seen to light something */
-    MASU_BUFFER_LIGHT_TILES, /* lists of them by tile; masu_shared.h has the layout */
-    MASU_BUFFER_TRACE,       /* what rays meet: nodes, triangles, materials, texels */
-    MASU_BUFFER_TRACE_FRAME, /* per frame in flight: the top level over instances, and these */
-    MASU_BUFFER_SPECULAR_TILES, /* tiles that trace reflections */
-    MASU_BUFFER_SMAA_AREA,  /* of SMAA: its table, */
-    MASU_BUFFER_SMAA_TILES, /* tiles with edges, and these; masu_shared.h has both layouts */
-    /* Of ray queries (src/device/ray_query.h): */
-    MASU_BUFFER_BOTTOM_LEVELS, /* a structure for each traced mesh */
-    MASU_BUFFER_TOP_LEVEL,     /* over the instances of the frame */
-    MASU_BUFFER_TOP_SCRATCH,   /* what its build needs */
-    MASU_BUFFER_RAY_INSTANCES, /* per frame in flight: what it is built of */
-    MASU_BUFFER_RAY_INDICES,   /* what bottom levels are built of; masu_load alone needs it, and */
-    MASU_BUFFER_RAY_SCRATCH,   /* what their builds need: both lie where transient images will */
-    MASU_BUFFER_STAGING,   /* only where resident memory is not host-visible */
-    MASU_BUFFER_READBACK,  /* per frame in flight: counters, timestamps, the images asked for */
-    MASU_BUFFER_POISON,    /* spans all transient images; debug.poison only; owns no memory */
-    MASU_BUFFER_COUNT
-} masu_buffer_id;
 
 typedef struct masu_buffer_plan {
     const char *name;
@@ -85,6 +47,7 @@ typedef struct masu_buffer_plan {
     VkBufferUsageFlags usage;
     uint64_t bytes;  /* 0: not used */
     uint64_t stride; /* bytes from one frame in flight to the next, 0: shared by all */
+    uint64_t range;  /* bytes that a binding shows: of a slot, or of one of its halves */
     uint64_t count;  /* elements, for the report */
     uint64_t memory_bytes, alignment, offset; /* in its role's block */
     uint32_t type_bits;
@@ -96,11 +59,6 @@ typedef struct masu_block_plan {
     int host_visible; /* mapped for the renderer's whole life */
     int address;      /* a buffer in it is known to the device by its address */
 } masu_block_plan;
-
-/* Whether a buffer is there while a scene is loaded, and no longer. */
-static inline int masu_is_of_loading(uint32_t buffer) {
-    return buffer == MASU_BUFFER_RAY_INDICES || buffer == MASU_BUFFER_RAY_SCRATCH;
-}
 
 #define MASU_READBACK_IMAGES 7u
 #define MASU_DRAW_BYTES 20u /* of a VkDrawIndexedIndirectCommand */
@@ -148,7 +106,7 @@ typedef struct masu_frame_plan {
     uint64_t transient_unaliased, transient_aliased, transient_lower_bound;
     /* Within one readback slot: counters first, then timestamps, then images in the bit order of
      * masu_readback_bits. */
-    uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
+    uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES], readback_bytes;
     uint32_t views;     /* that instances are culled for: the camera, the cascades */
     int occlusion;      /* a rung has stage 2 of culling */
     int lods;           /* a rung draws coarser forms of meshes */
@@ -180,12 +138,14 @@ VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
 uint32_t masu_recording_variant(const masu_rung_plan *rung, uint32_t drawn);
 /* Whether a variant of a rung's recordings draws a cascade. */
 int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t cascade);
+/* Whether a pass reads an image in any rung that runs it. */
+int masu_reads(const masu_frame_plan *plan, uint32_t pass, masu_image_id image);
+/* The first rung that runs a pass, which speaks for all of them: which images stand behind its bindings may
+ * differ, their number and kind do not. NULL: none does. */
+const masu_rung_plan *masu_first_rung(const masu_frame_plan *plan, uint32_t pass);
 /* Size of an image or of a pass of a rung. */
 VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
                             VkExtent2D render);
-/* Bytes of the scene's texels as this description has them on the device. */
-uint64_t masu_scene_texture_bytes(const masu_desc *desc);
-
 /* The format of an image in this plan. */
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
 

@@ -2,6 +2,7 @@
 #include "support/reflect.h"
 
 #include "headless.h"
+#include "plan/push.h"
 #include "support/support.h"
 
 #include <string.h>
@@ -149,7 +150,7 @@ static void make_sets(bench *b) {
 }
 
 static void make_pipeline(bench *b, const reflect_job *job) {
-    VkPushConstantRange range = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(struct masu_push)};
+    VkPushConstantRange range = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(masu_push_block)};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .setLayoutCount = 2,
                                          .pSetLayouts = b->set_layout,
@@ -212,11 +213,13 @@ static void run(bench *b, const reflect_job *job, const VkDeviceSize at[IMAGES])
                                &copy[i]);
     }
     barrier(cmd, b, VK_IMAGE_LAYOUT_GENERAL);
-    struct masu_push push = {.render_width = 2 * job->width,
-                             .render_height = 2 * job->height,
-                             .output_width = job->width,
-                             .output_height = job->height,
-                             .index = {job->steps, job->all_parts, 2, 0}};
+    masu_push_block push = {.sizes = {.render_width = 2 * job->width,
+                                      .render_height = 2 * job->height,
+                                      .output_width = job->width,
+                                      .output_height = job->height}};
+    struct masu_push_specular_trace_sdf own = {
+        .steps = job->steps, .unpruned = job->all_parts, .traced_size = 2};
+    memcpy(&push.own, &own, sizeof own);
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, b->pipeline);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, b->layout, 0, 2, b->set, 0, NULL);
     vkCmdPushConstants(cmd, b->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);

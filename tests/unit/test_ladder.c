@@ -363,7 +363,7 @@ static void what_a_scene_lacks_is_ignored(void **state) {
         d.rungs[0] = wish;
         if (!(parts & SDF)) d.rungs[0].march_steps = 64, d.rungs[0].march = MASU_MARCH_PLAIN;
         compile(&d);
-        assert_true(plan.rungs[0].active == plain.rungs[0].active);
+        assert_memory_equal(&plan.rungs[0].active, &plain.rungs[0].active, sizeof plan.rungs[0].active);
         assert_int_equal(plan.recordings, plain.recordings);
         for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
             assert_int_equal(plan.images[i].used, plain.images[i].used);

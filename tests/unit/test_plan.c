@@ -19,7 +19,9 @@
 
 #include "scene/blob.h"
 #include "plan/output.h"
+#include "plan/buffers.h"
 #include "plan/plan.h"
+#include "plan/push.h"
 #include "device/ray_query.h"
 #include "support/desc.h"
 #include "support/random.h"
@@ -39,7 +41,7 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 
 static const char *usage_text(uint8_t usage) {
     static const char *const texts[] = {
-        [MASU_USE_NONE] = "?",      [MASU_READ] = "r",        [MASU_READ_COPY] = "from",
+        [MASU_USE_NONE] = "?",      [MASU_READ] = "r",        [MASU_READ_COPY] = "from", [MASU_READ_BACK] = "from",
         [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_WRITE_COLOR] = "c",
         [MASU_WRITE_DEPTH] = "d",   [MASU_WRITE_COPY] = "to", [MASU_READ_BUFFER] = "rb",
         [MASU_WRITE_BUFFER] = "wb", [MASU_UPDATE_DEPTH] = "ud",
@@ -49,14 +51,14 @@ static const char *usage_text(uint8_t usage) {
 }
 
 static const char *resource_text(uint8_t resource) {
-    if (resource == MASU_RESOURCE_TILES) return "tiles";
-    if (resource == MASU_RESOURCE_SLOTS) return "slots";
-    if (resource == MASU_RESOURCE_PROBES) return "probes";
-    if (resource == MASU_RESOURCE_LIGHT_TILES) return "lights";
-    if (resource == MASU_RESOURCE_SPECULAR_TILES) return "glossy";
-    if (resource == MASU_RESOURCE_TOP_LEVEL) return "top";
-    if (resource == MASU_RESOURCE_SMAA_TILES) return "edges";
-    if (resource == MASU_RESOURCE_EXPOSURE) return "exposure";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_TILES)) return "tiles";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_SLOTS)) return "slots";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_PROBES)) return "probes";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES)) return "lights";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_SPECULAR_TILES)) return "glossy";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_TOP_LEVEL)) return "top";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_SMAA_TILES)) return "edges";
+    if (resource == MASU_RESOURCE(MASU_BUFFER_EXPOSURE)) return "exposure";
     assert_in_range(resource, 1, MASU_IMAGE_COUNT - 1);
     return masu_images[resource].name;
 }
@@ -67,7 +69,7 @@ static const char *frame_text(const masu_frame_plan *plan, uint32_t rung) {
     const masu_rung_plan *rp = &plan->rungs[rung];
     text[0] = '\0';
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!(rp->active & MASU_PASS_BIT(p))) {
+        if (!masu_has_pass(&rp->active, p)) {
             assert_int_equal(rp->access_count[p], 0);
             continue;
         }
@@ -345,19 +347,19 @@ static void each_way_to_march_has_its_passes(void **state) {
 
 static void knobs_of_a_way_to_march_reach_the_shaders(void **state) {
     (void)state;
+    masu_frame_plan plan;
+    masu_desc d = scene_desc(SDF, 640, 480);
+    support_scene.sdf_march = 0xFF;
+    d.rung_count = 1;
     for (uint32_t march = 0; march <= MASU_MARCH_UNPRUNED; march++) {
-        masu_rung rung = {.march = (masu_march)march, .march_steps = 77};
-        struct masu_push classify, cone8, cone4, last;
-        memset(&classify, 0, sizeof classify);
-        cone8 = cone4 = last = classify;
-        masu_passes[MASU_PASS_CLASSIFY].params(&rung, &classify);
-        masu_passes[MASU_PASS_CONE8].params(&rung, &cone8);
-        masu_passes[MASU_PASS_CONE4].params(&rung, &cone4);
-        masu_passes[MASU_PASS_MARCH].params(&rung, &last);
-        assert_int_equal(classify.index[1] != 0, march == MASU_MARCH_UNPRUNED);
-        assert_int_equal(cone8.index[0], 77);
-        assert_int_equal(cone4.index[0], march == MASU_MARCH_CONE8 ? 0 : 77);
-        assert_int_equal(last.index[0], 77);
+        d.rungs[0] = (masu_rung){.march = (masu_march)march, .march_steps = 77};
+        compile(&d, &plan);
+        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CLASSIFY, 0).own.word[0],
+                         march == MASU_MARCH_UNPRUNED);
+        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CONE8, 0).own.word[0], 77);
+        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_CONE4, 0).own.word[0],
+                         march == MASU_MARCH_CONE8 ? 0 : 77);
+        assert_int_equal(masu_push_of(&plan, 0, MASU_PASS_MARCH, 0).own.word[0], 77);
     }
 }
 
@@ -536,9 +538,9 @@ static void the_last_pass_of_a_rung_makes_the_output(void **state) {
                 struct masu_push push;
                 memset(&push, 0, sizeof push);
                 masu_output_push(&plan, &plan.rungs[r], p, &push);
-                if (!(plan.rungs[r].active & MASU_PASS_BIT(p))) continue;
-                assert_int_equal(push.index[3], p == last[r] ? MASU_OUTPUT_LAST | MASU_OUTPUT_DITHER : 0);
-                assert_int_equal(push.index[2], p == last[r] ? 255u | 255u << 10 | 255u << 20 : 0);
+                if (!masu_has_pass(&plan.rungs[r].active, p)) continue;
+                assert_int_equal(push.output_flags, p == last[r] ? MASU_OUTPUT_LAST | MASU_OUTPUT_DITHER : 0);
+                assert_int_equal(push.output_steps, p == last[r] ? 255u | 255u << 10 | 255u << 20 : 0);
             }
         }
     }
@@ -753,7 +755,6 @@ static void ao_comes_after_all_that_writes_occlusion(void **state) {
     assert_frame(&d, 0, expected);
 }
 
-#define BIT(resource) ((uint64_t)1 << (resource))
 
 /* Over everything that shapes a frame: the properties that no frame may lack. */
 static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void **state) {
@@ -783,18 +784,19 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         compile(&d, &plan);
         const masu_rung_plan *rp = &plan.rungs[0];
         uint32_t writers = 0;
-        uint64_t written = BIT(MASU_IMAGE_SOURCE) | BIT(MASU_RESOURCE_SLOTS); /* uploaded once */
+        int written[MASU_RESOURCE_END] = {[MASU_IMAGE_SOURCE] = 1,
+                                          [MASU_RESOURCE(MASU_BUFFER_SLOTS)] = 1}; /* uploaded once */
         int last_pass = -1;
         for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-            if (rp->active & MASU_PASS_BIT(p)) last_pass = (int)p;
+            if (masu_has_pass(&rp->active, p)) last_pass = (int)p;
             for (uint32_t a = 0; a < rp->access_count[p]; a++) {
                 uint32_t image = rp->access[p][a].image, writes;
                 writes = (uint32_t)masu_usage_writes((masu_usage)rp->access[p][a].usage);
-                if (!writes && !(written & BIT(image))) {
+                if (!writes && !written[image]) {
                     fail_msg("case %u: %s reads %s, which nothing has written", c,
                              masu_passes[p].name, resource_text((uint8_t)image));
                 }
-                if (writes) written |= BIT(image);
+                if (writes) written[image] = 1;
                 if (image != MASU_IMAGE_TARGET) continue;
                 writers++;
                 assert_true(writes);
@@ -805,7 +807,7 @@ static void in_every_frame_the_last_colour_writer_alone_writes_the_target(void *
         assert_true(last_pass >= 0);
         assert_int_equal(rp->access[last_pass][rp->access_count[last_pass] - 1].image,
                          MASU_IMAGE_TARGET);
-        assert_true(source || (written & BIT(MASU_IMAGE_HDR)));
+        assert_true(source || written[MASU_IMAGE_HDR]);
     }
 }
 
@@ -993,7 +995,7 @@ static void a_sky_that_follows_from_the_sun_is_a_buffer_more(void **state) {
         }
         assert_int_equal(without.buffers[MASU_BUFFER_SKY].bytes, 0);
         for (uint32_t r = 0; r < d.rung_count; r++)
-            assert_true(with.rungs[r].active == without.rungs[r].active);
+            assert_memory_equal(&with.rungs[r].active, &without.rungs[r].active, sizeof with.rungs[r].active);
         for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
             assert_int_equal(with.images[i].used, without.images[i].used);
             assert_int_equal(with.images[i].usage, without.images[i].usage);
@@ -1097,7 +1099,7 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
     assert_int_equal(info.rung_count, 3);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         uint32_t active = 0;
-        for (uint32_t r = 0; r < 3; r++) active |= (plan.rungs[r].active >> p & 1u) << r;
+        for (uint32_t r = 0; r < 3; r++) active |= (uint32_t)masu_has_pass(&plan.rungs[r].active, p) << r;
         assert_string_equal(info.passes[p].name, masu_passes[p].name);
         assert_string_equal(info.passes[p].why, plan.why[p]);
         assert_int_equal(info.passes[p].active, active);

@@ -43,7 +43,7 @@ static int is_specular(uint32_t pass) {
 static void assert_same_plan(const masu_frame_plan *a, const masu_frame_plan *b) {
     assert_memory_equal(a->images, b->images, sizeof a->images);
     for (uint32_t r = 0; r < a->desc.rung_count; r++) {
-        assert_true(a->rungs[r].active == b->rungs[r].active);
+        assert_memory_equal(&a->rungs[r].active, &b->rungs[r].active, sizeof a->rungs[r].active);
         assert_memory_equal(a->rungs[r].access, b->rungs[r].access, sizeof a->rungs[r].access);
         assert_memory_equal(a->rungs[r].access_count, b->rungs[r].access_count,
                             sizeof a->rungs[r].access_count);
@@ -81,7 +81,7 @@ static void what_is_not_glossy_or_switched_off_costs_nothing(void **state) {
             for (uint32_t i = 1; i < MASU_IMAGE_COUNT; i++)
                 assert_false(masu_images[i].kept && with.images[i].used);
             for (uint32_t pass = 0; pass < MASU_PASS_COUNT; pass++)
-                if (is_specular(pass)) assert_false(with.rungs[0].active >> pass & 1u);
+                if (is_specular(pass)) assert_false(masu_has_pass(&with.rungs[0].active, pass));
             assert_int_equal(with.buffers[MASU_BUFFER_TRACE].bytes, 0);
             assert_int_equal(with.buffers[MASU_BUFFER_TRACE_FRAME].bytes, 0);
             assert_int_equal(with.buffers[MASU_BUFFER_SPECULAR_TILES].bytes, 0);
@@ -99,10 +99,10 @@ static void a_rung_without_them_runs_none_of_their_passes(void **state) {
     compile(&d, &with);
     for (uint32_t pass = 0; pass < MASU_PASS_COUNT; pass++) {
         if (!is_specular(pass)) continue;
-        assert_false(with.rungs[0].active >> pass & 1u);
-        assert_false(with.rungs[2].active >> pass & 1u);
+        assert_false(masu_has_pass(&with.rungs[0].active, pass));
+        assert_false(masu_has_pass(&with.rungs[2].active, pass));
     }
-    assert_true(with.rungs[1].active >> MASU_PASS_SPECULAR_COMPOSITE & 1u);
+    assert_true(masu_has_pass(&with.rungs[1].active, MASU_PASS_SPECULAR_COMPOSITE));
 }
 
 static void what_is_glossy_is_traced_in_polygons_in_the_sdf_or_in_both(void **state) {
@@ -111,14 +111,14 @@ static void what_is_glossy_is_traced_in_polygons_in_the_sdf_or_in_both(void **st
     for (int p = 0; p < 3; p++) {
         masu_desc d = mirrors(parts[p]);
         compile(&d, &with);
-        uint64_t active = with.rungs[0].active;
-        assert_true(active >> MASU_PASS_SPECULAR_GUIDE & 1u);
-        assert_true(active >> MASU_PASS_SPECULAR_RAYS & 1u);
-        assert_true(active >> MASU_PASS_SPECULAR_SHADE & 1u);
-        assert_true(active >> MASU_PASS_SPECULAR_COMPOSITE & 1u);
-        assert_int_equal(active >> MASU_PASS_SPECULAR_TRACE & 1u, (parts[p] & RASTER) != 0);
-        assert_int_equal(active >> MASU_PASS_SPECULAR_TRACE_SDF & 1u, (parts[p] & SDF) != 0);
-        assert_false(active >> MASU_PASS_SPECULAR_ACCUMULATE & 1u);
+        masu_pass_set active = with.rungs[0].active;
+        assert_true(masu_has_pass(&active, MASU_PASS_SPECULAR_GUIDE));
+        assert_true(masu_has_pass(&active, MASU_PASS_SPECULAR_RAYS));
+        assert_true(masu_has_pass(&active, MASU_PASS_SPECULAR_SHADE));
+        assert_true(masu_has_pass(&active, MASU_PASS_SPECULAR_COMPOSITE));
+        assert_int_equal(masu_has_pass(&active, MASU_PASS_SPECULAR_TRACE), (parts[p] & RASTER) != 0);
+        assert_int_equal(masu_has_pass(&active, MASU_PASS_SPECULAR_TRACE_SDF), (parts[p] & SDF) != 0);
+        assert_false(masu_has_pass(&active, MASU_PASS_SPECULAR_ACCUMULATE));
         assert_true(with.images[MASU_IMAGE_VELOCITY].used);
         assert_int_equal(with.images[MASU_IMAGE_SPECULAR_LIGHT].width, 320);
         assert_int_equal(with.images[MASU_IMAGE_SPECULAR_LIGHT].height, 180);
@@ -130,7 +130,7 @@ static void the_reference_is_of_full_size_and_keeps_its_sum(void **state) {
     masu_desc d = mirrors(RASTER);
     d.debug.reference = 1;
     compile(&d, &with);
-    assert_true(with.rungs[0].active >> MASU_PASS_SPECULAR_ACCUMULATE & 1u);
+    assert_true(masu_has_pass(&with.rungs[0].active, MASU_PASS_SPECULAR_ACCUMULATE));
     assert_true(with.images[MASU_IMAGE_SPECULAR_SUM].used);
     assert_true(masu_images[MASU_IMAGE_SPECULAR_SUM].kept);
     assert_int_equal(with.images[MASU_IMAGE_SPECULAR_SUM].width, 640);

@@ -18,8 +18,14 @@
 static uint64_t passes(const masu_desc *d, masu_frame_plan *plan) {
     masu_detail detail;
     if (masu_compile(d, 256, 64, plan, &detail)) fail_msg("refused: %s", detail.text);
-    uint64_t all = COMMON | PASS(TRACE) | PASS(TRACE_SDF);
-    return plan->rungs[0].active & all;
+    static const uint32_t all[] = {MASU_PASS_SPECULAR_GUIDE,     MASU_PASS_SPECULAR_RAYS,
+                                   MASU_PASS_SPECULAR_SHADE,     MASU_PASS_SPECULAR_COMPOSITE,
+                                   MASU_PASS_SPECULAR_TRACE,     MASU_PASS_SPECULAR_TRACE_SDF};
+    uint64_t active = 0;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        if (masu_has_pass(&plan->rungs[0].active, all[i])) active |= (uint64_t)1 << all[i];
+    }
+    return active;
 }
 
 static masu_desc mirrors(uint32_t parts) {

@@ -337,12 +337,12 @@ static void a_scene_without_shadows_has_none_of_it(void **state) {
         d.readback = MASU_READBACK_ALL;
         compile_shadow(&d, 0, 0);
         for (uint32_t p = MASU_PASS_CASCADE_0; p <= MASU_PASS_CASCADE_3; p++) {
-            assert_false(plan.rungs[0].active & MASU_PASS_BIT(p));
+            assert_false(masu_has_pass(&plan.rungs[0].active, p));
             assert_string_equal(plan.why[p], why[i]);
         }
-        assert_false(plan.rungs[0].active & MASU_PASS_BIT(MASU_PASS_SHADOW));
+        assert_false(masu_has_pass(&plan.rungs[0].active, MASU_PASS_SHADOW));
         assert_string_equal(plan.why[MASU_PASS_SHADOW], why[i]);
-        assert_true(plan.rungs[0].active & MASU_PASS_BIT(MASU_PASS_LIGHT));
+        assert_true(masu_has_pass(&plan.rungs[0].active, MASU_PASS_LIGHT));
         assert_false(plan.images[MASU_IMAGE_SHADOW_MAP].used);
         assert_false(plan.images[MASU_IMAGE_OCCLUSION].used);
         assert_int_equal(plan.buffers[MASU_BUFFER_SHADOW].bytes, 0);
@@ -373,8 +373,8 @@ static void cascades_lie_side_by_side_in_one_image(void **state) {
             }
         }
         for (uint32_t k = 0; k < 4; k++)
-            assert_int_equal(plan.rungs[0].active >> (MASU_PASS_CASCADE_0 + k) & 1, k < n);
-        assert_true(plan.rungs[0].active & MASU_PASS_BIT(MASU_PASS_LIGHT_OCCLUDED));
+            assert_int_equal(masu_has_pass(&plan.rungs[0].active, MASU_PASS_CASCADE_0 + k), k < n);
+        assert_true(masu_has_pass(&plan.rungs[0].active, MASU_PASS_LIGHT_OCCLUDED));
         assert_string_equal(plan.why[MASU_PASS_LIGHT_OCCLUDED],
                             "a scene is lit, and shadow says how much arrives");
         assert_true(plan.buffers[MASU_BUFFER_SHADOW].bytes >=
@@ -396,7 +396,7 @@ static void rungs_have_cascades_of_their_own(void **state) {
         assert_int_equal(plan.rungs[r].cascades, expected[r][0]);
         assert_int_equal(plan.rungs[r].cascade_size, expected[r][1]);
         for (uint32_t k = 0; k < 4; k++)
-            assert_int_equal(plan.rungs[r].active >> (MASU_PASS_CASCADE_0 + k) & 1,
+            assert_int_equal(masu_has_pass(&plan.rungs[r].active, MASU_PASS_CASCADE_0 + k),
                              k < expected[r][0]);
     }
     assert_int_equal(plan.images[MASU_IMAGE_SHADOW_MAP].width, 128);

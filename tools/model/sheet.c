@@ -240,7 +240,7 @@ static void make_rung(const masu_count *c, uint32_t rung, masu_model_rung *out) 
     memset(out->rows, 0, sizeof out->rows);
     memset(&out->sum, 0, sizeof out->sum);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
-        if (!(rp->active & MASU_PASS_BIT(p))) continue;
+        if (!(masu_has_pass(&rp->active, p))) continue;
         masu_model_row *row = &out->rows[masu_is_cascade(p) ? MASU_PASS_CASCADE_0 : p];
         row->runs = true;
         add_images(c, rung, p, row);

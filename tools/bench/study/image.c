@@ -2,6 +2,7 @@
 #include "bench/study/image.h"
 
 #include "clock.h"
+#include "plan/push.h"
 
 #include <string.h>
 
@@ -35,7 +36,7 @@ static bool make_layouts(masu_bench_chain *c, char *error, size_t error_size) {
     set.pBindings = images;
     CHECK(vkCreateDescriptorSetLayout(device, &set, NULL, &c->images));
     VkDescriptorSetLayout both[2] = {c->empty, c->images};
-    VkPushConstantRange range = {compute, 0, sizeof(struct masu_push)};
+    VkPushConstantRange range = {compute, 0, sizeof(masu_push_block)};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .setLayoutCount = 2,
                                          .pSetLayouts = both,
@@ -151,14 +152,16 @@ static bool record(masu_bench_chain *c, const masu_bench_stage *stages, uint32_t
                             &c->counters_set, 0, NULL);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t block = stages[i].block ? stages[i].block : MASU_GROUP;
-        struct masu_push push = {i ? target->width : from.width,
-                                 i ? target->height : from.height,
-                                 target->width,
-                                 target->height,
-                                 {stages[i].param},
-                                 {0}};
-        push.param[2] = (float)push.render_width * (1.0f / (float)target->width);
-        push.param[3] = (float)push.render_height * (1.0f / (float)target->height);
+        masu_push_block push = {.sizes = {.render_width = i ? target->width : from.width,
+                                          .render_height = i ? target->height : from.height,
+                                          .output_width = target->width,
+                                          .output_height = target->height}};
+        struct masu_push_rcas rcas = {stages[i].lobe};
+        struct masu_push_easu easu = {
+            (float)push.sizes.render_width * (1.0f / (float)target->width),
+            (float)push.sizes.render_height * (1.0f / (float)target->height)};
+        if (i) memcpy(&push.own, &rcas, sizeof rcas);
+        else memcpy(&push.own, &easu, sizeof easu);
         if (i) to_layout(cmd, c->middle.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
         vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, c->pipelines[i]);
         vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, c->layout, MASU_SET_PASS, 1,

@@ -17,7 +17,7 @@ typedef struct masu_bench_stage {
     const uint32_t *words; /* SPIR-V; NULL: the end of the chain */
     size_t bytes;
     uint32_t block; /* pixels along an edge of a workgroup; 0: MASU_GROUP */
-    float param;    /* push constant param.x */
+    float lobe;     /* of RCAS: its push constant */
 } masu_bench_stage;
 
 typedef struct masu_bench_chain {

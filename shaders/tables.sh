@@ -1,0 +1,190 @@
+#!/bin/sh
+# tables.sh KIND: what follows from the rows of src/plan/{passes,axes,buffers}.inc for shaders, on stdout:
+#
+#   tables        tables.h, for GLSL and C: MASU_BIND_* of descriptor set 0, structs of push constants
+#   permutations  permutations.h, for C: of each shader its axes and its SPIR-V in every combination
+#   builds        lines NAME:FILE:MACRO+MACRO for make: each permutation, its source, what it is compiled with
+#
+# Read by make before anything is compiled, on machines that have nothing but make: so it is shell and awk.
+set -eu
+cd "$(dirname "$0")/.."
+
+[ $# = 1 ] || { echo "usage: tables.sh tables|permutations|builds" >&2; exit 2; }
+
+# Rows may span lines and hold comments: one row to a line, without comments.
+rows() {
+    awk '
+    { line = line " " $0 }
+    END {
+        while ((from = index(line, "/*")) > 0) {
+            rest = substr(line, from)
+            line = substr(line, 1, from - 1) substr(rest, index(rest, "*/") + 2)
+        }
+        depth = 0; quoted = 0; row = ""
+        for (i = 1; i <= length(line); i++) {
+            c = substr(line, i, 1)
+            if (c == "\"") quoted = !quoted
+            if (!quoted && c == "(") depth++
+            if (depth || c != " ") row = row c
+            if (!quoted && c == ")" && !--depth) { gsub(/ +/, " ", row); print row; row = "" }
+        }
+    }' "$1"
+}
+
+{
+    rows src/plan/axes.inc
+    rows src/plan/buffers.inc
+    rows src/plan/passes.inc
+} | awk -v kind="$1" '
+function fail(text) { print "tables.sh: " text > "/dev/stderr"; failed = 1; exit 1 }
+function trim(s) { gsub(/^ +| +$/, "", s); return s }
+
+# What stands in the brackets that follow `word`, from the first place where it does.
+function inside(s, word,    from, i, c, depth, quoted) {
+    from = index(s, word "(")
+    if (!from) return ""
+    from += length(word) + 1
+    for (i = from; i <= length(s); i++) {
+        c = substr(s, i, 1)
+        if (c == "\"") quoted = !quoted
+        if (quoted) continue
+        if (c == "(") depth++
+        if (c == ")" && !depth--) return substr(s, from, i - from)
+    }
+    return ""
+}
+
+function add_shader(name, list,    n, words, i) {
+    list = trim(list)
+    if (name in shader_axes) {
+        if (shader_axes[name] != list) fail("two rows give " name " different axes: \"" shader_axes[name] "\", \"" list "\"")
+        return
+    }
+    n = split(list, words, " ")
+    for (i = 1; i <= n; i++)
+        if (!(words[i] in forms)) fail(name " has an axis " words[i] ", which is not in axes.inc")
+    shader_axes[name] = list
+    shaders[++shader_count] = name
+}
+
+/^AXIS\(/ {
+    id = substr($0, 6); sub(/,.*/, "", id)
+    n = split($0, quoted, "\"")
+    forms[id] = 1
+    suffix[id, 0] = ""; macros[id, 0] = ""
+    for (i = 2; i <= n; i += 2) {
+        split(quoted[i], part, ":")
+        suffix[id, forms[id]] = part[1]
+        macros[id, forms[id]] = part[2]
+        forms[id]++
+    }
+    next
+}
+
+/^BUFFER\(/ {
+    rest = $0
+    while (match(rest, /BIND(_PREVIOUS|_STRUCTURE)?\([A-Z_]+/)) {
+        bind = substr(rest, RSTART, RLENGTH)
+        sub(/.*\(/, "", bind)
+        binds[++bind_count] = bind
+        rest = substr(rest, RSTART + RLENGTH)
+    }
+    next
+}
+
+/^PASS\(/ {
+    split(substr($0, 6), head, ",")
+    name = trim(head[2])
+    file = name
+    tail = substr($0, index($0, "PUSH("))
+    tail = substr(tail, length(inside(tail, "PUSH")) + 6) # what stands behind it
+    if (tail ~ /^\)?, *COMP\(/) {
+        split(inside(tail, "COMP"), part, ",")
+        file = trim(part[1])
+        add_shader(file "_comp", part[2])
+    } else if (tail ~ /^\)?, *DRAW\(/) {
+        split(inside(tail, "DRAW"), part, ",")
+        file = trim(part[2])
+        add_shader(file "_vert", part[3])
+        add_shader(trim(part[4]) "_frag", part[5])
+    } else if (tail ~ /^\)?, *(SCENE|DRAW_SCENE)\(/) {
+        split(inside(tail, tail ~ /DRAW_SCENE\(/ ? "DRAW_SCENE" : "SCENE"), part, ",")
+        file = trim(part[1])
+        if (tail ~ /DRAW_SCENE\(/) add_shader("fullscreen_vert", "")
+    }
+    members = ""
+    rest = inside($0, "PUSH")
+    while (match(rest, /(UINT|FLOAT)\([a-z_0-9]+/)) {
+        word = substr(rest, RSTART, RLENGTH)
+        type = word ~ /^UINT/ ? "masu_uint" : "float"
+        sub(/.*\(/, "", word)
+        members = members "    " type " " word ";\n"
+        rest = substr(rest, RSTART + RLENGTH)
+    }
+    if (members == "") next
+    if (file in push) {
+        if (push[file] != members) fail("two rows tell " file " different things: PUSH of " name)
+        next
+    }
+    push[file] = members
+    pushes[++push_count] = file
+    next
+}
+
+END {
+    if (failed) exit 1
+    note = "/* Made by shaders/tables.sh from src/plan/"
+    if (kind == "tables") {
+        print note "{buffers,passes}.inc: bindings of descriptor set 0, and what the shaders of\n * passes are told. */"
+        print "#ifndef MASU_TABLES_H\n#define MASU_TABLES_H\n"
+        for (i = 1; i <= bind_count; i++) print "#define MASU_BIND_" binds[i], i - 1
+        print "#define MASU_BIND_COUNT", bind_count
+        for (i = 1; i <= push_count; i++)
+            print "\nstruct masu_push_" pushes[i] " {\n" push[pushes[i]] "};"
+        print "\n#endif"
+        exit
+    }
+    for (s = 1; s <= shader_count; s++) {
+        name = shaders[s]
+        stage = name; sub(/.*_/, "", stage)
+        file = substr(name, 1, length(name) - length(stage) - 1)
+        n = split(shader_axes[name], axis, " ")
+        total = 1
+        for (i = 1; i <= n; i++) total *= forms[axis[i]]
+        codes[s] = total
+        for (k = 0; k < total; k++) {
+            rest = k; ending = ""; flags = ""
+            for (i = 1; i <= n; i++) {
+                form = rest % forms[axis[i]]
+                rest = (rest - form) / forms[axis[i]]
+                ending = ending suffix[axis[i], form]
+                if (form) flags = flags (flags == "" ? "" : "+") macros[axis[i], form]
+            }
+            build[s, k] = file ending "_" stage
+            if (kind == "builds") print file ending "_" stage ":" file "." stage ":" flags
+        }
+    }
+    if (kind != "permutations") exit
+    print note "{passes,axes}.inc: the SPIR-V of every permutation. */"
+    for (s = 1; s <= shader_count; s++)
+        for (k = 0; k < codes[s]; k++) print "#include \"" build[s, k] ".spv.h\""
+    print "\nenum {\n    MASU_SHADER_NONE,"
+    for (s = 1; s <= shader_count; s++) print "    MASU_SHADER_" shaders[s] ","
+    print "    MASU_SHADER_COUNT\n};\n"
+    print "/* By the forms of its axes, the first axis fastest. */"
+    for (s = 1; s <= shader_count; s++) {
+        print "static const masu_code codes_of_" shaders[s] "[] = {"
+        for (k = 0; k < codes[s]; k++)
+            print "    {masu_spv_" build[s, k] ", sizeof masu_spv_" build[s, k] "},"
+        print "};"
+    }
+    print "\nstatic const masu_shader shaders[MASU_SHADER_COUNT] = {"
+    for (s = 1; s <= shader_count; s++) {
+        n = split(shader_axes[shaders[s]], axis, " ")
+        list = ""
+        for (i = 1; i <= n; i++) list = list (i > 1 ? ", " : "") "{MASU_AXIS_" axis[i] ", " forms[axis[i]] "}"
+        if (list == "") list = "{0, 0}"
+        print "    [MASU_SHADER_" shaders[s] "] = {\"" shaders[s] "\", " n ", {" list "}, codes_of_" shaders[s] "},"
+    }
+    print "};"
+}'

@@ -1,0 +1,167 @@
+/* descriptors.c: the descriptor pool, set 0 of what a scene's passes share, set 1 of a pass's images,
+ * and the sets of textures. */
+#include "device/descriptors.h"
+
+#include "plan/buffers.h"
+
+#include "base/error.h"
+
+int masu_has_global_sets(const masu_frame_plan *plan) {
+    return plan->needs.scene || plan->needs.smoothing;
+}
+
+static masu_result make_pool(masu_renderer *m, masu_detail *detail) {
+    uint32_t flights = m->plan.desc.frames_in_flight, sets = m->plan.pass_sets;
+    /* The last is of ray queries alone. */
+    VkDescriptorPoolSize sizes[] = {
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, MASU_BIND_COUNT * flights},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, MASU_BIND_COUNT * flights},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+         MASU_PASS_ACCESSES * sets + MASU_SLOT_COUNT * m->plan.scene.texture_sets},
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, MASU_PASS_ACCESSES * sets},
+        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, flights}};
+    VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                       .maxSets = flights + sets + m->plan.scene.texture_sets,
+                                       .poolSizeCount = m->plan.needs.query ? 5 : 4,
+                                       .pPoolSizes = sizes};
+    VkResult r =
+        m->vk.CreateDescriptorPool(m->vk.device, &info, m->vk.allocator, &m->descriptor_pool);
+    return MASU_FAILED(r, m->descriptor_pool)
+               ? masu_fail_vulkan(detail, r, "vkCreateDescriptorPool")
+               : MASU_OK;
+}
+
+static masu_result allocate_set(masu_renderer *m, VkDescriptorSetLayout layout,
+                                VkDescriptorSet *set, masu_detail *detail) {
+    VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                        .descriptorPool = m->descriptor_pool,
+                                        .descriptorSetCount = 1,
+                                        .pSetLayouts = &layout};
+    VkResult r = m->vk.AllocateDescriptorSets(m->vk.device, &info, set);
+    return r ? masu_fail_vulkan(detail, r, "vkAllocateDescriptorSets") : MASU_OK;
+}
+
+/* A binding of one frame in flight. Code that reads a uniform buffer that the plan does not have is compiled
+ * away, but a set must be whole: it gets the frame's. */
+static void write_binding(masu_renderer *m, uint32_t flight, const masu_binding *row) {
+    masu_buffer_id id = row->buffer;
+    if (!m->plan.buffers[id].bytes && row->type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER)
+        id = MASU_BUFFER_FRAME;
+    const masu_buffer_plan *b = &m->plan.buffers[id];
+    if (!b->bytes) return; /* no pass of this plan looks at it */
+    VkDescriptorBufferInfo buffer = {m->objects.buffers[id],
+                                     flight * b->stride + (row->previous ? b->stride / 2 : 0),
+                                     b->range};
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = m->global_sets[flight],
+                                  .dstBinding = row->binding,
+                                  .descriptorCount = 1,
+                                  .descriptorType = row->type,
+                                  .pBufferInfo = &buffer};
+    m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+}
+
+static masu_result make_global_sets(masu_renderer *m, masu_detail *detail) {
+    masu_binding rows[MASU_BIND_COUNT];
+    masu_bindings(&m->plan, rows);
+    for (uint32_t f = 0; f < m->plan.desc.frames_in_flight && masu_has_global_sets(&m->plan); f++) {
+        masu_result result = allocate_set(m, m->global_layout, &m->global_sets[f], detail);
+        if (result) return result;
+        for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
+            if (!rows[i].bound || (rows[i].previous && !m->plan.needs.velocity)) continue;
+            if (rows[i].type == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR)
+                masu_ray_bind(m, m->global_sets[f]);
+            else
+                write_binding(m, f, &rows[i]);
+        }
+    }
+    return MASU_OK;
+}
+
+/* A slot without a texture gets one of the others: the shader does not look at it, but a set must be
+ * whole. */
+static masu_result make_texture_sets(masu_renderer *m, masu_detail *detail) {
+    masu_scene_view v = {0};
+    if (m->plan.scene.texture_sets) v = masu_scene_look(&m->plan.scene);
+    for (uint32_t i = 0; i < m->plan.scene.texture_sets; i++) {
+        const masu_blob_texture_set *from = &v.texture_sets[i];
+        masu_result result = allocate_set(m, m->texture_layout, &m->texture_sets[i], detail);
+        if (result) return result;
+        uint32_t any = 0;
+        while (from->texture[any] == MASU_BLOB_NONE) any++;
+        for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
+            uint32_t given = from->texture[slot];
+            if (given == MASU_BLOB_NONE) given = from->texture[any];
+            VkDescriptorImageInfo image = {.sampler =
+                                               m->samplers[from->wrap[0] + 3 * from->wrap[1]],
+                                           .imageView = m->plan.textures[given].view,
+                                           .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                          .dstSet = m->texture_sets[i],
+                                          .dstBinding = slot,
+                                          .descriptorCount = 1,
+                                          .descriptorType =
+                                              VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                          .pImageInfo = &image};
+            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+        }
+    }
+    return MASU_OK;
+}
+
+static int writes_target(const masu_rung_plan *rp, uint32_t pass) {
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+        if (rp->access[pass][a].image == MASU_IMAGE_TARGET) return 1;
+    }
+    return 0;
+}
+
+static void write_pass_set(masu_renderer *m, const masu_rung_plan *rp, uint32_t pass,
+                           uint32_t target, VkDescriptorSet set) {
+    uint32_t binding = 0;
+    for (int writes = 0; writes < 2; writes++) {
+        for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+            if (!masu_access_binds(rp->access[pass][a], writes)) continue;
+            uint32_t id = rp->access[pass][a].image;
+            VkDescriptorImageInfo image = {
+                .imageView =
+                    id == MASU_IMAGE_TARGET ? m->plan.desc.targets.views[target] : m->views[id],
+                .imageLayout =
+                    writes ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+            VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                          .dstSet = set,
+                                          .dstBinding = binding++,
+                                          .descriptorCount = 1,
+                                          .descriptorType =
+                                              writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                                                     : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                          .pImageInfo = &image};
+            m->vk.UpdateDescriptorSets(m->vk.device, 1, &write, 0, NULL);
+        }
+    }
+}
+
+masu_result masu_make_pass_sets(masu_renderer *m, const masu_rung_plan *rp, uint32_t *next,
+                                  VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT],
+                                  masu_detail *detail) {
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
+        uint32_t targets = m->plan.desc.targets.count, own = writes_target(rp, p) ? targets : 1;
+        for (uint32_t t = 0; t < own; t++) {
+            VkDescriptorSet *set = &m->pass_sets[(*next)++];
+            masu_result result = allocate_set(m, m->pass_layouts[p], set, detail);
+            if (result) return result;
+            write_pass_set(m, rp, p, t, *set);
+            sets[t][p] = *set;
+        }
+        for (uint32_t t = own; t < targets; t++) sets[t][p] = sets[0][p];
+    }
+    return MASU_OK;
+}
+
+masu_result masu_make_sets(masu_renderer *m, masu_detail *detail) {
+    masu_result result = make_pool(m, detail);
+    if (!result) result = make_global_sets(m, detail);
+    if (!result) result = make_texture_sets(m, detail);
+    return result;
+}

@@ -1,0 +1,26 @@
+/* recorder.h: what one recording is made of. record.c makes one, and everything that writes to its
+ * command buffer takes it. */
+#ifndef MASU_RECORDER_H
+#define MASU_RECORDER_H
+
+#include "renderer.h"
+
+/* How an image or a buffer was used last in the frame. */
+typedef struct masu_use {
+    int used; /* in this frame */
+    VkPipelineStageFlags stages;
+    VkAccessFlags access; /* what the last use did; writes are what must be made available */
+    VkImageLayout layout;
+    int writes;
+} masu_use;
+
+typedef struct masu_recorder {
+    masu_renderer *m;
+    VkCommandBuffer cmd;
+    uint32_t flight, rung, target, variant;
+    masu_rung_plan *rp;
+    masu_use states[MASU_RESOURCE_END]; /* images, then the buffers that rows name */
+    uint32_t barriers;
+} masu_recorder;
+
+#endif

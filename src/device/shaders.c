@@ -1,0 +1,116 @@
+/* shaders.c: see shaders.h. */
+#include "device/shaders.h"
+
+#include "scene/scene.h"
+
+enum {
+#define AXIS(ID, ...) MASU_AXIS_##ID,
+#include "plan/axes.inc"
+#undef AXIS
+    MASU_AXIS_COUNT
+};
+
+/* A shader and the axes that it is compiled over: how many forms each has. */
+typedef struct masu_shader {
+    const char *name;
+    uint32_t axis_count;
+    struct {
+        uint32_t axis, forms;
+    } axes[4];
+    const masu_code *codes; /* of every combination, the first axis fastest */
+} masu_shader;
+
+#include "permutations.h"
+
+/* ---- The form of each axis that a plan asks for ---------------------------------------------- */
+
+/* Whether all that a pass samples, in any rung, is colour of 8 bits. */
+static int reads_bytes(const masu_frame_plan *plan, uint32_t pass) {
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &plan->rungs[r];
+        if (!masu_has_pass(&rp->active, pass)) continue;
+        for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+            masu_access access = rp->access[pass][a];
+            if (access.usage != MASU_READ) continue;
+            VkFormat format = access.image == MASU_IMAGE_SOURCE
+                                  ? plan->desc.source.format
+                                  : masu_plan_format(plan, access.image);
+            if (format != VK_FORMAT_R8G8B8A8_UNORM && format != VK_FORMAT_B8G8R8A8_UNORM &&
+                format != VK_FORMAT_A8B8G8R8_UNORM_PACK32)
+                return 0;
+        }
+    }
+    return 1;
+}
+
+static int masu_color_form(const masu_frame_plan *plan, uint32_t pass) {
+    if (plan->needs.scene) return plan->deep ? 3 : 2;
+    return reads_bytes(plan, pass);
+}
+
+static uint32_t form_of(uint32_t axis, const masu_frame_plan *plan, uint32_t pass, int textured) {
+    const masu_needs *n = &plan->needs;
+    switch (axis) {
+#define AXIS(ID, value, ...)                                                                       \
+    case MASU_AXIS_##ID: return (uint32_t)(value);
+#include "plan/axes.inc"
+#undef AXIS
+    default: return 0;
+    }
+}
+
+/* A flag counts as 1 whatever it is; a form that a shader does not have as its last. */
+static masu_code permutation(const masu_frame_plan *plan, uint32_t pass, uint32_t shader,
+                             int textured) {
+    const masu_shader *s = &shaders[shader];
+    uint32_t index = 0, step = 1;
+    if (shader == MASU_SHADER_NONE) return (masu_code){NULL, 0};
+    for (uint32_t i = 0; i < s->axis_count; i++) {
+        uint32_t form = form_of(s->axes[i].axis, plan, pass, textured);
+        if (form >= s->axes[i].forms) form = s->axes[i].forms - 1;
+        index += form * step;
+        step *= s->axes[i].forms;
+    }
+    return s->codes[index];
+}
+
+/* ---- Passes ---------------------------------------------------------------------------------- */
+
+typedef struct pass_shaders {
+    uint32_t compute, vertex, fragment;
+} pass_shaders;
+
+#define NONE 0, 0, 0
+#define COMP(file, axes) MASU_SHADER_##file##_comp, 0, 0
+#define DRAW(geometry, vertex, vertex_axes, fragment, fragment_axes)                               \
+    0, MASU_SHADER_##vertex##_vert, MASU_SHADER_##fragment##_frag
+#define SCENE(file, section) 0, 0, 0
+#define DRAW_SCENE(file, section) 0, MASU_SHADER_fullscreen_vert, 0
+
+static const pass_shaders of_pass[MASU_PASS_COUNT] = {
+#define PASS(ID, name, purpose, kind, extent, when, push, shader, ...) [MASU_PASS_##ID] = {shader},
+#include "plan/passes.inc"
+#undef PASS
+};
+
+static masu_code scene_code(const masu_frame_plan *plan, uint32_t pass) {
+    masu_scene_view v = masu_scene_look(plan->desc.scene);
+    uint32_t section = masu_passes[pass].code;
+    return (masu_code){v.code[section].words, v.code[section].count * sizeof(uint32_t)};
+}
+
+masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass) {
+    if (masu_passes[pass].code) return scene_code(plan, pass);
+    return permutation(plan, pass, of_pass[pass].compute, 0);
+}
+
+masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int textured) {
+    masu_draw_code code = {permutation(plan, pass, of_pass[pass].vertex, textured),
+                           masu_passes[pass].code
+                               ? scene_code(plan, pass)
+                               : permutation(plan, pass, of_pass[pass].fragment, textured)};
+    /* Through the holes of masks the sun shines; the rest of a cascade is depth alone. */
+    if (masu_passes[pass].geometry == MASU_GEOMETRY_CASCADE && !textured)
+        code.fragment = (masu_code){NULL, 0};
+    return code;
+}

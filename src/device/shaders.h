@@ -1,0 +1,26 @@
+/* shaders.h: the SPIR-V of a pass: the library's own, in the permutation that a plan asks for, or the scene's.
+ *
+ * Which shaders there are, over which axes they are compiled, and their code follow from the rows of
+ * src/plan/passes.inc and axes.inc (shaders/tables.sh writes permutations.h). Nothing here fails. */
+#ifndef MASU_SHADERS_H
+#define MASU_SHADERS_H
+
+#include "plan/plan.h"
+
+typedef struct masu_code {
+    const uint32_t *words; /* NULL: none */
+    uint64_t bytes;
+} masu_code;
+
+/* The two stages of a draw; of depth alone the second is none. */
+typedef struct masu_draw_code {
+    masu_code vertex, fragment;
+} masu_draw_code;
+
+/* Of a compute pass. */
+masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass);
+
+/* Of a graphics pass; textured: for what has textures. */
+masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int textured);
+
+#endif

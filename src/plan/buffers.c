@@ -1,0 +1,293 @@
+/* buffers.c: see buffers.h. */
+#include "plan/buffers.h"
+
+#include "frame/lights.h"
+#include "frame/specular.h"
+#include "frame/transparents.h"
+
+/* ---- Rows as they are ------------------------------------------------------------------------ */
+
+enum { LIFETIME_ALWAYS = 0, LIFETIME_LOADING = 1 };
+
+const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT] = {
+#define BUFFER(ID, name, role, usage, slots, lifetime, loaded, ...)                                \
+    [MASU_BUFFER_##ID] = {name, MASU_ROLE_##role, MASU_LOADED_##loaded, LIFETIME_##lifetime},
+#include "plan/buffers.inc"
+#undef BUFFER
+};
+
+/* ---- Sizes that take more than a line -------------------------------------------------------- */
+
+/* Each slot has a half for itself and one for the frame before it where something asks for that. */
+static uint64_t masu_halves(const masu_frame_plan *plan) { return plan->needs.velocity ? 2 : 1; }
+
+static uint64_t masu_counter_words(const masu_frame_plan *plan) {
+    return plan->needs.scene || plan->needs.smoothing ? 2 * MASU_COUNTER_COUNT : 0;
+}
+
+static uint64_t masu_slot_count(const masu_frame_plan *plan) {
+    if (!plan->needs.sdf) return 0;
+    return (plan->needs.velocity && plan->needs.dynamic ? 2 : 1) * (uint64_t)plan->scene.sdf_slots;
+}
+
+static uint64_t masu_table_words(const masu_frame_plan *plan) {
+    const masu_scene *s = &plan->scene;
+    if (!plan->needs.scene) return 0;
+    return (plan->needs.raster && s->coats ? MASU_TABLE_WORDS_ALL : MASU_TABLE_WORDS) +
+           masu_blob_environment_texels(s->environment_size, s->environment_mips);
+}
+
+static uint64_t masu_probe_bytes(const masu_scene *s) {
+    if (!s->probes) return 0;
+    return sizeof(masu_blob_probes) +
+           (masu_align_up(s->probe_words, 4) + (uint64_t)s->probes * MASU_PROBE_LIT_WORDS) *
+               sizeof(uint32_t);
+}
+
+/* The most over all rungs that `words` takes of one of so many groups of pixels. */
+static uint64_t most_words(const masu_frame_plan *plan, masu_image_extent extent,
+                           uint64_t (*words)(const masu_frame_plan *plan, uint32_t rung,
+                                             VkExtent2D grid)) {
+    uint64_t most = 0;
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        VkExtent2D render = {plan->rungs[r].render_width, plan->rungs[r].render_height};
+        uint64_t needed = words(plan, r, masu_plan_extent(plan, extent, render));
+        if (most < needed) most = needed;
+    }
+    return most;
+}
+
+static uint64_t tile_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
+    const masu_scene *s = &plan->scene;
+    uint64_t list = s->sdf_parts <= MASU_TILE_MASKED_MAX ? (s->sdf_parts + 31) / 32
+                                                         : 1 + MASU_TILE_PARTS_MAX;
+    (void)rung;
+    return MASU_TILES_HEADER + (uint64_t)grid.width * grid.height * (1 + list);
+}
+
+static uint64_t masu_tile_words(const masu_frame_plan *plan) {
+    return plan->needs.sdf ? most_words(plan, MASU_EXTENT_TILE, tile_words) : 0;
+}
+
+static uint64_t light_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
+    if (plan->desc.rungs[rung].light_tiles == MASU_OFF) return 0;
+    return (uint64_t)grid.width * grid.height * MASU_LIGHT_LIST_WORDS(plan->scene.lights);
+}
+
+/* It is bound even where all rungs go without. */
+static uint64_t masu_light_tile_words(const masu_frame_plan *plan) {
+    if (!plan->needs.lights) return 0;
+    uint64_t words = most_words(plan, MASU_EXTENT_TILE, light_words);
+    return words ? words : 1;
+}
+
+static uint64_t specular_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D traced) {
+    (void)plan, (void)rung;
+    return MASU_TILES_HEADER + (uint64_t)((traced.width + MASU_GROUP - 1) / MASU_GROUP) *
+                                   ((traced.height + MASU_GROUP - 1) / MASU_GROUP);
+}
+
+static uint64_t masu_specular_tile_words(const masu_frame_plan *plan) {
+    return plan->needs.reflections ? most_words(plan, MASU_EXTENT_TRACED, specular_words) : 0;
+}
+
+static uint64_t smaa_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
+    if (!masu_is_smaa(plan->desc.rungs[rung].aa)) return 0;
+    return MASU_TILES_HEADER + (uint64_t)grid.width * grid.height * (1 + MASU_SMAA_WORDS);
+}
+
+static uint64_t masu_smaa_tile_words(const masu_frame_plan *plan) {
+    return plan->needs.smoothing ? most_words(plan, MASU_EXTENT_TILE, smaa_words) : 0;
+}
+
+static void lay_drawn(masu_frame_plan *plan) {
+    const masu_scene *s = &plan->scene;
+    masu_drawn_plan *d = &plan->drawn;
+    uint64_t lists = (uint64_t)plan->views * plan->listed, next = lists;
+    uint64_t forms = s->meshes + (plan->lods ? (uint64_t)s->lods : 0);
+    if (plan->occlusion) {
+        const struct {
+            uint64_t *offset, words;
+        } rows[] = {{&d->header, MASU_CULL_HEADER + plan->views * MASU_CULL_VIEW_WORDS},
+                    {&d->lists, lists},
+                    {&d->kept, (uint64_t)plan->views * (s->instances + (uint64_t)1)},
+                    {&d->batches, 4 * forms},
+                    {&d->large, forms},
+                    {&d->boxes, 6 * (uint64_t)s->instances},
+                    {&d->occluders, 6 * (uint64_t)s->occluders},
+                    {&d->pairs, 2 * (uint64_t)MASU_ATLAS_PARTS(plan) * s->placed_occluders}};
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            *rows[i].offset = next;
+            next += rows[i].words;
+        }
+    }
+    d->transparents = next;
+    d->words = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
+}
+
+/* Of both stages of culling, then of the occluders, then of what is blended. */
+static uint64_t own_draws(const masu_frame_plan *plan) {
+    uint64_t draws = (uint64_t)plan->views * plan->draws;
+    return plan->occlusion ? 2 * draws + MASU_ATLAS_PARTS(plan) : draws;
+}
+
+static uint64_t masu_draw_count(const masu_frame_plan *plan) {
+    const masu_scene *s = &plan->scene;
+    if (!s->instances) return 0;
+    return own_draws(plan) + (uint64_t)s->transparents * s->transparent_sets;
+}
+
+/* Of instances; behind them, of receivers. */
+static uint64_t seen_instances(const masu_frame_plan *plan) {
+    return plan->occlusion ? (uint64_t)plan->views * plan->scene.instances : 0;
+}
+
+static uint64_t masu_seen_words(const masu_frame_plan *plan) {
+    if (!plan->scene.instances) return 0;
+    return seen_instances(plan) +
+           (plan->receivers ? (uint64_t)plan->cascades * MASU_RECEIVER_WORDS : 0);
+}
+
+/* ---- The readback slot ----------------------------------------------------------------------- */
+
+/* Images from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer. Returns the end. */
+static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
+    for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
+        if (!(plan->desc.readback & 1u << i)) continue;
+        plan->readback_offset[i] = slot;
+        uint64_t bytes = 0; /* the depth may live in either of two images: the larger counts */
+        for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
+            if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
+            uint64_t v = (uint64_t)plan->images[id].width * plan->images[id].height *
+                         masu_format_bytes(masu_plan_format(plan, id));
+            if (v > bytes) bytes = v;
+        }
+        slot = masu_align_up(slot + bytes, 16);
+    }
+    return slot;
+}
+
+/* Counters, timestamps, images. */
+static void lay_readback(masu_frame_plan *plan) {
+    uint64_t slot = 0;
+    if (plan->desc.debug.counters)
+        slot = masu_align_up(masu_counter_words(plan) * sizeof(uint32_t), 16);
+    if (masu_stamps(&plan->desc)) {
+        plan->readback_times = slot;
+        slot = masu_align_up(slot + masu_stamps(&plan->desc) * sizeof(uint64_t), 16);
+    }
+    plan->readback_bytes = lay_readback_images(plan, slot);
+}
+
+static uint64_t masu_readback_bytes(const masu_frame_plan *plan) { return plan->readback_bytes; }
+
+/* ---- All rows -------------------------------------------------------------------------------- */
+
+#define VERTEX VK_BUFFER_USAGE_VERTEX_BUFFER_BIT
+#define INDEX VK_BUFFER_USAGE_INDEX_BUFFER_BIT
+#define UNIFORM VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
+#define STORAGE VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
+#define INDIRECT VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT
+#define TO VK_BUFFER_USAGE_TRANSFER_DST_BIT
+#define FROM VK_BUFFER_USAGE_TRANSFER_SRC_BIT
+#define ADDRESS VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT
+#define STRUCTURE (ADDRESS | VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR)
+#define INPUT (ADDRESS | VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR)
+#define SCRATCH (ADDRESS | STORAGE)
+
+typedef enum slot_kind { SLOTS_ONCE, SLOTS_FLIGHT, SLOTS_PREVIOUS } slot_kind;
+
+/* Slots begin where the device wants a binding to begin. */
+static void lay_slots(const masu_frame_plan *plan, masu_buffer_plan *b, slot_kind slots,
+                      uint64_t bytes, uint64_t alignment) {
+    b->bytes = b->range = bytes;
+    if (slots == SLOTS_ONCE || !bytes) return;
+    uint64_t halves = slots == SLOTS_PREVIOUS ? masu_halves(plan) : 1;
+    uint64_t half = masu_align_up(bytes, alignment);
+    if (!(b->usage & VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT)) b->range = half;
+    b->stride = halves * half;
+    b->bytes = plan->desc.frames_in_flight * b->stride;
+}
+
+void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
+                       uint64_t storage_alignment) {
+    const masu_needs *n = &plan->needs;
+    const masu_scene *s = &plan->scene;
+    masu_buffer_plan *buffer = plan->buffers;
+    if (s->instances) {
+        lay_drawn(plan);
+        plan->transparent_draws = own_draws(plan);
+        if (plan->receivers) plan->receivers = seen_instances(plan);
+    }
+    lay_readback(plan);
+    uint64_t alignment;
+#define SIZE(elements, size) buffer->count = (elements), bytes = (size)
+#define BUFFER(ID, title, part, use, slots, lifetime, loaded, sized, binds)                        \
+    {                                                                                              \
+        uint64_t bytes;                                                                            \
+        buffer = &plan->buffers[MASU_BUFFER_##ID];                                                 \
+        *buffer = (masu_buffer_plan){                                                              \
+            .name = title, .role = MASU_ROLE_##part, .usage = (VkBufferUsageFlags)(use)};          \
+        sized;                                                                                     \
+        alignment = buffer->role == MASU_ROLE_READBACK ? 1                                         \
+                    : buffer->usage & UNIFORM          ? uniform_alignment                         \
+                                                       : storage_alignment;                        \
+        lay_slots(plan, buffer, SLOTS_##slots, bytes, alignment);                                  \
+    }
+#include "plan/buffers.inc"
+#undef BUFFER
+#undef SIZE
+}
+
+/* ---- Bindings -------------------------------------------------------------------------------- */
+
+#define COMPUTE VK_SHADER_STAGE_COMPUTE_BIT
+#define FRAGMENT VK_SHADER_STAGE_FRAGMENT_BIT
+#define VERTEX_STAGE VK_SHADER_STAGE_VERTEX_BIT
+#define ALL (COMPUTE | FRAGMENT | VERTEX_STAGE)
+
+void masu_bindings(const masu_frame_plan *plan, masu_binding out[]) {
+    const masu_needs *n = &plan->needs;
+    const masu_scene *s = &plan->scene;
+    uint32_t count = 0;
+#define ADD(NAME, stages, group, when, type, previous)                                             \
+    out[count++] = (masu_binding){MASU_BIND_##NAME, buffer, type, (VkShaderStageFlags)(stages),    \
+                                  group, (when) != 0, previous};
+#define BIND(NAME, stages, group, when)                                                            \
+    ADD(NAME, stages, MASU_BINDING_##group, when, type, 0)
+#define BIND_PREVIOUS(NAME, stages, group, when)                                                   \
+    ADD(NAME, stages, MASU_BINDING_##group, when, type, 1)
+#define BIND_STRUCTURE(NAME, stages, when)                                                         \
+    ADD(NAME, stages, MASU_BINDING_PLAIN, when, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 0)
+#define BUFFER(ID, title, part, use, slots, lifetime, loaded, sized, binds)                        \
+    {                                                                                              \
+        const masu_buffer_id buffer = MASU_BUFFER_##ID;                                            \
+        const VkDescriptorType type = (use)&UNIFORM ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER            \
+                                                    : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;           \
+        (void)buffer, (void)type;                                                                  \
+        binds                                                                                      \
+    }
+#include "plan/buffers.inc"
+#undef BUFFER
+}
+
+static uint32_t storage_of_compute(const masu_frame_plan *plan, masu_binding_group group,
+                                   int all) {
+    masu_binding bindings[MASU_BIND_COUNT];
+    uint32_t count = 0;
+    masu_bindings(plan, bindings);
+    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
+        count += bindings[i].group == group && (all || bindings[i].bound) &&
+                 bindings[i].type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER &&
+                 bindings[i].stages & COMPUTE;
+    }
+    return count;
+}
+
+uint32_t masu_plain_buffers(const masu_frame_plan *plan) {
+    return storage_of_compute(plan, MASU_BINDING_PLAIN, 0);
+}
+
+uint32_t masu_group_buffers(const masu_frame_plan *plan, masu_binding_group group) {
+    return storage_of_compute(plan, group, 1);
+}

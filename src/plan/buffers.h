@@ -1,0 +1,62 @@
+/* buffers.h: what follows from the rows of buffers.inc for one plan: sizes, and the bindings of descriptor
+ * set 0. Pure functions; nothing is kept. */
+#ifndef MASU_BUFFERS_H
+#define MASU_BUFFERS_H
+
+#include "plan/plan.h"
+
+/* Fills plan->buffers and all that says where things lie in them. Needs everything else of the plan. */
+void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
+                       uint64_t storage_alignment);
+
+/* What a rung goes without where a stage has too few storage buffers. */
+typedef enum masu_binding_group {
+    MASU_BINDING_PLAIN,
+    MASU_BINDING_CULLING,
+    MASU_BINDING_TRACING
+} masu_binding_group;
+
+/* A binding of descriptor set 0. */
+typedef struct masu_binding {
+    uint32_t binding; /* MASU_BIND_* */
+    masu_buffer_id buffer;
+    VkDescriptorType type;
+    VkShaderStageFlags stages;
+    masu_binding_group group;
+    int bound;    /* the plan's layout has it */
+    int previous; /* it is of the half of a slot that is of the frame before */
+} masu_binding;
+
+/* All of them, in the order of the rows; out has room for MASU_BIND_COUNT. */
+void masu_bindings(const masu_frame_plan *plan, masu_binding out[]);
+
+/* Storage buffers that a compute shader may find in set 0: of the plan's own, without those of a group; all
+ * those that a group adds. */
+uint32_t masu_plain_buffers(const masu_frame_plan *plan);
+uint32_t masu_group_buffers(const masu_frame_plan *plan, masu_binding_group group);
+
+/* What masu_load copies into a buffer; the columns `loaded` of buffers.inc. */
+typedef enum masu_loaded {
+    MASU_LOADED_NOTHING,
+    MASU_LOADED_VERTICES,
+    MASU_LOADED_INDICES,
+    MASU_LOADED_TEXCOORDS,
+    MASU_LOADED_MATERIALS,
+    MASU_LOADED_SLOTS,
+    MASU_LOADED_TABLES,
+    MASU_LOADED_PROBES,
+    MASU_LOADED_TRACE,
+    MASU_LOADED_SMAA_AREA,
+    MASU_LOADED_RAY_INDICES
+} masu_loaded;
+
+typedef struct masu_buffer_row {
+    const char *name;
+    masu_role role;
+    masu_loaded loaded;
+    int of_loading; /* masu_load alone needs it */
+} masu_buffer_row;
+
+extern const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT];
+
+#endif

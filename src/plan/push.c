@@ -1,0 +1,94 @@
+/* push.c: see push.h. */
+#include "plan/push.h"
+
+#include "plan/output.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it
+ * cannot bring back. */
+static float masu_mip_bias(const masu_push_input *in) {
+    const masu_desc *d = &in->plan->desc;
+    return (d->debug.no_bias ? 0.0f : log2f(d->rungs[in->rung].scale)) + d->debug.mip_bias;
+}
+
+/* Of the four settings of SMAA: the threshold of luma in the steps of smaa/color.glsl, steps of a search, and
+ * of one along a diagonal. */
+static float masu_smaa_threshold(masu_aa aa) {
+    static const float thresholds[] = {0.15f, 0.1f, 0.1f, 0.05f};
+    return 2550000.0f * thresholds[aa - MASU_AA_SMAA_LOW];
+}
+
+static uint32_t masu_smaa_steps(masu_aa aa) {
+    static const uint32_t steps[] = {4, 8, 16, MASU_SMAA_STEPS_MAX};
+    return steps[aa - MASU_AA_SMAA_LOW];
+}
+
+static uint32_t masu_smaa_diagonal_steps(masu_aa aa) {
+    static const uint32_t steps[] = {0, 0, 8, MASU_SMAA_DIAGONAL_STEPS_MAX};
+    return steps[aa - MASU_AA_SMAA_LOW];
+}
+
+/* ---- Rows ------------------------------------------------------------------------------------ */
+
+#define UINT(name, value)                                                                          \
+    if (i < MASU_PUSH_OWN) block->own.word[i++] = (uint32_t)(value);
+#define FLOAT(name, value)                                                                         \
+    if (i < MASU_PUSH_OWN) block->own.real[i++] = (float)(value);
+#define PUSH(...) __VA_ARGS__
+
+#define PASS(ID, name, purpose, kind, extent, when, push, ...)                                     \
+    static void fill_##name(const masu_push_input *in, masu_push_block *block) {                   \
+        const masu_rung *r = &in->plan->desc.rungs[in->rung];                                      \
+        const masu_needs *n = &in->plan->needs;                                                    \
+        const masu_exposure *e = &in->plan->desc.exposure;                                         \
+        const masu_targets *t = &in->plan->desc.targets;                                           \
+        uint32_t i = 0;                                                                            \
+        (void)r, (void)n, (void)e, (void)t;                                                        \
+        push(void) i;                                                                              \
+        (void)block;                                                                               \
+    }
+#include "plan/passes.inc"
+#undef PASS
+#undef UINT
+#undef FLOAT
+
+/* A row that tells more than there is room for stops the build. */
+#define UINT(name, value) +1
+#define FLOAT(name, value) +1
+#define PASS(ID, name, purpose, kind, extent, when, push, ...)                                     \
+    _Static_assert(0 push <= MASU_PUSH_OWN, #name ": MASU_PUSH_OWN");
+#include "plan/passes.inc"
+#undef PASS
+
+static void (*const fills[MASU_PASS_COUNT])(const masu_push_input *in, masu_push_block *block) = {
+#define PASS(ID, name, ...) [MASU_PASS_##ID] = fill_##name,
+#include "plan/passes.inc"
+#undef PASS
+};
+
+masu_push_block masu_push_of(const masu_frame_plan *plan, uint32_t rung, uint32_t pass,
+                             uint32_t few) {
+    const masu_rung_plan *rp = &plan->rungs[rung];
+    VkExtent2D render = {rp->render_width, rp->render_height}, input = render;
+    VkExtent2D output = masu_plan_extent(plan, masu_passes[pass].extent, render);
+    masu_push_block block;
+    memset(&block, 0, sizeof block);
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) { /* the first image that is read */
+        if (rp->access[pass][a].usage != MASU_READ) continue;
+        if (masu_images[rp->access[pass][a].image].extent == MASU_EXTENT_OUTPUT)
+            input = plan->desc.output;
+        break;
+    }
+    masu_push_input in = {plan, rung, pass, few,
+                          {(float)input.width * (1.0f / (float)output.width),
+                           (float)input.height * (1.0f / (float)output.height)}};
+    block.sizes.render_width = input.width;
+    block.sizes.render_height = input.height;
+    block.sizes.output_width = output.width;
+    block.sizes.output_height = output.height;
+    masu_output_push(plan, rp, pass, &block.sizes);
+    fills[pass](&in, &block);
+    return block;
+}
