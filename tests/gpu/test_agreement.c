@@ -2,6 +2,7 @@
  * as SDF, and a box that cuts through an SDF sphere, both against rays intersected in double
  * precision. */
 #include "support/support.h"
+#include "support/floats.h"
 #include "reference/vec.h"
 
 #include <math.h>
@@ -117,7 +118,7 @@ static double grid_slack(const eye *e, double x, double y, double truth, double 
     for (int n = 0; n < 4; n++) {
         double z = hit_sphere(
             e, ray_through(e, x + (n & 1 ? grid : -grid), y + (n & 2 ? grid : -grid)), radius);
-        if (z > 0) most = fmax(most, fabs(z / truth - 1));
+        if (z > 0) most = worst_of(most, fabs(z / truth - 1));
     }
     return most;
 }
@@ -133,20 +134,20 @@ static void compare_with_truth(const picture *p, const eye *e, double radius, do
             double truth = hit_sphere(e, d, radius), got = (double)p->depth[y * W + x];
             double off = fabs(silhouette_pixels(e, d, radius));
             if ((truth > 0) != (got > 0)) {
-                worst_pixels = fmax(worst_pixels, off);
+                worst_pixels = worst_of(worst_pixels, off);
                 continue;
             }
             if (!(got > 0) || off < 1)
                 continue; /* at the rim depth changes without bound per pixel */
             hits++;
-            worst_depth = fmax(worst_depth, fabs(got / truth - 1));
+            worst_depth = worst_of(worst_depth, fabs(got / truth - 1));
             double slack = grid > 0 ? grid_slack(e, x + 0.5, y + 0.5, truth, radius, grid) : 0;
-            worst_beyond = fmax(worst_beyond, fabs(got / truth - 1) - slack);
+            worst_beyond = worst_of(worst_beyond, fabs(got / truth - 1) - slack);
             float n[3];
             masu_unpack_normal(p->normal[y * W + x], n);
             vec true_normal = vec_unit(vec_add(e->position, vec_scale(d, truth)));
             double cosine = vec_dot(true_normal, (vec){(double)n[0], (double)n[1], (double)n[2]});
-            worst_angle = fmax(worst_angle, acos(fmin(1, cosine)) * 57.29578);
+            worst_angle = worst_of(worst_angle, acos(fmin(1, cosine)) * 57.29578);
         }
     }
     print_message(
@@ -182,7 +183,7 @@ static void a_sphere_is_the_same_as_mesh_as_sdf_and_in_double_precision(void **s
                 assert_true(off < 1.0);
             } else if (mesh.depth[i] > 0 && off > 1) {
                 double x = i % W + 0.5, y = i / W + 0.5, z = (double)sdf.depth[i];
-                worst = fmax(worst, fabs((double)mesh.depth[i] / z - 1) -
+                worst = worst_of(worst, fabs((double)mesh.depth[i] / z - 1) -
                                         grid_slack(&e, x, y, z, 1.0, grid));
             }
         }
@@ -316,7 +317,7 @@ static void a_million_metres_from_the_origin_polygons_look_the_same(void **state
     for (uint32_t i = 0; i < W * H; i++) {
         differ += (here.depth[i] > 0) != (there.depth[i] > 0);
         if (here.depth[i] > 0 && there.depth[i] > 0) {
-            worst = fmax(worst, fabs((double)here.depth[i] / (double)there.depth[i] - 1));
+            worst = worst_of(worst, fabs((double)here.depth[i] / (double)there.depth[i] - 1));
         }
     }
     print_message("  %u pixels differ in coverage, depth by %.2e\n", differ, worst);

@@ -62,7 +62,7 @@ static double compare(const masu_camera *camera, masu_light light) {
             double want = (double)clear[4 * i + k] * left + (double)light.fog_color[k] * (1 - left);
             double off = fabs((double)foggy[4 * i + k] - want) / (0.01 + want);
             assert_true(isfinite(off));
-            worst = fmax(worst, off);
+            worst = worst_of(worst, off);
         }
     }
     return worst;

@@ -4,6 +4,7 @@
  * rest, nothing outside of the picture's rectangle is looked at, the SDF's own occlusion is kept, and
  * scenes that do not ask have none of it. */
 #include "support/files.h"
+#include "support/floats.h"
 #include "support/shadow.h"
 
 #include "bench/study/ao.h"
@@ -162,7 +163,7 @@ static errors compare(const char *name, double (*at)(const double *, const doubl
         double rays = masu_ao_seen(&world, p.at, p.normal, 5e-3, radius, 256, i);
         e.rmse += d * d;
         e.mean += d;
-        e.worst = fmax(e.worst, fabs(d));
+        e.worst = worst_of(e.worst, fabs(d));
         e.rays += (rays - truth) * (rays - truth);
         e.none += (1 - truth) * (1 - truth);
         e.count++;
@@ -295,7 +296,7 @@ static void a_camera_that_creeps_changes_it_little(void **state) {
             masu_unpack_normal(normals[k], n);
             double now = ambient_share(seen, k), d = fabs(now - before[k]);
             /* The ball's outline moves over the pixels: there it may jump. */
-            if (i && n[1] > 0.999f) squares += d * d, most = fmax(most, d), jumps += d > 0.1, count++;
+            if (i && n[1] > 0.999f) squares += d * d, most = worst_of(most, d), jumps += d > 0.1, count++;
             before[k] = now;
         }
     }

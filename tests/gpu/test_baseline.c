@@ -39,7 +39,7 @@ static const masu_baseline_point *point(uint32_t k) {
 }
 
 /* The mirror fills the picture; its textures make a renderer for each count of samples. */
-static void a_ray_a_pixel_beside_one_in_four(void **state) {
+static void a_ray_a_pixel_is_measured_beside_one_in_four(void **state) {
     (void)state;
     static const char *const settings[] = {"base", "scale=0.5+sharpen=off", NULL};
     run((masu_baseline_desc){.positions = 4, .rays = 4, .frames = 2, .runs = 2, .most = 1},
@@ -166,7 +166,7 @@ static void rows_are_written(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ray_a_pixel_beside_one_in_four),
+        cmocka_unit_test(a_ray_a_pixel_is_measured_beside_one_in_four),
         cmocka_unit_test(many_plain_samples_are_the_truth),
         cmocka_unit_test(bad_input_is_one_line),
         cmocka_unit_test(rows_are_written),

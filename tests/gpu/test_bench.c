@@ -289,7 +289,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
 
 /* Scenes baked with all ways to march have rows of them; others name why not, and go on. The field
  * in double precision lies beside the one here. */
-static void ways_to_march_and_what_depth_is_compared_with(void **state) {
+static void ways_to_march_have_rows_where_the_blob_has_their_code(void **state) {
     (void)state;
     char path[512];
     snprintf(path, sizeof path, "%s/stiff/blend.masu", build_dir());
@@ -692,7 +692,7 @@ int main(void) {
         cmocka_unit_test(shards_together_are_the_whole),
         cmocka_unit_test(slow_shadows_are_timed_over_their_whole_period),
         cmocka_unit_test(reflections_have_an_error_of_their_own),
-        cmocka_unit_test(ways_to_march_and_what_depth_is_compared_with),
+        cmocka_unit_test(ways_to_march_have_rows_where_the_blob_has_their_code),
         cmocka_unit_test(rungs_are_timed_again),
         cmocka_unit_test(a_row_without_its_picture_is_measured_again),
         cmocka_unit_test(both_tables_are_joined_and_forgotten_together),

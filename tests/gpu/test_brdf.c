@@ -89,7 +89,7 @@ enum { MANY = 8192 };
 static test_case cases[2 * MANY];
 static test_result results[2 * MANY];
 
-static void test_reference(void **unused) {
+static void surfaces_are_those_of_the_reference(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) cases[i] = any_case();
     run(cases, results, MANY, 0, 0);
@@ -104,8 +104,8 @@ static void test_reference(void **unused) {
             double off = fabs((double)results[i].light[k] - truth[k]) / (1e-3 + truth[k]);
             double alpha = fmax(s.roughness, s.coat > 0 ? s.coat_roughness : 1);
             if (alpha > 0.2 && s.roughness > 0.2 && !(s.coat > 0 && s.coat_roughness < 0.2))
-                worst_broad = fmax(worst_broad, off);
-            worst = fmax(worst, off);
+                worst_broad = worst_of(worst_broad, off);
+            worst = worst_of(worst, off);
         }
     }
     print_message("  off by %.1e of (0.001 + itself) at most, %.1e where roughness is above 0.2\n",
@@ -115,7 +115,7 @@ static void test_reference(void **unused) {
     assert_true(worst_broad < 1e-4);
 }
 
-static void test_reciprocity(void **unused) {
+static void light_and_view_may_be_exchanged(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) {
         cases[2 * i] = any_case();
@@ -129,7 +129,7 @@ static void test_reciprocity(void **unused) {
         for (int k = 0; k < 3; k++) {
             double a = (double)results[2 * i].light[k] / (double)cases[2 * i].light[2];
             double b = (double)results[2 * i + 1].light[k] / (double)cases[2 * i + 1].light[2];
-            worst = fmax(worst, fabs(a - b) / (1e-6 + fmax(a, b)));
+            worst = worst_of(worst, fabs(a - b) / (1e-6 + fmax(a, b)));
         }
     }
     print_message("  f(v, l) and f(l, v) differ by %.1e of themselves at most\n", worst);
@@ -156,7 +156,7 @@ static const material materials[] = {{"metal", 1, 0.5f, 0, 0},
                                      {"dielectric, coat 1", 0, 0.5f, 1, 0.2f}};
 #define MATERIALS (sizeof materials / sizeof *materials)
 
-static void test_furnace(void **unused) {
+static void in_the_white_furnace_no_light_is_lost_or_made(void **unused) {
     (void)unused;
     uint32_t each = ROUGHNESSES * ANGLES, count = 0;
     for (size_t m = 0; m < MATERIALS; m++) {
@@ -184,7 +184,7 @@ static void test_furnace(void **unused) {
             high = fmax(high, (double)r->light[0]);
             /* The three factors of ambient light are what the furnace measures. */
             double all = (double)r->diffuse[0] + (double)r->specular[0] + (double)r->coat;
-            apart = fmax(apart, fabs(all - 1));
+            apart = worst_of(apart, fabs(all - 1));
         }
         print_message("  %-26s %.4f to %.4f\n", materials[m].name, low, high);
         assert_true(low > 0.99 && high < 1.01);
@@ -203,7 +203,7 @@ static int finite_result(const test_result *r) {
 }
 
 /* Roughness 0, 1e-4, 1 and NaN; views from below; then words of random bits. */
-static void test_any_bits(void **unused) {
+static void any_bits_give_finite_light(void **unused) {
     (void)unused;
     const float roughness[] = {0, 1e-4f, 1, NAN, INFINITY, -1, 1e30f};
     uint32_t count = 0;
@@ -245,7 +245,7 @@ enum { W = 160, H = 90 };
 
 /* scenes/surfaces.json under the sun alone, from the G-buffer's own texels: plain surfaces and those with
  * a coat. The rest is the half float of the picture. */
-static void test_frame(void **unused) {
+static void a_frame_shows_what_the_formulas_say(void **unused) {
     (void)unused;
     static uint32_t normals[W * H];
     static uint8_t albedo[4 * W * H];
@@ -308,7 +308,7 @@ static void test_frame(void **unused) {
         for (int k = 0; k < 3; k++) {
             double off =
                 fabs(half_float(hdr[4 * i + k]) - 2 * expected[k]) / (0.05 + 2 * expected[k]);
-            worst[coated] = fmax(worst[coated], off);
+            worst[coated] = worst_of(worst[coated], off);
             sum[coated] += off;
         }
         counts[coated] += 3;
@@ -323,8 +323,11 @@ static void test_frame(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reference), cmocka_unit_test(test_reciprocity),
-        cmocka_unit_test(test_furnace), cmocka_unit_test(test_any_bits),
-        cmocka_unit_test(test_frame)};
+        cmocka_unit_test(surfaces_are_those_of_the_reference),
+        cmocka_unit_test(light_and_view_may_be_exchanged),
+        cmocka_unit_test(in_the_white_furnace_no_light_is_lost_or_made),
+        cmocka_unit_test(any_bits_give_finite_light),
+        cmocka_unit_test(a_frame_shows_what_the_formulas_say),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -157,7 +157,7 @@ static void time_is_a_ratio_to_the_calibration(void **state) {
     cli_said("ms_ratio is ");
 }
 
-static void parts_and_lists(void **state) {
+static void parts_are_chosen_and_listed(void **state) {
     (void)state;
     assert_int_equal(conform("--list --case 'memory.*'"), 0);
     cli_said("memory.both");
@@ -210,7 +210,7 @@ int main(void) {
         cmocka_unit_test(a_failure_is_replayed_by_its_token),
         cmocka_unit_test(what_is_planted_has_its_verdict),
         cmocka_unit_test(time_is_a_ratio_to_the_calibration),
-        cmocka_unit_test(parts_and_lists),
+        cmocka_unit_test(parts_are_chosen_and_listed),
         cmocka_unit_test(what_is_no_suite_is_refused_in_one_line),
     };
     return cmocka_run_group_tests_name("conform", tests, make_scratch, remove_scratch);

@@ -151,16 +151,15 @@ static void velocities_are_the_same_without_culling(void **state) {
 /* The town with a shadow map, which the test bakes. */
 static void bake_shadows(void) {
     assert_int_equal(
-        shell("sed -e 's#\"test_block.obj\"#\"'\"$PWD\"'/scenes/test_block.obj\"#' "
-                     "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
-                     "\"resolution\": 192, \"distance\": 90}, #' "
-                     "tests/scenes/test_town.json > %s/town.json",
-                     scratch),
+        shell("sed -e 's#\"../../scenes/#\"'\"$PWD\"'/scenes/#' "
+              "-e 's#\"sun\": {#\"sun\": {\"shadows\": {\"cascades\": 3, "
+              "\"resolution\": 192, \"distance\": 90}, #' "
+              "tests/scenes/test_town.json > %s/town.json",
+              scratch),
         0);
-    assert_int_equal(shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet",
-                                  build_dir(), scratch,
-                                  scratch),
-                     0);
+    assert_int_equal(
+        shell("%s/bin/masu-bake %s/town.json -o %s/town.masu --quiet", build_dir(), scratch, scratch),
+        0);
 }
 
 /* Each way of culling in a renderer of its own: what a slow cascade has kept is of that way alone. The

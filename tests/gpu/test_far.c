@@ -122,9 +122,9 @@ static difference compare(const picture *a, const picture *b) {
             d.surface++;
             continue;
         }
-        d.depth = fmax(d.depth, off);
+        d.depth = worst_of(d.depth, off);
         d.deep += off > 1e-4;
-        d.velocity = fmax(d.velocity, hypot(a->velocity[i][0] - b->velocity[i][0],
+        d.velocity = worst_of(d.velocity, hypot(a->velocity[i][0] - b->velocity[i][0],
                                             a->velocity[i][1] - b->velocity[i][1]));
     }
     return d;
@@ -139,7 +139,7 @@ static void take_both(int offset, const char *member, picture p[2]) {
     close_session(&s);
 }
 
-static difference worst_of(const char *what) {
+static difference largest_of(const char *what) {
     difference worst = {0};
     for (int i = 0; i < 2; i++) {
         difference d = compare(&here[i], &there[i]);
@@ -150,8 +150,8 @@ static difference worst_of(const char *what) {
         if (d.coverage > worst.coverage) worst.coverage = d.coverage;
         if (d.surface > worst.surface) worst.surface = d.surface;
         if (d.deep > worst.deep) worst.deep = d.deep;
-        worst.velocity = fmax(worst.velocity, d.velocity);
-        worst.depth = fmax(worst.depth, d.depth);
+        worst.velocity = worst_of(worst.velocity, d.velocity);
+        worst.depth = worst_of(worst.depth, d.depth);
     }
     return worst;
 }
@@ -167,7 +167,7 @@ static void far_from_the_origin_it_looks_the_same(void **state) {
     take_both(0, "", here);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         take_both(cases[i].offset, cases[i].member, there);
-        difference d = worst_of(cases[i].what);
+        difference d = largest_of(cases[i].what);
         assert_true(d.coverage <= 4);
         assert_true(d.surface <= 30);
         assert_true(d.depth < 1e-4);
@@ -180,7 +180,7 @@ static void without_anchors_it_does_not(void **state) {
     (void)state;
     take_both(0, "", here);
     take_both(1000000, ", \"anchored\": false", there);
-    difference d = worst_of("1e6 m away, not anchored");
+    difference d = largest_of("1e6 m away, not anchored");
     assert_true(d.surface > 300 && d.deep > 100);
 }
 

@@ -32,7 +32,7 @@ static uint32_t step(masu_session *s, uint32_t frame, double load, masu_stats_in
     return c.rung;
 }
 
-static void follows_the_wall(void **state) {
+static void it_follows_the_wall_clock(void **state) {
     (void)state;
     masu_session_desc d = governed_desc(MASU_GOVERNOR_ON);
     d.desc.governor.wall_only = 1;
@@ -61,7 +61,7 @@ static void follows_the_wall(void **state) {
 
 /* By the driver's own timestamps, and a target that is far off: whatever it does, it stays in the
  * range and says why; each frame is told to it once. */
-static void stays_in_range_with_real_times(void **state) {
+static void it_stays_in_range_with_real_times(void **state) {
     (void)state;
     for (uint32_t debug = 0; debug < 2; debug++) {
         masu_session_desc d = governed_desc(MASU_GOVERNOR_ON);
@@ -154,8 +154,8 @@ static void bad_descriptions_are_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(follows_the_wall),
-        cmocka_unit_test(stays_in_range_with_real_times),
+        cmocka_unit_test(it_follows_the_wall_clock),
+        cmocka_unit_test(it_stays_in_range_with_real_times),
         cmocka_unit_test(the_picture_is_that_of_the_rung),
         cmocka_unit_test(bad_descriptions_are_named),
     };

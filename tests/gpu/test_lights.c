@@ -295,7 +295,7 @@ static error_info compare_light(pictures *p, const masu_camera *c,
             double a = half_float(is[k]), b = half_float(should[k]);
             if (!reached && a != 0.0)
                 fail_msg("%u %u is lit by what does not reach it: %g", x, y, a);
-            if (b > 1e-3) e.most = fmax(e.most, fabs(a - b) / b);
+            if (b > 1e-3) e.most = worst_of(e.most, fabs(a - b) / b);
             if (b <= 1e-3 && fabs(a - b) > 2e-5) fail_msg("%u %u: %g should be %g", x, y, a, b);
             e.lit += b > 1e-3;
         }

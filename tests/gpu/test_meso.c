@@ -1,6 +1,7 @@
 /* test_meso.c: shaders/brdf/meso.glsl on the GPU is tools/meso/model.c, and finite for anything. */
 #include "meso/model.h"
 #include "support/support.h"
+#include "support/floats.h"
 #include "support/random.h"
 #include "support/compute.h"
 
@@ -48,7 +49,7 @@ static masu_meso_vec3 vec3_of(const float v[4]) {
     return masu_bake_v3((double)v[0], (double)v[1], (double)v[2]);
 }
 
-static void test_twin(void **unused) {
+static void the_gpu_says_what_the_model_says(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) {
         test_case *c = &cases[i];
@@ -96,7 +97,7 @@ static void test_twin(void **unused) {
                                  0};
         float got[12];
         memcpy(got, &results[i], sizeof got);
-        for (int k = 0; k < 12; k++) worst = fmax(worst, fabs((double)got[k] - want[k]));
+        for (int k = 0; k < 12; k++) worst = worst_of(worst, fabs((double)got[k] - want[k]));
     }
     print_message("  off by %.1e at most\n", worst);
     /* A tilt that all but turns the normal over leaves a short vector to be normalised. */
@@ -104,7 +105,7 @@ static void test_twin(void **unused) {
 }
 
 /* The widest numbers that a blob may have, and surfaces at their limits. */
-static void test_total(void **unused) {
+static void the_widest_numbers_give_finite_surfaces(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) {
         test_case *c = &cases[i];
@@ -130,6 +131,9 @@ static void test_total(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_twin), cmocka_unit_test(test_total)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_gpu_says_what_the_model_says),
+        cmocka_unit_test(the_widest_numbers_give_finite_surfaces),
+    };
     return cmocka_run_group_tests_name("meso", tests, NULL, NULL);
 }

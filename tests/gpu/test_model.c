@@ -38,7 +38,7 @@ static void model_of(const char *scene, const char *path, uint32_t width, uint32
 }
 
 /* Rounds of a loop, atomics of all invocations, bytes. */
-static void test_loop_is_counted(void **state) {
+static void a_loop_is_counted_round_by_round(void **state) {
     enum { N = 128 };
     static float values[N], expected[N];
     uint32_t counts[MASU_TALLY_WORDS] = {0};
@@ -72,7 +72,7 @@ static void test_loop_is_counted(void **state) {
 
 /* Polygons, SDF, reflections of both, a shadow map or none: the picture with counters is the one
  * without, and every pixel that is written is counted once. */
-static void test_same_picture(void **state) {
+static void counters_change_no_pixel(void **state) {
     enum { W = 96, H = 64 };
     static uint8_t plain[W * H * 4], counted[W * H * 4];
     static const char *const scenes[] = {"wet_city", "mirrors"};
@@ -146,7 +146,7 @@ static void assert_near(double given, double wanted, double part) {
 }
 
 /* By hand: n pixels rendered, P shown. */
-static void test_bytes_of_known_passes(void **state) {
+static void bytes_of_known_passes_are_those_worked_out_by_hand(void **state) {
     static masu_model m, larger;
     (void)state;
     const char *path = write_text("ladder.json", ladder);
@@ -193,7 +193,7 @@ static void test_bytes_of_known_passes(void **state) {
 }
 
 /* An SDF and nothing else, at the library's own rungs: each quicker than the one before. */
-static void test_sdf_rungs(void **state) {
+static void rungs_of_an_sdf_cost_less_one_by_one(void **state) {
     static masu_model m;
     (void)state;
     model_of("spheres", NULL, 96, 64, 96, 64, &m);
@@ -214,7 +214,7 @@ static void test_sdf_rungs(void **state) {
     }
 }
 
-static void test_command_line(void **state) {
+static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state) {
     static char arguments[600], text[1 << 16];
     (void)state;
     snprintf(arguments, sizeof arguments,
@@ -247,8 +247,11 @@ static void test_command_line(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_loop_is_counted), cmocka_unit_test(test_same_picture),
-        cmocka_unit_test(test_bytes_of_known_passes), cmocka_unit_test(test_sdf_rungs),
-        cmocka_unit_test(test_command_line)};
+        cmocka_unit_test(a_loop_is_counted_round_by_round),
+        cmocka_unit_test(counters_change_no_pixel),
+        cmocka_unit_test(bytes_of_known_passes_are_those_worked_out_by_hand),
+        cmocka_unit_test(rungs_of_an_sdf_cost_less_one_by_one),
+        cmocka_unit_test(the_command_writes_its_sheet_and_refuses_what_is_wrong),
+    };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

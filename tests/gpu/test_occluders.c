@@ -151,12 +151,12 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
     close_session(&s);
 }
 
-static void random_scenes_at_more_than_a_pixel_per_texel(void **state) {
+static void nothing_that_is_seen_is_left_out_at_more_than_a_pixel_per_texel(void **state) {
     (void)state;
     random_scenes(384, 256, 60);
 }
 
-static void random_scenes_at_less_than_a_pixel_per_texel(void **state) {
+static void nothing_that_is_seen_is_left_out_at_less_than_a_pixel_per_texel(void **state) {
     (void)state;
     random_scenes(96, 50, 200);
 }
@@ -316,8 +316,8 @@ static void scenes_without_occluders_have_none_of_it(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_scenes_at_more_than_a_pixel_per_texel),
-        cmocka_unit_test(random_scenes_at_less_than_a_pixel_per_texel),
+        cmocka_unit_test(nothing_that_is_seen_is_left_out_at_more_than_a_pixel_per_texel),
+        cmocka_unit_test(nothing_that_is_seen_is_left_out_at_less_than_a_pixel_per_texel),
         cmocka_unit_test(gaps_narrower_than_a_texel_are_looked_through),
         cmocka_unit_test(a_mesh_that_is_cut_open_hides_nothing),
         cmocka_unit_test(what_stands_before_a_slanted_wall_is_drawn),

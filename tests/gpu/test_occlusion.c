@@ -6,6 +6,7 @@
  * SDF compiler and go through the C compiler. The table of errors is printed
  * (docs/design/13-sdf-occlusion.md). */
 #include "support/support.h"
+#include "support/floats.h"
 #include "support/files.h"
 
 #include "bench/measure/truth.h"
@@ -75,7 +76,7 @@ typedef struct errors {
 static void note(errors *e, double truth, double is) {
     double d = fabs(is - truth);
     e->squares += d * d;
-    e->most = fmax(e->most, d);
+    e->most = worst_of(e->most, d);
     e->wrong += (truth == 0 || truth == 1) && d > 0.5;
     e->count++;
 }

@@ -168,7 +168,7 @@ static void assert_target(const target_case *t, float scale) {
                 fail_msg("%s, scale %g, color %d, channel %d: %g, should be %g: %g steps off", t->name,
                          (double)scale, i, c, got[c], expected(t, colors[i], c), off);
             }
-            worst = fmax(worst, off);
+            worst = worst_of(worst, off);
         }
     }
     print_message("%-18s scale %.1f: off by %.3f steps at most\n", t->name, (double)scale, worst);

@@ -268,12 +268,12 @@ static void the_gpu_says_what_the_twin_says(void **state) {
         for (uint32_t k = 0; k < 4; k++) {
             double g = (double)masu_probe_half(got[k / 2] >> (k & 1 ? 16 : 0) & 0xFFFFu);
             double w = (double)masu_probe_half(want[k / 2] >> (k & 1 ? 16 : 0) & 0xFFFFu);
-            worst = fmax(worst, fabs(g - w) / (fabs(w) + 0.01));
+            worst = worst_of(worst, fabs(g - w) / (fabs(w) + 0.01));
         }
         for (uint32_t k = 0; k < 24; k++) {
             int32_t g = (int32_t)(got[2 + k / 3] << (22 - 10 * (k % 3))) >> 22;
             int32_t w = (int32_t)(want[2 + k / 3] << (22 - 10 * (k % 3))) >> 22;
-            worst = fmax(worst, fabs((double)g - (double)w) / 511);
+            worst = worst_of(worst, fabs((double)g - (double)w) / 511);
         }
     }
     print_message("%u probes: light off by %.2e at most\n", scene.probes, worst);
@@ -290,7 +290,7 @@ static void the_gpu_says_what_the_twin_says(void **state) {
         outside += !(inside > 0);
         for (int k = 0; k < 3 && inside > 0; k++) {
             double e = fabs((double)found[2 * i + 1][k] - (double)out[k]);
-            worst = fmax(worst, e / ((double)fabsf(out[k]) + 0.01));
+            worst = worst_of(worst, e / ((double)fabsf(out[k]) + 0.01));
         }
     }
     print_message("%u points, %u of them beyond the grid: off by %.2e at most\n", POINTS, outside,

@@ -4,6 +4,7 @@
  * together. The figures are printed (docs/design/15-shadow-map.md). test_shadow_frames.c has what
  * holds from frame to frame. */
 #include "support/files.h"
+#include "support/floats.h"
 #include "support/shadow.h"
 
 #include <math.h>
@@ -114,12 +115,12 @@ static errors compare(const masu_camera *camera) {
                 double edge = shadow_edge(&t, &p, texel, 8);
                 e.wrong++;
                 e.far += edge > 1.5;
-                e.farthest = fmax(e.farthest, edge);
+                e.farthest = worst_of(e.farthest, edge);
             }
             if (x % 5 != 1 || y % 5 != 1) continue;
             double d = is - masu_ref_sun_share(&t.world, p.at, p.triangle, t.sun, tangent, 256);
             e.squares += d * d;
-            e.most = fmax(e.most, fabs(d));
+            e.most = worst_of(e.most, fabs(d));
             e.sampled++;
         }
     }
@@ -260,12 +261,12 @@ static void shadows_begin_at_the_foot_of_their_caster(void **state) {
                 double texel = shadow_texel(&t, &behind, &p, 0.1, &cascade);
                 if (fabs(p.at[2]) > 10 * texel || fabs(p.at[0]) > 1) continue; /* no other edge */
                 ground++;
-                if (sun_share(seen, k) > 0.5) leak = fmax(leak, -p.at[2] / texel);
+                if (sun_share(seen, k) > 0.5) leak = worst_of(leak, -p.at[2] / texel);
             }
             print_message("%s, sun %d: lit up to %.2f texels behind the foot, of %u pixels\n",
                           i ? "box" : "sheet", elevation, leak, ground);
             assert_true(ground > 100);
-            worst = fmax(worst, leak);
+            worst = worst_of(worst, leak);
         }
         shadow_close(&t);
         assert_true(worst <= (i ? 0.5 : 3.5));

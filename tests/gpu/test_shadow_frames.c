@@ -2,6 +2,7 @@
  * view moves, cascades that are not drawn in every frame, rungs with cascades of their own; far
  * from the origin; what a plan has of it and when it is refused. */
 #include "support/files.h"
+#include "support/floats.h"
 #include "support/shadow.h"
 
 #include <math.h>
@@ -141,7 +142,7 @@ static void texels_move_by_whole_steps_while_the_view_flies(void **state) {
                     double d = fabs((double)a - (double)b);
                     shared++;
                     changed += d > 1e-4;
-                    most = fmax(most, d > 1e-4 ? 0 : d);
+                    most = worst_of(most, d > 1e-4 ? 0 : d);
                 }
             }
         }

@@ -86,7 +86,7 @@ static void pixels_of_the_sky_are_what_the_tables_say(void **state) {
                 seen++;
                 for (int c = 0; c < 3; c++) {
                     double got = half_float(hdr[4 * i + (uint32_t)c]), w = (double)want[c];
-                    worst = fmax(worst, fabs(got - w) / (w + 1e-4));
+                    worst = worst_of(worst, fabs(got - w) / (w + 1e-4));
                 }
             }
             assert_true(seen > W * H / 2);
@@ -120,7 +120,7 @@ static void a_matt_surface_shows_the_irradiance(void **state) {
         seen++;
         for (int c = 0; c < 3; c++) {
             double got = half_float(hdr[4 * i + (uint32_t)c]), w = 0.64 * (double)want[c];
-            worst = fmax(worst, fabs(got - w) / w);
+            worst = worst_of(worst, fabs(got - w) / w);
         }
     }
     print_message("%u pixels, irradiance off by %.4f at most\n", seen, worst);
@@ -233,10 +233,10 @@ static void a_picture_is_seen_and_lights(void **state) {
             for (int c = 0; c < 3; c++) {
                 double got = half_float(hdr[4 * i + (uint32_t)c]);
                 if (depth[i] > 0) {
-                    light_error = fmax(light_error, fabs(got - 0.64 * linear_sky(n, c, 2.0 / 3)));
+                    light_error = worst_of(light_error, fabs(got - 0.64 * linear_sky(n, c, 2.0 / 3)));
                     lit++;
                 } else {
-                    sky_error = fmax(sky_error, fabs(got - linear_sky(ray, c, 1)));
+                    sky_error = worst_of(sky_error, fabs(got - linear_sky(ray, c, 1)));
                 }
             }
         }

@@ -494,7 +494,7 @@ static void a_discrete_device_gets_the_table_through_a_staging_buffer(void **sta
     assert_memory_equal(here, there, 80 * 60 * 4);
     close_session(&s);
     wrap_reset();
-    open_device(NULL);
+    open_device(&s);
 }
 
 int main(void) {

@@ -2,6 +2,7 @@
  * to the truth than each fewer of them, at rest and in motion; a world of one colour stays it, whatever it is
  * made of; nothing that is not finite lives on; the frame rate, another render size and a cut. */
 #include "support/files.h"
+#include "support/floats.h"
 #include "support/shadow.h"
 
 #include "bench/study/specular.h"
@@ -201,7 +202,7 @@ static void a_white_world_stays_white(void **state) {
         if (classes[i] == 0xFF) continue;
         count++;
         for (int k = 0; k < 3; k++)
-            worst = fmax(worst, fabs((double)picture[3 * i + (uint32_t)k] / 0.5 - 1));
+            worst = worst_of(worst, fabs((double)picture[3 * i + (uint32_t)k] / 0.5 - 1));
     }
     printf("%u pixels, off by at most %.4f\n", count, worst);
     assert_true(count > 300);

@@ -148,7 +148,7 @@ static void compare(const char *name, const masu_ref_mirror *m, const double coa
             error2 += e.variance[c] * (1.0 / rays + 1.0 / frames) / 3; /* colours go together */
             g->square += fmin(z2, 16); /* a pixel on an edge, for which the two find another neighbour */
             g->far += z2 > 16;
-            g->worst = fmax(g->worst, sqrt(z2));
+            g->worst = worst_of(g->worst, sqrt(z2));
             g->values++;
         }
         g->pixels++;
@@ -172,7 +172,7 @@ static double worst_group(double *chi, double *far) {
     for (uint32_t i = 0; i < MATERIALS && groups[i].pixels; i++) {
         const group *g = &groups[i];
         double n = g->pixels, d = fabs(g->gpu - g->cpu) / n, se = sqrt(g->error2) / n;
-        worst = fmax(worst, d / (3 * se + 0.002 * g->cpu / n));
+        worst = worst_of(worst, d / (3 * se + 0.002 * g->cpu / n));
         *chi = fmax(*chi, g->square / g->values);
         *far = fmax(*far, (double)g->far / g->values);
     }
@@ -314,8 +314,8 @@ static void furnace_with(const char *how, uint32_t reference, uint32_t frames, d
         print_message("  furnace, %s, ball %2d: %u pixels, mean %.4f, %.4f to %.4f\n", how, b, pixels[b],
                       sum[b] / pixels[b], low[b], high[b]);
         assert_true(pixels[b] > 80);
-        worst = fmax(worst, fabs(sum[b] / pixels[b] - 1));
-        worst_pixel = fmax(worst_pixel, fmax(1 - low[b], high[b] - 1));
+        worst = worst_of(worst, fabs(sum[b] / pixels[b] - 1));
+        worst_pixel = worst_of(worst_pixel, fmax(1 - low[b], high[b] - 1));
     }
     assert_true(worst < 0.01);
     assert_true(worst_pixel < of_pixel);

@@ -59,15 +59,15 @@ static void curves_are_those_of_the_reference(void **state) {
             double x[3], y[3];
             for (int c = 0; c < 3; c++) x[c] = (double)(cases[i][c] * cases[i][3]);
             masu_ref_tone(MASU_REF_TONE_NONE, 1, x, y);
-            none = fmax(none, worst_code(results[i].none, y));
+            none = worst_of(none, worst_code(results[i].none, y));
             for (int c = 0; c < 3; c++)
-                pq = fmax(pq, fabs((double)results[i].pq[c] - masu_ref_pq_encode(100 * y[c])));
+                pq = worst_of(pq, fabs((double)results[i].pq[c] - masu_ref_pq_encode(100 * y[c])));
             double nits = fmin(100 * y[0], 1e4);
-            back = fmax(back, fabs((double)results[i].pq[3] - nits) / (nits + 0.01));
+            back = worst_of(back, fabs((double)results[i].pq[3] - nits) / (nits + 0.01));
             masu_ref_tone(MASU_REF_TONE_ACES, 1, x, y);
-            filmic = fmax(filmic, worst_code(results[i].filmic, y));
+            filmic = worst_of(filmic, worst_code(results[i].filmic, y));
             masu_ref_tone(MASU_REF_TONE_NEUTRAL, (double)mosts[m], x, y);
-            neutral = fmax(neutral, worst_code(results[i].neutral, y));
+            neutral = worst_of(neutral, worst_code(results[i].neutral, y));
             assert_float_equal(results[i].neutral[3], (float)y[0], 1e-4f * (float)(1 + fabs(y[0])));
         }
         print_message("most %g: off by 255ths: none %.4f, filmic %.4f, neutral %.4f; PQ %.6f of 1, "

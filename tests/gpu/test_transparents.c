@@ -215,7 +215,7 @@ static double compare(const masu_camera *camera, uint32_t *compared) {
         (*compared)++;
         for (uint32_t k = 0; k < 3; k++) {
             double off = fabs(want[k] - (double)picture[4 * i + k]) / fmax(1, want[k]);
-            worst = fmax(worst, off);
+            worst = worst_of(worst, off);
         }
     }
     return worst;
@@ -243,7 +243,7 @@ static void panes_are_blended_the_farthest_first(void **state) {
             masu_camera camera = camera_at(2 * random_unit(&seed) - 1, 2 * random_unit(&seed) - 1, 9);
             masu_stats_info stats = render(&camera, picture);
             assert_true(stats.transparents <= counts[c] && stats.draws == 0);
-            worst = fmax(worst, compare(&camera, &compared));
+            worst = worst_of(worst, compare(&camera, &compared));
             if (compared < least) least = compared;
             for (uint32_t i = 0; i < pane_count; i++) { /* another order from the next frame on */
                 panes[i].z = 8 * random_unit(&seed) - 4;
@@ -304,7 +304,7 @@ static void a_camera_moves_through_them(void **state) {
         masu_camera camera = camera_at(0.3, -0.2, z);
         masu_stats_info stats = render(&camera, picture);
         if (stats.transparents < fewest) fewest = (uint32_t)stats.transparents;
-        worst = fmax(worst, compare(&camera, &compared));
+        worst = worst_of(worst, compare(&camera, &compared));
         sum += compared;
     }
     print_message("a camera through 40 panes: off by %.2f of 255 at most\n", 255 * worst);
@@ -453,7 +453,7 @@ static void panes_of_different_sets_take_turns(void **state) {
             if (i % 4 == 3) continue;
             double want =
                 (double)adds[front][i] + (double)keeps[front][i] * (double)adds[!front][i];
-            worst = fmax(worst, fabs(want - (double)picture[i]));
+            worst = worst_of(worst, fabs(want - (double)picture[i]));
             both += keeps[0][i] < 0.9f && keeps[1][i] < 0.9f;
         }
         print_message("%s in front: off by %.2f of 255 at most\n", front ? "b" : "a", 255 * worst);

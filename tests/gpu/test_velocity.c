@@ -234,8 +234,8 @@ static errors compare(const masu_session *s, const picture *p, const moment *now
         assert_true(p->velocity[i][3] == 1.0);
         double off = hypot(p->velocity[i][0] - (px - x), p->velocity[i][1] - (py - y));
         double depth = z > 0 ? fabs(p->velocity[i][2] - (pz / z - 1)) : fabs(p->velocity[i][2]);
-        e.pixels[kind] = fmax(e.pixels[kind], off);
-        e.depth[kind] = fmax(e.depth[kind], depth);
+        e.pixels[kind] = worst_of(e.pixels[kind], off);
+        e.depth[kind] = worst_of(e.depth[kind], depth);
         e.longest[kind] = fmax(e.longest[kind], hypot(px - x, py - y));
         e.count[kind]++;
     }
@@ -461,7 +461,7 @@ static void a_field_by_hand_is_followed_along_its_normal(void **state) {
         double x = i % W + 0.5, y = i / W + 0.5, px, py, pz;
         vec p = vec_add(e.position, vec_scale(ray_through(&e, x, y), 0.1 / (double)depth[i]));
         project(&e, vec_sub(vec_scale(vec_unit(p), sqrt(vec_dot(p, p)) - 0.1), e.position), &px, &py, &pz);
-        worst = fmax(worst, hypot(half_float(texels[4 * i]) - (px - x), half_float(texels[4 * i + 1]) - (py - y)));
+        worst = worst_of(worst, hypot(half_float(texels[4 * i]) - (px - x), half_float(texels[4 * i + 1]) - (py - y)));
         longest = fmax(longest, hypot(px - x, py - y));
     }
     print_message("  longest motion %.2f px, off by %.4f px\n", longest, worst);

@@ -2,6 +2,7 @@
  * text compiled as C, which tests/unit has tested, and total: finite directions, weights of 0..1,
  * for whatever is given. */
 #include "support/support.h"
+#include "support/floats.h"
 #include "support/random.h"
 #include "support/compute.h"
 
@@ -72,13 +73,13 @@ static test_case any_case(void) {
 
 static double apart(const float got[3], vec3 want) {
     double off = fabs((double)got[0] - (double)want.x);
-    off = fmax(off, fabs((double)got[1] - (double)want.y));
+    off = worst_of(off, fabs((double)got[1] - (double)want.y));
     return fmax(off, fabs((double)got[2] - (double)want.z));
 }
 
 /* Directions by the width of the lobe. Vulkan lets a sine be off by 2^-11, and SwiftShader's are:
  * that turns a direction a little round the lobe's middle, the more the farther out it is. */
-static void same_as_in_c(void **unused) {
+static void the_gpu_draws_what_c_draws(void **unused) {
     (void)unused;
     for (int i = 0; i < MANY; i++) cases[i] = any_case();
     run(MANY);
@@ -90,19 +91,19 @@ static void same_as_in_c(void **unused) {
         vec3 o = vec3(c->other[0], c->other[1], c->other_z);
         float alpha = masu_alpha(c->roughness);
         masu_vndf_ray r = masu_vndf_reflect(v, alpha, vec2(c->u[0], c->u[1]));
-        l_off = fmax(l_off, apart(got->l, r.l) / (double)alpha);
+        l_off = worst_of(l_off, apart(got->l, r.l) / (double)alpha);
         /* Density and weight of the device's own l: the other l differs by more than they do. */
         vec3 own = vec3(got->l[0], got->l[1], got->l[2]);
         float pdf = masu_vndf_pdf(v, own, alpha), weight = masu_vndf_weight(v, own, alpha);
-        pdf_off = fmax(pdf_off, fabs((double)(got->pdf - pdf)) / (1e-3 + (double)pdf));
-        weight_off = fmax(weight_off, fabs((double)(got->weight - weight)));
+        pdf_off = worst_of(pdf_off, fabs((double)(got->pdf - pdf)) / (1e-3 + (double)pdf));
+        weight_off = worst_of(weight_off, fabs((double)(got->weight - weight)));
         float far = masu_vndf_pdf(v, o, alpha);
-        other_off = fmax(other_off, fabs((double)(got->other_pdf - far)) / (1e-3 + (double)far));
+        other_off = worst_of(other_off, fabs((double)(got->other_pdf - far)) / (1e-3 + (double)far));
         weight = masu_vndf_weight(v, o, alpha);
-        weight_off = fmax(weight_off, fabs((double)(got->other_weight - weight)));
+        weight_off = worst_of(weight_off, fabs((double)(got->other_weight - weight)));
         masu_axes f = masu_axes_of(vec3(c->normal[0], c->normal[1], c->normal[2]));
-        frame_off = fmax(frame_off, apart(got->around, masu_axes_out(f, own)));
-        frame_off = fmax(frame_off, fabs((double)got->across));
+        frame_off = worst_of(frame_off, apart(got->around, masu_axes_out(f, own)));
+        frame_off = worst_of(frame_off, fabs((double)got->across));
         /* Integers: nothing is off. */
         vec2 n = masu_noise2(c->noise[0], c->noise[1]);
         uint32_t hash = masu_hash(c->noise[2]) >> 9 | 0x3F800000u, there;
@@ -137,7 +138,7 @@ static void assert_total(uint32_t count, const char *what) {
 }
 
 /* Roughness 0, 1e-4, 1, NaN, alphas that masu_alpha never gives, views from below, corners of u. */
-static void odd_surfaces_are_total(void **unused) {
+static void odd_surfaces_give_finite_directions(void **unused) {
     (void)unused;
     static const float roughness[] = {0,      1e-4f,      1,       NAN,       INFINITY,
                                       -1,     0.0450001f, 0.0451f, -INFINITY, 1.0000001f,
@@ -174,7 +175,7 @@ static void odd_surfaces_are_total(void **unused) {
     }
 }
 
-static void any_bits_are_total(void **unused) {
+static void any_bits_give_finite_directions(void **unused) {
     (void)unused;
     for (uint32_t i = 0; i < MANY; i++) {
         uint32_t words[sizeof(test_case) / 4];
@@ -192,8 +193,10 @@ static void any_bits_are_total(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_as_in_c),
-                                       cmocka_unit_test(odd_surfaces_are_total),
-                                       cmocka_unit_test(any_bits_are_total)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_gpu_draws_what_c_draws),
+        cmocka_unit_test(odd_surfaces_give_finite_directions),
+        cmocka_unit_test(any_bits_give_finite_directions),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,6 +21,11 @@ static inline void floats_of_halves(const void *halves, float *out, size_t count
     for (size_t i = 0; i < count; i++) out[i] = (float)half_float(((const uint16_t *)halves)[i]);
 }
 
+/* The larger of two errors; NaN is larger than any number, for good, where fmax would forget it. */
+static inline double worst_of(double worst, double error) {
+    return isnan(worst) || error <= worst ? worst : error;
+}
+
 static inline float float_of_bits(uint32_t bits) {
     float f;
     memcpy(&f, &bits, sizeof f);

@@ -1,7 +1,7 @@
 /* stiff.h: one case of the stiff and extreme ones: a scene of tests/stiff seen by a camera,
  * drawn and compared, pixel by pixel, with its field marched in double precision.
  *
- * What a case claims stands in its row: the most that each figure may be, and why. A figure that
+ * What a case claims stands in its row: the most that each figure may be (below 0: nothing), and why. A figure that
  * depends on what the march can do today says so, so that only a number changes when it can do
  * more. Each case prints one row of a table (`make stiff`, docs/design/11-march-measured.md). */
 #ifndef MASU_TEST_SUPPORT_STIFF_H

@@ -208,7 +208,7 @@ static void a_deviation_is_a_bound_and_not_much_more(void **state) {
     }
 }
 
-static void parts_and_closedness(void **state) {
+static void parts_are_counted_and_the_open_ones_found(void **state) {
     (void)state;
     static soup s;
     s.count = 0;
@@ -631,7 +631,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_are_those_of_the_nearest_triangle),
         cmocka_unit_test(a_deviation_is_a_bound_and_not_much_more),
-        cmocka_unit_test(parts_and_closedness),
+        cmocka_unit_test(parts_are_counted_and_the_open_ones_found),
         cmocka_unit_test(errors_of_lods_are_bounds),
         cmocka_unit_test(occluders_lie_inside),
         cmocka_unit_test(a_box_in_a_sphere_is_not_needlessly_small),

@@ -85,7 +85,7 @@ static void near(double value, double wanted) {
     if (!(fabs(value - wanted) <= 1e-9)) fail_msg("%.12g is not %.12g", value, wanted);
 }
 
-static void differences_by_hand(void **state) {
+static void differences_are_those_worked_out_by_hand(void **state) {
     (void)state;
     masu_against a;
     char error[8192];
@@ -223,7 +223,7 @@ static void runs_are_added_merged_and_read(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(differences_by_hand),
+        cmocka_unit_test(differences_are_those_worked_out_by_hand),
         cmocka_unit_test(what_is_printed),
         cmocka_unit_test(folders_that_do_not_belong_together),
         cmocka_unit_test(what_a_cpu_is_called),

@@ -155,7 +155,7 @@ static void hardly_better_is_no_reason_to_take_longer(void **state) {
     }
 }
 
-static void ties_single_points_and_none(void **state) {
+static void ties_are_broken_and_points_that_are_none_left_out(void **state) {
     (void)state;
     const masu_ladder_point equal[] = {{1, 1}, {1, 1}, {1, 1}}, zero = {1, 0};
     const masu_ladder_point time[] = {{1, 0.5}, {1, 0.25}}, error[] = {{2, 0.5}, {1, 0.5}};
@@ -280,7 +280,7 @@ int main(void) {
         cmocka_unit_test(nothing_is_left_out_without_need),
         cmocka_unit_test(the_nearest_neighbours_go_first),
         cmocka_unit_test(hardly_better_is_no_reason_to_take_longer),
-        cmocka_unit_test(ties_single_points_and_none),
+        cmocka_unit_test(ties_are_broken_and_points_that_are_none_left_out),
         cmocka_unit_test(rows_come_back_as_they_were_written),
         cmocka_unit_test(what_is_no_table_is_refused),
     };

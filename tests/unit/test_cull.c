@@ -253,7 +253,7 @@ static masu_cull_counts cull(field *f, const masu_cull_view *view, int plain) {
 
 /* ---- One by one ------------------------------------------------------------------------------ */
 
-static void a_million_boxes_against_the_exact_test(void **state) {
+static void no_box_of_a_million_is_culled_that_the_exact_test_keeps(void **state) {
     (void)state;
     field *f = &fields[0];
     const uint32_t batch = 1000;
@@ -349,7 +349,7 @@ static void planes_that_are_no_planes_reject_nothing(void **state) {
     assert_int_equal(view.count, MASU_CULL_PLANES);
 }
 
-static void an_empty_set_and_an_empty_view(void **state) {
+static void an_empty_set_and_an_empty_view_keep_nothing(void **state) {
     (void)state;
     field *f = &fields[0];
     masu_cull_view view = {.count = 0};
@@ -485,7 +485,7 @@ static void the_tree_keeps_what_one_by_one_keeps(void **state) {
     }
 }
 
-static void few_tests_on_a_path_through_a_town(void **state) {
+static void a_path_through_a_town_takes_few_tests(void **state) {
     (void)state;
     field *tree = &fields[0], *flat = &fields[1];
     build_town(tree, 1);
@@ -598,14 +598,14 @@ static void simd_and_plain_agree_in_every_bit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_million_boxes_against_the_exact_test),
+        cmocka_unit_test(no_box_of_a_million_is_culled_that_the_exact_test_keeps),
         cmocka_unit_test(boxes_beyond_the_slack_are_culled),
         cmocka_unit_test(planes_that_are_no_planes_reject_nothing),
-        cmocka_unit_test(an_empty_set_and_an_empty_view),
+        cmocka_unit_test(an_empty_set_and_an_empty_view_keep_nothing),
         cmocka_unit_test(a_placed_box_holds_what_floats_make_of_its_points),
         cmocka_unit_test(boxes_around_boxes_hold_them),
         cmocka_unit_test(the_tree_keeps_what_one_by_one_keeps),
-        cmocka_unit_test(few_tests_on_a_path_through_a_town),
+        cmocka_unit_test(a_path_through_a_town_takes_few_tests),
         cmocka_unit_test(the_plane_that_rejected_last_is_asked_first),
         cmocka_unit_test(what_has_moved_is_tested_where_it_is),
         cmocka_unit_test(simd_and_plain_agree_in_every_bit),

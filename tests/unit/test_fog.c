@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "support/floats.h"
 #include "support/random.h"
 
 /* What the text takes of GLSL and of guard.glsl. Its floats are floats: constants too, which are
@@ -62,10 +63,10 @@ static void depths_are_those_of_numeric_integrals(void **state) {
         double got = (double)masu_fog_depth(density, falloff, height, climb, start, far);
         double left = (double)masu_fog_left((float)got);
         assert_true(left >= 0 && left <= 1);
-        worst = fmax(worst, fabs(left - exp(-want)));
+        worst = worst_of(worst, fabs(left - exp(-want)));
         if (want < 1e-30 || want > 60) continue;
         seen++;
-        relative = fmax(relative, fabs(got / want - 1));
+        relative = worst_of(relative, fabs(got / want - 1));
     }
     print_message(
         "fog: depth off by %.1e of itself, what is left by %.1e; %d rays neither clear nor "
@@ -88,11 +89,11 @@ static void a_ray_to_the_sky_is_one_of_great_length(void **state) {
                      (double)start + 40 / ((double)falloff * (double)climb));
         double sky =
             (double)masu_fog_left(masu_fog_depth_sky(density, falloff, height, climb, start));
-        worst = fmax(worst, fabs(sky - exp(-want)));
+        worst = worst_of(worst, fabs(sky - exp(-want)));
         /* And as what is far away, whatever it is. */
         double far =
             (double)masu_fog_left(masu_fog_depth(density, falloff, height, climb, start, 1e12f));
-        worst = fmax(worst, fabs(sky - far));
+        worst = worst_of(worst, fabs(sky - far));
     }
     print_message("fog: what is left of the sky off by %.1e\n", worst);
     assert_true(worst < 2e-6);

@@ -43,7 +43,7 @@ static sim_result mean_of(const sim_model *p, const sim_controller *c, uint32_t 
     return sum;
 }
 
-static void keeps_the_bar_on_the_standard_model(void **state) {
+static void it_keeps_the_bar_on_the_standard_model(void **state) {
     (void)state;
     double over, changes;
     sim_result r = mean_of(named("standard"), ours, SEEDS, &over, &changes);
@@ -56,7 +56,7 @@ static void keeps_the_bar_on_the_standard_model(void **state) {
 
 /* Beside every rival: not one of them misses fewer frames by more than four (a slow drift costs
  * those: it is followed with the least of margins), or changes less by more than four. */
-static void misses_fewer_frames_than_its_rivals(void **state) {
+static void it_misses_fewer_frames_than_its_rivals(void **state) {
     static const char *const models[] = {
         "standard", "latency_1", "latency_2", "constant", "step_4x",    "step_1.8x", "sine_50",
         "sine_100", "sine_200",  "sine_400",  "burst",    "scenes",     "walk",      "noise_10",
@@ -82,7 +82,7 @@ static void misses_fewer_frames_than_its_rivals(void **state) {
 /* 500 loads from what leaves the best rung alone to what no rung keeps. Where costs are not what
  * the governor begins with, it may try a rung and find that out: not more than once past ten
  * seconds. */
-static void settles_under_every_constant_load(void **state) {
+static void it_settles_under_every_constant_load(void **state) {
     static const double exponents[] = {2.0, 1.4, 3.0};
     (void)state;
     for (uint32_t i = 0; i < 500; i++) {
@@ -103,7 +103,7 @@ static void settles_under_every_constant_load(void **state) {
     }
 }
 
-static void changes_seldom_under_noise(void **state) {
+static void it_changes_seldom_under_noise(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed <= 40; seed++) {
         for (uint32_t i = 0; i < 3; i++) {
@@ -122,7 +122,7 @@ static void changes_seldom_under_noise(void **state) {
 /* ---- Steps
  * ------------------------------------------------------------------------------------- */
 
-static void settles_soon_after_a_step(void **state) {
+static void it_settles_soon_after_a_step(void **state) {
     static const struct {
         const char *model;
         int32_t most;
@@ -146,7 +146,7 @@ static void settles_soon_after_a_step(void **state) {
 }
 
 /* The rung that a fall goes to is at most one below that which is kept in the end. */
-static void does_not_overshoot(void **state) {
+static void it_does_not_overshoot(void **state) {
     (void)state;
     const sim_model *p = named("step_1.8x");
     for (uint32_t seed = 1; seed <= 2 * SEEDS; seed++) {
@@ -161,7 +161,7 @@ static void does_not_overshoot(void **state) {
 
 /* 95 % of what the load allows within 90 frames of its drop; and the first rise within 40,
  * however long it has been too high: nothing winds up. */
-static void comes_back(void **state) {
+static void it_comes_back(void **state) {
     static const char *const models[] = {"step_down", "overload"};
     (void)state;
     for (uint32_t i = 0; i < 2; i++) {
@@ -191,10 +191,10 @@ static void comes_back(void **state) {
  * ---------------------------------------------------------------------------- */
 
 /* For 60 frames of a constant load: at most one rung, at most 5 % of the frames over the budget. */
-static void is_not_moved_by_lies(void **state) {
-    static const sim_lie lies[] = {SIM_TENTH,    SIM_LAVAPIPE, SIM_FROZEN, SIM_ZERO,
-                                     SIM_NEGATIVE, SIM_HUGE,     SIM_NAN,    SIM_MICRO,
-                                     SIM_NANO,     SIM_SECONDS,  SIM_GARBAGE};
+static void it_is_not_moved_by_lies(void **state) {
+    static const plant_lie lies[] = {PLANT_TENTH,    PLANT_LAVAPIPE, PLANT_FROZEN, PLANT_ZERO,
+                                     PLANT_NEGATIVE, PLANT_HUGE,     PLANT_NAN,    PLANT_MICRO,
+                                     PLANT_NANO,     PLANT_SECONDS,  PLANT_GARBAGE};
     (void)state;
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
         for (uint32_t seed = 1; seed <= SEEDS; seed++) {
@@ -237,7 +237,7 @@ static void spikes_change_nothing(void **state) {
 }
 
 /* Timestamps that the wall contradicts: found out for good, and said so. */
-static void reports_what_it_trusts(void **state) {
+static void it_reports_what_it_trusts(void **state) {
     static const struct {
         const char *model;
         masu_governor_source source;
@@ -260,8 +260,8 @@ static void reports_what_it_trusts(void **state) {
     }
 }
 
-/* The parts of the model, where the model knows them. */
-static void finds_the_fixed_part(void **state) {
+/* The parts of the model, where the plant knows them. */
+static void it_finds_the_fixed_part(void **state) {
     (void)state;
     for (uint32_t seed = 1; seed <= SEEDS; seed++) {
         sim_state s;
@@ -295,7 +295,7 @@ static double any_time(uint64_t *random) {
     }
 }
 
-static void stays_sound_under_a_million_samples(void **state) {
+static void it_stays_sound_under_a_million_samples(void **state) {
     (void)state;
     masu_governor g;
     masu_governor_rung ladder[SIM_RUNGS];
@@ -369,7 +369,7 @@ static uint32_t feed(masu_governor *g, uint64_t *frame, uint32_t frames, double 
     return rung;
 }
 
-static void keeps_its_modes_and_range(void **state) {
+static void it_keeps_its_modes_and_range(void **state) {
     (void)state;
     masu_governor g;
     masu_governor_info info;
@@ -412,7 +412,7 @@ static void keeps_its_modes_and_range(void **state) {
     assert_int_equal(info.samples, 0);
 }
 
-static void says_why(void **state) {
+static void it_says_why(void **state) {
     (void)state;
     masu_governor g;
     masu_governor_info info;
@@ -460,7 +460,7 @@ static void a_cut_is_believed_at_once(void **state) {
     }
 }
 
-static void takes_the_hosts_rungs(void **state) {
+static void it_takes_the_hosts_rungs(void **state) {
     (void)state;
     masu_governor g;
     masu_governor_info info;
@@ -476,7 +476,7 @@ static void takes_the_hosts_rungs(void **state) {
 }
 
 /* What passes have taken says what is fixed before any rung has changed. */
-static void learns_from_fixed_passes(void **state) {
+static void it_learns_from_fixed_passes(void **state) {
     (void)state;
     masu_governor g;
     masu_governor_init(&g, &(masu_governor_desc){.mode = MASU_GOVERNOR_ON}, three, 3);
@@ -494,7 +494,7 @@ static void learns_from_fixed_passes(void **state) {
 
 /* Recorded on a machine whose processors were shared: times jump by a fifth for some frames in
  * ten. */
-static void misses_least_on_recorded_scenes(void **state) {
+static void it_misses_least_on_recorded_scenes(void **state) {
     static const char *const paths[] = {"tools/simulate/traces/engine.csv",
                                         "tools/simulate/traces/city.csv"};
     static sim_trace trace;
@@ -520,25 +520,25 @@ static void misses_least_on_recorded_scenes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_the_bar_on_the_standard_model),
-        cmocka_unit_test(misses_fewer_frames_than_its_rivals),
-        cmocka_unit_test(settles_under_every_constant_load),
-        cmocka_unit_test(changes_seldom_under_noise),
-        cmocka_unit_test(settles_soon_after_a_step),
-        cmocka_unit_test(does_not_overshoot),
-        cmocka_unit_test(comes_back),
-        cmocka_unit_test(is_not_moved_by_lies),
+        cmocka_unit_test(it_keeps_the_bar_on_the_standard_model),
+        cmocka_unit_test(it_misses_fewer_frames_than_its_rivals),
+        cmocka_unit_test(it_settles_under_every_constant_load),
+        cmocka_unit_test(it_changes_seldom_under_noise),
+        cmocka_unit_test(it_settles_soon_after_a_step),
+        cmocka_unit_test(it_does_not_overshoot),
+        cmocka_unit_test(it_comes_back),
+        cmocka_unit_test(it_is_not_moved_by_lies),
         cmocka_unit_test(spikes_change_nothing),
-        cmocka_unit_test(reports_what_it_trusts),
-        cmocka_unit_test(finds_the_fixed_part),
-        cmocka_unit_test(stays_sound_under_a_million_samples),
-        cmocka_unit_test(no_model_makes_it_emit_an_invalid_rung),
-        cmocka_unit_test(keeps_its_modes_and_range),
-        cmocka_unit_test(says_why),
+        cmocka_unit_test(it_reports_what_it_trusts),
+        cmocka_unit_test(it_finds_the_fixed_part),
+        cmocka_unit_test(it_stays_sound_under_a_million_samples),
+        cmocka_unit_test(no_plant_makes_it_emit_an_invalid_rung),
+        cmocka_unit_test(it_keeps_its_modes_and_range),
+        cmocka_unit_test(it_says_why),
         cmocka_unit_test(a_cut_is_believed_at_once),
-        cmocka_unit_test(takes_the_hosts_rungs),
-        cmocka_unit_test(learns_from_fixed_passes),
-        cmocka_unit_test(misses_least_on_recorded_scenes),
+        cmocka_unit_test(it_takes_the_hosts_rungs),
+        cmocka_unit_test(it_learns_from_fixed_passes),
+        cmocka_unit_test(it_misses_least_on_recorded_scenes),
     };
     return cmocka_run_group_tests_name("governor", tests, NULL, NULL);
 }

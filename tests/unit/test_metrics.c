@@ -38,7 +38,7 @@ static void randomise(uint8_t *rgba, uint32_t pixels, uint64_t seed) {
 
 /* ---- RMSE, PSNR, SSIM ------------------------------------------------------------------------ */
 
-static void rmse_and_psnr_by_hand(void **state) {
+static void rmse_and_psnr_are_those_worked_out_by_hand(void **state) {
     (void)state;
     uint8_t a[8] = {10, 20, 30, 1, 40, 50, 60, 2}, b[8] = {13, 20, 30, 9, 40, 46, 60, 7};
     near(masu_metric_rmse(a, b, 2, 1), sqrt(25.0 / 6) / 255, 1e-15);
@@ -295,7 +295,7 @@ static masu_flip flip_of_flat(int a, int b) {
     return flip;
 }
 
-static void flip_of_flat_pictures_by_hand(void **state) {
+static void flip_of_flat_pictures_is_that_worked_out_by_hand(void **state) {
     (void)state;
     /* Black and white: lightness differs by 100, chroma by nothing, and a flat picture has no
      * features. 100^0.7 = 25.1189; green to blue is 203.48, 41.31 after the exponent; so
@@ -346,7 +346,7 @@ static double slow_bright(void) {
     return low;
 }
 
-static void the_tone_curve_by_hand(void **state) {
+static void the_tone_curve_is_that_worked_out_by_hand(void **state) {
     (void)state;
     near(masu_hdr_flip_tone(0), 0, 0);
     /* 0.6: 0.6 * (1.506 + 0.03) / (0.6 * (1.458 + 0.59) + 0.14) = 0.9216 / 1.3688 */
@@ -355,7 +355,7 @@ static void the_tone_curve_by_hand(void **state) {
     for (double x = 1e-4; x < 1e4; x *= 1.7) near(masu_hdr_flip_tone(x), slow_tone(x), 1e-12);
 }
 
-static void exposures_by_hand(void **state) {
+static void exposures_are_those_worked_out_by_hand(void **state) {
     (void)state;
     /* Luminances 8, 1, 1 and 0.25: three stops from the brightest to the median. */
     const float grey[] = {8, 8, 8, 1, 1, 1, 1, 1, 1, 0.25f, 0.25f, 0.25f};
@@ -424,7 +424,7 @@ static void hdr_flip_agrees_with_a_slow_form(void **state) {
 
 /* Flat pictures, so that nothing but the curve and FLIP of greys is left: 1 and 2 at the only
  * exposure there is, which shows 1 at 0.85. */
-static void hdr_flip_of_flat_pictures_by_hand(void **state) {
+static void hdr_flip_of_flat_pictures_is_that_worked_out_by_hand(void **state) {
     (void)state;
     enum { W = 16, H = 12 };
     static float a[3 * W * H], b[3 * W * H];
@@ -452,7 +452,7 @@ static void hdr_flip_of_flat_pictures_by_hand(void **state) {
 
 /* ---- March errors ---------------------------------------------------------------------------- */
 
-static void march_errors_by_hand(void **state) {
+static void march_errors_are_those_worked_out_by_hand(void **state) {
     (void)state;
     const masu_march_sample samples[] = {
         {1, 1, 10.0, 10.0, 0.01, 1.0},  /* right */
@@ -485,7 +485,7 @@ static void march_errors_by_hand(void **state) {
     near(e.hitmiss_pct, 0, 0);
 }
 
-static void class_tests_by_hand(void **state) {
+static void class_tests_are_those_worked_out_by_hand(void **state) {
     (void)state;
     masu_class_test t = {.count = {1000, 1000}, .wrong = {100, 50}};
     masu_class_test_finish(&t);
@@ -562,18 +562,18 @@ static void the_99th_percentile_of_depth_leaves_out_the_worst(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rmse_and_psnr_by_hand),
+        cmocka_unit_test(rmse_and_psnr_are_those_worked_out_by_hand),
         cmocka_unit_test(ssim_agrees_with_a_slow_form),
         cmocka_unit_test(ssim_of_flat_pictures_is_that_of_their_means),
         cmocka_unit_test(flip_agrees_with_a_slow_form),
-        cmocka_unit_test(flip_of_flat_pictures_by_hand),
+        cmocka_unit_test(flip_of_flat_pictures_is_that_worked_out_by_hand),
         cmocka_unit_test(flip_grows_with_the_error_and_is_the_same_both_ways),
-        cmocka_unit_test(the_tone_curve_by_hand),
-        cmocka_unit_test(exposures_by_hand),
+        cmocka_unit_test(the_tone_curve_is_that_worked_out_by_hand),
+        cmocka_unit_test(exposures_are_those_worked_out_by_hand),
         cmocka_unit_test(hdr_flip_agrees_with_a_slow_form),
-        cmocka_unit_test(hdr_flip_of_flat_pictures_by_hand),
-        cmocka_unit_test(march_errors_by_hand),
-        cmocka_unit_test(class_tests_by_hand),
+        cmocka_unit_test(hdr_flip_of_flat_pictures_is_that_worked_out_by_hand),
+        cmocka_unit_test(march_errors_are_those_worked_out_by_hand),
+        cmocka_unit_test(class_tests_are_those_worked_out_by_hand),
         cmocka_unit_test(the_99th_percentile_of_depth_leaves_out_the_worst),
         cmocka_unit_test(a_planted_pattern_is_found_and_chance_is_not),
     };

@@ -45,7 +45,7 @@ static masu_spirv_cost cost_of_source(const char *body) {
 }
 
 /* Each by hand: components, then what one of them takes. */
-static void test_costs(void **state) {
+static void costs_are_those_counted_by_hand(void **state) {
     static const struct {
         const char *body;
         uint32_t plain, weighted;
@@ -91,7 +91,7 @@ static masu_spirv_cost straight(const uint32_t *words, size_t bytes) {
 }
 
 /* EASU has been counted by hand as 794, without what finds and bounds the pixel. */
-static void test_easu(void **state) {
+static void easu_costs_about_what_was_counted_by_hand(void **state) {
     (void)state;
     masu_spirv_cost easu = straight(masu_spv_easu_bytes_comp, sizeof masu_spv_easu_bytes_comp);
     masu_spirv_cost rcas = straight(masu_spv_rcas_bytes_comp, sizeof masu_spv_rcas_bytes_comp);
@@ -124,7 +124,7 @@ static masu_tally tally(const uint32_t *words, size_t bytes) {
     return t;
 }
 
-static void test_counters(void **state) {
+static void a_counted_shader_is_a_valid_one_that_counts_each_access(void **state) {
     (void)state;
     masu_tally easu = tally(masu_spv_easu_bytes_comp, sizeof masu_spv_easu_bytes_comp);
     assert_int_equal(easu.model, 5);
@@ -182,7 +182,7 @@ static void assert_near(double given, double wanted) {
         fail_msg("%.12g instead of %.12g", given, wanted);
 }
 
-static void test_sheet(void **state) {
+static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     static masu_count count;
     static masu_model m;
     const double p = 960.0 * 540.0, P = 4.0 * p, n = p; /* n: half of P's sides */
@@ -223,7 +223,7 @@ static void test_sheet(void **state) {
     assert_near(rcas->bytes, 4.0 * (0.25 * P + P));
 }
 
-static void test_says_computed(void **state) {
+static void what_is_computed_says_so(void **state) {
     static masu_model m;
     char *text = NULL;
     size_t bytes = 0;
@@ -252,8 +252,11 @@ static void test_says_computed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_costs),         cmocka_unit_test(test_easu),
-        cmocka_unit_test(test_counters),      cmocka_unit_test(test_sheet),
-        cmocka_unit_test(test_says_computed)};
+        cmocka_unit_test(costs_are_those_counted_by_hand),
+        cmocka_unit_test(easu_costs_about_what_was_counted_by_hand),
+        cmocka_unit_test(a_counted_shader_is_a_valid_one_that_counts_each_access),
+        cmocka_unit_test(the_sheet_has_the_numbers_worked_out_by_hand),
+        cmocka_unit_test(what_is_computed_says_so),
+    };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
 }

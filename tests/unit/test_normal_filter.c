@@ -108,7 +108,7 @@ static void compare(const texel *t, double out[WAYS]) {
     for (int way = 0; way < WAYS; way++) out[way] = sqrt(error[way] / sum);
 }
 
-static void test_filter(void **state) {
+static void folded_normals_are_nearer_to_the_relief_than_plain_ones(void **state) {
     (void)state;
     print_message("  relative RMSE over 486 pairs of view and sun, metal:\n"
                   "  %-26s %8s %8s %11s\n",
@@ -129,6 +129,8 @@ static void test_filter(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_filter)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(folded_normals_are_nearer_to_the_relief_than_plain_ones),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "frame/sky.h"
+#include "support/floats.h"
 #include "support/random.h"
 
 #define PI 3.14159265358979323846
@@ -98,8 +99,8 @@ static void irradiance_is_the_integral_of_the_sky_within_a_percent(void **state)
             print_message("turbidity %g, sun at %g degrees: RMS %.4f of the mean; %.4f %.4f %.4f\n",
                           (double)turbidities[t], elevations[i], all, colors[0], colors[1],
                           colors[2]);
-            worst = fmax(worst, all);
-            for (int c = 0; c < 3; c++) worst_color = fmax(worst_color, colors[c]);
+            worst = worst_of(worst, all);
+            for (int c = 0; c < 3; c++) worst_color = worst_of(worst_color, colors[c]);
         }
     }
     print_message("worst of all colours %.4f, of one %.4f\n", worst, worst_color);
@@ -217,7 +218,7 @@ static void mirrors_are_near_the_sky_averaged_by_the_lobe(void **state) {
                 }
             }
             sum += square / (mean * mean) / 18;
-            worst = fmax(worst, sqrt(square) / mean);
+            worst = worst_of(worst, sqrt(square) / mean);
         }
         print_message("roughness %.1f: off by %.3f of the mean, at worst %.3f\n", roughness,
                       sqrt(sum), worst);
@@ -253,8 +254,8 @@ static void take(sight *s) {
 static double step_of(const float *a, const float *b, size_t n) {
     double most = 1e-6, change = 0;
     for (size_t i = 0; i < n; i++) {
-        most = fmax(most, fmax(fabs((double)a[i]), fabs((double)b[i])));
-        change = fmax(change, fabs((double)a[i] - (double)b[i]));
+        most = worst_of(most, fmax(fabs((double)a[i]), fabs((double)b[i])));
+        change = worst_of(change, fabs((double)a[i] - (double)b[i]));
     }
     return change / most;
 }
@@ -266,21 +267,21 @@ typedef struct jumps {
 
 static void compare(const sight *a, const sight *b, jumps *j) {
     double mean = fmax((double)b->irradiance.sh[0][0], 1e-6);
-    j->radiance = fmax(j->radiance, step_of(a->looks[0], b->looks[0], 3 * LOOKS));
+    j->radiance = worst_of(j->radiance, step_of(a->looks[0], b->looks[0], 3 * LOOKS));
     j->coefficients =
         fmax(j->coefficients, step_of(a->irradiance.sh[0], b->irradiance.sh[0], 27));
     for (int c = 0; c < 3; c++) {
         double glow = fabs((double)(a->irradiance.glow[c] - b->irradiance.glow[c]));
         double ring = fabs((double)(a->irradiance.ring[c] - b->irradiance.ring[c]));
         double turn = fabs((double)(a->irradiance.direction[c] - b->irradiance.direction[c]));
-        j->coefficients = fmax(j->coefficients, fmax(fmax(glow, ring) / mean, turn));
-        j->sun = fmax(j->sun, fabs((double)(a->sun[c] - b->sun[c])));
+        j->coefficients = worst_of(j->coefficients, fmax(fmax(glow, ring) / mean, turn));
+        j->sun = worst_of(j->sun, fabs((double)(a->sun[c] - b->sun[c])));
     }
     /* And each direction by itself, above what a display shows of the night. */
     for (int k = 0; k < LOOKS; k++) {
         for (int c = 0; c < 3; c++) {
             double before = (double)a->looks[k][c], now = (double)b->looks[k][c];
-            if (fmax(before, now) > 1e-3) j->single = fmax(j->single, fabs(log(before / now)));
+            if (fmax(before, now) > 1e-3) j->single = worst_of(j->single, fabs(log(before / now)));
         }
     }
 }
@@ -321,13 +322,13 @@ static void the_sky_does_not_jump_as_the_sun_crosses_the_zenith_or_the_air_gets_
     for (int i = 0; i <= 40; i++) {
         place_sun(88 + 0.1 * i, 40, 3); /* past 90 the azimuth turns round */
         take(&now);
-        if (i > 0) zenith = fmax(zenith, step_of(before.looks[0], now.looks[0], 3 * LOOKS));
+        if (i > 0) zenith = worst_of(zenith, step_of(before.looks[0], now.looks[0], 3 * LOOKS));
         before = now;
     }
     for (int i = 0; i <= 170; i++) {
         place_sun(4, 40, 1.5f + 0.05f * (float)i);
         take(&now);
-        if (i > 0) haze = fmax(haze, step_of(before.looks[0], now.looks[0], 3 * LOOKS));
+        if (i > 0) haze = worst_of(haze, step_of(before.looks[0], now.looks[0], 3 * LOOKS));
         before = now;
     }
     print_message("zenith %.4f, haze %.4f\n", zenith, haze);
@@ -368,7 +369,7 @@ static void depth_towards_the_sun_is_the_sum_along_the_ray(void **state) {
             masu_sky_transmittance(heights[h], mu, 3, got);
             for (int c = 0; c < 3; c++) {
                 double truth = summed_depth(heights[h], mu, 3, c);
-                worst = fmax(worst, fabs(-log(got[c]) - truth) / truth);
+                worst = worst_of(worst, fabs(-log(got[c]) - truth) / truth);
             }
         }
     }
@@ -378,7 +379,7 @@ static void depth_towards_the_sun_is_the_sum_along_the_ray(void **state) {
         masu_sky_transmittance(height, mu, 3, got);
         for (int c = 0; c < 3; c++) {
             double truth = summed_depth(height, mu, 3, c);
-            worst = fmax(worst, fabs(-log(got[c]) - truth) / truth);
+            worst = worst_of(worst, fabs(-log(got[c]) - truth) / truth);
         }
     }
     print_message("depth is %.4f off at most\n", worst);
@@ -430,7 +431,7 @@ static void no_light_is_made(void **state) {
             integrate(up, sum);
             for (int c = 0; c < 3; c++) {
                 double all = sum[c] + sine * (double)sky.sun_color[c];
-                most = fmax(most, all / (sine * MASU_SKY_SUN));
+                most = worst_of(most, all / (sine * MASU_SKY_SUN));
             }
         }
     }

@@ -23,7 +23,8 @@
 #include "masu.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
-#include "scene/trace_scene.h"
+#include "frame/specular.h"
+#include "support/floats.h"
 #include "support/random.h"
 
 enum { NOISE, LEAF, ROUGH, GLOW, UNSEEN, PICTURES };
@@ -149,7 +150,7 @@ static void compare(const masu_blob_trace_texture *t, uint32_t p) {
                     sum += linear(pictures[p][4 * (y * sizes[p][0] + x) + 2 - k]);
                 }
                 double off = sqrt(sum / (across * along)) - sqrt(stored(t, at, k));
-                worst = fmax(worst, fabs(off) * 255);
+                worst = worst_of(worst, fabs(off) * 255);
             }
         }
         if (w == 1 && h == 1) break;

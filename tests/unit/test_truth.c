@@ -166,7 +166,7 @@ static void a_grazed_plane_is_hit_to_its_horizon(void **state) {
     }
 }
 
-static void limits_and_starts(void **state) {
+static void a_ray_meets_things_between_its_start_and_its_limit(void **state) {
     (void)state;
     masu_view v = make_view(SPHERE, 0, 0, 3);
     masu_view_ray r = ray_along(0, 0, -1);
@@ -237,7 +237,7 @@ static void a_picture_is_its_pixels(void **state) {
     }
 }
 
-static void names_and_libraries(void **state) {
+static void a_library_is_found_beside_its_scene(void **state) {
     (void)state;
     char path[64], error[256];
     masu_truth t;
@@ -253,7 +253,7 @@ static void names_and_libraries(void **state) {
 
 /* ---- Shading --------------------------------------------------------------------------------- */
 
-static void colours_by_hand(void **state) {
+static void colours_are_those_worked_out_by_hand(void **state) {
     (void)state;
     masu_view v = make_view(SPHERE, 0, 0, 3);
     uint8_t rgba[4];
@@ -282,7 +282,7 @@ static void colours_by_hand(void **state) {
     near(out[1], 0.3, 1e-12);
 }
 
-static void surfaces_by_hand(void **state) {
+static void surfaces_are_those_worked_out_by_hand(void **state) {
     (void)state;
     masu_view v = make_view(SPHERE, 0, 0, 3);
     double m[8] = {1, 1, 1, 1, 0, 0, 0, 0}, out[3];
@@ -330,12 +330,12 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spheres_are_hit_where_they_are),
         cmocka_unit_test(a_grazed_plane_is_hit_to_its_horizon),
-        cmocka_unit_test(limits_and_starts),
+        cmocka_unit_test(a_ray_meets_things_between_its_start_and_its_limit),
         cmocka_unit_test(a_ray_is_clipped_to_the_bounds),
         cmocka_unit_test(a_picture_is_its_pixels),
-        cmocka_unit_test(names_and_libraries),
-        cmocka_unit_test(colours_by_hand),
-        cmocka_unit_test(surfaces_by_hand),
+        cmocka_unit_test(a_library_is_found_beside_its_scene),
+        cmocka_unit_test(colours_are_those_worked_out_by_hand),
+        cmocka_unit_test(surfaces_are_those_worked_out_by_hand),
         cmocka_unit_test(a_texel_is_shaded_as_the_surface_it_holds),
     };
     return cmocka_run_group_tests_name("truth", tests, NULL, NULL);

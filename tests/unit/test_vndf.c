@@ -6,6 +6,7 @@
  */
 #include "reference/brdf.h"
 #include "split_sum.h"
+#include "support/floats.h"
 #include "support/random.h"
 
 #include <math.h>
@@ -203,10 +204,10 @@ static void weights_are_the_lobe_over_the_density(void **state) {
         double z = unit(&seed);
         vec3 v = view_at(acos(fmax(z * z, 1e-3)) * 180 / PI);
         masu_vndf_ray r = masu_vndf_reflect(v, alpha, unit2(&seed));
-        most = fmax(most, (double)r.weight);
+        most = worst_of(most, (double)r.weight);
         if (!(r.l.z > 1e-3f)) continue;
         double l[3] = {(double)r.l.x, (double)r.l.y, (double)r.l.z};
-        worst = fmax(worst, fabs((double)r.weight * (double)r.pdf / lobe((double)alpha, v, l) - 1));
+        worst = worst_of(worst, fabs((double)r.weight * (double)r.pdf / lobe((double)alpha, v, l) - 1));
         seen++;
     }
     print_message("  weight * pdf is the lobe within %.1e of it, %d directions; most %.6f\n", worst,
@@ -228,7 +229,7 @@ static void the_bound_only_helps(void **state) {
             vec2 u = masu_noise2(0, n);
             double w[2] = {(double)masu_vndf_reflect(v, alpha, u).weight,
                            uncut(v, (double)alpha, u).weight};
-            most = fmax(most, w[0]);
+            most = worst_of(most, w[0]);
             for (int k = 0; k < 2; k++) sum[k] += w[k] / MANY, square[k] += w[k] * w[k] / MANY;
         }
         double var[2] = {square[0] - sum[0] * sum[0], square[1] - sum[1] * sum[1]};
@@ -265,8 +266,8 @@ static void a_white_furnace_returns_the_table(void **state) {
             for (int k = 0; k < 2; k++) {
                 double off = fabs(sum[k] - table[k]);
                 if (!(alpha > masu_mirror_alpha)) {
-                    mirror = fmax(mirror, off);
-                    if (from[a] <= 80) mirror_steep = fmax(mirror_steep, off);
+                    mirror = worst_of(mirror, off);
+                    if (from[a] <= 80) mirror_steep = worst_of(mirror_steep, off);
                     continue;
                 }
                 if (off <= worst[k]) continue;
@@ -323,17 +324,17 @@ static void frames_are_right_angled(void **state) {
             i % 2 ? 2 * unit(&seed) - 1 : copysign(1 - pow(10, -16 * unit(&seed)), i % 4 - 1);
         double phi = 2 * PI * unit(&seed), s = sqrt(1 - z * z);
         masu_axes f = masu_axes_of(vec3(s * cos(phi), s * sin(phi), z));
-        worst = fmax(worst, fabs((double)dot(f.t, f.b)));
-        worst = fmax(worst, fabs((double)dot(f.t, f.n)));
-        worst = fmax(worst, fabs((double)dot(f.b, f.n)));
-        worst = fmax(worst, fabs((double)dot(f.t, f.t) - 1));
-        worst = fmax(worst, fabs((double)dot(f.b, f.b) - 1));
+        worst = worst_of(worst, fabs((double)dot(f.t, f.b)));
+        worst = worst_of(worst, fabs((double)dot(f.t, f.n)));
+        worst = worst_of(worst, fabs((double)dot(f.b, f.n)));
+        worst = worst_of(worst, fabs((double)dot(f.t, f.t) - 1));
+        worst = worst_of(worst, fabs((double)dot(f.b, f.b) - 1));
         /* Right-handed: t x b = n. */
-        worst = fmax(worst, fabs((double)(f.t.x * f.b.y - f.t.y * f.b.x - f.n.z)));
+        worst = worst_of(worst, fabs((double)(f.t.x * f.b.y - f.t.y * f.b.x - f.n.z)));
         vec3 a = vec3(unit(&seed), unit(&seed), unit(&seed)),
              b = masu_axes_out(f, masu_axes_in(f, a));
-        worst = fmax(worst, fabs((double)(a.x - b.x)) + fabs((double)(a.y - b.y)));
-        worst = fmax(worst, fabs((double)(a.z - b.z)));
+        worst = worst_of(worst, fabs((double)(a.x - b.x)) + fabs((double)(a.y - b.y)));
+        worst = worst_of(worst, fabs((double)(a.z - b.z)));
     }
     print_message("  frames are off by %.1e\n", worst);
     assert_true(worst < 2e-6);
@@ -346,6 +347,7 @@ int main(void) {
         cmocka_unit_test(the_bound_only_helps),
         cmocka_unit_test(a_white_furnace_returns_the_table),
         cmocka_unit_test(any_bits_give_a_direction),
-        cmocka_unit_test(frames_are_right_angled)};
+        cmocka_unit_test(frames_are_right_angled),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
