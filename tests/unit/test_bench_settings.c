@@ -127,6 +127,12 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     check_dropped("sharpen=off+march_steps=128", count, "nothing is sharpened");
     check_dropped("sharpen=off+shadow_cascades=2", count, "nothing is sharpened");
     if (count - dropped > 110) fail_msg("%u settings", count - dropped);
+    for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+        uint32_t turned = 0;
+        for (uint32_t i = 1; i < count; i++)
+            turned += masu_knob_differs(k, &settings[i].rung, &settings[0].rung);
+        if (!turned && strcmp(k->name, "upscale") != 0) fail_msg("%s is never turned", k->name);
+    }
     static const char *const there[] = {"march=plain",
                                         "march=seed",
                                         "march=cone8",

@@ -143,6 +143,7 @@ static const technique techniques[] = {
     {"frustum", WHOLE | SAME, {.frustum = MASU_OFF}},
     {"occlusion", WHOLE | STRUCTURAL | SAME, {.occlusion = MASU_OFF}},
     {"light_tiles", WHOLE | STRUCTURAL | SAME, {.light_tiles = MASU_OFF}},
+    {"upscale", 0, {.upscale = MASU_ON}}, /* at full size it makes nothing better, below it is on */
 };
 
 /* What a port might choose together. The plain one, nothing but the base, is at every size. */
@@ -207,6 +208,25 @@ static void add_bundle(list *l, const technique *t, float scale) {
     add(l, t, scale, &plain);
 }
 
+static bool is_turned(const masu_knob *k) {
+    static const masu_rung zero;
+    for (size_t t = 0; t < COUNT(techniques); t++) {
+        if (masu_knob_differs(k, &techniques[t].rung, &zero)) return true;
+    }
+    return !strcmp(k->name, "scale");
+}
+
+/* A knob that no technique turns: each of its words, or halfway and all of the way to its maximum. */
+static void add_knob(list *l, const masu_knob *k) {
+    technique one = {.name = k->name};
+    double from = masu_knob_get(k, &base_rung, 0);
+    for (uint32_t n = 1; n <= (k->words ? k->word_count - 1 : 2); n++) {
+        double value = k->words ? (double)n : from + (k->max - from) * n / 2.0;
+        for (uint32_t i = 0; i < k->values; i++) masu_knob_set(k, &one.rung, i, value);
+        add(l, &one, 1.0f, &base_rung);
+    }
+}
+
 uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
     static const float quick_scales[] = {1.0f, 0.75f, 0.5f, 0.4f};
     static const float bundle_scales[] = {1.0f, 0.875f, 0.75f, 0.625f, 0.5f, 0.4f};
@@ -226,6 +246,9 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]) {
         if (quick && !(one->when & QUICK)) continue;
         if (one->when & WHOLE) add(&l, one, 1.0f, &base_rung);
         if (one->when & HALF) add(&l, one, 0.5f, &half);
+    }
+    for (const masu_knob *k = masu_knob_table(); k->name && !quick; k++) {
+        if (!is_turned(k)) add_knob(&l, k);
     }
     for (size_t b = 0; b < COUNT(bundles); b++) {
         const technique *one = &bundles[b];
