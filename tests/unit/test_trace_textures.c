@@ -23,7 +23,7 @@
 #include "masu.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
-#include "frame/specular.h"
+#include "scene/trace_scene.h"
 #include "support/floats.h"
 #include "support/random.h"
 
