@@ -192,9 +192,9 @@ static void it_comes_back(void **state) {
 
 /* For 60 frames of a constant load: at most one rung, at most 5 % of the frames over the budget. */
 static void it_is_not_moved_by_lies(void **state) {
-    static const plant_lie lies[] = {PLANT_TENTH,    PLANT_LAVAPIPE, PLANT_FROZEN, PLANT_ZERO,
-                                     PLANT_NEGATIVE, PLANT_HUGE,     PLANT_NAN,    PLANT_MICRO,
-                                     PLANT_NANO,     PLANT_SECONDS,  PLANT_GARBAGE};
+    static const sim_lie lies[] = {SIM_TENTH,    SIM_LAVAPIPE, SIM_FROZEN, SIM_ZERO,
+                                     SIM_NEGATIVE, SIM_HUGE,     SIM_NAN,    SIM_MICRO,
+                                     SIM_NANO,     SIM_SECONDS,  SIM_GARBAGE};
     (void)state;
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
         for (uint32_t seed = 1; seed <= SEEDS; seed++) {
@@ -532,7 +532,7 @@ int main(void) {
         cmocka_unit_test(it_reports_what_it_trusts),
         cmocka_unit_test(it_finds_the_fixed_part),
         cmocka_unit_test(it_stays_sound_under_a_million_samples),
-        cmocka_unit_test(no_plant_makes_it_emit_an_invalid_rung),
+        cmocka_unit_test(no_model_makes_it_emit_an_invalid_rung),
         cmocka_unit_test(it_keeps_its_modes_and_range),
         cmocka_unit_test(it_says_why),
         cmocka_unit_test(a_cut_is_believed_at_once),

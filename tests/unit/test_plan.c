@@ -21,6 +21,7 @@
 #include "plan/output.h"
 #include "plan/buffers.h"
 #include "plan/plan.h"
+#include "device/ray_query.h"
 #include "plan/push.h"
 #include "support/desc.h"
 #include "support/random.h"
