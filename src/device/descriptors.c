@@ -46,14 +46,16 @@ static masu_result allocate_set(masu_device *m, VkDescriptorSetLayout layout,
 /* A binding of one frame in flight. Code that reads a uniform buffer that the plan does not have is compiled
  * away, but a set must be whole: it gets the frame's. */
 static void write_binding(masu_device *m, uint32_t flight, const masu_binding *row) {
-    masu_buffer_id id = row->buffer;
-    if (!m->plan->buffers[id].bytes && row->type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER)
-        id = MASU_BUFFER_FRAME;
-    const masu_buffer_plan *b = &m->plan->buffers[id];
-    if (!b->bytes) return; /* no pass of this plan looks at it */
-    VkDescriptorBufferInfo buffer = {m->objects.buffers[id],
+    const masu_buffer_plan *b = &m->plan->buffers[row->buffer];
+    VkDescriptorBufferInfo buffer = {m->objects.buffers[row->buffer],
                                      flight * b->stride + (row->previous ? b->stride / 2 : 0),
-                                     b->range};
+                                     row->range};
+    if (!b->bytes && row->type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER) {
+        b = &m->plan->buffers[MASU_BUFFER_FRAME];
+        buffer = (VkDescriptorBufferInfo){m->objects.buffers[MASU_BUFFER_FRAME], flight * b->stride,
+                                          sizeof(struct masu_frame_uniforms)};
+    }
+    if (!b->bytes) return; /* no pass of this plan looks at it */
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = m->global_sets[flight],
                                   .dstBinding = row->binding,

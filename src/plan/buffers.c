@@ -5,15 +5,19 @@
 #include "scene/punctual_light.h"
 #include "scene/trace_scene.h"
 
+#include <string.h>
+
 /* ---- Rows as they are ------------------------------------------------------------------------ */
 
 enum { LIFETIME_ALWAYS = 0, LIFETIME_LOADING = 1 };
+typedef enum slot_kind { SLOTS_ONCE, SLOTS_FLIGHT, SLOTS_PREVIOUS } slot_kind;
 
 #define NOTHING 0
 #define LOADED(load) 1
 const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT] = {
 #define BUFFER(ID, name, role, usage, slots, lifetime, loaded, ...)                                \
-    [MASU_BUFFER_##ID] = {name, MASU_ROLE_##role, loaded, LIFETIME_##lifetime},
+    [MASU_BUFFER_##ID] = {name, MASU_ROLE_##role, loaded, LIFETIME_##lifetime,                     \
+                          SLOTS_##slots == SLOTS_PREVIOUS},
 #include "plan/buffers.inc"
 #undef BUFFER
 };
@@ -152,11 +156,15 @@ static uint64_t masu_seen_words(const masu_frame_plan *plan) {
 
 /* ---- The readback slot ----------------------------------------------------------------------- */
 
-/* Images from `slot` on, each 16-byte aligned for vkCmdCopyImageToBuffer. Returns the end. */
-static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
+typedef struct readback_slot {
+    uint64_t times, images[MASU_READBACK_IMAGES], bytes;
+} readback_slot;
+
+/* Images behind what there is, each 16-byte aligned for vkCmdCopyImageToBuffer. */
+static void lay_readback_images(const masu_frame_plan *plan, readback_slot *slot) {
     for (uint32_t i = 0; i < MASU_READBACK_IMAGES; i++) {
         if (!(plan->desc.readback & 1u << i)) continue;
-        plan->readback_offset[i] = slot;
+        slot->images[i] = slot->bytes;
         uint64_t bytes = 0; /* the depth may live in either of two images: the larger counts */
         for (uint32_t id = 1; id < MASU_IMAGE_COUNT; id++) {
             if (!(masu_images[id].readback & 1u << i) || !plan->images[id].used) continue;
@@ -164,24 +172,24 @@ static uint64_t lay_readback_images(masu_frame_plan *plan, uint64_t slot) {
                          masu_format_bytes(masu_plan_format(plan, id));
             if (v > bytes) bytes = v;
         }
-        slot = masu_align_up(slot + bytes, 16);
+        slot->bytes = masu_align_up(slot->bytes + bytes, 16);
     }
-    return slot;
 }
 
 /* Counters, timestamps, images. */
-static void lay_readback(masu_frame_plan *plan) {
-    uint64_t slot = 0;
+static readback_slot lay_readback(const masu_frame_plan *plan) {
+    readback_slot slot = {0};
     if (plan->desc.debug.counters)
-        slot = masu_align_up(masu_counter_words(plan) * sizeof(uint32_t), 16);
+        slot.bytes = masu_align_up(masu_counter_words(plan) * sizeof(uint32_t), 16);
     if (masu_stamps(&plan->desc)) {
-        plan->readback_times = slot;
-        slot = masu_align_up(slot + masu_stamps(&plan->desc) * sizeof(uint64_t), 16);
+        slot.times = slot.bytes;
+        slot.bytes = masu_align_up(slot.bytes + masu_stamps(&plan->desc) * sizeof(uint64_t), 16);
     }
-    plan->readback_bytes = lay_readback_images(plan, slot);
+    lay_readback_images(plan, &slot);
+    return slot;
 }
 
-static uint64_t masu_readback_bytes(const masu_frame_plan *plan) { return plan->readback_bytes; }
+static uint64_t masu_readback_bytes(const masu_frame_plan *plan) { return lay_readback(plan).bytes; }
 
 /* ---- All rows -------------------------------------------------------------------------------- */
 
@@ -197,17 +205,13 @@ static uint64_t masu_readback_bytes(const masu_frame_plan *plan) { return plan->
 #define INPUT (ADDRESS | VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR)
 #define SCRATCH (ADDRESS | STORAGE)
 
-typedef enum slot_kind { SLOTS_ONCE, SLOTS_FLIGHT, SLOTS_PREVIOUS } slot_kind;
-
 /* Slots begin where the device wants a binding to begin. */
 static void lay_slots(const masu_frame_plan *plan, masu_buffer_plan *b, slot_kind slots,
                       uint64_t bytes, uint64_t alignment) {
-    b->bytes = b->range = bytes;
+    b->bytes = bytes;
     if (slots == SLOTS_ONCE || !bytes) return;
     uint64_t halves = slots == SLOTS_PREVIOUS ? masu_halves(plan) : 1;
-    uint64_t half = masu_align_up(bytes, alignment);
-    if (!(b->usage & VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT)) b->range = half;
-    b->stride = halves * half;
+    b->stride = halves * masu_align_up(bytes, alignment);
     b->bytes = plan->desc.frames_in_flight * b->stride;
 }
 
@@ -221,7 +225,9 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         plan->transparent_draws = own_draws(plan);
         if (plan->receivers) plan->receivers = seen_instances(plan);
     }
-    lay_readback(plan);
+    readback_slot slot = lay_readback(plan);
+    plan->readback_times = slot.times;
+    memcpy(plan->readback_offset, slot.images, sizeof slot.images);
     uint64_t alignment;
 #define SIZE(elements, size) buffer->count = (elements), bytes = (size)
 #define BUFFER(ID, title, part, use, slots, lifetime, loaded, sized, binds)                        \
@@ -248,13 +254,29 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
 #define VERTEX_STAGE VK_SHADER_STAGE_VERTEX_BIT
 #define ALL (COMPUTE | FRAGMENT | VERTEX_STAGE)
 
+/* A uniform buffer shows its struct; a storage buffer a slot, or the half of one, up to the next. */
+static uint64_t range_of(const masu_frame_plan *plan, masu_buffer_id id, VkDescriptorType type,
+                         uint64_t bytes) {
+    const masu_buffer_plan *b = &plan->buffers[id];
+    if (type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER) return bytes;
+    if (!b->stride) return b->bytes;
+    return masu_buffers[id].halved ? b->stride / masu_halves(plan) : b->stride;
+}
+
 void masu_bindings(const masu_frame_plan *plan, masu_binding out[]) {
     const masu_needs *n = &plan->needs;
     const masu_scene *s = &plan->scene;
     uint32_t count = 0;
+#define SIZE(elements, size) bytes = (size)
 #define ADD(NAME, stages, group, when, type, previous)                                             \
-    out[count++] = (masu_binding){MASU_BIND_##NAME, buffer, type, (VkShaderStageFlags)(stages),    \
-                                  group, (when) != 0, previous};
+    out[count++] = (masu_binding){MASU_BIND_##NAME,                                                \
+                                  buffer,                                                          \
+                                  type,                                                            \
+                                  (VkShaderStageFlags)(stages),                                    \
+                                  range_of(plan, buffer, type, bytes),                             \
+                                  group,                                                           \
+                                  (when) != 0,                                                     \
+                                  previous};
 #define BIND(NAME, stages, group, when)                                                            \
     ADD(NAME, stages, MASU_BINDING_##group, when, type, 0)
 #define BIND_PREVIOUS(NAME, stages, group, when)                                                   \
@@ -266,11 +288,14 @@ void masu_bindings(const masu_frame_plan *plan, masu_binding out[]) {
         const masu_buffer_id buffer = MASU_BUFFER_##ID;                                            \
         const VkDescriptorType type = (use)&UNIFORM ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER            \
                                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;           \
-        (void)buffer, (void)type;                                                                  \
+        uint64_t bytes;                                                                            \
+        sized;                                                                                     \
+        (void)buffer, (void)type, (void)bytes;                                                     \
         binds                                                                                      \
     }
 #include "plan/buffers.inc"
 #undef BUFFER
+#undef SIZE
 }
 
 static uint32_t storage_of_compute(const masu_frame_plan *plan, masu_binding_group group,

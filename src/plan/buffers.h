@@ -22,6 +22,7 @@ typedef struct masu_binding {
     masu_buffer_id buffer;
     VkDescriptorType type;
     VkShaderStageFlags stages;
+    uint64_t range; /* bytes that it shows: of a slot, or of one of its halves */
     masu_binding_group group;
     int bound;    /* the plan's layout has it */
     int previous; /* it is of the half of a slot that is of the frame before */
@@ -40,6 +41,7 @@ typedef struct masu_buffer_row {
     masu_role role;
     int loaded;     /* masu_load writes it */
     int of_loading; /* masu_load alone needs it */
+    int halved;     /* where velocities are read, a slot has a half of the frame before */
 } masu_buffer_row;
 
 extern const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT];

@@ -147,7 +147,7 @@ typedef struct masu_needs {
     int specular;    /* reflections are traced */
     int reuse, temporal, fine, filter, taa; /* what is done to them */
     int accumulate;  /* for comparison: of all pixels, summed up over frames, unfiltered */
-    masu_rung rung; /* itself */
+    const masu_rung *rung; /* itself; only while the plan is compiled */
     masu_march march;
     masu_easu easu; /* never AUTO */
     uint32_t cascades; /* of the shadow map */

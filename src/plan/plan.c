@@ -344,7 +344,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              r, rp->render_width, rp->render_height, d->output.width,
                              d->output.height);
         }
-        plan->needs.rung = d->rungs[r];
+        plan->needs.rung = &d->rungs[r];
         plan->needs.march = d->rungs[r].march;
         if (plan->needs.sdf && plan->needs.raster && plan->needs.march == MASU_MARCH_FRAGMENT) {
             return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
@@ -390,6 +390,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         if (plan->needs.receivers) plan->receivers = 1;
         compile_rung(plan, r);
     }
+    plan->needs.rung = NULL;
     gather_images(plan);
     masu_size_buffers(plan, uniform_alignment, storage_alignment);
     return MASU_OK;

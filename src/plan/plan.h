@@ -48,7 +48,6 @@ typedef struct masu_buffer_plan {
     VkBufferUsageFlags usage;
     uint64_t bytes;  /* 0: not used */
     uint64_t stride; /* bytes from one frame in flight to the next, 0: shared by all */
-    uint64_t range;  /* bytes that a binding shows: of a slot, or of one of its halves */
     uint64_t count;  /* elements, for the report */
     uint64_t memory_bytes, alignment, offset; /* in its role's block */
     uint32_t type_bits;
@@ -107,7 +106,7 @@ typedef struct masu_frame_plan {
     uint64_t transient_unaliased, transient_aliased, transient_lower_bound;
     /* Within one readback slot: counters first, then timestamps, then images in the bit order of
      * masu_readback_bits. */
-    uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES], readback_bytes;
+    uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
     uint32_t views;     /* that instances are culled for: the camera, the cascades */
     int occlusion;      /* a rung has stage 2 of culling */
     int lods;           /* a rung draws coarser forms of meshes */
