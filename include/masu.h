@@ -266,7 +266,7 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
     X(MASU_EASU_FAST, 2, "fast",                                                                   \
       "edges are looked for once instead of four times, and where the four texels around a pixel"  \
       " differ by at most 1/255 their bilinear mean is taken, which is within 1/255 of full"       \
-      " (errors elsewhere: docs/DESIGN.md)")                                                       \
+      " (errors elsewhere: docs/design/29-fsr1.md)")                                                       \
     X(MASU_EASU_BILINEAR, 3, "bilinear", "the four texels around, for comparison")
 
 /* Anti-aliasing of the shaded picture, before it is upscaled. All blend linear colour. */
@@ -351,7 +351,7 @@ typedef enum masu_knob_use {
     /* Geometry. */                                                                                \
     WORD(  masu_march,       march,                                  SDF,                          \
            "How the SDF is marched. AUTO: the fast way.",                                          \
-           "All others took longer where they were measured (docs/DESIGN.md).")                    \
+           "All others took longer where they were measured (docs/design/11-march-measured.md).")                    \
     NUMBER(uint32_t,         march_steps,          1,    2048, 2048, SDF,       "steps",           \
            "Most SDF steps per ray. A ray that uses them up ends where it is.",                    \
            "Time of rays that graze surfaces: the more, the longer.")                              \

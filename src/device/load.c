@@ -304,6 +304,7 @@ static void write_in_place(const masu_device *m, const masu_scene_view *v) {
     for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
         masu_chunk all = {(masu_buffer_id)b, 0, m->plan->buffers[b].bytes, m->plan->buffers[b].bytes};
         if (!masu_buffers[b].loaded || !all.bytes) continue;
+        if (!m->plan->desc.scene && loads[b] != load_smaa_area) continue; /* the library's own */
         write_resident(&m->plan->scene, v, all, masu_buffer_pointer(m, all.buffer, 0));
     }
 }

@@ -2,7 +2,7 @@
 #include "plan/limits.h"
 
 #include "base/error.h"
-#include "frame/transparents.h"
+#include "scene/blob.h"
 
 #include <stddef.h>
 #include <string.h>

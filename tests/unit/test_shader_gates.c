@@ -284,8 +284,8 @@ static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
             (void)snprintf(path, sizeof path, "shaders/%s", scene_shaders[i].source);
             (void)snprintf(name, sizeof name, "%s %s with %s", scene_shaders[i].source,
                            scene_shaders[i].define, field);
-            (void)snprintf(options, sizeof options, "-Ishaders -I. -I%s -DMASU_HAS_RASTER=%d %s",
-                           scratch, raster, scene_shaders[i].define);
+            (void)snprintf(options, sizeof options, "-Ishaders -I%s/gen -I. -I%s -DMASU_HAS_RASTER=%d %s",
+                           build_dir(), scratch, raster, scene_shaders[i].define);
             if (!spirv_compile(path, options, &m)) fail_msg("%s does not compile", name);
             uint32_t found = assert_passes(&m, name);
             if (found < scene_shaders[i].loops) fail_msg("%s: %u loops only", name, found);
@@ -334,7 +334,8 @@ static size_t march_words(const char *sdf, uint32_t *loops) {
     assert_int_equal(shell("%s/bin/masu-sdfc --quiet --glsl %s --pairs 10 %s", build_dir(), wrapper,
                            sdf),
                      0);
-    (void)snprintf(options, sizeof options, "-Ishaders -I%s -DMASU_HAS_RASTER=0", scratch);
+    (void)snprintf(options, sizeof options, "-Ishaders -I%s/gen -I%s -DMASU_HAS_RASTER=0",
+                   build_dir(), scratch);
     assert_true(spirv_compile("shaders/march.comp", options, &m));
     size_t words = m.word_count;
     *loops = assert_passes(&m, sdf);
