@@ -37,7 +37,7 @@
  *    reflections, shaderFloat16 upscaling (masu_vulkan).
  *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
  *    to be submitted once; all frames and loads go to one and the same queue, in order. It starts
- *    with a full barrier against the frame before.
+ *    with a full barrier against the previous frame.
  *  - Target images: an array of views of host images, all `output` large. Storage targets
  *    (targets.storage != 0) must be VK_FORMAT_R8G8B8A8_UNORM, or VK_FORMAT_R16G16B16A16_SFLOAT, with
  *    VK_IMAGE_USAGE_STORAGE_BIT; Masu writes them directly. Other targets (a swapchain's BGRA
@@ -144,7 +144,7 @@ typedef struct masu_scene {
     const void *blob; /* the caller's; see masu_scene_bind */
     uint64_t blob_bytes;
     uint32_t vertices, indices, primitives, meshes, instances, materials, camera_keys;
-    uint32_t lods; /* coarser forms of meshes, in all */
+    uint32_t lods; /* LODs of meshes, in all */
     uint32_t lod_draws, lod_instances; /* draws of those; instances, counted for each form */
     uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
     uint32_t groups, group_items; /* what is culled together; instances in groups */
@@ -157,7 +157,7 @@ typedef struct masu_scene {
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
     uint32_t sdf_march;     /* bit per masu_march that the blob has code for */
     uint32_t sdf_occlusion; /* 1: the SDF casts shadows or occludes ambient light */
-    uint32_t most_instances, most_primitives; /* of one mesh */
+    uint32_t max_instances, max_primitives; /* of one mesh */
     uint32_t shadow_cascades; /* of the sun's shadow map; 0: none. Scenes with instances only */
     uint32_t shadow_resolution;
     float shadow_distance, shadow_lambda;
@@ -205,7 +205,7 @@ MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t bl
 MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name);
 
 /* Scenes by what their frames are made of: quality ladders are measured for each (masu_desc.ladder). A
- * world is of polygons alone and has both coarser forms of meshes and occluders. */
+ * world is of polygons alone and has both LODs of meshes and occluders. */
 typedef enum masu_scene_class {
     MASU_SCENE_POLYGONS = 0,
     MASU_SCENE_WORLD = 1,
@@ -299,11 +299,11 @@ typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
     X(SDF, "scenes with an SDF", "the scene has no SDF")                                           \
     X(POLYGONS, "scenes with polygons", "the scene has no polygons")                               \
     X(OCCLUDERS, "scenes with occluders", "the scene has no occluders")                            \
-    X(LODS, "scenes whose meshes have LODs", "the scene's meshes have no coarser forms")           \
+    X(LODS, "scenes whose meshes have LODs", "the scene's meshes have no LODs")           \
     X(AO, "scenes with ambient occlusion in screen space",                                         \
       "the scene asks for no ambient occlusion")                                                   \
     X(SHADOWS, "scenes with a shadow map", "the scene has no shadow map")                          \
-    X(LIGHTS, "scenes with punctual lights", "the scene has no local lights")                      \
+    X(LIGHTS, "scenes with punctual lights", "the scene has no punctual lights")                      \
     X(SPECULAR, "scenes with traced reflections", "no reflections are traced")
 
 typedef enum masu_knob_use {
@@ -570,11 +570,11 @@ typedef enum masu_readback_bits {
     MASU_READBACK_NORMAL =
         4, /* uint32: octahedral 13+13 bits, metallic 4 bits, flags 2 bits (masu_unpack_normal) */
     MASU_READBACK_HDR = 8, /* 4 x half: linear radiance before exposure */
-    /* 4 x half: where the pixel's surface point was in the frame before: x, y: previous position
+    /* 4 x half: where the pixel's surface point was in the previous frame: x, y: previous position
      * minus the present one, in pixels of this frame's render size, y down; z: previous view depth
      * / present one, minus 1 (0 for the sky); w: 1, or 0 where the point was behind the camera or
      * cannot be told, x y z are then 0. Halves: off by up to 2^-12 of the motion. Asking for it
-     * makes the plan keep the frame before: one more image and one more pass or two. */
+     * makes the plan keep the previous frame: one more image and one more pass or two. */
     MASU_READBACK_VELOCITY = 16,
     /* 2 x 16 bit unorm: how much of the sun, and of the ambient light, is seen. Only of scenes with
      * a shadow map, SDF shadows, or ambient occlusion of either kind; asking it of others is ignored,
@@ -655,7 +655,7 @@ typedef struct masu_exposure {
     float brighten, darken;
     float low, high;   /* shares of the counted pixels left out, 0..1, less than 1 in sum; below 0: none;
                           0: 0.1 of the dark and 0.1 of the bright */
-    float least, most; /* bounds of the metered factor, 1e-9..1e9; 0: 1/1024 and 1024 */
+    float min, max; /* bounds of the metered factor, 1e-9..1e9; 0: 1/1024 and 1024 */
 } masu_exposure;
 
 /* Without a scene: the host's image is the input of anti-aliasing, where the rung asks for it, EASU and
@@ -1014,7 +1014,7 @@ typedef struct masu_light {
      * from the sun, and with it the ambient light; a sun colour of all zero then is the sun's behind
      * that air, which sets too. Takes a scene with such a sky or desc.analytic_sky. Computed anew,
      * within a millisecond of the host's time, when the direction of the sun, turbidity or ground
-     * differ from those of the frame before. */
+     * differ from those of the previous frame. */
     float turbidity;
     float ground[3]; /* albedo of what lies below the horizon of such a sky, 0..1 */
     /* Fog, of scenes that have some; others have no code for it. Its density at a height y is
@@ -1032,10 +1032,10 @@ typedef struct masu_frame_desc {
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
     double time;     /* seconds since the start, -1e15..1e15: animation of SDF and camera path */
-    float time_step; /* seconds since the frame before; 0 is fine, within +-1e15 */
+    float time_step; /* seconds since the previous frame; 0 is fine, within +-1e15 */
     uint32_t rung;   /* 0 .. rung_count-1, or MASU_RUNG_AUTO: the governor's */
     uint32_t target; /* 0 .. targets.count-1 */
-    uint32_t cut;    /* not 0: what is seen has nothing to do with the frame before (a camera cut):
+    uint32_t cut;    /* not 0: what is seen has nothing to do with the previous frame (a camera cut):
                         nothing has moved. The first frame is one anyway. "Before" is the frame that
                         masu_frame handed out last, submitted or not. With rungs[].shadow_refresh
                         above 1 the frame after one that was not submitted must be a cut: the
@@ -1046,7 +1046,7 @@ typedef struct masu_frame_desc {
 } masu_frame_desc;
 
 /* Writes this frame's uniforms and hands out the command buffer to submit. Call when the slot is
- * free: the frame that came frames_in_flight frames before has finished on the GPU. Costs no
+ * free: the frame that came frames_in_flight previous frames has finished on the GPU. Costs no
  * allocation and no recording. commands->rung is the rung that it is drawn at. MASU_ERROR_ARGUMENT: a
  * rung, target, camera, light or parameter that is out of range or not finite, or MASU_RUNG_AUTO
  * without a governor; nothing has been written and the frame number has not moved.
@@ -1055,12 +1055,12 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
                                               masu_commands *commands);
 
 /* For the governor: how long the slot's last frame took by the host's clock, ms: from its submit, or
- * from the end of the frame before if that was later, to its fence. To be called, if at all, after the
+ * from the end of the previous frame if that was later, to its fence. To be called, if at all, after the
  * fence has been waited for and before the slot is used again. A time of the whole interval between
  * frames will not do where the display makes the host wait. Values that are none are left out. */
 MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
 
-/* Why the last masu_load, masu_frame, masu_instance_set_transform, masu_local_light_get or _set
+/* Why the last masu_load, masu_frame, masu_instance_set_transform, masu_punctual_light_get or _set
  * failed. */
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 
@@ -1088,13 +1088,13 @@ MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *re
                                                                masu_instance instance,
                                                                const float rows[12]);
 
-/* Handle of a local light, a point or a spot. id 0 is none. A handle belongs to the renderer that gave
+/* Handle of a punctual light, a point or a spot. id 0 is none. A handle belongs to the renderer that gave
  * it. */
-typedef struct masu_local_light {
+typedef struct masu_punctual_light {
     uint32_t id;
-} masu_local_light;
+} masu_punctual_light;
 
-typedef struct masu_local_light_state {
+typedef struct masu_punctual_light_state {
     double position[3];  /* world, or object space of the instance; within 1e15 */
     float direction[3];  /* of a spot: where it shines, in the same space; need not be unit length */
     float color[3];      /* radiant intensity / pi, 0..1e9; 0: it is off. A white matt surface that faces
@@ -1105,22 +1105,22 @@ typedef struct masu_local_light_state {
     float inner, outer;  /* of a spot, radians from its direction: all of the light up to inner, none
                             from outer on; 0 <= inner <= outer <= pi */
     masu_instance instance; /* that carries it; id 0: none */
-} masu_local_light_state;
+} masu_punctual_light_state;
 
 /* The first light of that name in the scene; id 0 if there is none. */
-MASU_API masu_local_light masu_local_light_find(const masu_renderer *renderer, const char *name);
+MASU_API masu_punctual_light masu_punctual_light_find(const masu_renderer *renderer, const char *name);
 
 /* What it is set to: at first, what the scene says. MASU_ERROR_ARGUMENT: a NULL pointer, or a handle
  * that is not of this renderer. */
-MASU_API MASU_MUST_USE masu_result masu_local_light_get(masu_renderer *renderer,
-                                                        masu_local_light light,
-                                                        masu_local_light_state *out);
+MASU_API MASU_MUST_USE masu_result masu_punctual_light_get(masu_renderer *renderer,
+                                                        masu_punctual_light light,
+                                                        masu_punctual_light_state *out);
 
 /* Moves, recolours or switches a light from the next masu_frame on. MASU_ERROR_ARGUMENT: a handle that
  * is not of this renderer, or a value that is out of range or not finite: nothing is changed then. */
-MASU_API MASU_MUST_USE masu_result masu_local_light_set(masu_renderer *renderer,
-                                                        masu_local_light light,
-                                                        const masu_local_light_state *state);
+MASU_API MASU_MUST_USE masu_result masu_punctual_light_set(masu_renderer *renderer,
+                                                        masu_punctual_light light,
+                                                        const masu_punctual_light_state *state);
 
 /* ---- Looking at frames ----------------------------------------------------------------------- */
 

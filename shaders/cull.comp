@@ -8,7 +8,7 @@
  * time and never a pixel.
  *
  * A caster whose shadow falls on nothing in the picture is hidden as well, in cascades that this frame
- * alone looks at: of each texel of the sun's part of the atlas, receivers.comp has noted how far from
+ * alone looks at: of each texel of the sun's part of the atlas, receiver_mask.comp has noted how far from
  * the sun the farthest surface in the picture is that looks into the cascade.
  *
  * push.header: the header of src/frame/occlusion.c; push.view: the first view.

@@ -8,7 +8,7 @@
  * 1 - exp(-speed dt) of the way: two frames of dt do what one of 2 dt does. A frame without a pixel that
  * counts leaves it where it is.
  *
- * Push constants: push: speed to brighten, to darken, least, most; low and high = shares left out, of
+ * Push constants: push: speed to brighten, to darken, min, max; low and high = shares left out, of
  * 2^16, below and above.
  */
 #version 450
@@ -67,7 +67,7 @@ void main()
     float wanted = cut ? 0.0 : before;
     if (weight > 0.0) {
         wanted = masu_log2(MASU_EXPOSURE_KEY) - sum / weight;
-        wanted = clamp(wanted, masu_log2(push.least), masu_log2(push.most));
+        wanted = clamp(wanted, masu_log2(push.min), masu_log2(push.max));
     }
     float speed = wanted > before ? push.brighten : push.darken;
     float share = 1.0 - masu_exp2(-1.44269504 * speed * max(frame.eye_lo.w, 0.0));

@@ -4,7 +4,7 @@
  * The eye is subtracted from the instance's translation in two steps (high part, then low part), so
  * that a world a million metres from the origin is as steady as one at the origin.
  *
- * With MASU_MOTION (gbuffer_velocity) also to where the vertex was in the frame before, by the same
+ * With MASU_MOTION (gbuffer_velocity) also to where the vertex was in the previous frame, by the same
  * operations: what stood still gets the same bits twice, and a velocity of exactly 0. With
  * MASU_TEXTURES texture coordinates go along.
  */

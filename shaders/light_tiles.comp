@@ -1,5 +1,5 @@
 /*
- * light_tiles.comp: which local lights can reach a surface of which tile. One workgroup per tile of
+ * light_tiles.comp: which punctual lights can reach a surface of which tile. One workgroup per tile of
  * 16x16 pixels; a tile without surfaces lists none.
  *
  * A light stays out of a list when its bounding sphere is
@@ -102,7 +102,7 @@ bool sphere_misses(vec3 c, float radius, piece p)
 /* The tangent plane of the cone on the side of the sphere's centre: the cone, which is no wider than
  * a half-space, lies behind it. (Along the axis the root of |v|^2 - (v.axis)^2 would lose half of
  * its digits; the cross product loses none.) */
-bool cone_misses(masu_local_light_data light, piece p)
+bool cone_misses(masu_punctual_light_data light, piece p)
 {
     if (!(light.cone.z > 0.0)) {
         return false; /* wider than a half-space, or no cone */
@@ -209,7 +209,7 @@ void main()
             if (n >= count) {
                 break;
             }
-            masu_local_light_data light = masu_lights[n];
+            masu_punctual_light_data light = masu_lights[n];
             vec3 c = to_view(light.bound.xyz);
             if (!sphere_misses(c, light.bound.w, p) && !cone_misses(light, p)) {
                 atomicOr(kept[n >> 5], 1u << (n & 31u));

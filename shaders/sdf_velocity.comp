@@ -2,7 +2,7 @@
  * sdf_velocity.comp: the velocity of what the SDF shows, and of the sky. Compiled by masu-bake with
  * the scene's field.
  *
- * The point under a pixel belongs to the nearest part. Where that point was in the frame before:
+ * The point under a pixel belongs to the nearest part. Where that point was in the previous frame:
  *
  *   1. The part's root transform (the movements, turns and scalings that stand around all else in
  *      it) takes the point into the part's own space with the present slots and out of it with the

@@ -10,7 +10,7 @@
  * Of smooth surfaces each pixel has its own mean (MASU_FINE, specular_fine.comp), where there is one.
  *
  * push.cutoff: roughness from which nothing is traced. push.accumulate: 1: the mean of the reference instead, which
- * is weighted already. push.fine: not 0: there are means of pixels.
+ * is weighted already. push.fine: not 0: there are full-resolution history.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require

@@ -1,14 +1,14 @@
 /*
- * specular_filter.comp: the mean over neighbours of the same surface, as far as noise is left. Facts: a
+ * specular_filter.comp: the spatial filter of the same surface, as far as noise is left. Facts: a
  * neighbour counts by how near it lies to the plane, how its normal leans, and how far its luma is off,
- * measured in deviations of what the mean over frames still has of noise: its variance divided by the frames
+ * measured in deviations of what temporal accumulation still has of noise: its variance divided by the frames
  * in it (Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017). So the filter goes away by
  * itself as the mean becomes better.
  *
  * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
  * and not by the frame: what it leaves does not flicker.
  *
- * push.taps: neighbours; push.temporal: not 0: there is a mean over frames.
+ * push.taps: neighbours; push.temporal: not 0: there is a temporal accumulation.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -33,7 +33,7 @@ layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D smoo
 const float widest = 12.0; /* texels */
 const float luma_width = 2.0; /* deviations */
 
-/* Deviation of the luma of a texel, from its 3x3: where no mean over frames tells, or too few frames. */
+/* Deviation of the luma of a texel, from its 3x3: where no temporal accumulation tells, or too few frames. */
 float spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;

@@ -36,13 +36,13 @@ layout(set = MASU_SET_PASS, binding = 6) uniform usampler2D old_fine_image;
 layout(set = MASU_SET_PASS, binding = 7) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = 8, rgba32ui) uniform writeonly uimage2D fine_image;
 
-/* Whether the frame before has kept means of pixels. A rung without them keeps the rest of the history alone. */
+/* Whether the previous frame has kept full-resolution history. A rung without them keeps the rest of the history alone. */
 bool has_old()
 {
     return frame.history.y != 0u && (frame.history.w & uint(MASU_HISTORY_NO_FINE)) == 0u;
 }
 
-/* a: 0: nothing is there. at: pixel of the frame before. */
+/* a: 0: nothing is there. at: pixel of the previous frame. */
 vec4 old_pixel(ivec2 at, masu_guide g)
 {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.history.yz)))) {
@@ -58,7 +58,7 @@ vec4 old_pixel(ivec2 at, masu_guide g)
     return word == masu_fine_none ? vec4(0.0) : vec4(masu_unpack_fine(word), 1.0);
 }
 
-/* Whether a texel of the frame before can have held a surface of this normal: if it was not one surface, there is
+/* Whether a texel of the previous frame can have held a surface of this normal: if it was not one surface, there is
  * no telling. */
 bool was_it(ivec2 texel, vec3 normal)
 {

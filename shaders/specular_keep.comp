@@ -23,7 +23,7 @@ layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D shown_image;
 layout(set = MASU_SET_PASS, binding = 4, rg32ui) uniform writeonly uimage2D old_guide_image;
 layout(set = MASU_SET_PASS, binding = 5, rgba16f) uniform writeonly image2D old_mean_image;
 layout(set = MASU_SET_PASS, binding = 6, r32ui) uniform writeonly uimage2D old_age_image;
-#ifdef MASU_STEADY
+#ifdef MASU_TAA
 layout(set = MASU_SET_PASS, binding = 7, rgba16f) uniform writeonly image2D old_steady_image;
 #endif
 
@@ -45,7 +45,7 @@ void main()
         MASU_STORE_UINT(old_guide_image, texel, uvec4(guide, 0u, 0u));
         MASU_STORE_HALF(old_mean_image, texel, mean);
         MASU_STORE_UINT(old_age_image, texel, uvec4(age));
-#ifdef MASU_STEADY
+#ifdef MASU_TAA
         MASU_STORE_HALF(old_steady_image, texel, shown);
 #endif
     }

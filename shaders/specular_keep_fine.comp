@@ -1,5 +1,5 @@
 /*
- * specular_keep_fine.comp: the means of pixels, for the next frame. Of the listed tiles alone: which texels
+ * specular_keep_fine.comp: the full-resolution history, for the next frame. Of the listed tiles alone: which texels
  * have traced anything the kept guide says (specular_keep.comp).
  */
 #version 450

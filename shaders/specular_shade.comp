@@ -1,12 +1,12 @@
 /*
  * specular_shade.comp: the light that comes along the ray of each traced texel: from what it has met, lit as
- * the picture is (light/shade.glsl; the sun past the shadow map, local lights, light from everywhere), else the sky.
+ * the picture is (light/shade.glsl; the sun past the shadow map, punctual lights, light from everywhere), else the sky.
  * A surface that is seen in another mirrors the sky or the probes itself.
  *
  * The sun's disc is not in it, nor its light in the sky around what mirrors: light.comp adds the sun's
  * highlight exactly.
  *
- * And where in the frame before the same thing was seen in the same mirror, for specular_temporal: a mirror
+ * And where in the previous frame the same thing was seen in the same mirror, for specular_temporal: a mirror
  * shows a virtual point as far behind its surface as what is mirrored lies before it. That moves as the
  * mirror image of the thing, and with the mirror.
  *
@@ -59,7 +59,7 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_LIGHT + 1, r32ui) uniform writeonl
 struct met {
     masu_surface surface;
     vec3 normal;  /* unit, towards where the ray comes from */
-    vec3 before;  /* where the point was in the frame before, minus where it is */
+    vec3 before;  /* where the point was in the previous frame, minus where it is */
 };
 
 met met_sdf(uvec4 hit)
@@ -163,7 +163,7 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
 }
 
 /* By how many pixels a point behind the mirror has moved: `off` further along the line of sight, `thing`
- * minus where it is in the frame before. */
+ * minus where it is in the previous frame. */
 vec4 image_moved(vec3 point, vec3 along, float off, vec3 thing, vec3 eyes, vec2 size)
 {
     vec3 behind = point + along * off;

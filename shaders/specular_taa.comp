@@ -1,5 +1,5 @@
 /*
- * specular_taa.comp: a second, short mean over frames, of what the filters have made. Each frame traces
+ * specular_taa.comp: a second, short temporal accumulation, of what the filters have made. Each frame traces
  * another pixel of a texel's four, and each turns specular_reuse: what of that the longer mean has left
  * is evened out here. The history is held to the colours of the present 3x3 (Karis, "High Quality Temporal
  * Supersampling", SIGGRAPH 2014; their spread instead of their corners: Salvi, "An Excursion in Temporal

@@ -48,7 +48,7 @@ const float reuse_until = 8.0;
 /* Half the width of the clamp, in deviations. */
 const float clamp_width = 2.0;
 
-/* The texel in the present frame, and its surface as the frame before saw it. */
+/* The texel in the present frame, and its surface as the previous frame saw it. */
 struct here {
     ivec2 texel;
     masu_guide g;
@@ -61,7 +61,7 @@ struct past {
     vec4 mean;
     float age;
     float weight; /* 0..1: how much of it is of this surface */
-    vec2 place;   /* texels of the frame before */
+    vec2 place;   /* texels of the previous frame */
 };
 
 struct present {
@@ -169,7 +169,7 @@ present gather(here h)
     return r;
 }
 
-/* Of the 3x3 texels around a place of the frame before: x mean luma, y variance of one frame's. Below 0:
+/* Of the 3x3 texels around a place of the previous frame: x mean luma, y variance of one frame's. Below 0:
  * nothing is there. */
 vec2 past_luma(vec2 place)
 {

@@ -1,7 +1,7 @@
 /*
  * specular_trace_sdf.comp: what of the SDF the ray of each traced texel meets, where that is nearer than the
  * polygon that it has met. Compiled by masu-bake with the scene's field for scenes with reflections; with
- * MASU_MOTION where the field changes: then also by how much the point has moved since the frame before, as
+ * MASU_MOTION where the field changes: then also by how much the point has moved since the previous frame, as
  * far as its part moves, turns or grows as a whole (sdf_velocity.comp, step 1).
  *
  * push.steps: most steps of a ray; push.unpruned not 0: all parts for each, for comparison.

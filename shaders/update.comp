@@ -2,7 +2,7 @@
  * update.comp: slots of the SDF that depend on parameters or time, once per frame, so that no sample
  * of the field evaluates them again. Compiled by masu-bake together with the scene's field, and only
  * if there are such slots; a second time with MASU_MOTION, as the pass update_previous: the slots as
- * of the frame before, from that frame's parameters and time. Copying the present slots before they
+ * of the previous frame, from that frame's parameters and time. Copying the present slots before they
  * are overwritten would do, but would be a state that crosses frames.
  *
  * Slots that depend on the anchor alone (of all that stands still in a scene far from the origin)

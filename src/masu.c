@@ -386,19 +386,19 @@ masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance
     return result;
 }
 
-masu_local_light masu_local_light_find(const masu_renderer *m, const char *name) {
-    if (!m || !name || !*name) return (masu_local_light){0};
+masu_punctual_light masu_punctual_light_find(const masu_renderer *m, const char *name) {
+    if (!m || !name || !*name) return (masu_punctual_light){0};
     return masu_lights_find(&m->lights, &m->plan, name);
 }
 
-masu_result masu_local_light_get(masu_renderer *m, masu_local_light light,
-                                 masu_local_light_state *out) {
+masu_result masu_punctual_light_get(masu_renderer *m, masu_punctual_light light,
+                                 masu_punctual_light_state *out) {
     if (!m || !out) return MASU_ERROR_ARGUMENT;
     return masu_lights_get(&m->lights, &m->plan, light, out, &m->error);
 }
 
-masu_result masu_local_light_set(masu_renderer *m, masu_local_light light,
-                                 const masu_local_light_state *state) {
+masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
+                                 const masu_punctual_light_state *state) {
     if (!m || !state) return MASU_ERROR_ARGUMENT;
     return masu_lights_set(&m->lights, &m->plan, light, state, &m->error);
 }

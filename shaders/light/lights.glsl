@@ -1,5 +1,5 @@
 /*
- * lights.glsl: local lights, point and spot: what reaches a surface point of one of them, and which
+ * lights.glsl: punctual lights, point and spot: what reaches a surface point of one of them, and which
  * of them a pixel has to ask. No shadows: a wall in between hides nothing.
  *
  *   reaches = color * window * cone / max(d^2, radius^2)
@@ -24,7 +24,7 @@
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_LIGHTS, std430) readonly buffer Lights
 {
     uvec4 masu_lights_header; /* x lights in view, y words of a tile's list */
-    masu_local_light_data masu_lights[];
+    masu_punctual_light_data masu_lights[];
 };
 
 /* Words: of each tile how many lights, or MASU_TILE_ALL, then their numbers. */
@@ -58,7 +58,7 @@ float masu_light_depth(float depth)
 
 /* l: unit vector towards the light. False: nothing arrives, and the other two are not to be used.
  * rel: the point, relative to the eye. */
-bool masu_light_reaches(masu_local_light_data light, vec3 rel, out vec3 l, out vec3 color)
+bool masu_light_reaches(masu_punctual_light_data light, vec3 rel, out vec3 l, out vec3 color)
 {
     vec3 to = light.position.xyz - rel;
     float squared = dot(to, to);

@@ -41,7 +41,7 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SLOTS, std430) readonly buffer
 #endif
 
 #ifdef MASU_MOTION
-/* The field of the frame before stands beside the present one: masu_before chooses which of them
+/* The field of the previous frame stands beside the present one: masu_before chooses which of them
  * the functions below speak of. Its slots follow the present ones. */
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS, std140) uniform Previous
 {

@@ -1,5 +1,5 @@
 /*
- * culling.glsl: what the host writes for stage 2 of culling, in the buffer of drawn instances behind
+ * culling.glsl: what the host writes for occlusion culling, in the buffer of drawn instances behind
  * the lists of stage 1. masu_shared.h names the words of its header; src/frame/occlusion.c writes them.
  */
 #ifndef MASU_CULLING_GLSL

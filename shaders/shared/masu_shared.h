@@ -69,7 +69,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_ATLAS_CAMERA_HEIGHT 128
 #define MASU_ATLAS_SUN 256
 
-/* Stage 2 of culling. The buffer of drawn instances begins with the lists of stage 1, MASU_CULL_LISTED
+/* Occlusion culling. The buffer of drawn instances begins with the lists of stage 1, MASU_CULL_LISTED
  * words for each view; behind them lies a header, whose words say where the rest is. */
 #define MASU_CULL_CUT 0u         /* not 0: all are asked */
 #define MASU_CULL_LISTED 1u      /* words of the lists of one view */
@@ -116,7 +116,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_TILE_ALL 0xFFFFFFFFu
 #define MASU_SDF_PARTS_MAX 4096
 
-/* Local lights. Their tiles are those of the SDF, of MASU_TILE pixels; a list is one word that says
+/* Punctual lights. Their tiles are those of the SDF, of MASU_TILE pixels; a list is one word that says
  * how many lights, or MASU_TILE_ALL where it would be longer, then their numbers, rising. */
 #define MASU_LOCAL_LIGHTS_MAX 4096
 #define MASU_TILE_LIGHTS_MAX 63
@@ -167,7 +167,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* No sample is farther away than this share of the picture's height. */
 #define MASU_AO_REACH 0.25
 
-/* Reflections: most neighbours of specular_reuse, of specular_filter; how far back a mean over frames may
+/* Reflections: most neighbours of specular_reuse, of specular_filter; how far back a temporal accumulation may
  * reach, 1/60 s. */
 #define MASU_REUSE_TAPS_MAX 16
 #define MASU_FILTER_TAPS_MAX 32
@@ -196,7 +196,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 
 /* Of a frame and the one before. */
 #define MASU_HISTORY_CUT 1u     /* a cut: the exposure adapts at once */
-#define MASU_HISTORY_NO_FINE 2u /* the frame before has kept no means of pixels: what is there is older */
+#define MASU_HISTORY_NO_FINE 2u /* the previous frame has kept no full-resolution history: what is there is older */
 
 /* Counters, uint32 pairs (low, high). Reset by each frame, read back by masu_stats. */
 #define MASU_COUNTER_SDF_EVALS 0
@@ -207,9 +207,9 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_COUNTER_OCCLUSION_EVALS 5
 #define MASU_COUNTER_SHADOW_UNCONVERGED 6
 #define MASU_COUNTER_OCCLUSION_TESTS 7
-/* After stage 2 of culling, of each view: */
+/* After occlusion culling, of each view: */
 #define MASU_COUNTER_VISIBLE 8 /* instances, triangles */
-/* Of local lights: pairs of light and pixel that were looked at, those where something arrives; tiles
+/* Of punctual lights: pairs of light and pixel that were looked at, those where something arrives; tiles
  * that ask all lights. */
 #define MASU_COUNTER_LIGHT_TESTS 18
 #define MASU_COUNTER_LIGHT_SHADED 19
@@ -296,7 +296,7 @@ struct masu_frame_uniforms {
     masu_vec4 sdf_min;       /* xyz lower corner of the SDF's bounds, in its space; w 1 / Lipschitz
                                 constant */
     masu_vec4 sdf_max;       /* xyz upper corner; w longest ray, world units */
-    /* x number of the frame, modulo 2^32; y and z render size of the frame before, 0: nothing of it counts;
+    /* x number of the frame, modulo 2^32; y and z render size of the previous frame, 0: nothing of it counts;
      * w bits of MASU_HISTORY_* */
     masu_uvec4 history;
     /* xyz anchor that traced geometry is relative to; w longest ray */
@@ -324,7 +324,7 @@ struct masu_sky_uniforms {
 };
 
 /* A point or spot of this frame, relative to its eye; shaders/light/lights.glsl says how it lights. */
-struct masu_local_light_data {
+struct masu_punctual_light_data {
     masu_vec4 position; /* xyz; w 1 / range^2 */
     masu_vec4 color;    /* rgb radiant intensity / pi; w least squared distance */
     /* xyz unit vector along the middle of a spot, away from it; w 1 - cos(outer). Points: 0 0 0 4 */

@@ -2,11 +2,11 @@
  * filter.glsl: what the filters of reflections share: luma and chroma, how far over a surface a reflection
  * stays the same, and words of images.
  *
- *   specular_mean, rgba16f   rgb mean radiance over frames; a mean square of its luma. As kept for the next
+ *   specular_color, rgba16f   rgb mean radiance over frames; a mean square of its luma. As kept for the next
  *                            frame a is below 0 where nothing is traced
- *   specular_age, rg32ui     x  low half: distance of what is met, a half; high half: frames in the mean,
+ *   specular_length, rg32ui     x  low half: distance of what is met, a half; high half: frames in the mean,
  *                               in 1/64
- *                            y  by how many pixels what is seen has moved since the frame before, two
+ *                            y  by how many pixels what is seen has moved since the previous frame, two
  *                               halves; all bits: it was not there
  */
 #ifndef MASU_SPECULAR_FILTER_GLSL
@@ -20,7 +20,7 @@ const uint masu_unmoved = 0xFFFFFFFFu; /* there is no telling how it has moved *
 /* Squares of luma have to fit into halfs. */
 const float masu_most_radiance = 250.0;
 
-/* Half a step of the guide's 63: mirrors have 0 there. Their rays hold no noise, and a mean over neighbours
+/* Half a step of the guide's 63: mirrors have 0 there. Their rays hold no noise, and a spatial filter
  * would only blur them. */
 const float masu_mirror_roughness = 0.5 / 63.0;
 
@@ -123,7 +123,7 @@ float masu_specular_reach(masu_guide g, vec3 point, float far, float curvature)
     return g.roughness * g.roughness * seen / max(masu_texel_width(g), 1e-9);
 }
 
-/* Share of the frame before that a mean over so many sixtieths of a second keeps, whatever the frame
+/* Share of the previous frame that a mean over so many sixtieths of a second keeps, whatever the frame
  * rate. */
 float masu_time_share(float sixtieths)
 {

@@ -7,7 +7,7 @@
  *   specular_hit, rgba32ui x  distance, a float; below 0: nothing is met
  *                          of a polygon  y number of the traced instance, z of the triangle, w barycentric
  *                             coordinates of its second and third corner, 16 bits each
- *                          of the SDF    y bit 31 set, then where the point was in the frame before minus where
+ *                          of the SDF    y bit 31 set, then where the point was in the previous frame minus where
  *                             it is, three times 8 bits with a sign that share an exponent of 7; z normal
  *                             as in the G-buffer, w albedo (sqrt) or radiance as there, roughness, 8 bits each
  */

@@ -1,11 +1,11 @@
 /*
  * scene.glsl: the buffers that rays are traced through, and what lies behind nodes and triangles there:
- * the blue noise, materials, small pictures of the textures, and where instances were in the frame before.
+ * the blue noise, materials, small pictures of the textures, and where instances were in the previous frame.
  *
  *   masu_trace_static[0].w   where the rest begins: a header of where materials, pictures and texels begin; then
  *                            the tile of noise, four words to an element
  *   masu_trace_frame[0].w    of each traced instance six rows: object to world minus anchor, and the same as
- *                            of the frame before
+ *                            of the previous frame
  *
  * Triangles hold the number of their material here, not that of their primitive as in the blob; MASU_TRACE_HOLES
  * with it: of a mask that has a picture. So a ray asks no material of what is whole.
@@ -53,7 +53,7 @@ vec3 masu_trace_vertex_normal(uint vertex)
     return masu_oct_decode(max(unpackSnorm2x16(masu_trace_vertices[vertex].w), vec2(-1.0)));
 }
 
-/* Row of a traced instance's transform, object to world minus anchor: 0 to 2 now, 3 to 5 in the frame before. */
+/* Row of a traced instance's transform, object to world minus anchor: 0 to 2 now, 3 to 5 in the previous frame. */
 vec4 masu_trace_row(uint traced, uint row)
 {
     return uintBitsToFloat(masu_trace_frame[masu_trace_frame[0].w + 6u * traced + row]);

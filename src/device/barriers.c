@@ -4,7 +4,7 @@
  *    a barrier;
  *  - the first use of a transient image in a frame comes from UNDEFINED, and waits for every image
  *    that shares bytes with it and was used before;
- *  - a full barrier at the top of the frame orders it behind the frame before, so no state crosses
+ *  - a full barrier at the top of the frame orders it behind the previous frame, so no state crosses
  *    frames, but for an image whose content outlives them: it rests in the layout that shaders
  *    read, and comes from UNDEFINED only where the recording draws all that its rung reads of it.
  * Each pass gets at most one vkCmdPipelineBarrier. */

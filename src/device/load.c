@@ -193,7 +193,7 @@ static void write_probes(const masu_scene_view *v, masu_chunk chunk, unsigned ch
     }
 }
 
-/* The library's tables, then the scene's picture of a sky. */
+/* The library's tables, then the scene's environment map. */
 static void write_tables(const masu_scene_view *v, masu_chunk chunk, unsigned char *to) {
     const masu_blob_environment_map *map = v->environment_map;
     uint64_t texels = map ? masu_blob_environment_texels(map->size, map->mips) : 0;

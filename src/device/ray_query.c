@@ -270,7 +270,7 @@ void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd) {
     }
 }
 
-/* The barrier at the top of the frame stands between it and what the frame before did. */
+/* The barrier at the top of the frame stands between it and what the previous frame did. */
 void masu_ray_record_top(masu_device *m, VkCommandBuffer cmd, uint32_t slot) {
     build b;
     describe_top(&m->plan->scene, &b);

@@ -398,14 +398,14 @@ static void record_prologue(masu_recorder *rec) {
         for (uint32_t i = 0; i < 3; i++)
             m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[tiles[t]], 4 * i, 4, arguments[i]);
     }
-    if (m->plan->needs.metered) { /* the bins; what the frame before has left stays */
+    if (m->plan->needs.metered) { /* the bins; what the previous frame left stays */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
                             MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
     }
-    int receivers = masu_has_pass(&rec->rp->active, MASU_PASS_RECEIVERS);
+    int receivers = masu_has_pass(&rec->rp->active, MASU_PASS_RECEIVER_MASK);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
-                            m->plan->receivers * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
+                            m->plan->receiver_mask * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
     if (counters || receivers || tiled || m->plan->needs.metered ||
         m->plan->buffers[MASU_BUFFER_POISON].bytes) {

@@ -26,7 +26,7 @@ typedef struct masu_frame_data {
     uint32_t cascades; /* bit per cascade of the shadow map that it draws */
 } masu_frame_data;
 
-/* The frame before, of no length where nothing reads velocities. It is kept here and not on the device,
+/* The previous frame, of no length where nothing reads velocities. It is kept here and not on the device,
  * so that no state crosses frames there and frames in flight need not know of each other. */
 typedef struct masu_history {
     struct masu_frame_uniforms *previous;

@@ -1,4 +1,4 @@
-/* occlusion.c: the host's part of stage 2 of culling: placed occluders, and the words that
+/* occlusion.c: the host's part of occlusion culling: placed occluders, and the words that
  * shaders/occluders.vert, cull.comp and compact.comp read (masu_shared.h, MASU_CULL_*). They lie
  * behind the lists of stage 1 in the same buffer, one slot per frame in flight: a GPU may then write
  * what it reads next, and a stage has six storage buffers and not more.
@@ -40,7 +40,7 @@ static void write_header(const masu_frame_plan *plan, uint32_t batches, uint32_t
     header[MASU_CULL_VIEWS] = plan->views;
     header[MASU_CULL_INSTANCES] = plan->scene.instances;
     header[MASU_CULL_DRAWS] = plan->draws;
-    header[MASU_CULL_RECEIVERS] = (uint32_t)plan->receivers;
+    header[MASU_CULL_RECEIVERS] = (uint32_t)plan->receiver_mask;
     header[MASU_CULL_LISTED] = plan->listed;
     header[MASU_CULL_BATCH_COUNT] = batches;
     header[MASU_CULL_LISTS] = (uint32_t)d->lists;
@@ -128,7 +128,7 @@ void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_views *
     const masu_drawn_plan *d = &plan->drawn;
     if (!masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_CULL)) return;
     uint32_t *words = drawn_words(f->device, f->slot), *header = words + d->header;
-    masu_stage2_view stage2[MASU_MAX_VIEWS];
+    masu_occlusion_view stage2[MASU_MAX_VIEWS];
     memcpy(stage2, views->stage2, sizeof stage2);
     header[MASU_CULL_CUT] = f->cut != 0;
     for (uint32_t view = 0; view < plan->views; view++) {

@@ -1,4 +1,4 @@
-/* occlusion.h: the host's part of stage 2 of culling, which asks what placed occluders hide. */
+/* occlusion.h: the host's part of occlusion culling, which asks what placed occluders hide. */
 #ifndef MASU_OCCLUSION_H
 #define MASU_OCCLUSION_H
 

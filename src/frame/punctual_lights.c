@@ -9,7 +9,7 @@
 
 void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan) {
     uint32_t count = plan->scene.lights;
-    l->states = masu_arena_take(arena, "local lights", count, sizeof *l->states, 8);
+    l->states = masu_arena_take(arena, "punctual lights", count, sizeof *l->states, 8);
     l->names = masu_arena_take(arena, "light names", count, sizeof *l->names, 8);
 }
 
@@ -23,7 +23,7 @@ void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_sc
 }
 
 /* World position and direction: of the instance that carries it, as it stands now. */
-static void carry(const masu_instances *in, const masu_local_light_state *s, double position[3],
+static void carry(const masu_instances *in, const masu_punctual_light_state *s, double position[3],
                   double direction[3]) {
     for (uint32_t k = 0; k < 3; k++) {
         position[k] = s->position[k];
@@ -50,10 +50,10 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
     /* What is mirrored may be lit by what is not in the picture. */
     int culls = masu_frame_rung(f)->frustum != MASU_OFF && !f->plan->needs.reflections;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_LIGHTS);
-    struct masu_local_light_data *data =
-        (struct masu_local_light_data *)(void *)(to + sizeof header);
+    struct masu_punctual_light_data *data =
+        (struct masu_punctual_light_data *)(void *)(to + sizeof header);
     for (uint32_t i = 0; i < lights; i++) {
-        struct masu_local_light_data placed;
+        struct masu_punctual_light_data placed;
         double position[3], direction[3];
         carry(in, &l->states[i], position, direction);
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
@@ -67,16 +67,16 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
 
 /* ---- What the host changes ------------------------------------------------------------------- */
 
-masu_local_light masu_lights_find(const masu_lights *l, const masu_frame_plan *plan,
+masu_punctual_light masu_lights_find(const masu_lights *l, const masu_frame_plan *plan,
                                   const char *name) {
     uint64_t hash = masu_fnv1a64(name, strlen(name));
     for (uint32_t i = 0; i < plan->scene.lights; i++) {
-        if (l->names[i] == hash) return (masu_local_light){i + 1};
+        if (l->names[i] == hash) return (masu_punctual_light){i + 1};
     }
-    return (masu_local_light){0};
+    return (masu_punctual_light){0};
 }
 
-static masu_result check_handle(const masu_frame_plan *plan, masu_local_light light,
+static masu_result check_handle(const masu_frame_plan *plan, masu_punctual_light light,
                                 masu_detail *detail) {
     if (light.id && light.id <= plan->scene.lights) return MASU_OK;
     return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", plan->scene.lights, light.id,
@@ -85,15 +85,15 @@ static masu_result check_handle(const masu_frame_plan *plan, masu_local_light li
 }
 
 masu_result masu_lights_get(const masu_lights *l, const masu_frame_plan *plan,
-                            masu_local_light light, masu_local_light_state *out,
+                            masu_punctual_light light, masu_punctual_light_state *out,
                             masu_detail *detail) {
     masu_result result = check_handle(plan, light, detail);
     if (!result) *out = l->states[light.id - 1];
     return result;
 }
 
-masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_local_light light,
-                            const masu_local_light_state *state, masu_detail *detail) {
+masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_punctual_light light,
+                            const masu_punctual_light_state *state, masu_detail *detail) {
     double value = 0.0;
     masu_result result = check_handle(plan, light, detail);
     if (result) return result;

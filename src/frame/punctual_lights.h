@@ -1,8 +1,8 @@
-/* punctual_lights.h: local lights, points and spots, between the scene and the shaders.
+/* punctual_lights.h: punctual lights, points and spots, between the scene and the shaders.
  *
- * The host keeps each light as the scene or masu_local_light_set has it; every frame it places them,
+ * The host keeps each light as the scene or masu_punctual_light_set has it; every frame it places them,
  * leaves out those that light nothing in the picture, and writes the rest, in the scene's order, to
- * the frame's slot of MASU_BUFFER_LIGHTS: a masu_light_header and so many masu_local_light_data,
+ * the frame's slot of MASU_BUFFER_LIGHTS: a masu_light_header and so many masu_punctual_light_data,
  * relative to the eye. light_tiles.comp sorts them into tiles from there. */
 #ifndef MASU_PUNCTUAL_LIGHTS_H
 #define MASU_PUNCTUAL_LIGHTS_H
@@ -10,7 +10,7 @@
 #include "frame/instances.h"
 
 typedef struct masu_lights {
-    masu_local_light_state *states;       /* plan->scene.lights of them */
+    masu_punctual_light_state *states;       /* plan->scene.lights of them */
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* in view */
 } masu_lights;
@@ -18,14 +18,14 @@ typedef struct masu_lights {
 void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan);
 void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v);
 
-/* masu_local_light_find, _get and _set of the public header. */
-masu_local_light masu_lights_find(const masu_lights *l, const masu_frame_plan *plan,
+/* masu_punctual_light_find, _get and _set of the public header. */
+masu_punctual_light masu_lights_find(const masu_lights *l, const masu_frame_plan *plan,
                                   const char *name);
 masu_result masu_lights_get(const masu_lights *l, const masu_frame_plan *plan,
-                            masu_local_light light, masu_local_light_state *out,
+                            masu_punctual_light light, masu_punctual_light_state *out,
                             masu_detail *detail);
-masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_local_light light,
-                            const masu_local_light_state *state, masu_detail *detail);
+masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_punctual_light light,
+                            const masu_punctual_light_state *state, masu_detail *detail);
 
 /* Those that may be seen to light something to the slot; after the camera. */
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f);

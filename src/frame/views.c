@@ -1,5 +1,5 @@
 /* views.c: what a frame looks from: the camera, and the sun for each cascade of its shadow map (or, for
- * the numbers alone, for all of the scene). For each view the planes of stage 1 of culling and what
+ * the numbers alone, for all of the scene). For each view the planes of frustum culling and what
  * stage 2 reads, and for the camera what the choice of LODs asks. In double precision and world space
  * up to where the numbers are written. */
 #include "frame/views.h"
@@ -144,7 +144,7 @@ static void add_outline(const outline *o, const sun_box *b, double margin, masu_
 /* ---- Stage 2 --------------------------------------------------------------------------------- */
 
 /* Depth is 1 at the side of the sun. */
-static void look_from_sun(const sun_box *b, const double eye[3], masu_stage2_view *v) {
+static void look_from_sun(const sun_box *b, const double eye[3], masu_occlusion_view *v) {
     for (uint32_t row = 0; row < 3; row++) {
         double scale = 1.0 / (row == 2 ? b->behind + b->ahead : b->half[row]);
         double offset = row == 2 ? b->behind * scale : 0.0;
@@ -159,7 +159,7 @@ static void look_from_sun(const sun_box *b, const double eye[3], masu_stage2_vie
     v->blind = -1.0f;
 }
 
-static void set_atlas(masu_stage2_view *v, uint32_t part) {
+static void set_atlas(masu_occlusion_view *v, uint32_t part) {
     VkRect2D area = masu_atlas_part(part);
     v->atlas[0] = (float)area.offset.x;
     v->atlas[1] = (float)area.offset.y;
@@ -199,7 +199,7 @@ static void set_suns(masu_views *v, const masu_bounds *bounds, const masu_shadow
     }
     if (!any || !f->plan->occlusion) return;
     all.half[0] = all.half[1] = fmax(all.half[0], all.half[1]);
-    masu_stage2_view shared = v->stage2[1];
+    masu_occlusion_view shared = v->stage2[1];
     set_atlas(&shared, 1);
     look_from_sun(&all, f->eye, &shared);
     double texel = 2.0 * all.half[0] / MASU_ATLAS_SUN, coarsest = shadow ? 0.0 : texel;
@@ -237,7 +237,7 @@ static void set_lods(masu_lod_view *lod, const masu_frame_data *f) {
     }
 }
 
-static void set_camera(masu_stage2_view *v, const masu_frame_data *f, float step) {
+static void set_camera(masu_occlusion_view *v, const masu_frame_data *f, float step) {
     const struct masu_frame_uniforms *u = &f->u;
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     set_atlas(v, 0);

@@ -13,17 +13,17 @@ typedef struct masu_lod_view {
     float pixels, threshold;
 } masu_lod_view;
 
-/* What stage 2 of culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
-typedef struct masu_stage2_view {
+/* What occlusion culling asks of a view, as the GPU reads it: MASU_CULL_VIEW_*. */
+typedef struct masu_occlusion_view {
     float clip[16], eye[4], atlas[4], near_distance, margin, blind, bias;
     uint32_t turn, trimmed;
     float reach, reserved;
-} masu_stage2_view;
-_Static_assert(sizeof(masu_stage2_view) == 4 * MASU_CULL_VIEW_WORDS, "stage 2 view");
+} masu_occlusion_view;
+_Static_assert(sizeof(masu_occlusion_view) == 4 * MASU_CULL_VIEW_WORDS, "stage 2 view");
 
 typedef struct masu_views {
-    masu_cull_view planes[MASU_MAX_VIEWS]; /* of stage 1 of culling */
-    masu_stage2_view stage2[MASU_MAX_VIEWS];
+    masu_cull_view planes[MASU_MAX_VIEWS]; /* of frustum culling */
+    masu_occlusion_view stage2[MASU_MAX_VIEWS];
     masu_lod_view lod; /* the camera's */
 } masu_views;
 

@@ -24,7 +24,7 @@ const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT] = {
 
 /* ---- Sizes that take more than a line -------------------------------------------------------- */
 
-/* Each slot has a half for itself and one for the frame before it where something asks for that. */
+/* Each slot has a half for itself and one for the previous frame it where something asks for that. */
 static uint64_t masu_halves(const masu_frame_plan *plan) { return plan->needs.velocity ? 2 : 1; }
 
 static uint64_t masu_counter_words(const masu_frame_plan *plan) {
@@ -131,7 +131,7 @@ static void lay_drawn(masu_frame_plan *plan) {
     d->words = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
 }
 
-/* Of both stages of culling, then of the occluders, then of what is blended. */
+/* Of frustum and occlusion culling, then of the occluders, then of what is blended. */
 static uint64_t own_draws(const masu_frame_plan *plan) {
     uint64_t draws = (uint64_t)plan->views * plan->draws;
     return plan->occlusion ? 2 * draws + MASU_ATLAS_PARTS(plan) : draws;
@@ -151,7 +151,7 @@ static uint64_t seen_instances(const masu_frame_plan *plan) {
 static uint64_t masu_seen_words(const masu_frame_plan *plan) {
     if (!plan->scene.instances) return 0;
     return seen_instances(plan) +
-           (plan->receivers ? (uint64_t)plan->cascades * MASU_RECEIVER_WORDS : 0);
+           (plan->receiver_mask ? (uint64_t)plan->cascades * MASU_RECEIVER_WORDS : 0);
 }
 
 /* ---- The readback slot ----------------------------------------------------------------------- */
@@ -223,7 +223,7 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     if (s->instances) {
         lay_drawn(plan);
         plan->transparent_draws = own_draws(plan);
-        if (plan->receivers) plan->receivers = seen_instances(plan);
+        if (plan->receiver_mask) plan->receiver_mask = seen_instances(plan);
     }
     readback_slot slot = lay_readback(plan);
     plan->readback_times = slot.times;

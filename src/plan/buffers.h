@@ -25,7 +25,7 @@ typedef struct masu_binding {
     uint64_t range; /* bytes that it shows: of a slot, or of one of its halves */
     masu_binding_group group;
     int bound;    /* the plan's layout has it */
-    int previous; /* it is of the half of a slot that is of the frame before */
+    int previous; /* it is of the half of a slot that is of the previous frame */
 } masu_binding;
 
 /* All of them, in the order of the rows; out has room for MASU_BIND_COUNT. */
@@ -41,7 +41,7 @@ typedef struct masu_buffer_row {
     masu_role role;
     int loaded;     /* masu_load writes it */
     int of_loading; /* masu_load alone needs it */
-    int halved;     /* where velocities are read, a slot has a half of the frame before */
+    int halved;     /* where velocities are read, a slot has a half of the previous frame */
 } masu_buffer_row;
 
 extern const masu_buffer_row masu_buffers[MASU_BUFFER_COUNT];

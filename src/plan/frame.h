@@ -122,7 +122,7 @@ typedef struct masu_needs {
     int surface;       /* some material has more than the four numbers of albedo and normal image */
     int environment;   /* the sky is from a picture */
     int sky;           /* the sky may follow from the sun */
-    int velocity;      /* something reads velocities: the frame before is kept */
+    int velocity;      /* something reads velocities: the previous frame is kept */
     int sdf_occlusion; /* the SDF casts shadows or occludes ambient light */
     int probes;        /* it has light probes */
     int lights;        /* there are points and spots */
@@ -132,8 +132,8 @@ typedef struct masu_needs {
     int traced;        /* there are polygons to trace */
     int traced_sdf;    /* there is an SDF to trace */
     int query;         /* polygons are found by ray queries of the device */
-    int steady;        /* a rung has taa, */
-    int finest;        /* fine */
+    int any_taa;        /* a rung has taa, */
+    int any_fine;        /* fine */
     int smoothing;     /* smaa */
     int metered;       /* the exposure follows the picture */
     /* of one rung: */
@@ -142,7 +142,7 @@ typedef struct masu_needs {
     int fused;     /* upscale and sharpen in one pass */
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
-    int receivers; /* and of cascades that every frame draws anew */
+    int receiver_mask; /* and of cascades that every frame draws anew */
     int light_tiles; /* lights are sorted into tiles */
     int specular;    /* reflections are traced */
     int reuse, temporal, fine, filter, taa; /* what is done to them */

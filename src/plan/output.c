@@ -61,8 +61,8 @@ void masu_output_defaults(masu_desc *d) {
     if (e->darken == 0.0f) e->darken = 3.0f;
     if (e->low == 0.0f) e->low = 0.1f;
     if (e->high == 0.0f) e->high = 0.1f;
-    if (e->least == 0.0f) e->least = 1.0f / 1024.0f;
-    if (e->most == 0.0f) e->most = 1024.0f;
+    if (e->min == 0.0f) e->min = 1.0f / 1024.0f;
+    if (e->max == 0.0f) e->max = 1024.0f;
 }
 
 static masu_result bad(masu_detail *detail, const char *what, uint64_t needed, uint64_t given,
@@ -154,10 +154,10 @@ masu_result masu_output_check(const masu_desc *d, masu_detail *detail) {
     if (!(high < 1.0f)) return bad_float(detail, "exposure.high", e->high, "allowed are below 1");
     if (!(low + high < 1.0f))
         return bad_float(detail, "exposure.low", e->low, "with exposure.high it is less than 1");
-    if (!(e->least >= 1e-9f && e->least <= 1e9f))
-        return bad_float(detail, "exposure.least", e->least, "allowed are 1e-9 to 1e9");
-    if (!(e->most >= e->least && e->most <= 1e9f))
-        return bad_float(detail, "exposure.most", e->most, "allowed are exposure.least to 1e9");
+    if (!(e->min >= 1e-9f && e->min <= 1e9f))
+        return bad_float(detail, "exposure.min", e->min, "allowed are 1e-9 to 1e9");
+    if (!(e->max >= e->min && e->max <= 1e9f))
+        return bad_float(detail, "exposure.max", e->max, "allowed are exposure.min to 1e9");
     return MASU_OK;
 }
 

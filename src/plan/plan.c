@@ -311,8 +311,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .query = wants_specular(d) && d->scene->trace_instances &&
                                         d->ray_query == MASU_ON,
                                .accumulate = d->debug.reference != 0,
-                               .steady = wants(d, rung_has_taa),
-                               .finest = wants(d, rung_has_fine),
+                               .any_taa = wants(d, rung_has_taa),
+                               .any_fine = wants(d, rung_has_fine),
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d),
                                .blit = !d->targets.storage};
@@ -368,16 +368,16 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         plan->needs.taa = rung_has_taa(d, r);
         plan->needs.fine = rung_has_fine(d, r);
         plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
-        plan->needs.unculled = d->scene && (d->scene->most_primitives > MASU_CULL_ROUNDS ||
-                                            d->scene->most_instances > 64 * MASU_CULL_ROUNDS);
+        plan->needs.unculled = d->scene && (d->scene->max_primitives > MASU_CULL_ROUNDS ||
+                                            d->scene->max_instances > 64 * MASU_CULL_ROUNDS);
         if (plan->needs.occlusion && plan->needs.unculled) {
             if (d->rungs[r].occlusion == MASU_ON) {
                 return masu_fail(detail, MASU_ERROR_LIMIT, "rungs[].occlusion",
-                                 d->scene->most_instances, 64 * MASU_CULL_ROUNDS,
+                                 d->scene->max_instances, 64 * MASU_CULL_ROUNDS,
                                  "rungs[%u].occlusion takes meshes of at most %d primitives and %d "
                                  "instances, the scene has one of %u or %u",
                                  r, MASU_CULL_ROUNDS, 64 * MASU_CULL_ROUNDS,
-                                 d->scene->most_primitives, d->scene->most_instances);
+                                 d->scene->max_primitives, d->scene->max_instances);
             }
             plan->needs.occlusion = 0;
         }
@@ -385,9 +385,9 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         plan->needs.light_tiles = plan->needs.lights && d->rungs[r].light_tiles != MASU_OFF;
         resolve_shadow(plan, r);
         plan->needs.casters = plan->needs.occlusion && plan->views > 1;
-        plan->needs.receivers = plan->needs.casters && plan->needs.shadow &&
+        plan->needs.receiver_mask = plan->needs.casters && plan->needs.shadow &&
                                 rp->slow != (1u << rp->cascades) - 1u;
-        if (plan->needs.receivers) plan->receivers = 1;
+        if (plan->needs.receiver_mask) plan->receiver_mask = 1;
         compile_rung(plan, r);
     }
     plan->needs.rung = NULL;

@@ -108,8 +108,8 @@ typedef struct masu_frame_plan {
      * masu_readback_bits. */
     uint64_t readback_times, readback_offset[MASU_READBACK_IMAGES];
     uint32_t views;     /* that instances are culled for: the camera, the cascades */
-    int occlusion;      /* a rung has stage 2 of culling */
-    int lods;           /* a rung draws coarser forms of meshes */
+    int occlusion;      /* a rung has occlusion culling */
+    int lods;           /* a rung draws LODs of meshes */
     int deep;           /* colour between tone curve and target is of 16-bit floats */
     int copies;         /* targets are filled by a copy of bytes, not by a blit */
     struct masu_output_plan {
@@ -119,7 +119,7 @@ typedef struct masu_frame_plan {
     uint32_t draws, listed; /* draws of a view; words of its lists: a list for each form */
     masu_drawn_plan drawn;
     uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
-    uint64_t receivers; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
+    uint64_t receiver_mask; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
     uint32_t recordings; /* of one frame in flight: rungs, their targets, their variants */
     uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */

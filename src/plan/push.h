@@ -21,7 +21,7 @@ _Static_assert(sizeof(masu_push_block) <= 128, "every device has 128 bytes of pu
 typedef struct masu_push_input {
     const masu_frame_plan *plan;
     uint32_t rung, pass;
-    uint32_t few;   /* of stage 2 of culling: workgroups of batches with at most 64 instances */
+    uint32_t few;   /* of occlusion culling: workgroups of batches with at most 64 instances */
     float scale[2]; /* input pixels / output pixels, as upscale/place.glsl wants it */
 } masu_push_input;
 

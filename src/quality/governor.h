@@ -30,7 +30,7 @@ typedef struct masu_governor_sample {
     uint64_t frame;  /* samples come in rising order; others are left out */
     uint32_t rung;   /* that it was drawn at */
     double gpu_ms;   /* by timestamps */
-    double wall_ms;  /* by the host's clock: from its submit, or the end of the frame before if that
+    double wall_ms;  /* by the host's clock: from its submit, or the end of the previous frame if that
                        was later, to its end */
     double fixed_ms; /* of gpu_ms: passes whose cost does not follow the rung */
 } masu_governor_sample;

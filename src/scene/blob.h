@@ -157,7 +157,7 @@ typedef struct masu_blob_mesh {
     uint32_t reserved;
 } masu_blob_mesh;
 
-/* A coarser form of a mesh: as many primitives as the mesh has, in its order, with its materials; of
+/* A LOD of a mesh: as many primitives as the mesh has, in its order, with its materials; of
  * no triangles where all of one have vanished. */
 #define MASU_BLOB_LODS_MAX 3u
 typedef struct masu_blob_lod {

@@ -1,5 +1,5 @@
 /* check_looks.c: how a scene looks, but for its textures: materials, the camera path, the sun and its
- * shadow, local lights, probes, sky and fog. */
+ * shadow, punctual lights, probes, sky and fog. */
 #include "scene/check.h"
 
 #include "scene/punctual_light.h"
@@ -92,7 +92,7 @@ static masu_result check_light(reader *r, uint64_t i) {
     const masu_blob_light *l = &r->view.lights[i];
     double value;
     if (l->type > MASU_LIGHT_SPOT) return bad(r, "lights", i, "no such type");
-    masu_local_light_state state = masu_light_state_of(l);
+    masu_punctual_light_state state = masu_light_state_of(l);
     const char *wrong = masu_light_state_wrong(&state, &value);
     if (wrong) return bad(r, "lights", i, wrong);
     if (l->type == MASU_LIGHT_SPOT && !unit_vector(l->direction))

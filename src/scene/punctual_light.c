@@ -15,7 +15,7 @@ static double length_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[
 
 /* ---- Checks ---------------------------------------------------------------------------------- */
 
-const char *masu_light_state_wrong(const masu_local_light_state *s, double *value) {
+const char *masu_light_state_wrong(const masu_punctual_light_state *s, double *value) {
     float direction = 0.0f;
     for (uint32_t k = 0; k < 3; k++) {
         *value = s->position[k];
@@ -41,8 +41,8 @@ const char *masu_light_state_wrong(const masu_local_light_state *s, double *valu
     return direction > 1e-15f ? NULL : "direction of a spot is zero";
 }
 
-masu_local_light_state masu_light_state_of(const masu_blob_light *light) {
-    masu_local_light_state s = {.range = light->range,
+masu_punctual_light_state masu_light_state_of(const masu_blob_light *light) {
+    masu_punctual_light_state s = {.range = light->range,
                                 .radius = light->radius,
                                 .spot = light->type == MASU_LIGHT_SPOT,
                                 .inner = light->inner,
@@ -80,8 +80,8 @@ static double versine(double angle) {
     return 2.0 * s * s;
 }
 
-int masu_light_place(const masu_local_light_state *s, const double position[3],
-                     const double direction[3], struct masu_local_light_data *out) {
+int masu_light_place(const masu_punctual_light_state *s, const double position[3],
+                     const double direction[3], struct masu_punctual_light_data *out) {
     double axis[3] = {0, 0, 0}, range = (double)s->range, length = length_of(direction);
     double outer = fmin((double)s->outer, PI);
     int spot = s->spot && (double)s->inner < PI - 1e-6; /* else it is a point */

@@ -16,9 +16,9 @@ static void look_at_draws(const reader *r, masu_scene *out) {
         const masu_blob_mesh *mesh = &r->view.meshes[m];
         uint32_t placed = end - first;
         from = end;
-        if (placed > out->most_instances) out->most_instances = placed;
-        if (mesh->primitive_count > out->most_primitives)
-            out->most_primitives = mesh->primitive_count;
+        if (placed > out->max_instances) out->max_instances = placed;
+        if (mesh->primitive_count > out->max_primitives)
+            out->max_primitives = mesh->primitive_count;
         if (!placed || !mesh->primitive_count) continue;
         uint32_t lods = masu_scene_mesh_lods(&r->view, out->lods, m, &first_lod);
         out->draws += mesh->primitive_count;

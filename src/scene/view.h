@@ -55,7 +55,7 @@ typedef struct masu_scene_view {
 /* World box of an instance as the scene places it. */
 masu_cull_box masu_scene_box(const masu_scene_view *view, uint32_t instance);
 
-/* The coarser forms of a mesh, finest first: `*first` is the first one's index in view->lods, the
+/* The LODs of a mesh, finest first: `*first` is the first one's index in view->lods, the
  * result how many there are (0 to MASU_BLOB_LODS_MAX). */
 uint32_t masu_scene_mesh_lods(const masu_scene_view *view, uint32_t lod_count, uint32_t mesh,
                               uint32_t *first);

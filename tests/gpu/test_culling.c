@@ -116,7 +116,7 @@ static void what_moves_is_culled_where_it_is(void **state) {
     close_session(&s);
 }
 
-/* Velocities read the frame before by the same list of instances. */
+/* Velocities read the previous frame by the same list of instances. */
 static void velocities_are_the_same_without_culling(void **state) {
     (void)state;
     static uint8_t velocity[2][W * H * 8];

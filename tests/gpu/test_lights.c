@@ -1,4 +1,4 @@
-/* test_lights.c: local lights. What a light does to a pixel is what a sun of that direction and colour
+/* test_lights.c: punctual lights. What a light does to a pixel is what a sun of that direction and colour
  * would do, with both from the reference in double precision (tests/reference/lights.h); lists by
  * tile change no bit of any picture; nothing is out of bounds; what the host may set and what not. */
 #include "support/files.h"
@@ -135,13 +135,13 @@ static masu_camera look(double x, double y, double z, double fx, double fy, doub
 
 static void set_random(pictures *p, uint32_t lights, double size) {
     for (uint32_t i = 0; i < 8 && lights; i++) {
-        masu_local_light handle = {1 + (uint32_t)random_between(&seed, 0, lights - 0.01)};
-        masu_local_light_state state;
-        assert_int_equal(masu_local_light_get(p->s.m, handle, &state), MASU_OK);
+        masu_punctual_light handle = {1 + (uint32_t)random_between(&seed, 0, lights - 0.01)};
+        masu_punctual_light_state state;
+        assert_int_equal(masu_punctual_light_get(p->s.m, handle, &state), MASU_OK);
         for (int k = 0; k < 3; k++) state.position[k] = random_between(&seed, -12, 12) * size;
         state.position[1] *= 0.3;
         state.range = (float)(random_spread(&seed, 0.01, 30) * size);
-        assert_int_equal(masu_local_light_set(p->s.m, handle, &state), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p->s.m, handle, &state), MASU_OK);
     }
 }
 
@@ -244,7 +244,7 @@ static int point_at(const pictures *p, const masu_camera *c, const float *depths
     return 1;
 }
 
-static masu_ref_light reference_of(const masu_local_light_state *s) {
+static masu_ref_light reference_of(const masu_punctual_light_state *s) {
     masu_ref_light r = {.range = (double)s->range,
                         .radius = (double)s->radius,
                         .inner = s->spot ? (double)s->inner : PI,
@@ -266,19 +266,19 @@ typedef struct error {
 
 /* One light, by its own and pixel by pixel as a sun. */
 static error_info compare_light(pictures *p, const masu_camera *c,
-                                const masu_local_light_state *state) {
+                                const masu_punctual_light_state *state) {
     static uint16_t local[4 * 256 * 256];
     static float depths[256 * 256];
-    masu_local_light one = {1}, off = {1};
-    masu_local_light_state dark = *state;
+    masu_punctual_light one = {1}, off = {1};
+    masu_punctual_light_state dark = *state;
     masu_ref_light ref = reference_of(state);
     masu_light sun = no_sun();
     error_info e = {0};
     memset(dark.color, 0, sizeof dark.color);
-    assert_int_equal(masu_local_light_set(p->s.m, one, state), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p->s.m, one, state), MASU_OK);
     memcpy(local, take(p, c, &sun, TILES, NULL), (size_t)p->width * p->height * 8);
     memcpy(depths, read_image(&p->s, 0, MASU_READBACK_DEPTH), (size_t)p->width * p->height * 4);
-    assert_int_equal(masu_local_light_set(p->s.m, off, &dark), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p->s.m, off, &dark), MASU_OK);
     for (uint32_t n = 0; n < 30; n++) {
         uint32_t x = (uint32_t)random_between(&seed, 0, p->width - 0.01), y = (uint32_t)random_between(&seed, 0, p->height - 0.01);
         double at[3], l[3], color[3];
@@ -332,7 +332,7 @@ static void a_light_is_a_sun_of_its_direction(void **state) {
     open_pictures(&p, "one", 96, 64, 1);
     masu_camera c = look(3, 3.5, 9, -3, -3, -9, 0.9);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        masu_local_light_state s = {.range = (float)cases[i].range,
+        masu_punctual_light_state s = {.range = (float)cases[i].range,
                                     .radius = (float)cases[i].radius,
                                     .spot = cases[i].outer >= 0};
         if (s.spot) s.inner = (float)cases[i].inner, s.outer = (float)cases[i].outer;
@@ -373,15 +373,15 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
     bake_scene("one", json);
     open_pictures(&p, "one", 64, 48, 1);
     masu_camera c = look(3, 3.5, 9, -3, -3, -9, 0.9);
-    masu_local_light one = {1};
-    const masu_local_light_state plain = {
+    masu_punctual_light one = {1};
+    const masu_punctual_light_state plain = {
         .position = {0, 4, 0}, .color = {20, 20, 20}, .range = 30, .radius = 0.01f};
-    masu_local_light_state s = plain;
+    masu_punctual_light_state s = plain;
     s.color[0] = s.color[1] = s.color[2] = 0;
-    assert_int_equal(masu_local_light_set(p.s.m, one, &s), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p.s.m, one, &s), MASU_OK);
     uint64_t dark = picture_hash(&p, &c, &lit);
     assert_int_equal(lit, 0);
-    assert_int_equal(masu_local_light_set(p.s.m, one, &plain), MASU_OK);
+    assert_int_equal(masu_punctual_light_set(p.s.m, one, &plain), MASU_OK);
     uint64_t bright = picture_hash(&p, &c, &lit);
     assert_true(lit > 500);
     enum { DARK, SAME, FINITE, LIT };
@@ -409,7 +409,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
         {"spot of 180", SAME, {0, 4, 0}, 20, 30, 0.01f, 3.14159274f, 3.14159274f},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        s = (masu_local_light_state){.range = cases[i].range,
+        s = (masu_punctual_light_state){.range = cases[i].range,
                                      .radius = cases[i].radius,
                                      .direction = {0, -1, 0},
                                      .spot = cases[i].outer >= 0};
@@ -418,7 +418,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
             s.position[k] = cases[i].position[k];
             s.color[k] = (float)cases[i].color;
         }
-        assert_int_equal(masu_local_light_set(p.s.m, one, &s), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p.s.m, one, &s), MASU_OK);
         uint64_t is = picture_hash(&p, &c, &lit);
         int right = cases[i].expected == DARK   ? is == dark
                     : cases[i].expected == SAME ? is == bright
@@ -438,17 +438,17 @@ static void bad_values_are_refused_with_a_line(void **state) {
     add_lights(2, 1, 1, 2);
     bake_scene("two", json);
     open_pictures(&p, "two", 16, 16, 1);
-    masu_local_light light = masu_local_light_find(p.s.m, "l0");
-    masu_local_light_state good, is;
+    masu_punctual_light light = masu_punctual_light_find(p.s.m, "l0");
+    masu_punctual_light_state good, is;
     assert_int_equal(light.id, 1);
-    assert_int_equal(masu_local_light_find(p.s.m, "l2").id, 0);
-    assert_int_equal(masu_local_light_find(p.s.m, "").id, 0);
-    assert_int_equal(masu_local_light_find(NULL, "l0").id, 0);
-    assert_int_equal(masu_local_light_get(p.s.m, light, &good), MASU_OK);
+    assert_int_equal(masu_punctual_light_find(p.s.m, "l2").id, 0);
+    assert_int_equal(masu_punctual_light_find(p.s.m, "").id, 0);
+    assert_int_equal(masu_punctual_light_find(NULL, "l0").id, 0);
+    assert_int_equal(masu_punctual_light_get(p.s.m, light, &good), MASU_OK);
     assert_int_equal(good.spot, 1);
     static const float wrong[] = {NAN, INFINITY, -INFINITY, -1.0f, 1e16f};
     for (size_t i = 0; i < 5; i++) {
-        masu_local_light_state s[9];
+        masu_punctual_light_state s[9];
         for (int k = 0; k < 9; k++) s[k] = good;
         s[0].position[1] = i == 3 ? -1e16 : (double)wrong[i];
         s[1].color[2] = wrong[i];
@@ -462,27 +462,27 @@ static void bad_values_are_refused_with_a_line(void **state) {
         static const char *const names[] = {"position", "color",     "range", "radius",  "outer",
                                             "inner",    "direction", "spot",  "instance"};
         for (int k = 0; k < 9; k++) {
-            assert_int_equal(masu_local_light_set(p.s.m, light, &s[k]), MASU_ERROR_ARGUMENT);
+            assert_int_equal(masu_punctual_light_set(p.s.m, light, &s[k]), MASU_ERROR_ARGUMENT);
             const masu_detail *d = masu_last_error(p.s.m);
             if (!strstr(d->text, names[k]) || !strstr(d->text, "light 1:") || strchr(d->text, '\n'))
                 fail_msg("%s %g: %s", names[k], (double)wrong[i], d->text);
         }
     }
-    masu_local_light_state none = good;
+    masu_punctual_light_state none = good;
     memset(none.direction, 0, sizeof none.direction);
-    assert_int_equal(masu_local_light_set(p.s.m, light, &none), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(p.s.m, light, &none), MASU_ERROR_ARGUMENT);
     none = good;
     none.radius = 0;
-    assert_int_equal(masu_local_light_set(p.s.m, light, &none), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_local_light_set(p.s.m, (masu_local_light){3}, &good),
+    assert_int_equal(masu_punctual_light_set(p.s.m, light, &none), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){3}, &good),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_local_light_set(p.s.m, (masu_local_light){0}, &good),
+    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){0}, &good),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_local_light_set(NULL, light, &good), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_local_light_set(p.s.m, light, NULL), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_local_light_get(p.s.m, (masu_local_light){9}, &is), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(NULL, light, &good), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_set(p.s.m, light, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_get(p.s.m, (masu_punctual_light){9}, &is), MASU_ERROR_ARGUMENT);
     /* Nothing of it was taken. */
-    assert_int_equal(masu_local_light_get(p.s.m, light, &is), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(p.s.m, light, &is), MASU_OK);
     assert_memory_equal(&is, &good, sizeof is);
     close_session(&p.s);
 }
@@ -498,9 +498,9 @@ static void a_light_moves_with_its_instance(void **state) {
     open_pictures(&p, "lamp", 64, 48, 1);
     masu_camera c = look(3, 6, 9, -3, -6, -9, 1.2);
     masu_instance car = masu_instance_find(p.s.m, "thing3");
-    masu_local_light lamp = masu_local_light_find(p.s.m, "lamp");
-    masu_local_light_state carried, placed;
-    assert_int_equal(masu_local_light_get(p.s.m, lamp, &carried), MASU_OK);
+    masu_punctual_light lamp = masu_punctual_light_find(p.s.m, "lamp");
+    masu_punctual_light_state carried, placed;
+    assert_int_equal(masu_punctual_light_get(p.s.m, lamp, &carried), MASU_OK);
     assert_int_equal(carried.instance.id, car.id);
     uint64_t before = 0, lit;
     for (int i = 0; i < 6; i++) {
@@ -508,7 +508,7 @@ static void a_light_moves_with_its_instance(void **state) {
         float x = (float)(i - 3) * 0.5f, c4 = i % 2 ? 0.0f : 1.0f, s4 = i % 2 ? 1.0f : 0.0f;
         const float rows[12] = {c4, 0, s4, x, 0, 1, 0, 0.25f, -s4, 0, c4, 1};
         assert_int_equal(masu_instance_set_transform(p.s.m, car, rows), MASU_OK);
-        assert_int_equal(masu_local_light_set(p.s.m, lamp, &carried), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p.s.m, lamp, &carried), MASU_OK);
         uint64_t moved = picture_hash(&p, &c, &lit);
         assert_true(lit > 20 && moved != before);
         before = moved;
@@ -523,7 +523,7 @@ static void a_light_moves_with_its_instance(void **state) {
             placed.position[k] = at;
             placed.direction[k] = (float)d;
         }
-        assert_int_equal(masu_local_light_set(p.s.m, lamp, &placed), MASU_OK);
+        assert_int_equal(masu_punctual_light_set(p.s.m, lamp, &placed), MASU_OK);
         assert_int_equal(picture_hash(&p, &c, NULL), moved);
     }
     close_session(&p.s);
@@ -547,13 +547,13 @@ static void a_scene_without_lights_has_no_pass_for_them(void **state) {
             passes++;
         }
         for (uint32_t i = 0; i < n; i++) {
-            static const char *const names[] = {"lights", "light tiles", "local lights",
+            static const char *const names[] = {"lights", "light tiles", "punctual lights",
                                                 "light names"};
             for (int k = 0; k < 4; k++) buffers += !strcmp(rows[i].name, names[k]) && rows[i].bytes;
         }
         assert_int_equal(passes, 1);
         assert_int_equal(buffers, lights ? 4 : 0); /* two on the device, two in the host block */
-        assert_int_equal(masu_local_light_find(p.s.m, "l0").id, lights);
+        assert_int_equal(masu_punctual_light_find(p.s.m, "l0").id, lights);
         close_session(&p.s);
     }
 }

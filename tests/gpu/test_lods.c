@@ -1,4 +1,4 @@
-/* test_lods.c: coarser forms of meshes. The choice depends on the camera alone: with and without culling
+/* test_lods.c: LODs of meshes. The choice depends on the camera alone: with and without culling
  * the same picture, bit for bit. What is drawn is as wrong as the rung allows, and no more: no outline
  * is farther from that of the meshes themselves. And less is drawn. */
 #include "support/support.h"

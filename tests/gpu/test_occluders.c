@@ -1,4 +1,4 @@
-/* test_occluders.c: stage 2 of culling never hides what can be seen. Every object has a colour of its
+/* test_occluders.c: occlusion culling never hides what can be seen. Every object has a colour of its
  * own, so albedo and depth at full resolution are a buffer of ids; they are the same bit for bit with
  * and without. Scenes are random (boxes turned, stretched, sheared, mirrored and flat; eyes in, at and
  * between them; near planes that cut them open), or gaps that are narrower than a texel of the

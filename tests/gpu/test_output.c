@@ -237,8 +237,8 @@ static void what_no_target_can_be_is_refused(void **state) {
     REFUSED("exposure.low", s.desc.exposure.low = 0.5f, s.desc.exposure.high = 0.5f);
     REFUSED("exposure.high", s.desc.exposure.high = (float)NAN);
     REFUSED("exposure.high", s.desc.exposure.high = 1.0f);
-    REFUSED("exposure.least", s.desc.exposure.least = -1);
-    REFUSED("exposure.most", s.desc.exposure.most = 1e-9f);
+    REFUSED("exposure.min", s.desc.exposure.min = -1);
+    REFUSED("exposure.max", s.desc.exposure.max = 1e-9f);
 #undef REFUSED
     s.desc = good;
     close_session(&s);

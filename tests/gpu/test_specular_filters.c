@@ -184,7 +184,7 @@ static void faces_as_narrow_as_a_pixel_come_to_rest(void **state) {
         assert_ok(masu_specular_draw(&s, &run, NULL, classes, &flicker[r], error, sizeof error));
     }
     close_session(&s);
-    printf("fence: flicker %.3f, without means of pixels %.3f\n", flicker[0], flicker[1]);
+    printf("fence: flicker %.3f, without full-resolution history %.3f\n", flicker[0], flicker[1]);
     assert_true(flicker[0] < 0.3 * flicker[1] && flicker[0] < 1.2);
 }
 
@@ -281,8 +281,8 @@ static void another_render_size_keeps_the_history_and_a_cut_does_not(void **stat
     assert_true(errors[0] < 0.8 * errors[2] && errors[1] < 0.8 * errors[2]);
 }
 
-/* A rung without means of pixels does not keep them: the next one that has them must not take older ones for
- * those of the frame before. Two histories that differ, cut off; what follows is the same to the bit. */
+/* A rung without full-resolution history does not keep them: the next one that has them must not take older ones for
+ * those of the previous frame. Two histories that differ, cut off; what follows is the same to the bit. */
 static void means_of_pixels_are_not_taken_up_after_a_rung_without(void **state) {
     (void)state;
     masu_session_desc d = desc_of("filters");

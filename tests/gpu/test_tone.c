@@ -207,7 +207,7 @@ static void the_mean_becomes_grey(void **state) {
         close_session(&s);
     }
     /* Bounds hold. */
-    open_metered(&(masu_exposure){.least = 0.5f, .most = 2.0f});
+    open_metered(&(masu_exposure){.min = 0.5f, .max = 2.0f});
     assert_float_equal(exposed(1000, 0, 1, NULL, NULL, 0, 0), 0.5f, 1e-5f);
     assert_float_equal(exposed(0.001f, 0, 1, NULL, NULL, 0, 0), 2.0f, 1e-5f);
     close_session(&s);

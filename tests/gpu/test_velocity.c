@@ -1,4 +1,4 @@
-/* test_velocity.c: where each pixel's surface was in the frame before, against double precision: the
+/* test_velocity.c: where each pixel's surface was in the previous frame, against double precision: the
  * point that the depth names is carried back by the same motions in plain C (for what changes in
  * itself by the C that masu-sdfc writes of the scene, compiled here), seen by the previous camera,
  * and compared in pixels. tests/scenes/test_velocity.sdf says how its parts move. */

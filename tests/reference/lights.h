@@ -1,4 +1,4 @@
-/* lights.h: local lights in double precision, by angles and cosines instead of the versines and
+/* lights.h: punctual lights in double precision, by angles and cosines instead of the versines and
  * reciprocals of shaders/light/lights.glsl: what arrives at a point of one light. */
 #ifndef MASU_REF_LIGHTS_H
 #define MASU_REF_LIGHTS_H

@@ -276,7 +276,7 @@ static void walk_group(walker *w, uint32_t i, uint32_t depth) {
     }
 }
 
-/* Every mesh's coarser forms, looked for from the start, and what the accessors say about them. */
+/* Every mesh's LODs, looked for from the start, and what the accessors say about them. */
 static void read_detail(walker *w) {
     uint64_t used = 0;
     for (uint32_t m = 0; m < w->scene->meshes && !w->fault; m++) {

@@ -45,7 +45,7 @@ static const char *unknown(const masu_scene *scene, const masu_scene_view *v) {
     for (uint32_t i = 0; i < scene->materials; i++)
         if (v->materials[i].specular < 0.5f || v->materials[i].specular > 0.5f)
             return "specular factors";
-    if (scene->lights) return "local lights";
+    if (scene->lights) return "punctual lights";
     if (scene->probes) return "light probes";
     if (scene->shadow_cascades) return "shadows";
     if (scene->environment_size || v->environment->turbidity > 0) return "a sky of more than two colours";

@@ -8,7 +8,7 @@
  * (reference/triangles.h); light is that of tools/bench/study/shade.h. Alike are the formulas that define the
  * surface (shaders/brdf/bsdf.glsl), and where a ray begins: an eighth of the pixel's width off its surface.
  *
- * Of scenes without textures and local lights, under a sky of two colours: masu_ref_mirror_open refuses
+ * Of scenes without textures and punctual lights, under a sky of two colours: masu_ref_mirror_open refuses
  * others. No shadow map either: the sun arrives everywhere. What leaves after more than one bounce between
  * facets is no part of it (`rest`, a part of the ambient light). A coat counts where the mirror has one, and
  * not on what is seen in it: coated things must not see each other. */

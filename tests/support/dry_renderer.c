@@ -31,7 +31,7 @@ static masu_blob_sdf_param params[4];
 static masu_batch batches[4];
 static masu_cull_node groups[4];
 static masu_placed_occluder occluders[4];
-static masu_local_light_state lights[4];
+static masu_punctual_light_state lights[4];
 static uint64_t light_names[4];
 static masu_sky sky;
 static masu_transparent transparents[8];

@@ -13,7 +13,7 @@ typedef struct reflect_job {
     const uint32_t *spirv;
     size_t words;
     struct masu_frame_uniforms frame; /* previous is the same */
-    const float *slots; /* of the present; where the code knows motion, then those of the frame before */
+    const float *slots; /* of the present; where the code knows motion, then those of the previous frame */
     size_t slot_count;
     uint32_t width, height;     /* traced texels, multiples of MASU_GROUP */
     const uint32_t *guide;      /* width * height * 2 */

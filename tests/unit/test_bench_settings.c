@@ -88,10 +88,10 @@ static void a_scene_of_nothing_leaves_what_is_done_to_pictures(void **state) {
     check_dropped("ao=off", count, "no ambient occlusion");
     check_dropped("specular=off", count, "no reflections");
     check_dropped("shadow_refresh=4-4-4-4", count, "no shadow map");
-    check_dropped("lod_error=3", count, "no coarser forms");
+    check_dropped("lod_error=3", count, "no LODs");
     check_dropped("occlusion=off", count, "no occluders");
     check_dropped("frustum=off", count, "no polygons");
-    check_dropped("light_tiles=off", count, "no local lights");
+    check_dropped("light_tiles=off", count, "no punctual lights");
     check_dropped("march=seed", count, "no SDF");
     check_dropped("shadow_distance=0.5", count, "no shadow map");
     check_dropped("specular_cutoff=0.25", count, "no reflections");

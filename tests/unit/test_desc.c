@@ -79,8 +79,8 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(exposure.darken);
     SAME(exposure.low);
     SAME(exposure.high);
-    SAME(exposure.least);
-    SAME(exposure.most);
+    SAME(exposure.min);
+    SAME(exposure.max);
     SAME(frames_in_flight);
     SAME(rung_count);
     for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
@@ -300,7 +300,7 @@ static void output_follows_from_target_and_scene(void **state) {
     assert_int_equal(early.exposure.metered, MASU_ON);
     assert_int_equal(early.dither, MASU_ON);
     assert_int_equal(early.targets.encoding, MASU_ENCODING_SRGB);
-    assert_true(early.exposure.most == 1024 && early.targets.white == 80);
+    assert_true(early.exposure.max == 1024 && early.targets.white == 80);
 }
 
 static void what_is_given_stays_as_it_is(void **state) {
@@ -516,7 +516,7 @@ static void meshes_too_large_for_occlusion_are_a_limit(void **state) {
     static masu_frame_plan plan;
     masu_desc d = scene_desc(RASTER, 64, 64);
     for (int instances = 0; instances < 2; instances++) {
-        uint32_t *most = instances ? &support_scene.most_instances : &support_scene.most_primitives;
+        uint32_t *most = instances ? &support_scene.max_instances : &support_scene.max_primitives;
         uint32_t limit = instances ? 64 * 4096 : 4096;
         *most = limit + 1;
         support_scene.placed_occluders = 0;

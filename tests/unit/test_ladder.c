@@ -283,7 +283,7 @@ static void check_shared(const masu_desc *whole) {
         assert_int_equal(plan.images[i].used, most[i].used);
         /* What is kept for the next frame is kept at the size of the largest rung that traces, whatever
          * rung reads it. */
-        const uint32_t k = masu_images[i].kept ? MASU_IMAGE_SPECULAR_OLD_GUIDE : i;
+        const uint32_t k = masu_images[i].kept ? MASU_IMAGE_SPECULAR_HISTORY_GUIDE : i;
         assert_true(plan.images[i].width >= most[i].width && plan.images[i].height >= most[i].height);
         assert_true(plan.images[i].width <= most[k].width || plan.images[i].width == most[i].width);
         assert_true(plan.images[i].height <= most[k].height || plan.images[i].height == most[i].height);

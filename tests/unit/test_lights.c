@@ -1,5 +1,5 @@
 /*
- * test_lights.c: local lights on the host: the sphere around what a light reaches holds every point
+ * test_lights.c: punctual lights on the host: the sphere around what a light reaches holds every point
  * that the reference says is reached, what is left out of a frame lights nothing in the picture, and
  * the numbers for the shaders are finite for all that a state may hold. (Pictures: tests/gpu.)
  */
@@ -21,8 +21,8 @@
 
 static uint64_t seed = 1;
 
-static masu_local_light_state random_light(int i) {
-    masu_local_light_state s = {.range = (float)random_spread(&seed, 1e-6, 1e9),
+static masu_punctual_light_state random_light(int i) {
+    masu_punctual_light_state s = {.range = (float)random_spread(&seed, 1e-6, 1e9),
                                 .radius = (float)random_spread(&seed, 1e-6, 1e3),
                                 .color = {1, 0.5f, 0},
                                 .spot = i % 3 != 0};
@@ -37,7 +37,7 @@ static masu_local_light_state random_light(int i) {
     return s;
 }
 
-static masu_ref_light reference_of(const masu_local_light_state *s) {
+static masu_ref_light reference_of(const masu_punctual_light_state *s) {
     masu_ref_light r = {.range = (double)s->range,
                         .radius = (double)s->radius,
                         .inner = s->spot ? (double)s->inner : PI,
@@ -51,7 +51,7 @@ static masu_ref_light reference_of(const masu_local_light_state *s) {
 }
 
 /* A point that the light may reach: within its range, and mostly within its cone. */
-static void point_of(const masu_local_light_state *s, double out[3]) {
+static void point_of(const masu_punctual_light_state *s, double out[3]) {
     double d[3], length = 0, reach = (double)s->range * (seed & 256 ? random_between(&seed, 0, 1) : 0.99999);
     double wide = s->spot ? 1.2 * tan(fmin((double)s->outer, 1.5)) : 3;
     for (int k = 0; k < 3; k++) {
@@ -72,9 +72,9 @@ static void a_bound_holds_all_that_is_reached(void **state) {
     (void)state;
     uint32_t reached = 0;
     for (int i = 0; i < 3000; i++) {
-        masu_local_light_state s = random_light(i);
+        masu_punctual_light_state s = random_light(i);
         masu_ref_light ref = reference_of(&s);
-        struct masu_local_light_data data;
+        struct masu_punctual_light_data data;
         double direction[3], value;
         for (int k = 0; k < 3; k++) direction[k] = (double)s.direction[k];
         assert_null(masu_light_state_wrong(&s, &value));
@@ -133,9 +133,9 @@ static void what_is_left_out_lights_nothing_in_the_picture(void **state) {
         double right[3], up[3], forward[3];
         double tan_y = i % 4 ? random_between(&seed, 0.1, 2) : random_spread(&seed, 5e-4, 48), tan_x = tan_y * random_spread(&seed, 0.1, 10);
         make_camera(clip, right, up, forward, tan_x, tan_y);
-        masu_local_light_state s = random_light(i);
+        masu_punctual_light_state s = random_light(i);
         masu_ref_light ref = reference_of(&s);
-        struct masu_local_light_data data;
+        struct masu_punctual_light_data data;
         double direction[3];
         for (int k = 0; k < 3; k++) direction[k] = (double)s.direction[k];
         assert_true(masu_light_place(&s, s.position, direction, &data));
@@ -166,9 +166,9 @@ static void extremes_give_finite_numbers(void **state) {
     static const float radii[] = {1e-6f, 1, 1e9f}, colors[] = {0, 1e-30f, 1, 1e9f};
     static const float outers[] = {-1, 0, 1e-20f, 1e-6f, 0.7f, 1.5707964f, 1.6f, 3.14159274f};
     for (size_t i = 0; i < 6 * 7 * 3 * 4 * 8 * 2; i++) {
-        masu_local_light_state s = {.range = ranges[i / 6 % 7], .radius = radii[i / 42 % 3]};
+        masu_punctual_light_state s = {.range = ranges[i / 6 % 7], .radius = radii[i / 42 % 3]};
         float outer = outers[i / 504 % 8];
-        struct masu_local_light_data data;
+        struct masu_punctual_light_data data;
         double direction[3] = {0, (double)1e-15f * 1.5, 0}, value;
         s.direction[1] = (float)direction[1];
         s.position[0] = s.position[2] = places[i % 6];

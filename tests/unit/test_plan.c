@@ -1188,7 +1188,7 @@ static void the_public_memory_sums_the_blocks(void **state) {
     assert_int_equal(memory.transient_lower_bound, 500);
 }
 
-/* ---- Local lights ---------------------------------------------------------------------------- */
+/* ---- Punctual lights ---------------------------------------------------------------------------- */
 
 static void lights_add_a_pass_and_two_buffers(void **state) {
     (void)state;
@@ -1198,7 +1198,7 @@ static void lights_add_a_pass_and_two_buffers(void **state) {
     d.rungs[1].light_tiles = MASU_OFF;
     compile(&d, &dark);
     assert_string_equal(frame_text(&dark, 0), GBUFFER MARCH_ON_RASTER LIGHT_SDF TONEMAP);
-    assert_string_equal(dark.why[MASU_PASS_LIGHT_TILES], "the scene has no local lights");
+    assert_string_equal(dark.why[MASU_PASS_LIGHT_TILES], "the scene has no punctual lights");
     assert_int_equal(dark.buffers[MASU_BUFFER_LIGHTS].bytes, 0);
     assert_int_equal(dark.buffers[MASU_BUFFER_LIGHT_TILES].bytes, 0);
     static const struct {

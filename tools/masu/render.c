@@ -306,7 +306,7 @@ static const masu_option rows[] = {
     MASU_CHOICE(masu_render_options, turned.cull, "cull", "STAGES", stages,
                 "both, frustum, occlusion or none: the picture stays the same"),
     MASU_KNOB(masu_render_options, turned.to, "lod-error", "PIXELS", "lod_error",
-              "how wrong a surface may be drawn by a coarser form of its mesh; below 0: none (default 1)"),
+              "how wrong a surface may be drawn by an LOD of its mesh; below 0: none (default 1)"),
     MASU_FLAG(masu_render_options, casters, "casters",
               "cull for the sun too, for the numbers of --stats"),
     MASU_OWN("sun", "AZIMUTH,ELEVATION", read_sun,

@@ -1,4 +1,4 @@
-/* study_draw.c: `masu study draw`: a scene's path drawn with both stages of culling, with the frustum
+/* study_draw.c: `masu study draw`: a scene's path drawn with frustum and occlusion culling, with the frustum
  * alone and with none, all three in every frame: the pictures must be the same in every bit, and times
  * and triangles stand beside each other. The ways take turns in going first, and of the runs of a frame
  * the least time counts. Times are judged by nobody; pictures are: where they differ, the exit code is

@@ -28,7 +28,7 @@ typedef struct measure {
 
 typedef struct bench {
     masu_session s;
-    masu_local_light_state *states;
+    masu_punctual_light_state *states;
     uint32_t counts[STEPS], step_count;
     measure results[STEPS][WAYS];
     bool different;
@@ -39,10 +39,10 @@ typedef struct bench {
 static bool switch_lights(bench *b, uint32_t count) {
     uint32_t all = b->s.scene.lights;
     for (uint32_t i = 0; i < all; i++) {
-        masu_local_light_state s = b->states[i];
+        masu_punctual_light_state s = b->states[i];
         uint64_t before = (uint64_t)i * count / all, after = (uint64_t)(i + 1) * count / all;
         if (before == after) memset(s.color, 0, sizeof s.color);
-        if (masu_local_light_set(b->s.m, (masu_local_light){i + 1}, &s) != MASU_OK) return false;
+        if (masu_punctual_light_set(b->s.m, (masu_punctual_light){i + 1}, &s) != MASU_OK) return false;
     }
     return true;
 }
@@ -154,7 +154,7 @@ static bool keep_lights(bench *b) {
     b->states = malloc((all ? all : 1) * sizeof *b->states);
     if (!b->states) return false;
     for (uint32_t i = 0; i < all; i++) {
-        if (masu_local_light_get(b->s.m, (masu_local_light){i + 1}, &b->states[i]) != MASU_OK)
+        if (masu_punctual_light_get(b->s.m, (masu_punctual_light){i + 1}, &b->states[i]) != MASU_OK)
             return false;
     }
     for (uint32_t i = 0; i < STEPS && steps[i] <= all; i++) b->counts[b->step_count++] = steps[i];

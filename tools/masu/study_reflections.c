@@ -245,7 +245,7 @@ static void add_row(masu_table *t, const char *name, const char *motion, uint32_
     const double numbers[] = {frames,
                               e->value[MASU_SPECULAR_ALL],
                               e->value[MASU_SPECULAR_MIRROR],
-                              e->value[MASU_SPECULAR_SMOOTH],
+                              e->value[MASU_SPECULAR_FILTERED],
                               e->value[MASU_SPECULAR_SATIN],
                               e->value[MASU_SPECULAR_ROUGH],
                               flicker,

@@ -170,7 +170,7 @@ static const char *check_lights(const masu_bake_content *c) {
     for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_LIGHTS); i++) {
         const masu_blob_light *light = &MASU_BAKE_LIGHTS(c)[i];
         double value;
-        masu_local_light_state state = masu_light_state_of(light);
+        masu_punctual_light_state state = masu_light_state_of(light);
         if (light->type > MASU_LIGHT_SPOT || masu_light_state_wrong(&state, &value))
             return "a light with a value out of range";
         if (light->parent != MASU_BLOB_NONE &&

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* At rest before it is timed at rest: the mean over frames has then settled to what a resting
+/* At rest before it is timed at rest: temporal accumulation has then settled to what a resting
  * scene costs. Counted is the frame after so many in motion. */
 enum { SETTLE_FRAMES = 4, COUNT_FRAMES = 3 };
 

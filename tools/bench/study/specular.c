@@ -122,7 +122,7 @@ bool masu_specular_classes(masu_session *s, float cutoff, uint8_t *classes) {
             int none = !(z > 0.0f) || roughness >= cutoff || (packed >> 30 & MASU_SURFACE_EMISSIVE);
             *classes++ = none                  ? 0xFF
                          : roughness < 0.05f   ? MASU_SPECULAR_MIRROR
-                         : roughness < 0.15f   ? MASU_SPECULAR_SMOOTH
+                         : roughness < 0.15f   ? MASU_SPECULAR_FILTERED
                          : roughness < 0.25f   ? MASU_SPECULAR_SATIN
                                                : MASU_SPECULAR_ROUGH;
         }

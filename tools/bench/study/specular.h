@@ -9,7 +9,7 @@
 #include "session.h"
 
 /* Pixels by the roughness of what is traced; the last class is all of them. */
-enum { MASU_SPECULAR_MIRROR, MASU_SPECULAR_SMOOTH, MASU_SPECULAR_SATIN, MASU_SPECULAR_ROUGH,
+enum { MASU_SPECULAR_MIRROR, MASU_SPECULAR_FILTERED, MASU_SPECULAR_SATIN, MASU_SPECULAR_ROUGH,
        MASU_SPECULAR_ALL, MASU_SPECULAR_CLASSES };
 
 typedef enum masu_specular_motion {

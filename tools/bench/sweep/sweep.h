@@ -12,7 +12,7 @@
  * wrong).
  *
  * The picture is that of a scene in motion, which has followed its camera's path for so many frames
- * up to the time of the truth, where anything depends on frames before: old shadows and trails of
+ * up to the time of the truth, where anything depends on previous frames: old shadows and trails of
  * reflections are errors too. There each setting has a renderer of its own, since the noise of
  * reflections goes by the number of the frame. Flicker is what then changes from frame to frame of
  * the scene at rest.

@@ -1,5 +1,5 @@
 /*
- * receivers.comp: where the picture has surfaces that the sun may light, as the sun sees them: of each
+ * receiver_mask.comp: where the picture has surfaces that the sun may light, as the sun sees them: of each
  * texel of its part of the occluder atlas, and of each cascade, the farthest, for cull.comp. Only what shadow.comp would look
  * up a shadow for counts; where rounding might let the two disagree, it counts.
  *
@@ -7,7 +7,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#define MASU_PUSH masu_push_receivers
+#define MASU_PUSH masu_push_receiver_mask
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"
 #include "shared/culling.glsl"
