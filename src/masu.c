@@ -1,5 +1,6 @@
 /* masu.c: the public functions, but for what stats.c tells: the life of a renderer, and its frames. */
 #include "base/error.h"
+#include "plan/compile.h"
 #include "device/capabilities.h"
 #include "device/lifetime.h"
 #include "device/load.h"

@@ -1,7 +1,7 @@
 /* stats.c: see stats.h. */
 #include "stats.h"
 
-#include "plan/buffers.h"
+#include "plan/buffer_plan.h"
 #include "plan/desc.h"
 
 #include "device/bind.h"

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "device/ray_query.h"
-#include "plan/buffers.h"
+#include "plan/buffer_plan.h"
 
 #include <string.h>
 

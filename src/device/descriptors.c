@@ -2,7 +2,7 @@
  * and the sets of textures. */
 #include "device/descriptors.h"
 
-#include "plan/buffers.h"
+#include "plan/buffer_plan.h"
 
 #include "base/error.h"
 #include "device/ray_query.h"

@@ -5,7 +5,7 @@
 #include "device/barriers.h"
 #include "device/bind.h"
 #include "device/ray_query.h"
-#include "plan/buffers.h"
+#include "plan/buffer_plan.h"
 #include "scene/scene.h"
 #include "scene/trace_scene.h"
 #include "shared/masu_shared.h"

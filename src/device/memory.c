@@ -2,7 +2,7 @@
 #include "device/memory.h"
 
 #include "base/error.h"
-#include "plan/buffers.h"
+#include "plan/buffer_plan.h"
 #include "scene/scene.h"
 #include "scene/texture.h"
 

@@ -4,7 +4,7 @@
 #include "device/pipelines.h"
 
 #include "device/shaders.h"
-#include "plan/buffers.h"
+#include "plan/buffer_plan.h"
 #include "plan/push.h"
 
 #include "base/error.h"

@@ -176,12 +176,6 @@ void masu_output_plan(masu_frame_plan *plan) {
                          (f->srgb && f->swapped ? MASU_OUTPUT_SWAP : 0);
 }
 
-VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image) {
-    const masu_image_row *row = &masu_images[image];
-    int color = row->class_of == MASU_CLASS_COLOR && row->format == VK_FORMAT_R8G8B8A8_UNORM;
-    return color && plan->deep ? VK_FORMAT_R16G16B16A16_SFLOAT : row->format;
-}
-
 /* The image of displayed colour that a compute pass writes, all of it or a part; 0: none. */
 static uint32_t written_color(const masu_rung_plan *rung, uint32_t pass) {
     if (masu_passes[pass].kind != MASU_PASS_COMPUTE) return 0;

@@ -1,14 +1,9 @@
-/* plan.h: the compiled frame: the table of frame.c applied to one description. Pure data, no Vulkan
- * calls, no allocation.
- *
- * masu_compile turns zeros into defaults, checks the description, decides for each rung which
- * passes run, resolves the stand-ins ("latest depth", "latest colour"), and derives each image's
- * size, usage flags and lifetime. What is known only to the driver (sizes, memory types) is added
- * by src/device/memory.c. */
+/* plan.h: the compiled frame as data: what passes.inc, images.inc and buffers.inc become for one description
+ * (compile.h). Sizes that only the driver knows are added by src/device/memory.c. Lives in the renderer;
+ * nothing here fails. */
 #ifndef MASU_PLAN_H
 #define MASU_PLAN_H
 
-#include "plan/desc.h"
 #include "plan/frame.h"
 #include "plan/limits.h"
 #include "masu.h"
@@ -125,10 +120,6 @@ typedef struct masu_frame_plan {
     uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */
 } masu_frame_plan;
 
-/* Fills plan from desc. Device limits that shape the buffers come in as alignments. */
-masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
-                         uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail);
-
 /* v rounded up to a multiple of a, which need not be a power of two. */
 static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
 
@@ -151,11 +142,5 @@ VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);
-
-/* The plan as the public struct. pipeline_ns may be NULL. */
-void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
-                      masu_plan_info *out);
-/* Its memory part. */
-void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out);
 
 #endif

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "scene/blob.h"
-#include "plan/plan.h"
+#include "plan/compile.h"
 #include "reference/scene_walk.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -192,7 +192,7 @@ static void what_is_no_suite_is_refused_in_one_line(void **state) {
     cli_complained("none.json");
     write_suite("{\"name\": \"a\", \"rung\": {\"scale\": 2}}");
     assert_int_equal(planted(""), 1);
-    cli_complained("suite.json: case 'a': rung.scale: needed is a number from 0.01 to 1, given is 2");
+    cli_complained("suite.json: case 'a': rung.scale: needed is a number from 0 to 1, given is 2");
     write_suite("{\"name\": \"a\"");
     assert_int_equal(planted(""), 1);
     cli_complained("suite.json:1:");

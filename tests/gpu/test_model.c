@@ -1,6 +1,7 @@
 /* test_model.c: `masu plan --model` on a driver: shaders with counters count what they run, bytes of known
  * passes are those that follow from sizes, sums are sums, and rungs have the rows that they run. */
 #include "support/support.h"
+#include "plan/compile.h"
 
 #include "support/cli.h"
 #include "support/compute.h"

@@ -1,5 +1,6 @@
 /* dry_renderer.c: see dry_renderer.h. */
 #include "support/dry_renderer.h"
+#include "plan/compile.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -14,7 +14,7 @@
 
 #include "bench/sweep/knobs.h"
 #include "frame/transparents.h"
-#include "plan/plan.h"
+#include "plan/compile.h"
 #include "scene/blob.h"
 #include "support/desc.h"
 

@@ -19,7 +19,7 @@
 #include "bench/sweep/settings.h"
 #include "image.h"
 #include "quality/ladder.h"
-#include "plan/plan.h"
+#include "plan/compile.h"
 #include "support/desc.h"
 #include "support/files.h"
 #include "support/random.h"

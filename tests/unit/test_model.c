@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "bench/sweep/settings.h"
+#include "plan/compile.h"
 #include "model/sheet.h"
 #include "model/write.h"
 #include "model/spirv_cost.h"

@@ -19,8 +19,8 @@
 
 #include "scene/blob.h"
 #include "plan/output.h"
-#include "plan/buffers.h"
-#include "plan/plan.h"
+#include "plan/buffer_plan.h"
+#include "plan/compile.h"
 #include "device/ray_query.h"
 #include "plan/push.h"
 #include "support/desc.h"

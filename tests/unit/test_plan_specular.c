@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "plan/plan.h"
+#include "plan/compile.h"
 #include "support/desc.h"
 
 static masu_frame_plan with, without;

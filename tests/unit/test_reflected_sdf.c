@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "plan/plan.h"
+#include "plan/compile.h"
 #include "support/desc.h"
 
 #define PASS(p) ((uint64_t)1 << MASU_PASS_SPECULAR_##p)

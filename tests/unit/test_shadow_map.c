@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "support/bind.h"
+#include "plan/compile.h"
 #include "support/desc.h"
 #include "support/random.h"
 #include "support/dry_renderer.h"

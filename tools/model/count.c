@@ -1,5 +1,6 @@
 /* count.c: see count.h. */
 #include "model/count.h"
+#include "plan/compile.h"
 
 #include "bench/sweep/settings.h"
 #include "model/hook.h"

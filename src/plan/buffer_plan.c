@@ -1,5 +1,5 @@
-/* buffers.c: see buffers.h. */
-#include "plan/buffers.h"
+/* buffer_plan.c: see buffer_plan.h. */
+#include "plan/buffer_plan.h"
 
 #include "plan/draws.h"
 #include "scene/punctual_light.h"

@@ -1,7 +1,7 @@
-/* buffers.h: what follows from the rows of buffers.inc for one plan: sizes, and the bindings of descriptor
+/* buffer_plan.h: what follows from the rows of buffers.inc for one plan: sizes, and the bindings of descriptor
  * set 0. Pure functions; nothing is kept. */
-#ifndef MASU_BUFFERS_H
-#define MASU_BUFFERS_H
+#ifndef MASU_BUFFER_PLAN_H
+#define MASU_BUFFER_PLAN_H
 
 #include "plan/plan.h"
 

@@ -1,0 +1,422 @@
+/* compile.c: see compile.h. */
+#include "plan/compile.h"
+
+#include "scene/blob.h"
+#include "base/error.h"
+#include "plan/buffer_plan.h"
+#include "plan/desc.h"
+#include "plan/output.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- One rung -------------------------------------------------------------------------------- */
+
+/* Render size of a scale: at least one pixel, rounded to nearest. 1080 lines give 864 at 0.8 and
+ * 432 at 0.4. */
+static uint32_t scaled(uint32_t size, float scale) {
+    double v = floor((double)size * (double)scale + 0.5);
+    return v < 1.0 ? 1u : v > (double)size ? size : (uint32_t)v;
+}
+
+static void resolve_switches(const masu_desc *d, masu_rung_plan *rp, const masu_rung *rung,
+                             masu_needs *needs) {
+    int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
+    needs->upscale = rung->upscale == MASU_ON || !same;
+    needs->easu = rung->easu == MASU_EASU_AUTO ? MASU_EASU_FULL : rung->easu;
+    int plain = needs->easu == MASU_EASU_BILINEAR; /* what it blurs, RCAS would not bring back */
+    needs->sharpen =
+        rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && needs->upscale && !plain);
+    needs->fxaa = rung->aa == MASU_AA_FXAA;
+    needs->smaa = rung->aa >= MASU_AA_SMAA_LOW;
+    needs->fused = needs->upscale && needs->sharpen && needs->easu == MASU_EASU_FULL &&
+                   rung->fuse == MASU_ON && !(d->scene && d->deep_color == MASU_ON);
+    /* Upscaling only, at ratio 1, with everything off: something has to write the target. */
+    int writes = needs->scene || needs->upscale || needs->sharpen || needs->fxaa || needs->smaa;
+    if (!writes) needs->upscale = 1;
+}
+
+static void resolve_shadow(masu_frame_plan *plan, uint32_t r) {
+    masu_rung_plan *rp = &plan->rungs[r];
+    const masu_rung *rung = &plan->desc.rungs[r];
+    rp->variants = 1;
+    if (plan->needs.shadow) {
+        rp->cascades = masu_at_most(rung->shadow_cascades, plan->scene.shadow_cascades);
+        rp->cascade_size = masu_at_most(rung->shadow_resolution, plan->scene.shadow_resolution);
+    }
+    for (uint32_t k = 0; k < rp->cascades; k++) {
+        if (rung->shadow_refresh[k] == 1) continue;
+        rp->slow |= 1u << k;
+        rp->variants *= 2;
+    }
+    plan->images[MASU_IMAGE_SHADOW_MAP].persistent |= rp->slow != 0;
+    plan->needs.cascades = rp->cascades;
+    rp->first_recording = plan->recordings;
+    plan->recordings += rp->variants * plan->desc.targets.count;
+}
+
+/* Which resource an access of the table means in a rung: itself, or of a stand-in the image of the class that the
+ * latest pass has written, or the one before that. 0: there is none. */
+typedef struct latest {
+    uint8_t image[MASU_CLASS_COUNT], before[MASU_CLASS_COUNT];
+} latest;
+
+static uint8_t resolve(uint8_t resource, const latest *l) {
+    if (resource < MASU_RESOURCE_END) return resource;
+    if (resource < MASU_BEFORE(0)) return l->image[resource - MASU_LATEST(0)];
+    return l->before[resource - MASU_BEFORE(0)];
+}
+
+/* Whether a rung has what an access names: an image, or a buffer that a pass and not the host has written. */
+static int keeps_access(const masu_frame_plan *plan, uint8_t resource, masu_usage usage) {
+    const masu_needs *n = &plan->needs;
+    switch (resource) {
+    case MASU_IMAGE_NONE: return 0;
+    case MASU_RESOURCE(MASU_BUFFER_DRAWS): return n->occlusion;
+    case MASU_RESOURCE(MASU_BUFFER_PROBES): return n->probes;
+    case MASU_RESOURCE(MASU_BUFFER_EXPOSURE): return n->metered;
+    case MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES): return n->light_tiles;
+    default: break;
+    }
+    if (masu_is_buffer(resource)) return 1;
+    if (usage == MASU_READ_BACK && !(masu_images[resource].readback & plan->desc.readback)) return 0;
+    return masu_has_image(n, resource);
+}
+
+static void write_latest(latest *l, uint8_t image) {
+    masu_image_class class_of = masu_images[image].class_of;
+    if (l->image[class_of] == image) return;
+    l->before[class_of] = l->image[class_of];
+    l->image[class_of] = image;
+}
+
+static void compile_rung(masu_frame_plan *plan, uint32_t r) {
+    masu_rung_plan *rp = &plan->rungs[r];
+    latest l = {{0}, {0}};
+    if (!plan->needs.scene) l.image[MASU_CLASS_COLOR] = MASU_IMAGE_SOURCE;
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        const masu_pass_row *row = &masu_passes[p];
+        const char *why = "";
+        int runs = row->decide(&plan->needs, &why);
+        if (r == 0 || (runs && !masu_has_pass(&plan->rungs[0].active, p))) plan->why[p] = why;
+        if (!runs) continue;
+        masu_add_pass(&rp->active, p);
+        for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
+            masu_usage usage = (masu_usage)row->access[a].usage;
+            uint8_t resource = resolve(row->access[a].image, &l);
+            if (!keeps_access(plan, resource, usage)) continue;
+            rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
+            if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
+        }
+    }
+    /* The last colour pass writes the target itself (a blit, where there is one, does so anyway), and so does
+     * every pass that has to do with the same image. */
+    uint8_t last = l.image[MASU_CLASS_COLOR];
+    for (uint32_t p = 0; p < MASU_PASS_COUNT && last != MASU_IMAGE_SOURCE; p++) {
+        for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+            if (rp->access[p][a].image == last) rp->access[p][a].image = MASU_IMAGE_TARGET;
+        }
+    }
+}
+
+/* ---- All rungs ------------------------------------------------------------------------------- */
+
+static VkImageUsageFlags usage_flag(masu_usage usage) {
+    switch (usage) {
+    case MASU_READ: return VK_IMAGE_USAGE_SAMPLED_BIT;
+    case MASU_READ_COPY:
+    case MASU_READ_BACK: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    case MASU_WRITE:
+    case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
+    case MASU_WRITE_COLOR:
+    case MASU_BLEND_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    case MASU_WRITE_DEPTH:
+    case MASU_UPDATE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    case MASU_READ_BUFFER:
+    case MASU_WRITE_BUFFER:
+    case MASU_READ_STRUCTURE:
+    case MASU_WRITE_STRUCTURE:
+    case MASU_USE_NONE: break;
+    }
+    return 0;
+}
+
+static void gather_images(masu_frame_plan *plan) {
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &plan->rungs[r];
+        for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+            int writes_target = 0;
+            for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+                masu_image_id id = (masu_image_id)rp->access[p][a].image;
+                writes_target |= id == MASU_IMAGE_TARGET;
+                if (id >= MASU_IMAGE_SOURCE) continue; /* the host's, or a buffer */
+                masu_image_plan *image = &plan->images[id];
+                VkExtent2D render = {rp->render_width, rp->render_height};
+                VkExtent2D size = masu_plan_extent(plan, masu_images[id].extent, render);
+                image->persistent |= masu_images[id].kept;
+                if (!image->used) image->first = p;
+                if (image->first > p) image->first = p;
+                if (image->last < p) image->last = p;
+                image->used = 1;
+                if (image->width < size.width) image->width = size.width;
+                if (image->height < size.height) image->height = size.height;
+                image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
+            }
+            if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
+            plan->pass_sets += writes_target ? plan->desc.targets.count : 1;
+        }
+    }
+}
+
+/* Whether a rung has ambient occlusion in screen space, and whether any has. */
+static int rung_has_ao(const masu_desc *d, uint32_t r) {
+    return d->scene && d->scene->occlusion_radius > 0.0f && d->rungs[r].ao != MASU_OFF;
+}
+
+static int wants_ao(const masu_desc *d) {
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (rung_has_ao(d, r)) return 1;
+    }
+    return 0;
+}
+
+/* The same of traced reflections. */
+static int rung_has_specular(const masu_desc *d, uint32_t r) {
+    return d->scene && d->scene->reflections && d->rungs[r].specular != MASU_OFF &&
+           d->scene->glossiest < d->rungs[r].specular_cutoff;
+}
+
+static int rung_has_taa(const masu_desc *d, uint32_t r) {
+    return rung_has_specular(d, r) && !d->debug.reference &&
+           d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_taa != MASU_OFF;
+}
+
+static int rung_has_fine(const masu_desc *d, uint32_t r) {
+    return rung_has_specular(d, r) && !d->debug.reference &&
+           d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_fine != MASU_OFF;
+}
+
+static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r)) {
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (has(d, r)) return 1;
+    }
+    return 0;
+}
+
+static int wants_specular(const masu_desc *d) {
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        if (rung_has_specular(d, r)) return 1;
+    }
+    return 0;
+}
+
+masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
+                         uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail) {
+    memset(plan, 0, sizeof *plan);
+    plan->desc = masu_desc_resolved(desc);
+    masu_desc *d = &plan->desc;
+    masu_result result = masu_desc_check(d, detail);
+    if (!result) result = masu_limits_check(d, detail);
+    if (result) return result;
+    if (d->scene) {
+        plan->scene = *d->scene;
+        d->scene = &plan->scene;
+        if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades && !wants_ao(d))
+            d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
+        if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
+        plan->compressed = masu_takes_blocks(d);
+    } else {
+        d->readback = 0; /* the images that could be asked for are the scene's */
+    }
+    plan->needs = (masu_needs){.scene = d->scene != NULL,
+                               .raster = d->scene && d->scene->instances,
+                               .sdf = d->scene && d->scene->sdf,
+                               .dynamic = d->scene && d->scene->sdf_dynamic,
+                               .anchored = d->scene && d->scene->sdf_anchored,
+                               .sdf_occlusion = d->scene && d->scene->sdf_occlusion,
+                               .probes = d->scene && d->scene->probes,
+                               .shadow = d->scene && d->scene->shadow_cascades,
+                               .transparents = d->scene && d->scene->transparents,
+                               .lights = d->scene && d->scene->lights,
+                               .surface = d->scene && d->scene->instances && d->scene->surfaces,
+                               .environment = d->scene && d->scene->environment_size,
+                               .sky = d->scene && (d->scene->analytic_sky || d->analytic_sky),
+                               .readback = d->readback,
+                               .reflections = wants_specular(d),
+                               .traced = wants_specular(d) && d->scene->trace_instances,
+                               .traced_sdf = wants_specular(d) && d->scene->trace_sdf,
+                               .query = wants_specular(d) && d->scene->trace_instances &&
+                                        d->ray_query == MASU_ON,
+                               .accumulate = d->debug.reference != 0,
+                               .any_taa = wants(d, rung_has_taa),
+                               .any_fine = wants(d, rung_has_fine),
+                               .metered = d->scene && d->exposure.metered == MASU_ON,
+                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d),
+                               .blit = !d->targets.storage};
+    for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
+    masu_output_plan(plan);
+    if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
+    masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
+    /* The sun's: each cascade, else all of the scene. */
+    uint32_t suns = plan->needs.shadow ? plan->cascades : d->debug.casters ? 1 : 0;
+    plan->views = plan->needs.raster ? 1 + suns : 1;
+    plan->needs.occluders = d->scene && d->scene->placed_occluders > 0;
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        plan->lods |= d->scene && d->scene->lods && d->rungs[r].lod_error > 0.0f;
+    }
+    if (d->scene) {
+        plan->draws = d->scene->draws + (plan->lods ? d->scene->lod_draws : 0);
+        plan->listed = d->scene->instances + (plan->lods ? d->scene->lod_instances : 0);
+    }
+    for (uint32_t r = 0; r < d->rung_count; r++) {
+        masu_rung_plan *rp = &plan->rungs[r];
+        rp->render_width = d->scene ? scaled(d->output.width, d->rungs[r].scale) : d->source.width;
+        rp->render_height =
+            d->scene ? scaled(d->output.height, d->rungs[r].scale) : d->source.height;
+        int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
+        if (d->rungs[r].upscale == MASU_OFF && !same) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].upscale", 0, 0,
+                             "rungs[%u].upscale is MASU_OFF, but it renders %ux%u for an output of "
+                             "%ux%u",
+                             r, rp->render_width, rp->render_height, d->output.width,
+                             d->output.height);
+        }
+        plan->needs.rung = &d->rungs[r];
+        plan->needs.march = d->rungs[r].march;
+        if (plan->needs.sdf && plan->needs.raster && plan->needs.march == MASU_MARCH_FRAGMENT) {
+            return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
+                             "rungs[%u].march is MASU_MARCH_FRAGMENT, which erases polygons: the "
+                             "scene has %u instances",
+                             r, d->scene->instances);
+        }
+        if (plan->needs.sdf && !(d->scene->sdf_march & 1u << plan->needs.march)) {
+            return masu_fail(detail, MASU_ERROR_SCENE, "rungs[].march", plan->needs.march, 0,
+                             "rungs[%u].march is %d, for which the blob has no code (bake with "
+                             "--variants)",
+                             r, (int)plan->needs.march);
+        }
+        resolve_switches(d, rp, &d->rungs[r], &plan->needs);
+        plan->needs.ao = rung_has_ao(d, r);
+        plan->needs.specular = rung_has_specular(d, r);
+        int filtered = plan->needs.specular && !plan->needs.accumulate;
+        plan->needs.reuse = filtered && d->rungs[r].specular_reuse != MASU_OFF;
+        plan->needs.temporal = filtered && d->rungs[r].specular_temporal != MASU_OFF;
+        plan->needs.filter = filtered && d->rungs[r].specular_filter != MASU_OFF;
+        plan->needs.taa = rung_has_taa(d, r);
+        plan->needs.fine = rung_has_fine(d, r);
+        plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
+        plan->needs.unculled = d->scene && (d->scene->max_primitives > MASU_CULL_ROUNDS ||
+                                            d->scene->max_instances > 64 * MASU_CULL_ROUNDS);
+        if (plan->needs.occlusion && plan->needs.unculled) {
+            if (d->rungs[r].occlusion == MASU_ON) {
+                return masu_fail(detail, MASU_ERROR_LIMIT, "rungs[].occlusion",
+                                 d->scene->max_instances, 64 * MASU_CULL_ROUNDS,
+                                 "rungs[%u].occlusion takes meshes of at most %d primitives and %d "
+                                 "instances, the scene has one of %u or %u",
+                                 r, MASU_CULL_ROUNDS, 64 * MASU_CULL_ROUNDS,
+                                 d->scene->max_primitives, d->scene->max_instances);
+            }
+            plan->needs.occlusion = 0;
+        }
+        plan->occlusion |= plan->needs.occlusion;
+        plan->needs.light_tiles = plan->needs.lights && d->rungs[r].light_tiles != MASU_OFF;
+        resolve_shadow(plan, r);
+        plan->needs.casters = plan->needs.occlusion && plan->views > 1;
+        plan->needs.receiver_mask = plan->needs.casters && plan->needs.shadow &&
+                                rp->slow != (1u << rp->cascades) - 1u;
+        if (plan->needs.receiver_mask) plan->receiver_mask = 1;
+        compile_rung(plan, r);
+    }
+    plan->needs.rung = NULL;
+    gather_images(plan);
+    masu_size_buffers(plan, uniform_alignment, storage_alignment);
+    return MASU_OK;
+}
+
+/* ---- Export ---------------------------------------------------------------------------------- */
+
+static const char *resource_name(uint8_t resource) {
+    if (masu_is_buffer(resource)) return masu_buffers[resource - MASU_RESOURCE(0)].name;
+    return masu_images[resource].name;
+}
+
+void masu_memory_export(const masu_frame_plan *plan, uint64_t host_bytes, masu_memory *out) {
+    memset(out, 0, sizeof *out);
+    out->host_bytes = host_bytes;
+    out->host_alignment = 64;
+    out->unified = (uint32_t)plan->unified;
+    for (uint32_t r = 0; r < MASU_ROLE_COUNT; r++) {
+        const masu_block_plan *b = &plan->blocks[r];
+        if (!b->bytes) continue;
+        out->roles[r] = (masu_role_need){b->bytes, b->alignment, b->type_bits, b->type,
+                                         (uint32_t)b->host_visible, (uint32_t)b->address};
+        out->device_bytes += b->bytes;
+    }
+    out->transient_unaliased = plan->transient_unaliased;
+    out->transient_aliased = plan->transient_aliased;
+    out->transient_lower_bound = plan->transient_lower_bound;
+}
+
+/* Bytes of the table's images that this plan does not have, at their size in this plan. */
+static uint64_t left_out_bytes(const masu_frame_plan *plan) {
+    VkExtent2D render = {0, 0};
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &plan->rungs[r];
+        if (rp->render_width > render.width) render.width = rp->render_width;
+        if (rp->render_height > render.height) render.height = rp->render_height;
+    }
+    uint64_t bytes = 0;
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (plan->images[i].used) continue;
+        VkExtent2D size = masu_plan_extent(plan, masu_images[i].extent, render);
+        bytes += (uint64_t)size.width * size.height * masu_format_bytes(masu_plan_format(plan, i));
+    }
+    return bytes;
+}
+
+void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
+                      masu_plan_info *out) {
+    memset(out, 0, sizeof *out);
+    out->pass_count = MASU_PASS_COUNT;
+    out->rung_count = plan->desc.rung_count;
+    for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+        masu_plan_pass *pass = &out->passes[p];
+        pass->name = masu_passes[p].name;
+        pass->why = plan->why[p];
+        if (pipeline_ns) pass->pipeline_ns = pipeline_ns[p];
+        int named = 0;
+        for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+            const masu_rung_plan *rp = &plan->rungs[r];
+            if (!masu_has_pass(&rp->active, p)) continue;
+            pass->active |= 1u << r;
+            out->rungs[r].dispatches++;
+            if (named) continue;
+            named = 1;
+            uint32_t reads = 0, writes = 0;
+            for (uint32_t a = 0; a < rp->access_count[p]; a++) {
+                const char *name = resource_name(rp->access[p][a].image);
+                if (masu_usage_writes((masu_usage)rp->access[p][a].usage)) {
+                    if (writes < 6) pass->writes[writes++] = name;
+                } else if (reads < 12) {
+                    pass->reads[reads++] = name;
+                }
+            }
+        }
+    }
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        out->rungs[r].render_width = plan->rungs[r].render_width;
+        out->rungs[r].render_height = plan->rungs[r].render_height;
+        out->rungs[r].barriers = plan->rungs[r].barriers;
+        out->rungs[r].ratio = plan->desc.governor.costs[r];
+        out->rungs[r].flip = plan->desc.flips[r];
+    }
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        const masu_image_plan *image = &plan->images[i];
+        out->images[out->image_count++] =
+            (masu_plan_image){masu_images[i].name, masu_plan_format(plan, i), image->width,
+                              image->height,       (uint32_t)image->used,     image->bytes,
+                              image->offset,       image->first,              image->last};
+    }
+    out->left_out_bytes = left_out_bytes(plan);
+}
