@@ -128,7 +128,7 @@ static void bad_input_is_one_line(void **state) {
                  {"%s --rung base --rung base --rung base --rung base --rung base --rung base "
                   "--rung base --rung base --rung base",
                   2, "more than 8"},
-                 {"%s --rung scale=2 --runs 0 --size 16x16 --positions 1", 1, "scale"},
+                 {"%s --rung scale=2 --runs 0 --size 16x16 --positions 1", 2, "scale"},
                  {"/nowhere.masu", 1, "/nowhere.masu"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char arguments[2048];
