@@ -73,7 +73,10 @@ void masu_table_number(masu_table *t, double value) {
     const masu_column *c = &t->columns[t->at];
     char *cell = t->failed ? NULL : next_cell(t);
     if (!cell) return;
-    snprintf(cell, MASU_TABLE_CELL, isnan(value) || !c->shown ? "-" : c->shown, value);
+    if (isnan(value) || !c->shown)
+        snprintf(cell, MASU_TABLE_CELL, "-");
+    else
+        snprintf(cell, MASU_TABLE_CELL, c->shown, value);
     if (c->csv && isnan(value))
         fputs(t->absent, t->csv);
     else if (c->csv)
