@@ -24,18 +24,20 @@ static masu_session s;
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* scenes/NAME.json with more members of its "sdf". */
+/* NAME.json, of scenes/ or of tests/scenes/, with more members of its "sdf". */
 static void bake_with(const char *name, const char *options) {
     static char json[1 << 15];
     char path[256], root[1024];
-    snprintf(path, sizeof path, "scenes/%s.json", name);
+    const char *folder = "scenes";
+    snprintf(path, sizeof path, "%s/%s.json", folder, name);
+    if (access(path, R_OK)) snprintf(path, sizeof path, "%s/%s.json", folder = "tests/scenes", name);
     char *text = read_file(path, NULL);
     static const char before[] = "\"source\": \"";
     char *source = strstr(text, before);
     assert_non_null(source);
     assert_non_null(getcwd(root, sizeof root));
-    snprintf(json, sizeof json, "%.*s%s%s%s/scenes/%s", (int)(source - text), text, options, before, root,
-             source + strlen(before));
+    snprintf(json, sizeof json, "%.*s%s%s%s/%s/%s", (int)(source - text), text, options, before, root,
+             folder, source + strlen(before));
     free(text);
     bake_scene(name, json);
 }
