@@ -20,6 +20,9 @@ BUILD  ?= build
 else
 BUILD  ?= build/$(config)
 endif
+# Headers made of shaders and tables, and baked scenes: no compiler of C changes them. MADE=build takes those of
+# the main build, as they are.
+MADE   ?= $(BUILD)
 CC     := $(if $(filter default,$(origin CC)),gcc,$(CC))
 CXX    := $(if $(filter default,$(origin CXX)),g++,$(CXX))
 PREFIX ?= /usr/local
@@ -28,6 +31,7 @@ WORLD  ?= engine
 SIZE   ?= 1920x1080
 DRIVERS ?= system
 FULL   ?=
+LONG   ?=
 
 # ---- Flags ---------------------------------------------------------------------------------------
 
@@ -45,7 +49,7 @@ endif
 # where that is possible, so a*b+c has to mean the same with every compiler.
 WARNINGS   := -Wall -Wextra -Wpedantic -Wvla -Wdouble-promotion
 WARNINGS   += $(if $(filter-out 0,$(WERROR)),-Werror)
-INCLUDES   := -Iinclude -Isrc -Iplatform -Itools -Ishaders -Itests -I$(BUILD)/gen
+INCLUDES   := -Iinclude -Isrc -Iplatform -Itools -Ishaders -Itests -I$(MADE)/gen
 ALL_FLAGS   = -std=c11 $(WARNINGS) $(CONFIG_$(config)) -ffp-contract=off $(INCLUDES) $(CFLAGS)
 LINK_FLAGS  = $(filter -fsanitize=% --coverage,$(CONFIG_$(config))) $(LDFLAGS)
 
@@ -85,7 +89,7 @@ define link
 $(V)$(CC) $(LINK_FLAGS) $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LIBS) -o $@
 endef
 
--include $(shell find $(BUILD)/obj $(BUILD)/gen -name '*.d' 2> /dev/null)
+-include $(shell find $(BUILD)/obj $(MADE)/gen -name '*.d' 2> /dev/null)
 
 .PHONY: force
 force:
@@ -127,7 +131,7 @@ hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmode
 	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
 
 .PHONY: check check-built unit gpu stiff fuzz coverage
-check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=
+check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=, LONG=
 	+$(V)$(more) check-built
 
 check-built: all scenes $(BUILD)/bin/masu-world $(UNIT_TESTS) $(GPU_TESTS) $(FUZZ_TESTS) $(DRIVER_INFO)
@@ -233,8 +237,8 @@ install-data: $(SUITES) ## install the suites of masu conform, and the scenes of
 	$(V)install -d "$(root)/share/masu/suites"
 	$(V)install -m 644 $(SUITES) "$(root)/share/masu/suites"
 	$(V)missing=; for s in $(SMOKE_SCENES); do \
-	    if [ -f $(BUILD)/scenes/$$s.masu ]; then install -d "$(root)/share/masu/scenes" && \
-	        install -m 644 $(BUILD)/scenes/$$s.masu "$(root)/share/masu/scenes" || exit 1; \
+	    if [ -f $(MADE)/scenes/$$s.masu ]; then install -d "$(root)/share/masu/scenes" && \
+	        install -m 644 $(MADE)/scenes/$$s.masu "$(root)/share/masu/scenes" || exit 1; \
 	    else missing="$$missing $$s"; fi; \
 	done; [ -z "$$missing" ] || \
 	    echo "masu: not baked, so not installed:$$missing; 'make scenes install' gives masu conform its scenes"

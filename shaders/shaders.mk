@@ -21,7 +21,7 @@ SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
 # What follows from the rows of the frame's tables: bindings and push constants (tables.h), every shader's
 # permutations and how each is compiled. Rows are read by awk: nothing is compiled for it.
 TABLE_ROWS := shaders/tables.sh $(addprefix src/plan/,passes.inc axes.inc buffers.inc)
-$(BUILD)/gen/tables.h $(BUILD)/gen/permutations.h: $(BUILD)/gen/%.h: $(TABLE_ROWS)
+$(MADE)/gen/tables.h $(MADE)/gen/permutations.h: $(MADE)/gen/%.h: $(TABLE_ROWS)
 	@mkdir -p $(@D)
 	$(V)shaders/tables.sh $* > $@
 
@@ -31,18 +31,20 @@ PERMUTATIONS := $(filter-out %:,$(shell shaders/tables.sh builds))
 PERMUTATIONS += trace_rays_counted_comp:trace_rays.comp:MASU_TRACE_COUNTERS
 
 # dir/NAME.STAGE is NAME_STAGE
-SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(BUILD)/gen/$(subst .,_,$(s)).spv.h)
-SPIRV_HEADERS += $(foreach b,$(PERMUTATIONS),$(BUILD)/gen/$(firstword $(subst :, ,$(b))).spv.h)
-GENERATED     := $(SPIRV_HEADERS) $(BUILD)/gen/tables.h $(BUILD)/gen/permutations.h $(BUILD)/gen/scene_sources.h $(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h
+SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(MADE)/gen/$(subst .,_,$(s)).spv.h)
+SPIRV_HEADERS += $(foreach b,$(PERMUTATIONS),$(MADE)/gen/$(firstword $(subst :, ,$(b))).spv.h)
+# The slow ones first: nothing is compiled before the last of them is there.
+GENERATED     := $(patsubst %,$(MADE)/gen/%.h,blue_noise split_sum smaa_area tables permutations scene_sources)
+GENERATED     += $(SPIRV_HEADERS)
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
 # $(1) the result without .spv (% for any), $(2) its source, $(3) macros or nothing
 define shader_rule
-$(BUILD)/gen/$(1).spv: $(2) | $(BUILD)/gen/tables.h
+$(MADE)/gen/$(1).spv: $(2) | $(MADE)/gen/tables.h
 	@mkdir -p $$(@D)
 	@echo "  GLSL    $$<"
-	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3))) -Ishaders -I$(BUILD)/gen \
+	$$(V)glslangValidator --quiet -V $(SPIRV_TARGET) $(addprefix -D,$(subst +, ,$(3))) -Ishaders -I$(MADE)/gen \
 	    --depfile $$(@:.spv=.d) -o $$@ $$<
 	$$(V)sed -n 's/^[^:]*: *//p' $$(@:.spv=.d) | tr -s ' ' '\n' | \
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
@@ -53,20 +55,20 @@ field = $(word $(2),$(subst :, ,$(1)))
 $(foreach b,$(PERMUTATIONS),$(eval $(call \
     shader_rule,$(call field,$(b),1),shaders/$(call field,$(b),2),$(call field,$(b),3))))
 
-$(BUILD)/gen/%.opt.spv: $(BUILD)/gen/%.spv
+$(MADE)/gen/%.opt.spv: $(MADE)/gen/%.spv
 	$(V)spirv-opt --target-env=vulkan1.1 -O --strip-debug $< -o $@
 	$(V)spirv-val $(SPIRV_TARGET) $@
 
-$(BUILD)/gen/%.spv.h: $(BUILD)/gen/%.opt.spv
+$(MADE)/gen/%.spv.h: $(MADE)/gen/%.opt.spv
 	$(V){ echo '/* Made from $*. */'; echo 'static const uint32_t masu_spv_$*[] = {'; \
 	    od -An -v -tx4 -w32 $< | sed 's/ \([0-9a-f]*\)/0x\1,/g'; echo '};'; } > $@
 
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;
 # hence the pragmas.
-SCENE_TEXTS := $(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h shaders/*/*.glsl) $(BUILD)/gen/tables.h
+SCENE_TEXTS := $(wildcard $(addprefix shaders/,$(SCENE_SHADERS)) shaders/*/*.h shaders/*/*.glsl) $(MADE)/gen/tables.h
 
-$(BUILD)/gen/scene_sources.h: $(SCENE_TEXTS) $(BUILD)/gen/scene_texts.list
+$(MADE)/gen/scene_sources.h: $(SCENE_TEXTS) $(MADE)/gen/scene_texts.list
 	$(V){ echo '/* Made from $(SCENE_TEXTS). */'; \
 	    echo '#pragma GCC diagnostic push'; \
 	    echo '#pragma GCC diagnostic ignored "-Woverlength-strings"'; \
@@ -75,24 +77,24 @@ $(BUILD)/gen/scene_sources.h: $(SCENE_TEXTS) $(BUILD)/gen/scene_texts.list
 	    echo '    const char *text;'; \
 	    echo '} masu_scene_sources[] = {'; \
 	    for f in $(SCENE_TEXTS); do \
-	        name=$${f#shaders/}; echo "    {\"$${name#$(BUILD)/gen/}\","; \
+	        name=$${f#shaders/}; echo "    {\"$${name#$(MADE)/gen/}\","; \
 	        sed -e 's/[\\"?]/\\&/g' -e 's/.*/     "&\\n"/' "$$f"; echo '     ""},'; \
 	    done; \
 	    echo '};'; \
 	    echo '#pragma GCC diagnostic pop'; } > $@
 
 # Changes when a text comes or goes.
-$(BUILD)/gen/scene_texts.list: force
+$(MADE)/gen/scene_texts.list: force
 	@mkdir -p $(@D)
 	@echo '$(SCENE_TEXTS)' | cmp -s - $@ || echo '$(SCENE_TEXTS)' > $@
 
 # The tables of shaders/brdf and the tile of shaders/noise. Objects wait for what is generated, so these
 # programs have none; the tables take 5 s, and minutes without -O2.
-$(BUILD)/tools/make_%: tools/generate/make_%.c shaders/shared/masu_shared.h $(BUILD)/gen/tables.h
+$(MADE)/tools/make_%: tools/generate/make_%.c shaders/shared/masu_shared.h $(MADE)/gen/tables.h
 	@mkdir -p $(@D)
-	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(BUILD)/gen $< -lm -o $@
-$(BUILD)/tools/make_smaa_area: tools/generate/smaa_tables.h
-$(BUILD)/gen/split_sum.h $(BUILD)/gen/blue_noise.h $(BUILD)/gen/smaa_area.h: $(BUILD)/gen/%.h: $(BUILD)/tools/make_%
+	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(MADE)/gen $< -lm -o $@
+$(MADE)/tools/make_smaa_area: tools/generate/smaa_tables.h
+$(MADE)/gen/split_sum.h $(MADE)/gen/blue_noise.h $(MADE)/gen/smaa_area.h: $(MADE)/gen/%.h: $(MADE)/tools/make_%
 	@mkdir -p $(@D)
 	@echo "  TABLE   $@"
 	$(V)$< > $@

@@ -14,10 +14,11 @@
 # MASU_REQUIRE_DRIVERS=1   a driver that is not there, and a test that is skipped, is a failure
 # MASU_TEST_TIMEOUT=600    seconds for each program; three times as many for tests/full, which builds the
 #                          tree anew
+# LONG=1                   tests that try many of a kind try all; CI does not
 # MASU_TEST_JOBS=N         programs at a time; as many as there are processors unless told: most of a
 #                          program's time goes into compiling shaders, which one thread does
 #
-# A test runs in the root of the tree and sees BUILD, MASU_EXPECT_DIR and, with a driver,
+# A test runs in the root of the tree and sees BUILD, MADE, MASU_EXPECT_DIR and, with a driver,
 # MASU_TEST_DRIVER, MASU_DRIVER_INFO (one line: name and version), VK_DRIVER_FILES.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
@@ -32,7 +33,7 @@ drivers=${DRIVERS:-system}
 [ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
 jobs=${MASU_TEST_JOBS:-$(nproc)}
 
-export BUILD=$build MASU_EXPECT_DIR=tests/expect
+export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
 export CMOCKA_MESSAGE_OUTPUT=stdout
 # Scripts that call make again start from a clean slate, not inside the make that runs this.
 unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
@@ -98,6 +99,8 @@ run() {
     local kind=$1 driver=$2 program=$3
     local name log rc seconds user system cpu word test verdict=ok trouble='' ended='' died='' fault
     local p=0 f=0 s=0 k=0 tests=() notes=() arguments=()
+    # shellcheck disable=SC1090
+    [ "$kind" != gpu ] || . "$results/$driver.env"
     name=$(basename "$program" .sh)
     log=$results/$driver/$name.log
     mkdir -p "$results/$driver"
@@ -243,16 +246,14 @@ for kind in script fuzz; do
     done
 done
 
+# The environment of each driver is found once, in a shell of its own: what one sets, the next does not
+# see. Then nothing waits for the last program of a driver.
 if [ "${programs[gpu]}" ]; then
     for driver in $drivers; do
-        # A shell for each driver: what one sets, the next does not see.
         (
             if use "$driver"; then
                 echo "  driver $driver: $MASU_DRIVER_INFO"
-                for program in ${programs[gpu]}; do
-                    start gpu "$driver" "$program"
-                done
-                wait
+                export -p > "$results/$driver.env"
             elif [ "$require" ]; then
                 echo "  FAIL  driver $driver: $reason"
                 mkdir -p "$results/$driver" && echo 0 1 0 0 > "$results/$driver/missing.counts"
@@ -262,7 +263,12 @@ if [ "${programs[gpu]}" ]; then
                     echo 0 0 "$(wc -w <<< "${programs[gpu]}")" 0 > "$results/$driver/missing.counts"
             fi
         )
+        [ -e "$results/$driver.env" ] || continue
+        for program in ${programs[gpu]}; do
+            start gpu "$driver" "$program"
+        done
     done
+    wait
 fi
 read -r passed failed skipped known < <(cat "$results"/*/*.counts 2> /dev/null |
     awk '{ p += $1; f += $2; s += $3; k += $4 } END { print p + 0, f + 0, s + 0, k + 0 }')

@@ -9,7 +9,7 @@
 #   tests/support/*.c         what several tests need
 #   tests/reference/*.c       what shaders do, again: in C, in double precision
 #   tests/scenes/NAME.json    a scene for tests, baked to $(BUILD)/scenes
-#   tests/scenes/stiff/NAME.json     a scene with NAME.sdf beside it, baked to $(BUILD)/stiff for test_stiff,
+#   tests/scenes/stiff/NAME.json     a scene with NAME.sdf beside it, baked to $(MADE)/stiff for test_stiff,
 #                             with its truth in double precision
 
 # TESTS="arena frame" leaves only those.
@@ -47,20 +47,20 @@ $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 	$(link)
 
 # The folder of masu bench.
-$(BUILD)/tests/gpu/test_bench: | $(BUILD)/stiff/blend.masu $(BUILD)/stiff/blend.truth.so
+$(BUILD)/tests/gpu/test_bench: | $(MADE)/stiff/blend.masu $(MADE)/stiff/blend.truth.so
 
 # ---- Stiff and extreme scenes --------------------------------------------------------------------
 
-STIFF := $(patsubst tests/scenes/stiff/%.json,$(BUILD)/stiff/%.masu,$(wildcard tests/scenes/stiff/*.json))
+STIFF := $(patsubst tests/scenes/stiff/%.json,$(MADE)/stiff/%.masu,$(wildcard tests/scenes/stiff/*.json))
 
-$(BUILD)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(BUILD)/bin/masu-bake
+$(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
-	$(V)$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $< -o $@ --quiet
+	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
 
-$(BUILD)/stiff/%.truth.c: tests/scenes/stiff/%.sdf $(BUILD)/bin/masu-sdfc
+$(MADE)/stiff/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
 	@mkdir -p $(@D)
-	$(V)$(BUILD)/bin/masu-sdfc $< --c $@ --quiet
+	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
 
 $(BUILD)/tests/gpu/test_stiff $(BUILD)/tests/gpu/test_specular_sdf: | $(STIFF) $(STIFF:.masu=.truth.so)
 
@@ -100,8 +100,8 @@ fuzz-%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(TEST_ARCHIVES) $(FUZZ_SEEDS_$(FUZZ))
 SANITIZER_ENV := LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp:print_suppressions=0
 
 fuzz_seeds = SEEDS_$(notdir $(1))='$(FUZZ_SEEDS_$(patsubst fuzz_%,%,$(notdir $(1))))'
-RUN_TESTS  = $(SANITIZER_ENV) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' config='$(config)' \
-    WERROR='$(WERROR)' DRIVERS='$(DRIVERS)' $(foreach t,$(FUZZ_TESTS),$(call fuzz_seeds,$(t))) \
+RUN_TESTS  = $(SANITIZER_ENV) CC='$(CC)' CXX='$(CXX)' BUILD='$(BUILD)' MADE='$(MADE)' config='$(config)' \
+    WERROR='$(WERROR)' DRIVERS='$(DRIVERS)' LONG='$(LONG)' $(foreach t,$(FUZZ_TESTS),$(call fuzz_seeds,$(t))) \
     tests/run.sh
 RUN_UNIT   = --unit $(UNIT_TESTS) --script $(SCRIPT_TESTS) --fuzz $(FUZZ_TESTS)
 RUN_GPU    = --gpu $(GPU_TESTS)

@@ -57,23 +57,23 @@ docs-tables: $(BUILD)/bin/masu ## write docs/knobs.md: every knob of a rung, eve
 # Those worth looking at are in scenes/, those of the tests in tests/scenes/; their blobs lie side by
 # side. A scene is baked again when any file of its folder changes: descriptions name models and GLSL
 # that lie beside them.
-SCENES := $(patsubst %.json,$(BUILD)/scenes/%.masu,$(notdir $(wildcard scenes/*.json tests/scenes/*.json)))
+SCENES := $(patsubst %.json,$(MADE)/scenes/%.masu,$(notdir $(wildcard scenes/*.json tests/scenes/*.json)))
 
 define scene_rule
-$(BUILD)/scenes/%.masu: $(1)/%.json $(BUILD)/bin/masu-bake $(wildcard $(1)/*.*) $(BUILD)/textures/made
+$(MADE)/scenes/%.masu: $(1)/%.json $(MADE)/bin/masu-bake $(wildcard $(1)/*.*) $(MADE)/textures/made
 	@mkdir -p $$(@D)
 	@echo "  BAKE    $$<"
-	$$(V)$$(SANITIZER_ENV) $(BUILD)/bin/masu-bake $$< -o $$@ --texture-path $(BUILD)/textures
+	$$(V)$$(SANITIZER_ENV) $(MADE)/bin/masu-bake $$< -o $$@ --texture-path $(MADE)/textures
 endef
 $(foreach f,scenes tests/scenes,$(eval $(call scene_rule,$(f))))
 
 # The pictures that scenes/textures.json and the tests place: made here, by formula.
 # stb's JPEG writer shifts bits out of signed integers.
-$(BUILD)/obj/tools/generate/make_textures.o: FOLDER_FLAGS += -fno-sanitize=shift
-$(BUILD)/tools/make_textures: LIBS = -lm
-$(BUILD)/tools/make_textures: $(BUILD)/obj/tools/generate/make_textures.o
+$(MADE)/obj/tools/generate/make_textures.o: FOLDER_FLAGS += -fno-sanitize=shift
+$(MADE)/tools/make_textures: LIBS = -lm
+$(MADE)/tools/make_textures: $(MADE)/obj/tools/generate/make_textures.o
 	$(link)
-$(BUILD)/textures/made: $(BUILD)/tools/make_textures
+$(MADE)/textures/made: $(MADE)/tools/make_textures
 	@mkdir -p $(@D)
 	$(V)$< $(@D)
 	$(V)touch $@

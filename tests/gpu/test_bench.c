@@ -292,7 +292,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
 static void ways_to_march_have_rows_where_the_blob_has_their_code(void **state) {
     (void)state;
     char path[512];
-    snprintf(path, sizeof path, "%s/stiff/blend.masu", build_dir());
+    snprintf(path, sizeof path, "%s/stiff/blend.masu", made_dir());
     assert_int_equal(bench("%s --size 64x36 --positions 1 --runs 1 --shard 0/999 --out %s/few",
                            scene_path("test_both"), scratch),
                      0);

@@ -22,7 +22,7 @@ static void write_suite(const char *cases) {
 static int conform(const char *format, ...) {
     char command[256];
     va_list args;
-    snprintf(command, sizeof command, "conform --scenes %s/scenes", build_dir());
+    snprintf(command, sizeof command, "conform --scenes %s/scenes", made_dir());
     va_start(args, format);
     int code = cli_run_list(command, format, args);
     va_end(args);

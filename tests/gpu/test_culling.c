@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { W = 64, H = 40, BYTES = W * H * 4, FRAMES = 600 };
+enum { W = 64, H = 40, BYTES = W * H * 4 };
 
 static uint8_t pixels[4][BYTES];
 
@@ -103,7 +103,7 @@ static void the_picture_is_the_same_without_culling(void **state) {
     d.host.validate = false; /* the long path; the others have the layers */
     open_session(&s, &d);
     assert_true(s.scene.groups > 5);
-    compare_path(&s, FRAMES, 0);
+    compare_path(&s, trials(600, 180), 0);
     close_session(&s);
 }
 
@@ -112,7 +112,7 @@ static void what_moves_is_culled_where_it_is(void **state) {
     masu_session_desc d = town_desc();
     masu_session s;
     open_session(&s, &d);
-    compare_path(&s, FRAMES / 5, 1);
+    compare_path(&s, trials(120, 60), 1);
     close_session(&s);
 }
 
@@ -228,12 +228,14 @@ static void shadows_are_the_same_without_culling(void **state) {
     (void)state;
     uint64_t every[WAYS], slow[WAYS];
     bake_shadows();
-    compare_shadows(180, (const uint32_t[3]){1, 1, 1}, every);
-    compare_shadows(90, (const uint32_t[3]){2, 3, 5}, slow);
+    const uint32_t frames = trials(180, 60), slow_frames = 60;
+    compare_shadows(frames, (const uint32_t[3]){1, 1, 1}, every);
+    compare_shadows(slow_frames, (const uint32_t[3]){2, 3, 5}, slow);
     assert_true(every[FRUSTUM] < every[NEITHER] * 9 / 10);
     assert_true(every[BOTH] < every[FRUSTUM]);
     assert_true(every[OCCLUSION] < every[NEITHER]);
-    assert_true(slow[NEITHER] > 0 && slow[NEITHER] < every[NEITHER] / 2);
+    /* A frame's; a sun that jumps has slow cascades drawn more often than they ask. */
+    assert_true(slow[NEITHER] > 0 && 4 * slow[NEITHER] * frames < 3 * every[NEITHER] * slow_frames);
 }
 
 int main(void) {

@@ -125,10 +125,11 @@ static const struct {
     const char *scene;
     double radius; /* of the sun, degrees */
     double sun, sun_most, ambient, ambient_most;
-} stated[] = {{"spheres", 0.27, 0.02, 0.4, 0.03, 0.2}, {"spheres", 2, 0.015, 0.2, 0.03, 0.2},
-              {"city", 0.27, 0.05, 0.9, 0.05, 0.4},    {"city", 2, 0.03, 0.3, 0.05, 0.4},
-              {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4},   {"blobs", 2, 0.03, 0.3, 0.06, 0.4},
-              {"tunnel", 0.27, 0.02, 0.3, 0.05, 0.4}};
+    bool rare; /* with LONG=1 alone */
+} stated[] = {{"spheres", 0.27, 0.02, 0.4, 0.03, 0.2, false}, {"spheres", 2, 0.015, 0.2, 0.03, 0.2, true},
+              {"city", 0.27, 0.05, 0.9, 0.05, 0.4, true},     {"city", 2, 0.03, 0.3, 0.05, 0.4, false},
+              {"blobs", 0.27, 0.03, 0.5, 0.06, 0.4, false},   {"blobs", 2, 0.03, 0.3, 0.06, 0.4, true},
+              {"tunnel", 0.27, 0.02, 0.3, 0.05, 0.4, false}};
 
 static void the_error_against_the_truth_is_as_stated(void **state) {
     (void)state;
@@ -136,6 +137,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
     int failed = 0;
     for (size_t i = 0; i < sizeof stated / sizeof *stated; i++) {
         const char *name = stated[i].scene;
+        if (stated[i].rare && !long_run()) continue;
         char options[256], path[256], error[ERROR_SIZE];
         snprintf(options, sizeof options,
                  "\"shadows\": {\"sun_radius\": %g}, \"ambient_occlusion\": {}, ", stated[i].radius);
@@ -157,9 +159,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
         stats = stats_of(&s, 0);
         look_at(name, &camera, &view);
-        int both = i == 0 || strcmp(name, stated[i - 1].scene) != 0;
-        compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), 5, &sun,
-                both ? &ambient : NULL);
+        compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), trials(5, 7), &sun, &ambient);
         close_session(&s);
         masu_truth_close(&truth);
         print_message("%-8s %.2f: sun %.3f most %.2f wrong %u of %u, ambient %.3f most %.2f of %u, "
@@ -168,7 +168,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
                       rmse(&ambient), ambient.most, ambient.count, (double)stats.sdf_evals / (W * H),
                       (double)stats.shadow_evals / (W * H), (double)stats.occlusion_evals / (W * H),
                       (unsigned long long)stats.shadow_unconverged);
-        assert_true(sun.count > 100 && (ambient.count > 200 || !both));
+        assert_true(sun.count > 100 && ambient.count > 150);
         failed |= !(rmse(&sun) <= stated[i].sun && sun.most <= stated[i].sun_most);
         failed |= !(rmse(&ambient) <= stated[i].ambient && ambient.most <= stated[i].ambient_most);
         failed |= sun.wrong * 100 > sun.count; /* at most 1 % */
@@ -209,6 +209,7 @@ static void nothing_shadows_itself(void **state) {
                                          "part a = rotate_euler((0.3, 0.5, 0.2), box((k, 2 * k, k)));"};
     for (int i = 0; i < 6; i++) {
         const double scale = scales[i % 2];
+        if (i % 4 == 0 && !long_run()) continue; /* the first two small ones */
         char options[128];
         snprintf(options, sizeof options, "\"shadows\": {}, \"ambient_occlusion\": {\"radius\": %g}",
                  scale);
@@ -269,6 +270,7 @@ static void lists_leave_out_nothing_that_matters(void **state) {
     static const char *const scenes[] = {"city", "blobs", "parts300"};
     static uint32_t listed[W * H];
     for (int i = 0; i < 3; i++) {
+        if (i == 1 && !long_run()) continue;
         bake_with(scenes[i], "\"shadows\": {\"sun_radius\": 1}, \"ambient_occlusion\": {}, ");
         masu_stats_info stats[2];
         uint32_t sun = 0, ambient = 0, surface = 0;
@@ -361,6 +363,7 @@ static void extremes_give_finite_pixels(void **state) {
         "1e-3}, "};
     static const char *const scenes[] = {"test_broken_field", "spheres", "test_both"};
     for (int i = 0; i < 6; i++) {
+        if ((i == 2 || i == 5) && !long_run()) continue;
         bake_with(scenes[i / 2], options[i % 2]);
         open_scene(scenes[i / 2], 64, 48, 0);
         draw_once();

@@ -90,7 +90,7 @@ occluders 2 "$(model ', "occluder": true'), {\"mesh\": {\"box\": {\"size\": [2, 
 block='{"file": "'$PWD'/scenes/block.obj", "occluder": [[-0.5, 0, -0.5], [0.5, 1, 0.5]]}'
 occluders 1 "$block, $block" # one mesh
 # What one can look through hides nothing, and a warning says so, once for each mesh.
-leaf='"base_color_map": "'$(realpath "${BUILD:-build}")'/textures/leaf.tga"'
+leaf='"base_color_map": "'$(realpath "${MADE:-build}")'/textures/leaf.tga"'
 seen_through() { # COUNT MODELS: so many warnings, no occluders
     occluders 0 "$2"
     [ "$(grep -c 'warning: the mesh .* is masked or blended: it is no occluder' "$folder/err")" = "$1" ] ||
@@ -109,14 +109,14 @@ refuses 'occluder' "$(model ', "occluder": 7')"
 refuses 'occluder' "$(model ', "occluder": [[0, 0, 0]]')"
 
 # The bench sees the same scene, and the tree saves tests. Times are nobody's business here.
-"$bin/masu" study cull "${BUILD:-build}/scenes/test_town.masu" --frames 20 --json > "$folder/b" ||
+"$bin/masu" study cull "${MADE:-build}/scenes/test_town.masu" --frames 20 --json > "$folder/b" ||
     fail "study cull fails"
 value() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$folder/b"; }
 [ "$(value boxes)" = 211 ] || fail "study cull: $(value boxes) boxes"
 [ "$(value plane_tests)" -lt "$(value plane_tests_one_by_one)" ] || fail "study cull: more tests"
 "$bin/masu" study cull --boxes 500 --frames 5 | grep -q '^500 boxes in [0-9]* groups, 5 frames' ||
     fail "study cull --boxes 500"
-"$bin/masu" study cull "${BUILD:-build}/scenes/spheres.masu" 2> "$folder/err" &&
+"$bin/masu" study cull "${MADE:-build}/scenes/spheres.masu" 2> "$folder/err" &&
     fail "study cull takes a scene without instances"
 grep -q 'no instances' "$folder/err" || fail "study cull: $(cat "$folder/err")"
 

@@ -4,9 +4,8 @@
 # names the file, and its material has its factors alone.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
-build=$(realpath "${BUILD:-build}")
-bake=$build/bin/masu-bake
-pictures=$build/textures
+bake=$(realpath "${BUILD:-build}/bin/masu-bake")
+pictures=$(realpath "${MADE:-build}/textures")
 models=/usr/share/assimp/models
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

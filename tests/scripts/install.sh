@@ -14,7 +14,7 @@ make --no-print-directory install DESTDIR="$stage" PREFIX=$prefix > "$folder/sai
 smoke=$(sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json | sort -u)
 scenes=
 for s in $smoke; do
-    if [ -f "${BUILD:-build}/scenes/$s.masu" ]; then
+    if [ -f "${MADE:-build}/scenes/$s.masu" ]; then
         scenes="$scenes$(printf '\n%s' ".$prefix/share/masu/scenes/$s.masu")"
     else
         grep -q "not baked.* $s" "$folder/said" || { echo "nothing is said about $s"; exit 1; }

@@ -15,23 +15,24 @@ LONG=700
 
 # includes SRC: "module module" for each include of a file of SRC by another
 includes() {
-    (cd "$1" && find . -name '*.[ch]' -o -name '*.inc' | sed 's|^\./||' | sort) | while read -r file; do
-        sed -n 's/^[[:space:]]*#[[:space:]]*include "\([^"]*\)".*/\1/p' "$1/$file" |
-            while read -r other; do
-                [ -f "$1/$other" ] && [ "${file%.*}" != "${other%.*}" ] &&
-                    echo "${file%.*} ${other%.*}"
-            done
-    done | sort -u
+    (cd "$1" && find . -name '*.[ch]' -o -name '*.inc' | sed 's|^\./||' | sort > "$folder/files" &&
+        xargs -r awk '
+            function module(file) { sub(/\.[^.\/]*$/, "", file); return file }
+            FILENAME == list { is[$0]; next }
+            /^[[:space:]]*#[[:space:]]*include "/ {
+                split($0, part, "\"")
+                if (part[2] in is && module(FILENAME) != module(part[2]))
+                    print module(FILENAME), module(part[2])
+            }' list="$folder/files" "$folder/files" < "$folder/files") | sort -u
 }
 
 # calls SRC OBJECTS: the same for each function or table that an object needs of another. Objects of
 # sources that are no more do not count.
 calls() {
-    (cd "$1" && find . -name '*.c' | sed 's|^\./||;s|\.c$||' | sort) | while read -r module; do
-        nm "$2/$module.o" | awk -v m="$module" '
-            NF == 2 && $1 == "U" { print "needs", $2, m }
-            NF == 3 && $2 ~ /[TDBRVW]/ { print "has", $3, m }'
-    done | awk '
+    (cd "$1" && find . -name '*.c' | sed 's|^\./||;s|\.c$|.o|' | sort) > "$folder/objects"
+    (cd "$2" && xargs -r nm -A < "$folder/objects") | sed 's/\.o:/ /' | awk '
+        NF == 3 && $2 == "U" { print "needs", $3, $1 }
+        NF == 4 && $3 ~ /[TDBRVW]/ { print "has", $4, $1 }' | awk '
         $1 == "has" { owner[$2] = $3 }
         $1 == "needs" { needs[++n] = $2; by[n] = $3 }
         END {
@@ -59,9 +60,8 @@ circles() { tsort 2>&1 > /dev/null | sed -n 's/^tsort: \([^ ]*\/\{0,1\}[^ ]*\)$/
 # long_files FOLDER...: those over the limit that do not say why at their head
 long_files() {
     find "$@" -type f \( -name '*.[ch]' -o -name '*.inc' -o -name '*.glsl' -o -name '*.comp' \
-        -o -name '*.vert' -o -name '*.frag' \) | sort | while read -r file; do
-        lines=$(wc -l < "$file")
-        [ "$lines" -gt "$LONG" ] || continue
+        -o -name '*.vert' -o -name '*.frag' \) | sort | xargs -r wc -l | awk -v most="$LONG" '
+        $2 != "total" && $1 > most { print $1, $2 }' | while read -r lines file; do
         head -n 12 "$file" | grep -qE 'Over 700 lines: |not to be edited' || echo "$file: $lines lines"
     done
 }

@@ -134,7 +134,7 @@ case ${config:-release} in
     *)
         library=$folder/libmasu.a
         for source in src/*.c src/*/*.c; do
-            ${CC:-gcc} -std=c11 -O2 -fPIC -Iinclude -Isrc -Ishaders -I"${BUILD:-build}/gen" \
+            ${CC:-gcc} -std=c11 -O2 -fPIC -Iinclude -Isrc -Ishaders -I"${MADE:-${BUILD:-build}}/gen" \
                 -c "$source" -o "$folder/$(basename "${source//\//_}" .c).o" || failed=1
         done
         rm "$folder/bad.o"

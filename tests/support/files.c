@@ -72,10 +72,22 @@ const char *build_dir(void) {
     return build ? build : "build";
 }
 
+const char *made_dir(void) {
+    const char *made = getenv("MADE");
+    return made ? made : build_dir();
+}
+
 const char *c_compiler(void) {
     const char *compiler = getenv("CC");
     return compiler && *compiler ? compiler : "cc";
 }
+
+bool long_run(void) {
+    const char *is = getenv("LONG");
+    return is && *is && strcmp(is, "0");
+}
+
+uint32_t trials(uint32_t all, uint32_t quick) { return long_run() ? all : quick; }
 
 int shell_list(const char *format, va_list arguments) {
     char command[8192];

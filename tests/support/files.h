@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* The scratch folder. make_scratch gives a new one; as the set-up of a group, or of each test. */
 extern char scratch[];
@@ -24,9 +25,14 @@ bool is_in_scratch(const char *name);
 /* A whole file, aligned as masu_scene_bind wants it, with a 0 behind it; free(). bytes may be NULL. */
 void *read_file(const char *path, size_t *bytes);
 
-/* $BUILD, or build; $CC, or cc. */
+/* $BUILD, or build: programs. $MADE, or that: SPIR-V in gen/, baked scenes. $CC, or cc. */
 const char *build_dir(void);
+const char *made_dir(void);
 const char *c_compiler(void);
+
+/* Whether LONG is set (make check LONG=1): every row and trial, where else a part of them stands for all. */
+bool long_run(void);
+uint32_t trials(uint32_t all, uint32_t quick); /* the first if it is, the second if not */
 
 /* Runs a command; returns its exit code. */
 int shell(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -23,7 +23,7 @@ static struct {
 
 const char *stiff_path(const char *name) {
     static char path[512];
-    snprintf(path, sizeof path, "%s/stiff/%s", build_dir(), name);
+    snprintf(path, sizeof path, "%s/stiff/%s", made_dir(), name);
     return path;
 }
 

@@ -59,7 +59,7 @@ const uint8_t *stiff_frame(masu_session *s, const stiff_case *c);
 /* The table's head. */
 void stiff_head(void);
 
-/* $BUILD/stiff/NAME, for files beside the scenes; static storage. */
+/* $MADE/stiff/NAME, for files beside the scenes; static storage. */
 const char *stiff_path(const char *name);
 
 #endif

@@ -11,7 +11,7 @@ const char *scene_path(const char *name) {
     static char paths[4][512];
     static uint32_t next;
     char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/scenes/%s.masu", build_dir(), name);
+    snprintf(path, sizeof paths[0], "%s/scenes/%s.masu", made_dir(), name);
     return path;
 }
 

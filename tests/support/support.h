@@ -17,7 +17,7 @@
 
 #define ERROR_SIZE 1024u
 
-/* $BUILD/scenes/NAME.masu; static storage, four names at a time. */
+/* $MADE/scenes/NAME.masu; static storage, four names at a time. */
 const char *scene_path(const char *name);
 
 /* A description with validation, counters and a storage target. scene may be NULL. */

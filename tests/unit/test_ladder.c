@@ -295,7 +295,7 @@ static void every_ladder_fits_every_baked_scene(void **state) {
     char pattern[512], error[1024];
     glob_t found;
     uint32_t scenes = 0, classes = 0;
-    snprintf(pattern, sizeof pattern, "%s/scenes/*.masu", build_dir());
+    snprintf(pattern, sizeof pattern, "%s/scenes/*.masu", made_dir());
     assert_int_equal(glob(pattern, 0, NULL, &found), 0);
     for (size_t i = 0; i < found.gl_pathc; i++) {
         uint8_t *bytes;

@@ -29,7 +29,7 @@
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 #define SETS_MOST 3u
 
-/* Paths that fit a pattern below $BUILD, or below the root of the tree; at least one. */
+/* Paths that fit a pattern below $MADE, or below the root of the tree; at least one. */
 static glob_t find(const char *root, const char *pattern) {
     char path[512];
     glob_t found;
@@ -221,7 +221,7 @@ static void every_shader_of_the_library_passes(void **state) {
         const char *name = sources.gl_pathv[i] + strlen("shaders/");
         size_t stem = strcspn(name, ".");
         char path[512];
-        (void)snprintf(path, sizeof path, "%s/gen/%.*s_%s.spv", build_dir(), (int)stem, name,
+        (void)snprintf(path, sizeof path, "%s/gen/%.*s_%s.spv", made_dir(), (int)stem, name,
                        name + stem + 1);
         spirv_module m;
         if (needs_a_field(name)) continue; /* below */
@@ -236,7 +236,7 @@ static void every_shader_of_the_library_passes(void **state) {
     for (size_t i = 0; i < COUNT(second); i++) {
         spirv_module m;
         char path[512];
-        (void)snprintf(path, sizeof path, "%s/gen/%s.spv", build_dir(), second[i]);
+        (void)snprintf(path, sizeof path, "%s/gen/%s.spv", made_dir(), second[i]);
         if (!spirv_from_file(path, &m)) fail_msg("%s is missing or no SPIR-V", path);
         loops += assert_passes(&m, second[i]);
         spirv_free(&m);
@@ -285,7 +285,7 @@ static uint32_t assert_scene_shaders_pass(const char *field, int dynamic) {
             (void)snprintf(name, sizeof name, "%s %s with %s", scene_shaders[i].source,
                            scene_shaders[i].define, field);
             (void)snprintf(options, sizeof options, "-Ishaders -I%s/gen -I. -I%s -DMASU_HAS_RASTER=%d %s",
-                           build_dir(), scratch, raster, scene_shaders[i].define);
+                           made_dir(), scratch, raster, scene_shaders[i].define);
             if (!spirv_compile(path, options, &m)) fail_msg("%s does not compile", name);
             uint32_t found = assert_passes(&m, name);
             if (found < scene_shaders[i].loops) fail_msg("%s: %u loops only", name, found);
@@ -335,7 +335,7 @@ static size_t march_words(const char *sdf, uint32_t *loops) {
                            sdf),
                      0);
     (void)snprintf(options, sizeof options, "-Ishaders -I%s/gen -I%s -DMASU_HAS_RASTER=0",
-                   build_dir(), scratch);
+                   made_dir(), scratch);
     assert_true(spirv_compile("shaders/march.comp", options, &m));
     size_t words = m.word_count;
     *loops = assert_passes(&m, sdf);
@@ -366,7 +366,7 @@ static void a_march_has_the_code_that_its_scene_needs(void **state) {
 
 static void the_code_in_every_baked_scene_passes(void **state) {
     (void)state;
-    glob_t scenes = find(build_dir(), "scenes/*.masu");
+    glob_t scenes = find(made_dir(), "scenes/*.masu");
     uint32_t loops = 0, modules = 0;
     for (size_t i = 0; i < scenes.gl_pathc; i++) {
         uint8_t *bytes;

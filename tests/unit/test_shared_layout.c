@@ -97,7 +97,7 @@ static glob_t shaders; /* the library's, with debug names */
 static int find_shaders(void **state) {
     (void)state;
     char pattern[512];
-    (void)snprintf(pattern, sizeof pattern, "%s/gen/*_????.spv", build_dir());
+    (void)snprintf(pattern, sizeof pattern, "%s/gen/*_????.spv", made_dir());
     return glob(pattern, 0, NULL, &shaders);
 }
 

@@ -51,6 +51,8 @@ typedef struct problem {
     double weight[MASU_MESO_VIEWS_MAX], plain[MASU_MESO_VIEWS_MAX];
     size_t residuals;
     numbers start;
+    /* Toward the setup's lights and the near ones: fixed, and asked for in every evaluation. */
+    masu_meso_vec3 light[MASU_MESO_LIGHTS_MAX], near_light[MASU_MESO_NEAR_LIGHTS_MAX];
 } problem;
 
 static size_t far_count(const masu_meso_samples *s) {
@@ -87,8 +89,7 @@ static double *far_residuals(const problem *p, double *r) {
         masu_meso_add_sky(&p->shader, &seen, v, MASU_MESO_SKY, sky);
         for (uint32_t j = 0; j < s->setup->light_count; j++) {
             double got[3] = {sky[0], sky[1], sky[2]};
-            masu_meso_add_sun(&p->shader, &seen, v,
-                              masu_meso_light_direction(&s->setup->light[j], 0, 1), got);
+            masu_meso_add_sun(&p->shader, &seen, v, p->light[j], got);
             for (int k = 0; k < 3; k++) {
                 *r++ = (got[k] - view->sun[j][k] - MASU_MESO_SKY * view->sky[k]) / mean;
             }
@@ -146,8 +147,7 @@ static double *near_residuals(const problem *p, double weight, double *r) {
         masu_meso_add_sky(&p->shader, &seen, v, MASU_MESO_SKY, sky);
         for (uint32_t j = 0; j < s->near_count; j++) {
             double got[3] = {sky[0], sky[1], sky[2]};
-            masu_meso_add_sun(&p->shader, &seen, v,
-                              masu_meso_light_direction(&s->near_light[j], 0, 1), got);
+            masu_meso_add_sun(&p->shader, &seen, v, p->near_light[j], got);
             for (int k = 0; k < 3; k++) *r++ = weight * (got[k] - *want++) / p->near_mean;
         }
     }
@@ -167,9 +167,7 @@ static double *filtered_residuals(const problem *p, double weight, double *r) {
             masu_meso_surface seen = masu_meso_seen(&p->shader, last ? &p->mean : &s->texels[t], v);
             for (uint32_t j = 0; j < lights; j++) {
                 double got[3] = {0, 0, 0};
-                masu_meso_add_sun(
-                    &p->shader, &seen, v,
-                    masu_meso_light_direction(&s->setup->light[j * FILTERED_LIGHTS], 0, 1), got);
+                masu_meso_add_sun(&p->shader, &seen, v, p->light[j * FILTERED_LIGHTS], got);
                 for (int k = 0; k < 3; k++) r[3 * j + (uint32_t)k] += part * got[k];
             }
         }
@@ -192,11 +190,8 @@ static double *kept_residuals(const problem *p, double weight, double *r) {
                 masu_meso_seen(&p->shader, last ? &p->fine_mean : &s->fine[t], v);
             double got[3] = {0, 0, 0};
             masu_meso_add_sky(&p->shader, &seen, v, MASU_MESO_SKY * lights, got);
-            for (uint32_t j = 0; j < lights; j++) {
-                masu_meso_vec3 l =
-                    masu_meso_light_direction(&s->setup->light[j * FILTERED_LIGHTS], 0, 1);
-                masu_meso_add_sun(&p->shader, &seen, v, l, got);
-            }
+            for (uint32_t j = 0; j < lights; j++)
+                masu_meso_add_sun(&p->shader, &seen, v, p->light[j * FILTERED_LIGHTS], got);
             for (int k = 0; k < 3; k++) mean[last][k] += last ? got[k] : got[k] / s->fine_count;
         }
         double scale = 0;
@@ -328,6 +323,10 @@ static void measured_tint(const masu_meso_samples *s, double tint[3]) {
 masu_meso_curves masu_meso_fit(const masu_meso_samples *samples, const masu_meso_sky_table *table,
                                double facet, masu_meso_misfit *misfit) {
     problem p = {.s = samples, .shader = {.table = table, .way = MASU_MESO_CURVES}};
+    for (uint32_t j = 0; j < samples->setup->light_count; j++)
+        p.light[j] = masu_meso_light_direction(&samples->setup->light[j], 0, 1);
+    for (uint32_t j = 0; j < samples->near_count; j++)
+        p.near_light[j] = masu_meso_light_direction(&samples->near_light[j], 0, 1);
     p.mean = masu_meso_mean_texel(samples->texels, samples->texel_count);
     p.fine_mean = masu_meso_mean_texel(samples->fine, samples->fine_count);
     for (size_t i = 0; i < near_count(samples); i++) p.near_mean += samples->near[i];

@@ -15,17 +15,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
-
 /* A run-away child must not take the machine with it. */
 #define OUTPUT_MAX ((size_t)8 << 30)
 #define LEAST_MEMORY ((rlim_t)2 << 30)
@@ -84,7 +73,7 @@ static void limit(int resource, rlim_t value) {
 static void limit_child(unsigned seconds) {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, seconds + 5);
-    if (SANITIZED) return; /* the sanitizer's shadow alone is many TiB of address space */
+    if (MASU_BAKE_SANITIZED) return;
     long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
     rlim_t half = pages > 0 && page > 0 ? (rlim_t)pages / 2 * (rlim_t)page : LEAST_MEMORY;
     limit(RLIMIT_AS, half > LEAST_MEMORY ? half : LEAST_MEMORY);
@@ -167,7 +156,7 @@ struct call {
 static void call_quietly(void *argument, int fd) {
     struct call *call = argument;
     point_at_null(STDOUT_FILENO, O_WRONLY);
-    if (!SANITIZED) point_at_null(STDERR_FILENO, O_WRONLY);
+    if (!MASU_BAKE_SANITIZED) point_at_null(STDERR_FILENO, O_WRONLY);
     call->body(call->argument, fd);
 }
 

@@ -23,6 +23,19 @@ typedef struct masu_bake_result {
     int code;
 } masu_bake_result;
 
+/* 1: built with the address sanitizer, whose shadow alone is many TiB of address space. gcc and clang say
+ * so in two ways. */
+#if defined(__SANITIZE_ADDRESS__)
+#define MASU_BAKE_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define MASU_BAKE_SANITIZED 1
+#endif
+#endif
+#ifndef MASU_BAKE_SANITIZED
+#define MASU_BAKE_SANITIZED 0
+#endif
+
 /* Of a clock that never goes back. */
 double masu_bake_seconds(void);
 

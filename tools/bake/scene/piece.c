@@ -91,7 +91,7 @@ static uint32_t placed_material(masu_bake_content *scene, const masu_bake_conten
         const masu_bake_image *from = &MASU_BAKE_IMAGES(piece)[maps.image[i]];
         maps.image[i] =
             masu_bake_add_image(scene, (const char *)piece->image_text.data + from->name, from,
-                                piece->image_data.data + from->data);
+                                from->data_bytes ? piece->image_data.data + from->data : NULL);
     }
     return masu_bake_mapped_material(scene, &material, &maps, name);
 }

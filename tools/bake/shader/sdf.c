@@ -317,7 +317,8 @@ enum {
     REFLECTED_DYNAMIC
 };
 
-/* The shaders that are compiled together with the scene's field, and the sections they go to. */
+/* The shaders that are compiled together with the scene's field, and the sections they go to. The march
+ * is first: what does not compile is reported under its name. */
 static const struct {
     const char *source, *define /* or NULL */, *raw, *optimised;
     uint32_t kind;
@@ -325,6 +326,7 @@ static const struct {
                  without polygons; with shadows or ambient occlusion; with reflections and slots that
                  change not, or do */
 } scene_shaders[] = {
+    {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
     {"update.comp", NULL, "update.raw", "update.spv", MASU_BLOB_UPDATE_SPIRV, UPDATED},
     {"update.comp", "-DMASU_MOTION=1", "before.raw", "before.spv", MASU_BLOB_UPDATE_PREVIOUS_SPIRV,
      DYNAMIC},
@@ -332,7 +334,6 @@ static const struct {
     {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=4", "cone4.raw", "cone4.spv", MASU_BLOB_CONE4_SPIRV, ALWAYS},
-    {"march.comp", NULL, "march.raw", "march.spv", MASU_BLOB_MARCH_SPIRV, ALWAYS},
     {"march_plain.comp", NULL, "plain.raw", "plain.spv", MASU_BLOB_PLAIN_SPIRV, VARIANT},
     {"march_seed.comp", NULL, "seed.raw", "seed.spv", MASU_BLOB_SEED_SPIRV, VARIANT},
     {"march_checkerboard.comp", NULL, "check.raw", "check.spv", MASU_BLOB_CHECKERBOARD_SPIRV,
@@ -355,7 +356,8 @@ static bool wanted(int when, bool dynamic, bool anchored, bool occlusion, bool r
     return when == ALWAYS || variants;
 }
 
-/* After the others: what does not compile is reported under the march's name, as it always is. */
+/* Right after the march, which has said what does not compile: a block that is too steep is refused before
+ * the other shaders take their time. */
 static bool try_blocks(const masu_sdfc_result *scene, const char *directory, char *include_here,
                        char *include_scene, const char *path) {
     masu_bake_buffer spirv = {0};
@@ -405,12 +407,12 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                    scene_shaders[i].define,
                    strrchr(scene_shaders[i].source, '.') + 1};
         good = run_tools(&p, has_raster, directory, glsl_path) &&
-               take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path);
+               take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path) &&
+               (i > 0 || try_blocks(&scene, directory, include_here, include_scene, glsl_path));
         free(p.source);
         free(p.raw);
         free(p.optimised);
     }
-    good = good && try_blocks(&scene, directory, include_here, include_scene, glsl_path);
     masu_sdfc_release(&scene);
     free(include_here);
     free(include_scene);

@@ -212,9 +212,9 @@ static void decode(const job *j, const unsigned char *data, size_t bytes, int fd
 
 static void read_in_child(void *argument, int fd) {
     const job *j = argument;
-    const unsigned char *data = j->content->image_data.data + j->image->data;
     size_t bytes = (size_t)j->image->data_bytes;
-    if (!bytes) data = read_bytes(j, fd, &bytes);
+    const unsigned char *data = bytes ? j->content->image_data.data + j->image->data
+                                      : read_bytes(j, fd, &bytes);
     if (data) decode(j, data, bytes, fd);
 }
 
