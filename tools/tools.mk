@@ -6,12 +6,12 @@
 
 tool_archive = $(BUILD)/lib/libmasu-$(1).a
 tool_sources = $(filter-out %/main.c,$(wildcard tools/$(1)/*.c tools/$(1)/*/*.c))
-TOOL_FOLDERS := cli sdfc bake meso world metric bench model conform simulate
+TOOL_FOLDERS := cli sdfc bake meso world metric bench model isa conform simulate
 $(foreach f,$(TOOL_FOLDERS),$(eval $(call tool_archive,$(f)): $(call objects,$(call tool_sources,$(f)))))
 
 PLATFORM  := $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 BAKE_ARCHIVES := $(foreach f,bake sdfc cli,$(call tool_archive,$(f))) $(PLATFORM)
-MEASURE_ARCHIVES := $(foreach f,conform bench model simulate metric,$(call tool_archive,$(f)))
+MEASURE_ARCHIVES := $(foreach f,conform bench model isa simulate metric,$(call tool_archive,$(f)))
 
 # Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
 $(BUILD)/obj/tools/bake/texture/image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \

@@ -255,7 +255,11 @@ static const masu_option rows[] = {
               "of --model: size of the frames that are counted (default: half of --size)"),
     MASU_REAL(masu_plan_options, time, "time", "SECONDS", -1e9, 1e9,
               "of --model: moment of the scene and its camera"),
-    MASU_FILE(masu_plan_options, csv, "csv", "FILE", "of --model: write every pass of every rung"),
+    MASU_TEXT(masu_plan_options, isa, "isa", "GPU[,GPU...]",
+              "what the compilers of these GPUs make of each pipeline instead: registers, waves,\n"
+              "instructions, cycles, spills (--isa=help lists the GPUs)"),
+    MASU_FILE(masu_plan_options, csv, "csv", "FILE",
+              "of --model: write every pass of every rung; of --isa: every stage of every pipeline"),
     MASU_FILE(masu_plan_options, fragment, "html-fragment", "FILE",
               "of --model: write the tables as one <section> of XHTML"),
     MASU_DEVICE_ROWS(masu_plan_options, d.host),
@@ -263,16 +267,22 @@ static const masu_option rows[] = {
 
 static int run(masu_cli *cli) {
     static const char *const of_model[] = {"drawn", "time", "csv", "html-fragment", NULL};
-    static const char *const of_plan[] = {"json", "frames-in-flight", "split-memory", "rays", NULL};
+    static const char *const of_plan[] = {"json", "frames-in-flight", "split-memory", "rays", "isa", NULL};
+    static const char *const not_of_isa[] = {"drawn", "time", "html-fragment", "model", "split-memory", "rays",
+                                             "device", "validate", "gpu-av", NULL};
     masu_plan_options o = {.d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
                                  .host = {.message = masu_print_message}},
                            .time = 1.0};
     masu_given given = {.most = 1, .excess = "one scene at a time"};
     int code;
     if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    if (o.isa && !strcmp(o.isa, "help")) return masu_plan_isa(&o, NULL);
     if (!given.count) return masu_cli_usage_error("no scene is given");
     o.d.scene_path = given.arguments[0];
-    const char *other = masu_first_given(&given, rows, o.model ? of_plan : of_model);
+    const char *other = masu_first_given(&given, rows, not_of_isa);
+    if (o.isa && other) return masu_cli_usage_error("--%s is not of --isa", other);
+    if (o.isa) return masu_plan_isa(&o, cli->argv);
+    other = masu_first_given(&given, rows, o.model ? of_plan : of_model);
     if (other) return masu_cli_usage_error("--%s is %s --model", other, o.model ? "not of" : "of");
     return o.model ? masu_plan_model(&o) : plan(&o);
 }
@@ -283,5 +293,7 @@ const masu_cli_command masu_cmd_plan = {
     .summary = "print a scene's passes, images, memory, and what was left out",
     .details = "--model draws each rung with counters in all shaders, and divides what is counted by what\n"
                "GPUs of five classes can do. All times are computed: no GPU of these classes is needed or\n"
-               "asked.\n",
+               "asked.\n"
+               "--isa starts a process for each GPU, in which its driver compiles all pipelines of the plan and\n"
+               "runs nothing. RADV's GPUs need Mesa alone; Intel's and Adreno's a folder MASU_ISA_DRIVERS.\n",
     .run = run};

@@ -1,4 +1,5 @@
-/* plan.h: what `masu plan` is given; plan.c prints the compiled frame, plan_model.c the model sheet. */
+/* plan.h: what `masu plan` is given; plan.c prints the compiled frame, plan_model.c the model sheet,
+ * plan_isa.c what compilers make of the pipelines. */
 #ifndef MASU_CMD_PLAN_H
 #define MASU_CMD_PLAN_H
 
@@ -14,9 +15,11 @@ typedef struct masu_plan_options {
     VkExtent2D drawn;
     double time;
     const char *csv, *fragment;
+    const char *isa; /* names of GPUs; NULL: not that */
 } masu_plan_options;
 
-/* An exit code. */
+/* Exit codes. */
 int masu_plan_model(const masu_plan_options *o);
+int masu_plan_isa(masu_plan_options *o, char **arguments);
 
 #endif
