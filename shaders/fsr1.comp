@@ -15,6 +15,7 @@
 #include "upscale/easu.glsl"
 #include "upscale/place.glsl"
 #include "upscale/rcas.glsl"
+#include "upscale/taps.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -26,39 +27,16 @@ const int side = block + 2;
 const int group = MASU_GROUP * MASU_GROUP;
 shared uint upscaled[side * side]; /* 8 bits a channel: 4.6 KB of the 16 that every device has */
 
-vec3 fetch(ivec2 at)
-{
-    ivec2 last = max(ivec2(pc.render_width, pc.render_height) - 1, 0);
-    return masu_fetched_unorm8(texelFetch(source, clamp(at, ivec2(0), last), 0).rgb);
-}
-
 vec3 easu(uvec2 at)
 {
     masu_place place = masu_place_of(at, vec2(push.scale_x, push.scale_y));
-    ivec2 f = place.texel;
-    masu_taps t;
-    t.b = fetch(f + ivec2(0, -1));
-    t.c = fetch(f + ivec2(1, -1));
-    t.e = fetch(f + ivec2(-1, 0));
-    t.f = fetch(f);
-    t.g = fetch(f + ivec2(1, 0));
-    t.h = fetch(f + ivec2(2, 0));
-    t.i = fetch(f + ivec2(-1, 1));
-    t.j = fetch(f + ivec2(0, 1));
-    t.k = fetch(f + ivec2(1, 1));
-    t.l = fetch(f + ivec2(2, 1));
-    t.n = fetch(f + ivec2(0, 2));
-    t.o = fetch(f + ivec2(1, 2));
+    masu_taps t = masu_fetch_taps(source, place.texel);
     return masu_easu(t, masu_edge_of(t, place.p), place.p);
 }
 
 vec3 upscaled_at(int i)
 {
-    uvec3 bytes = uvec3(upscaled[i], upscaled[i] >> 8, upscaled[i] >> 16) & 255u;
-    precise vec3 whole = vec3(bytes);
-    precise vec3 tail = whole * (1.0 / 16711680.0); /* unorm8.glsl */
-    precise vec3 exact = whole * (257.0 / 65536.0) + tail;
-    return exact;
+    return masu_fetched_unorm8(unpackUnorm4x8(upscaled[i]).rgb);
 }
 
 void main()
@@ -76,7 +54,7 @@ void main()
         }
     }
     barrier();
-    float strength = masu_sane(push.lobe, 0.0, 1.0);
+    float strength = push.lobe;
     for (int round = 0; round < block * block / group; round++) {
         int i = round * group + own;
         ivec2 at = ivec2(i % block, i / block);
@@ -86,7 +64,7 @@ void main()
             vec3 sharpened =
                 masu_rcas(upscaled_at(centre - side), upscaled_at(centre - 1), upscaled_at(centre),
                           upscaled_at(centre + 1), upscaled_at(centre + side), strength);
-            MASU_STORE_COLOR(target, at, sharpened);
+            MASU_STORE_FILTERED(target, at, sharpened);
         }
     }
 }

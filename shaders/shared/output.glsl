@@ -92,6 +92,7 @@ vec3 masu_nearest_half(vec3 v)
     MASU_STORE_HALF(img, p, vec4(masu_nearest_half(masu_output(v, uvec2(p))), 1.0))
 #else
 #define MASU_STORE_COLOR(img, p, v) MASU_STORE_UNORM(img, p, vec4(masu_output(v, uvec2(p)), 1.0))
+#define MASU_STORE_FILTERED(img, p, v) MASU_STORE_SAFE(img, p, vec4(masu_output(v, uvec2(p)), 1.0))
 #endif
 
 #else /* a source image: as it is */
@@ -99,6 +100,22 @@ vec3 masu_nearest_half(vec3 v)
 #include "shared/push.glsl"
 
 #define MASU_STORE_COLOR(img, p, v) MASU_STORE_UNORM(img, p, vec4((v), 1.0))
+#define MASU_STORE_FILTERED(img, p, v) MASU_STORE_SAFE(img, p, vec4((v), 1.0))
+#endif
+
+/* For passes of the size of the output. Whether it is made of whole workgroups, as 720, 1080 and 2160 rows
+ * are: then no invocation lies outside. */
+layout(constant_id = 8) const bool masu_whole_groups = false;
+
+bool masu_is_outside(uvec2 at)
+{
+    return !masu_whole_groups && any(greaterThanEqual(at, uvec2(pc.output_width, pc.output_height)));
+}
+
+/* MASU_STORE_FILTERED: for a mean of fetched texels of 0..1, at a pixel of the picture: nothing is left to guard. */
+#if defined(MASU_DEEP) || defined(MASU_EXACT)
+#undef MASU_STORE_FILTERED
+#define MASU_STORE_FILTERED MASU_STORE_COLOR
 #endif
 
 #endif

@@ -10,6 +10,8 @@
  *   MASU_STORE_HALF(img, p, v)    vec4 v to -65504..65504     rgba16f, rg16f, r11f_g11f_b10f
  *   MASU_STORE_R32F(img, p, x)    float x, finite             r32f
  *   MASU_STORE_UINT(img, p, u)    uint or uvec4 u, unchanged  r32ui and its like
+ *   MASU_STORE_SAFE(img, p, v)    vec4 v, as it is            what is known to be finite, at a p that is known to
+ *                                                             lie within the image: format clamps the rest
  *
  * p is an ivec2 or a uvec2. Each argument is evaluated once. Write a semicolon after the macro and
  * braces around it under if/else: it expands to a block.
@@ -43,6 +45,8 @@
 #define MASU_STORE_HALF(img, p, v) MASU_STORE_FLOATS(img, p, v, -65504.0, 65504.0)
 #define MASU_STORE_R32F(img, p, x)                                                                 \
     MASU_STORE_FLOATS(img, p, vec4((x), 0.0, 0.0, 0.0), -3.4e38, 3.4e38)
+
+#define MASU_STORE_SAFE(img, p, v) imageStore(img, ivec2(p), (v))
 
 #define MASU_STORE_UINT(img, p, u)                                                                 \
     {                                                                                              \

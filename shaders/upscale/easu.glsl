@@ -1,9 +1,21 @@
 /*
  * easu.glsl: the arithmetic of FSR1's edge-adaptive upscale (AMD, ffx_fsr1 v1.0.2, fp32 path),
  * approximate reciprocals included. The scalar judge is tests/reference/fsr1.c.
+ *
+ * The result jumps, by up to tens of 255ths, where the gradient counts as none, and where three
+ * neighbours of different colour have the same luma: one unit in the last place then decides between a
+ * straight edge and none. With MASU_EXACT (debug.exact) every operation is rounded by itself, in AMD's
+ * order, so that all drivers take the same side. Without, compilers fuse and taps are placed in steps:
+ * 0.6 of the instructions.
  */
 #ifndef MASU_EASU_GLSL
 #define MASU_EASU_GLSL
+
+#ifdef MASU_EXACT
+#define SAME precise
+#else
+#define SAME
+#endif
 
 /* These two are specification, not optimisation: a true reciprocal changes hard edges by 16/255 and
  * binary noise by 70/255. They are finite for every operand met here, 0 included. */
@@ -20,8 +32,8 @@ float approximate_rsqrt(float a)
 /* Twice the luma, cheaply. */
 float luma(vec3 c)
 {
-    precise float red_green = c.r * 0.5 + c.g;
-    precise float all_three = c.b * 0.5 + red_green;
+    SAME float red_green = c.r * 0.5 + c.g;
+    SAME float all_three = c.b * 0.5 + red_green;
     return all_three;
 }
 
@@ -29,9 +41,9 @@ float luma(vec3 c)
  * equal lumas 0 times the finite "reciprocal of 0" is 0: an exact division would need a guard. */
 float straightness(float before, float centre, float after)
 {
-    precise float largest = max(abs(after - centre), abs(centre - before));
-    precise float ratio = min(abs(after - before) * approximate_rcp(largest), 1.0);
-    precise float squared = ratio * ratio;
+    SAME float largest = max(abs(after - centre), abs(centre - before));
+    SAME float ratio = min(abs(after - before) * approximate_rcp(largest), 1.0);
+    SAME float squared = ratio * ratio;
     return squared;
 }
 
@@ -39,9 +51,9 @@ float straightness(float before, float centre, float after)
 vec3 add_edge(vec3 edge, float weight, float above, float left, float centre, float right,
               float below)
 {
-    precise float x = edge.x + (right - left) * weight;
-    precise float z = edge.z + straightness(left, centre, right) * weight;
-    precise float y = edge.y + (below - above) * weight;
+    SAME float x = edge.x + (right - left) * weight;
+    SAME float z = edge.z + straightness(left, centre, right) * weight;
+    SAME float y = edge.y + (below - above) * weight;
     z = z + straightness(above, centre, below) * weight;
     return vec3(x, y, z);
 }
@@ -55,40 +67,57 @@ struct masu_kernel {
 
 masu_kernel kernel_of(vec3 edge)
 {
-    precise float x = edge.x;
-    precise float y = edge.y;
-    precise float square = x * x + y * y;
+    SAME float x = edge.x;
+    SAME float y = edge.y;
+    SAME float square = x * x + y * y;
     bool none = square < 1.0 / 32768.0;
-    precise float unit = none ? 1.0 : approximate_rsqrt(square);
+    SAME float unit = none ? 1.0 : approximate_rsqrt(square);
     x = (none ? 1.0 : x) * unit;
     y = y * unit;
 
-    precise float len = edge.z * 0.5;
+    SAME float len = edge.z * 0.5;
     len = len * len;
 
-    precise float square_unit = x * x + y * y;
-    precise float stretch = square_unit * approximate_rcp(max(abs(x), abs(y)));
-    precise float longer = 1.0 + (stretch - 1.0) * len;
-    precise float shorter = 1.0 + -0.5 * len;
-    precise float lobe = 0.5 + (0.25 - 0.04 - 0.5) * len;
+    SAME float square_unit = x * x + y * y;
+    SAME float stretch = square_unit * approximate_rcp(max(abs(x), abs(y)));
+    SAME float longer = 1.0 + (stretch - 1.0) * len;
+    SAME float shorter = 1.0 + -0.5 * len;
+    SAME float lobe = 0.5 + (0.25 - 0.04 - 0.5) * len;
     return masu_kernel(vec2(x, y), vec2(longer, shorter), lobe, approximate_rcp(lobe));
 }
 
 /* Adds one tap to rgb = weighted colour, a = weight. The weight is a polynomial stand-in for a
  * windowed sinc, of the squared distance in the kernel's own axes. */
-vec4 add_tap(vec4 sum, masu_kernel k, vec2 offset, vec3 colour)
+vec4 add_tap(vec4 sum, masu_kernel k, vec2 v, vec3 colour)
 {
-    precise float x = (offset.x * k.dir.x + offset.y * k.dir.y) * k.scale.x;
-    precise float y = (offset.x * -k.dir.y + offset.y * k.dir.x) * k.scale.y;
-    precise float distance = min(x * x + y * y, k.clip);
-    precise float base = 0.4 * distance + -1.0;
+    SAME float distance = min(v.x * v.x + v.y * v.y, k.clip);
+    SAME float base = 0.4 * distance + -1.0;
     base = 1.5625 * (base * base) + -0.5625;
-    precise float window = k.lobe * distance + -1.0;
-    precise float weight = base * (window * window);
-    precise vec3 weighted = sum.rgb + colour * weight;
-    precise float weights = sum.a + weight;
+    SAME float window = k.lobe * distance + -1.0;
+    SAME float weight = base * (window * window);
+    SAME vec3 weighted = sum.rgb + colour * weight;
+    SAME float weights = sum.a + weight;
     return vec4(weighted, weights);
 }
+
+#ifdef MASU_EXACT
+/* Where tap (x, y) from f lies in the kernel's axes, in AMD's order. */
+vec2 tap_at(masu_kernel k, vec2 p, float x, float y)
+{
+    SAME vec2 offset = vec2(x, y) - p;
+    SAME float across = (offset.x * k.dir.x + offset.y * k.dir.y) * k.scale.x;
+    SAME float along = (offset.x * -k.dir.y + offset.y * k.dir.x) * k.scale.y;
+    return vec2(across, along);
+}
+#else
+/* The same place by whole steps from f: two additions a tap instead of six operations. */
+vec2 tap_at(masu_kernel k, vec2 p, float x, float y)
+{
+    vec2 right = vec2(k.dir.x, -k.dir.y) * k.scale;
+    vec2 down = vec2(k.dir.y, k.dir.x) * k.scale;
+    return (-p.x * right - p.y * down) + x * right + y * down;
+}
+#endif
 
 /* The twelve texels around a pixel; f is at floor(p).
  *   b c
@@ -102,8 +131,8 @@ struct masu_taps {
 /* Weights of f, g, j, k. */
 vec4 centres_of(vec2 p)
 {
-    precise vec2 q = 1.0 - p;
-    precise vec4 weights = vec4(q.x * q.y, p.x * q.y, q.x * p.y, p.x * p.y);
+    SAME vec2 q = 1.0 - p;
+    SAME vec4 weights = vec4(q.x * q.y, p.x * q.y, q.x * p.y, p.x * p.y);
     return weights;
 }
 
@@ -125,21 +154,21 @@ vec3 masu_easu(masu_taps t, vec3 edge, vec2 p)
 {
     masu_kernel shape = kernel_of(edge);
     vec4 sum = vec4(0.0);
-    sum = add_tap(sum, shape, vec2(0.0, -1.0) - p, t.b);
-    sum = add_tap(sum, shape, vec2(1.0, -1.0) - p, t.c);
-    sum = add_tap(sum, shape, vec2(-1.0, 1.0) - p, t.i);
-    sum = add_tap(sum, shape, vec2(0.0, 1.0) - p, t.j);
-    sum = add_tap(sum, shape, vec2(0.0, 0.0) - p, t.f);
-    sum = add_tap(sum, shape, vec2(-1.0, 0.0) - p, t.e);
-    sum = add_tap(sum, shape, vec2(1.0, 1.0) - p, t.k);
-    sum = add_tap(sum, shape, vec2(2.0, 1.0) - p, t.l);
-    sum = add_tap(sum, shape, vec2(2.0, 0.0) - p, t.h);
-    sum = add_tap(sum, shape, vec2(1.0, 0.0) - p, t.g);
-    sum = add_tap(sum, shape, vec2(1.0, 2.0) - p, t.o);
-    sum = add_tap(sum, shape, vec2(0.0, 2.0) - p, t.n);
+    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, -1.0), t.b);
+    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, -1.0), t.c);
+    sum = add_tap(sum, shape, tap_at(shape, p, -1.0, 1.0), t.i);
+    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, 1.0), t.j);
+    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, 0.0), t.f);
+    sum = add_tap(sum, shape, tap_at(shape, p, -1.0, 0.0), t.e);
+    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, 1.0), t.k);
+    sum = add_tap(sum, shape, tap_at(shape, p, 2.0, 1.0), t.l);
+    sum = add_tap(sum, shape, tap_at(shape, p, 2.0, 0.0), t.h);
+    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, 0.0), t.g);
+    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, 2.0), t.o);
+    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, 2.0), t.n);
     vec3 least = min(min(t.f, t.g), min(t.j, t.k));
     vec3 most = max(max(t.f, t.g), max(t.j, t.k));
-    precise vec3 mean = sum.rgb * (1.0 / sum.a); /* the four centres keep the sum well above 0 */
+    SAME vec3 mean = sum.rgb * (1.0 / sum.a); /* the four centres keep the sum well above 0 */
     return min(most, max(least, mean));
 }
 

@@ -1,9 +1,13 @@
 /*
- * rcas.glsl: the arithmetic of FSR1's contrast-adaptive sharpening (AMD, ffx_fsr1 v1.0.2), with an
- * exact division at the end. The scalar judge is tests/reference/fsr1.c.
+ * rcas.glsl: the arithmetic of FSR1's contrast-adaptive sharpening (AMD, ffx_fsr1 v1.0.2), with a
+ * true reciprocal at the end: AMD's approximate one loses 0.32 % of a constant picture. The scalar judge is
+ * tests/reference/fsr1.c. MASU_EXACT (debug.exact): divisions and order as in that judge, so that all
+ * drivers agree to the bit.
  */
 #ifndef MASU_RCAS_GLSL
 #define MASU_RCAS_GLSL
+
+#ifdef MASU_EXACT
 
 /* Rings darker than the first, or closer to white than the second, have no room on that side: the
  * quotient there would be 0/0. Far below one step of 8 bits, far above a denormal. */
@@ -38,5 +42,33 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
     precise vec3 sharpened = (lobe * ring + centre) / denominator;
     return sharpened;
 }
+
+#else
+
+/* Under the fractions below, so that 0/0, a ring of black or of white, is 0: no limit. Above half a unit in the
+ * last place of 1; it moves a limit by less than 3e-4 of itself where there is a step of 8 bits to go. */
+const float room = 1.0 / 1048576.0;
+
+/* A cross of five texels of 0..1; strength: 0..1, 1 the sharpest.
+ *
+ * The strongest lobe w of a channel is a quarter of the lesser of min / most and (1 - max) / (1 - least), min and
+ * max with the centre, least and most without; at most 3/16. Kept as l = 1 / (4 w), each fraction needs one guard.
+ * And (c - w ring) / (1 - 4 w) = c + (c - ring / 4) / (l - 1): one reciprocal less, and whatever it
+ * is, a constant picture stays what it was. */
+vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength)
+{
+    vec3 least = min(min(up, left), min(right, down));
+    vec3 most = max(max(up, left), max(right, down));
+    vec3 low = most / (min(least, centre) + room);
+    vec3 high = (1.0 - least) / ((1.0 + room) - max(most, centre));
+    float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order: two operands each time */
+    l = max(max(l, low.g), high.g);
+    l = max(max(l, low.b), high.b);
+    float share = strength / (l - strength);
+    vec3 ring = (up + left) + (right + down);
+    return centre + share * (centre - 0.25 * ring);
+}
+
+#endif
 
 #endif

@@ -31,7 +31,7 @@ static uint64_t now(const masu_device *m) {
  * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
  * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
  * encoding; whether the last pass rounds to its steps or changes the order of its channels. */
-enum { SPECIAL_COUNT = 8 };
+enum { SPECIAL_COUNT = 9 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -43,7 +43,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {4, 4 * sizeof *constants, sizeof *constants},
         {5, 5 * sizeof *constants, sizeof *constants},
         {6, 6 * sizeof *constants, sizeof *constants},
-        {7, 7 * sizeof *constants, sizeof *constants}};
+        {7, 7 * sizeof *constants, sizeof *constants},
+        {8, 8 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -55,6 +56,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                    : encoding == MASU_ENCODING_PQ   ? MASU_OUTPUT_PQ
                                                     : MASU_OUTPUT_SRGB;
     constants[7] = m->plan->output.steps[0] || (m->plan->output.flags & MASU_OUTPUT_SWAP);
+    VkExtent2D output = m->plan->desc.output;
+    constants[8] = output.width % MASU_GROUP == 0 && output.height % MASU_GROUP == 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
