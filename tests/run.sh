@@ -14,7 +14,8 @@
 # MASU_REQUIRE_DRIVERS=1   a driver that is not there, and a test that is skipped, is a failure
 # MASU_TEST_TIMEOUT=600    seconds for each program; three times as many for tests/full, which builds the
 #                          tree anew
-# LONG=1                   tests that try many of a kind try all; CI does not
+# LONG=1                   tests that try many of a kind try all, and tests of programs run on all drivers;
+#                          CI does not
 # MASU_TEST_JOBS=N         programs at a time; as many as there are processors unless told: most of a
 #                          program's time goes into compiling shaders, which one thread does
 #
@@ -32,6 +33,8 @@ require=${MASU_REQUIRE_DRIVERS:-}
 drivers=${DRIVERS:-system}
 [ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
 jobs=${MASU_TEST_JOBS:-$(nproc)}
+# Tests of programs, whose answers hardly depend on the driver: of several drivers the first runs them.
+once=" test_baseline test_bench test_cli test_model test_study_march "
 
 export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
 export CMOCKA_MESSAGE_OUTPUT=stdout
@@ -230,7 +233,9 @@ use() {
 }
 
 rm -rf "$results"
-mkdir -p "$results"
+mkdir -p "$results/baked"
+# Scenes that tests bake themselves are baked for the first driver, and kept for the next.
+export MASU_BAKED=$PWD/$results/baked
 
 # The full checks build the tree anew and run this again: they have the machine to themselves, as
 # fuzzers have, which are told how long to run.
@@ -265,7 +270,8 @@ if [ "${programs[gpu]}" ]; then
         )
         [ -e "$results/$driver.env" ] || continue
         for program in ${programs[gpu]}; do
-            start gpu "$driver" "$program"
+            [[ -z $LONG && $driver != "${drivers%% *}" && $once == *" ${program##*/} "* ]] ||
+                start gpu "$driver" "$program"
         done
     done
     wait

@@ -23,7 +23,9 @@ GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
 FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.
 TEXT_TESTS   := $(addprefix tests/scripts/,docs.sh docs_tables.sh layers.sh source_gates.sh install.sh)
-SCRIPT_TESTS := $(call only,$(filter-out $(if $(NESTED),$(TEXT_TESTS)),$(wildcard tests/scripts/*.sh $(if $(FULL),tests/full/*.sh))))
+# Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
+LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh isa.sh meso.sh)
+SCRIPT_TESTS := $(call only,$(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS)),$(wildcard tests/scripts/*.sh $(if $(FULL),tests/full/*.sh))))
 DRIVER_INFO  := $(BUILD)/tests/driver_info
 
 # Every program is linked with everything, of which the linker takes what is needed.

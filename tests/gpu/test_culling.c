@@ -103,7 +103,7 @@ static void the_picture_is_the_same_without_culling(void **state) {
     d.host.validate = false; /* the long path; the others have the layers */
     open_session(&s, &d);
     assert_true(s.scene.groups > 5);
-    compare_path(&s, trials(600, 180), 0);
+    compare_path(&s, trials(600, 180, 60), 0);
     close_session(&s);
 }
 
@@ -112,7 +112,7 @@ static void what_moves_is_culled_where_it_is(void **state) {
     masu_session_desc d = town_desc();
     masu_session s;
     open_session(&s, &d);
-    compare_path(&s, trials(120, 60), 1);
+    compare_path(&s, trials(120, 60, 60), 1);
     close_session(&s);
 }
 
@@ -228,7 +228,7 @@ static void shadows_are_the_same_without_culling(void **state) {
     (void)state;
     uint64_t every[WAYS], slow[WAYS];
     bake_shadows();
-    const uint32_t frames = trials(180, 60), slow_frames = 60;
+    const uint32_t frames = trials(180, 60, 30), slow_frames = trials(60, 60, 30);
     compare_shadows(frames, (const uint32_t[3]){1, 1, 1}, every);
     compare_shadows(slow_frames, (const uint32_t[3]){2, 3, 5}, slow);
     assert_true(every[FRUSTUM] < every[NEITHER] * 9 / 10);

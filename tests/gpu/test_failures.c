@@ -101,12 +101,12 @@ static void fail_calls_of_init(VkResult with, bool persistent, uint32_t split, u
 
 static void any_call_of_init_may_run_out_of_memory_once(void **state) {
     (void)state;
-    fail_calls_of_init(VK_ERROR_OUT_OF_DEVICE_MEMORY, false, 0, trials(1, 2));
+    fail_calls_of_init(VK_ERROR_OUT_OF_DEVICE_MEMORY, false, 0, trials(1, 2, 7));
 }
 
 static void any_call_of_init_may_fail_for_good(void **state) {
     (void)state;
-    fail_calls_of_init(VK_ERROR_OUT_OF_HOST_MEMORY, true, 1, trials(1, 7));
+    fail_calls_of_init(VK_ERROR_OUT_OF_HOST_MEMORY, true, 1, trials(1, 7, 17));
 }
 
 static void any_call_of_init_may_fail_with_a_shadow_map(void **state) {
@@ -116,13 +116,13 @@ static void any_call_of_init_may_fail_with_a_shadow_map(void **state) {
 
 static void the_device_may_be_lost_at_any_call_of_init(void **state) {
     (void)state;
-    fail_calls_of_init(VK_ERROR_DEVICE_LOST, true, 0, trials(1, 5));
+    fail_calls_of_init(VK_ERROR_DEVICE_LOST, true, 0, trials(1, 5, 13));
 }
 
 /* Textures, their samplers, sets and copies in chunks. */
 static void any_call_of_init_with_textures_may_fail(void **state) {
     (void)state;
-    fail_calls_of_init(VK_ERROR_OUT_OF_DEVICE_MEMORY, false, 1, trials(1, 3));
+    fail_calls_of_init(VK_ERROR_OUT_OF_DEVICE_MEMORY, false, 1, trials(1, 3, 11));
 }
 
 static void expect_device_error(const char *what) {

@@ -154,12 +154,12 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
 
 static void nothing_that_is_seen_is_left_out_at_more_than_a_pixel_per_texel(void **state) {
     (void)state;
-    random_scenes(384, 256, trials(60, 15));
+    random_scenes(384, 256, trials(60, 15, 10));
 }
 
 static void nothing_that_is_seen_is_left_out_at_less_than_a_pixel_per_texel(void **state) {
     (void)state;
-    random_scenes(96, 50, trials(200, 50));
+    random_scenes(96, 50, trials(200, 50, 16));
 }
 
 /* ---- Gaps ------------------------------------------------------------------------------------ */
@@ -176,7 +176,7 @@ static void gaps_narrower_than_a_texel_are_looked_through(void **state) {
     /* 768x32 of 90 degrees in width: at 10 m, a texel of 192 is 20/192 m wide. */
     float fov = 2.0f * atanf((float)GAP_H / GAP_W);
     masu_camera c = {.forward = {0, 0, -1}, .fov_y = fov, .near_distance = 0.1f};
-    const uint32_t gaps = trials(240, 80);
+    const uint32_t gaps = trials(240, 80, 40);
     uint32_t through = 0, hidden = 0;
     for (uint32_t n = 0; n < gaps; n++) {
         seed = n;
@@ -246,7 +246,7 @@ static void what_stands_before_a_slanted_wall_is_drawn(void **state) {
     const double a[2] = {2, -6}, b[2] = {30, -60}, half[2] = {(b[0] - a[0]) / 2, (b[1] - a[1]) / 2};
     const float wall[12] = {(float)(2 * half[0]), 0, 0.01f, (float)(a[0] + half[0]), 0, 60, 0, 0,
                             (float)(2 * half[1]), 0, 0.01f, (float)(a[1] + half[1])};
-    const uint32_t places = trials(150, 60);
+    const uint32_t places = trials(150, 60, 30);
     uint32_t seen = 0;
     place(&s, "wall", 3, wall);
     for (uint32_t n = 0; n < places; n++) {

@@ -159,7 +159,7 @@ static void the_error_against_the_truth_is_as_stated(void **state) {
         assert_int_equal(masu_camera_at(s.m, 0, &camera), MASU_OK);
         stats = stats_of(&s, 0);
         look_at(name, &camera, &view);
-        compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), trials(5, 7), &sun, &ambient);
+        compare(&truth, &view, tan(stated[i].radius * 3.14159265358979 / 180), trials(5, 7, 7), &sun, &ambient);
         close_session(&s);
         masu_truth_close(&truth);
         print_message("%-8s %.2f: sun %.3f most %.2f wrong %u of %u, ambient %.3f most %.2f of %u, "

@@ -32,13 +32,19 @@ const char *c_compiler(void);
 
 /* Whether LONG is set (make check LONG=1): every row and trial, where else a part of them stands for all. */
 bool long_run(void);
-uint32_t trials(uint32_t all, uint32_t quick); /* the first if it is, the second if not */
+
+/* Whether it is, or this is the system's driver, the first: elsewhere a test of what hardly depends on the driver
+ * does a part. */
+bool whole_run(void);
+/* The first if LONG is set, the second on the system's driver, else the third. */
+uint32_t trials(uint32_t all, uint32_t quick, uint32_t elsewhere);
 
 /* Runs a command; returns its exit code. */
 int shell(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int shell_list(const char *format, va_list arguments);
 
-/* Bakes a scene description to NAME.masu of the scratch folder. */
+/* Bakes a scene description to NAME.masu of the scratch folder. Where $MASU_BAKED names a folder (tests/run.sh: one
+ * for each run), a scene that a test has baked for another driver is taken from there. */
 void bake_scene(const char *name, const char *json);
 const char *baked_scene(const char *name); /* its path; static storage, four names at a time */
 

@@ -1,0 +1,56 @@
+#!/bin/bash
+# isa.sh: what RADV's compiler makes of the pipelines is what docs/report/isa.csv says: no spill, no scratch memory,
+# at most 5 % more instructions, the same pipelines (make isa-table writes it anew). Then what masu plan --isa refuses.
+set -u
+build=${BUILD:-build} made=${MADE:-build}
+masu=$build/bin/masu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failed=0
+
+fail() {
+    echo "$1"
+    failed=1
+}
+
+# refuses CODE TEXT ARGUMENTS...: that exit code, and a line that has TEXT
+refuses() {
+    local out code
+    out=$("$masu" plan "$made/scenes/engine.masu" "${@:3}" 2>&1 > /dev/null)
+    code=$?
+    [ "$code" = "$1" ] && [[ $out == *"$2"* ]] || fail "plan ${*:3}: exit code $code, $out"
+}
+
+# worse TABLE NEW: a line for everything that NEW has more of than TABLE
+worse() {
+    awk -F, '
+        FNR == 1 { next }
+        { key = $1 "," $2 "," $3 "," $4 }
+        NR == FNR { if ($2 == "vangogh" || $2 == "raven") was[key] = $8; next }
+        { seen[key] = 1 }
+        !(key in was) { print key ": no row in the table"; next }
+        $8 > was[key] * 1.05 { print key ": instructions " $8 ", in the table " was[key] }
+        $12 > 0 || $14 > 0 || $15 > 0 { print key ": spills " $12 ", of scalars " $14 ", scratch " $15 }
+        END { for (key in was) if (!(key in seen)) print key ": no pipeline any more" }' "$1" "$2"
+}
+
+# The child's compiler needs nothing of the driver that tests use.
+BUILD=$build MADE=$made tools/isa/table.sh vangogh,raven > "$folder/new.csv" || fail 'table.sh fails'
+worse docs/report/isa.csv "$folder/new.csv" > "$folder/worse"
+[ ! -s "$folder/worse" ] || fail "$(cat "$folder/worse")
+make isa-table writes docs/report/isa.csv anew, if that is meant"
+
+# It sees what it is there for.
+sed 's/^\(engine,raven,easu,[^,]*,[^,]*,[^,]*,[^,]*\),[0-9]*,/\1,9999,/' "$folder/new.csv" > "$folder/more.csv"
+worse "$folder/new.csv" "$folder/more.csv" | grep -q '^engine,raven,easu,.*9999' || fail 'more instructions are not seen'
+sed 's/^\(engine,raven,rcas\(,[^,]*\)\{8\}\),0,/\1,3,/' "$folder/new.csv" > "$folder/spill.csv"
+worse "$folder/new.csv" "$folder/spill.csv" | grep -q '^engine,raven,rcas,.*spills 3' || fail 'a spill is not seen'
+
+"$masu" plan --isa=help | grep -q 'vangogh.*RADV' || fail 'no list of GPUs'
+"$masu" plan "$made/scenes/engine.masu" --isa vangogh,raven --json > "$folder/json" || fail 'no JSON'
+grep -q '"raven": \[' "$folder/json" && grep -q '"pipeline": "march"' "$folder/json" || fail 'JSON without rows'
+refuses 2 "there is no GPU 'gtx'" --isa gtx
+refuses 2 '--model is not of --isa' --isa vangogh --model
+MASU_ISA_DRIVERS='' refuses 1 'MASU_ISA_DRIVERS is to name the folder' --isa tgl
+MASU_ISA_DRIVERS=$folder refuses 1 "has no $folder/libvulkan_intel.so" --isa kbl
+exit $failed
