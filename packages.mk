@@ -27,6 +27,10 @@ PACKAGES_full := clang python3-skimage
 # for the plots of masu-meso and masu bench, which go without. Never installed by itself
 PACKAGES_plots := gnuplot-nox
 
+# to build the drivers of `masu plan --isa` for Intel and Adreno (make isa-drivers)
+PACKAGES_isa := meson ninja-build bison flex python3-mako libdrm-dev libexpat1-dev libelf-dev zlib1g-dev libncurses-dev
+PACKAGES_isa += pkgconf g++ glslang-tools curl ca-certificates
+
 # for who works on Masu: `make format`, `make compdb`. Never installed by itself
 PACKAGES_dev := clang-format bear
 
@@ -51,7 +55,7 @@ endef
 
 .PHONY: packages deps-build deps-demo deps-worlds deps-test
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo worlds test full plots dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds test full plots isa dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs

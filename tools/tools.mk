@@ -181,3 +181,8 @@ isa-table: $(BUILD)/bin/masu $(SCENES) ## write docs/report/isa.csv: every pipel
 	$(V)BUILD=$(BUILD) MADE=$(MADE) tools/isa/table.sh $(ISA_GPUS) > $(BUILD)/isa.csv
 	$(V)test -n '$(MASU_ISA_DRIVERS)' || awk -F, '$$2 ~ /^(skl|kbl|tgl)$$/' docs/report/isa.csv >> $(BUILD)/isa.csv
 	$(V)mv $(BUILD)/isa.csv docs/report/isa.csv
+
+.PHONY: isa-drivers
+isa-drivers: ## build Intel's and Adreno's compilers for MASU_ISA_DRIVERS=build/isa-drivers (ten minutes)
+	$(call install-packages,$(PACKAGES_isa))
+	$(V)tools/isa/drivers.sh build/isa-drivers
