@@ -690,7 +690,7 @@ typedef struct masu_debug {
                            A cut begins a new sum */
     uint32_t exact; /* not 0: full EASU, RCAS and both in one give the same bits on every driver, where inputs have
                        8 bits: these become the nearest c/255, nothing is fused or reordered, divisions are
-                       exact. Twice the instructions; without, a pixel in some thousands differs */
+                       exact. Twice the instructions; without, a pixel in some ten thousands differs */
     float mip_bias; /* added to the level of detail of textures, -16..16; below 0: finer. What many places in a
                        pixel are averaged over wants finer ones; log2 of the size undoes a rung's own */
 } masu_debug;

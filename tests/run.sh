@@ -33,7 +33,7 @@ require=${MASU_REQUIRE_DRIVERS:-}
 drivers=${DRIVERS:-system}
 [ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
 jobs=${MASU_TEST_JOBS:-$(nproc)}
-# Tests of programs, whose answers hardly depend on the driver: of several drivers the first runs them.
+# Tests of programs, whose answers hardly depend on the driver: of several drivers the first that is there runs them.
 once=" test_baseline test_bench test_cli test_model test_study_march "
 
 export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
@@ -254,6 +254,7 @@ done
 # The environment of each driver is found once, in a shell of its own: what one sets, the next does not
 # see. Then nothing waits for the last program of a driver.
 if [ "${programs[gpu]}" ]; then
+    first=
     for driver in $drivers; do
         (
             if use "$driver"; then
@@ -269,8 +270,9 @@ if [ "${programs[gpu]}" ]; then
             fi
         )
         [ -e "$results/$driver.env" ] || continue
+        first=${first:-$driver}
         for program in ${programs[gpu]}; do
-            [[ -z $LONG && $driver != "${drivers%% *}" && $once == *" ${program##*/} "* ]] ||
+            [[ -z $LONG && $driver != "$first" && $once == *" ${program##*/} "* ]] ||
                 start gpu "$driver" "$program"
         done
     done

@@ -8,7 +8,7 @@
  * become the same number on every driver; that is a third of EASU's instructions, so it is for comparing
  * drivers alone.
  *
- * MASU_BYTES: of an image of 8 or 10 bits: there is nothing else that it could hold.
+ * MASU_BYTES: of an image of 8 bits: there is nothing else that it could hold.
  */
 #ifndef MASU_UNORM8_GLSL
 #define MASU_UNORM8_GLSL

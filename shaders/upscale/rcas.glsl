@@ -61,7 +61,7 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
     vec3 most = max(max(up, left), max(right, down));
     vec3 low = most / (min(least, centre) + room);
     vec3 high = (1.0 - least) / ((1.0 + room) - max(most, centre));
-    float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order: two operands each time */
+    float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order each line is one max3, where there is one */
     l = max(max(l, low.g), high.g);
     l = max(max(l, low.b), high.b);
     float share = strength / (l - strength);
