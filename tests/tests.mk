@@ -39,6 +39,15 @@ $(BUILD)/lib/libmasu-reference.a: $(call objects,$(wildcard tests/reference/*.c)
 
 $(BUILD)/tests/%: LIBS = $(TEST_LIBS)
 
+# Devices and what is compiled on them are kept from one session of a program to the next (support/kept.h).
+KEPT_KINDS := ShaderModule Sampler DescriptorSetLayout PipelineLayout RenderPass Buffer CommandPool DescriptorPool
+KEPT_KINDS += Fence Framebuffer Image ImageView QueryPool Instance Device
+KEPT_FUNCTIONS := $(foreach k,$(KEPT_KINDS),Create$(k) Destroy$(k)) CreateComputePipelines CreateGraphicsPipelines
+KEPT_FUNCTIONS += DestroyPipeline AllocateMemory FreeMemory GetInstanceProcAddr GetDeviceProcAddr
+$(BUILD)/tests/gpu/%: LIBS = $(patsubst %,-Wl$(comma)--wrap=vk%,$(KEPT_FUNCTIONS)) $(TEST_LIBS)
+# The hook of masu model knows passes by their layouts, of which equal ones would be one.
+$(BUILD)/tests/gpu/test_model: LIBS = $(TEST_LIBS)
+
 $(BUILD)/tests/unit/%: $(BUILD)/obj/tests/unit/%.o $(TEST_ARCHIVES)
 	$(link)
 $(BUILD)/tests/gpu/%: $(BUILD)/obj/tests/gpu/%.o $(KEEP_LOADED) $(TEST_ARCHIVES)
