@@ -16,6 +16,7 @@
 #                          tree anew
 # LONG=1                   tests that try many of a kind try all, and tests of programs run on all drivers;
 #                          CI does not
+# NESTED=1                 the tests are those of the tree built anew: what takes long does a part
 # MASU_TEST_JOBS=N         programs at a time; as many as there are processors unless told: most of a
 #                          program's time goes into compiling shaders, which one thread does
 #
@@ -33,8 +34,9 @@ require=${MASU_REQUIRE_DRIVERS:-}
 drivers=${DRIVERS:-system}
 [ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
 jobs=${MASU_TEST_JOBS:-$(nproc)}
-# Tests of programs, whose answers hardly depend on the driver: of several drivers the first that is there runs them.
-once=" test_baseline test_bench test_cli test_model test_study_march "
+# Tests of programs, and of what a layer says of shaders: the answers hardly depend on the driver, so of several drivers
+# the first that is there runs them.
+once=" test_baseline test_bench test_cli test_gpu_av test_model test_study_march "
 
 export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
 export CMOCKA_MESSAGE_OUTPUT=stdout

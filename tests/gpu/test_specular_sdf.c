@@ -447,7 +447,7 @@ static void any_bits_give_finite_hits(void **unused) {
     (void)unused;
     static const char *const scenes[] = {"mirrors", "pebbles"};
     static const float senseless[] = {NAN, INFINITY, -INFINITY, 3.4e38f, -3.4e38f, 1e-42f, 0, 1e10f};
-    for (int i = 0; i < 2; i++) {
+    for (uint32_t i = 0; i < trials(2, 2, 1); i++) {
         stage s = open_stage(scenes[i], &around);
         state = 5;
         for (uint32_t k = 0; k < 2 * TEXELS; k++) own.guide[k] = random_word(&state), own.ray[k] = random_word(&state);

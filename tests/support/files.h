@@ -34,7 +34,7 @@ const char *c_compiler(void);
 bool long_run(void);
 
 /* Whether it is, or this is the system's driver, the first: elsewhere a test of what hardly depends on the driver
- * does a part. */
+ * does a part. So do unit tests with the sanitizers (NESTED), under which they take ten times as long. */
 bool whole_run(void);
 /* The first if LONG is set, the second on the system's driver, else the third. */
 uint32_t trials(uint32_t all, uint32_t quick, uint32_t elsewhere);

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "support/bind.h"
+#include "support/files.h"
 #include "support/random.h"
 #include "support/dry_renderer.h"
 #include "reference/vec.h"
@@ -323,7 +324,7 @@ static void whatever_is_accepted_makes_finite_uniforms(void **state) {
     uint32_t accepted = 0;
 #define PICK values[support_random(&random) % COUNT(values)]
     make_renderer(SUPPORT_ALL, 0);
-    for (int n = 0; n < 200000; n++) {
+    for (int n = 0; n < (int)trials(200000, 200000, 20000); n++) {
         masu_camera c = good_camera();
         masu_light l = good_light();
         float given[2] = {PICK, PICK};

@@ -168,7 +168,7 @@ static void irradiance_is_that_of_the_picture(void **state) {
 static void texels_hold_nine_bits(void **state) {
     (void)state;
     uint64_t random = 3;
-    for (int i = 0; i < 100000; i++) {
+    for (uint32_t i = 0; i < trials(100000, 100000, 10000); i++) {
         double v[3], got[3], most = 0;
         for (int c = 0; c < 3; c++) {
             v[c] = ldexp((double)support_random_in(&random, 0, 1 << 20), (int)(random % 30) - 34);
