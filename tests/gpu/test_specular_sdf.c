@@ -2,6 +2,7 @@
  * precision, from surfaces that the truth has found too; rays that begin in a solid, hold any bits, meet slots
  * of any bits; what moves; and pictures: SDF and polygons in each other's mirrors. */
 #include "support/floats.h"
+#include "support/files.h"
 #include "support/random.h"
 #include "support/reflect.h"
 #include "support/stiff.h"
