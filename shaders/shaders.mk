@@ -1,7 +1,7 @@
 # shaders.mk: GLSL to SPIR-V to C.
 #
 #   shaders/NAME.STAGE -> gen/NAME_STAGE.spv      with debug names: tests read struct offsets there
-#                      -> gen/NAME_STAGE.opt.spv  optimised and stripped
+#                      -> gen/NAME_STAGE.opt.spv  optimised, stripped, vectors of buffers loaded whole
 #                      -> gen/NAME_STAGE.spv.h    that, as `const uint32_t masu_spv_NAME_STAGE[]`
 #
 # Both SPIR-V files pass spirv-val. Shaders of tests/gpu are compiled the same way. A scene shader
@@ -55,9 +55,17 @@ field = $(word $(2),$(subst :, ,$(1)))
 $(foreach b,$(PERMUTATIONS),$(eval $(call \
     shader_rule,$(call field,$(b),1),shaders/$(call field,$(b),2),$(call field,$(b),3))))
 
-$(MADE)/gen/%.opt.spv: $(MADE)/gen/%.spv
+# whole_vectors: see tools/spirv/whole_vectors.h.
+$(MADE)/gen/%.opt.spv: $(MADE)/gen/%.spv $(MADE)/tools/whole_vectors
 	$(V)spirv-opt --target-env=vulkan1.1 -O --strip-debug $< -o $@
+	$(V)$(MADE)/tools/whole_vectors $@ $@
 	$(V)spirv-val $(SPIRV_TARGET) $@
+
+# Compiled beside the objects of the programs, which wait for what is generated.
+WHOLE_VECTORS := $(wildcard tools/spirv/*.[ch])
+$(MADE)/tools/whole_vectors: $(WHOLE_VECTORS)
+	@mkdir -p $(@D)
+	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -Itools $(filter %.c,$(WHOLE_VECTORS)) -o $@
 
 $(MADE)/gen/%.spv.h: $(MADE)/gen/%.opt.spv
 	$(V){ echo '/* Made from $*. */'; echo 'static const uint32_t masu_spv_$*[] = {'; \

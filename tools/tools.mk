@@ -6,11 +6,11 @@
 
 tool_archive = $(BUILD)/lib/libmasu-$(1).a
 tool_sources = $(filter-out %/main.c,$(wildcard tools/$(1)/*.c tools/$(1)/*/*.c))
-TOOL_FOLDERS := cli sdfc bake meso world metric bench model isa conform simulate
+TOOL_FOLDERS := cli spirv sdfc bake meso world metric bench model isa conform simulate
 $(foreach f,$(TOOL_FOLDERS),$(eval $(call tool_archive,$(f)): $(call objects,$(call tool_sources,$(f)))))
 
 PLATFORM  := $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
-BAKE_ARCHIVES := $(foreach f,bake sdfc cli,$(call tool_archive,$(f))) $(PLATFORM)
+BAKE_ARCHIVES := $(foreach f,bake sdfc spirv cli,$(call tool_archive,$(f))) $(PLATFORM)
 MEASURE_ARCHIVES := $(foreach f,conform bench model isa simulate metric,$(call tool_archive,$(f)))
 
 # Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.

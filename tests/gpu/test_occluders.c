@@ -154,7 +154,7 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
 
 static void nothing_that_is_seen_is_left_out_at_more_than_a_pixel_per_texel(void **state) {
     (void)state;
-    random_scenes(384, 256, trials(60, 15, 5));
+    random_scenes(384, 256, trials(60, 15, 10));
 }
 
 static void nothing_that_is_seen_is_left_out_at_less_than_a_pixel_per_texel(void **state) {

@@ -253,7 +253,8 @@ static void any_curves_stay_in_range(void **state) {
 static void curves_are_twice_as_near_as_plain_maps(void **state) {
     (void)state;
     static masu_meso_study study;
-    for (const char *const *name = masu_meso_made; *name && (whole_run() || name == masu_meso_made); name++) {
+    for (const char *const *name = masu_meso_made; *name; name++) {
+        if (name - masu_meso_made >= (int)trials(8, 2, 1)) break;
         masu_meso_patch p;
         assert_true(masu_meso_make(*name, 2, 1, &p));
         masu_meso_options options = {.size = 64, .side = 64, .sky_rays = 16, .seed = 1};

@@ -6,7 +6,7 @@
 #ifndef MASU_SPIRV_COST_H
 #define MASU_SPIRV_COST_H
 
-#include "model/spirv.h"
+#include "spirv/spirv.h"
 
 typedef struct masu_spirv_cost {
     uint32_t plain, weighted;

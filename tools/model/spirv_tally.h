@@ -13,7 +13,7 @@
 #ifndef MASU_SPIRV_TALLY_H
 #define MASU_SPIRV_TALLY_H
 
-#include "model/spirv.h"
+#include "spirv/spirv.h"
 
 #include <stdbool.h>
 

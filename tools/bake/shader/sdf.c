@@ -8,6 +8,7 @@
 #include "scene_sources.h"
 #include "sdfc/sdfc.h"
 #include "shared/masu_shared.h"
+#include "spirv/whole_vectors.h"
 
 #include <errno.h>
 #include <math.h>
@@ -253,6 +254,21 @@ typedef struct paths {
     const char *define, *stage;
 } paths;
 
+static bool load_whole_vectors(const char *path, const char *glsl_path) {
+    masu_bake_buffer spirv = {0};
+    size_t count = 0;
+    if (!masu_bake_read_file(path, SPIRV_MAX, &spirv)) return false;
+    uint32_t *words = masu_whole_vectors((const void *)spirv.data, spirv.bytes / 4, &count);
+    FILE *file = words ? fopen(path, "wb") : NULL;
+    bool good = file && fwrite(words, sizeof *words, count, file) == count;
+    if (file && fclose(file)) good = false;
+    if (!words) masu_cli_error("%s: spirv-opt wrote no SPIR-V", glsl_path);
+    else if (!good) masu_cli_error("%s: cannot be written", path);
+    free(words);
+    masu_bake_release(&spirv);
+    return good;
+}
+
 static bool run_tools(const paths *p, bool has_raster, const char *directory,
                       const char *glsl_path) {
     const char *const compile[] = {"glslangValidator",
@@ -284,6 +300,7 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         masu_cli_progress("%s %s", steps[i].arguments[0], glsl_path);
         if (!run_tool(steps[i].arguments, steps[i].package, directory, glsl_path)) return false;
+        if (steps[i].arguments == optimise && !load_whole_vectors(p->optimised, glsl_path)) return false;
     }
     return true;
 }

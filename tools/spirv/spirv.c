@@ -1,5 +1,5 @@
 /* spirv.c: see spirv.h. */
-#include "model/spirv.h"
+#include "spirv/spirv.h"
 
 #include <stdio.h>
 #include <stdlib.h>

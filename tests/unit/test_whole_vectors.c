@@ -1,0 +1,152 @@
+/* test_whole_vectors.c: components of vectors in buffers that are read beside others come from loads of the
+ * whole vector, one that is read alone stays alone; what is written is not touched; and of the shaders of
+ * the library and of baked scenes none has anything left to change. */
+#define _XOPEN_SOURCE 700
+#include <glob.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/scene.h"
+#include "spirv/whole_vectors.h"
+#include "support/files.h"
+#include "support/spirv.h"
+
+#include "image.h"
+
+enum { LOADS_OF_FLOATS, LOADS_OF_VECTORS, EXTRACTS, LOADS_MOST };
+
+static void count(const spirv_module *m, uint32_t counts[LOADS_MOST]) {
+    memset(counts, 0, LOADS_MOST * sizeof *counts);
+    for (size_t k = 0; k < m->count; k++) {
+        const spirv_instruction *i = &m->list[k];
+        if (i->op == SPIRV_LOAD && m->def[i->word[1]]->op == SPIRV_TYPE_FLOAT) counts[LOADS_OF_FLOATS]++;
+        if (i->op == SPIRV_LOAD && m->def[i->word[1]]->op == SPIRV_TYPE_VECTOR) counts[LOADS_OF_VECTORS]++;
+        counts[EXTRACTS] += i->op == 81 || i->op == 77;
+    }
+}
+
+/* What glslang and spirv-opt make of the body, changed; spirv-val has passed it. */
+static void check(const char *body, uint32_t floats, uint32_t vectors) {
+    static char text[2048];
+    spirv_module before, after;
+    uint32_t counts[LOADS_MOST];
+    size_t words;
+    snprintf(text, sizeof text,
+             "#version 450\nlayout(local_size_x = 1) in;\nstruct row { vec4 a; vec3 b; float c; mat2x4 m; };\n"
+             "layout(std140, set = 0, binding = 0) uniform U { vec4 u; vec4 list[8]; row one; } u;\n"
+             "layout(std430, set = 0, binding = 1) buffer S { float x; row rows[]; } s;\n"
+             "layout(std430, set = 0, binding = 2) buffer V { vec4 v[]; };\n"
+             "layout(push_constant) uniform P { uint n; vec2 p; };\nvoid main() {\n%s\n}\n",
+             body);
+    write_text("w.comp", text);
+    assert_int_equal(shell("glslangValidator --quiet -V --target-env vulkan1.1 -o %s/w.spv %s/w.comp && spirv-opt "
+                           "--target-env=vulkan1.1 -O --strip-debug %s/w.spv -o %s/w.spv",
+                           scratch, scratch, scratch, scratch),
+                     0);
+    assert_true(spirv_from_file(in_scratch("w.spv"), &before));
+    uint32_t *changed = masu_whole_vectors(before.words, before.word_count, &words);
+    assert_non_null(changed);
+    write_bytes("c.spv", changed, words * sizeof *changed);
+    assert_int_equal(shell("spirv-val --target-env vulkan1.1 %s/c.spv", scratch), 0);
+    assert_true(spirv_from_words(changed, words, &after));
+    count(&after, counts);
+    if (counts[LOADS_OF_FLOATS] != floats || counts[LOADS_OF_VECTORS] != vectors)
+        fail_msg("%u loads of floats, %u of vectors instead of %u, %u:\n%s", counts[LOADS_OF_FLOATS],
+                 counts[LOADS_OF_VECTORS], floats, vectors, body);
+    free(changed);
+    spirv_free(&after);
+    spirv_free(&before);
+}
+
+static void components_beside_others_come_whole(void **state) {
+    (void)state;
+    check("s.x = u.u.w + u.u.x;", 0, 2);
+    check("s.x = u.u.w + dot(u.u, u.u);", 0, 2);
+    check("s.x = u.list[n].w + u.list[n].x;", 0, 2);
+    check("s.x = s.rows[n].b.z + s.rows[n].b.x;", 0, 2);
+    check("s.x = s.rows[n].m[1].z + s.rows[n].m[0].x;", 0, 2);
+    check("s.x = v[n][n & 3u];", 0, 1); /* which one, is known when it runs */
+    check("s.x = p.x + p.y;", 0, 2);
+    check("row r = s.rows[n]; v[0] = r.a; v[1] = r.m[0]; s.x = s.rows[2].a.y;", 0, 3);
+}
+
+static void a_component_alone_stays_alone(void **state) {
+    (void)state;
+    check("s.x = u.u.w + s.rows[n].c;", 2, 0);
+    check("s.x = u.u.w * u.one.a.x + u.one.b.x;", 3, 0);
+    check("v[n] = u.u;", 0, 1);
+}
+
+static void what_is_written_is_not_touched(void **state) {
+    (void)state;
+    check("v[n].x = 1.0; v[n].y = 2.0;", 0, 0);
+    check("vec4 all = v[1]; v[n].x += all.y;", 1, 1); /* one chain for the load and the store */
+}
+
+static void what_is_no_module_is_refused(void **state) {
+    (void)state;
+    static const uint32_t words[] = {0x07230203, 0x10300, 0, 10, 0, 0};
+    size_t changed;
+    assert_null(masu_whole_vectors(words, 0, &changed));
+    assert_null(masu_whole_vectors(words + 1, 5, &changed));
+    assert_null(masu_whole_vectors(words, 6, &changed)); /* an instruction of no words */
+}
+
+static void assert_done(const char *name, const uint32_t *words, size_t bytes) {
+    size_t changed;
+    uint32_t *again = masu_whole_vectors(words, bytes / 4, &changed);
+    assert_non_null(again);
+    if (changed != bytes / 4 || memcmp(again, words, bytes)) fail_msg("%s: has components left to load whole", name);
+    free(again);
+}
+
+static void shaders_of_the_tree_have_none_left(void **state) {
+    (void)state;
+    char pattern[512];
+    glob_t found;
+    uint32_t shaders = 0;
+    snprintf(pattern, sizeof pattern, "%s/gen/*.opt.spv", made_dir());
+    assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+    for (size_t k = 0; k < found.gl_pathc; k++, shaders++) {
+        size_t bytes;
+        uint32_t *words = read_file(found.gl_pathv[k], &bytes);
+        assert_done(found.gl_pathv[k], words, bytes);
+        free(words);
+    }
+    globfree(&found);
+    snprintf(pattern, sizeof pattern, "%s/scenes/*.masu", made_dir());
+    assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+    for (size_t k = 0; k < found.gl_pathc; k++) {
+        masu_scene scene;
+        size_t bytes;
+        void *blob = read_file(found.gl_pathv[k], &bytes);
+        assert_int_equal(masu_scene_bind(blob, bytes, &scene, NULL), MASU_OK);
+        masu_scene_view view = masu_scene_look(&scene);
+        for (uint32_t kind = 0; kind < MASU_BLOB_KIND_COUNT; kind++) {
+            if (!view.code[kind].words) continue;
+            assert_done(found.gl_pathv[k], view.code[kind].words, 4 * (size_t)view.code[kind].count);
+            shaders++;
+        }
+        free(blob);
+    }
+    globfree(&found);
+    assert_true(shaders > 200);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(components_beside_others_come_whole),
+        cmocka_unit_test(a_component_alone_stays_alone),
+        cmocka_unit_test(what_is_written_is_not_touched),
+        cmocka_unit_test(what_is_no_module_is_refused),
+        cmocka_unit_test(shaders_of_the_tree_have_none_left),
+    };
+    return cmocka_run_group_tests_name("whole_vectors", tests, make_scratch, remove_scratch);
+}
