@@ -12,6 +12,7 @@
 #define MASU_TRACE_POLYGONS
 #include "trace/scene.glsl"
 #define MASU_TRACE_COUNTERS
+#define MASU_TRACE_LANES (MASU_GROUP * MASU_GROUP)
 #include "trace/texels.glsl"
 #include "trace/bvh.glsl"
 #include "specular/origin.glsl"

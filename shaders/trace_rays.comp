@@ -15,6 +15,7 @@ layout(set = 0, binding = 3, std430) readonly buffer Rays { vec4 rays[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Hits { uvec4 hits[]; };
 layout(push_constant) uniform Push { uvec4 push; };
 
+#define MASU_TRACE_LANES 64
 #include "trace/bvh.glsl"
 
 void main()

@@ -4,6 +4,7 @@
  *   masu_trace_static[]     header, nodes and triangles as baked
  *   masu_trace_frame[]      header, nodes and records of this frame
  *   masu_trace_vertices[]   the vertices of the blob
+ *   MASU_TRACE_LANES        how many invocations its group has
  * and may define
  *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics)   false: the ray goes on through this point
  *   MASU_TRACE_COUNTERS                                    counts nodes and triangles that were looked at
@@ -62,8 +63,16 @@ const float masu_trace_flat = 1e-12;
 const float masu_trace_margin = 1e-6; /* 8 roundings, and a division that is off by 2.5 units */
 
 /* Children of nodes that are still to be looked at, a word for each node: their first << 8, how
- * many are left << 6, which comes next, 2 bits each. */
-uint masu_trace_stack[MASU_TRACE_STACK];
+ * many are left << 6, which comes next, 2 bits each. In shared memory, of which a scene takes a word for each level
+ * of its trees and invocation (src/plan): an array of an invocation's own goes to memory on every GPU here, with
+ * 2 KB for each lane on Intel's. */
+layout(constant_id = 9) const int masu_trace_levels = MASU_TRACE_STACK;
+shared uint masu_trace_stack[masu_trace_levels * MASU_TRACE_LANES];
+
+uint masu_trace_slot(int depth)
+{
+    return uint(depth) * uint(MASU_TRACE_LANES) + gl_LocalInvocationIndex;
+}
 
 struct masu_trace_ray {
     vec3 origin;
@@ -146,7 +155,7 @@ void masu_trace_next(uint child, uint hits, uvec4 order, int bottom, inout uint 
     bool pop = hits == 0u;
     going = !pop || left > 0u;
     if (hits > 1u) {
-        if (left > 0u && depth < MASU_TRACE_STACK) masu_trace_stack[depth++] = rest;
+        if (left > 0u && depth < masu_trace_levels) masu_trace_stack[masu_trace_slot(depth++)] = rest;
         rest = child << 8 | (hits - 1u) << 6;
         rest |= (order.y & 3u) | (order.z & 3u) << 2 | (order.w & 3u) << 4;
     }
@@ -155,38 +164,37 @@ void masu_trace_next(uint child, uint hits, uvec4 order, int bottom, inout uint 
         if (left > 1u)
             rest = (rest & ~255u) | (left - 1u) << 6 | ((rest >> 2) & 15u);
         else
-            rest = depth > bottom ? masu_trace_stack[--depth] : 0u;
+            rest = depth > bottom ? masu_trace_stack[masu_trace_slot(--depth)] : 0u;
     }
 }
 
 struct masu_trace_shear {
-    vec3 origin, shear; /* xy: of the direction over its largest component; z: 1 / that component */
-    bvec2 axis;         /* the largest is x, y; else z */
+    vec3 shear; /* xy: of the direction over its largest component; z: 1 / that component */
+    bvec2 axis; /* the largest is x, y; else z */
 };
 
-masu_trace_shear masu_trace_shear_of(vec3 origin, vec3 d)
+masu_trace_shear masu_trace_shear_of(vec3 d)
 {
     vec3 size = abs(d);
     bvec2 axis = bvec2(size.x >= size.y && size.x >= size.z, size.y >= size.z);
     vec3 turned = axis.x ? d.yzx : axis.y ? d.zxy : d;
-    vec3 at = axis.x ? origin.yzx : axis.y ? origin.zxy : origin;
-    return masu_trace_shear(at, vec3(turned.xy, 1.0) / turned.z, axis);
+    return masu_trace_shear(vec3(turned.xy, 1.0) / turned.z, axis);
 }
 
-vec3 masu_trace_corner(uint vertex, masu_trace_shear s)
+vec3 masu_trace_corner(uint vertex, vec3 origin, masu_trace_shear s)
 {
-    vec3 p = uintBitsToFloat(masu_trace_vertices[vertex].xyz);
-    precise vec3 v = (s.axis.x ? p.yzx : s.axis.y ? p.zxy : p) - s.origin;
+    precise vec3 p = uintBitsToFloat(masu_trace_vertices[vertex].xyz) - origin;
+    precise vec3 v = s.axis.x ? p.yzx : s.axis.y ? p.zxy : p;
     precise vec2 sheared = v.xy - s.shear.xy * v.z;
     return vec3(sheared, v.z * s.shear.z);
 }
 
 /* Distance and weights of the second and third corner; x is negative where it is not hit. */
-vec3 masu_trace_triangle(uvec3 vertices, masu_trace_shear s, float t_min, float t_max)
+vec3 masu_trace_triangle(uvec3 vertices, vec3 origin, masu_trace_shear s, float t_min, float t_max)
 {
-    vec3 a = masu_trace_corner(vertices.x, s);
-    vec3 b = masu_trace_corner(vertices.y, s);
-    vec3 c = masu_trace_corner(vertices.z, s);
+    vec3 a = masu_trace_corner(vertices.x, origin, s);
+    vec3 b = masu_trace_corner(vertices.y, origin, s);
+    vec3 c = masu_trace_corner(vertices.z, origin, s);
     precise float u = c.x * b.y - c.y * b.x;
     precise float v = a.x * c.y - a.y * c.x;
     precise float w = b.x * a.y - b.y * a.x;
@@ -226,13 +234,14 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
                      most >= 1e-6 && most <= 1e6 && start < far && masu_trace_frame[0].y > 0u;
     if (!top_going) return best;
 
-    masu_trace_ray world = masu_trace_prepare(origin, direction);
     uint top_node = 0u, top_rest = 0u, visits = 0u, records = masu_trace_frame[0].x;
     uint triangles = masu_trace_static[0].x;
     uint waiting = 0u; /* instances of a node: slots as in masu_trace_stack */
     uint waiting_item = 0u;
     int depth = 0;
     for (int i = 0; i < MASU_TRACE_VISITS; i++) {
+        /* Each time anew: kept, it would take registers from the loop of the mesh. */
+        masu_trace_ray world = masu_trace_prepare(origin, direction);
         for (int k = 0; k < MASU_TRACE_VISITS; k++) {
             if (waiting != 0u || !top_going || visits >= uint(MASU_TRACE_VISITS)) break;
             uint at = 1u + top_node * uint(MASU_TRACE_NODE_UVEC4);
@@ -272,7 +281,7 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
         vec3 o = vec3(dot(r0.xyz, from), dot(r1.xyz, from), dot(r2.xyz, from));
         vec3 d = vec3(dot(r0.xyz, direction), dot(r1.xyz, direction), dot(r2.xyz, direction));
         masu_trace_ray ray = masu_trace_prepare(o, d);
-        masu_trace_shear shear = masu_trace_shear_of(o, d);
+        masu_trace_shear shear = masu_trace_shear_of(d);
         uint node = about.x, rest = 0u;
         int bottom = depth;
         bool going = true;
@@ -306,7 +315,7 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
                 uint triangle = item + masu_low_bit(items);
                 items &= items - 1u;
                 uvec3 vertices = masu_trace_static[triangles + triangle].xyz;
-                vec3 found = masu_trace_triangle(vertices, shear, start, far);
+                vec3 found = masu_trace_triangle(vertices, o, shear, start, far);
 #ifdef MASU_TRACE_COUNTERS
                 masu_trace_triangles_seen++;
 #endif

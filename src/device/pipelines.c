@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "device/bind.h"
 #include "scene/scene.h"
+#include "scene/trace.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>
@@ -27,11 +28,12 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 7 of all shaders, of which each has those it declares: of compute shaders whether counters
+/* Constants 0 to 9 of all shaders, of which each has those it declares: of compute shaders whether counters
  * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
  * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
- * encoding; whether the last pass rounds to its steps or changes the order of its channels. */
-enum { SPECIAL_COUNT = 9 };
+ * encoding; whether the last pass rounds to its steps or changes the order of its channels; whether the output
+ * is whole groups of invocations; how many nodes a ray may have to come back to. */
+enum { SPECIAL_COUNT = 10 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -44,7 +46,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {5, 5 * sizeof *constants, sizeof *constants},
         {6, 6 * sizeof *constants, sizeof *constants},
         {7, 7 * sizeof *constants, sizeof *constants},
-        {8, 8 * sizeof *constants, sizeof *constants}};
+        {8, 8 * sizeof *constants, sizeof *constants},
+        {9, 9 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -58,6 +61,9 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[7] = m->plan->output.steps[0] || (m->plan->output.flags & MASU_OUTPUT_SWAP);
     VkExtent2D output = m->plan->desc.output;
     constants[8] = output.width % MASU_GROUP == 0 && output.height % MASU_GROUP == 0;
+    /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
+    const masu_scene *scene = &m->plan->scene;
+    constants[9] = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }

@@ -179,6 +179,11 @@ void masu_look_at_trace(const reader *r, masu_scene *out) {
     out->trace_nodes = (uint32_t)r->counts[MASU_BLOB_TRACE_NODES];
     out->trace_triangles = (uint32_t)r->counts[MASU_BLOB_TRACE_TRIANGLES];
     out->trace_instances = (uint32_t)r->counts[MASU_BLOB_TRACE_INSTANCES];
+    out->trace_levels = 0;
+    for (uint32_t i = 0; r->view.trace_meshes && i < out->meshes; i++) {
+        uint32_t levels = r->view.trace_meshes[i].depth;
+        if (levels > out->trace_levels) out->trace_levels = levels;
+    }
     out->trace_textures = (uint32_t)r->counts[MASU_BLOB_TRACE_TEXTURES];
     out->trace_texels = r->counts[MASU_BLOB_TRACE_TEXELS];
     for (uint32_t i = 0; i < out->trace_textures; i++) {

@@ -152,8 +152,14 @@ static masu_trace_box box_of(const struct masu_trace_placed *p, const double anc
     return out;
 }
 
+uint32_t masu_trace_top_levels(uint32_t instances) {
+    uint32_t levels = 4;
+    for (uint64_t most = 4; most < instances; most *= 4) levels++;
+    return levels < MASU_TRACE_TOP_DEPTH ? levels : MASU_TRACE_TOP_DEPTH;
+}
+
 static void build(masu_trace_top *top) {
-    masu_trace_shape shape = masu_trace_tree_shape(top->boxes, top->live, 1, MASU_TRACE_TOP_DEPTH,
+    masu_trace_shape shape = masu_trace_tree_shape(top->boxes, top->live, 1, masu_trace_top_levels(top->count),
                                                    0, 0, top->order, top->work, top->tree);
     top->nodes = shape.nodes;
     top->depth = shape.depth;

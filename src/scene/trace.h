@@ -60,6 +60,10 @@ typedef struct masu_trace_top {
     uint32_t *order, *work;
 } masu_trace_top;
 
+/* Most levels of the tree over so many instances: three more than if each of its nodes had four children, at most
+ * MASU_TRACE_TOP_DEPTH. */
+uint32_t masu_trace_top_levels(uint32_t instances);
+
 /* Host bytes for so many instances. */
 uint64_t masu_trace_top_bytes(uint32_t instances);
 

@@ -19,6 +19,7 @@ bool opaque(uint triangle, uint instance, vec2 weights)
 }
 #define MASU_TRACE_OPAQUE(triangle, instance, weights) opaque(triangle, instance, weights)
 
+#define MASU_TRACE_LANES 64
 #include "trace/bvh.glsl"
 
 void main()
