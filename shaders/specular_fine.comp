@@ -107,8 +107,9 @@ vec4 look(uvec2 pixel, vec2 moved, masu_guide g)
 
 /* What few rays meet and much light comes from is noise in so few of them: no brighter than what the means
  * of the eight texels around show, nor than four times what the pixel has. A highlight that is there comes up
- * all the same, by four times with each ray. */
-vec3 without_sparks(ivec2 texel, vec3 color, vec4 old)
+ * all the same, by four times with each ray. x: the mean of the eight; y: what they show at most. Once for a texel and
+ * before its pixels, whose registers it would take. */
+vec2 sparks_around(ivec2 texel)
 {
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
     float sum = 0.0;
@@ -126,12 +127,17 @@ vec3 without_sparks(ivec2 texel, vec3 color, vec4 old)
         count += 1.0;
     }
     if (!(count > 0.0)) {
-        return color;
+        return vec2(0.0, masu_huge);
     }
     float mean = sum / max(count, 1.0);
-    float most = mean + 2.5 * masu_sqrt(squares / max(count, 1.0) - mean * mean) + 0.1 * mean;
-    if (old.a > 0.0) {
-        most = min(most, 4.0 * masu_luma(old.rgb) + mean);
+    return vec2(mean, mean + 2.5 * masu_sqrt(squares / max(count, 1.0) - mean * mean) + 0.1 * mean);
+}
+
+vec3 without_sparks(vec3 color, vec4 old, vec2 around)
+{
+    float most = around.y;
+    if (old.a > 0.0 && most < masu_huge) {
+        most = min(most, 4.0 * masu_luma(old.rgb) + around.x);
     }
     float y = masu_luma(color);
     return y > most ? color * (most / max(y, 1e-9)) : color;
@@ -181,6 +187,7 @@ void main()
             if (!(g.roughness > masu_mirror_roughness)) {
                 share = 1.0;
             }
+            vec2 around = g.roughness > masu_fine_narrow ? sparks_around(ivec2(texel)) : vec2(0.0, masu_huge);
             vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
             for (uint k = 0u; k < 4u; k++) {
                 uvec2 pixel = masu_guide_place(texel, k, 2u);
@@ -190,9 +197,7 @@ void main()
                 }
                 old.rgb = clamp(old.rgb, least, most);
                 if (k == g.pixel) {
-                    if (g.roughness > masu_fine_narrow) {
-                        color = without_sparks(ivec2(texel), color, old);
-                    }
+                    color = without_sparks(color, old, around);
                     old = vec4(old.a > 0.0 ? mix(old.rgb, color, share) : color, 1.0);
                 }
                 words[k] = old.a > 0.0 ? masu_pack_fine(old.rgb, noise.x) : masu_fine_none;
