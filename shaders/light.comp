@@ -125,13 +125,15 @@ void main()
                 color = albedo.rgb * albedo.rgb * masu_emissive_range;
             } else {
                 masu_surface s = surface_at(ivec2(at), albedo, normal);
-                masu_bsdf b = masu_bsdf_make(s, masu_unpack_normal(normal), -direction);
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
                 vec2 kept = vec2(1.0);
                 if (reflections) {
                     kept = masu_kept_mirrors(s, push.cutoff, push.accumulate != 0u);
                 }
-                masu_lit lit = masu_shade(s, b, rel, arriving(at), kept);
+                vec3 n = masu_unpack_normal(normal);
+                masu_mirrored sky = masu_mirrored_sky(s, n, -direction, kept);
+                masu_bsdf b = masu_bsdf_make(s, n, -direction);
+                masu_lit lit = masu_shade(s, b, rel, arriving(at), sky);
 #ifdef MASU_LIGHTS
                 add_lights(lit, s, b, at, ray * masu_light_depth(depth));
 #endif

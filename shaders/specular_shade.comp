@@ -144,8 +144,9 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
         seen.x = masu_sun_seen(rel, m.normal, dot(rel, frame.forward.xyz));
     }
 #endif
+    masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
     masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
-    masu_lit lit = masu_shade(m.surface, b, rel, seen, vec2(1.0));
+    masu_lit lit = masu_shade(m.surface, b, rel, seen, sky);
 #ifdef MASU_LIGHTS
     uint lights = masu_light_count();
     for (uint i = 0u; i < uint(MASU_LOCAL_LIGHTS_MAX); i++) {

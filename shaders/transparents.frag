@@ -95,7 +95,8 @@ void main()
     if (masu_is_emissive(s)) {
         color = s.emissive * opacity;
     } else {
-        masu_lit lit = masu_shade(s, masu_bsdf_make(s, n, -direction), in_rel, seen, vec2(1.0));
+        masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
+        masu_lit lit = masu_shade(s, masu_bsdf_make(s, n, -direction), in_rel, seen, sky);
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
         color = lit.diffuse * opacity + (additive ? vec3(0.0) : lit.specular);
         taken = 1.0 - (1.0 - opacity) * (1.0 - mirrored);

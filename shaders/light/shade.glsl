@@ -65,26 +65,52 @@ masu_around masu_ambient_at(vec3 rel, vec3 n)
     return around;
 }
 
+/* The open sky as a surface and its coat mirror it; of what mirrors nothing, nothing.
+ * kept: share of the light from everywhere that the base mirrors, and that its coat does: the rest is traced
+ * (specular_composite.comp).
+ *
+ * To be asked for before masu_bsdf_make: a look into the sky takes as many registers as a bsdf. */
+struct masu_mirrored {
+    vec3 base;
+    vec3 coat;
+};
+
+masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
+{
+    masu_mirrored m = masu_mirrored(vec3(0.0), vec3(0.0));
+    vec3 mirrored = reflect(-v, n);
+#ifdef MASU_SURFACE
+    /* In a loop: the code for the sky would stand here twice. */
+    [[dont_unroll]] for (int i = 0; i < 2; i++) {
+        float part = i == 0 ? kept.x : s.coat > 0.0 ? kept.y : 0.0;
+        m.coat = vec3(0.0);
+        if (part > 0.0) {
+            m.coat = part * masu_ambient_mirror(mirrored, i == 0 ? s.roughness : s.coat_roughness);
+        }
+        m.base = i == 0 ? m.coat : m.base;
+    }
+#else
+    if (kept.x > 0.0) {
+        m.base = kept.x * masu_ambient_mirror(mirrored, s.roughness);
+    }
+#endif
+    return m;
+}
+
 /* b: of s; rel: the point, relative to the eye; seen: how much arrives of the sun and of the ambient
- * light; kept: share of the light from everywhere that the base mirrors, and that its coat does: the rest
- * is traced (specular_composite.comp). */
-masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, vec2 kept)
+ * light; sky: of masu_mirrored_sky. */
+masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, masu_mirrored sky)
 {
     masu_around around = masu_ambient_at(rel, b.n);
     vec3 ambient = around.mirrored * (seen.y * s.occlusion);
-    vec3 mirrored = reflect(-b.v, b.n);
     masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen.y * s.occlusion),
                             vec3(0.0), masu_bsdf_specular(b));
-    if (kept.x > 0.0) {
-        lit.specular = kept.x * lit.mirror * masu_ambient_mirror(mirrored, s.roughness) * ambient;
-    }
+    lit.specular = lit.mirror * sky.base * ambient;
 #ifdef MASU_SURFACE
     if (s.coat > 0.0) {
         float coat = masu_bsdf_coat(b);
         lit.mirror += coat;
-        if (kept.y > 0.0) {
-            lit.specular += kept.y * coat * masu_ambient_mirror(mirrored, s.coat_roughness) * ambient;
-        }
+        lit.specular += coat * sky.coat * ambient;
     }
 #endif
     masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb * seen.x);

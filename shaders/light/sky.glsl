@@ -12,6 +12,8 @@
 #ifndef MASU_SKY_GLSL
 #define MASU_SKY_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 layout(constant_id = 1) const bool masu_has_sky = false;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKY, std140) uniform Sky
@@ -31,15 +33,16 @@ bool masu_sky_is_analytic()
     return masu_has_sky && masu_sky_tables.azimuth.w > 0.0;
 }
 
-/* The three terms at a sine of elevation and a cosine of azimuth from the sun. */
-void masu_sky_terms(float y, float x, out vec3 even, out vec3 air, out vec3 haze)
+/* The sum of the three terms, weighted, at a sine of elevation and a cosine of azimuth from the sun: what comes
+ * evenly, of the air, of the haze. */
+vec3 masu_sky_sum(float y, float x, vec3 weights)
 {
     float t = y < 0.0 ? -masu_sqrt(-y) : masu_sqrt(y);
     float at = clamp((float(MASU_SKY_ROWS / 2) - 0.5) * (1.0 + t), 0.0, float(MASU_SKY_ROWS - 1));
     int row = int(min(at, float(MASU_SKY_ROWS - 2)));
     float part = at - float(row);
     row *= MASU_SKY_ROW;
-    vec3 terms[MASU_SKY_TERMS];
+    vec3 sum = vec3(0.0);
     for (int k = 0; k < MASU_SKY_TERMS; k++) {
         int a = row + 3 * k;
         int b = a + MASU_SKY_ROW;
@@ -48,11 +51,9 @@ void masu_sky_terms(float y, float x, out vec3 even, out vec3 air, out vec3 haze
         vec3 high = masu_sky_tables.rows[b].rgb +
                     x * (masu_sky_tables.rows[b + 1].rgb + x * masu_sky_tables.rows[b + 2].rgb);
         vec3 power = min(low + part * (high - low), 32.0);
-        terms[k] = vec3(masu_exp2(power.r), masu_exp2(power.g), masu_exp2(power.b));
+        sum += weights[k] * vec3(masu_exp2(power.r), masu_exp2(power.g), masu_exp2(power.b));
     }
-    even = terms[0];
-    air = terms[1];
-    haze = terms[2];
+    return sum;
 }
 
 /* Henyey and Greenstein's phase function. */
@@ -75,12 +76,8 @@ vec3 masu_sky_light(vec3 direction)
 {
     vec3 d = masu_sane(direction, -1.0, 1.0);
     float cosine = clamp(dot(d, masu_sky_tables.sun.xyz), -1.0, 1.0);
-    vec3 even;
-    vec3 air;
-    vec3 haze;
-    masu_sky_terms(d.y, masu_sky_azimuth(d), even, air, haze);
-    return even + 0.0596831037 * (1.0 + cosine * cosine) * air +
-           masu_haze_phase(cosine, masu_sky_tables.sun.w) * haze;
+    vec3 weights = vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
+    return masu_sky_sum(d.y, masu_sky_azimuth(d), weights);
 }
 
 /* The same, blurred as by lobes whose bands 1 and 2 are a1 and a2: both phase functions exactly so, for
@@ -95,12 +92,8 @@ vec3 masu_sky_blurred(vec3 direction, float a1, float a2)
     float haze_phase = masu_haze_phase(cosine, masu_sky_tables.sun.w * a1);
     float width = masu_sqrt((1.0 - a2) * (1.0 - 0.9 * d.y * d.y)) * 0.45;
     vec3 sum = vec3(0.0);
-    for (int i = -1; i <= 1; i++) {
-        vec3 even;
-        vec3 air;
-        vec3 haze;
-        masu_sky_terms(clamp(d.y + float(i) * width, -1.0, 1.0), x, even, air, haze);
-        sum += even + air_phase * air + haze_phase * haze;
+    [[dont_unroll]] for (int i = -1; i <= 1; i++) {
+        sum += masu_sky_sum(clamp(d.y + float(i) * width, -1.0, 1.0), x, vec3(1.0, air_phase, haze_phase));
     }
     return sum * (1.0 / 3.0);
 }
