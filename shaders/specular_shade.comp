@@ -58,8 +58,7 @@ layout(set = MASU_SET_PASS, binding = MASU_AT_LIGHT + 1, r32ui) uniform writeonl
 /* What a ray has met. */
 struct met {
     masu_surface surface;
-    vec3 normal;  /* unit, towards where the ray comes from */
-    vec3 before;  /* where the point was in the previous frame, minus where it is */
+    vec3 normal; /* unit, towards where the ray comes from */
 };
 
 met met_sdf(uvec4 hit)
@@ -72,7 +71,6 @@ met met_sdf(uvec4 hit)
         m.surface.emissive = look.rgb * look.rgb * masu_emissive_range;
     }
     m.normal = masu_unpack_normal(hit.z);
-    m.before = masu_unpack_sdf_motion(hit.y);
     return m;
 }
 
@@ -126,11 +124,25 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
         }
     }
 #endif
-    vec4 object = vec4(p0 * weights.x + p1 * weights.y + p2 * weights.z, 1.0);
-    m.before = masu_trace_before(hit.y, object) - masu_trace_now(hit.y, object);
     return m;
 }
 #endif
+
+/* Where what was met was in the previous frame, minus where it is. */
+vec3 met_before(uvec4 hit)
+{
+#ifdef MASU_TRACE_POLYGONS
+    if ((hit.y & MASU_HIT_SDF) == 0u) {
+        vec2 b = unpackUnorm2x16(hit.w);
+        uvec3 triangle = masu_trace_static[masu_trace_static[0].x + hit.z].xyz;
+        vec3 object = uintBitsToFloat(masu_trace_vertices[triangle.x].xyz) * (1.0 - b.x - b.y) +
+                      uintBitsToFloat(masu_trace_vertices[triangle.y].xyz) * b.x +
+                      uintBitsToFloat(masu_trace_vertices[triangle.z].xyz) * b.y;
+        return masu_trace_before(hit.y, vec4(object, 1.0)) - masu_trace_now(hit.y, vec4(object, 1.0));
+    }
+#endif
+    return masu_unpack_sdf_motion(hit.y);
+}
 
 /* Radiance of what is met at a point relative to the eye. */
 vec3 radiance(met m, vec3 rel, vec3 direction)
@@ -213,54 +225,72 @@ uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
     return packHalf2x16(clamp(velocity.xy, vec2(-60000.0), vec2(60000.0)));
 }
 
+/* How far the ray went; negative: it met nothing. */
+float met_at(uvec4 hit)
+{
+    return masu_sane(uintBitsToFloat(hit.x), -1.0, frame.trace_anchor.w);
+}
+
+vec4 light_of(uvec2 texel, masu_guide g)
+{
+    uvec4 hit = texelFetch(hit_image, ivec2(texel), 0);
+    uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
+    vec3 point = masu_specular_point(texel, g);
+    vec3 direction = masu_unpack_direction(ray.x);
+    float t = met_at(hit);
+    vec3 light;
+    if (t >= 0.0) {
+        vec3 rel = masu_specular_origin(point, g) - frame.trace_eye.xyz + direction * t;
+        met m;
+#ifdef MASU_TRACE_POLYGONS
+        if ((hit.y & MASU_HIT_SDF) == 0u) {
+            /* As wide as the lobe has become: half of it lies within its roughness squared. */
+            float width = masu_specular_width(g) + t * (g.roughness * g.roughness + frame.up.w * 2.0 / float(pc.render_height));
+            m = met_polygon(hit, direction, width);
+        } else
+#endif
+        {
+            m = met_sdf(hit);
+        }
+        light = radiance(m, rel, direction);
+    } else {
+        light = masu_sky(direction);
+    }
+    if (foggy) {
+        light = masu_through_air(light, direction, masu_air_depth_from(point, direction, t));
+    }
+    if (push.accumulate != 0u) {
+        light *= masu_unpack_shared(ray.y);
+    }
+    return vec4(light, t >= 0.0 ? t : frame.trace_anchor.w);
+}
+
+uint motion_of(uvec2 texel, masu_guide g)
+{
+    uvec4 hit = texelFetch(hit_image, ivec2(texel), 0);
+    float t = met_at(hit);
+    bool there = t >= 0.0;
+    return motion(texel, g, masu_specular_point(texel, g), there ? t : frame.trace_anchor.w,
+                  there ? met_before(hit) : vec3(0.0));
+}
+
+/* Motion and light one after the other, and in a loop, so that each reads anew what it needs: what one keeps for the
+ * other would be 40 registers, and half of the waves. */
 void main()
 {
     masu_count_begin();
     uvec2 texel = masu_specular_texel();
     if (masu_specular_inside(texel)) {
-        masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
-        vec4 light = vec4(0.0);
-        uint moved = masu_unmoved;
-        if (g.there) {
-            uvec4 hit = texelFetch(hit_image, ivec2(texel), 0);
-            uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
-            vec3 point = masu_specular_point(texel, g);
-            vec3 direction = masu_unpack_direction(ray.x);
-            float t = masu_sane(uintBitsToFloat(hit.x), -1.0, frame.trace_anchor.w);
-            float far = frame.trace_anchor.w;
-            vec3 before = vec3(0.0);
-            if (t >= 0.0) {
-                vec3 rel = masu_specular_origin(point, g) - frame.trace_eye.xyz + direction * t;
-                met m;
-#ifdef MASU_TRACE_POLYGONS
-                if ((hit.y & MASU_HIT_SDF) == 0u) {
-                    /* As wide as the lobe has become: half of it lies within its roughness squared. */
-                    float width = masu_specular_width(g) + t * (g.roughness * g.roughness + frame.up.w * 2.0 / float(pc.render_height));
-                    m = met_polygon(hit, direction, width);
-                } else
-#endif
-                {
-                    m = met_sdf(hit);
-                }
-                light.rgb = radiance(m, rel, direction);
-                far = t;
-                before = m.before;
+        [[dont_unroll]] for (int turn = 0; turn < 2; turn++) {
+            masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
+            if (turn == 0) {
+                uint moved = g.there && push.accumulate == 0u ? motion_of(texel, g) : masu_unmoved;
+                MASU_STORE_UINT(motion_image, texel, uvec4(moved));
             } else {
-                light.rgb = masu_sky(direction);
+                vec4 light = g.there ? light_of(texel, g) : vec4(0.0);
+                MASU_STORE_HALF(light_image, texel, light);
             }
-            if (foggy) {
-                light.rgb = masu_through_air(light.rgb, direction,
-                                             masu_air_depth_from(point, direction, t));
-            }
-            if (push.accumulate != 0u) {
-                light.rgb *= masu_unpack_shared(ray.y);
-            } else {
-                moved = motion(texel, g, point, far, before);
-            }
-            light.a = far;
         }
-        MASU_STORE_HALF(light_image, texel, light);
-        MASU_STORE_UINT(motion_image, texel, uvec4(moved));
     }
     masu_count_end();
 }
