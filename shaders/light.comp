@@ -113,11 +113,11 @@ void main()
         vec3 direction = masu_normalize(ray, frame.forward.xyz);
         float depth = texelFetch(depth_image, ivec2(at), 0).r;
         vec3 color;
-        if (!(depth > 0.0)) {
-            color = masu_sky(direction) + masu_sun_disc(direction);
-            if (foggy) {
-                color = masu_through_air(color, direction, masu_air_depth_sky(direction));
-            }
+        float air = 0.0;
+        bool open = !(depth > 0.0);
+        if (open) {
+            color = masu_sun_disc(direction);
+            air = foggy ? masu_air_depth_sky(direction) : 0.0;
         } else {
             vec4 albedo = texelFetch(albedo_image, ivec2(at), 0);
             uint normal = texelFetch(normal_image, ivec2(at), 0).r;
@@ -141,9 +141,10 @@ void main()
             }
             if (foggy) {
                 float far = frame.forward.w * masu_rcp(depth) * length(ray);
-                color = masu_through_air(color, direction, masu_air_depth(direction, far));
+                air = masu_air_depth(direction, far);
             }
         }
+        color = masu_seen_along(color, open, direction, foggy, air);
         MASU_STORE_HALF(hdr_image, at, vec4(color, 1.0));
     }
     masu_count_end();

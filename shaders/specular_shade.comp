@@ -114,13 +114,16 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
         float density = masu_sqrt(wide * masu_rcp(across)); /* of texture coordinates per metre */
         float lod = masu_log2(max(width, 1e-9) * density /
                               max(masu_sqrt(abs(dot(flat_normal, direction))), 0.1));
-        if (look.maps.x != MASU_TRACE_NONE) {
-            m.surface.albedo *= masu_trace_sized(look.maps.x, uv, lod, look.maps.w).rgb;
-        }
-        if (look.maps.y != MASU_TRACE_NONE) {
-            /* As shared/maps.glsl: a trace of light from a neighbouring texel puts out no surface. */
-            vec3 glow = masu_trace_sized(look.maps.y, uv, lod, look.maps.w).rgb;
-            m.surface.emissive *= max(glow.r, max(glow.g, glow.b)) < 0.2 ? vec3(0.0) : glow;
+        /* In a loop: the code for a look would stand here twice. */
+        [[dont_unroll]] for (int i = 0; i < 2; i++) {
+            uint map = i == 0 ? look.maps.x : look.maps.y;
+            if (map != MASU_TRACE_NONE) {
+                vec3 texel = masu_trace_sized(map, uv, lod, look.maps.w).rgb;
+                /* As shared/maps.glsl: a trace of light from a neighbouring texel puts out no surface. */
+                bool glows = max(texel.r, max(texel.g, texel.b)) >= 0.2;
+                m.surface.albedo *= i == 0 ? texel : vec3(1.0);
+                m.surface.emissive *= i == 0 ? vec3(1.0) : glows ? texel : vec3(0.0);
+            }
         }
     }
 #endif
@@ -238,7 +241,7 @@ vec4 light_of(uvec2 texel, masu_guide g)
     vec3 point = masu_specular_point(texel, g);
     vec3 direction = masu_unpack_direction(ray.x);
     float t = met_at(hit);
-    vec3 light;
+    vec3 light = vec3(0.0);
     if (t >= 0.0) {
         vec3 rel = masu_specular_origin(point, g) - frame.trace_eye.xyz + direction * t;
         met m;
@@ -253,12 +256,9 @@ vec4 light_of(uvec2 texel, masu_guide g)
             m = met_sdf(hit);
         }
         light = radiance(m, rel, direction);
-    } else {
-        light = masu_sky(direction);
     }
-    if (foggy) {
-        light = masu_through_air(light, direction, masu_air_depth_from(point, direction, t));
-    }
+    light = masu_seen_along(light, !(t >= 0.0), direction, foggy,
+                            foggy ? masu_air_depth_from(point, direction, t) : 0.0);
     if (push.accumulate != 0u) {
         light *= masu_unpack_shared(ray.y);
     }

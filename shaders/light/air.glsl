@@ -6,20 +6,26 @@
 #ifndef MASU_AIR_GLSL
 #define MASU_AIR_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "light/fog.glsl"
 #include "light/shade.glsl"
+
+vec3 masu_air_glow(vec3 direction)
+{
+    if (masu_sky_is_analytic()) { /* that one has its glow in it */
+        return vec3(0.0);
+    }
+    float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
+    return frame.sun_color.rgb * (0.05 * masu_pow(towards, 12.0));
+}
 
 vec3 masu_air_color(vec3 direction)
 {
     if (frame.air.w != 0.0) {
         return frame.fog.rgb;
     }
-    vec3 color = masu_sky(vec3(direction.x, 0.0, direction.z));
-    if (!masu_sky_is_analytic()) { /* that one has its glow in it */
-        float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
-        color += frame.sun_color.rgb * (0.05 * masu_pow(towards, 12.0));
-    }
-    return color;
+    return masu_sky(vec3(direction.x, 0.0, direction.z)) + masu_air_glow(direction);
 }
 
 float masu_air_depth(vec3 direction, float far)
@@ -50,9 +56,25 @@ vec3 masu_through_air(vec3 color, vec3 direction, float depth, float alpha)
     return color * left + masu_air_color(direction) * ((1.0 - left) * alpha);
 }
 
-vec3 masu_through_air(vec3 color, vec3 direction, float depth)
+/* What is seen along a ray. color: of what it meets, or of the sun's disc; open: it meets nothing, and the sky
+ * comes to that; depth: of the air before it, where there is fog. The sky and the colour of the air are one loop:
+ * the code for the sky would stand there twice. */
+vec3 masu_seen_along(vec3 color, bool open, vec3 direction, bool fog, float depth)
 {
-    return masu_through_air(color, direction, depth, 1.0);
+    bool air = fog && !(frame.air.w != 0.0);
+    vec3 air_color = frame.fog.rgb;
+    [[dont_unroll]] for (int i = 0; i < 2; i++) {
+        if (i == 0 ? open : air) {
+            vec3 sky = masu_sky(i == 0 ? direction : vec3(direction.x, 0.0, direction.z));
+            color += i == 0 ? sky : vec3(0.0);
+            air_color = sky;
+        }
+    }
+    if (fog) {
+        float left = masu_fog_left(depth);
+        color = color * left + (air ? air_color + masu_air_glow(direction) : air_color) * (1.0 - left);
+    }
+    return color;
 }
 
 #endif

@@ -9,6 +9,8 @@
 #ifndef MASU_SHADE_GLSL
 #define MASU_SHADE_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 #include "brdf/bsdf.glsl"

@@ -8,6 +8,8 @@
 #ifndef MASU_TRACE_TEXELS_GLSL
 #define MASU_TRACE_TEXELS_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #ifdef MASU_TRACE_TEXTURES
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TRACE_TEXCOORDS, std430) readonly buffer TraceTexcoords
 {
@@ -50,7 +52,7 @@ vec4 masu_trace_picture(uint picture, vec2 uv, float lod, uint wrap)
     vec2 corner = floor(at);
     vec2 part = at - corner;
     vec4 sum = vec4(0.0);
-    for (int k = 0; k < 4; k++) {
+    [[dont_unroll]] for (int k = 0; k < 4; k++) {
         ivec2 off = ivec2(k & 1, k >> 1);
         int x = masu_trace_wrap(int(corner.x) + off.x, size.x, wrap & 3u);
         int y = masu_trace_wrap(int(corner.y) + off.y, size.y, wrap >> 2 & 3u);
