@@ -16,6 +16,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of what is met may have a coat */
 #define MASU_PUSH masu_push_specular_shade
+#define MASU_SKY_LOOP [[dont_unroll]]
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
@@ -153,13 +154,13 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
     if (masu_is_emissive(m.surface)) {
         return m.surface.emissive;
     }
+    masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
     vec2 seen = vec2(1.0);
 #ifdef MASU_SUN_MAP
     if (dot(m.normal, frame.sun_direction.xyz) > 0.0) {
         seen.x = masu_sun_seen(rel, m.normal, dot(rel, frame.forward.xyz));
     }
 #endif
-    masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
     masu_bsdf b = masu_bsdf_make(m.surface, m.normal, -direction);
     masu_lit lit = masu_shade(m.surface, b, rel, seen, sky);
 #ifdef MASU_LIGHTS
@@ -242,6 +243,7 @@ vec4 light_of(uvec2 texel, masu_guide g)
     vec3 direction = masu_unpack_direction(ray.x);
     float t = met_at(hit);
     vec3 light = vec3(0.0);
+    float air = foggy ? masu_air_depth_from(point, direction, t) : 0.0;
     if (t >= 0.0) {
         vec3 rel = masu_specular_origin(point, g) - frame.trace_eye.xyz + direction * t;
         met m;
@@ -257,8 +259,7 @@ vec4 light_of(uvec2 texel, masu_guide g)
         }
         light = radiance(m, rel, direction);
     }
-    light = masu_seen_along(light, !(t >= 0.0), direction, foggy,
-                            foggy ? masu_air_depth_from(point, direction, t) : 0.0);
+    light = masu_seen_along(light, !(t >= 0.0), direction, foggy, air);
     if (push.accumulate != 0u) {
         light *= masu_unpack_shared(ray.y);
     }

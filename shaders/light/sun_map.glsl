@@ -19,6 +19,8 @@
 #ifndef MASU_SUN_MAP_GLSL
 #define MASU_SUN_MAP_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "shared/globals.glsl"
 
 #ifndef MASU_AT_SUN_MAP
@@ -71,7 +73,7 @@ float masu_cascades_seen(vec3 rel, vec3 n)
     uint count = min(uint(shadow.reach.x), uint(MASU_CASCADES_MAX));
     float seen = 0.0;
     float left = 1.0;
-    for (uint k = 0u; k < uint(MASU_CASCADES_MAX); k++) {
+    [[dont_unroll]] for (uint k = 0u; k < uint(MASU_CASCADES_MAX); k++) {
         if (k >= count || !(left > 0.0)) {
             break;
         }
