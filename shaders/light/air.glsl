@@ -67,7 +67,7 @@ vec3 masu_seen_along(vec3 color, bool open, vec3 direction, bool fog, float dept
         if (i == 0 ? open : air) {
             vec3 sky = masu_sky(i == 0 ? direction : vec3(direction.x, 0.0, direction.z));
             color += i == 0 ? sky : vec3(0.0);
-            air_color = sky;
+            air_color = i == 0 ? air_color : sky;
         }
     }
     if (fog) {
