@@ -229,7 +229,25 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     assert_non_null(strstr(text, "\nCOMPUTED,test_sphere_mesh.masu,64,48,0,"));
     take_text("m.xhtml", text, sizeof text);
     assert_non_null(strstr(text, "<caption>COMPUTED"));
+    assert_null(strstr(text, "instructions by"));
     assert_int_equal(cli_run("plan --model"), 2);
+    /* RADV compiles for raven without one. Other GPUs stand for no class. */
+    snprintf(arguments, sizeof arguments, "%s --size 64x48 --drawn 64x48 --isa raven --csv %s/i.csv",
+             scene_path("test_sphere_mesh"), scratch);
+    assert_int_equal(cli_run("plan --model %s", arguments), 0);
+    take_text("out", text, sizeof text);
+    assert_non_null(strstr(text, "Vega8: instructions by the compiler of raven"));
+    take_text("i.csv", text, sizeof text);
+    assert_non_null(strstr(text, ",COMPUTED instructions raven\n"));
+    const char *tone = strstr(text, ",tonemap,"), *end = tone ? strchr(tone, '\n') : NULL;
+    assert_non_null(end);
+    while (end[-1] != ',') end--;
+    double per_pixel = strtod(end, NULL) / (64 * 48);
+    if (!(per_pixel > 20 && per_pixel < 500)) fail_msg("%g instructions of tonemap for each pixel", per_pixel);
+    snprintf(arguments, sizeof arguments, "%s --isa navi14", scene_path("test_sphere_mesh"));
+    assert_int_equal(cli_run("plan --model %s", arguments), 1);
+    take_text("err", text, sizeof text);
+    assert_non_null(strstr(text, "has no class for navi14"));
     snprintf(arguments, sizeof arguments, "%s --ladder auto", scene_path("test_sphere_mesh"));
     assert_int_equal(cli_run("plan --model %s", arguments), 2);
     snprintf(arguments, sizeof arguments, "%s --ladder %s/none.json",

@@ -50,7 +50,7 @@ worse "$folder/new.csv" "$folder/spill.csv" | grep -q '^engine,raven,rcas,.*spil
 "$masu" plan "$made/scenes/engine.masu" --isa vangogh,raven --json > "$folder/json" || fail 'no JSON'
 grep -q '"raven": \[' "$folder/json" && grep -q '"pipeline": "march"' "$folder/json" || fail 'JSON without rows'
 refuses 2 "there is no GPU 'gtx'" --isa gtx
-refuses 2 '--model is not of --isa' --isa vangogh --model
+refuses 2 '--drawn is not of --isa' --isa vangogh --drawn 64x48
 MASU_ISA_DRIVERS='' refuses 1 'MASU_ISA_DRIVERS is to name the folder' --isa tgl
 MASU_ISA_DRIVERS=$folder refuses 1 "has no $folder/libvulkan_intel.so" --isa kbl
 exit $failed

@@ -200,7 +200,7 @@ static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     count.rung_count = 1;
     count_of(&count.passes[0][MASU_PASS_EASU], p, 800.0, 850.0, 12.0);
     count_of(&count.passes[0][MASU_PASS_RCAS], p, 100.0, 150.0, 5.0);
-    masu_model_make(&count, &m);
+    masu_model_make(&count, NULL, &m);
     const masu_model_row *easu = &m.rungs[0].rows[MASU_PASS_EASU];
     const masu_model_row *rcas = &m.rungs[0].rows[MASU_PASS_RCAS];
     assert_true(easu->runs && rcas->runs && !m.rungs[0].rows[MASU_PASS_LIGHT].runs);
@@ -225,10 +225,82 @@ static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     /* Pixels that go their own way, and texels that were never asked for. */
     count.passes[0][MASU_PASS_EASU].most = 900.0;
     count.passes[0][MASU_PASS_RCAS].numbers[0].amount = 0.25 * p;
-    masu_model_make(&count, &m);
+    masu_model_make(&count, NULL, &m);
     assert_int_equal(easu->weighted_sure, MASU_MODEL_MEASURED);
     assert_int_equal(rcas->bytes_sure, MASU_MODEL_MEASURED);
     assert_near(rcas->bytes, 4.0 * (0.25 * P + P));
+}
+
+static void add_row(masu_isa_rows *rows, const char *pipeline, const char *stage, uint32_t lanes, double instructions,
+                    double waves, double cycles, double latency) {
+    masu_isa_row *r = &rows->row[rows->count++];
+    *r = (masu_isa_row){.lanes = lanes};
+    snprintf(r->pipeline, sizeof r->pipeline, "%s", pipeline);
+    snprintf(r->stage, sizeof r->stage, "%s", stage);
+    for (int i = 0; i < MASU_ISA_FIELD_COUNT; i++) r->value[i] = (double)NAN;
+    r->value[MASU_ISA_INSTRUCTIONS] = instructions;
+    r->value[MASU_ISA_WAVES] = waves;
+    r->value[MASU_ISA_CYCLES] = cycles;
+    r->value[MASU_ISA_LATENCY] = latency;
+}
+
+/* Pipelines of a pass are added up; of several widths the widest is taken, binning not at all. */
+static void instructions_of_compilers_are_found_by_pass_and_stage(void **state) {
+    static masu_isa_rows rows;
+    static masu_issued issued;
+    const double no = (double)NAN;
+    (void)state;
+    masu_issued_make(&rows, &issued);
+    assert_false(issued.known);
+    add_row(&rows, "easu", "Compute Shader", 64, 400, 8, 100, 1600);
+    add_row(&rows, "rcas", "Compute Shader", 64, 90, 16, 100, 1500);
+    add_row(&rows, "gbuffer", "vertex", 8, 50, no, 10, no);
+    add_row(&rows, "gbuffer", "SIMD8 fragment", 8, 70, no, 10, no);
+    add_row(&rows, "gbuffer", "SIMD16 fragment", 16, 60, no, 10, no);
+    add_row(&rows, "gbuffer, masks", "SIMD8 fragment", 8, 200, no, 10, no);
+    add_row(&rows, "cascade_0", "VS", 64, 33, 4, no, no);
+    add_row(&rows, "cascade_0", "Binning VS", 64, 30, 4, no, no);
+    add_row(&rows, "no_such_pass", "compute", 64, 1, 1, 1, 1);
+    masu_issued_make(&rows, &issued);
+    assert_true(issued.known);
+    assert_near(issued.pass[MASU_PASS_EASU].instructions[0], 400);
+    assert_near(issued.pass[MASU_PASS_EASU].waits, 2); /* 1600 cycles, of which 8 waves fill 800 */
+    assert_near(issued.pass[MASU_PASS_RCAS].waits, 1);
+    assert_near(issued.pass[MASU_PASS_GBUFFER].instructions[0], 260);
+    assert_near(issued.pass[MASU_PASS_GBUFFER].instructions[1], 50);
+    assert_near(issued.pass[MASU_PASS_CASCADE_0].instructions[1], 33);
+    assert_near(issued.pass[MASU_PASS_CASCADE_0].waits, 1);
+}
+
+static void the_sheet_counts_the_compilers_instructions_where_it_was_asked(void **state) {
+    static masu_count count;
+    static masu_model m;
+    static masu_issued issued[MASU_MODEL_CLASSES];
+    const double p = 960.0 * 540.0, P = 4.0 * p;
+    (void)state;
+    plan_upscaling(960, 540, &count.drawn);
+    plan_upscaling(1920, 1080, &count.sheet);
+    count.rung_count = 1;
+    count_of(&count.passes[0][MASU_PASS_EASU], p, 800.0, 850.0, 12.0);
+    count_of(&count.passes[0][MASU_PASS_RCAS], p, 100.0, 150.0, 5.0);
+    count.straight[MASU_PASS_EASU][0] = 400.0; /* half of what runs: a loop of two rounds */
+    issued[0].known = true;
+    issued[0].pass[MASU_PASS_EASU].instructions[0] = 600.0;
+    issued[0].pass[MASU_PASS_EASU].waits = 1.25;
+    issued[0].pass[MASU_PASS_RCAS].instructions[0] = 90.0; /* no operations of its own: as often as it is called */
+    issued[0].pass[MASU_PASS_RCAS].waits = 1.0;
+    masu_model_make(&count, issued, &m);
+    const masu_model_row *easu = &m.rungs[0].rows[MASU_PASS_EASU], *rcas = &m.rungs[0].rows[MASU_PASS_RCAS];
+    assert_near(easu->issued[0], 800.0 * P * 1.5);
+    assert_near(rcas->issued[0], 90.0 * P);
+    assert_near(m.rungs[0].sum.issued[0], 1290.0 * P);
+    /* An instruction of a lane is half of a fused multiply-add's two operations. */
+    assert_near(masu_model_floor(easu, 0, NULL), 1200.0 * P / 0.83e9);
+    assert_near(masu_model_realistic(easu, 0), 1.5 * 1.25 * 1200.0 * P / 0.83e9);
+    /* The other classes are as they were. */
+    assert_near(easu->issued[1], 0.0);
+    assert_near(masu_model_floor(easu, 1, NULL), 850.0 * P / 0.42e9);
+    assert_true(m.issued[0] && !m.issued[1]);
 }
 
 static void what_is_computed_says_so(void **state) {
@@ -264,6 +336,8 @@ int main(void) {
         cmocka_unit_test(easu_costs_about_what_was_counted_by_hand),
         cmocka_unit_test(a_counted_shader_is_a_valid_one_that_counts_each_access),
         cmocka_unit_test(the_sheet_has_the_numbers_worked_out_by_hand),
+        cmocka_unit_test(instructions_of_compilers_are_found_by_pass_and_stage),
+        cmocka_unit_test(the_sheet_counts_the_compilers_instructions_where_it_was_asked),
         cmocka_unit_test(what_is_computed_says_so),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

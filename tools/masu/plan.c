@@ -257,7 +257,8 @@ static const masu_option rows[] = {
               "of --model: moment of the scene and its camera"),
     MASU_TEXT(masu_plan_options, isa, "isa", "GPU[,GPU...]",
               "what the compilers of these GPUs make of each pipeline instead: registers, waves,\n"
-              "instructions, cycles, spills (--isa=help lists the GPUs)"),
+              "instructions, cycles, spills (--isa=help lists the GPUs). With --model: its classes by the\n"
+              "instructions of tgl, kbl, raven, vangogh, a630"),
     MASU_FILE(masu_plan_options, csv, "csv", "FILE",
               "of --model: write every pass of every rung; of --isa: every stage of every pipeline"),
     MASU_FILE(masu_plan_options, fragment, "html-fragment", "FILE",
@@ -267,8 +268,8 @@ static const masu_option rows[] = {
 
 static int run(masu_cli *cli) {
     static const char *const of_model[] = {"drawn", "time", "csv", "html-fragment", NULL};
-    static const char *const of_plan[] = {"json", "frames-in-flight", "split-memory", "rays", "isa", NULL};
-    static const char *const not_of_isa[] = {"drawn", "time", "html-fragment", "model", "split-memory", "rays",
+    static const char *const of_plan[] = {"json", "frames-in-flight", "split-memory", "rays", NULL};
+    static const char *const not_of_isa[] = {"drawn", "time", "html-fragment", "split-memory", "rays",
                                              "device", "validate", "gpu-av", NULL};
     masu_plan_options o = {.d = {.desc = {.output = {1920, 1080}, .targets = {.storage = 1}},
                                  .host = {.message = masu_print_message}},
@@ -280,11 +281,11 @@ static int run(masu_cli *cli) {
     if (!given.count) return masu_cli_usage_error("no scene is given");
     o.d.scene_path = given.arguments[0];
     const char *other = masu_first_given(&given, rows, not_of_isa);
-    if (o.isa && other) return masu_cli_usage_error("--%s is not of --isa", other);
-    if (o.isa) return masu_plan_isa(&o, cli->argv);
+    if (o.isa && !o.model && other) return masu_cli_usage_error("--%s is not of --isa", other);
+    if (o.isa && (!o.model || masu_plan_is_isa_child())) return masu_plan_isa(&o, cli->argv);
     other = masu_first_given(&given, rows, o.model ? of_plan : of_model);
     if (other) return masu_cli_usage_error("--%s is %s --model", other, o.model ? "not of" : "of");
-    return o.model ? masu_plan_model(&o) : plan(&o);
+    return o.model ? masu_plan_model(&o, cli->argv) : plan(&o);
 }
 
 const masu_cli_command masu_cmd_plan = {

@@ -6,6 +6,8 @@
 #include "masu/cmd.h"
 #include "masu/options.h"
 
+#include "isa/isa.h"
+
 typedef struct masu_plan_options {
     masu_session_desc d;
     const char *ladder; /* as given; NULL: not at all */
@@ -19,7 +21,15 @@ typedef struct masu_plan_options {
 } masu_plan_options;
 
 /* Exit codes. */
-int masu_plan_model(const masu_plan_options *o);
+int masu_plan_model(const masu_plan_options *o, char **arguments);
 int masu_plan_isa(masu_plan_options *o, char **arguments);
+
+/* Whether this process was started to compile for one GPU. */
+bool masu_plan_is_isa_child(void);
+/* GPUs of a list "raven,tgl"; 0: one of them is not known, which has been reported. */
+enum { MASU_PLAN_GPUS = 16 };
+uint32_t masu_plan_gpus(const char *list, const masu_isa_gpu *out[MASU_PLAN_GPUS]);
+/* Starts such a process with these arguments. False: it has been reported why there are no rows. */
+bool masu_plan_ask(const masu_isa_gpu *gpu, char **arguments, masu_isa_rows *rows);
 
 #endif

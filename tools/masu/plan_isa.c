@@ -16,11 +16,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SECONDS = 900, GPUS_MAX = 16 };
+enum { SECONDS = 900 };
 
 static const char child_variable[] = "MASU_ISA_CHILD";
 
 /* ---- The child ------------------------------------------------------------------------------- */
+
+bool masu_plan_is_isa_child(void) { return getenv(child_variable) != NULL; }
 
 static void say_pass(const char *pass) {
     printf("at\t%s\n", pass);
@@ -59,7 +61,7 @@ static const char *last_line(const char *text, const char *start, char *out, siz
     return out;
 }
 
-static bool ask(const masu_isa_gpu *gpu, char **arguments, masu_isa_rows *rows) {
+bool masu_plan_ask(const masu_isa_gpu *gpu, char **arguments, masu_isa_rows *rows) {
     char error[2048], line[512];
     const char *directory = masu_bake_temporary_directory();
     const char *command[64] = {"/proc/self/exe"};
@@ -138,8 +140,7 @@ static int list_gpus(void) {
     return MASU_CLI_OK;
 }
 
-/* "raven,tgl"; 0: one of them is not known, which has been reported. */
-static uint32_t read_gpus(const char *list, const masu_isa_gpu *out[GPUS_MAX]) {
+uint32_t masu_plan_gpus(const char *list, const masu_isa_gpu *out[MASU_PLAN_GPUS]) {
     uint32_t n = 0;
     for (const char *at = list;; at++) {
         char name[32];
@@ -150,8 +151,8 @@ static uint32_t read_gpus(const char *list, const masu_isa_gpu *out[GPUS_MAX]) {
             masu_cli_usage_error("--isa: there is no GPU '%s'; --isa=help lists them", name);
             return 0;
         }
-        if (n == GPUS_MAX) {
-            masu_cli_usage_error("--isa: at most %d GPUs", GPUS_MAX);
+        if (n == MASU_PLAN_GPUS) {
+            masu_cli_usage_error("--isa: at most %d GPUs", MASU_PLAN_GPUS);
             return 0;
         }
         out[n++] = gpu;
@@ -162,17 +163,17 @@ static uint32_t read_gpus(const char *list, const masu_isa_gpu *out[GPUS_MAX]) {
 
 int masu_plan_isa(masu_plan_options *o, char **arguments) {
     static masu_isa_rows rows;
-    const masu_isa_gpu *gpus[GPUS_MAX];
+    const masu_isa_gpu *gpus[MASU_PLAN_GPUS];
     if (!arguments) return list_gpus();
-    uint32_t n = read_gpus(o->isa, gpus);
+    uint32_t n = masu_plan_gpus(o->isa, gpus);
     if (!n) return MASU_CLI_USAGE;
-    if (getenv(child_variable)) return compile(o);
+    if (masu_plan_is_isa_child()) return compile(o);
     masu_table table;
     json_t *all = json_object();
     int code = MASU_CLI_OK;
     masu_table_open(&table, columns, "");
     for (uint32_t i = 0; i < n; i++) {
-        if (!ask(gpus[i], arguments, &rows)) {
+        if (!masu_plan_ask(gpus[i], arguments, &rows)) {
             code = MASU_CLI_FAILURE;
             continue;
         }

@@ -7,7 +7,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-int masu_plan_model(const masu_plan_options *o) {
+/* The compilers of the classes that --isa names. False: it has been reported. */
+static bool ask_compilers(const masu_plan_options *o, char **arguments, masu_issued issued[MASU_MODEL_CLASSES]) {
+    static masu_isa_rows rows;
+    const masu_isa_gpu *gpus[MASU_PLAN_GPUS];
+    uint32_t n = masu_plan_gpus(o->isa, gpus);
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t k = 0;
+        while (k < MASU_MODEL_CLASSES && strcmp(masu_model_classes[k].gpu, gpus[i]->name)) k++;
+        if (k == MASU_MODEL_CLASSES) {
+            masu_cli_usage_error("--model has no class for %s: tgl, kbl, raven, vangogh or a630", gpus[i]->name);
+            return false;
+        }
+        if (!masu_plan_ask(gpus[i], arguments, &rows)) return false;
+        masu_issued_make(&rows, &issued[k]);
+    }
+    return n > 0;
+}
+
+int masu_plan_model(const masu_plan_options *o, char **arguments) {
+    static masu_issued issued[MASU_MODEL_CLASSES];
     masu_model_desc d = {.scene_path = o->d.scene_path,
                          .ladder_path = o->ladder,
                          .size = o->d.desc.output,
@@ -21,6 +40,8 @@ int masu_plan_model(const masu_plan_options *o) {
     if (!d.drawn.width) { /* a quarter of the pixels: a CPU takes its time */
         d.drawn = masu_count_size((VkExtent2D){(d.size.width + 1) / 2, (d.size.height + 1) / 2});
     }
+    if (o->isa && !ask_compilers(o, arguments, issued)) return MASU_CLI_FAILURE;
+    d.issued = issued;
     masu_model *m = malloc(sizeof *m);
     uint32_t messages = 0;
     char error[4096];

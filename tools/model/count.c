@@ -106,6 +106,12 @@ static bool count(masu_session *s, const masu_count_desc *d, void (*progress)(co
     uint32_t n = masu_count_passes(&out->drawn, passes);
     if (!masu_hook_begin(&s->host, passes, n, error, error_size)) return false;
     bool good = masu_session_start(s, error, error_size) && masu_hook_good(error, error_size);
+    uint32_t shaders;
+    const masu_hook_shader *list = masu_hook_shaders(&shaders);
+    for (uint32_t i = 0; i < shaders && good; i++) {
+        uint32_t p = masu_is_cascade(list[i].pass) ? MASU_PASS_CASCADE_0 : list[i].pass;
+        out->straight[p][list[i].tally.model == 0] += list[i].straight;
+    }
     for (uint32_t r = 0; r < out->rung_count && good; r++) {
         char text[64];
         snprintf(text, sizeof text, "model: counting rung %u of %u", r + 1, out->rung_count);

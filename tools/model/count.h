@@ -52,6 +52,9 @@ typedef struct masu_count {
     /* Of the camera's draws, of the cascades'; before occlusion. */
     double triangles[MASU_MAX_RUNGS][2];
     double texture_bytes; /* of materials, on the device */
+    /* Plain operations of a pass's shaders once: of fragment and compute shaders, of vertex shaders. Of cascades: the
+     * first has all. */
+    double straight[MASU_PASS_COUNT][2];
     uint32_t messages;    /* of the validation layer */
 } masu_count;
 

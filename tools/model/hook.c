@@ -1,6 +1,8 @@
 /* hook.c: see hook.h. */
 #include "model/hook.h"
 
+#include "model/spirv_cost.h"
+
 #include "plan/frame.h"
 
 #include <stdio.h>
@@ -101,6 +103,11 @@ static VkShaderModule tally(const VkPipelineShaderStageCreateInfo *stage, uint32
                          &s->tally)) {
         fail("counters cannot be put into a shader", pass);
         return VK_NULL_HANDLE;
+    }
+    spirv_module read;
+    if (spirv_from_words(m->words, m->count, &read)) {
+        s->straight = masu_spirv_cost_straight(&read).plain;
+        spirv_free(&read);
     }
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                      .codeSize = s->tally.word_count * sizeof(uint32_t),

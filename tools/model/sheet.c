@@ -5,18 +5,18 @@
 #include <string.h>
 
 const masu_model_class masu_model_classes[MASU_MODEL_CLASSES] = {
-    {"Xe80", "80 EU x 16 x 1.3 GHz, LPDDR4x-4266", 1.66, 68.0},
-    {"UHD620", "24 EU x 16 x 1.1 GHz, DDR4-2133", 0.42, 34.0},
-    {"Vega8", "8 CU x 128 x 1.9 GHz, DDR4-3200", 1.95, 51.0},
-    {"Deck", "8 CU x 128 x 1.6 GHz, LPDDR5-5500", 1.64, 88.0},
-    {"low mobile", "a phone of 0.15 TFLOPS, 12.8 GB/s", 0.15, 12.8},
+    {"Xe80", "80 EU x 16 x 1.3 GHz, LPDDR4x-4266", "tgl", 1.66, 68.0},
+    {"UHD620", "24 EU x 16 x 1.1 GHz, DDR4-2133", "kbl", 0.42, 34.0},
+    {"Vega8", "8 CU x 128 x 1.9 GHz, DDR4-3200", "raven", 1.95, 51.0},
+    {"Deck", "8 CU x 128 x 1.6 GHz, LPDDR5-5500", "vangogh", 1.64, 88.0},
+    {"low mobile", "a phone of 0.15 TFLOPS, 12.8 GB/s", "a630", 0.15, 12.8},
 };
 const double masu_model_budgets[MASU_MODEL_BUDGETS] = {1000.0 / 60.0, 1000.0 / 30.0};
 
 /* Of a fetch of a texture: mips are chosen so that a pixel takes one new texel of its level and a
  * quarter of one of the level above; a texel of blocks is a byte or half of one. */
 static const double texels_a_fetch = 1.25, texel_bytes_blocks = 1.0, texel_bytes = 4.0;
-static const double bound_by_bytes = 1.3, bound_by_operations = 2.5;
+static const double bound_by_bytes = 1.3, bound_by_operations = 2.5, bound_by_instructions = 1.5;
 enum { VERTEX_BYTES = 16, TEXCOORD_BYTES = 8, TRIANGLE_BYTES = 12, TILE_PIXELS = 4 };
 
 const char *masu_model_pass_name(uint32_t pass) {
@@ -30,7 +30,8 @@ const char *masu_model_sure_name(masu_model_sure sure) {
 
 double masu_model_floor(const masu_model_row *row, uint32_t k, bool *by_bytes) {
     double b = row->bytes / (masu_model_classes[k].gigabytes * 1e6);
-    double f = row->weighted / (masu_model_classes[k].tflops * 1e9);
+    double f = row->issued[k] > 0.0 ? row->issued[k] / (masu_model_classes[k].tflops * 0.5e9)
+                                    : row->weighted / (masu_model_classes[k].tflops * 1e9);
     if (by_bytes) *by_bytes = b >= f;
     return b >= f ? b : f;
 }
@@ -38,7 +39,8 @@ double masu_model_floor(const masu_model_row *row, uint32_t k, bool *by_bytes) {
 double masu_model_realistic(const masu_model_row *row, uint32_t k) {
     bool by_bytes;
     double floor = masu_model_floor(row, k, &by_bytes);
-    return floor * (by_bytes ? bound_by_bytes : bound_by_operations);
+    if (by_bytes) return floor * bound_by_bytes;
+    return floor * (row->issued[k] > 0.0 ? bound_by_instructions * row->waits[k] : bound_by_operations);
 }
 
 /* ---- Sizes ----------------------------------------------------------------------------------- */
@@ -231,9 +233,27 @@ static void add_operations(const masu_count *c, uint32_t rung, uint32_t pass, ma
     if (counted->late) worsen(&row->weighted_sure, MASU_MODEL_ESTIMATED);
 }
 
+/* Operations of no kind that is counted, as in a shader that copies: each invocation runs all of it. */
+static double instructions(double plain, double invocations, double straight, double instructions_once) {
+    return straight > 0.0 ? plain * instructions_once / straight : invocations * instructions_once;
+}
+
+static void add_instructions(const masu_count *c, const masu_issued *issued, uint32_t rung, uint32_t pass,
+                             masu_model_row *row) {
+    const masu_pass_count *counted = &c->passes[rung][pass];
+    for (uint32_t k = 0; k < MASU_MODEL_CLASSES && issued; k++) {
+        if (!issued[k].known) continue;
+        const double *once = issued[k].pass[pass].instructions;
+        row->issued[k] = instructions(growth(c, rung, pass) * counted->plain, row->invocations,
+                                      c->straight[pass][0], once[0]) +
+                         instructions(counted->vertex_plain, counted->vertices, c->straight[pass][1], once[1]);
+        row->waits[k] = issued[k].pass[pass].waits;
+    }
+}
+
 /* ---- Sums ------------------------------------------------------------------------------------ */
 
-static void make_rung(const masu_count *c, uint32_t rung, masu_model_rung *out) {
+static void make_rung(const masu_count *c, const masu_issued *issued, uint32_t rung, masu_model_rung *out) {
     const masu_rung_plan *rp = &c->sheet.rungs[rung];
     out->width = rp->render_width;
     out->height = rp->render_height;
@@ -248,6 +268,7 @@ static void make_rung(const masu_count *c, uint32_t rung, masu_model_rung *out) 
         add_buffers(c, rung, p, row);
         add_geometry(c, rung, p, row);
         add_operations(c, rung, p, row);
+        add_instructions(c, issued, rung, p, row);
     }
     memset(out->floor, 0, sizeof out->floor);
     memset(out->realistic, 0, sizeof out->realistic);
@@ -263,15 +284,17 @@ static void make_rung(const masu_count *c, uint32_t rung, masu_model_rung *out) 
         worsen(&out->sum.bytes_sure, row->bytes_sure);
         worsen(&out->sum.weighted_sure, row->weighted_sure);
         for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
+            out->sum.issued[k] += row->issued[k];
             out->floor[k] += masu_model_floor(row, k, NULL);
             out->realistic[k] += masu_model_realistic(row, k);
         }
     }
 }
 
-void masu_model_make(const masu_count *count, masu_model *out) {
+void masu_model_make(const masu_count *count, const masu_issued *issued, masu_model *out) {
     out->rung_count = count->rung_count;
-    for (uint32_t r = 0; r < count->rung_count; r++) make_rung(count, r, &out->rungs[r]);
+    for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) out->issued[k] = issued && issued[k].known;
+    for (uint32_t r = 0; r < count->rung_count; r++) make_rung(count, issued, r, &out->rungs[r]);
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
         for (uint32_t b = 0; b < MASU_MODEL_BUDGETS; b++) {
             out->chosen[k][b] = -1;

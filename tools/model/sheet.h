@@ -5,11 +5,14 @@
  * once and written once, no more than was asked for) at the class's bandwidth, and its
  * operations at the class's peak. What is realistic is 1.3 times that where bytes decide, 2.5
  * times where operations do (kernels of ray traversal are 1.5 to 2.5 times off their bound: Aila
- * and Laine 2009). Nothing of it is measured on a GPU. Pure functions; nothing allocates. */
+ * and Laine 2009). Where the class's own compiler has been asked (issued.h), operations are its
+ * instructions, one for a lane and clock, and what is realistic 1.5 times that: what is left are lanes that
+ * wait for others; and as many times more as too few waves make the pass wait. Nothing of it is measured on a GPU. Pure functions; nothing allocates. */
 #ifndef MASU_MODEL_SHEET_H
 #define MASU_MODEL_SHEET_H
 
 #include "model/count.h"
+#include "model/issued.h"
 
 #define MASU_MODEL_CLASSES 5u
 #define MASU_MODEL_BUDGETS 2u
@@ -18,7 +21,7 @@
 /* Peak of single precision, an addition as one and a fused multiply-add as two; memory
  * bandwidth. */
 typedef struct masu_model_class {
-    const char *name, *what;
+    const char *name, *what, *gpu; /* gpu: whose compiler speaks for it (isa/gpu.h) */
     double tflops, gigabytes;
 } masu_model_class;
 
@@ -38,6 +41,8 @@ typedef struct masu_model_row {
     double asked;           /* of storage buffers, by shaders: what caches have to swallow */
     double weighted, plain; /* operations, see spirv_cost.h */
     double invocations;     /* of fragment or compute shaders */
+    double issued[MASU_MODEL_CLASSES]; /* instructions of lanes; 0: its compiler was not asked */
+    double waits[MASU_MODEL_CLASSES];
     masu_model_sure bytes_sure, weighted_sure;
 } masu_model_row;
 
@@ -54,11 +59,12 @@ typedef struct masu_model {
     VkExtent2D drawn, sheet;
     uint32_t rung_count;
     masu_model_rung rungs[MASU_MAX_RUNGS];
+    bool issued[MASU_MODEL_CLASSES]; /* its compiler was asked */
     int chosen[MASU_MODEL_CLASSES][MASU_MODEL_BUDGETS]; /* first rung that fits; -1: none */
 } masu_model;
 
-/* Names and measured ratios of rungs are left as they are. */
-void masu_model_make(const masu_count *count, masu_model *out);
+/* issued: of each class; NULL: none. Names and measured ratios of rungs are left as they are. */
+void masu_model_make(const masu_count *count, const masu_issued *issued, masu_model *out);
 
 /* ms; `by_bytes` may be NULL. */
 double masu_model_floor(const masu_model_row *row, uint32_t class_of, bool *by_bytes);

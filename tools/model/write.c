@@ -50,7 +50,7 @@ bool masu_model_run(const masu_model_desc *d, masu_model *out, uint32_t *message
         snprintf(out->driver, sizeof out->driver, "%s", count->driver);
         out->drawn = d->drawn;
         out->sheet = d->size;
-        masu_model_make(count, out);
+        masu_model_make(count, d->issued, out);
         if (messages) *messages = count->messages;
     }
     free(count);
@@ -83,6 +83,9 @@ static const char *const notes[] = {
     "Operations: what each invocation ran, an addition as 1, a reciprocal, root or sine as 4. "
     "Lanes "
     "of a wave that wait for others, fetches and branches are not in it.",
+    "Where the class's compiler was asked (--isa), operations are its instructions: each operation as many "
+    "as the pass's pipelines have on average, one for a lane and clock; realistic then 1.5 times the floor, "
+    "and as much more as RADV's latency exceeds what its waves hide.",
     "exact: every pixel goes the same way; measured here: counted while the scene was drawn; "
     "estimated: textures at 1.25 new texels a fetch, or fragments behind a discard.",
     "Nothing of it was measured on a GPU of these classes. A measured ratio is of the driver that "
@@ -96,6 +99,10 @@ bool masu_model_print(const masu_model *m, FILE *f) {
     fprintf(f, "counted at %ux%u on %s\n", m->drawn.width, m->drawn.height, m->driver);
     if (m->drawn.width != m->sheet.width || m->drawn.height != m->sheet.height)
         fprintf(f, "what is counted by pixel is scaled to the sheet's pixels\n");
+    for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
+        if (m->issued[k])
+            fprintf(f, "%s: instructions by the compiler of %s\n", masu_model_classes[k].name, masu_model_classes[k].gpu);
+    }
     fprintf(f, "\nCOMPUTED: rung 0, %s, %ux%u rendered; floor in ms\n", first->name, first->width,
             first->height);
     fprintf(f, "  %-40s %12s\n", "", "COMPUTED ms");
@@ -151,6 +158,8 @@ bool masu_model_csv(const masu_model *m, FILE *f) {
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++)
         fprintf(f, ",COMPUTED floor_ms %s,COMPUTED realistic_ms %s", masu_model_classes[k].name,
                 masu_model_classes[k].name);
+    for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++)
+        if (m->issued[k]) fprintf(f, ",COMPUTED instructions %s", masu_model_classes[k].gpu);
     fprintf(f, "\n");
     for (uint32_t r = 0; r < m->rung_count; r++) {
         const masu_model_rung *one = &m->rungs[r];
@@ -167,6 +176,8 @@ bool masu_model_csv(const masu_model *m, FILE *f) {
                 fprintf(f, ",%.6g,%.6g", sum ? one->floor[k] : masu_model_floor(row, k, NULL),
                         sum ? one->realistic[k] : masu_model_realistic(row, k));
             }
+            for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++)
+                if (m->issued[k]) fprintf(f, ",%.0f", row->issued[k]);
             fprintf(f, "\n");
         }
     }

@@ -16,6 +16,7 @@ typedef struct masu_model_desc {
     VkExtent2D drawn;        /* of the frames that are counted */
     double time;
     masu_headless_desc host;
+    const masu_issued *issued; /* of each class; NULL: none */
     void (*progress)(const char *text); /* may be NULL */
 } masu_model_desc;
 
