@@ -15,6 +15,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_specular_temporal
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
@@ -103,7 +104,7 @@ past look(here h, vec2 moved)
     vec2 corner = floor(p.place);
     vec2 part = p.place - corner;
     ivec2 last = old_last();
-    for (int k = 0; k < 4; k++) {
+    [[dont_unroll]] for (int k = 0; k < 4; k++) {
         ivec2 off = ivec2(k & 1, k >> 1);
         ivec2 at = ivec2(corner) + off;
         float bilinear = mix(1.0 - part.x, part.x, float(off.x)) * mix(1.0 - part.y, part.y, float(off.y));
@@ -139,7 +140,7 @@ present gather(here h)
     r.motion = vec2(0.0);
     r.motions = 0.0;
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
-    for (int k = 0; k < 9; k++) {
+    [[dont_unroll]] for (int k = 0; k < 9; k++) {
         ivec2 at = h.texel + ivec2(k % 3 - 1, k / 3 - 1);
         if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
             continue;
@@ -178,7 +179,7 @@ vec2 past_luma(vec2 place)
     float sum = 0.0;
     float spread = 0.0;
     float count = 0.0;
-    for (int k = 0; k < 9; k++) {
+    [[dont_unroll]] for (int k = 0; k < 9; k++) {
         ivec2 at = middle + ivec2(k % 3 - 1, k / 3 - 1);
         if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
             continue;
@@ -249,15 +250,24 @@ void main()
                 float z = frame.forward.w * masu_rcp(h.g.depth) * (1.0 + velocity.z);
                 h.was = (previous.forward.xyz + previous.right.xyz * ndc.x - previous.up.xyz * ndc.y) * z;
                 h.width *= max(1.0, size.y / float(frame.history.z));
-                past a = look(h, velocity.xy);
-                past b = a;
                 bool apart = now.motions > 0.0 && any(greaterThan(abs(now.motion - velocity.xy), vec2(2e-3)));
                 float surface = 1.0;
-                float off_a = a.weight > 0.0 ? distance_of(a, now) : 0.0;
-                float off_b = off_a;
+                /* Where the surface was, and where what it mirrors was; in a loop: the code would stand here twice. */
+                past a;
+                past b;
+                float off_a;
+                float off_b;
+                [[dont_unroll]] for (int i = 0; i < 2; i++) {
+                    if (i == 0 || apart) {
+                        b = look(h, i == 0 ? velocity.xy : now.motion);
+                        off_b = b.weight > 0.0 ? distance_of(b, now) : 0.0;
+                    }
+                    if (i == 0) {
+                        a = b;
+                        off_a = off_b;
+                    }
+                }
                 if (apart) {
-                    b = look(h, now.motion);
-                    off_b = b.weight > 0.0 ? distance_of(b, now) : 0.0;
                     float rough = smoothstep(0.2, 0.8, h.g.roughness);
                     surface = a.weight * rough * masu_exp2(-min(off_a, 60.0));
                     float mirrored = b.weight * (1.0 - rough) * masu_exp2(-min(off_b, 60.0));
