@@ -175,11 +175,11 @@ endif
 
 # Without MASU_ISA_DRIVERS the rows of other GPUs than RADV's stay as they are.
 comma    := ,
-ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(comma)skl$(comma)kbl$(comma)tgl)
+ISA_GPUS := vangogh,raven$(if $(MASU_ISA_DRIVERS),$(comma)skl$(comma)kbl$(comma)tgl$(comma)a630$(comma)a660)
 .PHONY: isa-table
 isa-table: $(BUILD)/bin/masu $(SCENES) ## write docs/report/isa.csv: every pipeline on the GPUs that the project is for
 	$(V)BUILD=$(BUILD) MADE=$(MADE) tools/isa/table.sh $(ISA_GPUS) > $(BUILD)/isa.csv
-	$(V)test -n '$(MASU_ISA_DRIVERS)' || awk -F, '$$2 ~ /^(skl|kbl|tgl)$$/' docs/report/isa.csv >> $(BUILD)/isa.csv
+	$(V)test -n '$(MASU_ISA_DRIVERS)' || awk -F, '$$2 ~ /^(skl|kbl|tgl|a630|a660)$$/' docs/report/isa.csv >> $(BUILD)/isa.csv
 	$(V)mv $(BUILD)/isa.csv docs/report/isa.csv
 
 .PHONY: isa-drivers

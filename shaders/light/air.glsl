@@ -61,7 +61,13 @@ vec3 masu_through_air(vec3 color, vec3 direction, float depth, float alpha)
  * the code for the sky would stand there twice. */
 vec3 masu_seen_along(vec3 color, bool open, vec3 direction, bool fog, float depth)
 {
-    bool air = fog && !(frame.air.w != 0.0);
+    if (!fog) { /* a constant of the scene: of the two ways one is compiled */
+        if (open) {
+            color += masu_sky(direction);
+        }
+        return color;
+    }
+    bool air = !(frame.air.w != 0.0);
     vec3 air_color = frame.fog.rgb;
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         if (i == 0 ? open : air) {
@@ -70,11 +76,8 @@ vec3 masu_seen_along(vec3 color, bool open, vec3 direction, bool fog, float dept
             air_color = i == 0 ? air_color : sky;
         }
     }
-    if (fog) {
-        float left = masu_fog_left(depth);
-        color = color * left + (air ? air_color + masu_air_glow(direction) : air_color) * (1.0 - left);
-    }
-    return color;
+    float left = masu_fog_left(depth);
+    return color * left + (air ? air_color + masu_air_glow(direction) : air_color) * (1.0 - left);
 }
 
 #endif
