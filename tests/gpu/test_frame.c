@@ -1,6 +1,7 @@
 /* test_frame.c: frames are the same whatever should not matter: poison, memory split by role, who
  * owns the memory, how many frames are in flight, which rung came before, how the target is
  * reached. */
+#include "support/kept.h"
 #include "support/support.h"
 
 #include <stdlib.h>
@@ -63,10 +64,38 @@ static void the_number_of_worker_threads_changes_nothing(void **state) {
     static const char *const counts[] = {"0", "1", "2"};
     for (size_t i = 0; i < 3; i++) {
         setenv("LP_NUM_THREADS", counts[i], 1);
+        kept_forget(); /* the variable is read when a device is made */
         masu_session_desc d = test_desc("test_both", W, H);
+        uint32_t compiled = kept.compiled;
         compare_all_rungs(&d);
+        assert_true(kept.compiled > compiled);
     }
     unsetenv("LP_NUM_THREADS");
+    kept_forget();
+}
+
+/* What support/kept.h promises: the same pipelines are not compiled again, others are. */
+static void sessions_share_what_is_compiled_and_nothing_else(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_both", W, H);
+    kept_forget();
+    kept_counts before = kept;
+    compare_all_rungs(&d);
+    uint32_t asked = kept.asked - before.asked;
+    print_message("%u pipelines asked for, %u compiled\n", asked, kept.compiled - before.compiled);
+    assert_true(asked >= 8 && kept.compiled > before.compiled && kept.compiled - before.compiled <= asked);
+    before = kept;
+    compare_all_rungs(&d);
+    assert_int_equal(kept.asked - before.asked, asked);
+    assert_int_equal(kept.compiled, before.compiled);
+    /* Another tone curve is a constant of one pipeline. */
+    masu_session s;
+    d.desc.tone = MASU_TONE_NEUTRAL;
+    open_session(&s, &d);
+    draw_rung(&s, 0, pixels);
+    assert_true(max_difference(pixels, reference[0], BYTES) > 0);
+    close_session(&s);
+    assert_int_equal(kept.compiled - before.compiled, 1);
 }
 
 static void nan_poison_in_all_transient_memory_changes_nothing(void **state) {
@@ -248,6 +277,7 @@ int main(void) {
         cmocka_unit_test(the_picture_shows_both_worlds),
         cmocka_unit_test(a_second_run_gives_the_same_bits),
         cmocka_unit_test(the_number_of_worker_threads_changes_nothing),
+        cmocka_unit_test(sessions_share_what_is_compiled_and_nothing_else),
         cmocka_unit_test(nan_poison_in_all_transient_memory_changes_nothing),
         cmocka_unit_test(infinity_poison_changes_nothing),
         cmocka_unit_test(separate_memory_per_role_changes_nothing),

@@ -83,7 +83,9 @@ static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t h
     if (!k->whole) return;
     entry *e = malloc(sizeof *e + k->count);
     if (!e) abort();
-    if (!entries) atexit(destroy_all);
+    static bool registered;
+    if (!registered) atexit(destroy_all);
+    registered = true;
     *e = (entry){entries, type, device, handle, hash_of(k), k->count};
     memcpy(e->key, k->bytes, k->count);
     entries = e;
@@ -97,6 +99,21 @@ static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t h
 
 /* ---- Objects that are compiled or few -------------------------------------------------------- */
 
+/* Whether a kept module, whose key ends in its code, has the specialisation constant: renderers give each module the
+ * constants of all. */
+static bool declares(const entry *module, uint32_t id) {
+    enum { OP_DECORATE = 71, SPEC_ID = 1, OP_FUNCTION = 54 };
+    const size_t head = sizeof module->type + sizeof module->device + sizeof(VkShaderModuleCreateFlags) + sizeof(size_t);
+    for (size_t at = head + 5 * sizeof id; at + 4 * sizeof id <= module->count;) {
+        uint32_t word[4];
+        memcpy(word, module->key + at, sizeof word);
+        if ((word[0] & 0xFFFF) == OP_DECORATE && word[2] == SPEC_ID && word[3] == id) return true;
+        if ((word[0] & 0xFFFF) == OP_FUNCTION || !(word[0] >> 16)) return false;
+        at += (word[0] >> 16) * sizeof id;
+    }
+    return false;
+}
+
 static void add_shader(key *k, const VkPipelineShaderStageCreateInfo *s) {
     k->whole &= !s->pNext;
     ADD(k, s->flags);
@@ -104,10 +121,12 @@ static void add_shader(key *k, const VkPipelineShaderStageCreateInfo *s) {
     ADD(k, s->module);
     add_text(k, s->pName);
     const VkSpecializationInfo *special = s->pSpecializationInfo;
+    const entry *module = holder(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, HANDLE(s->module));
     add_array(k, special, special != NULL, 0);
     if (!special) return;
     for (uint32_t i = 0; i < special->mapEntryCount; i++) {
         const VkSpecializationMapEntry *m = &special->pMapEntries[i];
+        if (module && !declares(module, m->constantID)) continue;
         ADD(k, m->constantID);
         add_array(k, (const uint8_t *)special->pData + m->offset, m->size, 1);
     }
@@ -456,6 +475,11 @@ static void destroy_all(void) {
         free(e);
     }
     entries = NULL;
+}
+
+void kept_forget(void) {
+    if (open_devices) abort(); /* a session would go on with what is gone */
+    destroy_all();
 }
 
 /* ---- Looking up ------------------------------------------------------------------------------ */

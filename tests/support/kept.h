@@ -22,4 +22,7 @@ typedef struct kept_counts {
 
 extern kept_counts kept;
 
+/* The next session gets a device of its own: for what a driver decides when a device is made. No session may be open. */
+void kept_forget(void);
+
 #endif
