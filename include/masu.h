@@ -184,7 +184,7 @@ typedef struct masu_scene {
     uint32_t trace_sdf;     /* 1: of the SDF too */
     uint32_t trace_nodes, trace_triangles; /* of the trees that rays are traced through; 0: none */
     uint32_t trace_instances;              /* that rays meet */
-    uint32_t trace_levels;                 /* of the deepest of these trees */
+    uint32_t trace_levels; /* of nodes, of the deepest mesh's tree that rays are traced through; 0: none */
     uint32_t trace_textures; /* small pictures of textures for them */
     uint32_t trace_colors;   /* of these such as rays look up; the rest are means of roughness */
     uint64_t trace_texels; /* 4 bytes each */

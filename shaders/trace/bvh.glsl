@@ -64,7 +64,7 @@ const float masu_trace_margin = 1e-6; /* 8 roundings, and a division that is off
 
 /* Children of nodes that are still to be looked at, a word for each node: their first << 8, how
  * many are left << 6, which comes next, 2 bits each. In shared memory, of which a scene takes a word for each level
- * of its trees and invocation (src/plan): an array of an invocation's own goes to memory on every GPU here, with
+ * of its trees and invocation (src/device/pipelines.c): an array of an invocation's own goes to memory on every GPU here, with
  * 2 KB for each lane on Intel's. */
 layout(constant_id = 9) const int masu_trace_levels = MASU_TRACE_STACK;
 shared uint masu_trace_stack[masu_trace_levels * MASU_TRACE_LANES];

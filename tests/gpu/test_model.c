@@ -245,7 +245,7 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     double per_pixel = strtod(end, NULL) / (64 * 48);
     if (!(per_pixel > 20 && per_pixel < 500)) fail_msg("%g instructions of tonemap for each pixel", per_pixel);
     snprintf(arguments, sizeof arguments, "%s --isa navi14", scene_path("test_sphere_mesh"));
-    assert_int_equal(cli_run("plan --model %s", arguments), 1);
+    assert_int_equal(cli_run("plan --model %s", arguments), 2);
     take_text("err", text, sizeof text);
     assert_non_null(strstr(text, "has no class for navi14"));
     snprintf(arguments, sizeof arguments, "%s --ladder auto", scene_path("test_sphere_mesh"));

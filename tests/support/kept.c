@@ -45,6 +45,8 @@ static key key_of(VkStructureType type, VkDevice device, const void *next, const
     return k;
 }
 
+#define HANDLE(h) ((uint64_t)(uintptr_t)(h))
+
 /* ---- What is kept ---------------------------------------------------------------------------- */
 
 typedef struct entry {
@@ -80,7 +82,8 @@ static entry *holder(VkStructureType type, uint64_t handle) {
 static void destroy_all(void);
 
 static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t handle) {
-    if (!k->whole) return;
+    /* What was made on a device that is not kept goes with it. */
+    if (!k->whole || (device && !holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device)))) return;
     entry *e = malloc(sizeof *e + k->count);
     if (!e) abort();
     static bool registered;
@@ -90,8 +93,6 @@ static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t h
     memcpy(e->key, k->bytes, k->count);
     entries = e;
 }
-
-#define HANDLE(h) ((uint64_t)(uintptr_t)(h))
 
 /* The functions themselves, which the linker has under this name. */
 #define REAL(name) __real_vk##name
@@ -478,7 +479,10 @@ static void destroy_all(void) {
 }
 
 void kept_forget(void) {
-    if (open_devices) abort(); /* a session would go on with what is gone */
+    if (open_devices) { /* it would go on with what is gone */
+        fprintf(stderr, "a session is still open: its device cannot be forgotten\n");
+        abort();
+    }
     destroy_all();
 }
 

@@ -8,8 +8,8 @@
  *
  * Kept until the process ends: instances, devices, shader modules, samplers, layouts, render passes and
  * pipelines, each by everything that its description says; what has an allocator or an extension of its
- * description that is not known here is passed on. All other objects are counted, and a device that is
- * destroyed before them ends the process with a line: the validation layer says so of no device any more. */
+ * description that is not known here is passed on. What else renderers make is counted, and a device that is
+ * destroyed before it ends the process with a line: the validation layer says so of no device any more. */
 #ifndef SUPPORT_KEPT_H
 #define SUPPORT_KEPT_H
 
@@ -22,7 +22,8 @@ typedef struct kept_counts {
 
 extern kept_counts kept;
 
-/* The next session gets a device of its own: for what a driver decides when a device is made. No session may be open. */
+/* The next session gets a device of its own: for what a driver decides when a device is made. The program ends with a
+ * line if a session is open. */
 void kept_forget(void);
 
 #endif

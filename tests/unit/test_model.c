@@ -257,6 +257,9 @@ static void instructions_of_compilers_are_found_by_pass_and_stage(void **state) 
     add_row(&rows, "gbuffer", "vertex", 8, 50, no, 10, no);
     add_row(&rows, "gbuffer", "SIMD8 fragment", 8, 70, no, 10, no);
     add_row(&rows, "gbuffer", "SIMD16 fragment", 16, 60, no, 10, no);
+    add_row(&rows, "transparents", "SIMD16 fragment", 16, 210, no, 10, no);
+    add_row(&rows, "transparents", "SIMD32 fragment", 32, 400, no, 10, no);
+    add_row(&rows, "cascades, masks", "FS", 64, 44, no, no, no);
     add_row(&rows, "gbuffer, masks", "SIMD8 fragment", 8, 200, no, 10, no);
     add_row(&rows, "cascade_0", "VS", 64, 33, 4, no, no);
     add_row(&rows, "cascade_0", "Binning VS", 64, 30, 4, no, no);
@@ -269,6 +272,8 @@ static void instructions_of_compilers_are_found_by_pass_and_stage(void **state) 
     assert_near(issued.pass[MASU_PASS_GBUFFER].instructions[0], 260);
     assert_near(issued.pass[MASU_PASS_GBUFFER].instructions[1], 50);
     assert_near(issued.pass[MASU_PASS_CASCADE_0].instructions[1], 33);
+    assert_near(issued.pass[MASU_PASS_CASCADE_0].instructions[0], 44);
+    assert_near(issued.pass[MASU_PASS_TRANSPARENTS].instructions[0], 200); /* of 32 lanes two are one */
     assert_near(issued.pass[MASU_PASS_CASCADE_0].waits, 1);
 }
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The compilers of the classes that --isa names. False: it has been reported. */
-static bool ask_compilers(const masu_plan_options *o, char **arguments, masu_issued issued[MASU_MODEL_CLASSES]) {
+/* The compilers of the classes that --isa names. Returns an exit code. */
+static int ask_compilers(const masu_plan_options *o, char **arguments, masu_issued issued[MASU_MODEL_CLASSES]) {
     static masu_isa_rows rows;
     const masu_isa_gpu *gpus[MASU_PLAN_GPUS];
     uint32_t n = masu_plan_gpus(o->isa, gpus);
@@ -16,13 +16,13 @@ static bool ask_compilers(const masu_plan_options *o, char **arguments, masu_iss
         uint32_t k = 0;
         while (k < MASU_MODEL_CLASSES && strcmp(masu_model_classes[k].gpu, gpus[i]->name)) k++;
         if (k == MASU_MODEL_CLASSES) {
-            masu_cli_usage_error("--model has no class for %s: tgl, kbl, raven, vangogh or a630", gpus[i]->name);
-            return false;
+            return masu_cli_usage_error("--model has no class for %s: tgl, kbl, raven, vangogh or a630",
+                                        gpus[i]->name);
         }
-        if (!masu_plan_ask(gpus[i], arguments, &rows)) return false;
+        if (!masu_plan_ask(gpus[i], arguments, &rows)) return MASU_CLI_FAILURE;
         masu_issued_make(&rows, &issued[k]);
     }
-    return n > 0;
+    return n ? MASU_CLI_OK : MASU_CLI_USAGE;
 }
 
 int masu_plan_model(const masu_plan_options *o, char **arguments) {
@@ -40,7 +40,8 @@ int masu_plan_model(const masu_plan_options *o, char **arguments) {
     if (!d.drawn.width) { /* a quarter of the pixels: a CPU takes its time */
         d.drawn = masu_count_size((VkExtent2D){(d.size.width + 1) / 2, (d.size.height + 1) / 2});
     }
-    if (o->isa && !ask_compilers(o, arguments, issued)) return MASU_CLI_FAILURE;
+    int code = o->isa ? ask_compilers(o, arguments, issued) : MASU_CLI_OK;
+    if (code) return code;
     d.issued = issued;
     masu_model *m = malloc(sizeof *m);
     uint32_t messages = 0;

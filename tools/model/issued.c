@@ -4,9 +4,11 @@
 #include <math.h>
 #include <string.h>
 
-/* "gbuffer, masks": a pipeline of pass gbuffer. MASU_PASS_COUNT: of none. All cascades share their pipelines. */
+/* "gbuffer, masks": a pipeline of pass gbuffer. MASU_PASS_COUNT: of none. All cascades share their pipelines, which
+ * are named "cascade_0" or "cascades, masks". */
 static uint32_t pass_of(const char *pipeline) {
     size_t length = strcspn(pipeline, ",");
+    if (!strncmp(pipeline, "cascades", length)) return MASU_PASS_CASCADE_0;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         if (strlen(masu_passes[p].name) == length && !strncmp(masu_passes[p].name, pipeline, length))
             return masu_is_cascade(p) ? MASU_PASS_CASCADE_0 : p;
@@ -17,6 +19,9 @@ static uint32_t pass_of(const char *pipeline) {
 static bool is_vertex(const masu_isa_row *r) {
     return strstr(r->stage, "ertex") || !strncmp(r->stage, "VS", 2);
 }
+
+/* Intel writes each instruction of 32 lanes as two of 16. */
+enum { WIDEST = 16 };
 
 /* The same pipeline and stage in waves of more lanes is what runs where it can; binning repeats a part. */
 static bool counts(const masu_isa_rows *rows, uint32_t i) {
@@ -39,7 +44,8 @@ void masu_issued_make(const masu_isa_rows *rows, masu_issued *out) {
         const double *v = rows->row[i].value;
         uint32_t p = pass_of(rows->row[i].pipeline);
         if (p == MASU_PASS_COUNT || !counts(rows, i) || isnan(v[MASU_ISA_INSTRUCTIONS])) continue;
-        out->pass[p].instructions[is_vertex(&rows->row[i])] += v[MASU_ISA_INSTRUCTIONS];
+        bool twice = rows->row[i].lanes > WIDEST && strstr(rows->row[i].stage, "SIMD");
+        out->pass[p].instructions[is_vertex(&rows->row[i])] += v[MASU_ISA_INSTRUCTIONS] * (twice ? 0.5 : 1.0);
         double waits = v[MASU_ISA_LATENCY] / (v[MASU_ISA_WAVES] * v[MASU_ISA_CYCLES]);
         if (waits > out->pass[p].waits) out->pass[p].waits = waits; /* NAN: not given */
     }

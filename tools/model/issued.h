@@ -4,7 +4,10 @@
  * A frame here counts operations as they run, through every loop and branch; a compiler says how many
  * instructions a pipeline is, written down once. What joins them is the pipeline written down once in
  * operations: each operation is as many instructions as all are on average, those for addresses, memory and
- * branches among them. Per pass, its pipelines taken together; vertex shaders apart. */
+ * branches among them. Per pass, its pipelines taken together; vertex shaders apart.
+ *
+ * Written down once in operations is the SPIR-V before its constants are set, in instructions what is left after:
+ * where a scene lacks fog, sky or environment, a pass that has code for them comes out too cheap. */
 #ifndef MASU_MODEL_ISSUED_H
 #define MASU_MODEL_ISSUED_H
 

@@ -21,7 +21,7 @@ typedef struct chain {
     bool known;
     place at;         /* of a component: its vector's */
     uint32_t storage, type; /* of what it points to; of a component: of its vector */
-    bool component, alone; /* of a vector; nothing but loads use it */
+    bool component, alone, loaded; /* of a vector; nothing but loads use it; some do */
     uint32_t number;  /* id of the component's index */
     uint32_t vector;  /* id of a pointer to the vector; 0: to be made of this chain without its last index */
     bool change;
@@ -105,7 +105,8 @@ static void note_load(state *s, const spirv_instruction *load) {
     uint32_t op = def(s, c.type)->op;
     if (c.component) {
         const spirv_instruction *number = def(s, c.number);
-        group_of(s, &c.at)->parts |= number->op == SPIRV_CONSTANT ? 1u << (number->word[3] & 31) : ANY;
+        s->chains[id].loaded = true;
+        group_of(s, &c.at)->parts |= number && number->op == SPIRV_CONSTANT ? 1u << (number->word[3] & 31) : ANY;
     } else if (op == SPIRV_TYPE_VECTOR) {
         group_of(s, &c.at)->parts = ANY;
     } else if (op == SPIRV_TYPE_STRUCT || op == SPIRV_TYPE_ARRAY || op == SPIRV_TYPE_MATRIX) {
@@ -113,7 +114,7 @@ static void note_load(state *s, const spirv_instruction *load) {
     }
 }
 
-/* A word that only looks like the id does no harm: a chain stays that could go. */
+/* A word that only looks like the id does no harm: a chain stays beside the new one that could go. */
 static void note_uses(state *s, const spirv_instruction *i) {
     uint32_t last = i->count;
     if (i->op == COMPOSITE_EXTRACT || i->op == SPIRV_SWITCH) last = i->op == SPIRV_SWITCH ? 3 : 4;
@@ -165,7 +166,7 @@ static void decide(state *s) {
     }
     for (uint32_t id = 0; id < s->m.bound; id++) {
         chain *c = &s->chains[id];
-        c->change = c->known && c->component && c->alone && several(s, c);
+        c->change = c->known && c->component && c->loaded && several(s, c);
     }
 }
 
@@ -199,18 +200,20 @@ static void put_pointers(state *s, pointer_type *list, size_t *count) {
 }
 
 static void put_chain(state *s, const spirv_instruction *i, const pointer_type *list) {
-    const chain *c = &s->chains[i->word[2]];
+    chain *c = &s->chains[i->word[2]];
+    if (!c->alone) put(s, i->word, i->count); /* for what stores to it */
     if (c->vector) return;
     while (list->storage != c->storage || list->type != c->type) list++;
-    put(s, (uint32_t[]){(i->count - 1) << 16 | i->op, list->id}, 2);
-    put(s, i->word + 2, i->count - 3);
+    c->vector = c->alone ? i->word[2] : s->bound++;
+    put(s, (uint32_t[]){(i->count - 1) << 16 | i->op, list->id, c->vector}, 3);
+    put(s, i->word + 3, i->count - 4);
 }
 
 static void put_load(state *s, const spirv_instruction *i, const chain *c) {
     const spirv_instruction *number = def(s, c->number);
-    bool constant = number->op == SPIRV_CONSTANT;
+    bool constant = number && number->op == SPIRV_CONSTANT;
     uint32_t id = s->bound++;
-    put(s, (uint32_t[]){i->word[0], c->type, id, c->vector ? c->vector : i->word[3]}, 4);
+    put(s, (uint32_t[]){i->word[0], c->type, id, c->vector}, 4);
     put(s, i->word + 4, i->count - 4);
     put(s, (uint32_t[]){5u << 16 | (constant ? COMPOSITE_EXTRACT : VECTOR_EXTRACT_DYNAMIC), i->word[1],
                         i->word[2], id, constant ? number->word[3] : c->number}, 5);
