@@ -86,9 +86,9 @@ static void keep(const key *k, VkStructureType type, VkDevice device, uint64_t h
     if (!k->whole || (device && !holder(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, HANDLE(device)))) return;
     entry *e = malloc(sizeof *e + k->count);
     if (!e) abort();
-    static bool registered;
-    if (!registered) atexit(destroy_all);
-    registered = true;
+    /* Again after kept_forget, which has unloaded the driver: what is registered last runs first, and so before
+     * the driver that is loaded then takes itself down. */
+    if (!entries) atexit(destroy_all);
     *e = (entry){entries, type, device, handle, hash_of(k), k->count};
     memcpy(e->key, k->bytes, k->count);
     entries = e;
