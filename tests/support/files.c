@@ -117,7 +117,7 @@ int shell(const char *format, ...) {
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-static void hash(uint64_t *h, const void *bytes, size_t count) {
+void hash_bytes(uint64_t *h, const void *bytes, size_t count) {
     for (size_t i = 0; i < count; i++) *h = (*h ^ ((const uint8_t *)bytes)[i]) * 0x100000001B3u;
 }
 
@@ -129,15 +129,15 @@ static int is_input(const struct dirent *entry) {
 /* Of what a scene may be made of: all files of the scratch folder. */
 static uint64_t hash_of_inputs(const char *name) {
     struct dirent **list;
-    uint64_t h = 0xCBF29CE484222325u;
+    uint64_t h = HASH_START;
     int count = scandir(scratch, &list, is_input, alphasort);
     assert_true(count > 0);
-    hash(&h, name, strlen(name));
+    hash_bytes(&h, name, strlen(name));
     for (int i = 0; i < count; i++) {
         size_t bytes;
         void *content = read_file(in_scratch(list[i]->d_name), &bytes);
-        hash(&h, list[i]->d_name, strlen(list[i]->d_name) + 1);
-        hash(&h, content, bytes);
+        hash_bytes(&h, list[i]->d_name, strlen(list[i]->d_name) + 1);
+        hash_bytes(&h, content, bytes);
         free(content);
         free(list[i]);
     }

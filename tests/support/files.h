@@ -39,6 +39,10 @@ bool whole_run(void);
 /* The first if LONG is set, the second on the system's driver, else the third. */
 uint32_t trials(uint32_t all, uint32_t quick, uint32_t elsewhere);
 
+/* FNV-1a of 64 bits: *h starts as HASH_START. */
+#define HASH_START 0xCBF29CE484222325u
+void hash_bytes(uint64_t *h, const void *bytes, size_t count);
+
 /* Runs a command; returns its exit code. */
 int shell(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int shell_list(const char *format, va_list arguments);

@@ -2,6 +2,8 @@
  * stand as their handles: equal bytes, equal objects. */
 #include "support/kept.h"
 
+#include "support/files.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,8 +63,8 @@ typedef struct entry {
 static entry *entries; /* the youngest first */
 
 static uint64_t hash_of(const key *k) {
-    uint64_t h = 0xCBF29CE484222325u;
-    for (size_t i = 0; i < k->count; i++) h = (h ^ k->bytes[i]) * 0x100000001B3u;
+    uint64_t h = HASH_START;
+    hash_bytes(&h, k->bytes, k->count);
     return h;
 }
 
@@ -71,6 +73,13 @@ static entry *find(const key *k) {
     entry *e = k->whole ? entries : NULL;
     while (e && (e->hash != h || e->count != k->count || memcmp(e->key, k->bytes, k->count))) e = e->next;
     return e;
+}
+
+/* Every handle is as wide as the number that is kept of it. */
+static bool found(const key *k, void *out) {
+    const entry *e = find(k);
+    if (e) memcpy(out, &e->handle, sizeof e->handle);
+    return e != NULL;
 }
 
 static entry *holder(VkStructureType type, uint64_t handle) {
@@ -266,11 +275,11 @@ static int64_t held;
                                 const VkAllocationCallbacks *allocator, Vk##Name *out) {           \
         key k = key_of(info->sType, device, info->pNext, allocator);                               \
         describe_##Name(&k, info);                                                                 \
-        const entry *e = find(&k);                                                                 \
         VkResult r = VK_SUCCESS;                                                                   \
-        if (e) memcpy(out, &e->handle, sizeof *out);                                               \
-        else r = REAL(Create##Name)(device, info, allocator, out);                                 \
-        if (!e && !r) keep(&k, info->sType, device, HANDLE(*out));                                 \
+        if (!found(&k, out)) {                                                                     \
+            r = REAL(Create##Name)(device, info, allocator, out);                                  \
+            if (!r) keep(&k, info->sType, device, HANDLE(*out));                                   \
+        }                                                                                          \
         held += !r;                                                                                \
         free(k.bytes);                                                                             \
         return r;                                                                                  \
@@ -301,13 +310,13 @@ KINDS(KEPT)
         for (uint32_t i = 0; i < count; i++) {                                                     \
             key k = key_of(info[i].sType, device, info[i].pNext, allocator);                       \
             describe_##Kind(&k, &info[i]);                                                         \
-            const entry *e = find(&k);                                                             \
             VkResult one = VK_SUCCESS;                                                             \
             kept.asked++;                                                                          \
-            if (e) memcpy(&out[i], &e->handle, sizeof out[i]);                                     \
-            else one = REAL(Create##Kind##Pipelines)(device, cache, 1, &info[i], allocator, &out[i]); \
-            if (!e && !one) keep(&k, TYPE_PIPELINE, device, HANDLE(out[i]));                       \
-            kept.compiled += !e && !one;                                                           \
+            if (!found(&k, &out[i])) {                                                             \
+                one = REAL(Create##Kind##Pipelines)(device, cache, 1, &info[i], allocator, &out[i]); \
+                if (!one) keep(&k, TYPE_PIPELINE, device, HANDLE(out[i]));                         \
+                kept.compiled += !one;                                                             \
+            }                                                                                      \
             held += !one;                                                                          \
             r = r ? r : one;                                                                       \
             free(k.bytes);                                                                         \
@@ -409,11 +418,11 @@ VkResult OURS(CreateInstance)(const VkInstanceCreateInfo *info, const VkAllocati
     if (k.whole) ADD(&k, info->pApplicationInfo->apiVersion);
     add_names(&k, info->ppEnabledLayerNames, info->enabledLayerCount);
     add_names(&k, info->ppEnabledExtensionNames, info->enabledExtensionCount);
-    const entry *e = find(&k);
     VkResult r = VK_SUCCESS;
-    if (e) memcpy(out, &e->handle, sizeof *out);
-    else r = REAL(CreateInstance)(info, allocator, out);
-    if (!e && !r) keep(&k, info->sType, NULL, HANDLE(*out));
+    if (!found(&k, out)) {
+        r = REAL(CreateInstance)(info, allocator, out);
+        if (!r) keep(&k, info->sType, NULL, HANDLE(*out));
+    }
     free(k.bytes);
     return r;
 }
@@ -436,11 +445,11 @@ VkResult OURS(CreateDevice)(VkPhysicalDevice physical, const VkDeviceCreateInfo 
     }
     add_names(&k, info->ppEnabledExtensionNames, info->enabledExtensionCount);
     if (k.whole) ADD(&k, *info->pEnabledFeatures);
-    const entry *e = find(&k);
     VkResult r = VK_SUCCESS;
-    if (e) memcpy(out, &e->handle, sizeof *out);
-    else r = REAL(CreateDevice)(physical, info, allocator, out);
-    if (!e && !r) keep(&k, info->sType, NULL, HANDLE(*out));
+    if (!found(&k, out)) {
+        r = REAL(CreateDevice)(physical, info, allocator, out);
+        if (!r) keep(&k, info->sType, NULL, HANDLE(*out));
+    }
     open_devices += !r;
     free(k.bytes);
     return r;

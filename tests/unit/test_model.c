@@ -185,6 +185,15 @@ static void count_of(masu_pass_count *c, double pixels, double plain, double wei
                                        {MASU_TALLY_WRITTEN, MASU_SET_PASS, 1, pixels}}};
 }
 
+/* Drawn with 960x540 pixels, the sheet is of four times as many. */
+static void count_upscaling(masu_count *count, double pixels) {
+    plan_upscaling(960, 540, &count->drawn);
+    plan_upscaling(1920, 1080, &count->sheet);
+    count->rung_count = 1;
+    count_of(&count->passes[0][MASU_PASS_EASU], pixels, 800.0, 850.0, 12.0);
+    count_of(&count->passes[0][MASU_PASS_RCAS], pixels, 100.0, 150.0, 5.0);
+}
+
 static void assert_near(double given, double wanted) {
     if (fabs(given - wanted) > 1e-9 * fabs(wanted))
         fail_msg("%.12g instead of %.12g", given, wanted);
@@ -195,11 +204,7 @@ static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     static masu_model m;
     const double p = 960.0 * 540.0, P = 4.0 * p, n = p; /* n: half of P's sides */
     (void)state;
-    plan_upscaling(960, 540, &count.drawn);
-    plan_upscaling(1920, 1080, &count.sheet);
-    count.rung_count = 1;
-    count_of(&count.passes[0][MASU_PASS_EASU], p, 800.0, 850.0, 12.0);
-    count_of(&count.passes[0][MASU_PASS_RCAS], p, 100.0, 150.0, 5.0);
+    count_upscaling(&count, p);
     masu_model_make(&count, NULL, &m);
     const masu_model_row *easu = &m.rungs[0].rows[MASU_PASS_EASU];
     const masu_model_row *rcas = &m.rungs[0].rows[MASU_PASS_RCAS];
@@ -283,11 +288,7 @@ static void the_sheet_counts_the_compilers_instructions_where_it_was_asked(void 
     static masu_issued issued[MASU_MODEL_CLASSES];
     const double p = 960.0 * 540.0, P = 4.0 * p;
     (void)state;
-    plan_upscaling(960, 540, &count.drawn);
-    plan_upscaling(1920, 1080, &count.sheet);
-    count.rung_count = 1;
-    count_of(&count.passes[0][MASU_PASS_EASU], p, 800.0, 850.0, 12.0);
-    count_of(&count.passes[0][MASU_PASS_RCAS], p, 100.0, 150.0, 5.0);
+    count_upscaling(&count, p);
     count.straight[MASU_PASS_EASU][0] = 400.0; /* half of what runs: a loop of two rounds */
     issued[0].known = true;
     issued[0].pass[MASU_PASS_EASU].instructions[0] = 600.0;

@@ -8,7 +8,7 @@
  * are named "cascade_0" or "cascades, masks". */
 static uint32_t pass_of(const char *pipeline) {
     size_t length = strcspn(pipeline, ",");
-    if (!strncmp(pipeline, "cascades", length)) return MASU_PASS_CASCADE_0;
+    if (length == strlen("cascades") && !strncmp(pipeline, "cascades", length)) return MASU_PASS_CASCADE_0;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         if (strlen(masu_passes[p].name) == length && !strncmp(masu_passes[p].name, pipeline, length))
             return masu_is_cascade(p) ? MASU_PASS_CASCADE_0 : p;

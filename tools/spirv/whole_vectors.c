@@ -4,6 +4,7 @@
 #include "spirv/spirv.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -127,12 +128,9 @@ static void note_uses(state *s, const spirv_instruction *i) {
     }
 }
 
-static bool several(const state *s, const chain *c) {
-    uint32_t parts = 0;
-    for (size_t k = 0; k < s->group_count; k++) {
-        if (s->groups[k].at.depth == c->at.depth && same(&s->groups[k].at, &c->at, c->at.depth))
-            parts = s->groups[k].parts;
-    }
+/* Of a component that is loaded: it has a group. */
+static bool several(state *s, const chain *c) {
+    uint32_t parts = group_of(s, &c->at)->parts;
     for (size_t k = 0; k < s->whole_count; k++) {
         if (s->wholes[k].depth <= c->at.depth && same(&s->wholes[k], &c->at, s->wholes[k].depth)) parts = ANY;
     }
@@ -263,4 +261,17 @@ uint32_t *masu_whole_vectors(const uint32_t *words, size_t count, size_t *change
     free(s.chains);
     spirv_free(&s.m);
     return s.out;
+}
+
+masu_whole_vectors_result masu_whole_vectors_file(const char *from, const char *to) {
+    spirv_module m;
+    size_t count = 0;
+    if (!spirv_from_file(from, &m)) return MASU_WHOLE_VECTORS_NO_MODULE;
+    uint32_t *words = masu_whole_vectors(m.words, m.word_count, &count);
+    FILE *out = words ? fopen(to, "wb") : NULL;
+    bool good = out && fwrite(words, sizeof *words, count, out) == count;
+    if (out && fclose(out)) good = false;
+    free(words);
+    spirv_free(&m);
+    return good ? MASU_WHOLE_VECTORS_OK : MASU_WHOLE_VECTORS_NOT_WRITTEN;
 }

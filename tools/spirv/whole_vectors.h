@@ -18,4 +18,13 @@
  * columns are no vectors in memory, come back as they are. */
 uint32_t *masu_whole_vectors(const uint32_t *words, size_t count, size_t *changed_count);
 
+typedef enum masu_whole_vectors_result {
+    MASU_WHOLE_VECTORS_OK,
+    MASU_WHOLE_VECTORS_NO_MODULE,
+    MASU_WHOLE_VECTORS_NOT_WRITTEN /* out of memory, too */
+} masu_whole_vectors_result;
+
+/* The same from file to file, which may be one. */
+masu_whole_vectors_result masu_whole_vectors_file(const char *from, const char *to);
+
 #endif

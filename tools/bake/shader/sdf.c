@@ -255,18 +255,13 @@ typedef struct paths {
 } paths;
 
 static bool load_whole_vectors(const char *path, const char *glsl_path) {
-    masu_bake_buffer spirv = {0};
-    size_t count = 0;
-    if (!masu_bake_read_file(path, SPIRV_MAX, &spirv)) return false;
-    uint32_t *words = masu_whole_vectors((const void *)spirv.data, spirv.bytes / 4, &count);
-    FILE *file = words ? fopen(path, "wb") : NULL;
-    bool good = file && fwrite(words, sizeof *words, count, file) == count;
-    if (file && fclose(file)) good = false;
-    if (!words) masu_cli_error("%s: spirv-opt wrote no SPIR-V", glsl_path);
-    else if (!good) masu_cli_error("%s: cannot be written", path);
-    free(words);
-    masu_bake_release(&spirv);
-    return good;
+    switch (masu_whole_vectors_file(path, path)) {
+        case MASU_WHOLE_VECTORS_OK: return true;
+        case MASU_WHOLE_VECTORS_NO_MODULE:
+            masu_cli_error("%s: spirv-opt wrote no SPIR-V", glsl_path);
+            return false;
+        default: masu_cli_error("%s: cannot be written", path); return false;
+    }
 }
 
 static bool run_tools(const paths *p, bool has_raster, const char *directory,
