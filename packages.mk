@@ -20,9 +20,9 @@ PACKAGES_worlds := torcs-data
 # ImageMagick measures pictures beside us
 PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick
 
-# to build everything a second time with the other compiler (make check FULL=1), and for `make fuzz`;
-# and another measure of SSIM
-PACKAGES_full := clang python3-skimage
+# to build everything a second time with the other compiler and its sanitizers, whose library is a package of
+# its own (make check FULL=1), and for `make fuzz`; and another measure of SSIM
+PACKAGES_full := clang libclang-rt-dev python3-skimage
 
 # for the plots of masu-meso and masu bench, which go without. Never installed by itself
 PACKAGES_plots := gnuplot-nox
