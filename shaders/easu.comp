@@ -15,7 +15,7 @@
 #define MASU_PUSH masu_push_easu
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
-#include "shared/unorm8.glsl"
+#include "shared/unorm.glsl"
 #include "upscale/easu.glsl"
 #include "upscale/place.glsl"
 #include "upscale/taps.glsl"
@@ -23,7 +23,7 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly image2D target;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
 
 void main()
 {

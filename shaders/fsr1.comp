@@ -1,7 +1,7 @@
 /*
  * fsr1.comp: EASU and RCAS in one pass, bit for bit what easu.comp and rcas.comp make of it in two.
  * A workgroup of GROUP x GROUP upscales its block of pixels and a border of one to shared memory,
- * as 8 bits, and sharpens from there: the image between the passes, 8 bytes of traffic for each
+ * as 10 bits, and sharpens from there: the image between the passes, 8 bytes of traffic for each
  * output pixel, is not needed, and (BLOCK + 2)^2 / BLOCK^2 = 1.13 times the pixels are upscaled.
  *
  * Push constants: as easu.comp, and push.lobe as rcas.comp.
@@ -11,7 +11,7 @@
 #define MASU_PUSH masu_push_fsr1
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
-#include "shared/unorm8.glsl"
+#include "shared/unorm.glsl"
 #include "upscale/easu.glsl"
 #include "upscale/place.glsl"
 #include "upscale/rcas.glsl"
@@ -20,12 +20,12 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly image2D target;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
 
 const int block = MASU_FSR1_BLOCK;
 const int side = block + 2;
 const int group = MASU_GROUP * MASU_GROUP;
-shared uint upscaled[side * side]; /* 8 bits a channel: 4.6 KB of the 16 that every device has */
+shared uint upscaled[side * side]; /* 10 bits a channel: 4.6 KB of the 16 that every device has */
 
 vec3 easu(uvec2 at)
 {
@@ -36,7 +36,8 @@ vec3 easu(uvec2 at)
 
 vec3 upscaled_at(int i)
 {
-    return masu_fetched_unorm8(unpackUnorm4x8(upscaled[i]).rgb);
+    uvec3 steps = uvec3(upscaled[i], upscaled[i] >> 10, upscaled[i] >> 20) & 1023u;
+    return masu_fetched_unorm(vec3(steps) * (1.0 / 1023.0));
 }
 
 void main()
@@ -47,10 +48,10 @@ void main()
     for (int round = 0; round < (side * side + group - 1) / group; round++) {
         int i = min(round * group + own, side * side - 1);
         ivec2 at = first - 1 + ivec2(i % side, i / side);
-        /* RCAS repeats the edge of the picture. A store to 8 bits rounds to nearest. */
-        uvec3 bytes = uvec3(roundEven(easu(uvec2(clamp(at, ivec2(0), last))) * 255.0));
+        /* RCAS repeats the edge of the picture. */
+        uint bits = masu_ten_bits(easu(uvec2(clamp(at, ivec2(0), last))));
         if (round * group + own < side * side) {
-            upscaled[i] = bytes.r | bytes.g << 8 | bytes.b << 16;
+            upscaled[i] = bits;
         }
     }
     barrier();

@@ -18,7 +18,7 @@
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D picture; /* display-encoded */
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly image2D smooth_image;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE smooth_image;
 
 /* Contrasts that count: of the brightest pixel near by an eighth, of white 1/24. */
 const float least_share = 0.125;

@@ -14,17 +14,17 @@
 #define MASU_PUSH masu_push_rcas
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
-#include "shared/unorm8.glsl"
+#include "shared/unorm.glsl"
 #include "upscale/rcas.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly image2D target;
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
 
 vec3 fetch(int x, int y)
 {
-    return masu_fetched_unorm8(texelFetch(source, ivec2(x, y), 0).rgb);
+    return masu_fetched_unorm(texelFetch(source, ivec2(x, y), 0).rgb);
 }
 
 void main()

@@ -14,7 +14,8 @@
  * u is R2 over the pixels (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
  * 2018), plus the golden ratio for each frame: of integers, so that all drivers have one pattern.
  *
- * MASU_OUTPUT: of a scene. MASU_DEEP: images are rgba16f, else rgba8.
+ * MASU_OUTPUT: of a scene. MASU_DEEP: images are rgba16f. MASU_TEN: what is stored is not the last, and has
+ * 10 bits: RCAS makes up to seven times as much of what rounding has lost before it. Else: rgba8.
  */
 #ifndef MASU_OUTPUT_GLSL
 #define MASU_OUTPUT_GLSL
@@ -22,10 +23,15 @@
 #include "shared/masu_shared.h"
 #include "shared/store.glsl"
 
-#ifdef MASU_DEEP
+#if defined(MASU_TEN)
+#define MASU_COLOR_FORMAT r32ui
+#define MASU_COLOR_IMAGE uimage2D
+#elif defined(MASU_DEEP)
 #define MASU_COLOR_FORMAT rgba16f
+#define MASU_COLOR_IMAGE image2D
 #else
 #define MASU_COLOR_FORMAT rgba8
+#define MASU_COLOR_IMAGE image2D
 #endif
 
 #ifdef MASU_OUTPUT
@@ -90,17 +96,24 @@ vec3 masu_nearest_half(vec3 v)
 
 #define MASU_STORE_COLOR(img, p, v)                                                                \
     MASU_STORE_HALF(img, p, vec4(masu_nearest_half(masu_output(v, uvec2(p))), 1.0))
-#else
+#elif !defined(MASU_TEN)
 #define MASU_STORE_COLOR(img, p, v) MASU_STORE_UNORM(img, p, vec4(masu_output(v, uvec2(p)), 1.0))
 #define MASU_STORE_FILTERED(img, p, v) MASU_STORE_SAFE(img, p, vec4(masu_output(v, uvec2(p)), 1.0))
 #endif
 
-#else /* a source image: as it is */
+#else /* of a source image, or not the last: as it is */
 
 #include "shared/push.glsl"
 
+#ifndef MASU_TEN
 #define MASU_STORE_COLOR(img, p, v) MASU_STORE_UNORM(img, p, vec4((v), 1.0))
 #define MASU_STORE_FILTERED(img, p, v) MASU_STORE_SAFE(img, p, vec4((v), 1.0))
+#endif
+#endif
+
+#ifdef MASU_TEN
+#define MASU_STORE_COLOR(img, p, v) MASU_STORE_TEN(img, p, v)
+#define MASU_STORE_FILTERED(img, p, v) MASU_STORE_SAFE(img, p, uvec4(masu_ten_bits(v)))
 #endif
 
 /* For passes of the size of the output. Whether it is made of whole workgroups, as 720, 1080 and 2160 rows

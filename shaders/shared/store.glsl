@@ -10,6 +10,7 @@
  *   MASU_STORE_HALF(img, p, v)    vec4 v to -65504..65504     rgba16f, rg16f, r11f_g11f_b10f
  *   MASU_STORE_R32F(img, p, x)    float x, finite             r32f
  *   MASU_STORE_UINT(img, p, u)    uint or uvec4 u, unchanged  r32ui and its like
+ *   MASU_STORE_TEN(img, p, v)     vec3 v to 0..1              r32ui view of an image of 10 bits a channel
  *   MASU_STORE_SAFE(img, p, v)    vec4 v, as it is            what is known to be finite, at a p that is known to
  *                                                             lie within the image: format clamps the rest
  *
@@ -47,6 +48,31 @@
     MASU_STORE_FLOATS(img, p, vec4((x), 0.0, 0.0, 0.0), -3.4e38, 3.4e38)
 
 #define MASU_STORE_SAFE(img, p, v) imageStore(img, ivec2(p), (v))
+
+/* v of 0..1 in the bits of A2B10G10R10_UNORM, to the nearest step, alpha 1. Added to 2^23, a number has its
+ * integer in its last bits, rounded; what stands before them, 0x4B000000, is shifted out of two of three. */
+uint masu_ten_bits(vec3 v)
+{
+#ifdef MASU_EXACT
+    precise vec3 scaled = v * 1023.0;
+#else
+    vec3 scaled = v * 1023.0;
+#endif
+    uvec3 steps = floatBitsToUint(scaled + 8388608.0);
+    return (steps.b << 20) + ((steps.g << 10) + (steps.r + (0xC0000000u - 0x4B000000u)));
+}
+
+#define MASU_STORE_TEN(img, p, v)                                                                  \
+    {                                                                                              \
+        ivec2 masu_store_at = ivec2(p);                                                            \
+        vec3 masu_store_value = (v);                                                               \
+        if (all(lessThan(uvec2(masu_store_at), uvec2(imageSize(img))))) {                          \
+            if (!masu_finite(masu_store_value)) {                                                  \
+                MASU_COUNT_REPLACED(1u);                                                           \
+            }                                                                                      \
+            imageStore(img, masu_store_at, uvec4(masu_ten_bits(masu_sane_unit(masu_store_value)))); \
+        }                                                                                          \
+    }
 
 #define MASU_STORE_UINT(img, p, u)                                                                 \
     {                                                                                              \

@@ -87,12 +87,17 @@ masu_kernel kernel_of(vec3 edge)
 }
 
 /* Adds one tap to rgb = weighted colour, a = weight. The weight is a polynomial stand-in for a
- * windowed sinc, of the squared distance in the kernel's own axes. */
+ * windowed sinc, of the squared distance in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is
+ * (d (d - 5) + 4) / 4, and of weights that are divided by their sum a fourth is as good as all. */
 vec4 add_tap(vec4 sum, masu_kernel k, vec2 v, vec3 colour)
 {
     SAME float distance = min(v.x * v.x + v.y * v.y, k.clip);
+#ifdef MASU_EXACT
     SAME float base = 0.4 * distance + -1.0;
     base = 1.5625 * (base * base) + -0.5625;
+#else
+    float base = distance * (distance - 5.0) + 4.0;
+#endif
     SAME float window = k.lobe * distance + -1.0;
     SAME float weight = base * (window * window);
     SAME vec3 weighted = sum.rgb + colour * weight;

@@ -21,13 +21,9 @@
 #ifdef MASU_HALF
 #define real float16_t
 #define real2 f16vec2
-#define real3 f16vec3
-#define real4 f16vec4
 #else
 #define real float
 #define real2 vec2
-#define real3 vec3
-#define real4 vec4
 #endif
 
 /* Half a step of 8 bits of grey, in twice the luma. */
@@ -87,13 +83,22 @@ float straightness(float before, float centre, float after)
     return ratio * ratio;
 }
 
-real4 add_tap(real4 sum, real2 v, real lobe, real clip, vec3 colour)
+/* Red, green, blue and weight of two taps side by side: halves are multiplied two at a time. */
+struct masu_pairs {
+    real2 r, g, b, w;
+};
+
+/* Adds taps at (x.x, y.x) and (x.y, y.y), by the weight of easu.glsl. */
+void add_pair(inout masu_pairs sum, real2 x, real2 y, real lobe, real2 clip, vec3 left, vec3 right)
 {
-    real distance = min(v.x * v.x + v.y * v.y, clip);
-    real base = real(0.4) * distance - real(1.0);
-    real window = lobe * distance - real(1.0);
-    real weight = (real(1.5625) * base * base - real(0.5625)) * (window * window);
-    return sum + real4(real3(colour), real(1.0)) * weight;
+    real2 distance = min(x * x + y * y, clip);
+    real2 base = distance * (distance - real(5.0)) + real(4.0);
+    real2 window = lobe * distance - real(1.0);
+    real2 weight = base * (window * window);
+    sum.r += real2(vec2(left.r, right.r)) * weight;
+    sum.g += real2(vec2(left.g, right.g)) * weight;
+    sum.b += real2(vec2(left.b, right.b)) * weight;
+    sum.w += weight;
 }
 
 vec3 masu_easu_fast(masu_taps t, vec2 p, vec3 least, vec3 most)
@@ -115,29 +120,25 @@ vec3 masu_easu_fast(masu_taps t, vec2 p, vec3 least, vec3 most)
     float stretch = dot(dir, dir) * approximate_rcp(max(abs(dir.x), abs(dir.y)));
     vec2 scale = vec2(1.0 + (stretch - 1.0) * len, 1.0 - 0.5 * len);
     real lobe = real(0.5 - 0.29 * len);
-    real clip = real(approximate_rcp(0.5 - 0.29 * len));
+    real2 clip = real2(approximate_rcp(0.5 - 0.29 * len));
 
-    /* A step to the right and one down in the kernel's axes; from there to each tap. */
-    real2 x = real2(vec2(dir.x, -dir.y) * scale);
-    real2 y = real2(vec2(dir.y, dir.x) * scale);
-    real2 f = -real(p.x) * x - real(p.y) * y;
-    real2 g = f + x;
-    real2 j = f + y;
-    real2 k = g + y;
-    real4 sum = real4(0.0);
-    sum = add_tap(sum, f - y, lobe, clip, t.b);
-    sum = add_tap(sum, g - y, lobe, clip, t.c);
-    sum = add_tap(sum, f - x, lobe, clip, t.e);
-    sum = add_tap(sum, f, lobe, clip, t.f);
-    sum = add_tap(sum, g, lobe, clip, t.g);
-    sum = add_tap(sum, g + x, lobe, clip, t.h);
-    sum = add_tap(sum, j - x, lobe, clip, t.i);
-    sum = add_tap(sum, j, lobe, clip, t.j);
-    sum = add_tap(sum, k, lobe, clip, t.k);
-    sum = add_tap(sum, k + x, lobe, clip, t.l);
-    sum = add_tap(sum, j + y, lobe, clip, t.n);
-    sum = add_tap(sum, k + y, lobe, clip, t.o);
-    vec3 mean = vec3(sum.rgb) * (1.0 / float(sum.a)); /* the four keep the sum well above 0 */
+    /* A step to the right and one down in the kernel's axes; from there to each tap: of f and g, side by
+     * side, x in one pair and y in another. */
+    real2 right_step = real2(vec2(dir.x, -dir.y) * scale);
+    real2 down = real2(vec2(dir.y, dir.x) * scale);
+    real2 f = -real(p.x) * right_step - real(p.y) * down;
+    real2 x = real2(f.x, f.x + right_step.x), y = real2(f.y, f.y + right_step.y);
+    real2 out_x = real2(-right_step.x, right_step.x), out_y = real2(-right_step.y, right_step.y);
+    masu_pairs sum = masu_pairs(real2(0.0), real2(0.0), real2(0.0), real2(0.0));
+    add_pair(sum, x - down.x, y - down.y, lobe, clip, t.b, t.c);
+    add_pair(sum, x + out_x, y + out_y, lobe, clip, t.e, t.h);
+    add_pair(sum, x, y, lobe, clip, t.f, t.g);
+    x += down.x, y += down.y;
+    add_pair(sum, x + out_x, y + out_y, lobe, clip, t.i, t.l);
+    add_pair(sum, x, y, lobe, clip, t.j, t.k);
+    add_pair(sum, x + down.x, y + down.y, lobe, clip, t.n, t.o);
+    vec3 sums = vec3(sum.r.x + sum.r.y, sum.g.x + sum.g.y, sum.b.x + sum.b.y);
+    vec3 mean = sums * (1.0 / float(sum.w.x + sum.w.y)); /* the four keep the sum well above 0 */
     return min(most, max(least, mean));
 }
 

@@ -135,26 +135,39 @@ static masu_result make_texture_views(masu_device *m, masu_detail *detail) {
     return MASU_OK;
 }
 
+/* An image that is used for nothing that needs a view may not have one (valid usage 04441). */
+static masu_result make_view(masu_device *m, uint32_t image, VkFormat format, VkImageUsageFlags usage,
+                             VkImageView *view, masu_detail *detail) {
+    const VkImageUsageFlags copies = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if (!(usage & ~copies)) return MASU_OK;
+    int depth = format == VK_FORMAT_D32_SFLOAT;
+    VkImageViewUsageCreateInfo only = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_USAGE_CREATE_INFO,
+                                       .usage = usage};
+    VkImageViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .pNext = usage == m->plan->images[image].usage ? NULL : &only,
+        .image = m->objects.images[image],
+        .viewType = VK_IMAGE_VIEW_TYPE_2D,
+        .format = format,
+        .subresourceRange = {.aspectMask =
+                                 depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
+                             .levelCount = 1,
+                             .layerCount = 1}};
+    VkResult r = m->vk.CreateImageView(m->vk.device, &info, m->vk.allocator, view);
+    if (MASU_FAILED(r, *view)) return masu_fail_vulkan(detail, r, "vkCreateImageView");
+    masu_name(m, VK_OBJECT_TYPE_IMAGE_VIEW, MASU_HANDLE(*view), masu_images[image].name);
+    return MASU_OK;
+}
+
 masu_result masu_make_views(masu_device *m, masu_detail *detail) {
     for (uint32_t i = 0; i < MASU_IMAGE_COUNT; i++) {
         if (!m->objects.images[i]) continue;
-        int depth = masu_images[i].format == VK_FORMAT_D32_SFLOAT;
-        VkImageViewCreateInfo info = {
-            .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-            .image = m->objects.images[i],
-            .viewType = VK_IMAGE_VIEW_TYPE_2D,
-            .format = masu_plan_format(m->plan, i),
-            .subresourceRange = {.aspectMask =
-                                     depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
-                                 .levelCount = 1,
-                                 .layerCount = 1}};
-        /* An image that is only copied may not have a view (valid usage 04441). */
-        VkImageUsageFlags viewable =
-            ~(VkImageUsageFlags)(VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-        if (!(m->plan->images[i].usage & viewable)) continue;
-        VkResult r = m->vk.CreateImageView(m->vk.device, &info, m->vk.allocator, &m->views[i]);
-        if (MASU_FAILED(r, m->views[i])) return masu_fail_vulkan(detail, r, "vkCreateImageView");
-        masu_name(m, VK_OBJECT_TYPE_IMAGE_VIEW, MASU_HANDLE(m->views[i]), masu_images[i].name);
+        VkFormat format = masu_plan_format(m->plan, i), stored = masu_plan_store_format(m->plan, i);
+        VkImageUsageFlags usage = m->plan->images[i].usage;
+        VkImageUsageFlags apart = format == stored ? 0 : usage & VK_IMAGE_USAGE_STORAGE_BIT;
+        masu_result result = make_view(m, i, format, usage & ~apart, &m->views[i], detail);
+        if (!result && apart) result = make_view(m, i, stored, apart, &m->stores[i], detail);
+        if (result) return result;
     }
     m->views[MASU_IMAGE_SOURCE] = m->plan->desc.source.view;
     return make_texture_views(m, detail);

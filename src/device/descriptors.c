@@ -128,8 +128,9 @@ static void write_pass_set(masu_device *m, const masu_rung_plan *rp, uint32_t pa
             if (!masu_access_binds(rp->access[pass][a], writes)) continue;
             uint32_t id = rp->access[pass][a].image;
             VkDescriptorImageInfo image = {
-                .imageView =
-                    id == MASU_IMAGE_TARGET ? m->plan->desc.targets.views[target] : m->views[id],
+                .imageView = id == MASU_IMAGE_TARGET     ? m->plan->desc.targets.views[target]
+                             : writes && m->stores[id] ? m->stores[id]
+                                                       : m->views[id],
                 .imageLayout =
                     writes ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,

@@ -26,6 +26,7 @@ typedef struct masu_device {
     /* bind.c */
     masu_objects objects;
     VkImageView views[MASU_IMAGE_COUNT]; /* whole images; source and target views are the host's */
+    VkImageView stores[MASU_IMAGE_COUNT]; /* of images that shaders store to in another format */
     VkDeviceMemory memory[MASU_ROLE_COUNT];
     int memory_owned[MASU_ROLE_COUNT];
     unsigned char *mapped[MASU_ROLE_COUNT]; /* NULL where the block is not host-visible */
@@ -36,6 +37,7 @@ typedef struct masu_device {
     VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
     VkPipelineLayout layouts[MASU_PASS_COUNT];
     VkPipeline pipelines[MASU_PASS_COUNT];
+    VkPipeline last[MASU_PASS_COUNT]; /* of passes of colour, for rungs in which they come last */
     /* Of the graphics rows; the cascades of the shadow map share those of the first, and its
      * pipeline. */
     VkRenderPass render_passes[MASU_PASS_COUNT];

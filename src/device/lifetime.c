@@ -39,6 +39,7 @@ void masu_device_destroy(masu_device *m) {
     vk->DestroyDescriptorPool(device, m->descriptor_pool, vk->allocator);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         vk->DestroyPipeline(device, m->pipelines[p], vk->allocator);
+        vk->DestroyPipeline(device, m->last[p], vk->allocator);
         vk->DestroyFramebuffer(device, m->framebuffers[p], vk->allocator);
         vk->DestroyRenderPass(device, m->render_passes[p], vk->allocator);
         vk->DestroyPipelineLayout(device, m->layouts[p], vk->allocator);
@@ -54,8 +55,10 @@ void masu_device_destroy(masu_device *m) {
         vk->DestroySampler(device, m->samplers[i], vk->allocator);
     for (uint32_t i = 0; i < m->plan->scene.texture_arrays; i++)
         vk->DestroyImageView(device, m->plan->textures[i].view, vk->allocator);
-    for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++)
+    for (uint32_t i = 0; i < MASU_IMAGE_SOURCE; i++) {
         vk->DestroyImageView(device, m->views[i], vk->allocator);
+        vk->DestroyImageView(device, m->stores[i], vk->allocator);
+    }
     masu_ray_destroy(m);
     masu_objects_destroy(vk, m->plan, &m->objects);
     for (uint32_t role = 0; role < MASU_ROLE_COUNT; role++) {

@@ -193,6 +193,10 @@ static masu_result create_image(const masu_vk *vk, masu_frame_plan *plan, uint32
     if (!image->used) return MASU_OK;
     VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
                               .imageType = VK_IMAGE_TYPE_2D,
+                              .flags = masu_plan_store_format(plan, i) == masu_plan_format(plan, i)
+                                           ? 0
+                                           : VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT |
+                                                 VK_IMAGE_CREATE_EXTENDED_USAGE_BIT,
                               .format = masu_plan_format(plan, i),
                               .extent = {image->width, image->height, 1},
                               .mipLevels = 1,

@@ -164,9 +164,10 @@ static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *
 
 /* ---- Compute --------------------------------------------------------------------------------- */
 
-static masu_result make_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
+static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, VkPipeline *out,
+                                     masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
-    masu_result result = make_module(m, masu_compute_code(m->plan, pass), &module, detail);
+    masu_result result = make_module(m, masu_compute_code(m->plan, pass, last), &module, detail);
     if (result) return result;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
@@ -180,12 +181,25 @@ static masu_result make_compute(masu_device *m, uint32_t pass, masu_detail *deta
         .layout = m->layouts[pass]};
     uint64_t start = now(m);
     VkResult r = m->vk.CreateComputePipelines(m->vk.device, m->plan->desc.vulkan.pipeline_cache, 1,
-                                              &info, m->vk.allocator, &m->pipelines[pass]);
-    m->pipeline_ns[pass] = now(m) - start;
+                                              &info, m->vk.allocator, out);
+    m->pipeline_ns[pass] += now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
-    if (MASU_FAILED(r, m->pipelines[pass]))
-        return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
+    if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
+    masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(*out), masu_passes[pass].name);
     return MASU_OK;
+}
+
+/* The forms that its rungs ask for. */
+static masu_result make_compute(masu_device *m, uint32_t pass, masu_detail *detail) {
+    masu_result result = MASU_OK;
+    for (uint32_t r = 0; r < m->plan->desc.rung_count && !result; r++) {
+        const masu_rung_plan *rp = &m->plan->rungs[r];
+        if (!masu_has_pass(&rp->active, pass)) continue;
+        int last = masu_comes_last(rp, pass);
+        VkPipeline *out = last ? &m->last[pass] : &m->pipelines[pass];
+        if (!*out) result = make_compute_form(m, pass, last, out, detail);
+    }
+    return result;
 }
 
 /* ---- Graphics -------------------------------------------------------------------------------- */
@@ -461,7 +475,7 @@ masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
         if (result || !m->layouts[p]) continue;
         int graphics = masu_passes[p].kind == MASU_PASS_GRAPHICS;
         result = graphics ? make_graphics(m, p, detail) : make_compute(m, p, detail);
-        if (!result)
+        if (!result && graphics)
             masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->pipelines[p]),
                       masu_passes[p].name);
     }

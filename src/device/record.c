@@ -56,7 +56,9 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
     VkPipelineLayout layout = rec->m->layouts[pass];
-    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, rec->m->pipelines[pass]);
+    VkPipeline pipeline =
+        masu_comes_last(rec->rp, pass) ? rec->m->last[pass] : rec->m->pipelines[pass];
+    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     if (masu_has_global_sets(rec->m->plan)) {
         vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, layout, MASU_SET_GLOBAL,
                                   1, &rec->m->global_sets[rec->flight], 0, NULL);

@@ -25,8 +25,8 @@ typedef struct masu_shader {
 
 /* ---- The form of each axis that a plan asks for ---------------------------------------------- */
 
-/* Whether all that a pass samples, in any rung, is colour of 8 bits. */
-static int reads_bytes(const masu_frame_plan *plan, uint32_t pass) {
+/* Whether all that a pass samples, in any rung, is colour that holds nothing but 0..1. */
+static int reads_unorm(const masu_frame_plan *plan, uint32_t pass) {
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
         const masu_rung_plan *rp = &plan->rungs[r];
         if (!masu_has_pass(&rp->active, pass)) continue;
@@ -37,19 +37,24 @@ static int reads_bytes(const masu_frame_plan *plan, uint32_t pass) {
                                   ? plan->desc.source.format
                                   : masu_plan_format(plan, access.image);
             if (format != VK_FORMAT_R8G8B8A8_UNORM && format != VK_FORMAT_B8G8R8A8_UNORM &&
-                format != VK_FORMAT_A8B8G8R8_UNORM_PACK32)
+                format != VK_FORMAT_A8B8G8R8_UNORM_PACK32 &&
+                format != VK_FORMAT_A2B10G10R10_UNORM_PACK32)
                 return 0;
         }
     }
     return 1;
 }
 
-static int masu_color_form(const masu_frame_plan *plan, uint32_t pass) {
-    if (plan->needs.scene) return plan->deep ? 3 : 2;
-    return reads_bytes(plan, pass);
+/* Of the axes COLOR, LAST and LAST8. */
+static int color_form(const masu_frame_plan *plan, uint32_t pass, int last) {
+    if (plan->deep) return 3;
+    if (plan->needs.scene) return last ? 2 : 4;
+    int unorm = reads_unorm(plan, pass);
+    return last ? unorm : unorm ? 4 : 5;
 }
 
-static uint32_t form_of(uint32_t axis, const masu_frame_plan *plan, uint32_t pass, int textured) {
+static uint32_t form_of(uint32_t axis, const masu_frame_plan *plan, uint32_t pass, int textured,
+                        int last) {
     const masu_needs *n = &plan->needs;
     switch (axis) {
 #define AXIS(ID, value, ...)                                                                       \
@@ -62,12 +67,12 @@ static uint32_t form_of(uint32_t axis, const masu_frame_plan *plan, uint32_t pas
 
 /* A flag counts as 1 whatever it is; a form that a shader does not have as its last. */
 static masu_code permutation(const masu_frame_plan *plan, uint32_t pass, uint32_t shader,
-                             int textured) {
+                             int textured, int last) {
     const masu_shader *s = &shaders[shader];
     uint32_t index = 0, step = 1;
     if (shader == MASU_SHADER_NONE) return (masu_code){NULL, 0};
     for (uint32_t i = 0; i < s->axis_count; i++) {
-        uint32_t form = form_of(s->axes[i].axis, plan, pass, textured);
+        uint32_t form = form_of(s->axes[i].axis, plan, pass, textured, last);
         if (form >= s->axes[i].forms) form = s->axes[i].forms - 1;
         index += form * step;
         step *= s->axes[i].forms;
@@ -100,16 +105,16 @@ static masu_code scene_code(const masu_frame_plan *plan, uint32_t pass) {
     return (masu_code){v.code[section].words, v.code[section].count * sizeof(uint32_t)};
 }
 
-masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass) {
+masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass, int last) {
     if (masu_passes[pass].code) return scene_code(plan, pass);
-    return permutation(plan, pass, of_pass[pass].compute, 0);
+    return permutation(plan, pass, of_pass[pass].compute, 0, last);
 }
 
 masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int textured) {
-    masu_draw_code code = {permutation(plan, pass, of_pass[pass].vertex, textured),
+    masu_draw_code code = {permutation(plan, pass, of_pass[pass].vertex, textured, 0),
                            masu_passes[pass].code
                                ? scene_code(plan, pass)
-                               : permutation(plan, pass, of_pass[pass].fragment, textured)};
+                               : permutation(plan, pass, of_pass[pass].fragment, textured, 0)};
     /* Through the holes of masks the sun shines; the rest of a cascade is depth alone. */
     if (masu_passes[pass].geometry == MASU_GEOMETRY_CASCADE && !textured)
         code.fragment = (masu_code){NULL, 0};

@@ -17,8 +17,8 @@ typedef struct masu_draw_code {
     masu_code vertex, fragment;
 } masu_draw_code;
 
-/* Of a compute pass. */
-masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass);
+/* Of a compute pass; last: for rungs in which it writes what is shown. */
+masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass, int last);
 
 /* Of a graphics pass; textured: for what has textures. */
 masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int textured);

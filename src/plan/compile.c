@@ -109,12 +109,14 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
         }
     }
-    /* The last colour pass writes the target itself (a blit, where there is one, does so anyway), and so does
-     * every pass that has to do with the same image. */
-    uint8_t last = l.image[MASU_CLASS_COLOR];
+    /* The last colour pass writes the target itself, or what a blit takes to it, and so does every pass that has
+     * to do with the same image. */
+    int blit = l.image[MASU_CLASS_COLOR] == MASU_IMAGE_TARGET;
+    uint8_t last = blit ? l.before[MASU_CLASS_COLOR] : l.image[MASU_CLASS_COLOR];
     for (uint32_t p = 0; p < MASU_PASS_COUNT && last != MASU_IMAGE_SOURCE; p++) {
         for (uint32_t a = 0; a < rp->access_count[p]; a++) {
-            if (rp->access[p][a].image == last) rp->access[p][a].image = MASU_IMAGE_TARGET;
+            if (rp->access[p][a].image == last)
+                rp->access[p][a].image = blit ? MASU_IMAGE_FINAL : MASU_IMAGE_TARGET;
         }
     }
 }

@@ -176,27 +176,9 @@ void masu_output_plan(masu_frame_plan *plan) {
                          (f->srgb && f->swapped ? MASU_OUTPUT_SWAP : 0);
 }
 
-/* The image of displayed colour that a compute pass writes, all of it or a part; 0: none. */
-static uint32_t written_color(const masu_rung_plan *rung, uint32_t pass) {
-    if (masu_passes[pass].kind != MASU_PASS_COMPUTE) return 0;
-    for (uint32_t a = 0; a < rung->access_count[pass]; a++) {
-        masu_access access = rung->access[pass][a];
-        int writes = access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
-        if (access.image >= MASU_IMAGE_COUNT || !writes) continue;
-        if (masu_images[access.image].class_of == MASU_CLASS_COLOR) return access.image;
-    }
-    return 0;
-}
-
 void masu_output_push(const masu_frame_plan *plan, const masu_rung_plan *rung, uint32_t pass,
                       struct masu_push *push) {
-    uint32_t image = written_color(rung, pass);
-    if (!plan->needs.scene || !image) return;
-    for (uint32_t p = pass + 1; p < MASU_PASS_COUNT; p++) {
-        /* What only some tiles of the image are written by shares the writing. */
-        int shares = masu_passes[p].extent == MASU_EXTENT_EDGED && written_color(rung, p) == image;
-        if (written_color(rung, p) && !shares) return;
-    }
+    if (!plan->needs.scene || !masu_comes_last(rung, pass)) return;
     const uint32_t *steps = plan->output.steps;
     push->output_steps = steps[0] | steps[1] << 10 | steps[2] << 20;
     push->output_flags = plan->output.flags;

@@ -65,6 +65,20 @@ int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t ca
 
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image) {
     const masu_image_row *row = &masu_images[image];
-    int color = row->class_of == MASU_CLASS_COLOR && row->format == VK_FORMAT_R8G8B8A8_UNORM;
+    int color = row->class_of == MASU_CLASS_COLOR && row->format != VK_FORMAT_UNDEFINED;
     return color && plan->deep ? VK_FORMAT_R16G16B16A16_SFLOAT : row->format;
+}
+
+VkFormat masu_plan_store_format(const masu_frame_plan *plan, uint32_t image) {
+    VkFormat format = masu_plan_format(plan, image);
+    return format == VK_FORMAT_A2B10G10R10_UNORM_PACK32 ? VK_FORMAT_R32_UINT : format;
+}
+
+int masu_comes_last(const masu_rung_plan *rung, uint32_t pass) {
+    for (uint32_t a = 0; a < rung->access_count[pass]; a++) {
+        masu_access access = rung->access[pass][a];
+        int ends = access.image == MASU_IMAGE_TARGET || access.image == MASU_IMAGE_FINAL;
+        if (ends && (access.usage == MASU_WRITE || access.usage == MASU_UPDATE)) return 1;
+    }
+    return 0;
 }

@@ -105,7 +105,7 @@ typedef struct masu_frame_plan {
     uint32_t views;     /* that instances are culled for: the camera, the cascades */
     int occlusion;      /* a rung has occlusion culling */
     int lods;           /* a rung draws LODs of meshes */
-    int deep;           /* colour between tone curve and target is of 16-bit floats */
+    int deep;           /* colour between tone curve and target is of 16-bit floats, else of 10 bits */
     int copies;         /* targets are filled by a copy of bytes, not by a blit */
     struct masu_output_plan {
         uint32_t steps[3]; /* of red, green, blue: what passes round to; 0: they do not */
@@ -137,8 +137,12 @@ const masu_rung_plan *masu_first_rung(const masu_frame_plan *plan, uint32_t pass
 /* Size of an image or of a pass of a rung. */
 VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
                             VkExtent2D render);
-/* The format of an image in this plan. */
+/* The format of an image in this plan, and of the view that shaders store through: another where the
+ * first is none that every device stores to. */
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
+VkFormat masu_plan_store_format(const masu_frame_plan *plan, uint32_t image);
+/* Whether a compute pass writes what a rung shows: the target, or the image that a blit takes to it. */
+int masu_comes_last(const masu_rung_plan *rung, uint32_t pass);
 
 /* Texel bytes of the formats of the table. */
 uint32_t masu_format_bytes(VkFormat format);

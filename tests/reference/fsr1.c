@@ -438,6 +438,14 @@ void masu_ref_to_rgba8(const float *rgb, uint32_t width, uint32_t height, uint8_
     }
 }
 
+void masu_ref_to_ten(float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        float scaled = sane_unit(values[i]) * 1023.0f;
+        values[i] = nearbyintf(scaled) / 1023.0f;
+    }
+}
+
 float masu_ref_max_difference(const float *a, const float *b, size_t count)
 {
     float worst = 0.0f;

@@ -59,6 +59,9 @@ void masu_ref_from_rgba8(const uint8_t *rgba, uint32_t width, uint32_t height, u
                          float *rgb);
 void masu_ref_to_rgba8(const float *rgb, uint32_t width, uint32_t height, uint8_t *rgba);
 
+/* To the nearest step of 10 bits, as the images between the passes hold it; `count` numbers, in place. */
+void masu_ref_to_ten(float *values, size_t count);
+
 /* Largest absolute difference; the 8-bit one looks at all four channels. */
 float masu_ref_max_difference(const float *a, const float *b, size_t count);
 uint32_t masu_ref_max_difference_rgba8(const uint8_t *a, const uint8_t *b, size_t texels);

@@ -275,9 +275,16 @@ static void output_follows_from_target_and_scene(void **state) {
         assert_int_equal(resolved.targets.encoding, rows[i].encoding);
         compile(&d, &plan);
         int deep = rows[i].deep == MASU_ON;
-        VkFormat wanted = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
-        assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_LDR), wanted);
-        assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_UPSCALED), wanted);
+        VkFormat wanted = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_A2B10G10R10_UNORM_PACK32;
+        VkFormat stored = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32_UINT;
+        VkFormat last = deep ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R8G8B8A8_UNORM;
+        static const masu_image_id between[] = {MASU_IMAGE_LDR, MASU_IMAGE_SMOOTH, MASU_IMAGE_UPSCALED};
+        for (size_t k = 0; k < sizeof between / sizeof *between; k++) {
+            assert_int_equal(masu_plan_format(&plan, between[k]), wanted);
+            assert_int_equal(masu_plan_store_format(&plan, between[k]), stored);
+        }
+        assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_FINAL), last);
+        assert_int_equal(masu_plan_store_format(&plan, MASU_IMAGE_FINAL), last);
         assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_ALBEDO), VK_FORMAT_R8G8B8A8_UNORM);
         assert_int_equal(plan.copies, rows[i].format == VK_FORMAT_B8G8R8A8_SRGB);
     }

@@ -488,7 +488,7 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     d.targets.storage = 0;
     d.targets.views = NULL; /* not needed then */
     d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
-    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) present(from:ldr to:target)");
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:final) present(from:final to:target)");
     assert_frame(&d, 1,
                  GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) "
                                       "rcas(r:upscaled w:final) present(from:final to:target)");
@@ -539,6 +539,7 @@ static void the_last_pass_of_a_rung_makes_the_output(void **state) {
                 memset(&push, 0, sizeof push);
                 masu_output_push(&plan, &plan.rungs[r], p, &push);
                 if (!masu_has_pass(&plan.rungs[r].active, p)) continue;
+                assert_int_equal(masu_comes_last(&plan.rungs[r], p), p == last[r]);
                 assert_int_equal(push.output_flags, p == last[r] ? MASU_OUTPUT_LAST | MASU_OUTPUT_DITHER : 0);
                 assert_int_equal(push.output_steps, p == last[r] ? 255u | 255u << 10 | 255u << 20 : 0);
             }
@@ -872,9 +873,8 @@ static void readback_and_blits_lengthen_lives(void **state) {
                  COLOR | SAMPLED);
     assert_image(&plan, MASU_IMAGE_DEPTH, MASU_PASS_GBUFFER, MASU_PASS_READBACK, 100, 50,
                  DEPTH | SAMPLED | SOURCE);
-    assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_PRESENT, 100, 50,
-                 STORAGE | SAMPLED | SOURCE);
-    assert_image(&plan, MASU_IMAGE_FINAL, MASU_PASS_RCAS, MASU_PASS_PRESENT, 100, 50,
+    assert_image(&plan, MASU_IMAGE_LDR, MASU_PASS_TONEMAP, MASU_PASS_EASU, 80, 40, STORAGE | SAMPLED);
+    assert_image(&plan, MASU_IMAGE_FINAL, MASU_PASS_TONEMAP, MASU_PASS_PRESENT, 100, 50,
                  STORAGE | SOURCE);
     assert_false(plan.images[MASU_IMAGE_SCENE_DEPTH].used);
 }
@@ -1259,8 +1259,8 @@ static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
     assert_frame(&d, 3, GBUFFER LIGHT_RASTER TONEMAP);
     assert_string_equal(why_of(&d, MASU_PASS_SMAA_BLEND), "rung.aa asks for it");
     d.targets.storage = 0;
-    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "smooth")
-                        " present(from:smooth to:target)");
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "final")
+                        " present(from:final to:target)");
     d = source_desc(320, 240); /* shown at 1920x1080 */
     d.rungs[0].aa = MASU_AA_SMAA_HIGH;
     assert_frame(&d, 0, EDGES("source", "smooth") " easu(r:smooth w:upscaled) rcas(r:upscaled w:target)");

@@ -11,6 +11,7 @@
 static const char *format_name(VkFormat format) {
     switch (format) {
     case VK_FORMAT_R8G8B8A8_UNORM: return "R8G8B8A8_UNORM";
+    case VK_FORMAT_A2B10G10R10_UNORM_PACK32: return "A2B10G10R10_UNORM";
     case VK_FORMAT_R32_UINT: return "R32_UINT";
     case VK_FORMAT_R32_SFLOAT: return "R32_SFLOAT";
     case VK_FORMAT_D32_SFLOAT: return "D32_SFLOAT";
