@@ -690,8 +690,8 @@ typedef struct masu_debug {
                            resting scene, weighted exactly and not filtered: the truth after many frames.
                            A cut begins a new sum */
     uint32_t exact; /* not 0: full EASU, RCAS and both in one give the same bits on every driver, where inputs have
-                       8 bits: these become the nearest c/255, nothing is fused or reordered, divisions are
-                       exact. Twice the instructions; without, a pixel in some ten thousands differs */
+                       8 or 10 bits: these become the nearest step, nothing is fused or reordered, divisions are
+                       exact. Three times the instructions; without, a pixel in some ten thousands differs */
     float mip_bias; /* added to the level of detail of textures, -16..16; below 0: finer. What many places in a
                        pixel are averaged over wants finer ones; log2 of the size undoes a rung's own */
 } masu_debug;
@@ -830,21 +830,21 @@ typedef struct masu_desc {
      * MASU_ERROR_DEVICE. OFF: the own tree. Without reflections of polygons nothing is asked.
      * Queries take more memory, which is planned as all is: see masu_memory. */
     masu_switch ray_query;
-    /* What weighs the texels of rungs with MASU_EASU_FAST: floats of 16 bits, or of 32. AUTO: 16, if
+    /* What weighs the texels that EASU takes: floats of 16 bits, or of 32. AUTO: of MASU_EASU_FAST 16, if
      * vulkan.shader_float16 says that they are there and the device is a discrete or integrated GPU: CPUs
-     * emulate them. ON: 16, or MASU_ERROR_DEVICE. OFF: 32. */
+     * emulate them; of MASU_EASU_FULL 32. ON: 16 of both, which changes EASU by up to 2/255, or
+     * MASU_ERROR_DEVICE. OFF: 32. */
     masu_switch half_floats;
     masu_exposure exposure;
     masu_tone tone;
     /* Slow ramps without bands: the pass that writes the target rounds each pixel up or down, by a
      * pattern that depends on place and frame number alone, so that the mean is right. What is a step
      * of the target stays one: 0 and 1 do. AUTO: off for storage targets, which tools read back and
-     * compare, on for others of at most 8 bits. Nothing happens without a scene, or beyond 10 bits. In
-     * rungs that upscale it takes deep_color: what 8 bits have lost before EASU does not come back. */
+     * compare, on for others of at most 8 bits. Nothing happens without a scene, or beyond 10 bits. */
     masu_switch dither;
-    /* 16-bit floats between tone curve and target, twice the bytes of those images. AUTO: on for
-     * targets of more than 8 bits, which take it. ON with 8 bits: neither as storage targets nor in
-     * an SRGB format, which gets a copy of bytes. */
+    /* 16-bit floats between tone curve and target instead of 10 bits, twice the bytes of those images. AUTO:
+     * on for targets of more than 8 bits, which take it. ON with 8 bits: neither as storage targets nor
+     * in an SRGB format, which gets a copy of bytes. */
     masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
     masu_governor_desc governor;

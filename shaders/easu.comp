@@ -12,6 +12,9 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#ifdef MASU_HALF
+#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
+#endif
 #define MASU_PUSH masu_push_easu
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"

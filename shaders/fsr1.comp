@@ -4,7 +4,7 @@
  * as 10 bits, and sharpens from there: the image between the passes, 8 bytes of traffic for each
  * output pixel, is not needed, and (BLOCK + 2)^2 / BLOCK^2 = 1.13 times the pixels are upscaled.
  *
- * Push constants: as easu.comp, and push.lobe as rcas.comp.
+ * Push constants: as easu.comp, push.lobe and push.stops as rcas.comp.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -55,7 +55,6 @@ void main()
         }
     }
     barrier();
-    float strength = push.lobe;
     for (int round = 0; round < block * block / group; round++) {
         int i = round * group + own;
         ivec2 at = ivec2(i % block, i / block);
@@ -64,7 +63,8 @@ void main()
         if (all(lessThanEqual(at, last))) {
             vec3 sharpened =
                 masu_rcas(upscaled_at(centre - side), upscaled_at(centre - 1), upscaled_at(centre),
-                          upscaled_at(centre + 1), upscaled_at(centre + side), strength);
+                          upscaled_at(centre + 1), upscaled_at(centre + side), push.lobe,
+                          push.stops);
             MASU_STORE_FILTERED(target, at, sharpened);
         }
     }

@@ -7,7 +7,7 @@
  * tests/reference/fsr1.c. No noise guard: the input is rendered, not filmed.
  *
  * Push constants: output_* = size of input and output, push.last_* = its last pixel, push.lobe =
- * exp2(-stops), in 0..1, 1 the sharpest, 0 a copy.
+ * exp2(-stops), in 0..1, 1 the sharpest, 0 a copy, push.stops = exp2(stops).
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -36,6 +36,7 @@ void main()
     /* `at` is inside: each clamp has one side. */
     ivec2 before = max(at - 1, 0), after = min(at + 1, ivec2(push.last_x, push.last_y));
     vec3 sharpened = masu_rcas(fetch(at.x, before.y), fetch(before.x, at.y), fetch(at.x, at.y),
-                               fetch(after.x, at.y), fetch(at.x, after.y), push.lobe);
+                               fetch(after.x, at.y), fetch(at.x, after.y), push.lobe,
+                               push.stops);
     MASU_STORE_FILTERED(target, at, sharpened);
 }

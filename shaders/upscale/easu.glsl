@@ -17,17 +17,7 @@
 #define SAME
 #endif
 
-/* These two are specification, not optimisation: a true reciprocal changes hard edges by 16/255 and
- * binary noise by 70/255. They are finite for every operand met here, 0 included. */
-float approximate_rcp(float a)
-{
-    return uintBitsToFloat(0x7EF07EBBu - floatBitsToUint(a));
-}
-
-float approximate_rsqrt(float a)
-{
-    return uintBitsToFloat(0x5F347D74u - (floatBitsToUint(a) >> 1));
-}
+#include "upscale/kernel.glsl"
 
 /* Twice the luma, cheaply. */
 float luma(vec3 c)
@@ -58,13 +48,6 @@ vec3 add_edge(vec3 edge, float weight, float above, float left, float centre, fl
     return vec3(x, y, z);
 }
 
-struct masu_kernel {
-    vec2 dir;   /* unit vector across the edge */
-    vec2 scale; /* shortens the kernel across the edge, lengthens it along */
-    float lobe; /* strength of the window */
-    float clip; /* squared distance where the window ends */
-};
-
 masu_kernel kernel_of(vec3 edge)
 {
     SAME float x = edge.x;
@@ -86,18 +69,16 @@ masu_kernel kernel_of(vec3 edge)
     return masu_kernel(vec2(x, y), vec2(longer, shorter), lobe, approximate_rcp(lobe));
 }
 
-/* Adds one tap to rgb = weighted colour, a = weight. The weight is a polynomial stand-in for a
- * windowed sinc, of the squared distance in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is
- * (d (d - 5) + 4) / 4, and of weights that are divided by their sum a fourth is as good as all. */
-vec4 add_tap(vec4 sum, masu_kernel k, vec2 v, vec3 colour)
-{
-    SAME float distance = min(v.x * v.x + v.y * v.y, k.clip);
 #ifdef MASU_EXACT
+/* Adds one tap to rgb = weighted colour, a = weight, in AMD's order: kernel.glsl has what it is. */
+vec4 add_tap(vec4 sum, masu_kernel k, vec2 p, float x, float y, vec3 colour)
+{
+    SAME vec2 offset = vec2(x, y) - p;
+    SAME float across = (offset.x * k.dir.x + offset.y * k.dir.y) * k.scale.x;
+    SAME float along = (offset.x * -k.dir.y + offset.y * k.dir.x) * k.scale.y;
+    SAME float distance = min(across * across + along * along, k.clip);
     SAME float base = 0.4 * distance + -1.0;
     base = 1.5625 * (base * base) + -0.5625;
-#else
-    float base = distance * (distance - 5.0) + 4.0;
-#endif
     SAME float window = k.lobe * distance + -1.0;
     SAME float weight = base * (window * window);
     SAME vec3 weighted = sum.rgb + colour * weight;
@@ -105,33 +86,27 @@ vec4 add_tap(vec4 sum, masu_kernel k, vec2 v, vec3 colour)
     return vec4(weighted, weights);
 }
 
-#ifdef MASU_EXACT
-/* Where tap (x, y) from f lies in the kernel's axes, in AMD's order. */
-vec2 tap_at(masu_kernel k, vec2 p, float x, float y)
+vec3 weighted_mean(masu_taps t, masu_kernel shape, vec2 p)
 {
-    SAME vec2 offset = vec2(x, y) - p;
-    SAME float across = (offset.x * k.dir.x + offset.y * k.dir.y) * k.scale.x;
-    SAME float along = (offset.x * -k.dir.y + offset.y * k.dir.x) * k.scale.y;
-    return vec2(across, along);
+    vec4 sum = vec4(0.0);
+    sum = add_tap(sum, shape, p, 0.0, -1.0, t.b);
+    sum = add_tap(sum, shape, p, 1.0, -1.0, t.c);
+    sum = add_tap(sum, shape, p, -1.0, 1.0, t.i);
+    sum = add_tap(sum, shape, p, 0.0, 1.0, t.j);
+    sum = add_tap(sum, shape, p, 0.0, 0.0, t.f);
+    sum = add_tap(sum, shape, p, -1.0, 0.0, t.e);
+    sum = add_tap(sum, shape, p, 1.0, 1.0, t.k);
+    sum = add_tap(sum, shape, p, 2.0, 1.0, t.l);
+    sum = add_tap(sum, shape, p, 2.0, 0.0, t.h);
+    sum = add_tap(sum, shape, p, 1.0, 0.0, t.g);
+    sum = add_tap(sum, shape, p, 1.0, 2.0, t.o);
+    sum = add_tap(sum, shape, p, 0.0, 2.0, t.n);
+    SAME vec3 mean = sum.rgb * (1.0 / sum.a); /* the four centres keep the sum well above 0 */
+    return mean;
 }
 #else
-/* The same place by whole steps from f: two additions a tap instead of six operations. */
-vec2 tap_at(masu_kernel k, vec2 p, float x, float y)
-{
-    vec2 right = vec2(k.dir.x, -k.dir.y) * k.scale;
-    vec2 down = vec2(k.dir.y, k.dir.x) * k.scale;
-    return (-p.x * right - p.y * down) + x * right + y * down;
-}
+#define weighted_mean masu_weighted_mean
 #endif
-
-/* The twelve texels around a pixel; f is at floor(p).
- *   b c
- * e f g h
- * i j k l
- *   n o    */
-struct masu_taps {
-    vec3 b, c, e, f, g, h, i, j, k, l, n, o;
-};
 
 /* Weights of f, g, j, k. */
 vec4 centres_of(vec2 p)
@@ -157,23 +132,9 @@ vec3 masu_edge_of(masu_taps t, vec2 p)
 /* The clamp removes ringing, and makes a flat area come out exactly as it went in. */
 vec3 masu_easu(masu_taps t, vec3 edge, vec2 p)
 {
-    masu_kernel shape = kernel_of(edge);
-    vec4 sum = vec4(0.0);
-    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, -1.0), t.b);
-    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, -1.0), t.c);
-    sum = add_tap(sum, shape, tap_at(shape, p, -1.0, 1.0), t.i);
-    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, 1.0), t.j);
-    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, 0.0), t.f);
-    sum = add_tap(sum, shape, tap_at(shape, p, -1.0, 0.0), t.e);
-    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, 1.0), t.k);
-    sum = add_tap(sum, shape, tap_at(shape, p, 2.0, 1.0), t.l);
-    sum = add_tap(sum, shape, tap_at(shape, p, 2.0, 0.0), t.h);
-    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, 0.0), t.g);
-    sum = add_tap(sum, shape, tap_at(shape, p, 1.0, 2.0), t.o);
-    sum = add_tap(sum, shape, tap_at(shape, p, 0.0, 2.0), t.n);
     vec3 least = min(min(t.f, t.g), min(t.j, t.k));
     vec3 most = max(max(t.f, t.g), max(t.j, t.k));
-    SAME vec3 mean = sum.rgb * (1.0 / sum.a); /* the four centres keep the sum well above 0 */
+    vec3 mean = weighted_mean(t, kernel_of(edge), p);
     return min(most, max(least, mean));
 }
 

@@ -18,36 +18,10 @@
 #ifndef MASU_EASU_FAST_GLSL
 #define MASU_EASU_FAST_GLSL
 
-#ifdef MASU_HALF
-#define real float16_t
-#define real2 f16vec2
-#else
-#define real float
-#define real2 vec2
-#endif
+#include "upscale/kernel.glsl"
 
 /* Half a step of 8 bits of grey, in twice the luma. */
 const float masu_least_contrast = 1.0 / 256.0;
-
-/* The twelve texels around a pixel; f is at floor(p).
- *   b c
- * e f g h
- * i j k l
- *   n o    */
-struct masu_taps {
-    vec3 b, c, e, f, g, h, i, j, k, l, n, o;
-};
-
-/* AMD's approximations (ffx_fsr1 v1.0.2): finite for every operand met here, 0 included. */
-float approximate_rcp(float a)
-{
-    return uintBitsToFloat(0x7EF07EBBu - floatBitsToUint(a));
-}
-
-float approximate_rsqrt(float a)
-{
-    return uintBitsToFloat(0x5F347D74u - (floatBitsToUint(a) >> 1));
-}
 
 /* Twice the luma, cheaply. */
 float luma(vec3 c)
@@ -83,24 +57,6 @@ float straightness(float before, float centre, float after)
     return ratio * ratio;
 }
 
-/* Red, green, blue and weight of two taps side by side: halves are multiplied two at a time. */
-struct masu_pairs {
-    real2 r, g, b, w;
-};
-
-/* Adds taps at (x.x, y.x) and (x.y, y.y), by the weight of easu.glsl. */
-void add_pair(inout masu_pairs sum, real2 x, real2 y, real lobe, real2 clip, vec3 left, vec3 right)
-{
-    real2 distance = min(x * x + y * y, clip);
-    real2 base = distance * (distance - real(5.0)) + real(4.0);
-    real2 window = lobe * distance - real(1.0);
-    real2 weight = base * (window * window);
-    sum.r += real2(vec2(left.r, right.r)) * weight;
-    sum.g += real2(vec2(left.g, right.g)) * weight;
-    sum.b += real2(vec2(left.b, right.b)) * weight;
-    sum.w += weight;
-}
-
 vec3 masu_easu_fast(masu_taps t, vec2 p, vec3 least, vec3 most)
 {
     vec4 w = masu_centres(p);
@@ -119,26 +75,8 @@ vec3 masu_easu_fast(masu_taps t, vec2 p, vec3 least, vec3 most)
     len = len * len;
     float stretch = dot(dir, dir) * approximate_rcp(max(abs(dir.x), abs(dir.y)));
     vec2 scale = vec2(1.0 + (stretch - 1.0) * len, 1.0 - 0.5 * len);
-    real lobe = real(0.5 - 0.29 * len);
-    real2 clip = real2(approximate_rcp(0.5 - 0.29 * len));
-
-    /* A step to the right and one down in the kernel's axes; from there to each tap: of f and g, side by
-     * side, x in one pair and y in another. */
-    real2 right_step = real2(vec2(dir.x, -dir.y) * scale);
-    real2 down = real2(vec2(dir.y, dir.x) * scale);
-    real2 f = -real(p.x) * right_step - real(p.y) * down;
-    real2 x = real2(f.x, f.x + right_step.x), y = real2(f.y, f.y + right_step.y);
-    real2 out_x = real2(-right_step.x, right_step.x), out_y = real2(-right_step.y, right_step.y);
-    masu_pairs sum = masu_pairs(real2(0.0), real2(0.0), real2(0.0), real2(0.0));
-    add_pair(sum, x - down.x, y - down.y, lobe, clip, t.b, t.c);
-    add_pair(sum, x + out_x, y + out_y, lobe, clip, t.e, t.h);
-    add_pair(sum, x, y, lobe, clip, t.f, t.g);
-    x += down.x, y += down.y;
-    add_pair(sum, x + out_x, y + out_y, lobe, clip, t.i, t.l);
-    add_pair(sum, x, y, lobe, clip, t.j, t.k);
-    add_pair(sum, x + down.x, y + down.y, lobe, clip, t.n, t.o);
-    vec3 sums = vec3(sum.r.x + sum.r.y, sum.g.x + sum.g.y, sum.b.x + sum.b.y);
-    vec3 mean = sums * (1.0 / float(sum.w.x + sum.w.y)); /* the four keep the sum well above 0 */
+    float lobe = 0.5 - 0.29 * len;
+    vec3 mean = masu_weighted_mean(t, masu_kernel(dir, scale, lobe, approximate_rcp(lobe)), p);
     return min(most, max(least, mean));
 }
 

@@ -27,8 +27,8 @@ float limit_of(float least, float most, float centre)
     return limit;
 }
 
-/* A cross of five texels; strength: 0..1, 1 the sharpest. */
-vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength)
+/* A cross of five texels; strength: 0..1, 1 the sharpest, stops: 1 / strength. */
+vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength, float stops)
 {
     vec3 least = min(min(up, left), min(right, down));
     vec3 most = max(max(up, left), max(right, down));
@@ -49,13 +49,13 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
  * last place of 1; it moves a limit by less than 3e-4 of itself where there is a step of 8 bits to go. */
 const float room = 1.0 / 1048576.0;
 
-/* A cross of five texels of 0..1; strength: 0..1, 1 the sharpest.
+/* A cross of five texels of 0..1; strength: 0..1, 1 the sharpest, stops: 1 / strength, at most 2^64.
  *
  * The strongest lobe w of a channel is a quarter of the lesser of min / most and (1 - max) / (1 - least), min and
  * max with the centre, least and most without; at most 3/16. Kept as l = 1 / (4 w), each fraction needs one guard.
  * And (c - w ring) / (1 - 4 w) = c + (c - ring / 4) / (l - 1): one reciprocal less, and whatever it
  * is, a constant picture stays what it was. */
-vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength)
+vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength, float stops)
 {
     vec3 least = min(min(up, left), min(right, down));
     vec3 most = max(max(up, left), max(right, down));
@@ -64,7 +64,7 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
     float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order each line is one max3, where there is one */
     l = max(max(l, low.g), high.g);
     l = max(max(l, low.b), high.b);
-    float share = strength / (l - strength);
+    float share = 1.0 / (l * stops - 1.0); /* at least 4/3 - 1 below */
     vec3 ring = (up + left) + (right + down);
     return centre + share * (centre - 0.25 * ring);
 }

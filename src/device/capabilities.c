@@ -59,13 +59,16 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
     return MASU_OK;
 }
 
-/* Whether fast EASU weighs texels in 16 bits: the description is left with ON or OFF. */
+/* Whether EASU weighs texels in 16 bits: the description is left with ON, AUTO (fast EASU alone) or OFF. */
 static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
     VkPhysicalDeviceType type = vk->properties.deviceType;
     int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
               type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
     int forced = desc->half_floats == MASU_ON, used = 0;
-    for (uint32_t r = 0; r < desc->rung_count; r++) used |= desc->rungs[r].easu == MASU_EASU_FAST;
+    for (uint32_t r = 0; r < desc->rung_count; r++) {
+        masu_easu easu = desc->rungs[r].easu;
+        used |= easu == MASU_EASU_FAST || (forced && easu != MASU_EASU_BILINEAR);
+    }
     if (used && forced && !desc->vulkan.shader_float16) {
         return masu_fail(
             detail, MASU_ERROR_DEVICE, "vulkan.shader_float16", 1, 0,
@@ -73,7 +76,7 @@ static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_d
             "created without shaderFloat16");
     }
     int wished = forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && gpu);
-    desc->half_floats = used && wished ? MASU_ON : MASU_OFF;
+    if (!used || !wished) desc->half_floats = MASU_OFF;
     return MASU_OK;
 }
 

@@ -496,8 +496,8 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     d.rungs[0] = (masu_rung){.scale = 0.5f, .sharpen = MASU_OFF};
     d.rung_count = 1;
     assert_frame(&d, 0,
-                 GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) "
-                                      "present(from:upscaled to:target)");
+                 GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:final) "
+                                      "present(from:final to:target)");
     d.targets.storage = 1;
     d.targets.views = support_views;
     d.targets.format = VK_FORMAT_UNDEFINED;
