@@ -197,6 +197,15 @@ ladders: $(BUILD)/bin/masu ## write src/quality/ladder_tables.h from docs/report
 	$(BUILD)/bin/masu bench --ladder --c $$files > $(BUILD)/ladder_tables.h && \
 	{ cmp -s $(BUILD)/ladder_tables.h src/quality/ladder_tables.h || cp $(BUILD)/ladder_tables.h src/quality/ladder_tables.h; }
 
+# The same ladders on GPUs of the model sheet. Of forza the moment at which a car is near, as in make bench.
+ladder_scene = $(call bench_file,$(1)).masu
+.PHONY: ladder-devices
+ladder-devices: $(BUILD)/bin/masu $(foreach l,$(LADDERS),$(call ladder_scene,$(lastword $(subst =, ,$(l))))) ## write src/quality/ladder_devices.h by the model sheet: MASU_ISA_DRIVERS=
+	$(V)BUILD=$(BUILD) SHEET_ARGS_forza='--time 146.5' tools/model/ladder_devices.sh $(foreach l,$(LADDERS),$(firstword $(subst =, \
+	    ,$(l)))=$(call ladder_scene,$(lastword $(subst =, ,$(l))))=$(LADDER_FOLDER)/$(lastword $(subst =, ,$(l)))/ladder.json) \
+	    > $(BUILD)/ladder_devices.h
+	$(V)cp $(BUILD)/ladder_devices.h src/quality/ladder_devices.h
+
 coverage: ## run the tests with gcov and print the lines executed of each file of src/
 	+$(V)$(more) config=coverage check-built
 	$(V)cd build/coverage && gcov -n -r -s $(CURDIR) $$(find obj/src -name '*.gcda') | awk -F "'" \

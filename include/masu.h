@@ -729,8 +729,9 @@ typedef struct masu_governor_desc {
     uint32_t dwell; /* frames: a rung is chosen to last so long, and no better one before, 1..600;
                        0: 24 */
     float costs[MASU_MAX_RUNGS]; /* a first guess of what the part of a frame that depends on the
-                                    rung costs, beside other rungs; 0: that of masu_desc.ladder,
-                                    else scale^2 */
+                                    rung costs, beside other rungs; 0: that of masu_desc.ladder (of GPUs
+                                    whose class is known computed for it, see masu_plan_info), else
+                                    scale^2 */
 } masu_governor_desc;
 
 #define MASU_GOVERNOR_REASONS(X)                                                                   \
@@ -967,6 +968,9 @@ typedef struct masu_plan_info {
     masu_plan_pass passes[MASU_MAX_PASSES]; /* every row of the frame table, in order */
     masu_plan_image images[MASU_MAX_RESOURCES];
     masu_plan_rung rungs[MASU_MAX_RUNGS];
+    /* The class of GPUs, by vendor and device id, whose instructions the ratios of the built-in ladder were computed
+     * of: "Xe80", "UHD620", "Vega8", "Deck", "low mobile". "": they were measured on a CPU, or are the host's. */
+    const char *computed_for;
     masu_memory memory;
     uint64_t left_out_bytes; /* image bytes that leaving passes out has saved at this size */
 } masu_plan_info;

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "device/ray_query.h"
 #include "plan/buffer_plan.h"
+#include "quality/ladder.h"
 
 #include <string.h>
 
@@ -159,19 +160,26 @@ masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *
 
 /* ---- Open choices ---------------------------------------------------------------------------- */
 
-/* The rungs as the host gave them, or those that the plan chose, to be looked at and changed. */
-static void own_rungs(masu_desc *desc, const masu_frame_plan *plan) {
+/* The rungs as the host gave them, or those that the plan chose, to be looked at and changed; what those of a
+ * measured ladder cost, where the host has not said it, on a device of this class. */
+static void own_rungs(masu_desc *desc, const masu_frame_plan *plan, masu_device_class device_class) {
     if (desc->rung_count) return;
+    const masu_governor_desc given = desc->governor;
+    const float *costs = NULL;
+    if (plan->desc.ladder == MASU_ON) costs = masu_ladder_costs_on(plan->desc.scene, device_class);
     desc->rung_count = plan->desc.rung_count;
     memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
     memcpy(desc->flips, plan->desc.flips, sizeof desc->flips);
     memcpy(desc->governor.costs, plan->desc.governor.costs, sizeof desc->governor.costs);
+    for (uint32_t r = 0; r < desc->rung_count && costs; r++) {
+        if (given.costs[r] == 0.0f) desc->governor.costs[r] = costs[r];
+    }
 }
 
 masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
                                   masu_detail *detail) {
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
-    own_rungs(desc, plan);
+    own_rungs(desc, plan, masu_device_class_of(&vk->properties));
     if (vk->queue_family.timestampValidBits == 0) desc->governor.wall_only = 1;
     masu_result result = drop_specular(desc, plan, limits, detail);
     if (!result) result = drop_occlusion(desc, plan, limits, detail);

@@ -216,6 +216,7 @@ static int wants_specular(const masu_desc *d) {
 masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                          uint64_t storage_alignment, masu_frame_plan *plan, masu_detail *detail) {
     memset(plan, 0, sizeof *plan);
+    plan->computed_for = "";
     plan->desc = masu_desc_resolved(desc);
     masu_desc *d = &plan->desc;
     masu_result result = masu_desc_check(d, detail);
@@ -382,6 +383,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
     memset(out, 0, sizeof *out);
     out->pass_count = MASU_PASS_COUNT;
     out->rung_count = plan->desc.rung_count;
+    out->computed_for = plan->computed_for;
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         masu_plan_pass *pass = &out->passes[p];
         pass->name = masu_passes[p].name;

@@ -106,6 +106,7 @@ typedef struct masu_frame_plan {
     int occlusion;      /* a rung has occlusion culling */
     int lods;           /* a rung draws LODs of meshes */
     int deep;           /* colour between tone curve and target is of 16-bit floats, else of 10 bits */
+    const char *computed_for; /* class of GPUs that the ladder's costs are of; "": as measured, or given */
     int copies;         /* targets are filled by a copy of bytes, not by a blit */
     struct masu_output_plan {
         uint32_t steps[3]; /* of red, green, blue: what passes round to; 0: they do not */

@@ -1,6 +1,7 @@
 /* ladder.c: see ladder.h. */
 #include "quality/ladder.h"
 
+#include "quality/ladder_devices.h"
 #include "quality/ladder_tables.h"
 
 #include <string.h>
@@ -51,6 +52,13 @@ const masu_ladder *masu_ladder_for(const masu_scene *scene) {
         if (l->count) return l;
     }
     return NULL;
+}
+
+const float *masu_ladder_costs_on(const masu_scene *scene, masu_device_class device_class) {
+    const masu_ladder *l = masu_ladder_for(scene);
+    if (!l || (unsigned)device_class >= MASU_DEVICE_CLASSES) return NULL;
+    const float *costs = computed[l - measured][device_class];
+    return costs[0] > 0.0f ? costs : NULL;
 }
 
 static void give(const masu_ladder *l, masu_desc *desc) {

@@ -5,6 +5,7 @@
 #define MASU_LADDER_H
 
 #include "masu.h"
+#include "quality/device_class.h"
 
 /* A class without a measurement has a count of 0. */
 typedef struct masu_ladder {
@@ -20,6 +21,11 @@ const masu_ladder *masu_ladder_of_class(masu_scene_class scene_class);
 
 /* That of the scene's class, or of the nearest class that has one; NULL: no class has. */
 const masu_ladder *masu_ladder_for(const masu_scene *scene);
+
+/* The costs of its rungs on GPUs of a class, beside each other, as ratios are: computed of the instructions
+ * that the class's own compiler makes, while ratios were measured on the driver that `from` names. NULL:
+ * nobody has computed them. */
+const float *masu_ladder_costs_on(const masu_scene *scene, masu_device_class device_class);
 
 /* Decides desc->ladder, and fills rungs, flips and those costs that are 0 where the ladder is
  * taken. */

@@ -183,11 +183,68 @@ static void memory_is_planned_once_for_all_rungs(void **state) {
     }
 }
 
+/* ---- The costs of rungs on GPUs of a class --------------------------------------------------- */
+
+static PFN_vkGetInstanceProcAddr real_proc;
+static VkPhysicalDeviceProperties pretended;
+
+static VKAPI_ATTR void VKAPI_CALL pretend(VkPhysicalDevice physical, VkPhysicalDeviceProperties *out) {
+    vkGetPhysicalDeviceProperties(physical, out);
+    out->vendorID = pretended.vendorID, out->deviceID = pretended.deviceID, out->deviceType = pretended.deviceType;
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL pretending_proc(VkInstance instance, const char *name) {
+    if (!strcmp(name, "vkGetPhysicalDeviceProperties")) return (PFN_vkVoidFunction)pretend;
+    return real_proc(instance, name);
+}
+
+static void a_gpu_of_a_class_begins_with_what_was_computed_for_it(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t vendor, device;
+        VkPhysicalDeviceType type;
+        const char *name;
+    } devices[] = {{0x1002, 0x163F, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU, "Deck"},
+                   {0x8086, 0x5917, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU, "UHD620"},
+                   {0x10DE, 0x1C03, VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, ""},
+                   {0x1002, 0x163F, VK_PHYSICAL_DEVICE_TYPE_CPU, ""}};
+    masu_session_desc d = ladder_desc("test_both");
+    masu_session s;
+    masu_desc own = {0};
+    static masu_plan_info plan;
+    d.no_renderer = true;
+    open_session(&s, &d);
+    assert_int_equal(masu_ladder_of(&s.scene, &own, NULL), MASU_OK);
+    real_proc = s.desc.vulkan.get_instance_proc_addr;
+    s.desc.vulkan.get_instance_proc_addr = pretending_proc;
+    s.desc.governor.costs[2] = 0.123f; /* what the host says is not touched */
+    for (size_t i = 0; i < sizeof devices / sizeof *devices; i++) {
+        pretended.vendorID = devices[i].vendor, pretended.deviceID = devices[i].device;
+        pretended.deviceType = devices[i].type;
+        assert_int_equal(masu_plan(&s.desc, &plan, NULL), MASU_OK);
+        assert_string_equal(plan.computed_for, devices[i].name);
+        assert_int_equal(plan.rung_count, own.rung_count);
+        assert_true(plan.rungs[2].ratio == 0.123f);
+        uint32_t last = plan.rung_count - 1;
+        assert_true((plan.rungs[last].ratio == own.governor.costs[last]) == !*devices[i].name);
+        /* Rungs of the host's own have no costs but scale^2. */
+        masu_desc given = s.desc;
+        given.rung_count = own.rung_count;
+        memcpy(given.rungs, own.rungs, sizeof given.rungs);
+        assert_int_equal(masu_plan(&given, &plan, NULL), MASU_OK);
+        assert_string_equal(plan.computed_for, "");
+        assert_true(plan.rungs[last].ratio == 0.0f);
+    }
+    s.desc.vulkan.get_instance_proc_addr = real_proc;
+    close_session(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_rung_is_drawn_and_nothing_is_made),
         cmocka_unit_test(a_rung_is_the_picture_of_that_rung_given_by_hand),
         cmocka_unit_test(memory_is_planned_once_for_all_rungs),
+        cmocka_unit_test(a_gpu_of_a_class_begins_with_what_was_computed_for_it),
     };
     return cmocka_run_group_tests_name("ladder", tests, NULL, NULL);
 }

@@ -124,7 +124,8 @@ static int print_text(const masu_session *s, const masu_plan_info *p, const char
     masu_desc ladder;
     const char *from;
     if (s->desc.ladder == MASU_ON && !masu_ladder_of(&s->scene, &ladder, &from))
-        printf("; its ladder is that of %s", from);
+        printf("; its ladder is that of %s%s%s", from, *p->computed_for ? ", times computed for " : "",
+               p->computed_for);
     printf("\noutput %ux%u\n\nrungs\n", s->desc.output.width, s->desc.output.height);
     for (uint32_t r = 0; r < p->rung_count; r++) {
         const masu_plan_rung *rung = &p->rungs[r];
