@@ -97,8 +97,6 @@ void main()
         vec4 sharp = 1.0 / (tolerance * tolerance);
         vec4 sum = vec4(0.0);
         vec4 weights = vec4(0.0);
-        vec4 nearest = vec4(1e30);
-        vec4 fallback = vec4(1.0);
         uint corner = gl_LocalInvocationID.y * EDGE + gl_LocalInvocationID.x;
         float own = texels[corner + EDGE + 1].w;
         own = own < 0.0 ? 1.0 : own;
@@ -109,20 +107,33 @@ void main()
                 continue;
             }
             float seen = place.w;
-            vec4 off = abs(plane_x * place.x + plane_y * place.y + plane_z * place.z - plane_w);
-            vec4 near = max(1.0 - off * off * sharp, 0.0);
+            vec4 off = plane_x * place.x + plane_y * place.y + plane_z * place.z - plane_w;
             vec4 facing = max(plane_x * normal.x + plane_y * normal.y + plane_z * normal.z, 0.0);
-            facing *= facing;
-            vec4 weight = near * near * facing * facing;
+            vec4 root = max(1.0 - off * off * sharp, 0.0) * (facing * facing);
+            vec4 weight = root * root;
             sum += weight * seen;
             weights += weight;
-            vec4 cost = off + 4.0 * tolerance * (1.0 - facing);
-            bvec4 best = lessThan(cost, nearest);
-            fallback = mix(fallback, vec4(seen), best);
-            nearest = min(nearest, cost);
         }
         bvec4 trusted = greaterThan(weights, vec4(1e-3));
-        vec4 ambient = mix(fallback, sum / max(weights, 1e-3), trusted);
+        vec4 ambient = sum / max(weights, 1e-3);
+        /* Few pixels are alone: only for them the texels are gone through once more. */
+        if (any(greaterThan(there * vec4(not(trusted)), vec4(0.0)))) {
+            vec4 nearest = vec4(1e30);
+            vec4 fallback = vec4(1.0);
+            for (int i = 0; i < 16; i++) {
+                vec4 place = texels[corner + uint((i >> 2) * EDGE + (i & 3))];
+                vec3 normal = normals[corner + uint((i >> 2) * EDGE + (i & 3))];
+                if (place.w < 0.0) {
+                    continue;
+                }
+                vec4 off = abs(plane_x * place.x + plane_y * place.y + plane_z * place.z - plane_w);
+                vec4 facing = max(plane_x * normal.x + plane_y * normal.y + plane_z * normal.z, 0.0);
+                vec4 cost = off + 4.0 * tolerance * (1.0 - facing * facing);
+                fallback = mix(fallback, vec4(place.w), lessThan(cost, nearest));
+                nearest = min(nearest, cost);
+            }
+            ambient = mix(fallback, ambient, trusted);
+        }
         ambient = push.nearest != 0u ? vec4(own) : ambient;
         ambient = mix(vec4(1.0), ambient, greaterThan(there, vec4(0.0)));
         for (int k = 0; k < 4; k++) {

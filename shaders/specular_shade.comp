@@ -6,10 +6,6 @@
  * The sun's disc is not in it, nor its light in the sky around what mirrors: light.comp adds the sun's
  * highlight exactly.
  *
- * And where in the previous frame the same thing was seen in the same mirror, for specular_temporal: a mirror
- * shows a virtual point as far behind its surface as what is mirrored lies before it. That moves as the
- * mirror image of the thing, and with the mirror.
- *
  * push.accumulate: 1: the reference: light is multiplied by what the ray is worth.
  */
 #version 450
@@ -22,7 +18,6 @@
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 #include "shared/store.glsl"
-#include "shared/motion.glsl"
 #include "light/shade.glsl"
 #include "light/air.glsl"
 #ifdef MASU_LIGHTS
@@ -45,16 +40,14 @@ layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
 layout(set = MASU_SET_PASS, binding = 0) uniform usampler2D guide_image;
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D ray_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D hit_image;
-layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D velocity_image;
 #ifdef MASU_SUN_MAP
-#define MASU_AT_SUN_MAP 4
+#define MASU_AT_SUN_MAP 3
 #include "light/sun_map.glsl"
-#define MASU_AT_LIGHT 5
-#else
 #define MASU_AT_LIGHT 4
+#else
+#define MASU_AT_LIGHT 3
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_LIGHT, rgba16f) uniform writeonly image2D light_image;
-layout(set = MASU_SET_PASS, binding = MASU_AT_LIGHT + 1, r32ui) uniform writeonly uimage2D motion_image;
 
 /* What a ray has met. */
 struct met {
@@ -132,22 +125,6 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
 }
 #endif
 
-/* Where what was met was in the previous frame, minus where it is. */
-vec3 met_before(uvec4 hit)
-{
-#ifdef MASU_TRACE_POLYGONS
-    if ((hit.y & MASU_HIT_SDF) == 0u) {
-        vec2 b = unpackUnorm2x16(hit.w);
-        uvec3 triangle = masu_trace_static[masu_trace_static[0].x + hit.z].xyz;
-        vec3 object = uintBitsToFloat(masu_trace_vertices[triangle.x].xyz) * (1.0 - b.x - b.y) +
-                      uintBitsToFloat(masu_trace_vertices[triangle.y].xyz) * b.x +
-                      uintBitsToFloat(masu_trace_vertices[triangle.z].xyz) * b.y;
-        return masu_trace_before(hit.y, vec4(object, 1.0)) - masu_trace_now(hit.y, vec4(object, 1.0));
-    }
-#endif
-    return masu_unpack_sdf_motion(hit.y);
-}
-
 /* Radiance of what is met at a point relative to the eye. */
 vec3 radiance(met m, vec3 rel, vec3 direction)
 {
@@ -179,69 +156,13 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
     return lit.diffuse + lit.specular;
 }
 
-/* By how many pixels a point behind the mirror has moved: `off` further along the line of sight, `thing`
- * minus where it is in the previous frame. */
-vec4 image_moved(vec3 point, vec3 along, float off, vec3 thing, vec3 eyes, vec2 size)
-{
-    vec3 behind = point + along * off;
-    return masu_velocity(vec4(behind, 1.0), vec4(behind + thing - eyes, 1.0), size);
-}
-
-/* Pixels by which what is seen in the mirror has moved; all bits: there is no telling.
- *
- * A convex mirror shows it nearer to its surface and smaller: 1/image = 1/far + 2/r for the plane that holds
- * view and normal with r cos instead of r, for the one across it r / cos (Coddington's equations). The
- * image moves less by as much, and the rest of its way with the surface. */
-uint motion(uvec2 texel, masu_guide g, vec3 point, float far, vec3 before)
-{
-    uvec2 at = masu_guide_place(texel, g.pixel, push.traced_size);
-    vec2 size = vec2(pc.render_width, pc.render_height);
-    vec4 moved = texelFetch(velocity_image, ivec2(at), 0);
-    if (!(moved.w > 0.0)) {
-        return masu_unmoved;
-    }
-    /* Where the surface was, seen from the eye of then and of now. */
-    vec3 eyes = (previous.eye_hi.xyz - frame.eye_hi.xyz) + (previous.eye_lo.xyz - frame.eye_lo.xyz);
-    float z = frame.forward.w * masu_rcp(g.depth) * (1.0 + moved.z);
-    vec2 ndc = (vec2(at) + 0.5 + moved.xy) / size * 2.0 - 1.0 + previous.jitter.xy;
-    vec3 was = (previous.forward.xyz + previous.right.xyz * ndc.x - previous.up.xyz * ndc.y) * z;
-    vec3 shift = was + eyes - point;
-    vec3 along = masu_normalize(point, frame.forward.xyz);
-    vec3 thing = before - 2.0 * g.normal * dot(before - shift, g.normal);
-    float curvature = masu_guide_curvature(guide_image, ivec2(texel), g, point);
-    float cosine = clamp(-dot(along, g.normal), 0.1, 1.0);
-    float image = masu_image_far(far, curvature / cosine);
-    vec4 velocity = image_moved(point, along, image, mix(shift, thing, image / max(far, 1e-9)), eyes, size);
-    if (!(velocity.w > 0.0)) {
-        return masu_unmoved;
-    }
-    vec3 aside = g.normal + along * cosine;
-    vec2 lean = vec2(dot(aside, frame.right.xyz) / frame.right.w, -dot(aside, frame.up.xyz) / frame.up.w);
-    float steep = dot(lean, lean);
-    if (curvature > 0.0 && steep > 1e-6) {
-        image = masu_image_far(far, curvature * cosine);
-        vec4 across = image_moved(point, along, image, mix(shift, thing, image / max(far, 1e-9)), eyes, size);
-        if (!(across.w > 0.0)) {
-            return masu_unmoved;
-        }
-        velocity.xy = across.xy + lean * (dot(lean, velocity.xy - across.xy) / steep);
-    }
-    return packHalf2x16(clamp(velocity.xy, vec2(-60000.0), vec2(60000.0)));
-}
-
-/* How far the ray went; negative: it met nothing. */
-float met_at(uvec4 hit)
-{
-    return masu_sane(uintBitsToFloat(hit.x), -1.0, frame.trace_anchor.w);
-}
-
 vec4 light_of(uvec2 texel, masu_guide g)
 {
     uvec4 hit = texelFetch(hit_image, ivec2(texel), 0);
     uvec2 ray = texelFetch(ray_image, ivec2(texel), 0).rg;
     vec3 point = masu_specular_point(texel, g);
     vec3 direction = masu_unpack_direction(ray.x);
-    float t = met_at(hit);
+    float t = masu_met_at(hit);
     vec3 light = vec3(0.0);
     float air = foggy ? masu_air_depth_from(point, direction, t) : 0.0;
     if (t >= 0.0) {
@@ -266,32 +187,14 @@ vec4 light_of(uvec2 texel, masu_guide g)
     return vec4(light, t >= 0.0 ? t : frame.trace_anchor.w);
 }
 
-uint motion_of(uvec2 texel, masu_guide g)
-{
-    uvec4 hit = texelFetch(hit_image, ivec2(texel), 0);
-    float t = met_at(hit);
-    bool there = t >= 0.0;
-    return motion(texel, g, masu_specular_point(texel, g), there ? t : frame.trace_anchor.w,
-                  there ? met_before(hit) : vec3(0.0));
-}
-
-/* Motion and light one after the other, and in a loop, so that each reads anew what it needs: what one keeps for the
- * other would be 40 registers, and half of the waves. */
 void main()
 {
     masu_count_begin();
     uvec2 texel = masu_specular_texel();
     if (masu_specular_inside(texel)) {
-        [[dont_unroll]] for (int turn = 0; turn < 2; turn++) {
-            masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
-            if (turn == 0) {
-                uint moved = g.there && push.accumulate == 0u ? motion_of(texel, g) : masu_unmoved;
-                MASU_STORE_UINT(motion_image, texel, uvec4(moved));
-            } else {
-                vec4 light = g.there ? light_of(texel, g) : vec4(0.0);
-                MASU_STORE_HALF(light_image, texel, light);
-            }
-        }
+        masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
+        vec4 light = g.there ? light_of(texel, g) : vec4(0.0);
+        MASU_STORE_HALF(light_image, texel, light);
     }
     masu_count_end();
 }

@@ -14,6 +14,7 @@
 #ifndef MASU_SPECULAR_RAY_GLSL
 #define MASU_SPECULAR_RAY_GLSL
 
+#include "shared/globals.glsl"
 #include "shared/pack.glsl"
 
 #define MASU_HIT_SDF 0x80000000u /* bit of y; there are fewer instances */
@@ -47,6 +48,12 @@ vec3 masu_unpack_shared(uint word)
 {
     float scale = uintBitsToFloat(((word >> 27) + 127u - 24u) << 23);
     return vec3(word & 511u, word >> 9 & 511u, word >> 18 & 511u) * scale;
+}
+
+/* How far the ray went; negative: it met nothing. */
+float masu_met_at(uvec4 hit)
+{
+    return masu_sane(uintBitsToFloat(hit.x), -1.0, frame.trace_anchor.w);
 }
 
 /* A move as y of a hit of the SDF: within 1/127 of its longest coordinate, up to 2^63; shorter than 2^-63 is 0. */

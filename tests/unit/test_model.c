@@ -12,7 +12,7 @@
 #include "plan/compile.h"
 #include "model/sheet.h"
 #include "model/write.h"
-#include "model/spirv_cost.h"
+#include "model/spirv_reach.h"
 #include "model/spirv_tally.h"
 #include "support/files.h"
 #include "support/spirv.h"
@@ -91,6 +91,49 @@ static masu_spirv_cost straight(const uint32_t *words, size_t bytes) {
     masu_spirv_cost cost = masu_spirv_cost_straight(&m);
     spirv_free(&m);
     return cost;
+}
+
+/* A branch that constants decide is counted on the side that is left, whatever the constant is asked by. */
+static void what_constants_leave_out_is_not_counted(void **state) {
+    (void)state;
+    static const char source[] =
+        "#version 450\n"
+        "layout(constant_id = 3) const bool on = true;\n"
+        "layout(constant_id = 5) const uint kind = 2;\n"
+        "layout(set = 0, binding = 0) buffer B { vec4 a, b; uint n; };\n"
+        "vec4 twice(vec4 v) { return v + v; }\n" /* 4 */
+        "void main() {\n"
+        "    a += b;\n"                                                                      /* 4 */
+        "    if (on) { a = a * b + b; }\n"                                                   /* 8 */
+        "    if (kind == 1u) { a = sqrt(a); } else if (kind + 1u > 2u) { a = twice(a * b); }\n" /* 4; 8 */
+        "    if (!on && n > 3u) { a.x = exp2(a.x); }\n"                                      /* 1, and 1 to ask; a PHI */
+        "    switch (kind) { case 7u: a *= a; break; default: a.x *= 2.0; }\n"               /* 4; 1 */
+        "    for (uint i = 0u; i < 4u; i++) { b += 1.0; if (kind == 9u) { b *= 3.0; } }\n"   /* 4, and the loop's; 4 */
+        "}\n";
+    static const struct {
+        uint32_t on, kind, counts; /* beside what all have */
+    } cases[] = {{1, 2, 4 + 8 + 8 + 1 + 4},     {0, 2, 4 + 8 + 1 + 4 + 1 + 1}, {0, 1, 4 + 4 + 1 + 4 + 1 + 1},
+                 {1, 1, 4 + 8 + 4 + 1 + 4},     {1, 7, 4 + 8 + 8 + 4 + 4},     {1, 9, 4 + 8 + 8 + 1 + 4 + 4},
+                 {1, 0, 4 + 8 + 1 + 4}};
+    spirv_module m;
+    assert_true(spirv_compile(write_text("constants.comp", source), "-O", &m) ||
+                spirv_compile(write_text("constants.comp", source), "", &m));
+    VkSpecializationMapEntry entries[] = {{3, 0, 4}, {5, 4, 4}};
+    uint32_t base = 0, everything = masu_spirv_cost_straight(&m).plain;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        uint32_t data[] = {cases[k].on, cases[k].kind};
+        VkSpecializationInfo special = {2, entries, sizeof data, data};
+        uint32_t plain = masu_spirv_cost_reached(&m, &special).plain;
+        if (!k) base = plain - cases[k].counts;
+        if (plain != base + cases[k].counts)
+            fail_msg("%u, %u: %u instead of %u", cases[k].on, cases[k].kind, plain, base + cases[k].counts);
+        assert_true(plain < everything);
+    }
+    /* Without a word from the host the module's own hold. */
+    assert_int_equal(masu_spirv_cost_reached(&m, NULL).plain, base + cases[0].counts);
+    VkSpecializationInfo other = {1, &(VkSpecializationMapEntry){4, 0, 4}, 4, &(uint32_t){0}};
+    assert_int_equal(masu_spirv_cost_reached(&m, &other).plain, base + cases[0].counts);
+    spirv_free(&m);
 }
 
 /* With debug.exact EASU has been counted by hand as 794, without what finds and bounds the pixel, and 14 for each
@@ -339,6 +382,7 @@ static void what_is_computed_says_so(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(costs_are_those_counted_by_hand),
+        cmocka_unit_test(what_constants_leave_out_is_not_counted),
         cmocka_unit_test(easu_costs_about_what_was_counted_by_hand),
         cmocka_unit_test(a_counted_shader_is_a_valid_one_that_counts_each_access),
         cmocka_unit_test(the_sheet_has_the_numbers_worked_out_by_hand),

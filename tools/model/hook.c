@@ -1,7 +1,7 @@
 /* hook.c: see hook.h. */
 #include "model/hook.h"
 
-#include "model/spirv_cost.h"
+#include "model/spirv_reach.h"
 
 #include "plan/frame.h"
 
@@ -106,7 +106,7 @@ static VkShaderModule tally(const VkPipelineShaderStageCreateInfo *stage, uint32
     }
     spirv_module read;
     if (spirv_from_words(m->words, m->count, &read)) {
-        s->straight = masu_spirv_cost_straight(&read).plain;
+        s->straight = masu_spirv_cost_reached(&read, stage->pSpecializationInfo).plain;
         spirv_free(&read);
     }
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,

@@ -17,7 +17,7 @@ typedef struct masu_hook_shader {
     uint32_t pass; /* row of the frame table */
     masu_tally tally;
     const uint32_t *counts; /* MASU_TALLY_WORDS of the last frame */
-    uint32_t straight;      /* plain operations of all its instructions once */
+    uint32_t straight;      /* plain operations of all instructions once that its constants leave */
 } masu_hook_shader;
 
 /* What the renderer is to use. */

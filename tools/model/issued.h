@@ -6,8 +6,9 @@
  * operations: each operation is as many instructions as all are on average, those for addresses, memory and
  * branches among them. Per pass, its pipelines taken together; vertex shaders apart.
  *
- * Written down once in operations is the SPIR-V before its constants are set, in instructions what is left after:
- * where a scene lacks fog, sky or environment, a pass that has code for them comes out too cheap. */
+ * Written down once in operations is what the pipeline's constants leave of the SPIR-V (spirv_reach.h), as in
+ * instructions.
+ */
 #ifndef MASU_MODEL_ISSUED_H
 #define MASU_MODEL_ISSUED_H
 
