@@ -2,7 +2,8 @@
  * sdf_velocity.comp: the velocity of what the SDF shows, and of the sky. Compiled by masu-bake with
  * the scene's field.
  *
- * The point under a pixel belongs to the nearest part. Where that point was in the previous frame:
+ * Where no part of a tile changes, the point under a pixel has moved with the eye alone. Elsewhere it belongs to
+ * the nearest part, which may be at rest, too. Where the point of one that is not was in the previous frame:
  *
  *   1. The part's root transform (the movements, turns and scalings that stand around all else in
  *      it) takes the point into the part's own space with the present slots and out of it with the
@@ -93,6 +94,33 @@ vec3 followed(uint part, vec3 p, vec3 q, float h, float enough)
     return q;
 }
 
+/* Whether a part that is seen in the tile changes. */
+bool tile_moves()
+{
+#if !MASU_SDF_MOVING
+    return false;
+#elif MASU_SDF_MOVING_FLAT
+    return true;
+#elif MASU_SDF_MASKED
+    uint moving = 0u;
+    for (int w = 0; w < MASU_LIST_WORDS; w++) {
+        moving |= masu_list_bits[w] & masu_sdf_moving_bits(w);
+    }
+    return moving != 0u;
+#else
+    uint count = masu_part_count();
+    MASU_LOOP for (uint i = 0u; i < uint(MASU_SDF_LISTED_COUNT); i++) {
+        if (i >= count) {
+            break;
+        }
+        if (masu_sdf_part_moves(masu_part_at(i))) {
+            return true;
+        }
+    }
+    return false;
+#endif
+}
+
 vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
 {
     vec3 through = masu_pixel_ray(at, size);
@@ -104,12 +132,17 @@ vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
     if (push.listed != 0u) {
         masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
     }
-    uint part = masu_sdf_nearest(p);
-    vec3 a = abs(p);
-    float pixel = 2.0 * frame.up.w / float(size.y) * t / z_scale;
-    float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
-    vec3 q = followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent),
-                      max(1e-3 * pixel, 8.0 * extent));
+    vec3 q = p;
+    if (tile_moves()) {
+        uint part = masu_sdf_nearest(p);
+        if (masu_sdf_part_moves(part)) {
+            vec3 a = abs(p);
+            float pixel = 2.0 * frame.up.w / float(size.y) * t / z_scale;
+            float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
+            q = followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent),
+                         max(1e-3 * pixel, 8.0 * extent));
+        }
+    }
     precise vec3 eye_step = (frame.eye_hi.xyz - previous.eye_hi.xyz) +
                             (frame.eye_lo.xyz - previous.eye_lo.xyz);
     precise vec3 rel = direction * t;

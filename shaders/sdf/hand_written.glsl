@@ -47,6 +47,20 @@ void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)
 }
 
 #ifdef MASU_MOTION
+/* It may ask for time and parameters. */
+#define MASU_SDF_MOVING 1
+#define MASU_SDF_MOVING_FLAT 0
+
+uint masu_sdf_moving_bits(int word)
+{
+    return 1u;
+}
+
+bool masu_sdf_part_moves(uint part)
+{
+    return true;
+}
+
 float masu_sdf_part(uint part, vec3 p)
 {
     return masu_sdf(p);

@@ -548,6 +548,51 @@ static void the_box_of_the_parts_follows_the_parameters(void **state) {
     }
 }
 
+/* What sdf_velocity asks: parts that change, by number and as bits, and half-spaces that do. */
+static void parts_that_move_are_told_from_those_that_rest(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        int some, flat;
+    } cases[] = {
+        {"part a = sphere(1); part b = translate((3, 0, 0), box((1, 1, 1))); part c = plane((0, 1, 0), 2);", 0, 0},
+        {"part a = sphere(1); part b = translate((sin(time), 0, 0), sphere(1)); part c = box((1, 1, 1));"
+         "part d = plane((0, 1, 0), 2);", 1, 0},
+        {"param r = 1 [0.5, 2]; part a = sphere(1); part b = torus(r, 0.1); part c = rotate((0, 1, 0), time, "
+         "box((1, 1, 1))); part e = union(sphere(1), translate((r, 0, 0), sphere(0.1)));", 1, 0},
+        {"part a = sphere(1); part b = plane((0, 1, 0), 0.1 * time);", 1, 1},
+        {"part a = sphere(1); part b = glsl { return length(p) - 1.0 - 0.1 * masu_time(); } bounds (-2, -2, -2), (2, 2, 2) lipschitz 1;", 1, 0}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        masu_sdfc_result result;
+        char wanted[64];
+        uint32_t bits = 0;
+        assert_compiles(cases[k].text, strlen(cases[k].text), &result);
+        snprintf(wanted, sizeof wanted, "#define MASU_SDF_MOVING %d\n#define MASU_SDF_MOVING_FLAT %d\n", cases[k].some,
+                 cases[k].flat);
+        if (count(result.glsl, wanted) != 1) fail_msg("%s: not %s", cases[k].text, wanted);
+        const char *body = strstr(result.glsl, "bool masu_sdf_part_moves(uint part)");
+        char asked[512];
+        snprintf(asked, sizeof asked, "%.*s", (int)(strchr(body, '}') - body), body);
+        for (uint32_t i = 0; i < result.part_count; i++) {
+            /* Of a run of several the first and the last are named. */
+            int moves = result.parts[i].dynamic || result.parts[i].user;
+            snprintf(wanted, sizeof wanted, " %uu ", i);
+            int alone = (i == 0 || !(result.parts[i - 1].dynamic || result.parts[i - 1].user)) &&
+                        (i + 1 == result.part_count || !(result.parts[i + 1].dynamic || result.parts[i + 1].user));
+            if (!moves) assert_null(strstr(asked, wanted));
+            if (moves && alone) {
+                snprintf(wanted, sizeof wanted, "part == %uu ", i);
+                assert_non_null(strstr(asked, wanted));
+            }
+            bits |= (uint32_t)moves << i;
+        }
+        assert_int_equal(bits != 0, cases[k].some);
+        snprintf(wanted, sizeof wanted, "return word == 0 ? 0x%xu : 0x0u;", bits);
+        if (count(result.glsl, wanted) != 1) fail_msg("%s: not %s", cases[k].text, wanted);
+        masu_sdfc_release(&result);
+    }
+}
+
 static void the_same_text_gives_the_same_result(void **state) {
     (void)state;
     size_t bytes;
@@ -740,6 +785,7 @@ int main(void) {
         cmocka_unit_test(no_scene_has_a_function_that_it_does_not_call),
         cmocka_unit_test(parts_of_one_form_share_its_code),
         cmocka_unit_test(the_box_of_the_parts_follows_the_parameters),
+        cmocka_unit_test(parts_that_move_are_told_from_those_that_rest),
         cmocka_unit_test(the_same_text_gives_the_same_result),
         cmocka_unit_test(the_least_roughness_of_what_is_lit_is_known),
         cmocka_unit_test(mistakes_name_their_place),

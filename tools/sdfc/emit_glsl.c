@@ -329,6 +329,43 @@ static void put_root_step(sdfc_writer *w, int group, const sdfc_root_step *step,
     PUT(w, ");\n");
 }
 
+/* A field of the user's own may ask for time and parameters wherever it likes. */
+static bool part_moves(const sdfc *c, int part) {
+    const sdfc_part *p = &c->parts[part];
+    if (c->shapes[p->shape].facts.user) return true;
+    for (int a = 0; a < p->program.arg_count; a++) {
+        if (c->exprs[p->program.args[a]].timed) return true;
+    }
+    return false;
+}
+
+/* Which parts change with time or parameters: what else is seen has moved with the eye alone. Of more runs of
+ * numbers than a chain of questions is worth, all of them. */
+static void put_moving(sdfc_writer *w) {
+    enum { RUNS = 16 };
+    const sdfc *c = w->c;
+    uint32_t bits[MASU_SDFC_MASKED_MAX / 32] = {0};
+    int listed = c->part_count - c->flat_parts, runs = 0;
+    bool some = false, flat = false;
+    for (int i = 0; i < c->part_count; i++) {
+        if (!part_moves(c, i)) continue;
+        some = true;
+        flat = flat || i >= listed;
+        if (i < MASU_SDFC_MASKED_MAX) bits[i / 32] |= 1u << i % 32;
+        runs += i == 0 || !part_moves(c, i - 1);
+    }
+    PUT(w, "#ifdef MASU_MOTION\n#define MASU_SDF_MOVING %d\n#define MASU_SDF_MOVING_FLAT %d\n", some, flat);
+    PUT(w, "uint masu_sdf_moving_bits(int word)\n{\n    return word == 0 ? 0x%xu : 0x%xu;\n}\n\n", bits[0], bits[1]);
+    PUT(w, "bool masu_sdf_part_moves(uint part)\n{\n    return ");
+    for (int i = 0; i < c->part_count && runs && runs <= RUNS; i++) {
+        if (!part_moves(c, i) || (i > 0 && part_moves(c, i - 1))) continue;
+        int last = i;
+        while (last + 1 < c->part_count && part_moves(c, last + 1)) last++;
+        PUT(w, last > i ? "(part >= %du && part <= %du) || " : "part == %du || ", i, last);
+    }
+    PUT(w, runs > RUNS ? "true;\n}\n#endif\n\n" : "false;\n}\n#endif\n\n");
+}
+
 /* From the world into a part's own space, and out of it: the movements, turns and scalings that
  * stand around all else in the part. Of parts where these do not change: nothing. */
 static void put_roots(sdfc_writer *w) {
@@ -394,6 +431,7 @@ void sdfc_put_glsl(sdfc_writer *w) {
         MASU_SDFC_PART_SLOTS);
     put_box(w);
     put_roots(w);
+    put_moving(w);
     PUT(w, "#ifdef MASU_SDF_ASCENDING\n");
     put_ascending(w);
     PUT(w, "#else\n");
