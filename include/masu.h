@@ -691,7 +691,7 @@ typedef struct masu_debug {
                            A cut begins a new sum */
     uint32_t exact; /* not 0: full EASU, RCAS and both in one give the same bits on every driver, where inputs have
                        8 or 10 bits: these become the nearest step, nothing is fused or reordered, divisions are
-                       exact. Three times the instructions; without, a pixel in some ten thousands differs */
+                       exact. Three to five times the instructions; without, a pixel in some ten thousands differs */
     float mip_bias; /* added to the level of detail of textures, -16..16; below 0: finer. What many places in a
                        pixel are averaged over wants finer ones; log2 of the size undoes a rung's own */
 } masu_debug;
@@ -729,9 +729,10 @@ typedef struct masu_governor_desc {
     uint32_t dwell; /* frames: a rung is chosen to last so long, and no better one before, 1..600;
                        0: 24 */
     float costs[MASU_MAX_RUNGS]; /* a first guess of what the part of a frame that depends on the
-                                    rung costs, beside other rungs; 0: that of masu_desc.ladder (of GPUs
-                                    whose class is known computed for it, see masu_plan_info), else
-                                    scale^2 */
+                                    rung costs, beside other rungs; 0: that of masu_desc.ladder, computed
+                                    for the class of the GPU where that is known
+                                    (masu_plan_info.computed_for), else measured on a CPU; without a
+                                    ladder scale^2 */
 } masu_governor_desc;
 
 #define MASU_GOVERNOR_REASONS(X)                                                                   \
@@ -834,7 +835,7 @@ typedef struct masu_desc {
     /* What weighs the texels that EASU takes: floats of 16 bits, or of 32. AUTO: of MASU_EASU_FAST 16, if
      * vulkan.shader_float16 says that they are there and the device is a discrete or integrated GPU: CPUs
      * emulate them; of MASU_EASU_FULL 32. ON: 16 of both, which changes EASU by up to 2/255, or
-     * MASU_ERROR_DEVICE. OFF: 32. */
+     * MASU_ERROR_DEVICE; rungs with `fuse`, and all with debug.exact, stay at 32. OFF: 32. */
     masu_switch half_floats;
     masu_exposure exposure;
     masu_tone tone;
@@ -844,7 +845,7 @@ typedef struct masu_desc {
      * compare, on for others of at most 8 bits. Nothing happens without a scene, or beyond 10 bits. */
     masu_switch dither;
     /* 16-bit floats between tone curve and target instead of 10 bits, twice the bytes of those images. AUTO:
-     * on for targets of more than 8 bits, which take it. ON with 8 bits: neither as storage targets nor
+     * on for targets of more than 8 bits, which take it; OFF leaves them 8. ON with 8 bits: neither as storage targets nor
      * in an SRGB format, which gets a copy of bytes. */
     masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */

@@ -1,5 +1,5 @@
 /*
- * fsr1.comp: EASU and RCAS in one pass, bit for bit what easu.comp and rcas.comp make of it in two.
+ * fsr1.comp: EASU and RCAS in one pass: with debug.exact bit for bit what easu.comp and rcas.comp make of it in two.
  * A workgroup of GROUP x GROUP upscales its block of pixels and a border of one to shared memory,
  * as 10 bits, and sharpens from there: the image between the passes, 8 bytes of traffic for each
  * output pixel, is not needed, and (BLOCK + 2)^2 / BLOCK^2 = 1.13 times the pixels are upscaled.

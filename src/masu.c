@@ -93,7 +93,9 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_desc possible = *desc;
     masu_device_class device_class = masu_device_class_of(&vk->properties);
-    int computed = !desc->rung_count && plan->desc.ladder == MASU_ON &&
+    int open = 0; /* a cost that the host has not given */
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) open |= desc->governor.costs[r] == 0.0f;
+    int computed = open && !desc->rung_count && plan->desc.ladder == MASU_ON &&
                    masu_ladder_costs_on(plan->desc.scene, device_class);
     result = masu_capabilities_fit(&possible, plan, vk, detail);
     if (result) return result;

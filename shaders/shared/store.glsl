@@ -12,7 +12,8 @@
  *   MASU_STORE_UINT(img, p, u)    uint or uvec4 u, unchanged  r32ui and its like
  *   MASU_STORE_TEN(img, p, v)     vec3 v to 0..1              r32ui view of an image of 10 bits a channel
  *   MASU_STORE_SAFE(img, p, v)    vec4 v, as it is            what is known to be finite, at a p that is known to
- *                                                             lie within the image: format clamps the rest
+ *                                                             lie within the image: format clamps the rest, but
+ *                                                             for masu_ten_bits, which takes 0..1 alone
  *
  * p is an ivec2 or a uvec2. Each argument is evaluated once. Write a semicolon after the macro and
  * braces around it under if/else: it expands to a block.

@@ -5,7 +5,7 @@
  * depending on the driver; the same goes for 10 bits. Where a filter decides by equality (EASU: do these
  * texels have the same luma?) or ends on a rounding tie (RCAS: quarters of a step are common), that unit
  * becomes up to 33/255, respectively 1/255, of difference from the reference. With MASU_EXACT (debug.exact)
- * both become the same number on every driver; that is a third of EASU's instructions, so it is for
+ * both become the same number on every driver; that is two thirds of EASU's operations, so it is for
  * comparing drivers alone.
  *
  * MASU_BYTES: of an image that can hold nothing but 0..1: there is nothing to guard.

@@ -6,7 +6,7 @@
  * neighbours of different colour have the same luma: one unit in the last place then decides between a
  * straight edge and none. With MASU_EXACT (debug.exact) every operation is rounded by itself, in AMD's
  * order, so that all drivers take the same side. Without, compilers fuse and taps are placed in steps:
- * 0.6 of the instructions.
+ * 0.3 of the operations.
  */
 #ifndef MASU_EASU_GLSL
 #define MASU_EASU_GLSL

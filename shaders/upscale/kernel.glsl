@@ -78,8 +78,8 @@ vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
 {
     real lobe = real(k.lobe);
     real2 clip = real2(k.clip);
-    /* A step to the right and one down in the kernel's axes; from there to each tap: of f and g, side by
-     * side, x in one pair and y in another. */
+    /* A step to the right and one down in the kernel's axes; from there to each tap: x holds the x of taps f
+     * and g, y their y. */
     real2 right_step = real2(vec2(k.dir.x, -k.dir.y) * k.scale);
     real2 down = real2(vec2(k.dir.y, k.dir.x) * k.scale);
     real2 f = -real(p.x) * right_step - real(p.y) * down;

@@ -64,7 +64,7 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
     float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order each line is one max3, where there is one */
     l = max(max(l, low.g), high.g);
     l = max(max(l, low.b), high.b);
-    float share = 1.0 / (l * stops - 1.0); /* at least 4/3 - 1 below */
+    float share = 1.0 / (l * stops - 1.0); /* what it divides by is at least 1/3 */
     vec3 ring = (up + left) + (right + down);
     return centre + share * (centre - 0.25 * ring);
 }

@@ -166,13 +166,16 @@ static void own_rungs(masu_desc *desc, const masu_frame_plan *plan, masu_device_
     if (desc->rung_count) return;
     const masu_governor_desc given = desc->governor;
     const float *costs = NULL;
+    float measured = 1.0f;
+    if (plan->desc.ladder == MASU_ON) measured = masu_ladder_for(plan->desc.scene)->ratios[0];
     if (plan->desc.ladder == MASU_ON) costs = masu_ladder_costs_on(plan->desc.scene, device_class);
     desc->rung_count = plan->desc.rung_count;
     memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
     memcpy(desc->flips, plan->desc.flips, sizeof desc->flips);
     memcpy(desc->governor.costs, plan->desc.governor.costs, sizeof desc->governor.costs);
     for (uint32_t r = 0; r < desc->rung_count && costs; r++) {
-        if (given.costs[r] == 0.0f) desc->governor.costs[r] = costs[r];
+        /* On the scale of the measured ones, which the host sees. */
+        if (given.costs[r] == 0.0f) desc->governor.costs[r] = costs[r] * measured;
     }
 }
 

@@ -164,6 +164,25 @@ static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *
 
 /* ---- Compute --------------------------------------------------------------------------------- */
 
+/* Of a pass that has two pipelines the one of rungs that it ends is "NAME, last". */
+static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline pipeline) {
+    static const char ending[] = ", last";
+    const char *name = masu_passes[pass].name;
+    char both[64];
+    size_t length = strlen(name);
+    int apart = 0;
+    for (uint32_t r = 0; r < m->plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &m->plan->rungs[r];
+        apart |= masu_has_pass(&rp->active, pass) && !masu_comes_last(rp, pass);
+    }
+    if (last && apart && length + sizeof ending <= sizeof both) {
+        memcpy(both, name, length);
+        memcpy(both + length, ending, sizeof ending);
+        name = both;
+    }
+    masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(pipeline), name);
+}
+
 static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, VkPipeline *out,
                                      masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
@@ -185,7 +204,7 @@ static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, Vk
     m->pipeline_ns[pass] += now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
     if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
-    masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(*out), masu_passes[pass].name);
+    name_form(m, pass, last, *out);
     return MASU_OK;
 }
 

@@ -48,9 +48,14 @@ static const char *no_march(const masu_needs *n) {
     return n->sdf ? "rung.march asks for another way" : NO_SDF;
 }
 
+/* Whether a rung has anything that reads velocities. */
+static int wants_velocity(const masu_needs *n) {
+    return n->velocity && (n->temporal || (n->readback & MASU_READBACK_VELOCITY));
+}
+
 /* Of two kinds of velocities the other one runs, or none. */
 static const char *no_velocity(const masu_needs *n, const char *other) {
-    return n->velocity ? other : "nothing reads velocities";
+    return wants_velocity(n) ? other : "nothing reads velocities";
 }
 
 static const char *no_shadow_map(const masu_needs *n) {

@@ -170,7 +170,8 @@ void masu_output_plan(masu_frame_plan *plan) {
     int dither = d->dither == MASU_ON && f->steps[0];
     /* Halves, and bytes for fewer bits, are rounded here, so that the driver has nothing left to. */
     if (dither || plan->deep || f->bits < 8) {
-        for (uint32_t c = 0; c < 3; c++) plan->output.steps[c] = f->steps[c];
+        int bytes = !plan->deep && f->bits > 8; /* the last image before the blit has 8 bits */
+        for (uint32_t c = 0; c < 3; c++) plan->output.steps[c] = bytes ? 255 : f->steps[c];
     }
     plan->output.flags = MASU_OUTPUT_LAST | (dither ? MASU_OUTPUT_DITHER : 0) |
                          (f->srgb && f->swapped ? MASU_OUTPUT_SWAP : 0);

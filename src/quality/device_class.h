@@ -15,8 +15,9 @@ typedef enum masu_device_class {
     MASU_DEVICE_CLASSES
 } masu_device_class;
 
-/* That whose instructions are the device's, or the next older. Of a class counts how its passes compare with each
- * other, not how fast it is: a discrete GPU of the same instructions belongs to it, too. */
+/* That whose instructions are the device's, or the next older; of Mali and PowerVR no compiler was asked, they take
+ * Adreno's. What counts of a class is how its passes compare with each other, not how fast it is: a discrete GPU of
+ * the same instructions belongs to it, too. */
 masu_device_class masu_device_class_of(const VkPhysicalDeviceProperties *device);
 
 /* As the model sheet calls it; "": MASU_DEVICE_OTHER. Never NULL. */

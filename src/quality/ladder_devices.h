@@ -6,47 +6,47 @@
 #define MASU_LADDER_DEVICES_H
 
 static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RUNGS] = {
-    [MASU_SCENE_POLYGONS] = { /* textures.masu */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.9804f, 0.7929f, 0.7106f, 0.6367f, 0.5253f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 1.0084f, 0.8203f, 0.7378f, 0.6636f, 0.5565f},
+    [MASU_SCENE_POLYGONS] = { /* textures.masu, ladder.json 4117717435 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.9705f, 0.7819f, 0.6990f, 0.6246f, 0.5103f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.9863f, 0.7976f, 0.7147f, 0.6403f, 0.5292f},
         [MASU_DEVICE_VEGA8] = {1.0000f, 0.9491f, 0.7617f, 0.6794f, 0.6055f, 0.3723f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.9679f, 0.7808f, 0.6987f, 0.6249f, 0.3808f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.9067f, 0.7184f, 0.6358f, 0.5615f, 0.3845f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.9574f, 0.7691f, 0.6865f, 0.6123f, 0.3713f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8873f, 0.6983f, 0.6153f, 0.5408f, 0.3649f},
     },
-    [MASU_SCENE_SDF] = { /* city_shadows.masu */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.7787f, 0.5769f, 0.4043f, 0.3310f, 0.2653f, 0.2062f, 0.1724f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.7804f, 0.5787f, 0.4062f, 0.3329f, 0.2672f, 0.2081f, 0.1740f},
-        [MASU_DEVICE_VEGA8] = {1.0000f, 0.7794f, 0.5776f, 0.4052f, 0.3313f, 0.2661f, 0.2067f, 0.1685f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.7794f, 0.5777f, 0.4053f, 0.3313f, 0.2662f, 0.2067f, 0.1683f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.7746f, 0.5730f, 0.4006f, 0.3269f, 0.2616f, 0.2022f, 0.1675f},
+    [MASU_SCENE_SDF] = { /* city_shadows.masu, ladder.json 2377161052 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.7788f, 0.5771f, 0.4046f, 0.3288f, 0.2656f, 0.2048f, 0.1712f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.7805f, 0.5789f, 0.4065f, 0.3307f, 0.2675f, 0.2067f, 0.1729f},
+        [MASU_DEVICE_VEGA8] = {1.0000f, 0.7794f, 0.5777f, 0.4053f, 0.3285f, 0.2664f, 0.2050f, 0.1671f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.7794f, 0.5778f, 0.4055f, 0.3285f, 0.2665f, 0.2050f, 0.1669f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.7747f, 0.5733f, 0.4010f, 0.3245f, 0.2621f, 0.2006f, 0.1662f},
     },
-    [MASU_SCENE_BOTH] = { /* engine.masu */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.9258f, 0.8495f, 0.7509f, 0.6173f, 0.4459f, 0.3739f, 0.2813f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.9247f, 0.8474f, 0.7518f, 0.6191f, 0.4476f, 0.3755f, 0.2819f},
+    [MASU_SCENE_BOTH] = { /* engine.masu, ladder.json 2986949055 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.9262f, 0.8503f, 0.7516f, 0.6174f, 0.4460f, 0.3739f, 0.2813f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.9254f, 0.8487f, 0.7522f, 0.6188f, 0.4473f, 0.3751f, 0.2817f},
         [MASU_DEVICE_VEGA8] = {1.0000f, 0.9270f, 0.8520f, 0.7394f, 0.6154f, 0.4442f, 0.3722f, 0.2806f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.9251f, 0.8481f, 0.7380f, 0.6165f, 0.4451f, 0.3731f, 0.2818f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.9246f, 0.8471f, 0.7391f, 0.6100f, 0.4385f, 0.3663f, 0.2797f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.9255f, 0.8490f, 0.7388f, 0.6165f, 0.4451f, 0.3730f, 0.2818f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.9255f, 0.8490f, 0.7399f, 0.6097f, 0.4381f, 0.3659f, 0.2795f},
     },
-    [MASU_SCENE_POLYGONS_TRACED] = { /* mirrors.masu */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.8982f, 0.9246f, 0.3903f, 0.3279f, 0.2431f, 0.1618f, 0.0754f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.8982f, 0.9273f, 0.3913f, 0.3284f, 0.2434f, 0.1623f, 0.0765f},
-        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8934f, 0.9200f, 0.3794f, 0.3171f, 0.2323f, 0.1459f, 0.0592f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.8809f, 0.9127f, 0.3712f, 0.3096f, 0.2261f, 0.1375f, 0.0570f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8793f, 0.9201f, 0.3539f, 0.2914f, 0.2072f, 0.1109f, 0.0463f},
+    [MASU_SCENE_POLYGONS_TRACED] = { /* mirrors.masu, ladder.json 3870411933 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.8979f, 0.9240f, 0.3895f, 0.3271f, 0.2422f, 0.1600f, 0.0746f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.8990f, 0.9277f, 0.3902f, 0.3272f, 0.2422f, 0.1626f, 0.0762f},
+        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8934f, 0.9200f, 0.3794f, 0.3171f, 0.2323f, 0.1373f, 0.0568f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.8810f, 0.9125f, 0.3707f, 0.3090f, 0.2254f, 0.1372f, 0.0567f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8806f, 0.9207f, 0.3533f, 0.2907f, 0.2064f, 0.1143f, 0.0471f},
     },
-    [MASU_SCENE_WORLD_TRACED] = { /* forza.masu */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.6529f, 0.5692f, 0.4383f, 0.2374f, 0.1799f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.6528f, 0.5780f, 0.4466f, 0.2453f, 0.1876f},
-        [MASU_DEVICE_VEGA8] = {1.0000f, 0.6236f, 0.5206f, 0.3960f, 0.2044f, 0.1496f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.6339f, 0.5293f, 0.4022f, 0.2070f, 0.1510f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.6154f, 0.5125f, 0.3882f, 0.1973f, 0.1426f},
+    [MASU_SCENE_WORLD_TRACED] = { /* forza.masu, ladder.json 268414473 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.6486f, 0.5663f, 0.4360f, 0.2361f, 0.1788f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.6534f, 0.5779f, 0.4463f, 0.2444f, 0.1866f},
+        [MASU_DEVICE_VEGA8] = {1.0000f, 0.6119f, 0.5117f, 0.3895f, 0.2015f, 0.1478f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.6312f, 0.5277f, 0.4009f, 0.2061f, 0.1503f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.6190f, 0.5152f, 0.3899f, 0.1977f, 0.1425f},
     },
-    [MASU_SCENE_BOTH_TRACED] = { /* wet_city.masu */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.8186f, 0.6187f, 0.5334f, 0.3683f, 0.3024f, 0.2218f, 0.1564f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.8229f, 0.6227f, 0.5374f, 0.3718f, 0.3059f, 0.2241f, 0.1589f},
-        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8173f, 0.6168f, 0.5306f, 0.3656f, 0.2996f, 0.2001f, 0.1385f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.8188f, 0.6181f, 0.5321f, 0.3667f, 0.3006f, 0.2026f, 0.1403f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8096f, 0.6089f, 0.5234f, 0.3574f, 0.2914f, 0.2101f, 0.1445f},
+    [MASU_SCENE_BOTH_TRACED] = { /* wet_city.masu, ladder.json 434990834 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.8224f, 0.6226f, 0.5377f, 0.3716f, 0.3058f, 0.2112f, 0.1504f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.8264f, 0.6263f, 0.5414f, 0.3750f, 0.3090f, 0.2137f, 0.1530f},
+        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8204f, 0.6201f, 0.5342f, 0.3685f, 0.3025f, 0.1888f, 0.1319f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.8223f, 0.6217f, 0.5360f, 0.3697f, 0.3036f, 0.1915f, 0.1338f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8128f, 0.6123f, 0.5271f, 0.3602f, 0.2941f, 0.1977f, 0.1372f},
     },
 };
 

@@ -57,6 +57,7 @@ static void known_devices_have_their_class(void **state) {
         {0x8086, 0x56A0, MASU_DEVICE_XE80},   /* Arc A770 */
         {0x5143, 0x6030001, MASU_DEVICE_MOBILE},
         {0x13B5, 0x70930000, MASU_DEVICE_MOBILE},
+        {0x1010, 0x1, MASU_DEVICE_MOBILE},
         {0x10DE, 0x1C03, MASU_DEVICE_OTHER}, /* no compiler of NVIDIA's was asked */
         {0x106B, 0, MASU_DEVICE_OTHER},
     };
@@ -101,7 +102,7 @@ static void every_rung_of_every_ladder_has_its_cost_on_every_class(void **state)
             assert_true(costs[0] == 1.0f);
             double off = 0;
             for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) {
-                /* Else the ladder was measured again, and this table not written again. */
+                /* tests/scripts/docs_tables.sh asks whether it is of the ladder that is measured now. */
                 assert_true(r < l->count ? costs[r] > 0.01f && costs[r] < 1.2f : costs[r] == 0.0f);
                 if (r < l->count)
                     off = fmax(off, fabs((double)costs[r] - (double)(l->ratios[r] / l->ratios[0])));
@@ -141,6 +142,7 @@ static uint32_t play(const masu_ladder *l, const float *truth, const float *prio
     return over;
 }
 
+/* Of the governor: what it makes of costs that are right. */
 static void costs_of_its_class_keep_the_target_sooner(void **state) {
     (void)state;
     uint32_t all[2] = {0, 0}, all_lost[2] = {0, 0};

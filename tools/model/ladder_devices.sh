@@ -25,7 +25,7 @@ for ladder; do
     "$masu" plan "$scene" --model --isa tgl,kbl,raven,vangogh,a630 --ladder "$rungs" --csv "$table" --quiet ${!args:-} \
         > /dev/null
     constant=$(echo "$class" | tr 'a-z-' 'A-Z_')
-    echo "    [MASU_SCENE_$constant] = { /* $name.masu */"
+    echo "    [MASU_SCENE_$constant] = { /* $name.masu, ladder.json $(cksum < "$rungs" | cut -d' ' -f1) */"
     awk -F, '
     NR == 1 {
         split("Xe80 UHD620 Vega8 Deck low_mobile", name, " ")

@@ -176,17 +176,17 @@ static void constant(reach *r, const spirv_instruction *i) {
 
 /* Once over the module: blocks come after those that dominate them. */
 static void walk(reach *r) {
-    bool function = false, block = false;
+    bool function = false, block = false, first = false;
     for (size_t k = 0; k < r->m->count; k++) {
         const spirv_instruction *i = &r->m->list[k];
         uint32_t value = 0;
         bool outside = i->op == SPIRV_FUNCTION_END;
-        if (i->op == SPIRV_FUNCTION) function = r->reached[i->word[2]], block = false;
+        if (i->op == SPIRV_FUNCTION) function = r->reached[i->word[2]], block = false, first = true;
         if (outside) function = block = false;
         if (i->op == SPIRV_LABEL) {
             /* The first block of a function is where it begins. */
-            bool begins = r->m->list[k - 1].op == SPIRV_FUNCTION || r->m->list[k - 1].op == SPIRV_FUNCTION_PARAMETER;
-            if (begins && function) mark(r, i->word[1]);
+            if (first && function) mark(r, i->word[1]);
+            first = false;
             block = function && r->reached[i->word[1]];
         }
         if (!function && !outside) constant(r, i);
