@@ -1,5 +1,6 @@
 /*
- * easu.comp: FSR1 edge-adaptive upscale, fp32 (with MASU_HALF taps are weighted in 16 bits), one invocation for each output pixel.
+ * easu.comp: FSR1 edge-adaptive upscale, fp32, one invocation for each output pixel. With MASU_HALF taps are
+ * weighted in 16 bits.
  *
  * AMD's published fp32 shader (ffx_fsr1 v1.0.2), approximate reciprocals included; with MASU_EXACT equal
  * to it, as rounded by tests/reference/fsr1.c, to the bit. It differs from the original in how it reads:

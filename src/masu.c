@@ -6,7 +6,6 @@
 #include "device/load.h"
 #include "device/ray_query.h"
 #include "quality/governor_desc.h"
-#include "quality/ladder.h"
 #include "renderer.h"
 #include "scene/scene.h"
 #include "stats.h"
@@ -92,12 +91,8 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     if (result) return result;
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_desc possible = *desc;
-    masu_device_class device_class = masu_device_class_of(&vk->properties);
-    int open = 0; /* a cost that the host has not given */
-    for (uint32_t r = 0; r < plan->desc.rung_count; r++) open |= desc->governor.costs[r] == 0.0f;
-    int computed = open && !desc->rung_count && plan->desc.ladder == MASU_ON &&
-                   masu_ladder_costs_on(plan->desc.scene, device_class);
-    result = masu_capabilities_fit(&possible, plan, vk, detail);
+    const char *computed_for;
+    result = masu_capabilities_fit(&possible, plan, vk, &computed_for, detail);
     if (result) return result;
     result = masu_compile(
         &possible,
@@ -105,7 +100,7 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
         limits->minStorageBufferOffsetAlignment ? limits->minStorageBufferOffsetAlignment : 1, plan,
         detail);
     if (result) return result;
-    if (computed) plan->computed_for = masu_device_class_name(device_class);
+    plan->computed_for = computed_for;
     masu_ray_sizes(plan, vk);
     result = masu_capabilities_check(plan, vk, detail);
     if (result) return result;

@@ -31,18 +31,21 @@
 #define MASU_COUNT_REPLACED(n)
 #endif
 
-#define MASU_STORE_FLOATS(img, p, v, lo, hi)                                                       \
+/* value: v as a `type`, by the name masu_store_value, made into what the image takes. */
+#define MASU_STORE_CHECKED(img, p, type, v, value)                                                 \
     {                                                                                              \
         ivec2 masu_store_at = ivec2(p);                                                            \
-        vec4 masu_store_value = (v);                                                               \
+        type masu_store_value = (v);                                                               \
         if (all(lessThan(uvec2(masu_store_at), uvec2(imageSize(img))))) {                          \
             if (!masu_finite(masu_store_value)) {                                                  \
                 MASU_COUNT_REPLACED(1u);                                                           \
             }                                                                                      \
-            imageStore(img, masu_store_at, masu_sane(masu_store_value, lo, hi));                   \
+            imageStore(img, masu_store_at, value);                                                 \
         }                                                                                          \
     }
 
+#define MASU_STORE_FLOATS(img, p, v, lo, hi)                                                       \
+    MASU_STORE_CHECKED(img, p, vec4, v, masu_sane(masu_store_value, lo, hi))
 #define MASU_STORE_UNORM(img, p, v) MASU_STORE_FLOATS(img, p, v, 0.0, 1.0)
 #define MASU_STORE_HALF(img, p, v) MASU_STORE_FLOATS(img, p, v, -65504.0, 65504.0)
 #define MASU_STORE_R32F(img, p, x)                                                                 \
@@ -64,16 +67,7 @@ uint masu_ten_bits(vec3 v)
 }
 
 #define MASU_STORE_TEN(img, p, v)                                                                  \
-    {                                                                                              \
-        ivec2 masu_store_at = ivec2(p);                                                            \
-        vec3 masu_store_value = (v);                                                               \
-        if (all(lessThan(uvec2(masu_store_at), uvec2(imageSize(img))))) {                          \
-            if (!masu_finite(masu_store_value)) {                                                  \
-                MASU_COUNT_REPLACED(1u);                                                           \
-            }                                                                                      \
-            imageStore(img, masu_store_at, uvec4(masu_ten_bits(masu_sane_unit(masu_store_value)))); \
-        }                                                                                          \
-    }
+    MASU_STORE_CHECKED(img, p, vec3, v, uvec4(masu_ten_bits(masu_sane_unit(masu_store_value))))
 
 #define MASU_STORE_UINT(img, p, u)                                                                 \
     {                                                                                              \

@@ -161,28 +161,31 @@ masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *
 /* ---- Open choices ---------------------------------------------------------------------------- */
 
 /* The rungs as the host gave them, or those that the plan chose, to be looked at and changed; what those of a
- * measured ladder cost, where the host has not said it, on a device of this class. */
-static void own_rungs(masu_desc *desc, const masu_frame_plan *plan, masu_device_class device_class) {
-    if (desc->rung_count) return;
+ * measured ladder cost, where the host has not said it, on a device of this class. Returns the class's name where
+ * that was so, else "". */
+static const char *own_rungs(masu_desc *desc, const masu_frame_plan *plan, masu_device_class device_class) {
+    if (desc->rung_count) return "";
     const masu_governor_desc given = desc->governor;
-    const float *costs = NULL;
-    float measured = 1.0f;
-    if (plan->desc.ladder == MASU_ON) measured = masu_ladder_for(plan->desc.scene)->ratios[0];
-    if (plan->desc.ladder == MASU_ON) costs = masu_ladder_costs_on(plan->desc.scene, device_class);
+    const masu_scene *scene = plan->desc.scene;
+    const float *costs = plan->desc.ladder == MASU_ON ? masu_ladder_costs_on(scene, device_class) : NULL;
+    const char *computed_for = "";
     desc->rung_count = plan->desc.rung_count;
     memcpy(desc->rungs, plan->desc.rungs, sizeof desc->rungs);
     memcpy(desc->flips, plan->desc.flips, sizeof desc->flips);
     memcpy(desc->governor.costs, plan->desc.governor.costs, sizeof desc->governor.costs);
     for (uint32_t r = 0; r < desc->rung_count && costs; r++) {
+        if (given.costs[r] != 0.0f) continue;
         /* On the scale of the measured ones, which the host sees. */
-        if (given.costs[r] == 0.0f) desc->governor.costs[r] = costs[r] * measured;
+        desc->governor.costs[r] = costs[r] * masu_ladder_for(scene)->ratios[0];
+        computed_for = masu_device_class_name(device_class);
     }
+    return computed_for;
 }
 
 masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
-                                  masu_detail *detail) {
+                                  const char **computed_for, masu_detail *detail) {
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
-    own_rungs(desc, plan, masu_device_class_of(&vk->properties));
+    *computed_for = own_rungs(desc, plan, masu_device_class_of(&vk->properties));
     if (vk->queue_family.timestampValidBits == 0) desc->governor.wall_only = 1;
     masu_result result = drop_specular(desc, plan, limits, detail);
     if (!result) result = drop_occlusion(desc, plan, limits, detail);

@@ -46,3 +46,15 @@ masu_desc source_desc(uint32_t width, uint32_t height) {
     d.rung_count = 1;
     return d;
 }
+
+masu_scene scene_of_class(uint32_t c) {
+    uint32_t kind = c % 4;
+    masu_desc d = scene_desc(kind == MASU_SCENE_SDF    ? SDF
+                             : kind == MASU_SCENE_BOTH ? RASTER | SDF
+                                                       : RASTER,
+                             64, 48);
+    masu_scene s = *d.scene;
+    if (kind == MASU_SCENE_WORLD) s.lods = 2, s.placed_occluders = 3;
+    if (c >= 4) s.reflections = 1, s.glossiest = 0.1f, s.specular_cutoff = 0.4f;
+    return s;
+}

@@ -23,4 +23,7 @@ masu_desc scene_desc(uint32_t parts, uint32_t width, uint32_t height);
 /* One rung that brings a source image of that size to 1920x1080. */
 masu_desc source_desc(uint32_t width, uint32_t height);
 
+/* A scene of that masu_scene_class. */
+masu_scene scene_of_class(uint32_t c);
+
 #endif

@@ -78,20 +78,10 @@ static void known_devices_have_their_class(void **state) {
         assert_true(*masu_device_class_name((masu_device_class)c) != 0);
 }
 
-/* A scene of that class that is nothing but its numbers. */
-static masu_scene scene_of(uint32_t c) {
-    uint32_t kind = c % 4;
-    masu_scene s = {.sdf = kind == MASU_SCENE_SDF || kind == MASU_SCENE_BOTH,
-                    .instances = kind != MASU_SCENE_SDF};
-    if (kind == MASU_SCENE_WORLD) s.lods = 2, s.placed_occluders = 3;
-    if (c >= 4) s.reflections = 1, s.glossiest = 0.1f, s.specular_cutoff = 0.4f;
-    return s;
-}
-
 static void every_rung_of_every_ladder_has_its_cost_on_every_class(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of(c);
+        masu_scene s = scene_of_class(c);
         assert_int_equal(masu_scene_class_of(&s), c);
         const masu_ladder *l = masu_ladder_for(&s);
         assert_null(masu_ladder_costs_on(&s, MASU_DEVICE_OTHER));
@@ -147,7 +137,7 @@ static void costs_of_its_class_keep_the_target_sooner(void **state) {
     (void)state;
     uint32_t all[2] = {0, 0}, all_lost[2] = {0, 0};
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of(c);
+        masu_scene s = scene_of_class(c);
         const masu_ladder *l = masu_ladder_of_class((masu_scene_class)c);
         if (!l->count) continue;
         uint32_t over[2] = {0, 0}, lost[2] = {0, 0};

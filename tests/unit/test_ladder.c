@@ -35,23 +35,10 @@ static void compile(const masu_desc *d) {
 
 /* ---- Classes and tables ---------------------------------------------------------------------- */
 
-/* A scene of that class that is nothing but its numbers. */
-static masu_scene scene_of(uint32_t c) {
-    uint32_t kind = c % 4;
-    masu_desc d = scene_desc(kind == MASU_SCENE_SDF    ? SDF
-                             : kind == MASU_SCENE_BOTH ? RASTER | SDF
-                                                       : RASTER,
-                             64, 48);
-    masu_scene s = *d.scene;
-    if (kind == MASU_SCENE_WORLD) s.lods = 2, s.placed_occluders = 3;
-    if (c >= 4) s.reflections = 1, s.glossiest = 0.1f, s.specular_cutoff = 0.4f;
-    return s;
-}
-
 static void scenes_have_the_class_of_what_they_are_made_of(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of(c);
+        masu_scene s = scene_of_class(c);
         assert_int_equal(masu_scene_class_of(&s), c);
         const char *name = masu_scene_class_name((masu_scene_class)c);
         for (uint32_t k = 0; k < c; k++)
@@ -66,7 +53,7 @@ static void scenes_have_the_class_of_what_they_are_made_of(void **state) {
             assert_int_equal(masu_scene_class_of(&s), c + 2);
         }
         if (c >= 4) { /* nothing is glossy enough: the plan traces nothing either */
-            s = scene_of(c);
+            s = scene_of_class(c);
             s.glossiest = s.specular_cutoff;
             assert_int_equal(masu_scene_class_of(&s), c - 4);
         }
@@ -81,7 +68,7 @@ static void tables_are_well_formed(void **state) {
     uint32_t measured = 0;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
         const masu_ladder *l = masu_ladder_of_class((masu_scene_class)c);
-        masu_scene s = scene_of(c);
+        masu_scene s = scene_of_class(c);
         s.shadow_cascades = 4, s.shadow_resolution = 512, s.shadow_distance = 50.0f;
         s.occlusion_radius = 1.0f;
         measured += l->count > 0;
@@ -117,7 +104,7 @@ static void tables_are_well_formed(void **state) {
 static void every_class_has_the_nearest_ladder(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of(c);
+        masu_scene s = scene_of_class(c);
         const masu_ladder *l = masu_ladder_for(&s),
                           *own = masu_ladder_of_class((masu_scene_class)c);
         assert_true(l && l->count >= 1);
@@ -155,7 +142,7 @@ static void assert_three(const masu_desc *d) {
 static void the_switch_says_which_rungs(void **state) {
     (void)state;
     for (uint32_t c = 0; c < MASU_SCENE_CLASSES; c++) {
-        masu_scene s = scene_of(c);
+        masu_scene s = scene_of_class(c);
         const masu_ladder *l = masu_ladder_for(&s);
         masu_desc d = scene_desc(RASTER, 640, 360), is;
         d.scene = &s;
