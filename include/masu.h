@@ -152,7 +152,7 @@ typedef struct masu_scene {
     float brighten, darken; /* that adapts as fast, 1/s; 0: the default */
     uint32_t sdf;        /* 1: the scene has an SDF */
     uint32_t sdf_params; /* run-time parameters of it */
-    uint32_t sdf_parts, sdf_slots;
+    uint32_t sdf_parts, sdf_slots, sdf_block_words;
     uint32_t sdf_dynamic;   /* 1: slots depend on parameters or time */
     uint32_t sdf_anchored;  /* 1: it keeps its precision far from the origin (docs/sdf.md) */
     uint32_t sdf_march;     /* bit per masu_march that the blob has code for */

@@ -17,7 +17,7 @@
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
-#define MASU_CLASSIFY 1
+#define MASU_TILES_WRITTEN 1
 #include "shared/store.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;

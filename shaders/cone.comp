@@ -31,8 +31,13 @@ layout(set = MASU_SET_PASS, binding = 1, r32f) uniform writeonly image2D cone_im
 layout(set = MASU_SET_PASS, binding = 0, r32f) uniform writeonly image2D cone_image;
 #endif
 
+#if MASU_CONE_BLOCK == 4
+#define MASU_TILES_WRITTEN 1
+#define MASU_SDF_KEEP
+#endif
 #define MASU_SDF_NO_FLAT
-#include "sdf/field.glsl"
+#include "sdf/spans.glsl"
+#define MASU_WRITES_BLOCKS (MASU_CONE_BLOCK == 4 && MASU_SDF_BLOCK_WORDS > 0)
 
 vec3 box_low, box_high;
 
@@ -66,24 +71,53 @@ void main()
         uvec2 tile = at * uint(MASU_CONE_BLOCK) / uint(MASU_TILE);
         masu_listed_box(box_low, box_high);
         bool empty = !masu_use_tile(tile.y * masu_tile_grid(pixels).x + tile.x, pixels);
-        MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
-            if (empty || uint(i) >= push.steps || !(t < limit)) {
+        bool done = empty;
+        int span = 0;
+        MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX + MASU_BLOCK_SPANS; i++) {
+            done = done || uint(i) >= push.steps || !(t < limit);
+            float at_t = t;
+#if MASU_WRITES_BLOCKS
+            /* A sample more for each piece of the rays that begin here. */
+            float begin = span_begin(t, r.pixel, span);
+            float end = span_begin(t, r.pixel, span + 1);
+            if (empty || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
                 break;
             }
+            at_t = done ? 0.5 * (begin + end) : t;
+            masu_margin = done ? span_margin(r, begin, end) : 0.0;
+#else
+            if (done) {
+                break;
+            }
+#endif
             bool usable;
-            float f = step_at(r, t, usable);
+            float f = step_at(r, at_t, usable);
             evals++;
+            if (done) {
+#if MASU_WRITES_BLOCKS
+                uint place = span_place(at, pixels, span);
+                for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+                    masu_tiles_out[place + uint(w)] = masu_kept[w];
+                }
+#endif
+                span++;
+                continue;
+            }
             float radius = max(f, outside_box(world_at(r.direction, t)));
             float inside = radius * radius * (1.0 + k * k) - k * k * t * t;
-            if (!usable || !(radius > 0.0) || !(inside > 0.0)) {
-                break;
-            }
-            float gain = (t + sqrt(inside)) / (1.0 + k * k) - t;
-            if (!(gain > 0.25 * k * t)) {
-                break;
-            }
-            t += gain;
+            float gain = (t + sqrt(max(inside, 0.0))) / (1.0 + k * k) - t;
+            done = !usable || !(radius > 0.0) || !(inside > 0.0) || !(gain > 0.25 * k * t);
+            t = done ? t : t + gain;
         }
+#if MASU_WRITES_BLOCKS
+        /* Where the middle ray has ended few others go on: by what the tile sees. */
+        for (; span < MASU_BLOCK_SPANS; span++) {
+            uint place = span_place(at, pixels, span);
+            for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+                masu_tiles_out[place + uint(w)] = masu_list_bits[w];
+            }
+        }
+#endif
         masu_count(MASU_COUNTER_SDF_EVALS, evals);
         MASU_STORE_R32F(cone_image, at, t);
     }

@@ -24,7 +24,9 @@ layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform writeonly uimage2D norma
 layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
 
 #define MASU_RELAXED
+#define MASU_SPANS_USED 1
 #define MASU_SDF_NO_FLAT
+#include "sdf/spans.glsl"
 #include "sdf/hit.glsl"
 
 /* Of the four pixels of an invocation, one in each quarter of the tile. */
@@ -81,6 +83,48 @@ ray ray_of(uvec2 corner, uvec2 size, int k)
     return r;
 }
 
+#if MASU_SDF_BLOCK_WORDS > 0
+/* The piece of its rays that the ray in work is in. */
+uint tile_bits[2];
+uint span_first; /* of its block's pieces */
+float span_from, span_to, span_start, span_pixel;
+int span_now;
+
+void look_up_span(float t)
+{
+    span_now = 0;
+    for (int i = 1; i <= MASU_BLOCK_SPANS; i++) {
+        span_now += t > span_begin(span_start, span_pixel, i) ? 1 : 0;
+    }
+    bool last = span_now == MASU_BLOCK_SPANS;
+    span_from = span_begin(span_start, span_pixel, span_now);
+    span_to = last ? 1e30 : span_begin(span_start, span_pixel, span_now + 1);
+    uint place = span_first + uint(min(span_now, MASU_BLOCK_SPANS - 1) * MASU_SDF_BLOCK_WORDS);
+    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+        masu_list_bits[w] = last ? tile_bits[w] : masu_tiles[place + uint(w)];
+    }
+}
+
+void begin_spans(uvec2 corner, uvec2 size, int k, float t)
+{
+    uvec2 block = min(pixel_of(corner, k), size - 1u) / 4u;
+    span_start = texelFetch(cone_image, ivec2(block), 0).r;
+    span_first = span_place(block, size, 0);
+    look_up_span(t);
+}
+#endif
+
+/* The field at m.t by what matters there. */
+float field_here(ray r, march_state m)
+{
+#if MASU_SDF_BLOCK_WORDS > 0
+    if (!(m.t >= span_from && m.t <= span_to)) {
+        look_up_span(m.t);
+    }
+#endif
+    return field_at(r, m.t);
+}
+
 /* All four rays in one loop: who is done with one takes the next, instead of waiting for the slowest of
  * its subgroup. Eight lanes that wait took 1.2 to 1.9 times the steps of their mean. */
 uint march_all(uvec2 corner, uvec2 size)
@@ -89,19 +133,25 @@ uint march_all(uvec2 corner, uvec2 size)
     uint evals = 0u;
     ray r = ray_of(corner, size, 0);
     march_state m = march_begin(r);
+#if MASU_SDF_BLOCK_WORDS > 0
+    begin_spans(corner, size, 0, m.t);
+#endif
     MASU_LOOP for (int i = 0; i < 4 * MASU_MARCH_STEPS_MAX; i++) {
         if (k > 3) {
             break;
         }
         if (!m.done) {
             evals++;
-            march_step(m, r, field_at(r, m.t));
+            march_step(m, r, field_here(r, m));
         }
         if (m.done) {
             found = mix(found, vec4(m.t), only(k));
             k++;
             r = ray_of(corner, size, k);
             m = march_begin(r);
+#if MASU_SDF_BLOCK_WORDS > 0
+            begin_spans(corner, size, k, m.t);
+#endif
         }
     }
     return evals;
@@ -120,6 +170,10 @@ void main()
             prepare(pixel_of(corner, k), size, k);
         }
     }
+#if MASU_SDF_BLOCK_WORDS > 0
+    tile_bits = masu_list_bits;
+    span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
+#endif
     if (listed) {
         masu_count(MASU_COUNTER_SDF_EVALS, march_all(corner, size));
     }
@@ -131,6 +185,9 @@ void main()
             t = known ? lane(flat_end, k) : t;
             if (t >= 0.0) {
                 ray r = ray_of(corner, size, k);
+#if MASU_SDF_BLOCK_WORDS > 0
+                begin_spans(corner, size, k, t);
+#endif
                 float z_scale = length(masu_pixel_ray(at, size));
                 uint part = flat_part[k];
                 float depth = write_hit(at, r, t, known, part, z_scale);

@@ -8,7 +8,7 @@
 #ifndef MASU_FIELD_GLSL
 #define MASU_FIELD_GLSL
 
-#ifdef MASU_CLASSIFY
+#ifdef MASU_TILES_WRITTEN
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_TILES, std430) buffer Tiles
 {
     uint masu_tiles_out[];
@@ -135,9 +135,39 @@ uint masu_part_at(uint i)
  * lavapipe then runs every copy for all lanes: 1.3 to 2.6 times the time of the march. */
 #define MASU_LOOP [[dont_unroll]]
 
+/* Of a list, the first place at or behind i that the bits ask for; a list may be longer than they are. */
+uint masu_place_from(uint i)
+{
+#if defined(MASU_SDF_KEEP) || defined(MASU_SPANS_USED)
+    if (masu_list_count != MASU_TILE_ALL && i < 64u) {
+        uint low = i < 32u ? masu_list_bits[0] >> i : 0u;
+        uint high = masu_list_bits[1] & 0xFFFFFFFFu << (i < 32u ? 0u : i - 32u);
+        i = low != 0u ? i + masu_low_bit(low) : high != 0u ? 32u + masu_low_bit(high) : 64u;
+    }
+#endif
+    return i;
+}
+
+uint masu_first_place()
+{
+    return masu_place_from(0u);
+}
+
+uint masu_next_place(uint i)
+{
+    return masu_place_from(i + 1u);
+}
+
 /* Lists are in rising order (classify.comp), and so is "all parts". */
 #define MASU_SDF_ASCENDING
+#include "sdf/terms.glsl"
 #include "sdf_scene.glsl"
+
+/* Bits of terms: tiles know none, and ask for all. */
+uint masu_all_terms(int word)
+{
+    return word == 0 ? MASU_SDF_TERM_BITS_0 : MASU_SDF_TERM_BITS_1;
+}
 
 #define MASU_LIST_WORDS ((MASU_SDF_PART_COUNT + 31) / 32)
 
@@ -179,8 +209,12 @@ bool masu_use_tile(uint tile, uvec2 size)
         masu_list_bits[w] = masu_tiles[list + uint(w)];
         any_bits |= masu_list_bits[w];
     }
+    for (int w = 0; w < 2; w++) {
+        masu_list_bits[w] = (w < MASU_LIST_WORDS ? masu_list_bits[w] : 0u) | masu_all_terms(w);
+    }
     return any_bits != 0u;
 #else
+    masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
     masu_list_count = masu_tiles[list];
     masu_list_first = list + 1u;
     return masu_list_count != 0u;
@@ -213,6 +247,13 @@ float safe_step = frame.sdf_min.w;
 vec3 world_at(vec3 direction, float t)
 {
     return eye_hi + (eye_lo + direction * t);
+}
+
+/* Of a ball around a sample: what masu_margin is for it; what fp32 makes of both ends of it is added. */
+float field_margin(ray r, float t, float radius)
+{
+    vec3 p = abs(world_at(r.direction, t));
+    return 2.0 * (radius + 16.0 * ulp * (max(p.x, max(p.y, p.z)) + t + radius)) / safe_step;
 }
 
 float field_at(ray r, float t)

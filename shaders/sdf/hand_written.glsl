@@ -6,6 +6,14 @@
 #define MASU_SDF_LISTED_COUNT 1
 #define MASU_SDF_MASKED 1
 #define MASU_SDF_SLOT_COUNT 1
+#ifdef MASU_SDF_TERMS
+#define MASU_SDF_BLOCK_WORDS 1
+#define MASU_SDF_TERM_BITS_0 0xFFFFFFFEu
+#else
+#define MASU_SDF_BLOCK_WORDS 0
+#define MASU_SDF_TERM_BITS_0 0u
+#endif
+#define MASU_SDF_TERM_BITS_1 0u
 #define MASU_SDF_DYNAMIC 0
 
 vec4 masu_sdf_bounds(uint part)

@@ -108,12 +108,17 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  *   TILES_HEADER + k      number of the k-th active tile, in no particular order
  *   TILES_HEADER + tiles  the lists, `stride` uints each: of a scene of at most TILE_MASKED_MAX parts
  *                         a bit for each part, else how many parts, then their numbers
+ *   then                  of each 4x4 block of pixels, row by row, what of the field matters in each of BLOCK_SPANS
+ *                         pieces of its rays (shaders/sdf/spans.glsl): as many words each as the scene's code says
  * A list that would not fit says TILE_ALL: all parts then count. That is slower and just as right. */
 #define MASU_TILE 16
 #define MASU_TILES_HEADER 8
 #define MASU_TILE_PARTS_MAX 63
 #define MASU_TILE_MASKED_MAX 64
 #define MASU_TILE_ALL 0xFFFFFFFFu
+#define MASU_BLOCK_PIXELS 4
+#define MASU_BLOCK_WORDS_MAX 2
+#define MASU_BLOCK_SPANS 4
 #define MASU_SDF_PARTS_MAX 4096
 
 /* Punctual lights. Their tiles are those of the SDF, of MASU_TILE pixels; a list is one word that says

@@ -71,8 +71,15 @@ static uint64_t tile_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2
     return MASU_TILES_HEADER + (uint64_t)grid.width * grid.height * (1 + list);
 }
 
+static uint64_t block_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
+    (void)rung;
+    return (uint64_t)grid.width * grid.height * MASU_BLOCK_SPANS * plan->scene.sdf_block_words;
+}
+
+/* The blocks' bits stand behind the lists of the frame's own tiles: the most of each is room for both. */
 static uint64_t masu_tile_words(const masu_frame_plan *plan) {
-    return plan->needs.sdf ? most_words(plan, MASU_EXTENT_TILE, tile_words) : 0;
+    if (!plan->needs.sdf) return 0;
+    return most_words(plan, MASU_EXTENT_TILE, tile_words) + most_words(plan, MASU_EXTENT_BLOCK4, block_words);
 }
 
 static uint64_t light_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {

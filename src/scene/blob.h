@@ -23,7 +23,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 9u
+#define MASU_BLOB_VERSION 10u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -441,7 +441,7 @@ typedef struct masu_blob_sdf {
     uint32_t has_raster; /* 1: the code was compiled to read a raster depth (there are instances) */
     uint32_t part_count; /* 1..4096 */
     uint32_t anchored;   /* 1: the update SPIR-V moves the SDF's space to frame.anchor */
-    uint32_t reserved;
+    uint32_t block_words; /* of the tiles' buffer for each 4x4 block of pixels: 0..2 */
 } masu_blob_sdf;
 
 typedef struct masu_blob_sdf_param {

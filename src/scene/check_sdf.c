@@ -36,6 +36,7 @@ masu_result masu_check_sdf(reader *r) {
         return bad(r, "sdf", 0, "part count is not 1 to 4096");
     }
     if (s->anchored > 1) return bad(r, "sdf", 0, "anchored is neither 0 nor 1");
+    if (s->block_words > MASU_BLOCK_WORDS_MAX) return bad(r, "sdf", 0, "words of a block are not 0 to 2");
     if (s->has_raster && v->code[MASU_BLOB_FRAGMENT_SPIRV].words) {
         return bad(r, "march_fragment SPIR-V", 0, "is there beside polygons, which it would erase");
     }
@@ -70,6 +71,7 @@ void masu_look_at_sdf(const reader *r, masu_scene *out) {
                     {MASU_BLOB_SEED_SPIRV, MASU_MARCH_SEED},
                     {MASU_BLOB_CHECKERBOARD_SPIRV, MASU_MARCH_CHECKERBOARD}};
     out->sdf_parts = r->view.sdf->part_count;
+    out->sdf_block_words = r->view.sdf->block_words;
     out->sdf_slots = (uint32_t)r->counts[MASU_BLOB_SLOTS];
     out->sdf_dynamic = r->view.code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words != NULL;
     out->sdf_anchored = r->view.sdf->anchored;

@@ -11,7 +11,10 @@ void sdfc_free(sdfc *c) {
     for (int i = 0; i < c->shape_count; i++) free(c->shapes[i].child);
     for (int i = 0; i < c->part_count; i++) {
         sdfc_program *p = &c->parts[i].program;
-        for (int f = 0; f < p->function_count; f++) free(p->functions[f].instrs);
+        for (int f = 0; f < p->function_count; f++) {
+            free(p->functions[f].instrs);
+            free(p->functions[f].terms);
+        }
         free(p->functions);
         free(p->args);
         free(p->root);
@@ -97,6 +100,7 @@ static void fill_result(sdfc *c, masu_sdfc_result *out) {
     out->material_count = (uint32_t)c->material_count;
     out->param_count = (uint32_t)c->param_count;
     out->slot_count = c->slot_count;
+    out->block_words = sdfc_block_words(c);
     out->glossiest = least_roughness(c);
     out->anchored = c->place_count > 0;
     for (int i = 0; i < c->dynamic_count; i++) {
@@ -118,6 +122,7 @@ static void compile(sdfc *c, uint32_t pairs, masu_sdfc_result *out) {
     sdfc_group_parts(c);
     sdfc_assign_slots(c);
     if (pairs != UINT32_MAX) sdfc_check(c, pairs ? pairs : 20000);
+    sdfc_assign_terms(c);
     sdfc_emit(c);
     fill_result(c, out);
 }

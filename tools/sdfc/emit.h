@@ -26,7 +26,7 @@ void sdfc_put_number(sdfc_writer *w, double v);
 /* Of an instruction of that group's program. */
 void sdfc_put_operand(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, int operand);
 void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc_instr *i,
-                    int variable);
+                    int variable, bool declared);
 /* Functions of the library that are used; with_expressions: by the update of slots too. */
 void sdfc_put_library(sdfc_writer *w, bool with_expressions);
 void sdfc_put_users(sdfc_writer *w);             /* blocks that the author wrote */

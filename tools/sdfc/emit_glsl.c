@@ -9,13 +9,26 @@ static bool any_timed(const sdfc *c) {
     return false;
 }
 
+/* Which of its terms a part is asked for: its bits, from the first on. */
+static void put_terms_on(sdfc_writer *w, const sdfc_group *group, bool several) {
+    if (!group->term_count)
+        PUT(w, "0xFFFFFFFFu");
+    else if (several)
+        PUT(w, "masu_term_bits(%d) >> (%uu + (part - %uu) * %uu)", group->first_term / 32,
+            (unsigned)group->first_term % 32, (unsigned)group->first_part, (unsigned)group->term_count);
+    else
+        PUT(w, "masu_term_bits(%d) >> %uu", group->first_term / 32, (unsigned)group->first_term % 32);
+}
+
 /* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has several. */
 static void put_part_value(sdfc_writer *w, int g, const char *name, const char *point) {
     const sdfc *c = w->c;
     const sdfc_group *group = &c->groups[g];
     if (group->part_count == 1) {
-        PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, %uu)", name, g, point, point,
+        PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, %uu, ", name, g, point, point,
             point, c->parts[group->first_part].slot_base);
+        put_terms_on(w, group, false);
+        PUT(w, ")");
         double safe = c->initial[group->first_part * MASU_SDFC_PART_SLOTS + 4];
         if (safe != 1) {
             PUT(w, " * ");
@@ -26,8 +39,9 @@ static void put_part_value(sdfc_writer *w, int g, const char *name, const char *
     }
     PUT(w, "        uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
     PUT(w, "        uint base = uint(masu_slot(record + 6u));\n");
-    PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, base) * masu_slot(record + 4u);\n",
-        name, g, point, point, point);
+    PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, base, ", name, g, point, point, point);
+    put_terms_on(w, group, true);
+    PUT(w, ") * masu_slot(record + 4u);\n");
 }
 
 /* How fast a half-space's field changes along d: its operations without what they add. */
@@ -43,7 +57,7 @@ static void put_slope(sdfc_writer *w, int group) {
             sdfc_put_operand(w, g, p, i->operand[0]);
             PUT(w, ";\n");
         } else {
-            sdfc_put_instr(w, group, p, i, 3 + k);
+            sdfc_put_instr(w, group, p, i, 3 + k, false);
         }
     }
     PUT(w, "    return ");
@@ -76,7 +90,7 @@ static void put_flat(sdfc_writer *w) {
             group->first_part + group->part_count);
         PUT(w, "        float h = masu_shape_%d(o.x, o.y, o.z, ", g);
         put_slot_base(w, g);
-        PUT(w, ");\n        float slope = masu_slope_%d(d.x, d.y, d.z, ", g);
+        PUT(w, ", 0u);\n        float slope = masu_slope_%d(d.x, d.y, d.z, ", g);
         put_slot_base(w, g);
         PUT(w, ");\n"
                "        float t = h + slope * start <= 0.0 ? start : slope < 0.0 ? -h / slope : "
@@ -122,7 +136,7 @@ static void put_glsl_dispatch(sdfc_writer *w) {
     sdfc *c = w->c;
     PUT(w, "float masu_sdf_part(uint part, vec3 p)\n{\n");
     if (c->part_count == 1) {
-        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, %uu)", c->parts[0].slot_base);
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, %uu, 0xFFFFFFFFu)", c->parts[0].slot_base);
         if (c->initial[4] != 1) {
             PUT(w, " * ");
             sdfc_put_number(w, c->initial[4]);
@@ -134,12 +148,12 @@ static void put_glsl_dispatch(sdfc_writer *w) {
     PUT(w, "    float safe = masu_slot(record + 4u);\n");
     PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
     if (c->group_count == 1) {
-        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, base) * safe;\n}\n\n");
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, base, 0xFFFFFFFFu) * safe;\n}\n\n");
         return;
     }
     PUT(w, "    float d = 1e30;\n    switch (uint(masu_slot(record + 5u))) {\n");
     for (int g = 0; g < c->group_count; g++) {
-        PUT(w, "    case %du: d = masu_shape_%d(p.x, p.y, p.z, base); break;\n", g, g);
+        PUT(w, "    case %du: d = masu_shape_%d(p.x, p.y, p.z, base, 0xFFFFFFFFu); break;\n", g, g);
     }
     PUT(w, "    }\n    return d * safe;\n}\n\n");
 }
@@ -154,6 +168,29 @@ static void put_least(sdfc_writer *w) {
     PUT(w, "        nearest = f < d ? part : nearest;\n        d = f < d ? f : d;\n");
 }
 
+static bool is_estimate(const sdfc *c, const sdfc_group *group) {
+    return c->shapes[c->parts[group->first_part].shape].facts.estimate;
+}
+
+/* Of a scene of few parts: the bits of the part in work that matter in the ball. What only estimates its
+ * distance always does. */
+static void put_keep(sdfc_writer *w, const sdfc_group *group) {
+    bool several = group->part_count > 1;
+    if (is_estimate(w->c, group))
+        PUT(w, "        MASU_KEEP_PART(1e30, 0.0, part >> 5, 1u << (part & 31u))\n");
+    else if (several)
+        PUT(w, "        MASU_KEEP_PART(d, f, part >> 5, 1u << (part & 31u))\n");
+    else
+        PUT(w, "        MASU_KEEP_PART(d, f, %uu, 0x%xu)\n", (unsigned)group->first_part / 32, 1u << group->first_part % 32);
+    if (!group->term_count) return;
+    PUT(w, "        MASU_KEEP_TERMS(%d, ", group->first_term / 32);
+    if (several)
+        PUT(w, "%uu + (part - %uu) * %uu)\n", (unsigned)group->first_term % 32, (unsigned)group->first_part,
+            (unsigned)group->term_count);
+    else
+        PUT(w, "%uu)\n", (unsigned)group->first_term % 32);
+}
+
 /* The half-spaces count always, unless the includer meets them in closed form. */
 static void put_flat_least(sdfc_writer *w) {
     const sdfc *c = w->c;
@@ -165,6 +202,7 @@ static void put_flat_least(sdfc_writer *w) {
         PUT(w, "    for (uint part = %du; part < %du; part++) {\n", group->first_part,
             group->first_part + group->part_count);
         put_part_value(w, g, "f", "p");
+        PUT(w, "        MASU_KEEP_FLAT(d, f)\n");
         put_least(w);
         PUT(w, "    }\n");
     }
@@ -189,56 +227,21 @@ static void put_any_order(sdfc_writer *w) {
     PUT(w, "    return d;\n}\n");
 }
 
-/* A part alone of its form. */
+/* A part alone of its form. Wrong turn, once tiles alone chose parts: one question for all parts that share a
+ * place, so that an angle which they have in common is computed once. Blocks of pixels choose one of them. */
 static void put_only_part(sdfc_writer *w, int g) {
-    PUT(w, "    {\n");
+    const sdfc_group *group = &w->c->groups[g];
+    bool alone = w->c->part_count - w->c->flat_parts == 1;
+    if (alone)
+        PUT(w, "    {\n");
+    else
+        PUT(w, "    MASU_PART_TERM((masu_part_bits(%d) & 0x%xu) != 0u) {\n", group->first_part / 32,
+            1u << group->first_part % 32);
+    PUT(w, "        const uint part = %du;\n", group->first_part);
+    PUT(w, "        MASU_KEEP_BEGIN\n");
     put_part_value(w, g, "f", "p");
-    PUT(w, "        const uint part = %du;\n", w->c->groups[g].first_part);
+    put_keep(w, group);
     put_least(w);
-    PUT(w, "    }\n");
-}
-
-/* Whether a tile that sees one of two parts nearly always sees both: each one's sphere holds the middle
- * of the other's, well inside. */
-static bool share_a_place(const sdfc *c, int g, int h) {
-    const sdfc_part *p = &c->parts[c->groups[g].first_part],
-                    *q = &c->parts[c->groups[h].first_part];
-    const sdfc_facts *e = &c->shapes[p->shape].facts, *f = &c->shapes[q->shape].facts;
-    if (p->moves || q->moves || !isfinite(e->radius) || !isfinite(f->radius)) return false;
-    double distance = hypot(hypot(e->center[0] - f->center[0], e->center[1] - f->center[1]),
-                            e->center[2] - f->center[2]);
-    return distance < 0.5 * fmin(e->radius, f->radius);
-}
-
-/* Parts that are alone of their form and share a place are asked for together and evaluated one after
- * the other: what they have in common, an angle around one axis for one, is then computed once.
- * Wrong turn: one question for each part. In a tunnel of polar rings no tile leaves any out, and each
- * had an arc tangent of its own: 1.4 times the time of the march. */
-static void put_place(sdfc_writer *w, int g, bool *put) {
-    const sdfc *c = w->c;
-    uint32_t bits[MASU_SDFC_MASKED_MAX / 32] = {0};
-    bool alone = c->part_count - c->flat_parts == 1;
-    for (int h = g; h < c->group_count; h++) {
-        const sdfc_group *group = &c->groups[h];
-        if (group->flat || group->part_count > 1 || put[h]) continue;
-        put[h] = h == g || share_a_place(c, g, h);
-        if (put[h]) bits[group->first_part / 32] |= 1u << group->first_part % 32;
-    }
-    if (alone) {
-        put_only_part(w, g);
-        return;
-    }
-    PUT(w, "    if (");
-    for (int word = 0, some = 0; word < MASU_SDFC_MASKED_MAX / 32; word++) {
-        if (!bits[word]) continue;
-        PUT(w, "%s(masu_part_bits(%d) & 0x%xu) != 0u", some++ ? " || " : "", word, bits[word]);
-    }
-    PUT(w, ") {\n");
-    for (int h = g; h < c->group_count; h++) {
-        int part = c->groups[h].first_part;
-        if (c->groups[h].part_count > 1 || !(bits[part / 32] >> part % 32 & 1u)) continue;
-        put_only_part(w, h);
-    }
     PUT(w, "    }\n");
 }
 
@@ -259,10 +262,19 @@ static void put_masked_group(sdfc_writer *w, int g) {
             "        if (bits == 0u) {\n            break;\n        }\n"
             "        uint part = %du + masu_low_bit(bits);\n        bits &= bits - 1u;\n",
             word * 32);
+        PUT(w, "        MASU_KEEP_BEGIN\n");
         put_part_value(w, g, "f", "p");
+        put_keep(w, group);
         put_least(w);
         PUT(w, "    }\n");
     }
+}
+
+static bool any_estimate(const sdfc *c) {
+    for (int g = 0; g < c->group_count; g++) {
+        if (is_estimate(c, &c->groups[g])) return true;
+    }
+    return false;
 }
 
 static void put_listed_group(sdfc_writer *w, int g) {
@@ -276,25 +288,32 @@ static void put_listed_group(sdfc_writer *w, int g) {
         PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
     }
     put_part_value(w, g, "f", "p");
+    PUT(w, any_estimate(c) ? "        MASU_KEEP_PART(1e30, 0.0, i >> 5, 1u << (i & 31u))\n"
+                           : "        MASU_KEEP_PART(d, f, i >> 5, 1u << (i & 31u))\n");
     put_least(w);
-    PUT(w, "        i++;\n    }\n");
+    PUT(w, "        i = masu_next_place(i);\n    }\n");
 }
 
 /* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
  * costs its own form and not all of them. Needs a list in rising order, or bits. */
 static void put_ascending(sdfc_writer *w) {
     const sdfc *c = w->c;
-    bool masked = c->part_count <= MASU_SDFC_MASKED_MAX, put[MASU_SDFC_MASKED_MAX] = {false};
+    bool masked = c->part_count <= MASU_SDFC_MASKED_MAX;
     put_head(w);
-    if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = 0u;\n");
-    for (int g = 0; g < c->group_count; g++) {
-        if (c->groups[g].flat) continue;
-        if (!masked)
-            put_listed_group(w, g);
-        else if (c->groups[g].part_count > 1)
-            put_masked_group(w, g);
-        else if (!put[g])
-            put_place(w, g, put);
+    PUT(w, "    MASU_KEEP_NONE\n");
+    if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = masu_first_place();\n");
+    /* An estimate comes last: it tells nothing about the others. */
+    for (int late = 0; late < 2; late++) {
+        for (int g = 0; g < c->group_count; g++) {
+            bool turn = (masked && is_estimate(c, &c->groups[g])) == (late != 0);
+            if (c->groups[g].flat || !turn) continue;
+            if (!masked)
+                put_listed_group(w, g);
+            else if (c->groups[g].part_count > 1)
+                put_masked_group(w, g);
+            else
+                put_only_part(w, g);
+        }
     }
     put_flat_least(w);
     PUT(w, "    return d;\n}\n");
@@ -415,10 +434,15 @@ void sdfc_put_glsl(sdfc_writer *w) {
         c->part_count - c->flat_parts);
     PUT(w, "#define MASU_SDF_MASKED %d /* 1: lists of parts are bits */\n",
         c->part_count <= MASU_SDFC_MASKED_MAX);
+    PUT(w, "#define MASU_SDF_BLOCK_WORDS %u /* of bits that say what matters in a block of pixels */\n",
+        sdfc_block_words(c));
+    for (int word = 0; word < MASU_SDFC_BLOCK_WORDS_MAX; word++) {
+        PUT(w, "#define MASU_SDF_TERM_BITS_%d 0x%xu\n", word, sdfc_term_word(c, word));
+    }
     PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
     PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", any_timed(c));
     sdfc_put_users(w);
-    PUT(w, "#define real float\n#define TO_INT(x) int(x)\n");
+    PUT(w, "#include \"sdf/terms.glsl\"\n#define real float\n#define TO_INT(x) int(x)\n");
     sdfc_put_library(w, false);
     PUT(w, "\n");
     sdfc_put_shapes(w);

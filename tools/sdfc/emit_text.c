@@ -94,31 +94,68 @@ static bool does_nothing(const sdfc_writer *w, const sdfc_group *g, const sdfc_p
     return w->c->exprs[p->args[~i->operand[1]]].value == (i->op == SDFC_mul ? 1 : 0);
 }
 
+/* Whether other cells of a repetition can be left out by how far off they are. */
+static bool has_reach(const sdfc_writer *w, const sdfc_program *p, const sdfc_instr *i) {
+    return w->glsl && w->c->exprs[p->args[~i->operand[9]]].value > 0;
+}
+
+/* Which axes' neighbours are farther than what the own cell holds; of all cells not looked at, whether they may
+ * matter in the ball: then nothing is left out. */
+static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i, int variable) {
+    PUT(w, "        if (i == 0u) {\n");
+    for (int k = 0; k < 3; k++) {
+        if (!i->select[k]) continue;
+        PUT(w, "            skip |= v%d + MASU_SDF_MARGIN * ", variable);
+        sdfc_put_operand(w, g, p, i->operand[11]);
+        PUT(w, " < (");
+        sdfc_put_operand(w, g, p, i->operand[6 + k]);
+        PUT(w, " - abs(");
+        sdfc_put_operand(w, g, p, i->operand[2 * k]);
+        PUT(w, ")) * ");
+        sdfc_put_operand(w, g, p, i->operand[9]);
+        PUT(w, " ? %du : 0u;\n", 1u << (i->select[k] - 1));
+    }
+    PUT(w, "        }\n");
+}
+
 static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const sdfc_program *p,
-                         const sdfc_instr *i, int variable) {
-    PUT(w, "    real v%d = 1e30;\n    for (int i = 0; i < %d; i++) {\n", variable, i->points);
+                         const sdfc_instr *i, int variable, bool declared) {
+    bool skips = has_reach(w, p, i);
+    PUT(w, declared ? "    v%d = 1e30;\n" : "    real v%d = 1e30;\n", variable);
+    if (skips)
+        PUT(w, "    MASU_LOOP for (uint i = 0u, skip = 0u; i < %du; i = ((i | skip) + 1u) & ~skip) {\n", i->points);
+    else
+        PUT(w, w->glsl ? "    MASU_LOOP for (uint i = 0u; i < %du; i++) {\n" : "    for (int i = 0; i < %d; i++) {\n", i->points);
     for (int k = 0; k < 3; k++) {
         PUT(w, "        real p%d = ", k);
         if (i->select[k]) {
-            PUT(w, "(i & %d) != 0 ? ", 1 << (i->select[k] - 1));
+            PUT(w, w->glsl ? "(i & %du) != 0u ? " : "(i & %d) != 0 ? ", 1 << (i->select[k] - 1));
             sdfc_put_operand(w, g, p, i->operand[2 * k + 1]);
             PUT(w, " : ");
         }
         sdfc_put_operand(w, g, p, i->operand[2 * k]);
         PUT(w, ";\n");
     }
-    PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base));\n    }\n", variable,
-        variable, group, i->aux);
+    PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base%s));\n", variable, variable, group,
+        i->aux, w->glsl ? ", on" : "");
+    if (skips) put_skips(w, g, p, i, variable);
+    PUT(w, "    }\n");
+    if (!w->glsl || g->term_count == 0) return;
+    PUT(w, "    MASU_KEEP_ALL(v%d + MASU_SDF_MARGIN * ", variable);
+    sdfc_put_operand(w, g, p, i->operand[11]);
+    PUT(w, " > ");
+    sdfc_put_operand(w, g, p, i->operand[10]);
+    PUT(w, ", 0x%xu)\n", (1u << g->term_count) - 1u);
 }
 
 void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc_instr *i,
-                    int variable) {
+                    int variable, bool declared) {
     const sdfc_group *g = &w->c->groups[group];
     if (i->op == SDFC_CALL_MIN) {
-        put_call_min(w, group, g, p, i, variable);
+        put_call_min(w, group, g, p, i, variable, declared);
         return;
     }
-    PUT(w, "    real v%d = ", variable);
+    PUT(w, declared ? "    v%d = " : "    real v%d = ", variable);
     if (i->op == SDFC_CALL_USER) {
         PUT(w, w->glsl ? "masu_user_%d(vec3(" : "masu_user_%d(", i->aux);
         for (int k = 0; k < 3; k++) {
@@ -140,14 +177,91 @@ void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc
     PUT(w, ";\n");
 }
 
+/* ---- terms (terms.c) ---- */
+
+static bool is_open(const sdfc_term *t) { return t->bit >= 0 || t->cap; }
+
+static bool is_declared(const sdfc_function *f, int t) {
+    for (int k = f->term_count; k-- > t + 1;) {
+        if (is_open(&f->terms[k]) && f->terms[k].last == f->terms[t].last && f->terms[k].first <= f->terms[t].first) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Without the term its join is what it was before, or nothing. What holds others opens first. */
+static void open_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_function *f, int k) {
+    for (int t = f->term_count; t-- > 0;) {
+        const sdfc_term *term = &f->terms[t];
+        if (term->first != k || !is_open(term)) continue;
+        PUT(w, is_declared(f, t) ? "    v%d = " : "    real v%d = ", 3 + term->last);
+        if (term->opens)
+            PUT(w, term->most ? "(-1e30)" : "1e30");
+        else
+            sdfc_put_operand(w, g, p, f->instrs[term->last].operand[0]);
+        if (!term->cap) {
+            PUT(w, ";\n    MASU_TERM((on & 0x%xu) != 0u) {\n", 1u << term->bit);
+            continue;
+        }
+        PUT(w, ";\n    MASU_TERM(");
+        sdfc_put_operand(w, g, p, f->instrs[term->last].operand[0]);
+        PUT(w, " > ");
+        sdfc_put_operand(w, g, p, term->cap);
+        PUT(w, ") {\n");
+    }
+}
+
+static void close_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_function *f, int k) {
+    for (int t = 0; t < f->term_count; t++) {
+        const sdfc_term *term = &f->terms[t];
+        if (term->last != k || !is_open(term)) continue;
+        if (term->cap) {
+            PUT(w, "    }\n");
+            continue;
+        }
+        if (term->opens) {
+            PUT(w, "    MASU_KEEP(0x%xu)\n    }\n", 1u << term->bit);
+            continue;
+        }
+        PUT(w, term->most ? "    MASU_KEEP_MOST(" : "    MASU_KEEP_LEAST(");
+        sdfc_put_operand(w, g, p, f->instrs[k].operand[0]);
+        PUT(w, ", ");
+        sdfc_put_operand(w, g, p, f->instrs[k].operand[1]);
+        PUT(w, ", ");
+        sdfc_put_number(w, term->lipschitz);
+        PUT(w, ", ");
+        if (term->smooth)
+            sdfc_put_operand(w, g, p, term->smooth);
+        else
+            PUT(w, "0.0");
+        PUT(w, ", 0x%xu, 0x%xu)\n    }\n", 1u << term->bit, (unsigned)term->before);
+    }
+}
+
+static bool ends_term(const sdfc_function *f, int k) {
+    for (int t = 0; t < f->term_count; t++) {
+        if (f->terms[t].last == k && is_open(&f->terms[t])) return true;
+    }
+    return false;
+}
+
 static void put_function(sdfc_writer *w, int group, const sdfc_program *p, int function,
                          bool root) {
     const sdfc_function *f = &p->functions[function];
+    const sdfc_group *g = &w->c->groups[group];
+    bool terms = w->glsl;
     PUT(w, "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
     if (!root) PUT(w, "_%d", function);
-    PUT(w, "(real x, real y, real z, uint base)\n{\n");
+    PUT(w, w->glsl ? "(real x, real y, real z, uint base, uint on)\n{\n" : "(real x, real y, real z, uint base)\n{\n");
     if (!w->glsl) PUT(w, "    (void)base;\n");
-    for (int k = 0; k < f->count; k++) sdfc_put_instr(w, group, p, &f->instrs[k], 3 + k);
+    if (terms && g->term_count) PUT(w, "    uint kept = 0u;\n");
+    for (int k = 0; k < f->count; k++) {
+        if (terms) open_terms(w, g, p, f, k);
+        sdfc_put_instr(w, group, p, &f->instrs[k], 3 + k, terms && ends_term(f, k));
+        if (terms) close_terms(w, g, p, f, k);
+    }
+    if (terms && g->term_count) PUT(w, "    MASU_KEPT\n");
     PUT(w, "    return ");
     sdfc_put_operand(w, &w->c->groups[group], p, f->result);
     PUT(w, ";\n}\n\n");

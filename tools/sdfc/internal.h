@@ -139,13 +139,31 @@ typedef struct sdfc_instr {
     int32_t op;
     int32_t aux;                        /* CALL_MIN: the function, CALL_USER: the block */
     int32_t select[3];                  /* CALL_MIN: which bit of the point's number chooses */
-    int32_t points;                     /* CALL_MIN */
+    int32_t points;                     /* CALL_MIN; operands 6..8: what 9 times, less |the own
+                                           coordinate|, is the least of other cells' values along the
+                                           axis; 10: the least of cells that are not looked at; 11: the
+                                           constant of the values per metre of the world */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;
+
+/* A term: operations that are left out where what they are joined to decides alone (terms.c). They end with
+ * the operation that joins them; the first term of a join ends with its own value. */
+typedef struct sdfc_term {
+    int first, last; /* operations */
+    int bit;         /* of its part's terms, or -1: always evaluated */
+    int before;      /* bits of the same join's terms in front of it */
+    int smooth;      /* the argument (~operand) that is the radius of the blend, or 0 */
+    int cap;         /* instead of a bit: evaluated where its other operand exceeds this argument (~operand) */
+    bool opens;      /* the first of its join */
+    bool most;       /* the join takes the larger value */
+    double lipschitz; /* of it and of what it is joined to, per metre of the world */
+} sdfc_term;
 
 typedef struct sdfc_function {
     sdfc_instr *instrs;
     int count, capacity;
+    sdfc_term *terms; /* what stands in another comes before it */
+    int term_count, term_capacity;
     int result; /* operand */
     int first_variable;
 } sdfc_function;
@@ -181,6 +199,7 @@ typedef struct sdfc_group {
     int first_part, part_count;
     int *slot_of_arg; /* -1: a literal */
     int slot_count;
+    int first_term, term_count; /* bits of each part's terms; of the first part, then part by part */
     bool flat;  /* half-spaces: f is affine in the point */
     bool moves; /* a root transform of its parts changes */
 } sdfc_group;
@@ -253,6 +272,7 @@ typedef struct sdfc {
     int group_count, group_capacity;
     uint32_t slot_count;
     int flat_parts;          /* the last ones */
+    int term_bits;           /* of all parts, behind the bits of the parts */
     int box[2][3];           /* low and high side of the listed parts: expressions, or -1 */
     uint32_t box_slot[2][3]; /* of those that change */
     uint32_t *dynamic_slots; /* pairs: slot, expression */
@@ -325,6 +345,9 @@ int sdfc_box_side(sdfc *c, int axis, bool high); /* around the listed parts; -1:
 bool sdfc_root_moves(const sdfc *c, const sdfc_program *p);
 void sdfc_group_parts(sdfc *c);  /* by form, and orders them */
 void sdfc_assign_slots(sdfc *c); /* after that */
+void sdfc_assign_terms(sdfc *c);                 /* bits, of a scene of few parts */
+uint32_t sdfc_term_word(const sdfc *c, int word); /* the bits of terms in it */
+uint32_t sdfc_block_words(const sdfc *c);        /* of all bits, or of places in a list; 0: nothing to choose */
 void sdfc_emit(sdfc *c);
 void sdfc_check(sdfc *c, uint32_t pairs);
 void sdfc_free(sdfc *c); /* and all it has taken */

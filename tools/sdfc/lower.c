@@ -20,6 +20,9 @@ typedef struct lowering {
     sdfc_program *program;
     int function; /* being written */
     bool root;    /* no shape but movements, turns and scalings has been met */
+    double stretch; /* metres here for one of the world, at most; 0: not known */
+    unsigned folded; /* axes that jump from cell to cell: what is alike on both sides alone is continuous */
+    bool at_fold;    /* nothing has been done to the point since */
 } lowering;
 
 typedef struct point {
@@ -185,7 +188,7 @@ static int child_function(lowering *l, int shape, bool join_box, const sdfc_shap
 /* The distance to all of it, where no cell that was looked at is near. */
 static int capped(lowering *l, int d, int least, const sdfc_facts *f, point p) {
     bool ends = false;
-    int e[6];
+    int e[6], cap = least, first = l->program->functions[l->function].count;
     for (int i = 0; i < 3; i++) {
         bool end = isfinite(f->box.low[i]) && isfinite(f->box.high[i]);
         ends = ends || end;
@@ -199,7 +202,14 @@ static int capped(lowering *l, int d, int least, const sdfc_facts *f, point p) {
         int outside = OP(l, around_box, p.x, p.y, p.z, e[0], e[1], e[2], e[3], e[4], e[5]);
         least = OP(l, max, least, OP(l, mul, outside, constant(l, f->lipschitz)));
     }
-    return OP(l, min, d, least);
+    int result = OP(l, min, d, least);
+    if (cap < 0) {
+        sdfc_function *f2 = &l->program->functions[l->function];
+        f2->terms = sdfc_grow(l->c, f2->terms, f2->term_count, &f2->term_capacity, sizeof *f2->terms,
+                              INSTRS_MAX, "terms of a part");
+        f2->terms[f2->term_count++] = (sdfc_term){.first = first, .last = f2->count - 1, .bit = -1, .cap = cap};
+    }
+    return result;
 }
 
 /* ---- the root transform ---- */
@@ -238,6 +248,42 @@ static void gather_root(lowering *l, const point *p, bool ends) {
     add_root_step(l, SDFC_KIND_TRANSLATE, first, 3);
 }
 
+/* ---- terms ---- */
+
+/* Inside of something that takes the point apart in another way than terms know. */
+static int lower_whole(lowering *l, int shape, point p) {
+    double stretch = l->stretch;
+    l->stretch = 0;
+    int d = lower(l, shape, p);
+    l->stretch = stretch;
+    return d;
+}
+
+static bool has_terms(const lowering *l, const sdfc_shape *s) {
+    if (!(l->stretch > 0) || s->children < 2) return false;
+    if (!l->folded) return true;
+    for (int i = 0; i < s->children; i++) {
+        if (l->folded & ~l->c->shapes[s->child[i]].facts.symmetric) return false;
+    }
+    return l->at_fold;
+}
+
+static void add_term(lowering *l, const sdfc_shape *s, int child, int first, int smooth) {
+    sdfc_function *f = &l->program->functions[l->function];
+    double lipschitz = s->extra[0] != 0 ? 1 : s->facts.lipschitz;
+    if (f->count == first) return;
+    f->terms = sdfc_grow(l->c, f->terms, f->term_count, &f->term_capacity, sizeof *f->terms, INSTRS_MAX,
+                         "terms of a part");
+    f->terms[f->term_count++] =
+        (sdfc_term){.first = first,
+                    .last = f->count - 1,
+                    .bit = -1,
+                    .smooth = smooth,
+                    .opens = child == 0,
+                    .most = s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_SMOOTH_UNION,
+                    .lipschitz = lipschitz * l->stretch};
+}
+
 /* ---- operators ---- */
 
 static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
@@ -269,14 +315,34 @@ static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
         beside[i] = limited ? OP(l, beside_row, in[i], period, inverse, half)
                             : OP(l, beside, own[i], period);
     }
+    unsigned folded = l->folded;
+    bool at_fold = l->at_fold;
+    for (int i = 0; i < 3; i++) l->folded |= s->extra[i] == 1 ? 1u << i : 0;
+    l->at_fold = !folded; /* one fold inside of another: whose axes they are is not followed */
     if (!bits) {
         point q = {own[0], own[1], own[2], {p.offset[0], p.offset[1], p.offset[2]}};
-        return lower(l, s->child[0], q);
+        int d = lower(l, s->child[0], q);
+        l->folded = folded, l->at_fold = at_fold;
+        return d;
     }
     int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
+    l->folded = folded, l->at_fold = at_fold;
+    const sdfc_facts *child = &l->c->shapes[s->child[0]].facts;
+    int reach[6];
+    for (int i = 0; i < 3; i++) {
+        double corner = fmax(fabs(child->box.low[i]), fabs(child->box.high[i]));
+        int e = isfinite(corner) && s->extra[i] == 2
+                    ? sdfc_apply(l->c, SDFC_sub, s->number[i], sdfc_number(l->c, corner), 0)
+                    : sdfc_number(l->c, -1e30);
+        reach[i] = argument(l, e);
+    }
+    reach[3] = constant(l, l->stretch > 0 ? child->growth : 0);
+    reach[4] = constant(l, s->extra[3]);
+    reach[5] = constant(l, child->lipschitz * fmax(l->stretch, 1e-30));
     sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
     call->aux = function;
     call->points = 1 << bits;
+    memcpy(call->operand + 6, reach, sizeof reach);
     for (int i = 0; i < 3; i++) {
         call->operand[2 * i] = own[i];
         call->operand[2 * i + 1] = beside[i];
@@ -292,16 +358,20 @@ static int lower_polar(lowering *l, const sdfc_shape *s, point p) {
     int zero = constant(l, 0), one = constant(l, 1);
     int a = OP(l, polar_angle, p.x, p.z, sector, zero);
     point q = {OP(l, turn_x, p.x, p.z, a), p.y, OP(l, turn_z, p.x, p.z, a), {0}};
-    if (s->extra[0] == 1) return lower(l, s->child[0], q);
+    if (s->extra[0] == 1) return lower_whole(l, s->child[0], q);
     int b = OP(l, polar_angle, p.x, p.z, sector, one);
     point r = {OP(l, turn_x, p.x, p.z, b), p.y, OP(l, turn_z, p.x, p.z, b), {0}};
+    double stretch = l->stretch;
+    l->stretch = 0;
     int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
+    l->stretch = stretch;
+    int none = constant(l, 0);
     sdfc_instr *call = add_instr(l, SDFC_CALL_MIN);
     *call = (sdfc_instr){.op = SDFC_CALL_MIN,
                          .aux = function,
                          .points = 2,
                          .select = {1, 0, 1},
-                         .operand = {q.x, r.x, p.y, p.y, q.z, r.z}};
+                         .operand = {q.x, r.x, p.y, p.y, q.z, r.z, none, none, none, none, none, none}};
     int d = last_variable(l);
     if (s->extra[0] == 2) return d;
     int edge = OP(l, mul, OP(l, len2, p.x, p.z), constant(l, s->extra[2] * s->facts.lipschitz));
@@ -316,7 +386,7 @@ static int lower_bend(lowering *l, const sdfc_shape *s, point p) {
     int u = p.x, v = twist ? p.z : p.y;
     int turned_u = OP(l, turn_x, u, v, a), turned_v = OP(l, turn_z, u, v, a);
     point q = {turned_u, twist ? p.y : turned_v, twist ? turned_v : p.z, {0}};
-    int d = lower(l, s->child[0], q);
+    int d = lower_whole(l, s->child[0], q);
     int along = twist ? p.y : p.z;
     int radius = constant(l, s->extra[2]), middle = constant(l, s->extra[3]);
     int outside = OP(l, around_cylinder, u, along, v, radius, middle, constant(l, s->extra[4]));
@@ -354,7 +424,7 @@ static int lower_kaleidoscope(lowering *l, const sdfc_shape *s, point p) {
         int y = OP(l, sub, OP(l, mul, middle, k), shift[1]);
         p = (point){x, y, OP(l, sub, OP(l, mul, least, k), shift[2]), {0}};
     }
-    return OP(l, mul, lower(l, s->child[0], p), argument(l, s->number[4]));
+    return OP(l, mul, lower_whole(l, s->child[0], p), argument(l, s->number[4]));
 }
 
 static int lower_joined(lowering *l, const sdfc_shape *s, point p) {
@@ -364,7 +434,10 @@ static int lower_joined(lowering *l, const sdfc_shape *s, point p) {
         k = argument(l, s->number[0]);
         inverse = argument(l, s->number[1]);
     }
+    bool terms = has_terms(l, s), at_fold = l->at_fold;
     for (int i = 0; i < s->children; i++) {
+        l->at_fold = at_fold;
+        int first = l->program->functions[l->function].count;
         int e = lower(l, s->child[i], p);
         if (s->extra[0] != 0) {
             double lipschitz = l->c->shapes[s->child[i]].facts.lipschitz;
@@ -372,6 +445,8 @@ static int lower_joined(lowering *l, const sdfc_shape *s, point p) {
         }
         if (i == 0) {
             d = e;
+            terms = terms && d == last_variable(l);
+            if (terms) add_term(l, s, i, first, k);
             continue;
         }
         switch (s->kind) {
@@ -382,6 +457,7 @@ static int lower_joined(lowering *l, const sdfc_shape *s, point p) {
         case SDFC_KIND_SMOOTH_INTERSECTION: d = OP(l, smooth_max, d, e, k, inverse); break;
         default: d = OP(l, smooth_max, d, OP(l, neg, e), k, inverse); break;
         }
+        if (terms) add_term(l, s, i, first, k);
     }
     return d;
 }
@@ -403,7 +479,13 @@ static int lower_scale(lowering *l, const sdfc_shape *s, point p, bool root) {
             q.offset[i] = 1 + sdfc_apply(l->c, SDFC_mul, p.offset[i] - 1, n[i], 0);
         }
     }
+    double stretch = l->stretch, factor = 0;
+    for (int i = 0; i < 3; i++) {
+        factor = fmax(factor, fmax(fabs(l->c->exprs[n[i]].low), fabs(l->c->exprs[n[i]].high)));
+    }
+    l->stretch = isfinite(factor) ? stretch * factor : 0;
     int d = lower(l, s->child[0], q);
+    l->stretch = stretch;
     int k = argument(l, n[3]);
     return s->extra[0] != 0 ? OP(l, unscale, d, k, p.x, p.y, p.z) : OP(l, mul, d, k);
 }
@@ -526,6 +608,7 @@ static int lower(lowering *l, int shape, point p) {
     if (root && (!l->root || !hands_offset_on(l->c, s))) gather_root(l, &p, !l->root);
     if (!hands_offset_on(l->c, s)) p = settled(l, p);
     if (s->children == 0) return lower_primitive(l, s, p);
+    l->at_fold = l->at_fold && s->kind >= SDFC_KIND_UNION && s->kind <= SDFC_KIND_SMOOTH_DIFFERENCE;
     int first = s->child[0], next = l->program->arg_count;
     switch (s->kind) {
     case SDFC_KIND_TRANSLATE: {
@@ -574,7 +657,7 @@ static int lower(lowering *l, int shape, point p) {
 }
 
 void sdfc_lower(sdfc *c, sdfc_part *part) {
-    lowering l = {c, &part->program, 0, true};
+    lowering l = {.c = c, .program = &part->program, .root = true, .stretch = 1};
     c->at = part->token;
     open_function(&l);
     int root = l.function;

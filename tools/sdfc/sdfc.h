@@ -9,6 +9,7 @@
  *   ops.c       the formulas of library.inc, as C and as text
  *   analyse.c   Lipschitz constant and bounds of each operator
  *   lower.c     a tree of shapes -> a straight list of operations
+ *   terms.c     which of them can be left out where they do not matter, by which bit
  *   emit.c      that list -> GLSL, C, JSON
  *   check.c     that list, run: constants and bounds tried on random points
  *
@@ -29,6 +30,7 @@
 #define MASU_SDFC_DEPTH_MAX 64
 #define MASU_SDFC_NAME_MAX 64
 #define MASU_SDFC_MASKED_MAX 64 /* parts of a scene whose tiles have bits instead of lists */
+#define MASU_SDFC_BLOCK_WORDS_MAX 2
 
 /* The slots: first one record of each part, then one of each material, then the arguments. A
  * number that is an index is stored as a float of that value. */
@@ -63,6 +65,8 @@ typedef struct masu_sdfc_result {
     uint32_t param_count;
     float *slots; /* initial values: parameters at their defaults, time 0 */
     uint32_t slot_count;
+    uint32_t block_words; /* that say what of the field matters in a block of pixels, at most
+                             MASU_SDFC_BLOCK_WORDS_MAX; 0: it is one whole */
     bool dynamic;     /* slots depend on parameters or time */
     bool anchored;    /* slots depend on the anchor */
     double glossiest; /* least roughness that a part which does not shine may have; 1: all do */

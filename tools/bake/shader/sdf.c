@@ -101,6 +101,7 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     static const float no_slot = 0.0f;
     masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf);
     sdf->part_count = scene->part_count;
+    sdf->block_words = scene->block_words;
     if (!scene->anchored) sdf->anchored = 0; /* nothing in it depends on where it is */
     masu_bake_append(&content->section[MASU_BLOB_SLOTS],
                      scene->slot_count ? scene->slots : &no_slot,

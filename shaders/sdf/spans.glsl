@@ -1,0 +1,40 @@
+/*
+ * spans.glsl: what of the field matters to a block of 4x4 pixels, in pieces of its rays.
+ *
+ * The pieces begin where the block's cone ends (cone.comp, which looks) and follow each other; each is some three times
+ * as long as the one before it, since what is hit is mostly near and what is passed by is left behind fast. The ball
+ * around the middle of a piece holds that piece of all rays of the block. Behind the last one what matters to the
+ * tile does.
+ */
+#ifndef MASU_SPANS_GLSL
+#define MASU_SPANS_GLSL
+
+#include "sdf/field.glsl"
+
+#if MASU_SDF_BLOCK_WORDS > 0
+
+/* Where piece i begins, from t on. `pixel`: of the middle of the picture, where it is largest. */
+float span_begin(float t, float pixel, int i)
+{
+    float pixels = i == 0 ? 0.0 : i == 1 ? 8.0 : i == 2 ? 24.0 : i == 3 ? 72.0 : 216.0;
+    return t * (1.0 + pixels * pixel);
+}
+
+/* For a sample in the middle of a piece. */
+float span_margin(ray r, float begin, float end)
+{
+    float across = 0.70711 * float(MASU_BLOCK_PIXELS) * r.pixel * end;
+    return field_margin(r, 0.5 * (begin + end), 1.01 * length(vec2(0.5 * (end - begin), across)));
+}
+
+/* Behind the lists. */
+uint span_place(uvec2 block, uvec2 size, int i)
+{
+    uvec2 grid = masu_tile_grid(size);
+    uint first = uint(MASU_TILES_HEADER) + grid.x * grid.y * (1u + masu_list_stride());
+    uint at = block.y * ((size.x + 3u) / 4u) + block.x;
+    return first + (at * uint(MASU_BLOCK_SPANS) + uint(i)) * uint(MASU_SDF_BLOCK_WORDS);
+}
+
+#endif
+#endif

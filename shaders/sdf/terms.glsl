@@ -1,0 +1,78 @@
+/*
+ * terms.glsl: what of the field is evaluated, and what of it matters in a ball.
+ *
+ * Bits (MASU_SDF_BLOCK_WORDS words) say which parts are asked for and which terms of them: operands of unions,
+ * cuts and blends. Whoever evaluates the field with masu_margin set to twice the radius of a ball around the point
+ * finds in masu_kept the bits of what can decide anywhere in the ball: with these alone the field has the same
+ * value there, to the bit. In a ball of radius r two fields of constant L keep their difference within 2 r L of that
+ * at the middle, so min(a, b) is a where b is more than that above it, a blend of radius k where it is k more (Barbier et
+ * al., "Lipschitz Pruning: Hierarchical Simplification of Primitive-Based SDFs", Computer Graphics Forum 44-2,
+ * 2025). Both fields are asked for anyway: what matters costs three operations a term.
+ *
+ * Of a scene of many parts the bits are of the places in its tile's list. Includers that do not choose terms
+ * (MASU_SDF_KEEP is not defined) get a field without bits for them.
+ */
+#ifndef MASU_TERMS_GLSL
+#define MASU_TERMS_GLSL
+
+#ifndef MASU_TERM
+#define MASU_TERM(asked) if (asked)
+#define MASU_PART_TERM(asked) if (asked)
+#endif
+
+#ifdef MASU_SDF_KEEP
+uint masu_kept[2] = uint[](0u, 0u);
+uint masu_kept_terms = 0u;
+float masu_margin = 0.0;
+
+#define MASU_SDF_MARGIN masu_margin
+#define masu_term_bits(word) masu_part_bits(word)
+
+void masu_keep_part(float d, float f, uint word, uint bit)
+{
+    bool drops = d > f + masu_margin;
+    uint own = f > d + masu_margin ? 0u : bit;
+    masu_kept[0] = (drops ? 0u : masu_kept[0]) | (word == 0u ? own : 0u);
+    masu_kept[1] = (drops ? 0u : masu_kept[1]) | (word == 1u ? own : 0u);
+}
+
+/* Of a join: e, its operand with that bit, against what is joined of those before. */
+uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, uint before)
+{
+    kept = joined > e + slack ? kept & ~before : kept;
+    return e > joined + slack ? kept : kept | bit;
+}
+
+#define MASU_KEEP_NONE masu_kept = uint[](0u, 0u);
+#define MASU_KEEP_BEGIN masu_kept_terms = 0u;
+#define MASU_KEEP_PART(d, f, word, bit) masu_keep_part(d, f, word, bit);
+#define MASU_KEEP_FLAT(d, f) masu_keep_part(d, f, 2u, 0u);
+#define MASU_KEEP_TERMS(word, first) masu_kept[word] |= masu_kept_terms << (first);
+#define MASU_KEEP(bit) kept |= bit;
+#define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before) \
+    kept = masu_keep_least(kept, joined, e, masu_margin * (lipschitz) + (blend), bit, before);
+#define MASU_KEEP_MOST(joined, e, lipschitz, blend, bit, before) \
+    kept = masu_keep_least(kept, -(joined), -(e), masu_margin * (lipschitz) + (blend), bit, before);
+#define MASU_KEEP_ALL(all, bits) kept |= (all) ? bits : 0u;
+#define MASU_KEPT masu_kept_terms |= kept;
+
+#else
+#define MASU_SDF_MARGIN 0.0
+#ifdef MASU_SPANS_USED
+#define masu_term_bits(word) masu_part_bits(word)
+#else
+#define masu_term_bits(word) 0xFFFFFFFFu
+#endif
+#define MASU_KEEP_NONE
+#define MASU_KEEP_BEGIN
+#define MASU_KEEP_PART(d, f, word, bit)
+#define MASU_KEEP_FLAT(d, f)
+#define MASU_KEEP_TERMS(word, first)
+#define MASU_KEEP(bit)
+#define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before)
+#define MASU_KEEP_MOST(joined, e, lipschitz, blend, bit, before)
+#define MASU_KEEP_ALL(all, bits)
+#define MASU_KEPT
+#endif
+
+#endif
