@@ -14,6 +14,11 @@
 #define MASU_SDF_TERM_BITS_0 0u
 #endif
 #define MASU_SDF_TERM_BITS_1 0u
+#ifdef MASU_SDF_SMOOTH
+#define MASU_SDF_ROUGH 0
+#else
+#define MASU_SDF_ROUGH 1
+#endif
 #define MASU_SDF_DYNAMIC 0
 
 vec4 masu_sdf_bounds(uint part)

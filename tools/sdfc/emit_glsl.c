@@ -177,7 +177,7 @@ static bool is_estimate(const sdfc *c, const sdfc_group *group) {
 static void put_keep(sdfc_writer *w, const sdfc_group *group) {
     bool several = group->part_count > 1;
     if (is_estimate(w->c, group))
-        PUT(w, "        MASU_KEEP_PART(1e30, 0.0, part >> 5, 1u << (part & 31u))\n");
+        PUT(w, "        MASU_KEEP_PART(0.0, 0.0, part >> 5, 1u << (part & 31u))\n");
     else if (several)
         PUT(w, "        MASU_KEEP_PART(d, f, part >> 5, 1u << (part & 31u))\n");
     else
@@ -288,7 +288,7 @@ static void put_listed_group(sdfc_writer *w, int g) {
         PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
     }
     put_part_value(w, g, "f", "p");
-    PUT(w, any_estimate(c) ? "        MASU_KEEP_PART(1e30, 0.0, i >> 5, 1u << (i & 31u))\n"
+    PUT(w, any_estimate(c) ? "        MASU_KEEP_PART(0.0, 0.0, i >> 5, 1u << (i & 31u))\n"
                            : "        MASU_KEEP_PART(d, f, i >> 5, 1u << (i & 31u))\n");
     put_least(w);
     PUT(w, "        i = masu_next_place(i);\n    }\n");
@@ -439,6 +439,8 @@ void sdfc_put_glsl(sdfc_writer *w) {
     for (int word = 0; word < MASU_SDFC_BLOCK_WORDS_MAX; word++) {
         PUT(w, "#define MASU_SDF_TERM_BITS_%d 0x%xu\n", word, sdfc_term_word(c, word));
     }
+    PUT(w, "#define MASU_SDF_ROUGH %d /* 1: it has detail of any size, or falls much slower than distances */\n",
+        sdfc_any_rough(c));
     PUT(w, "#define MASU_SDF_SLOT_COUNT %u\n", c->slot_count);
     PUT(w, "#define MASU_SDF_DYNAMIC %d\n\n", any_timed(c));
     sdfc_put_users(w);

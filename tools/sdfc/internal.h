@@ -346,6 +346,7 @@ bool sdfc_root_moves(const sdfc *c, const sdfc_program *p);
 void sdfc_group_parts(sdfc *c);  /* by form, and orders them */
 void sdfc_assign_slots(sdfc *c); /* after that */
 void sdfc_assign_terms(sdfc *c);                 /* bits, of a scene of few parts */
+bool sdfc_any_rough(const sdfc *c); /* fractals, what is steep, what nobody knows */
 uint32_t sdfc_term_word(const sdfc *c, int word); /* the bits of terms in it */
 uint32_t sdfc_block_words(const sdfc *c);        /* of all bits, or of places in a list; 0: nothing to choose */
 void sdfc_emit(sdfc *c);

@@ -111,3 +111,27 @@ uint32_t sdfc_term_word(const sdfc *c, int word) {
     for (int k = c->part_count; k < c->part_count + c->term_bits; k++) bits |= k / WORD == word ? 1u << k % WORD : 0;
     return bits;
 }
+
+static bool is_rough(const sdfc *c, int shape) {
+    const sdfc_shape *s = &c->shapes[shape];
+    switch (s->kind) {
+    case SDFC_KIND_MENGER:
+    case SDFC_KIND_SIERPINSKI:
+    case SDFC_KIND_MANDELBULB:
+    case SDFC_KIND_KALEIDOSCOPE:
+    case SDFC_KIND_USER: return true;
+    default: break;
+    }
+    if (s->facts.lipschitz > 4) return true;
+    for (int i = 0; i < s->children; i++) {
+        if (is_rough(c, s->child[i])) return true;
+    }
+    return false;
+}
+
+bool sdfc_any_rough(const sdfc *c) {
+    for (int i = 0; i < c->part_count; i++) {
+        if (is_rough(c, c->parts[i].shape)) return true;
+    }
+    return false;
+}
