@@ -36,6 +36,18 @@ void masu_keep_part(float d, float f, uint word, uint bit)
     masu_kept[1] = (drops ? 0u : masu_kept[1]) | (word == 1u ? own : 0u);
 }
 
+vec4 masu_sdf_bounds(uint part);
+
+/* Of a part whose field is no bound of anything but, outside of it, of the distance to its sphere over its constant. */
+void masu_keep_estimate(float d, uint part, float safe, vec3 p)
+{
+    vec4 sphere = masu_sdf_bounds(part);
+    bool far = sphere.w >= 0.0 && (length(p - sphere.xyz) - sphere.w) * safe > d + masu_margin;
+    uint own = far ? 0u : 1u << (part & 31u);
+    masu_kept[0] |= (part >> 5) == 0u ? own : 0u;
+    masu_kept[1] |= (part >> 5) == 1u ? own : 0u;
+}
+
 /* Of a join: e, its operand with that bit, against what is joined of those before. */
 uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, uint before)
 {
@@ -46,6 +58,7 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEEP_NONE masu_kept = uint[](0u, 0u);
 #define MASU_KEEP_BEGIN masu_kept_terms = 0u;
 #define MASU_KEEP_PART(d, f, word, bit) masu_keep_part(d, f, word, bit);
+#define MASU_KEEP_ESTIMATE(d, part) masu_keep_estimate(d, part, masu_slot(part * 8u + 4u), p);
 #define MASU_KEEP_FLAT(d, f) masu_keep_part(d, f, 2u, 0u);
 #define MASU_KEEP_TERMS(word, first) masu_kept[word] |= masu_kept_terms << (first);
 #define MASU_KEEP(bit) kept |= bit;
@@ -66,6 +79,7 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEEP_NONE
 #define MASU_KEEP_BEGIN
 #define MASU_KEEP_PART(d, f, word, bit)
+#define MASU_KEEP_ESTIMATE(d, part)
 #define MASU_KEEP_FLAT(d, f)
 #define MASU_KEEP_TERMS(word, first)
 #define MASU_KEEP(bit)

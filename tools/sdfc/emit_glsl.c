@@ -173,11 +173,11 @@ static bool is_estimate(const sdfc *c, const sdfc_group *group) {
 }
 
 /* Of a scene of few parts: the bits of the part in work that matter in the ball. What only estimates its
- * distance always does. */
+ * distance may everywhere that its sphere may. */
 static void put_keep(sdfc_writer *w, const sdfc_group *group) {
     bool several = group->part_count > 1;
     if (is_estimate(w->c, group))
-        PUT(w, "        MASU_KEEP_PART(0.0, 0.0, part >> 5, 1u << (part & 31u))\n");
+        PUT(w, "        MASU_KEEP_ESTIMATE(d, part)\n");
     else if (several)
         PUT(w, "        MASU_KEEP_PART(d, f, part >> 5, 1u << (part & 31u))\n");
     else
