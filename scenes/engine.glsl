@@ -11,6 +11,17 @@
  * furrows are divided by their own steepness. y is up, metres.
  */
 
+/* What can be left out where it does not matter (docs/scene.md, "Terms"): unions and blends, from the inside out. */
+#define MASU_SDF_SMOOTH
+#define MASU_SDF_TERMS 14
+#define SAND 1
+#define STONES 2
+#define PILLARS 3
+#define RING 4
+#define CUBE 5
+#define STONE 6 /* six of them */
+#define SHAFT 12 /* of a pillar: shaft, lamp, roof */
+
 /* As in engine.json: the far end of the world is painted with the light of the sky. */
 const vec3 horizon = vec3(1.05, 0.62, 0.34);
 const vec3 sun_direction = vec3(-0.7660, 0.3420, 0.5443);
@@ -57,12 +68,19 @@ float column(vec3 p, vec2 at, float apothem, float top)
 
 float stones(vec3 p)
 {
-    float d = column(p, vec2(0.0, 0.0), 0.52, 0.56);
-    d = smooth_min(d, column(p, vec2(-0.93, 0.50), 0.48, 0.30), 0.05);
-    d = smooth_min(d, column(p, vec2(0.86, -0.30), 0.46, 0.62), 0.05);
-    d = smooth_min(d, column(p, vec2(0.06, 0.98), 0.40, 0.16), 0.05);
-    d = smooth_min(d, length(p - vec3(-2.9, -0.15, -1.1)) - 0.62, 0.25);
-    d = smooth_min(d, length(p - vec3(-3.5, -0.12, -0.7)) - 0.40, 0.25);
+    const vec4 columns[] = vec4[](vec4(0.0, 0.0, 0.52, 0.56), vec4(-0.93, 0.50, 0.48, 0.30),
+                                  vec4(0.86, -0.30, 0.46, 0.62), vec4(0.06, 0.98, 0.40, 0.16));
+    float d = 1e30;
+    for (int i = 0; i < 6; i++) {
+        if (masu_term(STONE + i)) {
+            vec3 middle = i == 4 ? vec3(-2.9, -0.15, -1.1) : vec3(-3.5, -0.12, -0.7);
+            float e = i < 4 ? column(p, columns[i & 3].xy, columns[i & 3].z, columns[i & 3].w)
+                            : length(p - middle) - (i == 4 ? 0.62 : 0.40);
+            float k = i < 4 ? 0.05 : 0.25;
+            masu_term_joined(STONE + i, masu_terms_from(STONE, i), d, e, k);
+            d = smooth_min(d, e, k);
+        }
+    }
     return d;
 }
 
@@ -146,29 +164,72 @@ vec3 to_cube(vec3 p)
     return q;
 }
 
+vec2 pillar_cell(vec3 p)
+{
+    return p.xz - pillar_spacing * round(p.xz * (1.0 / pillar_spacing));
+}
+
 /* A stone lantern; the cell's own, since all are alike and symmetric in their cells. */
 float pillars(vec3 p)
 {
-    vec2 q = p.xz - pillar_spacing * round(p.xz / pillar_spacing);
+    vec2 q = pillar_cell(p);
     vec3 local = vec3(q.x, p.y, q.y);
-    vec2 shaft = vec2(length(q) - 0.17, p.y - 1.9);
-    float d = min(max(shaft.x, shaft.y), 0.0) + length(max(shaft, vec2(0.0))) - 0.05;
-    d = smooth_min(d, box(local - vec3(0.0, 2.25, 0.0), vec3(0.26)) - 0.08, 0.20);
-    d = smooth_min(d, box(local - vec3(0.0, 2.72, 0.0), vec3(0.56, 0.02, 0.56)) - 0.06, 0.12);
+    float d = 1e30;
+    if (masu_term(SHAFT)) {
+        vec2 shaft = vec2(length(q) - 0.17, p.y - 1.9);
+        d = min(max(shaft.x, shaft.y), 0.0) + length(max(shaft, vec2(0.0))) - 0.05;
+        masu_term_joined(SHAFT, 0u, 1e30, d, 0.0);
+    }
+    if (masu_term(SHAFT + 1)) {
+        float lamp = box(local - vec3(0.0, 2.25, 0.0), vec3(0.26)) - 0.08;
+        masu_term_joined(SHAFT + 1, masu_terms_from(SHAFT, 1), d, lamp, 0.20);
+        d = smooth_min(d, lamp, 0.20);
+    }
+    if (masu_term(SHAFT + 2)) {
+        float roof = box(local - vec3(0.0, 2.72, 0.0), vec3(0.56, 0.02, 0.56)) - 0.06;
+        masu_term_joined(SHAFT + 2, masu_terms_from(SHAFT, 2), d, roof, 0.12);
+        d = smooth_min(d, roof, 0.12);
+    }
     return max(d, clearing - length(p.xz));
 }
 
 float masu_sdf(vec3 p)
 {
-    float d = sand(p);
-    d = smooth_min(d, stones(p), 0.06);
-    d = min(d, pillars(p));
-    d = min(d, ring(to_ring(p)));
-    vec3 q = to_cube(p);
-    /* The cube's tunnels only count where its box is nearer than all the rest. */
-    if (box(q, vec3(cube_half)) < d) {
-        d = min(d, menger(q));
+    masu_terms_begin();
+    float d = 1e30;
+    if (masu_term(SAND)) {
+        d = sand(p);
+        masu_term_joined(SAND, 0u, 1e30, d, 0.0);
     }
+    if (masu_term(STONES)) {
+        float e = min(length(p.xz - vec2(0.0, 0.2)) - 1.75, length(p.xz - vec2(-3.2, -0.9)) - 1.2);
+        e = masu_may_be_below(e - 0.06, d) ? stones(p) : e;
+        masu_term_joined(STONES, masu_terms_from(SAND, 1), d, e, 0.06);
+        d = smooth_min(d, e, 0.06);
+    }
+    if (masu_term(PILLARS)) {
+        /* None reaches further than that from its middle. */
+        float e = length(pillar_cell(p)) - 0.95;
+        e = masu_may_be_below(e, d) ? pillars(p) : e;
+        masu_term_joined(PILLARS, masu_terms_from(SAND, 2), d, e, 0.0);
+        d = min(d, e);
+    }
+    if (masu_term(RING)) {
+        vec3 q = to_ring(p);
+        float e = abs(q.z) - 0.26;
+        e = masu_may_be_below(e, d) ? ring(q) : e;
+        masu_term_joined(RING, masu_terms_from(SAND, 3), d, e, 0.0);
+        d = min(d, e);
+    }
+    if (masu_term(CUBE)) {
+        vec3 q = to_cube(p);
+        /* The cube's tunnels only count where its box is nearer than all the rest. */
+        float e = box(q, vec3(cube_half));
+        e = masu_may_be_below(e, d) ? menger(q) : e;
+        masu_term_joined(CUBE, masu_terms_from(SAND, 4), d, e, 0.0);
+        d = min(d, e);
+    }
+    masu_terms_end();
     return d;
 }
 

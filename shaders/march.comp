@@ -144,7 +144,8 @@ void begin_spans(int k, float t)
 }
 #endif
 
-/* The field at m.t by what matters there. */
+/* The field at t by what matters there. Wrong turn: leaving out, too, what is further off than the field can have
+ * become since the last sample. In the pieces that the spans know, asking cost more than it saved. */
 float field_here(ray r, float t)
 {
 #if MASU_SDF_BLOCK_WORDS > 0

@@ -16,7 +16,7 @@
 /* Where piece i begins, from t on. `pixel`: of the middle of the picture, where it is largest. */
 float span_begin(float t, float pixel, int i)
 {
-    float pixels = i == 0 ? 0.0 : i == 1 ? 8.0 : i == 2 ? 24.0 : i == 3 ? 72.0 : 216.0;
+    float pixels = i == 0 ? 0.0 : i == 1 ? 8.0 : i == 2 ? 32.0 : i == 3 ? 128.0 : 512.0;
     return t * (1.0 + pixels * pixel);
 }
 

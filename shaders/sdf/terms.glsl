@@ -89,4 +89,54 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEPT
 #endif
 
+/* For fields that are written by hand: one part, whose bit is 0, and terms 1..31. */
+#ifdef MASU_SDF_KEEP
+uint masu_terms_kept = 0u;
+
+void masu_terms_begin()
+{
+    masu_terms_kept = 1u;
+}
+
+void masu_terms_end()
+{
+    masu_kept = uint[](masu_terms_kept, 0u);
+}
+
+void masu_term_joined(int term, uint before, float joined, float e, float blend)
+{
+    masu_terms_kept = masu_keep_least(masu_terms_kept, joined, e, masu_margin + blend, 1u << term, before);
+}
+#else
+void masu_terms_begin()
+{
+}
+
+void masu_terms_end()
+{
+}
+
+void masu_term_joined(int term, uint before, float joined, float e, float blend)
+{
+}
+#endif
+
+/* Whether what is nowhere below `low` can matter beside d. */
+bool masu_may_be_below(float low, float d)
+{
+    return low < d + MASU_SDF_MARGIN;
+}
+
+/* Whether a term is asked for. */
+bool masu_term(int term)
+{
+    return (masu_term_bits(0) & 1u << term) != 0u;
+}
+
+/* The bits of `count` terms from that one on. */
+uint masu_terms_from(int term, int count)
+{
+    return ((1u << count) - 1u) << term;
+}
+
 #endif

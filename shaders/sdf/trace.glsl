@@ -196,6 +196,12 @@ march_state march_begin(ray r)
                        !any);
 }
 
+bool is_sure(float f, float pixel, float reach, float before_f)
+{
+    return MASU_SDF_ROUGH == 0 && f < newton_lands * pixel && before_f < newton_from * pixel &&
+           reach <= newton_sure * pixel;
+}
+
 /* The field at m.t is f. Two ways: most samples are further off than two pixels' widths, and there a step is a
  * check, a slope and one division, some 25 operations. Nearer it is 90, all in one piece: neighbours take different
  * branches of it nearly always. No more than one division between a sample and the next point. Wrong turn: the one
@@ -228,7 +234,7 @@ march_state march_begin(ray r)
  * smaller than the tolerance. A sample that is near enough from above takes what is left by the last
  * slope, without another look. A camera inside a solid has no sample before: it sees it at the near
  * plane, as a clipped polygon's inside would. A field that is not a number is a miss. */
-void march_near(inout march_state m, ray r, float f, float pixel, float enough, float free, float reach)
+void march_between(inout march_state m, ray r, float f, float pixel, float enough, float free, float reach)
 {
     bool touched = f < enough;
     /* A longer step: newton, as far as the field falls; else relaxed, with a slope of at most 0.9. */
@@ -243,9 +249,7 @@ void march_near(inout march_state m, ray r, float f, float pixel, float enough, 
     float end = m.narrowed ? m.t : next;
     /* Where it may end. */
     bool meet = m.narrowed || m.t <= free || m.t - f <= free ||
-                (touched && reach <= newton_reach * pixel) ||
-                (MASU_SDF_ROUGH == 0 && f < newton_lands * pixel && m.before_f < newton_from * pixel &&
-                 reach <= newton_sure * pixel);
+                (touched && reach <= newton_reach * pixel) || is_sure(f, pixel, reach, m.before_f);
     bool through = reach > 0.0 && f < -enough;
     bool nothing_left = m.narrowed && m.limit - m.before_t < enough;
     bool usable = masu_finite(f);
@@ -273,6 +277,42 @@ void march_near(inout march_state m, ray r, float f, float pixel, float enough, 
     m.t = missed ? -1.0 : hit ? end : spent ? m.best_t : meet ? next : free;
 }
 
+/* The same of a ray that has met nothing below 0. */
+void march_near(inout march_state m, ray r, float f, float pixel, float enough, float free, float reach)
+{
+    bool touched = f < enough;
+    bool meet = m.t - max(f, 0.0) <= free || (touched && reach <= newton_reach * pixel) ||
+                is_sure(f, pixel, reach, m.before_f);
+    bool spent = m.steps >= MASU_MARCH_STEPS;
+    if (!meet && !spent) {
+        m.t = free;
+        return;
+    }
+    float fall = m.before_f - f;
+    bool newton = f < newton_from * pixel && fall > 0.0;
+    float rate = (newton ? reach : 1.9 * reach) /
+                 max(newton ? fall : max(reach + fall, 0.1 * reach), 1e-30);
+    float longest = touched ? 16.0 * enough : newton_reach * pixel;
+    float next = min(m.t + (newton ? min(f * rate, longest) : f * max(rate, 1.0)), m.limit);
+    if (meet) {
+        masu_note_hint(m.t, f);
+    }
+    bool better = meet && f * m.best_t < m.best_f * m.t;
+    m.best_t = better ? m.t : m.best_t;
+    m.best_f = better ? f : m.best_f;
+    bool hit = meet && touched;
+    bool gone = meet && !hit && m.t + f >= m.limit;
+    m.done = hit || gone || spent;
+    spent = spent && !hit && !gone;
+    if (spent) {
+        masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
+    }
+    bool missed = gone || (hit && !(next < r.limit)) || (spent && !(m.best_f < 2.0 * r.pixel * m.best_t));
+    m.before_t = m.t;
+    m.before_f = f;
+    m.t = missed ? -1.0 : spent ? m.best_t : next;
+}
+
 /* Two pixels' widths and more away: nothing that could stand for the surface, nothing to narrow down. */
 void march_far(inout march_state m, float f, float free, float reach)
 {
@@ -298,8 +338,10 @@ void march_step(inout march_state m, ray r, float f)
     m.steps++;
     if (f > max(2.0 * pixel, enough) && !m.narrowed && m.steps < MASU_MARCH_STEPS) {
         march_far(m, f, free, reach);
-    } else {
+    } else if (f >= -enough && !m.narrowed) {
         march_near(m, r, f, pixel, enough, free, reach);
+    } else {
+        march_between(m, r, f, pixel, enough, free, reach);
     }
 }
 

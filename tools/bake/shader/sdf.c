@@ -110,6 +110,16 @@ static void take_parts(const masu_sdfc_result *scene, masu_bake_content *content
     content->sdf_glossiest = (float)scene->glossiest;
 }
 
+/* A field that is written by hand says with a line of its own that it has terms (shaders/sdf/terms.glsl). */
+static bool has_terms(const masu_bake_buffer *text) {
+    static const char line[] = "#define MASU_SDF_TERMS";
+    const char *data = (const char *)text->data;
+    for (size_t i = 0; i + sizeof line <= text->bytes; i++) {
+        if (memcmp(data + i, line, sizeof line - 1) == 0 && (i == 0 || data[i - 1] == '\n')) return true;
+    }
+    return false;
+}
+
 /* `scene` is the caller's to release, whatever is returned. */
 static bool compile_scene(const char *path, masu_bake_content *content, masu_bake_buffer *out,
                           bool *dynamic, masu_sdfc_result *scene) {
@@ -168,6 +178,7 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
     } else {
         good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
         if (good) {
+            if (has_terms(&own)) MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->block_words = 1;
             append_scene_header(&text, content, glsl_path);
             masu_bake_append(&text, own.data, own.bytes);
             masu_bake_append_text(&text, "\n");
