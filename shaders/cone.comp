@@ -85,6 +85,7 @@ void main()
             }
             at_t = done ? 0.5 * (begin + end) : t;
             masu_margin = done ? span_margin(r, begin, end) : 0.0;
+            masu_keeping = done;
 #else
             if (done) {
                 break;

@@ -24,6 +24,7 @@
 uint masu_kept[2] = uint[](0u, 0u);
 uint masu_kept_terms = 0u;
 float masu_margin = 0.0;
+bool masu_keeping = false; /* else nothing is kept, and masu_margin is 0 */
 
 #define MASU_SDF_MARGIN masu_margin
 #define masu_term_bits(word) masu_part_bits(word)
@@ -55,19 +56,20 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
     return e > joined + slack ? kept : kept | bit;
 }
 
-#define MASU_KEEP_NONE masu_kept = uint[](0u, 0u);
-#define MASU_KEEP_BEGIN masu_kept_terms = 0u;
-#define MASU_KEEP_PART(d, f, word, bit) masu_keep_part(d, f, word, bit);
-#define MASU_KEEP_ESTIMATE(d, part) masu_keep_estimate(d, part, masu_slot(part * 8u + 4u), p);
-#define MASU_KEEP_FLAT(d, f) masu_keep_part(d, f, 2u, 0u);
-#define MASU_KEEP_TERMS(word, first) masu_kept[word] |= masu_kept_terms << (first);
-#define MASU_KEEP(bit) kept |= bit;
+#define MASU_IF_KEEPING(does) if (masu_keeping) { does; }
+#define MASU_KEEP_NONE MASU_IF_KEEPING(masu_kept = uint[](0u, 0u))
+#define MASU_KEEP_BEGIN MASU_IF_KEEPING(masu_kept_terms = 0u)
+#define MASU_KEEP_PART(d, f, word, bit) MASU_IF_KEEPING(masu_keep_part(d, f, word, bit))
+#define MASU_KEEP_ESTIMATE(d, part) MASU_IF_KEEPING(masu_keep_estimate(d, part, masu_slot(part * 8u + 4u), p))
+#define MASU_KEEP_FLAT(d, f) MASU_IF_KEEPING(masu_keep_part(d, f, 2u, 0u))
+#define MASU_KEEP_TERMS(word, first) MASU_IF_KEEPING(masu_kept[word] |= masu_kept_terms << (first))
+#define MASU_KEEP(bit) MASU_IF_KEEPING(kept |= bit)
 #define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before) \
-    kept = masu_keep_least(kept, joined, e, masu_margin * (lipschitz) + (blend), bit, before);
+    MASU_IF_KEEPING(kept = masu_keep_least(kept, joined, e, masu_margin * (lipschitz) + (blend), bit, before))
 #define MASU_KEEP_MOST(joined, e, lipschitz, blend, bit, before) \
-    kept = masu_keep_least(kept, -(joined), -(e), masu_margin * (lipschitz) + (blend), bit, before);
-#define MASU_KEEP_ALL(all, bits) kept |= (all) ? bits : 0u;
-#define MASU_KEPT masu_kept_terms |= kept;
+    MASU_IF_KEEPING(kept = masu_keep_least(kept, -(joined), -(e), masu_margin * (lipschitz) + (blend), bit, before))
+#define MASU_KEEP_ALL(all, bits) MASU_IF_KEEPING(kept |= (all) ? bits : 0u)
+#define MASU_KEPT MASU_IF_KEEPING(masu_kept_terms |= kept)
 
 #else
 #define MASU_SDF_MARGIN 0.0
@@ -105,7 +107,7 @@ void masu_terms_end()
 
 void masu_term_joined(int term, uint before, float joined, float e, float blend)
 {
-    masu_terms_kept = masu_keep_least(masu_terms_kept, joined, e, masu_margin + blend, 1u << term, before);
+    if (masu_keeping) masu_terms_kept = masu_keep_least(masu_terms_kept, joined, e, masu_margin + blend, 1u << term, before);
 }
 #else
 void masu_terms_begin()

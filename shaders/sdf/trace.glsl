@@ -374,6 +374,7 @@ vec3 normal_at(ray r, float t, out uint part)
     vec3 sum = vec3(0.0);
 #ifdef MASU_SDF_KEEP
     masu_margin = field_margin(r, t, 3.0 * h);
+    masu_keeping = MASU_SDF_BLOCK_WORDS > 0;
 #endif
     MASU_LOOP for (int i = 0; i < 4; i++) {
         bvec3 plus = bvec3(i == 1 || i == 3, i >= 2, i == 0 || i == 3);
@@ -381,9 +382,10 @@ vec3 normal_at(ray r, float t, out uint part)
         sum += corner * masu_sdf_with(p + corner * h, part);
 #ifdef MASU_SDF_KEEP
         /* The first one tells what matters to the other three. */
-        masu_list_bits[0] = i == 0 ? masu_kept[0] : masu_list_bits[0];
-        masu_list_bits[1] = i == 0 ? masu_kept[1] : masu_list_bits[1];
+        masu_list_bits[0] = masu_keeping ? masu_kept[0] : masu_list_bits[0];
+        masu_list_bits[1] = masu_keeping ? masu_kept[1] : masu_list_bits[1];
         masu_margin = 0.0;
+        masu_keeping = false;
 #endif
     }
     return masu_normalize(sum, -r.direction);
