@@ -39,7 +39,7 @@ const float cube_half = 1.7;
 
 float smooth_min(float a, float b, float k)
 {
-    float h = max(k - abs(a - b), 0.0) / k;
+    float h = max(k - abs(a - b), 0.0) * (1.0 / k);
     return min(a, b) - h * h * k * 0.25;
 }
 
@@ -101,7 +101,7 @@ float sand(vec3 p)
     float wave = depth * cos(furrow_number * away);
     /* Steepest: d(wave)/d(away) <= depth * number + 0.16 * furrow_depth, and |d(away)| <= 1. */
     const float slope = furrow_depth * (furrow_number + 0.16);
-    return (p.y - wave) / sqrt(1.0 + slope * slope);
+    return (p.y - wave) * (1.0 / sqrt(1.0 + slope * slope));
 }
 
 /* ---- ring, cube, pillars ---- */
@@ -140,17 +140,23 @@ float box(vec3 p, vec3 h)
     return length(max(q, vec3(0.0))) + min(max(q.x, max(q.y, q.z)), 0.0);
 }
 
-/* Three levels. Each cuts square tunnels, repeated in cells that mirror each other. */
+/* Three levels. Each cuts square tunnels, repeated in cells that mirror each other; it cannot cut where the distance
+ * is that of half a tunnel already. */
 float menger(vec3 p)
 {
     float d = box(p, vec3(cube_half));
-    float cell = 2.0 * cube_half;
+    vec3 q = abs(p);
+    float half_tunnel = cube_half / 3.0;
+    float inverse = 0.5 / cube_half;
     for (int i = 0; i < 3; i++) {
-        vec3 q = abs(p - cell * round(p / cell));
-        q = i == 0 ? abs(p) : q;
+        if (d >= half_tunnel) {
+            break;
+        }
         vec3 m = max(q.xyz, q.yzx);
-        d = max(d, cell / 6.0 - min(m.x, min(m.y, m.z)));
-        cell /= 3.0;
+        d = max(d, half_tunnel - min(m.x, min(m.y, m.z)));
+        inverse *= 3.0;
+        q = abs(p - 2.0 * half_tunnel * round(p * inverse));
+        half_tunnel *= 1.0 / 3.0;
     }
     return d;
 }
@@ -279,14 +285,15 @@ void masu_sdf_surface(vec3 p, inout masu_surface s)
     s.roughness = 1.0;
     s.metallic = 0.0;
     s.emissive = vec3(0.0);
-    float d_sand = sand(p);
-    float d_stones = stones(p);
+    /* What does not matter here is far away. */
+    float d_sand = masu_term(SAND) ? sand(p) : 1e30;
+    float d_stones = masu_term(STONES) ? stones(p) : 1e30;
     vec3 in_ring = to_ring(p);
-    float d_ring = ring(in_ring);
-    float d_pillars = pillars(p);
+    float d_ring = masu_term(RING) ? ring(in_ring) : 1e30;
+    float d_pillars = masu_term(PILLARS) ? pillars(p) : 1e30;
     vec3 in_cube = to_cube(p);
     float nearest = min(min(d_sand, d_stones), min(d_ring, d_pillars));
-    if (menger(in_cube) <= nearest) {
+    if (masu_term(CUBE) && menger(in_cube) <= nearest) {
         /* Darker with depth: little light finds its way in. */
         float depth = max(-box(in_cube, vec3(cube_half)), 0.0);
         s.albedo = vec3(0.10, 0.27, 0.25) * mix(0.25, 1.0, masu_exp2(-4.0 * depth));

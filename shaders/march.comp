@@ -59,8 +59,8 @@ uvec2 pixel_of(int k)
 ray ray_of(int k, out float z_scale)
 {
     vec3 through = through_first + through_right * float(k & 1) + through_down * float(k >> 1);
-    float inverse = inversesqrt(dot(through, through));
-    z_scale = dot(through, through) * inverse;
+    z_scale = length(through);
+    float inverse = 1.0 / z_scale;
     return ray(through * inverse, pixel_width * inverse, 0.0, 0.0);
 }
 
