@@ -258,7 +258,7 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
     X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
     X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
       "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
-    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
+    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile and block with all parts")
 
 /* How the picture is upscaled. */
 #define MASU_EASU_WORDS(X)                                                                         \

@@ -13,14 +13,13 @@
 
 /* What can be left out where it does not matter (docs/scene.md, "Terms"): unions and blends, from the inside out. */
 #define MASU_SDF_SMOOTH
-#define MASU_SDF_TERMS 14
+#define MASU_SDF_TERMS 11
 #define SAND 1
 #define STONES 2
 #define PILLARS 3
 #define RING 4
 #define CUBE 5
 #define STONE 6 /* six of them */
-#define SHAFT 12 /* of a pillar: shaft, lamp, roof */
 
 /* As in engine.json: the far end of the world is painted with the light of the sky. */
 const vec3 horizon = vec3(1.05, 0.62, 0.34);
@@ -149,9 +148,6 @@ float menger(vec3 p)
     float half_tunnel = cube_half / 3.0;
     float inverse = 0.5 / cube_half;
     for (int i = 0; i < 3; i++) {
-        if (d >= half_tunnel) {
-            break;
-        }
         vec3 m = max(q.xyz, q.yzx);
         d = max(d, half_tunnel - min(m.x, min(m.y, m.z)));
         inverse *= 3.0;
@@ -180,22 +176,10 @@ float pillars(vec3 p)
 {
     vec2 q = pillar_cell(p);
     vec3 local = vec3(q.x, p.y, q.y);
-    float d = 1e30;
-    if (masu_term(SHAFT)) {
-        vec2 shaft = vec2(length(q) - 0.17, p.y - 1.9);
-        d = min(max(shaft.x, shaft.y), 0.0) + length(max(shaft, vec2(0.0))) - 0.05;
-        masu_term_joined(SHAFT, 0u, 1e30, d, 0.0);
-    }
-    if (masu_term(SHAFT + 1)) {
-        float lamp = box(local - vec3(0.0, 2.25, 0.0), vec3(0.26)) - 0.08;
-        masu_term_joined(SHAFT + 1, masu_terms_from(SHAFT, 1), d, lamp, 0.20);
-        d = smooth_min(d, lamp, 0.20);
-    }
-    if (masu_term(SHAFT + 2)) {
-        float roof = box(local - vec3(0.0, 2.72, 0.0), vec3(0.56, 0.02, 0.56)) - 0.06;
-        masu_term_joined(SHAFT + 2, masu_terms_from(SHAFT, 2), d, roof, 0.12);
-        d = smooth_min(d, roof, 0.12);
-    }
+    vec2 shaft = vec2(length(q) - 0.17, p.y - 1.9);
+    float d = min(max(shaft.x, shaft.y), 0.0) + length(max(shaft, vec2(0.0))) - 0.05;
+    d = smooth_min(d, box(local - vec3(0.0, 2.25, 0.0), vec3(0.26)) - 0.08, 0.20);
+    d = smooth_min(d, box(local - vec3(0.0, 2.72, 0.0), vec3(0.56, 0.02, 0.56)) - 0.06, 0.12);
     return max(d, clearing - length(p.xz));
 }
 
@@ -257,7 +241,7 @@ vec3 rough_light(vec3 albedo, vec3 normal)
 vec3 pillar_normal(vec3 p)
 {
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < 4; i++) {
+    MASU_LOOP for (int i = 0; i < 4; i++) {
         vec3 corner = vec3(i == 1 || i == 3 ? 1.0 : -1.0, i >= 2 ? 1.0 : -1.0,
                            i == 0 || i == 3 ? 1.0 : -1.0);
         sum += corner * pillars(p + 0.02 * corner);

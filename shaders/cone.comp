@@ -78,9 +78,10 @@ void main()
             float at_t = t;
 #if MASU_WRITES_BLOCKS
             /* A sample more for each piece of the rays that begin here. */
-            float begin = span_begin(t, r.pixel, span);
-            float end = span_begin(t, r.pixel, span + 1);
-            if (empty || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
+            vec4 ends = span_ends(t, r.pixel);
+            float begin = span == 0 ? t : span == 1 ? ends.x : span == 2 ? ends.y : ends.z;
+            float end = span == 0 ? ends.x : span == 1 ? ends.y : span == 2 ? ends.z : ends.w;
+            if (empty || (done && push.unpruned != 0u) || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
                 break;
             }
             at_t = done ? 0.5 * (begin + end) : t;
@@ -96,7 +97,7 @@ void main()
             evals++;
             if (done) {
 #if MASU_WRITES_BLOCKS
-                uint place = span_place(at, pixels, span);
+                uint place = span_place(at, pixels) + uint(1 + span * MASU_SDF_BLOCK_WORDS);
                 for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
                     masu_tiles_out[place + uint(w)] = masu_kept[w];
                 }
@@ -111,11 +112,14 @@ void main()
             t = done ? t : t + gain;
         }
 #if MASU_WRITES_BLOCKS
-        /* Where the middle ray has ended few others go on: by what the tile sees. */
-        for (; span < MASU_BLOCK_SPANS; span++) {
-            uint place = span_place(at, pixels, span);
+        /* Where the middle ray has ended few others go on: by what the tile sees, as all do with push.unpruned. */
+        uint place = span_place(at, pixels);
+        masu_tiles_out[place] = floatBitsToUint(t);
+        for (int i = 0; i < MASU_BLOCK_SPANS; i++) {
             for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-                masu_tiles_out[place + uint(w)] = masu_list_bits[w];
+                if (i >= span) {
+                    masu_tiles_out[place + uint(1 + i * MASU_SDF_BLOCK_WORDS + w)] = masu_list_bits[w];
+                }
             }
         }
 #endif

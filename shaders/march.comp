@@ -25,6 +25,7 @@ layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
 
 #define MASU_RELAXED
 #define MASU_SDF_KEEP
+#define MASU_CHOOSING (push.unpruned == 0u)
 #define MASU_SDF_NO_FLAT
 #include "sdf/spans.glsl"
 #include "sdf/hit.glsl"
@@ -36,10 +37,8 @@ vec4 limit = vec4(-1.0);
 vec4 flat_end = vec4(-1.0);
 
 /* What all of them share. */
-uvec2 corner, size, first;
-vec3 through_first, through_right, through_down;
-float pixel_width;
-vec3 eye = eye_hi + eye_lo;
+uvec2 size, first;
+vec2 ndc_first, ndc_step;
 
 bvec4 only(int k)
 {
@@ -58,32 +57,39 @@ uvec2 pixel_of(int k)
 
 ray ray_of(int k, out float z_scale)
 {
-    vec3 through = through_first + through_right * float(k & 1) + through_down * float(k >> 1);
+    vec2 ndc = ndc_first + ndc_step * vec2(k & 1, k >> 1);
+    vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
-    return ray(through * inverse, pixel_width * inverse, 0.0, 0.0);
+    return ray(through * inverse, frame.up.w * ndc_step.y * (1.0 / float(MASU_GROUP)) * inverse, 0.0, 0.0);
 }
 
 void look_from(uvec2 tile)
 {
-    corner = tile * uint(MASU_TILE);
     size = uvec2(pc.output_width, pc.output_height);
-    first = corner + masu_block_at(gl_LocalInvocationIndex);
-    through_first = masu_pixel_ray(first, size);
-    vec2 step = float(2 * MASU_GROUP) / vec2(size);
-    through_right = frame.right.xyz * step.x;
-    through_down = frame.up.xyz * -step.y;
-    pixel_width = 2.0 * frame.up.w / float(size.y);
+    first = tile * uint(MASU_TILE) + masu_block_at(gl_LocalInvocationIndex);
+    ndc_first = masu_ndc(vec2(first) + 0.5, vec2(size));
+    ndc_step = float(2 * MASU_GROUP) / vec2(size);
 }
 
 /* Between which distances the ray is within a box. */
 vec2 within(vec3 low, vec3 high, vec3 inverse)
 {
-    vec3 a = (low - eye) * inverse;
-    vec3 b = (high - eye) * inverse;
+    vec3 a = (low - eye_hi - eye_lo) * inverse;
+    vec3 b = (high - eye_hi - eye_lo) * inverse;
     vec3 enter = min(a, b);
     vec3 leave = max(a, b);
     return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
+}
+
+/* Where the cone of a block has stopped. */
+float cone_end(uvec2 block)
+{
+#if MASU_SDF_BLOCK_WORDS > 0
+    return uintBitsToFloat(masu_tiles[span_place(block, size)]);
+#else
+    return texelFetch(cone_image, ivec2(block), 0).r;
+#endif
 }
 
 /* Where the ray of a pixel begins and ends, and the half-space that ends it, as pixel_ray and clip_to_box say, of
@@ -103,12 +109,12 @@ vec3 prepare(int k, vec3 low, vec3 high)
     last_t = depth > 0.0 ? min(last_t, nearest / depth) : last_t; /* a tie goes to the raster */
 #endif
     uint part;
-    float end = masu_sdf_flat(eye, r.direction, first_t, part);
+    float end = masu_sdf_flat(eye_hi + eye_lo, r.direction, first_t, part);
     float farthest = min(last_t, end);
     vec2 box = within(low, high, inverse);
     /* What ends at the very side of the box may be found a little behind it. */
     last_t = min(min(last_t, box.y) * (1.0 + newton_reach * r.pixel), farthest);
-    first_t = max(max(first_t, box.x), texelFetch(cone_image, ivec2(at / 4u), 0).r);
+    first_t = max(max(first_t, box.x), cone_end(at / 4u));
     return vec3(first_t, last_t, end <= farthest && end < 1e30 ? end : -1.0);
 }
 
@@ -116,12 +122,12 @@ vec3 prepare(int k, vec3 low, vec3 high)
 /* The piece of its rays that the ray in work is in. */
 uint tile_bits[2];
 uint span_first; /* of its block's pieces */
-vec4 span_ends;  /* at a distance of 1 */
+float span_pixel;
 float span_start, span_from, span_to;
 
 void look_up_span(float t)
 {
-    vec4 ends = span_start * span_ends;
+    vec4 ends = span_ends(span_start, span_pixel);
     uvec4 past = uvec4(greaterThan(vec4(t), ends));
     uint now = past.x + past.y + past.z + past.w;
     span_from = now == 0u ? 0.0 : lane(ends, int(now) - 1);
@@ -134,9 +140,8 @@ void look_up_span(float t)
 
 void begin_spans(int k, float t)
 {
-    uvec2 block = min(pixel_of(k), size - 1u) / 4u;
-    span_start = texelFetch(cone_image, ivec2(block), 0).r;
-    span_first = span_place(block, size, 0);
+    span_first = span_place(min(pixel_of(k), size - 1u) / 4u, size) + 1u;
+    span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
     look_up_span(t);
 }
 #else
@@ -213,10 +218,10 @@ void main()
         }
     }
 #if MASU_SDF_BLOCK_WORDS > 0
-    tile_bits = masu_list_bits;
-    float pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
-    span_ends = vec4(span_begin(1.0, pixel, 1), span_begin(1.0, pixel, 2), span_begin(1.0, pixel, 3),
-                     span_begin(1.0, pixel, 4));
+    /* Of a scene of one part a tile that is marched sees that and all terms. */
+    tile_bits[0] = MASU_SDF_LISTED_COUNT == 1 ? 0xFFFFFFFFu : masu_list_bits[0];
+    tile_bits[1] = MASU_SDF_LISTED_COUNT == 1 ? 0xFFFFFFFFu : masu_list_bits[1];
+    span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
 #endif
     if (listed) {
         masu_count(MASU_COUNTER_SDF_EVALS, march_all());
@@ -234,7 +239,7 @@ void main()
                 ray r = ray_of(k, z_scale);
                 uint part;
                 if (known) {
-                    masu_sdf_flat(eye, r.direction, t, part);
+                    masu_sdf_flat(eye_hi + eye_lo, r.direction, t, part);
                 } else {
                     begin_spans(k, t);
                 }

@@ -13,11 +13,12 @@
 
 #if MASU_SDF_BLOCK_WORDS > 0
 
-/* Where piece i begins, from t on. `pixel`: of the middle of the picture, where it is largest. */
-float span_begin(float t, float pixel, int i)
+/* Where the pieces end, the first of which begins at t. `pixel`: of the middle of the picture, where it is largest.
+ * Tried: 8, 24, 72, 216 pixels' widths (a garden at grazing angles took 8 % more), a last one of 1000 or 2000, two or three
+ * balls for each longer piece (1 to 4 % less for thin rods, 1 to 3 % more for a city). */
+vec4 span_ends(float t, float pixel)
 {
-    float pixels = i == 0 ? 0.0 : i == 1 ? 8.0 : i == 2 ? 32.0 : i == 3 ? 128.0 : 512.0;
-    return t * (1.0 + pixels * pixel);
+    return t * (1.0 + pixel * vec4(8.0, 32.0, 128.0, 512.0));
 }
 
 /* For a sample in the middle of a piece. */
@@ -27,13 +28,13 @@ float span_margin(ray r, float begin, float end)
     return field_margin(r, 0.5 * (begin + end), 1.01 * length(vec2(0.5 * (end - begin), across)));
 }
 
-/* Behind the lists. */
-uint span_place(uvec2 block, uvec2 size, int i)
+/* A block's words stand behind the lists: where its pieces begin, as a float, then the bits of each piece. */
+uint span_place(uvec2 block, uvec2 size)
 {
     uvec2 grid = masu_tile_grid(size);
     uint first = uint(MASU_TILES_HEADER) + grid.x * grid.y * (1u + masu_list_stride());
     uint at = block.y * ((size.x + 3u) / 4u) + block.x;
-    return first + (at * uint(MASU_BLOCK_SPANS) + uint(i)) * uint(MASU_SDF_BLOCK_WORDS);
+    return first + at * uint(1 + MASU_BLOCK_SPANS * MASU_SDF_BLOCK_WORDS);
 }
 
 #endif

@@ -24,6 +24,9 @@
 uint masu_kept[2] = uint[](0u, 0u);
 uint masu_kept_terms = 0u;
 float masu_margin = 0.0;
+#ifndef MASU_CHOOSING /* false: for comparison, all that the tile sees is asked for always */
+#define MASU_CHOOSING true
+#endif
 bool masu_keeping = false; /* else nothing is kept, and masu_margin is 0 */
 
 #define MASU_SDF_MARGIN masu_margin

@@ -108,8 +108,9 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  *   TILES_HEADER + k      number of the k-th active tile, in no particular order
  *   TILES_HEADER + tiles  the lists, `stride` uints each: of a scene of at most TILE_MASKED_MAX parts
  *                         a bit for each part, else how many parts, then their numbers
- *   then                  of each 4x4 block of pixels, row by row, what of the field matters in each of BLOCK_SPANS
- *                         pieces of its rays (shaders/sdf/spans.glsl): as many words each as the scene's code says
+ *   then                  of each 4x4 block of pixels, row by row, where its cone has stopped, a float, then what of the
+ *                         field matters in each of BLOCK_SPANS pieces of its rays (shaders/sdf/spans.glsl): as many
+ *                         words each as the scene says; nothing of a scene that is one whole
  * A list that would not fit says TILE_ALL: all parts then count. That is slower and just as right. */
 #define MASU_TILE 16
 #define MASU_TILES_HEADER 8

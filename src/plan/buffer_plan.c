@@ -73,7 +73,8 @@ static uint64_t tile_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2
 
 static uint64_t block_words(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
     (void)rung;
-    return (uint64_t)grid.width * grid.height * MASU_BLOCK_SPANS * plan->scene.sdf_block_words;
+    uint32_t words = plan->scene.sdf_block_words;
+    return words ? (uint64_t)grid.width * grid.height * (1 + MASU_BLOCK_SPANS * words) : 0;
 }
 
 /* The blocks' bits stand behind the lists of the frame's own tiles: the most of each is room for both. */

@@ -18,6 +18,8 @@ void masu_slot_write(uint i, float v) { slots[i] = v; }
 uint masu_part_count() { return count; }
 uint masu_part_at(uint i) { return i; }
 uint masu_part_bits(int word) { return 0xFFFFFFFFu; }
+uint masu_first_place() { return 0u; }
+uint masu_next_place(uint i) { return i + 1u; }
 #include "sdf_scene.glsl"
 void main() {
     if (gl_GlobalInvocationID.x == 0xFFFFFFFFu) masu_sdf_update();

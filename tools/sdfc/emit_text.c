@@ -122,8 +122,9 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
                          const sdfc_instr *i, int variable, bool declared) {
     bool skips = has_reach(w, p, i);
     PUT(w, declared ? "    v%d = 1e30;\n" : "    real v%d = 1e30;\n", variable);
+    if (skips) PUT(w, "    {\n");
     if (skips)
-        PUT(w, "    MASU_LOOP for (uint i = 0u, skip = 0u; i < %du; i = ((i | skip) + 1u) & ~skip) {\n", i->points);
+        PUT(w, "    uint skip = 0u;\n    uint i = 0u;\n    MASU_LOOP for (uint n = 0u; n < %du; n++) {\n        if (i >= %du) {\n            break;\n        }\n", i->points, i->points);
     else
         PUT(w, w->glsl ? "    MASU_LOOP for (uint i = 0u; i < %du; i++) {\n" : "    for (int i = 0; i < %d; i++) {\n", i->points);
     for (int k = 0; k < 3; k++) {
@@ -138,8 +139,12 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
     }
     PUT(w, "        v%d = min(v%d, masu_shape_%d_%d(p0, p1, p2, base%s));\n", variable, variable, group,
         i->aux, w->glsl ? ", on" : "");
-    if (skips) put_skips(w, g, p, i, variable);
+    if (skips) {
+        put_skips(w, g, p, i, variable);
+        PUT(w, "        i = ((i | skip) + 1u) & ~skip;\n");
+    }
     PUT(w, "    }\n");
+    if (skips) PUT(w, "    }\n");
     if (!w->glsl || g->term_count == 0) return;
     PUT(w, "    MASU_KEEP_ALL(v%d + MASU_SDF_MARGIN * ", variable);
     sdfc_put_operand(w, g, p, i->operand[11]);
