@@ -238,17 +238,6 @@ vec3 rough_light(vec3 albedo, vec3 normal)
     return albedo * (sun_color * max(dot(normal, sun_direction), 0.0) + ambient);
 }
 
-vec3 pillar_normal(vec3 p)
-{
-    vec3 sum = vec3(0.0);
-    MASU_LOOP for (int i = 0; i < 4; i++) {
-        vec3 corner = vec3(i == 1 || i == 3 ? 1.0 : -1.0, i >= 2 ? 1.0 : -1.0,
-                           i == 0 || i == 3 ? 1.0 : -1.0);
-        sum += corner * pillars(p + 0.02 * corner);
-    }
-    return masu_normalize(sum, vec3(0.0, 1.0, 0.0));
-}
-
 void pillar_surface(vec3 p, inout masu_surface s)
 {
     s.albedo = vec3(0.42, 0.38, 0.34);
@@ -260,7 +249,7 @@ void pillar_surface(vec3 p, inout masu_surface s)
         float flicker = 0.9 + 0.1 * sin(9.0 * masu_time() + 2.4 * cell.x + 5.1 * cell.y);
         s.emissive = mix(flame * flicker, horizon, mist);
     } else if (mist > 0.0) {
-        s.emissive = mix(rough_light(s.albedo, pillar_normal(p)), horizon, mist);
+        s.emissive = mix(rough_light(s.albedo, masu_normal), horizon, mist);
     }
 }
 

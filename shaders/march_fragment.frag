@@ -34,6 +34,7 @@ void main()
     masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
     uint part;
     vec3 n = normal_at(r, t, part);
+    masu_normal = n;
     masu_sdf_part_surface(part, world_at(r.direction, t), s);
     out_albedo = masu_pack_albedo(s);
     out_normal = masu_pack_normal(n, s);

@@ -68,6 +68,7 @@ uvec4 hit_of(reflected m, float t, bool known, inout uint evals)
         n = masu_normalize(n - away * r.direction, -r.direction);
     }
     masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
+    masu_normal = n;
     masu_sdf_part_surface(part, p, s);
     return uvec4(floatBitsToUint(max(t - m.apex, 0.0)), masu_pack_sdf_motion(moved(part, p)),
                  masu_pack_normal(n, s), packUnorm4x8(masu_pack_albedo(s)));

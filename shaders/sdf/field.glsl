@@ -158,6 +158,9 @@ uint masu_next_place(uint i)
     return masu_place_from(i + 1u);
 }
 
+/* Of the surface that masu_sdf_surface is asked about. */
+vec3 masu_normal = vec3(0.0);
+
 /* Lists are in rising order (classify.comp), and so is "all parts". */
 #define MASU_SDF_ASCENDING
 #include "sdf/terms.glsl"

@@ -18,6 +18,7 @@ float write_hit(uvec2 at, ray r, float t, bool known, uint part, float z_scale)
         n = normal_at(r, t, part);
         masu_count(MASU_COUNTER_SDF_EVALS, 4u);
     }
+    masu_normal = n;
     masu_sdf_part_surface(part, p, s);
     masu_count(MASU_COUNTER_SDF_HITS, 1u);
     /* Both are made finite by packing, and the pixel is one of the picture. */
