@@ -258,7 +258,7 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
     X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
     X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
       "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
-    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile and block with all parts")
+    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
 
 /* How the picture is upscaled. */
 #define MASU_EASU_WORDS(X)                                                                         \
@@ -685,6 +685,8 @@ typedef struct masu_debug {
                          numbers in masu_stats */
     uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
     uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
+    uint32_t all_terms;  /* not 0: a march asks for all of the SDF that its tile sees, not only for what
+                            matters to its block: for comparison, the same to the bit */
     uint32_t no_bias; /* not 0: rungs of fewer pixels take the mips of these: for comparison */
     uint32_t reference; /* not 0: reflections are traced at each pixel, summed up over frames of a
                            resting scene, weighted exactly and not filtered: the truth after many frames.

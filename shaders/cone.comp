@@ -81,7 +81,7 @@ void main()
             vec4 ends = span_ends(t, r.pixel);
             float begin = span == 0 ? t : span == 1 ? ends.x : span == 2 ? ends.y : ends.z;
             float end = span == 0 ? ends.x : span == 1 ? ends.y : span == 2 ? ends.z : ends.w;
-            if (empty || (done && push.unpruned != 0u) || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
+            if (empty || (done && push.all_terms != 0u) || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
                 break;
             }
             at_t = done ? 0.5 * (begin + end) : t;
@@ -112,7 +112,7 @@ void main()
             t = done ? t : t + gain;
         }
 #if MASU_WRITES_BLOCKS
-        /* Where the middle ray has ended few others go on: by what the tile sees, as all do with push.unpruned. */
+        /* Where the middle ray has ended few others go on: by what the tile sees, as all do with push.all_terms. */
         uint place = span_place(at, pixels);
         masu_tiles_out[place] = floatBitsToUint(t);
         for (int i = 0; i < MASU_BLOCK_SPANS; i++) {

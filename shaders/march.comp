@@ -25,7 +25,7 @@ layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
 
 #define MASU_RELAXED
 #define MASU_SDF_KEEP
-#define MASU_CHOOSING (push.unpruned == 0u)
+#define MASU_CHOOSING (push.all_terms == 0u)
 #define MASU_SDF_NO_FLAT
 #include "sdf/spans.glsl"
 #include "sdf/hit.glsl"

@@ -118,6 +118,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.casters);
     SAME(debug.ao_full);
     SAME(debug.ao_nearest);
+    SAME(debug.all_terms);
     SAME(debug.no_bias);
     SAME(debug.reference);
     SAME(debug.mip_bias);

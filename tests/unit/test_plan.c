@@ -136,7 +136,7 @@ static void every_row_of_the_table_fits_what_is_derived_from_it(void **state) {
 #define CLASSIFY_ON_RASTER "classify(r:depth rb:slots w:scene_depth wb:tiles) "
 #define CLASSIFY_ALONE "classify(rb:slots w:scene_depth wb:tiles) "
 #define CONE8 "cone8(rb:tiles w:cone8) "
-#define CONE4 "cone4(r:cone8 rb:tiles w:cone4) "
+#define CONE4 "cone4(r:cone8 wb:tiles w:cone4) "
 #define MARCH "march(r:cone4 rb:tiles u:albedo u:normal u:scene_depth) "
 #define MARCH_ON_RASTER CLASSIFY_ON_RASTER CONE8 CONE4 MARCH
 #define MARCH_ALONE CLASSIFY_ALONE CONE8 CONE4 MARCH
