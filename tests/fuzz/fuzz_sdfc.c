@@ -21,6 +21,7 @@ static void die(const char *what) {
 
 static void check_result(const masu_sdfc_result *r) {
     EXPECT(r->glsl && r->c && r->table && r->warnings);
+    EXPECT(r->block_words <= MASU_SDFC_BLOCK_WORDS_MAX);
     EXPECT(r->part_count >= 1 && r->part_count <= MASU_SDFC_PARTS_MAX);
     EXPECT(r->slot_count >= r->part_count * MASU_SDFC_PART_SLOTS);
     EXPECT(r->slot_count <= MASU_SDFC_SLOTS_MAX);

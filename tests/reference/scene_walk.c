@@ -465,6 +465,7 @@ static void read_sdf(walker *w) {
     read_code(w);
     expect(w, w->scene->sdf_slots == w->view.slot_count, "sdf_slots");
     expect(w, w->scene->sdf_parts == (s ? s->part_count : 0), "sdf_parts");
+    expect(w, w->scene->sdf_block_words == (s ? s->block_words : 0), "sdf_block_words");
     if (!s) {
         expect(w, !w->view.sdf_params && !w->view.slots, "an SDF has parts but is missing");
         return;
@@ -479,6 +480,7 @@ static void read_sdf(walker *w) {
     expect(w, all_within(&s->max_distance, 1, 1e-10, ANY_FLOAT), "the longest ray");
     expect(w, s->has_raster == (w->scene->instances > 0), "has_raster");
     expect(w, s->part_count >= 1 && s->part_count <= 4096, "the number of parts");
+    expect(w, s->block_words <= 2, "the words of a block");
     expect(w, w->view.slot_count >= 1 && w->view.slot_count <= 65536, "the number of slots");
     for (uint64_t i = 0; i < w->view.slot_count && !w->fault; i++) {
         expect(w, isfinite(w->view.slots[i]), "a slot is not finite");

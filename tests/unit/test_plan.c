@@ -1026,19 +1026,22 @@ static void a_small_relief_costs_its_curves_and_the_surface_image(void **state) 
 static void tiles_have_room_for_lists_at_the_largest_rung(void **state) {
     (void)state;
     static const struct {
-        uint32_t parts, words;
-    } cases[] = {{1, 2}, {32, 2}, {33, 3}, {64, 3}, {65, 65}, {4096, 65}};
+        uint32_t parts, words, block_words;
+    } cases[] = {{1, 2, 0}, {1, 2, 1}, {32, 2, 1}, {32, 2, 2}, {33, 3, 2}, {64, 3, 2}, {65, 65, 2}, {4096, 65, 2}};
     static masu_frame_plan plan;
     for (size_t i = 0; i < COUNT(cases); i++) {
         masu_desc d = scene_desc(SDF, 1000, 100);
         support_scene.sdf_parts = cases[i].parts;
+        support_scene.sdf_block_words = cases[i].block_words;
         d.rung_count = 3;
         d.rungs[0].scale = 0.3f;
         d.rungs[1].scale = 0.5f; /* 500x50: 32x4 tiles */
         d.rungs[2].scale = 0.4f;
         compile(&d, &plan);
         const masu_buffer_plan *tiles = &plan.buffers[MASU_BUFFER_TILES];
-        assert_int_equal(tiles->count, 8 + 32 * 4 * cases[i].words);
+        /* 125x13 blocks of 4x4 pixels: where each one's cone stops, and four pieces */
+        uint32_t block = cases[i].block_words ? 1 + 4 * cases[i].block_words : 0;
+        assert_int_equal(tiles->count, 8 + 32 * 4 * cases[i].words + 125 * 13 * block);
         assert_int_equal(tiles->bytes, 4 * tiles->count);
         assert_int_equal(tiles->role, MASU_ROLE_DEVICE);
         assert_true(tiles->usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);

@@ -889,6 +889,8 @@ static void an_sdf_of_no_parts_or_too_many_is_refused(void **state) {
         REFUSED("sdf", 0, FIELD->part_count = counts[i]);
         assert_non_null(strstr(detail.text, "part count"));
     }
+    REFUSED("sdf", 0, FIELD->block_words = 3);
+    ACCEPTED(FIELD->block_words = 2);
     ACCEPTED(FIELD->part_count = 2);
     ACCEPTED(FIELD->part_count = 4096);
 }

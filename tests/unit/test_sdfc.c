@@ -501,6 +501,42 @@ static void parts_of_one_form_share_its_code(void **state) {
     masu_sdfc_release(&result);
 }
 
+/* Bits for the parts and for what can be left out of them: worth asking for, continuous in a ball, and not of a
+ * scene of many parts, whose lists have a place for each. */
+static void blocks_have_bits_for_what_can_be_left_out(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        uint32_t words;
+        int terms; /* conditions on bits in the code */
+    } cases[] = {
+        {"part a = sphere(1);", 0, 0},
+        {"part a = sphere(1);\npart b = plane((0, 1, 0), 0);", 0, 0},
+        {"part a = sphere(1);\npart b = box((1, 2, 3));", 1, 0},
+        {"part a = union(sphere(1), box((1, 2, 3)));", 1, 2},
+        {"part a = smooth_union(0.2, sphere(1), union(torus(2, 0.1), cylinder(1, 1)));", 1, 4},
+        {"part a = difference(sphere(1), torus(1, 0.2), box((1, 2, 3)));", 1, 3},
+        {"for i in 0..8 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 2},
+        /* more than a word for all of them: none */
+        {"for i in 0..20 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 1, 0},
+        /* the neighbour is looked at too */
+        {"part a = repeat((9, 0, 0), union(translate((2, 0, 0), sphere(1)), translate((-2, 0, 0), sphere(1))));", 1, 2},
+        {"part a = repeat((9, 0, 9), union(sphere(1), box((1, 2, 3))));", 1, 2},
+        {"part a = polar(5, translate((9, 0, 0), union(sphere(1), box((1, 2, 3)))));", 0, 0},
+        {"part a = twist(0.5, union(sphere(1), box((1, 2, 3))));", 0, 0},
+        {"for i in 0..65 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 2, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        masu_sdfc_result result;
+        assert_compiles(cases[i].text, strlen(cases[i].text), &result);
+        assert_glsl_compiles(&result);
+        if (result.block_words != cases[i].words || count(result.glsl, "MASU_TERM((on &") != cases[i].terms) {
+            fail_msg("%s: %u words, %d terms", cases[i].text, result.block_words, count(result.glsl, "MASU_TERM((on &"));
+        }
+        masu_sdfc_release(&result);
+    }
+}
+
 /* The slots that the function masu_sdf_box reads, or its literals: what is said of low or high. */
 static void box_sides(const masu_sdfc_result *result, const char *name, double out[3]) {
     const char *at = strstr(result->glsl, "void masu_sdf_box(");
@@ -784,6 +820,7 @@ int main(void) {
         cmocka_unit_test(one_sphere_has_the_code_of_one_sphere),
         cmocka_unit_test(no_scene_has_a_function_that_it_does_not_call),
         cmocka_unit_test(parts_of_one_form_share_its_code),
+        cmocka_unit_test(blocks_have_bits_for_what_can_be_left_out),
         cmocka_unit_test(the_box_of_the_parts_follows_the_parameters),
         cmocka_unit_test(parts_that_move_are_told_from_those_that_rest),
         cmocka_unit_test(the_same_text_gives_the_same_result),
