@@ -73,9 +73,9 @@ bool masu_is_emissive(masu_surface s)
 
 vec4 masu_pack_albedo(masu_surface s)
 {
-    vec3 color = masu_is_emissive(s) ? s.emissive * (1.0 / masu_emissive_range) : s.albedo;
-    vec4 sane = masu_sane(vec4(color, s.roughness), 0.0, 1.0);
-    return vec4(sqrt(sane.rgb), sane.a);
+    vec3 radiance = masu_sane(s.emissive, 0.0, masu_emissive_range) / masu_emissive_range;
+    vec3 color = masu_is_emissive(s) ? radiance : masu_sane(s.albedo, 0.0, 1.0);
+    return vec4(sqrt(color), masu_sane(s.roughness, 0.0, 1.0));
 }
 
 uint masu_pack_normal(vec3 n, masu_surface s)
