@@ -547,6 +547,20 @@ static int lower_user(lowering *l, const sdfc_shape *s, point p) {
     return OP(l, max, d, OP(l, mul, outside, constant(l, s->facts.lipschitz)));
 }
 
+/* A capsule along an axis, as most are, has no slant to reckon with. */
+static int lower_capsule(lowering *l, const sdfc_shape *s, point p) {
+    const int v[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        const int *a = s->number, *d = s->number + 3;
+        if (!sdfc_is(l->c, d[i], 0) || !sdfc_is(l->c, d[j], 0)) continue;
+        if (!sdfc_constant(l->c, d[k]) || !(l->c->exprs[d[k]].value > 0)) continue;
+        int e[5] = {argument(l, a[i]), argument(l, a[k]), argument(l, a[j]), argument(l, d[k]), argument(l, s->number[7])};
+        return OP(l, stick, v[i], v[k], v[j], e[0], e[1], e[2], e[3], e[4]);
+    }
+    return plain(l, SDFC_capsule, s, p, 8);
+}
+
 static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
     switch (s->kind) {
     case SDFC_KIND_SPHERE: return plain(l, SDFC_sphere, s, p, 1);
@@ -561,7 +575,7 @@ static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
         return OP(l, sub, OP(l, box, p.x, p.y, p.z, h[0], h[1], h[2]), r);
     }
     case SDFC_KIND_TORUS: return plain(l, SDFC_torus, s, p, 2);
-    case SDFC_KIND_CAPSULE: return plain(l, SDFC_capsule, s, p, 8);
+    case SDFC_KIND_CAPSULE: return lower_capsule(l, s, p);
     case SDFC_KIND_CYLINDER: return plain(l, SDFC_cylinder, s, p, 2);
     case SDFC_KIND_CONE: return plain(l, SDFC_cone, s, p, 3);
     case SDFC_KIND_PLANE: {

@@ -42,6 +42,7 @@ typedef uint32_t uint;
 #define CALL_5(f) f(a[0], a[1], a[2], a[3], a[4])
 #define CALL_6(f) f(a[0], a[1], a[2], a[3], a[4], a[5])
 #define CALL_7(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6])
+#define CALL_8(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7])
 #define CALL_9(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8])
 #define CALL_11(f) f(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10])
 #define T(name, count, text, code) static double run_##name(const double *a) { return code; }
