@@ -242,7 +242,7 @@ static masu_desc full_desc(void) {
         d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
     }
     d.readback = 3;
-    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11.0f};
+    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12.0f};
     d.deny.unified_memory = 1;
     d.log = no_log;
     d.log_user = &allocator;

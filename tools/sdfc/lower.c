@@ -260,7 +260,7 @@ static int lower_whole(lowering *l, int shape, point p) {
 }
 
 static bool has_terms(const lowering *l, const sdfc_shape *s) {
-    if (!(l->stretch > 0) || s->children < 2) return false;
+    if (!(l->stretch > 0) || s->children < 2 || s->facts.estimate) return false;
     if (!l->folded) return true;
     for (int i = 0; i < s->children; i++) {
         if (l->folded & ~l->c->shapes[s->child[i]].facts.symmetric) return false;
@@ -555,7 +555,8 @@ static int lower_capsule(lowering *l, const sdfc_shape *s, point p) {
         const int *a = s->number, *d = s->number + 3;
         if (!sdfc_is(l->c, d[i], 0) || !sdfc_is(l->c, d[j], 0)) continue;
         if (!sdfc_constant(l->c, d[k]) || !(l->c->exprs[d[k]].value > 0)) continue;
-        int e[5] = {argument(l, a[i]), argument(l, a[k]), argument(l, a[j]), argument(l, d[k]), argument(l, s->number[7])};
+        int e[5] = {argument(l, a[i]), argument(l, a[k]), argument(l, a[j]), argument(l, d[k]),
+                    argument(l, s->number[7])};
         return OP(l, stick, v[i], v[k], v[j], e[0], e[1], e[2], e[3], e[4]);
     }
     return plain(l, SDFC_capsule, s, p, 8);
