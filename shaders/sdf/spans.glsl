@@ -1,7 +1,7 @@
 /*
  * spans.glsl: what of the field matters to a block of 4x4 pixels, in pieces of its rays.
  *
- * The pieces begin where the block's cone ends (cone.comp, which looks) and follow each other; each is some three times
+ * The pieces begin where the block's cone ends (cone.comp, which looks) and follow each other; each is three or four times
  * as long as the one before it, since what is hit is mostly near and what is passed by is left behind fast. The ball
  * around the middle of a piece holds that piece of all rays of the block. Behind the last one what matters to the
  * tile does.
@@ -25,7 +25,9 @@ vec4 span_ends(float t, float pixel)
 float span_margin(ray r, float begin, float end)
 {
     float across = 0.70711 * float(MASU_BLOCK_PIXELS) * r.pixel * end;
-    return field_margin(r, 0.5 * (begin + end), 1.01 * length(vec2(0.5 * (end - begin), across)));
+    vec3 p = abs(world_at(r.direction, end));
+    float slack = 128.0 * ulp * (max(p.x, max(p.y, p.z)) + end); /* the samples around a hit, for its normal */
+    return field_margin(r, 0.5 * (begin + end), 1.01 * length(vec2(0.5 * (end - begin), across)) + slack);
 }
 
 /* A block's words stand behind the lists: where its pieces begin, as a float, then the bits of each piece. */

@@ -42,7 +42,7 @@ void masu_keep_part(float d, float f, uint word, uint bit)
 
 vec4 masu_sdf_bounds(uint part);
 
-/* Of a part whose field is no bound of anything but, outside of it, of the distance to its sphere over its constant. */
+/* Of a part whose field is no bound of anything but, outside of it, of the distance to its sphere, times its growth. */
 void masu_keep_estimate(float d, uint part, float safe, vec3 p)
 {
     vec4 sphere = masu_sdf_bounds(part);
@@ -63,8 +63,8 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEEP_NONE MASU_IF_KEEPING(masu_kept = uint[](0u, 0u))
 #define MASU_KEEP_BEGIN MASU_IF_KEEPING(masu_kept_terms = 0u)
 #define MASU_KEEP_PART(d, f, word, bit) MASU_IF_KEEPING(masu_keep_part(d, f, word, bit))
-#define MASU_KEEP_ESTIMATE(d, part) MASU_IF_KEEPING(masu_keep_estimate(d, part, masu_slot(part * 8u + 4u), p))
-#define MASU_KEEP_FLAT(d, f) MASU_IF_KEEPING(masu_keep_part(d, f, 2u, 0u))
+#define MASU_KEEP_ESTIMATE(d, part, growth) \
+    MASU_IF_KEEPING(masu_keep_estimate(d, part, masu_slot(part * 8u + 4u) * (growth), p))
 #define MASU_KEEP_TERMS(word, first) MASU_IF_KEEPING(masu_kept[word] |= masu_kept_terms << (first))
 #define MASU_KEEP(bit) MASU_IF_KEEPING(kept |= bit)
 #define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before) \
@@ -76,16 +76,11 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 
 #else
 #define MASU_SDF_MARGIN 0.0
-#ifdef MASU_SPANS_USED
-#define masu_term_bits(word) masu_part_bits(word)
-#else
 #define masu_term_bits(word) 0xFFFFFFFFu
-#endif
 #define MASU_KEEP_NONE
 #define MASU_KEEP_BEGIN
 #define MASU_KEEP_PART(d, f, word, bit)
-#define MASU_KEEP_ESTIMATE(d, part)
-#define MASU_KEEP_FLAT(d, f)
+#define MASU_KEEP_ESTIMATE(d, part, growth)
 #define MASU_KEEP_TERMS(word, first)
 #define MASU_KEEP(bit)
 #define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before)

@@ -373,8 +373,8 @@ vec3 normal_at(ray r, float t, out uint part)
     float h = max(normal_step * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
     vec3 sum = vec3(0.0);
 #ifdef MASU_SDF_KEEP
-    masu_margin = field_margin(r, t, 3.0 * h);
     masu_keeping = MASU_SDF_BLOCK_WORDS > 0 && MASU_CHOOSING;
+    masu_margin = masu_keeping ? field_margin(r, t, 3.0 * h) : 0.0;
 #endif
     MASU_LOOP for (int i = 0; i < 4; i++) {
         bvec3 plus = bvec3(i == 1 || i == 3, i >= 2, i == 0 || i == 3);

@@ -522,6 +522,9 @@ static void blocks_have_bits_for_what_can_be_left_out(void **state) {
         /* the neighbour is looked at too */
         {"part a = repeat((9, 0, 0), union(translate((2, 0, 0), sphere(1)), translate((-2, 0, 0), sphere(1))));", 1, 2},
         {"part a = repeat((9, 0, 9), union(sphere(1), box((1, 2, 3))));", 1, 2},
+        /* a cut that is left out in one cell would make it nearer than the cells that are not looked at */
+        {"part a = repeat((4, 0, 4), intersection(box((1.9, 1.9, 1.9)),"
+         " translate((0, 0.2, 0), plane((-0.5, 0.7071, 0.5), 0))));", 0, 0},
         {"part a = polar(5, translate((9, 0, 0), union(sphere(1), box((1, 2, 3)))));", 0, 0},
         {"part a = twist(0.5, union(sphere(1), box((1, 2, 3))));", 0, 0},
         {"for i in 0..65 { part a = translate((i, 0, 0), union(sphere(1), box((1, 2, 3)))); }", 2, 0},

@@ -168,6 +168,14 @@ static void put_least(sdfc_writer *w) {
     PUT(w, "        nearest = f < d ? part : nearest;\n        d = f < d ? f : d;\n");
 }
 
+static double least_growth(const sdfc *c, const sdfc_group *group) {
+    double growth = 1;
+    for (int k = 0; k < group->part_count; k++) {
+        growth = fmin(growth, c->shapes[c->parts[group->first_part + k].shape].facts.growth);
+    }
+    return growth;
+}
+
 static bool is_estimate(const sdfc *c, const sdfc_group *group) {
     return c->shapes[c->parts[group->first_part].shape].facts.estimate;
 }
@@ -177,7 +185,7 @@ static bool is_estimate(const sdfc *c, const sdfc_group *group) {
 static void put_keep(sdfc_writer *w, const sdfc_group *group) {
     bool several = group->part_count > 1;
     if (is_estimate(w->c, group))
-        PUT(w, "        MASU_KEEP_ESTIMATE(d, part)\n");
+        PUT(w, "        MASU_KEEP_ESTIMATE(sure, part, %.9g)\n", least_growth(w->c, group));
     else if (several)
         PUT(w, "        MASU_KEEP_PART(d, f, part >> 5, 1u << (part & 31u))\n");
     else
@@ -202,7 +210,6 @@ static void put_flat_least(sdfc_writer *w) {
         PUT(w, "    for (uint part = %du; part < %du; part++) {\n", group->first_part,
             group->first_part + group->part_count);
         put_part_value(w, g, "f", "p");
-        PUT(w, "        MASU_KEEP_FLAT(d, f)\n");
         put_least(w);
         PUT(w, "    }\n");
     }
@@ -302,8 +309,9 @@ static void put_ascending(sdfc_writer *w) {
     put_head(w);
     PUT(w, "    MASU_KEEP_NONE\n");
     if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = masu_first_place();\n");
-    /* An estimate comes last: it tells nothing about the others. */
+    /* Estimates come last: they tell nothing about others. */
     for (int late = 0; late < 2; late++) {
+        if (late && any_estimate(c)) PUT(w, "    float sure = d;\n");
         for (int g = 0; g < c->group_count; g++) {
             bool turn = (masked && is_estimate(c, &c->groups[g])) == (late != 0);
             if (c->groups[g].flat || !turn) continue;

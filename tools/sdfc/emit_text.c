@@ -118,6 +118,17 @@ static void put_skips(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p
     PUT(w, "        }\n");
 }
 
+/* Of the terms of a function and of those that it calls, which stand behind it. */
+static unsigned bits_of(const sdfc_program *p, int function) {
+    const sdfc_function *f = &p->functions[function];
+    unsigned bits = 0;
+    for (int t = 0; t < f->term_count; t++) bits |= f->terms[t].bit >= 0 ? 1u << f->terms[t].bit : 0;
+    for (int k = 0; k < f->count; k++) {
+        if (f->instrs[k].op == SDFC_CALL_MIN && f->instrs[k].aux > function) bits |= bits_of(p, f->instrs[k].aux);
+    }
+    return bits;
+}
+
 static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const sdfc_program *p,
                          const sdfc_instr *i, int variable, bool declared) {
     bool skips = has_reach(w, p, i);
@@ -145,12 +156,13 @@ static void put_call_min(sdfc_writer *w, int group, const sdfc_group *g, const s
     }
     PUT(w, "    }\n");
     if (skips) PUT(w, "    }\n");
-    if (!w->glsl || g->term_count == 0) return;
+    unsigned bits = w->glsl && g->term_count ? bits_of(p, i->aux) : 0;
+    if (!bits) return;
     PUT(w, "    MASU_KEEP_ALL(v%d + MASU_SDF_MARGIN * ", variable);
     sdfc_put_operand(w, g, p, i->operand[11]);
     PUT(w, " > ");
     sdfc_put_operand(w, g, p, i->operand[10]);
-    PUT(w, ", 0x%xu)\n", (1u << g->term_count) - 1u);
+    PUT(w, ", 0x%xu)\n", bits);
 }
 
 void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc_instr *i,

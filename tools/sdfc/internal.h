@@ -139,9 +139,9 @@ typedef struct sdfc_instr {
     int32_t op;
     int32_t aux;                        /* CALL_MIN: the function, CALL_USER: the block */
     int32_t select[3];                  /* CALL_MIN: which bit of the point's number chooses */
-    int32_t points;                     /* CALL_MIN; operands 6..8: what 9 times, less |the own
-                                           coordinate|, is the least of other cells' values along the
-                                           axis; 10: the least of cells that are not looked at; 11: the
+    int32_t points;                     /* CALL_MIN; operands 6..8, of each axis: 9 * (this -
+                                           |the own coordinate|) is the least value of its other
+                                           cells; 10: the least of cells that are not looked at; 11: the
                                            constant of the values per metre of the world */
     int32_t operand[SDFC_OPERANDS_MAX]; /* >= 0: a variable, < 0: argument ~operand */
 } sdfc_instr;

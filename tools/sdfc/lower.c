@@ -23,6 +23,7 @@ typedef struct lowering {
     double stretch; /* metres here for one of the world, at most; 0: not known */
     unsigned folded; /* axes that jump from cell to cell: what is alike on both sides alone is continuous */
     bool at_fold;    /* nothing has been done to the point since */
+    bool in_cells;   /* of a repetition that looks at several: what is left out of a cut makes a cell nearer */
 } lowering;
 
 typedef struct point {
@@ -261,6 +262,7 @@ static int lower_whole(lowering *l, int shape, point p) {
 
 static bool has_terms(const lowering *l, const sdfc_shape *s) {
     if (!(l->stretch > 0) || s->children < 2 || s->facts.estimate) return false;
+    if (l->in_cells && s->kind != SDFC_KIND_UNION && s->kind != SDFC_KIND_SMOOTH_UNION) return false;
     if (!l->folded) return true;
     for (int i = 0; i < s->children; i++) {
         if (l->folded & ~l->c->shapes[s->child[i]].facts.symmetric) return false;
@@ -325,8 +327,10 @@ static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
         l->folded = folded, l->at_fold = at_fold;
         return d;
     }
+    bool in_cells = l->in_cells;
+    l->in_cells = true;
     int function = child_function(l, s->child[0], s->extra[10] != 0, s, p.offset);
-    l->folded = folded, l->at_fold = at_fold;
+    l->folded = folded, l->at_fold = at_fold, l->in_cells = in_cells;
     const sdfc_facts *child = &l->c->shapes[s->child[0]].facts;
     int reach[6];
     for (int i = 0; i < 3; i++) {

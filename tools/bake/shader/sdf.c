@@ -182,6 +182,7 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
             append_scene_header(&text, content, glsl_path);
             masu_bake_append(&text, own.data, own.bytes);
             masu_bake_append_text(&text, "\n");
+            masu_bake_append_text(&text, has_terms(&own) ? "#define MASU_SDF_TERMS_FOUND 1\n" : "#define MASU_SDF_TERMS_FOUND 0\n");
             masu_bake_append_text(&text, "#include \"sdf/hand_written.glsl\"\n");
             static const float no_slot = 0.0f;
             masu_bake_append(&content->section[MASU_BLOB_SLOTS], &no_slot, sizeof no_slot);
