@@ -263,7 +263,7 @@ static const char *write_field(const char *field) {
     free(source);
     (void)snprintf(text + at, sizeof text - at,
                    "#include \"%s\"\n"
-                   "#include \"sdf/hand_written.glsl\"\n",
+                   "#define MASU_SDF_TERMS_FOUND 1\n#include \"sdf/hand_written.glsl\"\n",
                    field);
     return write_text("sdf_scene.glsl", text);
 }
