@@ -15,11 +15,6 @@
 #ifndef MASU_TERMS_GLSL
 #define MASU_TERMS_GLSL
 
-#ifndef MASU_TERM
-#define MASU_TERM(asked) if (asked)
-#define MASU_PART_TERM(asked) if (asked)
-#endif
-
 #ifdef MASU_SDF_KEEP
 uint masu_kept[2] = uint[](0u, 0u);
 uint masu_kept_terms = 0u;
@@ -63,8 +58,7 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEEP_NONE MASU_IF_KEEPING(masu_kept = uint[](0u, 0u))
 #define MASU_KEEP_BEGIN MASU_IF_KEEPING(masu_kept_terms = 0u)
 #define MASU_KEEP_PART(d, f, word, bit) MASU_IF_KEEPING(masu_keep_part(d, f, word, bit))
-#define MASU_KEEP_ESTIMATE(d, part, growth) \
-    MASU_IF_KEEPING(masu_keep_estimate(d, part, masu_slot(part * 8u + 4u) * (growth), p))
+#define MASU_KEEP_ESTIMATE(d, part, safe) MASU_IF_KEEPING(masu_keep_estimate(d, part, safe, p))
 #define MASU_KEEP_TERMS(word, first) MASU_IF_KEEPING(masu_kept[word] |= masu_kept_terms << (first))
 #define MASU_KEEP(bit) MASU_IF_KEEPING(kept |= bit)
 #define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before) \
@@ -80,7 +74,7 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 #define MASU_KEEP_NONE
 #define MASU_KEEP_BEGIN
 #define MASU_KEEP_PART(d, f, word, bit)
-#define MASU_KEEP_ESTIMATE(d, part, growth)
+#define MASU_KEEP_ESTIMATE(d, part, safe)
 #define MASU_KEEP_TERMS(word, first)
 #define MASU_KEEP(bit)
 #define MASU_KEEP_LEAST(joined, e, lipschitz, blend, bit, before)

@@ -533,8 +533,8 @@ static void blocks_have_bits_for_what_can_be_left_out(void **state) {
         masu_sdfc_result result;
         assert_compiles(cases[i].text, strlen(cases[i].text), &result);
         assert_glsl_compiles(&result);
-        if (result.block_words != cases[i].words || count(result.glsl, "MASU_TERM((on &") != cases[i].terms) {
-            fail_msg("%s: %u words, %d terms", cases[i].text, result.block_words, count(result.glsl, "MASU_TERM((on &"));
+        if (result.block_words != cases[i].words || count(result.glsl, "if ((on &") != cases[i].terms) {
+            fail_msg("%s: %u words, %d terms", cases[i].text, result.block_words, count(result.glsl, "if ((on &"));
         }
         masu_sdfc_release(&result);
     }

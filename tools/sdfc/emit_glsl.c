@@ -185,7 +185,8 @@ static bool is_estimate(const sdfc *c, const sdfc_group *group) {
 static void put_keep(sdfc_writer *w, const sdfc_group *group) {
     bool several = group->part_count > 1;
     if (is_estimate(w->c, group))
-        PUT(w, "        MASU_KEEP_ESTIMATE(sure, part, %.9g)\n", least_growth(w->c, group));
+        PUT(w, "        MASU_KEEP_ESTIMATE(sure, part, masu_slot(part * %uu + 4u) * (%.9g))\n", MASU_SDFC_PART_SLOTS,
+            least_growth(w->c, group));
     else if (several)
         PUT(w, "        MASU_KEEP_PART(d, f, part >> 5, 1u << (part & 31u))\n");
     else
@@ -242,7 +243,7 @@ static void put_only_part(sdfc_writer *w, int g) {
     if (alone)
         PUT(w, "    {\n");
     else
-        PUT(w, "    MASU_PART_TERM((masu_part_bits(%d) & 0x%xu) != 0u) {\n", group->first_part / 32,
+        PUT(w, "    if ((masu_part_bits(%d) & 0x%xu) != 0u) {\n", group->first_part / 32,
             1u << group->first_part % 32);
     PUT(w, "        const uint part = %du;\n", group->first_part);
     PUT(w, "        MASU_KEEP_BEGIN\n");

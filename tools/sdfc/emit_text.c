@@ -218,10 +218,10 @@ static void open_terms(sdfc_writer *w, const sdfc_group *g, const sdfc_program *
         else
             sdfc_put_operand(w, g, p, f->instrs[term->last].operand[0]);
         if (!term->cap) {
-            PUT(w, ";\n    MASU_TERM((on & 0x%xu) != 0u) {\n", 1u << term->bit);
+            PUT(w, ";\n    if ((on & 0x%xu) != 0u) {\n", 1u << term->bit);
             continue;
         }
-        PUT(w, ";\n    MASU_TERM(");
+        PUT(w, ";\n    if (");
         sdfc_put_operand(w, g, p, f->instrs[term->last].operand[0]);
         PUT(w, " > ");
         sdfc_put_operand(w, g, p, term->cap);

@@ -178,11 +178,12 @@ static bool lay_out(const char *directory, masu_bake_content *content, const cha
     } else {
         good = masu_bake_read_file(glsl_path, GLSL_MAX, &own);
         if (good) {
-            if (has_terms(&own)) MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->block_words = 1;
+            bool terms = has_terms(&own);
+            MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, masu_blob_sdf)->block_words = terms;
             append_scene_header(&text, content, glsl_path);
             masu_bake_append(&text, own.data, own.bytes);
             masu_bake_append_text(&text, "\n");
-            masu_bake_append_text(&text, has_terms(&own) ? "#define MASU_SDF_TERMS_FOUND 1\n" : "#define MASU_SDF_TERMS_FOUND 0\n");
+            masu_bake_append_text(&text, terms ? "#define MASU_SDF_TERMS_FOUND 1\n" : "#define MASU_SDF_TERMS_FOUND 0\n");
             masu_bake_append_text(&text, "#include \"sdf/hand_written.glsl\"\n");
             static const float no_slot = 0.0f;
             masu_bake_append(&content->section[MASU_BLOB_SLOTS], &no_slot, sizeof no_slot);
