@@ -353,6 +353,11 @@ typedef enum masu_knob_use {
     WORD(  masu_march,       march,                                  SDF,                          \
            "How the SDF is marched. AUTO: the fast way.",                                          \
            "All others took longer where they were measured (docs/design/11-march-measured.md).")                    \
+    WORD(  masu_switch,      silhouettes,                            SDF,                          \
+           "Smooth silhouettes of the SDF: pixels beside them are blended by what the nearer thing"  \
+           " covers. AUTO: off.",                                                                  \
+           "A pass that asks the field at such pixels; 4 device bytes per pixel of the render"     \
+           " size, which other images may share.")                                                 \
     NUMBER(uint32_t,         march_steps,          1,    2048, 2048, SDF,       "steps",           \
            "Most SDF steps per ray. A ray that uses them up ends where it is.",                    \
            "Time of rays that graze surfaces: the more, the longer.")                              \

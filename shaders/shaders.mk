@@ -10,6 +10,7 @@
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \
     march_checkerboard.comp march_fragment.frag sdf_velocity.comp sdf_occlusion.comp \
+    silhouettes.comp \
     specular_trace_sdf.comp
 
 SPIRV_TARGET := --target-env vulkan1.1

@@ -12,13 +12,23 @@
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/output.glsl"
+#ifdef MASU_SILHOUETTES
+#include "shared/silhouettes.glsl"
+#endif
 
 layout(constant_id = 5) const uint tone = 2;
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D hdr_image;
-layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE ldr_image;
+#ifdef MASU_SILHOUETTES
+layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D silhouettes_image;
+#define MASU_FIRST_WRITE 2
+#else
+#define MASU_FIRST_WRITE 1
+#endif
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, MASU_COLOR_FORMAT)
+    uniform writeonly MASU_COLOR_IMAGE ldr_image;
 
 #ifdef MASU_METERED
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buffer Exposure
@@ -51,13 +61,48 @@ vec3 encoded(vec3 y)
     return vec3(masu_pq_encode(nits.r), masu_pq_encode(nits.g), masu_pq_encode(nits.b));
 }
 
+/* What is shown of a pixel alone. */
+vec3 shown(ivec2 at)
+{
+    vec3 hdr = texelFetch(hdr_image, at, 0).rgb;
+    return curve(masu_exposed(hdr, exposure()), max(push.peak, 1.0));
+}
+
+#ifdef MASU_SILHOUETTES
+/* Display light, as an eye takes the mean of it: of radiance a lamp that covers a tenth of the pixel would turn it
+ * white (docs/design/31-truth.md). */
+vec3 blended(ivec2 at, ivec2 size)
+{
+    vec3 y = shown(at);
+    uint own = texelFetch(silhouettes_image, at, 0).r;
+    uvec4 others = uvec4(0u);
+    for (int k = 0; k < 4; k++) {
+        others[k] = texelFetch(silhouettes_image, clamp(at + masu_beside(k), ivec2(0), size - 1), 0).r;
+    }
+    if ((own | others.x | others.y | others.z | others.w) != 0u) {
+        vec4 weights = masu_silhouette_weights(own, others);
+        vec3 sum = y * (1.0 - weights.x - weights.y - weights.z - weights.w);
+        for (int k = 0; k < 4; k++) {
+            if (weights[k] > 0.0) {
+                sum += weights[k] * shown(clamp(at + masu_beside(k), ivec2(0), size - 1));
+            }
+        }
+        y = sum;
+    }
+    return y;
+}
+#endif
+
 void main()
 {
     masu_count_begin();
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
-        vec3 hdr = texelFetch(hdr_image, ivec2(at), 0).rgb;
-        vec3 y = curve(masu_exposed(hdr, exposure()), max(push.peak, 1.0));
+#ifdef MASU_SILHOUETTES
+        vec3 y = push.silhouettes != 0u ? blended(ivec2(at), ivec2(pc.output_width, pc.output_height)) : shown(ivec2(at));
+#else
+        vec3 y = shown(ivec2(at));
+#endif
 #ifdef MASU_DEEP
         if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* not through PQ and back */
             vec3 white = min(y * push.white, 1e4) * (1.0 / 80.0);

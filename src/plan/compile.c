@@ -194,6 +194,10 @@ static int rung_has_taa(const masu_desc *d, uint32_t r) {
            d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_taa != MASU_OFF;
 }
 
+static int rung_has_silhouettes(const masu_desc *d, uint32_t r) {
+    return d->scene && d->scene->sdf && d->rungs[r].silhouettes == MASU_ON;
+}
+
 static int rung_has_fine(const masu_desc *d, uint32_t r) {
     return rung_has_specular(d, r) && !d->debug.reference &&
            d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_fine != MASU_OFF;
@@ -254,6 +258,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .accumulate = d->debug.reference != 0,
                                .any_taa = wants(d, rung_has_taa),
                                .any_fine = wants(d, rung_has_fine),
+                               .any_silhouettes = wants(d, rung_has_silhouettes),
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d),
                                .blit = !d->targets.storage};
@@ -308,6 +313,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         plan->needs.filter = filtered && d->rungs[r].specular_filter != MASU_OFF;
         plan->needs.taa = rung_has_taa(d, r);
         plan->needs.fine = rung_has_fine(d, r);
+        plan->needs.silhouettes = rung_has_silhouettes(d, r);
         plan->needs.occlusion = plan->needs.occluders && d->rungs[r].occlusion != MASU_OFF;
         plan->needs.unculled = d->scene && (d->scene->max_primitives > MASU_CULL_ROUNDS ||
                                             d->scene->max_instances > 64 * MASU_CULL_ROUNDS);

@@ -134,6 +134,7 @@ typedef struct masu_needs {
     int query;         /* polygons are found by ray queries of the device */
     int any_taa;        /* a rung has taa, */
     int any_fine;        /* fine */
+    int any_silhouettes; /* silhouettes */
     int smoothing;     /* smaa */
     int metered;       /* the exposure follows the picture */
     /* of one rung: */
@@ -143,6 +144,7 @@ typedef struct masu_needs {
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receiver_mask; /* and of cascades that every frame draws anew */
+    int silhouettes; /* of the SDF are smooth */
     int light_tiles; /* lights are sorted into tiles */
     int specular;    /* reflections are traced */
     int reuse, temporal, fine, filter, taa; /* what is done to them */

@@ -23,7 +23,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 10u
+#define MASU_BLOB_VERSION 11u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -71,11 +71,12 @@ enum masu_blob_kind {
     MASU_BLOB_TRACE_TEXTURES = 45, /* what rays see of the textures; these two come together */
     MASU_BLOB_TRACE_TEXELS = 46,   /* uint32 */
     MASU_BLOB_TRACE_SDF_SPIRV = 47, /* rays meet the SDF */
+    MASU_BLOB_SILHOUETTES_SPIRV = 48, /* present exactly when MARCH_SPIRV is */
     MASU_BLOB_TRACE_NODES = 40, /* what rays are traced through; these four come together */
     MASU_BLOB_TRACE_TRIANGLES = 41,
     MASU_BLOB_TRACE_MESHES = 42,    /* as many as meshes, in their order */
     MASU_BLOB_TRACE_INSTANCES = 43, /* uint32, rising: those that rays meet */
-    MASU_BLOB_KIND_COUNT = 48
+    MASU_BLOB_KIND_COUNT = 49
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */

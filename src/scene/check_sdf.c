@@ -47,7 +47,7 @@ masu_result masu_check_sdf(reader *r) {
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
         int needed = k == MASU_BLOB_MARCH_SPIRV || k == MASU_BLOB_CLASSIFY_SPIRV ||
                      k == MASU_BLOB_CONE8_SPIRV || k == MASU_BLOB_CONE4_SPIRV ||
-                     k == MASU_BLOB_VELOCITY_SPIRV;
+                     k == MASU_BLOB_VELOCITY_SPIRV || k == MASU_BLOB_SILHOUETTES_SPIRV;
         /* The slots of an anchored SDF change with the anchor, if with nothing else. */
         if (k == MASU_BLOB_UPDATE_SPIRV) {
             needed = s->anchored || v->code[MASU_BLOB_UPDATE_PREVIOUS_SPIRV].words;

@@ -36,6 +36,7 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     CODE(MASU_BLOB_FRAGMENT_SPIRV, "march_fragment SPIR-V"),
     CODE(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V"),
     CODE(MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V"),
+    CODE(MASU_BLOB_SILHOUETTES_SPIRV, "silhouettes SPIR-V"),
     CODE(MASU_BLOB_OCCLUSION_SPIRV, "sdf_occlusion SPIR-V"),
     CODE(MASU_BLOB_TRACE_SDF_SPIRV, "specular_trace_sdf SPIR-V"),
     [MASU_BLOB_REFLECTIONS] = {"reflections", sizeof(masu_blob_reflections), 1, 0},

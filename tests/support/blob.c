@@ -266,6 +266,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_CONE8_SPIRV, code);
         ADD(MASU_BLOB_CONE4_SPIRV, code);
         ADD(MASU_BLOB_VELOCITY_SPIRV, code);
+        ADD(MASU_BLOB_SILHOUETTES_SPIRV, code);
         if (parts & SUPPORT_VARIANTS) {
             ADD(MASU_BLOB_UPDATE_SPIRV, code);
             ADD(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, code);

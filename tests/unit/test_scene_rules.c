@@ -101,6 +101,7 @@ static const struct {
              {MASU_BLOB_CONE8_SPIRV, "cone8 SPIR-V", 1},
              {MASU_BLOB_CONE4_SPIRV, "cone4 SPIR-V", 1},
              {MASU_BLOB_VELOCITY_SPIRV, "velocity SPIR-V", 1},
+             {MASU_BLOB_SILHOUETTES_SPIRV, "silhouettes SPIR-V", 1},
              {MASU_BLOB_UPDATE_PREVIOUS_SPIRV, "update_previous SPIR-V", 1},
              {MASU_BLOB_UPDATE_SPIRV, "update SPIR-V", 1}, /* beside the one before */
              {MASU_BLOB_PLAIN_SPIRV, "march_plain SPIR-V", 0},

@@ -27,6 +27,7 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_FRAGMENT_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_VELOCITY_SPIRV] = sizeof(uint32_t),
+    [MASU_BLOB_SILHOUETTES_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_OCCLUSION_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_TRACE_SDF_SPIRV] = sizeof(uint32_t),
     [MASU_BLOB_SHADOW] = sizeof(masu_blob_shadow),

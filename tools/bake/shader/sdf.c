@@ -357,6 +357,7 @@ static const struct {
     {"update.comp", "-DMASU_MOTION=1", "before.raw", "before.spv", MASU_BLOB_UPDATE_PREVIOUS_SPIRV,
      DYNAMIC},
     {"sdf_velocity.comp", NULL, "motion.raw", "motion.spv", MASU_BLOB_VELOCITY_SPIRV, ALWAYS},
+    {"silhouettes.comp", NULL, "edges.raw", "edges.spv", MASU_BLOB_SILHOUETTES_SPIRV, ALWAYS},
     {"classify.comp", NULL, "class.raw", "class.spv", MASU_BLOB_CLASSIFY_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", "cone8.raw", "cone8.spv", MASU_BLOB_CONE8_SPIRV, ALWAYS},
     {"cone.comp", "-DMASU_CONE_BLOCK=4", "cone4.raw", "cone4.spv", MASU_BLOB_CONE4_SPIRV, ALWAYS},

@@ -61,6 +61,7 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_FRAGMENT_SPIRV] = "fragment_spirv",
         [MASU_BLOB_UPDATE_PREVIOUS_SPIRV] = "update_previous_spirv",
         [MASU_BLOB_VELOCITY_SPIRV] = "velocity_spirv",
+        [MASU_BLOB_SILHOUETTES_SPIRV] = "silhouettes_spirv",
         [MASU_BLOB_OCCLUSION_SPIRV] = "occlusion_spirv",
         [MASU_BLOB_TRACE_SDF_SPIRV] = "specular_trace_sdf_spirv",
         [MASU_BLOB_SHADOW] = "shadow",

@@ -1,0 +1,207 @@
+/*
+ * silhouettes.comp: where between two pixels what the SDF shows ends. Compiled by masu-bake with the scene's field.
+ *
+ * A pixel beside which the SDF is nearer than its own surface goes on would take no edge for what it is: its ray has
+ * passed the nearer thing, by less than a pixel. The field knows by how much. Along the pixel's ray, from the
+ * neighbour's depth on, the place is looked for where the field's gradient is across the ray; from there the surface
+ * lies at f / |gradient| along the gradient. That point in the picture, relative to the pixel's centre, is the nearest of
+ * the silhouette, and the silhouette a straight line through it. tonemap.comp blends the pixels on both sides by
+ * what the line covers of them (shared/silhouettes.glsl).
+ *
+ * It takes ROUNDS of four samples at the pixels behind a silhouette, which are some 2 to 8 of 100, and nothing but depths
+ * and a normal of all others. Wrong turn: to note near misses while marching. It is state of every ray in flight, for
+ * few of them; and cones, lists and boxes would all have to be wider by a pixel.
+ *
+ * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#define MASU_PUSH masu_push_silhouettes
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/silhouettes.glsl"
+#include "shared/store.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+#if MASU_HAS_RASTER
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D raster_depth;
+#define MASU_FIRST_IMAGE 1
+#else
+#define MASU_FIRST_IMAGE 0
+#endif
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1) uniform usampler2D normal_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2, r32ui) uniform writeonly uimage2D silhouettes_image;
+
+#define MASU_SDF_NO_FLAT
+#include "sdf/spans.glsl"
+
+#define PAIRS 6
+
+uvec2 size;
+
+/* Depth of what the SDF shows there, 0 of polygons, of the sky and outside of the picture. */
+float sdf_depth(ivec2 at)
+{
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)))) {
+        return 0.0;
+    }
+    float depth = texelFetch(depth_image, at, 0).r;
+#if MASU_HAS_RASTER
+    depth = depth == texelFetch(raster_depth, at, 0).r ? 0.0 : depth;
+#endif
+    return depth;
+}
+
+/* Which neighbours are in front of the pixel: nearer than it, and than its surface would be, if it went on there as a
+ * plane (of which 1/z, as depth is, is affine in the picture), by two pixels' widths. */
+vec4 in_front(uvec2 at, float depth, vec3 through, out vec4 depths)
+{
+    vec4 going_on = vec4(depth);
+    if (depth > 0.0) {
+        vec3 n = masu_unpack_normal(texelFetch(normal_image, ivec2(at), 0).r);
+        float facing = dot(n, through);
+        float right = 2.0 / float(size.x) * dot(n, frame.right.xyz);
+        float down = -2.0 / float(size.y) * dot(n, frame.up.xyz);
+        vec4 slopes = vec4(right, -right, down, -down);
+        going_on = facing < -1e-6 ? depth * (1.0 + max(slopes / facing, 0.0)) : going_on;
+    }
+    for (int k = 0; k < 4; k++) {
+        depths[k] = sdf_depth(ivec2(at) + masu_beside(k));
+    }
+    float gap = 1.0 + 4.0 * frame.up.w / float(size.y);
+    return vec4(greaterThan(depths, going_on * gap));
+}
+
+/* Only what matters on the rays of the block of the nearer pixel. */
+void use_parts_at(uvec2 at, float t)
+{
+    if (push.listed != 0u) {
+        uvec2 tile = at / uint(MASU_TILE);
+        masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
+    }
+#if MASU_SDF_BLOCK_WORDS > 0
+    if (push.listed == 2u) {
+        uint place = span_place(at / 4u, size);
+        float start = uintBitsToFloat(masu_tiles[place]);
+        vec4 ends = span_ends(start, 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x)));
+        uvec4 past = uvec4(greaterThan(vec4(t), ends));
+        uint now = past.x + past.y + past.z + past.w;
+        for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+            uint bits = masu_tiles[place + 1u + min(now, 3u) * uint(MASU_SDF_BLOCK_WORDS) + uint(w)];
+            masu_list_bits[w] = now < 4u ? bits : masu_list_bits[w];
+        }
+    }
+#endif
+}
+
+/* The vector from a ray to the surface where they are nearest, seen from t on; 0: they meet, or the ray leaves first.
+ * Pairs of samples tell whether the field falls or rises along the ray: ever longer steps until it rises, then secants
+ * between the last two, of which an end that stays counts half (Illinois). The last four samples are the gradient. */
+vec3 to_surface(ray r, inout float t)
+{
+    float low_t = t;
+    float low_slope = 0.0;
+    float high_t = r.limit;
+    float high_slope = -1.0;
+    float step = 4.0 * r.pixel * t;
+    int side = 0;
+    int final = -1; /* the first sample of the last four */
+    float before = 0.0;
+    float h = 0.0;
+    vec3 sum = vec3(0.0);
+    float mean = 0.0;
+    MASU_LOOP for (int i = 0; i < 2 * PAIRS + 4; i++) {
+        int k = final < 0 ? i & 1 : i - final;
+        vec3 p = world_at(r.direction, t);
+        vec3 a = abs(p);
+        h = max(0.1 * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
+        vec3 corner = mix(vec3(-1.0), vec3(1.0), bvec3(k == 1 || k == 3, k >= 2, k == 0 || k == 3));
+        vec3 offset = final < 0 ? (k == 0 ? -r.direction : r.direction) : corner;
+        float f = masu_sdf(p + offset * h);
+        sum = k == 0 ? corner * f : sum + corner * f;
+        mean = k == 0 ? f : mean + f;
+        if (final >= 0) {
+            if (k == 3) {
+                break;
+            }
+        } else if (k == 0) {
+            before = f;
+        } else {
+            float slope = 0.5 * (f - before) / h; /* up to the field's L */
+            bool rises = slope > 0.0;
+            if (rises) {
+                high_slope = slope;
+                low_slope *= side == 1 ? 0.5 : 1.0;
+                high_t = t;
+            } else {
+                low_slope = slope;
+                high_slope *= side == -1 && high_slope > 0.0 ? 0.5 : 1.0;
+                low_t = t;
+            }
+            side = rises ? 1 : -1;
+            bool between = high_slope > 0.0;
+            float next = between && low_slope < 0.0 ? low_t + (high_t - low_t) * low_slope / (low_slope - high_slope)
+                       : rises ? t - step : t + step;
+            step *= 4.0;
+            bool close = abs(next - t) * abs(slope) < 0.04 * r.pixel * t;
+            if (((rises || between) && close) || !masu_finite(next) || i >= 2 * PAIRS - 1 || next >= r.limit) {
+                final = i + 1;
+            }
+            t = clamp(masu_finite(next) ? next : t, r.start, r.limit);
+        }
+    }
+    float slope = masu_rcp(length(sum));
+    float distance = mean * h * slope;
+    vec3 n = sum * slope;
+    float slant = dot(n, r.direction);
+    bool found = abs(slant) < 0.3 && distance > 0.0 && distance < 2.0 * r.pixel * t && t < r.limit;
+    return found ? -distance * (n - slant * r.direction) : vec3(0.0);
+}
+
+uint silhouette_at(uvec2 at)
+{
+    float depth = texelFetch(depth_image, ivec2(at), 0).r;
+    vec3 through = masu_pixel_ray(at, size);
+    vec4 depths;
+    vec4 front = in_front(at, depth, through, depths);
+    vec4 nearer = front * depths;
+    float nearest = max(max(nearer.x, nearer.y), max(nearer.z, nearer.w));
+    if (!(nearest > 0.0)) {
+        return 0u;
+    }
+    int beside = nearer.x == nearest ? 0 : nearer.y == nearest ? 1 : nearer.z == nearest ? 2 : 3;
+    float z_scale = length(through);
+    float near = frame.forward.w * z_scale;
+    ray r = ray(through / z_scale, 2.0 * frame.up.w / float(size.y) / z_scale, near, frame.sdf_max.w);
+    clip_to_box(r, frame.sdf_min.xyz, frame.sdf_max.xyz);
+    r.limit = depth > 0.0 ? min(r.limit, near / depth) : r.limit;
+    float t = min(near / nearest, r.limit);
+    use_parts_at(uvec2(ivec2(at) + masu_beside(beside)), t);
+    vec3 across = to_surface(r, t);
+    masu_count(MASU_COUNTER_SDF_EVALS, uint(2 * PAIRS + 4));
+    /* In the picture, in pixels from the pixel's centre. */
+    vec3 rel = r.direction * t + across;
+    float z = dot(rel, frame.forward.xyz);
+    vec2 ndc = vec2(dot(rel, frame.right.xyz) / dot(frame.right.xyz, frame.right.xyz),
+                    -dot(rel, frame.up.xyz) / dot(frame.up.xyz, frame.up.xyz)) / z;
+    vec2 own = vec2(dot(through, frame.right.xyz) / dot(frame.right.xyz, frame.right.xyz),
+                    -dot(through, frame.up.xyz) / dot(frame.up.xyz, frame.up.xyz));
+    vec2 line = (ndc - own) * 0.5 * vec2(size);
+    return masu_pack_silhouette(line, front);
+}
+
+void main()
+{
+    masu_count_begin();
+    uvec2 at = gl_GlobalInvocationID.xy;
+    size = uvec2(pc.output_width, pc.output_height);
+    if (all(lessThan(at, size))) {
+        MASU_STORE_SAFE(silhouettes_image, at, uvec4(silhouette_at(at)));
+    }
+    masu_count_end();
+}
