@@ -37,6 +37,7 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2, r32ui) uniform writeonly uimage2D silhouettes_image;
 
+#define MASU_SDF_ASK
 #define MASU_SDF_NO_FLAT
 #include "sdf/spans.glsl"
 
@@ -44,37 +45,71 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2, r32ui) uniform write
 
 uvec2 size;
 
-/* Depth of what the SDF shows there, 0 of polygons, of the sky and outside of the picture. */
-float sdf_depth(ivec2 at)
+/* Whether it is not a polygon that is there. */
+bool sdf_shows(ivec2 at, float depth)
 {
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)))) {
-        return 0.0;
-    }
-    float depth = texelFetch(depth_image, at, 0).r;
 #if MASU_HAS_RASTER
-    depth = depth == texelFetch(raster_depth, at, 0).r ? 0.0 : depth;
+    return depth != texelFetch(raster_depth, at, 0).r;
+#else
+    return true;
 #endif
-    return depth;
 }
 
-/* Which neighbours are in front of the pixel: nearer than it, and than its surface would be, if it went on there as a
- * plane (of which 1/z, as depth is, is affine in the picture), by two pixels' widths. */
-vec4 in_front(uvec2 at, float depth, vec3 through, out vec4 depths)
+/* A pixel's surface as a plane: of it 1/z, as depth is, is affine in the picture. */
+struct plane {
+    float depth;
+    vec2 slope; /* a pixel to the right, a pixel down */
+    vec3 normal;
+};
+
+plane plane_at(ivec2 at, float depth, vec3 through)
 {
-    vec4 going_on = vec4(depth);
-    if (depth > 0.0) {
-        vec3 n = masu_unpack_normal(texelFetch(normal_image, ivec2(at), 0).r);
-        float facing = dot(n, through);
-        float right = 2.0 / float(size.x) * dot(n, frame.right.xyz);
-        float down = -2.0 / float(size.y) * dot(n, frame.up.xyz);
-        vec4 slopes = vec4(right, -right, down, -down);
-        going_on = facing < -1e-6 ? depth * (1.0 + max(slopes / facing, 0.0)) : going_on;
+    vec3 n = masu_unpack_normal(texelFetch(normal_image, at, 0).r);
+    float facing = dot(n, through);
+    vec2 slope = 2.0 / vec2(size) * vec2(dot(n, frame.right.xyz), -dot(n, frame.up.xyz));
+    return plane(depth, facing < -1e-6 ? depth / facing * slope : vec2(0.0), n);
+}
+
+vec4 to_all(vec2 v)
+{
+    return vec4(v.x, -v.x, v.y, -v.y);
+}
+
+float scene_depth(ivec2 at)
+{
+    bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)));
+    return outside ? 0.0 : texelFetch(depth_image, at, 0).r;
+}
+
+/* Where two faces meet that both can be seen: the line through the pixel on which their planes do. */
+uint crease_at(ivec2 at, bool own_sdf, plane own, vec4 depths, vec4 going_on)
+{
+    float enough = 0.5 * frame.up.w / float(size.y);
+    vec4 off = abs(depths - going_on);
+    bvec4 bends = bvec4(off.x > enough * depths.x && depths.x > 0.0, off.y > enough * depths.y && depths.y > 0.0,
+                        off.z > enough * depths.z && depths.z > 0.0, off.w > enough * depths.w && depths.w > 0.0);
+    if (!any(bends)) {
+        return 0u;
     }
-    for (int k = 0; k < 4; k++) {
-        depths[k] = sdf_depth(ivec2(at) + masu_beside(k));
+    vec2 line = vec2(0.0);
+    vec4 beside = vec4(0.0);
+    float least = 0.75;
+    MASU_LOOP for (int k = 0; k < 4; k++) {
+        ivec2 way = masu_beside(k);
+        if (bends[k] && (own_sdf || sdf_shows(at + way, depths[k]))) {
+            plane other = plane_at(at + way, depths[k], masu_pixel_ray(uvec2(at + way), size));
+            vec2 across = other.slope - own.slope;
+            float difference = depths[k] - dot(other.slope, vec2(way)) - own.depth;
+            vec2 to = -difference * across * masu_rcp(dot(across, across));
+            float far = length(to);
+            float along = dot(to, vec2(way));
+            bool here = along > 0.0 && dot(to, to) < along && far < least && dot(other.normal, own.normal) < 0.8;
+            line = here ? to : line;
+            least = here ? far : least;
+            beside[k] = here ? 1.0 : 0.0;
+        }
     }
-    float gap = 1.0 + 4.0 * frame.up.w / float(size.y);
-    return vec4(greaterThan(depths, going_on * gap));
+    return masu_pack_silhouette(line, beside);
 }
 
 /* Only what matters on the rays of the block of the nearer pixel. */
@@ -163,17 +198,11 @@ vec3 to_surface(ray r, inout float t)
     return found ? -distance * (n - slant * r.direction) : vec3(0.0);
 }
 
-uint silhouette_at(uvec2 at)
+/* Where something in front ends, seen from a pixel beside it; `nearer`: depths of the neighbours that are in front, or 0. */
+uint silhouette_at(uvec2 at, vec3 through, float depth, vec4 nearer)
 {
-    float depth = texelFetch(depth_image, ivec2(at), 0).r;
-    vec3 through = masu_pixel_ray(at, size);
-    vec4 depths;
-    vec4 front = in_front(at, depth, through, depths);
-    vec4 nearer = front * depths;
+    vec4 front = vec4(greaterThan(nearer, vec4(0.0)));
     float nearest = max(max(nearer.x, nearer.y), max(nearer.z, nearer.w));
-    if (!(nearest > 0.0)) {
-        return 0u;
-    }
     int beside = nearer.x == nearest ? 0 : nearer.y == nearest ? 1 : nearer.z == nearest ? 2 : 3;
     float z_scale = length(through);
     float near = frame.forward.w * z_scale;
@@ -186,22 +215,45 @@ uint silhouette_at(uvec2 at)
     masu_count(MASU_COUNTER_SDF_EVALS, uint(2 * PAIRS + 4));
     /* In the picture, in pixels from the pixel's centre. */
     vec3 rel = r.direction * t + across;
-    float z = dot(rel, frame.forward.xyz);
     vec2 ndc = vec2(dot(rel, frame.right.xyz) / dot(frame.right.xyz, frame.right.xyz),
-                    -dot(rel, frame.up.xyz) / dot(frame.up.xyz, frame.up.xyz)) / z;
-    vec2 own = vec2(dot(through, frame.right.xyz) / dot(frame.right.xyz, frame.right.xyz),
-                    -dot(through, frame.up.xyz) / dot(frame.up.xyz, frame.up.xyz));
-    vec2 line = (ndc - own) * 0.5 * vec2(size);
+                    -dot(rel, frame.up.xyz) / dot(frame.up.xyz, frame.up.xyz));
+    ndc /= dot(rel, frame.forward.xyz);
+    vec2 line = 0.5 * vec2(size) * (ndc - masu_ndc(vec2(at) + 0.5, vec2(size)));
     return masu_pack_silhouette(line, front);
 }
 
+uint line_at(uvec2 at)
+{
+    float depth = texelFetch(depth_image, ivec2(at), 0).r;
+    vec3 through = masu_pixel_ray(at, size);
+    vec4 depths, nearer;
+    plane own = plane(0.0, vec2(0.0), vec3(0.0));
+    if (depth > 0.0) {
+        own = plane_at(ivec2(at), depth, through);
+    }
+    for (int k = 0; k < 4; k++) {
+        depths[k] = scene_depth(ivec2(at) + masu_beside(k));
+    }
+    /* Nearer than the pixel, and than its surface would be, if it went on there, by two pixels' widths. */
+    vec4 going_on = vec4(depth) + to_all(own.slope);
+    vec4 gap = max(going_on, vec4(depth)) * (1.0 + 4.0 * frame.up.w / float(size.y));
+    for (int k = 0; k < 4; k++) {
+        nearer[k] = depths[k] > gap[k] && sdf_shows(ivec2(at) + masu_beside(k), depths[k]) ? depths[k] : 0.0;
+    }
+    float nearest = max(max(nearer.x, nearer.y), max(nearer.z, nearer.w));
+    uint line = 0u;
+    if (nearest > 0.0) {
+        line = silhouette_at(at, through, depth, nearer);
+    }
+    return line == 0u && depth > 0.0 ? crease_at(ivec2(at), sdf_shows(ivec2(at), depth), own, depths, going_on) : line;
+}
 void main()
 {
     masu_count_begin();
     uvec2 at = gl_GlobalInvocationID.xy;
     size = uvec2(pc.output_width, pc.output_height);
     if (all(lessThan(at, size))) {
-        MASU_STORE_SAFE(silhouettes_image, at, uvec4(silhouette_at(at)));
+        MASU_STORE_SAFE(silhouettes_image, at, uvec4(line_at(at)));
     }
     masu_count_end();
 }

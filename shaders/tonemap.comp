@@ -84,7 +84,12 @@ vec3 blended(ivec2 at, ivec2 size)
         vec3 sum = y * (1.0 - weights.x - weights.y - weights.z - weights.w);
         for (int k = 0; k < 4; k++) {
             if (weights[k] > 0.0) {
-                sum += weights[k] * shown(clamp(at + masu_beside(k), ivec2(0), size - 1));
+                vec3 c = shown(clamp(at + masu_beside(k), ivec2(0), size - 1));
+                bool front = (own >> (16 + k) & 1u) != 0u;
+                vec3 d = shown(clamp(at + 2 * masu_beside(k), ivec2(0), size - 1));
+                vec3 e = c - d;
+                bool same = all(lessThan(abs(e), 0.3 * c));
+                sum += weights[k] * (front && same ? max(c + 0.75 * e, 0.0) : c);
             }
         }
         y = sum;

@@ -1,9 +1,11 @@
 /*
  * silhouettes.glsl: a line between two pixels, where something in front ends, and what it covers of them.
  *
- *   bits 0-7, 8-15  from the centre of the pixel behind to the nearest point of the line: right, down; pixels * 63, + 128
- *   bits 16-19      which neighbours are in front: right, left, below, above
- *   0               no line
+ *   bits 0-7    how far the line is from the pixel's centre, pixels * 180
+ *   bits 8-15   which way, as right and down divided by the sum of their absolute values: right * 63.5 + 63.5; bit 15: down
+ *               is below 0. Wrong turn: the vector to the line itself has no direction left where the line is near.
+ *   bits 16-19  which neighbours show what is beyond the line: right, left, below, above
+ *   0           no line
  */
 #ifndef MASU_SILHOUETTES_GLSL
 #define MASU_SILHOUETTES_GLSL
@@ -17,25 +19,32 @@ ivec2 masu_beside(int k)
     return k < 2 ? ivec2(way, 0) : ivec2(0, way);
 }
 
-/* How far the line's normal goes along each of these. */
-vec4 masu_silhouette_ways(vec2 line)
+/* How far a direction goes along each of these. */
+vec4 masu_ways(vec2 n)
 {
-    vec2 n = line * masu_rsqrt(dot(line, line));
     return vec4(n.x, -n.x, n.y, -n.y);
 }
 
-/* `front`: 1 for each neighbour that is in front. Of them those count towards which the line lies. */
-uint masu_pack_silhouette(vec2 line, vec4 front)
+/* `line`: from the pixel's centre to the nearest point of it. `beyond`: 1 for each neighbour that shows what may be
+ * beyond; those count towards which the line lies. */
+uint masu_pack_silhouette(vec2 line, vec4 beyond)
 {
-    vec4 ways = masu_silhouette_ways(line);
-    uvec4 seen = uvec4(greaterThan(front * ways, vec4(0.25)));
-    float far = dot(line, line);
-    if (!(far > 1e-6 && far < 2.0)) {
-        return 0u;
-    }
+    float far = length(line);
+    vec2 n = line * masu_rcp(far);
+    uvec4 seen = uvec4(greaterThan(beyond * masu_ways(n), vec4(0.25)));
     uint mask = seen.x | seen.y << 1 | seen.z << 2 | seen.w << 3;
-    uvec2 q = uvec2(round(clamp(line, -2.0, 2.0) * 63.0) + 128.0);
-    return mask != 0u ? q.x | q.y << 8 | mask << 16 : 0u;
+    float right = n.x * masu_rcp(abs(n.x) + abs(n.y));
+    uint way = uint(clamp(right * 63.5 + 63.5, 0.0, 127.0) + 0.5) | (n.y < 0.0 ? 0x80u : 0u);
+    uint off = uint(clamp(far, 0.0, 1.41) * 180.0 + 0.5);
+    return far < 1.41 && mask != 0u ? off | way << 8 | mask << 16 : 0u;
+}
+
+vec2 masu_silhouette_normal(uint word)
+{
+    float right = float(word >> 8 & 0x7Fu) / 63.5 - 1.0;
+    float down = (word & 0x8000u) != 0u ? abs(right) - 1.0 : 1.0 - abs(right);
+    vec2 v = vec2(right, down);
+    return v * masu_rsqrt(dot(v, v));
 }
 
 /* What lies beyond a line of a pixel's square, whose centre is `off` from it; n: its unit normal. */
@@ -57,11 +66,10 @@ vec4 masu_silhouette_weights(uint own, uvec4 others)
         if (word == 0u) {
             continue;
         }
-        vec2 line = (vec2(word & 0xFFu, word >> 8 & 0xFFu) - 128.0) / 63.0;
-        vec4 ways = masu_silhouette_ways(line);
+        vec2 n = masu_silhouette_normal(word);
+        vec4 ways = masu_ways(n);
         uvec4 seen = (uvec4(word) >> uvec4(16u, 17u, 18u, 19u)) & 1u;
-        float far = length(line);
-        vec2 n = line / max(far, 1e-6);
+        float far = float(word & 0xFFu) / 180.0;
         if (k == 4) {
             /* Of the neighbours in front the one that is most so. */
             vec4 to = vec4(seen) * ways;

@@ -215,6 +215,61 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     close_session(&s);
 }
 
+/* Outside of the picture there is no neighbour. */
+static int on_rim(uint32_t p) {
+    uint32_t x = p % SIZE, y = p / SIZE;
+    return x == 0 || y == 0 || x == SIZE - 1 || y == SIZE - 1;
+}
+
+/* rung.silhouettes: of one sample a pixel the SDF's edge is nearly what the truth of 64 has; polygons' stays as it is. */
+static void a_silhouette_is_as_wide_as_it_covers(void **state) {
+    (void)state;
+    static const double angles[] = {0, 0.02, 0.12, 0.5, 0.785398, 1.2, 1.570796, 2.5};
+    static const float jitters[][2] = {{0, 0}, {0.4f, -0.3f}};
+    static uint8_t plain[4 * PIXELS];
+    masu_session s;
+    masu_session_desc d = test_desc("test_truth", SIZE, SIZE);
+    d.desc.rung_count = 2;
+    d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
+    d.desc.rungs[1] = (masu_rung){.silhouettes = MASU_OFF};
+    open_session(&s, &d);
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
+        for (size_t j = 0; j < sizeof jitters / sizeof *jitters; j++) {
+            double x[3], y[3], worst = 0, sum = 0, before = 0, count = 0, white = 0;
+            plane_of(angles[i], x, y);
+            masu_camera camera = rolled(angles[i]);
+            memcpy(camera.jitter, jitters[j], sizeof camera.jitter);
+            x[2] += (double)jitters[j][0] * x[0] + (double)jitters[j][1] * x[1];
+            y[2] += (double)jitters[j][0] * y[0] + (double)jitters[j][1] * y[1];
+            masu_frame_desc f = {.camera = &camera, .cut = 1};
+            masu_commands commands;
+            draw(&s, &f, &commands, picture);
+            f.rung = 1;
+            draw(&s, &f, &commands, plain);
+            for (uint32_t p = 0; p < PIXELS; p++) white = fmax(white, (double)masu_picture_decoded(plain[4 * p + 1]));
+            for (uint32_t p = 0; p < PIXELS; p++) {
+                double v = at(y, p % SIZE + 0.5, p / SIZE + 0.5);
+                double covered = share(x, p % SIZE, p / SIZE);
+                if (fabs(v) < 3 * hypot(y[0], y[1]) || on_rim(p)) continue;
+                int edge = covered > 1e-6 && covered < 1 - 1e-6;
+                if (v > 0 || !edge) { /* a box, or within a surface */
+                    assert_int_equal(picture[4 * p + 1], plain[4 * p + 1]);
+                    continue;
+                }
+                double off = (double)masu_picture_decoded(picture[4 * p + 1]) / white - covered;
+                double was = (double)masu_picture_decoded(plain[4 * p + 1]) / white - covered;
+                worst = fmax(worst, fabs(off));
+                sum += off * off, before += was * was, count++;
+            }
+            print_message("  angle %.2f, jitter %g: worst %.3f, rms %.3f of a pixel, without %.3f, %g pixels\n", angles[i],
+                          (double)jitters[j][0], worst, sqrt(sum / fmax(count, 1)), sqrt(before / fmax(count, 1)), count);
+            assert_true(count > SIZE / 4);
+            assert_true(worst < 0.06 && sqrt(sum / count) < 0.03);
+        }
+    }
+    close_session(&s);
+}
+
 /* masu study image: a row for each chain, and what is smaller is farther from the truth. */
 static void the_table_is_made(void **state) {
     (void)state;
@@ -247,6 +302,7 @@ int main(void) {
         cmocka_unit_test(a_jitter_moves_all_alike),
         cmocka_unit_test(velocities_hold_the_jitter),
         cmocka_unit_test(an_edge_is_as_wide_as_it_covers),
+        cmocka_unit_test(a_silhouette_is_as_wide_as_it_covers),
         cmocka_unit_test(the_table_is_made),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
