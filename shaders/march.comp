@@ -2,7 +2,7 @@
  * march.comp: sphere tracing of the scene's SDF, limited by the raster depth; the nearer surface
  * wins. A hit becomes texels of the G-buffer, so that every later pass has one path.
  *
- * One workgroup per active tile of 16x16 pixels, with the tile's list of parts; each invocation has four
+ * One workgroup per active tile of 16x16 pixels, with the tile's list of parts; each invocation begins and ends four
  * pixels. A pixel starts where the cone of its 4x4 block stopped (cone.comp). Compiled by masu-bake
  * together with the scene's field.
  */
@@ -30,46 +30,51 @@ layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
 #include "sdf/spans.glsl"
 #include "sdf/hit.glsl"
 
-/* Of the four pixels of an invocation, one in each quarter of the tile: where the march begins, then what it has
- * found, or -1; where it ends; the distance of a half-space, or -1. */
-vec4 start = vec4(-1.0);
-vec4 limit = vec4(-1.0);
-vec4 flat_end = vec4(-1.0);
+/* Whoever is done with a ray takes one that is left in the tile, not only of his own four. */
+layout(constant_id = 10) const bool share_rays = false;
 
-/* What all of them share. */
-uvec2 size, first;
-vec2 ndc_first, ndc_step;
+#define INVOCATIONS (MASU_GROUP * MASU_GROUP)
+#define RAYS (MASU_TILE * MASU_TILE)
 
-bvec4 only(int k)
-{
-    return equal(ivec4(k), ivec4(0, 1, 2, 3));
-}
+/* Of each pixel of the tile: where the march begins, then what it has found, or -1; where it ends. */
+shared float ray_start[RAYS];
+shared float ray_limit[RAYS];
+shared uint taken; /* of them, by now */
+
+/* Of the tile. */
+uvec2 size, corner;
+vec2 ndc_corner, ndc_step;
+
+/* An invocation takes at most so many rays: a CPU driver runs invocations one after the other, and Mesa 22.3 ends
+ * loops that went round 65,535 times. */
+#define MASU_RAYS_EACH 8
 
 float lane(vec4 v, int k)
 {
     return k == 0 ? v.x : k == 1 ? v.y : k == 2 ? v.z : v.w;
 }
 
-uvec2 pixel_of(int k)
+/* Pixel i of the tile: 8x8 after 8x8. */
+uvec2 pixel_of(uint i)
 {
-    return first + uvec2(k & 1, k >> 1) * uint(MASU_GROUP);
+    return corner + masu_block_at(i % uint(INVOCATIONS)) + uvec2(i >> 6 & 1u, i >> 7) * uint(MASU_GROUP);
 }
 
-ray ray_of(int k, out float z_scale)
+ray ray_of(uint i, out float z_scale)
 {
-    vec2 ndc = ndc_first + ndc_step * vec2(k & 1, k >> 1);
+    vec2 ndc = ndc_corner + ndc_step * vec2(pixel_of(i) - corner);
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
-    return ray(through * inverse, frame.up.w * ndc_step.y * (1.0 / float(MASU_GROUP)) * inverse, 0.0, 0.0);
+    return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);
 }
 
 void look_from(uvec2 tile)
 {
     size = uvec2(pc.output_width, pc.output_height);
-    first = tile * uint(MASU_TILE) + masu_block_at(gl_LocalInvocationIndex);
-    ndc_first = masu_ndc(vec2(first) + 0.5, vec2(size));
-    ndc_step = float(2 * MASU_GROUP) / vec2(size);
+    corner = tile * uint(MASU_TILE);
+    ndc_corner = masu_ndc(vec2(corner) + 0.5, vec2(size));
+    ndc_step = 2.0 / vec2(size);
 }
 
 /* Between which distances the ray is within a box. */
@@ -94,11 +99,11 @@ float cone_end(uvec2 block)
 
 /* Where the ray of a pixel begins and ends, and the half-space that ends it, as pixel_ray and clip_to_box say, of
  * what the four share. A component of the direction that is zero is replaced by a tiny one. */
-vec3 prepare(int k, vec3 low, vec3 high)
+vec3 prepare(uint i, vec3 low, vec3 high)
 {
-    uvec2 at = pixel_of(k);
+    uvec2 at = pixel_of(i);
     float z_scale;
-    ray r = ray_of(k, z_scale);
+    ray r = ray_of(i, z_scale);
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
     vec2 bounds = within(frame.sdf_min.xyz, frame.sdf_max.xyz, inverse);
     float nearest = frame.forward.w * z_scale;
@@ -138,14 +143,14 @@ void look_up_span(float t)
     }
 }
 
-void begin_spans(int k, float t)
+void begin_spans(uint i, float t)
 {
-    span_first = span_place(min(pixel_of(k), size - 1u) / 4u, size) + 1u;
+    span_first = span_place(min(pixel_of(i), size - 1u) / 4u, size) + 1u;
     span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
     look_up_span(t);
 }
 #else
-void begin_spans(int k, float t)
+void begin_spans(uint i, float t)
 {
 }
 #endif
@@ -163,37 +168,45 @@ float field_here(ray r, float t)
     return field_at(r, t);
 }
 
-march_state begin(int k, out ray r)
+march_state begin(uint i, out ray r)
 {
     float z_scale;
-    r = ray_of(k, z_scale);
-    r.start = lane(start, k);
-    r.limit = lane(limit, k);
+    r = ray_of(i, z_scale);
+    r.start = ray_start[i];
+    r.limit = ray_limit[i];
     march_state m = march_begin(r);
-    begin_spans(k, m.t);
+    begin_spans(i, m.t);
     return m;
 }
 
-/* All four rays in one loop: who is done with one takes the next, instead of waiting for the slowest of
- * its subgroup. Eight lanes that wait took 1.2 to 1.9 times the steps of their mean. */
+/* In one loop: who is done with one ray takes the next, instead of waiting for the slowest of its subgroup, which took 1.2 to
+ * 1.9 times the steps of the mean. With four rays to each that still was 1.4 times for 8 lanes, 1.6 for 16, 2.2 for 64;
+ * rays of the tile that are anybody's make it 1.2, 1.4 and 1.8 (engine). Which of them who marches is chance, what is
+ * found is not. A CPU driver gains little and pays for the barrier: 1.1 to 1.4 times the march's time. */
 uint march_all()
 {
-    int k = 0;
     uint evals = 0u;
+    uint i = gl_LocalInvocationIndex;
+    int rays = 0;
     ray r;
-    march_state m = begin(0, r);
-    MASU_LOOP for (int i = 0; i < 4 * MASU_MARCH_STEPS_MAX; i++) {
-        if (k > 3) {
-            break;
+    march_state m = begin(i, r);
+    MASU_LOOP for (int step = 0; step < MASU_RAYS_EACH * (MASU_MARCH_STEPS_MAX + 1); step++) {
+        if (m.done) {
+            ray_start[i] = m.t;
+            rays++;
+            if (share_rays) {
+                i = rays < MASU_RAYS_EACH ? atomicAdd(taken, 1u) : uint(RAYS);
+            } else {
+                i += uint(INVOCATIONS);
+            }
+            if (i >= uint(RAYS)) {
+                break;
+            }
+            m = begin(i, r);
         }
         if (!m.done) {
             evals++;
             march_step(m, r, field_here(r, m.t));
-        }
-        if (m.done) {
-            start = mix(start, vec4(m.t), only(k));
-            k++;
-            m = begin(k, r);
         }
     }
     return evals;
@@ -208,14 +221,23 @@ void main()
     bool listed = masu_use_tile(tile, size);
     vec3 low, high;
     masu_listed_box(low, high);
+    if (gl_LocalInvocationIndex == 0u) {
+        taken = uint(INVOCATIONS);
+    }
     /* Pixels behind the edge of the picture march nothing. */
+    vec4 flat_end = vec4(-1.0);
     MASU_LOOP for (int k = 0; k < 4; k++) {
-        if (all(lessThan(pixel_of(k), size))) {
-            vec3 piece = prepare(k, low, high);
-            start = mix(start, vec4(piece.x), only(k));
-            limit = mix(limit, vec4(piece.y), only(k));
-            flat_end = mix(flat_end, vec4(piece.z), only(k));
+        uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
+        vec3 piece = vec3(-1.0);
+        if (all(lessThan(pixel_of(i), size))) {
+            piece = prepare(i, low, high);
         }
+        flat_end = mix(flat_end, vec4(piece.z), equal(ivec4(k), ivec4(0, 1, 2, 3)));
+        ray_start[i] = piece.x;
+        ray_limit[i] = listed ? piece.y : -1.0;
+    }
+    if (share_rays) {
+        barrier();
     }
 #if MASU_SDF_BLOCK_WORDS > 0
     /* Of a scene of one part a tile that is marched sees that and all terms. */
@@ -223,25 +245,25 @@ void main()
     tile_bits[1] = MASU_SDF_LISTED_COUNT == 1 ? 0xFFFFFFFFu : masu_list_bits[1];
     span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
 #endif
-    if (listed) {
-        masu_count(MASU_COUNTER_SDF_EVALS, march_all());
-    } else {
-        start = vec4(-1.0);
+    masu_count(MASU_COUNTER_SDF_EVALS, march_all());
+    if (share_rays) {
+        barrier();
     }
     MASU_LOOP for (int k = 0; k < 4; k++) {
-        uvec2 at = pixel_of(k);
+        uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
+        uvec2 at = pixel_of(i);
         if (all(lessThan(at, size))) {
-            float t = lane(start, k);
+            float t = ray_start[i];
             bool known = !(t >= 0.0);
             t = known ? lane(flat_end, k) : t;
             if (t >= 0.0) {
                 float z_scale;
-                ray r = ray_of(k, z_scale);
+                ray r = ray_of(i, z_scale);
                 uint part;
                 if (known) {
                     masu_sdf_flat(eye_hi + eye_lo, r.direction, t, part);
                 } else {
-                    begin_spans(k, t);
+                    begin_spans(i, t);
                 }
                 MASU_STORE_SAFE(depth_image, at, vec4(write_hit(at, r, t, known, part, z_scale)));
             }

@@ -37,15 +37,17 @@ static int desc_traces(const masu_desc *desc) {
     return 0;
 }
 
+static int is_gpu(const masu_vk *vk) {
+    VkPhysicalDeviceType type = vk->properties.deviceType;
+    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU || type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+}
+
 /* Whether the device's ray queries or our own tree finds what is reflected: the description is left
  * with ON or OFF. */
 static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan, const masu_vk *vk,
                                     masu_detail *detail) {
-    VkPhysicalDeviceType type = vk->properties.deviceType;
-    int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
-              type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
     int forced = desc->ray_query == MASU_ON;
-    int wished = forced || (desc->ray_query == MASU_AUTO && desc->vulkan.ray_query && gpu);
+    int wished = forced || (desc->ray_query == MASU_AUTO && desc->vulkan.ray_query && is_gpu(vk));
     desc->ray_query = MASU_OFF;
     if (!wished || !plan->needs.traced || !desc_traces(desc)) return MASU_OK;
     if (!desc->vulkan.ray_query) {
@@ -62,9 +64,6 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
 
 /* Whether EASU weighs texels in 16 bits: the description is left with ON, AUTO (fast EASU alone) or OFF. */
 static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_detail *detail) {
-    VkPhysicalDeviceType type = vk->properties.deviceType;
-    int gpu = type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU ||
-              type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
     int forced = desc->half_floats == MASU_ON, used = 0;
     for (uint32_t r = 0; r < desc->rung_count; r++) {
         masu_easu easu = desc->rungs[r].easu;
@@ -76,7 +75,7 @@ static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_d
             "half_floats is MASU_ON, but vulkan.shader_float16 says that the device was "
             "created without shaderFloat16");
     }
-    int wished = forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && gpu);
+    int wished = forced || (desc->half_floats == MASU_AUTO && desc->vulkan.shader_float16 && is_gpu(vk));
     if (!used || !wished) desc->half_floats = MASU_OFF;
     return MASU_OK;
 }
@@ -191,5 +190,6 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     if (!result) result = drop_occlusion(desc, plan, limits, detail);
     if (!result) result = choose_ray_query(desc, plan, vk, detail);
     if (!result) result = choose_half_floats(desc, vk, detail);
+    if (desc->debug.share_rays == MASU_AUTO) desc->debug.share_rays = is_gpu(vk) ? MASU_ON : MASU_OFF;
     return result;
 }

@@ -28,12 +28,13 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 9 of all shaders, of which each has those it declares: of compute shaders whether counters
+/* Constants 0 to 10 of all shaders, of which each has those it declares: of compute shaders whether counters
  * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
  * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
  * encoding; whether the last pass rounds to its steps or changes the order of its channels; whether the output
- * is whole groups of invocations; how many nodes a ray may have to come back to. */
-enum { SPECIAL_COUNT = 10 };
+ * is whole groups of invocations; how many nodes a ray may have to come back to; whether a tile's rays are
+ * anybody's. */
+enum { SPECIAL_COUNT = 11 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -47,7 +48,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {6, 6 * sizeof *constants, sizeof *constants},
         {7, 7 * sizeof *constants, sizeof *constants},
         {8, 8 * sizeof *constants, sizeof *constants},
-        {9, 9 * sizeof *constants, sizeof *constants}};
+        {9, 9 * sizeof *constants, sizeof *constants},
+        {10, 10 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -64,6 +66,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
     const masu_scene *scene = &m->plan->scene;
     constants[9] = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
+    constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }

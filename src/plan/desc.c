@@ -118,6 +118,8 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "flips", 0, 0,
                          "flips[%u] is %g, allowed are 0 to 1", r, (double)d->flips[r]);
     }
+    if ((unsigned)d->debug.share_rays > MASU_ON)
+        return bad_range(detail, "debug.share_rays", (unsigned)d->debug.share_rays, MASU_AUTO, MASU_ON);
     if ((unsigned)d->half_floats > MASU_ON)
         return bad_range(detail, "half_floats", (unsigned)d->half_floats, MASU_AUTO, MASU_ON);
     if ((unsigned)d->ray_query > MASU_ON)

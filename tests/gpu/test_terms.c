@@ -16,12 +16,13 @@ typedef struct picture {
     uint64_t evaluations;
 } picture;
 
-static void march(const char *scene, int all_terms, float scale, double time, picture *out) {
+static void march(const char *scene, int all_terms, masu_switch share, float scale, double time, picture *out) {
     masu_session_desc d = test_desc(scene, W, H);
     d.desc.readback = MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL | MASU_READBACK_DEPTH;
     d.desc.rung_count = 1;
     d.desc.rungs[0] = (masu_rung){.scale = scale};
     d.desc.debug.all_terms = (uint32_t)all_terms;
+    d.desc.debug.share_rays = share;
     d.desc.debug.counters = 1;
     open_session(&s, &d);
     masu_frame_desc frame = {.time = time};
@@ -37,10 +38,11 @@ static void march(const char *scene, int all_terms, float scale, double time, pi
 }
 
 static void same(const char *scene, float scale, double time) {
-    picture *all = malloc(sizeof *all), *chosen = malloc(sizeof *chosen);
-    assert_true(all && chosen);
-    march(scene, 1, scale, time, all);
-    march(scene, 0, scale, time, chosen);
+    picture *all = malloc(sizeof *all), *chosen = malloc(sizeof *chosen), *shared = malloc(sizeof *shared);
+    assert_true(all && chosen && shared);
+    march(scene, 1, MASU_OFF, scale, time, all);
+    march(scene, 0, MASU_OFF, scale, time, chosen);
+    march(scene, 0, MASU_ON, scale, time, shared);
     uint32_t hits = 0;
     for (uint32_t i = 0; i < W * H; i++) hits += all->depth[i] > 0;
     print_message("%s at %g, second %g: %u pixels hit, %llu evaluations, %llu for what is looked at before\n", scene, (double)scale, time,
@@ -52,11 +54,20 @@ static void same(const char *scene, float scale, double time) {
         assert_int_equal(all->normal[i], chosen->normal[i]);
         assert_int_equal(all->albedo[i], chosen->albedo[i]);
     }
+    /* Nor does it matter who marches a ray. */
+    assert_memory_equal(chosen->depth, shared->depth, sizeof chosen->depth);
+    for (uint32_t i = 0; i < W * H; i++) {
+        if (!(all->depth[i] > 0)) continue;
+        assert_int_equal(chosen->normal[i], shared->normal[i]);
+        assert_int_equal(chosen->albedo[i], shared->albedo[i]);
+    }
+    assert_int_equal(chosen->evaluations, shared->evaluations);
     /* Each block looks: at most once for each of its pieces. */
     assert_true(chosen->evaluations > all->evaluations);
     assert_true(chosen->evaluations - all->evaluations <= (uint64_t)W * H / 16 * 4);
     free(all);
     free(chosen);
+    free(shared);
 }
 
 static void unions_cuts_and_repetitions(void **state) {

@@ -119,6 +119,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(debug.ao_full);
     SAME(debug.ao_nearest);
     SAME(debug.all_terms);
+    SAME(debug.share_rays);
     SAME(debug.no_bias);
     SAME(debug.reference);
     SAME(debug.mip_bias);
@@ -242,7 +243,7 @@ static masu_desc full_desc(void) {
         d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
     }
     d.readback = 3;
-    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12.0f};
+    d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, MASU_ON, 9, 10, 11, 12.0f};
     d.deny.unified_memory = 1;
     d.log = no_log;
     d.log_user = &allocator;
