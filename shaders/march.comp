@@ -36,9 +36,11 @@ layout(constant_id = 10) const bool share_rays = false;
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 #define RAYS (MASU_TILE * MASU_TILE)
 
-/* Of each pixel of the tile: where the march begins, then what it has found, or -1; where it ends. */
+/* Of each pixel of the tile: where the march begins, then what it has found, or -1; where it ends;
+ * the distance of a half-space, or -1. */
 shared float ray_start[RAYS];
 shared float ray_limit[RAYS];
+shared float ray_flat[RAYS];
 shared uint taken; /* of them, by now */
 
 /* Of the tile. */
@@ -125,10 +127,20 @@ vec3 prepare(uint i, vec3 low, vec3 high)
 
 #if MASU_SDF_BLOCK_WORDS > 0
 /* The piece of its rays that the ray in work is in. */
-uint tile_bits[2];
 uint span_first; /* of its block's pieces */
 float span_pixel;
 float span_start, span_from, span_to;
+
+/* What the tile sees; of a scene of one part, that and all terms. */
+bool use_own_tile()
+{
+    uint tile = masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];
+    bool any = masu_use_tile(tile, size);
+    if (MASU_SDF_LISTED_COUNT == 1) {
+        masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
+    }
+    return any;
+}
 
 void look_up_span(float t)
 {
@@ -137,9 +149,13 @@ void look_up_span(float t)
     uint now = past.x + past.y + past.z + past.w;
     span_from = now == 0u ? 0.0 : lane(ends, int(now) - 1);
     span_to = now == 4u ? 1e30 : lane(ends, int(now));
+    if (now == 4u) {
+        use_own_tile();
+        return;
+    }
     uint place = span_first + now * uint(MASU_SDF_BLOCK_WORDS);
     for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-        masu_list_bits[w] = now == 4u ? tile_bits[w] : masu_tiles[place + uint(w)];
+        masu_list_bits[w] = masu_tiles[place + uint(w)];
     }
 }
 
@@ -225,55 +241,48 @@ void main()
         taken = uint(INVOCATIONS);
     }
     /* Pixels behind the edge of the picture march nothing. */
-    vec4 flat_end = vec4(-1.0);
-    MASU_LOOP for (int k = 0; k < 4; k++) {
-        uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
+    MASU_LOOP for (uint i = gl_LocalInvocationIndex; i < uint(RAYS); i += uint(INVOCATIONS)) {
         vec3 piece = vec3(-1.0);
         if (all(lessThan(pixel_of(i), size))) {
             piece = prepare(i, low, high);
         }
-        flat_end = mix(flat_end, vec4(piece.z), equal(ivec4(k), ivec4(0, 1, 2, 3)));
         ray_start[i] = piece.x;
         ray_limit[i] = listed ? piece.y : -1.0;
+        ray_flat[i] = piece.z;
     }
     if (share_rays) {
         barrier();
     }
 #if MASU_SDF_BLOCK_WORDS > 0
-    /* Of a scene of one part a tile that is marched sees that and all terms. */
-    tile_bits[0] = MASU_SDF_LISTED_COUNT == 1 ? 0xFFFFFFFFu : masu_list_bits[0];
-    tile_bits[1] = MASU_SDF_LISTED_COUNT == 1 ? 0xFFFFFFFFu : masu_list_bits[1];
     span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
 #endif
     masu_count(MASU_COUNTER_SDF_EVALS, march_all());
     if (share_rays) {
         barrier();
     }
-    MASU_LOOP for (int k = 0; k < 4; k++) {
-        uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
+    MASU_LOOP for (uint i = gl_LocalInvocationIndex; i < uint(RAYS); i += uint(INVOCATIONS)) {
         uvec2 at = pixel_of(i);
-        if (all(lessThan(at, size))) {
-            float t = ray_start[i];
-            bool known = !(t >= 0.0);
-            t = known ? lane(flat_end, k) : t;
-            if (t >= 0.0) {
-                float z_scale;
-                ray r = ray_of(i, z_scale);
-                uint part;
-                if (known) {
-                    masu_sdf_flat(eye_hi + eye_lo, r.direction, t, part);
-                } else {
-                    begin_spans(i, t);
-                }
-                MASU_STORE_SAFE(depth_image, at, vec4(write_hit(at, r, t, known, part, z_scale)));
+        float t = ray_start[i];
+        bool known = !(t >= 0.0);
+        t = known ? ray_flat[i] : t; /* -1 behind the edge of the picture */
+        if (t >= 0.0) {
+            float z_scale;
+            ray r = ray_of(i, z_scale);
+            uint part;
+            if (known) {
+                masu_sdf_flat(eye_hi + eye_lo, r.direction, t, part);
+            } else {
+                begin_spans(i, t);
             }
-#if !MASU_HAS_RASTER
-            else {
-                MASU_STORE_SAFE(depth_image, at, vec4(0.0));
-            }
-#endif
-            masu_count(MASU_COUNTER_SDF_EVALS, MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? 1u : 0u);
+            MASU_STORE_SAFE(depth_image, at, vec4(write_hit(at, r, t, known, part, z_scale)));
         }
+#if !MASU_HAS_RASTER
+        else if (all(lessThan(at, size))) {
+            MASU_STORE_SAFE(depth_image, at, vec4(0.0));
+        }
+#endif
+        masu_count(MASU_COUNTER_SDF_EVALS,
+                   MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT && all(lessThan(at, size)) ? 1u : 0u);
     }
     masu_count_end();
 }
