@@ -70,11 +70,6 @@ plane plane_at(ivec2 at, float depth, vec3 through)
     return plane(depth, facing < -1e-6 ? depth / facing * slope : vec2(0.0), n);
 }
 
-vec4 to_all(vec2 v)
-{
-    return vec4(v.x, -v.x, v.y, -v.y);
-}
-
 float scene_depth(ivec2 at)
 {
     bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)));
@@ -92,7 +87,7 @@ uint crease_at(ivec2 at, bool own_sdf, plane own, vec4 depths, vec4 going_on)
         return 0u;
     }
     vec2 line = vec2(0.0);
-    vec4 beside = vec4(0.0);
+    uint beside = 0u;
     float least = 0.75;
     MASU_LOOP for (int k = 0; k < 4; k++) {
         ivec2 way = masu_beside(k);
@@ -106,7 +101,7 @@ uint crease_at(ivec2 at, bool own_sdf, plane own, vec4 depths, vec4 going_on)
             bool here = along > 0.0 && dot(to, to) < along && far < least && dot(other.normal, own.normal) < 0.8;
             line = here ? to : line;
             least = here ? far : least;
-            beside[k] = here ? 1.0 : 0.0;
+            beside |= here ? 1u << k : 0u;
         }
     }
     return masu_pack_silhouette(line, beside);
@@ -198,19 +193,17 @@ vec3 to_surface(ray r, inout float t)
     return found ? -distance * (n - slant * r.direction) : vec3(0.0);
 }
 
-/* Where something in front ends, seen from a pixel beside it; `nearer`: depths of the neighbours that are in front, or 0. */
-uint silhouette_at(uvec2 at, vec3 through, float depth, vec4 nearer)
+/* Where something in front ends, seen from a pixel beside it. `front`: a bit for each neighbour that is in front; depth and
+ * place of the nearest of them. */
+uint silhouette_at(uvec2 at, vec3 through, float depth, uint front, float nearest, uvec2 beside)
 {
-    vec4 front = vec4(greaterThan(nearer, vec4(0.0)));
-    float nearest = max(max(nearer.x, nearer.y), max(nearer.z, nearer.w));
-    int beside = nearer.x == nearest ? 0 : nearer.y == nearest ? 1 : nearer.z == nearest ? 2 : 3;
     float z_scale = length(through);
     float near = frame.forward.w * z_scale;
     ray r = ray(through / z_scale, 2.0 * frame.up.w / float(size.y) / z_scale, near, frame.sdf_max.w);
     clip_to_box(r, frame.sdf_min.xyz, frame.sdf_max.xyz);
     r.limit = depth > 0.0 ? min(r.limit, near / depth) : r.limit;
     float t = min(near / nearest, r.limit);
-    use_parts_at(uvec2(ivec2(at) + masu_beside(beside)), t);
+    use_parts_at(beside, t);
     vec3 across = to_surface(r, t);
     masu_count(MASU_COUNTER_SDF_EVALS, uint(2 * PAIRS + 4));
     /* In the picture, in pixels from the pixel's centre. */
@@ -226,27 +219,37 @@ uint line_at(uvec2 at)
 {
     float depth = texelFetch(depth_image, ivec2(at), 0).r;
     vec3 through = masu_pixel_ray(at, size);
-    vec4 depths, nearer;
+    vec4 depths;
     plane own = plane(0.0, vec2(0.0), vec3(0.0));
     if (depth > 0.0) {
         own = plane_at(ivec2(at), depth, through);
     }
-    for (int k = 0; k < 4; k++) {
-        depths[k] = scene_depth(ivec2(at) + masu_beside(k));
-    }
     /* Nearer than the pixel, and than its surface would be, if it went on there, by two pixels' widths. */
-    vec4 going_on = vec4(depth) + to_all(own.slope);
-    vec4 gap = max(going_on, vec4(depth)) * (1.0 + 4.0 * frame.up.w / float(size.y));
+    vec4 going_on = vec4(depth) + vec4(own.slope.x, -own.slope.x, own.slope.y, -own.slope.y);
+    float gap = 1.0 + 4.0 * frame.up.w / float(size.y);
+    uint front = 0u;
+    float nearest = 0.0;
+    ivec2 beside = ivec2(at);
     for (int k = 0; k < 4; k++) {
-        nearer[k] = depths[k] > gap[k] && sdf_shows(ivec2(at) + masu_beside(k), depths[k]) ? depths[k] : 0.0;
+        ivec2 to = ivec2(at) + masu_beside(k);
+        depths[k] = scene_depth(to);
+        if (depths[k] > max(going_on[k], depth) * gap && sdf_shows(to, depths[k])) {
+            front |= 1u << k;
+            beside = depths[k] > nearest ? to : beside;
+            nearest = max(nearest, depths[k]);
+        }
     }
-    float nearest = max(max(nearer.x, nearer.y), max(nearer.z, nearer.w));
     uint line = 0u;
-    if (nearest > 0.0) {
-        line = silhouette_at(at, through, depth, nearer);
+    if (depth > 0.0) {
+        line = crease_at(ivec2(at), sdf_shows(ivec2(at), depth), own, depths, going_on);
     }
-    return line == 0u && depth > 0.0 ? crease_at(ivec2(at), sdf_shows(ivec2(at), depth), own, depths, going_on) : line;
+    if (front != 0u) {
+        uint before = silhouette_at(at, through, depth, front, nearest, uvec2(beside));
+        line = before != 0u ? before : line;
+    }
+    return line;
 }
+
 void main()
 {
     masu_count_begin();

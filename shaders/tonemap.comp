@@ -7,6 +7,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_tonemap
 #include "shared/masu_shared.h"
@@ -70,31 +71,38 @@ vec3 shown(ivec2 at)
 
 #ifdef MASU_SILHOUETTES
 /* Display light, as an eye takes the mean of it: of radiance a lamp that covers a tenth of the pixel would turn it
- * white (docs/design/31-truth.md). */
+ * white (docs/design/31-truth.md). What is covered shows the neighbour's colour, carried on to the rim by what it differs from
+ * the next one: surfaces darken or brighten most where they turn away. One loop, so that the curve is compiled once. */
 vec3 blended(ivec2 at, ivec2 size)
 {
-    vec3 y = shown(at);
+    ivec2 low = max(at - 1, ivec2(0));
+    ivec2 high = min(at + 1, size - 1);
     uint own = texelFetch(silhouettes_image, at, 0).r;
-    uvec4 others = uvec4(0u);
-    for (int k = 0; k < 4; k++) {
-        others[k] = texelFetch(silhouettes_image, clamp(at + masu_beside(k), ivec2(0), size - 1), 0).r;
+    uvec4 others = uvec4(texelFetch(silhouettes_image, ivec2(high.x, at.y), 0).r,
+                         texelFetch(silhouettes_image, ivec2(low.x, at.y), 0).r,
+                         texelFetch(silhouettes_image, ivec2(at.x, high.y), 0).r,
+                         texelFetch(silhouettes_image, ivec2(at.x, low.y), 0).r);
+    if ((own | others.x | others.y | others.z | others.w) == 0u) {
+        return shown(at);
     }
-    if ((own | others.x | others.y | others.z | others.w) != 0u) {
-        vec4 weights = masu_silhouette_weights(own, others);
-        vec3 sum = y * (1.0 - weights.x - weights.y - weights.z - weights.w);
-        for (int k = 0; k < 4; k++) {
-            if (weights[k] > 0.0) {
-                vec3 c = shown(clamp(at + masu_beside(k), ivec2(0), size - 1));
-                bool front = (own >> (16 + k) & 1u) != 0u;
-                vec3 d = shown(clamp(at + 2 * masu_beside(k), ivec2(0), size - 1));
-                vec3 e = c - d;
-                bool same = all(lessThan(abs(e), 0.3 * c));
-                sum += weights[k] * (front && same ? max(c + 0.75 * e, 0.0) : c);
-            }
+    vec4 weights = masu_silhouette_weights(own, others);
+    vec3 near = vec3(0.0);
+    vec3 sum = vec3(0.0);
+    [[dont_unroll]] for (int i = 0; i < 9; i++) {
+        int k = i >> 1; /* 4: the pixel itself */
+        bool next = (i & 1) != 0;
+        float weight = k == 4 ? 1.0 - weights.x - weights.y - weights.z - weights.w : weights[k];
+        if (!(weight > 0.0) || (next && (own >> (16 + k) & 1u) == 0u)) {
+            continue;
         }
-        y = sum;
+        ivec2 way = k == 4 ? ivec2(0) : masu_beside(k) * (next ? 2 : 1);
+        vec3 y = shown(clamp(at + way, ivec2(0), size - 1));
+        vec3 on = near - y;
+        bool same = all(lessThan(abs(on), 0.3 * near)); /* else it is another thing */
+        sum += weight * (!next ? y : same ? 0.75 * on : vec3(0.0));
+        near = y;
     }
-    return y;
+    return max(sum, 0.0);
 }
 #endif
 

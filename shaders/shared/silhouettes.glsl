@@ -25,14 +25,16 @@ vec4 masu_ways(vec2 n)
     return vec4(n.x, -n.x, n.y, -n.y);
 }
 
-/* `line`: from the pixel's centre to the nearest point of it. `beyond`: 1 for each neighbour that shows what may be
- * beyond; those count towards which the line lies. */
-uint masu_pack_silhouette(vec2 line, vec4 beyond)
+/* `line`: from the pixel's centre to the nearest point of it. `beyond`: a bit for each neighbour that shows what
+ * may be beyond; those count towards which the line lies. */
+uint masu_pack_silhouette(vec2 line, uint beyond)
 {
     float far = length(line);
     vec2 n = line * masu_rcp(far);
-    uvec4 seen = uvec4(greaterThan(beyond * masu_ways(n), vec4(0.25)));
-    uint mask = seen.x | seen.y << 1 | seen.z << 2 | seen.w << 3;
+    vec4 ways = masu_ways(n);
+    uint towards = (ways.x > 0.25 ? 1u : 0u) | (ways.y > 0.25 ? 2u : 0u) | (ways.z > 0.25 ? 4u : 0u) |
+                   (ways.w > 0.25 ? 8u : 0u);
+    uint mask = beyond & towards;
     float right = n.x * masu_rcp(abs(n.x) + abs(n.y));
     uint way = uint(clamp(right * 63.5 + 63.5, 0.0, 127.0) + 0.5) | (n.y < 0.0 ? 0x80u : 0u);
     uint off = uint(clamp(far, 0.0, 1.41) * 180.0 + 0.5);
