@@ -5,9 +5,23 @@ set -eu
 build=${BUILD:-build} made=${MADE:-build}
 line='scene,gpu,pipeline,stage,lanes,registers,waves,instructions,cycles,latency,sends,spills,fills,scalar_spills,scratch,lds'
 echo "$line"
-for scene in engine wet_city mirrors city textures glass night; do
-    table=$("$build/bin/masu" plan "$made/scenes/$scene.masu" --isa "$1" --size 1280x720 --csv -)
+# rows NAME SCENE PIPELINES OPTIONS...: of a scene, as NAME, the pipelines that an expression of grep matches
+rows() {
+    name=$1 scene=$2 which=$3
+    shift 3
+    table=$("$build/bin/masu" plan "$made/scenes/$scene.masu" --isa "$gpus" --size 1280x720 --csv - "$@")
     first=$(printf '%s\n' "$table" | sed -n 1p)
     [ "scene,$first" = "$line" ] || { echo "table.sh: the columns are now $first" >&2; exit 1; }
-    printf '%s\n' "$table" | sed "1d; s/\"//g; s/, /; /g; s/^/$scene,/"
+    printf '%s\n' "$table" | sed "1d; s/\"//g; s/, /; /g; s/^/$name,/" | grep -E "^$name,[^,]*,($which)"
+}
+gpus=$1
+for scene in engine wet_city mirrors city textures glass night; do
+    rows "$scene" "$scene" ''
+done
+# What no rung has by itself.
+ladder=$(mktemp)
+trap 'rm -f "$ladder"' EXIT
+sed 's/"aa": "auto"/"aa": "auto", "silhouettes": "on"/' docs/report/engine/ladder.json > "$ladder"
+for scene in engine city; do
+    rows "$scene with silhouettes" "$scene" 'silhouettes|tonemap' --ladder "$ladder"
 done

@@ -107,6 +107,7 @@ static const technique techniques[] = {
     {"easu", HALF | QUICK | STRUCTURAL, {.easu = MASU_EASU_FAST}},
     {"easu", HALF | STRUCTURAL, {.easu = MASU_EASU_BILINEAR}},
     {"fuse", HALF | STRUCTURAL, {.fuse = MASU_ON}},
+    {"silhouettes", WHOLE | HALF | STRUCTURAL, {.silhouettes = MASU_ON}},
     {"march_steps", WHOLE, {.march_steps = 32}},
     {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
     {"march_steps", WHOLE, {.march_steps = 128}},
