@@ -596,6 +596,30 @@ static void readback_copies_what_is_asked_for(void **state) {
     assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
 }
 
+static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(SDF, 64, 64);
+    assert_string_equal(why_of(&d, MASU_PASS_SILHOUETTES), "rung.silhouettes is not on");
+    d.rung_count = 2;
+    d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
+    d.rungs[1] = (masu_rung){.silhouettes = MASU_OFF};
+    assert_frame(&d, 0,
+                 MARCH_ALONE LIGHT_SDF "silhouettes(r:scene_depth r:normal rb:tiles rb:slots w:silhouettes) "
+                                       "tonemap(r:hdr r:silhouettes w:target)");
+    compile(&d, &plan);
+    assert_int_equal(plan.images[MASU_IMAGE_SILHOUETTES].persistent, 0);
+    assert_null(strstr(frame_text(&plan, 1), " silhouettes("));
+    d = scene_desc(RASTER | SDF, 64, 64);
+    d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), "silhouettes(r:depth r:scene_depth r:normal rb:tiles "));
+    d = scene_desc(RASTER, 64, 64); /* there is nothing to smooth */
+    d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
+    assert_string_equal(why_of(&d, MASU_PASS_SILHOUETTES), "the scene has no SDF");
+    assert_frame(&d, 0, GBUFFER LIGHT_RASTER TONEMAP);
+}
+
 static void velocities_keep_the_frame_before_and_nothing_else_does(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1407,6 +1431,7 @@ int main(void) {
         cmocka_unit_test(the_last_pass_of_a_rung_makes_the_output),
         cmocka_unit_test(the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it),
         cmocka_unit_test(readback_copies_what_is_asked_for),
+        cmocka_unit_test(silhouettes_are_a_pass_where_a_rung_asks_for_them),
         cmocka_unit_test(velocities_keep_the_frame_before_and_nothing_else_does),
         cmocka_unit_test(what_is_blended_comes_over_the_light_if_there_is_any),
         cmocka_unit_test(sdf_occlusion_comes_between_march_and_light_if_asked),
