@@ -36,8 +36,8 @@ layout(constant_id = 10) const bool share_rays = false;
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
 #define RAYS (MASU_TILE * MASU_TILE)
 
-/* Of each pixel of the tile: where the march begins, then what it has found, or -1; where it ends;
- * the distance of a half-space, or -1. */
+/* Of each pixel of the tile: minus where the march begins, then what it has found, below 0 if nothing; where it ends; the
+ * distance of a half-space, or -1. */
 shared float ray_start[RAYS];
 shared float ray_limit[RAYS];
 shared float ray_flat[RAYS];
@@ -46,10 +46,6 @@ shared uint taken; /* of them, by now */
 /* Of the tile. */
 uvec2 size, corner;
 vec2 ndc_corner, ndc_step;
-
-/* An invocation takes at most so many rays: a CPU driver runs invocations one after the other, and Mesa 22.3 ends
- * loops that went round 65,535 times. */
-#define MASU_RAYS_EACH 8
 
 float lane(vec4 v, int k)
 {
@@ -188,7 +184,7 @@ march_state begin(uint i, out ray r)
 {
     float z_scale;
     r = ray_of(i, z_scale);
-    r.start = ray_start[i];
+    r.start = -ray_start[i];
     r.limit = ray_limit[i];
     march_state m = march_begin(r);
     begin_spans(i, m.t);
@@ -203,26 +199,21 @@ uint march_all()
 {
     uint evals = 0u;
     uint i = gl_LocalInvocationIndex;
-    int rays = 0;
     ray r;
     march_state m = begin(i, r);
-    MASU_LOOP for (int step = 0; step < MASU_RAYS_EACH * (MASU_MARCH_STEPS_MAX + 1); step++) {
-        if (m.done) {
-            ray_start[i] = m.t;
-            rays++;
-            if (share_rays) {
-                i = rays < MASU_RAYS_EACH ? atomicAdd(taken, 1u) : uint(RAYS);
-            } else {
-                i += uint(INVOCATIONS);
-            }
-            if (i >= uint(RAYS)) {
-                break;
-            }
-            m = begin(i, r);
+    MASU_LOOP for (int step = 0; step < 4 * MASU_MARCH_STEPS_MAX; step++) {
+        if (i >= uint(RAYS)) {
+            break;
         }
         if (!m.done) {
             evals++;
             march_step(m, r, field_here(r, m.t));
+        }
+        if (m.done) {
+            ray_start[i] = m.t;
+            /* What is begun can be ended. */
+            i = !share_rays ? i + uint(INVOCATIONS) : step < 3 * MASU_MARCH_STEPS_MAX ? atomicAdd(taken, 1u) : uint(RAYS);
+            m = begin(min(i, uint(RAYS - 1)), r);
         }
     }
     return evals;
@@ -241,12 +232,13 @@ void main()
         taken = uint(INVOCATIONS);
     }
     /* Pixels behind the edge of the picture march nothing. */
-    MASU_LOOP for (uint i = gl_LocalInvocationIndex; i < uint(RAYS); i += uint(INVOCATIONS)) {
+    MASU_LOOP for (int k = 0; k < 4; k++) {
+        uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
         vec3 piece = vec3(-1.0);
         if (all(lessThan(pixel_of(i), size))) {
             piece = prepare(i, low, high);
         }
-        ray_start[i] = piece.x;
+        ray_start[i] = -abs(piece.x);
         ray_limit[i] = listed ? piece.y : -1.0;
         ray_flat[i] = piece.z;
     }
@@ -260,7 +252,8 @@ void main()
     if (share_rays) {
         barrier();
     }
-    MASU_LOOP for (uint i = gl_LocalInvocationIndex; i < uint(RAYS); i += uint(INVOCATIONS)) {
+    MASU_LOOP for (int k = 0; k < 4; k++) {
+        uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
         uvec2 at = pixel_of(i);
         float t = ray_start[i];
         bool known = !(t >= 0.0);

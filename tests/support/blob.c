@@ -217,7 +217,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     header->magic = MASU_BLOB_MAGIC;
     header->version = MASU_BLOB_VERSION;
     size_t sections = 1 + (parts & SUPPORT_RASTER ? 9u : 0u) + (parts & SUPPORT_CAMERA ? 1u : 0u) +
-                      (parts & SUPPORT_SDF ? 8u : 0u) + (parts & SUPPORT_SHADOW ? 1u : 0u) + 1;
+                      (parts & SUPPORT_SDF ? 9u : 0u) + (parts & SUPPORT_SHADOW ? 1u : 0u) + 1;
     int detail = parts & SUPPORT_RASTER && parts & SUPPORT_DETAIL;
     if (detail) sections++;
     int lighting = parts & SUPPORT_RASTER && parts & SUPPORT_LIGHTING;

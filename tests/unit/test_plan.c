@@ -611,10 +611,12 @@ static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
     assert_int_equal(plan.images[MASU_IMAGE_SILHOUETTES].persistent, 0);
     assert_null(strstr(frame_text(&plan, 1), " silhouettes("));
     d = scene_desc(RASTER | SDF, 64, 64);
+    d.rung_count = 1;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     compile(&d, &plan);
     assert_non_null(strstr(frame_text(&plan, 0), "silhouettes(r:depth r:scene_depth r:normal rb:tiles "));
     d = scene_desc(RASTER, 64, 64); /* there is nothing to smooth */
+    d.rung_count = 1;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     assert_string_equal(why_of(&d, MASU_PASS_SILHOUETTES), "the scene has no SDF");
     assert_frame(&d, 0, GBUFFER LIGHT_RASTER TONEMAP);
@@ -1159,9 +1161,9 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth, surface, occlusion, smooth and final, cone8, cone4, ao: 4 bytes each per texel; velocity
+    /* scene_depth, surface, occlusion, silhouettes, smooth and final, cone8, cone4, ao: 4 bytes each per texel; velocity
      * 8; the atlas; SPECULAR_BYTES at half size */
-    assert_int_equal(info.left_out_bytes, 4 * (7 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
+    assert_int_equal(info.left_out_bytes, 4 * (8 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
                                               SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
@@ -1176,13 +1178,13 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     48 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
+                     52 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
                          SPECULAR_BYTES * 500 * 250);
-    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, ldr, smooth, upscaled, final, velocity */
+    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, silhouettes, ldr, smooth, upscaled, final, velocity */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 32 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
+    assert_int_equal(info.left_out_bytes, 36 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
