@@ -692,7 +692,7 @@ typedef struct masu_debug {
     uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
     uint32_t all_terms;  /* not 0: a march asks for all of the SDF that its tile sees, not only for what
                             matters to its block: for comparison, the same to the bit */
-    masu_switch share_rays; /* a march's rays are anybody's of their tile of pixels, so that none waits long for others;
+    masu_switch share_rays; /* any invocation of a 16x16 tile may march any of its rays, so that none waits long for others;
                                the same picture. AUTO: on GPUs, where waiting costs more than sharing */
     uint32_t no_bias; /* not 0: rungs of fewer pixels take the mips of these: for comparison */
     uint32_t reference; /* not 0: reflections are traced at each pixel, summed up over frames of a

@@ -30,7 +30,7 @@ layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
 #include "sdf/spans.glsl"
 #include "sdf/hit.glsl"
 
-/* Whoever is done with a ray takes one that is left in the tile, not only of his own four. */
+/* Any invocation of the tile may take any of its rays, not only its own four. */
 layout(constant_id = 10) const bool share_rays = false;
 
 #define INVOCATIONS (MASU_GROUP * MASU_GROUP)
@@ -191,10 +191,10 @@ march_state begin(uint i, out ray r)
     return m;
 }
 
-/* In one loop: who is done with one ray takes the next, instead of waiting for the slowest of its subgroup, which took 1.2 to
- * 1.9 times the steps of the mean. With four rays to each that still was 1.4 times for 8 lanes, 1.6 for 16, 2.2 for 64;
- * rays of the tile that are anybody's make it 1.2, 1.4 and 1.8 (engine). Which of them who marches is chance, what is
- * found is not. A CPU driver gains little and pays for the barrier: 1.1 to 1.4 times the march's time. */
+/* In one loop: an invocation that is done with one ray takes the next, instead of waiting for the slowest of its subgroup, which
+ * took 1.2 to 1.9 times the steps of the mean. With four rays to each that still was 1.4 times for 8 lanes, 1.6 for 16, 2.2 for
+ * 64; with the rays shared it is 1.2, 1.4 and 1.8 (engine). Which invocation marches a ray is chance, what is found is
+ * not. A CPU driver gains little and pays for the barrier: 1.1 to 1.4 times the march's time. */
 uint march_all()
 {
     uint evals = 0u;
@@ -202,18 +202,18 @@ uint march_all()
     ray r;
     march_state m = begin(i, r);
     MASU_LOOP for (int step = 0; step < 4 * MASU_MARCH_STEPS_MAX; step++) {
-        if (i >= uint(RAYS)) {
-            break;
-        }
         if (!m.done) {
             evals++;
             march_step(m, r, field_here(r, m.t));
         }
         if (m.done) {
             ray_start[i] = m.t;
-            /* What is begun can be ended. */
+            /* Not so late that a ray could not be marched to its end. */
             i = !share_rays ? i + uint(INVOCATIONS) : step < 3 * MASU_MARCH_STEPS_MAX ? atomicAdd(taken, 1u) : uint(RAYS);
-            m = begin(min(i, uint(RAYS - 1)), r);
+            if (i >= uint(RAYS)) {
+                break;
+            }
+            m = begin(i, r);
         }
     }
     return evals;

@@ -12,7 +12,7 @@
  * and a normal of all others. Wrong turn: to note near misses while marching. It is state of every ray in flight, for
  * few of them; and cones, lists and boxes would all have to be wider by a pixel.
  *
- * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels.
+ * push.listed not 0: the tiles' lists of parts are there. What matters to blocks of 4x4 pixels is proved for their own rays alone.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -37,9 +37,8 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2, r32ui) uniform writeonly uimage2D silhouettes_image;
 
-#define MASU_SDF_ASK
 #define MASU_SDF_NO_FLAT
-#include "sdf/spans.glsl"
+#include "sdf/field.glsl"
 
 #define PAIRS 6
 
@@ -107,28 +106,6 @@ uint crease_at(ivec2 at, bool own_sdf, plane own, vec4 depths, vec4 going_on)
     return masu_pack_silhouette(line, beside);
 }
 
-/* Only what matters on the rays of the block of the nearer pixel. */
-void use_parts_at(uvec2 at, float t)
-{
-    if (push.listed != 0u) {
-        uvec2 tile = at / uint(MASU_TILE);
-        masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
-    }
-#if MASU_SDF_BLOCK_WORDS > 0
-    if (push.listed == 2u) {
-        uint place = span_place(at / 4u, size);
-        float start = uintBitsToFloat(masu_tiles[place]);
-        vec4 ends = span_ends(start, 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x)));
-        uvec4 past = uvec4(greaterThan(vec4(t), ends));
-        uint now = past.x + past.y + past.z + past.w;
-        for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-            uint bits = masu_tiles[place + 1u + min(now, 3u) * uint(MASU_SDF_BLOCK_WORDS) + uint(w)];
-            masu_list_bits[w] = now < 4u ? bits : masu_list_bits[w];
-        }
-    }
-#endif
-}
-
 /* The vector from a ray to the surface where they are nearest, seen from t on; 0: they meet, or the ray leaves first.
  * Pairs of samples tell whether the field falls or rises along the ray: ever longer steps until it rises, then secants
  * between the last two, of which an end that stays counts half (Illinois). The last four samples are the gradient. */
@@ -145,6 +122,7 @@ vec3 to_surface(ray r, inout float t)
     float h = 0.0;
     vec3 sum = vec3(0.0);
     float mean = 0.0;
+    uint evals = 0u;
     MASU_LOOP for (int i = 0; i < 2 * PAIRS + 4; i++) {
         int k = final < 0 ? i & 1 : i - final;
         vec3 p = world_at(r.direction, t);
@@ -153,6 +131,7 @@ vec3 to_surface(ray r, inout float t)
         vec3 corner = mix(vec3(-1.0), vec3(1.0), bvec3(k == 1 || k == 3, k >= 2, k == 0 || k == 3));
         vec3 offset = final < 0 ? (k == 0 ? -r.direction : r.direction) : corner;
         float f = masu_sdf(p + offset * h);
+        evals++;
         sum = k == 0 ? corner * f : sum + corner * f;
         mean = k == 0 ? f : mean + f;
         if (final >= 0) {
@@ -185,6 +164,7 @@ vec3 to_surface(ray r, inout float t)
             t = clamp(masu_finite(next) ? next : t, r.start, r.limit);
         }
     }
+    masu_count(MASU_COUNTER_SDF_EVALS, evals);
     float slope = masu_rcp(length(sum));
     float distance = mean * h * slope;
     vec3 n = sum * slope;
@@ -200,12 +180,19 @@ uint silhouette_at(uvec2 at, vec3 through, float depth, uint front, float neares
     float z_scale = length(through);
     float near = frame.forward.w * z_scale;
     ray r = ray(through / z_scale, 2.0 * frame.up.w / float(size.y) / z_scale, near, frame.sdf_max.w);
-    clip_to_box(r, frame.sdf_min.xyz, frame.sdf_max.xyz);
+    /* What ends at the very side of the bounds is missed outside of them. */
+    float wide = 4.0 * r.pixel * near / nearest;
+    clip_to_box(r, frame.sdf_min.xyz - wide, frame.sdf_max.xyz + wide);
     r.limit = depth > 0.0 ? min(r.limit, near / depth) : r.limit;
-    float t = min(near / nearest, r.limit);
-    use_parts_at(beside, t);
+    float t = near / nearest;
+    if (!(r.start <= t && t < r.limit)) {
+        return 0u;
+    }
+    if (push.listed != 0u) {
+        uvec2 tile = beside / uint(MASU_TILE);
+        masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
+    }
     vec3 across = to_surface(r, t);
-    masu_count(MASU_COUNTER_SDF_EVALS, uint(2 * PAIRS + 4));
     /* In the picture, in pixels from the pixel's centre. */
     vec3 rel = r.direction * t + across;
     vec2 ndc = vec2(dot(rel, frame.right.xyz) / dot(frame.right.xyz, frame.right.xyz),

@@ -82,10 +82,13 @@ vec3 blended(ivec2 at, ivec2 size)
                          texelFetch(silhouettes_image, ivec2(low.x, at.y), 0).r,
                          texelFetch(silhouettes_image, ivec2(at.x, high.y), 0).r,
                          texelFetch(silhouettes_image, ivec2(at.x, low.y), 0).r);
+    /* None outside of the picture. */
+    others *= uvec4(high.x > at.x, low.x < at.x, high.y > at.y, low.y < at.y);
     if ((own | others.x | others.y | others.z | others.w) == 0u) {
         return shown(at);
     }
     vec4 weights = masu_silhouette_weights(own, others);
+    float most = max(push.peak, 1.0); /* what is brighter, as without a curve, is no brighter there */
     vec3 near = vec3(0.0);
     vec3 sum = vec3(0.0);
     [[dont_unroll]] for (int i = 0; i < 9; i++) {
@@ -96,13 +99,13 @@ vec3 blended(ivec2 at, ivec2 size)
             continue;
         }
         ivec2 way = k == 4 ? ivec2(0) : masu_beside(k) * (next ? 2 : 1);
-        vec3 y = shown(clamp(at + way, ivec2(0), size - 1));
+        vec3 y = min(shown(clamp(at + way, ivec2(0), size - 1)), most);
         vec3 on = near - y;
         bool same = all(lessThan(abs(on), 0.3 * near)); /* else it is another thing */
         sum += weight * (!next ? y : same ? 0.75 * on : vec3(0.0));
         near = y;
     }
-    return max(sum, 0.0);
+    return clamp(sum, 0.0, most);
 }
 #endif
 

@@ -270,6 +270,44 @@ static void a_silhouette_is_as_wide_as_it_covers(void **state) {
     close_session(&s);
 }
 
+static uint64_t sum_of(const uint8_t *pixels) {
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < 4 * PIXELS; i++) sum += pixels[i];
+    return sum;
+}
+
+/* A metered exposure counts, as the field's samples do; a curve that lets through what is brighter than white must not let
+ * it cover what it only touches; what is not in memory yet must not be read. */
+static void silhouettes_stand_beside_everything_else(void **state) {
+    (void)state;
+    static const masu_tone tones[] = {MASU_TONE_NONE, MASU_TONE_ACES};
+    static uint8_t plain[4 * PIXELS];
+    for (uint32_t i = 0; i < 8; i++) {
+        masu_session s;
+        masu_session_desc d = test_desc(i & 1 ? "spheres" : "test_both", SIZE, SIZE);
+        d.desc.rung_count = 2;
+        d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON, .scale = i & 4 ? 0.7f : 1.0f};
+        d.desc.rungs[1] = (masu_rung){.silhouettes = MASU_OFF, .scale = i & 4 ? 0.7f : 1.0f};
+        d.desc.tone = tones[i >> 1 & 1];
+        d.desc.exposure.metered = MASU_ON;
+        d.desc.debug.counters = 1;
+        d.desc.debug.poison = 1;
+        open_session(&s, &d);
+        masu_frame_desc f = {.cut = 1};
+        masu_commands commands;
+        draw(&s, &f, &commands, picture);
+        uint64_t with = stats_of(&s, commands.slot).sdf_evals;
+        f.rung = 1;
+        draw(&s, &f, &commands, plain);
+        uint64_t without = stats_of(&s, commands.slot).sdf_evals;
+        assert_true(with > without && with < without + 16 * PIXELS);
+        assert_memory_not_equal(picture, plain, sizeof plain);
+        double ratio = (double)sum_of(picture) / (double)sum_of(plain);
+        assert_true(ratio > 0.99 && ratio < 1.01);
+        close_session(&s);
+    }
+}
+
 /* masu study image: a row for each chain, and what is smaller is farther from the truth. */
 static void the_table_is_made(void **state) {
     (void)state;
@@ -303,6 +341,7 @@ int main(void) {
         cmocka_unit_test(velocities_hold_the_jitter),
         cmocka_unit_test(an_edge_is_as_wide_as_it_covers),
         cmocka_unit_test(a_silhouette_is_as_wide_as_it_covers),
+        cmocka_unit_test(silhouettes_stand_beside_everything_else),
         cmocka_unit_test(the_table_is_made),
     };
     return cmocka_run_group_tests(tests, make_scratch, remove_scratch);

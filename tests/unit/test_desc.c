@@ -423,6 +423,7 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     d.rung_count = 1;
     d.rungs[1].scale = (float)NAN; /* behind the count */
     compile(&d, &plan);
+    BAD("debug.share_rays", d.debug.share_rays = (masu_switch)3);
     BAD("half_floats", d.half_floats = (masu_switch)3);
 }
 
