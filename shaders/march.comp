@@ -27,6 +27,8 @@ layout(set = MASU_SET_PASS, binding = 3, r32f) uniform image2D depth_image;
 #define MASU_SDF_KEEP
 #define MASU_CHOOSING (push.all_terms == 0u)
 #define MASU_SDF_NO_FLAT
+#define MASU_SPAN_BEFORE false
+#define MASU_SPAN_TILE masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x]
 #include "sdf/spans.glsl"
 #include "sdf/hit.glsl"
 
@@ -46,11 +48,6 @@ shared uint taken; /* of them, by now */
 /* Of the tile. */
 uvec2 size, corner;
 vec2 ndc_corner, ndc_step;
-
-float lane(vec4 v, int k)
-{
-    return k == 0 ? v.x : k == 1 ? v.y : k == 2 ? v.z : v.w;
-}
 
 /* Pixel i of the tile: 8x8 after 8x8. */
 uvec2 pixel_of(uint i)
@@ -121,62 +118,17 @@ vec3 prepare(uint i, vec3 low, vec3 high)
     return vec3(first_t, last_t, end <= farthest && end < 1e30 ? end : -1.0);
 }
 
-#if MASU_SDF_BLOCK_WORDS > 0
-/* The piece of its rays that the ray in work is in. */
-uint span_first; /* of its block's pieces */
-float span_pixel;
-float span_start, span_from, span_to;
-
-/* What the tile sees; of a scene of one part, that and all terms. */
-bool use_own_tile()
-{
-    uint tile = masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];
-    bool any = masu_use_tile(tile, size);
-    if (MASU_SDF_LISTED_COUNT == 1) {
-        masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
-    }
-    return any;
-}
-
-void look_up_span(float t)
-{
-    vec4 ends = span_ends(span_start, span_pixel);
-    uvec4 past = uvec4(greaterThan(vec4(t), ends));
-    uint now = past.x + past.y + past.z + past.w;
-    span_from = now == 0u ? 0.0 : lane(ends, int(now) - 1);
-    span_to = now == 4u ? 1e30 : lane(ends, int(now));
-    if (now == 4u) {
-        use_own_tile();
-        return;
-    }
-    uint place = span_first + now * uint(MASU_SDF_BLOCK_WORDS);
-    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
-        masu_list_bits[w] = masu_tiles[place + uint(w)];
-    }
-}
-
 void begin_spans(uint i, float t)
 {
-    span_first = span_place(min(pixel_of(i), size - 1u) / 4u, size) + 1u;
-    span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
-    look_up_span(t);
+    span_begin(min(pixel_of(i), size - 1u), size, t);
 }
-#else
-void begin_spans(uint i, float t)
-{
-}
-#endif
 
 /* The field at t by what matters there. Wrong turn: rays that look for themselves what matters in a ball of their own, at
  * their second sample. They asked for fewer terms, and it cost as much as it saved (engine 1.00, city 1.03, rods
  * 1.06). */
 float field_here(ray r, float t)
 {
-#if MASU_SDF_BLOCK_WORDS > 0
-    if (!(t >= span_from && t <= span_to)) {
-        look_up_span(t);
-    }
-#endif
+    span_follow(t, size);
     return field_at(r, t);
 }
 
@@ -245,9 +197,7 @@ void main()
     if (share_rays) {
         barrier();
     }
-#if MASU_SDF_BLOCK_WORDS > 0
-    span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
-#endif
+    span_prepare(size);
     masu_count(MASU_COUNTER_SDF_EVALS, march_all());
     if (share_rays) {
         barrier();

@@ -12,7 +12,7 @@
  * and a normal of all others. Wrong turn: to note near misses while marching. It is state of every ray in flight, for
  * few of them; and cones, lists and boxes would all have to be wider by a pixel.
  *
- * push.listed not 0: the tiles' lists of parts are there. What matters to blocks of 4x4 pixels is proved for their own rays alone.
+ * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -37,8 +37,12 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1) uniform usampler2D normal_image;
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2, r32ui) uniform writeonly uimage2D silhouettes_image;
 
+#define MASU_SDF_ASK
 #define MASU_SDF_NO_FLAT
-#include "sdf/field.glsl"
+#define MASU_SPAN_BEFORE true
+#define MASU_SPAN_TILE own_tile
+uint own_tile;
+#include "sdf/spans.glsl"
 
 #define PAIRS 6
 
@@ -130,6 +134,9 @@ vec3 to_surface(ray r, inout float t)
         h = max(0.1 * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
         vec3 corner = mix(vec3(-1.0), vec3(1.0), bvec3(k == 1 || k == 3, k >= 2, k == 0 || k == 3));
         vec3 offset = final < 0 ? (k == 0 ? -r.direction : r.direction) : corner;
+        if (push.listed == 2u) {
+            span_follow(t, size);
+        }
         float f = masu_sdf(p + offset * h);
         evals++;
         sum = k == 0 ? corner * f : sum + corner * f;
@@ -173,9 +180,9 @@ vec3 to_surface(ray r, inout float t)
     return found ? -distance * (n - slant * r.direction) : vec3(0.0);
 }
 
-/* Where something in front ends, seen from a pixel beside it. `front`: a bit for each neighbour that is in front; depth and
- * place of the nearest of them. */
-uint silhouette_at(uvec2 at, vec3 through, float depth, uint front, float nearest, uvec2 beside)
+/* Where something in front ends, seen from a pixel beside it. `front`: a bit for each neighbour that is in front; the depth of
+ * the nearest of them. */
+uint silhouette_at(uvec2 at, vec3 through, float depth, uint front, float nearest)
 {
     float z_scale = length(through);
     float near = frame.forward.w * z_scale;
@@ -188,9 +195,15 @@ uint silhouette_at(uvec2 at, vec3 through, float depth, uint front, float neares
     if (!(r.start <= t && t < r.limit)) {
         return 0u;
     }
+    /* What the pixel's own ray can meet or pass, not its neighbour's: that is what was looked for. */
+    uvec2 tile = at / uint(MASU_TILE);
+    own_tile = tile.y * masu_tile_grid(size).x + tile.x;
     if (push.listed != 0u) {
-        uvec2 tile = beside / uint(MASU_TILE);
-        masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
+        masu_use_tile(own_tile, size);
+    }
+    if (push.listed == 2u) {
+        span_prepare(size);
+        span_begin(at, size, t);
     }
     vec3 across = to_surface(r, t);
     /* In the picture, in pixels from the pixel's centre. */
@@ -216,13 +229,11 @@ uint line_at(uvec2 at)
     float gap = 1.0 + 4.0 * frame.up.w / float(size.y);
     uint front = 0u;
     float nearest = 0.0;
-    ivec2 beside = ivec2(at);
     for (int k = 0; k < 4; k++) {
         ivec2 to = ivec2(at) + masu_beside(k);
         depths[k] = scene_depth(to);
         if (depths[k] > max(going_on[k], depth) * gap && sdf_shows(to, depths[k])) {
             front |= 1u << k;
-            beside = depths[k] > nearest ? to : beside;
             nearest = max(nearest, depths[k]);
         }
     }
@@ -231,7 +242,7 @@ uint line_at(uvec2 at)
         line = crease_at(ivec2(at), sdf_shows(ivec2(at), depth), own, depths, going_on);
     }
     if (front != 0u) {
-        uint before = silhouette_at(at, through, depth, front, nearest, uvec2(beside));
+        uint before = silhouette_at(at, through, depth, front, nearest);
         line = before != 0u ? before : line;
     }
     return line;

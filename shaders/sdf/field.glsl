@@ -138,7 +138,7 @@ uint masu_part_at(uint i)
 /* Of a list, the first place at or behind i that the bits ask for; a list may be longer than they are. */
 uint masu_place_from(uint i)
 {
-#ifdef MASU_SDF_KEEP
+#if defined(MASU_SDF_KEEP) || defined(MASU_SDF_ASK)
     if (masu_list_count != MASU_TILE_ALL && i < 64u) {
         uint low = i < 32u ? masu_list_bits[0] >> i : 0u;
         uint high = masu_list_bits[1] & 0xFFFFFFFFu << (i < 32u ? 0u : i - 32u);

@@ -40,4 +40,75 @@ uint span_place(uvec2 block, uvec2 size)
 }
 
 #endif
+
+/* ---- Following a pixel's ray ------------------------------------------------------------------- */
+
+/* MASU_SPAN_TILE: the number of its tile. MASU_SPAN_BEFORE: whether it may begin before the pieces do. */
+
+#ifdef MASU_SPAN_TILE
+#if MASU_SDF_BLOCK_WORDS > 0
+uint span_first; /* of its block's pieces */
+float span_pixel;
+float span_start, span_from, span_to; /* of the block; of the piece that the ray is in */
+
+float span_end(vec4 ends, uint i)
+{
+    return i == 0u ? ends.x : i == 1u ? ends.y : i == 2u ? ends.z : ends.w;
+}
+
+/* Before the pieces and behind them what the tile sees; of a scene of one part, that and all terms. */
+void span_look_up(float t, uvec2 size)
+{
+    vec4 ends = span_ends(span_start, span_pixel);
+    uvec4 past = uvec4(greaterThan(vec4(t), ends));
+    uint now = past.x + past.y + past.z + past.w;
+    bool before = MASU_SPAN_BEFORE && t < span_start;
+    span_from = before || !MASU_SPAN_BEFORE && now == 0u ? 0.0 : now == 0u ? span_start : span_end(ends, now - 1u);
+    span_to = before ? span_start : now == 4u ? 1e30 : span_end(ends, now);
+    if (before || now == 4u) {
+        masu_use_tile(MASU_SPAN_TILE, size);
+        if (MASU_SDF_LISTED_COUNT == 1) {
+            masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
+        }
+        return;
+    }
+    uint place = span_first + now * uint(MASU_SDF_BLOCK_WORDS);
+    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+        masu_list_bits[w] = masu_tiles[place + uint(w)];
+    }
+}
+
+void span_begin(uvec2 at, uvec2 size, float t)
+{
+    span_first = span_place(at / uint(MASU_BLOCK_PIXELS), size) + 1u;
+    span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
+    span_look_up(t, size);
+}
+
+/* Once, before the first. */
+void span_prepare(uvec2 size)
+{
+    span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
+}
+
+void span_follow(float t, uvec2 size)
+{
+    if (!(t >= span_from && t <= span_to)) {
+        span_look_up(t, size);
+    }
+}
+#else
+void span_prepare(uvec2 size)
+{
+}
+
+void span_begin(uvec2 at, uvec2 size, float t)
+{
+}
+
+void span_follow(float t, uvec2 size)
+{
+}
+#endif
+#endif
 #endif

@@ -10,7 +10,8 @@
  * 2025). Both fields are asked for anyway: what matters costs three operations a term.
  *
  * Of a scene of many parts the bits are of the places in its tile's list. Includers that do not choose terms
- * (MASU_SDF_KEEP is not defined) get a field without bits for them.
+ * (neither MASU_SDF_KEEP nor MASU_SDF_ASK is defined) get a field without bits for them; those with MASU_SDF_ASK alone ask by
+ * bits that others have kept.
  */
 #ifndef MASU_TERMS_GLSL
 #define MASU_TERMS_GLSL
@@ -70,7 +71,11 @@ uint masu_keep_least(uint kept, float joined, float e, float slack, uint bit, ui
 
 #else
 #define MASU_SDF_MARGIN 0.0
+#ifdef MASU_SDF_ASK
+#define masu_term_bits(word) masu_part_bits(word)
+#else
 #define masu_term_bits(word) 0xFFFFFFFFu
+#endif
 #define MASU_KEEP_NONE
 #define MASU_KEEP_BEGIN
 #define MASU_KEEP_PART(d, f, word, bit)

@@ -13,6 +13,7 @@ static masu_session s;
 typedef struct picture {
     uint32_t albedo[W * H], normal[W * H];
     float depth[W * H];
+    uint8_t shown[4 * W * H]; /* silhouettes ask for it as well */
     uint64_t evaluations;
 } picture;
 
@@ -20,15 +21,15 @@ static void march(const char *scene, int all_terms, masu_switch share, float sca
     masu_session_desc d = test_desc(scene, W, H);
     d.desc.readback = MASU_READBACK_ALBEDO | MASU_READBACK_NORMAL | MASU_READBACK_DEPTH;
     d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = scale};
+    d.desc.rungs[0] = (masu_rung){.scale = scale, .silhouettes = MASU_ON};
     d.desc.debug.all_terms = (uint32_t)all_terms;
     d.desc.debug.share_rays = share;
     d.desc.debug.counters = 1;
     open_session(&s, &d);
     masu_frame_desc frame = {.time = time};
     masu_commands commands;
-    draw(&s, &frame, &commands, NULL);
     memset(out, 0, sizeof *out);
+    draw(&s, &frame, &commands, out->shown);
     uint32_t w = (uint32_t)(W * scale), h = (uint32_t)(H * scale);
     memcpy(out->albedo, read_image(&s, commands.slot, MASU_READBACK_ALBEDO), sizeof(uint32_t) * w * h);
     memcpy(out->normal, read_image(&s, commands.slot, MASU_READBACK_NORMAL), sizeof(uint32_t) * w * h);
@@ -54,6 +55,8 @@ static void same(const char *scene, float scale, double time) {
         assert_int_equal(all->normal[i], chosen->normal[i]);
         assert_int_equal(all->albedo[i], chosen->albedo[i]);
     }
+    assert_memory_equal(all->shown, chosen->shown, sizeof all->shown);
+    assert_memory_equal(all->shown, shared->shown, sizeof all->shown);
     /* Nor does it matter who marches a ray. */
     assert_memory_equal(chosen->depth, shared->depth, sizeof chosen->depth);
     for (uint32_t i = 0; i < W * H; i++) {

@@ -250,7 +250,7 @@ static void a_silhouette_is_as_wide_as_it_covers(void **state) {
             for (uint32_t p = 0; p < PIXELS; p++) {
                 double v = at(y, p % SIZE + 0.5, p / SIZE + 0.5);
                 double covered = share(x, p % SIZE, p / SIZE);
-                if (fabs(v) < 3 * hypot(y[0], y[1]) || on_rim(p)) continue;
+                if (fabs(v) < 3 * hypot(y[0], y[1])) continue;
                 int edge = covered > 1e-6 && covered < 1 - 1e-6;
                 if (v > 0 || !edge) { /* a box, or within a surface */
                     assert_int_equal(picture[4 * p + 1], plain[4 * p + 1]);
@@ -258,6 +258,10 @@ static void a_silhouette_is_as_wide_as_it_covers(void **state) {
                 }
                 double off = (double)masu_picture_decoded(picture[4 * p + 1]) / white - covered;
                 double was = (double)masu_picture_decoded(plain[4 * p + 1]) / white - covered;
+                if (on_rim(p)) { /* some lines lie outside of the picture: then it is as it was */
+                    assert_true(fabs(off) < fabs(was) + 0.04);
+                    continue;
+                }
                 worst = fmax(worst, fabs(off));
                 sum += off * off, before += was * was, count++;
             }
