@@ -103,28 +103,33 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         vec3 v = -masu_normalize(point, frame.forward.xyz);
         masu_bsdf b = masu_bsdf_make(p.surface, n, v);
         vec3 mirrors = p.surface.coat > 0.0 ? vec3(masu_bsdf_coat(b)) : masu_bsdf_specular(b);
-        float most;
-        vec4 light = gathered(at, point, n, p.depth, most);
-        if (!(light.a > 0.0)) {
-            light.rgb = masu_ambient_mirror(reflect(-v, n), roughness);
-        }
+        /* Of smooth surfaces, and where the four pixels are not one surface, the pixel's own mean is all. */
+        vec3 own = vec3(0.0);
+        float fine = 0.0;
+        bool limited = false;
 #ifdef MASU_FINE
-        masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
-        float fine = push.fine != 0u ? masu_fine_share(g, roughness) : 0.0;
-        if (fine > 0.0) {
-            uint word = texelFetch(fine_image, ivec2(texel), 0)[number];
-            if (word != masu_fine_none) {
-                /* What the texels' means do not show even half as bright is noise of few rays; a narrow lobe has
-                 * little. */
-                vec3 own = masu_unpack_fine(word);
-                float bright = max(own.r, max(own.g, own.b));
-                float limit = roughness > masu_fine_narrow && most > 0.0 && !g.mixed ? 2.0 * most + 0.01 : bright;
-                own *= min(1.0, limit / max(bright, 1e-9));
-                light.rgb = mix(light.rgb, own, fine);
-            }
+        uint word = push.fine != 0u ? texelFetch(fine_image, ivec2(texel), 0)[number] : masu_fine_none;
+        if (word != masu_fine_none) {
+            masu_guide g = masu_unpack_guide(texelFetch(guide_image, ivec2(texel), 0).rg);
+            own = masu_unpack_fine(word);
+            fine = masu_fine_share(g, roughness);
+            limited = roughness > masu_fine_narrow && !g.mixed;
         }
 #endif
-        mirrored = masu_traced_share(roughness, push.cutoff) * mirrors * light.rgb;
+        vec3 light = own;
+        if (!(fine >= 1.0) || limited) {
+            float most;
+            vec4 around = gathered(at, point, n, p.depth, most);
+            if (!(around.a > 0.0)) {
+                around.rgb = masu_ambient_mirror(reflect(-v, n), roughness);
+            }
+            /* What the texels' means do not show even half as bright is noise of few rays; a narrow lobe has
+             * little. */
+            float bright = max(own.r, max(own.g, own.b));
+            float limit = limited && most > 0.0 ? 2.0 * most + 0.01 : bright;
+            light = mix(around.rgb, own * min(1.0, limit / max(bright, 1e-9)), fine);
+        }
+        mirrored = masu_traced_share(roughness, push.cutoff) * mirrors * light;
     }
     if (foggy) { /* what it adds itself, light.comp has added */
         vec3 direction = masu_normalize(point, frame.forward.xyz);
