@@ -58,6 +58,8 @@ vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
     vec4 nearest = vec4(0.0);
     float least = 1e30;
     most = 0.0;
+    masu_flat flat_here = masu_flat_through(point, n);
+    float narrow = 1.0 / tolerance;
     for (int k = 0; k < 4; k++) {
         ivec2 off = ivec2(k & 1, k >> 1);
         ivec2 texel = clamp(ivec2(corner) + off, ivec2(0), last);
@@ -66,8 +68,7 @@ vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
             continue;
         }
         vec3 color = masu_sane(texelFetch(specular_image, texel, 0).rgb, 0.0, 65504.0);
-        vec3 other = masu_guide_point(masu_guide_place(uvec2(texel), g.pixel, 2u), g.depth);
-        float away = abs(dot(other - point, n)) / tolerance;
+        float away = abs(masu_off(flat_here, masu_guide_place(uvec2(texel), g.pixel, 2u), g.depth)) * narrow;
         float alike = max(dot(g.normal, n), 0.0);
         alike *= alike;
         alike *= alike;

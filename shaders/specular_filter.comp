@@ -12,6 +12,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_specular_filter
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
@@ -40,13 +41,14 @@ float spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
     float sum = 0.0;
     float squares = 0.0;
     float count = 0.0;
-    for (int k = 0; k < 9; k++) {
+    masu_flat flat_here = masu_flat_through(point, g.normal);
+    [[dont_unroll]] for (int k = 0; k < 9; k++) {
         ivec2 at = texel + ivec2(k % 3 - 1, k / 3 - 1);
         if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
             continue;
         }
         masu_guide o = masu_unpack_guide(texelFetch(guide_image, at, 0).rg);
-        if (!o.there || !masu_same_plane(masu_specular_point(uvec2(at), o) - point, g.normal, width)) {
+        if (!o.there || !(abs(masu_specular_off(flat_here, uvec2(at), o)) < width)) {
             continue;
         }
         float y = masu_luma(masu_tamed(texelFetch(light_image, at, 0).rgb));
@@ -92,6 +94,8 @@ void main()
                 radius = clamp(radius * (1.0 + 2.0 / frames), 1.0, widest);
                 float turn = float(masu_trace_noise(masu_noise_index(texel.x, texel.y, 3u)) & 0xFFFFu) / 65536.0;
                 ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+                masu_flat flat_here = masu_flat_through(point, g.normal);
+                float narrow = 1.0 / max(width, 1e-9);
                 vec4 sum = vec4(color, 1.0);
                 for (uint k = 0u; k < uint(MASU_FILTER_TAPS_MAX); k++) {
                     if (k >= push.taps) {
@@ -108,7 +112,7 @@ void main()
                     if (!o.there || abs(o.roughness - g.roughness) > 0.1) {
                         continue;
                     }
-                    float off = dot(masu_specular_point(uvec2(at), o) - point, g.normal) / max(width, 1e-9);
+                    float off = masu_specular_off(flat_here, uvec2(at), o) * narrow;
                     vec3 other = masu_tamed(texelFetch(light_image, at, 0).rgb);
                     float luma = abs(masu_luma(other) - y) / (luma_width * sigma + 1e-4);
                     float alike = masu_pow(max(dot(o.normal, g.normal), 0.0), 64.0);

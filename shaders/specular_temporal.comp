@@ -140,6 +140,7 @@ present gather(here h)
     r.motion = vec2(0.0);
     r.motions = 0.0;
     ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
+    masu_flat flat_here = masu_flat_through(h.point, h.g.normal);
     [[dont_unroll]] for (int k = 0; k < 9; k++) {
         ivec2 at = h.texel + ivec2(k % 3 - 1, k / 3 - 1);
         if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
@@ -147,7 +148,7 @@ present gather(here h)
         }
         masu_guide o = masu_unpack_guide(texelFetch(guide_image, at, 0).rg);
         if (!o.there || dot(o.normal, h.g.normal) < 0.7 ||
-            !masu_same_plane(masu_specular_point(uvec2(at), o) - h.point, h.g.normal, h.width)) {
+            !(abs(masu_specular_off(flat_here, uvec2(at), o)) < h.width)) {
             continue;
         }
         vec4 light = texelFetch(light_image, at, 0);

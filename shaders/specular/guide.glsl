@@ -94,4 +94,28 @@ vec3 masu_guide_point(uvec2 pixel, float depth)
     return masu_pixel_ray(pixel, size) * (frame.forward.w * masu_rcp(depth));
 }
 
+/* How far points under other pixels lie off a plane. Rays are affine in the picture, and so is what of them is along the plane's
+ * normal: a pixel is two products instead of a ray, a point and a scalar product. */
+struct masu_flat {
+    float base;
+    vec2 lean; /* a pixel to the right, a pixel down */
+    float at;
+};
+
+masu_flat masu_flat_through(vec3 point, vec3 n)
+{
+    vec2 size = vec2(pc.render_width, pc.render_height);
+    masu_flat f;
+    f.lean = 2.0 / size * vec2(dot(frame.right.xyz, n), -dot(frame.up.xyz, n));
+    f.base = dot(masu_pixel_ray(uvec2(0u), uvec2(size)), n);
+    f.at = dot(point, n);
+    return f;
+}
+
+/* Of a point that is there. */
+float masu_off(masu_flat f, uvec2 pixel, float depth)
+{
+    return (f.base + dot(f.lean, vec2(pixel))) * (frame.forward.w / depth) - f.at;
+}
+
 #endif

@@ -14,6 +14,12 @@ vec3 masu_specular_point(uvec2 texel, masu_guide g)
     return masu_guide_point(masu_guide_place(texel, g.pixel, push.traced_size), g.depth);
 }
 
+/* How far it lies off a plane, without where it is. */
+float masu_specular_off(masu_flat f, uvec2 texel, masu_guide g)
+{
+    return masu_off(f, masu_guide_place(texel, g.pixel, push.traced_size), g.depth);
+}
+
 /* A pixel's width at a point. */
 float masu_specular_width(masu_guide g)
 {
