@@ -77,7 +77,8 @@ bool can_meet(ray r, vec4 sphere)
     float t = clamp(dot(c, r.direction), r.start, r.limit);
     vec3 off = c - r.direction * t;
     vec3 a = abs(eye_hi);
-    float slack = 64.0 * ulp * (length(sphere.xyz) + sphere.w + max(a.x, max(a.y, a.z)) + t);
+    /* What is touched has its middle within t and its radius of the apex. */
+    float slack = 128.0 * ulp * (sphere.w + max(a.x, max(a.y, a.z)) + t);
     float reach = sphere.w + newton_reach * r.pixel * (t + sphere.w) + slack;
     return !(sphere.w >= 0.0) || !(dot(off, off) > reach * reach); /* not: unbounded, or not a number */
 }
