@@ -222,8 +222,7 @@ static int on_rim(uint32_t p) {
 }
 
 /* rung.silhouettes: of one sample a pixel the SDF's edge is nearly what the truth of 64 has; polygons' stays as it is. */
-static void a_silhouette_is_as_wide_as_it_covers(void **state) {
-    (void)state;
+static void a_silhouette_is_as_wide_as_it_covers(int bright) {
     static const double angles[] = {0, 0.02, 0.12, 0.5, 0.785398, 1.2, 1.570796, 2.5};
     static const float jitters[][2] = {{0, 0}, {0.4f, -0.3f}};
     static uint8_t plain[4 * PIXELS];
@@ -232,6 +231,8 @@ static void a_silhouette_is_as_wide_as_it_covers(void **state) {
     d.desc.rung_count = 2;
     d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     d.desc.rungs[1] = (masu_rung){.silhouettes = MASU_OFF};
+    if (bright) d.desc.tone = MASU_TONE_NONE;
+    masu_light light = {.sun_direction = {0, 1, 0}, .sky_zenith = {30, 30, 30}, .sky_horizon = {30, 30, 30}};
     open_session(&s, &d);
     for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
         for (size_t j = 0; j < sizeof jitters / sizeof *jitters; j++) {
@@ -241,12 +242,17 @@ static void a_silhouette_is_as_wide_as_it_covers(void **state) {
             memcpy(camera.jitter, jitters[j], sizeof camera.jitter);
             x[2] += (double)jitters[j][0] * x[0] + (double)jitters[j][1] * x[1];
             y[2] += (double)jitters[j][0] * y[0] + (double)jitters[j][1] * y[1];
-            masu_frame_desc f = {.camera = &camera, .cut = 1};
+            masu_frame_desc f = {.camera = &camera, .light = bright ? &light : NULL, .cut = 1};
             masu_commands commands;
             draw(&s, &f, &commands, picture);
             f.rung = 1;
             draw(&s, &f, &commands, plain);
-            for (uint32_t p = 0; p < PIXELS; p++) white = fmax(white, (double)masu_picture_decoded(plain[4 * p + 1]));
+            double dark = 1;
+            for (uint32_t p = 0; p < PIXELS; p++) {
+                white = fmax(white, (double)masu_picture_decoded(plain[4 * p + 1]));
+                dark = fmin(dark, (double)masu_picture_decoded(plain[4 * p + 1]));
+            }
+            assert_true(white - dark > 0.2);
             for (uint32_t p = 0; p < PIXELS; p++) {
                 double v = at(y, p % SIZE + 0.5, p / SIZE + 0.5);
                 double covered = share(x, p % SIZE, p / SIZE);
@@ -256,8 +262,10 @@ static void a_silhouette_is_as_wide_as_it_covers(void **state) {
                     assert_int_equal(picture[4 * p + 1], plain[4 * p + 1]);
                     continue;
                 }
-                double off = (double)masu_picture_decoded(picture[4 * p + 1]) / white - covered;
-                double was = (double)masu_picture_decoded(plain[4 * p + 1]) / white - covered;
+                double shown = ((double)masu_picture_decoded(picture[4 * p + 1]) - dark) / (white - dark);
+                double alone = ((double)masu_picture_decoded(plain[4 * p + 1]) - dark) / (white - dark);
+                double off = (bright ? 1 - shown : shown) - covered;
+                double was = (bright ? 1 - alone : alone) - covered;
                 if (on_rim(p)) { /* some lines lie outside of the picture: then it is as it was */
                     assert_true(fabs(off) < fabs(was) + 0.04);
                     continue;
@@ -280,8 +288,18 @@ static uint64_t sum_of(const uint8_t *pixels) {
     return sum;
 }
 
-/* A metered exposure counts, as the field's samples do; a curve that lets through what is brighter than white must not let
- * it cover what it only touches; what is not in memory yet must not be read. */
+static void silhouettes_before_the_dark(void **state) {
+    (void)state;
+    a_silhouette_is_as_wide_as_it_covers(0);
+}
+
+/* What is thirty times as bright as white is shown as white, and covers no more for it. */
+static void silhouettes_before_what_is_too_bright(void **state) {
+    (void)state;
+    a_silhouette_is_as_wide_as_it_covers(1);
+}
+
+/* A metered exposure counts, as the field's samples do; a curve or none; what is not in memory yet must not be read. */
 static void silhouettes_stand_beside_everything_else(void **state) {
     (void)state;
     static const masu_tone tones[] = {MASU_TONE_NONE, MASU_TONE_ACES};
@@ -344,7 +362,8 @@ int main(void) {
         cmocka_unit_test(a_jitter_moves_all_alike),
         cmocka_unit_test(velocities_hold_the_jitter),
         cmocka_unit_test(an_edge_is_as_wide_as_it_covers),
-        cmocka_unit_test(a_silhouette_is_as_wide_as_it_covers),
+        cmocka_unit_test(silhouettes_before_the_dark),
+        cmocka_unit_test(silhouettes_before_what_is_too_bright),
         cmocka_unit_test(silhouettes_stand_beside_everything_else),
         cmocka_unit_test(the_table_is_made),
     };
