@@ -68,9 +68,8 @@ void main()
         float limit = min(frame.sdf_max.w, masu_sdf_flat(world_at(r.direction, 0.0), r.direction, t, part));
         uint evals = 0u;
         uvec2 pixels = uvec2(pc.render_width, pc.render_height);
-        uvec2 tile = at * uint(MASU_CONE_BLOCK) / uint(MASU_TILE);
         masu_listed_box(box_low, box_high);
-        bool empty = !masu_use_tile(tile.y * masu_tile_grid(pixels).x + tile.x, pixels);
+        bool empty = !masu_use_tile(masu_tile_of(at * uint(MASU_CONE_BLOCK), pixels), pixels);
         bool done = empty;
         int span = 0;
         MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX + MASU_BLOCK_SPANS; i++) {

@@ -128,9 +128,8 @@ vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
     vec3 direction = through / z_scale;
     float t = frame.forward.w * z_scale / depth;
     vec3 p = world_at(direction, t);
-    uvec2 tile = at / uint(MASU_TILE);
     if (push.listed != 0u) {
-        masu_use_tile(tile.y * masu_tile_grid(size).x + tile.x, size);
+        masu_use_tile(masu_tile_of(at, size), size);
     }
     vec3 q = p;
     if (tile_moves()) {

@@ -8,7 +8,7 @@
  * the silhouette, and the silhouette a straight line through it. tonemap.comp blends the pixels on both sides by
  * what the line covers of them (shared/silhouettes.glsl).
  *
- * It takes ROUNDS of four samples at the pixels behind a silhouette, which are some 2 to 8 of 100, and nothing but depths
+ * It takes up to PAIRS pairs of samples and four more at the pixels behind a silhouette, which are some 2 to 8 of 100, and nothing but depths
  * and a normal of all others. Wrong turn: to note near misses while marching. It is state of every ray in flight, for
  * few of them; and cones, lists and boxes would all have to be wider by a pixel.
  *
@@ -196,8 +196,7 @@ uint silhouette_at(uvec2 at, vec3 through, float depth, uint front, float neares
         return 0u;
     }
     /* What the pixel's own ray can meet or pass, not its neighbour's: that is what was looked for. */
-    uvec2 tile = at / uint(MASU_TILE);
-    own_tile = tile.y * masu_tile_grid(size).x + tile.x;
+    own_tile = masu_tile_of(at, size);
     if (push.listed != 0u) {
         masu_use_tile(own_tile, size);
     }

@@ -200,6 +200,13 @@ uvec2 masu_tile_grid(uvec2 size)
     return (size + uint(MASU_TILE) - 1u) / uint(MASU_TILE);
 }
 
+/* The number of a pixel's tile. */
+uint masu_tile_of(uvec2 at, uvec2 size)
+{
+    uvec2 tile = at / uint(MASU_TILE);
+    return tile.y * masu_tile_grid(size).x + tile.x;
+}
+
 /* From here on the field is that of tile `tile` of a picture of `size` pixels. False: nothing is
  * there. */
 bool masu_use_tile(uint tile, uvec2 size)

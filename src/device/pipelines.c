@@ -32,8 +32,8 @@ static uint64_t now(const masu_device *m) {
  * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
  * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
  * encoding; whether the last pass rounds to its steps or changes the order of its channels; whether the output
- * is whole groups of invocations; how many nodes a ray may have to come back to; whether a tile's rays are
- * anybody's. */
+ * is whole groups of invocations; how many nodes a ray may have to come back to; whether a tile's rays
+ * are shared by its invocations. */
 enum { SPECIAL_COUNT = 11 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
