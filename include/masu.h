@@ -349,6 +349,12 @@ typedef enum masu_knob_use {
            "Device bytes per pixel of the render size: SMAA 4.5, FXAA 4, of which other images"    \
            " may share all but SMAA's last 0.5. SMAA takes two passes, of which a picture"         \
            " without edges costs the first; FXAA takes one.")                                      \
+    WORD(  masu_switch,      temporal,                               ALWAYS,                       \
+           "Anti-aliasing and upscaling over frames, in place of aa, EASU and RCAS (RCAS where"    \
+           " sharpen is on): each frame looks at another place in its pixels. Scenes alone."       \
+           " AUTO: off.",                                                                          \
+           "A pass of the output size and a small one. Device bytes that outlive the frame: 16 per" \
+           " pixel of the output, 4 per pixel of the render size.")                                \
     /* Geometry. */                                                                                \
     WORD(  masu_march,       march,                                  SDF,                          \
            "How the SDF is marched. AUTO: the fast way.",                                          \

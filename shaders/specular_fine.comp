@@ -18,6 +18,7 @@
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
 #include "shared/store.glsl"
+#include "shared/motion.glsl"
 #include "noise/sequence.glsl"
 #include "specular/filter.glsl"
 #include "specular/fine.glsl"
@@ -75,7 +76,7 @@ vec4 own_way(uvec2 pixel)
         return vec4(0.0);
     }
     vec4 velocity = texelFetch(velocity_image, ivec2(pixel), 0);
-    ivec2 at = ivec2(pixel) + ivec2(round(masu_sane(velocity, -32768.0, 32768.0).xy));
+    ivec2 at = ivec2(pixel) + ivec2(round(masu_unjittered(masu_sane(velocity, -32768.0, 32768.0).xy, vec2(pc.render_width, pc.render_height))));
     if (!(velocity.w > 0.0) || any(lessThan(at, ivec2(0))) ||
         any(greaterThanEqual(at, ivec2(frame.history.yz))) ||
         !was_it(at >> 1, masu_unpack_normal(texelFetch(normal_image, ivec2(pixel), 0).r))) {

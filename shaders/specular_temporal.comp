@@ -260,7 +260,7 @@ void main()
                 float off_b;
                 [[dont_unroll]] for (int i = 0; i < 2; i++) {
                     if (i == 0 || apart) {
-                        b = look(h, i == 0 ? velocity.xy : now.motion);
+                        b = look(h, masu_unjittered(i == 0 ? velocity.xy : now.motion, size));
                         off_b = b.weight > 0.0 ? distance_of(b, now) : 0.0;
                     }
                     if (i == 0) {
@@ -277,8 +277,9 @@ void main()
                 }
                 float weight = mix(b.weight, a.weight, surface);
                 if (h.g.mixed) {
-                    frames = 1.0 + turns(h, velocity.xy);
-                    age.y = packHalf2x16(clamp(velocity.xy, vec2(-60000.0), vec2(60000.0)));
+                    vec2 motion = masu_unjittered(velocity.xy, size);
+                    frames = 1.0 + turns(h, motion);
+                    age.y = packHalf2x16(clamp(motion, vec2(-60000.0), vec2(60000.0)));
                 } else if (weight > 0.0) {
                     vec4 history = mix(b.mean, a.mean, surface);
                     float old_y = masu_luma(history.rgb);
@@ -304,7 +305,7 @@ void main()
                     y = masu_luma(color);
                     mean = mix(history, vec4(color, y * y), share);
                     frames += 1.0;
-                    vec2 motion = mix(now.motion, velocity.xy, surface);
+                    vec2 motion = masu_unjittered(mix(now.motion, velocity.xy, surface), size);
                     age.y = packHalf2x16(clamp(motion, vec2(-60000.0), vec2(60000.0)));
                 }
             }

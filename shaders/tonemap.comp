@@ -3,7 +3,8 @@
  * 0..1.
  *
  * shaders/shared/tone.glsl has the curves and encodings; output.glsl says why targets beyond white have
- * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites.
+ * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites;
+ * push.roots not 0: what follows is rung.temporal.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -13,6 +14,7 @@
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/output.glsl"
+#include "shared/encode.glsl"
 #ifdef MASU_SILHOUETTES
 #include "shared/silhouettes.glsl"
 #endif
@@ -50,16 +52,6 @@ float exposure()
 vec3 curve(vec3 x, float most)
 {
     return tone == 1u ? x : tone == 2u ? masu_tone_filmic(x) : masu_tone_neutral(x, most);
-}
-
-vec3 encoded(vec3 y)
-{
-    if (masu_encoding == MASU_OUTPUT_SRGB) {
-        return vec3(masu_srgb_encode(y.r), masu_srgb_encode(y.g), masu_srgb_encode(y.b));
-    }
-    vec3 nits = y * push.white;
-    nits = masu_encoding == MASU_OUTPUT_PQ ? masu_bt2020(nits) : nits;
-    return vec3(masu_pq_encode(nits.r), masu_pq_encode(nits.g), masu_pq_encode(nits.b));
 }
 
 /* What is shown of a pixel alone. */
@@ -109,6 +101,12 @@ vec3 blended(ivec2 at, ivec2 size)
 }
 #endif
 
+/* For rungs that take the mean over frames, the root of display light: what rung.temporal adds up is light. */
+vec3 stored(vec3 y)
+{
+    return push.roots != 0u ? sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0)) : masu_encoded(y, push.white);
+}
+
 void main()
 {
     masu_count_begin();
@@ -124,10 +122,10 @@ void main()
             vec3 white = min(y * push.white, 1e4) * (1.0 / 80.0);
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(white), 1.0));
         } else {
-            MASU_STORE_COLOR(ldr_image, at, encoded(y));
+            MASU_STORE_COLOR(ldr_image, at, stored(y));
         }
 #else
-        MASU_STORE_COLOR(ldr_image, at, encoded(y));
+        MASU_STORE_COLOR(ldr_image, at, stored(y));
 #endif
     }
     masu_count_end();

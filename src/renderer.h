@@ -15,6 +15,7 @@
 #include "frame/bounds.h"
 #include "frame/camera.h"
 #include "frame/frame_data.h"
+#include "frame/temporal.h"
 #include "frame/instances.h"
 #include "frame/occlusion.h"
 #include "frame/punctual_lights.h"
@@ -43,6 +44,7 @@ struct masu_renderer {
 
     masu_timeline timeline;
     masu_history history;
+    masu_temporal temporal;
     masu_governor *governor; /* NULL where the description asks for none */
     masu_camera_path camera;
     masu_sun_sky sun_sky;

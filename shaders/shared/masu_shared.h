@@ -310,6 +310,8 @@ struct masu_frame_uniforms {
     masu_vec4 trace_eye; /* xyz eye minus that anchor; w unused */
     /* xy what camera.jitter adds to a place in the picture, whose sides are -1 and 1; zw unused */
     masu_vec4 jitter;
+    /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; zw unused */
+    masu_uvec4 temporal;
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
 };
 

@@ -45,6 +45,13 @@ vec4 masu_velocity(vec4 rel, vec4 before, vec2 size)
     return told ? velocity : vec4(0.0);
 }
 
+/* A motion, pixels, without what the frames' jitter differs by: what rests has rested, wherever in its pixel each of
+ * them looked. Histories are found so: their texels are means over such places. */
+vec2 masu_unjittered(vec2 moved, vec2 size)
+{
+    return moved + (previous.jitter.xy - frame.jitter.xy) * (0.5 * size);
+}
+
 vec4 masu_sky_velocity(uvec2 at, uvec2 size)
 {
     vec4 direction = vec4(masu_pixel_ray(at, size), 0.0);

@@ -22,13 +22,14 @@ static uint32_t scaled(uint32_t size, float scale) {
 static void resolve_switches(const masu_desc *d, masu_rung_plan *rp, const masu_rung *rung,
                              masu_needs *needs) {
     int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
-    needs->upscale = rung->upscale == MASU_ON || !same;
+    needs->resolve = d->scene && rung->temporal == MASU_ON;
+    needs->upscale = !needs->resolve && (rung->upscale == MASU_ON || !same);
     needs->easu = rung->easu == MASU_EASU_AUTO ? MASU_EASU_FULL : rung->easu;
     int plain = needs->easu == MASU_EASU_BILINEAR; /* what it blurs, RCAS would not bring back */
     needs->sharpen =
         rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && needs->upscale && !plain);
-    needs->fxaa = rung->aa == MASU_AA_FXAA;
-    needs->smaa = rung->aa >= MASU_AA_SMAA_LOW;
+    needs->fxaa = !needs->resolve && rung->aa == MASU_AA_FXAA;
+    needs->smaa = !needs->resolve && rung->aa >= MASU_AA_SMAA_LOW;
     needs->fused = needs->upscale && needs->sharpen && needs->easu == MASU_EASU_FULL &&
                    rung->fuse == MASU_ON && !(d->scene && d->deep_color == MASU_ON);
     /* Upscaling only, at ratio 1, with everything off: something has to write the target. */
@@ -198,6 +199,10 @@ static int rung_has_silhouettes(const masu_desc *d, uint32_t r) {
     return d->scene && d->scene->sdf && d->rungs[r].silhouettes == MASU_ON;
 }
 
+static int rung_has_resolve(const masu_desc *d, uint32_t r) {
+    return d->scene && d->rungs[r].temporal == MASU_ON;
+}
+
 static int rung_has_fine(const masu_desc *d, uint32_t r) {
     return rung_has_specular(d, r) && !d->debug.reference &&
            d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_fine != MASU_OFF;
@@ -260,7 +265,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .any_fine = wants(d, rung_has_fine),
                                .any_silhouettes = wants(d, rung_has_silhouettes),
                                .metered = d->scene && d->exposure.metered == MASU_ON,
-                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d),
+                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d) ||
+                                           wants(d, rung_has_resolve),
                                .blit = !d->targets.storage};
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
     masu_output_plan(plan);

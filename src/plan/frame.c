@@ -50,7 +50,7 @@ static const char *no_march(const masu_needs *n) {
 
 /* Whether a rung has anything that reads velocities. */
 static int wants_velocity(const masu_needs *n) {
-    return n->velocity && (n->temporal || (n->readback & MASU_READBACK_VELOCITY));
+    return n->velocity && (n->temporal || n->resolve || (n->readback & MASU_READBACK_VELOCITY));
 }
 
 /* Of two kinds of velocities the other one runs, or none. */
@@ -72,8 +72,13 @@ static const char *no_filter(const masu_needs *n, const char *off) {
                            : off;
 }
 
+static const char *no_resolve(const masu_needs *n) {
+    return n->scene ? "rung.temporal is not on" : NO_SCENE;
+}
+
 static const char *no_upscale(const masu_needs *n) {
-    return n->fused     ? "fsr1 does it"
+    return n->resolve   ? "temporal does it"
+           : n->fused   ? "fsr1 does it"
            : n->upscale ? "rung.easu asks for another way"
                         : "render size is output size";
 }

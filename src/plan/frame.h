@@ -140,6 +140,7 @@ typedef struct masu_needs {
     /* of one rung: */
     int upscale, sharpen, occlusion;
     int fxaa, smaa; /* at most one of them */
+    int resolve;   /* over frames */
     int fused;     /* upscale and sharpen in one pass */
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */

@@ -8,9 +8,12 @@
 
 /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it
  * cannot bring back. */
+#include <stdlib.h>
+#define TEMPORAL_BIAS (getenv("MB") ? (float)atof(getenv("MB")) : -1.0f)
 static float masu_mip_bias(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
-    return (d->debug.no_bias ? 0.0f : log2f(d->rungs[in->rung].scale)) + d->debug.mip_bias;
+    float over_frames = in->plan->needs.resolve || d->rungs[in->rung].temporal == MASU_ON ? TEMPORAL_BIAS : 0.0f;
+    return (d->debug.no_bias ? 0.0f : log2f(d->rungs[in->rung].scale)) + d->debug.mip_bias + over_frames;
 }
 
 /* Of the four settings of SMAA: the threshold of luma in the steps of smaa/color.glsl, steps of a search, and

@@ -1,0 +1,18 @@
+/*
+ * encode.glsl: display light, of which 1 is white, as the target of a scene encodes it. After output.glsl with
+ * MASU_OUTPUT.
+ */
+#ifndef MASU_ENCODE_GLSL
+#define MASU_ENCODE_GLSL
+
+vec3 masu_encoded(vec3 y, float white)
+{
+    if (masu_encoding == MASU_OUTPUT_SRGB) {
+        return vec3(masu_srgb_encode(y.r), masu_srgb_encode(y.g), masu_srgb_encode(y.b));
+    }
+    vec3 nits = y * white;
+    nits = masu_encoding == MASU_OUTPUT_PQ ? masu_bt2020(nits) : nits;
+    return vec3(masu_pq_encode(nits.r), masu_pq_encode(nits.g), masu_pq_encode(nits.b));
+}
+
+#endif
