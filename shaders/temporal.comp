@@ -1,205 +1,215 @@
 /*
- * temporal.comp: prototype
+ * temporal.comp: anti-aliasing and upscaling in one, by samples of frames before. Of each pixel of the output it takes
+ * the mean of this frame's samples near it and of its history, each by how many samples stand in it. The frame's
+ * jitter has put its samples elsewhere than those before. docs/design/41-temporal.md has the measurements.
+ *
+ *   1. Where was it? By the velocity at the pixel; where a silhouette passes through the 3x3 samples around, by the
+ *      nearest one's, so that a smooth edge moves with what it is the edge of. Without what the frames' jitter differs by.
+ *   2. Is it the same thing? What rests in a world that does is. Else one of the four depths that the previous frame has kept there has to lie between the nearest
+ *      and the farthest of the nine of now, as far as they were then; else the pixel begins anew. A surface that leans
+ *      may differ by its slope.
+ *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
+ *      show: a standard deviation around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
+ *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
+ *      changed, and the mean of the history around is not that of the nine, it is, too, and counts as one sample.
+ *   4. How much does it count? At rest as many samples as it has, up to 32. Each resampling between pixels blurs, so
+ *      that what moves counts at most 2, and less the faster it moves and the more it grows: it was smaller then.
+ *   5. A pixel that has not yet a whole sample takes the rest from the wider surroundings.
+ *
+ * Everything is display light, as an eye takes the mean of it (docs/design/31-truth.md); a: samples. Halves are rounded up
+ * or down by chance: the nearest one would hold a history still that is a little wrong.
+ *
+ * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input size * (1 /
+ * output size).
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_temporal
 #include "shared/masu_shared.h"
+#include "shared/counters.glsl"
 #include "shared/globals.glsl"
 #include "shared/store.glsl"
 #include "shared/motion.glsl"
-#include "temporal/history.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
-layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image;
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display light */
 layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D depth_image;
-layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image;
-layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D history_depth;
-layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D history_image;
+layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
+layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D old_depth_image;
+layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D history_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 5, rgba16f) uniform writeonly image2D accumulated_image;
 
-/*PAR*/
-#define CAP 32.0
-#define CAP_MOVE 2.0
-#define SHARPEN 0.06
-#define CLIP 1.0
-#define WHERE true
-/*END*/
-/*DEF*/
-#ifndef CAP
-#define CAP 16.0
-#endif
-#ifndef SLOPES
-#define SLOPES 2.0
-#endif
-#ifndef WIDE
-#define WIDE 2.0
-#endif
-#ifndef LAMBDA
-#define LAMBDA 1.0
-#endif
-#ifndef SHARP
-#define SHARP 0.5
-#endif
-#ifndef CAP_MOVE
-#define CAP_MOVE 6.0
-#endif
-#ifndef WHERE
-#define WHERE doubt
-#endif
-#ifndef ZOOM
-#define ZOOM 20.0
-#endif
-#ifndef KERNEL
-#define KERNEL 1.0
-#endif
+const float most_at_rest = 32.0;
+const float most_moving = 2.0;
+const float most_other = 1.0; /* of what rests and is no longer what it was */
+const float per_growth = 20.0; /* of view depth; */
+const float per_pixel = 0.1;   /* of motion: by how much that is divided */
+const float at_rest = 0.02;    /* pixels of the input */
+const float apart = 0.1;       /* of the nearest depth: a silhouette */
+const float same_depth = 0.01;
+const float deviations = 1.0;
+const float unseen = 0.01; /* display light that a mean over the surroundings may differ by */
 
-vec3 decoded(vec3 c) { return c * c; }
+/* The nine samples around a place. */
+struct around {
+    vec3 mean, least, most, deviation;
+    float nearest, farthest; /* depths: large is near */
+    float slope;             /* by which depth differs from pixel to pixel of one surface */
+    ivec2 front;             /* the nearest */
+};
 
-/* cubic of the family B=0, C: weights of the four taps at t */
-vec4 cubic(float t)
+/* What they tell of the pixel: sums. */
+struct samples {
+    vec3 light;
+    float count;
+    vec3 wide; /* the mean of a wider surrounding */
+};
+
+vec3 squared(vec3 v)
 {
-    const float c = SHARP;
-    float t2 = t * t, t3 = t2 * t;
-    return vec4(-c * t + 2.0 * c * t2 - c * t3, 1.0 + (c - 3.0) * t2 + (2.0 - c) * t3,
-                c * t + (3.0 - 2.0 * c) * t2 + (c - 2.0) * t3, -c * t2 + c * t3);
+    return v * v;
 }
 
-bool doubt = false, told = false;
-float least_expected = 0.0;
-
-bool same_owner(ivec2 texel, float expected, float tolerance, vec2 old_size)
+/* place: in the input, the jitter taken off. */
+void look_around(vec2 place, ivec2 middle, ivec2 last, out around a, out samples s)
 {
-    vec2 size = vec2(pc.output_width, pc.output_height);
-    vec2 place = (vec2(texel) + 0.5) / size * old_size - previous.jitter.xy * 0.5 * old_size;
-    float depth = texelFetch(history_depth, clamp(ivec2(floor(place)), ivec2(0), ivec2(old_size) - 1), 0).r;
-    bool nearer = depth > expected + tolerance;
-    doubt = doubt || nearer;
-    told = told || !nearer;
-    return depth >= least_expected - tolerance;
+    vec2 to_output = 1.0 / vec2(push.scale_x, push.scale_y);
+    vec3 sum = vec3(0.0);
+    vec3 squares = vec3(0.0);
+    vec4 wide = vec4(0.0);
+    vec4 own = vec4(0.0);
+    float depths[9];
+    a.least = vec3(1.0);
+    a.most = vec3(0.0);
+    a.nearest = 0.0;
+    a.farthest = masu_huge;
+    a.front = middle;
+    for (int i = 0; i < 9; i++) {
+        ivec2 at = clamp(middle + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last);
+        vec3 light = squared(texelFetch(color_image, at, 0).rgb);
+        vec2 off = vec2(at) + 0.5 - place;
+        vec2 tent = max(1.0 - abs(off * to_output), 0.0);
+        own += tent.x * tent.y * vec4(light, 1.0);
+        wide += exp(-2.0 * dot(off, off)) * vec4(light, 1.0);
+        sum += light;
+        squares += light * light;
+        a.least = min(a.least, light);
+        a.most = max(a.most, light);
+        depths[i] = texelFetch(depth_image, at, 0).r;
+        a.front = depths[i] > a.nearest ? at : a.front;
+        a.nearest = max(a.nearest, depths[i]);
+        a.farthest = min(a.farthest, depths[i]);
+    }
+    a.mean = sum * (1.0 / 9.0);
+    a.deviation = sqrt(max(squares * (1.0 / 9.0) - a.mean * a.mean, 0.0));
+    a.slope = min(abs(depths[3] - depths[4]), abs(depths[5] - depths[4])) +
+              min(abs(depths[1] - depths[4]), abs(depths[7] - depths[4]));
+    s.light = own.rgb;
+    s.count = own.a;
+    s.wide = wide.rgb / wide.a; /* the middle one alone has exp(-4) at least */
+}
+
+/* Of this frame's input: pixels that the pixel has moved, how its depth has grown; w as in the image. */
+vec4 motion_at(vec2 place, around a, vec2 size)
+{
+    vec2 inside = clamp(place, vec2(0.5), size - 0.5);
+    vec4 moved = textureLod(velocity_image, inside / vec2(textureSize(velocity_image, 0)), 0.0);
+    if (a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99)) {
+        moved = texelFetch(velocity_image, a.front, 0);
+    }
+    return vec4(masu_unjittered(moved.xy, size), moved.zw);
+}
+
+/* before: place in the output where the previous frame has shown it. */
+bool is_known(vec2 before, around a, float growth)
+{
+    vec2 size = vec2(frame.temporal.xy);
+    vec2 place = (before / vec2(pc.output_width, pc.output_height) - 0.5 * previous.jitter.xy) * size;
+    vec2 inside = clamp(place, vec2(1.0), max(size - 1.0, vec2(1.0)));
+    vec4 depths = textureGather(old_depth_image, inside / vec2(textureSize(old_depth_image, 0)));
+    float then = previous.forward.w * masu_rcp(frame.forward.w * (1.0 + growth));
+    float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
+    float nearest = max(max(depths.x, depths.y), max(depths.z, depths.w));
+    float farthest = min(min(depths.x, depths.y), min(depths.z, depths.w));
+    return farthest <= a.nearest * then + off && nearest >= a.farthest * then - off;
+}
+
+/* The cubic of Catmull and Rom, by five linear fetches: the corners' weights are small, and left out. b: the mean of
+ * the surroundings. */
+vec4 history_at(vec2 place, vec2 size, out vec3 surroundings)
+{
+    vec2 texel = 1.0 / size;
+    vec2 base = floor(place - 0.5) + 0.5;
+    vec2 t = place - base;
+    vec2 w0 = t * (-0.5 + t * (1.0 - 0.5 * t));
+    vec2 w1 = 1.0 + t * t * (1.5 * t - 2.5);
+    vec2 w3 = t * t * (0.5 * t - 0.5);
+    vec2 w2 = 1.0 - w0 - w1 - w3;
+    vec2 w12 = w1 + w2;
+    vec2 middle = (base + w2 / w12) * texel, first = (base - 1.0) * texel, fourth = (base + 2.0) * texel;
+    vec4 here = textureLod(history_image, middle, 0.0);
+    vec3 left = textureLod(history_image, vec2(first.x, middle.y), 0.0).rgb;
+    vec3 right = textureLod(history_image, vec2(fourth.x, middle.y), 0.0).rgb;
+    vec3 above = textureLod(history_image, vec2(middle.x, first.y), 0.0).rgb;
+    vec3 below = textureLod(history_image, vec2(middle.x, fourth.y), 0.0).rgb;
+    vec4 beside = vec4(w0.x * w12.y, w3.x * w12.y, w12.x * w0.y, w12.x * w3.y);
+    float all = w12.x * w12.y + beside.x + beside.y + beside.z + beside.w;
+    vec3 sum = w12.x * w12.y * here.rgb + beside.x * left + beside.y * right + beside.z * above + beside.w * below;
+    surroundings = 0.2 * (here.rgb + left + right + above + below);
+    return vec4(max(sum / all, 0.0), here.a);
+}
+
+/* History that counts: its light, how many samples. */
+vec4 found_again(vec2 at, vec2 place, around a)
+{
+    vec2 size = vec2(pc.output_width, pc.output_height), render = vec2(pc.render_width, pc.render_height);
+    vec4 moved = motion_at(place, a, render);
+    vec2 before = at + moved.xy / vec2(push.scale_x, push.scale_y);
+    bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
+                 all(lessThanEqual(before, size));
+    float speed = length(moved.xy);
+    bool rests = !(speed > at_rest);
+    /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */
+    if (!there || !((rests && frame.temporal.z == 0u) || is_known(before, a, moved.z))) {
+        return vec4(0.0);
+    }
+    vec3 surroundings;
+    vec4 old = history_at(before, size, surroundings);
+    bool other = frame.temporal.z != 0u && any(greaterThan(abs(surroundings - a.mean), a.deviation + unseen));
+    if (other || !rests) {
+        old.rgb = clamp(old.rgb, max(a.least, a.mean - deviations * a.deviation),
+                        min(a.most, a.mean + deviations * a.deviation));
+    }
+    float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
+    float most = rests && other ? most_other : mix(most_at_rest, moving, min(4.0 * speed, 1.0));
+    return vec4(old.rgb, min(old.a, most));
+}
+
+/* To a half, up or down by chance, which is R2 over the pixels, plus the golden ratio for each frame (output.glsl). */
+vec4 by_chance(vec4 v, uvec2 at)
+{
+    uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + frame.history.x * 0x9E3779B9u;
+    uvec4 apart = uvec4(noise, noise + 0x55555555u, noise + 0xAAAAAAAAu, 0x80000000u);
+    return uintBitsToFloat((floatBitsToUint(v) + (apart >> 19)) & 0xFFFFE000u);
 }
 
 void main()
 {
+    masu_count_begin();
     uvec2 at = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(at, uvec2(pc.output_width, pc.output_height)))) {
-        return;
+    if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
+        vec2 render = vec2(pc.render_width, pc.render_height);
+        ivec2 last = ivec2(pc.render_width, pc.render_height) - 1;
+        vec2 place = (vec2(at) + 0.5) * vec2(push.scale_x, push.scale_y) - 0.5 * frame.jitter.xy * render;
+        around a;
+        samples s;
+        look_around(place, clamp(ivec2(floor(place)), ivec2(0), last), last, a, s);
+        vec4 old = found_again(vec2(at) + 0.5, place, a);
+        float count = old.a + s.count;
+        float rest = max(1.0 - count, 0.0);
+        vec3 light = (old.a * old.rgb + s.light + rest * s.wide) / (count + rest);
+        MASU_STORE_HALF(accumulated_image, at, by_chance(vec4(masu_sane(light, 0.0, 1.0), min(count, 64.0)), at));
     }
-    vec2 size = vec2(pc.output_width, pc.output_height), render = vec2(pc.render_width, pc.render_height);
-    vec2 scale = vec2(push.scale_x, push.scale_y);
-    vec2 q = (vec2(at) + 0.5) * scale - frame.jitter.xy * 0.5 * render;
-    ivec2 base = clamp(ivec2(floor(q)), ivec2(0), ivec2(render) - 1);
-
-    vec3 sum = vec3(0.0), wide = vec3(0.0), m1 = vec3(0.0), m2 = vec3(0.0);
-    vec2 beside = vec2(0.0);
-    float w = 0.0, wide_w = 0.0, near = -1.0, far = 1e30;
-    ivec2 nearest = base;
-    float depths[9];
-    for (int i = 0; i < 9; i++) {
-        ivec2 to = clamp(base + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), ivec2(render) - 1);
-        float depth = texelFetch(depth_image, to, 0).r;
-        depths[i] = depth;
-        if (depth > near) {
-            near = depth;
-            nearest = to;
-        }
-        far = min(far, depth);
-    }
-
-    vec2 p4 = q - 0.5;
-    ivec2 c0 = ivec2(floor(p4));
-    vec2 f4 = p4 - floor(p4);
-    vec4 v = vec4(0.0);
-    for (int i = 0; i < 4; i++) {
-        ivec2 o = ivec2(i & 1, i >> 1);
-        float k = (o.x == 1 ? f4.x : 1.0 - f4.x) * (o.y == 1 ? f4.y : 1.0 - f4.y);
-        v += k * texelFetch(velocity_image, clamp(c0 + o, ivec2(0), ivec2(render) - 1), 0);
-    }
-    if (near - far > 0.1 * near || v.w < 0.99) {
-        v = texelFetch(velocity_image, nearest, 0);
-    }
-    vec2 moved = v.xy + (previous.jitter.xy - frame.jitter.xy) * (0.5 * render);
-    vec2 before = vec2(at) + 0.5 + moved / scale;
-    vec2 old_size = vec2(frame.temporal.xy);
-    bool valid = frame.temporal.x != 0u && v.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) && all(lessThanEqual(before, size));
-    masu_history h = masu_history(vec3(0.0), vec2(0.0), 0.0);
-    if (valid) {
-        float c = depths[4];
-        vec2 slope = vec2(min(abs(depths[3] - c), abs(depths[5] - c)), min(abs(depths[1] - c), abs(depths[7] - c)));
-        float ratio = previous.forward.w / (frame.forward.w * (1.0 + v.z));
-        float expected = near * ratio;
-        least_expected = far * ratio;
-        float tolerance = (0.01 * near + SLOPES * (slope.x + slope.y)) * ratio;
-        vec2 b2 = floor(before - 0.5) + 0.5;
-        vec2 t = before - b2;
-        vec4 wx = cubic(t.x), wy = cubic(t.y);
-        ivec2 last = ivec2(size) - 1;
-        vec3 sum4 = vec3(0.0), lin = vec3(0.0);
-        float n = 0.0, all_w = 0.0;
-        bool whole = true;
-        for (int y = 0; y < 4; y++) {
-            for (int x = 0; x < 4; x++) {
-                ivec2 to = clamp(ivec2(b2) + ivec2(x - 1, y - 1), ivec2(0), last);
-                vec4 o = texelFetch(history_image, to, 0);
-                sum4 += o.rgb * (wx[x] * wy[y]);
-                if ((x == 1 || x == 2) && (y == 1 || y == 2)) {
-                    float b = (x == 1 ? 1.0 - t.x : t.x) * (y == 1 ? 1.0 - t.y : t.y);
-                    bool good = same_owner(to, expected, tolerance, old_size);
-                    if (good) {
-                        n += o.a * b;
-                        lin += o.rgb * b;
-                        all_w += b;
-                    }
-                    whole = whole && (good || b < 0.01);
-                }
-            }
-        }
-        h.light = whole ? max(sum4, 0.0) : lin / max(all_w, 1e-4);
-        vec2 bl = 4.0 * t * (1.0 - t);
-        float still = 1.0 - clamp(length(moved) * 4.0, 0.0, 1.0);
-        float cap = mix(CAP_MOVE / (1.0 + ZOOM * abs(v.z) + 0.1 * length(moved)), CAP, still);
-        h.count = told ? min(n, cap) : 0.0;
-        doubt = doubt || near - far > 0.1 * near;
-    }
-    vec3 least = vec3(1e9), most = vec3(-1e9);
-    vec2 middle = LAMBDA * h.beside * (h.count > 0.0 ? 1.0 : 0.0);
-    for (int i = 0; i < 9; i++) {
-        ivec2 to = clamp(base + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), ivec2(render) - 1);
-        vec3 c = decoded(texelFetch(color_image, to, 0).rgb);
-        vec2 d = vec2(to) + 0.5 - q;
-        vec2 tent = max(1.0 - abs(d / scale - middle) * KERNEL, 0.0);
-#ifdef BOX
-        vec2 box = vec2(lessThan(abs(d / scale - middle), vec2(0.5)));
-        float k = box.x * box.y;
-#else
-        float k = tent.x * tent.y;
-#endif
-        float g = exp(-WIDE * dot(d, d));
-        sum += k * c;
-        beside += k * d / scale;
-        w += k;
-        wide += g * c;
-        wide_w += g;
-        least = min(least, c);
-        most = max(most, c);
-        m1 += c * (1.0 / 9.0);
-        m2 += c * c * (1.0 / 9.0);
-    }
-    wide /= wide_w;
-#ifdef CLIP
-    if (WHERE && dot(moved, moved) > 4e-4) {
-        vec3 sigma = sqrt(max(m2 - m1 * m1, 0.0));
-        h.light = clamp(h.light, max(least, m1 - CLIP * sigma), min(most, m1 + CLIP * sigma));
-    }
-#endif
-    float total = h.count + w;
-    vec3 mean = h.count * h.light + sum;
-    float fill = max(1.0 - total, 0.0);
-    vec3 result = (mean + fill * wide) / (total + fill);
-    masu_history keep = masu_history(masu_sane(result, 0.0, 1.0), (h.count * h.beside + beside) / (total + fill), total);
-    vec4 out4 = vec4(keep.light, min(total, 64.0));
-    uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + frame.history.x * 0x9E3779B9u;
-    uvec4 bits = floatBitsToUint(out4) + (uvec4(noise, noise + 0x55555555u, noise + 0xAAAAAAAAu, 0x80000000u) >> 19);
-    MASU_STORE_HALF(accumulated_image, at, uintBitsToFloat(bits & 0xFFFFE000u));
+    masu_count_end();
 }

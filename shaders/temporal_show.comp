@@ -1,14 +1,20 @@
 /*
- * temporal_show.comp: prototype
+ * temporal_show.comp: what rung.temporal shows of the mean over frames, encoded; and the mean itself for the next
+ * frame, which finds it where this one has left it.
+ *
+ * A sample counts for the pixels around it by a tent, twice as wide as the pixel: steadier than what falls into the
+ * pixel alone, but blurred. Of what that and the history's resampling take, push.sharpen gives some back: times the
+ * second difference, and within what the five pixels hold. (The variance of a tent is 1/12 of a pixel above that of a
+ * pixel; half of that per axis is 1/24.) What is kept is not sharpened: it would be again in every frame.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_temporal_show
 #include "shared/masu_shared.h"
+#include "shared/counters.glsl"
 #include "shared/output.glsl"
 #include "shared/encode.glsl"
-#include "temporal/history.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -16,33 +22,25 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D accumulated_image;
 layout(set = MASU_SET_PASS, binding = 1, rgba16f) uniform writeonly image2D history_image;
 layout(set = MASU_SET_PASS, binding = 2, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
 
-/*PAR*/
-#define CAP 32.0
-#define CAP_MOVE 2.0
-#define SHARPEN 0.06
-#define CLIP 1.0
-#define WHERE true
-/*END*/
-/*DEF*/
-#ifndef SHARPEN
-#define SHARPEN 0.0
-#endif
-vec3 at_place(ivec2 p)
+vec3 light_at(ivec2 at)
 {
-    return texelFetch(accumulated_image, clamp(p, ivec2(0), ivec2(pc.output_width, pc.output_height) - 1), 0).rgb;
+    return texelFetch(accumulated_image, at, 0).rgb;
 }
 
 void main()
 {
-    uvec2 at = gl_GlobalInvocationID.xy;
-    if (masu_is_outside(at)) {
-        return;
+    masu_count_begin();
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (!masu_is_outside(gl_GlobalInvocationID.xy)) {
+        ivec2 before = max(at - 1, 0), after = min(at + 1, ivec2(pc.output_width, pc.output_height) - 1);
+        vec4 mean = texelFetch(accumulated_image, at, 0);
+        vec3 left = light_at(ivec2(before.x, at.y)), right = light_at(ivec2(after.x, at.y)),
+             above = light_at(ivec2(at.x, before.y)), below = light_at(ivec2(at.x, after.y));
+        vec3 least = min(mean.rgb, min(min(left, right), min(above, below)));
+        vec3 most = max(mean.rgb, max(max(left, right), max(above, below)));
+        vec3 sharp = mean.rgb + push.sharpen * (4.0 * mean.rgb - left - right - above - below);
+        MASU_STORE_HALF(history_image, at, mean);
+        MASU_STORE_COLOR(target, at, masu_encoded(clamp(sharp, least, most) * push.peak, push.white));
     }
-    vec4 h = texelFetch(accumulated_image, ivec2(at), 0);
-    MASU_STORE_HALF(history_image, at, h);
-    vec3 l = at_place(ivec2(at) + ivec2(-1, 0)), r = at_place(ivec2(at) + ivec2(1, 0)),
-                 u = at_place(ivec2(at) + ivec2(0, -1)), d = at_place(ivec2(at) + ivec2(0, 1));
-    vec3 least = min(h.rgb, min(min(l, r), min(u, d))), most = max(h.rgb, max(max(l, r), max(u, d)));
-    vec3 y = clamp(h.rgb + SHARPEN * (4.0 * h.rgb - l - r - u - d), least, most);
-    MASU_STORE_COLOR(target, at, masu_encoded(y * push.peak, push.white));
+    masu_count_end();
 }

@@ -311,7 +311,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 
     masu_sun_sky_write(&m->sun_sky, f);
     masu_reflections_read(&m->reflections, f);
-    masu_temporal_read(&m->temporal, f);
+    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, f);
     masu_frame_write_uniforms(&m->history, f);
 
     masu_shadow_write(&m->shadow, &m->bounds, f);

@@ -308,9 +308,11 @@ struct masu_frame_uniforms {
     /* xyz anchor that traced geometry is relative to; w longest ray */
     masu_vec4 trace_anchor;
     masu_vec4 trace_eye; /* xyz eye minus that anchor; w unused */
-    /* xy what camera.jitter adds to a place in the picture, whose sides are -1 and 1; zw unused */
+    /* xy what jitter adds to a place in the picture, whose sides are -1 and 1; zw the most that it adds in any
+     * frame, so that what is made wide enough for it stays as it is */
     masu_vec4 jitter;
-    /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; zw unused */
+    /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; z not 0: not the
+     * camera alone has changed of late; w unused */
     masu_uvec4 temporal;
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
 };

@@ -17,6 +17,7 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
         kind == MASU_PASS_GRAPHICS ? VK_PIPELINE_STAGE_VERTEX_SHADER_BIT : 0;
     switch (usage) {
     case MASU_READ:
+    case MASU_READ_LINEAR:
         return (masu_use){1, shader, VK_ACCESS_SHADER_READ_BIT,
                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     case MASU_READ_COPY:

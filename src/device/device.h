@@ -32,7 +32,7 @@ typedef struct masu_device {
     unsigned char *mapped[MASU_ROLE_COUNT]; /* NULL where the block is not host-visible */
 
     /* pipelines.c */
-    VkSampler sampler; /* nearest, clamp to edge */
+    VkSampler sampler, linear; /* nearest and linear, clamp to edge */
     VkDescriptorSetLayout global_layout;
     VkDescriptorSetLayout pass_layouts[MASU_PASS_COUNT];
     VkPipelineLayout layouts[MASU_PASS_COUNT];

@@ -47,6 +47,7 @@ void masu_device_destroy(masu_device *m) {
     }
     vk->DestroyDescriptorSetLayout(device, m->global_layout, vk->allocator);
     vk->DestroySampler(device, m->sampler, vk->allocator);
+    vk->DestroySampler(device, m->linear, vk->allocator);
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT; i++)
         vk->DestroyPipeline(device, m->textured[i], vk->allocator);
     vk->DestroyPipeline(device, m->masked_casters, vk->allocator);

@@ -136,7 +136,9 @@ static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *
                 writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                        : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                 1, compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT,
-                writes ? NULL : &m->sampler};
+                writes ? NULL
+                : rp->access[pass][a].usage == MASU_READ_LINEAR ? &m->linear
+                                                                : &m->sampler};
             n++;
         }
     }
@@ -487,6 +489,10 @@ masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
     VkResult r = m->vk.CreateSampler(m->vk.device, &nearest, m->vk.allocator, &m->sampler);
     if (MASU_FAILED(r, m->sampler)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
+    VkSamplerCreateInfo linear = nearest;
+    linear.magFilter = linear.minFilter = VK_FILTER_LINEAR;
+    r = m->vk.CreateSampler(m->vk.device, &linear, m->vk.allocator, &m->linear);
+    if (MASU_FAILED(r, m->linear)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
     masu_result result = make_global_layout(m, detail);
     if (!result) result = make_texture_layout(m, detail);
     if (!result) result = make_samplers(m, detail);

@@ -96,10 +96,12 @@ static void project(const masu_camera *c, const float right[3], const float up[3
                     const float forward[3], float near_distance, masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     struct masu_frame_uniforms *u = &f->u;
-    float own[2]; /* what the host asks for, and what the rung's way to resolve does */
-    masu_temporal_jitter(f, own);
-    u->jitter[0] = 2.0f * (c->jitter[0] + own[0]) / (float)rp->render_width;
-    u->jitter[1] = 2.0f * (c->jitter[1] + own[1]) / (float)rp->render_height;
+    const float pixel[2] = {2.0f / (float)rp->render_width, 2.0f / (float)rp->render_height};
+    float own[2], most = masu_temporal_jitter(f, own);
+    for (uint32_t k = 0; k < 2; k++) {
+        u->jitter[k] = (c->jitter[k] + own[k]) * pixel[k];
+        u->jitter[2 + k] = (fabsf(c->jitter[k]) + most) * pixel[k];
+    }
     double tan_y = tan((double)c->fov_y * 0.5);
     double tan_x = tan_y * (double)f->plan->desc.output.width / (double)f->plan->desc.output.height;
     for (uint32_t i = 0; i < 3; i++) {

@@ -109,5 +109,6 @@ masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_pu
                          state->instance.id, plan->scene.instances);
     }
     l->states[light.id - 1] = *state;
+    l->changes++;
     return MASU_OK;
 }

@@ -13,6 +13,7 @@ typedef struct masu_lights {
     masu_punctual_light_state *states;       /* plan->scene.lights of them */
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* in view */
+    uint32_t changes;                     /* how often one was set */
 } masu_lights;
 
 void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan);

@@ -2,8 +2,14 @@
 #include "frame/temporal.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
-/* The digits of n, mirrored at the point (J. Halton, 1964). */
+/* Frames for which a change is looked for: as many as put samples all over a pixel, and so find what it was. */
+#define SETTLING 16u
+
+/* The digits of n, mirrored at the point (J. Halton, "Algorithm 247: Radical-inverse quasi-random point sequence",
+ * 1964). */
 static float mirrored(uint32_t n, uint32_t base) {
     double value = 0.0, digit = 1.0;
     for (; n; n /= base) {
@@ -14,29 +20,49 @@ static float mirrored(uint32_t n, uint32_t base) {
 }
 
 static int has_resolve(const masu_frame_data *f) {
-    return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_KEEP);
+    return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL);
 }
 
-void masu_temporal_jitter(const masu_frame_data *f, float jitter[2]) {
+/* From 1 on: the first place of Halton's sequence is the corner. */
+float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]) {
     jitter[0] = jitter[1] = 0.0f;
-    if (!has_resolve(f)) return;
+    if (!has_resolve(f)) return 0.0f;
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     const VkExtent2D shown = f->plan->desc.output;
     double pixels = (double)rp->render_width * rp->render_height;
-    double phases = ceil(8.0 * shown.width * shown.height / pixels - 1e-6);
-    uint32_t phase = (uint32_t)(f->number % (uint64_t)fmin(phases, 1024.0));
+    double phases = fmin(ceil(8.0 * shown.width * shown.height / pixels), 1024.0);
+    uint32_t phase = (uint32_t)(f->number % (uint64_t)phases);
     jitter[0] = mirrored(phase + 1, 2) - 0.5f;
     jitter[1] = mirrored(phase + 1, 3) - 0.5f;
+    return 0.5f;
 }
 
-void masu_temporal_read(masu_temporal *t, masu_frame_data *f) {
+/* Whether the light or the SDF differs from that of the frame before, or is metered and may. */
+static int has_changed(const struct masu_frame_uniforms *now, const struct masu_frame_uniforms *before,
+                       const masu_frame_plan *plan) {
+    size_t from = offsetof(struct masu_frame_uniforms, sun_direction);
+    size_t to = offsetof(struct masu_frame_uniforms, anchor);
+    if (plan->needs.metered) return 1;
+    if (memcmp((const char *)now + from, (const char *)before + from, to - from) != 0) return 1;
+    if (plan->needs.dynamic && now->eye_hi[3] != before->eye_hi[3]) return 1;
+    return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
+}
+
+void masu_temporal_read(masu_temporal *t, const masu_history *history, const masu_instances *in,
+                        const masu_lights *lights, masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
-    if (has_resolve(f) && t->kept && !f->cut) {
-        f->u.temporal[0] = t->size[0];
-        f->u.temporal[1] = t->size[1];
-    }
+    int kept = t->kept && !f->cut;
     t->kept = has_resolve(f);
     if (!t->kept) return;
+    if (kept) {
+        int changed = has_changed(&f->u, history->previous, f->plan) || in->dirty_count ||
+                      t->lights != lights->changes;
+        t->changed = changed ? SETTLING : t->changed ? t->changed - 1 : 0;
+        f->u.temporal[0] = t->size[0];
+        f->u.temporal[1] = t->size[1];
+        f->u.temporal[2] = t->changed;
+    }
     t->size[0] = rp->render_width;
     t->size[1] = rp->render_height;
+    t->lights = lights->changes;
 }

@@ -1,20 +1,27 @@
-/* temporal.h: what a rung with `temporal` knows of the frames before: where in its pixels each looks, and which
- * history the previous one has left. Host state of a few words; nothing here fails. */
+/* temporal.h: what a rung with `temporal` knows of the frames before: where in its pixels each looks, what the
+ * previous one has left, whether anything but the camera has changed since. Host state of a few words; nothing here
+ * fails. */
 #ifndef MASU_TEMPORAL_H
 #define MASU_TEMPORAL_H
 
 #include "frame/frame_data.h"
+#include "frame/instances.h"
+#include "frame/punctual_lights.h"
 
 typedef struct masu_temporal {
-    int kept;         /* the previous frame has written one, */
-    uint32_t size[2]; /* at this render size */
+    int kept;         /* the previous frame has left a history, */
+    uint32_t size[2]; /* of this render size */
+    uint32_t changed; /* frames for which what has changed may still be found */
+    uint32_t lights;  /* changes of punctual lights that it knew of */
 } masu_temporal;
 
-/* By how much beside the middle of its pixels the frame looks, in pixels of the render size, within half of one:
- * Halton's sequence of bases 2 and 3, of which 8 samples fall into each pixel of the output. 0 of a rung without. */
-void masu_temporal_jitter(const masu_frame_data *f, float jitter[2]);
+/* By how much beside the middle of its pixels the frame looks, in pixels of the render size: Halton's sequence of bases 2
+ * and 3, of as many places as put 8 samples into each pixel of the output. Returns the most that it is in any frame; of
+ * a rung without, all is 0. */
+float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]);
 
-/* The history of a frame into its uniforms. */
-void masu_temporal_read(masu_temporal *t, masu_frame_data *f);
+/* The history of a frame into its uniforms, which are whole but for that. */
+void masu_temporal_read(masu_temporal *t, const masu_history *history, const masu_instances *in,
+                        const masu_lights *lights, masu_frame_data *f);
 
 #endif

@@ -126,7 +126,8 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
 
 static VkImageUsageFlags usage_flag(masu_usage usage) {
     switch (usage) {
-    case MASU_READ: return VK_IMAGE_USAGE_SAMPLED_BIT;
+    case MASU_READ:
+    case MASU_READ_LINEAR: return VK_IMAGE_USAGE_SAMPLED_BIT;
     case MASU_READ_COPY:
     case MASU_READ_BACK: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     case MASU_WRITE:

@@ -97,6 +97,7 @@ static const char *no_upscale(const masu_needs *n) {
 
 #define IMAGE_ACCESS(id, usage) {MASU_IMAGE_##id, MASU_##usage}
 #define READ(id) IMAGE_ACCESS(id, READ)
+#define READ_LINEAR(id) IMAGE_ACCESS(id, READ_LINEAR)
 #define WRITE(id) IMAGE_ACCESS(id, WRITE)
 #define UPDATE(id) IMAGE_ACCESS(id, UPDATE)
 #define COLOR(id) IMAGE_ACCESS(id, WRITE_COLOR)
@@ -140,7 +141,7 @@ int masu_has_set(uint32_t pass) {
 }
 
 int masu_access_binds(masu_access access, int writes) {
-    if (!writes) return access.usage == MASU_READ;
+    if (!writes) return access.usage == MASU_READ || access.usage == MASU_READ_LINEAR;
     return access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
 }
 

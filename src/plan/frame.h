@@ -75,7 +75,8 @@ typedef struct masu_image_row {
 
 typedef enum masu_usage {
     MASU_USE_NONE = 0,
-    MASU_READ,        /* sampled */
+    MASU_READ,        /* sampled, texel by texel */
+    MASU_READ_LINEAR, /* sampled, with the mean of the texels around a place */
     MASU_READ_BUFFER, /* storage buffer, or arguments of the row's indirect dispatch */
     MASU_READ_COPY,   /* transfer source */
     MASU_READ_BACK,   /* the same, of what desc.readback asks for */

@@ -7,13 +7,13 @@
 #include <string.h>
 
 /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it
- * cannot bring back. */
-#include <stdlib.h>
-#define TEMPORAL_BIAS (getenv("MB") ? (float)atof(getenv("MB")) : -1.0f)
+ * cannot bring back. The mean over frames is of samples all over a pixel, each of which may look at a part of it alone:
+ * two mips finer have the least error, at rest and in motion (docs/design/41-temporal.md). */
 static float masu_mip_bias(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
-    float over_frames = in->plan->needs.resolve || d->rungs[in->rung].temporal == MASU_ON ? TEMPORAL_BIAS : 0.0f;
-    return (d->debug.no_bias ? 0.0f : log2f(d->rungs[in->rung].scale)) + d->debug.mip_bias + over_frames;
+    const masu_rung *rung = &d->rungs[in->rung];
+    float own = log2f(rung->scale) - (rung->temporal == MASU_ON ? 2.0f : 0.0f);
+    return (d->debug.no_bias ? 0.0f : own) + d->debug.mip_bias;
 }
 
 /* Of the four settings of SMAA: the threshold of luma in the steps of smaa/color.glsl, steps of a search, and

@@ -41,7 +41,7 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 
 static const char *usage_text(uint8_t usage) {
     static const char *const texts[] = {
-        [MASU_USE_NONE] = "?",      [MASU_READ] = "r",        [MASU_READ_COPY] = "from", [MASU_READ_BACK] = "from",
+        [MASU_USE_NONE] = "?",      [MASU_READ] = "r",        [MASU_READ_LINEAR] = "rl",    [MASU_READ_COPY] = "from", [MASU_READ_BACK] = "from",
         [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_WRITE_COLOR] = "c",
         [MASU_WRITE_DEPTH] = "d",   [MASU_WRITE_COPY] = "to", [MASU_READ_BUFFER] = "rb",
         [MASU_WRITE_BUFFER] = "wb", [MASU_UPDATE_DEPTH] = "ud",
@@ -622,6 +622,38 @@ static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
     assert_frame(&d, 0, GBUFFER LIGHT_RASTER TONEMAP);
 }
 
+static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER, 64, 64);
+    assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL), "rung.temporal is not on");
+    d.rung_count = 2;
+    d.rungs[0] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f, .aa = MASU_AA_SMAA_HIGH, .fuse = MASU_ON};
+    d.rungs[1] = (masu_rung){.temporal = MASU_ON, .sharpen = MASU_ON};
+    assert_string_equal(why_of(&d, MASU_PASS_EASU), "temporal does it");
+    compile(&d, &plan);
+    static const char frame[] = "tonemap(r:hdr w:ldr) temporal(r:ldr r:depth rl:velocity r:history_depth rl:history "
+                                "w:accumulated) temporal_show(r:accumulated w:history w:";
+    assert_non_null(strstr(frame_text(&plan, 0), frame));
+    assert_non_null(strstr(frame_text(&plan, 0), "w:target) temporal_keep(r:depth w:history_depth)"));
+    assert_non_null(strstr(frame_text(&plan, 1), frame));
+    assert_non_null(strstr(frame_text(&plan, 1), " rcas(r:upscaled w:target)"));
+    assert_null(strstr(frame_text(&plan, 0), "smaa"));
+    assert_null(strstr(frame_text(&plan, 0), "fsr1"));
+    /* At full size 16 + 4 bytes for each pixel outlive the frame or are accumulated: 24 is the most. */
+    static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_ACCUMULATED, MASU_IMAGE_HISTORY_DEPTH};
+    uint64_t bytes = 0;
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
+        const masu_image_plan *image = &plan.images[own[i]];
+        assert_int_equal(image->persistent, own[i] != MASU_IMAGE_ACCUMULATED);
+        bytes += (uint64_t)image->width * image->height * masu_format_bytes(masu_plan_format(&plan, own[i]));
+    }
+    assert_int_equal(bytes, 20 * 64 * 64);
+    masu_desc source = source_desc(64, 64); /* has neither depth nor motion */
+    source.rungs[0] = (masu_rung){.temporal = MASU_ON};
+    assert_frame(&source, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+}
+
 static void velocities_keep_the_frame_before_and_nothing_else_does(void **state) {
     (void)state;
     static masu_frame_plan plan;
@@ -1161,9 +1193,9 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth, surface, occlusion, silhouettes, smooth and final, cone8, cone4, ao: 4 bytes each per texel; velocity
-     * 8; the atlas; SPECULAR_BYTES at half size */
-    assert_int_equal(info.left_out_bytes, 4 * (8 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
+    /* scene_depth, surface, occlusion, silhouettes, smooth and final, history_depth, cone8, cone4, ao: 4 bytes each per
+     * texel; velocity, history and accumulated 8; the atlas; SPECULAR_BYTES at half size */
+    assert_int_equal(info.left_out_bytes, 4 * (13 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
                                               SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
@@ -1178,13 +1210,13 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     52 * 1000 * 500 + 8 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
+                     56 * 1000 * 500 + 24 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
                          SPECULAR_BYTES * 500 * 250);
-    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, silhouettes, ldr, smooth, upscaled, final, velocity */
+    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, silhouettes, ldr, smooth, upscaled, final, velocity, temporal's */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 36 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
+    assert_int_equal(info.left_out_bytes, 56 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
@@ -1434,6 +1466,7 @@ int main(void) {
         cmocka_unit_test(the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it),
         cmocka_unit_test(readback_copies_what_is_asked_for),
         cmocka_unit_test(silhouettes_are_a_pass_where_a_rung_asks_for_them),
+        cmocka_unit_test(temporal_stands_in_for_anti_aliasing_and_upscaling),
         cmocka_unit_test(velocities_keep_the_frame_before_and_nothing_else_does),
         cmocka_unit_test(what_is_blended_comes_over_the_light_if_there_is_any),
         cmocka_unit_test(sdf_occlusion_comes_between_march_and_light_if_asked),

@@ -25,3 +25,5 @@ sed 's/"aa": "auto"/"aa": "auto", "silhouettes": "on"/' docs/report/engine/ladde
 for scene in engine city; do
     rows "$scene with silhouettes" "$scene" 'silhouettes|tonemap' --ladder "$ladder"
 done
+sed 's/"aa": "auto"/"aa": "auto", "temporal": "on"/' docs/report/engine/ladder.json > "$ladder"
+rows "engine with temporal" engine 'temporal|tonemap' --ladder "$ladder"

@@ -21,7 +21,7 @@ bool masu_motion_frame(masu_session *s, uint32_t rung, double time, bool cut,
 bool masu_motion_draw(masu_session *s, const masu_motion *motion, uint32_t rung,
                       const masu_rung *knobs, uint64_t *next, char *error, size_t error_size) {
     uint32_t period = masu_setting_period(knobs);
-    bool remembers = motion->remembers || period > 1;
+    bool remembers = motion->remembers || masu_setting_remembers(knobs) || period > 1;
     uint32_t frames = remembers ? motion->frames : 1;
     masu_commands commands = {0};
     if (period > 1 && frames < period) frames = period;

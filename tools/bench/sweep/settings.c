@@ -21,6 +21,8 @@ uint32_t masu_setting_period(const masu_rung *rung) {
     return most;
 }
 
+bool masu_setting_remembers(const masu_rung *rung) { return rung->temporal == MASU_ON; }
+
 void masu_setting_name(const masu_rung *rung, char out[MASU_SETTING_ID]) {
     size_t used = 0;
     snprintf(out, MASU_SETTING_ID, "base");
@@ -108,6 +110,7 @@ static const technique techniques[] = {
     {"easu", HALF | STRUCTURAL, {.easu = MASU_EASU_BILINEAR}},
     {"fuse", HALF | STRUCTURAL, {.fuse = MASU_ON}},
     {"silhouettes", WHOLE | HALF | STRUCTURAL, {.silhouettes = MASU_ON}},
+    {"temporal", WHOLE | HALF | QUICK | STRUCTURAL, {.temporal = MASU_ON}},
     {"march_steps", WHOLE, {.march_steps = 32}},
     {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
     {"march_steps", WHOLE, {.march_steps = 128}},

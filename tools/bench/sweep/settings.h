@@ -6,6 +6,7 @@
 #ifndef MASU_BENCH_SETTINGS_H
 #define MASU_BENCH_SETTINGS_H
 
+#include <stdbool.h>
 #include "bench/sweep/knobs.h"
 #include "bench/sweep/table.h"
 
@@ -44,5 +45,7 @@ bool masu_setting_parse(const char *name, masu_rung *out, char *error, size_t er
 
 /* Frames after which the slowest cascade has been drawn again. */
 uint32_t masu_setting_period(const masu_rung *rung);
+/* Whether a picture with it depends on the frames before, whatever the scene. */
+bool masu_setting_remembers(const masu_rung *rung);
 
 #endif

@@ -191,10 +191,15 @@ static bool read_back(sweep *w) {
     return masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size);
 }
 
+/* Whether a picture of that setting depends on the frames before. */
+static bool remembers(const sweep *w, const masu_rung *rung) {
+    return w->motion.remembers || masu_setting_remembers(rung);
+}
+
 /* Mean absolute difference of successive frames at rest, of 255. */
-static bool flicker(sweep *w, uint32_t rung, uint64_t *next, double *out) {
-    uint32_t settle = w->motion.remembers ? SETTLE_FRAMES : 1,
-             frames = w->motion.remembers ? FLICKER_FRAMES : 1;
+static bool flicker(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *next, double *out) {
+    uint32_t settle = remembers(w, &s->rung) ? SETTLE_FRAMES : 1,
+             frames = remembers(w, &s->rung) ? FLICKER_FRAMES : 1;
     size_t bytes = 4 * (size_t)w->pixels;
     masu_commands commands;
     double sum = 0.0;
@@ -236,14 +241,14 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
     if (!masu_sweep_picture(w->d->folder, s->id, "", path))
         return failed(w, "the path is too long");
     return masu_image_save_png(path, shown, size.width, size.height, 0, w->error, w->error_size) &&
-           flicker(w, rung, next, &row->flicker);
+           flicker(w, rung, s, next, &row->flicker);
 }
 
 /* ---- Times ----------------------------------------------------------------------------------- */
 
 static bool sample(sweep *w, uint32_t rung, const masu_rung *knobs, bool kept) {
     uint32_t period = masu_setting_period(knobs);
-    uint32_t warm = w->motion.remembers ? WARM_FRAMES : period > 1 ? 1 : 0;
+    uint32_t warm = remembers(w, knobs) ? WARM_FRAMES : period > 1 ? 1 : 0;
     double wall = 0.0, gpu = 0.0;
     masu_commands commands;
     masu_stats_info stats;
@@ -324,20 +329,21 @@ static bool draw_batch(sweep *w, batch *b) {
         row->render_height = plan.rungs[k].render_height;
         row->passes = plan.rungs[k].dispatches;
         row->device_bytes = (double)w->bytes[b->of[k]];
-        if ((!k && !b->base_too) || w->motion.remembers) continue;
+        if ((!k && !b->base_too) || remembers(w, &s->rung)) continue;
         say(w, s->id);
         if (!compare(w, k, s, &next, row)) return false;
     }
     return true;
 }
 
-/* The noise of reflections goes by the number of the frame. So each picture is that of a renderer of its
+/* The noise of reflections goes by the number of the frame, and so do the places of rung.temporal. So each picture is that of a renderer of its
  * own: settings then differ by their knobs alone, and a row does not depend on what batch, shard or resumed
  * run it is in. */
 static bool draw_alone(sweep *w, batch *b) {
-    for (uint32_t k = b->base_too ? 0 : 1; k < b->count && w->motion.remembers; k++) {
+    for (uint32_t k = b->base_too ? 0 : 1; k < b->count; k++) {
         const batch one = {.of = {b->of[k]}, .count = 1};
         const masu_setting *s = &w->settings[b->of[k]];
+        if (!remembers(w, &s->rung)) continue;
         uint64_t next = 0;
         bool good = open_batch(w, &one);
         if (good) say(w, s->id);

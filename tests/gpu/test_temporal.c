@@ -1,0 +1,297 @@
+/* test_temporal.c: rung.temporal against the truth of many samples: at rest it comes near it, at full size and at half;
+ * what leaves, lights and shadows leave nothing behind; a cut, NaN and the order of frames before it change nothing;
+ * a change of scale keeps the past; equal frames give equal bytes; and nothing breaks it. The scene is of polygons with
+ * a shadow map, or the edge of test_truth.c. */
+#include "support/support.h"
+
+#include "bench/measure/picture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE = 96, PIXELS = SIZE * SIZE, BYTES = 4 * PIXELS, PLACES = 64 };
+
+typedef struct shown {
+    uint8_t rgba[BYTES];
+} shown;
+
+static shown a, b, truth;
+
+static masu_session_desc temporal_desc(const char *scene, float scale) {
+    masu_session_desc d = test_desc(scene, SIZE, SIZE);
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.temporal = MASU_ON, .scale = scale};
+    return d;
+}
+
+/* As the scene's camera, seen a little from the side. */
+static masu_camera aside(const masu_session *s, double metres) {
+    masu_camera camera;
+    assert_int_equal(masu_camera_at(s->m, 0.0, &camera), MASU_OK);
+    camera.position[0] += metres;
+    return camera;
+}
+
+static void frames(masu_session *s, uint32_t count, masu_frame_desc frame, uint8_t *pixels) {
+    masu_commands commands;
+    for (uint32_t i = 0; i < count; i++) draw(s, &frame, &commands, i + 1 == count ? pixels : NULL);
+}
+
+static double rms(const uint8_t *x, const uint8_t *y) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < BYTES; i++) sum += ((double)x[i] - y[i]) * ((double)x[i] - y[i]);
+    return sqrt(sum / (3.0 * PIXELS));
+}
+
+/* The truth of a scene, whose ball may stand elsewhere. */
+static void find_truth(const char *scene, const float *ball, const masu_light *light) {
+    char error[ERROR_SIZE];
+    masu_session s;
+    masu_session_desc d = test_desc(scene, SIZE, SIZE);
+    assert_ok(masu_picture_open(&d, PLACES, &s, error, sizeof error));
+    if (ball) move_instance(&s, "ball", ball[0], ball[1], ball[2], 1.0f);
+    masu_frame_desc f = {.light = light};
+    assert_ok(masu_picture_truth(&s, &f, PLACES, 1, truth.rgba, NULL, error, sizeof error));
+    close_session(&s);
+}
+
+/* ---- Error ----------------------------------------------------------------------------------- */
+
+static void at_rest_it_comes_near_the_truth(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"test_shadows", "test_truth"};
+    static const float scales[] = {1.0f, 0.7f, 0.5f, 0.37f};
+    static const double most[] = {0.35, 0.35, 0.35, 0.45}; /* of the error of one frame without a past */
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        find_truth(scenes[k], NULL, NULL);
+        for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+            masu_session s;
+            masu_session_desc d = temporal_desc(scenes[k], scales[i]);
+            d.desc.rung_count = 2;
+            d.desc.rungs[1] = (masu_rung){.scale = scales[i]};
+            open_session(&s, &d);
+            frames(&s, 64, (masu_frame_desc){0}, a.rgba);
+            draw_rung(&s, 1, b.rgba);
+            double with = rms(a.rgba, truth.rgba), without = rms(b.rgba, truth.rgba);
+            print_message("  %s, scale %.2f: rms %.2f of 255, without a past %.2f\n", scenes[k], (double)scales[i], with,
+                          without);
+            assert_true(without > 1.0 && with < most[i] * without);
+            close_session(&s);
+        }
+    }
+}
+
+/* The camera goes along at half a pixel a frame: edges are smoother than those of one frame, and nothing trails. */
+static void in_motion_it_is_no_worse(void **state) {
+    (void)state;
+    static const float scales[] = {1.0f, 0.5f};
+    for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_shadows", scales[i]);
+        d.desc.rung_count = 2;
+        d.desc.rungs[1] = (masu_rung){.scale = scales[i]};
+        find_truth("test_shadows", NULL, NULL);
+        open_session(&s, &d);
+        masu_commands commands;
+        for (int k = 24; k >= 0; k--) {
+            masu_camera camera = aside(&s, 0.02 * k);
+            draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, a.rgba);
+        }
+        draw_rung(&s, 1, b.rgba);
+        double with = rms(a.rgba, truth.rgba), without = rms(b.rgba, truth.rgba);
+        print_message("  scale %.2f: rms %.2f of 255, without a past %.2f\n", (double)scales[i], with, without);
+        assert_true(with < 0.8 * without);
+        close_session(&s);
+    }
+}
+
+/* ---- What changes ---------------------------------------------------------------------------- */
+
+/* Pixels that the change has changed, in whose surroundings the truth is smooth: what is off by more than `off` of 255. */
+static uint32_t ghosts(const uint8_t *before, const uint8_t *now, uint32_t off, uint32_t *all) {
+    uint32_t count = 0;
+    *all = 0;
+    for (uint32_t y = 1; y + 1 < SIZE; y++) {
+        for (uint32_t x = 1; x + 1 < SIZE; x++) {
+            const uint8_t *t = &truth.rgba[4 * (y * SIZE + x)], *n = &now[4 * (y * SIZE + x)];
+            int change = 0, rough = 0, wrong = 0;
+            for (int c = 0; c < 3; c++) {
+                change |= abs(before[4 * (y * SIZE + x) + (uint32_t)c] - t[c]) > 12;
+                wrong |= (uint32_t)abs(n[c] - t[c]) > off;
+                for (int k = 0; k < 9; k++)
+                    rough |= abs(t[4 * (k % 3 - 1 + (k / 3 - 1) * SIZE) + c] - t[c]) > 2;
+            }
+            if (!change || rough) continue;
+            *all += 1;
+            count += (uint32_t)wrong;
+        }
+    }
+    return count;
+}
+
+static void what_leaves_leaves_no_ghost(void **state) {
+    (void)state;
+    static const float scales[] = {1.0f, 0.5f};
+    const float away[3] = {3.5f, 0.8f, -3.0f};
+    for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+        for (int jumps = 0; jumps < 2; jumps++) { /* at once, or in eight steps that velocities know */
+            masu_session s;
+            masu_session_desc d = temporal_desc("test_shadows", scales[i]);
+            find_truth("test_shadows", away, NULL);
+            open_session(&s, &d);
+            frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+            for (int k = 1; k <= 8 && !jumps; k++) {
+                float t = (float)k / 8.0f;
+                move_instance(&s, "ball", 0.8f + t * (away[0] - 0.8f), 0.8f, 0.6f + t * (away[2] - 0.6f), 1.0f);
+                frames(&s, 1, (masu_frame_desc){0}, NULL);
+            }
+            move_instance(&s, "ball", away[0], away[1], away[2], 1.0f);
+            frames(&s, 8, (masu_frame_desc){0}, a.rgba);
+            uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
+            print_message("  scale %.2f, %s: %u of %u pixels are more than 2 of 255 off\n", (double)scales[i],
+                          jumps ? "a jump" : "a path", off, all);
+            assert_true(all > 100 && off <= all / 200); /* at half size a shadow edge is three pixels wide */
+            close_session(&s);
+        }
+    }
+}
+
+static void light_that_changes_is_seen(void **state) {
+    (void)state;
+    masu_session s;
+    masu_light light;
+    masu_session_desc d = temporal_desc("test_shadows", 0.5f);
+    open_session(&s, &d);
+    assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+    frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+    for (int k = 0; k < 3; k++) light.sun_color[k] *= 0.6f;
+    light.sun_direction[0] = -light.sun_direction[0]; /* shadows fall elsewhere */
+    find_truth("test_shadows", NULL, &light);
+    frames(&s, 8, (masu_frame_desc){.light = &light}, a.rgba);
+    uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
+    print_message("  %u of %u pixels are more than 2 of 255 off\n", off, all);
+    assert_true(all > 1000 && off < all / 100);
+    close_session(&s);
+}
+
+/* ---- What must not matter -------------------------------------------------------------------- */
+
+static void equal_frames_give_equal_bytes(void **state) {
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_shadows", 0.7f);
+        d.desc.debug.poison = (uint32_t)k; /* nor does what images hold before they are written */
+        open_session(&s, &d);
+        masu_commands commands;
+        for (int i = 0; i < 12; i++) {
+            masu_camera camera = aside(&s, 0.05 * i);
+            move_instance(&s, "ball", 0.8f + 0.1f * (float)i, 0.8f, 0.6f, 1.0f);
+            draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, k ? b.rgba : a.rgba);
+        }
+        close_session(&s);
+    }
+    assert_memory_equal(a.rgba, b.rgba, BYTES);
+}
+
+static void a_cut_forgets_all(void **state) {
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_shadows", 0.5f);
+        open_session(&s, &d);
+        masu_camera elsewhere = aside(&s, k ? 3.0 : -2.0);
+        frames(&s, 10, (masu_frame_desc){.camera = &elsewhere}, NULL);
+        frames(&s, 1, (masu_frame_desc){.cut = 1}, NULL);
+        frames(&s, 3, (masu_frame_desc){0}, k ? b.rgba : a.rgba);
+        close_session(&s);
+    }
+    assert_memory_equal(a.rgba, b.rgba, BYTES);
+}
+
+/* The first frame of another scale goes on from where the last one was. */
+static void a_change_of_scale_keeps_the_past(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = temporal_desc("test_shadows", 1.0f);
+    d.desc.rung_count = 2;
+    d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f};
+    find_truth("test_shadows", NULL, NULL);
+    open_session(&s, &d);
+    frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+    frames(&s, 1, (masu_frame_desc){.rung = 1}, a.rgba);
+    double before = rms(b.rgba, truth.rgba), after = rms(a.rgba, truth.rgba), pop = rms(a.rgba, b.rgba);
+    frames(&s, 1, (masu_frame_desc){.rung = 1, .cut = 1}, b.rgba);
+    double anew = rms(b.rgba, truth.rgba);
+    print_message("  rms %.2f of 255 before, %.2f in the frame after, which differs by %.2f; anew it would be %.2f\n", before,
+                  after, pop, anew);
+    assert_true(after < 0.35 * anew && pop < 1.5);
+    close_session(&s);
+}
+
+/* Whatever comes: rungs that change, jumps, walls, steps of time; every pixel is opaque, and none had to be replaced. */
+static void nothing_breaks_it(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"test_shadows", "test_both", "test_pane", "wet_city"};
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc(scenes[k], 1.0f);
+        d.desc.rung_count = 4;
+        d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f, .sharpen = MASU_ON};
+        d.desc.rungs[2] = (masu_rung){.scale = 0.6f};
+        d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.01f};
+        open_session(&s, &d);
+        for (uint32_t i = 0; i < 24; i++) {
+            masu_camera camera = aside(&s, i % 5 == 4 ? 1e6 : 0.3 * (i % 7));
+            if (i % 3 == 2) camera.position[1] = -0.5;
+            if (i % 8 == 7) camera.forward[0] = 5.0f;
+            camera.jitter[0] = i % 2 ? 1.0f : -1.0f;
+            masu_frame_desc f = {.camera = &camera, .rung = i % 4, .time = i % 6 == 5 ? 1e9 : 10.0 * i,
+                                 .time_step = i % 2 ? 10.0f : 0.0f};
+            masu_commands commands;
+            draw(&s, &f, &commands, a.rgba);
+            for (uint32_t p = 0; p < PIXELS; p++) assert_int_equal(a.rgba[4 * p + 3], 255);
+            assert_int_equal(stats_of(&s, commands.slot).replaced, 0);
+        }
+        close_session(&s);
+    }
+}
+
+/* Targets beyond 8 bits and beyond white show what those of 8 bits do. */
+static void all_targets_are_served(void **state) {
+    (void)state;
+    static const struct {
+        VkFormat format;
+        masu_encoding encoding;
+    } cases[] = {{VK_FORMAT_A2B10G10R10_UNORM_PACK32, MASU_ENCODING_PQ},
+                 {VK_FORMAT_R16G16B16A16_SFLOAT, MASU_ENCODING_LINEAR},
+                 {VK_FORMAT_B8G8R8A8_SRGB, MASU_ENCODING_SRGB},
+                 {VK_FORMAT_R5G6B5_UNORM_PACK16, MASU_ENCODING_SRGB}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_shadows", 0.5f);
+        d.desc.targets.format = cases[i].format;
+        d.desc.targets.encoding = cases[i].encoding;
+        d.desc.targets.storage = 0;
+        open_session(&s, &d);
+        frames(&s, 3, (masu_frame_desc){0}, NULL);
+        close_session(&s);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(at_rest_it_comes_near_the_truth),
+        cmocka_unit_test(in_motion_it_is_no_worse),
+        cmocka_unit_test(what_leaves_leaves_no_ghost),
+        cmocka_unit_test(light_that_changes_is_seen),
+        cmocka_unit_test(equal_frames_give_equal_bytes),
+        cmocka_unit_test(a_cut_forgets_all),
+        cmocka_unit_test(a_change_of_scale_keeps_the_past),
+        cmocka_unit_test(nothing_breaks_it),
+        cmocka_unit_test(all_targets_are_served),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
