@@ -1022,9 +1022,10 @@ typedef struct masu_camera {
     float near_distance; /* metres, > 0; 0: the scene's. There is no far plane */
     /* Pixels of the render size, right and down, -1..1: by how much beside its own middle each pixel
      * looks. The projection is shifted and nothing turned, so that all pixels move alike. The mean of
-     * frames with places all over a pixel is what a larger picture made smaller shows. Velocities
-     * hold its change from frame to frame, too; cascades that are not drawn in every frame are drawn
-     * again whenever its size changes. */
+     * frames with places all over a pixel is what a larger picture made smaller shows. Rungs with
+     * temporal add places of their own, within half a pixel. Velocities hold the change from frame to
+     * frame, too; cascades that are not drawn in every frame are drawn again whenever its size
+     * changes. */
     float jitter[2];
 } masu_camera;
 
@@ -1062,8 +1063,8 @@ typedef struct masu_frame_desc {
     uint32_t cut;    /* not 0: what is seen has nothing to do with the previous frame (a camera cut):
                         nothing has moved. The first frame is one anyway. "Before" is the frame that
                         masu_frame handed out last, submitted or not. With rungs[].shadow_refresh
-                        above 1 the frame after one that was not submitted must be a cut: the
-                        cascades that it should have drawn are not there */
+                        above 1, or rungs[].temporal, the frame after one that was not submitted must be
+                        a cut: the cascades or the history that it should have left are not there */
     const float *sdf_params;  /* `sdf_param_count` values, NULL: the scene's defaults */
     uint32_t sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
                             clamped to their declared range; one that is not finite is an error */

@@ -91,7 +91,7 @@ void look_around(vec2 place, ivec2 middle, ivec2 last, out around a, out samples
         vec2 off = vec2(at) + 0.5 - place;
         vec2 tent = max(1.0 - abs(off * to_output), 0.0);
         own += tent.x * tent.y * vec4(light, 1.0);
-        wide += exp(-2.0 * dot(off, off)) * vec4(light, 1.0);
+        wide += masu_exp2(-3.0 * dot(off, off)) * vec4(light, 1.0);
         sum += light;
         squares += light * light;
         a.least = min(a.least, light);
@@ -107,7 +107,7 @@ void look_around(vec2 place, ivec2 middle, ivec2 last, out around a, out samples
               min(abs(depths[1] - depths[4]), abs(depths[7] - depths[4]));
     s.light = own.rgb;
     s.count = own.a;
-    s.wide = wide.rgb / wide.a; /* the middle one alone has exp(-4) at least */
+    s.wide = wide.rgb / wide.a; /* the middle one has 2^-1.5 at least */
 }
 
 /* Of this frame's input: pixels that the pixel has moved, how its depth has grown; w as in the image. */

@@ -20,7 +20,7 @@
 #include "support/files.h"
 #include "support/spirv.h"
 
-#define MEMBERS_MOST 24u
+#define MEMBERS_MOST 25u
 
 typedef struct member {
     const char *name;
@@ -54,6 +54,7 @@ static const layout layouts[] = {
       MEMBER(masu_frame_uniforms, sdf_max), MEMBER(masu_frame_uniforms, history),
       MEMBER(masu_frame_uniforms, trace_anchor), MEMBER(masu_frame_uniforms, trace_eye),
       MEMBER(masu_frame_uniforms, jitter),
+      MEMBER(masu_frame_uniforms, temporal),
       MEMBER(masu_frame_uniforms, sdf_params)}},
     {STRUCT(masu_instance_data),
      1,

@@ -110,7 +110,6 @@ static const technique techniques[] = {
     {"easu", HALF | STRUCTURAL, {.easu = MASU_EASU_BILINEAR}},
     {"fuse", HALF | STRUCTURAL, {.fuse = MASU_ON}},
     {"silhouettes", WHOLE | HALF | STRUCTURAL, {.silhouettes = MASU_ON}},
-    {"temporal", WHOLE | HALF | QUICK | STRUCTURAL, {.temporal = MASU_ON}},
     {"march_steps", WHOLE, {.march_steps = 32}},
     {"march_steps", WHOLE | HALF | QUICK, {.march_steps = 64}},
     {"march_steps", WHOLE, {.march_steps = 128}},
@@ -148,6 +147,7 @@ static const technique techniques[] = {
     {"occlusion", WHOLE | STRUCTURAL | SAME, {.occlusion = MASU_OFF}},
     {"light_tiles", WHOLE | STRUCTURAL | SAME, {.light_tiles = MASU_OFF}},
     {"upscale", 0, {.upscale = MASU_ON}}, /* at full size it makes nothing better, below it is on */
+    {"temporal", WHOLE | HALF | STRUCTURAL, {.temporal = MASU_ON}},
 };
 
 /* What a port might choose together. The plain one, nothing but the base, is at every size. */
