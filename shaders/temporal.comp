@@ -12,7 +12,8 @@
  *      show: a standard deviation around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
  *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
  *      changed, and the mean of the history around is not that of the nine, it is, too, and counts as one sample.
- *   4. How much does it count? At rest as many samples as it has, up to 32. Each resampling between pixels blurs, so
+ *   4. How much does it count? At rest as many samples as it has, up to 32, and up to 8 while anything in the world
+ *      changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
  *      that what moves counts at most 2, and less the faster it moves and the more it grows: it was smaller then.
  *   5. A pixel that has not yet a whole sample takes the rest from the wider surroundings.
  *
@@ -41,6 +42,7 @@ layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D history_image; /* lin
 layout(set = MASU_SET_PASS, binding = 5, rgba16f) uniform writeonly image2D accumulated_image;
 
 const float most_at_rest = 32.0;
+const float most_changing = 8.0; /* the same in a world that changes */
 const float most_moving = 2.0;
 const float most_other = 1.0; /* of what rests and is no longer what it was */
 const float per_growth = 20.0; /* of view depth; */
@@ -113,7 +115,7 @@ void look_around(vec2 place, ivec2 middle, ivec2 last, out around a, out samples
 /* Of this frame's input: pixels that the pixel has moved, how its depth has grown; w as in the image. */
 vec4 motion_at(vec2 place, around a, vec2 size)
 {
-    vec2 inside = clamp(place, vec2(0.5), size - 0.5);
+    vec2 inside = min(max(place, vec2(0.5)), size - 0.51); /* not even with a weight of 0 what lies beyond */
     vec4 moved = textureLod(velocity_image, inside / vec2(textureSize(velocity_image, 0)), 0.0);
     if (a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99)) {
         moved = texelFetch(velocity_image, a.front, 0);
@@ -126,7 +128,7 @@ bool is_known(vec2 before, around a, float growth)
 {
     vec2 size = vec2(frame.temporal.xy);
     vec2 place = (before / vec2(pc.output_width, pc.output_height) - 0.5 * previous.jitter.xy) * size;
-    vec2 inside = clamp(place, vec2(1.0), max(size - 1.0, vec2(1.0)));
+    vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* of a size of 1 it is the same texel four times */
     vec4 depths = textureGather(old_depth_image, inside / vec2(textureSize(old_depth_image, 0)));
     float then = previous.forward.w * masu_rcp(frame.forward.w * (1.0 + growth));
     float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
@@ -182,7 +184,8 @@ vec4 found_again(vec2 at, vec2 place, around a)
                         min(a.most, a.mean + deviations * a.deviation));
     }
     float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
-    float most = rests && other ? most_other : mix(most_at_rest, moving, min(4.0 * speed, 1.0));
+    float resting = frame.temporal.z != 0u ? most_changing : most_at_rest;
+    float most = rests && other ? most_other : mix(resting, moving, min(4.0 * speed, 1.0));
     return vec4(old.rgb, min(old.a, most));
 }
 

@@ -58,6 +58,7 @@ masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan,
         }
     }
     uint32_t i = instance.id - 1;
+    in->changes += memcmp(&in->now[i], rows, sizeof in->now[i]) != 0;
     memcpy(&in->now[i], rows, sizeof in->now[i]);
     if (!in->dirty[i]) in->dirty_count++;
     in->dirty[i] = frames_to_write(plan);

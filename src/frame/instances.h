@@ -12,6 +12,7 @@ typedef struct masu_instances {
     uint64_t *names;                     /* FNV-1a 64 of the name, 0: none */
     uint8_t *dirty;                      /* frames that still have to write the transform */
     uint32_t dirty_count;                /* instances of which that is not 0 */
+    uint32_t changes;                    /* how often one was moved */
     uint32_t *meshes;
 } masu_instances;
 

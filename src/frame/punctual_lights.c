@@ -108,7 +108,8 @@ masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_pu
                          "light %u: instance handle %u: the scene has handles 1 to %u", light.id,
                          state->instance.id, plan->scene.instances);
     }
-    l->states[light.id - 1] = *state;
-    l->changes++;
+    masu_punctual_light_state *now = &l->states[light.id - 1];
+    l->changes += memcmp(now, state, sizeof *now) != 0;
+    *now = *state;
     return MASU_OK;
 }

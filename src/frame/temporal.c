@@ -5,8 +5,26 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Frames for which a change is looked for: as many as put samples all over a pixel, and so find what it was. */
+/* Frames for which a change is looked for: as many as put samples all over a pixel, and so find what it was; and
+ * as long as a cascade of the shadow map may take to show it. */
 #define SETTLING 16u
+
+static uint32_t settling(const masu_frame_data *f) {
+    const masu_rung *rung = masu_frame_rung(f);
+    uint32_t most = 0;
+    for (uint32_t k = 0; k < MASU_MAX_CASCADES && masu_frame_rung_plan(f)->slow; k++)
+        most = rung->shadow_refresh[k] > most ? rung->shadow_refresh[k] : most;
+    return SETTLING + most;
+}
+
+/* Whether two rungs show the same but for their size. */
+static int shows_the_same(const masu_rung *a, const masu_rung *b) {
+    masu_rung other = *b;
+    other.scale = a->scale;
+    other.sharpen = a->sharpen;
+    other.sharpness = a->sharpness;
+    return memcmp(a, &other, sizeof other) == 0;
+}
 
 /* The digits of n, mirrored at the point (J. Halton, "Algorithm 247: Radical-inverse quasi-random point sequence",
  * 1964). */
@@ -41,9 +59,13 @@ float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]) {
 static int has_changed(const struct masu_frame_uniforms *now, const struct masu_frame_uniforms *before,
                        const masu_frame_plan *plan) {
     size_t from = offsetof(struct masu_frame_uniforms, sun_direction);
-    size_t to = offsetof(struct masu_frame_uniforms, anchor);
+    size_t to = offsetof(struct masu_frame_uniforms, air);
     if (plan->needs.metered) return 1;
     if (memcmp((const char *)now + from, (const char *)before + from, to - from) != 0) return 1;
+    /* air[0] is of the eye, too. */
+    if (memcmp(now->air + 1, before->air + 1, 3 * sizeof *now->air) != 0) return 1;
+    float higher = (now->eye_hi[1] - now->air[0]) - (before->eye_hi[1] - before->air[0]);
+    if (now->fog[3] > 0.0f && fabsf(higher) > 1e-3f * (1.0f + fabsf(now->eye_hi[1]))) return 1;
     if (plan->needs.dynamic && now->eye_hi[3] != before->eye_hi[3]) return 1;
     return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
 }
@@ -52,12 +74,14 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
                         const masu_lights *lights, masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     int kept = t->kept && !f->cut;
+    if (!kept) t->changed = 0;
     t->kept = has_resolve(f);
     if (!t->kept) return;
     if (kept) {
-        int changed = has_changed(&f->u, history->previous, f->plan) || in->dirty_count ||
-                      t->lights != lights->changes;
-        t->changed = changed ? SETTLING : t->changed ? t->changed - 1 : 0;
+        int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes ||
+                      t->lights != lights->changes ||
+                      !shows_the_same(masu_frame_rung(f), &f->plan->desc.rungs[t->rung]);
+        t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
         f->u.temporal[1] = t->size[1];
         f->u.temporal[2] = t->changed;
@@ -65,4 +89,6 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     t->size[0] = rp->render_width;
     t->size[1] = rp->render_height;
     t->lights = lights->changes;
+    t->instances = in->changes;
+    t->rung = f->desc.rung;
 }

@@ -12,7 +12,8 @@ typedef struct masu_temporal {
     int kept;         /* the previous frame has left a history, */
     uint32_t size[2]; /* of this render size */
     uint32_t changed; /* frames for which what has changed may still be found */
-    uint32_t lights;  /* changes of punctual lights that it knew of */
+    uint32_t rung;    /* and this rung */
+    uint32_t lights, instances; /* changes of them that it knew of */
 } masu_temporal;
 
 /* By how much beside the middle of its pixels the frame looks, in pixels of the render size: Halton's sequence of bases 2

@@ -73,7 +73,7 @@ static const char *no_filter(const masu_needs *n, const char *off) {
 }
 
 static const char *no_resolve(const masu_needs *n) {
-    return n->scene ? "rung.temporal is not on" : NO_SCENE;
+    return n->scene ? n->accumulate ? "debug.reference: one place in each pixel" : "rung.temporal is not on" : NO_SCENE;
 }
 
 static const char *no_upscale(const masu_needs *n) {

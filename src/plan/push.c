@@ -12,7 +12,8 @@
 static float masu_mip_bias(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
     const masu_rung *rung = &d->rungs[in->rung];
-    float own = log2f(rung->scale) - (rung->temporal == MASU_ON ? 2.0f : 0.0f);
+    int temporal = masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL);
+    float own = log2f(rung->scale) - (temporal ? 2.0f : 0.0f);
     return (d->debug.no_bias ? 0.0f : own) + d->debug.mip_bias;
 }
 

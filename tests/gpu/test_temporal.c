@@ -184,14 +184,19 @@ static void equal_frames_give_equal_bytes(void **state) {
     (void)state;
     for (int k = 0; k < 2; k++) {
         masu_session s;
-        masu_session_desc d = temporal_desc("test_shadows", 0.7f);
-        d.desc.debug.poison = (uint32_t)k; /* nor does what images hold before they are written */
+        masu_session_desc d = temporal_desc("test_fog", 0.7f);
+        d.desc.debug.poison = (uint32_t)k; /* nor does what images hold before they are written, */
+        d.desc.rung_count = 4;             /* or beyond the part of them that a rung has */
+        d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f};
+        d.desc.rungs[2] = (masu_rung){.scale = 1.0f};
+        d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.01f};
         open_session(&s, &d);
         masu_commands commands;
-        for (int i = 0; i < 12; i++) {
-            masu_camera camera = aside(&s, 0.05 * i);
-            move_instance(&s, "ball", 0.8f + 0.1f * (float)i, 0.8f, 0.6f, 1.0f);
-            draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, k ? b.rgba : a.rgba);
+        for (int i = 0; i < 16; i++) {
+            masu_camera camera = aside(&s, 0.1 * i);
+            camera.position[1] += 0.1 * (i / 4);
+            draw(&s, &(masu_frame_desc){.camera = &camera, .rung = (uint32_t)("0011230323130101"[i] - '0')}, &commands,
+                 k ? b.rgba : a.rgba);
         }
         close_session(&s);
     }
@@ -205,7 +210,13 @@ static void a_cut_forgets_all(void **state) {
         masu_session_desc d = temporal_desc("test_shadows", 0.5f);
         open_session(&s, &d);
         masu_camera elsewhere = aside(&s, k ? 3.0 : -2.0);
-        frames(&s, 10, (masu_frame_desc){.camera = &elsewhere}, NULL);
+        masu_light light;
+        assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+        frames(&s, 9, (masu_frame_desc){.camera = &elsewhere}, NULL);
+        light.sun_color[0] *= k ? 0.5f : 1.0f; /* what changes before counts no more than what is seen */
+        move_instance(&s, "ball", k ? 2.0f : 0.8f, 0.8f, 0.6f, 1.0f);
+        frames(&s, 1, (masu_frame_desc){.camera = &elsewhere, .light = &light}, NULL);
+        move_instance(&s, "ball", 0.8f, 0.8f, 0.6f, 1.0f);
         frames(&s, 1, (masu_frame_desc){.cut = 1}, NULL);
         frames(&s, 3, (masu_frame_desc){0}, k ? b.rgba : a.rgba);
         close_session(&s);

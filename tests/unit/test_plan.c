@@ -640,7 +640,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     assert_non_null(strstr(frame_text(&plan, 1), " rcas(r:upscaled w:target)"));
     assert_null(strstr(frame_text(&plan, 0), "smaa"));
     assert_null(strstr(frame_text(&plan, 0), "fsr1"));
-    /* At full size 16 + 4 bytes for each pixel outlive the frame or are accumulated: 24 is the most. */
+    /* At full size 16 + 4 bytes for each pixel are its own. */
     static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_ACCUMULATED, MASU_IMAGE_HISTORY_DEPTH};
     uint64_t bytes = 0;
     for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
