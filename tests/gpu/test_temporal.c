@@ -184,12 +184,12 @@ static void equal_frames_give_equal_bytes(void **state) {
     (void)state;
     for (int k = 0; k < 2; k++) {
         masu_session s;
-        masu_session_desc d = temporal_desc("test_fog", 0.7f);
+        masu_session_desc d = temporal_desc("test_fog", 1.0f);
         d.desc.debug.poison = (uint32_t)k; /* nor does what images hold before they are written, */
         d.desc.rung_count = 4;             /* or beyond the part of them that a rung has */
-        d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f};
-        d.desc.rungs[2] = (masu_rung){.scale = 1.0f};
-        d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.01f};
+        d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f, .sharpen = MASU_ON};
+        d.desc.rungs[2] = (masu_rung){.scale = 0.6f, .aa = MASU_AA_SMAA_LOW};
+        d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.02f};
         open_session(&s, &d);
         masu_commands commands;
         for (int i = 0; i < 16; i++) {
