@@ -354,7 +354,7 @@ typedef enum masu_knob_use {
            " sharpen is on): each frame looks at another place in its pixels. Scenes alone."       \
            " AUTO: off.",                                                                          \
            "Two passes of the output size and a small one. Device bytes per pixel of the output: 16,"\
-           " of which 8 outlive the frame; of the render size: 4 that do, and velocities, 8.")                                \
+           " of which 8 outlive the frame; of the render size: 4 that do, and velocities, 8.")         \
     /* Geometry. */                                                                                \
     WORD(  masu_march,       march,                                  SDF,                          \
            "How the SDF is marched. AUTO: the fast way.",                                          \
@@ -585,9 +585,9 @@ typedef enum masu_readback_bits {
     /* 4 x half: where the pixel's surface point was in the previous frame: x, y: previous position
      * minus the present one, in pixels of this frame's render size, y down; z: previous view depth
      * / present one, minus 1 (0 for the sky); w: 1, or 0 where the point was behind the camera or
-     * cannot be told, x y z are then 0. What jitter has
-     * changed by, the rung's own with temporal, is in it. Halves: off by up to 2^-12 of the motion. Asking for it
-     * makes the plan keep the previous frame: one more image and one more pass or two. */
+     * cannot be told, x y z are then 0. What jitter has changed by, with temporal the rung's own too,
+     * is in it. Halves: off by up to 2^-12 of the motion. Asking for it makes the plan keep the previous
+     * frame: one more image and one more pass or two. */
     MASU_READBACK_VELOCITY = 16,
     /* 2 x 16 bit unorm: how much of the sun, and of the ambient light, is seen. Only of scenes with
      * a shadow map, SDF shadows, or ambient occlusion of either kind; asking it of others is ignored,

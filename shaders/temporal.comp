@@ -29,6 +29,7 @@
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"
+#include "shared/dither.glsl"
 #include "shared/store.glsl"
 #include "shared/motion.glsl"
 
@@ -189,12 +190,11 @@ vec4 found_again(vec2 at, vec2 place, around a)
     return vec4(old.rgb, min(old.a, most));
 }
 
-/* To a half, up or down by chance, which is R2 over the pixels, plus the golden ratio for each frame (output.glsl). */
+/* To a half, up or down by chance; a to the nearest. */
 vec4 by_chance(vec4 v, uvec2 at)
 {
-    uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + frame.history.x * 0x9E3779B9u;
-    uvec4 apart = uvec4(noise, noise + 0x55555555u, noise + 0xAAAAAAAAu, 0x80000000u);
-    return uintBitsToFloat((floatBitsToUint(v) + (apart >> 19)) & 0xFFFFE000u);
+    uvec4 noise = uvec4(masu_dither(at), 0x80000000u);
+    return uintBitsToFloat((floatBitsToUint(v) + (noise >> 19)) & 0xFFFFE000u);
 }
 
 void main()
@@ -212,7 +212,8 @@ void main()
         float count = old.a + s.count;
         float rest = max(1.0 - count, 0.0);
         vec3 light = (old.a * old.rgb + s.light + rest * s.wide) / (count + rest);
-        MASU_STORE_HALF(accumulated_image, at, by_chance(vec4(masu_sane(light, 0.0, 1.0), min(count, 64.0)), at));
+        vec4 mean = masu_sane(vec4(min(light, 1.0), count), 0.0, 64.0);
+        MASU_STORE_SAFE(accumulated_image, at, by_chance(mean, at));
     }
     masu_count_end();
 }

@@ -5,8 +5,8 @@
  * A sample counts for the pixels around it by a tent, twice as wide as the pixel: steadier than what falls into the
  * pixel alone, but blurred. Of what that and the history's resampling take, push.sharpen gives some back: times the
  * second difference, and within what the five pixels hold. (The variance of a tent is 1/12 of a pixel above that of a
- * pixel; half of that per axis is 1/24, and a little
- * more has the least error.) What is kept is not sharpened: it would be again in every frame.
+ * pixel; half of that per axis is 1/24, and a little more has the least error.) What is kept is not sharpened: it
+ * would be again in every frame.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -40,7 +40,7 @@ void main()
         vec3 least = min(mean.rgb, min(min(left, right), min(above, below)));
         vec3 most = max(mean.rgb, max(max(left, right), max(above, below)));
         vec3 sharp = mean.rgb + push.sharpen * (4.0 * mean.rgb - left - right - above - below);
-        MASU_STORE_HALF(history_image, at, mean);
+        MASU_STORE_SAFE(history_image, at, mean); /* as it was stored: finite */
         MASU_STORE_COLOR(target, at, masu_encoded(clamp(sharp, least, most) * push.peak, push.white));
     }
     masu_count_end();

@@ -11,8 +11,7 @@
  * Dither: a step s of the target is taken with the share of the pixels that lies between: floor(v s +
  * u), u evenly in 0..1. Its mean is v, and a v that is a step stays one whatever u is: 0 and 1 do.
  * (Triangular noise has a variance that does not depend on v, but is there in black and white too.)
- * u is R2 over the pixels (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
- * 2018), plus the golden ratio for each frame: of integers, so that all drivers have one pattern.
+ * u is that of dither.glsl.
  *
  * MASU_OUTPUT: of a scene. MASU_DEEP: images are rgba16f. MASU_TEN: what is stored is not the last, and has
  * 10 bits: RCAS makes up to seven times as much of what rounding has lost before it. Else: rgba8.
@@ -36,6 +35,7 @@
 
 #ifdef MASU_OUTPUT
 #include "shared/globals.glsl"
+#include "shared/dither.glsl"
 #include "shared/tone.glsl"
 
 layout(constant_id = 6) const uint masu_encoding = MASU_OUTPUT_SRGB;
@@ -61,12 +61,10 @@ float masu_rounded(float v, uint steps, uint noise)
 
 vec3 masu_stepped(vec3 v, uvec2 at)
 {
-    uint noise = at.x * 0xC13FA9A9u + at.y * 0x91E10DA5u + frame.history.x * 0x9E3779B9u;
+    uvec3 noise = masu_dither(at);
     uint steps = pc.output_steps;
-    /* A third apart: what one channel has too much, the others have too little. */
-    return vec3(masu_rounded(v.r, steps & 1023u, noise),
-                masu_rounded(v.g, steps >> 10 & 1023u, noise + 0x55555555u),
-                masu_rounded(v.b, steps >> 20 & 1023u, noise + 0xAAAAAAAAu));
+    return vec3(masu_rounded(v.r, steps & 1023u, noise.r), masu_rounded(v.g, steps >> 10 & 1023u, noise.g),
+                masu_rounded(v.b, steps >> 20 & 1023u, noise.b));
 }
 
 /* What to store of display-encoded colour. */

@@ -20,14 +20,14 @@ static uint32_t scaled(uint32_t size, float scale) {
 }
 
 /* The sum of debug.reference is of one place in each pixel. */
-static int rung_has_resolve(const masu_desc *d, const masu_rung *rung) {
-    return d->scene && !d->debug.reference && rung->temporal == MASU_ON;
+static int rung_has_resolve(const masu_desc *d, uint32_t r) {
+    return d->scene && !d->debug.reference && d->rungs[r].temporal == MASU_ON;
 }
 
-static void resolve_switches(const masu_desc *d, masu_rung_plan *rp, const masu_rung *rung,
-                             masu_needs *needs) {
+static void resolve_switches(const masu_desc *d, uint32_t r, const masu_rung_plan *rp, masu_needs *needs) {
+    const masu_rung *rung = &d->rungs[r];
     int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
-    needs->resolve = rung_has_resolve(d, rung);
+    needs->resolve = rung_has_resolve(d, r);
     needs->upscale = !needs->resolve && (rung->upscale == MASU_ON || !same);
     needs->easu = rung->easu == MASU_EASU_AUTO ? MASU_EASU_FULL : rung->easu;
     int plain = needs->easu == MASU_EASU_BILINEAR; /* what it blurs, RCAS would not bring back */
@@ -201,8 +201,6 @@ static int rung_has_taa(const masu_desc *d, uint32_t r) {
            d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_taa != MASU_OFF;
 }
 
-static int rung_is_temporal(const masu_desc *d, uint32_t r) { return rung_has_resolve(d, &d->rungs[r]); }
-
 static int rung_has_silhouettes(const masu_desc *d, uint32_t r) {
     return d->scene && d->scene->sdf && d->rungs[r].silhouettes == MASU_ON;
 }
@@ -270,7 +268,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .any_silhouettes = wants(d, rung_has_silhouettes),
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d) ||
-                                           wants(d, rung_is_temporal),
+                                           wants(d, rung_has_resolve),
                                .blit = !d->targets.storage};
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
     masu_output_plan(plan);
@@ -314,7 +312,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                              "--variants)",
                              r, (int)plan->needs.march);
         }
-        resolve_switches(d, rp, &d->rungs[r], &plan->needs);
+        resolve_switches(d, r, rp, &plan->needs);
         plan->needs.ao = rung_has_ao(d, r);
         plan->needs.specular = rung_has_specular(d, r);
         int filtered = plan->needs.specular && !plan->needs.accumulate;

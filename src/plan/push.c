@@ -17,6 +17,11 @@ static float masu_mip_bias(const masu_push_input *in) {
     return (d->debug.no_bias ? 0.0f : own) + d->debug.mip_bias;
 }
 
+/* The most that is shown, in whites. */
+static float masu_peak(const masu_targets *t) {
+    return t->encoding == MASU_ENCODING_SRGB ? 1.0f : t->peak / t->white;
+}
+
 /* Of the four settings of SMAA: the threshold of luma in the steps of smaa/color.glsl, steps of a search, and
  * of one along a diagonal. */
 static float masu_smaa_threshold(masu_aa aa) {
