@@ -148,6 +148,7 @@ typedef struct masu_scene {
     uint32_t lod_draws, lod_instances; /* draws of those; instances, counted for each form */
     uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
     uint32_t groups, group_items; /* what is culled together; instances in groups */
+    uint32_t models, model_nodes; /* that move, come and go as one; nodes of them all */
     uint32_t metered;    /* 1: it asks for a metered exposure, */
     float brighten, darken; /* that adapts as fast, 1/s; 0: the default */
     uint32_t sdf;        /* 1: the scene has an SDF */
@@ -204,6 +205,12 @@ MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t bl
 
 /* Number of the SDF parameter `name`, or -1. Looks at the blob, which must still be readable. */
 MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name);
+
+/* Names of what a scene has, by index: 0 .. instances - 1, models - 1, lights - 1. "": it has none, or there is
+ * no such index. They lie in the blob, which must still be readable. */
+MASU_API const char *masu_scene_instance_name(const masu_scene *scene, uint32_t index);
+MASU_API const char *masu_scene_model_name(const masu_scene *scene, uint32_t index);
+MASU_API const char *masu_scene_light_name(const masu_scene *scene, uint32_t index);
 
 /* Scenes by what their frames are made of: quality ladders are measured for each (masu_desc.ladder). A
  * world is of polygons alone and has both LODs of meshes and occluders. */
@@ -507,6 +514,10 @@ MASU_API int masu_knob_takes(const masu_knob *knob, double to);
       " with a shadow map for each cascade 4 more, with occlusion 12 and 4 once. With LODs 1 more" \
       " on the host, and on the device for each LOD of its mesh and each view 4 (8 with"           \
       " occlusion)")                                                                               \
+    X(models, 0,                                                                                   \
+      "that move as one, hidden and spare ones too: 72 bytes each, host, and 4 for each instance " \
+      "of the scene")                                                                              \
+    X(model_nodes, 0, "of all models: 112 bytes each, host")                                       \
     X(sdf_params, MASU_MAX_SDF_PARAMS, "16 bytes each, host")                                      \
     X(shadow_cascades, MASU_MAX_CASCADES, "of the shadow map, as the largest rung has it")         \
     X(shadow_resolution, 8192, "texels along an edge of a cascade; n take 4 n^2 bytes, device")    \
@@ -1086,7 +1097,7 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
  * frames will not do where the display makes the host wait. Values that are none are left out. */
 MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
 
-/* Why the last masu_load, masu_frame, masu_instance_set_transform, masu_punctual_light_get or _set
+/* Why the last masu_load, masu_frame, or call that asks or changes an instance, model or punctual light
  * failed. */
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 
@@ -1113,6 +1124,97 @@ MASU_API masu_instance masu_instance_find(const masu_renderer *renderer, const c
 MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *renderer,
                                                                masu_instance instance,
                                                                const float rows[12]);
+
+/* The index-th instance of the scene, in the order of masu_scene_instance_name; id 0 beyond the last. */
+MASU_API masu_instance masu_instance_at(const masu_renderer *renderer, uint32_t index);
+
+/* Handle of a model that the scene says moves ("moving", "hidden" or "spare" in its description): all of
+ * its nodes are placed, shown and hidden as one. id 0 is none. A handle belongs to the renderer that gave
+ * it. */
+typedef struct masu_model {
+    uint32_t id;
+} masu_model;
+
+typedef struct masu_instance_state {
+    float rows[12];             /* as of masu_instance_set_transform */
+    float box_low[3], box_high[3]; /* around it, world, metres: of its mesh's box, turned and a little wider */
+    uint32_t index;             /* of masu_instance_at */
+    uint32_t mesh;
+    uint32_t shown;             /* 0: hidden */
+    masu_model model;           /* that it is a node of; id 0: none */
+} masu_instance_state;
+
+/* Where an instance is and whether it is shown, as the next masu_frame will draw it. MASU_ERROR_ARGUMENT: a
+ * NULL pointer, or a handle that is not of this renderer. */
+MASU_API MASU_MUST_USE masu_result masu_instance_get(masu_renderer *renderer, masu_instance instance,
+                                                     masu_instance_state *out);
+
+/* Hides an instance from the next masu_frame on, or shows it again where it is by now: in the picture,
+ * shadows, reflections; a hidden one's lights are off. Cascades that are not drawn in every frame keep its
+ * shadow until they are. What is shown again has not moved in its first frame. Light probes, which are
+ * baked, know nothing of it. MASU_ERROR_ARGUMENT: a handle that is not of this renderer. */
+MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer, masu_instance instance,
+                                                      uint32_t shown);
+
+/* The first model of that name, the name of its description; id 0 if there is none. */
+MASU_API masu_model masu_model_find(const masu_renderer *renderer, const char *name);
+
+/* The index-th model of the scene, in the order of masu_scene_model_name; id 0 beyond the last. */
+MASU_API masu_model masu_model_at(const masu_renderer *renderer, uint32_t index);
+
+typedef struct masu_model_state {
+    /* The 3x4 matrix from the model's own space to the world, row by row. The model's own space is that of
+     * its description without "translate": its scale, rotation and fit lie in its nodes. At first it is
+     * that translation alone. */
+    float rows[12];
+    float box_low[3], box_high[3]; /* around all of its instances, world, metres */
+    uint32_t index;                /* of masu_model_at */
+    uint32_t shown;                /* 0: hidden */
+    uint32_t nodes;                /* 0 .. nodes - 1, each behind the one above it */
+} masu_model_state;
+
+/* As of masu_instance_get. */
+MASU_API MASU_MUST_USE masu_result masu_model_get(masu_renderer *renderer, masu_model model,
+                                                  masu_model_state *out);
+
+/* Moves a model, and with it each of its nodes, from the next masu_frame on. `rows` as in masu_model_state.
+ * An instance of it that was moved by itself goes back to its node. MASU_ERROR_ARGUMENT: a NULL pointer, a
+ * handle that is not of this renderer, a value that is not finite or that takes a node beyond what a float
+ * holds; nothing is changed then. */
+MASU_API MASU_MUST_USE masu_result masu_model_set_transform(masu_renderer *renderer, masu_model model,
+                                                            const float rows[12]);
+
+/* As masu_instance_show, of all of its instances. */
+MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu_model model,
+                                                   uint32_t shown);
+
+/* One more of the kind of `like`, at `rows`: shows a hidden one of the same kind, a spare one, say, and
+ * gives its handle. masu_model_show(.., 0) gives it back. Nothing is allocated: how many there can be is in
+ * the scene. MASU_ERROR_LIMIT: all are shown. MASU_ERROR_ARGUMENT: as masu_model_set_transform. */
+MASU_API MASU_MUST_USE masu_result masu_model_add(masu_renderer *renderer, masu_model like,
+                                                  const float rows[12], masu_model *out);
+
+#define MASU_NODE_NONE UINT32_MAX
+
+/* The first node of a model of that name, the name in its file; MASU_NODE_NONE if there is none. */
+MASU_API uint32_t masu_model_node_find(const masu_renderer *renderer, masu_model model,
+                                       const char *name);
+
+typedef struct masu_node_state {
+    float rows[12];  /* the 3x4 matrix to the node above it, of the topmost ones to the model */
+    float world[12]; /* and to the world */
+    uint32_t parent; /* the node above it, or MASU_NODE_NONE */
+    masu_instance instance; /* that it shows; id 0: none */
+} masu_node_state;
+
+/* As masu_model_get, of one node. MASU_ERROR_ARGUMENT: there is no such node, too. */
+MASU_API MASU_MUST_USE masu_result masu_model_node_get(masu_renderer *renderer, masu_model model,
+                                                       uint32_t node, masu_node_state *out);
+
+/* Moves a node in its model, and with it all below it: doors, wheels, turrets. Errors as
+ * masu_model_set_transform. */
+MASU_API MASU_MUST_USE masu_result masu_model_node_set(masu_renderer *renderer, masu_model model,
+                                                       uint32_t node, const float rows[12]);
 
 /* Handle of a punctual light, a point or a spot. id 0 is none. A handle belongs to the renderer that gave
  * it. */

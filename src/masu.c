@@ -34,6 +34,7 @@ static void lay_host(masu_arena *arena, const masu_frame_plan *plan, masu_render
     masu_sdf_lay(&to->sdf, arena, plan);
     masu_instances_lay(&to->instances, arena, plan);
     masu_bounds_lay(&to->bounds, arena, plan);
+    masu_models_lay(&to->models, arena, plan);
     masu_lights_lay(&to->lights, arena, plan);
     masu_visible_lay(&to->visible, arena, plan);
     masu_occlusion_lay(&to->occlusion, arena, plan);
@@ -63,6 +64,7 @@ void masu_keep_scene(masu_renderer *m) {
     masu_sdf_keep(&m->sdf, plan, &v);
     masu_instances_keep(&m->instances, plan, &v);
     masu_bounds_keep(&m->bounds, plan, &m->instances, &v);
+    masu_models_keep(&m->models, &m->instances, plan, &v);
     masu_lights_keep(&m->lights, plan, &v);
     masu_visible_keep(&m->visible, plan, &v);
     masu_occlusion_keep(&m->occlusion, plan, &v);

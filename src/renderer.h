@@ -17,6 +17,7 @@
 #include "frame/frame_data.h"
 #include "frame/temporal.h"
 #include "frame/instances.h"
+#include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/punctual_lights.h"
 #include "frame/reflections.h"
@@ -51,6 +52,7 @@ struct masu_renderer {
     masu_sdf sdf;
     masu_instances instances;
     masu_bounds bounds;
+    masu_models models;
     masu_lights lights;
     masu_shadow shadow;
     masu_views views;

@@ -12,7 +12,7 @@ void masu_instances_lay(masu_instances *in, masu_arena *arena, const masu_frame_
     in->previous = masu_arena_take(arena, "previous transforms", before, sizeof *in->previous, 16);
     in->names = masu_arena_take(arena, "instance names", count, sizeof *in->names, 8);
     in->meshes = masu_arena_take(arena, "instance meshes", count, sizeof *in->meshes, 4);
-    in->dirty = masu_arena_take(arena, "instance flags", count, sizeof *in->dirty, 1);
+    in->flags = masu_arena_take(arena, "instance flags", count, sizeof *in->flags, 1);
 }
 
 /* A transform must reach every slot, each when it is free; with the previous frame, once more: the slot
@@ -30,9 +30,33 @@ void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan,
         in->names[i] =
             name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
         in->meshes[i] = v->instances[i].mesh;
-        in->dirty[i] = frames_to_write(plan);
+        in->flags[i] = frames_to_write(plan);
     }
     in->dirty_count = plan->scene.instances;
+    in->hidden_count = in->changes = 0;
+}
+
+static void make_dirty(masu_instances *in, const masu_frame_plan *plan, uint32_t i) {
+    if (!masu_instance_dirty(in, i)) in->dirty_count++;
+    in->flags[i] = (uint8_t)((in->flags[i] & ~MASU_INSTANCE_DIRTY) | frames_to_write(plan));
+}
+
+void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint32_t i,
+                          const float rows[12]) {
+    in->changes += memcmp(&in->now[i], rows, sizeof in->now[i]) != 0;
+    memcpy(&in->now[i], rows, sizeof in->now[i]);
+    make_dirty(in, plan, i);
+}
+
+void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32_t i, int shown) {
+    if (!masu_instance_hidden(in, i) == (shown != 0)) return;
+    in->flags[i] ^= MASU_INSTANCE_HIDDEN;
+    if (shown)
+        in->flags[i] |= MASU_INSTANCE_COMES, in->hidden_count--;
+    else
+        in->hidden_count++;
+    in->changes++;
+    make_dirty(in, plan, i);
 }
 
 masu_instance masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,
@@ -57,11 +81,7 @@ masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan,
                              "instance %u: transform[%u] is not finite", instance.id, k);
         }
     }
-    uint32_t i = instance.id - 1;
-    in->changes += memcmp(&in->now[i], rows, sizeof in->now[i]) != 0;
-    memcpy(&in->now[i], rows, sizeof in->now[i]);
-    if (!in->dirty[i]) in->dirty_count++;
-    in->dirty[i] = frames_to_write(plan);
+    masu_instances_place(in, plan, instance.id - 1, rows);
     return MASU_OK;
 }
 
@@ -79,12 +99,14 @@ void masu_instances_write(masu_instances *in, const masu_frame_data *f) {
         (struct masu_instance_data *)(void *)(at +
                                               f->plan->buffers[MASU_BUFFER_INSTANCES].stride / 2);
     for (uint32_t i = 0; i < f->plan->scene.instances; i++) {
-        if (!in->dirty[i]) continue;
+        if (!masu_instance_dirty(in, i)) continue;
         to[i] = in->now[i];
         if (f->plan->needs.velocity) {
-            before[i] = f->cut ? in->now[i] : in->previous[i];
+            int comes = f->cut || in->flags[i] & MASU_INSTANCE_COMES;
+            before[i] = comes ? in->now[i] : in->previous[i];
             in->previous[i] = in->now[i];
         }
-        if (--in->dirty[i] == 0) in->dirty_count--;
+        in->flags[i] = (uint8_t)((in->flags[i] & ~MASU_INSTANCE_COMES) - 1);
+        if (!masu_instance_dirty(in, i)) in->dirty_count--;
     }
 }

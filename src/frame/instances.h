@@ -5,19 +5,40 @@
 #include "frame/frame_data.h"
 #include "scene/view.h"
 
+enum {
+    MASU_INSTANCE_HIDDEN = 0x80,
+    MASU_INSTANCE_COMES = 0x40, /* it has been shown since the last frame: it was nowhere before */
+    MASU_INSTANCE_DIRTY = 0x3F
+};
+
 /* All by instance. */
 typedef struct masu_instances {
     struct masu_instance_data *now;
     struct masu_instance_data *previous; /* of no length where nothing reads velocities */
     uint64_t *names;                     /* FNV-1a 64 of the name, 0: none */
-    uint8_t *dirty;                      /* frames that still have to write the transform */
-    uint32_t dirty_count;                /* instances of which that is not 0 */
-    uint32_t changes;                    /* how often one was moved */
+    uint8_t *flags;                      /* MASU_INSTANCE_*, and how many frames still write it */
+    uint32_t dirty_count;                /* instances that some do */
+    uint32_t hidden_count;
+    uint32_t changes; /* how often one was moved, shown or hidden */
     uint32_t *meshes;
 } masu_instances;
 
 void masu_instances_lay(masu_instances *in, masu_arena *arena, const masu_frame_plan *plan);
 void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan, const masu_scene_view *v);
+
+static inline int masu_instance_dirty(const masu_instances *in, uint32_t instance) {
+    return in->flags[instance] & MASU_INSTANCE_DIRTY;
+}
+static inline int masu_instance_hidden(const masu_instances *in, uint32_t instance) {
+    return in->flags[instance] & MASU_INSTANCE_HIDDEN;
+}
+
+/* Of finite rows. */
+void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
+                          const float rows[12]);
+/* What is hidden is in no view, in no reflection, and carries no light. */
+void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
+                         int shown);
 
 /* masu_instance_find and masu_instance_set_transform of the public header. */
 masu_instance masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,

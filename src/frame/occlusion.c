@@ -99,7 +99,7 @@ void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances 
     uint32_t *to = drawn_words(f->device, f->slot) + f->plan->drawn.boxes;
     for (uint32_t i = 0; i < f->plan->scene.instances; i++) {
         float box[6];
-        if (!in->dirty[i]) continue;
+        if (!masu_instance_dirty(in, i)) continue;
         masu_bounds_of(bounds, i, box);
         memcpy(to + 6 * (uint64_t)i, box, sizeof box);
     }

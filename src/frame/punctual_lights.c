@@ -55,6 +55,8 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
     for (uint32_t i = 0; i < lights; i++) {
         struct masu_punctual_light_data placed;
         double position[3], direction[3];
+        uint32_t carrier = l->states[i].instance.id;
+        if (carrier && masu_instance_hidden(in, carrier - 1)) continue;
         carry(in, &l->states[i], position, direction);
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
         if (!masu_light_place(&l->states[i], position, direction, &placed)) continue;

@@ -36,9 +36,9 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_fram
     if (!in->dirty_count && s->versions) return;
     for (uint32_t i = 0; i < f->plan->scene.trace_instances; i++) {
         uint32_t instance = s->traced[i];
-        if (!in->dirty[instance] && s->versions) continue;
-        float rows[12];
-        masu_instance_rows(&in->now[instance], rows);
+        if (!masu_instance_dirty(in, instance) && s->versions) continue;
+        float rows[12] = {0}; /* no place: hidden ones are not seen */
+        if (!masu_instance_hidden(in, instance)) masu_instance_rows(&in->now[instance], rows);
         if (f->plan->needs.query)
             s->live[i] = (uint8_t)masu_trace_places(rows);
         else
@@ -88,7 +88,8 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
         const struct masu_instance_data *before = &in->previous[instance];
         float both[2][3][4];
         rows_of(now, s->origin, both[0]);
-        rows_of(f->cut ? now : before, s->origin, both[1]);
+        int comes = f->cut || in->flags[instance] & MASU_INSTANCE_COMES;
+        rows_of(comes ? now : before, s->origin, both[1]);
         memcpy(to + at + i * sizeof both, both, sizeof both);
         if (plan->needs.query) {
             masu_ray_write_instance(f->device, f->slot, i, in->meshes[instance], s->live[i],

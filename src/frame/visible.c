@@ -91,8 +91,8 @@ static uint32_t level_of(const masu_visible *s, const masu_lod_view *view,
 }
 
 /* Stage 1: the bit of a view in the marks of what it keeps. */
-static void mark(masu_visible *s, const masu_bounds *bounds, const masu_views *views,
-                 const masu_frame_data *f, uint32_t view) {
+static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
+                 const masu_views *views, const masu_frame_data *f, uint32_t view) {
     const masu_scene *scene = &f->plan->scene;
     masu_view_stats *counts = &s->slot_views[f->slot][view];
     uint8_t bit = (uint8_t)(1u << view);
@@ -107,6 +107,9 @@ static void mark(masu_visible *s, const masu_bounds *bounds, const masu_views *v
         counts->plane_tests = c.plane_tests;
     } else {
         for (uint32_t i = 0; i < scene->instances; i++) s->marks[i] |= bit;
+    }
+    for (uint32_t i = 0; in->hidden_count && i < scene->instances; i++) {
+        if (masu_instance_hidden(in, i)) s->marks[i] &= (uint8_t)~bit;
     }
 }
 
@@ -149,7 +152,7 @@ void masu_visible_write(masu_visible *s, const masu_bounds *bounds, const masu_i
     for (uint32_t view = 0; view < f->plan->views; view++) {
         memset(&s->slot_views[f->slot][view], 0, sizeof s->slot_views[f->slot][view]);
         if (!f->plan->scene.instances) continue;
-        mark(s, bounds, views, f, view);
+        mark(s, bounds, in, views, f, view);
         list(s, bounds, in, views, f, view);
     }
 }

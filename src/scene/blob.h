@@ -23,7 +23,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 11u
+#define MASU_BLOB_VERSION 12u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 
@@ -76,7 +76,9 @@ enum masu_blob_kind {
     MASU_BLOB_TRACE_TRIANGLES = 41,
     MASU_BLOB_TRACE_MESHES = 42,    /* as many as meshes, in their order */
     MASU_BLOB_TRACE_INSTANCES = 43, /* uint32, rising: those that rays meet */
-    MASU_BLOB_KIND_COUNT = 49
+    MASU_BLOB_MODELS = 49,      /* models that move, come and go as one; these two come together */
+    MASU_BLOB_MODEL_NODES = 50, /* by model, each behind the one above it */
+    MASU_BLOB_KIND_COUNT = 51
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -176,6 +178,27 @@ typedef struct masu_blob_instance {
     uint32_t parent; /* instance index or MASU_BLOB_NONE; transforms are already composed */
     uint32_t group;  /* the group that has it as an item, or MASU_BLOB_NONE: culled by itself */
 } masu_blob_instance;
+
+enum masu_blob_model_flags { MASU_MODEL_HIDDEN = 1 /* until the host shows it */ };
+
+/* A model that moves as one. Its nodes are the next of MODEL_NODES. */
+typedef struct masu_blob_model {
+    float transform[12]; /* its own space to world, as the scene places it */
+    uint32_t first_node, node_count; /* at least one */
+    uint32_t name;
+    uint32_t flags; /* masu_blob_model_flags */
+    uint32_t like;  /* the first model of its kind, at most this one: same meshes at the same nodes */
+    uint32_t reserved[3];
+} masu_blob_model;
+
+/* The transform of its instance is that of all nodes above it and of the model, times its own. */
+typedef struct masu_blob_model_node {
+    float local[12];   /* to the node above it, or to the model */
+    uint32_t parent;   /* of MODEL_NODES: of the same model, before this one; or MASU_BLOB_NONE */
+    uint32_t instance; /* that shows it, of no other node; or MASU_BLOB_NONE */
+    uint32_t name;
+    uint32_t reserved;
+} masu_blob_model_node;
 
 /* Members are other groups, instances, or both. Children come behind their parent and side by
  * side; each group but the first is a child exactly once. The box (world space) holds the boxes of

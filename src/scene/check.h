@@ -8,6 +8,8 @@
 
 /* Vertices, primitives, meshes, their LODs, instances. */
 masu_result masu_check_geometry(reader *r);
+/* Models that move, and their nodes. */
+masu_result masu_check_models(reader *r);
 /* What culling believes: groups of instances, occluders. pairs: of an occluder and an instance of its
  * mesh. */
 masu_result masu_check_groups(reader *r);

@@ -60,6 +60,8 @@ static const section_rule rules[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_PROBE_DATA] = {"probe data", sizeof(uint32_t), MASU_SECTION_MOST, 0},
     [MASU_BLOB_ENVIRONMENT_MAP] = {"environment map", sizeof(masu_blob_environment_map), 1, 0},
     [MASU_BLOB_ENVIRONMENT_TEXELS] = {"environment texels", sizeof(uint32_t), MASU_SECTION_MOST, 0},
+    [MASU_BLOB_MODELS] = {"models", sizeof(masu_blob_model), MASU_SECTION_MOST, 0},
+    [MASU_BLOB_MODEL_NODES] = {"model nodes", sizeof(masu_blob_model_node), MASU_SECTION_MOST, 0},
     [MASU_BLOB_TRACE_NODES] = {"trace nodes", sizeof(masu_blob_trace_node), MASU_TRACE_NODES_MAX,
                                0},
     [MASU_BLOB_TRACE_TRIANGLES] = {"trace triangles", sizeof(masu_blob_trace_triangle),
@@ -152,6 +154,8 @@ static masu_scene_view view_of(const void *const start[MASU_BLOB_KIND_COUNT],
                                           .trace_triangles = start[MASU_BLOB_TRACE_TRIANGLES],
                                           .trace_meshes = start[MASU_BLOB_TRACE_MESHES],
                                           .trace_instances = start[MASU_BLOB_TRACE_INSTANCES],
+                                          .models = start[MASU_BLOB_MODELS],
+                                          .model_nodes = start[MASU_BLOB_MODEL_NODES],
                                           .names = start[MASU_BLOB_NAMES],
                                           .name_bytes = counts[MASU_BLOB_NAMES]};
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {

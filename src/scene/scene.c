@@ -44,6 +44,8 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
                         .materials = (uint32_t)r->counts[MASU_BLOB_MATERIALS],
                         .groups = (uint32_t)r->counts[MASU_BLOB_GROUPS],
                         .group_items = (uint32_t)r->counts[MASU_BLOB_GROUP_ITEMS],
+                        .models = (uint32_t)r->counts[MASU_BLOB_MODELS],
+                        .model_nodes = (uint32_t)r->counts[MASU_BLOB_MODEL_NODES],
                         .occluders = (uint32_t)r->counts[MASU_BLOB_OCCLUDERS],
                         .placed_occluders = (uint32_t)pairs,
                         .camera_keys = (uint32_t)r->counts[MASU_BLOB_CAMERA_KEYS],
@@ -86,6 +88,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     }
     if (!result) result = masu_check_geometry(&r);
     uint64_t pairs = 0;
+    if (!result) result = masu_check_models(&r);
     if (!result) result = masu_check_groups(&r);
     if (!result) result = masu_check_occluders(&r, &pairs);
     if (!result) result = masu_check_looks(&r);
@@ -113,4 +116,27 @@ int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name) {
         }
     }
     return -1;
+}
+
+/* A name of the blob, which has passed. */
+static const char *text_of(const masu_scene_view *v, uint32_t name) {
+    return name == MASU_BLOB_NONE ? "" : v->names + name;
+}
+
+const char *masu_scene_instance_name(const masu_scene *scene, uint32_t index) {
+    if (!scene || !scene->blob || index >= scene->instances) return "";
+    masu_scene_view v = masu_scene_look(scene);
+    return text_of(&v, v.instances[index].name);
+}
+
+const char *masu_scene_model_name(const masu_scene *scene, uint32_t index) {
+    if (!scene || !scene->blob || index >= scene->models) return "";
+    masu_scene_view v = masu_scene_look(scene);
+    return text_of(&v, v.models[index].name);
+}
+
+const char *masu_scene_light_name(const masu_scene *scene, uint32_t index) {
+    if (!scene || !scene->blob || index >= scene->lights) return "";
+    masu_scene_view v = masu_scene_look(scene);
+    return text_of(&v, v.lights[index].name);
 }

@@ -44,6 +44,8 @@ typedef struct masu_scene_view {
     const masu_blob_trace_triangle *trace_triangles;
     const masu_blob_trace_mesh *trace_meshes;
     const uint32_t *trace_instances;
+    const masu_blob_model *models;
+    const masu_blob_model_node *model_nodes;
     struct {
         const uint32_t *words; /* NULL: none */
         uint64_t count;

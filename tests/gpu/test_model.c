@@ -25,7 +25,7 @@ static const char ladder[] =
                 "\"knobs\": {\"scale\": 0.5, \"specular\": \"off\"}}]}";
 
 static void model_of(const char *scene, const char *path, uint32_t width, uint32_t height,
-                     uint32_t drawn_width, uint32_t drawn_height, masu_model *out) {
+                     uint32_t drawn_width, uint32_t drawn_height, masu_model_sheet *out) {
     masu_model_desc d = {.scene_path = scene_path(scene),
                          .ladder_path = path,
                          .size = {width, height},
@@ -121,7 +121,7 @@ static void counters_change_no_pixel(void **state) {
     }
 }
 
-static void check_sums(const masu_model *m) {
+static void check_sums(const masu_model_sheet *m) {
     for (uint32_t r = 0; r < m->rung_count; r++) {
         const masu_model_rung *one = &m->rungs[r];
         double bytes = 0.0, operations = 0.0, floor[MASU_MODEL_CLASSES] = {0};
@@ -148,7 +148,7 @@ static void assert_near(double given, double wanted, double part) {
 
 /* By hand: n pixels rendered, P shown. */
 static void bytes_of_known_passes_are_those_worked_out_by_hand(void **state) {
-    static masu_model m, larger;
+    static masu_model_sheet m, larger;
     (void)state;
     const char *path = write_text("ladder.json", ladder);
     model_of("mirrors", path, 96, 64, 96, 64, &m);
@@ -195,7 +195,7 @@ static void bytes_of_known_passes_are_those_worked_out_by_hand(void **state) {
 
 /* An SDF and nothing else, at the library's own rungs: each quicker than the one before. */
 static void rungs_of_an_sdf_cost_less_one_by_one(void **state) {
-    static masu_model m;
+    static masu_model_sheet m;
     (void)state;
     model_of("spheres", NULL, 96, 64, 96, 64, &m);
     assert_int_equal(m.rung_count, 3);

@@ -244,7 +244,7 @@ static void assert_near(double given, double wanted) {
 
 static void the_sheet_has_the_numbers_worked_out_by_hand(void **state) {
     static masu_count count;
-    static masu_model m;
+    static masu_model_sheet m;
     const double p = 960.0 * 540.0, P = 4.0 * p, n = p; /* n: half of P's sides */
     (void)state;
     count_upscaling(&count, p);
@@ -327,7 +327,7 @@ static void instructions_of_compilers_are_found_by_pass_and_stage(void **state) 
 
 static void the_sheet_counts_the_compilers_instructions_where_it_was_asked(void **state) {
     static masu_count count;
-    static masu_model m;
+    static masu_model_sheet m;
     static masu_issued issued[MASU_MODEL_CLASSES];
     const double p = 960.0 * 540.0, P = 4.0 * p;
     (void)state;
@@ -353,7 +353,7 @@ static void the_sheet_counts_the_compilers_instructions_where_it_was_asked(void 
 }
 
 static void what_is_computed_says_so(void **state) {
-    static masu_model m;
+    static masu_model_sheet m;
     char *text = NULL;
     size_t bytes = 0;
     (void)state;
@@ -361,7 +361,7 @@ static void what_is_computed_says_so(void **state) {
     m.rungs[0].measured = 0.5;
     snprintf(m.rungs[0].name, sizeof m.rungs[0].name, "a<b>&c");
     m.rungs[0].rows[MASU_PASS_TONEMAP].runs = m.rungs[0].sum.runs = true;
-    bool (*const writers[])(const masu_model *, FILE *) = {masu_model_print, masu_model_csv,
+    bool (*const writers[])(const masu_model_sheet *, FILE *) = {masu_model_print, masu_model_csv,
                                                            masu_model_xhtml};
     for (size_t w = 0; w < 3; w++) {
         FILE *f = open_memstream(&text, &bytes);

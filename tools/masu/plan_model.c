@@ -43,7 +43,7 @@ int masu_plan_model(const masu_plan_options *o, char **arguments) {
     int code = o->isa ? ask_compilers(o, arguments, issued) : MASU_CLI_OK;
     if (code) return code;
     d.issued = issued;
-    masu_model *m = malloc(sizeof *m);
+    masu_model_sheet *m = malloc(sizeof *m);
     uint32_t messages = 0;
     char error[4096];
     if (!m) return masu_cli_error("out of memory");

@@ -291,7 +291,7 @@ static void make_rung(const masu_count *c, const masu_issued *issued, uint32_t r
     }
 }
 
-void masu_model_make(const masu_count *count, const masu_issued *issued, masu_model *out) {
+void masu_model_make(const masu_count *count, const masu_issued *issued, masu_model_sheet *out) {
     out->rung_count = count->rung_count;
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) out->issued[k] = issued && issued[k].known;
     for (uint32_t r = 0; r < count->rung_count; r++) make_rung(count, issued, r, &out->rungs[r]);

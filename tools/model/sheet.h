@@ -54,17 +54,17 @@ typedef struct masu_model_rung {
     double floor[MASU_MODEL_CLASSES], realistic[MASU_MODEL_CLASSES]; /* ms */
 } masu_model_rung;
 
-typedef struct masu_model {
+typedef struct masu_model_sheet {
     char scene[128], driver[1024];
     VkExtent2D drawn, sheet;
     uint32_t rung_count;
     masu_model_rung rungs[MASU_MAX_RUNGS];
     bool issued[MASU_MODEL_CLASSES]; /* its compiler was asked */
     int chosen[MASU_MODEL_CLASSES][MASU_MODEL_BUDGETS]; /* first rung that fits; -1: none */
-} masu_model;
+} masu_model_sheet;
 
 /* issued: of each class; NULL: none. Names and measured ratios of rungs are left as they are. */
-void masu_model_make(const masu_count *count, const masu_issued *issued, masu_model *out);
+void masu_model_make(const masu_count *count, const masu_issued *issued, masu_model_sheet *out);
 
 /* ms; `by_bytes` may be NULL. */
 double masu_model_floor(const masu_model_row *row, uint32_t class_of, bool *by_bytes);

@@ -10,7 +10,7 @@
 
 /* ---- Ladder ---------------------------------------------------------------------------------- */
 
-static bool read_ladder(const char *path, masu_count_desc *count, masu_model *out, char *error,
+static bool read_ladder(const char *path, masu_count_desc *count, masu_model_sheet *out, char *error,
                         size_t error_size) {
     static masu_ladder_file ladder;
     if (!masu_ladder_read(path, &ladder, error, error_size)) return false;
@@ -25,7 +25,7 @@ static bool read_ladder(const char *path, masu_count_desc *count, masu_model *ou
 
 /* ---- Making ---------------------------------------------------------------------------------- */
 
-bool masu_model_run(const masu_model_desc *d, masu_model *out, uint32_t *messages, char *error,
+bool masu_model_run(const masu_model_desc *d, masu_model_sheet *out, uint32_t *messages, char *error,
                     size_t error_size) {
     masu_count_desc desc = {.scene_path = d->scene_path,
                             .size = d->drawn,
@@ -66,7 +66,7 @@ static void floor_text(const masu_model_row *row, uint32_t k, char out[24]) {
     snprintf(out, 24, "%.3f%c", ms, by_bytes ? 'b' : 'f');
 }
 
-static void chosen_text(const masu_model *m, uint32_t k, uint32_t budget, char out[16]) {
+static void chosen_text(const masu_model_sheet *m, uint32_t k, uint32_t budget, char out[16]) {
     if (m->chosen[k][budget] < 0) {
         snprintf(out, 16, "none");
     } else {
@@ -92,7 +92,7 @@ static const char *const notes[] = {
     "ladder.json names; that of a CPU says little about a GPU.",
 };
 
-bool masu_model_print(const masu_model *m, FILE *f) {
+bool masu_model_print(const masu_model_sheet *m, FILE *f) {
     const masu_model_rung *first = &m->rungs[0];
     fprintf(f, "%s, %ux%u: the model sheet. COMPUTED, not measured on these GPUs.\n", m->scene,
             m->sheet.width, m->sheet.height);
@@ -152,7 +152,7 @@ bool masu_model_print(const masu_model *m, FILE *f) {
 
 /* ---- CSV ------------------------------------------------------------------------------------- */
 
-bool masu_model_csv(const masu_model *m, FILE *f) {
+bool masu_model_csv(const masu_model_sheet *m, FILE *f) {
     fprintf(f, "kind,scene,width,height,rung,setting,render_width,render_height,pass,bytes,"
                "bytes_are,asked_bytes,operations,plain_operations,operations_are,invocations");
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++)
@@ -206,7 +206,7 @@ static void put_head(FILE *f, const char *caption, const char *columns) {
                 masu_model_classes[k].name);
 }
 
-static void put_passes(const masu_model *m, uint32_t r, FILE *f) {
+static void put_passes(const masu_model_sheet *m, uint32_t r, FILE *f) {
     const masu_model_rung *one = &m->rungs[r];
     put_head(f, "floor of each pass of rung 0, ms", "<th>pass</th><th>MB</th><th>Mop</th>");
     fputs("<th>bytes are</th><th>operations are</th></tr>\n", f);
@@ -228,7 +228,7 @@ static void put_passes(const masu_model *m, uint32_t r, FILE *f) {
     fputs("</table></div>\n", f);
 }
 
-static void put_rungs(const masu_model *m, FILE *f) {
+static void put_rungs(const masu_model_sheet *m, FILE *f) {
     put_head(f, "each rung, realistic ms (floor)",
              "<th>rung</th><th>rendered</th><th>MB</th><th>Mop</th>");
     fputs("<th>part of rung 0, Xe80</th><th>measured ratio</th></tr>\n", f);
@@ -250,7 +250,7 @@ static void put_rungs(const masu_model *m, FILE *f) {
     fputs("</table></div>\n", f);
 }
 
-static void put_chosen(const masu_model *m, FILE *f) {
+static void put_chosen(const masu_model_sheet *m, FILE *f) {
     static const char *const names[] = {"60 fps", "30 fps"};
     put_head(f, "the first rung whose realistic time fits", "<th></th>");
     fputs("</tr>\n", f);
@@ -266,7 +266,7 @@ static void put_chosen(const masu_model *m, FILE *f) {
     fputs("</table></div>\n", f);
 }
 
-bool masu_model_xhtml(const masu_model *m, FILE *f) {
+bool masu_model_xhtml(const masu_model_sheet *m, FILE *f) {
     fprintf(f,
             "<section id=\"model\">\n<h2>Model sheet: computed, not measured</h2>\n"
             "<p>What each pass would take on five classes of GPU, at %ux%u. Counted at %ux%u on ",
@@ -287,7 +287,7 @@ bool masu_model_xhtml(const masu_model *m, FILE *f) {
 
 /* ---- Files ----------------------------------------------------------------------------------- */
 
-bool masu_model_save(const masu_model *m, bool (*write)(const masu_model *, FILE *),
+bool masu_model_save(const masu_model_sheet *m, bool (*write)(const masu_model_sheet *, FILE *),
                      const char *path, char *error, size_t error_size) {
     char *text = NULL;
     size_t bytes = 0;
@@ -312,7 +312,7 @@ bool masu_model_write(const masu_model_desc *desc, const char *folder, char *err
     }
     masu_model_desc d = *desc;
     d.ladder_path = paths[0];
-    masu_model *m = malloc(sizeof *m);
+    masu_model_sheet *m = malloc(sizeof *m);
     if (!m) {
         snprintf(error, error_size, "out of memory");
         return false;

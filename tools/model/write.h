@@ -22,14 +22,14 @@ typedef struct masu_model_desc {
 
 /* Draws, counts, computes. `messages`: of the validation layer; may be NULL. False: `error`
  * holds one line. */
-bool masu_model_run(const masu_model_desc *desc, masu_model *out, uint32_t *messages, char *error,
+bool masu_model_run(const masu_model_desc *desc, masu_model_sheet *out, uint32_t *messages, char *error,
                     size_t error_size);
 
 /* All return false if something could not be written. */
-bool masu_model_print(const masu_model *model, FILE *f);
-bool masu_model_csv(const masu_model *model, FILE *f);
-bool masu_model_xhtml(const masu_model *model, FILE *f); /* one <section> */
-bool masu_model_save(const masu_model *model, bool (*write)(const masu_model *, FILE *),
+bool masu_model_print(const masu_model_sheet *model, FILE *f);
+bool masu_model_csv(const masu_model_sheet *model, FILE *f);
+bool masu_model_xhtml(const masu_model_sheet *model, FILE *f); /* one <section> */
+bool masu_model_save(const masu_model_sheet *model, bool (*write)(const masu_model_sheet *, FILE *),
                      const char *path, char *error, size_t error_size);
 
 /* For `masu bench`: the sheet of the folder's ladder.json, as model.csv and model.xhtml beside

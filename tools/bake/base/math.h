@@ -112,6 +112,28 @@ static inline masu_bake_affine masu_bake_multiply(const masu_bake_affine *a,
     return r;
 }
 
+/* False: it has no inverse. */
+static inline bool masu_bake_invert(const masu_bake_affine *a, masu_bake_affine *out) {
+    const double *m = a->m;
+    masu_bake_vec3 r[3];
+    for (int i = 0; i < 3; i++) r[i] = masu_bake_v3(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
+    masu_bake_vec3 c[3] = {masu_bake_cross(r[1], r[2]), masu_bake_cross(r[2], r[0]),
+                           masu_bake_cross(r[0], r[1])};
+    double d = masu_bake_dot(r[0], c[0]);
+    if (!(fabs(d) > 0.0 && fabs(d) <= DBL_MAX)) return false;
+    for (int i = 0; i < 3; i++) { /* columns of the inverse are the cross products of the rows */
+        out->m[i] = c[i].x / d;
+        out->m[4 + i] = c[i].y / d;
+        out->m[8 + i] = c[i].z / d;
+    }
+    for (int i = 0; i < 12; i += 4) {
+        double sum = 0.0;
+        for (int k = 0; k < 3; k++) sum += out->m[i + k] * m[4 * k + 3];
+        out->m[i + 3] = -sum;
+    }
+    return true;
+}
+
 static inline masu_bake_vec3 masu_bake_apply(const masu_bake_affine *a, masu_bake_vec3 p) {
     const double *m = a->m;
     return masu_bake_v3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],

@@ -6,6 +6,7 @@
 #include "bake/mesh/detail.h"
 #include "bake/mesh/occluders.h"
 #include "bake/scene/groups.h"
+#include "bake/scene/live.h"
 #include "cli/cli.h"
 
 #include <stdio.h>
@@ -169,8 +170,11 @@ static bool fit(const model_builder *b, const masu_bake_model *model,
     return true;
 }
 
-static bool place(model_builder *b, const masu_bake_model *model, loaded_model *from) {
+/* Places it once, with a name of its own. */
+static bool place(model_builder *b, const masu_bake_model *model, const char *name, bool hidden,
+                  loaded_model *from, uint32_t *like) {
     masu_bake_content *content = b->content;
+    uint64_t lights = masu_bake_count(content, MASU_BLOB_LIGHTS);
     masu_bake_affine placement = model->placement;
     if (!fit(b, model, &from->piece, &placement)) return false;
     masu_bake_affine move = masu_bake_translation(model->translation);
@@ -179,12 +183,50 @@ static bool place(model_builder *b, const masu_bake_model *model, loaded_model *
     masu_bake_overrides overrides = settle(b, model);
     variant *v = variant_of(b, from, &overrides);
     const char *problem = masu_bake_place(content, &from->piece, &v->residence, &placement,
-                                          &v->overrides, model->name);
+                                          &v->overrides, name);
     if (!problem)
         problem = masu_bake_place_lights(content, &from->piece, &placement, first, model->lights,
-                                         model->name);
+                                         name);
     if (problem) return masu_bake_wrong(b->description, model->where, "gives %s", problem);
     from->residence = v->residence;
+    if (!model->moving || masu_bake_count(content, MASU_BLOB_INSTANCES) == first) return true;
+    uint32_t made = masu_bake_add_model(content, &from->piece, first, model->translation, name,
+                                        hidden, *like);
+    if (*like == MASU_BLOB_NONE) *like = made;
+    masu_bake_carry_lights(content, lights, first);
+    return true;
+}
+
+/* The host finds the first of a name alone. */
+static void warn_of_namesake(const model_builder *b, const masu_bake_model *model) {
+    const masu_bake_content *c = b->content;
+    for (uint64_t i = 0; model->moving && model->name && i < masu_bake_count(c, MASU_BLOB_MODELS);
+         i++) {
+        uint32_t name = MASU_BAKE_ARRAY(c, MASU_BLOB_MODELS, masu_blob_model)[i].name;
+        if (strcmp(masu_bake_name_text(c, name), model->name) != 0) continue;
+        masu_cli_warn("%s: %s: a moving model before it is named \"%s\" too: the first one is "
+                         "found by that name",
+                         b->description->file, model->where, model->name);
+        return;
+    }
+}
+
+/* The model, and its spare ones: "car", "car.1", "car.2". */
+static bool place_all(model_builder *b, const masu_bake_model *model, loaded_model *from) {
+    uint32_t like = MASU_BLOB_NONE;
+    warn_of_namesake(b, model);
+    if (!place(b, model, model->name, model->hidden, from, &like)) return false;
+    for (uint32_t i = 1; i <= model->spare; i++) {
+        char number[16];
+        masu_bake_buffer name = {0};
+        snprintf(number, sizeof number, ".%u", i);
+        masu_bake_append_text(&name, model->name ? model->name : "spare");
+        masu_bake_append_text(&name, number);
+        bool good = place(b, model, masu_bake_take_text(&b->pool, (const char *)name.data), true,
+                          from, &like);
+        masu_bake_release(&name);
+        if (!good) return false;
+    }
     return true;
 }
 
@@ -228,7 +270,7 @@ bool masu_bake_build_models(const masu_bake_description *d, masu_bake_textures t
         const masu_bake_model *model = &d->models[i];
         uint64_t first = masu_bake_count(content, MASU_BLOB_INSTANCES);
         loaded_model *from = fetch(&b, model);
-        good = from && place(&b, model, from);
+        good = from && place_all(&b, model, from);
         if (!good) break;
         set_group(content, model, first);
         good = add_occluder(&b, model, first);

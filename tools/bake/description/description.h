@@ -24,6 +24,7 @@
 #include "bake/scene/piece.h"
 #include "bake/shader/sdf.h"
 
+#define MASU_BAKE_SPARE_MAX 4096u
 #define MASU_BAKE_FOV_Y 40.0 /* degrees, where the scene says nothing */
 
 /* What a model's materials are changed to: the values, and what has no number in the scene yet. */
@@ -53,7 +54,9 @@ typedef struct masu_bake_model {
     uint32_t shape;    /* of the description's shapes, without a file */
     const char *name;  /* before the instances' names, or NULL */
     const char *group; /* "outer/inner", or NULL */
-    bool moving;
+    bool moving; /* it is a model of the scene for the host, too */
+    bool hidden; /* at first; moving, then */
+    uint32_t spare; /* so many more of it, hidden; moving, then */
     double merge;               /* cell size, metres; 0: as the file has it */
     double lights;              /* factor of its lights' colours; 0: without them */
     masu_bake_affine placement; /* scale and rotation, before the fit */

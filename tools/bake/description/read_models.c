@@ -142,9 +142,19 @@ static bool read_placement(const masu_bake_json *model, masu_bake_model *out) {
 
 static bool read_group(const masu_bake_json *model, masu_bake_reader *r, masu_bake_model *out) {
     const char *path = NULL;
+    double spare = 0;
     if (!masu_bake_json_string(model, "group", &path) ||
-        !masu_bake_json_boolean(model, "moving", &out->moving)) {
+        !masu_bake_json_boolean(model, "moving", &out->moving) ||
+        !masu_bake_json_boolean(model, "hidden", &out->hidden) ||
+        !masu_bake_json_number(model, "spare", 0, MASU_BAKE_SPARE_MAX, &spare)) {
         return false;
+    }
+    if (spare != floor(spare)) return masu_bake_json_wrong(model, "spare must be a whole number");
+    out->spare = (uint32_t)spare;
+    if (out->hidden || out->spare) {
+        if (masu_bake_json_has(model, "moving") && !out->moving)
+            return masu_bake_json_wrong(model, "what is \"hidden\" or has \"spare\" ones is \"moving\"");
+        out->moving = true;
     }
     if (!path) return true;
     if (out->moving) return masu_bake_json_wrong(model, "what is \"moving\" is in no \"group\"");
@@ -214,7 +224,7 @@ static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const j
     static const char *const members[] = {"file",      "mesh",      "name",     "group", "moving",
                                           "translate", "rotate",    "rotate_y", "scale", "fit",
                                           "material",  "materials", "occluder", "merge", "lights",
-                                          "traced",    NULL};
+                                          "traced",    "hidden",    "spare",    NULL};
     const char *name = NULL;
     out->where = masu_bake_take_text(&r->out->pool, model->where);
     out->lights = 1;

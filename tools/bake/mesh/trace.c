@@ -2,6 +2,7 @@
  * keeps its material, a vertex its texture coordinates where the scene has any. */
 #define _POSIX_C_SOURCE 200809L
 #include "bake/mesh/trace.h"
+#include "bake/scene/live.h"
 #include "cli/cli.h"
 #include "scene/texture.h"
 
@@ -130,10 +131,12 @@ static const float *texel(const masu_bake_trace *trace, const look *l, uint32_t 
 
 /* ---- triangles ---- */
 
-static uint64_t count_triangles(const masu_bake_content *content, uint64_t *vertices) {
+static uint64_t count_triangles(const masu_bake_content *content, const unsigned char *hidden,
+                                uint64_t *vertices) {
     uint64_t triangles = 0;
     *vertices = 0;
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
+        if (hidden[i]) continue;
         const masu_blob_mesh *m = &MASU_BAKE_MESHES(content)[MASU_BAKE_INSTANCES(content)[i].mesh];
         for (uint32_t k = 0; k < m->primitive_count; k++) {
             const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(content)[m->first_primitive + k];
@@ -207,7 +210,7 @@ static void add_primitive(masu_bake_trace *trace, const masu_bake_content *conte
 }
 
 static void read_triangles(masu_bake_trace *trace, const masu_bake_content *content,
-                           uint64_t triangles, uint64_t vertices) {
+                           const unsigned char *hidden, uint64_t triangles, uint64_t vertices) {
     trace->positions = masu_bake_allocate((size_t)(vertices + 2) * 3 * sizeof(float));
     memset(trace->positions + vertices * 3, 0, 6 * sizeof(float));
     trace->indices = masu_bake_allocate((size_t)triangles * 3 * sizeof(uint32_t));
@@ -218,6 +221,7 @@ static void read_triangles(masu_bake_trace *trace, const masu_bake_content *cont
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
         const masu_blob_instance *instance = &MASU_BAKE_INSTANCES(content)[i];
         const masu_blob_mesh *m = &MASU_BAKE_MESHES(content)[instance->mesh];
+        if (hidden[i]) continue;
         for (uint32_t k = 0; k < m->primitive_count; k++) {
             add_primitive(trace, content, &MASU_BAKE_PRIMITIVES(content)[m->first_primitive + k],
                           instance);
@@ -244,17 +248,20 @@ static bool build(masu_bake_trace *trace) {
 }
 
 masu_bake_trace *masu_bake_trace_make(const masu_bake_content *content) {
-    uint64_t vertices, triangles = count_triangles(content, &vertices);
+    unsigned char *hidden = masu_bake_hidden(content); /* light does not know them */
+    uint64_t vertices, triangles = count_triangles(content, hidden, &vertices);
     if (triangles > MASU_BAKE_TRACE_TRIANGLES || vertices >= UINT32_MAX / 2) {
         masu_cli_error("%llu triangles are drawn, at most %llu can be traced",
                        (unsigned long long)triangles,
                        (unsigned long long)MASU_BAKE_TRACE_TRIANGLES);
+        free(hidden);
         return NULL;
     }
     masu_bake_trace *trace = masu_bake_allocate(sizeof *trace);
     memset(trace, 0, sizeof *trace);
     read_looks(trace, content);
-    read_triangles(trace, content, triangles, vertices);
+    read_triangles(trace, content, hidden, triangles, vertices);
+    free(hidden);
     if (trace->triangles && !build(trace)) {
         masu_cli_error("Embree cannot build a scene of %llu triangles",
                        (unsigned long long)triangles);

@@ -2,6 +2,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "bake/scene/content.h"
 
+#include "bake/scene/live.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,6 +53,8 @@ static const uint32_t strides[MASU_BLOB_KIND_COUNT] = {
     [MASU_BLOB_TRACE_TRIANGLES] = sizeof(masu_blob_trace_triangle),
     [MASU_BLOB_TRACE_MESHES] = sizeof(masu_blob_trace_mesh),
     [MASU_BLOB_TRACE_INSTANCES] = sizeof(uint32_t),
+    [MASU_BLOB_MODELS] = sizeof(masu_blob_model),
+    [MASU_BLOB_MODEL_NODES] = sizeof(masu_blob_model_node),
     [MASU_BLOB_REFLECTIONS] = sizeof(masu_blob_reflections),
     [MASU_BLOB_TRACE_TEXTURES] = sizeof(masu_blob_trace_texture),
     [MASU_BLOB_TRACE_TEXELS] = sizeof(uint32_t),
@@ -276,6 +280,7 @@ void masu_bake_sort_instances(masu_bake_content *content) {
         masu_blob_light *light = &MASU_BAKE_LIGHTS(content)[i];
         if (light->parent != MASU_BLOB_NONE) light->parent = place[light->parent];
     }
+    masu_bake_renumber_models(content, place);
     free(next);
     free(place);
     free(sorted);

@@ -82,6 +82,8 @@ const char *masu_bake_kind_name(uint32_t kind) {
         [MASU_BLOB_TRACE_TRIANGLES] = "trace_triangles",
         [MASU_BLOB_TRACE_MESHES] = "trace_meshes",
         [MASU_BLOB_TRACE_INSTANCES] = "trace_instances",
+        [MASU_BLOB_MODELS] = "models",
+        [MASU_BLOB_MODEL_NODES] = "model_nodes",
         [MASU_BLOB_REFLECTIONS] = "reflections",
         [MASU_BLOB_TRACE_TEXTURES] = "trace_textures",
         [MASU_BLOB_TRACE_TEXELS] = "trace_texels",

@@ -1,0 +1,174 @@
+/* models.c: see models.h. */
+#include "frame/models.h"
+
+#include "base/error.h"
+
+#include <math.h>
+#include <string.h>
+
+void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan) {
+    const masu_scene *scene = &plan->scene;
+    s->models = masu_arena_take(arena, "models", scene->models, sizeof *s->models, 8);
+    s->nodes = masu_arena_take(arena, "model nodes", scene->model_nodes, sizeof *s->nodes, 8);
+    s->of_instance = masu_arena_take(arena, "models of instances",
+                                     scene->models ? scene->instances : 0, sizeof *s->of_instance, 4);
+}
+
+static uint64_t hash_of(const masu_scene_view *v, uint32_t name) {
+    return name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
+}
+
+static void multiply(const float a[12], const float b[12], float out[12]) {
+    for (uint32_t i = 0; i < 12; i += 4) {
+        for (uint32_t j = 0; j < 4; j++) {
+            double sum = j == 3 ? (double)a[i + 3] : 0.0;
+            for (uint32_t k = 0; k < 3; k++) sum += (double)a[i + k] * (double)b[4 * k + j];
+            out[i + j] = (float)sum;
+        }
+    }
+}
+
+/* Where each node of a model is, by the model's own place. 0: one is nowhere. */
+static int place(masu_models *s, uint32_t model) {
+    const masu_placed_model *m = &s->models[model];
+    int finite = 1;
+    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
+        masu_node *node = &s->nodes[n];
+        const float *above =
+            node->parent == MASU_BLOB_NONE ? m->rows : s->nodes[node->parent].world;
+        multiply(above, node->local, node->world);
+        for (uint32_t k = 0; k < 12; k++) finite &= isfinite(node->world[k]) != 0;
+    }
+    return finite;
+}
+
+void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                      const masu_scene_view *v) {
+    const masu_scene *scene = &plan->scene;
+    for (uint32_t i = 0; scene->models && i < scene->instances; i++)
+        s->of_instance[i] = MASU_BLOB_NONE;
+    for (uint32_t n = 0; n < scene->model_nodes; n++) {
+        const masu_blob_model_node *from = &v->model_nodes[n];
+        masu_node *to = &s->nodes[n];
+        *to = (masu_node){
+            .name = hash_of(v, from->name), .parent = from->parent, .instance = from->instance};
+        memcpy(to->local, from->local, sizeof to->local);
+    }
+    for (uint32_t i = 0; i < scene->models; i++) {
+        const masu_blob_model *from = &v->models[i];
+        masu_placed_model *to = &s->models[i];
+        *to = (masu_placed_model){.name = hash_of(v, from->name),
+                                  .first_node = from->first_node,
+                                  .node_count = from->node_count,
+                                  .like = from->like,
+                                  .shown = 1};
+        memcpy(to->rows, from->transform, sizeof to->rows);
+        for (uint32_t n = to->first_node; n < to->first_node + to->node_count; n++) {
+            if (s->nodes[n].instance != MASU_BLOB_NONE) s->of_instance[s->nodes[n].instance] = i;
+        }
+        (void)place(s, i); /* what the instances say already; checked when the scene was bound */
+        if (from->flags & MASU_MODEL_HIDDEN) masu_models_show(s, in, plan, i, 0);
+    }
+}
+
+uint32_t masu_models_find(const masu_models *s, const masu_frame_plan *plan, const char *name) {
+    uint64_t hash = masu_fnv1a64(name, strlen(name));
+    for (uint32_t i = 0; i < plan->scene.models; i++) {
+        if (s->models[i].name == hash) return i;
+    }
+    return UINT32_MAX;
+}
+
+uint32_t masu_models_node(const masu_models *s, uint32_t model, const char *name) {
+    const masu_placed_model *m = &s->models[model];
+    uint64_t hash = masu_fnv1a64(name, strlen(name));
+    for (uint32_t i = 0; i < m->node_count; i++) {
+        if (s->nodes[m->first_node + i].name == hash) return i;
+    }
+    return UINT32_MAX;
+}
+
+/* Replaces 12 floats of a model by `rows` and moves its instances; puts them back where that fails. */
+static masu_result replace(masu_models *s, masu_instances *in, masu_bounds *b,
+                           const masu_frame_plan *plan, uint32_t model, float *where,
+                           const float rows[12], masu_detail *detail) {
+    const masu_placed_model *m = &s->models[model];
+    float before[12];
+    for (uint32_t k = 0; k < 12; k++) {
+        if (isfinite(rows[k])) continue;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 12, k,
+                         "model %u: rows[%u] is %g, not finite", model + 1, k, (double)rows[k]);
+    }
+    memcpy(before, where, sizeof before);
+    memcpy(where, rows, sizeof before);
+    if (!place(s, model)) {
+        memcpy(where, before, sizeof before);
+        (void)place(s, model);
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 0, 0,
+                         "model %u: with these rows a node of it is beyond what a float holds",
+                         model + 1);
+    }
+    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
+        const masu_node *node = &s->nodes[n];
+        if (node->instance == MASU_BLOB_NONE) continue;
+        masu_instances_place(in, plan, node->instance, node->world);
+        masu_bounds_move(b, plan, in, node->instance);
+    }
+    return MASU_OK;
+}
+
+masu_result masu_models_move(masu_models *s, masu_instances *in, masu_bounds *b,
+                             const masu_frame_plan *plan, uint32_t model, const float rows[12],
+                             masu_detail *detail) {
+    return replace(s, in, b, plan, model, s->models[model].rows, rows, detail);
+}
+
+masu_result masu_models_check_node(const masu_models *s, uint32_t model, uint32_t node,
+                                   masu_detail *detail) {
+    uint32_t count = s->models[model].node_count;
+    if (node < count) return MASU_OK;
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, "node", count - 1, node,
+                     "model %u: node %u does not exist, the last one is %u", model + 1, node,
+                     count - 1);
+}
+
+masu_result masu_models_move_node(masu_models *s, masu_instances *in, masu_bounds *b,
+                                  const masu_frame_plan *plan, uint32_t model, uint32_t node,
+                                  const float rows[12], masu_detail *detail) {
+    float *local = s->nodes[s->models[model].first_node + node].local;
+    return replace(s, in, b, plan, model, local, rows, detail);
+}
+
+void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                      uint32_t model, int shown) {
+    masu_placed_model *m = &s->models[model];
+    m->shown = shown != 0;
+    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
+        if (s->nodes[n].instance != MASU_BLOB_NONE)
+            masu_instances_show(in, plan, s->nodes[n].instance, shown);
+    }
+}
+
+uint32_t masu_models_spare(const masu_models *s, const masu_frame_plan *plan, uint32_t like) {
+    for (uint32_t i = 0; i < plan->scene.models; i++) {
+        if (s->models[i].like == s->models[like].like && !s->models[i].shown) return i;
+    }
+    return UINT32_MAX;
+}
+
+void masu_models_box(const masu_models *s, const masu_bounds *b, uint32_t model, float low[3],
+                     float high[3]) {
+    const masu_placed_model *m = &s->models[model];
+    int any = 0;
+    for (uint32_t k = 0; k < 3; k++) low[k] = high[k] = m->rows[4 * k + 3];
+    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
+        float box[6];
+        if (s->nodes[n].instance == MASU_BLOB_NONE) continue;
+        masu_bounds_of(b, s->nodes[n].instance, box);
+        for (uint32_t k = 0; k < 3; k++) {
+            low[k] = any ? fminf(low[k], box[k] - box[3 + k]) : box[k] - box[3 + k];
+            high[k] = any ? fmaxf(high[k], box[k] + box[3 + k]) : box[k] + box[3 + k];
+        }
+        any = 1;
+    }
+}

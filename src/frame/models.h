@@ -1,0 +1,61 @@
+/* models.h: models of several nodes, which are moved, shown and hidden as one: those that the scene says
+ * move. A node has its place relative to the node above it, a model its own place in the world; from both
+ * follow the transforms of instances (instances.h), whose truth they become. */
+#ifndef MASU_MODELS_H
+#define MASU_MODELS_H
+
+#include "frame/bounds.h"
+#include "frame/instances.h"
+
+/* Nodes of one model lie side by side, each behind the one above it. */
+typedef struct masu_node {
+    float local[12]; /* to the node above; of the first ones to the model */
+    float world[12];
+    uint64_t name;     /* FNV-1a 64, 0: none */
+    uint32_t parent;   /* of all nodes, or MASU_BLOB_NONE */
+    uint32_t instance; /* or MASU_BLOB_NONE */
+} masu_node;
+
+typedef struct masu_placed_model {
+    float rows[12]; /* to world */
+    uint64_t name;
+    uint32_t first_node, node_count;
+    uint32_t like;  /* the first model of its kind: spare ones of a kind stand in for each other */
+    uint32_t shown;
+} masu_placed_model;
+
+typedef struct masu_models {
+    masu_placed_model *models;
+    masu_node *nodes;
+    uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
+} masu_models;
+
+void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);
+/* After the instances: those of models that start hidden are hidden here. */
+void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                      const masu_scene_view *v);
+
+uint32_t masu_models_find(const masu_models *s, const masu_frame_plan *plan, const char *name);
+/* Of a model's nodes, the first of that name; UINT32_MAX: none. */
+uint32_t masu_models_node(const masu_models *s, uint32_t model, const char *name);
+
+/* Whether a model has such a node. */
+masu_result masu_models_check_node(const masu_models *s, uint32_t model, uint32_t node,
+                                   masu_detail *detail);
+
+/* Places all nodes anew. What is not finite, or would not be where a node is, is refused, and all stays. */
+masu_result masu_models_move(masu_models *s, masu_instances *in, masu_bounds *b,
+                             const masu_frame_plan *plan, uint32_t model, const float rows[12],
+                             masu_detail *detail);
+masu_result masu_models_move_node(masu_models *s, masu_instances *in, masu_bounds *b,
+                                  const masu_frame_plan *plan, uint32_t model, uint32_t node,
+                                  const float rows[12], masu_detail *detail);
+void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
+                      uint32_t model, int shown);
+/* A hidden one of that kind, or UINT32_MAX. */
+uint32_t masu_models_spare(const masu_models *s, const masu_frame_plan *plan, uint32_t like);
+/* What is around all that it shows, or would. */
+void masu_models_box(const masu_models *s, const masu_bounds *b, uint32_t model, float low[3],
+                     float high[3]);
+
+#endif

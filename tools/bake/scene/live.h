@@ -1,0 +1,26 @@
+/* live.h: the models of a scene that its host moves, shows and hides as one: MODELS and MODEL_NODES of the
+ * blob. The content owns all of it; nothing here can fail. */
+#ifndef MASU_BAKE_LIVE_H
+#define MASU_BAKE_LIVE_H
+
+#include "bake/scene/content.h"
+
+/* Makes a model of the instances from `first` on, which have just been placed as `piece` has them: each is
+ * a node, below that of its parent. translation: of the model's own space to the world. `like`: the index of
+ * the first model of its kind, or MASU_BLOB_NONE: this is it. Returns its index. */
+uint32_t masu_bake_add_model(masu_bake_content *content, const masu_bake_content *piece,
+                             uint64_t first, masu_bake_vec3 translation, const char *name,
+                             bool hidden, uint32_t like);
+
+/* Lights of the model that no instance carries, those from `first` on, are carried by its first one: they
+ * move and hide with it. */
+void masu_bake_carry_lights(masu_bake_content *content, uint64_t first_light,
+                            uint64_t first_instance);
+
+/* After the instances have got other numbers: place[old] = new. */
+void masu_bake_renumber_models(masu_bake_content *content, const uint32_t *place);
+
+/* One byte for each instance: 1 if it is hidden at first. The caller frees it. */
+unsigned char *masu_bake_hidden(const masu_bake_content *content);
+
+#endif
