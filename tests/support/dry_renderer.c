@@ -27,7 +27,7 @@ static VkCommandBuffer frame_handles[MASU_MAX_FLIGHT * MASU_MAX_RUNGS * MASU_MAX
 static VkCommandBuffer load_handles[16384];
 static struct masu_instance_data instances[4];
 static uint64_t instance_names[4];
-static uint8_t instance_dirty[4];
+static uint8_t instance_flags[4];
 static masu_blob_sdf_param params[4];
 static masu_batch batches[4];
 static masu_cull_node groups[4];
@@ -78,7 +78,7 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.device.loads = loads;
     m.instances.now = instances;
     m.instances.names = instance_names;
-    m.instances.dirty = instance_dirty;
+    m.instances.flags = instance_flags;
     m.camera.keys = keys;
     m.sdf.params = params;
     m.draws.batches = batches;
