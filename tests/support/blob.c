@@ -186,6 +186,19 @@ static const masu_blob_trace_mesh trace_meshes[] = {{0, 2, 0, 3, 2, 0}, {2, 1, 3
 static const masu_blob_reflections reflections[] = {{0.5f, 100.0f, 0.25f, 0}};
 static const uint32_t trace_instances[] = {1, 2};
 
+static const masu_blob_model models[] = {
+    {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 1, NAME_PLATE, 0, 0, {0}},
+    {{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, -4}, 1, 1, MASU_BLOB_NONE, MASU_MODEL_HIDDEN, 0, {0}},
+    {{1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1, 0}, 2, 2, NAME_LID, 0, 2, {0}},
+};
+
+static const masu_blob_model_node model_nodes[] = {
+    {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, MASU_BLOB_NONE, 0, NAME_PLATE, 0},
+    {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, MASU_BLOB_NONE, 1, MASU_BLOB_NONE, 0},
+    {{0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0}, MASU_BLOB_NONE, MASU_BLOB_NONE, NAME_BEND, 0},
+    {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 2, 2, NAME_LID, 0},
+};
+
 /* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
 static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
 
@@ -227,6 +240,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if ((parts & with_textures) == with_textures) sections += 4;
     int trace = parts & SUPPORT_RASTER && parts & SUPPORT_TRACE;
     if (trace) sections += 5;
+    int live = parts & SUPPORT_RASTER && parts & SUPPORT_LIVE;
+    if (live) sections += 2;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -299,6 +314,10 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_TRACE_MESHES, trace_meshes);
         ADD(MASU_BLOB_TRACE_INSTANCES, trace_instances);
         ADD(MASU_BLOB_REFLECTIONS, reflections);
+    }
+    if (live) {
+        ADD(MASU_BLOB_MODELS, models);
+        ADD(MASU_BLOB_MODEL_NODES, model_nodes);
     }
     support_blob_seal(blob->bytes, blob->size);
 }

@@ -21,6 +21,9 @@
  *   trees      nodes 0, 1: mesh 0, depth 2: 0 has node 1 and triangle 0, 1 has triangles 1 and 2 in one leaf
  *              node 2: mesh 1: a leaf of one triangle       traced: instances 1 and 2
  *
+ *   models     0: instance 0   1: instance 1, hidden, of the kind of 0   2 "lid": a node "bend" without an
+ *              instance, and below it "lid" with instance 2
+ *
  * SUPPORT_DETAIL adds primitive 3, a triangle of the last square: the LOD of mesh 1. */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
@@ -41,6 +44,7 @@ enum {
     SUPPORT_TEXTURES = 32, /* with SUPPORT_RASTER: "steel" has maps, and is a mask */
     SUPPORT_DETAIL = 64, /* with SUPPORT_RASTER: a LOD. Not part of SUPPORT_ALL, nor is the next */
     SUPPORT_TRACE = 256, /* with SUPPORT_RASTER: trees for rays. Not part of SUPPORT_ALL */
+    SUPPORT_LIVE = 512, /* with SUPPORT_RASTER: models that move. Not part of SUPPORT_ALL */
     SUPPORT_LIGHTING = 128 /* with SUPPORT_RASTER: a small relief, lights, probes, a sky from a picture */
 };
 

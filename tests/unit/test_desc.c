@@ -650,6 +650,7 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         uint64_t needed;
     } rows[] = {{"vertices", 11},       {"indices", 15},
                 {"materials", 2},       {"instances", 3},
+                {"models", 2},          {"model_nodes", 7},
                 {"sdf_params", 2},      {"shadow_cascades", 3},
                 {"shadow_resolution", 1024}, {"probes", 6},
                 {"textures", 4},        {"texture_bytes", 1000},
@@ -669,6 +670,7 @@ static void a_scene_beyond_a_limit_is_refused_with_both_numbers(void **state) {
         support_scene.shadow_resolution = 1024;
         support_scene.transparents = 6, support_scene.transparent_sets = 1;
         support_scene.probes = 6;
+        support_scene.models = 2, support_scene.model_nodes = 7;
         support_scene.lights = 5;
         support_scene.trace_triangles = 12;
         support_scene.trace_instances = 2;

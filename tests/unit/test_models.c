@@ -1,0 +1,218 @@
+/* test_models.c: models that move as one: the rules for them in a blob, each broken alone; what moving, hiding
+ * and adding them does to the host's truth; what is refused, and that nothing has changed then. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/bind.h"
+#include "support/dry_renderer.h"
+
+/* ---- Rules of the blob ----------------------------------------------------------------------- */
+
+static support_blob broken;
+
+#define MODEL ((masu_blob_model *)support_blob_find(&broken, MASU_BLOB_MODELS))
+#define NODE ((masu_blob_model_node *)support_blob_find(&broken, MASU_BLOB_MODEL_NODES))
+
+#define REFUSED(section, element, ...)                                                             \
+    do {                                                                                           \
+        masu_scene scene;                                                                          \
+        masu_detail detail;                                                                        \
+        support_blob_write(&broken, SUPPORT_ALL | SUPPORT_LIVE);                                   \
+        __VA_ARGS__;                                                                               \
+        support_blob_seal(broken.bytes, broken.size);                                              \
+        if (!support_bind(broken.bytes, broken.size, &scene, &detail))                             \
+            fail_msg("%s was accepted", #__VA_ARGS__);                                             \
+        assert_int_equal(detail.result, MASU_ERROR_SCENE);                                         \
+        if (strcmp(detail.what, section) || detail.given != (element))                             \
+            fail_msg("%s was refused as %s", #__VA_ARGS__, detail.text);                           \
+    } while (0)
+
+static void a_blob_tells_its_models(void **state) {
+    (void)state;
+    masu_scene scene;
+    support_blob_write(&broken, SUPPORT_ALL | SUPPORT_LIVE);
+    support_accepted(&broken, &scene);
+    assert_int_equal(scene.models, 3);
+    assert_int_equal(scene.model_nodes, 4);
+    scene.blob = broken.bytes;
+    assert_string_equal(masu_scene_model_name(&scene, 0), "plate");
+    assert_string_equal(masu_scene_model_name(&scene, 1), "");
+    assert_string_equal(masu_scene_model_name(&scene, 2), "lid");
+    assert_string_equal(masu_scene_model_name(&scene, 3), "");
+    assert_string_equal(masu_scene_instance_name(&scene, 2), "lid");
+    assert_string_equal(masu_scene_instance_name(&scene, 3), "");
+    assert_string_equal(masu_scene_light_name(&scene, 0), "");
+    assert_string_equal(masu_scene_model_name(NULL, 0), "");
+}
+
+static void models_that_are_none_are_refused(void **state) {
+    (void)state;
+    REFUSED("models", 0, support_blob_drop(&broken, MASU_BLOB_MODEL_NODES));
+    REFUSED("models", 0, support_blob_drop(&broken, MASU_BLOB_MODELS));
+    REFUSED("models", 1, MODEL[1].transform[7] = (float)NAN);
+    REFUSED("models", 2, MODEL[2].name = 1u << 20);
+    REFUSED("models", 0, MODEL[0].flags = 2);
+    REFUSED("models", 0, MODEL[0].first_node = 1);
+    REFUSED("models", 1, MODEL[1].node_count = 0);
+    REFUSED("models", 2, MODEL[2].node_count = 3);
+    REFUSED("models", 2, MODEL[2].node_count = UINT32_MAX);
+    REFUSED("model nodes", 3, MODEL[2].node_count = 1);
+    REFUSED("models", 0, MODEL[0].like = 1);
+    REFUSED("models", 1, MODEL[1].like = UINT32_MAX);
+    REFUSED("models", 2, MODEL[2].like = 0);
+    REFUSED("models", 2, MODEL[2].like = 1); /* which is of another kind itself */
+    REFUSED("models", 1, NODE[1].instance = 2); /* another mesh than its kind's */
+    REFUSED("models", 1, NODE[1].instance = MASU_BLOB_NONE);
+    REFUSED("model nodes", 0, NODE[0].local[0] = INFINITY);
+    REFUSED("model nodes", 3, NODE[3].instance = 3);
+    REFUSED("model nodes", 3, NODE[3].parent = 3);
+    REFUSED("model nodes", 3, NODE[3].parent = 1); /* of another model */
+    REFUSED("model nodes", 2, NODE[2].parent = 3);
+    REFUSED("model nodes", 2, NODE[2].name = 1u << 20);
+}
+
+/* ---- What they do ---------------------------------------------------------------------------- */
+
+static const float there[12] = {1, 0, 0, 10, 0, 1, 0, 20, 0, 0, 1, 30};
+
+static void assert_rows(const float *rows, const float *expected) {
+    for (uint32_t k = 0; k < 12; k++) {
+        if (rows[k] != expected[k])
+            fail_msg("rows[%u] is %g, expected %g", k, (double)rows[k], (double)expected[k]);
+    }
+}
+
+static void models_and_nodes_are_found(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
+    masu_model lid = masu_model_find(&m, "lid");
+    assert_int_equal(lid.id, masu_model_at(&m, 2).id);
+    assert_int_equal(masu_model_find(&m, "steel").id, 0);
+    assert_int_equal(masu_model_at(&m, 3).id, 0);
+    assert_int_equal(masu_model_node_find(&m, lid, "bend"), 0);
+    assert_int_equal(masu_model_node_find(&m, lid, "lid"), 1);
+    assert_int_equal(masu_model_node_find(&m, lid, "plate"), MASU_NODE_NONE);
+    assert_int_equal(masu_model_node_find(&m, (masu_model){0}, "lid"), MASU_NODE_NONE);
+    masu_node_state node;
+    assert_int_equal(masu_model_node_get(&m, lid, 1, &node), MASU_OK);
+    assert_int_equal(node.parent, 0);
+    assert_int_equal(node.instance.id, masu_instance_find(&m, "lid").id);
+    masu_instance_state instance;
+    assert_int_equal(masu_instance_get(&m, node.instance, &instance), MASU_OK);
+    assert_int_equal(instance.model.id, lid.id);
+    assert_int_equal(instance.mesh, 1);
+    assert_int_equal(instance.index, 2);
+    assert_rows(instance.rows, node.world);
+    assert_true(instance.shown);
+}
+
+/* The lid lies two nodes deep: turned about y by the node above, carried by the model. */
+static void a_model_carries_its_nodes(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
+    masu_model lid = masu_model_find(&m, "lid");
+    masu_instance instance = masu_instance_find(&m, "lid");
+    masu_instance_state is;
+    masu_model_state model;
+    assert_int_equal(masu_model_set_transform(&m, lid, there), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, instance, &is), MASU_OK);
+    const float turned[12] = {0, 0, 1, 10, 0, 1, 0, 20, -1, 0, 0, 30};
+    assert_rows(is.rows, turned);
+    assert_int_equal(masu_model_get(&m, lid, &model), MASU_OK);
+    assert_rows(model.rows, there);
+    assert_int_equal(model.nodes, 2);
+    for (uint32_t k = 0; k < 3; k++) { /* its mesh is 4 x 4 x 0, turned */
+        const float half[3] = {0, 2, 2};
+        assert_true(fabsf(model.box_low[k] - (there[4 * k + 3] - half[k])) < 1e-4f);
+        assert_true(fabsf(model.box_high[k] - (there[4 * k + 3] + half[k])) < 1e-4f);
+        assert_true(model.box_low[k] == is.box_low[k] && model.box_high[k] == is.box_high[k]);
+    }
+    const float up[12] = {1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 2};
+    assert_int_equal(masu_model_node_set(&m, lid, 1, up), MASU_OK);
+    assert_int_equal(masu_instance_get(&m, instance, &is), MASU_OK);
+    const float raised[12] = {0, 0, 1, 12, 0, 1, 0, 21, -1, 0, 0, 30}; /* z of the node is x out here */
+    assert_rows(is.rows, raised);
+    /* The others have not moved. */
+    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 0), &is), MASU_OK);
+    const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    assert_rows(is.rows, unit);
+}
+
+static void what_cannot_be_changes_nothing(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
+    masu_model lid = masu_model_find(&m, "lid"), none = {0}, beyond = {lid.id + 1};
+    masu_model_state before, after;
+    masu_node_state node;
+    assert_int_equal(masu_model_get(&m, lid, &before), MASU_OK);
+    float bad[12];
+    memcpy(bad, there, sizeof bad);
+    bad[5] = (float)NAN;
+    assert_int_equal(masu_model_set_transform(&m, lid, bad), MASU_ERROR_ARGUMENT);
+    assert_non_null(strstr(masu_last_error(&m)->text, "rows[5] is nan"));
+    assert_int_equal(masu_model_node_set(&m, lid, 0, bad), MASU_ERROR_ARGUMENT);
+    const float far_out[12] = {3e38f, 0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 3e38f, 0};
+    assert_int_equal(masu_model_node_set(&m, lid, 0, far_out), MASU_OK); /* it is still a float */
+    assert_int_equal(masu_model_set_transform(&m, lid, far_out), MASU_ERROR_ARGUMENT);
+    assert_non_null(strstr(masu_last_error(&m)->text, "beyond"));
+    assert_int_equal(masu_model_get(&m, lid, &after), MASU_OK);
+    assert_rows(after.rows, before.rows);
+    assert_int_equal(masu_model_set_transform(&m, none, there), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(&m, beyond, there), MASU_ERROR_ARGUMENT);
+    assert_string_equal(masu_last_error(&m)->what, "model");
+    assert_int_equal(masu_model_node_set(&m, lid, 2, there), MASU_ERROR_ARGUMENT);
+    assert_non_null(strstr(masu_last_error(&m)->text, "node 2 does not exist, the last one is 1"));
+    assert_int_equal(masu_model_node_get(&m, lid, UINT32_MAX, &node), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_model_set_transform(&m, lid, NULL), MASU_ERROR_ARGUMENT);
+    assert_string_equal(masu_last_error(&m)->text, "rows is NULL");
+    assert_int_equal(masu_model_get(&m, lid, NULL), MASU_ERROR_ARGUMENT);
+    assert_string_equal(masu_last_error(&m)->text, "out is NULL");
+    assert_int_equal(masu_model_set_transform(NULL, lid, there), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_show(&m, (masu_instance){0}, 1), MASU_ERROR_ARGUMENT);
+}
+
+/* Hidden ones of a kind are shown one after the other; the last is the last. */
+static void a_spare_one_is_shown(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL | SUPPORT_LIVE, 0);
+    masu_model plate = masu_model_find(&m, "plate"), added = {7};
+    masu_instance_state is;
+    assert_int_equal(m.instances.hidden_count, 1);
+    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 1), &is), MASU_OK);
+    assert_false(is.shown);
+    assert_int_equal(masu_model_add(&m, plate, there, &added), MASU_OK);
+    assert_int_equal(added.id, masu_model_at(&m, 1).id);
+    assert_int_equal(masu_instance_get(&m, masu_instance_at(&m, 1), &is), MASU_OK);
+    assert_true(is.shown);
+    assert_rows(is.rows, there);
+    assert_int_equal(m.instances.hidden_count, 0);
+    assert_int_equal(masu_model_add(&m, plate, there, &added), MASU_ERROR_LIMIT);
+    assert_int_equal(added.id, 0);
+    assert_int_equal(masu_model_show(&m, plate, 0), MASU_OK);
+    assert_int_equal(masu_model_show(&m, plate, 0), MASU_OK); /* once is enough */
+    assert_int_equal(m.instances.hidden_count, 1);
+    assert_int_equal(masu_model_add(&m, masu_model_at(&m, 1), there, &added), MASU_OK);
+    assert_int_equal(added.id, plate.id);
+    /* Nothing stands in for what is of another kind. */
+    assert_int_equal(masu_model_show(&m, plate, 0), MASU_OK);
+    assert_int_equal(masu_model_add(&m, masu_model_find(&m, "lid"), there, &added), MASU_ERROR_LIMIT);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_blob_tells_its_models),
+        cmocka_unit_test(models_that_are_none_are_refused),
+        cmocka_unit_test(models_and_nodes_are_found),
+        cmocka_unit_test(a_model_carries_its_nodes),
+        cmocka_unit_test(what_cannot_be_changes_nothing),
+        cmocka_unit_test(a_spare_one_is_shown),
+    };
+    return cmocka_run_group_tests(tests, support_make_edge, NULL);
+}
