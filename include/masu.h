@@ -51,8 +51,8 @@
  *  - Handles and callbacks of the description (allocator, log, clock, target and source views) must
  *    live until masu_destroy; the description itself, its arrays and pipeline_cache only during the
  *    call.
- *  - Another output size, other targets or another scene: masu_destroy, then masu_init again, in the
- *    same blocks if they are large enough for all. A frame that is not submitted after all (a
+ *  - Another output size or other targets: masu_resize. Beyond what was planned for, or another scene:
+ *    masu_destroy, then masu_init again, in the same blocks if they are large enough for all. A frame that is not submitted after all (a
  *    swapchain out of date) still counts: its slot's numbers are those of an older frame.
  *
  * CONVENTIONS
@@ -852,6 +852,9 @@ typedef struct masu_desc {
     uint64_t device_budget; /* bytes over all roles; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
     uint32_t analytic_sky; /* not 0: frames may have light.turbidity where the scene has none */
+    /* not 0: masu_resize may make the output smaller, and larger again up to `output`. 32 host bytes for each
+     * draw of a G-buffer pass, LODs too, and a bounds test where the last pass stores. Scenes alone. */
+    uint32_t resizable;
     /* What finds the polygons that reflections show: ray queries of the device, or the library's own
      * tree in a compute shader, which needs nothing of the device. Both find the same. AUTO:
      * queries, if vulkan.ray_query says that they are there, the device is a discrete or integrated
@@ -931,6 +934,18 @@ MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
 /* Destroys every Vulkan object of the renderer and frees device memory that masu_init allocated.
  * The device must be idle. NULL is fine. */
 MASU_API void masu_destroy(masu_renderer *renderer);
+
+/* Another output size and other targets, without a pipeline, an allocation or a load: the recordings are made
+ * again (a millisecond or some). Takes desc.resizable and a finished masu_load; the blob may be gone. `output`:
+ * 1 x 1 to desc.output. `targets`: as many, of the same format, storage, layout and encoding as the
+ * description's; format, layout and encoding may be 0, for these. Its arrays are read during the call, its
+ * handles must live until the next masu_resize or masu_destroy. The device must be idle. The next frame is a
+ * cut; frames, slots, transforms, and what the governor knows go on. MASU_ERROR_ARGUMENT: something other
+ * than said. MASU_ERROR_LIMIT: larger than desc.output: masu_destroy and masu_init. MASU_ERROR_STATE: not
+ * resizable, or not loaded. All of these leave everything as it was. MASU_ERROR_VULKAN / _DEVICE_LOST: a call
+ * has failed half-way; all that is left to do is masu_destroy. */
+MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
+                                               const masu_targets *targets, masu_detail *detail);
 
 /* The description with every default filled in, as masu_init uses it. Needs no device. */
 MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);

@@ -142,7 +142,8 @@ bool is_known(vec2 before, around a, float growth)
  * the surroundings. */
 vec4 history_at(vec2 place, vec2 size, out vec3 surroundings)
 {
-    vec2 texel = 1.0 / size;
+    vec2 texel = 1.0 / vec2(textureSize(history_image, 0)); /* which may be larger: masu_resize */
+    vec2 last = size - 0.5;
     vec2 base = floor(place - 0.5) + 0.5;
     vec2 t = place - base;
     vec2 w0 = t * (-0.5 + t * (1.0 - 0.5 * t));
@@ -150,7 +151,8 @@ vec4 history_at(vec2 place, vec2 size, out vec3 surroundings)
     vec2 w3 = t * t * (0.5 * t - 0.5);
     vec2 w2 = 1.0 - w0 - w1 - w3;
     vec2 w12 = w1 + w2;
-    vec2 middle = (base + w2 / w12) * texel, first = (base - 1.0) * texel, fourth = (base + 2.0) * texel;
+    vec2 middle = min(base + w2 / w12, last) * texel;
+    vec2 first = min(base - 1.0, last) * texel, fourth = min(base + 2.0, last) * texel;
     vec4 here = textureLod(history_image, middle, 0.0);
     vec3 left = textureLod(history_image, vec2(first.x, middle.y), 0.0).rgb;
     vec3 right = textureLod(history_image, vec2(fourth.x, middle.y), 0.0).rgb;

@@ -349,12 +349,13 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
         return result;
     }
+    m->timeline.cut = 0;
     m->timeline.slots[f.slot].frame = m->timeline.frame++;
     m->timeline.slots[f.slot].rung = f.desc.rung;
     if (m->governor) {
         if (frame->rung != MASU_RUNG_AUTO)
             masu_governor_override(m->governor, f.number, frame->rung);
-        if (frame->cut) masu_governor_cut(m->governor, f.number);
+        if (f.cut && f.number) masu_governor_cut(m->governor, f.number);
     }
     *commands = (masu_commands){pick_recording(m, &f), f.slot, f.desc.rung, f.number};
     return MASU_OK;

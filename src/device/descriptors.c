@@ -154,7 +154,7 @@ masu_result masu_make_pass_sets(masu_device *m, const masu_rung_plan *rp, uint32
         uint32_t targets = m->plan->desc.targets.count, own = writes_target(rp, p) ? targets : 1;
         for (uint32_t t = 0; t < own; t++) {
             VkDescriptorSet *set = &m->pass_sets[(*next)++];
-            masu_result result = allocate_set(m, m->pass_layouts[p], set, detail);
+            masu_result result = *set ? MASU_OK : allocate_set(m, m->pass_layouts[p], set, detail);
             if (result) return result;
             write_pass_set(m, rp, p, t, *set);
             sets[t][p] = *set;

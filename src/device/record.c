@@ -89,7 +89,7 @@ SAME_PLACE(instances);
 
 /* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the
  * masks. */
-static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
+static uint32_t sweep_of(const masu_draw_look *material, uint32_t view) {
     if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
     if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
     if (material->flags & MASU_MATERIAL_IS_MASK) return 1 + MASU_TEXTURED_MASK;
@@ -99,7 +99,8 @@ static uint32_t sweep_of(const masu_blob_material *material, uint32_t view) {
 /* A material's flags and layers into the push constants, and its textures bound where they are not
  * those of the draw before. */
 static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
-                      const masu_blob_material *material, struct masu_push_gbuffer *push, uint32_t *bound) {
+                      const masu_draw_look *material, struct masu_push_gbuffer *push,
+                      uint32_t *bound) {
     push->flags = (material->flags & 0xFFFFFFu) | material->occlusion_layer
                                                        << MASU_MAP_OCCLUSION_SHIFT;
     push->layers = material->layers;
@@ -118,7 +119,9 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
 static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
-    masu_scene_view v = masu_scene_look(m->plan->desc.scene);
+    int kept = m->plan->desc.resizable != 0; /* then the blob may be gone */
+    masu_scene_view v = {0};
+    if (!kept) v = masu_scene_look(m->plan->desc.scene);
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
     int sun = masu_is_cascade(pass);
@@ -147,16 +150,14 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
         const masu_batch *batch = &rec->draws->batches[b];
         push.instances = lists + batch->first_listed;
         for (uint32_t d = 0; d < batch->draw_count; d++) {
-            uint32_t number = v.primitives[batch->first_primitive + d].material;
-            if (sweep_of(&v.materials[number], view) != sweep) continue;
+            masu_draw_look look = kept ? rec->draws->looks[batch->first_draw + d]
+                                       : masu_draw_look_of(&v, batch->first_primitive + d);
+            if (sweep_of(&look, view) != sweep) continue;
             if (!sun) {
-                uint32_t meso = v.materials[number].meso;
-                push.material = number;
-                /* The element of the buffer of materials where its curves begin; 0: none. */
-                push.meso =
-                    meso == MASU_BLOB_NONE ? 0 : (uint32_t)(v.material_count + 2 * (uint64_t)meso);
+                push.material = look.material;
+                push.meso = look.meso;
             }
-            if (sweep) bind_maps(rec, layout, &v.materials[number], &push, &bound);
+            if (sweep) bind_maps(rec, layout, &look, &push, &bound);
             memcpy(&block.own, &push, sizeof push);
             vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
             vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS],
@@ -513,12 +514,11 @@ static masu_result make_queries(masu_device *m, masu_detail *detail) {
     return MASU_FAILED(r, m->queries) ? masu_fail_vulkan(detail, r, "vkCreateQueryPool") : MASU_OK;
 }
 
-masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+/* All of them, with the sets of passes as the targets are now. */
+static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_detail *detail) {
     const masu_desc *d = &m->plan->desc;
     uint32_t rungs = d->rung_count, targets = d->targets.count, recordings = m->plan->recordings;
-    masu_result result = masu_make_sets(m, detail);
-    if (!result) result = make_queries(m, detail);
-    if (!result) result = make_command_buffers(m, d->frames_in_flight * recordings, detail);
+    masu_result result = MASU_OK;
     uint32_t next = 0;
     for (uint32_t r = 0; r < rungs && !result; r++) {
         VkDescriptorSet sets[MASU_MAX_TARGETS][MASU_PASS_COUNT];
@@ -540,5 +540,21 @@ masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *de
             rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }
     }
+    return result;
+}
+
+masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+    const masu_desc *d = &m->plan->desc;
+    masu_result result = masu_make_sets(m, detail);
+    if (!result) result = make_queries(m, detail);
+    if (!result)
+        result = make_command_buffers(m, d->frames_in_flight * m->plan->recordings, detail);
+    if (!result) result = record_frames(m, draws, detail);
     return result ? result : masu_load_record(m, detail);
+}
+
+masu_result masu_record_again(masu_device *m, const masu_draws *draws, masu_detail *detail) {
+    VkResult r = m->vk.ResetCommandPool(m->vk.device, m->command_pool, 0);
+    if (r) return masu_fail_vulkan(detail, r, "vkResetCommandPool");
+    return record_frames(m, draws, detail);
 }

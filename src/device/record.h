@@ -7,4 +7,8 @@
 /* Descriptor sets, queries, recordings of frames and of loading; pipelines come before. */
 masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *detail);
 
+/* The frames once more, as plan and targets are by now, on an idle device; all that is loaded stays. On
+ * failure some are not whole: none may be submitted. */
+masu_result masu_record_again(masu_device *m, const masu_draws *draws, masu_detail *detail);
+
 #endif

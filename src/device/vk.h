@@ -79,6 +79,7 @@
     X(GetBufferMemoryRequirements)                                                                 \
     X(GetImageMemoryRequirements)                                                                  \
     X(MapMemory)                                                                                   \
+    X(ResetCommandPool)                                                                            \
     X(UpdateDescriptorSets)
 
 #define MASU_VK_OPTIONAL(X)                                                                        \

@@ -13,6 +13,7 @@ typedef struct masu_slot {
 
 typedef struct masu_timeline {
     uint64_t frame; /* number of the next one */
+    int cut;        /* it has nothing to do with the one before, whatever the host says */
     masu_slot slots[MASU_MAX_FLIGHT];
 } masu_timeline;
 

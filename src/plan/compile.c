@@ -271,6 +271,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                            wants(d, rung_has_resolve),
                                .blit = !d->targets.storage};
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
+    plan->most = d->output;
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
     masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
@@ -349,6 +350,16 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     gather_images(plan);
     masu_size_buffers(plan, uniform_alignment, storage_alignment);
     return MASU_OK;
+}
+
+/* A rung that upscales goes on to, even where a small output makes its render size the same: images of both
+ * sizes grow with the output, so that what was allocated for a larger one will do. */
+void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output) {
+    plan->desc.output = output;
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        plan->rungs[r].render_width = scaled(output.width, plan->desc.rungs[r].scale);
+        plan->rungs[r].render_height = scaled(output.height, plan->desc.rungs[r].scale);
+    }
 }
 
 /* ---- Export ---------------------------------------------------------------------------------- */

@@ -5,6 +5,8 @@ void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan 
     uint64_t lods = plan->lods ? plan->scene.lods : 0;
     draws->batches =
         masu_arena_take(arena, "batches", plan->scene.meshes + lods, sizeof *draws->batches, 8);
+    draws->looks = masu_arena_take(arena, "draw looks", plan->desc.resizable ? plan->draws : 0,
+                                   sizeof *draws->looks, 4);
 }
 
 /* A form of a mesh that has instances. */
@@ -75,8 +77,27 @@ static void add_transparents(masu_draws *draws, const masu_scene *scene, const m
     }
 }
 
+masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive) {
+    uint32_t number = v->primitives[primitive].material;
+    const masu_blob_material *of = &v->materials[number];
+    int meso = of->meso != MASU_BLOB_NONE;
+    return (masu_draw_look){
+        .material = number,
+        .flags = of->flags,
+        .texture_set = of->texture_set,
+        .layers = of->layers,
+        .occlusion_layer = of->occlusion_layer,
+        .detail = {of->detail[0], of->detail[1]},
+        .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0};
+}
+
 void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
     add_batches(draws, plan, v);
+    for (uint32_t b = 0; plan->desc.resizable && b < draws->batch_count; b++) {
+        const masu_batch *batch = &draws->batches[b];
+        for (uint32_t d = 0; d < batch->draw_count; d++)
+            draws->looks[batch->first_draw + d] = masu_draw_look_of(v, batch->first_primitive + d);
+    }
     if (plan->needs.transparents) add_transparents(draws, &plan->scene, v);
 }
 

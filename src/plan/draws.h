@@ -27,8 +27,18 @@ typedef struct masu_batch {
     uint64_t triangles;            /* of one instance, without those */
 } masu_batch;
 
+/* How a draw is drawn: what recording it asks of its material. */
+typedef struct masu_draw_look {
+    uint32_t material;
+    uint32_t flags; /* masu_blob_material_flags */
+    uint32_t texture_set, layers, occlusion_layer;
+    float detail[2];
+    uint32_t meso; /* element of the buffer of materials where its curves begin; 0: none */
+} masu_draw_look;
+
 typedef struct masu_draws {
     masu_batch *batches;
+    masu_draw_look *looks; /* [draw]; of no length unless they are recorded again, when the blob is gone */
     uint32_t batch_count, large_count; /* large: of over 64 instances */
     /* Slots of blended things, and the texture sets of each. */
     uint32_t transparent_count, transparent_set_count;
@@ -37,6 +47,8 @@ typedef struct masu_draws {
 
 void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan);
 void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v);
+
+masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive);
 
 /* A part of the atlas of occluders: 0 is the camera's, 1 the sun's. */
 VkRect2D masu_atlas_part(uint32_t part);

@@ -87,6 +87,7 @@ typedef struct masu_texture_plan {
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
     masu_scene scene;
+    VkExtent2D most; /* output that images are allocated for: desc.output, but after masu_resize */
     masu_needs needs; /* of the scene; upscale and sharpen are of the last rung looked at */
     masu_rung_plan rungs[MASU_MAX_RUNGS];
     const char *why[MASU_PASS_COUNT]; /* of the first rung that runs the pass, else of rung 0 */
@@ -124,6 +125,8 @@ typedef struct masu_frame_plan {
 /* v rounded up to a multiple of a, which need not be a power of two. */
 static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1) / a * a; }
 
+/* Render sizes of another output, up to plan->most; passes, images and buffers stay what they are. */
+void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output);
 /* Where a cascade lies in the shadow map, of the size that the map is laid out for. */
 VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
 /* Bits over a rung's slow cascades only, out of bits over all: the variant that draws them. */

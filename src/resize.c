@@ -1,0 +1,84 @@
+/* resize.c: masu_resize: another output size and other targets in the images that are there. They are
+ * allocated for the largest output, and a pass of a smaller one uses their upper left part, as rungs of a
+ * smaller scale always have; what depends on sizes stands in the recordings, which are made again. */
+#include "base/error.h"
+#include "device/record.h"
+#include "plan/compile.h"
+#include "plan/desc.h"
+#include "renderer.h"
+
+/* What may stay 0 stays what it is. */
+static masu_targets filled_in(const masu_targets *given, const masu_targets *now) {
+    masu_targets t = *given;
+    if (t.format == VK_FORMAT_UNDEFINED) t.format = now->format;
+    if (t.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) t.final_layout = now->final_layout;
+    if (t.encoding == MASU_ENCODING_AUTO) t.encoding = now->encoding;
+    t.white = now->white;
+    t.peak = now->peak;
+    return t;
+}
+
+static masu_result differs(masu_detail *detail, const char *what, uint64_t needed, uint64_t given) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, needed, given,
+                     "masu_resize: %s is %llu, that of masu_init was %llu", what,
+                     (unsigned long long)given, (unsigned long long)needed);
+}
+
+static masu_result check_targets(const masu_targets *now, const masu_targets *t,
+                                 masu_detail *detail) {
+    if (t->count != now->count) return differs(detail, "targets.count", now->count, t->count);
+    if (t->format != now->format)
+        return differs(detail, "targets.format", (uint64_t)now->format, (uint64_t)t->format);
+    if (!t->storage != !now->storage)
+        return differs(detail, "targets.storage", now->storage, t->storage);
+    if (t->final_layout != now->final_layout)
+        return differs(detail, "targets.final_layout", (uint64_t)now->final_layout,
+                       (uint64_t)t->final_layout);
+    if (t->encoding != now->encoding)
+        return differs(detail, "targets.encoding", (uint64_t)now->encoding, (uint64_t)t->encoding);
+    return MASU_OK;
+}
+
+static masu_result check(const masu_renderer *m, VkExtent2D output, masu_targets *t,
+                         masu_detail *detail) {
+    const masu_frame_plan *plan = &m->plan;
+    if (!plan->desc.resizable || !plan->desc.scene) {
+        return masu_fail(detail, MASU_ERROR_STATE, "resizable", 1, 0,
+                         "masu_resize takes desc.resizable, and a scene");
+    }
+    if (!m->loaded) {
+        return masu_fail(detail, MASU_ERROR_STATE, "masu_load", 1, 0,
+                         "masu_resize was called before masu_load had returned MASU_OK");
+    }
+    *t = filled_in(t, &plan->desc.targets);
+    masu_desc wanted = plan->desc;
+    wanted.output = output;
+    wanted.targets = *t;
+    masu_result result = check_targets(&plan->desc.targets, t, detail);
+    if (!result) result = masu_desc_check(&wanted, detail);
+    if (result) return result;
+    if (output.width <= plan->most.width && output.height <= plan->most.height) return MASU_OK;
+    int wide = output.width > plan->most.width;
+    return masu_fail(detail, MASU_ERROR_LIMIT, "output",
+                     wide ? output.width : output.height,
+                     wide ? plan->most.width : plan->most.height,
+                     "output: %ux%u is larger than the %ux%u that masu_init has planned for",
+                     output.width, output.height, plan->most.width, plan->most.height);
+}
+
+masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets *targets,
+                        masu_detail *detail) {
+    if (!m || !targets) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, m ? "targets" : "renderer", 1, 0,
+                         "masu_resize: %s is NULL", m ? "targets" : "renderer");
+    }
+    masu_targets t = *targets;
+    masu_result result = check(m, output, &t, detail);
+    if (result) return result;
+    m->plan.desc.targets = t;
+    masu_plan_resize(&m->plan, output);
+    m->timeline.cut = 1;
+    result = masu_record_again(&m->device, &m->draws, detail);
+    if (result) m->loaded = 0; /* no frame is handed out any more */
+    return result;
+}
