@@ -103,7 +103,7 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
 lib: $(BUILD)/lib/libmasu.a ## build build/lib/libmasu.a alone
 tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso
-shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders
+shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
 .PHONY: demo demo-picture worlds hostile
