@@ -365,6 +365,7 @@ static void lay_out(const masu_vk *vk, masu_frame_plan *plan) {
     }
     masu_block_plan *block = &plan->blocks[masu_code_role(plan)];
     uint64_t room = masu_code_room(plan);
+    if (!block->bytes && room) add_to_block(block, sizeof(uint32_t), UINT32_MAX);
     if (block->bytes < room) block->bytes = room;
 }
 
