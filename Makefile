@@ -65,7 +65,7 @@ objects = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 # For programs that load Vulkan drivers: lets the leak checker tell the drivers' leaks from ours.
 KEEP_LOADED := $(if $(filter sanitize,$(config)),$(BUILD)/obj/tests/keep_loaded.o)
 
-include packages.mk shaders/shaders.mk src/src.mk platform/platform.mk tools/tools.mk tests/tests.mk
+include packages.mk shaders/shaders.mk src/src.mk platform/platform.mk tools/tools.mk package/package.mk tests/tests.mk
 
 # Changes when the compiler or its flags do: then everything is compiled again.
 $(BUILD)/flags: force
@@ -101,9 +101,9 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
-lib: $(BUILD)/lib/libmasu.a ## build build/lib/libmasu.a alone
+lib: $(BUILD)/lib/libmasu.a $(SHARED) ## build build/lib/libmasu.a and libmasu.so alone
 tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso
-shaders: $(SPIRV_HEADERS) ## compile, validate and optimise all shaders
+shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
 .PHONY: demo demo-picture worlds hostile
@@ -225,37 +225,6 @@ format-check: ## fail if clang-format would change a file
 compdb: ## write compile_commands.json (with bear)
 	$(V)command -v bear > /dev/null || { echo "masu: compdb needs bear" >&2; exit 1; }
 	+$(V)bear -- $(MAKE) --no-print-directory -B all $(UNIT_TESTS) $(GPU_TESTS)
-
-.PHONY: install install-lib install-tools install-data uninstall
-root = $(DESTDIR)$(PREFIX)
-# What masu conform takes besides itself. Baking takes minutes and is nobody's surprise: scenes are installed
-# that are there.
-SMOKE_SCENES := $(sort $(shell sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json))
-install: install-lib install-tools install-data ## install to DESTDIR/PREFIX, by default /usr/local
-install-lib: lib ## install header, library and masu.pc
-	$(V)install -d "$(root)/include" "$(root)/lib/pkgconfig"
-	$(V)install -m 644 include/masu.h "$(root)/include/masu.h"
-	$(V)install -m 644 $(BUILD)/lib/libmasu.a "$(root)/lib/libmasu.a"
-	$(V)sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' masu.pc.in \
-	    > "$(root)/lib/pkgconfig/masu.pc"
-install-tools: tools ## install masu, masu-bake, masu-sdfc and masu-meso
-	$(V)install -d "$(root)/bin"
-	$(V)install -m 755 $(BUILD)/bin/masu $(BUILD)/bin/masu-bake $(BUILD)/bin/masu-sdfc \
-	    $(BUILD)/bin/masu-meso "$(root)/bin"
-install-data: $(SUITES) ## install the suites of masu conform, and the scenes of smoke that are baked
-	$(V)install -d "$(root)/share/masu/suites"
-	$(V)install -m 644 $(SUITES) "$(root)/share/masu/suites"
-	$(V)missing=; for s in $(SMOKE_SCENES); do \
-	    if [ -f $(MADE)/scenes/$$s.masu ]; then install -d "$(root)/share/masu/scenes" && \
-	        install -m 644 $(MADE)/scenes/$$s.masu "$(root)/share/masu/scenes" || exit 1; \
-	    else missing="$$missing $$s"; fi; \
-	done; [ -z "$$missing" ] || \
-	    echo "masu: not baked, so not installed:$$missing; 'make scenes install' gives masu conform its scenes"
-uninstall: ## remove what install has put there
-	$(V)cd "$(root)" && rm -f include/masu.h lib/libmasu.a lib/pkgconfig/masu.pc
-	$(V)cd "$(root)" && rm -f bin/masu bin/masu-bake bin/masu-sdfc bin/masu-meso
-	$(V)cd "$(root)" && rm -f $(SUITES:$(BUILD)/%=share/masu/%) $(SMOKE_SCENES:%=share/masu/scenes/%.masu)
-	$(V)cd "$(root)" && rmdir share/masu/scenes share/masu/suites share/masu 2> /dev/null || true
 
 .PHONY: clean help
 clean: ## remove what was built, of all configurations; keeps build/drivers

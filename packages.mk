@@ -16,9 +16,9 @@ PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
 # to bake the world forza: the data of TORCS
 PACKAGES_worlds := torcs-data
 
-# to run the tests; g++, and pkgconf from above, look at what is installed as a C++ or a C user would;
+# to run the tests; g++, cmake, and pkgconf from above, look at what is installed as a user of theirs would;
 # ImageMagick measures pictures beside us
-PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick
+PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick cmake
 
 # to build everything a second time with the other compiler and its sanitizers, whose library is a package of
 # its own (make check FULL=1), and for `make fuzz`; and another measure of SSIM

@@ -2,7 +2,8 @@
 #
 #   shaders/NAME.STAGE -> gen/NAME_STAGE.spv      with debug names: tests read struct offsets there
 #                      -> gen/NAME_STAGE.opt.spv  optimised, stripped, vectors of buffers loaded whole
-#                      -> gen/NAME_STAGE.spv.h    that, as `const uint32_t masu_spv_NAME_STAGE[]`
+#                      -> gen/packed.h            all of the library, packed (src/device/unpack.h)
+#                      -> gen/NAME_STAGE.spv.h    one of tools or tests, as `const uint32_t masu_spv_NAME_STAGE[]`
 #
 # Both SPIR-V files pass spirv-val. Shaders of tests/gpu are compiled the same way. A scene shader
 # is not complete without the GLSL of a scene: masu-bake compiles it, so it and all that it may
@@ -28,15 +29,18 @@ $(MADE)/gen/tables.h $(MADE)/gen/permutations.h: $(MADE)/gen/%.h: $(TABLE_ROWS)
 
 # Lines NAME_STAGE:FILE:MACRO+MACRO; those with macros have rules of their own. One more: rays for the tests
 # and for masu study, with counters.
-PERMUTATIONS := $(filter-out %:,$(shell shaders/tables.sh builds))
+BUILDS       := $(shell shaders/tables.sh builds)
+PACKED       := $(foreach b,$(BUILDS),$(firstword $(subst :, ,$(b))))
+PERMUTATIONS := $(filter-out %:,$(BUILDS))
 PERMUTATIONS += trace_rays_counted_comp:trace_rays.comp:MASU_TRACE_COUNTERS
 
 # dir/NAME.STAGE is NAME_STAGE
-SPIRV_HEADERS := $(foreach s,$(notdir $(SHADERS)),$(MADE)/gen/$(subst .,_,$(s)).spv.h)
-SPIRV_HEADERS += $(foreach b,$(PERMUTATIONS),$(MADE)/gen/$(firstword $(subst :, ,$(b))).spv.h)
+SPIRV         := $(foreach s,$(notdir $(SHADERS)),$(MADE)/gen/$(subst .,_,$(s)).opt.spv)
+SPIRV         += $(foreach b,$(PERMUTATIONS),$(MADE)/gen/$(firstword $(subst :, ,$(b))).opt.spv)
+SPIRV_HEADERS := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' tools tests)))
 # The slow ones first: nothing is compiled before the last of them is there.
-GENERATED     := $(patsubst %,$(MADE)/gen/%.h,blue_noise split_sum smaa_area tables permutations scene_sources)
-GENERATED     += $(SPIRV_HEADERS)
+GENERATED     := $(patsubst %,$(MADE)/gen/%.h,blue_noise split_sum smaa_area tables permutations scene_sources packed)
+GENERATED     += $(SPIRV_HEADERS) $(SPIRV)
 
 # glslang's dependency file has no empty rules for what is included; without them, the next make
 # would fail after a file is removed.
@@ -71,6 +75,15 @@ $(MADE)/tools/whole_vectors: $(WHOLE_VECTORS)
 $(MADE)/gen/%.spv.h: $(MADE)/gen/%.opt.spv
 	$(V){ echo '/* Made from $*. */'; echo 'static const uint32_t masu_spv_$*[] = {'; \
 	    od -An -v -tx4 -w32 $< | sed 's/ \([0-9a-f]*\)/0x\1,/g'; echo '};'; } > $@
+
+# The last permutations of a shader have all that others have, and come first.
+PACK_SOURCES := tools/generate/pack_spirv.c src/device/unpack.c
+$(MADE)/tools/pack_spirv: $(PACK_SOURCES) src/device/unpack.h
+	@mkdir -p $(@D)
+	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -Isrc $(PACK_SOURCES) -o $@
+$(MADE)/gen/packed.h: $(MADE)/tools/pack_spirv $(PACKED:%=$(MADE)/gen/%.opt.spv)
+	@echo "  PACK    $@"
+	$(V)$< $(MADE)/gen $(PACKED) > $@
 
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;

@@ -2,7 +2,7 @@
 # tables.sh KIND: what follows from the rows of src/plan/{passes,axes,buffers}.inc for shaders, on stdout:
 #
 #   tables        tables.h, for GLSL and C: MASU_BIND_* of descriptor set 0, structs of push constants
-#   permutations  permutations.h, for C: of each shader its axes and its SPIR-V in every combination
+#   permutations  permutations.h, for C: of each shader its axes and its packed SPIR-V in every combination
 #   builds        lines NAME:FILE:MACRO+MACRO for make: each permutation, its source, what it is compiled with
 #
 # Read by make before anything is compiled, on machines that have nothing but make: so it is shell and awk.
@@ -166,16 +166,14 @@ END {
     }
     if (kind != "permutations") exit
     print note "{passes,axes}.inc: the SPIR-V of every permutation. */"
-    for (s = 1; s <= shader_count; s++)
-        for (k = 0; k < codes[s]; k++) print "#include \"" build[s, k] ".spv.h\""
-    print "\nenum {\n    MASU_SHADER_NONE,"
+    print "enum {\n    MASU_SHADER_NONE,"
     for (s = 1; s <= shader_count; s++) print "    MASU_SHADER_" shaders[s] ","
     print "    MASU_SHADER_COUNT\n};\n"
     print "/* By the forms of its axes, the first axis fastest. */"
     for (s = 1; s <= shader_count; s++) {
-        print "static const masu_code codes_of_" shaders[s] "[] = {"
+        print "static const masu_packed codes_of_" shaders[s] "[] = {"
         for (k = 0; k < codes[s]; k++)
-            print "    {masu_spv_" build[s, k] ", sizeof masu_spv_" build[s, k] "},"
+            print "    MASU_PACKED_" build[s, k] ","
         print "};"
     }
     print "\nstatic const masu_shader shaders[MASU_SHADER_COUNT] = {"

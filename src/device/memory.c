@@ -1,6 +1,8 @@
 /* memory.c: see memory.h. */
 #include "device/memory.h"
 
+#include "device/shaders.h"
+
 #include "base/error.h"
 #include "plan/buffer_plan.h"
 #include "scene/scene.h"
@@ -361,6 +363,10 @@ static void lay_out(const masu_vk *vk, masu_frame_plan *plan) {
         if (role == MASU_ROLE_DEVICE) lay_textures(vk, plan, block);
         if (role == MASU_ROLE_DEVICE) lay_images(vk, plan, block);
     }
+    masu_block_plan *block = &plan->blocks[masu_code_role(plan)];
+    uint64_t room = masu_code_room(plan);
+    if (!block->bytes && room) add_to_block(block, sizeof(uint32_t), UINT32_MAX);
+    if (block->bytes < room) block->bytes = room;
 }
 
 static int is_unified(const masu_vk *vk, masu_frame_plan *plan) {

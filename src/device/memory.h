@@ -24,6 +24,12 @@
 #include "plan/plan.h"
 #include "device/vk.h"
 
+/* The block in which shaders are unpacked, before anything else is in it: mapped, and best one that the host
+ * reads as fast as it writes. It has masu_code_room bytes, if need be more than the rest asks for. */
+static inline uint32_t masu_code_role(const masu_frame_plan *plan) {
+    return plan->unified ? MASU_ROLE_DEVICE : MASU_ROLE_READBACK;
+}
+
 /* One thing to place: `bytes` alive from row `first` to row `last`, both included. */
 typedef struct masu_placement {
     uint64_t bytes, alignment;

@@ -15,11 +15,17 @@
 
 #include <string.h>
 
+/* Unpacked into a block that is mapped and that nothing is in yet; the driver keeps what it needs. */
 static masu_result make_module(masu_device *m, masu_code code, VkShaderModule *module,
                                masu_detail *detail) {
+    uint32_t role = masu_code_role(m->plan);
+    const uint32_t *words = masu_code_read(&code, (uint32_t *)(void *)m->mapped[role]);
+    if (!words)
+        return masu_fail(detail, MASU_ERROR_DEVICE, "shader", code.bytes, 0,
+                         "a shader of %llu bytes cannot be unpacked", (unsigned long long)code.bytes);
     VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                      .codeSize = (size_t)code.bytes,
-                                     .pCode = code.words};
+                                     .pCode = words};
     VkResult r = m->vk.CreateShaderModule(m->vk.device, &info, m->vk.allocator, module);
     return MASU_FAILED(r, *module) ? masu_fail_vulkan(detail, r, "vkCreateShaderModule") : MASU_OK;
 }
@@ -401,7 +407,7 @@ static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, Vk
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     masu_result result = make_module(m, code.vertex, &modules[0], detail);
-    if (!result && code.fragment.words) result = make_module(m, code.fragment, &modules[1], detail);
+    if (!result && code.fragment.bytes) result = make_module(m, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
         VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, out);

@@ -18,9 +18,10 @@ typedef struct masu_shader {
     struct {
         uint32_t axis, forms;
     } axes[4];
-    const masu_code *codes; /* of every combination, the first axis fastest */
+    const masu_packed *codes; /* of every combination, the first axis fastest */
 } masu_shader;
 
+#include "packed.h"
 #include "permutations.h"
 
 /* ---- The form of each axis that a plan asks for ---------------------------------------------- */
@@ -70,14 +71,14 @@ static masu_code permutation(const masu_frame_plan *plan, uint32_t pass, uint32_
                              int textured, int last) {
     const masu_shader *s = &shaders[shader];
     uint32_t index = 0, step = 1;
-    if (shader == MASU_SHADER_NONE) return (masu_code){NULL, 0};
+    if (shader == MASU_SHADER_NONE) return (masu_code){0};
     for (uint32_t i = 0; i < s->axis_count; i++) {
         uint32_t form = form_of(s->axes[i].axis, plan, pass, textured, last);
         if (form >= s->axes[i].forms) form = s->axes[i].forms - 1;
         index += form * step;
         step *= s->axes[i].forms;
     }
-    return s->codes[index];
+    return (masu_code){NULL, s->codes[index], s->codes[index].words * sizeof(uint32_t)};
 }
 
 /* ---- Passes ---------------------------------------------------------------------------------- */
@@ -102,7 +103,7 @@ static const pass_shaders of_pass[MASU_PASS_COUNT] = {
 static masu_code scene_code(const masu_frame_plan *plan, uint32_t pass) {
     masu_scene_view v = masu_scene_look(plan->desc.scene);
     uint32_t section = masu_passes[pass].code;
-    return (masu_code){v.code[section].words, v.code[section].count * sizeof(uint32_t)};
+    return (masu_code){v.code[section].words, {0}, v.code[section].count * sizeof(uint32_t)};
 }
 
 masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass, int last) {
@@ -117,6 +118,33 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
                                : permutation(plan, pass, of_pass[pass].fragment, textured, 0)};
     /* Through the holes of masks the sun shines; the rest of a cascade is depth alone. */
     if (masu_passes[pass].geometry == MASU_GEOMETRY_CASCADE && !textured)
-        code.fragment = (masu_code){NULL, 0};
+        code.fragment = (masu_code){0};
     return code;
+}
+
+const uint32_t *masu_code_read(const masu_code *code, uint32_t *room) {
+    if (code->words) return code->words;
+    return masu_unpack(&masu_pack_of_all, &code->packed, room) ? room : NULL;
+}
+
+/* ---- The room that they need ----------------------------------------------------------------- */
+
+static uint64_t larger(uint64_t bytes, masu_code code) {
+    return !code.words && code.bytes > bytes ? code.bytes : bytes;
+}
+
+uint64_t masu_code_room(const masu_frame_plan *plan) {
+    uint64_t bytes = 0;
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &plan->rungs[r];
+        for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+            if (!masu_has_pass(&rp->active, p)) continue;
+            bytes = larger(bytes, masu_compute_code(plan, p, masu_comes_last(rp, p)));
+            for (int textured = 0; textured <= (plan->scene.texture_arrays > 0); textured++) {
+                masu_draw_code code = masu_draw_code_of(plan, p, textured);
+                bytes = larger(larger(bytes, code.vertex), code.fragment);
+            }
+        }
+    }
+    return bytes;
 }

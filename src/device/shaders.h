@@ -1,15 +1,18 @@
 /* shaders.h: the SPIR-V of a pass: the library's own, in the permutation that a plan asks for, or the scene's.
  *
  * Which shaders there are, over which axes they are compiled, and their code follow from the rows of
- * src/plan/passes.inc and axes.inc (shaders/tables.sh writes permutations.h). Nothing here fails. */
+ * src/plan/passes.inc and axes.inc (shaders/tables.sh writes permutations.h). Nothing here fails. The library's are packed
+ * (unpack.h): masu_code_read unpacks them. */
 #ifndef MASU_SHADERS_H
 #define MASU_SHADERS_H
 
+#include "device/unpack.h"
 #include "plan/plan.h"
 
 typedef struct masu_code {
-    const uint32_t *words; /* NULL: none */
-    uint64_t bytes;
+    const uint32_t *words; /* of the scene */
+    masu_packed packed;    /* where words is NULL */
+    uint64_t bytes;        /* 0: none */
 } masu_code;
 
 /* The two stages of a draw; of depth alone the second is none. */
@@ -22,5 +25,11 @@ masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass, int last
 
 /* Of a graphics pass; textured: for what has textures. */
 masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int textured);
+
+/* The words of a code that there is; room: for one that is packed, masu_code_room(plan) bytes. */
+const uint32_t *masu_code_read(const masu_code *code, uint32_t *room);
+
+/* Bytes of the largest packed code that the plan's pipelines are made of. */
+uint64_t masu_code_room(const masu_frame_plan *plan);
 
 #endif

@@ -1,9 +1,9 @@
-#!/bin/sh
+#!/bin/bash
 # What `make install` leaves is what a port needs: with PREFIX and DESTDIR apart, exactly the files
-# that it should, paths in masu.pc that know nothing of DESTDIR, and a library with which
-# tests/consumers/ build by pkg-config as C and as C++, and run. From an empty folder the installed
-# program finds its suites, and says what is missing without its scenes. `make uninstall` then leaves
-# nothing.
+# that it should, paths in masu.pc that know nothing of DESTDIR, and libraries with which
+# tests/consumers/ build by pkg-config as C and as C++, and by CMake, static and shared, and run. From
+# an empty folder the installed program finds its suites, and says what is missing without its scenes; manual
+# pages and completion have every command and option of --help. `make uninstall` then leaves nothing.
 set -e
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -20,41 +20,123 @@ for s in $smoke; do
         grep -q "not baked.* $s" "$folder/said" || { echo "nothing is said about $s"; exit 1; }
     fi
 done
-(cd "$stage" && find . -type f | sort) > "$folder/files"
+version=$(sed -n 's/^.define MASU_VERSION_[A-Z]* //p' include/masu.h | paste -sd.)
+(cd "$stage" && find . ! -type d | sort) > "$folder/files"
 sort > "$folder/expected" << END
 .$prefix/bin/masu
 .$prefix/bin/masu-bake
 .$prefix/bin/masu-meso
 .$prefix/bin/masu-sdfc
 .$prefix/include/masu.h
+.$prefix/lib/cmake/masu/masu-config-version.cmake
+.$prefix/lib/cmake/masu/masu-config.cmake
 .$prefix/lib/libmasu.a
+.$prefix/lib/libmasu.so
+.$prefix/lib/libmasu.so.${version%%.*}
+.$prefix/lib/libmasu.so.$version
+.$prefix/lib/pkgconfig/masu-static.pc
 .$prefix/lib/pkgconfig/masu.pc
+$(for f in README.md CHANGELOG.md LICENSE docs/*.md docs/*.jpg; do echo ".$prefix/share/doc/masu/$f"; done)
+$(for p in masu masu-bake masu-meso masu-sdfc; do
+    printf '%s\n' ".$prefix/share/man/man1/$p.1" ".$prefix/share/bash-completion/completions/$p"
+done)
 .$prefix/share/masu/suites/full.json
 .$prefix/share/masu/suites/smoke.json$scenes
 END
 diff "$folder/expected" "$folder/files"
-if grep "$stage" "$stage$prefix/lib/pkgconfig/masu.pc"; then exit 1; fi
+if grep -r "$stage" "$stage$prefix/lib/pkgconfig" "$stage$prefix/lib/cmake"; then exit 1; fi
+if grep -r '@[A-Z]*@' "$stage$prefix/lib/pkgconfig" "$stage$prefix/lib/cmake"; then exit 1; fi
+
+# ---- Consumers -----------------------------------------------------------------------------------
 
 # To build against a staged tree, pkg-config is told where / is.
 export PKG_CONFIG_SYSROOT_DIR="$stage" PKG_CONFIG_LIBDIR="$stage$prefix/lib/pkgconfig"
-flags=$(pkg-config --cflags --libs masu)
-version=$(pkg-config --modversion masu)
+[ "$(pkg-config --modversion masu)" = "$version" ]
 # A sanitized library needs its consumer linked with the sanitizer.
-[ "${config:-}" != sanitize ] || flags="$flags -fsanitize=address,undefined"
-[ "${config:-}" != coverage ] || flags="$flags --coverage"
-warnings="-Wall -Wextra -Wpedantic -Werror"
+extra=
+[ "${config:-}" != sanitize ] || extra='-fsanitize=address,undefined'
+[ "${config:-}" != coverage ] || extra='--coverage'
+warnings='-Wall -Wextra -Wpedantic -Werror'
 
-# shellcheck disable=SC2086
-${CC:-gcc} -std=c11 $warnings tests/consumers/minimal.c $flags -o "$folder/minimal_c"
-# shellcheck disable=SC2086
-${CXX:-g++} -std=c++17 $warnings -x c++ tests/consumers/minimal.c -x none $flags \
-    -o "$folder/minimal_cpp"
-[ "$("$folder/minimal_c")" = "masu $version: success" ]
-[ "$("$folder/minimal_cpp")" = "masu $version: success" ]
+# needs PROGRAM: whether it asks for the shared library by its soname
+needs() { objdump -p "$1" | grep -q "NEEDED *libmasu.so.${version%%.*}\$"; }
+
+# works PROGRAM: says what it should
+works() {
+    said=$(LD_LIBRARY_PATH="$stage$prefix/lib" "$1")
+    [ "$said" = "masu $version: success" ] || { echo "$1: $said"; exit 1; }
+}
+
+for package in masu masu-static; do
+    flags="$(pkg-config --cflags --libs $package) $extra"
+    # shellcheck disable=SC2086
+    ${CC:-gcc} -std=c11 $warnings tests/consumers/minimal.c $flags -o "$folder/$package-c"
+    # shellcheck disable=SC2086
+    ${CXX:-g++} -std=c++17 $warnings -x c++ tests/consumers/minimal.c -x none $flags -o "$folder/$package-cpp"
+    for p in "$folder/$package-c" "$folder/$package-cpp"; do
+        works "$p"
+        if [ $package = masu ]; then needs "$p"; elif needs "$p"; then echo "$p is not static"; exit 1; fi
+    done
+done
+
+# by_cmake NAME ARGUMENTS...: builds tests/consumers/cmake to that folder
+by_cmake() {
+    { cmake -S tests/consumers/cmake -B "$folder/$1" -DCMAKE_C_COMPILER="${CC:-gcc}" \
+        -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_PREFIX_PATH="$stage$prefix" \
+        -DCMAKE_C_FLAGS="-std=c11 $warnings $extra" "${@:2}" && cmake --build "$folder/$1"; } \
+        > "$folder/cmake-said" 2>&1 || { cat "$folder/cmake-said" && return 1; }
+}
+by_cmake by-default
+by_cmake static -DWANT=static
+by_cmake shared -DWANT=shared
+works "$folder/by-default/consumer"
+works "$folder/static/consumer"
+works "$folder/shared/consumer"
+needs "$folder/shared/consumer"
+if needs "$folder/static/consumer" || needs "$folder/by-default/consumer"; then echo 'not static'; exit 1; fi
+if by_cmake other -DWANT=other > "$folder/said"; then echo 'CMake finds a component other'; exit 1; fi
+grep -q 'components static and shared, not' "$folder/said"
+
+# ---- Manual pages and completion -----------------------------------------------------------------
+
+bin=$stage$prefix/bin
+share=$stage$prefix/share
+for page in "$share"/man/man1/*.1; do
+    for part in NAME SYNOPSIS OPTIONS; do
+        grep -qE "^\.S[HS] $part" "$page" || { echo "$page has no $part"; exit 1; }
+    done
+    if command -v groff > /dev/null; then
+        warned=$(groff -man -ww -z -Tutf8 "$page" 2>&1)
+        [ -z "$warned" ] || { echo "$page: $warned"; exit 1; }
+    fi
+done
+
+# completes WORDS...: what bash offers for the last, which is begun
+completes() {
+    # shellcheck disable=SC2016
+    bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _'"${1//-/_}"'; printf "%s\n" "${COMPREPLY[@]}"' \
+        bash "$share/bash-completion/completions/$1" "$@"
+}
+[ "$(completes masu ren)" = render ]
+[ "$(completes masu study ref)" = reflections ]
+[ "$(completes masu render --si)" = --size ]
+[ "$(completes masu render a.masu --size 1x1 --tar)" = --target-ms ]
+[ -z "$(completes masu compare --size)" ]
+[ "$(completes masu-bake --prob | paste -sd' ')" = '--probe-report --probes' ]
+sed 's/\\-/-/g' "$share/man/man1/masu.1" > "$folder/page"
+for command in render plan bench conform 'study march'; do
+    # shellcheck disable=SC2086
+    "$bin/masu" $command --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' | sort -u > "$folder/options"
+    # shellcheck disable=SC2086
+    completes masu $command -- | sort -u | diff - "$folder/options"
+    while read -r option; do
+        grep -qF -e "$option" "$folder/page" || { echo "masu.1 has no $option"; exit 1; }
+    done < "$folder/options"
+done
 
 # From an empty folder, by name and by default; without scenes, one line that says what to do.
 mkdir "$folder/empty"
-masu=$stage$prefix/bin/masu
+masu=$bin/masu
 cases=$(cd "$folder/empty" && "$masu" conform --list | wc -l)
 [ "$cases" -gt 30 ] || { echo "conform --list: $cases cases"; exit 1; }
 (cd "$folder/empty" && "$masu" conform --suite full --list) | grep -q '^1080p.engine '
@@ -66,5 +148,5 @@ if (cd "$folder/empty" && "$folder/apart/bin/masu" conform) > "$folder/out" 2>&1
 grep -q 'no baked scenes .*make scenes install.*--scenes' "$folder/out"
 
 make --no-print-directory uninstall DESTDIR="$stage" PREFIX=$prefix
-left=$(find "$stage" -type f; find "$stage" -path '*/share/masu')
+left=$(find "$stage" ! -type d; find "$stage" -type d -name masu ! -path "$stage$prefix")
 [ -z "$left" ] || { echo "uninstall leaves $left"; exit 1; }
