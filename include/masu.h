@@ -611,6 +611,21 @@ typedef enum masu_readback_bits {
     MASU_READBACK_ALL = 127
 } masu_readback_bits;
 
+/* Pipelines that outlive a renderer: masu_init takes from it what it needs and makes what is missing,
+ * masu_destroy gives all back. So another scene, or another size, makes only pipelines that no renderer before
+ * had. Zero at first; for one device, one renderer at a time, and one build of the library. The host owns it and
+ * ends it with masu_pipelines_destroy. */
+#define MASU_MAX_PIPELINES 384u
+typedef struct masu_pipelines {
+    uint32_t count;       /* that nobody has */
+    uint32_t made, taken; /* by all masu_init so far */
+    VkSampler samplers[2];
+    struct {
+        uint64_t key; /* what it was made of */
+        VkPipeline pipeline;
+    } rows[MASU_MAX_PIPELINES]; /* more are destroyed with their renderer */
+} masu_pipelines;
+
 typedef struct masu_vulkan {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr; /* required */
     VkInstance instance;              /* required, created with API version >= 1.1 */
@@ -628,6 +643,7 @@ typedef struct masu_vulkan {
     uint32_t ray_query; /* not 0: VK_KHR_ray_query, VK_KHR_acceleration_structure and buffer device
                            addresses (the extension or 1.2) are enabled, each with its feature */
     uint32_t shader_float16; /* not 0: shaderFloat16 of VK_KHR_shader_float16_int8 (or 1.2) is enabled */
+    masu_pipelines *pipelines; /* must live until masu_destroy; NULL: pipelines live as long as the renderer */
 } masu_vulkan;
 
 /* What the numbers in a target mean. White is what a radiance of 1 times the exposure becomes without
@@ -934,6 +950,10 @@ MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
 /* Destroys every Vulkan object of the renderer and frees device memory that masu_init allocated.
  * The device must be idle. NULL is fine. */
 MASU_API void masu_destroy(masu_renderer *renderer);
+
+/* Destroys what a pool holds, and makes it zero. Renderers that have taken from it must be destroyed before. Of
+ * `vulkan` function, instance, device and allocator are read. NULL is fine. */
+MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines);
 
 /* Another output size and other targets, without a pipeline, an allocation or a load: the recordings are made
  * again (a millisecond or some). Takes desc.resizable and a finished masu_load; the blob may be gone. `output`:

@@ -103,7 +103,8 @@ bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
                                    s->host.compressed,
                                    anisotropy,
                                    s->host.ray_query,
-                                   s->host.float16};
+                                   s->host.float16,
+                                   d->desc.vulkan.pipelines};
     s->desc.debug.labels = s->host.labels;
     if (!s->desc.clock_ns) s->desc.clock_ns = masu_clock_ns;
     if (!open_targets(d, s, error, error_size) ||

@@ -10,7 +10,7 @@
 typedef struct masu_session_desc {
     const char *scene_path; /* NULL: none */
     masu_desc
-        desc; /* vulkan, scene, targets.images and .views are filled in; the rest is as given */
+        desc; /* vulkan (but its pipelines), scene, targets.images and .views are filled in; the rest is as given */
     masu_headless_desc host;
     uint32_t target_count; /* 0: 1 */
     bool no_renderer;      /* stop before masu_init; masu_session_start goes on */

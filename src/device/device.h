@@ -46,6 +46,7 @@ typedef struct masu_device {
     VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters;
     VkSampler samplers[MASU_SAMPLER_COUNT]; /* wrap of u + 3 * wrap of v; those that sets ask for */
     uint64_t pipeline_ns[MASU_PASS_COUNT];
+    uint64_t *pool_keys; /* pool.c: MASU_POOL_KEYS of them, or of no length */
 
     /* descriptors.c */
     VkDescriptorPool descriptor_pool;

@@ -4,6 +4,7 @@
 #include "device/bind.h"
 #include "device/load.h"
 #include "device/pipelines.h"
+#include "device/pool.h"
 #include "device/ray_query.h"
 #include "device/record.h"
 
@@ -16,6 +17,9 @@ void masu_device_lay(masu_device *m, masu_arena *arena, const masu_frame_plan *p
         masu_arena_take(arena, "descriptor sets", plan->pass_sets, sizeof *m->pass_sets, 8);
     m->texture_sets = masu_arena_take(arena, "texture sets", plan->scene.texture_sets,
                                       sizeof *m->texture_sets, 8);
+    m->pool_keys = masu_arena_take(arena, "pipeline keys",
+                                   plan->desc.vulkan.pipelines ? MASU_POOL_KEYS : 0,
+                                   sizeof *m->pool_keys, 8);
     m->ray_meshes =
         masu_arena_take(arena, "bottom levels", plan->needs.query ? plan->scene.meshes : 0,
                         sizeof *m->ray_meshes, 8);
@@ -34,6 +38,7 @@ masu_result masu_device_make(masu_device *m, const masu_draws *draws, masu_detai
 void masu_device_destroy(masu_device *m) {
     const masu_vk *vk = &m->vk;
     VkDevice device = vk->device;
+    masu_pool_give(m);
     vk->DestroyQueryPool(device, m->queries, vk->allocator);
     vk->DestroyCommandPool(device, m->command_pool, vk->allocator);
     vk->DestroyDescriptorPool(device, m->descriptor_pool, vk->allocator);

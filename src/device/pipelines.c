@@ -3,6 +3,7 @@
  * built. */
 #include "device/pipelines.h"
 
+#include "device/pool.h"
 #include "device/shaders.h"
 #include "plan/buffer_plan.h"
 #include "plan/push.h"
@@ -76,6 +77,13 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
+}
+
+/* 0 where there is no pool. */
+static uint64_t key_of(const masu_device *m, uint32_t pass, const masu_code codes[2], int textured,
+                       const VkBool32 constants[SPECIAL_COUNT]) {
+    if (!m->plan->desc.vulkan.pipelines) return 0;
+    return masu_pool_key(m, pass, codes, textured, constants, SPECIAL_COUNT);
 }
 
 /* ---- Layouts --------------------------------------------------------------------------------- */
@@ -198,10 +206,16 @@ static void name_form(const masu_device *m, uint32_t pass, int last, VkPipeline 
 static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, VkPipeline *out,
                                      masu_detail *detail) {
     VkShaderModule module = VK_NULL_HANDLE;
-    masu_result result = make_module(m, masu_compute_code(m->plan, pass, last), &module, detail);
-    if (result) return result;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
+    masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
+    uint64_t key = key_of(m, pass, codes, 0, constants);
+    if (masu_pool_take(m, key, out)) {
+        masu_pool_note(m, out, key);
+        return MASU_OK;
+    }
+    masu_result result = make_module(m, codes[0], &module, detail);
+    if (result) return result;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -216,6 +230,7 @@ static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, Vk
     m->pipeline_ns[pass] += now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
     if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
+    masu_pool_note(m, out, key);
     name_form(m, pass, last, *out);
     return MASU_OK;
 }
@@ -405,6 +420,14 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
 static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked,
                                  VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
+    const masu_code codes[2] = {code.vertex, code.fragment};
+    VkBool32 constants[SPECIAL_COUNT];
+    (void)specialise(m, masked, constants);
+    uint64_t key = key_of(m, pass, codes, textured, constants);
+    if (masu_pool_take(m, key, out)) {
+        masu_pool_note(m, out, key);
+        return MASU_OK;
+    }
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     masu_result result = make_module(m, code.vertex, &modules[0], detail);
     if (!result && code.fragment.bytes) result = make_module(m, code.fragment, &modules[1], detail);
@@ -412,7 +435,10 @@ static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, Vk
         uint64_t start = now(m);
         VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, out);
         m->pipeline_ns[pass] += now(m) - start;
-        if (MASU_FAILED(r, *out)) result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
+        if (MASU_FAILED(r, *out))
+            result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
+        else
+            masu_pool_note(m, out, key);
     }
     for (uint32_t i = 0; i < 2; i++)
         m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);
@@ -487,6 +513,20 @@ static masu_result make_samplers(masu_device *m, masu_detail *detail) {
     return MASU_OK;
 }
 
+/* A pool's, where there is one: layouts are compatible only with the same samplers. */
+static masu_result make_sampler(masu_device *m, uint32_t number, const VkSamplerCreateInfo *info,
+                                VkSampler *out, masu_detail *detail) {
+    masu_pipelines *pool = m->plan->desc.vulkan.pipelines;
+    if (pool && pool->samplers[number]) {
+        *out = pool->samplers[number];
+        return MASU_OK;
+    }
+    VkResult r = m->vk.CreateSampler(m->vk.device, info, m->vk.allocator, out);
+    if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
+    if (pool) pool->samplers[number] = *out;
+    return MASU_OK;
+}
+
 masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
     VkSamplerCreateInfo nearest = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .magFilter = VK_FILTER_NEAREST,
@@ -494,13 +534,11 @@ masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
                                    .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
-    VkResult r = m->vk.CreateSampler(m->vk.device, &nearest, m->vk.allocator, &m->sampler);
-    if (MASU_FAILED(r, m->sampler)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
     VkSamplerCreateInfo linear = nearest;
     linear.magFilter = linear.minFilter = VK_FILTER_LINEAR;
-    r = m->vk.CreateSampler(m->vk.device, &linear, m->vk.allocator, &m->linear);
-    if (MASU_FAILED(r, m->linear)) return masu_fail_vulkan(detail, r, "vkCreateSampler");
-    masu_result result = make_global_layout(m, detail);
+    masu_result result = make_sampler(m, 0, &nearest, &m->sampler, detail);
+    if (!result) result = make_sampler(m, 1, &linear, &m->linear, detail);
+    if (!result) result = make_global_layout(m, detail);
     if (!result) result = make_texture_layout(m, detail);
     if (!result) result = make_samplers(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {

@@ -1,0 +1,107 @@
+/* pool.c: see pool.h. */
+#include "device/pool.h"
+
+#include "base/error.h"
+#include "plan/buffer_plan.h"
+#include "device/vk.h"
+
+#include <string.h>
+
+static masu_pipelines *pool_of(const masu_device *m) { return m->plan->desc.vulkan.pipelines; }
+
+/* ---- Keys ------------------------------------------------------------------------------------ */
+
+/* FNV-1a, word by word. */
+static uint64_t add(uint64_t key, uint64_t word) {
+    for (uint32_t k = 0; k < 8; k++) key = (key ^ (word >> 8 * k & 255u)) * 0x100000001B3u;
+    return key;
+}
+
+static uint64_t add_code(uint64_t key, const masu_code *code) {
+    key = add(key, code->bytes);
+    if (!code->words) return add(add(key, code->packed.run), code->packed.own);
+    for (uint64_t i = 0; i < code->bytes / sizeof *code->words; i++) key = add(key, code->words[i]);
+    return key;
+}
+
+uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], int textured,
+                       const uint32_t *constants, uint32_t constant_count) {
+    uint64_t key = 0xCBF29CE484222325u;
+    key = add(add(key, pass), (uint64_t)textured | (m->texture_layout ? 2u : 0u));
+    key = add_code(add_code(key, &codes[0]), &codes[1]);
+    for (uint32_t i = 0; i < constant_count; i++) key = add(key, constants[i]);
+    masu_binding rows[MASU_BIND_COUNT];
+    masu_bindings(m->plan, rows);
+    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
+        if (!rows[i].bound) continue;
+        key = add(add(add(key, rows[i].binding), (uint64_t)rows[i].type), rows[i].stages);
+    }
+    const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+        key = add(key, rp->access[pass][a].usage);
+        /* Attachments' formats are the table's; shaders know those of what they store. */
+        key = add(key, (uint64_t)masu_images[masu_is_buffer(rp->access[pass][a].image)
+                                                 ? 0
+                                                 : rp->access[pass][a].image]
+                           .format);
+    }
+    return key ? key : 1;
+}
+
+/* ---- Taking and giving ----------------------------------------------------------------------- */
+
+int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
+    masu_pipelines *pool = pool_of(m);
+    for (uint32_t i = 0; pool && i < pool->count; i++) {
+        if (pool->rows[i].key != key) continue;
+        *out = pool->rows[i].pipeline;
+        pool->rows[i] = pool->rows[--pool->count];
+        pool->taken++;
+        return 1;
+    }
+    if (pool) pool->made++;
+    return 0;
+}
+
+/* Each pipeline of the device has a place. */
+static VkPipeline *place(masu_device *m, uint32_t i) {
+    if (i < MASU_PASS_COUNT) return &m->pipelines[i];
+    if (i < 2 * MASU_PASS_COUNT) return &m->last[i - MASU_PASS_COUNT];
+    i -= 2 * MASU_PASS_COUNT;
+    return i < MASU_TEXTURED_COUNT ? &m->textured[i] : &m->masked_casters;
+}
+
+void masu_pool_note(masu_device *m, const VkPipeline *at, uint64_t key) {
+    for (uint32_t i = 0; pool_of(m) && i < MASU_POOL_KEYS; i++) {
+        if (place(m, i) == at) m->pool_keys[i] = key;
+    }
+}
+
+void masu_pool_give(masu_device *m) {
+    masu_pipelines *pool = pool_of(m);
+    if (!pool) return;
+    for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
+        VkPipeline *from = place(m, i);
+        if (!*from || !m->pool_keys[i] || pool->count == MASU_MAX_PIPELINES) continue;
+        pool->rows[pool->count].key = m->pool_keys[i];
+        pool->rows[pool->count++].pipeline = *from;
+        *from = VK_NULL_HANDLE;
+    }
+    m->sampler = m->linear = VK_NULL_HANDLE; /* the pool has them all along */
+}
+
+void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pool) {
+    if (!vulkan || !pool || !vulkan->get_instance_proc_addr || !vulkan->device) return;
+    PFN_vkGetDeviceProcAddr device_proc = (PFN_vkGetDeviceProcAddr)vulkan->get_instance_proc_addr(
+        vulkan->instance, "vkGetDeviceProcAddr");
+    if (!device_proc) return;
+    PFN_vkDestroyPipeline destroy =
+        (PFN_vkDestroyPipeline)device_proc(vulkan->device, "vkDestroyPipeline");
+    PFN_vkDestroySampler destroy_sampler =
+        (PFN_vkDestroySampler)device_proc(vulkan->device, "vkDestroySampler");
+    for (uint32_t i = 0; destroy && i < pool->count && i < MASU_MAX_PIPELINES; i++)
+        destroy(vulkan->device, pool->rows[i].pipeline, vulkan->allocator);
+    for (uint32_t i = 0; destroy_sampler && i < 2; i++)
+        destroy_sampler(vulkan->device, pool->samplers[i], vulkan->allocator);
+    memset(pool, 0, sizeof *pool);
+}

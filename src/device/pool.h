@@ -1,0 +1,30 @@
+/* pool.h: pipelines that outlive their renderer, masu_pipelines of the public header: masu_init takes what it
+ * needs, masu_destroy gives it back. The host owns the pool; a pipeline in it is nobody's, one that was taken
+ * is the renderer's.
+ *
+ * A key says what a pipeline was made of: its pass and code, its constants, what is bound to it, what it is
+ * drawn to. Layouts and render passes are each renderer's own, and compatible where the keys agree
+ * (specification, "Pipeline Layout Compatibility", "Render Pass Compatibility"); samplers stand in layouts,
+ * so they are the pool's too. */
+#ifndef MASU_POOL_H
+#define MASU_POOL_H
+
+#include "device/device.h"
+#include "device/shaders.h"
+
+/* Most pipelines of a renderer: each pass's two forms, and those of textures. */
+#define MASU_POOL_KEYS (2 * MASU_PASS_COUNT + MASU_TEXTURED_COUNT + 1)
+
+/* codes: of both stages; the second none of a compute pass. The rest of what a key says follows from plan and
+ * pass. */
+uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], int textured,
+                       const uint32_t *constants, uint32_t constant_count);
+
+/* Into *out, if there is one of that key. */
+int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out);
+/* Notes what a pipeline that was made or taken is known by. */
+void masu_pool_note(masu_device *m, const VkPipeline *at, uint64_t key);
+/* Gives all pipelines and samplers back; what has no place any more, or no key, stays with the renderer. */
+void masu_pool_give(masu_device *m);
+
+#endif

@@ -1,0 +1,119 @@
+/* test_pool.c: pipelines that outlive their renderer. Another scene, another size, and back again make only those
+ * that no renderer before had; pictures are the same byte for byte; whatever fails, none is lost, destroyed twice
+ * or left behind. */
+#include "support/support.h"
+#include "support/wrap.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 96, H = 64, BYTES = W * H * 4 };
+
+static masu_pipelines pool;
+static uint8_t pixels[2][BYTES];
+
+static masu_session_desc desc_of(const char *scene, uint32_t width, uint32_t height, int pooled) {
+    masu_session_desc d = test_desc(scene, width, height);
+    d.desc.rung_count = 2;
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f};
+    d.desc.rungs[1] = (masu_rung){.scale = 0.5f, .aa = MASU_AA_SMAA_LOW};
+    d.desc.vulkan.pipelines = pooled ? &pool : NULL;
+    return d;
+}
+
+/* On the device of an open session without a renderer. */
+static void draw_scene(masu_session *s, const char *scene, uint32_t w, uint32_t h, int pooled,
+                       uint8_t *out) {
+    masu_session_desc d = desc_of(scene, w, h, pooled);
+    masu_session other;
+    d.no_renderer = true;
+    (void)s;
+    open_session(&other, &d);
+    masu_desc desc = s->desc;
+    desc.scene = &other.scene;
+    desc.output = (VkExtent2D){w, h};
+    desc.vulkan.pipelines = pooled ? &pool : NULL;
+    uint8_t *rungs[] = {out, out};
+    draw_rungs_of(s, &desc, rungs, NULL);
+    close_session(&other);
+}
+
+static void what_is_known_is_not_made_again(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = desc_of("test_live", W, H, 0);
+    d.no_renderer = true;
+    memset(&pool, 0, sizeof pool);
+    open_session(&s, &d);
+    static const char *const scenes[] = {"test_live", "test_live_moved", "test_live", "test_both", "test_live_moved"};
+    const uint32_t sizes[][2] = {{96, 64}, {96, 64}, {80, 56}, {96, 64}, {96, 64}};
+    for (uint32_t i = 0; i < 5; i++) {
+        uint32_t made = pool.made, taken = pool.taken, w = sizes[i][0], h = sizes[i][1];
+        draw_scene(&s, scenes[i], w, h, 0, pixels[0]);
+        draw_scene(&s, scenes[i], w, h, 1, pixels[1]);
+        assert_memory_equal(pixels[0], pixels[1], (size_t)w * h * 4);
+        printf("  %s: %u pipelines made, %u taken\n", scenes[i], pool.made - made, pool.taken - taken);
+        if (i == 0) assert_int_equal(pool.taken, 0);
+        if (i == 1) assert_true(pool.taken > 15); /* all but those that know how deep its trees are */
+        if (i == 2 || i == 4) assert_int_equal(pool.made, made); /* all of it is known */
+    }
+    assert_int_equal(pool.count, pool.made);
+    masu_pipelines_destroy(&s.desc.vulkan, &pool);
+    assert_int_equal(pool.count, 0);
+    masu_pipelines_destroy(&s.desc.vulkan, NULL);
+    masu_pipelines_destroy(NULL, &pool);
+    close_session(&s);
+}
+
+/* Every call of masu_init fails in turn: what had been taken is back, nothing lives that the pool does not
+ * have. */
+static void failures_lose_nothing(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = desc_of("test_both", W, H, 1);
+    masu_memory need;
+    masu_renderer *m;
+    masu_detail detail;
+    memset(&pool, 0, sizeof pool);
+    wrap_reset();
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    d.no_renderer = true;
+    open_session(&s, &d);
+    int64_t live = wrap.live;
+    s.desc.scene = &s.scene;
+    s.desc.vulkan.pipelines = &pool;
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_OK);
+    void *block = host_block(need.host_bytes);
+    assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, &detail), MASU_OK);
+    masu_destroy(m);
+    uint32_t all = pool.count;
+    assert_true(all > 8);
+    int64_t pooled = wrap.live - live; /* pipelines, and two samplers */
+    assert_int_equal(pooled, all + 2);
+    uint64_t from = wrap.setup_calls;
+    assert_int_equal(masu_init(&s.desc, block, need.host_bytes, &m, &detail), MASU_OK);
+    uint64_t calls = wrap.setup_calls - from;
+    masu_destroy(m);
+    for (uint64_t k = 1; k <= calls; k += 7) {
+        wrap.fail_at = wrap.setup_calls + k;
+        wrap.fail_with = VK_ERROR_OUT_OF_HOST_MEMORY;
+        assert_int_not_equal(masu_init(&s.desc, block, need.host_bytes, &m, &detail), MASU_OK);
+        wrap.fail_at = 0;
+        assert_int_equal(pool.count, all);
+        assert_int_equal(wrap.live - live, pooled);
+    }
+    printf("  %u pipelines, %llu calls of masu_init without making any\n", all, (unsigned long long)calls);
+    masu_pipelines_destroy(&s.desc.vulkan, &pool);
+    assert_int_equal(wrap.live, live);
+    free(block);
+    close_session(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_known_is_not_made_again),
+        cmocka_unit_test(failures_lose_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
