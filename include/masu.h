@@ -34,7 +34,8 @@
  *  - Device: Vulkan 1.1, one queue family with graphics and compute, D32_SFLOAT as depth attachment
  *    and sampled image. No optional feature is needed. What is missing is named in the detail.
  *    Of optional ones, textureCompressionBC and samplerAnisotropy serve textures, rayQuery serves
- *    reflections, shaderFloat16 upscaling (masu_vulkan).
+ *    reflections, shaderFloat16 upscaling (masu_vulkan). What the device offers, the scene would use, and
+ *    the host has not said to be enabled, masu_init tells the log in a line each.
  *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
  *    to be submitted once; all frames and loads go to one and the same queue, in order. It starts
  *    with a full barrier against the previous frame.

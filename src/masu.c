@@ -4,6 +4,7 @@
 #include "device/capabilities.h"
 #include "device/lifetime.h"
 #include "device/load.h"
+#include "device/offers.h"
 #include "device/ray_query.h"
 #include "quality/governor_desc.h"
 #include "renderer.h"
@@ -223,6 +224,7 @@ static void log_box(const masu_renderer *m) {
              (unsigned long long)peaks.host_bytes, (unsigned long long)peaks.device_bytes,
              m->plan.unified ? " in one unified block" : "", m->plan.desc.rung_count);
     masu_log(&m->plan.desc, MASU_LOG_INFO, text);
+    masu_report_offers(&m->device);
     if (m->plan.desc.debug.labels && !m->device.vk.SetDebugUtilsObjectNameEXT) {
         masu_log(
             &m->plan.desc, MASU_LOG_WARNING,

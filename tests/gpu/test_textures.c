@@ -492,6 +492,45 @@ static void anisotropy_is_taken_and_checked(void **state) {
     close_session(&s);
 }
 
+/* ---- What is lost silently otherwise --------------------------------------------------------- */
+
+static char logged[4096];
+
+static void collect(void *user, masu_log_level level, const char *text) {
+    (void)user;
+    size_t used = strlen(logged);
+    snprintf(logged + used, sizeof logged - used, "%d %s\n", (int)level, text);
+}
+
+/* Every driver here has blocks and anisotropy; a CPU has no queries that would be missed. */
+static void what_is_offered_and_not_enabled_is_told(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_texture_quad", 16, 16);
+    char error[ERROR_SIZE];
+    d.no_renderer = true;
+    for (int given = 0; given < 3; given++) {
+        logged[0] = 0;
+        open_session(&s, &d);
+        s.desc.log = collect;
+        if (!s.host.compressed) skip();
+        if (!given) s.desc.vulkan.texture_compression_bc = 0, s.desc.vulkan.max_anisotropy = 0.0f;
+        if (given == 2) s.desc.vulkan.texture_compression_bc = 0, s.desc.deny.compressed_textures = 1;
+        assert_ok(masu_session_start(&s, error, sizeof error));
+        const char *blocks = strstr(logged, "1 vulkan.texture_compression_bc is 0");
+        assert_true((blocks != NULL) == (given == 0)); /* denied is not missed */
+        if (blocks) {
+            char numbers[80];
+            snprintf(numbers, sizeof numbers, "textures take %llu bytes, compressed %llu",
+                     (unsigned long long)s.scene.texture_bytes_decoded,
+                     (unsigned long long)s.scene.texture_bytes);
+            assert_non_null(strstr(blocks, numbers));
+            assert_non_null(strstr(logged, "2 vulkan.max_anisotropy is 0"));
+        }
+        assert_null(strstr(logged, "ray_query"));
+        close_session(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_quad_shows_the_mip_of_its_distance),
@@ -505,6 +544,7 @@ int main(void) {
         cmocka_unit_test(a_scene_without_textures_has_nothing_of_them),
         cmocka_unit_test(the_demo_draws_finite_pixels_at_every_rung),
         cmocka_unit_test(anisotropy_is_taken_and_checked),
+        cmocka_unit_test(what_is_offered_and_not_enabled_is_told),
     };
     return cmocka_run_group_tests_name("textures", tests, NULL, NULL);
 }
