@@ -1125,7 +1125,13 @@ MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer,
  * scene. MASU_ERROR_ARGUMENT: a NULL pointer. */
 MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, masu_light *out);
 
-/* Handle of one placed mesh. id 0 is none. A handle belongs to the renderer that gave it. */
+/* HANDLES. id 0 is none; all others are given by the functions below and not to be made or counted up by
+ * hand. A handle belongs to the scene of the renderer that gave it: in every renderer of the same blob it
+ * means the same, so it outlives masu_destroy and masu_init again. One of another scene, or of another
+ * kind, is refused with MASU_ERROR_ARGUMENT, but for a chance of (how many of its kind the scene has) in
+ * 2^32 that it looks like one of these. */
+
+/* Handle of one placed mesh. */
 typedef struct masu_instance {
     uint32_t id;
 } masu_instance;
@@ -1144,8 +1150,7 @@ MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *re
 MASU_API masu_instance masu_instance_at(const masu_renderer *renderer, uint32_t index);
 
 /* Handle of a model that the scene says moves ("moving", "hidden" or "spare" in its description): all of
- * its nodes are placed, shown and hidden as one. id 0 is none. A handle belongs to the renderer that gave
- * it. */
+ * its nodes are placed, shown and hidden as one. */
 typedef struct masu_model {
     uint32_t id;
 } masu_model;
@@ -1231,8 +1236,7 @@ MASU_API MASU_MUST_USE masu_result masu_model_node_get(masu_renderer *renderer, 
 MASU_API MASU_MUST_USE masu_result masu_model_node_set(masu_renderer *renderer, masu_model model,
                                                        uint32_t node, const float rows[12]);
 
-/* Handle of a punctual light, a point or a spot. id 0 is none. A handle belongs to the renderer that gave
- * it. */
+/* Handle of a punctual light, a point or a spot. */
 typedef struct masu_punctual_light {
     uint32_t id;
 } masu_punctual_light;
@@ -1252,6 +1256,9 @@ typedef struct masu_punctual_light_state {
 
 /* The first light of that name in the scene; id 0 if there is none. */
 MASU_API masu_punctual_light masu_punctual_light_find(const masu_renderer *renderer, const char *name);
+
+/* The index-th light of the scene, in the order of masu_scene_light_name; id 0 beyond the last. */
+MASU_API masu_punctual_light masu_punctual_light_at(const masu_renderer *renderer, uint32_t index);
 
 /* What it is set to: at first, what the scene says. MASU_ERROR_ARGUMENT: a NULL pointer, or a handle
  * that is not of this renderer. */

@@ -379,33 +379,3 @@ masu_result masu_light_of(const masu_renderer *m, masu_light *out) {
     *out = masu_sun_sky_light(&m->sun_sky);
     return MASU_OK;
 }
-
-masu_instance masu_instance_find(const masu_renderer *m, const char *name) {
-    if (!m || !name || !*name) return (masu_instance){0};
-    return masu_instances_find(&m->instances, &m->plan, name);
-}
-
-masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance,
-                                        const float rows[12]) {
-    if (!m || !rows) return MASU_ERROR_ARGUMENT;
-    masu_result result = masu_instances_set(&m->instances, &m->plan, instance, rows, &m->error);
-    if (!result) masu_bounds_move(&m->bounds, &m->plan, &m->instances, instance.id - 1);
-    return result;
-}
-
-masu_punctual_light masu_punctual_light_find(const masu_renderer *m, const char *name) {
-    if (!m || !name || !*name) return (masu_punctual_light){0};
-    return masu_lights_find(&m->lights, &m->plan, name);
-}
-
-masu_result masu_punctual_light_get(masu_renderer *m, masu_punctual_light light,
-                                 masu_punctual_light_state *out) {
-    if (!m || !out) return MASU_ERROR_ARGUMENT;
-    return masu_lights_get(&m->lights, &m->plan, light, out, &m->error);
-}
-
-masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
-                                 const masu_punctual_light_state *state) {
-    if (!m || !state) return MASU_ERROR_ARGUMENT;
-    return masu_lights_set(&m->lights, &m->plan, light, state, &m->error);
-}
