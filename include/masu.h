@@ -60,7 +60,8 @@
  *    Time: seconds.
  *  - Every struct may be zero-initialised; a zero field means the default stated next to it.
  *  - Functions return MASU_OK (0), MASU_INCOMPLETE (> 0) or a negative masu_result. `detail` may be
- *    NULL.
+ *    NULL. Of other pointers NULL is MASU_ERROR_ARGUMENT, and where there is no result nothing: what is asked
+ *    for is then 0.
  *
  * Compiles as C11 (pedantic) and C++17. */
 #ifndef MASU_H
@@ -198,7 +199,7 @@ typedef struct masu_scene {
 /* Checks every offset, count, index, float and the hash of `blob` and fills `*out`. Allocates
  * nothing, keeps nothing. `blob` must be 16-byte aligned. It must stay readable and unchanged until
  * masu_load has returned MASU_OK for the last renderer made from it; afterwards it may be freed.
- * MASU_ERROR_ARGUMENT: a NULL or misaligned pointer. MASU_ERROR_VERSION: a blob of another format
+ * MASU_ERROR_ARGUMENT: `blob` or `out` is NULL, or `blob` misaligned. MASU_ERROR_VERSION: a blob of another format
  * version. MASU_ERROR_SCENE: anything else; the detail names the section and the element. */
 MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes,
                                                    masu_scene *out, masu_detail *detail);
@@ -972,8 +973,8 @@ typedef struct masu_memory_row {
     uint32_t first_pass, last_pass; /* rows of masu_plan.passes */
 } masu_memory_row;
 
-/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, returns how many
- * there are. */
+/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, none where `rows` is NULL,
+ * and returns how many there are. */
 MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows,
                                      uint32_t capacity);
 
@@ -1113,7 +1114,7 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
 MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
 
 /* Why the last masu_load, masu_frame, or call that asks or changes an instance, model or punctual light
- * failed. */
+ * failed. Never NULL. */
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 
 /* The scene's camera path at a time, held at both ends. MASU_ERROR_STATE: the scene has no camera.

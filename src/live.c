@@ -7,8 +7,7 @@
 #include <string.h>
 
 static masu_result missing(masu_renderer *m, const char *what) {
-    if (!m) return MASU_ERROR_ARGUMENT;
-    return masu_fail(&m->error, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL", what);
+    return m ? masu_fail_null(&m->error, what) : MASU_ERROR_ARGUMENT;
 }
 
 /* ---- Instances ------------------------------------------------------------------------------- */

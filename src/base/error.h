@@ -14,6 +14,9 @@ masu_result
 masu_fail(masu_detail *detail, masu_result result, const char *what, uint64_t needed,
           uint64_t given, const char *format, ...);
 
+/* An argument of that name is NULL. */
+masu_result masu_fail_null(masu_detail *detail, const char *what);
+
 /* A Vulkan call that returned `vk` < 0: MASU_ERROR_DEVICE_LOST or MASU_ERROR_VULKAN, naming the
  * call. */
 masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call);

@@ -74,18 +74,18 @@ _Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_mar
                "every value of a knob has four bytes");
 
 double masu_knob_get(const masu_knob *k, const masu_rung *rung, uint32_t value) {
+    if (!k || !k->name || !rung || value >= k->values) return 0.0;
     const char *at = (const char *)rung + k->offset + 4 * (size_t)value;
     uint32_t number;
     float real;
-    if (value >= k->values) return 0.0;
     memcpy(&number, at, sizeof number);
     memcpy(&real, at, sizeof real);
     return k->kind == MASU_KNOB_FLOAT ? (double)real : (double)number;
 }
 
 void masu_knob_set(const masu_knob *k, masu_rung *rung, uint32_t value, double to) {
+    if (!k || !k->name || !rung || value >= k->values) return;
     char *at = (char *)rung + k->offset + 4 * (size_t)value;
-    if (value >= k->values) return;
     if (k->kind == MASU_KNOB_FLOAT) {
         float real = (float)to;
         memcpy(at, &real, sizeof real);
@@ -96,6 +96,7 @@ void masu_knob_set(const masu_knob *k, masu_rung *rung, uint32_t value, double t
 }
 
 int masu_knob_takes(const masu_knob *k, double to) {
+    if (!k || !k->name) return 0;
     if (k->kind != MASU_KNOB_FLOAT && to != floor(to)) return 0;
     return (to >= k->min && to <= k->max) || to == 0.0;
 }
