@@ -162,7 +162,7 @@ static void a_frame_that_is_refused_changes_nothing(void **state) {
     const masu_frame_desc bad[] = {
         {.rung = 3},           {.rung = UINT32_MAX},           {.target = 2},
         {.time = (double)NAN}, {.time_step = (float)INFINITY}, {.camera = &camera}};
-    static const char *const names[] = {"rung", "rung", "target", "time", "time", "camera.fov_y"};
+    static const char *const names[] = {"rung", "rung", "target", "time", "time_step", "camera.fov_y"};
     for (size_t i = 0; i < COUNT(bad); i++) {
         assert_int_equal(masu_frame(&m, &bad[i], &commands), MASU_ERROR_ARGUMENT);
         assert_string_equal(masu_last_error(&m)->what, names[i]);
