@@ -61,7 +61,8 @@
  *    Time: seconds.
  *  - Every struct may be zero-initialised; a zero field means the default stated next to it.
  *  - Functions return MASU_OK (0), MASU_INCOMPLETE (> 0) or a negative masu_result. `detail` may be
- *    NULL.
+ *    NULL. Of other pointers NULL is MASU_ERROR_ARGUMENT, and where there is no result nothing: what is asked
+ *    for is then 0.
  *
  * Compiles as C11 (pedantic) and C++17. */
 #ifndef MASU_H
@@ -199,7 +200,7 @@ typedef struct masu_scene {
 /* Checks every offset, count, index, float and the hash of `blob` and fills `*out`. Allocates
  * nothing, keeps nothing. `blob` must be 16-byte aligned. It must stay readable and unchanged until
  * masu_load has returned MASU_OK for the last renderer made from it; afterwards it may be freed.
- * MASU_ERROR_ARGUMENT: a NULL or misaligned pointer. MASU_ERROR_VERSION: a blob of another format
+ * MASU_ERROR_ARGUMENT: `blob` or `out` is NULL, or `blob` misaligned. MASU_ERROR_VERSION: a blob of another format
  * version. MASU_ERROR_SCENE: anything else; the detail names the section and the element. */
 MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes,
                                                    masu_scene *out, masu_detail *detail);
@@ -993,8 +994,8 @@ typedef struct masu_memory_row {
     uint32_t first_pass, last_pass; /* rows of masu_plan.passes */
 } masu_memory_row;
 
-/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, returns how many
- * there are. */
+/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, none where `rows` is NULL,
+ * and returns how many there are. */
 MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows,
                                      uint32_t capacity);
 
@@ -1134,7 +1135,7 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
 MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
 
 /* Why the last masu_load, masu_frame, or call that asks or changes an instance, model or punctual light
- * failed. */
+ * failed. Never NULL. */
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 
 /* The scene's camera path at a time, held at both ends. MASU_ERROR_STATE: the scene has no camera.
@@ -1146,7 +1147,13 @@ MASU_API MASU_MUST_USE masu_result masu_camera_at(const masu_renderer *renderer,
  * scene. MASU_ERROR_ARGUMENT: a NULL pointer. */
 MASU_API MASU_MUST_USE masu_result masu_light_of(const masu_renderer *renderer, masu_light *out);
 
-/* Handle of one placed mesh. id 0 is none. A handle belongs to the renderer that gave it. */
+/* HANDLES. id 0 is none; all others are given by the functions below and not to be made or counted up by
+ * hand. A handle belongs to the scene of the renderer that gave it: in every renderer of the same blob it
+ * means the same, so it outlives masu_destroy and masu_init again. One of another scene, or of another
+ * kind, is refused with MASU_ERROR_ARGUMENT, but for a chance of (how many of its kind the scene has) in
+ * 2^32 that it looks like one of these. */
+
+/* Handle of one placed mesh. */
 typedef struct masu_instance {
     uint32_t id;
 } masu_instance;
@@ -1165,8 +1172,7 @@ MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *re
 MASU_API masu_instance masu_instance_at(const masu_renderer *renderer, uint32_t index);
 
 /* Handle of a model that the scene says moves ("moving", "hidden" or "spare" in its description): all of
- * its nodes are placed, shown and hidden as one. id 0 is none. A handle belongs to the renderer that gave
- * it. */
+ * its nodes are placed, shown and hidden as one. */
 typedef struct masu_model {
     uint32_t id;
 } masu_model;
@@ -1252,8 +1258,7 @@ MASU_API MASU_MUST_USE masu_result masu_model_node_get(masu_renderer *renderer, 
 MASU_API MASU_MUST_USE masu_result masu_model_node_set(masu_renderer *renderer, masu_model model,
                                                        uint32_t node, const float rows[12]);
 
-/* Handle of a punctual light, a point or a spot. id 0 is none. A handle belongs to the renderer that gave
- * it. */
+/* Handle of a punctual light, a point or a spot. */
 typedef struct masu_punctual_light {
     uint32_t id;
 } masu_punctual_light;
@@ -1273,6 +1278,9 @@ typedef struct masu_punctual_light_state {
 
 /* The first light of that name in the scene; id 0 if there is none. */
 MASU_API masu_punctual_light masu_punctual_light_find(const masu_renderer *renderer, const char *name);
+
+/* The index-th light of the scene, in the order of masu_scene_light_name; id 0 beyond the last. */
+MASU_API masu_punctual_light masu_punctual_light_at(const masu_renderer *renderer, uint32_t index);
 
 /* What it is set to: at first, what the scene says. MASU_ERROR_ARGUMENT: a NULL pointer, or a handle
  * that is not of this renderer. */

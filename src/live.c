@@ -1,4 +1,5 @@
-/* live.c: the public functions that ask and change the instances and models of a scene between frames. What
+/* live.c: the public functions that ask and change the instances, models and punctual
+ * lights of a scene between frames. What
  * they change is the host's truth in src/frame/; masu_frame carries it to the GPU. */
 #include "base/error.h"
 #include "renderer.h"
@@ -6,23 +7,32 @@
 #include <string.h>
 
 static masu_result missing(masu_renderer *m, const char *what) {
-    if (!m) return MASU_ERROR_ARGUMENT;
-    return masu_fail(&m->error, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL", what);
+    return m ? masu_fail_null(&m->error, what) : MASU_ERROR_ARGUMENT;
 }
 
 /* ---- Instances ------------------------------------------------------------------------------- */
 
 static masu_result check_instance(masu_renderer *m, masu_instance instance, uint32_t *index) {
-    uint32_t count = m->plan.scene.instances;
-    *index = instance.id - 1;
-    if (instance.id && instance.id <= count) return MASU_OK;
-    return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "instance", count, instance.id,
-                     "instance handle %u: the scene has handles 1 to %u", instance.id, count);
+    return masu_handle_check(&m->instances.handles, "instance", instance.id, index, &m->error);
 }
 
 masu_instance masu_instance_at(const masu_renderer *m, uint32_t index) {
-    if (!m || index >= m->plan.scene.instances) return (masu_instance){0};
-    return (masu_instance){index + 1};
+    return (masu_instance){m ? masu_handle_at(&m->instances.handles, index) : 0};
+}
+
+masu_instance masu_instance_find(const masu_renderer *m, const char *name) {
+    if (!m || !name || !*name) return (masu_instance){0};
+    return masu_instance_at(m, masu_instances_find(&m->instances, &m->plan, name));
+}
+
+masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance,
+                                        const float rows[12]) {
+    uint32_t i;
+    if (!m || !rows) return missing(m, "rows");
+    masu_result result = check_instance(m, instance, &i);
+    if (!result) result = masu_instances_set(&m->instances, &m->plan, i, rows, &m->error);
+    if (!result) masu_bounds_move(&m->bounds, &m->plan, &m->instances, i);
+    return result;
 }
 
 masu_result masu_instance_get(masu_renderer *m, masu_instance instance, masu_instance_state *out) {
@@ -56,11 +66,7 @@ masu_result masu_instance_show(masu_renderer *m, masu_instance instance, uint32_
 /* ---- Models ---------------------------------------------------------------------------------- */
 
 static masu_result check_model(masu_renderer *m, masu_model model, uint32_t *index) {
-    uint32_t count = m->plan.scene.models;
-    *index = model.id - 1;
-    if (model.id && model.id <= count) return MASU_OK;
-    return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "model", count, model.id,
-                     "model handle %u: the scene has handles 1 to %u", model.id, count);
+    return masu_handle_check(&m->models.handles, "model", model.id, index, &m->error);
 }
 
 masu_model masu_model_find(const masu_renderer *m, const char *name) {
@@ -69,8 +75,7 @@ masu_model masu_model_find(const masu_renderer *m, const char *name) {
 }
 
 masu_model masu_model_at(const masu_renderer *m, uint32_t index) {
-    if (!m || index >= m->plan.scene.models) return (masu_model){0};
-    return (masu_model){index + 1};
+    return (masu_model){m ? masu_handle_at(&m->models.handles, index) : 0};
 }
 
 masu_result masu_model_get(masu_renderer *m, masu_model model, masu_model_state *out) {
@@ -113,7 +118,7 @@ masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[1
         return masu_fail(&m->error, MASU_ERROR_LIMIT, "models", 1, 0,
                          "model %u: all of its kind are shown; \"spare\" in its description gives "
                          "the scene more",
-                         like.id);
+                         i);
     }
     result = masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, spare, rows,
                               &m->error);
@@ -126,9 +131,9 @@ masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[1
 /* ---- Nodes ----------------------------------------------------------------------------------- */
 
 uint32_t masu_model_node_find(const masu_renderer *m, masu_model model, const char *name) {
-    if (!m || !name || !*name || !model.id || model.id > m->plan.scene.models)
-        return MASU_NODE_NONE;
-    return masu_models_node(&m->models, model.id - 1, name);
+    if (!m || !name || !*name) return MASU_NODE_NONE;
+    uint32_t i = masu_handle_index(&m->models.handles, model.id);
+    return i < m->models.handles.count ? masu_models_node(&m->models, i, name) : MASU_NODE_NONE;
 }
 
 masu_result masu_model_node_get(masu_renderer *m, masu_model model, uint32_t node,
@@ -157,4 +162,37 @@ masu_result masu_model_node_set(masu_renderer *m, masu_model model, uint32_t nod
     if (result) return result;
     return masu_models_move_node(&m->models, &m->instances, &m->bounds, &m->plan, i, node, rows,
                                  &m->error);
+}
+
+/* ---- Punctual lights ------------------------------------------------------------------------- */
+
+static masu_result check_light(masu_renderer *m, masu_punctual_light light, uint32_t *index) {
+    return masu_handle_check(&m->lights.handles, "light", light.id, index, &m->error);
+}
+
+masu_punctual_light masu_punctual_light_at(const masu_renderer *m, uint32_t index) {
+    return (masu_punctual_light){m ? masu_handle_at(&m->lights.handles, index) : 0};
+}
+
+masu_punctual_light masu_punctual_light_find(const masu_renderer *m, const char *name) {
+    if (!m || !name || !*name) return (masu_punctual_light){0};
+    return masu_punctual_light_at(m, masu_lights_find(&m->lights, &m->plan, name));
+}
+
+masu_result masu_punctual_light_get(masu_renderer *m, masu_punctual_light light,
+                                    masu_punctual_light_state *out) {
+    uint32_t i;
+    if (!m || !out) return missing(m, "out");
+    masu_result result = check_light(m, light, &i);
+    if (!result) *out = masu_lights_get(&m->lights, &m->instances, i);
+    return result;
+}
+
+masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
+                                    const masu_punctual_light_state *state) {
+    uint32_t i;
+    if (!m || !state) return missing(m, "state");
+    masu_result result = check_light(m, light, &i);
+    if (result) return result;
+    return masu_lights_set(&m->lights, &m->instances, i, state, &m->error);
 }

@@ -82,7 +82,7 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
                              masu_objects *objects, masu_detail *detail) {
     memset(objects, 0, sizeof *objects);
     memset(textures, 0, MASU_TEXTURE_ARRAYS_MAX * sizeof *textures);
-    if (!desc) return masu_fail(detail, MASU_ERROR_ARGUMENT, "desc", 1, 0, "desc is NULL");
+    if (!desc) return masu_fail_null(detail, "desc");
     if (desc->scene && !desc->scene->blob) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "scene", 1, 0,
                          "scene was not filled by masu_scene_bind");
@@ -130,7 +130,7 @@ static masu_result plan_and_forget(const masu_desc *desc, masu_frame_plan *plan,
 }
 
 masu_result masu_memory_query(const masu_desc *desc, masu_memory *out, masu_detail *detail) {
-    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
+    if (!out) return masu_fail_null(detail, "out");
     masu_frame_plan plan;
     uint64_t host_bytes = 0;
     masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
@@ -139,7 +139,7 @@ masu_result masu_memory_query(const masu_desc *desc, masu_memory *out, masu_deta
 }
 
 masu_result masu_plan(const masu_desc *desc, masu_plan_info *out, masu_detail *detail) {
-    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
+    if (!out) return masu_fail_null(detail, "out");
     masu_frame_plan plan;
     uint64_t host_bytes = 0;
     masu_result result = plan_and_forget(desc, &plan, &host_bytes, detail);
@@ -150,6 +150,9 @@ masu_result masu_plan(const masu_desc *desc, masu_plan_info *out, masu_detail *d
 }
 
 void masu_plan_of(const masu_renderer *m, masu_plan_info *out) {
+    if (!out) return;
+    memset(out, 0, sizeof *out);
+    if (!m) return;
     masu_plan_export(&m->plan, m->device.pipeline_ns, out);
     masu_memory_export(&m->plan, m->arena.used, &out->memory);
 }
@@ -235,7 +238,7 @@ static void log_box(const masu_renderer *m) {
 masu_result masu_init(const masu_desc *desc, void *block, uint64_t block_bytes, masu_renderer **out,
                       masu_detail *detail) {
     masu_detail own;
-    if (!out) return masu_fail(detail, MASU_ERROR_ARGUMENT, "out", 1, 0, "out is NULL");
+    if (!out) return masu_fail_null(detail, "out");
     *out = NULL;
     masu_result result = init(desc, block, block_bytes, out, &own);
     if (!result) {
@@ -254,7 +257,8 @@ void masu_destroy(masu_renderer *m) {
 }
 
 masu_result masu_load(masu_renderer *m, masu_commands *commands) {
-    if (!m || !commands) return MASU_ERROR_ARGUMENT;
+    if (!m) return MASU_ERROR_ARGUMENT;
+    if (!commands) return masu_fail_null(&m->error, "commands");
     memset(commands, 0, sizeof *commands);
     if (m->loaded) return MASU_OK;
     commands->buffer = masu_load_next(&m->device);
@@ -342,7 +346,12 @@ static VkCommandBuffer pick_recording(const masu_renderer *m, const masu_frame_d
 }
 
 masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
-    if (!m || !frame || !commands) return MASU_ERROR_ARGUMENT;
+    if (!m) return MASU_ERROR_ARGUMENT;
+    if (!frame || !commands) {
+        (void)masu_fail_null(&m->error, frame ? "commands" : "frame");
+        masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
+        return MASU_ERROR_ARGUMENT;
+    }
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
     masu_result result = check_frame(m, frame);
     if (!result && m->governor) pick_rung(m, &f);
@@ -364,10 +373,14 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
 }
 
 void masu_frame_wall(masu_renderer *m, uint32_t slot, double wall_ms) {
-    if (slot < m->plan.desc.frames_in_flight) m->timeline.slots[slot].wall_ms = wall_ms;
+    if (m && slot < m->plan.desc.frames_in_flight) m->timeline.slots[slot].wall_ms = wall_ms;
 }
 
-const masu_detail *masu_last_error(const masu_renderer *m) { return &m->error; }
+const masu_detail *masu_last_error(const masu_renderer *m) {
+    static const masu_detail none = {
+        .result = MASU_ERROR_ARGUMENT, .what = "renderer", .needed = 1, .text = "renderer is NULL"};
+    return m ? &m->error : &none;
+}
 
 /* ---- What the host asks and changes ---------------------------------------------------------- */
 
@@ -380,34 +393,4 @@ masu_result masu_light_of(const masu_renderer *m, masu_light *out) {
     if (!m->plan.needs.scene) return MASU_ERROR_STATE;
     *out = masu_sun_sky_light(&m->sun_sky);
     return MASU_OK;
-}
-
-masu_instance masu_instance_find(const masu_renderer *m, const char *name) {
-    if (!m || !name || !*name) return (masu_instance){0};
-    return masu_instances_find(&m->instances, &m->plan, name);
-}
-
-masu_result masu_instance_set_transform(masu_renderer *m, masu_instance instance,
-                                        const float rows[12]) {
-    if (!m || !rows) return MASU_ERROR_ARGUMENT;
-    masu_result result = masu_instances_set(&m->instances, &m->plan, instance, rows, &m->error);
-    if (!result) masu_bounds_move(&m->bounds, &m->plan, &m->instances, instance.id - 1);
-    return result;
-}
-
-masu_punctual_light masu_punctual_light_find(const masu_renderer *m, const char *name) {
-    if (!m || !name || !*name) return (masu_punctual_light){0};
-    return masu_lights_find(&m->lights, &m->plan, name);
-}
-
-masu_result masu_punctual_light_get(masu_renderer *m, masu_punctual_light light,
-                                 masu_punctual_light_state *out) {
-    if (!m || !out) return MASU_ERROR_ARGUMENT;
-    return masu_lights_get(&m->lights, &m->plan, light, out, &m->error);
-}
-
-masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
-                                 const masu_punctual_light_state *state) {
-    if (!m || !state) return MASU_ERROR_ARGUMENT;
-    return masu_lights_set(&m->lights, &m->plan, light, state, &m->error);
 }

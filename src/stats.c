@@ -132,6 +132,9 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
 }
 
 void masu_peaks(const masu_renderer *m, masu_peak_info *out) {
+    if (!out) return;
+    *out = (masu_peak_info){0};
+    if (!m) return;
     const masu_limits held = masu_limits_needed(&m->plan.desc);
 #define PEAK(name, ...) .name = held.name,
     *out = (masu_peak_info){MASU_LIMITS(PEAK).host_bytes = m->arena.used};
@@ -167,6 +170,7 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
 /* Octahedral decoding (Cigolle et al., JCGT 3-2, 2014, section 3.2), 13 bits per axis; the twin of
  * shaders/shared/pack.glsl. */
 void masu_unpack_normal(uint32_t texel, float out[3]) {
+    if (!out) return;
     float x = (float)(texel & 0x1FFFu) / 4095.0f - 1.0f;
     float y = (float)(texel >> 13 & 0x1FFFu) / 4095.0f - 1.0f;
     x = x > 1.0f ? 1.0f : x;
@@ -263,7 +267,8 @@ static void report_images(const masu_frame_plan *plan, report *to) {
 }
 
 uint32_t masu_memory_report(const masu_renderer *m, masu_memory_row *rows, uint32_t capacity) {
-    report out = {rows, capacity, 0};
+    report out = {rows, rows ? capacity : 0, 0};
+    if (!m) return 0;
     report_host(&m->arena, &out);
     report_buffers(&m->plan, &out);
     report_images(&m->plan, &out);

@@ -31,6 +31,22 @@ masu_result masu_fail(masu_detail *detail, masu_result result, const char *what,
     return result;
 }
 
+masu_result masu_fail_null(masu_detail *detail, const char *what) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL", what);
+}
+
+masu_result masu_fail_number(masu_detail *detail, const char *what, double given,
+                             const char *allowed) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is %.9g, allowed are %s", what,
+                     given, allowed);
+}
+
+masu_result masu_fail_element(masu_detail *detail, const char *what, uint32_t index, double given,
+                              const char *allowed) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s[%u] is %.9g, allowed are %s", what,
+                     index, given, allowed);
+}
+
 masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call) {
     masu_result result = vk == VK_ERROR_DEVICE_LOST ? MASU_ERROR_DEVICE_LOST : MASU_ERROR_VULKAN;
     masu_fail(detail, result, call, 0, 0, "%s failed with VkResult %d", call, (int)vk);

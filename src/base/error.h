@@ -14,6 +14,16 @@ masu_result
 masu_fail(masu_detail *detail, masu_result result, const char *what, uint64_t needed,
           uint64_t given, const char *format, ...);
 
+/* An argument of that name is NULL. */
+masu_result masu_fail_null(masu_detail *detail, const char *what);
+
+/* A number out of its range: "camera.fov_y is 0, allowed are 0.001 to 3.1 radians". */
+masu_result masu_fail_number(masu_detail *detail, const char *what, double given,
+                             const char *allowed);
+/* The same of one of several: "camera.position[1] is nan, allowed are ...". */
+masu_result masu_fail_element(masu_detail *detail, const char *what, uint32_t index, double given,
+                              const char *allowed);
+
 /* A Vulkan call that returned `vk` < 0: MASU_ERROR_DEVICE_LOST or MASU_ERROR_VULKAN, naming the
  * call. */
 masu_result masu_fail_vulkan(masu_detail *detail, VkResult vk, const char *call);

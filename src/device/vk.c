@@ -152,7 +152,7 @@ masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail
                            : !host->instance             ? "vulkan.instance"
                            : !host->physical_device      ? "vulkan.physical_device"
                                                          : "vulkan.device";
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL", what);
+        return masu_fail_null(detail, what);
     }
     vk->instance = host->instance;
     vk->physical = host->physical_device;

@@ -52,8 +52,10 @@ masu_result masu_camera_path_at(const masu_camera_path *path, const masu_frame_p
 
 /* ---- A frame's ------------------------------------------------------------------------------- */
 
-static masu_result bad_camera(masu_detail *detail, const char *what, const char *problem) {
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s %s", what, problem);
+static masu_result bad_direction(masu_detail *detail, const char *what, const float v[3],
+                                 const char *needed) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is (%g, %g, %g), needed is %s", what,
+                     (double)v[0], (double)v[1], (double)v[2], needed);
 }
 
 /* Orthonormal: right, up, forward. */
@@ -62,16 +64,21 @@ static masu_result find_axes(const masu_camera *c, float right[3], float up[3], 
     float wish[3] = {0.0f, 1.0f, 0.0f};
     for (uint32_t i = 0; i < 3; i++) {
         if (!(fabs(c->position[i]) <= 1e15)) {
-            return bad_camera(detail, "camera.position", "is not finite or beyond 1e15 m");
+            return masu_fail_element(detail, "camera.position", i, c->position[i],
+                                     "-1e15 to 1e15 m");
         }
     }
     if (!masu_unit(c->forward, forward))
-        return bad_camera(detail, "camera.forward", "is zero or not finite");
+        return bad_direction(detail, "camera.forward", c->forward, "a direction: finite, not zero");
     int own_up = c->up[0] != 0.0f || c->up[1] != 0.0f || c->up[2] != 0.0f;
-    if (own_up && !masu_unit(c->up, wish)) return bad_camera(detail, "camera.up", "is not finite");
+    if (own_up && !masu_unit(c->up, wish))
+        return bad_direction(detail, "camera.up", c->up, "a finite direction, or (0, 0, 0)");
     masu_cross(forward, wish, right);
     if (!masu_unit(right, right)) {
-        if (own_up) return bad_camera(detail, "camera.up", "is parallel to camera.forward");
+        if (own_up) {
+            return bad_direction(detail, "camera.up", c->up,
+                                 "a direction that is not parallel to camera.forward");
+        }
         /* Looking straight up or down without an up of one's own: any right-hand side will do. */
         right[0] = 1.0f, right[1] = right[2] = 0.0f;
     }
@@ -82,13 +89,17 @@ static masu_result find_axes(const masu_camera *c, float right[3], float up[3], 
 /* What is no direction; near_distance with its default. */
 static masu_result check_lens(const masu_camera *c, float near_distance, masu_detail *detail) {
     if (!(near_distance >= 1e-9f && near_distance <= 1e9f)) {
-        return bad_camera(detail, "camera.near_distance", "is not 1e-9 to 1e9 m");
+        return masu_fail_number(detail, "camera.near_distance", (double)near_distance,
+                                "0 and 1e-9 to 1e9 m");
     }
     if (!(c->fov_y >= 0.001f && c->fov_y <= 3.1f)) {
-        return bad_camera(detail, "camera.fov_y", "is not 0.001 to 3.1 radians");
+        return masu_fail_number(detail, "camera.fov_y", (double)c->fov_y, "0.001 to 3.1 radians");
     }
-    if (!(fabsf(c->jitter[0]) <= 1.0f && fabsf(c->jitter[1]) <= 1.0f))
-        return bad_camera(detail, "camera.jitter", "is not -1 to 1 pixels");
+    for (uint32_t k = 0; k < 2; k++) {
+        if (!(fabsf(c->jitter[k]) <= 1.0f))
+            return masu_fail_element(detail, "camera.jitter", k, (double)c->jitter[k],
+                                     "-1 to 1 pixels");
+    }
     return MASU_OK;
 }
 

@@ -41,10 +41,10 @@ unsigned char *masu_frame_slot(const masu_frame_data *f, masu_buffer_id buffer) 
 
 masu_result masu_frame_read_time(masu_frame_data *f, masu_detail *detail) {
     /* Beyond this a float has no seconds left; far beyond, it is infinite. */
-    if (!(fabs(f->desc.time) <= 1e15) || !(fabsf(f->desc.time_step) <= 1e15f)) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "time", 0, 0,
-                         "time or time_step is not finite or beyond 1e15 s");
-    }
+    if (!(fabs(f->desc.time) <= 1e15))
+        return masu_fail_number(detail, "time", f->desc.time, "-1e15 to 1e15 s");
+    if (!(fabsf(f->desc.time_step) <= 1e15f))
+        return masu_fail_number(detail, "time_step", (double)f->desc.time_step, "-1e15 to 1e15 s");
     f->u.eye_hi[3] = (float)f->desc.time;
     f->u.eye_lo[3] = f->desc.time_step;
     f->u.history[0] = (uint32_t)f->number;

@@ -32,6 +32,7 @@ void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan,
         in->meshes[i] = v->instances[i].mesh;
         in->flags[i] = frames_to_write(plan);
     }
+    in->handles = masu_handles_of(v->hash, MASU_HANDLE_INSTANCE, plan->scene.instances);
     in->dirty_count = plan->scene.instances;
     in->hidden_count = in->changes = 0;
 }
@@ -59,29 +60,23 @@ void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32
     make_dirty(in, plan, i);
 }
 
-masu_instance masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,
-                                  const char *name) {
+uint32_t masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,
+                             const char *name) {
     uint64_t hash = masu_fnv1a64(name, strlen(name));
     for (uint32_t i = 0; i < plan->scene.instances; i++) {
-        if (in->names[i] == hash) return (masu_instance){i + 1};
+        if (in->names[i] == hash) return i;
     }
-    return (masu_instance){0};
+    return UINT32_MAX;
 }
 
-masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan,
-                               masu_instance instance, const float rows[12], masu_detail *detail) {
-    if (instance.id == 0 || instance.id > plan->scene.instances) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", plan->scene.instances,
-                         instance.id, "instance handle %u: the scene has handles 1 to %u",
-                         instance.id, plan->scene.instances);
-    }
+masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
+                               const float rows[12], masu_detail *detail) {
     for (uint32_t k = 0; k < 12; k++) {
-        if (!isfinite(rows[k])) {
-            return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 12, k,
-                             "instance %u: transform[%u] is not finite", instance.id, k);
-        }
+        if (isfinite(rows[k])) continue;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 12, k,
+                         "instance %u: rows[%u] is %g, not finite", instance, k, (double)rows[k]);
     }
-    masu_instances_place(in, plan, instance.id - 1, rows);
+    masu_instances_place(in, plan, instance, rows);
     return MASU_OK;
 }
 

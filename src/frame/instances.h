@@ -3,6 +3,7 @@
 #define MASU_INSTANCES_H
 
 #include "frame/frame_data.h"
+#include "frame/handles.h"
 #include "scene/view.h"
 
 enum {
@@ -21,6 +22,7 @@ typedef struct masu_instances {
     uint32_t hidden_count;
     uint32_t changes; /* how often one was moved, shown or hidden */
     uint32_t *meshes;
+    masu_handles handles;
 } masu_instances;
 
 void masu_instances_lay(masu_instances *in, masu_arena *arena, const masu_frame_plan *plan);
@@ -41,10 +43,11 @@ void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32
                          int shown);
 
 /* masu_instance_find and masu_instance_set_transform of the public header. */
-masu_instance masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,
-                                  const char *name);
-masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan,
-                               masu_instance instance, const float rows[12], masu_detail *detail);
+/* UINT32_MAX: there is none. */
+uint32_t masu_instances_find(const masu_instances *in, const masu_frame_plan *plan,
+                             const char *name);
+masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
+                               const float rows[12], masu_detail *detail);
 
 void masu_instance_rows(const struct masu_instance_data *at, float rows[12]);
 

@@ -45,6 +45,7 @@ static int place(masu_models *s, uint32_t model) {
 void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       const masu_scene_view *v) {
     const masu_scene *scene = &plan->scene;
+    s->handles = masu_handles_of(v->hash, MASU_HANDLE_MODEL, scene->models);
     for (uint32_t i = 0; scene->models && i < scene->instances; i++)
         s->of_instance[i] = MASU_BLOB_NONE;
     for (uint32_t n = 0; n < scene->model_nodes; n++) {
@@ -97,7 +98,7 @@ static masu_result replace(masu_models *s, masu_instances *in, masu_bounds *b,
     for (uint32_t k = 0; k < 12; k++) {
         if (isfinite(rows[k])) continue;
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 12, k,
-                         "model %u: rows[%u] is %g, not finite", model + 1, k, (double)rows[k]);
+                         "model %u: rows[%u] is %g, not finite", model, k, (double)rows[k]);
     }
     memcpy(before, where, sizeof before);
     memcpy(where, rows, sizeof before);
@@ -106,7 +107,7 @@ static masu_result replace(masu_models *s, masu_instances *in, masu_bounds *b,
         (void)place(s, model);
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 0, 0,
                          "model %u: with these rows a node of it is beyond what a float holds",
-                         model + 1);
+                         model);
     }
     for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
         const masu_node *node = &s->nodes[n];
@@ -128,7 +129,7 @@ masu_result masu_models_check_node(const masu_models *s, uint32_t model, uint32_
     uint32_t count = s->models[model].node_count;
     if (node < count) return MASU_OK;
     return masu_fail(detail, MASU_ERROR_ARGUMENT, "node", count - 1, node,
-                     "model %u: node %u does not exist, the last one is %u", model + 1, node,
+                     "model %u: node %u does not exist, the last one is %u", model, node,
                      count - 1);
 }
 

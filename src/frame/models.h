@@ -28,6 +28,7 @@ typedef struct masu_models {
     masu_placed_model *models;
     masu_node *nodes;
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
+    masu_handles handles;
 } masu_models;
 
 void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);

@@ -14,6 +14,7 @@ void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *p
 }
 
 void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v) {
+    l->handles = masu_handles_of(v->hash, MASU_HANDLE_LIGHT, plan->scene.lights);
     for (uint32_t i = 0; i < plan->scene.lights; i++) {
         uint32_t name = v->lights[i].name;
         l->states[i] = masu_light_state_of(&v->lights[i]);
@@ -69,49 +70,43 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
 
 /* ---- What the host changes ------------------------------------------------------------------- */
 
-masu_punctual_light masu_lights_find(const masu_lights *l, const masu_frame_plan *plan,
-                                  const char *name) {
+uint32_t masu_lights_find(const masu_lights *l, const masu_frame_plan *plan, const char *name) {
     uint64_t hash = masu_fnv1a64(name, strlen(name));
     for (uint32_t i = 0; i < plan->scene.lights; i++) {
-        if (l->names[i] == hash) return (masu_punctual_light){i + 1};
+        if (l->names[i] == hash) return i;
     }
-    return (masu_punctual_light){0};
+    return UINT32_MAX;
 }
 
-static masu_result check_handle(const masu_frame_plan *plan, masu_punctual_light light,
-                                masu_detail *detail) {
-    if (light.id && light.id <= plan->scene.lights) return MASU_OK;
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", plan->scene.lights, light.id,
-                     "light handle %u: the scene has handles 1 to %u", light.id,
-                     plan->scene.lights);
+masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_instances *in,
+                                          uint32_t light) {
+    masu_punctual_light_state state = l->states[light];
+    if (state.instance.id)
+        state.instance.id = masu_handle_at(&in->handles, state.instance.id - 1);
+    return state;
 }
 
-masu_result masu_lights_get(const masu_lights *l, const masu_frame_plan *plan,
-                            masu_punctual_light light, masu_punctual_light_state *out,
-                            masu_detail *detail) {
-    masu_result result = check_handle(plan, light, detail);
-    if (!result) *out = l->states[light.id - 1];
-    return result;
-}
-
-masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_punctual_light light,
+masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t light,
                             const masu_punctual_light_state *state, masu_detail *detail) {
     double value = 0.0;
-    masu_result result = check_handle(plan, light, detail);
-    if (result) return result;
     const char *wrong = masu_light_state_wrong(state, &value);
     if (wrong) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", 0, 0, "light %u: %s (%g)", light.id,
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light", 0, 0, "light %u: %s (%g)", light,
                          wrong, value);
     }
-    if (state->instance.id > plan->scene.instances) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", plan->scene.instances,
-                         state->instance.id,
-                         "light %u: instance handle %u: the scene has handles 1 to %u", light.id,
-                         state->instance.id, plan->scene.instances);
+    masu_punctual_light_state *now = &l->states[light], to = *state;
+    if (to.instance.id) {
+        uint32_t carrier = masu_handle_index(&in->handles, to.instance.id);
+        if (carrier >= in->handles.count) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "instance", in->handles.count,
+                             to.instance.id,
+                             "light %u: instance handle %u is not of this renderer's scene, which "
+                             "has %u",
+                             light, to.instance.id, in->handles.count);
+        }
+        to.instance.id = carrier + 1;
     }
-    masu_punctual_light_state *now = &l->states[light.id - 1];
-    l->changes += memcmp(now, state, sizeof *now) != 0;
-    *now = *state;
+    l->changes += memcmp(now, &to, sizeof to) != 0;
+    *now = to;
     return MASU_OK;
 }

@@ -10,22 +10,24 @@
 #include "frame/instances.h"
 
 typedef struct masu_lights {
-    masu_punctual_light_state *states;       /* plan->scene.lights of them */
+    /* plan->scene.lights of them. The instance that carries one is not its handle here, but 1 + its index;
+     * 0: none. */
+    masu_punctual_light_state *states;
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* in view */
     uint32_t changes;                     /* how often one was set */
+    masu_handles handles;
 } masu_lights;
 
 void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *plan);
 void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v);
 
 /* masu_punctual_light_find, _get and _set of the public header. */
-masu_punctual_light masu_lights_find(const masu_lights *l, const masu_frame_plan *plan,
-                                  const char *name);
-masu_result masu_lights_get(const masu_lights *l, const masu_frame_plan *plan,
-                            masu_punctual_light light, masu_punctual_light_state *out,
-                            masu_detail *detail);
-masu_result masu_lights_set(masu_lights *l, const masu_frame_plan *plan, masu_punctual_light light,
+/* UINT32_MAX: there is none. */
+uint32_t masu_lights_find(const masu_lights *l, const masu_frame_plan *plan, const char *name);
+masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_instances *in,
+                                          uint32_t light);
+masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t light,
                             const masu_punctual_light_state *state, masu_detail *detail);
 
 /* Those that may be seen to light something to the slot; after the camera. */

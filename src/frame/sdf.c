@@ -57,7 +57,7 @@ masu_result masu_sdf_read(const masu_sdf *sdf, masu_frame_data *f, masu_detail *
         float v = i < given ? f->desc.sdf_params[i] : p->value;
         if (!isfinite(v)) {
             return masu_fail(detail, MASU_ERROR_ARGUMENT, "sdf_params", 0, i,
-                             "sdf_params[%u] is not finite", i);
+                             "sdf_params[%u] is %g, allowed are finite numbers", i, (double)v);
         }
         f->u.sdf_params[i / 4][i % 4] = v < p->minimum   ? p->minimum
                                         : v > p->maximum ? p->maximum

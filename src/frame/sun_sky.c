@@ -6,15 +6,17 @@
 
 #include <string.h>
 
-static masu_result bad(masu_detail *detail, const char *what, const char *problem) {
-    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s %s", what, problem);
+static masu_result bad(masu_detail *detail, const char *what, float given, const char *allowed) {
+    return masu_fail_number(detail, what, (double)given, allowed);
 }
 
-static int color_ok(const float *v) {
+static masu_result check_color(masu_detail *detail, const char *what, const float v[3], float most,
+                               const char *allowed) {
     for (uint32_t i = 0; i < 3; i++) {
-        if (!(v[i] >= 0.0f && v[i] <= 1e9f)) return 0;
+        if (!(v[i] >= 0.0f && v[i] <= most))
+            return masu_fail_element(detail, what, i, (double)v[i], allowed);
     }
-    return 1;
+    return MASU_OK;
 }
 
 static masu_result check_sky(const masu_frame_plan *plan, const masu_light *light,
@@ -22,30 +24,40 @@ static masu_result check_sky(const masu_frame_plan *plan, const masu_light *ligh
     if (light->turbidity == 0.0f) return MASU_OK;
     if (!(light->turbidity >= MASU_SKY_TURBIDITY_MIN &&
           light->turbidity <= MASU_SKY_TURBIDITY_MAX)) {
-        return bad(detail, "light.turbidity", "is not 0 or 1.5 to 10");
+        return bad(detail, "light.turbidity", light->turbidity, "0 and 1.5 to 10");
     }
-    for (uint32_t c = 0; c < 3; c++) {
-        if (!(light->ground[c] >= 0.0f && light->ground[c] <= 1.0f))
-            return bad(detail, "light.ground", "is not 0 to 1");
-    }
+    masu_result result = check_color(detail, "light.ground", light->ground, 1.0f, "0 to 1");
+    if (result) return result;
     if (!plan->needs.sky) {
-        return bad(detail, "light.turbidity",
-                   "needs a scene with an analytic sky or desc.analytic_sky");
+        return bad(detail, "light.turbidity", light->turbidity,
+                   "others than 0 only with a scene that has an analytic sky, or desc.analytic_sky");
     }
     return MASU_OK;
 }
 
 static masu_result check_fog(const masu_light *light, masu_detail *detail) {
-    if (!color_ok(light->fog_color)) return bad(detail, "light.fog_color", "is not 0 to 1e9");
+    masu_result result = check_color(detail, "light.fog_color", light->fog_color, 1e9f, "0 to 1e9");
+    if (result) return result;
     if (!(light->fog_density >= 0.0f && light->fog_density <= 1e6f))
-        return bad(detail, "light.fog_density", "is not 0 to 1e6 per metre");
+        return bad(detail, "light.fog_density", light->fog_density, "0 to 1e6 per metre");
     if (!(light->fog_height >= -1e9f && light->fog_height <= 1e9f))
-        return bad(detail, "light.fog_height", "is not -1e9 to 1e9 m");
+        return bad(detail, "light.fog_height", light->fog_height, "-1e9 to 1e9 m");
     if (!(light->fog_falloff >= 0.0f && light->fog_falloff <= 1e6f))
-        return bad(detail, "light.fog_falloff", "is not 0 to 1e6 per metre");
+        return bad(detail, "light.fog_falloff", light->fog_falloff, "0 to 1e6 per metre");
     if (!(light->fog_start >= 0.0f && light->fog_start <= 1e9f))
-        return bad(detail, "light.fog_start", "is not 0 to 1e9 m");
+        return bad(detail, "light.fog_start", light->fog_start, "0 to 1e9 m");
     return MASU_OK;
+}
+
+static masu_result check_colors(const masu_light *light, masu_detail *detail) {
+    masu_result result =
+        check_color(detail, "light.sun_color", light->sun_color, 1e9f, "0 to 1e9");
+    if (!result) result = check_color(detail, "light.ambient", light->ambient, 1e9f, "0 to 1e9");
+    if (!result)
+        result = check_color(detail, "light.sky_zenith", light->sky_zenith, 1e9f, "0 to 1e9");
+    if (!result)
+        result = check_color(detail, "light.sky_horizon", light->sky_horizon, 1e9f, "0 to 1e9");
+    return result;
 }
 
 /* The eye's height over the fog's in double: far up, neither is known to a metre as a float. */
@@ -113,14 +125,15 @@ masu_result masu_sun_sky_read(const masu_sun_sky *s, masu_frame_data *f, masu_de
     masu_light light = f->desc.light ? *f->desc.light : scene_light(&s->environment);
     if (light.exposure == 0.0f) light.exposure = 1.0f;
     if (!(light.exposure >= 1e-9f && light.exposure <= 1e9f))
-        return bad(detail, "light.exposure", "is not 1e-9 to 1e9");
-    if (!masu_unit(light.sun_direction, f->u.sun_direction))
-        return bad(detail, "light.sun_direction", "is zero or not finite");
-    if (!color_ok(light.sun_color) || !color_ok(light.ambient) || !color_ok(light.sky_zenith) ||
-        !color_ok(light.sky_horizon)) {
-        return bad(detail, "light", "has a colour that is not 0 to 1e9");
+        return bad(detail, "light.exposure", light.exposure, "0 and 1e-9 to 1e9");
+    if (!masu_unit(light.sun_direction, f->u.sun_direction)) {
+        const float *v = light.sun_direction;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "light.sun_direction", 0, 0,
+                         "light.sun_direction is (%g, %g, %g), needed is a direction: finite, not zero",
+                         (double)v[0], (double)v[1], (double)v[2]);
     }
-    masu_result result = check_sky(f->plan, &light, detail);
+    masu_result result = check_colors(&light, detail);
+    if (!result) result = check_sky(f->plan, &light, detail);
     if (!result) result = check_fog(&light, detail);
     if (result) return result;
     f->light = light;

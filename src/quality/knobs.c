@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 /* ---- The table ------------------------------------------------------------------------------- */
@@ -74,18 +75,18 @@ _Static_assert(sizeof(float) == 4 && sizeof(masu_switch) == 4 && sizeof(masu_mar
                "every value of a knob has four bytes");
 
 double masu_knob_get(const masu_knob *k, const masu_rung *rung, uint32_t value) {
+    if (!k || !k->name || !rung || value >= k->values) return 0.0;
     const char *at = (const char *)rung + k->offset + 4 * (size_t)value;
     uint32_t number;
     float real;
-    if (value >= k->values) return 0.0;
     memcpy(&number, at, sizeof number);
     memcpy(&real, at, sizeof real);
     return k->kind == MASU_KNOB_FLOAT ? (double)real : (double)number;
 }
 
 void masu_knob_set(const masu_knob *k, masu_rung *rung, uint32_t value, double to) {
+    if (!k || !k->name || !rung || value >= k->values) return;
     char *at = (char *)rung + k->offset + 4 * (size_t)value;
-    if (value >= k->values) return;
     if (k->kind == MASU_KNOB_FLOAT) {
         float real = (float)to;
         memcpy(at, &real, sizeof real);
@@ -96,6 +97,7 @@ void masu_knob_set(const masu_knob *k, masu_rung *rung, uint32_t value, double t
 }
 
 int masu_knob_takes(const masu_knob *k, double to) {
+    if (!k || !k->name) return 0;
     if (k->kind != MASU_KNOB_FLOAT && to != floor(to)) return 0;
     return (to >= k->min && to <= k->max) || to == 0.0;
 }
@@ -112,12 +114,15 @@ void masu_rung_defaults(masu_rung *rung) {
 }
 
 /* The bound that a number is beyond, for those that are whole. */
-static masu_result refuse(const masu_knob *k, uint32_t r, double is, masu_detail *detail) {
+static masu_result refuse(const masu_knob *k, uint32_t r, uint32_t i, double is,
+                          masu_detail *detail) {
+    char one[16] = "";
+    if (k->values > 1) snprintf(one, sizeof one, "[%u]", i);
     int whole = k->kind != MASU_KNOB_FLOAT, gap = k->min > (whole ? 1.0 : 0.0); /* beside 0 */
     uint64_t given = whole ? (uint64_t)is : 0;
     uint64_t needed = !whole ? 0 : (uint64_t)(is < k->min ? k->min : k->max);
     return masu_fail(detail, MASU_ERROR_ARGUMENT, whats[k - knobs], needed, given,
-                     "rungs[%u].%s is %.10g%s%s, allowed are %s%.6g to %.6g", r, k->name, is,
+                     "rungs[%u].%s%s is %.10g%s%s, allowed are %s%.6g to %.6g", r, k->name, one, is,
                      k->unit[0] ? " " : "", k->unit, gap ? "0 and " : "",
                      gap || k->min < 0.0 ? k->min : 0.0, k->max);
 }
@@ -126,7 +131,7 @@ masu_result masu_rung_check(const masu_rung *rung, uint32_t r, masu_detail *deta
     for (const masu_knob *k = knobs; k->name; k++) {
         for (uint32_t i = 0; i < k->values; i++) {
             double is = masu_knob_get(k, rung, i);
-            if (!masu_knob_takes(k, is)) return refuse(k, r, is, detail);
+            if (!masu_knob_takes(k, is)) return refuse(k, r, i, is, detail);
         }
     }
     return MASU_OK;

@@ -196,6 +196,7 @@ masu_result masu_read_sections(reader *r, uint64_t given) {
         return bad(r, "section", h.section_count, "is missing: bytes are left behind the last one");
     }
     r->view = view_of(start, r->counts);
+    r->view.hash = h.hash;
     return MASU_OK;
 }
 

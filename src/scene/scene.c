@@ -76,9 +76,12 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
 
 masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out,
                             masu_detail *detail) {
-    if (!blob || !out || (uintptr_t)blob % MASU_BLOB_ALIGN) {
-        return masu_fail(detail, MASU_ERROR_ARGUMENT, "blob", MASU_BLOB_ALIGN, 0,
-                         "masu_scene_bind: blob or out is NULL, or blob is not 16-byte aligned");
+    if (!blob || !out) return masu_fail_null(detail, blob ? "out" : "blob");
+    unsigned beyond = (unsigned)((uintptr_t)blob % MASU_BLOB_ALIGN);
+    if (beyond) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "blob", MASU_BLOB_ALIGN, beyond,
+                         "blob lies %u bytes behind a multiple of %u, where it has to begin",
+                         beyond, MASU_BLOB_ALIGN);
     }
     reader r = {.bytes = blob, .detail = detail};
     masu_result result = masu_read_header(&r, blob_bytes);
@@ -107,7 +110,7 @@ masu_scene_view masu_scene_look(const masu_scene *scene) {
 }
 
 int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name) {
-    if (!scene || !name) return -1;
+    if (!scene || !scene->blob || !name) return -1;
     masu_scene_view v = masu_scene_look(scene);
     for (uint32_t i = 0; i < scene->sdf_params; i++) {
         if (v.sdf_params[i].name != MASU_BLOB_NONE &&

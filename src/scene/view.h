@@ -8,6 +8,7 @@
 
 /* Sections of a validated blob; absent ones are NULL with count 0. */
 typedef struct masu_scene_view {
+    uint64_t hash; /* of the blob */
     const masu_blob_vertex *vertices;
     const uint32_t *indices;
     const masu_blob_primitive *primitives;

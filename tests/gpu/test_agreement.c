@@ -309,7 +309,7 @@ static void a_million_metres_from_the_origin_polygons_look_the_same(void **state
     masu_frame_desc frame = {.camera = &c};
     take_picture(&s, &frame, &here);
     float rows[12] = {1, 0, 0, 1048576, 0, 1, 0, -2097152, 0, 0, 1, 524288};
-    assert_int_equal(masu_instance_set_transform(s.m, (masu_instance){1}, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, 0), rows), MASU_OK);
     c.position[0] += 1048576, c.position[1] -= 2097152, c.position[2] += 524288;
     take_picture(&s, &frame, &there);
     double worst = 0;

@@ -224,7 +224,7 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     assert_int_equal(masu_instance_set_transform(m, (masu_instance){99}, rows),
                      MASU_ERROR_ARGUMENT);
     rows[5] = NAN;
-    assert_int_equal(masu_instance_set_transform(m, (masu_instance){1}, rows), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_instance_set_transform(m, masu_instance_at(m, 0), rows), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_instance_find(m, "no such name").id, 0);
     masu_readback_image image;
     assert_int_equal(masu_readback(m, 0, (masu_readback_bits)3, &image), MASU_ERROR_ARGUMENT);
@@ -257,7 +257,7 @@ static void extreme_transforms_stay_finite(void **state) {
         masu_frame_desc f = {0};
         masu_stats_info stats;
         masu_readback_image depth, hdr;
-        assert_int_equal(masu_instance_set_transform(m, (masu_instance){1}, rows), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(m, masu_instance_at(m, 0), rows), MASU_OK);
         assert_int_equal(masu_frame(m, &f, &commands), MASU_OK);
         assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
         assert_int_equal(masu_stats(m, commands.slot, &stats), MASU_OK);

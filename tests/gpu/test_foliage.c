@@ -116,7 +116,9 @@ static void foliage_covers_the_same_at_any_distance(void **state) {
     for (uint32_t which = 0; which < 2; which++) {
         masu_scene_view v = masu_scene_look(&look);
         masu_instance instance = masu_instance_find(s.m, names[which]);
-        const masu_blob_mesh *mesh = &v.meshes[v.instances[instance.id - 1].mesh];
+        masu_instance_state placed;
+        assert_int_equal(masu_instance_get(s.m, instance, &placed), MASU_OK);
+        const masu_blob_mesh *mesh = &v.meshes[placed.mesh];
         uint32_t material = v.primitives[mesh->first_primitive].material;
         read_mask(v.materials[material].layers & 0xFF);
         double worst = 0, lost = 0;

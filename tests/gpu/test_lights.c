@@ -440,7 +440,7 @@ static void bad_values_are_refused_with_a_line(void **state) {
     open_pictures(&p, "two", 16, 16, 1);
     masu_punctual_light light = masu_punctual_light_find(p.s.m, "l0");
     masu_punctual_light_state good, is;
-    assert_int_equal(light.id, 1);
+    assert_int_equal(light.id, masu_punctual_light_at(p.s.m, 0).id);
     assert_int_equal(masu_punctual_light_find(p.s.m, "l2").id, 0);
     assert_int_equal(masu_punctual_light_find(p.s.m, "").id, 0);
     assert_int_equal(masu_punctual_light_find(NULL, "l0").id, 0);
@@ -464,7 +464,7 @@ static void bad_values_are_refused_with_a_line(void **state) {
         for (int k = 0; k < 9; k++) {
             assert_int_equal(masu_punctual_light_set(p.s.m, light, &s[k]), MASU_ERROR_ARGUMENT);
             const masu_detail *d = masu_last_error(p.s.m);
-            if (!strstr(d->text, names[k]) || !strstr(d->text, "light 1:") || strchr(d->text, '\n'))
+            if (!strstr(d->text, names[k]) || !strstr(d->text, "light 0:") || strchr(d->text, '\n'))
                 fail_msg("%s %g: %s", names[k], (double)wrong[i], d->text);
         }
     }
@@ -474,7 +474,7 @@ static void bad_values_are_refused_with_a_line(void **state) {
     none = good;
     none.radius = 0;
     assert_int_equal(masu_punctual_light_set(p.s.m, light, &none), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){3}, &good),
+    assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){light.id + 2}, &good),
                      MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_punctual_light_set(p.s.m, (masu_punctual_light){0}, &good),
                      MASU_ERROR_ARGUMENT);
@@ -553,7 +553,7 @@ static void a_scene_without_lights_has_no_pass_for_them(void **state) {
         }
         assert_int_equal(passes, 1);
         assert_int_equal(buffers, lights ? 4 : 0); /* two on the device, two in the host block */
-        assert_int_equal(masu_punctual_light_find(p.s.m, "l0").id, lights);
+        assert_int_equal(masu_punctual_light_find(p.s.m, "l0").id != 0, lights);
         close_session(&p.s);
     }
 }

@@ -313,7 +313,7 @@ static void move_all(masu_session *s, const masu_scene_view *v, const double by[
         float rows[12];
         memcpy(rows, v->instances[i].transform, sizeof rows);
         for (uint32_t k = 0; k < 3; k++) rows[4 * k + 3] = (float)((double)rows[4 * k + 3] + by[k]);
-        assert_int_equal(masu_instance_set_transform(s->m, (masu_instance){i + 1}, rows), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(s->m, masu_instance_at(s->m, i), rows), MASU_OK);
     }
 }
 

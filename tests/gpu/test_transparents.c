@@ -134,7 +134,7 @@ static void move(uint32_t i) {
     const pane *p = &panes[i];
     const float rows[12] = {(float)p->half, 0, 0, (float)p->x, 0,          (float)p->half, 0,
                             (float)p->y,    0, 0, 1,           (float)p->z};
-    assert_int_equal(masu_instance_set_transform(s.m, (masu_instance){i + 1}, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(s.m, masu_instance_at(s.m, i), rows), MASU_OK);
 }
 
 static masu_stats_info render(const masu_camera *camera, float *hdr) {

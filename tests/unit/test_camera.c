@@ -216,14 +216,21 @@ static void the_near_distance_of_the_scene_is_the_default(void **state) {
 
 /* ---- Refusals -------------------------------------------------------------------------------- */
 
+static masu_detail detail; /* of the last frame that was refused */
+
 static void assert_frame_refused(const masu_frame_desc *f, const char *what) {
-    masu_detail detail;
     static unsigned char before[ROOM];
     memcpy(before, memory[MASU_ROLE_UPLOAD], ROOM);
     memset(&detail, 0, sizeof detail);
     if (!write_frame(f, 1, &detail)) fail_msg("%s was accepted", what);
     assert_int_equal(detail.result, MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, what);
+    /* The text has the thing, what is given and what is allowed. */
+    if (strncmp(detail.text, what, strlen(what)) || !strstr(detail.text, " is ") ||
+        (!strstr(detail.text, ", allowed are ") && !strstr(detail.text, ", needed is ") &&
+         !strstr(detail.text, ", the scene has "))) {
+        fail_msg("%s: \"%s\"", what, detail.text);
+    }
     assert_memory_equal(memory[MASU_ROLE_UPLOAD], before, ROOM);
 }
 
@@ -273,15 +280,46 @@ static void a_bad_light_is_named(void **state) {
     make_renderer(SUPPORT_ALL, 0);
     for (size_t i = 0; i < COUNT(bad); i++) {
         for (int k = 0; k < 3; k++) {
-            BAD_LIGHT("light", l.sun_color[k] = bad[i]);
-            BAD_LIGHT("light", l.ambient[k] = bad[i]);
-            BAD_LIGHT("light", l.sky_zenith[k] = bad[i]);
-            BAD_LIGHT("light", l.sky_horizon[k] = bad[i]);
+            BAD_LIGHT("light.sun_color", l.sun_color[k] = bad[i]);
+            BAD_LIGHT("light.ambient", l.ambient[k] = bad[i]);
+            BAD_LIGHT("light.sky_zenith", l.sky_zenith[k] = bad[i]);
+            BAD_LIGHT("light.sky_horizon", l.sky_horizon[k] = bad[i]);
             if (i < 2) BAD_LIGHT("light.sun_direction", l.sun_direction[k] = bad[i]);
         }
         BAD_LIGHT("light.exposure", l.exposure = bad[i]);
     }
     BAD_LIGHT("light.sun_direction", l.sun_direction[1] = 0.0f);
+    BAD_LIGHT("light.fog_density", l.fog_density = -1.0f);
+    BAD_LIGHT("light.fog_height", l.fog_height = 2e9f);
+    BAD_LIGHT("light.fog_falloff", l.fog_falloff = -1.0f);
+    BAD_LIGHT("light.fog_start", l.fog_start = -1.0f);
+    BAD_LIGHT("light.fog_color", l.fog_color[2] = -1.0f);
+    BAD_LIGHT("light.turbidity", l.turbidity = 1.0f);
+    BAD_LIGHT("light.ground", (l.turbidity = 2.0f, l.ground[1] = 2.0f));
+    BAD_LIGHT("light.turbidity", l.turbidity = 2.0f); /* the scene has no such sky */
+}
+
+static void the_text_has_what_is_given(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+#define TEXT(...)                                                                                  \
+    do {                                                                                           \
+        if (strcmp(detail.text, __VA_ARGS__)) fail_msg("\"%s\"", detail.text);                     \
+    } while (0)
+    BAD_CAMERA("camera.fov_y", c.fov_y = 4.0f);
+    TEXT("camera.fov_y is 4, allowed are 0.001 to 3.1 radians");
+    BAD_CAMERA("camera.position", c.position[1] = -2e15);
+    TEXT("camera.position[1] is -2e+15, allowed are -1e15 to 1e15 m");
+    BAD_CAMERA("camera.jitter", c.jitter[1] = 1.5f);
+    TEXT("camera.jitter[1] is 1.5, allowed are -1 to 1 pixels");
+    BAD_LIGHT("light.sky_zenith", l.sky_zenith[2] = -3.0f);
+    TEXT("light.sky_zenith[2] is -3, allowed are 0 to 1e9");
+    masu_frame_desc f = {.time = 2e15};
+    assert_frame_refused(&f, "time");
+    TEXT("time is 2e+15, allowed are -1e15 to 1e15 s");
+    f = (masu_frame_desc){.time_step = (float)-INFINITY};
+    assert_frame_refused(&f, "time_step");
+    TEXT("time_step is -inf, allowed are -1e15 to 1e15 s");
 }
 
 static void a_bad_sdf_parameter_is_named(void **state) {
@@ -472,6 +510,7 @@ int main(void) {
         cmocka_unit_test(the_near_distance_of_the_scene_is_the_default),
         cmocka_unit_test(a_bad_camera_is_named),
         cmocka_unit_test(a_bad_light_is_named),
+        cmocka_unit_test(the_text_has_what_is_given),
         cmocka_unit_test(a_bad_sdf_parameter_is_named),
         cmocka_unit_test(the_extremes_of_each_range_are_accepted),
         cmocka_unit_test(whatever_is_accepted_makes_finite_uniforms),

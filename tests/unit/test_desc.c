@@ -443,6 +443,7 @@ static void a_refused_knob_says_what_it_takes(void **state) {
         {"march_steps", 2049, "rungs[1].march_steps is 2049 steps, allowed are 0 to 2048", 2048, 2049},
         {"shadow_resolution", 8,
          "rungs[1].shadow_resolution is 8 texels, allowed are 0 and 16 to 8192", 16, 8},
+        {"shadow_refresh", 65, "rungs[1].shadow_refresh[0] is 65 frames, allowed are 0 to 64", 64, 65},
         {"aa", 7, "rungs[1].aa is 7, allowed are 0 to 6", 6, 7}};
     for (size_t i = 0; i < COUNT(rows); i++) {
         masu_desc d = scene_desc(RASTER | SDF, 640, 480);

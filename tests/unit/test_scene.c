@@ -135,14 +135,18 @@ static void a_pointer_that_is_missing_or_misaligned_is_an_argument_error(void **
     support_blob_write(&blob, SUPPORT_ALL);
     assert_int_equal(masu_scene_bind(NULL, blob.size, &scene, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "blob");
+    assert_string_equal(detail.text, "blob is NULL");
     assert_int_equal(masu_scene_bind(NULL, 0, &scene, NULL), MASU_ERROR_ARGUMENT);
     assert_int_equal(masu_scene_bind(blob.bytes, blob.size, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.text, "out is NULL");
     memmove(blob.bytes + 16, blob.bytes, blob.size);
     for (size_t off = 1; off < 16; off++) {
         memmove(blob.bytes + off, blob.bytes + (off == 1 ? 16 : off - 1), blob.size);
         assert_int_equal(masu_scene_bind(blob.bytes + off, blob.size, &scene, &detail),
                          MASU_ERROR_ARGUMENT);
         assert_string_equal(detail.what, "blob");
+        assert_int_equal(detail.given, ((uintptr_t)blob.bytes + off) % 16);
+        assert_non_null(strstr(detail.text, " bytes behind a multiple of 16"));
     }
 }
 

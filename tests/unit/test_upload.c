@@ -162,7 +162,7 @@ static void a_frame_that_is_refused_changes_nothing(void **state) {
     const masu_frame_desc bad[] = {
         {.rung = 3},           {.rung = UINT32_MAX},           {.target = 2},
         {.time = (double)NAN}, {.time_step = (float)INFINITY}, {.camera = &camera}};
-    static const char *const names[] = {"rung", "rung", "target", "time", "time", "camera.fov_y"};
+    static const char *const names[] = {"rung", "rung", "target", "time", "time_step", "camera.fov_y"};
     for (size_t i = 0; i < COUNT(bad); i++) {
         assert_int_equal(masu_frame(&m, &bad[i], &commands), MASU_ERROR_ARGUMENT);
         assert_string_equal(masu_last_error(&m)->what, names[i]);
@@ -187,8 +187,9 @@ static void write_instances(uint32_t slot) {
 static void instances_are_found_by_name(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
-    assert_int_equal(masu_instance_find(&m, "plate").id, 1);
-    assert_int_equal(masu_instance_find(&m, "lid").id, 3);
+    assert_int_equal(masu_instance_find(&m, "plate").id, masu_instance_at(&m, 0).id);
+    assert_int_equal(masu_instance_find(&m, "lid").id, masu_instance_at(&m, 2).id);
+    assert_int_equal(masu_instance_at(&m, 3).id, 0);
     assert_int_equal(masu_instance_find(&m, "steel").id, 0);
     assert_int_equal(masu_instance_find(&m, "").id, 0);
     assert_int_equal(masu_instance_find(&m, NULL).id, 0);
@@ -208,7 +209,7 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
                                 v.instances[i].transform, size);
         }
     }
-    assert_int_equal(masu_instance_set_transform(&m, (masu_instance){2}, rows), MASU_OK);
+    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 1), rows), MASU_OK);
     for (uint32_t frame = 0; frame < 4; frame++) { /* slots come in turn */
         unsigned char *to = masu_buffer_pointer(&m.device, MASU_BUFFER_INSTANCES, frame % 2);
         memset(to, NOISE, 3 * size);
@@ -230,7 +231,7 @@ static void moving_twice_before_a_frame_keeps_the_last(void **state) {
     for (uint32_t slot = 0; slot < 2; slot++) write_instances(slot);
     for (int n = 1; n <= 5; n++) {
         rows[3] = (float)n;
-        assert_int_equal(masu_instance_set_transform(&m, (masu_instance){3}, rows), MASU_OK);
+        assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 2), rows), MASU_OK);
     }
     for (uint32_t slot = 0; slot < 2; slot++) {
         struct masu_instance_data got;
@@ -246,7 +247,8 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
     static const float good[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     make_renderer(SUPPORT_ALL, 0);
     for (uint32_t slot = 0; slot < 2; slot++) write_instances(slot);
-    const uint32_t ids[] = {0, 4, UINT32_MAX};
+    const uint32_t first = masu_instance_at(&m, 0).id;
+    const uint32_t ids[] = {0, first - 1, first + 3, first + (1u << 31)};
     for (size_t i = 0; i < COUNT(ids); i++) {
         assert_int_equal(masu_instance_set_transform(&m, (masu_instance){ids[i]}, good),
                          MASU_ERROR_ARGUMENT);
@@ -257,14 +259,14 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
             float bad[12];
             memcpy(bad, good, sizeof bad);
             bad[k] = not_finite[i];
-            assert_int_equal(masu_instance_set_transform(&m, (masu_instance){1}, bad),
+            assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 0), bad),
                              MASU_ERROR_ARGUMENT);
             assert_int_equal(masu_last_error(&m)->given, k);
         }
     }
-    assert_int_equal(masu_instance_set_transform(&m, (masu_instance){1}, NULL),
+    assert_int_equal(masu_instance_set_transform(&m, masu_instance_at(&m, 0), NULL),
                      MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_instance_set_transform(NULL, (masu_instance){1}, good),
+    assert_int_equal(masu_instance_set_transform(NULL, masu_instance_at(&m, 0), good),
                      MASU_ERROR_ARGUMENT);
     assert_int_equal(m.instances.dirty_count, 0);
 }

@@ -42,7 +42,7 @@ static bool switch_lights(bench *b, uint32_t count) {
         masu_punctual_light_state s = b->states[i];
         uint64_t before = (uint64_t)i * count / all, after = (uint64_t)(i + 1) * count / all;
         if (before == after) memset(s.color, 0, sizeof s.color);
-        if (masu_punctual_light_set(b->s.m, (masu_punctual_light){i + 1}, &s) != MASU_OK) return false;
+        if (masu_punctual_light_set(b->s.m, masu_punctual_light_at(b->s.m, i), &s) != MASU_OK) return false;
     }
     return true;
 }
@@ -154,7 +154,7 @@ static bool keep_lights(bench *b) {
     b->states = malloc((all ? all : 1) * sizeof *b->states);
     if (!b->states) return false;
     for (uint32_t i = 0; i < all; i++) {
-        if (masu_punctual_light_get(b->s.m, (masu_punctual_light){i + 1}, &b->states[i]) != MASU_OK)
+        if (masu_punctual_light_get(b->s.m, masu_punctual_light_at(b->s.m, i), &b->states[i]) != MASU_OK)
             return false;
     }
     for (uint32_t i = 0; i < STEPS && steps[i] <= all; i++) b->counts[b->step_count++] = steps[i];

@@ -1,0 +1,136 @@
+/* test_handles.c: handles of the public interface: each means one thing, and none of another scene or of
+ * another kind is taken. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "frame/handles.h"
+#include "support/bind.h"
+#include "support/dry_renderer.h"
+
+#define COUNT(a) (sizeof(a) / sizeof *(a))
+
+/* ---- Ranges ---------------------------------------------------------------------------------- */
+
+static void a_handle_is_its_index_and_back(void **state) {
+    (void)state;
+    static const uint32_t counts[] = {0, 1, 3, 4096, 1u << 31, UINT32_MAX - 1, UINT32_MAX};
+    for (uint64_t scene = 0; scene < 200; scene++) {
+        for (size_t c = 0; c < COUNT(counts); c++) {
+            uint32_t count = counts[c], index;
+            masu_handles h = masu_handles_of(scene, MASU_HANDLE_INSTANCE, count);
+            masu_detail detail;
+            assert_true(h.first >= 1);
+            assert_true((uint64_t)h.first + count <= 1ull << 32); /* 0 is in no range */
+            assert_int_equal(masu_handle_check(&h, "thing", 0, &index, &detail),
+                             MASU_ERROR_ARGUMENT);
+            assert_string_equal(detail.what, "thing");
+            assert_int_equal(detail.needed, count);
+            assert_int_equal(masu_handle_at(&h, count), 0);
+            assert_int_equal(masu_handle_at(&h, UINT32_MAX), 0);
+            const uint32_t looked_at[] = {0, 1, count / 2, count - 1};
+            for (size_t k = 0; k < COUNT(looked_at); k++) {
+                uint32_t id = masu_handle_at(&h, looked_at[k]);
+                if (looked_at[k] >= count) continue;
+                assert_true(id != 0);
+                assert_int_equal(masu_handle_check(&h, "thing", id, &index, NULL), MASU_OK);
+                assert_int_equal(index, looked_at[k]);
+            }
+            if (count > 1u << 30) continue;
+            assert_int_not_equal(masu_handle_check(&h, "thing", h.first - 1, &index, &detail), 0);
+            assert_int_not_equal(masu_handle_check(&h, "thing", h.first + count, &index, &detail),
+                                 0);
+            assert_int_equal(detail.given, h.first + count);
+        }
+    }
+}
+
+/* Hashes that differ in one bit, and the kinds of one scene, have ranges far from each other. */
+static void ranges_of_others_do_not_meet(void **state) {
+    (void)state;
+    enum { HASHES = 65, KINDS = 3, ALL = HASHES * KINDS };
+    masu_handles all[ALL];
+    for (uint32_t i = 0; i < HASHES; i++) {
+        uint64_t scene = 0x0123456789ABCDEFu ^ (i ? 1ull << (i - 1) : 0);
+        for (uint32_t k = 0; k < KINDS; k++)
+            all[KINDS * i + k] = masu_handles_of(scene, (masu_handle_kind)(k + 1), 1000);
+    }
+    for (uint32_t a = 0; a < ALL; a++) {
+        for (uint32_t b = 0; b < ALL; b++) {
+            uint32_t first = masu_handle_index(&all[a], all[b].first);
+            uint32_t last = masu_handle_index(&all[a], all[b].first + 999);
+            if (a != b && (first < 1000 || last < 1000))
+                fail_msg("%u: %u.., %u: %u..", a, all[a].first, b, all[b].first);
+        }
+    }
+}
+
+/* ---- Renderers ------------------------------------------------------------------------------- */
+
+#define REFUSED(what_, call)                                                                       \
+    do {                                                                                           \
+        m.error = (masu_detail){0};                                                                \
+        assert_int_equal(call, MASU_ERROR_ARGUMENT);                                               \
+        if (!masu_last_error(&m)->what || strcmp(masu_last_error(&m)->what, what_))                \
+            fail_msg("%s: %s", #call, masu_last_error(&m)->text);                                  \
+    } while (0)
+
+static void handles_of_another_scene_are_refused(void **state) {
+    (void)state;
+    static const float rows[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    const uint32_t with = SUPPORT_ALL | SUPPORT_LIVE | SUPPORT_LIGHTING;
+    masu_instance_state instance;
+    masu_model_state model;
+    masu_node_state node;
+    masu_punctual_light_state light;
+    make_renderer(with, 0);
+    masu_instance instance_of = masu_instance_at(&m, 0);
+    masu_model model_of = masu_model_at(&m, 0), added;
+    masu_punctual_light light_of = masu_punctual_light_at(&m, 0);
+    assert_true(instance_of.id && model_of.id && light_of.id);
+    assert_int_equal(masu_punctual_light_get(&m, light_of, &light), MASU_OK);
+    light.instance = instance_of;
+    assert_int_equal(masu_punctual_light_set(&m, light_of, &light), MASU_OK);
+    masu_punctual_light_state carried;
+    assert_int_equal(masu_punctual_light_get(&m, light_of, &carried), MASU_OK);
+    assert_int_equal(carried.instance.id, instance_of.id);
+
+    make_renderer(with, 0); /* another renderer of the same scene: the same things */
+    assert_int_equal(masu_instance_at(&m, 0).id, instance_of.id);
+    assert_int_equal(masu_model_at(&m, 0).id, model_of.id);
+    assert_int_equal(masu_punctual_light_at(&m, 0).id, light_of.id);
+
+    make_renderer(with & ~SUPPORT_SDF, 0); /* another scene */
+    assert_true(masu_instance_at(&m, 0).id && masu_model_at(&m, 0).id);
+    assert_true(masu_punctual_light_at(&m, 0).id);
+    REFUSED("instance", masu_instance_get(&m, instance_of, &instance));
+    REFUSED("instance", masu_instance_set_transform(&m, instance_of, rows));
+    REFUSED("instance", masu_instance_show(&m, instance_of, 0));
+    REFUSED("model", masu_model_get(&m, model_of, &model));
+    REFUSED("model", masu_model_set_transform(&m, model_of, rows));
+    REFUSED("model", masu_model_show(&m, model_of, 0));
+    REFUSED("model", masu_model_add(&m, model_of, rows, &added));
+    REFUSED("model", masu_model_node_get(&m, model_of, 0, &node));
+    REFUSED("model", masu_model_node_set(&m, model_of, 0, rows));
+    assert_int_equal(masu_model_node_find(&m, model_of, "plate"), MASU_NODE_NONE);
+    REFUSED("light", masu_punctual_light_get(&m, light_of, &carried));
+    REFUSED("light", masu_punctual_light_set(&m, light_of, &light));
+    REFUSED("instance", masu_punctual_light_set(&m, masu_punctual_light_at(&m, 0), &light));
+    assert_non_null(strstr(masu_last_error(&m)->text, "light 0: instance handle"));
+    assert_int_equal(masu_punctual_light_get(&m, masu_punctual_light_at(&m, 0), &carried), MASU_OK);
+    assert_int_not_equal(carried.instance.id, light.instance.id);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_handle_is_its_index_and_back),
+        cmocka_unit_test(ranges_of_others_do_not_meet),
+        cmocka_unit_test(handles_of_another_scene_are_refused),
+    };
+    return cmocka_run_group_tests(tests, support_make_edge, NULL);
+}

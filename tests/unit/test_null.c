@@ -1,0 +1,269 @@
+/* test_null.c: every public function with each of its pointers NULL in turn. Nothing crashes; what has a result
+ * says MASU_ERROR_ARGUMENT, unless the pointer is one that may be NULL, and the detail that it leaves, its own or
+ * the renderer's, names the argument. What there is to be called, and how its arguments are called, is read in
+ * include/masu.h: a function that is new there and has no row here is a failure. */
+#include <ctype.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/bind.h"
+#include "support/desc.h"
+#include "support/dry_renderer.h"
+
+enum { NO_RESULT = 1000, PARAMETERS_MAX = 8 };
+
+/* ---- The calls ------------------------------------------------------------------------------- */
+
+static masu_desc desc;
+static masu_detail detail;
+static masu_scene look;
+static masu_commands commands;
+static masu_camera camera;
+static masu_light light;
+static masu_plan_info plan;
+static masu_memory need;
+static masu_memory_row rows_of_memory[2];
+static masu_peak_info peaks;
+static masu_stats_info stats;
+static masu_readback_image image;
+static masu_instance_state instance_state;
+static masu_model_state model_state;
+static masu_model added;
+static masu_node_state node_state;
+static masu_punctual_light_state light_state;
+static masu_renderer *made;
+static masu_rung rung;
+static const char *from;
+static float unpacked[3];
+static _Alignas(64) unsigned char block[64];
+static const masu_frame_desc still = {.rung = 0};
+static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+/* The pointer of that number, counted from 0, or NULL where it is its turn. */
+#define P(number, pointer) (null == (number) ? NULL : (pointer))
+
+#define INSTANCE masu_instance_at(&m, 0)
+#define MODEL masu_model_at(&m, 0)
+#define LIGHT masu_punctual_light_at(&m, 0)
+#define KNOB masu_knob_table()
+
+/* Each function of the public header: an expression that is its result, or NO_RESULT. */
+#define CALLS(X)                                                                                   \
+    X(masu_result_string, (masu_result_string(MASU_OK), NO_RESULT))                                \
+    X(masu_scene_bind, masu_scene_bind(P(0, scene.blob), scene.blob_bytes, P(1, &look), P(2, &detail))) \
+    X(masu_scene_sdf_param, (masu_scene_sdf_param(P(0, &scene), P(1, "a")), NO_RESULT))            \
+    X(masu_scene_instance_name, (masu_scene_instance_name(P(0, &scene), 0), NO_RESULT))            \
+    X(masu_scene_model_name, (masu_scene_model_name(P(0, &scene), 0), NO_RESULT))                  \
+    X(masu_scene_light_name, (masu_scene_light_name(P(0, &scene), 0), NO_RESULT))                  \
+    X(masu_scene_class_of, ((void)masu_scene_class_of(P(0, &scene)), NO_RESULT))                   \
+    X(masu_scene_class_name, (masu_scene_class_name(MASU_SCENE_SDF), NO_RESULT))                   \
+    X(masu_knob_table, (masu_knob_table(), NO_RESULT))                                             \
+    X(masu_knob_get, ((void)masu_knob_get(P(0, KNOB), P(1, &rung), 0), NO_RESULT))                 \
+    X(masu_knob_set, (masu_knob_set(P(0, KNOB), P(1, &rung), 0, 1.0), NO_RESULT))                  \
+    X(masu_knob_takes, (masu_knob_takes(P(0, KNOB), 1.0), NO_RESULT))                              \
+    X(masu_limit_table, (masu_limit_table(), NO_RESULT))                                           \
+    X(masu_governor_reason_string,                                                                 \
+      (masu_governor_reason_string(MASU_GOVERNOR_REASON_NONE), NO_RESULT))                         \
+    X(masu_memory_query, masu_memory_query(P(0, &desc), P(1, &need), P(2, &detail)))               \
+    X(masu_init, masu_init(P(0, &desc), P(1, block), sizeof block, P(2, &made), P(3, &detail)))    \
+    X(masu_destroy, (masu_destroy(P(0, &m)), NO_RESULT))                                           \
+    X(masu_resize,                                                                                 \
+      masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &detail)))               \
+    X(masu_desc_resolved, ((void)masu_desc_resolved(P(0, &desc)), NO_RESULT))                      \
+    X(masu_ladder_of, masu_ladder_of(P(0, &scene), P(1, &desc), P(2, &from)))                      \
+    X(masu_memory_report, ((void)masu_memory_report(P(0, &m), P(1, rows_of_memory), 2), NO_RESULT)) \
+    X(masu_plan, masu_plan(P(0, &desc), P(1, &plan), P(2, &detail)))                               \
+    X(masu_plan_of, (masu_plan_of(P(0, &m), P(1, &plan)), NO_RESULT))                              \
+    X(masu_load, masu_load(P(0, &m), P(1, &commands)))                                             \
+    X(masu_frame, masu_frame(P(0, &m), P(1, &still), P(2, &commands)))                             \
+    X(masu_frame_wall, (masu_frame_wall(P(0, &m), 0, 1.0), NO_RESULT))                             \
+    X(masu_last_error, (masu_last_error(P(0, &m)), NO_RESULT))                                     \
+    X(masu_camera_at, masu_camera_at(P(0, &m), 0.0, P(1, &camera)))                                \
+    X(masu_light_of, masu_light_of(P(0, &m), P(1, &light)))                                        \
+    X(masu_instance_find, ((void)masu_instance_find(P(0, &m), P(1, "a")), NO_RESULT))              \
+    X(masu_instance_set_transform, masu_instance_set_transform(P(0, &m), INSTANCE, P(1, unit)))    \
+    X(masu_instance_at, ((void)masu_instance_at(P(0, &m), 0), NO_RESULT))                          \
+    X(masu_instance_get, masu_instance_get(P(0, &m), INSTANCE, P(1, &instance_state)))             \
+    X(masu_instance_show, masu_instance_show(P(0, &m), INSTANCE, 1))                               \
+    X(masu_model_find, ((void)masu_model_find(P(0, &m), P(1, "a")), NO_RESULT))                    \
+    X(masu_model_at, ((void)masu_model_at(P(0, &m), 0), NO_RESULT))                                \
+    X(masu_model_get, masu_model_get(P(0, &m), MODEL, P(1, &model_state)))                         \
+    X(masu_model_set_transform, masu_model_set_transform(P(0, &m), MODEL, P(1, unit)))             \
+    X(masu_model_show, masu_model_show(P(0, &m), MODEL, 1))                                        \
+    X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added)))                   \
+    X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
+    X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state)))             \
+    X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit)))                    \
+    X(masu_punctual_light_find, ((void)masu_punctual_light_find(P(0, &m), P(1, "a")), NO_RESULT))  \
+    X(masu_punctual_light_at, ((void)masu_punctual_light_at(P(0, &m), 0), NO_RESULT))              \
+    X(masu_punctual_light_get, masu_punctual_light_get(P(0, &m), LIGHT, P(1, &light_state)))       \
+    X(masu_punctual_light_set, masu_punctual_light_set(P(0, &m), LIGHT, P(1, &light_state)))       \
+    X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats)))                                           \
+    X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
+    X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image)))                \
+    X(masu_unpack_normal, (masu_unpack_normal(0, P(0, unpacked)), NO_RESULT))
+
+#define DEFINE_CALL(name, expression)                                                              \
+    static int call_##name(int null) {                                                             \
+        (void)null;                                                                                \
+        return (int)(expression);                                                                  \
+    }
+CALLS(DEFINE_CALL)
+
+static const struct {
+    const char *name;
+    int (*call)(int null);
+} calls[] = {
+#define CALL_ROW(name, expression) {#name, call_##name},
+    CALLS(CALL_ROW)};
+enum { CALL_COUNT = sizeof calls / sizeof *calls };
+
+/* ---- What the header says -------------------------------------------------------------------- */
+
+typedef struct parameter {
+    char name[32];
+} parameter;
+
+typedef struct function {
+    char name[64];
+    int has_result;       /* it is a masu_result */
+    int leaves_error;     /* in masu_last_error: what changes nothing of its renderer cannot */
+    int pointers;         /* of its parameters, in order: */
+    parameter parameter[PARAMETERS_MAX];
+} function;
+
+static char *header;
+
+static int read_header(void **state) {
+    FILE *f = fopen("include/masu.h", "rb");
+    if (!f || support_make_edge(state)) return -1;
+    header = calloc(1, 1 << 20);
+    size_t read = header ? fread(header, 1, (1 << 20) - 1, f) : 0;
+    fclose(f);
+    return read > 0 ? 0 : -1;
+}
+
+static int free_header(void **state) {
+    (void)state;
+    free(header);
+    return 0;
+}
+
+/* The last word of a declaration, without what stands in brackets behind it. */
+static void last_word(const char *text, size_t length, char *to, size_t room) {
+    const char *bracket = memchr(text, '[', length);
+    if (bracket) length = (size_t)(bracket - text);
+    while (length && !isalnum((unsigned char)text[length - 1])) length--;
+    size_t start = length;
+    while (start && (isalnum((unsigned char)text[start - 1]) || text[start - 1] == '_')) start--;
+    assert_true(length - start < room);
+    memcpy(to, text + start, length - start);
+    to[length - start] = '\0';
+}
+
+/* The declaration that begins at `at`; where it ends. */
+static const char *read_function(const char *at, function *f) {
+    const char *open = strchr(at, '('), *end = strchr(at, ';');
+    assert_true(open && end && open < end);
+    memset(f, 0, sizeof *f);
+    last_word(at, (size_t)(open - at), f->name, sizeof f->name);
+    const char *result = strstr(at, "masu_result ");
+    f->has_result = result && result < open && !memchr(result, '*', (size_t)(open - result));
+    f->leaves_error = f->has_result && !strncmp(open, "(masu_renderer *", 16);
+    for (const char *p = open + 1; p < end;) {
+        size_t length = strcspn(p, ",;");
+        if (memchr(p, '*', length) || memchr(p, '[', length)) {
+            assert_true(f->pointers < PARAMETERS_MAX);
+            parameter *to = &f->parameter[f->pointers++];
+            last_word(p, length, to->name, sizeof to->name);
+            if (!strcmp(to->name, "detail")) f->leaves_error = 0; /* it has one of its own */
+        }
+        p += length + 1;
+    }
+    return end;
+}
+
+static int may_be_null(const char *parameter) {
+    return !strcmp(parameter, "detail") || !strcmp(parameter, "from");
+}
+
+/* ---- Tests ----------------------------------------------------------------------------------- */
+
+static void begin(void) {
+    make_renderer(SUPPORT_ALL | SUPPORT_LIVE | SUPPORT_LIGHTING, 0);
+    while (masu_load(&m, &commands) == MASU_INCOMPLETE) continue;
+    desc = scene_desc(0, 64, 64);
+    desc.scene = &scene;
+    assert_int_equal(masu_punctual_light_get(&m, LIGHT, &light_state), MASU_OK);
+    memset(&detail, 0, sizeof detail);
+    m.error = (masu_detail){.what = "stale", .text = "stale"};
+}
+
+static void call_with_null(const function *f, int row, int null) {
+    begin();
+    int result = calls[row].call(null);
+    const char *name = f->parameter[null].name;
+    char expected[64];
+    if (!f->has_result || may_be_null(name)) return;
+    if (result != MASU_ERROR_ARGUMENT && !(result == MASU_ERROR_MEMORY && !strcmp(name, "block")))
+        fail_msg("%s with %s NULL: %d", f->name, name, result);
+    snprintf(expected, sizeof expected, "%s is NULL", name);
+    int own = !strcmp(f->parameter[f->pointers - 1].name, "detail");
+    if (own && !strstr(detail.text, expected))
+        fail_msg("%s with %s NULL: \"%s\"", f->name, name, detail.text);
+    if (f->leaves_error && null > 0 && !strstr(m.error.text, expected))
+        fail_msg("%s with %s NULL: masu_last_error is \"%s\"", f->name, name, m.error.text);
+}
+
+static void nothing_crashes_and_the_argument_is_named(void **state) {
+    (void)state;
+    int found = 0;
+    for (const char *at = header; (at = strstr(at, "\nMASU_API ")) != NULL; found++) {
+        function f;
+        int row = 0;
+        at = read_function(at, &f);
+        while (row < CALL_COUNT && strcmp(calls[row].name, f.name)) row++;
+        if (row == CALL_COUNT) fail_msg("%s has no row in CALLS", f.name);
+        begin();
+        (void)calls[row].call(-1);
+        for (int null = 0; null < f.pointers; null++) call_with_null(&f, row, null);
+    }
+    assert_int_equal(found, CALL_COUNT);
+}
+
+static void what_has_nothing_to_tell_says_so(void **state) {
+    (void)state;
+    begin();
+    assert_string_equal(masu_last_error(NULL)->text, "renderer is NULL");
+    assert_int_equal(masu_last_error(NULL)->result, MASU_ERROR_ARGUMENT);
+    memset(&peaks, 0xFF, sizeof peaks);
+    masu_peaks(NULL, &peaks);
+    assert_int_equal(peaks.instances, 0);
+    assert_int_equal(peaks.device_bytes, 0);
+    memset(&plan, 0xFF, sizeof plan);
+    masu_plan_of(NULL, &plan);
+    assert_int_equal(plan.pass_count, 0);
+    assert_int_equal(plan.memory.host_bytes, 0);
+    uint32_t count = masu_memory_report(&m, rows_of_memory, 2);
+    assert_true(count > 2);
+    assert_int_equal(masu_memory_report(&m, NULL, 1000), count); /* counted alone */
+    assert_int_equal(masu_memory_report(NULL, rows_of_memory, 2), 0);
+    assert_true(masu_knob_get(NULL, &rung, 0) == 0.0);
+    assert_int_equal(masu_knob_takes(NULL, 0.0), 0);
+    assert_int_equal(masu_scene_sdf_param(&(masu_scene){0}, "a"), -1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_crashes_and_the_argument_is_named),
+        cmocka_unit_test(what_has_nothing_to_tell_says_so),
+    };
+    return cmocka_run_group_tests(tests, read_header, free_header);
+}
