@@ -135,7 +135,8 @@ static masu_camera look(double x, double y, double z, double fx, double fy, doub
 
 static void set_random(pictures *p, uint32_t lights, double size) {
     for (uint32_t i = 0; i < 8 && lights; i++) {
-        masu_punctual_light handle = {1 + (uint32_t)random_between(&seed, 0, lights - 0.01)};
+        masu_punctual_light handle =
+            masu_punctual_light_at(p->s.m, (uint32_t)random_between(&seed, 0, lights - 0.01));
         masu_punctual_light_state state;
         assert_int_equal(masu_punctual_light_get(p->s.m, handle, &state), MASU_OK);
         for (int k = 0; k < 3; k++) state.position[k] = random_between(&seed, -12, 12) * size;
@@ -269,7 +270,7 @@ static error_info compare_light(pictures *p, const masu_camera *c,
                                 const masu_punctual_light_state *state) {
     static uint16_t local[4 * 256 * 256];
     static float depths[256 * 256];
-    masu_punctual_light one = {1}, off = {1};
+    masu_punctual_light one = masu_punctual_light_at(p->s.m, 0), off = one;
     masu_punctual_light_state dark = *state;
     masu_ref_light ref = reference_of(state);
     masu_light sun = no_sun();
@@ -373,7 +374,7 @@ static void extremes_are_finite_and_mean_what_they_say(void **state) {
     bake_scene("one", json);
     open_pictures(&p, "one", 64, 48, 1);
     masu_camera c = look(3, 3.5, 9, -3, -3, -9, 0.9);
-    masu_punctual_light one = {1};
+    masu_punctual_light one = masu_punctual_light_at(p.s.m, 0);
     const masu_punctual_light_state plain = {
         .position = {0, 4, 0}, .color = {20, 20, 20}, .range = 30, .radius = 0.01f};
     masu_punctual_light_state s = plain;

@@ -208,11 +208,12 @@ static double some_value(const masu_knob *k, uint32_t n) {
 
 static masu_desc full_desc(void) {
     static VkAllocationCallbacks allocator;
+    static masu_pipelines pool;
     masu_desc d = scene_desc(RASTER, 320, 200);
     d.vulkan = (masu_vulkan){
         no_function, FAKE(VkInstance, 1), FAKE(VkPhysicalDevice, 2), FAKE(VkDevice, 3),
         1,           &allocator,          FAKE(VkPipelineCache, 4),  1,
-        4.0f,        1,                   1};
+        4.0f,        1,                   1,                         &pool};
     d.source = (masu_source){FAKE(VkImageView, 5), 6, 7, VK_FORMAT_R8G8B8A8_UNORM};
     d.targets.format = VK_FORMAT_B8G8R8A8_UNORM;
     d.targets.storage = 8;

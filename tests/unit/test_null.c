@@ -22,6 +22,7 @@ enum { NO_RESULT = 1000, PARAMETERS_MAX = 8 };
 /* ---- The calls ------------------------------------------------------------------------------- */
 
 static masu_desc desc;
+static masu_pipelines pool;
 static masu_detail detail;
 static masu_scene look;
 static masu_commands commands;
@@ -74,6 +75,8 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_memory_query, masu_memory_query(P(0, &desc), P(1, &need), P(2, &detail)))               \
     X(masu_init, masu_init(P(0, &desc), P(1, block), sizeof block, P(2, &made), P(3, &detail)))    \
     X(masu_destroy, (masu_destroy(P(0, &m)), NO_RESULT))                                           \
+    X(masu_pipelines_destroy,                                                                      \
+      (masu_pipelines_destroy(P(0, &desc.vulkan), P(1, &pool)), NO_RESULT))                        \
     X(masu_resize,                                                                                 \
       masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &detail)))               \
     X(masu_desc_resolved, ((void)masu_desc_resolved(P(0, &desc)), NO_RESULT))                      \
