@@ -714,6 +714,13 @@ typedef struct masu_source {
                         spares a tenth of the work; the result is the same */
 } masu_source;
 
+/* A part of the target that frames of their own are drawn to: split screen, a map, a mirror. Pixels of the
+ * output, from its upper left corner. */
+typedef struct masu_viewport {
+    uint32_t x, y, width, height;
+} masu_viewport;
+#define MASU_MAX_VIEWPORTS 4u
+
 typedef struct masu_debug {
     uint32_t timestamps; /* not 0: GPU time of each pass in masu_stats, with a full barrier around
                             each pass */
@@ -870,6 +877,12 @@ typedef struct masu_desc {
     uint64_t device_budget; /* bytes over all roles; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
     uint32_t analytic_sky; /* not 0: frames may have light.turbidity where the scene has none */
+    /* Several views of the one scene: a frame is drawn to viewports[masu_frame_desc.viewport], with a camera and
+     * a rung of its own. 0: one, all of the output. Each is within the output, and of storage targets begins at
+     * 0, 0 (they may have a target each). They may overlap: what is drawn later covers. Costs a set of
+     * recordings for each. Scenes alone. */
+    uint32_t viewport_count;
+    masu_viewport viewports[MASU_MAX_VIEWPORTS];
     /* not 0: masu_resize may make the output smaller, and larger again up to `output`. 32 host bytes for each
      * draw of a G-buffer pass, LODs too, and a bounds test where the last pass stores. Scenes alone. */
     uint32_t resizable;
@@ -961,13 +974,15 @@ MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *
  * again (a millisecond or some). Takes desc.resizable and a finished masu_load; the blob may be gone. `output`:
  * 1 x 1 to desc.output. `targets`: as many, of the same format, storage, layout and encoding as the
  * description's; format, layout and encoding may be 0, for these. Its arrays are read during the call, its
- * handles must live until the next masu_resize or masu_destroy. The device must be idle. The next frame is a
+ * handles must live until the next masu_resize or masu_destroy. `viewports`: desc.viewport_count of them, NULL where
+ * there are none. The device must be idle. The next frame is a
  * cut; frames, slots, transforms, and what the governor knows go on. MASU_ERROR_ARGUMENT: something other
  * than said. MASU_ERROR_LIMIT: larger than desc.output: masu_destroy and masu_init. MASU_ERROR_STATE: not
  * resizable, or not loaded. All of these leave everything as it was. MASU_ERROR_VULKAN / _DEVICE_LOST: a call
  * has failed half-way; all that is left to do is masu_destroy. */
 MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
-                                               const masu_targets *targets, masu_detail *detail);
+                                               const masu_targets *targets,
+                                               const masu_viewport *viewports, masu_detail *detail);
 
 /* The description with every default filled in, as masu_init uses it. Needs no device. */
 MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
@@ -1109,6 +1124,11 @@ typedef struct masu_frame_desc {
     float time_step; /* seconds since the previous frame; 0 is fine, within +-1e15 */
     uint32_t rung;   /* 0 .. rung_count-1, or MASU_RUNG_AUTO: the governor's */
     uint32_t target; /* 0 .. targets.count-1 */
+    /* 0 .. desc.viewport_count-1. A frame of the first discards what the target holds; the others find it in
+     * targets.final_layout and leave the rest of it alone. What reflections, rungs with temporal and metered
+     * exposure keep from frame to frame is of one view: a frame of another viewport than the one before is a
+     * cut. Those of the first alone are the governor's: the others name their rung. */
+    uint32_t viewport;
     uint32_t cut;    /* not 0: what is seen has nothing to do with the previous frame (a camera cut):
                         nothing has moved. The first frame is one anyway. "Before" is the frame that
                         masu_frame handed out last, submitted or not. With rungs[].shadow_refresh

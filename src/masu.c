@@ -290,6 +290,17 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
                          "rung %u does not exist, the last one is %u", frame->rung,
                          d->rung_count - 1);
     }
+    uint32_t viewports = d->viewport_count ? d->viewport_count : 1;
+    if (frame->viewport >= viewports) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "viewport", viewports - 1, frame->viewport,
+                         "viewport %u does not exist, the last one is %u", frame->viewport,
+                         viewports - 1);
+    }
+    if (frame->viewport && frame->rung == MASU_RUNG_AUTO) {
+        return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "rung", d->rung_count - 1, frame->rung,
+                         "rung is MASU_RUNG_AUTO for viewport %u: the governor's is the first alone",
+                         frame->viewport);
+    }
     if (frame->target >= d->targets.count) {
         return masu_fail(&m->error, MASU_ERROR_ARGUMENT, "target", d->targets.count - 1,
                          frame->target, "target %u does not exist, the last one is %u",
@@ -340,7 +351,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 /* What is submitted: of the frame's slot, rung and target the recording that draws its cascades. */
 static VkCommandBuffer pick_recording(const masu_renderer *m, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
-    uint32_t recording = rp->first_recording + f->desc.target * rp->variants +
+    uint32_t recording = f->desc.viewport * m->plan.viewport_recordings + rp->first_recording + f->desc.target * rp->variants +
                          masu_recording_variant(rp, f->cascades);
     return m->device.frames[f->slot * m->plan.recordings + recording];
 }
@@ -352,6 +363,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
         return MASU_ERROR_ARGUMENT;
     }
+    if (frame->viewport < MASU_MAX_VIEWPORTS) masu_plan_look_at(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
     masu_result result = check_frame(m, frame);
     if (!result && m->governor) pick_rung(m, &f);
@@ -363,8 +375,11 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     m->timeline.cut = 0;
     m->timeline.slots[f.slot].frame = m->timeline.frame++;
     m->timeline.slots[f.slot].rung = f.desc.rung;
+    m->timeline.slots[f.slot].viewport = m->timeline.viewport = f.desc.viewport;
+    const masu_rung_plan *rp = &m->plan.rungs[f.desc.rung];
+    m->timeline.slots[f.slot].render = (VkExtent2D){rp->render_width, rp->render_height};
     if (m->governor) {
-        if (frame->rung != MASU_RUNG_AUTO)
+        if (frame->rung != MASU_RUNG_AUTO && !frame->viewport)
             masu_governor_override(m->governor, f.number, frame->rung);
         if (f.cut && f.number) masu_governor_cut(m->governor, f.number);
     }

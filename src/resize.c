@@ -40,7 +40,7 @@ static masu_result check_targets(const masu_targets *now, const masu_targets *t,
 }
 
 static masu_result check(const masu_renderer *m, VkExtent2D output, masu_targets *t,
-                         masu_detail *detail) {
+                         const masu_viewport *viewports, masu_detail *detail) {
     const masu_frame_plan *plan = &m->plan;
     if (!plan->desc.resizable || !plan->desc.scene) {
         return masu_fail(detail, MASU_ERROR_STATE, "resizable", 1, 0,
@@ -54,6 +54,9 @@ static masu_result check(const masu_renderer *m, VkExtent2D output, masu_targets
     masu_desc wanted = plan->desc;
     wanted.output = output;
     wanted.targets = *t;
+    if (!viewports != !plan->desc.viewport_count)
+        return differs(detail, "viewport_count", plan->desc.viewport_count, viewports ? 1 : 0);
+    for (uint32_t i = 0; i < plan->desc.viewport_count; i++) wanted.viewports[i] = viewports[i];
     masu_result result = check_targets(&plan->desc.targets, t, detail);
     if (!result) result = masu_desc_check(&wanted, detail);
     if (result) return result;
@@ -67,16 +70,18 @@ static masu_result check(const masu_renderer *m, VkExtent2D output, masu_targets
 }
 
 masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets *targets,
-                        masu_detail *detail) {
+                        const masu_viewport *viewports, masu_detail *detail) {
     if (!m || !targets) {
         return masu_fail(detail, MASU_ERROR_ARGUMENT, m ? "targets" : "renderer", 1, 0,
                          "masu_resize: %s is NULL", m ? "targets" : "renderer");
     }
     masu_targets t = *targets;
-    masu_result result = check(m, output, &t, detail);
+    masu_result result = check(m, output, &t, viewports, detail);
     if (result) return result;
     m->plan.desc.targets = t;
-    masu_plan_resize(&m->plan, output);
+    m->plan.whole = output;
+    for (uint32_t i = 0; i < m->plan.desc.viewport_count; i++)
+        m->plan.desc.viewports[i] = viewports[i];
     m->timeline.cut = 1;
     result = masu_record_again(&m->device, &m->draws, detail);
     if (result) m->loaded = 0; /* no frame is handed out any more */

@@ -45,7 +45,7 @@ int masu_slot_sample(const masu_renderer *m, uint32_t slot, masu_governor_sample
     const masu_slot *held = &m->timeline.slots[slot];
     *out =
         (masu_governor_sample){.frame = held->frame, .rung = held->rung, .wall_ms = held->wall_ms};
-    if (held->frame == UINT64_MAX) return 0;
+    if (held->frame == UINT64_MAX || held->viewport) return 0; /* the governor's are of the first */
     if (stamps) out->gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;
     for (uint32_t p = 0; p + 2 <= stamps && stamps > 2; p++) {
         if (is_fixed_pass(p) && masu_has_pass(&m->plan.rungs[held->rung].active, p))
@@ -153,14 +153,13 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
     if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit))
         return MASU_ERROR_ARGUMENT;
     if (m->timeline.slots[slot].frame == UINT64_MAX) return MASU_INCOMPLETE;
-    const masu_rung_plan *rp = &m->plan.rungs[m->timeline.slots[slot].rung];
     uint32_t id = 1;
     while (masu_images[id].readback != (uint32_t)which) id++;
     VkFormat format = masu_images[id].format;
     if (format == VK_FORMAT_D32_SFLOAT)
         format = VK_FORMAT_R32_SFLOAT; /* as it lies in the buffer */
     VkExtent2D size = masu_plan_extent(&m->plan, masu_images[id].extent,
-                                       (VkExtent2D){rp->render_width, rp->render_height});
+                                       m->timeline.slots[slot].render);
     *out = (masu_readback_image){
         masu_buffer_pointer(&m->device, MASU_BUFFER_READBACK, slot) + m->plan.readback_offset[bit],
         size.width, size.height, (uint64_t)size.width * masu_format_bytes(format), format};

@@ -69,7 +69,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                                     : MASU_OUTPUT_SRGB;
     constants[7] = m->plan->output.steps[0] || (m->plan->output.flags & MASU_OUTPUT_SWAP);
     VkExtent2D output = m->plan->desc.output;
-    constants[8] = !m->plan->desc.resizable && output.width % MASU_GROUP == 0 &&
+    constants[8] = !m->plan->desc.resizable && !m->plan->desc.viewport_count && output.width % MASU_GROUP == 0 &&
                    output.height % MASU_GROUP == 0;
     /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
     const masu_scene *scene = &m->plan->scene;

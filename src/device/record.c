@@ -317,11 +317,14 @@ static void record_readback(masu_recorder *rec, uint32_t pass) {
 
 static void record_present(masu_recorder *rec, uint32_t pass) {
     const VkExtent2D size = rec->m->plan->desc.output;
+    const masu_viewport *v = &rec->m->plan->desc.viewports[rec->viewport]; /* all 0 where there are none */
+    const VkOffset3D at = {(int32_t)v->x, (int32_t)v->y, 0};
     masu_image_id from = (masu_image_id)rec->rp->access[pass][0].image;
     if (rec->m->plan->copies) {
         VkImageCopy copy = {
             .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
             .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+            .dstOffset = at,
             .extent = {size.width, size.height, 1}};
         rec->m->vk.CmdCopyImage(rec->cmd, masu_recorded_image(rec, from),
                                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
@@ -333,7 +336,8 @@ static void record_present(masu_recorder *rec, uint32_t pass) {
         .srcSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
         .srcOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}},
         .dstSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
-        .dstOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}}};
+        .dstOffsets = {{at.x, at.y, 0},
+                       {at.x + (int32_t)size.width, at.y + (int32_t)size.height, 1}}};
     rec->m->vk.CmdBlitImage(rec->cmd, masu_recorded_image(rec, from),
                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                             masu_recorded_image(rec, MASU_IMAGE_TARGET),
@@ -463,6 +467,11 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
     VkResult r = m->vk.BeginCommandBuffer(rec->cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
     record_prologue(rec);
+    if (rec->viewport) { /* what the first has drawn stays */
+        rec->states[MASU_IMAGE_TARGET] =
+            (masu_use){1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+                       m->plan->desc.targets.final_layout, 1};
+    }
     masu_find_persistent(rec);
     timestamp(rec, 0);
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
@@ -526,12 +535,16 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
         masu_rung_plan *rp = &m->plan->rungs[r];
         result = masu_make_pass_sets(m, rp, &next, sets, detail);
         uint32_t own = targets * rp->variants; /* of one frame in flight: [target][variant] */
-        for (uint32_t i = 0; i < d->frames_in_flight * own && !result; i++) {
-            uint32_t f = i / own, t = i % own / rp->variants;
+        uint32_t viewports = d->viewport_count ? d->viewport_count : 1, each = d->frames_in_flight * own;
+        for (uint32_t i = 0; i < viewports * each && !result; i++) {
+            uint32_t v = i / each, f = i % each / own, t = i % own / rp->variants;
+            uint32_t recording = v * m->plan->viewport_recordings + rp->first_recording + i % own;
+            masu_plan_look_at(m->plan, v);
             masu_recorder rec = {.m = m,
                                  .draws = draws,
-                                 .cmd = m->frames[f * recordings + rp->first_recording + i % own],
+                                 .cmd = m->frames[f * recordings + recording],
                                  .flight = f,
+                                 .viewport = v,
                                  .rung = r,
                                  .target = t,
                                  .variant = i % rp->variants,
@@ -540,6 +553,7 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
             rp->barriers = rec.barriers; /* of the last variant, which leaves nothing out */
         }
     }
+    masu_plan_look_at(m->plan, 0);
     return result;
 }
 

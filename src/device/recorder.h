@@ -18,7 +18,7 @@ typedef struct masu_recorder {
     masu_device *m;
     const masu_draws *draws;
     VkCommandBuffer cmd;
-    uint32_t flight, rung, target, variant;
+    uint32_t flight, viewport, rung, target, variant;
     masu_rung_plan *rp;
     masu_use states[MASU_RESOURCE_END]; /* images, then the buffers that rows name */
     uint32_t barriers;

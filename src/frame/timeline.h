@@ -7,12 +7,14 @@
 
 typedef struct masu_slot {
     uint64_t frame; /* that it holds; UINT64_MAX: not used yet */
-    uint32_t rung;
+    uint32_t rung, viewport;
+    VkExtent2D render; /* size of it */
     double wall_ms; /* 0: the host has not said */
 } masu_slot;
 
 typedef struct masu_timeline {
     uint64_t frame; /* number of the next one */
+    uint32_t viewport; /* of the one before */
     int cut;        /* it has nothing to do with the one before, whatever the host says */
     masu_slot slots[MASU_MAX_FLIGHT];
 } masu_timeline;

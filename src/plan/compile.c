@@ -271,7 +271,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                            wants(d, rung_has_resolve),
                                .blit = !d->targets.storage};
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
-    plan->most = d->output;
+    plan->most = plan->whole = d->output;
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
     masu_shadow_peak(d, &plan->cascades, &plan->cascade_size);
@@ -347,6 +347,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
         compile_rung(plan, r);
     }
     plan->needs.rung = NULL;
+    plan->viewport_recordings = plan->recordings;
+    if (d->viewport_count) plan->recordings *= d->viewport_count;
     gather_images(plan);
     masu_size_buffers(plan, uniform_alignment, storage_alignment);
     return MASU_OK;
@@ -360,6 +362,11 @@ void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output) {
         plan->rungs[r].render_width = scaled(output.width, plan->desc.rungs[r].scale);
         plan->rungs[r].render_height = scaled(output.height, plan->desc.rungs[r].scale);
     }
+}
+
+void masu_plan_look_at(masu_frame_plan *plan, uint32_t viewport) {
+    const masu_viewport *v = &plan->desc.viewports[viewport];
+    masu_plan_resize(plan, plan->desc.viewport_count ? (VkExtent2D){v->width, v->height} : plan->whole);
 }
 
 /* ---- Export ---------------------------------------------------------------------------------- */

@@ -54,6 +54,31 @@ static int final_layout_known(VkImageLayout layout) {
            layout == VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
 }
 
+static masu_result check_viewports(const masu_desc *d, masu_detail *detail) {
+    if (d->viewport_count > MASU_MAX_VIEWPORTS)
+        return bad_range(detail, "viewport_count", d->viewport_count, 0, MASU_MAX_VIEWPORTS);
+    if (d->viewport_count && !d->scene) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "viewport_count", 0, d->viewport_count,
+                         "viewport_count is %u, without a scene there are none", d->viewport_count);
+    }
+    for (uint32_t i = 0; i < d->viewport_count; i++) {
+        const masu_viewport *v = &d->viewports[i];
+        int inside = v->width >= 1 && v->height >= 1 && v->width <= d->output.width &&
+                     v->height <= d->output.height && v->x <= d->output.width - v->width &&
+                     v->y <= d->output.height - v->height;
+        if (!inside) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "viewports", d->output.width, v->width,
+                             "viewports[%u] is %ux%u at %u, %u: not within the output of %ux%u", i,
+                             v->width, v->height, v->x, v->y, d->output.width, d->output.height);
+        }
+        if (!d->targets.storage || (!v->x && !v->y)) continue;
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "viewports", 0, v->x ? v->x : v->y,
+                         "viewports[%u] is at %u, %u: of storage targets they begin at 0, 0", i,
+                         v->x, v->y);
+    }
+    return MASU_OK;
+}
+
 masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
     const masu_targets *t = &d->targets;
     if (d->rung_count > MASU_MAX_RUNGS) {
@@ -131,5 +156,6 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
         masu_result result = masu_rung_check(&d->rungs[r], r, detail);
         if (result) return result;
     }
-    return masu_output_check(d, detail);
+    masu_result viewports = check_viewports(d, detail);
+    return viewports ? viewports : masu_output_check(d, detail);
 }

@@ -87,6 +87,7 @@ typedef struct masu_texture_plan {
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
     masu_scene scene;
+    VkExtent2D whole; /* output that targets have; desc.output is that of the viewport looked at */
     VkExtent2D most; /* output that images are allocated for: desc.output, but after masu_resize */
     masu_needs needs; /* of the scene; upscale and sharpen are of the last rung looked at */
     masu_rung_plan rungs[MASU_MAX_RUNGS];
@@ -118,7 +119,8 @@ typedef struct masu_frame_plan {
     uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
     uint64_t receiver_mask; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
-    uint32_t recordings; /* of one frame in flight: rungs, their targets, their variants */
+    uint32_t recordings; /* of one frame in flight: viewports, their rungs, their targets, their variants */
+    uint32_t viewport_recordings; /* of one viewport */
     uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */
 } masu_frame_plan;
 
@@ -127,6 +129,8 @@ static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1
 
 /* Render sizes of another output, up to plan->most; passes, images and buffers stay what they are. */
 void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output);
+/* The same of a viewport; where there are none, of the whole output. */
+void masu_plan_look_at(masu_frame_plan *plan, uint32_t viewport);
 /* Where a cascade lies in the shadow map, of the size that the map is laid out for. */
 VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
 /* Bits over a rung's slow cascades only, out of bits over all: the variant that draws them. */

@@ -65,7 +65,7 @@ static void unmake(masu_session *s, made *x) {
 static masu_result resize(made *x, uint32_t width, uint32_t height, masu_detail *detail) {
     masu_targets t = {
         .images = &x->target.image, .views = &x->target.view, .count = 1, .storage = 1};
-    return masu_resize(x->m, (VkExtent2D){width, height}, &t, detail);
+    return masu_resize(x->m, (VkExtent2D){width, height}, &t, NULL, detail);
 }
 
 /* So many frames of a rung; the number of the first says which noise they have. */
@@ -151,21 +151,21 @@ static void what_cannot_be_leaves_all_as_it_was(void **state) {
     masu_targets t = {.images = &x.target.image, .views = &x.target.view, .count = 1, .storage = 1};
     const VkExtent2D size = {W, H};
     t.count = 2;
-    assert_int_equal(masu_resize(x.m, size, &t, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "targets.count");
     t.count = 1, t.storage = 0;
-    assert_int_equal(masu_resize(x.m, size, &t, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "targets.storage");
     t.storage = 1, t.format = VK_FORMAT_R16G16B16A16_SFLOAT;
-    assert_int_equal(masu_resize(x.m, size, &t, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "targets.format");
     t.format = VK_FORMAT_R8G8B8A8_UNORM, t.views = NULL;
-    assert_int_equal(masu_resize(x.m, size, &t, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "targets.views");
     t.views = &x.target.view, t.final_layout = VK_IMAGE_LAYOUT_GENERAL;
-    assert_int_equal(masu_resize(x.m, size, &t, &detail), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_resize(x.m, size, NULL, &detail), MASU_ERROR_ARGUMENT);
-    assert_int_equal(masu_resize(NULL, size, &t, NULL), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_resize(x.m, size, &t, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_resize(x.m, size, NULL, NULL, &detail), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_resize(NULL, size, &t, NULL, NULL), MASU_ERROR_ARGUMENT);
     draw_frames(&s, &x, 1, 1, pixels[1]);
     assert_memory_equal(pixels[0], pixels[1], BYTES);
     unmake(&s, &x);

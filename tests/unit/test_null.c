@@ -23,6 +23,7 @@ enum { NO_RESULT = 1000, PARAMETERS_MAX = 8 };
 
 static masu_desc desc;
 static masu_pipelines pool;
+static masu_viewport screen;
 static masu_detail detail;
 static masu_scene look;
 static masu_commands commands;
@@ -78,7 +79,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_pipelines_destroy,                                                                      \
       (masu_pipelines_destroy(P(0, &desc.vulkan), P(1, &pool)), NO_RESULT))                        \
     X(masu_resize,                                                                                 \
-      masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &detail)))               \
+      masu_resize(P(0, &m), (VkExtent2D){8, 8}, P(1, &desc.targets), P(2, &screen), P(3, &detail)))  \
     X(masu_desc_resolved, ((void)masu_desc_resolved(P(0, &desc)), NO_RESULT))                      \
     X(masu_ladder_of, masu_ladder_of(P(0, &scene), P(1, &desc), P(2, &from)))                      \
     X(masu_memory_report, ((void)masu_memory_report(P(0, &m), P(1, rows_of_memory), 2), NO_RESULT)) \
@@ -194,7 +195,7 @@ static const char *read_function(const char *at, function *f) {
 }
 
 static int may_be_null(const char *parameter) {
-    return !strcmp(parameter, "detail") || !strcmp(parameter, "from");
+    return !strcmp(parameter, "detail") || !strcmp(parameter, "viewports") || !strcmp(parameter, "from");
 }
 
 /* ---- Tests ----------------------------------------------------------------------------------- */
