@@ -217,9 +217,13 @@ sizes: lib $(CLASS_OBJECTS) ## print the size of each object of the library, and
 	$(V)size -t $(BUILD)/lib/libmasu.a
 	$(V)package/sizes.sh $(BUILD) $(ALL_CLASSES)
 .PHONY: sizes-table
-sizes-table: lib $(CLASS_OBJECTS) ## write docs/report/sizes.csv, which tests/scripts/sizes.sh compares
+sizes-table: lib $(CLASS_OBJECTS) ## write docs/report/sizes.csv, which tests/scripts/sizes.sh compares, and its rows in docs/embedding.md
 	$(V)package/sizes.sh $(BUILD) $(ALL_CLASSES) > $(BUILD)/sizes.csv
 	$(V)mv $(BUILD)/sizes.csv docs/report/sizes.csv
+	$(V)package/sizes.sh docs/report/sizes.csv > $(BUILD)/sizes.rows
+	$(V)awk -F '|' 'NR == FNR { row[$$2] = $$0; next } $$2 in row { $$0 = row[$$2] } { print }' $(BUILD)/sizes.rows \
+	    docs/embedding.md > $(BUILD)/embedding.md
+	$(V)mv $(BUILD)/embedding.md docs/embedding.md
 
 FORMATTED = $(shell find include src platform tools examples tests -name '*.[ch]')
 format: ## clang-format every C file in place

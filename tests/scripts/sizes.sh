@@ -34,6 +34,11 @@ sed -n '/^classes,/,$p' "$folder/said" > "$folder/new.csv"
 [ "$(wc -l < "$folder/new.csv")" = 10 ] || fail 'make sizes does not end in a table of eight classes and all'
 grown docs/report/sizes.csv "$folder/new.csv" > "$folder/grown"
 [ ! -s "$folder/grown" ] || fail "$(cat "$folder/grown")"
+# Documents have the table's numbers.
+package/sizes.sh docs/report/sizes.csv | while read -r row; do
+    grep -qxF "$row" docs/embedding.md || echo "docs/embedding.md has no row $row; make sizes-table writes it"
+done > "$folder/rows"
+[ ! -s "$folder/rows" ] || fail "$(cat "$folder/rows")"
 awk -F, 'NR > 1 { $2 = int($2 * 1.04) } { print $1 "," $2 "," $3 }' "$folder/new.csv" > "$folder/more.csv"
 [ "$(grown "$folder/new.csv" "$folder/more.csv" | wc -l)" = 9 ] || fail 'self-test: 4 % more are not seen'
 sed 's/^sdf,[0-9]*/sdf,1600000/' "$folder/new.csv" > "$folder/more.csv"
