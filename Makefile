@@ -101,7 +101,7 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
-lib: $(BUILD)/lib/libmasu.a $(SHARED) ## build build/lib/libmasu.a and libmasu.so alone
+lib: $(BUILD)/lib/libmasu.a $(SHARED) ## build build/lib/libmasu.a and libmasu.so alone: CLASSES="both sdf-traced"
 tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso
 shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
@@ -212,8 +212,18 @@ coverage: ## run the tests with gcov and print the lines executed of each file o
 	    '/^File/ { f = $$2 } /^Lines/ && f { printf "%-24s %s\n", f, $$0; f = "" }'
 
 .PHONY: sizes format format-check compdb
-sizes: lib ## print the size of each object of the library
+CLASS_OBJECTS := $(ALL_CLASSES:%=$(BUILD)/classes/%/shaders.o)
+sizes: lib $(CLASS_OBJECTS) ## print the size of each object of the library, and of the library by class of scenes
 	$(V)size -t $(BUILD)/lib/libmasu.a
+	$(V)package/sizes.sh $(BUILD) $(ALL_CLASSES)
+.PHONY: sizes-table
+sizes-table: lib $(CLASS_OBJECTS) ## write docs/report/sizes.csv, which tests/scripts/sizes.sh compares, and its rows in docs/embedding.md
+	$(V)package/sizes.sh $(BUILD) $(ALL_CLASSES) > $(BUILD)/sizes.csv
+	$(V)mv $(BUILD)/sizes.csv docs/report/sizes.csv
+	$(V)package/sizes.sh docs/report/sizes.csv > $(BUILD)/sizes.rows
+	$(V)awk -F '|' 'NR == FNR { row[$$2] = $$0; next } $$2 in row { $$0 = row[$$2] } { print }' $(BUILD)/sizes.rows \
+	    docs/embedding.md > $(BUILD)/embedding.md
+	$(V)mv $(BUILD)/embedding.md docs/embedding.md
 
 FORMATTED = $(shell find include src platform tools examples tests -name '*.[ch]')
 format: ## clang-format every C file in place

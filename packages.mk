@@ -31,6 +31,10 @@ PACKAGES_plots := gnuplot-nox
 PACKAGES_isa := meson ninja-build bison flex python3-mako libdrm-dev libexpat1-dev libelf-dev zlib1g-dev libncurses-dev
 PACKAGES_isa += pkgconf g++ glslang-tools curl ca-certificates
 
+# to build the library for other machines and run a part of it there (make consumers-cross). Never installed by itself
+PACKAGES_cross := gcc-mingw-w64-x86-64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+PACKAGES_cross += gcc-i686-linux-gnu libc6-dev-i386-cross qemu-user
+
 # for who works on Masu: `make format`, `make compdb`. Never installed by itself
 PACKAGES_dev := clang-format bear
 
@@ -55,7 +59,7 @@ endef
 
 .PHONY: packages deps-build deps-demo deps-worlds deps-test
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo worlds test full plots isa dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds test full plots isa cross dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs

@@ -37,6 +37,12 @@ $(COMPLETIONS): $(BUILD)/completion/%: $(BUILD)/bin/% package/completion.sh pack
 bundle: $(BUILD)/lib/libmasu.a ## write build/bundle: the library's sources, to be built without a shader compiler
 	$(V)package/bundle.sh $(BUILD)/bundle $(BUILD)/obj $(MADE)/gen $(LIB_SOURCES)
 
+# Not part of the tests: compilers of several hundred MB.
+.PHONY: consumers-cross
+consumers-cross: all scenes bundle ## build the bundle for Windows, 64-bit Arm and 32-bit x86; compare what the last two compute
+	$(call install-packages,$(PACKAGES_cross))
+	$(V)tests/consumers/cross.sh $(BUILD)/bundle $(BUILD)/cross $(MADE)/scenes
+
 # ---- Installing ----------------------------------------------------------------------------------
 
 root = $(DESTDIR)$(PREFIX)

@@ -34,6 +34,17 @@ PACKED       := $(foreach b,$(BUILDS),$(firstword $(subst :, ,$(b))))
 PERMUTATIONS := $(filter-out %:,$(BUILDS))
 PERMUTATIONS += trace_rays_counted_comp:trace_rays.comp:MASU_TRACE_COUNTERS
 
+# Classes of scenes (masu_scene_class of masu.h) that the library is for; what none of them has a use for is left
+# out, and scenes that need it are refused. left_out CLASSES: the permutations.
+ALL_CLASSES := polygons world sdf both polygons-traced world-traced sdf-traced both-traced
+CLASSES     ?= all
+ifneq ($(filter-out all $(ALL_CLASSES),$(CLASSES)),)
+$(error CLASSES has $(filter-out all $(ALL_CLASSES),$(CLASSES)): known are all, $(ALL_CLASSES))
+endif
+PARTS        := $(shell shaders/tables.sh parts)
+parts_of      = $(if $(filter all %-traced,$(1)),traced) $(if $(filter all polygons% world% both%,$(1)),polygons)
+left_out      = $(foreach p,$(PARTS),$(if $(filter-out $(call parts_of,$(1)),$(subst +, ,$(lastword $(subst :, ,$p)))),$(firstword $(subst :, ,$p))))
+
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV         := $(foreach s,$(notdir $(SHADERS)),$(MADE)/gen/$(subst .,_,$(s)).opt.spv)
 SPIRV         += $(foreach b,$(PERMUTATIONS),$(MADE)/gen/$(firstword $(subst :, ,$(b))).opt.spv)
@@ -81,9 +92,23 @@ PACK_SOURCES := tools/generate/pack_spirv.c src/device/unpack.c
 $(MADE)/tools/pack_spirv: $(PACK_SOURCES) src/device/unpack.h
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -Isrc $(PACK_SOURCES) -o $@
-$(MADE)/gen/packed.h: $(MADE)/tools/pack_spirv $(PACKED:%=$(MADE)/gen/%.opt.spv)
+# pack_for CLASSES: a word for each permutation, with a - before it where none of the classes has a use for it.
+pack_for = $(foreach p,$(PACKED),$(if $(filter $p,$(call left_out,$(1))),-)$p)
+$(MADE)/gen/packed.h: $(MADE)/tools/pack_spirv $(MADE)/gen/classes.list $(PACKED:%=$(MADE)/gen/%.opt.spv)
 	@echo "  PACK    $@"
-	$(V)$< $(MADE)/gen $(PACKED) > $@
+	$(V)$< $(MADE)/gen $(call pack_for,$(CLASSES)) > $@
+
+# Changes when CLASSES does.
+$(MADE)/gen/classes.list: force
+	@mkdir -p $(@D)
+	@echo '$(CLASSES)' | cmp -s - $@ || echo '$(CLASSES)' > $@
+
+# For `make sizes` and its test: the object that differs, of each class alone.
+$(BUILD)/classes/%/packed.h: $(MADE)/tools/pack_spirv $(PACKED:%=$(MADE)/gen/%.opt.spv)
+	@mkdir -p $(@D)
+	$(V)$< $(MADE)/gen $(call pack_for,$*) > $@
+$(BUILD)/classes/%/shaders.o: src/device/shaders.c $(BUILD)/classes/%/packed.h $(MADE)/gen/permutations.h
+	$(V)$(CC) -I$(@D) $(ALL_FLAGS) -fPIC -fvisibility=hidden -c $< -o $@
 
 # The texts, as string literals: line by line, with what C would read otherwise escaped ('?' because
 # of trigraphs). Strings this long are beyond what C11 promises and within what gcc and clang take;

@@ -3,13 +3,16 @@
 #
 #   tables        tables.h, for GLSL and C: MASU_BIND_* of descriptor set 0, structs of push constants
 #   permutations  permutations.h, for C: of each shader its axes and its packed SPIR-V in every combination
+#   parts         lines NAME:PARTS for make: permutations that not every class of scenes has a use for; PARTS of
+#                 traced (of passes that have to do with images and buffers of reflections), polygons (that draw them, or
+#                 have to do with their draws)
 #   builds        lines NAME:FILE:MACRO+MACRO for make: each permutation, its source, what it is compiled with
 #
 # Read by make before anything is compiled, on machines that have nothing but make: so it is shell and awk.
 set -eu
 cd "$(dirname "$0")/.."
 
-[ $# = 1 ] || { echo "usage: tables.sh tables|permutations|builds" >&2; exit 2; }
+[ $# = 1 ] || { echo "usage: tables.sh tables|permutations|parts|builds" >&2; exit 2; }
 
 # Rows may span lines and hold comments: one row to a line, without comments.
 rows() {
@@ -54,8 +57,11 @@ function inside(s, word,    from, i, c, depth, quoted) {
     return ""
 }
 
+# A shader of several rows is of a part that all of them are of.
 function add_shader(name, list,    n, words, i) {
     list = trim(list)
+    elsewhere[name] += !traced
+    without[name] += !polygons
     if (name in shader_axes) {
         if (shader_axes[name] != list) fail("two rows give " name " different axes: \"" shader_axes[name] "\", \"" list "\"")
         return
@@ -96,6 +102,8 @@ function add_shader(name, list,    n, words, i) {
     split(substr($0, 6), head, ",")
     name = trim(head[2])
     file = name
+    traced = $0 ~ /\(SPECULAR[_)]/
+    polygons = $0 ~ /DRAW\((POLYGONS|CASCADE|BOXES|BLENDED),/ || $0 ~ /\((DRAWS|SEEN)\)/
     tail = substr($0, index($0, "PUSH("))
     tail = substr(tail, length(inside(tail, "PUSH")) + 6) # what stands behind it
     if (tail ~ /^\)?, *COMP\(/) {
@@ -161,6 +169,11 @@ END {
                 if (form) flags = flags (flags == "" ? "" : "+") macros[axis[i], form]
             }
             build[s, k] = file ending "_" stage
+            parts = (elsewhere[name] ? "" : " traced") (without[name] ? "" : " polygons")
+            if (kind == "parts" && parts != "") {
+                sub(/^ /, "", parts); sub(/ /, "+", parts)
+                print build[s, k] ":" parts
+            }
             if (kind == "builds") print file ending "_" stage ":" file "." stage ":" flags
         }
     }

@@ -6,6 +6,7 @@
 #include "device/load.h"
 #include "device/offers.h"
 #include "device/ray_query.h"
+#include "device/shaders.h"
 #include "quality/governor_desc.h"
 #include "renderer.h"
 #include "scene/scene.h"
@@ -106,6 +107,7 @@ static masu_result make_plan(const masu_desc *desc, masu_vk *vk, masu_frame_plan
     plan->computed_for = computed_for;
     masu_ray_sizes(plan, vk);
     result = masu_capabilities_check(plan, vk, detail);
+    if (!result) result = masu_code_check(plan, detail);
     if (result) return result;
     plan->textures = textures;
     result = masu_objects_create(vk, plan, objects, detail);

@@ -1,6 +1,7 @@
 /* shaders.c: see shaders.h. */
 #include "device/shaders.h"
 
+#include "base/error.h"
 #include "scene/scene.h"
 #include "scene/trace_scene.h"
 
@@ -78,7 +79,8 @@ static masu_code permutation(const masu_frame_plan *plan, uint32_t pass, uint32_
         index += form * step;
         step *= s->axes[i].forms;
     }
-    return (masu_code){NULL, s->codes[index], s->codes[index].words * sizeof(uint32_t)};
+    masu_packed packed = s->codes[index];
+    return (masu_code){NULL, packed, packed.words * sizeof(uint32_t), !packed.words};
 }
 
 /* ---- Passes ---------------------------------------------------------------------------------- */
@@ -103,7 +105,7 @@ static const pass_shaders of_pass[MASU_PASS_COUNT] = {
 static masu_code scene_code(const masu_frame_plan *plan, uint32_t pass) {
     masu_scene_view v = masu_scene_look(plan->desc.scene);
     uint32_t section = masu_passes[pass].code;
-    return (masu_code){v.code[section].words, {0}, v.code[section].count * sizeof(uint32_t)};
+    return (masu_code){v.code[section].words, {0}, v.code[section].count * sizeof(uint32_t), 0};
 }
 
 masu_code masu_compute_code(const masu_frame_plan *plan, uint32_t pass, int last) {
@@ -125,6 +127,27 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
 const uint32_t *masu_code_read(const masu_code *code, uint32_t *room) {
     if (code->words) return code->words;
     return masu_unpack(&masu_pack_of_all, &code->packed, room) ? room : NULL;
+}
+
+/* ---- What is left out ------------------------------------------------------------------------ */
+
+masu_result masu_code_check(const masu_frame_plan *plan, masu_detail *detail) {
+    for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
+        const masu_rung_plan *rp = &plan->rungs[r];
+        for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
+            if (!masu_has_pass(&rp->active, p)) continue;
+            masu_draw_code draw = masu_draw_code_of(plan, p, plan->scene.texture_arrays > 0);
+            if (!masu_compute_code(plan, p, masu_comes_last(rp, p)).left_out && !draw.vertex.left_out &&
+                !draw.fragment.left_out)
+                continue;
+            const char *name = masu_scene_class_name(masu_scene_class_of(plan->desc.scene));
+            return masu_fail(detail, MASU_ERROR_LIMIT, "CLASSES", 1, 0,
+                             "this library was built without the shader of the pass %s: the scene's class is %s, "
+                             "to be built with make CLASSES=%s or all",
+                             masu_passes[p].name, name, name);
+        }
+    }
+    return MASU_OK;
 }
 
 /* ---- The room that they need ----------------------------------------------------------------- */

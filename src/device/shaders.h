@@ -13,6 +13,7 @@ typedef struct masu_code {
     const uint32_t *words; /* of the scene */
     masu_packed packed;    /* where words is NULL */
     uint64_t bytes;        /* 0: none */
+    int left_out;          /* one is needed that the library does not have */
 } masu_code;
 
 /* The two stages of a draw; of depth alone the second is none. */
@@ -28,6 +29,9 @@ masu_draw_code masu_draw_code_of(const masu_frame_plan *plan, uint32_t pass, int
 
 /* The words of a code that there is; room: for one that is packed, masu_code_room(plan) bytes. */
 const uint32_t *masu_code_read(const masu_code *code, uint32_t *room);
+
+/* MASU_ERROR_LIMIT: the plan needs a shader that was left out of the library (make CLASSES=...). */
+masu_result masu_code_check(const masu_frame_plan *plan, masu_detail *detail);
 
 /* Bytes of the largest packed code that the plan's pipelines are made of. */
 uint64_t masu_code_room(const masu_frame_plan *plan);

@@ -1,6 +1,6 @@
 /* pack_spirv.c: pack_spirv FOLDER NAME...: FOLDER/NAME.opt.spv of every name, packed as
  * src/device/unpack.h has it, as a C header on stdout. Made while building. Of names alike the last
- * should be the largest: they are packed from the last to the first.
+ * should be the largest: they are packed from the last to the first. -NAME is one that is left out.
  *
  * First each module becomes tokens. Which words of an instruction are ids, and which is its result, is known
  * of the operations that shaders have (section 3 of the SPIR-V specification); where this is wrong for
@@ -397,15 +397,17 @@ int main(int argc, char **argv) {
         fputs("usage: pack_spirv FOLDER NAME...\n", stderr);
         return 2;
     }
-    uint32_t count = (uint32_t)argc - 2, largest = 0;
-    module *modules = calloc(count, sizeof *modules);
+    uint32_t count = 0, largest = 0;
+    module *modules = calloc((size_t)argc, sizeof *modules);
     first_place = calloc((size_t)1 << HASH_BITS, sizeof *first_place);
     static masu_pack_head heads[HEADS];
     if (!modules || !first_place) die("no memory");
-    for (uint32_t i = 0; i < count; i++) {
-        modules[i].name = argv[argc - 1 - (int)i];
-        read_module(argv[1], &modules[i]);
-        if (modules[i].count > largest) largest = modules[i].count;
+    for (int i = argc; i-- > 2;) {
+        if (*argv[i] == '-') continue;
+        module *m = &modules[count++];
+        m->name = argv[i];
+        read_module(argv[1], m);
+        if (m->count > largest) largest = m->count;
     }
     bytes pool = {0}, runs = {0};
     masu_pack pack = {.heads = heads, .head_count = find_heads(modules, count, heads)};
@@ -439,6 +441,8 @@ int main(int argc, char **argv) {
         const masu_packed *p = &modules[i].packed;
         printf("#define MASU_PACKED_%s {%uu, %uu, %uu, %uu}\n", modules[i].name, p->run, p->run_bytes, p->own, p->words);
     }
+    for (int i = 2; i < argc; i++)
+        if (*argv[i] == '-') printf("#define MASU_PACKED_%s {0u, 0u, 0u, 0u}\n", argv[i] + 1);
     printf("#define MASU_PACKED_EACH(X)");
     for (uint32_t i = 0; i < count; i++) printf(" \\\n    X(%s)", modules[i].name);
     printf("\n");
