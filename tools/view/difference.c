@@ -35,8 +35,7 @@ static void drop(masu_difference *d) {
 
 void masu_difference_close(masu_difference *d) { drop(d); }
 
-/* Black, violet, orange, yellow, white: errors of 0 to 1. */
-static uint32_t palette(float error) {
+uint32_t masu_difference_color(float error) {
     static const float stops[][3] = {
         {2, 2, 8}, {75, 18, 105}, {180, 50, 100}, {240, 120, 50}, {250, 200, 90}, {255, 255, 220}};
     const int last = sizeof stops / sizeof *stops - 1;
@@ -84,7 +83,7 @@ static void show(masu_viewer *v) {
     bool fits = d->width == v->compose.shown.width && d->height == v->compose.shown.height;
     if (!d->failed && fits) {
         masu_viewer_settle(v);
-        for (size_t i = 0; i < (size_t)d->width * d->height; i++) to[i] = palette(d->errors[i]);
+        for (size_t i = 0; i < (size_t)d->width * d->height; i++) to[i] = masu_difference_color(d->errors[i]);
         d->known = true;
     }
     v->stale_overlay = true;

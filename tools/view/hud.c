@@ -51,17 +51,19 @@ static void frame_lines(const masu_viewer *v, masu_lines *l) {
     const masu_governor_info *g = &v->stats.governor;
     const masu_plan_rung *r = &v->plan.rungs[v->rung];
     double gpu = (double)v->stats.gpu_ns / 1e6;
+    char gpu_text[32] = "-"; /* not known yet */
+    if (v->stats.gpu_ns) snprintf(gpu_text, sizeof gpu_text, "%.2f ms", gpu);
     if (v->wall_ms > 0.0 && !v->scripted)
-        say(l, MASU_INK, "%.1f fps   %.2f ms a frame   GPU %.2f ms", 1000.0 / v->wall_ms, v->wall_ms, gpu);
+        say(l, MASU_INK, "%.1f fps   %.2f ms a frame   GPU %s", 1000.0 / v->wall_ms, v->wall_ms, gpu_text);
     else
-        say(l, MASU_INK, "frame %llu   GPU %.2f ms", (unsigned long long)v->frames, gpu);
+        say(l, MASU_INK, "frame %llu   GPU %s", (unsigned long long)v->frames, gpu_text);
     VkExtent2D o = v->a.desc.output;
     if (r->render_width == o.width && r->render_height == o.height)
-        say(l, MASU_INK, "%ux%u   rung %u of %u%s", o.width, o.height, v->rung, v->want.rung_count,
+        say(l, MASU_INK, "%ux%u   rung %u (0-%u)%s", o.width, o.height, v->rung, v->want.rung_count - 1,
             v->governed ? ", governor" : "");
     else
-        say(l, MASU_INK, "%ux%u of %ux%u   rung %u of %u%s", r->render_width, r->render_height, o.width,
-            o.height, v->rung, v->want.rung_count, v->governed ? ", governor" : "");
+        say(l, MASU_INK, "%ux%u of %ux%u   rung %u (0-%u)%s", r->render_width, r->render_height, o.width,
+            o.height, v->rung, v->want.rung_count - 1, v->governed ? ", governor" : "");
     masu_setting_name(&v->want.rungs[v->rung], name);
     size_t at = 0, length = strlen(name);
     while (at < length) { /* broken at '+' */
@@ -75,8 +77,9 @@ static void frame_lines(const masu_viewer *v, masu_lines *l) {
     }
     if (v->governed) {
         float predicted = v->rung < MASU_MAX_RUNGS ? g->predicted_ms[v->rung] : 0.0f;
-        say(l, gpu > (double)g->target_ms ? MASU_INK_WARN : MASU_INK_GOOD,
-            "target %.2f ms   predicted %.2f   actual %.2f", (double)g->target_ms, (double)predicted, gpu);
+        say(l, gpu > (double)v->want.governor.target_ms ? MASU_INK_WARN : MASU_INK_GOOD,
+            "target %.2f ms   predicted %.2f   actual %s", (double)v->want.governor.target_ms,
+            (double)predicted, gpu_text);
         say(l, MASU_INK_DIM, "%s", g->reason_text ? g->reason_text : "");
     }
     say(l, MASU_INK, "host %s   device %s", bytes_text(v->a.need.host_bytes, host, sizeof host),
@@ -93,7 +96,7 @@ static void culling_lines(const masu_viewer *v, masu_lines *l) {
     for (uint32_t i = 0; i < v->stats.view_count && i < MASU_MAX_VIEWS; i++) {
         const masu_view_stats *s = &v->stats.views[i];
         char name[24];
-        snprintf(name, sizeof name, i ? "cascade %u" : "camera", i);
+        snprintf(name, sizeof name, i ? "cascade %u" : "camera", i - 1);
         say(l, MASU_INK, "%-14s%10llu%10llu%12llu", name, (unsigned long long)s->instances,
             (unsigned long long)s->draws, (unsigned long long)s->triangles);
     }
@@ -198,6 +201,17 @@ static void draw_difference(masu_viewer *v) {
         snprintf(text, sizeof text, "FLIP of rung %u against B (%.80s): mean %.4f, 99 %% below %.3f, max %.3f",
                  v->rung, name, d->mean, d->p99, d->max);
     banner(c, c->height - 5 * h, MASU_INK, text);
+    /* The scale of the map, at the right edge. */
+    int w = c->font->width, bar = 10 * h, x = c->width - 8 * w, y = c->height - 4 * h - bar;
+    masu_canvas_fill(c, x - w, y - h, 8 * w, bar + 2 * h, 0x0B1016, 205);
+    for (int i = 0; i < bar; i++) {
+        uint32_t rgba = masu_difference_color(1.0f - (float)i / (float)(bar - 1));
+        uint32_t rgb = (rgba & 255u) << 16 | (rgba & 0xFF00u) | (rgba >> 16 & 255u);
+        masu_canvas_fill(c, x, y + i, 2 * w, 1, rgb, 255);
+    }
+    (void)masu_canvas_text(c, x + 3 * w, y - h / 2, MASU_INK, "1");
+    (void)masu_canvas_text(c, x + 3 * w, y + bar / 2 - h / 2, MASU_INK, "0.5");
+    (void)masu_canvas_text(c, x + 3 * w, y + bar - h / 2, MASU_INK, "0");
 }
 
 void masu_hud_draw(masu_viewer *v) {

@@ -78,17 +78,16 @@ static bool recover(masu_viewer *v) {
     return masu_viewer_recover(v);
 }
 
-int masu_viewer_run(masu_viewer *v) {
-    masu_script script = {0};
+int masu_viewer_run(masu_viewer *v, masu_script *script) {
     masu_hands hands = {0};
     const masu_viewer_options *o = v->o;
     uint64_t last = masu_clock_ns(NULL), drawn = last;
-    bool good = !o->script || masu_script_read(o->script, &script, v->error, sizeof v->error);
+    bool good = true;
     while (good && !v->quit) {
         uint64_t now = masu_clock_ns(NULL), frames = v->frames;
         double seconds = v->scripted ? MASU_VIEWER_STEP : fmin((double)(now - last) / 1e9, STEP_MAX);
         last = now;
-        good = turn(v, &script, &hands, seconds);
+        good = turn(v, script, &hands, seconds);
         if (!good && v->lost) good = recover(v);
         if (v->frames != frames) {
             now = masu_clock_ns(NULL);
@@ -102,7 +101,6 @@ int masu_viewer_run(masu_viewer *v) {
             v->quit = v->quit || o->quit;
         }
     }
-    masu_script_free(&script);
     masu_hands_close(&hands);
     return good ? MASU_CLI_OK : masu_cli_error("%s", v->error);
 }

@@ -1,5 +1,5 @@
 /* main.c: the program masu-view: a baked scene in a window. docs/commands.md is its manual. */
-#include "view/viewer.h"
+#include "view/script.h"
 
 #include "bench/sweep/settings.h"
 #include "masu/options.h"
@@ -82,8 +82,12 @@ static int view(const masu_viewer_options *o) {
     v->hud = MASU_HUD_SHORT;
     v->fly.speed = 4.0;
     v->overlay_version = 1;
+    masu_script script = {0};
     int code = describe(o, v);
-    if (!code) code = masu_viewer_open(v) ? masu_viewer_run(v) : masu_cli_error("%s", v->error);
+    bool read = code || !o->script || masu_script_read(o->script, &script, v->error, sizeof v->error);
+    if (!code && read && masu_viewer_open(v)) code = masu_viewer_run(v, &script);
+    else if (!code) code = masu_cli_error("%s", v->error);
+    masu_script_free(&script);
     uint64_t frames = v->frames, turns = v->turns;
     masu_viewer_settle(v);
     uint32_t messages = v->host.messages;

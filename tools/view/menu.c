@@ -103,8 +103,9 @@ static void value_text(const masu_viewer *v, const masu_menu_row *row, char *out
     }
 }
 
-/* Text in lines of at most `width` characters, broken at spaces; returns the y below. */
-static int wrapped(masu_canvas *c, int x, int y, int width, uint32_t color, const char *text) {
+/* Text in lines of at most `width` characters, broken at spaces; returns the y below. Measures alone
+ * where `draw` is false. */
+static int wrapped(masu_canvas *c, int x, int y, int width, uint32_t color, const char *text, bool draw) {
     char line[160];
     while (*text) {
         size_t n = strlen(text);
@@ -114,7 +115,7 @@ static int wrapped(masu_canvas *c, int x, int y, int width, uint32_t color, cons
             if (!n) n = (size_t)width;
         }
         snprintf(line, sizeof line, "%.*s", (int)n, text);
-        (void)masu_canvas_text(c, x, y, color, line);
+        if (draw) (void)masu_canvas_text(c, x, y, color, line);
         y += c->font->height;
         text += n;
         while (*text == ' ') text++;
@@ -129,22 +130,29 @@ void masu_menu_draw(masu_viewer *v) {
     uint32_t count = list_rows(v, rows);
     if (v->menu.row >= count) v->menu.row = count - 1;
     int w = c->font->width, h = c->font->height, pad = h / 2;
-    int lines = (c->height - 2 * pad) / h - 12; /* beside title and the text below */
+    int lines = (c->height - 2 * pad) / h - 18; /* beside title and the text below */
     if (lines < 3) lines = 3;
     int first = (int)v->menu.row - lines / 2;
     if (first > (int)count - lines) first = (int)count - lines;
     if (first < 0) first = 0;
     int shown = (int)count - first < lines ? (int)count - first : lines;
     int x = c->width - COLUMNS * w - pad, y = pad;
-    masu_canvas_fill(c, x - pad, 0, COLUMNS * w + 2 * pad, (shown + 10) * h + 2 * pad, 0x0B1016, 205);
-    char text[128], value[48];
+    char text[256], value[48], range[200];
+    const masu_knob *chosen = rows[v->menu.row].knob;
+    masu_knob_range(chosen, range, sizeof range);
+    if (*chosen->unit) snprintf(range + strlen(range), sizeof range - strlen(range), ", %s", chosen->unit);
+    int below = wrapped(c, 0, 0, COLUMNS, 0, chosen->text, false) +
+                wrapped(c, 0, 0, COLUMNS, 0, chosen->cost, false) +
+                wrapped(c, 0, 0, COLUMNS, 0, range, false);
+    masu_canvas_fill(c, x - pad, 0, COLUMNS * w + 2 * pad, (shown + 3) * h + below + pad, 0x0B1016, 205);
     snprintf(text, sizeof text, "Knobs of rung %u", v->rung);
     (void)masu_canvas_text(c, x, y, MASU_INK_TITLE, text);
     y += h + h / 2;
     for (int i = first; i < first + shown; i++, y += h) {
         const masu_knob *k = rows[i].knob;
         bool selected = (uint32_t)i == v->menu.row;
-        bool set = masu_knob_get(k, &v->want.rungs[v->rung], rows[i].value) != 0.0;
+        double now = masu_knob_get(k, &v->want.rungs[v->rung], rows[i].value);
+        bool set = now != 0.0 && now != k->zero;
         if (selected) masu_canvas_fill(c, x - pad / 2, y, COLUMNS * w + pad, h, 0x2F6EA8, 190);
         if (k->values > 1) {
             snprintf(text, sizeof text, "%.16s %u", k->name, rows[i].value + 1);
@@ -156,11 +164,8 @@ void masu_menu_draw(masu_viewer *v) {
         snprintf(text, sizeof text, "%*s", VALUE, value);
         (void)masu_canvas_text(c, x + (NAME + 2) * w, y, set ? MASU_INK_WARN : MASU_INK_DIM, text);
     }
-    const masu_knob *k = rows[v->menu.row].knob;
     y += h / 2;
-    y = wrapped(c, x, y, COLUMNS, MASU_INK, k->text);
-    char range[200];
-    masu_knob_range(k, range, sizeof range);
-    snprintf(text, sizeof text, "%.100s%s%s", range, *k->unit ? ", " : "", k->unit);
-    (void)wrapped(c, x, y, COLUMNS, MASU_INK_DIM, text);
+    y = wrapped(c, x, y, COLUMNS, MASU_INK, chosen->text, true);
+    y = wrapped(c, x, y, COLUMNS, MASU_INK_DIM, range, true) + h / 2;
+    (void)wrapped(c, x, y, COLUMNS, MASU_INK_DIM, chosen->cost, true);
 }

@@ -160,6 +160,23 @@ bool masu_viewer_resize(masu_viewer *v) {
     return true;
 }
 
+/* The ladder of the scene, or what the command line says instead. A value that is the default is 0 again,
+ * as in the base that names of settings are told from; but for scale, which is 1 there. */
+static void want_given(masu_viewer *v) {
+    v->want = v->given;
+    v->want.scene = &v->scene;
+    v->want = masu_desc_resolved(&v->want);
+    for (uint32_t r = 0; r < v->want.rung_count; r++) {
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            if (!strcmp(k->name, "scale")) continue;
+            for (uint32_t i = 0; i < k->values; i++) {
+                if (masu_knob_get(k, &v->want.rungs[r], i) == k->zero)
+                    masu_knob_set(k, &v->want.rungs[r], i, 0.0);
+            }
+        }
+    }
+}
+
 bool masu_viewer_load(masu_viewer *v, const char *path) {
     void *blob = NULL;
     masu_scene scene;
@@ -173,11 +190,7 @@ bool masu_viewer_load(masu_viewer *v, const char *path) {
     bool same_class = masu_scene_class_of(&scene) == masu_scene_class_of(&old);
     v->blob = blob;
     v->scene = scene;
-    if (!same_class) { /* other rungs were measured for it */
-        v->want = v->given;
-        v->want.scene = &v->scene;
-        v->want = masu_desc_resolved(&v->want);
-    }
+    if (!same_class) want_given(v); /* other rungs were measured for it */
     masu_viewer_settle(v);
     if (start_a(v)) {
         free(old_blob);
@@ -253,9 +266,7 @@ bool masu_viewer_open(masu_viewer *v) {
     if (!path) path = v->baker.output;
     if (!read_scene(v, path, &v->blob, &v->scene)) return false;
     snprintf(title, sizeof title, "masu: %s", v->o->scene ? v->o->scene : v->o->json);
-    v->want = v->given;
-    v->want.scene = &v->scene;
-    v->want = masu_desc_resolved(&v->want);
+    want_given(v);
     v->reference = v->want.rungs[0];
     if (v->rung >= v->want.rung_count) {
         snprintf(v->error, sizeof v->error, "--rung %u does not exist, there are 0 to %u", v->rung,

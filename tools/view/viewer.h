@@ -184,6 +184,8 @@ bool masu_menu_key(masu_viewer *v, SDL_Keycode key); /* true: it was the menu's 
 
 /* difference.c */
 bool masu_difference_step(masu_viewer *v); /* after a frame: takes pictures, shows what is done */
+/* RGBA8 of an error of 0 to 1: black, violet, orange, yellow, white. */
+uint32_t masu_difference_color(float error);
 void masu_difference_close(masu_difference *d);
 
 /* bake.c */
@@ -192,6 +194,7 @@ bool masu_baker_poll(masu_viewer *v);   /* true; loads what has changed */
 void masu_baker_close(masu_baker *b);
 
 /* loop.c: an exit code */
-int masu_viewer_run(masu_viewer *v);
+struct masu_script;
+int masu_viewer_run(masu_viewer *v, struct masu_script *script);
 
 #endif
