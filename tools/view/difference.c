@@ -100,7 +100,7 @@ bool masu_difference_step(masu_viewer *v) {
     }
     if (v->show != MASU_SHOW_MAP || !v->b.m || !v->frames) return true;
     bool rests = v->paused && d->paused && d->taken > v->moved;
-    bool due = !d->known || (!rests && v->frames >= d->taken + EVERY);
+    bool due = !d->known || (v->paused ? !rests : v->frames >= d->taken + EVERY);
     if (d->failed || !due) return true;
     if (!take(v)) return false;
     if (v->scripted) {

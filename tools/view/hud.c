@@ -64,7 +64,7 @@ static void frame_lines(const masu_viewer *v, masu_lines *l) {
     else
         say(l, MASU_INK, "%ux%u of %ux%u   rung %u (0-%u)%s", r->render_width, r->render_height, o.width,
             o.height, v->rung, v->want.rung_count - 1, v->governed ? ", governor" : "");
-    masu_setting_name(&v->want.rungs[v->rung], name);
+    masu_viewer_setting(v, &v->want.rungs[v->rung], name);
     size_t at = 0, length = strlen(name);
     while (at < length) { /* broken at '+' */
         size_t n = length - at;
@@ -91,17 +91,25 @@ static void frame_lines(const masu_viewer *v, masu_lines *l) {
         say(l, MASU_INK, "time %.2f s%s", v->time, v->paused ? ", paused" : "");
 }
 
-static void culling_lines(const masu_viewer *v, masu_lines *l) {
+static void polygon_lines(const masu_viewer *v, masu_lines *l) {
     say(l, MASU_INK_TITLE, "%-14s%10s%10s%12s", "drawn", "instances", "draws", "triangles");
     for (uint32_t i = 0; i < v->stats.view_count && i < MASU_MAX_VIEWS; i++) {
         const masu_view_stats *s = &v->stats.views[i];
-        char name[24];
-        snprintf(name, sizeof name, i ? "cascade %u" : "camera", i - 1);
+        char name[24] = "camera";
+        if (i) snprintf(name, sizeof name, "cascade %u", i - 1);
         say(l, MASU_INK, "%-14s%10llu%10llu%12llu", name, (unsigned long long)s->instances,
             (unsigned long long)s->draws, (unsigned long long)s->triangles);
     }
     say(l, MASU_INK_DIM, "of %u instances, %llu triangles%s", v->scene.instances,
         (unsigned long long)v->scene.triangles, v->scene.sdf ? ", and an SDF" : "");
+}
+
+static void culling_lines(const masu_viewer *v, masu_lines *l) {
+    if (v->scene.instances) {
+        polygon_lines(v, l);
+    } else {
+        say(l, MASU_INK_DIM, "no polygons%s", v->scene.sdf ? ", an SDF" : "");
+    }
     if (v->stats.lights)
         say(l, MASU_INK, "lights %u, in view %u", v->stats.lights, v->stats.lights_in_view);
     if (v->want.debug.counters) {
@@ -119,6 +127,7 @@ static void pass_lines(const masu_viewer *v, masu_lines *l, int room) {
         total += s->pass_ns[p];
         if (s->pass_ns[p] > most) most = s->pass_ns[p];
     }
+    if (room < 4) return; /* of a small window */
     say(l, MASU_INK_TITLE, "%-26s%10s", "passes", "ms");
     if (!total) {
         say(l, MASU_INK_DIM, v->o->no_timestamps ? "no timestamps (--no-timestamps)" : "not measured yet");
@@ -175,13 +184,13 @@ static void draw_split(masu_viewer *v) {
     int x = (int)(v->split * c->width + 0.5), w = c->font->width, h = c->font->height;
     int y = c->height - 5 * h, left = x / w - 4, right = (c->width - x) / w - 4;
     masu_canvas_fill(c, x - 1, 0, 2, c->height, 0xFFFFFF, 200);
-    masu_setting_name(&v->want.rungs[v->rung], name);
+    masu_viewer_setting(v, &v->want.rungs[v->rung], name);
     snprintf(text, sizeof text, "A: rung %u, %s", v->rung, name);
     if (left > 0) {
         if ((int)strlen(text) > left) text[left] = '\0';
         label(c, x - w * ((int)strlen(text) + 3), y, text);
     }
-    masu_setting_name(&v->reference, name);
+    masu_viewer_setting(v, &v->reference, name);
     snprintf(text, sizeof text, "B: %s", name);
     if (right > 0) {
         if ((int)strlen(text) > right) text[right] = '\0';
@@ -194,7 +203,7 @@ static void draw_difference(masu_viewer *v) {
     masu_canvas *c = &v->canvas;
     char name[MASU_SETTING_ID], text[MASU_SETTING_ID + 128];
     int h = c->font->height;
-    masu_setting_name(&v->reference, name);
+    masu_viewer_setting(v, &v->reference, name);
     if (d->failed) snprintf(text, sizeof text, "no memory for FLIP at %ux%u", c->width, c->height);
     else if (!d->known) snprintf(text, sizeof text, "FLIP of rung %u against B (%.80s): computing", v->rung, name);
     else
@@ -202,7 +211,7 @@ static void draw_difference(masu_viewer *v) {
                  v->rung, name, d->mean, d->p99, d->max);
     banner(c, c->height - 5 * h, MASU_INK, text);
     /* The scale of the map, at the right edge. */
-    int w = c->font->width, bar = 10 * h, x = c->width - 8 * w, y = c->height - 4 * h - bar;
+    int w = c->font->width, bar = c->height / 3 < 10 * h ? c->height / 3 : 10 * h, x = c->width - 8 * w, y = c->height - 6 * h - bar;
     masu_canvas_fill(c, x - w, y - h, 8 * w, bar + 2 * h, 0x0B1016, 205);
     for (int i = 0; i < bar; i++) {
         uint32_t rgba = masu_difference_color(1.0f - (float)i / (float)(bar - 1));

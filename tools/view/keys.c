@@ -1,8 +1,6 @@
 /* keys.c: what a pressed key does. Keys that are held are input.c's, those of an open menu menu.c's. */
 #include "view/viewer.h"
 
-#include "bench/sweep/settings.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -78,7 +76,7 @@ static void toggle_path(masu_viewer *v) {
 static void store_reference(masu_viewer *v) {
     char name[MASU_SETTING_ID];
     v->reference = v->want.rungs[v->rung];
-    masu_setting_name(&v->reference, name);
+    masu_viewer_setting(v, &v->reference, name);
     masu_viewer_note(v, "B is now %s", name);
     if (v->show == MASU_SHOW_A) return;
     v->changed = true;
@@ -100,6 +98,7 @@ static bool screenshot(masu_viewer *v) {
 bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers) {
     double far = modifiers & KMOD_SHIFT ? 10.0 : 1.0;
     v->stale_overlay = true;
+    v->moved = v->frames; /* whatever it was: what is compared is to be compared again */
     if (v->menu.open && masu_menu_key(v, key)) return true;
     if (key >= SDLK_1 && key <= SDLK_8) return take_rung(v, (uint32_t)(key - SDLK_1)), true;
     switch (key) {

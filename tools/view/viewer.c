@@ -1,9 +1,9 @@
 /* viewer.c: see viewer.h: what is made, in which order, and in which order it ends. */
 #include "view/viewer.h"
 
+#include "bench/sweep/settings.h"
 #include "clock.h"
 #include "image.h"
-#include "masu/options.h"
 #include "view/stage.h"
 
 #include <stdarg.h>
@@ -50,6 +50,19 @@ static void place_camera(masu_viewer *v) {
     bool has = v->scene.camera_keys && masu_camera_at(v->a.m, v->time, &camera) == MASU_OK;
     masu_fly_from(&v->fly, &camera);
     v->on_path = has;
+}
+
+/* As masu bench would call it, without what has no use here: an unscaled rung's sharpness. */
+void masu_viewer_setting(const masu_viewer *v, const masu_rung *rung, char out[MASU_SETTING_ID]) {
+    char error[256];
+    masu_rung base, shown = *rung;
+    if (!(shown.scale > 0.0f)) shown.scale = 1.0f;
+    if (masu_setting_parse("base", &base, error, sizeof error)) {
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            if (masu_knob_useless(k, &shown, &v->scene, &v->plan)) masu_knob_copy(k, &shown, &base);
+        }
+    }
+    masu_setting_name(&shown, out);
 }
 
 /* ---- Stages ---------------------------------------------------------------------------------- */

@@ -156,6 +156,8 @@ bool masu_viewer_recover(masu_viewer *v);
 
 /* One line for the overlay, which goes by itself. */
 void masu_viewer_note(masu_viewer *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The name of a setting. */
+void masu_viewer_setting(const masu_viewer *v, const masu_rung *rung, char out[MASU_SETTING_ID]);
 /* Where the camera is now. */
 void masu_viewer_camera(const masu_viewer *v, masu_camera *out);
 
