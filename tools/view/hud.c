@@ -57,7 +57,7 @@ static void frame_lines(const masu_viewer *v, masu_lines *l) {
         say(l, MASU_INK, "%.1f fps   %.2f ms a frame   GPU %s", 1000.0 / v->wall_ms, v->wall_ms, gpu_text);
     else
         say(l, MASU_INK, "frame %llu   GPU %s", (unsigned long long)v->frames, gpu_text);
-    VkExtent2D o = v->a.desc.output;
+    VkExtent2D o = {v->a.target.width, v->a.target.height};
     if (r->render_width == o.width && r->render_height == o.height)
         say(l, MASU_INK, "%ux%u   rung %u (0-%u)%s", o.width, o.height, v->rung, v->want.rung_count - 1,
             v->governed ? ", governor" : "");

@@ -128,6 +128,36 @@ bool masu_stage_start(masu_stage *s, masu_headless *host, const masu_desc *desc,
     return true;
 }
 
+bool masu_stage_resize(masu_stage *s, VkExtent2D output, char *error, size_t size) {
+    uint64_t begin = masu_clock_ns(NULL);
+    masu_headless_target old = s->target;
+    if (!s->m || output.width > s->desc.output.width || output.height > s->desc.output.height) {
+        snprintf(error, size, "%ux%u is more than was planned for", output.width, output.height);
+        return false;
+    }
+    /* The old one may go when nothing refers to it. */
+    memset(&s->target, 0, sizeof s->target);
+    bool good = masu_headless_target_create(s->host, output.width, output.height, VK_FORMAT_R8G8B8A8_UNORM,
+                                            true, &s->target, error, size);
+    masu_targets targets = {.images = &s->target.image, .views = &s->target.view, .count = 1, .storage = 1};
+    if (good && masu_resize(s->m, output, &targets, &s->detail)) {
+        good = said(s, error, size);
+        masu_headless_target_destroy(s->host, &s->target);
+        if (s->detail.result == MASU_ERROR_VULKAN || s->detail.result == MASU_ERROR_DEVICE_LOST) {
+            masu_destroy(s->m);
+            s->m = NULL;
+        }
+    }
+    if (!good) {
+        s->target = old;
+        return false;
+    }
+    masu_headless_target_destroy(s->host, &old);
+    s->in_place = true;
+    s->start_ms = (double)(masu_clock_ns(NULL) - begin) / 1e6;
+    return true;
+}
+
 void masu_stage_close(masu_stage *s) {
     if (!s->host) return;
     masu_destroy(s->m);

@@ -35,6 +35,11 @@ typedef struct masu_stage {
 bool masu_stage_start(masu_stage *s, masu_headless *host, const masu_desc *desc, char *error,
                       size_t size);
 
+/* Another size, up to that of the last start: the target is made anew, the renderer stays (masu_resize).
+ * False with s->m as it was: it takes a start, or, with s->m NULL, there is nothing left but that. The device
+ * is idle. */
+bool masu_stage_resize(masu_stage *s, VkExtent2D output, char *error, size_t size);
+
 /* Frees all of it; harmless on a zeroed struct. The device is idle. */
 void masu_stage_close(masu_stage *s);
 

@@ -82,6 +82,9 @@ static void complete(masu_viewer *v, masu_desc *d) {
                               .shader_float16 = h->float16};
     d->scene = &v->scene;
     d->output = v->window.extent;
+    if (!d->output.width) /* minimised: the size of before */
+        d->output = (VkExtent2D){v->a.target.width, v->a.target.height};
+    d->resizable = 1;
     d->frames_in_flight = MASU_WINDOW_FLIGHT;
     d->debug.labels = h->labels;
     d->clock_ns = masu_clock_ns;
@@ -148,29 +151,38 @@ bool masu_viewer_show(masu_viewer *v, uint32_t show) {
     return true;
 }
 
+/* Without a start where the size was planned for. */
+static bool resize_stages(masu_viewer *v, VkExtent2D now) {
+    v->cut = true;
+    v->stale_overlay = true;
+    v->difference.known = false;
+    bool kept = masu_stage_resize(&v->a, now, v->error, sizeof v->error);
+    if (kept) masu_plan_of(v->a.m, &v->plan);
+    if (!kept && !start_a(v)) return false;
+    masu_viewer_note(v, "%ux%u in %.0f ms, %s", now.width, now.height, v->a.start_ms,
+                     kept            ? "no pipeline made anew"
+                     : v->a.in_place ? "made anew in the same blocks"
+                                     : "made anew in larger blocks");
+    if (v->show == MASU_SHOW_A) return true;
+    return masu_stage_resize(&v->b, now, v->error, sizeof v->error) || start_b(v);
+}
+
 bool masu_viewer_resize(masu_viewer *v) {
-    VkExtent2D before = v->window.extent;
     masu_viewer_settle(v);
     if (!masu_window_swapchain(&v->window, !v->o->no_vsync, v->error, sizeof v->error)) {
         v->lost = v->lost || strstr(v->error, "device lost");
         return false;
     }
     VkExtent2D now = v->window.extent;
-    if (!now.width || (v->a.m && now.width == before.width && now.height == before.height)) return true;
-    if (v->a.m && v->a.desc.output.width == now.width && v->a.desc.output.height == now.height) return true;
+    const masu_headless_target *is = &v->a.target;
+    if (!now.width || (v->a.m && is->width == now.width && is->height == now.height)) return true;
     if (!masu_canvas_resize(&v->canvas, now.width, now.height)) {
         snprintf(v->error, sizeof v->error, "no memory for an overlay of %ux%u", now.width, now.height);
         return false;
     }
     if (!masu_compose_resize(&v->compose, now, v->error, sizeof v->error)) return false;
     v->overlay_version++;
-    bool first = !v->a.m;
-    if (!start_a(v) || (v->show != MASU_SHOW_A && !start_b(v))) return false;
-    if (!first) {
-        masu_viewer_note(v, "%ux%u in %.0f ms, %s", now.width, now.height, v->a.start_ms,
-                         v->a.in_place ? "in the same blocks" : "in larger blocks");
-    }
-    return true;
+    return v->a.m ? resize_stages(v, now) : start_a(v);
 }
 
 /* The ladder of the scene, or what the command line says instead. A value that is the default is 0 again,
