@@ -76,6 +76,7 @@ static void complete(masu_viewer *v, masu_desc *d) {
                               .device = h->device,
                               .queue_family = h->family,
                               .pipeline_cache = v->cache,
+                              .pipelines = &v->pools[0],
                               .texture_compression_bc = h->compressed,
                               .max_anisotropy = h->most_anisotropy < 8.0f ? h->most_anisotropy : 8.0f,
                               .ray_query = h->ray_query,
@@ -99,6 +100,7 @@ static bool stage_failed(masu_viewer *v, const masu_stage *s) {
 static bool start_b(masu_viewer *v) {
     masu_desc d = v->want;
     complete(v, &d);
+    d.vulkan.pipelines = &v->pools[1];
     d.rung_count = 1;
     d.rungs[0] = v->reference;
     memset(&d.governor, 0, sizeof d.governor);
@@ -262,8 +264,11 @@ static bool open_device(masu_viewer *v) {
 
 static void close_device(masu_viewer *v) {
     masu_viewer_settle(v);
+    masu_desc d = {.rung_count = 0};
+    complete(v, &d);
     masu_stage_close(&v->a);
     masu_stage_close(&v->b);
+    for (int i = 0; i < 2 && v->host.device; i++) masu_pipelines_destroy(&d.vulkan, &v->pools[i]);
     masu_compose_close(&v->compose);
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT && v->host.device; i++) {
         vkDestroyFence(v->host.device, v->fences[i], NULL);

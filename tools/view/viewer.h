@@ -82,6 +82,7 @@ typedef struct masu_viewer {
     masu_window window;
     masu_headless host;
     VkPipelineCache cache;
+    masu_pipelines pools[2];     /* pipelines of A and B, from one start to the next */
     VkFence fences[MASU_WINDOW_FLIGHT];
     bool pending[MASU_WINDOW_FLIGHT];
     bool lost;                   /* the device is: all is to be made anew */
