@@ -102,11 +102,11 @@ more = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-
 .PHONY: all lib tools scenes shaders
 all: lib tools $(EXAMPLES) ## build the library, the programs and the example (the default)
 lib: $(BUILD)/lib/libmasu.a $(SHARED) ## build build/lib/libmasu.a and libmasu.so alone: CLASSES="both sdf-traced"
-tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso
+tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso $(if $(HAVE_VIEW),masu-view)) $(SUITES) ## build build/bin/masu, masu-bake, masu-sdfc, masu-meso; masu-view where SDL2 is
 shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
-.PHONY: demo demo-picture worlds hostile
+.PHONY: demo demo-picture view view-window worlds hostile
 demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
 demo: ## install what is missing, build, bake, render: WORLD=engine|forza|city|... SIZE=1920x1080 TIME=
 	+$(V)$(more) demo-picture
@@ -116,6 +116,16 @@ picture_of := $(BUILD)/$(if $(filter $(WORLDS),$(WORLD)),worlds,scenes)/$(WORLD)
 demo-picture: $(BUILD)/bin/masu $(picture_of)
 	$(V)$(BUILD)/bin/masu render $(picture_of) -o $(picture) --size $(SIZE) --time $(or $(TIME),$(TIME_$(WORLD)),0)
 	@echo "The picture is $(abspath $(picture))"
+
+view: deps-demo deps-view $(if $(filter forza,$(WORLD)),deps-worlds)
+view: ## install what is missing, build, bake, look at it in a window: WORLD=engine|forza|city|... VIEW_ARGS=
+	+$(V)$(more) view-window
+
+# A scene with a description is baked again when that or its field changes; worlds take too long for that.
+view_json := $(wildcard scenes/$(WORLD).json)
+view-window: $(addprefix $(BUILD)/bin/,masu-view masu-bake) $(picture_of)
+	$(V)$(BUILD)/bin/masu-view $(picture_of) $(if $(TIME),--time $(TIME)) $(if $(filter $(WORLDS),$(WORLD)),, \
+	    $(if $(view_json),--json $(view_json) --bake '$(BUILD)/bin/masu-bake --texture-path $(MADE)/textures')) $(VIEW_ARGS)
 
 # CI has no use for it and must not depend on it: without TORCS's data there is no forza, and that is
 # no failure.

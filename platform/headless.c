@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define MANY 64u
+#define SURFACE_EXTENSIONS 8u
 
 bool masu_headless_fail(char *error, size_t size, const char *what, VkResult r) {
     snprintf(error, size, "%s failed with VkResult %d%s", what, (int)r,
@@ -63,8 +64,10 @@ static bool has_instance_extension(const char *layer, const char *name) {
 
 static bool create_instance(masu_headless *host, char *error, size_t size) {
     static const char *const layer = "VK_LAYER_KHRONOS_validation";
-    const char *extensions[2];
+    const char *extensions[2 + SURFACE_EXTENSIONS];
     uint32_t extension_count = 0;
+    for (uint32_t i = 0; i < host->desc.surface_extension_count && i < SURFACE_EXTENSIONS; i++)
+        extensions[extension_count++] = host->desc.surface_extensions[i];
     bool wants = host->desc.validate || host->desc.gpu_av;
     host->validating = wants && has_layer(layer);
     if (wants && !host->validating && host->desc.message) {
@@ -156,6 +159,27 @@ static bool is_index(const char *s, uint32_t *index) {
     return true;
 }
 
+static bool has_extensions(VkPhysicalDevice device, const char *const *names, uint32_t count) {
+    uint32_t n = 0, found = 0;
+    if (vkEnumerateDeviceExtensionProperties(device, NULL, &n, NULL)) return false;
+    VkExtensionProperties *list = malloc((n + 1) * sizeof *list);
+    VkResult r = list ? vkEnumerateDeviceExtensionProperties(device, NULL, &n, list) : VK_NOT_READY;
+    for (uint32_t e = 0; e < count && r == VK_SUCCESS; e++) {
+        for (uint32_t i = 0; i < n; i++) found += !strcmp(list[i].extensionName, names[e]);
+    }
+    free(list);
+    return found == count;
+}
+
+static const char *const swapchain_extension[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+
+/* True of a host without a window. */
+static bool can_present(masu_headless *host, VkPhysicalDevice device) {
+    const masu_headless_desc *d = &host->desc;
+    if (d->surface_extension_count && !has_extensions(device, swapchain_extension, 1)) return false;
+    return !d->presents || d->presents(d->surface_user, host->instance, device, host->family);
+}
+
 static bool choose_device(masu_headless *host, char *error, size_t size) {
     VkPhysicalDevice devices[MANY];
     uint32_t n = MANY, wanted_index = 0;
@@ -173,6 +197,7 @@ static bool choose_device(masu_headless *host, char *error, size_t size) {
             used += (size_t)snprintf(error + used, size - used, " %u '%s'", i, p.deviceName);
         if (by_index ? i != wanted_index : wanted && !contains(p.deviceName, wanted)) continue;
         if (p.apiVersion < VK_API_VERSION_1_1 || !find_family(devices[i], &host->family)) continue;
+        if (!can_present(host, devices[i])) continue;
         host->physical = devices[i];
         host->properties = p;
         return true;
@@ -194,18 +219,6 @@ typedef struct ray_features {
     VkPhysicalDeviceAccelerationStructureFeaturesKHR structure;
     VkPhysicalDeviceBufferDeviceAddressFeatures address;
 } ray_features;
-
-static bool has_extensions(VkPhysicalDevice device, const char *const *names, uint32_t count) {
-    uint32_t n = 0, found = 0;
-    if (vkEnumerateDeviceExtensionProperties(device, NULL, &n, NULL)) return false;
-    VkExtensionProperties *list = malloc((n + 1) * sizeof *list);
-    VkResult r = list ? vkEnumerateDeviceExtensionProperties(device, NULL, &n, list) : VK_NOT_READY;
-    for (uint32_t e = 0; e < count && r == VK_SUCCESS; e++) {
-        for (uint32_t i = 0; i < n; i++) found += !strcmp(list[i].extensionName, names[e]);
-    }
-    free(list);
-    return found == count;
-}
 
 static bool offers_halves(VkPhysicalDevice device) {
     static const char *const name[] = {VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME};
@@ -261,7 +274,7 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                .queueCreateInfoCount = 1,
                                .pQueueCreateInfos = &queue,
                                .pEnabledFeatures = &features};
-    const char *names[RAY_EXTENSIONS + 1];
+    const char *names[RAY_EXTENSIONS + 2];
     VkPhysicalDeviceShaderFloat16Int8Features halves = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES};
     ray_features rays;
@@ -278,6 +291,8 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
         info.pNext = &halves;
         names[info.enabledExtensionCount++] = VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME;
     }
+    if (host->desc.surface_extension_count)
+        names[info.enabledExtensionCount++] = swapchain_extension[0];
     info.ppEnabledExtensionNames = names;
     VkResult r = vkCreateDevice(host->physical, &info, host->desc.allocator, &host->device);
     if (r) return masu_headless_fail(error, size, "vkCreateDevice", r);
@@ -336,6 +351,7 @@ void masu_headless_close(masu_headless *host) {
         vkDestroyDevice(host->device, host->desc.allocator);
     }
     if (host->instance) {
+        if (host->desc.surface_close) host->desc.surface_close(host->desc.surface_user, host->instance);
         PFN_vkDestroyDebugUtilsMessengerEXT destroy =
             (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
                 host->instance, "vkDestroyDebugUtilsMessengerEXT");

@@ -1,6 +1,9 @@
 /* headless.h: a Vulkan host without a window: instance, device, one queue, target and source
  * images, submits that wait.
  *
+ * A host with a window (tools/view) is one too: it says what it takes beside, and whether a device can
+ * show its pictures.
+ *
  * It is what a port's own host does, kept small: of optional features it enables those that serve
  * textures and 16-bit floats, where they are offered, and no other extension but the validation layer's own, for labels
  * VK_EXT_debug_utils, and what ray queries take where they are asked for. Every wait has a timeout.
@@ -33,6 +36,15 @@ typedef struct masu_headless_desc {
         *allocator; /* for all objects of the host; NULL: the driver's own */
     PFN_vkGetInstanceProcAddr
         get_instance_proc_addr; /* what the renderer is to use; NULL: the loader's */
+    /* Of a host with a window: extensions of the instance for its surfaces, at most 8; those that are not
+     * there fail. Then VK_KHR_swapchain is enabled, and a device must have it. */
+    const char *const *surface_extensions;
+    uint32_t surface_extension_count;
+    /* Whether the queue family can present; NULL: not asked. The first call may make the surface, which
+     * surface_close destroys, after the device and before the instance. */
+    bool (*presents)(void *user, VkInstance instance, VkPhysicalDevice device, uint32_t family);
+    void (*surface_close)(void *user, VkInstance instance);
+    void *surface_user;
 } masu_headless_desc;
 
 typedef struct masu_headless {

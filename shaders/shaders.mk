@@ -5,7 +5,7 @@
 #                      -> gen/packed.h            all of the library, packed (src/device/unpack.h)
 #                      -> gen/NAME_STAGE.spv.h    one of tools or tests, as `const uint32_t masu_spv_NAME_STAGE[]`
 #
-# Both SPIR-V files pass spirv-val. Shaders of tests/gpu are compiled the same way. A scene shader
+# Both SPIR-V files pass spirv-val. Shaders of tests/gpu and tools/view are compiled the same way. A scene shader
 # is not complete without the GLSL of a scene: masu-bake compiles it, so it and all that it may
 # include are embedded as text instead.
 
@@ -18,7 +18,7 @@ SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag
 
 SHADERS := $(filter-out $(SCENE_SHADERS:%=shaders/%),$(wildcard $(STAGES:%=shaders/*.%)))
-SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%))
+SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%) $(STAGES:%=tools/view/*.%))
 
 # What follows from the rows of the frame's tables: bindings and push constants (tables.h), every shader's
 # permutations and how each is compiled. Rows are read by awk: nothing is compiled for it.
@@ -66,7 +66,7 @@ $(MADE)/gen/$(1).spv: $(2) | $(MADE)/gen/tables.h
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
 	$$(V)spirv-val $(SPIRV_TARGET) $$@
 endef
-$(foreach d,shaders tests/gpu,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
+$(foreach d,shaders tests/gpu tools/view,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
 field = $(word $(2),$(subst :, ,$(1)))
 $(foreach b,$(PERMUTATIONS),$(eval $(call \
     shader_rule,$(call field,$(b),1),shaders/$(call field,$(b),2),$(call field,$(b),3))))

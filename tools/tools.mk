@@ -37,6 +37,23 @@ $(BUILD)/bin/masu-sdfc: LIBS = -lm
 $(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc) $(call tool_archive,cli)
 	$(link)
 
+# masu-view takes SDL2 and a font, which nothing else does: `make view` installs them, and without them the
+# other programs are built all the same.
+VIEW_FONT  := /usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf
+SDL_CFLAGS := $$(pkg-config --cflags sdl2 | sed 's/-I/-isystem /g')
+HAVE_VIEW  := $(and $(wildcard $(addsuffix /SDL2/SDL.h,/usr/include /usr/local/include)),$(wildcard $(VIEW_FONT)))
+VIEW_OBJECTS := $(call objects,$(wildcard tools/view/*.c) tools/masu/options.c)
+
+$(BUILD)/obj/tools/view/%.o: FOLDER_FLAGS += $(SDL_CFLAGS)
+$(BUILD)/obj/tools/view/canvas.o: $(MADE)/gen/view_font.h
+$(MADE)/gen/view_font.h: $(MADE)/tools/make_font
+	@mkdir -p $(@D)
+	@echo "  TABLE   $@"
+	$(V)$< $(VIEW_FONT) > $@
+$(BUILD)/bin/masu-view: LIBS = $(MASU_LIBS) $$(pkg-config --libs sdl2)
+$(BUILD)/bin/masu-view: $(VIEW_OBJECTS) $(KEEP_LOADED) $(MEASURE_ARCHIVES) $(BAKE_ARCHIVES)
+	$(link)
+
 # ---- Suites: beside the programs, where masu conform looks for them ------------------------------
 
 SUITES := $(patsubst %,$(BUILD)/%,$(wildcard suites/*.json))

@@ -277,9 +277,8 @@ static bool has_pass(const masu_plan_info *plan, const char *start) {
     return false;
 }
 
-/* Why the knob has no effect, or NULL. */
-static const char *useless(const masu_knob *k, const masu_rung *rung, const masu_scene *scene,
-                           const masu_plan_info *base) {
+const char *masu_knob_useless(const masu_knob *k, const masu_rung *rung, const masu_scene *scene,
+                              const masu_plan_info *base) {
     bool upscaled = rung->scale < 1.0f || rung->upscale == MASU_ON;
     bool by_default = upscaled && rung->easu != MASU_EASU_BILINEAR;
     bool sharpened = rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && by_default);
@@ -333,7 +332,7 @@ void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene 
         memcpy(old[i], s->id, sizeof old[i]);
         scene_values(&s->rung, scene, &why);
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
-            const char *no = useless(k, &s->rung, scene, base);
+            const char *no = masu_knob_useless(k, &s->rung, scene, base);
             if (!no || !masu_knob_differs(k, &s->rung, &base_rung)) continue;
             masu_knob_copy(k, &s->rung, &base_rung);
             why = why ? why : no;

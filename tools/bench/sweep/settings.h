@@ -33,6 +33,10 @@ uint32_t masu_settings_make(bool quick, masu_setting out[MASU_SETTINGS_MOST]);
 void masu_settings_fit(masu_setting *settings, uint32_t count, const masu_scene *scene,
                        const masu_plan_info *base);
 
+/* Why the knob changes nothing in that rung of that scene, or NULL. `base` as above. */
+const char *masu_knob_useless(const masu_knob *k, const masu_rung *rung, const masu_scene *scene,
+                              const masu_plan_info *base);
+
 /* The plans of one rung each have the same passes, sizes and bytes. */
 bool masu_settings_same_plan(const masu_plan_info *a, const masu_plan_info *b);
 

@@ -1,0 +1,279 @@
+#!/bin/bash
+# masu-view on a screen of Xvfb, with the system's lavapipe under the validation layer: scripts press its
+# keys, resize, minimise and lose things, change files; the pictures that it writes are compared with
+# each other. Pictures are of one moment (paused); dither moves by one step from frame to frame, so that
+# equal means within two steps. Skipped without masu-view, Xvfb, lavapipe or ImageMagick, which with
+# MASU_REQUIRE_DRIVERS must be there.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+view=$(realpath "${BUILD:-build}")/bin/masu-view
+bake=$(realpath "${BUILD:-build}")/bin/masu-bake
+scenes=$(realpath "${MADE:-build}")/scenes
+folder=$(mktemp -d)
+server=
+trap '[ -z "$server" ] || kill "$server"; [ -n "${KEEP:-}" ] || rm -rf "$folder"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+skip() {
+    echo "$1"
+    [ -n "${MASU_REQUIRE_DRIVERS:-}" ] && exit 1
+    exit 77
+}
+
+[ -x "$view" ] || skip "there is no $view: it takes SDL2"
+command -v Xvfb > /dev/null || skip "there is no Xvfb"
+command -v compare > /dev/null || skip "there is no ImageMagick"
+icd=$(tests/drivers.sh system 2> /dev/null) || skip "there is no lavapipe"
+export VK_ICD_FILENAMES=$icd VK_DRIVER_FILES=$icd NODEVICE_SELECT=1 SDL_AUDIODRIVER=dummy
+cd "$folder" || exit 1
+
+# refuses CODE PATTERN ARGUMENTS...: one line on stderr
+refuses() {
+    local wanted=$1 pattern=$2 code
+    shift 2
+    timeout 120 "$view" "$@" > /dev/null 2> stderr
+    code=$?
+    [ $code = "$wanted" ] || fail "$*: exit code $code: $(cat stderr)"
+    [ "$(wc -l < stderr)" = 1 ] || fail "$*: not one line: $(cat stderr)"
+    grep -q -e "$pattern" stderr || fail "$*: $(cat stderr), not $pattern"
+}
+
+# ---- without a screen ----------------------------------------------------------------------------
+
+both=$scenes/test_both.masu
+"$view" --help | grep -q 'F12' || fail "--help does not tell the keys"
+refuses 2 'unknown option --gone' --gone "$both"
+refuses 2 'no scene is given'
+refuses 2 'one scene at a time' "$both" "$both"
+refuses 2 '--bake needs --json' "$both" --bake true
+refuses 2 '--quit needs --frames' "$both" --quit
+refuses 2 '--setting' "$both" --setting scale=7
+refuses 1 'none.masu' none.masu
+refuses 1 '--rung 7 does not exist' "$both" --rung 7 --ladder off
+printf 'frame 3 quit\nframe 2 quit\n' > falling
+refuses 1 'falling:2: frames must not fall' "$both" --script falling
+printf '\n# nothing\nframe 3 key Nokey\n' > nokey
+refuses 1 'nokey:3: ' "$both" --script nokey
+printf 'frame 3 dance\n' > dance
+refuses 1 'dance:1: there is no such action' "$both" --script dance
+SDL_VIDEODRIVER=x11 DISPLAY='' refuses 1 'masu-view: no window: ' "$both"
+head -c 1000 "$both" > short.masu
+SDL_VIDEODRIVER=x11 DISPLAY='' refuses 1 'short.masu: ' short.masu
+
+# ---- a screen ------------------------------------------------------------------------------------
+
+mkfifo display
+Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3> display > /dev/null 2>&1 &
+server=$!
+read -r -t 60 number < display || { fail "Xvfb does not start"; exit 1; }
+export DISPLAY=:$number SDL_VIDEODRIVER=x11
+
+# play NAME ARGUMENTS...: the script on stdin, in a folder of that name; exit code 0, no message
+play() {
+    local name=$1 code
+    shift
+    mkdir -p "$name"
+    cat > "$name/script"
+    (cd "$name" && timeout 500 "$view" "$@" --script script --validate > stdout 2> stderr)
+    code=$?
+    [ $code = 0 ] || fail "$name: exit code $code: $(cat "$name/stderr")"
+    ! grep -q 'validation' "$name/stderr" || fail "$name: $(grep validation "$name/stderr" | head -3)"
+}
+
+# shows PICTURE SIZE: it is there, as large, and not of one colour
+shows() {
+    local is
+    is=$(identify -format '%wx%h %k' "$1" 2>&1)
+    [ "${is% *}" = "$2" ] && [ "${is#* }" -gt 8 ] || fail "$1 is $is, not $2 and colourful"
+}
+
+# unlike A B [PART]: how many pixels differ by more than two steps of 255
+unlike() {
+    local part=()
+    [ -z "${3:-}" ] || part=(-crop "$3" +repage)
+    convert "$1" "${part[@]}" one.miff && convert "$2" "${part[@]}" two.miff || echo missing
+    compare -fuzz 0.9% -metric AE one.miff two.miff null: 2>&1
+}
+same() { [ "$(unlike "$@")" = 0 ] || fail "$* differ in $(unlike "$@") pixels"; }
+differ() {
+    local n
+    n=$(unlike "$@")
+    [[ $n =~ ^[0-9.e+]+$ ]] && [ "$n" != 0 ] || fail "$* do not differ ($n)"
+}
+# Above the lines at the bottom, right of the overlay: the picture alone.
+upper=320x100+0+0
+
+# ---- a scene that is being worked on -------------------------------------------------------------
+
+cat > ball.sdf << 'END'
+material red { albedo (0.8, 0.2, 0.1); roughness 0.5 }
+material grey { albedo 0.5; roughness 0.8 }
+part ball : red = translate((0, 1, 0), sphere(1));
+part ground : grey = plane((0, 1, 0), 0);
+END
+cat > ball.json << 'END'
+{
+  "camera": {"fov_y": 50, "near": 0.1, "keys": [
+    {"time": 0, "position": [0, 1.5, 5], "target": [0, 1, 0]},
+    {"time": 2, "position": [3, 1.5, 4], "target": [0, 1, 0]}]},
+  "sun": {"azimuth": 40, "elevation": 40},
+  "sdf": {"source": "ball.sdf", "bounds": [[-50, -1, -50], [50, 3, 50]], "max_distance": 100}
+}
+END
+sed 's/0.8, 0.2, 0.1/0.1, 0.7, 0.2/' ball.sdf > green.sdf
+sed 's/sphere(1)/sphere(/' ball.sdf > broken.sdf
+cp ball.sdf red.sdf
+
+play ball --json ../ball.json --size 320x180 --ladder off --rung 0 << 'END'
+frame 0 key F1          # full
+frame 0 key F1          # off
+frame 0 key Space
+frame 3 screenshot rung0.png
+frame 3 key 3
+frame 5 screenshot rung2.png
+frame 5 key F2
+frame 7 screenshot split.png
+frame 7 key Shift+]
+frame 9 screenshot split_right.png
+frame 9 button left down
+frame 9 mouse 80 90
+frame 9 button left up
+frame 11 screenshot split_left.png
+frame 11 key F3
+frame 14 screenshot map.png
+frame 14 key 1
+frame 18 screenshot map_none.png
+frame 18 key F3
+frame 18 key Tab        # knobs; scale is the first
+frame 20 screenshot menu.png
+frame 20 key Left
+frame 20 key Left
+frame 22 key Left
+frame 22 key Tab
+frame 24 screenshot knob.png
+frame 24 key Tab
+frame 24 key Backspace
+frame 24 key Tab
+frame 26 screenshot knob_back.png
+frame 26 key F1
+frame 28 screenshot hud_short.png
+frame 28 key F1
+frame 32 screenshot hud_full.png
+frame 32 key F1
+frame 33 run cp ../green.sdf ../ball.sdf
+frame 35 screenshot green.png
+frame 36 run cp ../broken.sdf ../ball.sdf
+frame 38 screenshot broken.png
+frame 39 run cp ../red.sdf ../ball.sdf
+frame 41 screenshot red.png
+frame 42 resize 200x150
+frame 45 screenshot small.png
+frame 46 resize 400x300
+frame 49 screenshot large.png
+frame 50 resize 320x180
+frame 53 screenshot again.png
+frame 54 minimise
+frame 74 restore
+frame 77 lose
+frame 81 screenshot found.png
+frame 82 quit
+END
+cd ball || exit 1
+for p in rung0 rung2 split map menu knob hud_short hud_full green broken red again found; do
+    shows $p.png 320x180
+done
+shows small.png 200x150
+shows large.png 400x300
+differ rung0.png rung2.png
+same split.png rung2.png 150x90+0+0
+same split.png rung0.png 150x90+170+0
+same split_right.png rung2.png 214x90+0+0
+differ split_right.png split.png 40x90+170+0
+same split_left.png rung0.png 230x90+90+0
+differ map.png rung2.png $upper
+differ map.png map_none.png $upper
+[ "$(convert map_none.png -crop 200x100+0+0 -format '%[fx:maxima<0.1]' info:)" = 1 ] ||
+    fail "the difference of a rung from itself is not black"
+differ menu.png rung0.png $upper
+differ knob.png rung0.png $upper
+same knob_back.png rung0.png $upper
+differ hud_short.png rung0.png
+differ hud_full.png hud_short.png
+differ green.png rung0.png $upper
+same broken.png green.png $upper
+differ broken.png green.png 320x80+0+100 # the error's line
+same red.png rung0.png $upper
+same again.png rung0.png $upper
+same found.png rung0.png $upper
+[ "$(grep -c 'device was lost' stderr)" = 1 ] || fail "one line about the lost device: $(cat stderr)"
+read -r frames turns < <(sed -n 's/.*: \([0-9]*\) frames in \([0-9]*\) turns.*/\1 \2/p' stderr)
+[ -n "${turns:-}" ] && [ $((turns - frames)) -ge 20 ] && [ $((turns - frames)) -le 40 ] ||
+    fail "while it was minimised $((turns - frames)) turns drew nothing, not 20 and a few"
+cd ..
+
+# Every frame depends on the script alone.
+for run in 1 2; do
+    play fly$run "$both" --size 160x90 --rung 0 << 'END'
+frame 0 key F1
+frame 0 key F1
+frame 2 screenshot start.png
+frame 2 down W
+frame 8 wheel 1
+frame 12 up W
+frame 12 button right down
+frame 13 mouse 40 10
+frame 14 button right up
+frame 16 screenshot flown.png
+frame 17 key P
+frame 19 screenshot path.png
+frame 20 quit
+END
+done
+shows fly1/start.png 160x90
+differ fly1/start.png fly1/flown.png
+same fly1/start.png fly1/path.png 160x40+0+0 # below is a note
+for p in start flown path; do
+    cmp -s fly1/$p.png fly2/$p.png || fail "$p.png is another one the second time"
+done
+
+# A baked scene that is exchanged, and one that is cut off.
+cp "$both" scene.masu
+play blob ../scene.masu --size 160x90 --rung 0 << END
+frame 0 key F1
+frame 0 key F1
+frame 2 screenshot before.png
+frame 3 run cp $scenes/test_sphere_sdf.masu ../scene.masu
+frame 6 screenshot after.png
+frame 7 run cp ../short.masu ../scene.masu
+frame 9 screenshot kept.png
+frame 10 run cp $both ../scene.masu
+frame 12 screenshot back.png
+frame 13 quit
+END
+differ blob/before.png blob/after.png
+same blob/kept.png blob/after.png 160x40+0+0
+differ blob/kept.png blob/after.png
+same blob/back.png blob/before.png 160x40+0+0
+
+# One picture, as a command; the governor; then a device that is lost for good.
+mkdir once
+(cd once && timeout 120 "$view" "$both" --size 64x48 --frames 5 --screenshot one.png --quit --quiet > out 2>&1) ||
+    fail "--screenshot: $(cat once/out)"
+[ ! -s once/out ] || fail "--quiet says $(cat once/out)"
+shows once/one.png 64x48
+printf 'frame 3 lose\nframe 4 lose\nframe 9 quit\n' > twice
+timeout 120 "$view" "$both" --size 64x48 --script twice > out 2>&1
+code=$?
+[ $code = 1 ] && grep -q 'masu-view: the Vulkan device was lost twice in a row' out ||
+    fail "lost twice: exit code $code: $(cat out)"
+: > nothing.json
+refuses 1 'nothing.json' --json nothing.json --size 64x48
+left=$(find "${TMPDIR:-/tmp}" -maxdepth 1 -name 'masu-view-*' -newer display)
+[ -z "$left" ] || fail "left behind: $left"
+
+[ $failures = 0 ] && echo "masu-view does as it should" || echo "$failures failures"
+exit $((failures != 0))

@@ -1,0 +1,136 @@
+/* frame.c: one frame to the window: acquire an image, let the library draw, lay the overlay over it, show
+ * it. Two frames are in flight; the fence of a slot is waited for before the slot comes round. */
+#include "view/viewer.h"
+
+#include "clock.h"
+#include "image.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define OVERLAY_NS 100000000u /* numbers that change faster cannot be read */
+
+static bool vulkan_failed(masu_viewer *v, const char *call, VkResult r) {
+    if (r == VK_ERROR_DEVICE_LOST) v->lost = true;
+    return masu_headless_fail(v->error, sizeof v->error, call, r);
+}
+
+static bool masu_failed(masu_viewer *v, const masu_renderer *m) {
+    const masu_detail *detail = masu_last_error(m);
+    if (detail->result == MASU_ERROR_DEVICE_LOST) v->lost = true;
+    snprintf(v->error, sizeof v->error, "%s", detail->text);
+    return false;
+}
+
+/* The governor is told the time by the clock only where the end of the frame was seen: a fence that has
+ * been signalled for long says when it was looked at, not when the frame ended. */
+static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
+    if (!v->pending[slot]) return true;
+    bool seen = vkGetFenceStatus(v->host.device, v->fences[slot]) == VK_NOT_READY;
+    VkResult r = vkWaitForFences(v->host.device, 1, &v->fences[slot], VK_TRUE, MASU_HEADLESS_TIMEOUT_NS);
+    uint64_t now = masu_clock_ns(NULL);
+    if (r) return vulkan_failed(v, "vkWaitForFences", r == VK_TIMEOUT ? VK_ERROR_DEVICE_LOST : r);
+    r = vkResetFences(v->host.device, 1, &v->fences[slot]);
+    if (r) return vulkan_failed(v, "vkResetFences", r);
+    v->pending[slot] = false;
+    v->losses = 0;
+    if (v->slot_known[slot]) {
+        uint64_t begin = v->submitted_ns[slot] > v->finished_ns ? v->submitted_ns[slot] : v->finished_ns;
+        if (seen && v->show == MASU_SHOW_A && !v->scripted)
+            masu_frame_wall(v->a.m, v->slot_of_a[slot], (double)(now - begin) / 1e6);
+        (void)masu_stats(v->a.m, v->slot_of_a[slot], &v->stats);
+    }
+    v->finished_ns = now;
+    return true;
+}
+
+static bool let_draw(masu_viewer *v, uint32_t slot) {
+    masu_camera camera;
+    masu_viewer_camera(v, &camera);
+    masu_frame_desc frame = {.camera = &camera,
+                             .time = v->time,
+                             .time_step = v->time_step,
+                             .rung = v->governed ? MASU_RUNG_AUTO : v->rung,
+                             .cut = v->cut};
+    if (masu_frame(v->a.m, &frame, &v->a.last)) return masu_failed(v, v->a.m);
+    v->slot_of_a[slot] = v->a.last.slot;
+    v->slot_known[slot] = true;
+    if (v->governed) v->rung = v->a.last.rung;
+    if (v->show == MASU_SHOW_A) return true;
+    frame.rung = 0;
+    return masu_frame(v->b.m, &frame, &v->b.last) == MASU_OK || masu_failed(v, v->b.m);
+}
+
+static void draw_overlay(masu_viewer *v, uint32_t slot) {
+    uint64_t now = masu_clock_ns(NULL);
+    if (v->stale_overlay || v->scripted || now - v->overlay_ns > OVERLAY_NS) {
+        masu_canvas_clear(&v->canvas);
+        masu_hud_draw(v);
+        masu_menu_draw(v);
+        v->stale_overlay = false;
+        v->overlay_ns = now;
+        v->overlay_version++;
+    }
+    if (v->slot_version[slot] == v->overlay_version) return;
+    masu_compose_overlay(&v->compose, slot, &v->canvas);
+    v->slot_version[slot] = v->overlay_version;
+}
+
+static bool submit(masu_viewer *v, uint32_t slot, uint32_t image) {
+    const masu_composition what = {.a = &v->a.target,
+                                   .b = v->show == MASU_SHOW_SPLIT ? &v->b.target : NULL,
+                                   .split = (uint32_t)(v->split * v->a.target.width + 0.5),
+                                   .map = v->show == MASU_SHOW_MAP && v->difference.known};
+    if (!masu_compose_record(&v->compose, slot, &what, v->window.images[image], v->window.extent, v->error,
+                             sizeof v->error)) {
+        return false;
+    }
+    VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    VkCommandBuffer drawn[2] = {v->a.last.buffer, v->b.last.buffer};
+    VkSubmitInfo submits[2] = {{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                                .commandBufferCount = v->show == MASU_SHOW_A ? 1 : 2,
+                                .pCommandBuffers = drawn},
+                               {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                                .waitSemaphoreCount = 1,
+                                .pWaitSemaphores = &v->window.acquired[slot],
+                                .pWaitDstStageMask = &stage,
+                                .commandBufferCount = 1,
+                                .pCommandBuffers = &v->compose.commands[slot],
+                                .signalSemaphoreCount = 1,
+                                .pSignalSemaphores = &v->window.finished[image]}};
+    v->submitted_ns[slot] = masu_clock_ns(NULL);
+    VkResult r = v->lose ? VK_ERROR_DEVICE_LOST
+                         : vkQueueSubmit(v->host.queue, 2, submits, v->fences[slot]);
+    v->lose = false;
+    if (r) return vulkan_failed(v, "vkQueueSubmit", r);
+    v->pending[slot] = true;
+    return true;
+}
+
+bool masu_viewer_frame(masu_viewer *v) {
+    uint32_t slot = (uint32_t)(v->frames % MASU_WINDOW_FLIGHT), image = 0;
+    if (!wait_for_slot(v, slot)) return false;
+    VkResult r = masu_window_acquire(&v->window, slot, &image);
+    if (r == VK_TIMEOUT || r == VK_NOT_READY || r == VK_ERROR_OUT_OF_DATE_KHR) {
+        v->window.stale = true; /* nothing has been drawn; the next turn makes the swapchain anew */
+        return true;
+    }
+    if (r) return vulkan_failed(v, "vkAcquireNextImageKHR", r);
+    if (!let_draw(v, slot)) return false;
+    draw_overlay(v, slot);
+    if (!submit(v, slot, image)) return false;
+    v->cut = false;
+    v->frames++;
+    r = masu_window_present(&v->window, image);
+    return !r || r == VK_ERROR_OUT_OF_DATE_KHR || vulkan_failed(v, "vkQueuePresentKHR", r);
+}
+
+bool masu_viewer_screenshot(masu_viewer *v, const char *path) {
+    masu_headless_target *t = &v->compose.shown;
+    if (!v->frames) {
+        snprintf(v->error, sizeof v->error, "%s: no frame has been drawn yet", path);
+        return false;
+    }
+    return masu_headless_target_read(&v->host, t, v->error, sizeof v->error) &&
+           masu_image_save_png(path, t->mapped, t->width, t->height, 0, v->error, sizeof v->error);
+}

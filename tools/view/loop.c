@@ -1,0 +1,106 @@
+/* loop.c: turn after turn: events, time, camera, files, a frame. By the clock, or, where a script or
+ * --frames says what happens when, by steps of 1/60 s, whatever the clock says. */
+#include "view/script.h"
+
+#include "cli/cli.h"
+#include "clock.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define STEP_MAX 0.25     /* s: a pause of the machine is no leap of the camera */
+#define WAIT_HIDDEN 250   /* ms between looks at the world while there is nothing to draw */
+#define RETRY 10          /* ms, where the swapchain is out of date for the moment */
+
+/* Waits for an event while there is nothing to draw, so that nothing spins. */
+static void take_events(masu_viewer *v, masu_hands *hands, bool *good) {
+    SDL_Event e;
+    bool idle = (v->hidden || !v->window.extent.width) && !v->scripted;
+    bool first = idle && SDL_WaitEventTimeout(&e, WAIT_HIDDEN);
+    while (first || SDL_PollEvent(&e)) {
+        first = false;
+        if (!masu_hands_event(hands, v, &e)) *good = false;
+    }
+}
+
+static void pass_time(masu_viewer *v, masu_hands *hands, double seconds) {
+    double step = v->paused ? 0.0 : seconds;
+    masu_hands_move(hands, v, seconds);
+    v->time_step = (float)step;
+    v->time += step;
+    if (v->on_path && v->path_end > 0.0 && v->time > v->path_end) {
+        v->time = fmod(v->time, v->path_end);
+        v->cut = true;
+    }
+}
+
+static void restart(masu_viewer *v, bool *good) {
+    v->changed = false;
+    v->trouble[0] = '\0';
+    *good = masu_viewer_restart(v);
+    v->moved = v->frames;
+    if (!*good || v->trouble[0]) return;
+    masu_viewer_note(v, "%s: made anew in %.0f ms, %s", v->change, v->a.start_ms,
+                     v->a.in_place ? "in the same blocks" : "in larger blocks");
+}
+
+/* One turn. False: v->error, or v->lost, says why not. */
+static bool turn(masu_viewer *v, masu_script *script, masu_hands *hands, double seconds) {
+    bool good = true;
+    if (!masu_script_play(script, v)) return false;
+    take_events(v, hands, &good);
+    if (!good || v->quit) return good;
+    if (!masu_baker_poll(v)) return false;
+    if (v->changed) restart(v, &good);
+    if (!good) return false;
+    if (v->window.stale && !v->hidden && !masu_viewer_resize(v)) return false;
+    bool drawable = !v->hidden && v->window.extent.width;
+    if (!drawable) {
+        if (v->scripted) SDL_Delay(1);
+        return true;
+    }
+    pass_time(v, hands, seconds);
+    uint64_t before = v->frames;
+    if (!masu_viewer_frame(v) || !masu_difference_step(v)) return false;
+    if (v->frames == before) SDL_Delay(RETRY);
+    return true;
+}
+
+/* True: the device is another one now. */
+static bool recover(masu_viewer *v) {
+    if (++v->losses > 1) {
+        snprintf(v->error, sizeof v->error, "the Vulkan device was lost twice in a row");
+        return false;
+    }
+    masu_cli_warn("the Vulkan device was lost (%s): made anew", v->error);
+    masu_viewer_note(v, "the device was lost and made anew");
+    return masu_viewer_recover(v);
+}
+
+int masu_viewer_run(masu_viewer *v, masu_script *script) {
+    masu_hands hands = {0};
+    const masu_viewer_options *o = v->o;
+    uint64_t last = masu_clock_ns(NULL), drawn = last;
+    bool good = true;
+    while (good && !v->quit) {
+        uint64_t now = masu_clock_ns(NULL), frames = v->frames;
+        double seconds = v->scripted ? MASU_VIEWER_STEP : fmin((double)(now - last) / 1e9, STEP_MAX);
+        last = now;
+        good = turn(v, script, &hands, seconds);
+        if (!good && v->lost) good = recover(v);
+        if (v->frames != frames) {
+            now = masu_clock_ns(NULL);
+            double ms = (double)(now - drawn) / 1e6;
+            v->wall_ms += (ms - v->wall_ms) * (v->wall_ms > 0.0 ? 0.1 : 1.0);
+            drawn = now;
+        }
+        v->turns++;
+        if (good && o->frames && v->turns == o->frames) {
+            if (o->screenshot) good = masu_viewer_screenshot(v, o->screenshot);
+            v->quit = v->quit || o->quit;
+        }
+    }
+    masu_hands_close(&hands);
+    return good ? MASU_CLI_OK : masu_cli_error("%s", v->error);
+}

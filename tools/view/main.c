@@ -1,0 +1,146 @@
+/* main.c: the program masu-view: a baked scene in a window. docs/commands.md is its manual. */
+#include "view/script.h"
+
+#include "bench/sweep/settings.h"
+#include "masu/options.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TEXT(x) #x
+#define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
+
+static const masu_option rows[] = {
+    MASU_SIZE(masu_viewer_options, size, "size", "of the window, pixels"),
+    MASU_TEXT(masu_viewer_options, json, "json", "FILE.json",
+              "the scene's description: when it or a file that it names (.sdf, .glsl, models) changes,\n"
+              "it is baked again; without SCENE.masu it is baked at the start, too"),
+    MASU_TEXT(masu_viewer_options, bake, "bake", "COMMAND",
+              "what bakes it, by sh: COMMAND FILE.json -o OUT.masu --quiet\n"
+              "(default: masu-bake beside this program)"),
+    MASU_UINT(masu_viewer_options, rung, "rung", 0, MASU_MAX_RUNGS - 1,
+              "begin with this rung, the governor off"),
+    MASU_TEXT(masu_viewer_options, setting, "setting", "NAME",
+              "instead of a ladder one rung, by the name that masu bench gives it: scale=0.5+aa=fxaa"),
+    MASU_LADDER_ROW(masu_viewer_options, ladder, "sizes alone: 1, 0.8 and 0.4 (default: auto)"),
+    MASU_REAL(masu_viewer_options, target_ms, "target-ms", "MS", 1.0, 1000.0,
+              "how long the governor lets a frame take on the GPU"),
+    MASU_REAL(masu_viewer_options, time, "time", "SECONDS", 0.0, 1e9, "where to begin"),
+    MASU_FLAG(masu_viewer_options, no_vsync, "no-vsync", "frames as fast as they come"),
+    MASU_FLAG(masu_viewer_options, no_timestamps, "no-timestamps",
+              "no times of passes, and none of the barriers that they need"),
+    MASU_FLAG(masu_viewer_options, counters, "counters",
+              "count evaluations of the SDF and what occlusion leaves; takes time"),
+    MASU_TEXT(masu_viewer_options, script, "script", "FILE",
+              "lines such as `frame 30 key F2` (docs/commands.md); time goes by frames, 1/60 s each"),
+    MASU_UINT(masu_viewer_options, frames, "frames", 1, 1000000000,
+              "of --screenshot and --quit; time goes by frames then"),
+    MASU_FILE(masu_viewer_options, screenshot, "screenshot", "FILE.png", "what the --frames-th frame shows"),
+    MASU_FLAG(masu_viewer_options, quit, "quit", "end after --frames"),
+    MASU_RAYS_ROW(masu_viewer_options, rays),
+    MASU_DEVICE_ROWS(masu_viewer_options, host),
+    {.name = NULL}};
+
+static void print_message(void *user, const char *text) {
+    (void)user;
+    masu_cli_warn("validation: %s", text);
+}
+
+/* What of the description the command line says. */
+static int describe(const masu_viewer_options *o, masu_viewer *v) {
+    masu_desc *d = &v->given;
+    char error[1024];
+    int code = masu_use_ladder(o->ladder, d);
+    if (code) return code;
+    if (o->setting) {
+        d->rung_count = 1;
+        if (!masu_setting_parse(o->setting, &d->rungs[0], error, sizeof error))
+            return masu_cli_usage_error("--setting: %s", error);
+    } else {
+        if (!o->ladder) d->ladder = MASU_ON;
+        d->governor.mode = MASU_GOVERNOR_ON;
+        d->governor.target_ms = (float)o->target_ms;
+    }
+    d->dither = MASU_ON;
+    d->debug.timestamps = !o->no_timestamps;
+    d->debug.counters = o->counters;
+    masu_headless_desc ignored = {0};
+    masu_use_rays(o->rays, &d->ray_query, &ignored);
+    return MASU_CLI_OK;
+}
+
+static int view(const masu_viewer_options *o) {
+    masu_viewer *v = calloc(1, sizeof *v);
+    if (!v) return masu_cli_error("no memory");
+    v->o = o;
+    v->scripted = o->script || o->frames;
+    v->rung = o->rung;
+    v->governed = !o->rung_given && !o->setting;
+    v->time = o->time;
+    v->split = 0.5;
+    v->hud = MASU_HUD_SHORT;
+    v->fly.speed = 4.0;
+    v->overlay_version = 1;
+    masu_script script = {0};
+    int code = describe(o, v);
+    bool read = code || !o->script || masu_script_read(o->script, &script, v->error, sizeof v->error);
+    if (!code && read && masu_viewer_open(v)) code = masu_viewer_run(v, &script);
+    else if (!code) code = masu_cli_error("%s", v->error);
+    masu_script_free(&script);
+    uint64_t frames = v->frames, turns = v->turns;
+    masu_viewer_settle(v);
+    uint32_t messages = v->host.messages;
+    masu_viewer_close(v);
+    free(v);
+    if (code) return code;
+    if (messages)
+        return masu_cli_error("the validation layer has reported %u message%s", messages,
+                              messages == 1 ? "" : "s");
+    if (!masu_cli_quiet() && (o->script || o->frames))
+        fprintf(stderr, "masu-view: %llu frames in %llu turns\n", (unsigned long long)frames,
+                (unsigned long long)turns);
+    return MASU_CLI_OK;
+}
+
+static int run(masu_cli *cli) {
+    masu_viewer_options o = {.size = {1280, 720}, .target_ms = 16.67, .host.message = print_message};
+    masu_given given = {.most = 1, .excess = "one scene at a time"};
+    int code;
+    if (!masu_options_read(cli, rows, &o, &given, &code)) return code;
+    o.scene = given.count ? given.arguments[0] : NULL;
+    o.rung_given = masu_is_given(&given, rows, "rung");
+    masu_switch ignored;
+    masu_use_rays(o.rays, &ignored, &o.host);
+    if (!o.scene && !o.json) return masu_cli_usage_error("no scene is given");
+    if (o.bake && !o.json) return masu_cli_usage_error("--bake needs --json");
+    if (o.setting && (o.ladder || o.rung_given || masu_is_given(&given, rows, "target-ms")))
+        return masu_cli_usage_error("--setting is one rung: no --ladder, --rung or --target-ms");
+    if ((o.screenshot || o.quit) && !o.frames)
+        return masu_cli_usage_error("%s needs --frames", o.screenshot ? "--screenshot" : "--quit");
+    return view(&o);
+}
+
+int main(int argc, char **argv) {
+    static const masu_cli_command command = {
+        .arguments = "SCENE.masu [options]",
+        .summary = "looks at a baked scene in a window",
+        .details = "Keys:\n"
+                   "  W A S D, Q E          fly; Shift: faster; wheel: speed; right mouse button: look\n"
+                   "  P, Space              the scene's path; pause. Left, Right, Home: time (Shift: more)\n"
+                   "  1 .. 8, 0             a rung; the governor's choice. G: governor on, off. + -: its target\n"
+                   "  Tab or M              knobs: arrow keys select and change, Backspace: the default\n"
+                   "  F1                    overlay off, short, full\n"
+                   "  F2, [ ], left mouse   split screen: A, what is set, beside B; the line between them\n"
+                   "  B                     what is set becomes B (at first the best rung)\n"
+                   "  F3                    FLIP of A against B\n"
+                   "  F11, F12, Esc         full screen; picture to a file; end\n"
+                   "A game controller flies, too.\n",
+        .run = run};
+    static const masu_cli_command *const commands[] = {&command, NULL};
+    static const masu_cli_program program = {
+        .name = "masu-view",
+        .version = VERSION_TEXT(MASU_VERSION_MAJOR, MASU_VERSION_MINOR, MASU_VERSION_PATCH),
+        .commands = commands};
+    return masu_cli_main(&program, argc, argv);
+}

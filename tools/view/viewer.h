@@ -1,0 +1,203 @@
+/* viewer.h: the state of masu-view, one struct, and what changes it as a whole. Each file beside this one
+ * is one thing that is done with it:
+ *
+ *   main.c     options            input.c   events to actions     frame.c       one frame to the window
+ *   loop.c     turn after turn    keys.c    what each key does    difference.c  FLIP of A and B
+ *   script.c   events by number   hud.c     the text on top       bake.c        files that change
+ *   stage.c    a renderer         menu.c    knobs                 compose.c     the host's own pass
+ *
+ * A is what is looked at; B is what it is compared with, and exists while it is shown. Both draw the same
+ * scene from the same blob, which stays in memory: a changed knob makes the renderer anew. */
+#ifndef MASU_VIEW_VIEWER_H
+#define MASU_VIEW_VIEWER_H
+
+#include "view/canvas.h"
+#include "view/compose.h"
+#include "view/fly.h"
+#include "view/stage.h"
+#include "view/window.h"
+
+#include "bench/sweep/table.h"
+
+#define MASU_VIEWER_STEP (1.0 / 60.0) /* seconds a frame, where a script says what happens when */
+
+typedef struct masu_viewer_options {
+    const char *scene;   /* SCENE.masu; NULL: baked from `json` */
+    const char *json;    /* its description; NULL: none */
+    const char *bake;    /* a command that bakes it; NULL: masu-bake beside this program */
+    const char *script, *screenshot, *setting, *ladder;
+    VkExtent2D size;
+    masu_headless_desc host;
+    uint32_t rays; /* masu_ray_ways */
+    uint32_t rung;
+    uint32_t frames; /* stop, or take the screenshot, after so many; 0: never */
+    double time, target_ms;
+    bool quit;          /* after `frames` */
+    bool rung_given;    /* else the governor chooses */
+    bool no_vsync, no_timestamps, counters;
+} masu_viewer_options;
+
+enum { MASU_HUD_OFF, MASU_HUD_SHORT, MASU_HUD_FULL, MASU_HUD_LEVELS };
+enum { MASU_SHOW_A, MASU_SHOW_SPLIT, MASU_SHOW_MAP };
+
+/* A file that is watched. */
+typedef struct masu_watch {
+    char path[1024];
+    int64_t seconds, nanoseconds, bytes; /* of its last change; all 0: it is not there */
+} masu_watch;
+
+#define MASU_WATCHES_MAX 64u
+
+typedef struct masu_baker {
+    char folder[1024];           /* of what is made here; empty: there is none */
+    char output[1100], log[1100];
+    masu_watch watches[MASU_WATCHES_MAX];
+    uint32_t count;
+    long child;                  /* the process that bakes; 0: none */
+    uint64_t looked_ns;
+    bool again;                  /* something has changed since it began */
+} masu_baker;
+
+typedef struct masu_difference {
+    SDL_Thread *thread;          /* NULL: none runs */
+    SDL_atomic_t done;           /* set by it */
+    uint8_t *a, *b;              /* copies of both pictures; RGBA8 */
+    float *errors;
+    uint32_t width, height;
+    double mean, p99, max;
+    bool failed, known;          /* no memory; the numbers above are of something */
+    uint64_t taken;              /* frame that the pictures were taken at */
+    bool paused;                 /* and whether time stood still then: once is enough */
+} masu_difference;
+
+typedef struct masu_menu {
+    bool open;
+    uint32_t row;                /* that is selected, of those shown */
+} masu_menu;
+
+typedef struct masu_viewer {
+    const masu_viewer_options *o;
+    bool scripted;               /* no clock: each frame is MASU_VIEWER_STEP long */
+
+    masu_window window;
+    masu_headless host;
+    VkPipelineCache cache;
+    masu_pipelines pools[2];     /* pipelines of A and B, from one start to the next */
+    VkFence fences[MASU_WINDOW_FLIGHT];
+    bool pending[MASU_WINDOW_FLIGHT];
+    bool lost;                   /* the device is: all is to be made anew */
+    bool lose;                   /* a script asks for that */
+    uint32_t losses;             /* since a frame was last finished */
+
+    void *blob;
+    masu_scene scene;
+    masu_desc want;              /* rungs, governor and all else that is asked of A */
+    masu_desc given;             /* as the command line has it, before defaults are filled in */
+    masu_rung reference;         /* the setting of B */
+    masu_stage a, b;
+    masu_compose compose;
+    masu_canvas canvas;
+    masu_plan_info plan;         /* of A */
+
+    masu_fly fly;
+    bool on_path, paused, cut;
+    double time, path_end;
+    float time_step;
+    uint32_t rung;
+    bool governed;
+
+    bool changed;                /* v->want has been: restart at the end of the turn, */
+    char change[128];            /* and say that it was this */
+
+    uint32_t show;               /* MASU_SHOW_*; SPLIT and MAP have B */
+    double split;                /* where the line is, 0..1 */
+    uint32_t hud;
+    masu_menu menu;
+    masu_difference difference;
+    masu_baker baker;
+    bool quit;
+    int mouse[2];                /* where a script has put it */
+    bool hidden;                 /* minimised: nothing is drawn */
+    uint64_t moved;              /* frame at which camera or time were last set by hand */
+    bool stale_overlay;          /* draw it anew */
+    uint64_t overlay_version, slot_version[MASU_WINDOW_FLIGHT], overlay_ns;
+
+    uint64_t turns, frames;      /* of the loop; that reached the window */
+    uint64_t submitted_ns[MASU_WINDOW_FLIGHT];
+    uint64_t finished_ns;        /* of the newest frame that was seen to finish */
+    bool slot_known[MASU_WINDOW_FLIGHT]; /* its last frame was drawn by the present A */
+    uint32_t slot_of_a[MASU_WINDOW_FLIGHT];
+    masu_stats_info stats;
+    double wall_ms;              /* between frames, smoothed */
+
+    char note[256];              /* what was done last: shown for a while */
+    uint64_t note_turn;
+    char trouble[1024];          /* why the last reload failed: shown until one succeeds */
+    char error[1024];            /* of the call that returned false */
+} masu_viewer;
+
+/* Window, device, scene, renderer. On false v->error says why; close it all the same. */
+bool masu_viewer_open(masu_viewer *v);
+void masu_viewer_close(masu_viewer *v);
+
+/* Waits until nothing is drawn. */
+void masu_viewer_settle(masu_viewer *v);
+
+/* Makes A anew from v->want, and B where it is shown. True with v->trouble set: refused, and v->want is
+ * as it was. */
+bool masu_viewer_restart(masu_viewer *v);
+/* B begins or ends to be, as v->show says. */
+bool masu_viewer_show(masu_viewer *v, uint32_t show);
+/* Swapchain, stages and overlay in the size that the window has now. */
+bool masu_viewer_resize(masu_viewer *v);
+/* Another blob. True with v->trouble set: it is of no use, and the scene is as it was. */
+bool masu_viewer_load(masu_viewer *v, const char *path);
+/* After v->lost: tears all down and makes it anew. */
+bool masu_viewer_recover(masu_viewer *v);
+
+/* One line for the overlay, which goes by itself. */
+void masu_viewer_note(masu_viewer *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The name of a setting. */
+void masu_viewer_setting(const masu_viewer *v, const masu_rung *rung, char out[MASU_SETTING_ID]);
+/* Where the camera is now. */
+void masu_viewer_camera(const masu_viewer *v, masu_camera *out);
+
+/* frame.c: one frame. True: drawn, or there was nothing to draw to. */
+bool masu_viewer_frame(masu_viewer *v);
+/* The picture that was shown last, as PNG. */
+bool masu_viewer_screenshot(masu_viewer *v, const char *path);
+
+/* input.c, keys.c */
+typedef struct masu_hands {
+    bool held[8]; /* forward, back, left, right, up, down, fast, look */
+    bool dragging;
+    double yaw, pitch; /* of the mouse since the last turn */
+    SDL_GameController *pad;
+} masu_hands;
+bool masu_hands_event(masu_hands *h, masu_viewer *v, const SDL_Event *event);
+void masu_hands_move(masu_hands *h, masu_viewer *v, double seconds);
+void masu_hands_close(masu_hands *h);
+bool masu_key_pressed(masu_viewer *v, SDL_Keycode key, uint16_t modifiers);
+void masu_pad_pressed(masu_viewer *v, uint8_t button);
+
+/* hud.c, menu.c: draw on v->canvas; what the menu's keys do */
+void masu_hud_draw(masu_viewer *v);
+void masu_menu_draw(masu_viewer *v);
+bool masu_menu_key(masu_viewer *v, SDL_Keycode key); /* true: it was the menu's */
+
+/* difference.c */
+bool masu_difference_step(masu_viewer *v); /* after a frame: takes pictures, shows what is done */
+/* RGBA8 of an error of 0 to 1: black, violet, orange, yellow, white. */
+uint32_t masu_difference_color(float error);
+void masu_difference_close(masu_difference *d);
+
+/* bake.c */
+bool masu_baker_open(masu_viewer *v);   /* bakes, where there is no blob yet */
+bool masu_baker_poll(masu_viewer *v);   /* true; loads what has changed */
+void masu_baker_close(masu_baker *b);
+
+/* loop.c: an exit code */
+struct masu_script;
+int masu_viewer_run(masu_viewer *v, struct masu_script *script);
+
+#endif
