@@ -90,7 +90,7 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
     if (has < plain) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain,
                          has,
-                         "the scene's lights, probes or metered exposure, or SMAA, need %u storage "
+                         "the scene's lights, probes, skins or metered exposure, or SMAA, need %u storage "
                          "buffers in a stage, the "
                          "device has %u",
                          plain, has);

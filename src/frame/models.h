@@ -4,8 +4,10 @@
 #ifndef MASU_MODELS_H
 #define MASU_MODELS_H
 
+#include "frame/animation.h"
 #include "frame/bounds.h"
 #include "frame/instances.h"
+#include "frame/skins.h"
 
 /* Nodes of one model lie side by side, each behind the one above it. */
 typedef struct masu_node {
@@ -29,6 +31,8 @@ typedef struct masu_models {
     masu_node *nodes;
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
     masu_handles handles;
+    masu_animation animation;
+    masu_skins skins; /* bent by what the nodes are */
 } masu_models;
 
 void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);
@@ -51,6 +55,10 @@ masu_result masu_models_move(masu_models *s, masu_instances *in, masu_bounds *b,
 masu_result masu_models_move_node(masu_models *s, masu_instances *in, masu_bounds *b,
                                   const masu_frame_plan *plan, uint32_t model, uint32_t node,
                                   const float rows[12], masu_detail *detail);
+/* masu_model_animate of the public header. */
+masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds *b,
+                                const masu_frame_plan *plan, uint32_t model,
+                                const masu_clip_use *uses, uint32_t count, masu_detail *detail);
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown);
 /* A hidden one of that kind, or UINT32_MAX. */
