@@ -156,6 +156,7 @@ typedef struct masu_scene {
     uint32_t skins;                 /* meshes that joints bend: */
     uint32_t skin_vertices, joints; /* of their kinds, */
     uint32_t skinned_vertices, skinned_joints; /* of all of them */
+    uint32_t skinned_nodes;               /* of their trees that rays are traced through */
     uint32_t first_skinned, max_skinned; /* the first of those vertices; the most of one mesh */
     uint32_t metered;    /* 1: it asks for a metered exposure, */
     float brighten, darken; /* that adapts as fast, 1/s; 0: the default */

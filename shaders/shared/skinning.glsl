@@ -4,7 +4,8 @@
  * the vertex, for fewer operations, and the normal goes by the same matrix.
  *
  *   joints         of each skin its first rest vertex, its first vertex, how many (0: it is hidden), where its
- *                  matrices begin; then the matrices, three rows each
+ *                  matrices begin; its first node in the trees for rays, how many, its first of boxes, 0; then
+ *                  the matrices, three rows each
  *   skin_vertices  two elements a vertex: position and normal as any vertex; joints and weights, 16 bits each
  *
  * Positions are precise: the pass of now and that of the previous frame get the same bits of the same joints, and
@@ -34,7 +35,7 @@ struct masu_bent {
 /* first: of the moment's elements in `joints`. False: no such vertex. */
 bool masu_find_vertex(uint first, out uint rest, out uint vertex, out uint matrices)
 {
-    uvec4 skin = joints[first + gl_WorkGroupID.y];
+    uvec4 skin = joints[first + 2u * gl_WorkGroupID.y];
     uint k = gl_GlobalInvocationID.x;
     rest = skin.x + k;
     vertex = skin.y + k;

@@ -21,7 +21,7 @@ void masu_skins_lay(masu_skins *s, masu_arena *arena, const masu_frame_plan *pla
 }
 
 void masu_skins_keep(masu_skins *s, const masu_frame_plan *plan, const masu_scene_view *v) {
-    uint32_t matrix = 0;
+    uint32_t matrix = 0, box = 0;
     for (uint32_t i = 0; i < plan->scene.joints; i++) s->joints[i] = v->joints[i];
     for (uint32_t i = 0; i < plan->scene.skins; i++) {
         const masu_blob_skin *from = &v->skins[i];
@@ -33,7 +33,15 @@ void masu_skins_keep(masu_skins *s, const masu_frame_plan *plan, const masu_scen
                                   .first_skin_vertex = from->first_skin_vertex,
                                   .first_joint = from->first_joint,
                                   .joint_count = from->joint_count,
-                                  .first_matrix = matrix};
+                                  .first_matrix = matrix,
+                                  .first_box = box};
+        if (v->trace_meshes) {
+            const masu_blob_trace_mesh *tree =
+                &v->trace_meshes[v->instances[s->skins[i].instance].mesh];
+            s->skins[i].first_tree_node = tree->first_node;
+            s->skins[i].tree_nodes = tree->node_count;
+            box += tree->node_count;
+        }
         for (uint32_t k = 0; k < from->joint_count; k++, matrix++) {
             static const float none[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
             memcpy(s->now[matrix], none, sizeof none);
@@ -178,10 +186,16 @@ void masu_skins_settle(masu_skins *s, masu_instances *in, masu_bounds *b,
 /* A slot: of each skin a header, then all matrices; the same again as of the previous frame. */
 static void write_one(const masu_skin *skin, uint32_t index, int hidden,
                       const masu_frame_plan *plan, float (*matrices)[12], unsigned char *to) {
-    uint32_t at = plan->scene.skins + 3 * skin->first_matrix;
-    const uint32_t header[4] = {skin->first_skin_vertex, skin->first_vertex,
-                                hidden ? 0 : skin->vertex_count, at};
-    memcpy(to + (size_t)16 * index, header, sizeof header);
+    uint32_t at = MASU_SKIN_HEADER_BYTES / 16 * plan->scene.skins + 3 * skin->first_matrix;
+    const uint32_t header[8] = {skin->first_skin_vertex,
+                                skin->first_vertex,
+                                hidden ? 0 : skin->vertex_count,
+                                at,
+                                skin->first_tree_node,
+                                hidden ? 0 : skin->tree_nodes,
+                                skin->first_box,
+                                0};
+    memcpy(to + sizeof header * index, header, sizeof header);
     memcpy(to + (size_t)16 * at, matrices[skin->first_matrix], (size_t)48 * skin->joint_count);
 }
 

@@ -20,6 +20,8 @@ typedef struct masu_skin {
     uint32_t first_vertex, vertex_count, first_skin_vertex;
     uint32_t first_joint, joint_count; /* of `joints` */
     uint32_t first_matrix;             /* of `now` and `previous` */
+    uint32_t first_tree_node, tree_nodes; /* of TRACE_NODES */
+    uint32_t first_box;                /* of MASU_BUFFER_SKIN_TREES */
 } masu_skin;
 
 typedef struct masu_skins {

@@ -80,6 +80,7 @@ static int keeps_access(const masu_frame_plan *plan, uint8_t resource, masu_usag
     case MASU_IMAGE_NONE: return 0;
     case MASU_RESOURCE(MASU_BUFFER_DRAWS): return n->occlusion;
     case MASU_RESOURCE(MASU_BUFFER_VERTICES): return n->skins;
+    case MASU_RESOURCE(MASU_BUFFER_TRACE): return n->skins && n->traced && !n->query;
     case MASU_RESOURCE(MASU_BUFFER_PREVIOUS_VERTICES): return n->skins && n->velocity;
     case MASU_RESOURCE(MASU_BUFFER_PROBES): return n->probes;
     case MASU_RESOURCE(MASU_BUFFER_EXPOSURE): return n->metered;

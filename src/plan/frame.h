@@ -60,6 +60,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_KEPT,    /* an invocation per instance and view */
     MASU_EXTENT_BATCHES, /* see compact.comp */
     MASU_EXTENT_SKINS,   /* an invocation per vertex of the largest skin, for each skin */
+    MASU_EXTENT_SKIN_TREES, /* a workgroup per skin */
     MASU_EXTENT_PROBES,  /* an invocation per light probe */
     MASU_EXTENT_SHADOW   /* all cascades of the shadow map; plan.c knows how large */
 } masu_image_extent;

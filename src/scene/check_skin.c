@@ -178,6 +178,8 @@ void masu_look_at_skins(const reader *r, masu_scene *out) {
     }
     for (uint32_t i = 0; i < out->skins; i++) {
         const masu_blob_skin *s = &v->skins[i];
+        uint32_t mesh = v->instances[v->model_nodes[s->node].instance].mesh;
+        if (v->trace_meshes) out->skinned_nodes += v->trace_meshes[mesh].node_count;
         if (!i) out->first_skinned = s->first_vertex;
         out->skinned_vertices += s->vertex_count;
         out->skinned_joints += s->joint_count;

@@ -304,7 +304,7 @@ static void bend_all(const unsigned char *slot, double out[4][3]) {
         memset(out[v], 0, sizeof out[v]);
         for (uint32_t i = 0; i < 4; i++) {
             float rows[12];
-            memcpy(rows, slot + 16 + 48 * (size_t)(skin->first_matrix + from->joints[i]), sizeof rows);
+            memcpy(rows, slot + 32 + 48 * (size_t)(skin->first_matrix + from->joints[i]), sizeof rows);
             for (uint32_t k = 0; k < 3; k++) {
                 double at = (double)rows[4 * k + 3];
                 for (uint32_t c = 0; c < 3; c++)
@@ -365,7 +365,7 @@ static void a_slot_has_matrices_of_both_frames(void **state) {
     /* What is hidden has no vertices to bend. */
     uint32_t header[4];
     memcpy(header, slot_bytes(MASU_BUFFER_JOINTS, 1), sizeof header);
-    const uint32_t shown[4] = {0, 7, 4, 1};
+    const uint32_t shown[4] = {0, 7, 4, 2};
     assert_memory_equal(header, shown, sizeof header);
     assert_int_equal(masu_model_show(&m, lid, 0), MASU_OK);
     write_good(&frame, 0);
