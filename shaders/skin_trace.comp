@@ -127,14 +127,21 @@ void main()
 {
     uvec4 tree = joints[2u * gl_WorkGroupID.x + 1u];
     uint first = tree.x, count = tree.y, first_box = tree.z;
-    for (uint k = gl_LocalInvocationID.x; k < count; k += 64u) boxes[2u * (first_box + k)] = uvec4(0u);
+    for (uint round = 0u; round < uint(MASU_SKIN_ROUNDS); round++) {
+        uint k = 64u * round + gl_LocalInvocationID.x;
+        if (k >= count) break;
+        boxes[2u * (first_box + k)] = uvec4(0u);
+    }
     for (uint sweep = 1u; sweep <= uint(MASU_TRACE_LEVELS_MAX); sweep++) {
         memoryBarrierBuffer();
         barrier();
         if (count == 0u || boxes[2u * first_box].w != 0u) break;
         memoryBarrierBuffer();
         barrier();
-        for (uint k = gl_LocalInvocationID.x; k < count; k += 64u)
+        for (uint round = 0u; round < uint(MASU_SKIN_ROUNDS); round++) {
+            uint k = 64u * round + gl_LocalInvocationID.x;
+            if (k >= count) break;
             fit(first + k, first, first_box, sweep);
+        }
     }
 }

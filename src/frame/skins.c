@@ -1,8 +1,6 @@
 /* skins.c: see skins.h. */
 #include "frame/skins.h"
 
-#include "frame/models.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -164,9 +162,9 @@ static void box_of(const masu_skins *s, const masu_skin *skin, float box[6]) {
         }
         any = 1;
     }
-    for (uint32_t k = 0; k < 3; k++) {
-        box[k] = nextafterf((float)low[k], -INFINITY);
-        box[3 + k] = nextafterf((float)high[k], INFINITY);
+    for (uint32_t k = 0; k < 3; k++) { /* outwards by more than a float rounds */
+        box[k] = (float)(low[k] - 1.2e-7 * fabs(low[k]) - 1e-37);
+        box[3 + k] = (float)(high[k] + 1.2e-7 * fabs(high[k]) + 1e-37);
     }
 }
 

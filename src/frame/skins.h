@@ -12,8 +12,7 @@
 
 #include "frame/bounds.h"
 #include "frame/instances.h"
-
-struct masu_node;
+#include "frame/nodes.h"
 
 typedef struct masu_skin {
     uint32_t model, node, instance;
@@ -42,7 +41,7 @@ uint32_t masu_skins_of(const masu_skins *s, const masu_frame_plan *plan, uint32_
 /* After nodes of a model have moved: finds the matrices of its joints. 0: one is not finite; they are to be found
  * again once the nodes are back. */
 int masu_skins_pose(masu_skins *s, const masu_frame_plan *plan, uint32_t model,
-                    const struct masu_node *nodes, uint32_t first_node, uint32_t node_count);
+                    const masu_node *nodes, uint32_t first_node, uint32_t node_count);
 /* And then tells instances and bounds. */
 void masu_skins_settle(masu_skins *s, masu_instances *in, masu_bounds *b,
                        const masu_frame_plan *plan, uint32_t model);

@@ -2,6 +2,7 @@
  * of their sections or, of skins, those of an earlier one, so that work is linear in the blob's size. */
 #include "scene/check.h"
 #include "scene/skin.h"
+#include "shared/masu_shared.h"
 
 /* ---- Clips ----------------------------------------------------------------------------------- */
 
@@ -163,6 +164,16 @@ masu_result masu_check_skins(reader *r) {
     if (skins && g.skinned != r->counts[MASU_BLOB_VERTICES])
         return bad(r, "vertices", g.skinned, "follows those of skins");
     return skins ? check_stiff(r) : MASU_OK;
+}
+
+masu_result masu_check_skin_trees(reader *r) {
+    const masu_scene_view *v = &r->view;
+    for (uint64_t i = 0; i < r->counts[MASU_BLOB_SKINS] && v->trace_meshes; i++) {
+        uint32_t mesh = v->instances[v->model_nodes[v->skins[i].node].instance].mesh;
+        if (v->trace_meshes[mesh].node_count > 64u * MASU_SKIN_ROUNDS)
+            return bad(r, "skins", i, "has a tree of over 1,048,576 nodes");
+    }
+    return MASU_OK;
 }
 
 void masu_look_at_skins(const reader *r, masu_scene *out) {

@@ -101,6 +101,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     if (!result) result = masu_check_textures(&r);
     if (!result) result = masu_check_sdf(&r);
     if (!result) result = masu_check_trace(&r);
+    if (!result) result = masu_check_skin_trees(&r);
     if (result) return result;
     describe(&r, blob_bytes, pairs, out);
     return MASU_OK;
