@@ -1312,7 +1312,9 @@ MASU_API double masu_model_clip_duration(const masu_renderer *renderer, masu_mod
 
 /* Poses a model from the next masu_frame on: puts all nodes that any of its clips moves where these clips have
  * them, blended by their weights; with count 0 or no weight at all, where the file has them at rest. Nodes that no
- * clip moves stay. Skinned meshes follow their nodes: in the picture, shadows, velocities and traced reflections.
+ * clip moves stay. Skinned meshes follow their nodes: in the picture, shadows, velocities and traced reflections,
+ * whose histories know where an instance was but not how it has bent. What has skins is traced without ray queries
+ * of the device: with MASU_ON masu_init fails.
  * Time is the host's to keep: nothing goes on by itself.
  * MASU_ERROR_ARGUMENT: a NULL pointer with a count, more than MASU_MAX_CLIP_USES, a clip that the model does not
  * have, a time or weight that is not finite or a weight below 0, a pose that takes a node beyond what a float

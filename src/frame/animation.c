@@ -4,21 +4,18 @@
 #include <math.h>
 #include <string.h>
 
-/* The most nodes of a model that has clips. */
-static uint32_t most_nodes(const masu_frame_plan *plan) {
-    return plan->scene.clips ? plan->scene.max_nodes : 0;
-}
-
 void masu_animation_lay(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan) {
     const masu_scene *s = &plan->scene;
-    uint32_t nodes = s->clips ? s->model_nodes : 0;
+    uint32_t nodes = s->model_nodes;
+    memset(a, 0, sizeof *a);
+    if (!s->clips) return;
     a->clips = masu_arena_take(arena, "clips", s->clips, sizeof *a->clips, 8);
     a->channels = masu_arena_take(arena, "channels", s->channels, sizeof *a->channels, 4);
     a->keys = masu_arena_take(arena, "keys", s->keys, sizeof *a->keys, 4);
     a->rest = masu_arena_take(arena, "rest poses", nodes, sizeof *a->rest, 8);
     a->moved = masu_arena_take(arena, "moved nodes", nodes, sizeof *a->moved, 1);
-    a->poses = masu_arena_take(arena, "poses", most_nodes(plan), sizeof *a->poses, 8);
-    a->locals = masu_arena_take(arena, "previous nodes", most_nodes(plan), sizeof *a->locals, 4);
+    a->poses = masu_arena_take(arena, "poses", s->max_nodes, sizeof *a->poses, 8);
+    a->locals = masu_arena_take(arena, "previous nodes", s->max_nodes, sizeof *a->locals, 4);
 }
 
 /* ---- Poses and matrices ---------------------------------------------------------------------- */

@@ -14,8 +14,8 @@ void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_fra
     uint64_t tree = traced && !plan->needs.query ? masu_trace_top_bytes(traced) : 0;
     s->tree_memory = masu_arena_take(arena, "traced instances", tree, 1, 16);
     s->traced = masu_arena_take(arena, "traced ids", traced, sizeof *s->traced, 4);
-    s->bends =
-        masu_arena_take(arena, "traced skins", plan->scene.skins ? traced : 0, sizeof *s->bends, 1);
+    if (plan->scene.skins)
+        s->bends = masu_arena_take(arena, "traced skins", traced, sizeof *s->bends, 1);
     s->live =
         masu_arena_take(arena, "traced flags", plan->needs.query ? traced : 0, sizeof *s->live, 1);
 }

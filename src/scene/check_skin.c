@@ -171,7 +171,7 @@ masu_result masu_check_skin_trees(reader *r) {
     for (uint64_t i = 0; i < r->counts[MASU_BLOB_SKINS] && v->trace_meshes; i++) {
         uint32_t mesh = v->instances[v->model_nodes[v->skins[i].node].instance].mesh;
         if (v->trace_meshes[mesh].node_count > 64u * MASU_SKIN_ROUNDS)
-            return bad(r, "skins", i, "has a tree of over 1,048,576 nodes");
+            return bad(r, "skins", i, "has a tree of over 262,144 nodes");
     }
     return MASU_OK;
 }
