@@ -259,6 +259,24 @@ static void clips_are_blended_by_weight(void **state) {
     assert_lid(half / 2, 1.5, 2, 2.5);
 }
 
+/* A quaternion and its negative are one rotation: between keys and between clips the way is the shorter one. */
+static void rotations_go_the_shorter_way(void **state) {
+    (void)state;
+    const double half = acos(-1.0) / 2, root = sqrt(0.5);
+    start();
+    float *key = m.models.animation.keys[3].value; /* a quarter of a turn, on the other side */
+    key[0] = key[1] = 0.0f;
+    key[2] = key[3] = (float)-root;
+    pose_at(0, 1.0, 0);
+    assert_lid(half / 2, 1, 1, 1);
+    pose_at(0, 1.25, 0);
+    assert_lid(0.75 * half, 1, 1, 1);
+    const masu_clip_use both[2] = {{.clip = 0, .time = 0.0, .weight = 1.0f},
+                                   {.clip = 0, .time = 1.9, .weight = 1.0f}};
+    assert_int_equal(pose(both, 2), MASU_OK);
+    assert_lid(half / 2, 1, 1, 1);
+}
+
 static void what_cannot_be_posed_changes_nothing(void **state) {
     (void)state;
     start();
@@ -448,6 +466,7 @@ int main(void) {
         cmocka_unit_test(a_pose_is_what_the_keys_say),
         cmocka_unit_test(ends_hold_or_come_round),
         cmocka_unit_test(clips_are_blended_by_weight),
+        cmocka_unit_test(rotations_go_the_shorter_way),
         cmocka_unit_test(what_cannot_be_posed_changes_nothing),
         cmocka_unit_test(a_slot_has_matrices_of_both_frames),
         cmocka_unit_test(a_skin_is_where_its_joints_are),
