@@ -230,6 +230,7 @@ static bool place_all(model_builder *b, const masu_bake_model *model, loaded_mod
         snprintf(number, sizeof number, ".%u", i);
         masu_bake_append_text(&name, model->name ? model->name : "spare");
         masu_bake_append_text(&name, number);
+        masu_bake_append(&name, "", 1);
         bool good = place(b, model, masu_bake_take_text(&b->pool, (const char *)name.data), true,
                           from, &like);
         masu_bake_release(&name);

@@ -301,8 +301,8 @@ static void add_key(track *t, double time, const double value[4], int components
     if (turns && !(square > 1e-12)) return;
     for (int k = 0; k < components; k++)
         key.value[k] = (float)(turns ? value[k] / sqrt(square) : value[k]);
-    const masu_blob_key *last = (const masu_blob_key *)(const void *)t->keys.data + count - 1;
-    if (count && !(key.time > last->time)) return;
+    const masu_blob_key *keys = (const masu_blob_key *)(const void *)t->keys.data;
+    if (count && !(key.time > keys[count - 1].time)) return;
     masu_bake_append(&t->keys, &key, sizeof key);
 }
 
