@@ -151,6 +151,13 @@ typedef struct masu_scene {
     uint32_t occluders, placed_occluders; /* boxes in meshes; those of all instances */
     uint32_t groups, group_items; /* what is culled together; instances in groups */
     uint32_t models, model_nodes; /* that move, come and go as one; nodes of them all */
+    uint32_t clips, channels, keys; /* animations of models, and what they are made of */
+    uint32_t max_nodes;             /* of one model */
+    uint32_t skins;                 /* meshes that joints bend: */
+    uint32_t skin_vertices, joints; /* of their kinds, */
+    uint32_t skinned_vertices, skinned_joints; /* of all of them */
+    uint32_t skinned_nodes;               /* of their trees that rays are traced through */
+    uint32_t first_skinned, max_skinned; /* the first of those vertices; the most of one mesh */
     uint32_t metered;    /* 1: it asks for a metered exposure, */
     float brighten, darken; /* that adapts as fast, 1/s; 0: the default */
     uint32_t sdf;        /* 1: the scene has an SDF */
@@ -213,6 +220,8 @@ MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name)
 MASU_API const char *masu_scene_instance_name(const masu_scene *scene, uint32_t index);
 MASU_API const char *masu_scene_model_name(const masu_scene *scene, uint32_t index);
 MASU_API const char *masu_scene_light_name(const masu_scene *scene, uint32_t index);
+/* The same of the clip-th clip of a model. */
+MASU_API const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip);
 
 /* Scenes by what their frames are made of: quality ladders are measured for each (masu_desc.ladder). A
  * world is of polygons alone and has both LODs of meshes and occluders. */
@@ -1277,6 +1286,41 @@ MASU_API MASU_MUST_USE masu_result masu_model_node_get(masu_renderer *renderer, 
  * masu_model_set_transform. */
 MASU_API MASU_MUST_USE masu_result masu_model_node_set(masu_renderer *renderer, masu_model model,
                                                        uint32_t node, const float rows[12]);
+
+/* Clips: the animations of a model's file, which masu-bake keeps of models that move. Those of one model are
+ * 0 .. count - 1, the same for all of its kind. */
+#define MASU_CLIP_NONE UINT32_MAX
+#define MASU_MAX_CLIP_USES 16u
+
+typedef struct masu_clip_use {
+    uint32_t clip;
+    uint32_t loop; /* 1: it begins again after its end; 0: its ends hold */
+    double time;   /* seconds from its start, finite */
+    float weight;  /* share of all that are used at once: 0 or more, any sum */
+} masu_clip_use;
+
+/* How many a model has; 0 for a handle that is not of this renderer. */
+MASU_API uint32_t masu_model_clips(const masu_renderer *renderer, masu_model model);
+
+/* The first of that name, the name in its file; MASU_CLIP_NONE if there is none. */
+MASU_API uint32_t masu_model_clip_find(const masu_renderer *renderer, masu_model model,
+                                       const char *name);
+
+/* Seconds from start to end; 0 of what does not exist. */
+MASU_API double masu_model_clip_duration(const masu_renderer *renderer, masu_model model,
+                                         uint32_t clip);
+
+/* Poses a model from the next masu_frame on: puts all nodes that any of its clips moves where these clips have
+ * them, blended by their weights; with count 0 or no weight at all, where the file has them at rest. Nodes that no
+ * clip moves stay. Skinned meshes follow their nodes: in the picture, shadows, velocities and traced reflections,
+ * whose histories know where an instance was but not how it has bent. What has skins is traced without ray queries
+ * of the device: with MASU_ON masu_init fails.
+ * Time is the host's to keep: nothing goes on by itself.
+ * MASU_ERROR_ARGUMENT: a NULL pointer with a count, more than MASU_MAX_CLIP_USES, a clip that the model does not
+ * have, a time or weight that is not finite or a weight below 0, a pose that takes a node beyond what a float
+ * holds, or a handle that is not of this renderer; nothing is changed then. */
+MASU_API MASU_MUST_USE masu_result masu_model_animate(masu_renderer *renderer, masu_model model,
+                                                      const masu_clip_use *uses, uint32_t count);
 
 /* Handle of a punctual light, a point or a spot. */
 typedef struct masu_punctual_light {

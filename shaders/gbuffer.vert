@@ -5,8 +5,9 @@
  * that a world a million metres from the origin is as steady as one at the origin.
  *
  * With MASU_MOTION (gbuffer_velocity) also to where the vertex was in the previous frame, by the same
- * operations: what stood still gets the same bits twice, and a velocity of exactly 0. With
- * MASU_TEXTURES texture coordinates go along.
+ * operations: what stood still gets the same bits twice, and a velocity of exactly 0. With MASU_SKINNED
+ * vertices from push.first_skinned on were elsewhere in their mesh, too: skin_previous.comp has found where.
+ * With MASU_TEXTURES texture coordinates go along.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -34,6 +35,14 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS_INSTANCES, std430) re
 layout(location = 2) out vec3 out_before;
 #endif
 
+#ifdef MASU_SKINNED
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS_VERTICES, std430) readonly buffer
+    PreviousVertices
+{
+    float previous_vertices[];
+};
+#endif
+
 #ifdef MASU_TEXTURES
 layout(location = 2) in vec2 texcoord;
 layout(location = 3) out vec2 out_texcoord;
@@ -53,8 +62,16 @@ void main()
     out_texcoord = texcoord;
 #endif
 #ifdef MASU_MOTION
-    out_before =
-        masu_seen_from(previous_instances[id], previous.eye_hi.xyz, previous.eye_lo.xyz);
+    vec3 before = position;
+#ifdef MASU_SKINNED
+    uint vertex = uint(gl_VertexIndex);
+    if (vertex >= push.first_skinned) {
+        uint k = 3u * (vertex - push.first_skinned);
+        before = vec3(previous_vertices[k], previous_vertices[k + 1u], previous_vertices[k + 2u]);
+    }
+#endif
+    out_before = masu_point_seen_from(previous_instances[id], before, previous.eye_hi.xyz,
+                                      previous.eye_lo.xyz);
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
 }

@@ -102,8 +102,8 @@ function add_shader(name, list,    n, words, i) {
     split(substr($0, 6), head, ",")
     name = trim(head[2])
     file = name
-    traced = $0 ~ /\(SPECULAR[_)]/
-    polygons = $0 ~ /DRAW\((POLYGONS|CASCADE|BOXES|BLENDED),/ || $0 ~ /\((DRAWS|SEEN)\)/
+    traced = $0 ~ /\(SPECULAR[_)]/ || $0 ~ /WRITES\(TRACE\)/
+    polygons = $0 ~ /DRAW\((POLYGONS|CASCADE|BOXES|BLENDED),/ || $0 ~ /\((DRAWS|SEEN)\)/ || $0 ~ /WRITES\((VERTICES|PREVIOUS_VERTICES|TRACE)\)/
     tail = substr($0, index($0, "PUSH("))
     tail = substr(tail, length(inside(tail, "PUSH")) + 6) # what stands behind it
     if (tail ~ /^\)?, *COMP\(/) {

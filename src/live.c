@@ -164,6 +164,45 @@ masu_result masu_model_node_set(masu_renderer *m, masu_model model, uint32_t nod
                                  &m->error);
 }
 
+/* ---- Clips ----------------------------------------------------------------------------------- */
+
+/* Those of a model, or none of what is no model. */
+static uint32_t clips_of(const masu_renderer *m, masu_model model, uint32_t *first) {
+    uint32_t i = m ? masu_handle_index(&m->models.handles, model.id) : 0;
+    if (!m || i >= m->plan.scene.models) return 0;
+    return masu_animation_clips(&m->models.animation, &m->plan, m->models.models[i].like, first);
+}
+
+uint32_t masu_model_clips(const masu_renderer *m, masu_model model) {
+    uint32_t first;
+    return clips_of(m, model, &first);
+}
+
+uint32_t masu_model_clip_find(const masu_renderer *m, masu_model model, const char *name) {
+    uint32_t first, count = clips_of(m, model, &first);
+    if (!name || !*name) return MASU_CLIP_NONE;
+    uint64_t hash = masu_fnv1a64(name, strlen(name));
+    for (uint32_t i = 0; i < count; i++) {
+        if (m->models.animation.clips[first + i].name == hash) return i;
+    }
+    return MASU_CLIP_NONE;
+}
+
+double masu_model_clip_duration(const masu_renderer *m, masu_model model, uint32_t clip) {
+    uint32_t first, count = clips_of(m, model, &first);
+    return clip < count ? (double)m->models.animation.clips[first + clip].duration : 0.0;
+}
+
+masu_result masu_model_animate(masu_renderer *m, masu_model model, const masu_clip_use *uses,
+                               uint32_t count) {
+    uint32_t i;
+    if (!m || (count && !uses)) return missing(m, "uses");
+    masu_result result = check_model(m, model, &i);
+    if (result) return result;
+    return masu_models_animate(&m->models, &m->instances, &m->bounds, &m->plan, i, uses, count,
+                               &m->error);
+}
+
 /* ---- Punctual lights ------------------------------------------------------------------------- */
 
 static masu_result check_light(masu_renderer *m, masu_punctual_light light, uint32_t *index) {

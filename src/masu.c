@@ -340,8 +340,9 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_lights_write(&m->lights, &m->instances, f);
 
     /* Whatever asks which instances have moved, then those themselves. */
-    masu_reflections_write_instances(&m->reflections, &m->instances, f);
+    masu_reflections_write_instances(&m->reflections, &m->instances, &m->bounds, f);
     masu_occlusion_write_boxes(&m->bounds, &m->instances, f);
+    masu_skins_write(&m->models.skins, &m->instances, f);
     masu_instances_write(&m->instances, f);
 
     masu_visible_write(&m->visible, &m->bounds, &m->instances, &m->views, f);

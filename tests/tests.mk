@@ -79,7 +79,7 @@ $(BUILD)/tests/gpu/test_stiff $(BUILD)/tests/gpu/test_specular_sdf: | $(STIFF) $
 
 # A blob of a kilobyte, in which most mutations hit something that is looked at, and a real
 # one.
-FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace)
+FUZZ_SEEDS_scene := $(patsubst %,$(BUILD)/tests/fuzz/%.masu,scene textures lods trace skins)
 FUZZ_SEEDS_scene += $(firstword $(filter-out %/engine.masu,$(SCENES)) $(SCENES))
 
 $(BUILD)/tests/fuzz/seed_scene: $(BUILD)/obj/tests/fuzz/seed_scene.o $(TEST_ARCHIVES)
@@ -92,6 +92,8 @@ $(BUILD)/tests/fuzz/lods.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 65
 $(BUILD)/tests/fuzz/trace.masu: $(BUILD)/tests/fuzz/seed_scene
 	$(V)$< $@ 257
+$(BUILD)/tests/fuzz/skins.masu: $(BUILD)/tests/fuzz/seed_scene
+	$(V)$< $@ 1537
 $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 
 # Every feature in a few lines, and a scene.

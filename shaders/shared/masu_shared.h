@@ -188,6 +188,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_TRACE_NODE_UVEC4 3
 #define MASU_TRACE_RECORD_UVEC4 4
 #define MASU_TRACE_TOP_DEPTH 20
+#define MASU_SKIN_ROUNDS 4096 /* nodes of a skinned mesh's tree, at most 64 times as many: bound of a loop */
+#define MASU_TRACE_LEVELS_MAX 28 /* of a mesh's tree: MASU_TRACE_DEPTH_MAX of blob.h */
 #define MASU_TRACE_STACK 48
 #define MASU_TRACE_VISITS 4096
 

@@ -29,14 +29,18 @@ uint masu_instance_id()
 }
 
 /* Relative to an origin given as a float and what that leaves. */
-vec3 masu_seen_from(masu_instance_data m, vec3 origin_hi, vec3 origin_lo)
+vec3 masu_point_seen_from(masu_instance_data m, vec3 p, vec3 origin_hi, vec3 origin_lo)
 {
-    precise vec3 moved =
-        vec3(dot(m.row0.xyz, position), dot(m.row1.xyz, position), dot(m.row2.xyz, position));
+    precise vec3 moved = vec3(dot(m.row0.xyz, p), dot(m.row1.xyz, p), dot(m.row2.xyz, p));
     vec3 placed = vec3(m.row0.w, m.row1.w, m.row2.w);
     precise vec3 origin = (placed - origin_hi) - origin_lo;
     precise vec3 rel = moved + origin;
     return rel;
+}
+
+vec3 masu_seen_from(masu_instance_data m, vec3 origin_hi, vec3 origin_lo)
+{
+    return masu_point_seen_from(m, position, origin_hi, origin_lo);
 }
 
 /* Of any length. Normals go by the cofactor matrix: the inverse transpose times the determinant,

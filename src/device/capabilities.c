@@ -56,6 +56,13 @@ static masu_result choose_ray_query(masu_desc *desc, const masu_frame_plan *plan
             "ray_query is MASU_ON, but vulkan.ray_query says that the device was created "
             "without VK_KHR_ray_query");
     }
+    if (plan->scene.skins && forced) {
+        return masu_fail(detail, MASU_ERROR_SCENE, "ray_query", 0, plan->scene.skins,
+                         "ray_query is MASU_ON, but structures of the device do not bend: the scene "
+                         "has %u skins",
+                         plan->scene.skins);
+    }
+    if (plan->scene.skins) return MASU_OK;
     masu_result result = masu_ray_check(&plan->scene, vk, detail);
     if (result) return forced ? result : MASU_OK;
     desc->ray_query = MASU_ON;
@@ -90,7 +97,7 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
     if (has < plain) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain,
                          has,
-                         "the scene's lights, probes or metered exposure, or SMAA, need %u storage "
+                         "the scene's lights, probes, skins or metered exposure, or SMAA, need %u storage "
                          "buffers in a stage, the "
                          "device has %u",
                          plain, has);

@@ -224,6 +224,10 @@ static void load_vertices(const source *s, masu_chunk chunk, unsigned char *to) 
     copy(s->v->vertices, chunk, to);
 }
 
+static void load_skin_vertices(const source *s, masu_chunk chunk, unsigned char *to) {
+    copy(s->v->skin_vertices, chunk, to);
+}
+
 static void load_indices(const source *s, masu_chunk chunk, unsigned char *to) {
     copy(s->v->indices, chunk, to);
 }

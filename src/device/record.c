@@ -40,6 +40,8 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
     uint32_t views = push->own.word[offsetof(struct masu_push_cull, view) / 4] ? plan->views - 1 : 1;
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_PROBES: return (VkExtent2D){(plan->scene.probes + 63) / 64, 1};
+    case MASU_EXTENT_SKINS: return (VkExtent2D){(plan->scene.max_skinned + 63) / 64, plan->scene.skins};
+    case MASU_EXTENT_SKIN_TREES: return (VkExtent2D){plan->scene.skins, 1};
     case MASU_EXTENT_KEPT: return (VkExtent2D){(plan->scene.instances + 63) / 64, views};
     case MASU_EXTENT_BATCHES: return (VkExtent2D){few + rec->draws->large_count, views};
     /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */

@@ -49,6 +49,11 @@ void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint3
     make_dirty(in, plan, i);
 }
 
+void masu_instances_touch(masu_instances *in, const masu_frame_plan *plan, uint32_t i) {
+    in->changes++;
+    make_dirty(in, plan, i);
+}
+
 void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32_t i, int shown) {
     if (!masu_instance_hidden(in, i) == (shown != 0)) return;
     in->flags[i] ^= MASU_INSTANCE_HIDDEN;

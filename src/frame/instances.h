@@ -38,6 +38,8 @@ static inline int masu_instance_hidden(const masu_instances *in, uint32_t instan
 /* Of finite rows. */
 void masu_instances_place(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                           const float rows[12]);
+/* It stays where it is, but not as it is: joints have bent it. */
+void masu_instances_touch(masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
 /* What is hidden is in no view, in no reflection, and carries no light. */
 void masu_instances_show(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                          int shown);

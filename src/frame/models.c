@@ -12,6 +12,8 @@ void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *p
     s->nodes = masu_arena_take(arena, "model nodes", scene->model_nodes, sizeof *s->nodes, 8);
     s->of_instance = masu_arena_take(arena, "models of instances",
                                      scene->models ? scene->instances : 0, sizeof *s->of_instance, 4);
+    masu_animation_lay(&s->animation, arena, plan);
+    masu_skins_lay(&s->skins, arena, plan);
 }
 
 static uint64_t hash_of(const masu_scene_view *v, uint32_t name) {
@@ -28,8 +30,8 @@ static void multiply(const float a[12], const float b[12], float out[12]) {
     }
 }
 
-/* Where each node of a model is, by the model's own place. 0: one is nowhere. */
-static int place(masu_models *s, uint32_t model) {
+/* Where each node of a model is, by the model's own place, and each joint. 0: one is nowhere. */
+static int place(masu_models *s, const masu_frame_plan *plan, uint32_t model) {
     const masu_placed_model *m = &s->models[model];
     int finite = 1;
     for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
@@ -39,7 +41,7 @@ static int place(masu_models *s, uint32_t model) {
         multiply(above, node->local, node->world);
         for (uint32_t k = 0; k < 12; k++) finite &= isfinite(node->world[k]) != 0;
     }
-    return finite;
+    return finite & masu_skins_pose(&s->skins, plan, model, s->nodes, m->first_node, m->node_count);
 }
 
 void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
@@ -55,6 +57,8 @@ void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan 
             .name = hash_of(v, from->name), .parent = from->parent, .instance = from->instance};
         memcpy(to->local, from->local, sizeof to->local);
     }
+    masu_animation_keep(&s->animation, plan, v);
+    masu_skins_keep(&s->skins, plan, v);
     for (uint32_t i = 0; i < scene->models; i++) {
         const masu_blob_model *from = &v->models[i];
         masu_placed_model *to = &s->models[i];
@@ -67,7 +71,7 @@ void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan 
         for (uint32_t n = to->first_node; n < to->first_node + to->node_count; n++) {
             if (s->nodes[n].instance != MASU_BLOB_NONE) s->of_instance[s->nodes[n].instance] = i;
         }
-        (void)place(s, i); /* what the instances say already; checked when the scene was bound */
+        (void)place(s, plan, i); /* what the instances say already; checked when the scene was bound */
         if (from->flags & MASU_MODEL_HIDDEN) masu_models_show(s, in, plan, i, 0);
     }
 }
@@ -89,11 +93,23 @@ uint32_t masu_models_node(const masu_models *s, uint32_t model, const char *name
     return UINT32_MAX;
 }
 
+/* The instances of a model go where its nodes are. */
+static void settle(masu_models *s, masu_instances *in, masu_bounds *b, const masu_frame_plan *plan,
+                   uint32_t model) {
+    const masu_placed_model *m = &s->models[model];
+    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
+        const masu_node *node = &s->nodes[n];
+        if (node->instance == MASU_BLOB_NONE) continue;
+        masu_instances_place(in, plan, node->instance, node->world);
+        masu_bounds_move(b, plan, in, node->instance);
+    }
+    masu_skins_settle(&s->skins, in, b, plan, model);
+}
+
 /* Replaces 12 floats of a model by `rows` and moves its instances; puts them back where that fails. */
 static masu_result replace(masu_models *s, masu_instances *in, masu_bounds *b,
                            const masu_frame_plan *plan, uint32_t model, float *where,
                            const float rows[12], masu_detail *detail) {
-    const masu_placed_model *m = &s->models[model];
     float before[12];
     for (uint32_t k = 0; k < 12; k++) {
         if (isfinite(rows[k])) continue;
@@ -102,19 +118,14 @@ static masu_result replace(masu_models *s, masu_instances *in, masu_bounds *b,
     }
     memcpy(before, where, sizeof before);
     memcpy(where, rows, sizeof before);
-    if (!place(s, model)) {
+    if (!place(s, plan, model)) {
         memcpy(where, before, sizeof before);
-        (void)place(s, model);
+        (void)place(s, plan, model);
         return masu_fail(detail, MASU_ERROR_ARGUMENT, "rows", 0, 0,
                          "model %u: with these rows a node of it is beyond what a float holds",
                          model);
     }
-    for (uint32_t n = m->first_node; n < m->first_node + m->node_count; n++) {
-        const masu_node *node = &s->nodes[n];
-        if (node->instance == MASU_BLOB_NONE) continue;
-        masu_instances_place(in, plan, node->instance, node->world);
-        masu_bounds_move(b, plan, in, node->instance);
-    }
+    settle(s, in, b, plan, model);
     return MASU_OK;
 }
 
@@ -138,6 +149,67 @@ masu_result masu_models_move_node(masu_models *s, masu_instances *in, masu_bound
                                   const float rows[12], masu_detail *detail) {
     float *local = s->nodes[s->models[model].first_node + node].local;
     return replace(s, in, b, plan, model, local, rows, detail);
+}
+
+/* ---- Clips ----------------------------------------------------------------------------------- */
+
+static masu_result check_uses(uint32_t model, uint32_t clips, const masu_clip_use *uses,
+                              uint32_t count, masu_detail *detail) {
+    if (count > MASU_MAX_CLIP_USES) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "count", MASU_MAX_CLIP_USES, count,
+                         "model %u: %u clips at once, at most %u", model + 1, count,
+                         MASU_MAX_CLIP_USES);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (uses[i].clip >= clips) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "clip", clips, uses[i].clip,
+                             "model %u: uses[%u].clip is %u, it has %u clips", model + 1, i,
+                             uses[i].clip, clips);
+        }
+        if (!isfinite(uses[i].time)) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "time", 0, i,
+                             "model %u: uses[%u].time is not finite", model + 1, i);
+        }
+        if (!(uses[i].weight >= 0.0f && isfinite(uses[i].weight))) {
+            return masu_fail(detail, MASU_ERROR_ARGUMENT, "weight", 0, i,
+                             "model %u: uses[%u].weight is %g, not 0 or more", model + 1, i,
+                             (double)uses[i].weight);
+        }
+    }
+    return MASU_OK;
+}
+
+/* Nodes that some clip moves: their places are kept in case that they must go back, or go back. */
+static void swap(masu_models *s, uint32_t model, int back) {
+    const masu_placed_model *m = &s->models[model];
+    for (uint32_t n = 0; n < m->node_count; n++) {
+        float *local = s->nodes[m->first_node + n].local, *kept = s->animation.locals[n];
+        memcpy(back ? local : kept, back ? kept : local, sizeof s->nodes[0].local);
+    }
+}
+
+masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds *b,
+                                const masu_frame_plan *plan, uint32_t model,
+                                const masu_clip_use *uses, uint32_t count, masu_detail *detail) {
+    const masu_placed_model *m = &s->models[model];
+    uint32_t first, clips = masu_animation_clips(&s->animation, plan, m->like, &first);
+    masu_result result = check_uses(model, clips, uses, count, detail);
+    if (result || !clips) return result;
+    masu_animation_pose(&s->animation, first, uses, count, m->first_node, m->node_count);
+    swap(s, model, 0);
+    for (uint32_t n = 0; n < m->node_count; n++) {
+        if (s->animation.moved[m->first_node + n])
+            masu_pose_rows(&s->animation.poses[n], s->nodes[m->first_node + n].local);
+    }
+    if (!place(s, plan, model)) {
+        swap(s, model, 1);
+        (void)place(s, plan, model);
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "uses", 0, 0,
+                         "model %u: in this pose a node of it is beyond what a float holds",
+                         model + 1);
+    }
+    settle(s, in, b, plan, model);
+    return MASU_OK;
 }
 
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,

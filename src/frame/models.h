@@ -4,17 +4,10 @@
 #ifndef MASU_MODELS_H
 #define MASU_MODELS_H
 
+#include "frame/animation.h"
 #include "frame/bounds.h"
 #include "frame/instances.h"
-
-/* Nodes of one model lie side by side, each behind the one above it. */
-typedef struct masu_node {
-    float local[12]; /* to the node above; of the first ones to the model */
-    float world[12];
-    uint64_t name;     /* FNV-1a 64, 0: none */
-    uint32_t parent;   /* of all nodes, or MASU_BLOB_NONE */
-    uint32_t instance; /* or MASU_BLOB_NONE */
-} masu_node;
+#include "frame/skins.h"
 
 typedef struct masu_placed_model {
     float rows[12]; /* to world */
@@ -29,6 +22,8 @@ typedef struct masu_models {
     masu_node *nodes;
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
     masu_handles handles;
+    masu_animation animation;
+    masu_skins skins; /* bent by what the nodes are */
 } masu_models;
 
 void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *plan);
@@ -51,6 +46,10 @@ masu_result masu_models_move(masu_models *s, masu_instances *in, masu_bounds *b,
 masu_result masu_models_move_node(masu_models *s, masu_instances *in, masu_bounds *b,
                                   const masu_frame_plan *plan, uint32_t model, uint32_t node,
                                   const float rows[12], masu_detail *detail);
+/* masu_model_animate of the public header. */
+masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds *b,
+                                const masu_frame_plan *plan, uint32_t model,
+                                const masu_clip_use *uses, uint32_t count, masu_detail *detail);
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown);
 /* A hidden one of that kind, or UINT32_MAX. */

@@ -14,6 +14,8 @@ void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_fra
     uint64_t tree = traced && !plan->needs.query ? masu_trace_top_bytes(traced) : 0;
     s->tree_memory = masu_arena_take(arena, "traced instances", tree, 1, 16);
     s->traced = masu_arena_take(arena, "traced ids", traced, sizeof *s->traced, 4);
+    if (plan->scene.skins)
+        s->bends = masu_arena_take(arena, "traced skins", traced, sizeof *s->bends, 1);
     s->live =
         masu_arena_take(arena, "traced flags", plan->needs.query ? traced : 0, sizeof *s->live, 1);
 }
@@ -23,6 +25,11 @@ void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
     uint32_t count = plan->scene.trace_instances;
     if (!plan->needs.traced) return;
     for (uint32_t i = 0; i < count; i++) s->traced[i] = v->trace_instances[i];
+    for (uint32_t i = 0; i < count && plan->scene.skins; i++) s->bends[i] = 0;
+    for (uint32_t n = 0; n < plan->scene.model_nodes && plan->scene.skins; n++) {
+        for (uint32_t i = 0; i < count && v->model_nodes[n].skin; i++)
+            s->bends[i] |= v->trace_instances[i] == v->model_nodes[n].instance;
+    }
     if (plan->needs.query) return;
     masu_trace_top_make(&s->tree, s->tree_memory, count);
     for (uint32_t i = 0; i < count; i++) {
@@ -32,13 +39,19 @@ void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
 }
 
 /* Those that have moved, or all where nothing has been written yet, are placed anew. */
-static void place(masu_reflections *s, const masu_instances *in, const masu_frame_data *f) {
+static void place(masu_reflections *s, const masu_instances *in, const masu_bounds *b,
+                  const masu_frame_data *f) {
     if (!in->dirty_count && s->versions) return;
     for (uint32_t i = 0; i < f->plan->scene.trace_instances; i++) {
         uint32_t instance = s->traced[i];
         if (!masu_instance_dirty(in, instance) && s->versions) continue;
         float rows[12] = {0}; /* no place: hidden ones are not seen */
         if (!masu_instance_hidden(in, instance)) masu_instance_rows(&in->now[instance], rows);
+        if (f->plan->scene.skins && s->bends[i]) { /* its tree is fitted on the device */
+            masu_trace_root *root = masu_trace_top_root(&s->tree, i);
+            memcpy(root->box.low, b->meshes[in->meshes[instance]], sizeof root->box.low);
+            memcpy(root->box.high, b->meshes[in->meshes[instance]] + 3, sizeof root->box.high);
+        }
         if (f->plan->needs.query)
             s->live[i] = (uint8_t)masu_trace_places(rows);
         else
@@ -65,10 +78,10 @@ static void rows_of(const struct masu_instance_data *from, const double origin[3
 /* All of a slot, where anything has changed since it was written last: a frame in which nothing moves writes
  * nothing. */
 void masu_reflections_write_instances(masu_reflections *s, const masu_instances *in,
-                                      const masu_frame_data *f) {
+                                      const masu_bounds *b, const masu_frame_data *f) {
     const masu_frame_plan *plan = f->plan;
     if (!plan->needs.traced) return;
-    place(s, in, f);
+    place(s, in, b, f);
     int changed = update(s, f);
     /* What has moved stands still one frame later: that is a change of where it was. */
     if (changed || in->dirty_count || !s->versions) s->versions++;

@@ -3,6 +3,7 @@
 #ifndef MASU_REFLECTIONS_H
 #define MASU_REFLECTIONS_H
 
+#include "frame/bounds.h"
 #include "frame/instances.h"
 #include "scene/trace.h"
 
@@ -10,6 +11,7 @@ typedef struct masu_reflections {
     masu_trace_top tree; /* over instances, in tree_memory; with ray queries the device has one */
     void *tree_memory;
     uint32_t *traced; /* [traced instance]: instance */
+    uint8_t *bends;   /* [traced instance]: it is a skin, whose box changes; none without skins */
     uint8_t *live;    /* of ray queries, [traced instance]: it is not left out */
     double origin[3]; /* that the frame measures traced things from */
     double previous_origin[3];
@@ -29,6 +31,6 @@ void masu_reflections_read(masu_reflections *s, masu_frame_data *f);
 /* Traced instances to the slot; after the origin, and before masu_instances_write, which forgets what has
  * moved and where it was. */
 void masu_reflections_write_instances(masu_reflections *s, const masu_instances *in,
-                                      const masu_frame_data *f);
+                                      const masu_bounds *b, const masu_frame_data *f);
 
 #endif

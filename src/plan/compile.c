@@ -79,6 +79,9 @@ static int keeps_access(const masu_frame_plan *plan, uint8_t resource, masu_usag
     switch (resource) {
     case MASU_IMAGE_NONE: return 0;
     case MASU_RESOURCE(MASU_BUFFER_DRAWS): return n->occlusion;
+    case MASU_RESOURCE(MASU_BUFFER_VERTICES): return n->skins;
+    case MASU_RESOURCE(MASU_BUFFER_TRACE): return n->skins && n->traced && !n->query;
+    case MASU_RESOURCE(MASU_BUFFER_PREVIOUS_VERTICES): return n->skins && n->velocity;
     case MASU_RESOURCE(MASU_BUFFER_PROBES): return n->probes;
     case MASU_RESOURCE(MASU_BUFFER_EXPOSURE): return n->metered;
     case MASU_RESOURCE(MASU_BUFFER_LIGHT_TILES): return n->light_tiles;
@@ -143,6 +146,7 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_UPDATE_DEPTH: return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     case MASU_WRITE_COPY: return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     case MASU_READ_BUFFER:
+    case MASU_READ_VERTICES:
     case MASU_WRITE_BUFFER:
     case MASU_READ_STRUCTURE:
     case MASU_WRITE_STRUCTURE:
@@ -245,6 +249,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     }
     plan->needs = (masu_needs){.scene = d->scene != NULL,
                                .raster = d->scene && d->scene->instances,
+                               .skins = d->scene && d->scene->skins,
                                .sdf = d->scene && d->scene->sdf,
                                .dynamic = d->scene && d->scene->sdf_dynamic,
                                .anchored = d->scene && d->scene->sdf_anchored,

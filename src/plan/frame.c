@@ -58,6 +58,10 @@ static const char *no_velocity(const masu_needs *n, const char *other) {
     return wants_velocity(n) ? other : "nothing reads velocities";
 }
 
+static const char *no_skins(const masu_needs *n) { return n->scene ? "no model has skins" : NO_SCENE; }
+
+static int has_skin_trees(const masu_needs *n) { return n->skins && n->traced && !n->query; }
+
 static const char *no_shadow_map(const masu_needs *n) {
     return n->raster ? "the scene asks for no shadows of its polygons" : "the scene has no instances";
 }
@@ -112,6 +116,7 @@ static const char *no_upscale(const masu_needs *n) {
 #define COPY_LATEST(class_of) {MASU_LATEST(MASU_CLASS_##class_of), MASU_READ_COPY}
 #define COPY_BACK_LATEST(class_of) {MASU_LATEST(MASU_CLASS_##class_of), MASU_READ_BACK}
 #define READS(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_READ_BUFFER}
+#define FETCHES(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_READ_VERTICES}
 #define WRITES(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_WRITE_BUFFER}
 #define TRACES(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_READ_STRUCTURE}
 #define BUILDS(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_WRITE_STRUCTURE}
@@ -156,7 +161,7 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
     if (extent == MASU_EXTENT_ATLAS)
         return (VkExtent2D){MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT};
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
-        extent == MASU_EXTENT_PROBES)
+        extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
         return (VkExtent2D){1, 1};
     if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
     int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT32;

@@ -59,6 +59,8 @@ typedef enum masu_image_extent {
     MASU_EXTENT_ATLAS, /* of occluders */
     MASU_EXTENT_KEPT,    /* an invocation per instance and view */
     MASU_EXTENT_BATCHES, /* see compact.comp */
+    MASU_EXTENT_SKINS,   /* an invocation per vertex of the largest skin, for each skin */
+    MASU_EXTENT_SKIN_TREES, /* a workgroup per skin */
     MASU_EXTENT_PROBES,  /* an invocation per light probe */
     MASU_EXTENT_SHADOW   /* all cascades of the shadow map; plan.c knows how large */
 } masu_image_extent;
@@ -78,6 +80,7 @@ typedef enum masu_usage {
     MASU_READ,        /* sampled, texel by texel */
     MASU_READ_LINEAR, /* sampled, with the mean of the texels around a place */
     MASU_READ_BUFFER, /* storage buffer, or arguments of the row's indirect dispatch */
+    MASU_READ_VERTICES, /* vertex buffer */
     MASU_READ_COPY,   /* transfer source */
     MASU_READ_BACK,   /* the same, of what desc.readback asks for */
     MASU_READ_STRUCTURE, /* of ray queries: binding of set 0 */
@@ -113,6 +116,7 @@ _Static_assert(MASU_BEFORE(MASU_CLASS_COUNT) <= 256, "an access names its resour
 typedef struct masu_needs {
     int scene;         /* a scene is drawn (else: upscaling of a source image) */
     int raster;        /* it has instances */
+    int skins;         /* joints bend some of them */
     int sdf;           /* it has an SDF */
     uint32_t readback; /* masu_readback_bits */
     int blit;          /* targets are filled by a blit */

@@ -131,6 +131,12 @@ static inline uint64_t masu_align_up(uint64_t v, uint64_t a) { return (v + a - 1
 void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output);
 /* The same of a viewport; where there are none, of the whole output. */
 void masu_plan_look_at(masu_frame_plan *plan, uint32_t viewport);
+/* Bytes of MASU_BUFFER_JOINTS for one moment: of each skin a header, then the matrices. */
+#define MASU_SKIN_HEADER_BYTES 32u
+static inline uint64_t masu_joints_bytes(const masu_scene *s) {
+    return s->skins * (uint64_t)MASU_SKIN_HEADER_BYTES + s->skinned_joints * (uint64_t)48;
+}
+
 /* Where a cascade lies in the shadow map, of the size that the map is laid out for. */
 VkOffset2D masu_cascade_place(const masu_frame_plan *plan, uint32_t cascade);
 /* Bits over a rung's slow cascades only, out of bits over all: the variant that draws them. */

@@ -78,7 +78,13 @@ enum masu_blob_kind {
     MASU_BLOB_TRACE_INSTANCES = 43, /* uint32, rising: those that rays meet */
     MASU_BLOB_MODELS = 49,      /* models that move, come and go as one; these two come together */
     MASU_BLOB_MODEL_NODES = 50, /* by model, each behind the one above it */
-    MASU_BLOB_KIND_COUNT = 51
+    MASU_BLOB_CLIPS = 51,    /* of models, by the first model of a kind; these three come together */
+    MASU_BLOB_CHANNELS = 52, /* by clip */
+    MASU_BLOB_KEYS = 53,     /* by channel, in rising time */
+    MASU_BLOB_SKINS = 54,    /* meshes that joints bend; these three come together */
+    MASU_BLOB_JOINTS = 55,   /* by skin; those of one kind share them */
+    MASU_BLOB_SKIN_VERTICES = 56, /* the same */
+    MASU_BLOB_KIND_COUNT = 57
 };
 
 /* Four texels by four make a block. sRGB formats hold display-encoded colour. */
@@ -197,8 +203,65 @@ typedef struct masu_blob_model_node {
     uint32_t parent;   /* of MODEL_NODES: of the same model, before this one; or MASU_BLOB_NONE */
     uint32_t instance; /* that shows it, of no other node; or MASU_BLOB_NONE */
     uint32_t name;
-    uint32_t reserved;
+    uint32_t skin; /* 1 + of SKINS, that bends what the instance shows; 0: none */
 } masu_blob_model_node;
+
+/* What moves nodes of a model, and of all that are like it. */
+typedef struct masu_blob_clip {
+    uint32_t model; /* of MODELS, the first of its kind; clips are sorted by it */
+    uint32_t first_channel, channel_count; /* the next of CHANNELS */
+    float duration; /* seconds, 0..1e9 */
+    uint32_t name;
+    uint32_t reserved[3];
+} masu_blob_clip;
+
+enum masu_blob_channel_path {
+    MASU_CHANNEL_TRANSLATION = 0, /* x, y, z */
+    MASU_CHANNEL_ROTATION = 1,    /* a quaternion x, y, z, w of unit length */
+    MASU_CHANNEL_SCALE = 2        /* x, y, z */
+};
+
+/* One of the three that make up a node's place: translation times rotation times scale. */
+typedef struct masu_blob_channel {
+    uint32_t node; /* of the model's nodes, counted from its first */
+    uint32_t path; /* masu_blob_channel_path; no other channel of the clip has both */
+    uint32_t step; /* 1: each key holds until the next; 0: in between is in between */
+    uint32_t first_key, key_count; /* the next of KEYS, at least one; the ends hold */
+    uint32_t reserved[3];
+} masu_blob_channel;
+
+typedef struct masu_blob_key {
+    float time; /* seconds, 0..1e9 */
+    float value[4];
+} masu_blob_key;
+
+/* A mesh that joints bend. It has vertices of its own, which the device writes in each frame, and one
+ * instance; those of all skins lie side by side at the end of VERTICES, in this order. Sorted by model. */
+#define MASU_BLOB_SKINS_MAX 16384u
+#define MASU_BLOB_SKIN_JOINTS_MAX (1u << 20) /* of all skins, each counted for itself */
+typedef struct masu_blob_skin {
+    uint32_t model; /* that shows it, */
+    uint32_t node;  /* of MODEL_NODES: by this node */
+    uint32_t like;  /* the first skin with the same joints and vertices, at most this one */
+    uint32_t first_vertex, vertex_count; /* of VERTICES: all of its primitives lie inside */
+    uint32_t first_skin_vertex;          /* of SKIN_VERTICES, as many; the next ones, or those of `like` */
+    uint32_t first_joint, joint_count;   /* of JOINTS, 1..65536: the same */
+} masu_blob_skin;
+
+/* A vertex is the weighted mean of where the joints put it: node in the model, times inverse bind. */
+typedef struct masu_blob_joint {
+    float inverse_bind[12];  /* from the rest vertices' space to the joint's */
+    float low[3], high[3];   /* around all rest vertices that it moves; both 0 where that is nothing */
+    uint32_t node;           /* of the model's nodes, counted from its first */
+    uint32_t used;           /* 1: it moves something */
+} masu_blob_joint;
+
+/* The rest pose: VERTICES has its twin as the scene is baked. */
+typedef struct masu_blob_skin_vertex {
+    masu_blob_vertex rest;
+    uint16_t joints[4];  /* of the skin's */
+    uint16_t weights[4]; /* 65535 together */
+} masu_blob_skin_vertex;
 
 /* Members are other groups, instances, or both. Children come behind their parent and side by
  * side; each group but the first is a child exactly once. The box (world space) holds the boxes of
@@ -517,6 +580,12 @@ _Static_assert(sizeof(masu_blob_primitive) == 48, "blob primitive");
 _Static_assert(sizeof(masu_blob_mesh) == 40, "blob mesh");
 _Static_assert(sizeof(masu_blob_lod) == 16, "blob lod");
 _Static_assert(sizeof(masu_blob_instance) == 64, "blob instance");
+_Static_assert(sizeof(masu_blob_clip) == 32, "blob clip");
+_Static_assert(sizeof(masu_blob_channel) == 32, "blob channel");
+_Static_assert(sizeof(masu_blob_key) == 20, "blob key");
+_Static_assert(sizeof(masu_blob_skin) == 32, "blob skin");
+_Static_assert(sizeof(masu_blob_joint) == 80, "blob joint");
+_Static_assert(sizeof(masu_blob_skin_vertex) == 32, "blob skin vertex");
 _Static_assert(sizeof(masu_blob_group) == 48, "blob group");
 _Static_assert(sizeof(masu_blob_occluder) == 32, "blob occluder");
 _Static_assert(sizeof(masu_blob_material) == 80, "blob material");

@@ -10,6 +10,12 @@
 masu_result masu_check_geometry(reader *r);
 /* Models that move, and their nodes. */
 masu_result masu_check_models(reader *r);
+/* Their clips, and the skins that their nodes bend; after occluders and LODs, which what bends has none of. */
+masu_result masu_check_clips(reader *r);
+masu_result masu_check_skins(reader *r);
+/* The trees of such meshes; after masu_check_trace. */
+masu_result masu_check_skin_trees(reader *r);
+void masu_look_at_skins(const reader *r, masu_scene *out);
 /* What culling believes: groups of instances, occluders. pairs: of an occluder and an instance of its
  * mesh. */
 masu_result masu_check_groups(reader *r);

@@ -10,17 +10,19 @@ static masu_result check_node(reader *r, const masu_blob_model *m, uint64_t n) {
         return bad(r, "model nodes", n, "parent is no node of its model before it");
     if (node->instance != MASU_BLOB_NONE && node->instance >= r->counts[MASU_BLOB_INSTANCES])
         return bad(r, "model nodes", n, "no such instance");
+    if (node->skin > r->counts[MASU_BLOB_SKINS]) return bad(r, "model nodes", n, "no such skin");
     return name_ok(r, node->name) ? MASU_OK
                                   : bad(r, "model nodes", n, "name lies outside the names");
 }
 
-/* What stands in for the other shows the same. */
+/* What stands in for the other shows the same. What bends has a mesh of its own: check_skin.c compares those. */
 static int alike(const masu_scene_view *v, const masu_blob_model *a, const masu_blob_model *b) {
     for (uint32_t k = 0; k < a->node_count; k++) {
         uint32_t x = v->model_nodes[a->first_node + k].instance;
         uint32_t y = v->model_nodes[b->first_node + k].instance;
         if ((x == MASU_BLOB_NONE) != (y == MASU_BLOB_NONE)) return 0;
-        if (x != MASU_BLOB_NONE && v->instances[x].mesh != v->instances[y].mesh) return 0;
+        int bends = v->model_nodes[a->first_node + k].skin && v->model_nodes[b->first_node + k].skin;
+        if (x != MASU_BLOB_NONE && !bends && v->instances[x].mesh != v->instances[y].mesh) return 0;
     }
     return 1;
 }

@@ -71,6 +71,7 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
     }
     masu_look_at_looks(r, out);
     masu_look_at_trace(r, out);
+    masu_look_at_skins(r, out);
     look_at_draws(r, out);
 }
 
@@ -94,10 +95,13 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     if (!result) result = masu_check_models(&r);
     if (!result) result = masu_check_groups(&r);
     if (!result) result = masu_check_occluders(&r, &pairs);
+    if (!result) result = masu_check_clips(&r);
+    if (!result) result = masu_check_skins(&r);
     if (!result) result = masu_check_looks(&r);
     if (!result) result = masu_check_textures(&r);
     if (!result) result = masu_check_sdf(&r);
     if (!result) result = masu_check_trace(&r);
+    if (!result) result = masu_check_skin_trees(&r);
     if (result) return result;
     describe(&r, blob_bytes, pairs, out);
     return MASU_OK;
@@ -136,6 +140,15 @@ const char *masu_scene_model_name(const masu_scene *scene, uint32_t index) {
     if (!scene || !scene->blob || index >= scene->models) return "";
     masu_scene_view v = masu_scene_look(scene);
     return text_of(&v, v.models[index].name);
+}
+
+const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip) {
+    if (!scene || !scene->blob || model >= scene->models) return "";
+    masu_scene_view v = masu_scene_look(scene);
+    for (uint32_t i = 0; i < scene->clips; i++) {
+        if (v.clips[i].model == v.models[model].like && !clip--) return text_of(&v, v.clips[i].name);
+    }
+    return "";
 }
 
 const char *masu_scene_light_name(const masu_scene *scene, uint32_t index) {

@@ -77,6 +77,12 @@ void masu_trace_top_set(masu_trace_top *top, uint32_t traced, const masu_trace_r
     top->placed[traced].root = *root;
 }
 
+masu_trace_root *masu_trace_top_root(masu_trace_top *top, uint32_t traced) {
+    return &top->placed[traced].root;
+}
+
+_Static_assert(MASU_TRACE_LEVELS_MAX == MASU_TRACE_DEPTH_MAX, "skin_trace.comp sweeps every level");
+
 /* By cofactors, in double: exact enough for any float matrix that is let through. 0: none. */
 static int invert(const float m[12], float inverse[9], uint32_t *mirrored) {
     double a[3][3], c[3][3], most = 0.0;

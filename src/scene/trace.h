@@ -77,6 +77,9 @@ masu_trace_root masu_trace_root_of(const masu_scene_view *view, uint32_t traced)
 /* Before an instance is placed first. */
 void masu_trace_top_set(masu_trace_top *top, uint32_t traced, const masu_trace_root *root);
 
+/* To be changed, before it is placed anew: what bends has another box. */
+masu_trace_root *masu_trace_top_root(masu_trace_top *top, uint32_t traced);
+
 /* Whether an instance of that transform is traced at all. */
 int masu_trace_places(const float transform[12]);
 

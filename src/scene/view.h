@@ -47,6 +47,12 @@ typedef struct masu_scene_view {
     const uint32_t *trace_instances;
     const masu_blob_model *models;
     const masu_blob_model_node *model_nodes;
+    const masu_blob_clip *clips;
+    const masu_blob_channel *channels;
+    const masu_blob_key *keys;
+    const masu_blob_skin *skins;
+    const masu_blob_joint *joints;
+    const masu_blob_skin_vertex *skin_vertices;
     struct {
         const uint32_t *words; /* NULL: none */
         uint64_t count;

@@ -485,7 +485,7 @@ static void who_does_not_ask_has_no_velocities(void **state) {
         assert_int_equal(plan.passes[i].active, 0);
         assert_string_equal(plan.passes[i].why, "nothing reads velocities");
     }
-    assert_int_equal(found, 3);
+    assert_int_equal(found, 4);
     for (uint32_t i = 0; i < plan.image_count; i++) {
         if (strcmp(plan.images[i].name, "velocity") != 0) continue;
         assert_int_equal(plan.images[i].used, 0);

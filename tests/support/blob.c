@@ -199,6 +199,35 @@ static const masu_blob_model_node model_nodes[] = {
     {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 2, 2, NAME_LID, 0},
 };
 
+/* The square of mesh 1, by "bend", which is turned, and by "lid" below it. */
+static const masu_blob_skin skins[] = {{2, 3, 0, 7, 4, 0, 0, 2}};
+
+static const masu_blob_joint joints[] = {
+    {{1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1, 0}, {-2, -2, 0}, {2, -2, 0}, 0, 1},
+    {{0, 0, -1, 0, 0, 1, 0, -2, 1, 0, 0, 0}, {-2, -2, 0}, {2, 2, 0}, 1, 1},
+};
+
+static const masu_blob_skin_vertex skin_vertices[] = {
+    {{{-2.0f, -2.0f, 0.0f}, {0, 0}}, {0, 1, 0, 0}, {65000, 535, 0, 0}},
+    {{{2.0f, -2.0f, 0.0f}, {0, 0}}, {0, 1, 0, 0}, {65000, 535, 0, 0}},
+    {{{2.0f, 2.0f, 0.0f}, {0, 0}}, {1, 0, 0, 0}, {65535, 0, 0, 0}},
+    {{{-2.0f, 2.0f, 0.0f}, {0, 0}}, {1, 0, 0, 0}, {65535, 0, 0, 0}},
+};
+
+/* Of the last model: "bend" moves both and turns "lid", "glow" grows it in one step. */
+static const masu_blob_clip clips[] = {{2, 0, 2, 2.0f, NAME_BEND, {0}}, {2, 2, 1, 0.5f, NAME_GLOW, {0}}};
+
+static const masu_blob_channel channels[] = {
+    {0, MASU_CHANNEL_TRANSLATION, 0, 0, 2, {0}},
+    {1, MASU_CHANNEL_ROTATION, 0, 2, 2, {0}},
+    {1, MASU_CHANNEL_SCALE, 1, 4, 2, {0}},
+};
+
+static const masu_blob_key clip_keys[] = {
+    {0.0f, {0, 0, 0, 0}}, {2.0f, {4, 0, 2, 0}}, {0.5f, {0, 0, 0, 1}}, {1.5f, {0, 0, 1, 0}},
+    {0.0f, {1, 1, 1, 0}}, {0.25f, {2, 3, 4, 0}},
+};
+
 /* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
 static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
 
@@ -242,6 +271,8 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if (trace) sections += 5;
     int live = parts & SUPPORT_RASTER && parts & SUPPORT_LIVE;
     if (live) sections += 2;
+    int skin = live && parts & SUPPORT_SKIN;
+    if (skin) sections += 6;
     blob->size = sizeof *header + sections * sizeof(masu_blob_section);
     if (parts & SUPPORT_RASTER) {
         ADD(MASU_BLOB_VERTICES, vertices);
@@ -257,7 +288,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         }
         ADD(MASU_BLOB_GROUPS, groups);
         ADD(MASU_BLOB_GROUP_ITEMS, group_items);
-        ADD(MASU_BLOB_OCCLUDERS, occluders);
+        add(blob, MASU_BLOB_OCCLUDERS, occluders, sizeof *occluders, skin ? 1 : COUNT(occluders));
     }
     if (parts & SUPPORT_CAMERA) ADD(MASU_BLOB_CAMERA_KEYS, camera_keys);
     ADD(MASU_BLOB_ENVIRONMENT, environment);
@@ -318,6 +349,15 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
     if (live) {
         ADD(MASU_BLOB_MODELS, models);
         ADD(MASU_BLOB_MODEL_NODES, model_nodes);
+    }
+    if (skin) {
+        ADD(MASU_BLOB_CLIPS, clips);
+        ADD(MASU_BLOB_CHANNELS, channels);
+        ADD(MASU_BLOB_KEYS, clip_keys);
+        ADD(MASU_BLOB_SKINS, skins);
+        ADD(MASU_BLOB_JOINTS, joints);
+        ADD(MASU_BLOB_SKIN_VERTICES, skin_vertices);
+        ((masu_blob_model_node *)support_blob_find(blob, MASU_BLOB_MODEL_NODES))[3].skin = 1;
     }
     support_blob_seal(blob->bytes, blob->size);
 }

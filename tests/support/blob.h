@@ -24,6 +24,9 @@
  *   models     0: instance 0   1: instance 1, hidden, of the kind of 0   2 "lid": a node "bend" without an
  *              instance, and below it "lid" with instance 2
  *
+ *   skin       of mesh 1, shown by node 3: joints 0 "bend" (node 0 of model 2) and 1 "lid" (node 1)
+ *   clips      of model 2: 0 "bend", 2 s: channels 0, 1 (linear)   1 "glow", 0.5 s: channel 2 (a step)
+ *
  * SUPPORT_DETAIL adds primitive 3, a triangle of the last square: the LOD of mesh 1. */
 #ifndef SUPPORT_BLOB_H
 #define SUPPORT_BLOB_H
@@ -45,6 +48,7 @@ enum {
     SUPPORT_DETAIL = 64, /* with SUPPORT_RASTER: a LOD. Not part of SUPPORT_ALL, nor is the next */
     SUPPORT_TRACE = 256, /* with SUPPORT_RASTER: trees for rays. Not part of SUPPORT_ALL */
     SUPPORT_LIVE = 512, /* with SUPPORT_RASTER: models that move. Not part of SUPPORT_ALL */
+    SUPPORT_SKIN = 1024, /* with SUPPORT_LIVE, without SUPPORT_DETAIL: mesh 1 bends, and has no occluder */
     SUPPORT_LIGHTING = 128 /* with SUPPORT_RASTER: a small relief, lights, probes, a sky from a picture */
 };
 

@@ -31,6 +31,9 @@ static uint8_t instance_flags[4];
 static masu_placed_model placed_models[4];
 static masu_node model_nodes[4];
 static uint32_t models_of[4];
+static _Alignas(64) unsigned char bent[4096]; /* clips and skins */
+static struct masu_frame_uniforms history;
+static struct masu_instance_data previous[4];
 static masu_blob_sdf_param params[4];
 static masu_batch batches[4];
 static masu_cull_node groups[4];
@@ -85,6 +88,13 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.models.models = placed_models;
     m.models.nodes = model_nodes;
     m.models.of_instance = models_of;
+    masu_arena arena;
+    masu_arena_begin(&arena, bent, sizeof bent);
+    masu_animation_lay(&m.models.animation, &arena, &m.plan);
+    masu_skins_lay(&m.models.skins, &arena, &m.plan);
+    assert_true(arena.used <= sizeof bent);
+    m.history.previous = &history;
+    m.instances.previous = previous;
     m.camera.keys = keys;
     m.sdf.params = params;
     m.draws.batches = batches;

@@ -34,8 +34,9 @@ static const char *const row_names[ROWS_MOST] = {
     "a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l",
     "m", "n", "o", "p", "q", "r", "s", "t", "u", "v", "w", "x",
     "y", "z", "a2", "b2", "c2", "d2", "e2", "f2", "g2", "h2", "i2", "j2",
-    "k2", "l2", "m2", "n2", "o2", "p2", "q2", "r2", "s2", "t2", "u2", "v2", "w2", "x2", "y2", "z2"};
-_Static_assert(ROWS_MOST <= 52, "names");
+    "k2", "l2", "m2", "n2", "o2", "p2", "q2", "r2", "s2", "t2", "u2", "v2", "w2", "x2", "y2", "z2",
+    "a3", "b3", "c3", "d3"};
+_Static_assert(ROWS_MOST <= 56, "names");
 
 /* guard | block | guard; the block starts at a multiple of MASU_ARENA_ALIGNMENT. */
 static _Alignas(64) unsigned char memory[GUARD_BYTES + BLOCK_BYTES + GUARD_BYTES];

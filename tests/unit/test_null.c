@@ -38,6 +38,7 @@ static masu_readback_image image;
 static masu_instance_state instance_state;
 static masu_model_state model_state;
 static masu_model added;
+static const masu_clip_use clip_use = {.weight = 1.0f};
 static masu_node_state node_state;
 static masu_punctual_light_state light_state;
 static masu_renderer *made;
@@ -63,6 +64,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_scene_sdf_param, (masu_scene_sdf_param(P(0, &scene), P(1, "a")), NO_RESULT))            \
     X(masu_scene_instance_name, (masu_scene_instance_name(P(0, &scene), 0), NO_RESULT))            \
     X(masu_scene_model_name, (masu_scene_model_name(P(0, &scene), 0), NO_RESULT))                  \
+    X(masu_scene_clip_name, (masu_scene_clip_name(P(0, &scene), 0, 0), NO_RESULT))                 \
     X(masu_scene_light_name, (masu_scene_light_name(P(0, &scene), 0), NO_RESULT))                  \
     X(masu_scene_class_of, ((void)masu_scene_class_of(P(0, &scene)), NO_RESULT))                   \
     X(masu_scene_class_name, (masu_scene_class_name(MASU_SCENE_SDF), NO_RESULT))                   \
@@ -105,6 +107,10 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state)))             \
     X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit)))                    \
+    X(masu_model_clips, ((void)masu_model_clips(P(0, &m), MODEL), NO_RESULT))                      \
+    X(masu_model_clip_find, ((void)masu_model_clip_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
+    X(masu_model_clip_duration, ((void)masu_model_clip_duration(P(0, &m), MODEL, 0), NO_RESULT))   \
+    X(masu_model_animate, masu_model_animate(P(0, &m), MODEL, P(1, &clip_use), 1))                 \
     X(masu_punctual_light_find, ((void)masu_punctual_light_find(P(0, &m), P(1, "a")), NO_RESULT))  \
     X(masu_punctual_light_at, ((void)masu_punctual_light_at(P(0, &m), 0), NO_RESULT))              \
     X(masu_punctual_light_get, masu_punctual_light_get(P(0, &m), LIGHT, P(1, &light_state)))       \

@@ -18,6 +18,7 @@ gpus=$1
 for scene in engine wet_city mirrors city textures glass night; do
     rows "$scene" "$scene" ''
 done
+rows skins test_skin 'skin|gbuffer'
 # What no rung has by itself.
 ladder=$(mktemp)
 trap 'rm -f "$ladder"' EXIT

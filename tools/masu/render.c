@@ -62,6 +62,18 @@ static void set_light(const masu_render_options *o, masu_light *light) {
     light->turbidity = (float)o->turbidity;
 }
 
+/* Every model that has clips plays its first one. */
+static bool animate(masu_session *s, double time, char *error, size_t size) {
+    for (uint32_t i = 0; i < s->scene.models; i++) {
+        masu_model model = masu_model_at(s->m, i);
+        masu_clip_use use = {.loop = 1, .time = time, .weight = 1.0f};
+        if (!masu_model_clips(s->m, model) || !masu_model_animate(s->m, model, &use, 1)) continue;
+        snprintf(error, size, "%s", masu_last_error(s->m)->text);
+        return false;
+    }
+    return true;
+}
+
 static bool measure(masu_session *s, const masu_render_options *o, uint32_t frame,
                     masu_vk_alloc_counts *counts, masu_sample *out, masu_stats_info *stats, char *error,
                     size_t size) {
@@ -77,6 +89,7 @@ static bool measure(masu_session *s, const masu_render_options *o, uint32_t fram
                          .time_step = o->rays ? MASU_PICTURE_STEP : (float)o->time_step,
                          .rung = o->target_ms > 0.0 ? MASU_RUNG_AUTO : o->rung,
                          .cut = o->rays && !frame}; /* the sum begins with the first one that counts */
+    if (o->animate && !animate(s, f.time, error, size)) return false;
     masu_commands commands;
     uint64_t callbacks = counts->allocations + counts->reallocations;
     uint64_t thread = masu_allocs_of_thread();
@@ -318,6 +331,8 @@ static const masu_option rows[] = {
              "not metered even where the scene asks for it"),
     MASU_CHOICE(masu_render_options, tone, "tone", "CURVE", tones,
                 "none, aces (filmic) or neutral; auto: aces"),
+    MASU_FLAG(masu_render_options, animate, "animate",
+              "models that have clips play their first one, by the time of the frame, again and again"),
     MASU_FLAG(masu_render_options, dither, "dither", "round to 8 bits with a pattern instead of bands"),
     MASU_REAL(masu_render_options, anisotropy, "anisotropy", "N", 1.0, 64.0,
               "samples of textures along the longer axis, where the device offers it (default 1)"),

@@ -8,6 +8,7 @@
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
 #include "bake/scene/groups.h"
+#include "bake/scene/skin.h"
 #include "bake/texture/texture.h"
 #include "bake/texture/trace_texture.h"
 #include "cli/cli.h"
@@ -105,6 +106,7 @@ bool masu_bake_build(const masu_bake_description *d, const masu_bake_options *op
     content->picture_side = d->reflections.texture_size;
     if (!build_scene(d, options, content, report)) return false;
     if (!masu_bake_make_textures(content, options->texture_path)) return false;
+    masu_bake_gather_skins(content);
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
     masu_bake_sort_occluders(content);

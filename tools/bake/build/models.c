@@ -7,6 +7,7 @@
 #include "bake/mesh/occluders.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/live.h"
+#include "bake/scene/skin.h"
 #include "cli/cli.h"
 
 #include <stdio.h>
@@ -29,6 +30,7 @@ typedef struct loaded_model {
     const char *path;            /* NULL: by formula */
     uint32_t shape;              /* of the description's */
     double merge;                /* metres, 0: as the file has it */
+    bool moving;                 /* with its clips and skins */
     masu_bake_textures textures; /* as imported; of a shape FORCED: it has coordinates */
     masu_bake_content piece;
     masu_bake_residence residence; /* of the vertices: the first variant's */
@@ -47,7 +49,9 @@ static loaded_model *find_loaded(const model_builder *b, const loaded_model *wan
     for (loaded_model *at = b->loaded; at; at = at->next) {
         bool same = wanted->path ? at->path && strcmp(at->path, wanted->path) == 0
                                  : !at->path && at->shape == wanted->shape;
-        if (same && at->merge == wanted->merge && at->textures == wanted->textures) return at;
+        if (same && at->merge == wanted->merge && at->moving == wanted->moving &&
+            at->textures == wanted->textures)
+            return at;
     }
     return NULL;
 }
@@ -65,7 +69,9 @@ static bool make_piece(const model_builder *b, const masu_bake_model *model, loa
         return true;
     }
     masu_cli_progress("importing %s", made->path);
-    if (!masu_bake_import(made->path, made->textures, &made->piece)) return false;
+    if (!(made->moving ? masu_bake_import_moving : masu_bake_import)(made->path, made->textures,
+                                                                     &made->piece))
+        return false;
     const char *problem = made->merge > 0 ? masu_bake_merge(&made->piece, made->merge) : NULL;
     return !problem || masu_bake_wrong(b->description, model->where, "gives %s", problem);
 }
@@ -84,6 +90,8 @@ static loaded_model *fetch(model_builder *b, const masu_bake_model *model) {
     loaded_model wanted = {.path = model->file,
                            .shape = model->shape,
                            .merge = model->merge,
+                           /* What is merged has lost its nodes. */
+                           .moving = model->file && model->moving && !(model->merge > 0),
                            .textures = model->file ? b->textures : MASU_BAKE_TEXTURES_OFF};
     if (b->textures != MASU_BAKE_TEXTURES_OFF && is_mapped(model))
         wanted.textures = MASU_BAKE_TEXTURES_FORCED;
@@ -190,7 +198,7 @@ static bool place(model_builder *b, const masu_bake_model *model, const char *na
     if (problem) return masu_bake_wrong(b->description, model->where, "gives %s", problem);
     from->residence = v->residence;
     if (!model->moving || masu_bake_count(content, MASU_BLOB_INSTANCES) == first) return true;
-    uint32_t made = masu_bake_add_model(content, &from->piece, first, model->translation, name,
+    uint32_t made = masu_bake_add_model(content, &from->piece, first, &placement, model->translation, name,
                                         hidden, *like);
     if (*like == MASU_BLOB_NONE) *like = made;
     masu_bake_carry_lights(content, lights, first);
@@ -222,6 +230,7 @@ static bool place_all(model_builder *b, const masu_bake_model *model, loaded_mod
         snprintf(number, sizeof number, ".%u", i);
         masu_bake_append_text(&name, model->name ? model->name : "spare");
         masu_bake_append_text(&name, number);
+        masu_bake_append(&name, "", 1);
         bool good = place(b, model, masu_bake_take_text(&b->pool, (const char *)name.data), true,
                           from, &like);
         masu_bake_release(&name);
@@ -248,7 +257,7 @@ static bool add_occluder(const model_builder *b, const masu_bake_model *model, u
     uint32_t last = MASU_BLOB_NONE;
     for (uint64_t i = first; i < masu_bake_count(content, MASU_BLOB_INSTANCES); i++) {
         uint32_t mesh = MASU_BAKE_INSTANCES(content)[i].mesh;
-        if (mesh == last) continue;
+        if (mesh == last || masu_bake_is_skinned(content, mesh)) continue;
         last = mesh;
         if (model->hides == MASU_BAKE_HIDES_WHOLE && !masu_bake_is_box(content, mesh, &box)) {
             char where[160];

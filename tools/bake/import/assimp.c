@@ -39,8 +39,8 @@ static void report(masu_import *m) {
         masu_import_format(w, "%u lights are neither points nor spots: there is nothing of them\n",
                            m->other_lights);
     }
-    if (m->skins || m->source->mNumAnimations) {
-        masu_bake_append_text(w, "animation is not supported, the rest pose is used\n");
+    if (!m->live && (m->skins || m->source->mNumAnimations)) {
+        masu_bake_append_text(w, "animations are of models that are \"moving\": this one has its rest pose\n");
     }
 }
 
@@ -70,7 +70,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
         masu_bake_append_text(error, "its nodes form a cycle, or are more than 4 million");
     } else if (m->full) {
         masu_bake_append_text(error, "more than 2^31 - 1 vertices or indices");
-    } else if (parts.bytes == 0) {
+    } else if (parts.bytes == 0 && masu_bake_count(&m->bent, MASU_BLOB_PRIMITIVES) == 0) {
         masu_bake_append_text(error, "it holds no triangles that could be drawn");
         masu_import_report_losses(m);
         if (m->warnings->bytes) { /* one line says why */
@@ -84,6 +84,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
             masu_import_walk(m, false);
         else
             masu_import_show_all(m);
+        if (m->live) masu_import_live(m);
         report(m);
         if (masu_bake_count(m->piece, MASU_BLOB_INSTANCES) == 0) {
             masu_bake_append_text(error, "no node shows its meshes with a finite transform");
@@ -117,8 +118,9 @@ static void note_remark(const char *text, char *user) {
     masu_bake_release(&line);
 }
 
-void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_bake_content *piece,
-                          masu_bake_buffer *warnings, masu_bake_buffer *error) {
+void masu_bake_read_model(const char *path, masu_bake_textures textures, bool moving,
+                          masu_bake_content *piece, masu_bake_buffer *warnings,
+                          masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     if (properties) {
         aiSetImportPropertyFloat(properties, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, CREASE_DEGREES);
@@ -149,6 +151,7 @@ void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_ba
                      .wanted = textures,
                      .piece = piece,
                      .gltf = dot && (!strcmp(dot, ".gltf") || !strcmp(dot, ".glb")),
+                     .live = moving && scene->mRootNode && masu_import_is_live(scene),
                      .warnings = warnings};
     convert(&m, error);
 }

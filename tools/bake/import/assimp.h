@@ -5,6 +5,7 @@
  *   assimp_mesh.c       aiMesh      -> one or more primitives (bake/mesh/triangles.c filters and welds)
  *   assimp_nodes.c      aiNode with meshes -> an instance; nodes that show the same set of meshes share
  *                       one mesh; aiLight -> a light of the nearest node above that is an instance
+ *   assimp_skin.c       aiNode, aiBone, aiAnimation of models that move: nodes, skins, clips
  *   assimp_text.c       its strings, and lines of text
  *
  * Nothing that Assimp returns is believed: indices, counts of faces, strings and transforms are
@@ -14,6 +15,7 @@
 #define MASU_BAKE_ASSIMP_H
 
 #include "bake/import/model.h"
+#include "bake/mesh/triangles.h"
 
 #include <assimp/scene.h>
 
@@ -47,6 +49,16 @@ typedef struct masu_import_loss {
     masu_bake_buffer names; /* of the first few */
 } masu_import_loss;
 
+/* A node of a file whose nodes are kept. */
+typedef struct masu_import_node {
+    const struct aiNode *node;
+    masu_bake_affine local, world;
+    uint32_t parent;   /* of these, or MASU_BLOB_NONE */
+    uint32_t instance; /* or MASU_BLOB_NONE */
+    bool needed;
+    uint32_t number; /* of the piece's nodes, once it is needed */
+} masu_import_node;
+
 typedef struct masu_import {
     const struct aiScene *source;
     const char *path;
@@ -64,6 +76,14 @@ typedef struct masu_import {
     uint32_t texture_count, bad_nodes, skins, unmapped, turned;
     uint32_t other_lights; /* neither points nor spots, or of no use */
     bool full, gltf;
+    /* Of a model that moves and has clips or skins: */
+    bool live;
+    uint32_t crowded, unbound; /* vertices of more than four joints, of none */
+    uint32_t lost_joints;      /* that are no nodes */
+    masu_bake_buffer nodes; /* masu_import_node */
+    masu_bake_content bent; /* meshes with bones, as they are bound: their mesh_parts are of it */
+    masu_bake_buffer influences; /* masu_bake_influence of each of its vertices; joints are bones, */
+                                 /* or their count: none */
 } masu_import;
 
 /* ---- assimp_text.c ---- */
@@ -85,6 +105,19 @@ void masu_import_report_losses(masu_import *m);
 /* Over all nodes. With `convert` their meshes are converted; without, then, instances and lights are
  * made. False: the nodes form a cycle, or are too many. */
 bool masu_import_walk(masu_import *m, bool convert);
+/* ---- assimp_skin.c ---- */
+
+/* Whether the file has clips or skins. */
+bool masu_import_is_live(const struct aiScene *scene);
+/* Whether a mesh is kept in `bent`. */
+bool masu_import_bends(const masu_import *m, unsigned mesh);
+/* Converts its triangles into `bent`. */
+void masu_import_bent_mesh(masu_import *m, const struct aiMesh *mesh, masu_bake_triangles *triangles,
+                           masu_bake_losses *lost);
+/* After the walk that made instances: meshes with bones become instances of their own, in their rest pose; nodes
+ * that anything needs, skins and clips become sections of the piece. */
+void masu_import_live(masu_import *m);
+
 /* A file may hold meshes and no nodes: each is then shown once, where it is. */
 void masu_import_show_all(masu_import *m);
 

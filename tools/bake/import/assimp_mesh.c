@@ -105,7 +105,8 @@ void masu_import_mesh(masu_import *m, unsigned index) {
     const struct aiMesh *mesh = m->source->mMeshes[index];
     if (m->mesh_done[index] || !mesh) return;
     m->mesh_done[index] = true;
-    m->mesh_parts[index].first = (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES);
+    masu_bake_content *to = masu_import_bends(m, index) ? &m->bent : m->piece;
+    m->mesh_parts[index].first = (uint32_t)masu_bake_count(to, MASU_BLOB_PRIMITIVES);
     if (!mesh->mVertices || !mesh->mFaces || mesh->mNumVertices == 0 || m->full) return;
     masu_bake_buffer indices = {0};
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
@@ -134,11 +135,14 @@ void masu_import_mesh(masu_import *m, unsigned index) {
         .material = material,
     };
     masu_bake_losses lost = {0};
-    if (!masu_bake_add_triangles(m->piece, &triangles, &lost)) m->full = true;
+    if (to == &m->bent)
+        masu_import_bent_mesh(m, mesh, &triangles, &lost);
+    else if (!masu_bake_add_triangles(m->piece, &triangles, &lost))
+        m->full = true;
     masu_bake_release(&indices);
     free(texcoords);
     note_losses(m, mesh, &lost);
     if (mesh->mNumBones) m->skins++;
     m->mesh_parts[index].count =
-        (uint32_t)masu_bake_count(m->piece, MASU_BLOB_PRIMITIVES) - m->mesh_parts[index].first;
+        (uint32_t)masu_bake_count(to, MASU_BLOB_PRIMITIVES) - m->mesh_parts[index].first;
 }

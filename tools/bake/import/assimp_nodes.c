@@ -62,6 +62,7 @@ typedef struct visit {
     masu_bake_affine parent; /* to world */
     masu_bake_affine space;  /* to the object space of the parent instance; without one to world */
     uint32_t parent_instance;
+    uint32_t parent_node; /* of `nodes`, where they are kept */
 } visit;
 
 static masu_bake_affine node_transform(const struct aiNode *node) {
@@ -135,12 +136,29 @@ static void convert_lights(masu_import *m, const struct aiNode *node, const masu
     }
 }
 
+/* Of a node's meshes those that no bones bend; as it has them, where that is all. */
+static unsigned stiff_meshes(const masu_import *m, const struct aiNode *node,
+                             const unsigned **meshes) {
+    unsigned total = m->source->mNumMeshes, bent = 0, count = 0;
+    for (unsigned i = 0; i < node->mNumMeshes && m->live; i++)
+        bent += node->mMeshes[i] < total && masu_import_bends(m, node->mMeshes[i]);
+    if (!bent) return node->mNumMeshes;
+    unsigned *kept = masu_bake_allocate(node->mNumMeshes * sizeof *kept); /* sets point into it */
+    for (unsigned i = 0; i < node->mNumMeshes; i++) {
+        if (node->mMeshes[i] < total && !masu_import_bends(m, node->mMeshes[i]))
+            kept[count++] = node->mMeshes[i];
+    }
+    *meshes = kept;
+    return count;
+}
+
 /* False where the node shows nothing; *instance stays then. */
 static bool make_instance(masu_import *m, const visit *v, const masu_bake_affine *world,
                           uint32_t *instance) {
     const struct aiNode *node = v->node;
-    uint32_t mesh = node->mMeshes && node->mNumMeshes ? mesh_of(m, node->mMeshes, node->mNumMeshes)
-                                                      : MASU_BLOB_NONE;
+    const unsigned *meshes = node->mMeshes;
+    unsigned count = meshes ? stiff_meshes(m, node, &meshes) : 0;
+    uint32_t mesh = count ? mesh_of(m, meshes, count) : MASU_BLOB_NONE;
     if (mesh == MASU_BLOB_NONE) return false;
     size_t length = (size_t)masu_import_length(&node->mName);
     uint32_t name = masu_bake_name(m->piece, node->mName.data, length);
@@ -150,11 +168,22 @@ static bool make_instance(masu_import *m, const visit *v, const masu_bake_affine
     return made != MASU_BLOB_NONE;
 }
 
+static uint32_t keep_node(masu_import *m, const visit *v, const masu_bake_affine *own,
+                          const masu_bake_affine *world, uint32_t instance) {
+    masu_import_node node = {.node = v->node,
+                             .local = *own,
+                             .world = *world,
+                             .parent = v->parent_node,
+                             .instance = instance};
+    masu_bake_append(&m->nodes, &node, sizeof node);
+    return (uint32_t)(m->nodes.bytes / sizeof node - 1);
+}
+
 /* Depth first with a stack of our own: a deep chain of nodes must not use up the machine's. */
 bool masu_import_walk(masu_import *m, bool convert) {
     masu_bake_buffer stack = {0};
     visit start = {m->source->mRootNode, masu_bake_identity(), masu_bake_identity(),
-                   MASU_BLOB_NONE};
+                   MASU_BLOB_NONE, MASU_BLOB_NONE};
     masu_bake_append(&stack, &start, sizeof start);
     uint32_t visited = 0;
     while (stack.bytes && visited++ < NODES_MAX) {
@@ -165,7 +194,7 @@ bool masu_import_walk(masu_import *m, bool convert) {
         masu_bake_affine own = node_transform(v.node);
         masu_bake_affine world = masu_bake_multiply(&v.parent, &own);
         masu_bake_affine space = masu_bake_multiply(&v.space, &own);
-        uint32_t instance = v.parent_instance;
+        uint32_t instance = v.parent_instance, kept = MASU_BLOB_NONE;
         const unsigned *meshes = v.node->mMeshes;
         unsigned count = meshes ? v.node->mNumMeshes : 0;
         if (convert) {
@@ -173,13 +202,15 @@ bool masu_import_walk(masu_import *m, bool convert) {
                 if (meshes[i] < m->source->mNumMeshes) masu_import_mesh(m, meshes[i]);
             }
         } else {
-            if (make_instance(m, &v, &world, &instance)) space = masu_bake_identity();
+            bool shows = make_instance(m, &v, &world, &instance);
+            if (shows) space = masu_bake_identity();
+            if (m->live) kept = keep_node(m, &v, &own, &world, shows ? instance : MASU_BLOB_NONE);
             convert_lights(m, v.node, &space, instance);
         }
         unsigned children = v.node->mChildren ? v.node->mNumChildren : 0;
         if (children > NODES_MAX) break;
         for (unsigned i = children; i > 0; i--) { /* reversed: the first child is popped first */
-            visit child = {v.node->mChildren[i - 1], world, space, instance};
+            visit child = {v.node->mChildren[i - 1], world, space, instance, kept};
             masu_bake_append(&stack, &child, sizeof child);
         }
     }

@@ -25,6 +25,7 @@ static void send_buffer(int fd, const masu_bake_buffer *buffer) {
 typedef struct import {
     const char *path;
     masu_bake_textures textures;
+    bool moving;
 } import;
 
 /* A file of a hundred bytes may claim that it holds a billion faces. What an honest one needs grows
@@ -45,7 +46,8 @@ static void import_in_child(void *argument, int fd) {
     limit_memory(wanted->path);
     masu_bake_content piece = {0};
     masu_bake_buffer warnings = {0}, error = {0};
-    masu_bake_read_model(wanted->path, wanted->textures, &piece, &warnings, &error);
+    masu_bake_read_model(wanted->path, wanted->textures, wanted->moving, &piece, &warnings,
+                         &error);
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
         send_buffer(fd, &piece.section[kind]);
     }
@@ -141,9 +143,9 @@ static bool readable(const char *path) {
     return true;
 }
 
-static bool receive(const char *path, masu_bake_textures textures, masu_bake_content *piece,
-                    masu_bake_buffer *output, masu_bake_buffer *warnings, masu_bake_buffer *error) {
-import wanted = {path, textures };
+static bool receive(import wanted, masu_bake_content *piece, masu_bake_buffer *output,
+                    masu_bake_buffer *warnings, masu_bake_buffer *error) {
+    const char *path = wanted.path;
     masu_bake_result result =
         masu_bake_fork(import_in_child, &wanted, MASU_BAKE_IMPORT_SECONDS, output);
     if (result.end != MASU_BAKE_EXITED || !take_piece(output, piece, warnings, error)) {
@@ -161,12 +163,21 @@ import wanted = {path, textures };
     return !problem;
 }
 
-bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece) {
-    if (!readable(path)) return false;
+static bool import_file(import wanted, masu_bake_content *piece) {
+    if (!readable(wanted.path)) return false;
     masu_bake_buffer output = {0}, warnings = {0}, error = {0};
-    bool good = receive(path, textures, piece, &output, &warnings, &error);
+    bool good = receive(wanted, piece, &output, &warnings, &error);
     masu_bake_release(&output);
     masu_bake_release(&warnings);
     masu_bake_release(&error);
     return good;
+}
+
+bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece) {
+    return import_file((import){path, textures, false}, piece);
+}
+
+bool masu_bake_import_moving(const char *path, masu_bake_textures textures,
+                             masu_bake_content *piece) {
+    return import_file((import){path, textures, true}, piece);
 }

@@ -18,4 +18,8 @@
 /* Fills `piece`. On false the error has been reported; losses are reported as warnings. */
 bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece);
 
+/* The same of a model that moves: with its clips and skins, and nodes for both. */
+bool masu_bake_import_moving(const char *path, masu_bake_textures textures,
+                             masu_bake_content *piece);
+
 #endif

@@ -13,8 +13,9 @@ typedef enum masu_bake_textures {
 } masu_bake_textures;
 
 /* Fills `piece`, which is not to be believed before it has been checked. Leaves warnings, one per line,
- * and on failure an error. */
-void masu_bake_read_model(const char *path, masu_bake_textures textures, masu_bake_content *piece,
-                          masu_bake_buffer *warnings, masu_bake_buffer *error);
+ * and on failure an error. moving: where the file has clips or skins, with these and the nodes they need. */
+void masu_bake_read_model(const char *path, masu_bake_textures textures, bool moving,
+                          masu_bake_content *piece, masu_bake_buffer *warnings,
+                          masu_bake_buffer *error);
 
 #endif

@@ -12,6 +12,7 @@
  * mesh's order, with its materials and vertices; only indices are added. */
 #include "bake/mesh/detail.h"
 #include "bake/mesh/surface.h"
+#include "bake/scene/skin.h"
 
 #include <meshoptimizer.h>
 #include <stdlib.h>
@@ -264,6 +265,7 @@ void masu_bake_make_lods(masu_bake_content *content, uint32_t levels,
                          masu_bake_lod_report *report) {
     uint64_t meshes = masu_bake_count(content, MASU_BLOB_MESHES);
     for (uint32_t m = 0; m < meshes && levels; m++) {
+        if (masu_bake_is_skinned(content, m)) continue;
         source s = {.content = content, .mesh = MASU_BAKE_MESHES(content)[m]};
         masu_bake_buffer corners = {0};
         masu_bake_surface_collect(content, s.mesh.first_primitive, s.mesh.primitive_count,

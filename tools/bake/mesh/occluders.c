@@ -3,6 +3,7 @@
  * are proven too. */
 #include "bake/mesh/occluders.h"
 #include "bake/mesh/surface.h"
+#include "bake/scene/skin.h"
 
 #include "cli/cli.h"
 
@@ -166,7 +167,8 @@ void masu_bake_make_occluders(masu_bake_content *content, double least,
     double *scales = largest_scales(content);
     for (uint32_t m = 0; m < meshes; m++) {
         report->given += has[m];
-        if (!has[m] && least > 0 && scales[m] > 0) make_one(content, m, least / scales[m], report);
+        if (!has[m] && least > 0 && scales[m] > 0 && !masu_bake_is_skinned(content, m))
+            make_one(content, m, least / scales[m], report);
     }
     free(scales);
     free(has);

@@ -28,6 +28,10 @@ static masu_bake_vec3 decode_octahedral(double x, double y) {
     return n;
 }
 
+masu_bake_vec3 masu_bake_decode_normal(const int16_t normal[2]) {
+    return decode_octahedral(normal[0] / 32767.0, normal[1] / 32767.0);
+}
+
 void masu_bake_encode_normal(masu_bake_vec3 n, int16_t out[2]) {
     double sum = fabs(n.x) + fabs(n.y) + fabs(n.z);
     double x = n.x / sum, y = n.y / sum;
@@ -144,6 +148,8 @@ typedef struct welder {
     uint32_t *slots; /* open addressing; vertex number in the primitive, or EMPTY_SLOT */
     size_t slot_count;
     masu_blob_primitive primitive; /* being built; its vertices are the last of the content */
+    masu_bake_buffer *bent; /* influences of its vertices, behind those of others; or NULL */
+    size_t bent_first;
     float shift[2]; /* whole turns taken off texture coordinates, so that they are small */
 } welder;
 
@@ -151,8 +157,9 @@ typedef struct welder {
 typedef struct corner {
     masu_blob_vertex vertex;
     float texcoord[2];
+    masu_bake_influence influence; /* zero where nothing bends */
 } corner;
-_Static_assert(sizeof(corner) == 24, "compared and hashed as bytes");
+_Static_assert(sizeof(corner) == 40, "compared and hashed as bytes");
 
 static void welder_begin(welder *w, uint32_t material) {
     memset(w->slots, 0xFF, w->slot_count * sizeof *w->slots);
@@ -161,12 +168,19 @@ static void welder_begin(welder *w, uint32_t material) {
         .first_vertex = (uint32_t)masu_bake_count(w->content, MASU_BLOB_VERTICES),
         .material = material,
     };
+    w->bent_first = w->bent ? w->bent->bytes : 0;
 }
 
 static void welder_end(welder *w) {
     if (w->primitive.index_count == 0) return;
     masu_bake_append(&w->content->section[MASU_BLOB_PRIMITIVES], &w->primitive,
                      sizeof w->primitive);
+}
+
+static bool same_influence(const welder *w, uint32_t there, const corner *c) {
+    if (!w->bent) return true;
+    const unsigned char *other = w->bent->data + w->bent_first + there * sizeof c->influence;
+    return memcmp(other, &c->influence, sizeof c->influence) == 0;
 }
 
 static uint32_t weld(welder *w, const corner *c) {
@@ -180,13 +194,14 @@ static uint32_t weld(welder *w, const corner *c) {
         const float *texcoord = MASU_BAKE_ARRAY(w->content, MASU_BLOB_TEXCOORDS, const float) +
                                 2 * ((size_t)p->first_vertex + there);
         if (memcmp(other, vertex, sizeof *vertex) == 0 &&
-            memcmp(texcoord, c->texcoord, sizeof c->texcoord) == 0) {
+            memcmp(texcoord, c->texcoord, sizeof c->texcoord) == 0 && same_influence(w, there, c)) {
             return there;
         }
     }
     w->slots[slot] = p->vertex_count;
     masu_bake_append(&w->content->section[MASU_BLOB_VERTICES], vertex, sizeof *vertex);
     masu_bake_append(&w->content->section[MASU_BLOB_TEXCOORDS], c->texcoord, sizeof c->texcoord);
+    if (w->bent) masu_bake_append(w->bent, &c->influence, sizeof c->influence);
     for (int k = 0; k < 3; k++) {
         float v = vertex->position[k];
         if (p->vertex_count == 0 || v < p->aabb_min[k]) p->aabb_min[k] = v;
@@ -249,7 +264,9 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
     }
     int16_t(*normals)[2] = masu_bake_allocate((size_t)t->vertex_count * sizeof *normals);
     make_normals(t, kept, count, normals, losses);
-    welder w = {.content = content, .slot_count = slots_for(count, t->vertex_count)};
+    welder w = {.content = content,
+                .slot_count = slots_for(count, t->vertex_count),
+                .bent = t->influences ? t->bent : NULL};
     w.slots = masu_bake_allocate(w.slot_count * sizeof *w.slots);
     if (t->repeats) find_shift(t, kept, count, w.shift);
     welder_begin(&w, t->material);
@@ -260,7 +277,8 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
         }
         for (int k = 0; k < 3; k++) {
             uint32_t from = kept[i + k];
-            corner made;
+            corner made = {.influence = {{0}, {0}}};
+            if (w.bent) made.influence = t->influences[from];
             memcpy(made.vertex.normal, normals[from], sizeof made.vertex.normal);
             /* + 0 turns -0 into 0: equal positions are equal bits. */
             for (int c = 0; c < 3; c++) {

@@ -5,6 +5,11 @@
 
 #include "bake/scene/content.h"
 
+/* What moves a vertex: up to four joints of its mesh; weights 65535 together. */
+typedef struct masu_bake_influence {
+    uint16_t joints[4], weights[4];
+} masu_bake_influence;
+
 /* Triangles of unknown quality become one or more primitives at the end of `content`. */
 typedef struct masu_bake_triangles {
     const float *positions; /* 3 per vertex */
@@ -15,6 +20,8 @@ typedef struct masu_bake_triangles {
     const uint32_t *indices;
     uint64_t index_count; /* a rest behind the last full triangle is ignored */
     uint32_t material;
+    const masu_bake_influence *influences; /* 1 per vertex, or NULL */
+    masu_bake_buffer *bent; /* with influences: gets those of each vertex that is made */
 } masu_bake_triangles;
 
 typedef struct masu_bake_losses {
@@ -32,5 +39,6 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
 
 /* Unit vector to two signed normalised components; blob.md gives the mapping. */
 void masu_bake_encode_normal(masu_bake_vec3 normal, int16_t out[2]);
+masu_bake_vec3 masu_bake_decode_normal(const int16_t normal[2]);
 
 #endif

@@ -3,6 +3,7 @@
  * is judged by the runtime's own reader, masu_scene_bind. */
 #include "bake/scene/check.h"
 #include "scene/punctual_light.h"
+#include "scene/skin.h"
 
 static bool finite_all(const float *values, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -182,6 +183,98 @@ static const char *check_lights(const masu_bake_content *c) {
     return NULL;
 }
 
+/* ---- Models that move: nodes, clips, skins ---- */
+
+static const char *check_nodes(const masu_bake_content *c) {
+    const masu_blob_model_node *nodes =
+        MASU_BAKE_ARRAY(c, MASU_BLOB_MODEL_NODES, const masu_blob_model_node);
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_MODEL_NODES); i++) {
+        if (!finite_all(nodes[i].local, 12)) return "a node whose transform is not finite";
+        if (nodes[i].parent != MASU_BLOB_NONE && nodes[i].parent >= i)
+            return "a node before the one above it";
+        if (nodes[i].instance != MASU_BLOB_NONE &&
+            nodes[i].instance >= masu_bake_count(c, MASU_BLOB_INSTANCES))
+            return "a node of no instance";
+        if (!name_ok(c, nodes[i].name)) return "a name out of range";
+    }
+    return NULL;
+}
+
+static const char *check_clips(const masu_bake_content *c) {
+    const masu_blob_clip *clips = MASU_BAKE_ARRAY(c, MASU_BLOB_CLIPS, const masu_blob_clip);
+    const masu_blob_channel *channels =
+        MASU_BAKE_ARRAY(c, MASU_BLOB_CHANNELS, const masu_blob_channel);
+    uint64_t next = 0, next_key = 0;
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_CLIPS); i++) {
+        if (clips[i].first_channel != next ||
+            clips[i].channel_count > masu_bake_count(c, MASU_BLOB_CHANNELS) - next ||
+            !in_range(&clips[i].duration, 1, 0, MASU_CLIP_SECONDS_MAX) ||
+            !name_ok(c, clips[i].name)) {
+            return "a clip out of range";
+        }
+        for (uint64_t end = next + clips[i].channel_count; next < end; next++) {
+            if (masu_wrong_channel(
+                    &channels[next], (uint32_t)masu_bake_count(c, MASU_BLOB_MODEL_NODES),
+                    MASU_BAKE_ARRAY(c, MASU_BLOB_KEYS, const masu_blob_key),
+                    masu_bake_count(c, MASU_BLOB_KEYS), next_key))
+                return "a channel out of range";
+            next_key += channels[next].key_count;
+        }
+    }
+    return next == masu_bake_count(c, MASU_BLOB_CHANNELS) ? NULL : "channels of no clip";
+}
+
+/* Its node shows a mesh whose vertices are those of the skin, and no other's. */
+static const char *check_skin(const masu_bake_content *c, const masu_blob_skin *s) {
+    const masu_blob_model_node *nodes =
+        MASU_BAKE_ARRAY(c, MASU_BLOB_MODEL_NODES, const masu_blob_model_node);
+    if (s->node >= masu_bake_count(c, MASU_BLOB_MODEL_NODES) ||
+        nodes[s->node].instance == MASU_BLOB_NONE)
+        return "a skin that nothing shows";
+    const masu_blob_mesh *m =
+        &MASU_BAKE_MESHES(c)[MASU_BAKE_INSTANCES(c)[nodes[s->node].instance].mesh];
+    uint64_t next = s->first_vertex;
+    for (uint32_t k = 0; k < m->primitive_count; k++) {
+        const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(c)[m->first_primitive + k];
+        if (p->first_vertex != next) return "a skin of other vertices than its mesh";
+        next += p->vertex_count;
+    }
+    if (next != (uint64_t)s->first_vertex + s->vertex_count)
+        return "a skin of other vertices than its mesh";
+    return NULL;
+}
+
+static const char *check_skins(const masu_bake_content *c) {
+    const masu_blob_skin *skins = MASU_BAKE_ARRAY(c, MASU_BLOB_SKINS, const masu_blob_skin);
+    const masu_blob_joint *joints = MASU_BAKE_ARRAY(c, MASU_BLOB_JOINTS, const masu_blob_joint);
+    const masu_blob_skin_vertex *vertices =
+        MASU_BAKE_ARRAY(c, MASU_BLOB_SKIN_VERTICES, const masu_blob_skin_vertex);
+    uint64_t next_joint = 0, next = 0;
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_SKINS); i++) {
+        const masu_blob_skin *s = &skins[i];
+        const char *problem = check_skin(c, s);
+        if (problem) return problem;
+        if (s->first_joint != next_joint || !s->joint_count || s->joint_count > 65536 ||
+            s->joint_count > masu_bake_count(c, MASU_BLOB_JOINTS) - next_joint ||
+            s->first_skin_vertex != next || !s->vertex_count ||
+            s->vertex_count > masu_bake_count(c, MASU_BLOB_SKIN_VERTICES) - next) {
+            return "a skin out of range";
+        }
+        for (uint32_t k = 0; k < s->joint_count; k++) {
+            if (masu_wrong_joint(&joints[next_joint + k],
+                                 (uint32_t)masu_bake_count(c, MASU_BLOB_MODEL_NODES)))
+                return "a joint out of range";
+        }
+        for (uint32_t k = 0; k < s->vertex_count; k++) {
+            if (masu_wrong_skin_vertex(&vertices[next + k], joints + next_joint, s->joint_count))
+                return "a vertex that no joints move";
+        }
+        next_joint += s->joint_count;
+        next += s->vertex_count;
+    }
+    return NULL;
+}
+
 const char *masu_bake_check(const masu_bake_content *piece) {
     const char *problem = check_sections(piece);
     if (!problem) problem = check_materials(piece);
@@ -189,5 +282,8 @@ const char *masu_bake_check(const masu_bake_content *piece) {
     if (!problem) problem = check_geometry(piece);
     if (!problem) problem = check_instances(piece);
     if (!problem) problem = check_lights(piece);
+    if (!problem) problem = check_nodes(piece);
+    if (!problem) problem = check_clips(piece);
+    if (!problem) problem = check_skins(piece);
     return problem;
 }

@@ -1,6 +1,8 @@
 /* live.c: see live.h. */
 #include "bake/scene/live.h"
 
+#include "bake/scene/skin.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,15 +25,10 @@ static bool relative(const masu_bake_affine *above, const masu_bake_affine *worl
     return true;
 }
 
-uint32_t masu_bake_add_model(masu_bake_content *content, const masu_bake_content *piece,
-                             uint64_t first, masu_bake_vec3 translation, const char *name,
-                             bool hidden, uint32_t like) {
-    uint32_t index = (uint32_t)masu_bake_count(content, MASU_BLOB_MODELS);
-    uint32_t first_node = (uint32_t)masu_bake_count(content, MASU_BLOB_MODEL_NODES);
+/* A node for each instance. */
+static void add_instances(masu_bake_content *content, const masu_bake_content *piece, uint64_t first,
+                          const masu_bake_affine *back, uint32_t first_node) {
     uint64_t count = masu_bake_count(content, MASU_BLOB_INSTANCES) - first;
-    masu_bake_affine own = masu_bake_translation(translation);
-    masu_bake_vec3 zero = {0, 0, 0};
-    masu_bake_affine back = masu_bake_translation(masu_bake_sub(zero, translation));
     for (uint32_t i = 0; i < count; i++) {
         const masu_blob_instance *n = &MASU_BAKE_INSTANCES(content)[first + i];
         const char *text = masu_bake_name_text(piece, MASU_BAKE_INSTANCES(piece)[i].name);
@@ -43,18 +40,57 @@ uint32_t masu_bake_add_model(masu_bake_content *content, const masu_bake_content
             masu_bake_affine above = masu_bake_transform(&MASU_BAKE_INSTANCES(content)[n->parent]);
             if (relative(&above, &world, &local)) node.parent = first_node + n->parent - (uint32_t)first;
         }
-        if (node.parent == MASU_BLOB_NONE) local = masu_bake_multiply(&back, &world);
+        if (node.parent == MASU_BLOB_NONE) local = masu_bake_multiply(back, &world);
         store(&local, node.local);
         masu_bake_append(&content->section[MASU_BLOB_MODEL_NODES], &node, sizeof node);
     }
-    masu_blob_model model = {.first_node = first_node,
-                             .node_count = (uint32_t)count,
-                             .name = name ? masu_bake_name(content, name, strlen(name))
-                                          : MASU_BLOB_NONE,
-                             .flags = hidden ? MASU_MODEL_HIDDEN : 0,
-                             .like = like == MASU_BLOB_NONE ? index : like};
+}
+
+/* The piece's own; the topmost ones hold where the piece is placed. */
+static void add_nodes(masu_bake_content *content, const masu_bake_content *piece, uint64_t first,
+                      const masu_bake_affine *own, uint32_t first_node) {
+    for (uint64_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MODEL_NODES); i++) {
+        masu_blob_model_node node = NODES(piece)[i];
+        const char *text = masu_bake_name_text(piece, node.name);
+        node.name = masu_bake_name(content, text, strlen(text));
+        node.skin = 0; /* masu_bake_add_skins gives it a number */
+        if (node.instance != MASU_BLOB_NONE) node.instance += (uint32_t)first;
+        if (node.parent != MASU_BLOB_NONE) {
+            node.parent += first_node;
+        } else {
+            masu_bake_affine local;
+            for (int k = 0; k < 12; k++) local.m[k] = (double)node.local[k];
+            local = masu_bake_multiply(own, &local);
+            store(&local, node.local);
+        }
+        masu_bake_append(&content->section[MASU_BLOB_MODEL_NODES], &node, sizeof node);
+    }
+}
+
+uint32_t masu_bake_add_model(masu_bake_content *content, const masu_bake_content *piece,
+                             uint64_t first, const masu_bake_affine *placement,
+                             masu_bake_vec3 translation, const char *name, bool hidden,
+                             uint32_t like) {
+    uint32_t index = (uint32_t)masu_bake_count(content, MASU_BLOB_MODELS);
+    uint32_t first_node = (uint32_t)masu_bake_count(content, MASU_BLOB_MODEL_NODES);
+    masu_bake_affine own = masu_bake_translation(translation);
+    masu_bake_vec3 zero = {0, 0, 0};
+    masu_bake_affine back = masu_bake_translation(masu_bake_sub(zero, translation));
+    masu_bake_affine inside = masu_bake_multiply(&back, placement);
+    if (masu_bake_count(piece, MASU_BLOB_MODEL_NODES))
+        add_nodes(content, piece, first, &inside, first_node);
+    else
+        add_instances(content, piece, first, &back, first_node);
+    masu_blob_model model = {
+        .first_node = first_node,
+        .node_count = (uint32_t)masu_bake_count(content, MASU_BLOB_MODEL_NODES) - first_node,
+        .name = name ? masu_bake_name(content, name, strlen(name)) : MASU_BLOB_NONE,
+        .flags = hidden ? MASU_MODEL_HIDDEN : 0,
+        .like = like == MASU_BLOB_NONE ? index : like};
     store(&own, model.transform);
     masu_bake_append(&content->section[MASU_BLOB_MODELS], &model, sizeof model);
+    masu_bake_add_skins(content, piece, index);
+    if (like == MASU_BLOB_NONE) masu_bake_add_clips(content, piece, index);
     return index;
 }
 

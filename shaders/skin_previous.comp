@@ -1,0 +1,27 @@
+/*
+ * skin_previous.comp: where the vertices of skin.comp were in the previous frame, whose matrices lie behind those
+ * of this one. Computed again from them, and not what skin.comp has left: no state crosses frames.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_skin_previous
+#include "shared/masu_shared.h"
+#include "shared/push.glsl"
+#include "shared/skinning.glsl"
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PREVIOUS_VERTICES, std430) writeonly buffer
+    PreviousVertices
+{
+    float previous_vertices[];
+};
+
+void main()
+{
+    uint rest, vertex, matrices;
+    if (!masu_find_vertex(push.half_elements, rest, vertex, matrices)) return;
+    vec3 position = masu_bend(rest, matrices).position;
+    uint k = 3u * (vertex - push.first_vertex);
+    previous_vertices[k] = position.x;
+    previous_vertices[k + 1u] = position.y;
+    previous_vertices[k + 2u] = position.z;
+}
