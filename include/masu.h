@@ -346,8 +346,9 @@ typedef enum masu_knob_use {
     WORD(  masu_switch,      sharpen,                                SHARPEN,                      \
            "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                       \
            "A pass of the output size.")                                                           \
-    NUMBER(float,            sharpness,            0,    64,   0,    SHARPENED, "stops",           \
-           "How much less RCAS sharpens: 0 is sharpest, each stop halves it (AMD's definition).",  \
+    NUMBER(float,            sharpness,            -1,   64,   0.2,  SHARPENED, "stops",           \
+           "How much less RCAS sharpens: each stop halves it (AMD's definition). Below 0: no stop,"\
+           " the sharpest.",                                                                       \
            "None.")                                                                                \
     WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
            "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
@@ -860,8 +861,7 @@ typedef struct masu_desc {
     masu_rung rungs[MASU_MAX_RUNGS]; /* in falling quality by convention; any order works */
     /* The rungs where rung_count is 0. ON: up to eight that were measured beforehand for the scene's
      * class (masu_ladder_of), with their flips, and their times as those governor.costs that are 0.
-     * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS at sharpness
-     * 0.2). AUTO: ON with a governor, else OFF. */
+     * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS). AUTO: ON with a governor, else OFF. */
     masu_switch ladder;
     float flips[MASU_MAX_RUNGS]; /* error of each rung, mean FLIP, 0..1; 0: unknown. Decides nothing: the
                                     plan says it again */
@@ -969,7 +969,14 @@ MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *
 MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
                                                const masu_targets *targets, masu_detail *detail);
 
-/* The description with every default filled in, as masu_init uses it. Needs no device. */
+/* The description with the defaults filled in, as masu_init uses it: by the same function. Needs no device, and
+ * is the same when resolved again. What depends on the scene (or source) or on the output's size is left as it
+ * is where these are not given; resolve after the last change, for what follows from another field then stays.
+ * These words stay AUTO:
+ *  - rungs[].march: it is the name of the fast way itself;
+ *  - rungs[].specular and .occlusion where the scene has use for them: with ON masu_init fails on a device
+ *    that lacks the storage buffers, with AUTO it goes without;
+ *  - ray_query, half_floats, debug.share_rays: these follow from the device. */
 MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
 
 /* Fills rung_count, rungs, flips and governor.costs with the measured ladder of the scene's class, or of
