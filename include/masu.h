@@ -636,7 +636,8 @@ typedef struct masu_vulkan {
     VkDevice device;                  /* required */
     uint32_t queue_family;            /* graphics + compute */
     const VkAllocationCallbacks
-        *allocator; /* passed to every create and allocate; NULL: the driver's own */
+        *allocator; /* passed to every create and allocate; NULL: the driver's own. pfnAllocation,
+                       pfnReallocation and pfnFree are required, of the two internal ones both or none */
     VkPipelineCache pipeline_cache; /* used in masu_init; VK_NULL_HANDLE: none */
     /* Features that the device was created with; Vulkan does not let a library ask. */
     uint32_t texture_compression_bc; /* not 0: textureCompressionBC. Textures then stay compressed:

@@ -821,8 +821,62 @@ static void a_missing_vulkan_handle_is_named(void **state) {
     masu_memory memory;
     masu_detail detail;
     d.vulkan = full_desc().vulkan;
+    d.vulkan.allocator = NULL;
     assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_DEVICE);
     assert_string_equal(detail.what, "vkGetDeviceProcAddr"); /* no_function knows none */
+}
+
+static void *VKAPI_PTR no_allocation(void *user, size_t size, size_t align, VkSystemAllocationScope s) {
+    (void)user, (void)size, (void)align, (void)s;
+    return NULL;
+}
+static void *VKAPI_PTR no_reallocation(void *user, void *from, size_t size, size_t align,
+                                       VkSystemAllocationScope s) {
+    (void)user, (void)from, (void)size, (void)align, (void)s;
+    return NULL;
+}
+static void VKAPI_PTR no_free(void *user, void *at) { (void)user, (void)at; }
+static void VKAPI_PTR no_notice(void *user, size_t size, VkInternalAllocationType t,
+                                VkSystemAllocationScope s) {
+    (void)user, (void)size, (void)t, (void)s;
+}
+
+/* A driver calls them without a look. */
+static void a_missing_callback_of_the_allocator_is_named(void **state) {
+    (void)state;
+    const VkAllocationCallbacks all = {
+        NULL, no_allocation, no_reallocation, no_free, no_notice, no_notice};
+    static const char *const names[] = {"pfnAllocation", "pfnReallocation", "pfnFree",
+                                        "pfnInternalAllocation", "pfnInternalFree"};
+    for (int missing = -1; missing <= 5; missing++) {
+        masu_desc d = source_desc(64, 64);
+        masu_memory memory;
+        masu_detail detail;
+        VkAllocationCallbacks some = all;
+        d.vulkan = full_desc().vulkan;
+        d.vulkan.allocator = &some;
+        if (missing == 0) some.pfnAllocation = NULL;
+        if (missing == 1) some.pfnReallocation = NULL;
+        if (missing == 2) some.pfnFree = NULL;
+        if (missing == 3 || missing == 5) some.pfnInternalAllocation = NULL;
+        if (missing == 4 || missing == 5) some.pfnInternalFree = NULL;
+        if (missing < 0 || missing == 5) { /* taken: what comes next is missing */
+            assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_DEVICE);
+            continue;
+        }
+        assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_ARGUMENT);
+        assert_memory_equal(detail.what, "vulkan.allocator.", 17);
+        assert_string_equal(detail.what + 17, names[missing]);
+        assert_non_null(strstr(detail.text, " is NULL"));
+    }
+    const VkAllocationCallbacks none = {0};
+    masu_desc d = source_desc(64, 64);
+    masu_detail detail;
+    masu_memory memory;
+    d.vulkan = full_desc().vulkan;
+    d.vulkan.allocator = &none;
+    assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.text, "vulkan.allocator.pfnAllocation is NULL");
 }
 
 static void every_result_has_its_text(void **state) {
@@ -866,6 +920,7 @@ int main(void) {
         cmocka_unit_test(more_transparents_than_can_be_recorded_are_refused),
         cmocka_unit_test(what_no_device_is_needed_for_is_refused_without_one),
         cmocka_unit_test(a_missing_vulkan_handle_is_named),
+        cmocka_unit_test(a_missing_callback_of_the_allocator_is_named),
         cmocka_unit_test(every_result_has_its_text),
     };
     return cmocka_run_group_tests_name("desc", tests, NULL, NULL);
