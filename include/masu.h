@@ -1139,7 +1139,27 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
 /* For the governor: how long the slot's last frame took by the host's clock, ms: from its submit, or
  * from the end of the previous frame if that was later, to its fence. To be called, if at all, after the
  * fence has been waited for and before the slot is used again. A time of the whole interval between
- * frames will not do where the display makes the host wait. Values that are none are left out. */
+ * frames will not do where the display makes the host wait. Values that are none are left out. With two
+ * frames in flight:
+ *
+ *     double submitted[2], ended = 0;                     // per slot; of the frame before, ms
+ *     for (uint64_t n = 0;; n++) {
+ *         uint32_t slot = n % 2;                          // what commands.slot will be
+ *         if (n >= 2) {
+ *             wait for fence[slot];                       // of frame n - 2
+ *             double now = clock_ms();
+ *             masu_frame_wall(m, slot, now - fmax(submitted[slot], ended));
+ *             ended = now;
+ *         }
+ *         masu_frame(m, &frame, &commands);               // the governor reads it here
+ *         submitted[slot] = clock_ms();
+ *         submit(commands.buffer, fence[slot]);
+ *     }
+ *
+ * What the host submits with the frame under the same fence, passes of its own say, is in this time, and the
+ * target has to hold it too; it is not in the timestamps. Where the fence had been signalled before the host came
+ * to wait, the time is too long by the difference: wait on it as soon as nothing else is to be done, or leave the
+ * call out for such a frame. */
 MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
 
 /* Why the last masu_load, masu_frame, or call that asks or changes an instance, model or punctual light
@@ -1350,9 +1370,14 @@ typedef struct masu_stats_info {
     masu_governor_info governor; /* as of the frame that was handed out last, whatever the slot */
 } masu_stats_info;
 
-/* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for,
- * before the slot is used again. Reads memory, calls no driver. MASU_ERROR_ARGUMENT: no such slot.
- * MASU_INCOMPLETE: the slot has not been used yet. */
+/* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for, before the slot is
+ * used again: from masu_frame until then `frame`, `rung` and what the host counts (draws, lights, views) are of the
+ * frame that was handed out, and what the GPU writes (times, counters, images) is of no frame in particular.
+ * Reads memory, calls no driver, so it cannot look at fences: only where there are timestamps (debug.timestamps,
+ * or a governor that takes them) does the library see whether the frame has ended.
+ * MASU_ERROR_ARGUMENT: no such slot, or a NULL pointer. MASU_INCOMPLETE: the slot has not been used yet, or
+ * there are timestamps and its frame has not ended or was never submitted; of that frame `frame` and `rung`
+ * alone are filled in. */
 MASU_API masu_result masu_stats(const masu_renderer *renderer, uint32_t slot, masu_stats_info *out);
 
 /* How much of each thing the renderer holds: to be pasted into masu_limits. */
@@ -1366,8 +1391,7 @@ typedef struct masu_readback_image {
 } masu_readback_image;
 
 /* One image of the slot's last frame, asked for by desc.readback. Call as masu_stats.
- * MASU_ERROR_ARGUMENT: not asked for, or no such slot. MASU_INCOMPLETE: the slot has not been used
- * yet. */
+ * MASU_ERROR_ARGUMENT: not asked for, no such slot, or a NULL pointer. MASU_INCOMPLETE: as masu_stats. */
 MASU_API masu_result masu_readback(const masu_renderer *renderer, uint32_t slot,
                                    masu_readback_bits which, masu_readback_image *out);
 

@@ -363,6 +363,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     m->timeline.cut = 0;
     m->timeline.slots[f.slot].frame = m->timeline.frame++;
     m->timeline.slots[f.slot].rung = f.desc.rung;
+    masu_slot_begin(m, f.slot);
     if (m->governor) {
         if (frame->rung != MASU_RUNG_AUTO)
             masu_governor_override(m->governor, f.number, frame->rung);
