@@ -355,8 +355,9 @@ typedef enum masu_knob_use {
     WORD(  masu_switch,      sharpen,                                SHARPEN,                      \
            "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                       \
            "A pass of the output size.")                                                           \
-    NUMBER(float,            sharpness,            0,    64,   0,    SHARPENED, "stops",           \
-           "How much less RCAS sharpens: 0 is sharpest, each stop halves it (AMD's definition).",  \
+    NUMBER(float,            sharpness,            -1,   64,   0.2,  SHARPENED, "stops",           \
+           "How much less RCAS sharpens: each stop halves it (AMD's definition). Below 0: no stop,"\
+           " the sharpest.",                                                                       \
            "None.")                                                                                \
     WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
            "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
@@ -644,7 +645,8 @@ typedef struct masu_vulkan {
     VkDevice device;                  /* required */
     uint32_t queue_family;            /* graphics + compute */
     const VkAllocationCallbacks
-        *allocator; /* passed to every create and allocate; NULL: the driver's own */
+        *allocator; /* passed to every create and allocate; NULL: the driver's own. pfnAllocation,
+                       pfnReallocation and pfnFree are required, of the two internal ones both or none */
     VkPipelineCache pipeline_cache; /* used in masu_init; VK_NULL_HANDLE: none */
     /* Features that the device was created with; Vulkan does not let a library ask. */
     uint32_t texture_compression_bc; /* not 0: textureCompressionBC. Textures then stay compressed:
@@ -876,8 +878,7 @@ typedef struct masu_desc {
     masu_rung rungs[MASU_MAX_RUNGS]; /* in falling quality by convention; any order works */
     /* The rungs where rung_count is 0. ON: up to eight that were measured beforehand for the scene's
      * class (masu_ladder_of), with their flips, and their times as those governor.costs that are 0.
-     * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS at sharpness
-     * 0.2). AUTO: ON with a governor, else OFF. */
+     * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS). AUTO: ON with a governor, else OFF. */
     masu_switch ladder;
     float flips[MASU_MAX_RUNGS]; /* error of each rung, mean FLIP, 0..1; 0: unknown. Decides nothing: the
                                     plan says it again */
@@ -993,7 +994,14 @@ MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent
                                                const masu_targets *targets,
                                                const masu_viewport *viewports, masu_detail *detail);
 
-/* The description with every default filled in, as masu_init uses it. Needs no device. */
+/* The description with the defaults filled in, as masu_init uses it: by the same function. Needs no device, and
+ * is the same when resolved again. What depends on the scene (or source) or on the output's size is left as it
+ * is where these are not given; resolve after the last change, for what follows from another field then stays.
+ * These words stay AUTO:
+ *  - rungs[].march: it is the name of the fast way itself;
+ *  - rungs[].specular and .occlusion where the scene has use for them: with ON masu_init fails on a device
+ *    that lacks the storage buffers, with AUTO it goes without;
+ *  - ray_query, half_floats, debug.share_rays: these follow from the device. */
 MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
 
 /* Fills rung_count, rungs, flips and governor.costs with the measured ladder of the scene's class, or of
@@ -1160,7 +1168,27 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
 /* For the governor: how long the slot's last frame took by the host's clock, ms: from its submit, or
  * from the end of the previous frame if that was later, to its fence. To be called, if at all, after the
  * fence has been waited for and before the slot is used again. A time of the whole interval between
- * frames will not do where the display makes the host wait. Values that are none are left out. */
+ * frames will not do where the display makes the host wait. Values that are none are left out. With two
+ * frames in flight:
+ *
+ *     double submitted[2], ended = 0;                     // per slot; of the frame before, ms
+ *     for (uint64_t n = 0;; n++) {
+ *         uint32_t slot = n % 2;                          // what commands.slot will be
+ *         if (n >= 2) {
+ *             wait for fence[slot];                       // of frame n - 2
+ *             double now = clock_ms();
+ *             masu_frame_wall(m, slot, now - fmax(submitted[slot], ended));
+ *             ended = now;
+ *         }
+ *         masu_frame(m, &frame, &commands);               // the governor reads it here
+ *         submitted[slot] = clock_ms();
+ *         submit(commands.buffer, fence[slot]);
+ *     }
+ *
+ * What the host submits with the frame under the same fence, passes of its own say, is in this time, and the
+ * target has to hold it too; it is not in the timestamps. Where the fence had been signalled before the host came
+ * to wait, the time is too long by the difference: wait on it as soon as nothing else is to be done, or leave the
+ * call out for such a frame. */
 MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
 
 /* Why the last masu_load, masu_frame, or call that asks or changes an instance, model or punctual light
@@ -1406,9 +1434,14 @@ typedef struct masu_stats_info {
     masu_governor_info governor; /* as of the frame that was handed out last, whatever the slot */
 } masu_stats_info;
 
-/* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for,
- * before the slot is used again. Reads memory, calls no driver. MASU_ERROR_ARGUMENT: no such slot.
- * MASU_INCOMPLETE: the slot has not been used yet. */
+/* What is known of the slot's last frame. Call when `commands.slot`'s fence has been waited for, before the slot is
+ * used again: from masu_frame until then `frame`, `rung` and what the host counts (draws, lights, views) are of the
+ * frame that was handed out, and what the GPU writes (times, counters, images) is of no frame in particular.
+ * Reads memory, calls no driver, so it cannot look at fences: only where there are timestamps (debug.timestamps,
+ * or a governor that takes them) does the library see whether the frame has ended.
+ * MASU_ERROR_ARGUMENT: no such slot, or a NULL pointer. MASU_INCOMPLETE: the slot has not been used yet, or
+ * there are timestamps and its frame has not ended or was never submitted; of that frame `frame` and `rung`
+ * alone are filled in. */
 MASU_API masu_result masu_stats(const masu_renderer *renderer, uint32_t slot, masu_stats_info *out);
 
 /* How much of each thing the renderer holds: to be pasted into masu_limits. */
@@ -1422,8 +1455,7 @@ typedef struct masu_readback_image {
 } masu_readback_image;
 
 /* One image of the slot's last frame, asked for by desc.readback. Call as masu_stats.
- * MASU_ERROR_ARGUMENT: not asked for, or no such slot. MASU_INCOMPLETE: the slot has not been used
- * yet. */
+ * MASU_ERROR_ARGUMENT: not asked for, no such slot, or a NULL pointer. MASU_INCOMPLETE: as masu_stats. */
 MASU_API masu_result masu_readback(const masu_renderer *renderer, uint32_t slot,
                                    masu_readback_bits which, masu_readback_image *out);
 

@@ -137,7 +137,7 @@ $(MADE)/gen/scene_texts.list: force
 
 # The tables of shaders/brdf and the tile of shaders/noise. Objects wait for what is generated, so these
 # programs have none; the tables take 5 s, and minutes without -O2.
-$(MADE)/tools/make_%: tools/generate/make_%.c shaders/shared/masu_shared.h $(MADE)/gen/tables.h
+$(MADE)/tools/make_%: tools/generate/make_%.c $(addprefix shaders/shared/,masu_shared.h floats.h) $(MADE)/gen/tables.h
 	@mkdir -p $(@D)
 	$(V)$(CC) -std=c11 $(WARNINGS) -O2 -ffp-contract=off -Ishaders -Itools -I$(MADE)/gen $< -lm -o $@
 $(MADE)/tools/make_smaa_area: tools/generate/smaa_tables.h

@@ -381,6 +381,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     m->timeline.slots[f.slot].viewport = m->timeline.viewport = f.desc.viewport;
     const masu_rung_plan *rp = &m->plan.rungs[f.desc.rung];
     m->timeline.slots[f.slot].render = (VkExtent2D){rp->render_width, rp->render_height};
+    masu_slot_begin(m, f.slot);
     if (m->governor) {
         if (frame->rung != MASU_RUNG_AUTO && !frame->viewport)
             masu_governor_override(m->governor, f.number, frame->rung);

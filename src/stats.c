@@ -13,11 +13,26 @@
 
 /* ---- Times ----------------------------------------------------------------------------------- */
 
+static uint64_t *stamps_of(const masu_renderer *m, uint32_t slot) {
+    unsigned char *from = masu_buffer_pointer(&m->device, MASU_BUFFER_READBACK, slot);
+    return (uint64_t *)(void *)(from + m->plan.readback_times);
+}
+
+/* What no clock shows: counts of fewer bits are below it. The frame overwrites it when it ends. */
+#define NO_STAMP UINT64_MAX
+
+void masu_slot_begin(masu_renderer *m, uint32_t slot) {
+    if (m->device.queries) stamps_of(m, slot)[masu_stamps(&m->plan.desc) - 1] = NO_STAMP;
+}
+
+/* Whether the slot's frame has ended, as far as that can be told without asking the driver. */
+static int has_ended(const masu_renderer *m, uint32_t slot) {
+    return !m->device.queries ||
+           stamps_of(m, slot)[masu_stamps(&m->plan.desc) - 1] != NO_STAMP;
+}
+
 static uint64_t stamp_ns(const masu_renderer *m, uint32_t slot, uint32_t from, uint32_t to) {
-    const uint64_t *stamps =
-        (const uint64_t *)(const void *)(masu_buffer_pointer(&m->device, MASU_BUFFER_READBACK,
-                                                             slot) +
-                                         m->plan.readback_times);
+    const uint64_t *stamps = stamps_of(m, slot);
     uint32_t bits = m->device.vk.queue_family.timestampValidBits;
     uint64_t mask = bits >= 64 ? UINT64_MAX : ((uint64_t)1 << bits) - 1;
     /* The counter may wrap between two stamps: the difference under the mask is right all the same. */
@@ -45,7 +60,8 @@ int masu_slot_sample(const masu_renderer *m, uint32_t slot, masu_governor_sample
     const masu_slot *held = &m->timeline.slots[slot];
     *out =
         (masu_governor_sample){.frame = held->frame, .rung = held->rung, .wall_ms = held->wall_ms};
-    if (held->frame == UINT64_MAX || held->viewport) return 0; /* the governor's are of the first */
+    /* None, never submitted, or not the governor's, whose are those of the first viewport. */
+    if (held->frame == UINT64_MAX || held->viewport || !has_ended(m, slot)) return 0;
     if (stamps) out->gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;
     for (uint32_t p = 0; p + 2 <= stamps && stamps > 2; p++) {
         if (is_fixed_pass(p) && masu_has_pass(&m->plan.rungs[held->rung].active, p))
@@ -119,6 +135,7 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
         out->governor.reason_text = masu_governor_reason_string(MASU_GOVERNOR_REASON_NONE);
     if (out->frame == UINT64_MAX) return MASU_INCOMPLETE;
     out->rung = m->timeline.slots[slot].rung;
+    if (!has_ended(m, slot)) return MASU_INCOMPLETE;
     out->view_count = m->plan.needs.raster ? m->plan.views : 0;
     memcpy(out->views, m->visible.slot_views[slot], sizeof out->views);
     out->lights = m->plan.scene.lights;
@@ -152,7 +169,7 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
     while (bit < MASU_READBACK_IMAGES && which != 1u << bit) bit++;
     if (bit == MASU_READBACK_IMAGES || !(m->plan.desc.readback & 1u << bit))
         return MASU_ERROR_ARGUMENT;
-    if (m->timeline.slots[slot].frame == UINT64_MAX) return MASU_INCOMPLETE;
+    if (m->timeline.slots[slot].frame == UINT64_MAX || !has_ended(m, slot)) return MASU_INCOMPLETE;
     uint32_t id = 1;
     while (masu_images[id].readback != (uint32_t)which) id++;
     VkFormat format = masu_images[id].format;

@@ -17,6 +17,7 @@
 #define masu_mat4 mat4
 #define masu_uint uint
 #else
+#include "shared/floats.h"
 #include <stdint.h>
 typedef float masu_vec4[4];
 typedef uint32_t masu_uvec4[4];

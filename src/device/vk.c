@@ -143,6 +143,19 @@ static masu_result load_rays(const masu_desc *desc, masu_vk *vk, masu_detail *de
     return MASU_OK;
 }
 
+/* What Vulkan asks of the host's callbacks: a driver calls them unseen. */
+static masu_result check_allocator(const VkAllocationCallbacks *a, masu_detail *detail) {
+    if (!a) return MASU_OK;
+    if (!a->pfnAllocation) return masu_fail_null(detail, "vulkan.allocator.pfnAllocation");
+    if (!a->pfnReallocation) return masu_fail_null(detail, "vulkan.allocator.pfnReallocation");
+    if (!a->pfnFree) return masu_fail_null(detail, "vulkan.allocator.pfnFree");
+    if (!a->pfnInternalAllocation == !a->pfnInternalFree) return MASU_OK;
+    const char *what = a->pfnInternalFree ? "vulkan.allocator.pfnInternalAllocation"
+                                          : "vulkan.allocator.pfnInternalFree";
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 1, 0, "%s is NULL, and the other one is not",
+                     what);
+}
+
 masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail) {
     const masu_vulkan *host = &desc->vulkan;
     memset(vk, 0, sizeof *vk);
@@ -154,6 +167,8 @@ masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail
                                                          : "vulkan.device";
         return masu_fail_null(detail, what);
     }
+    masu_result result = check_allocator(host->allocator, detail);
+    if (result) return result;
     vk->instance = host->instance;
     vk->physical = host->physical_device;
     vk->device = host->device;
@@ -198,6 +213,6 @@ masu_result masu_vk_load(const masu_desc *desc, masu_vk *vk, masu_detail *detail
                          host->queue_family, listed);
     }
     vk->queue_family = list[host->queue_family];
-    masu_result result = check_floor(desc, vk, detail);
+    result = check_floor(desc, vk, detail);
     return result ? result : load_rays(desc, vk, detail);
 }

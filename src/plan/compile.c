@@ -12,27 +12,13 @@
 
 /* ---- One rung -------------------------------------------------------------------------------- */
 
-/* Render size of a scale: at least one pixel, rounded to nearest. 1080 lines give 864 at 0.8 and
- * 432 at 0.4. */
-static uint32_t scaled(uint32_t size, float scale) {
-    double v = floor((double)size * (double)scale + 0.5);
-    return v < 1.0 ? 1u : v > (double)size ? size : (uint32_t)v;
-}
-
-/* The sum of debug.reference is of one place in each pixel. */
-static int rung_has_resolve(const masu_desc *d, uint32_t r) {
-    return d->scene && !d->debug.reference && d->rungs[r].temporal == MASU_ON;
-}
-
 static void resolve_switches(const masu_desc *d, uint32_t r, const masu_rung_plan *rp, masu_needs *needs) {
     const masu_rung *rung = &d->rungs[r];
     int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
-    needs->resolve = rung_has_resolve(d, r);
+    needs->resolve = masu_rung_resolves(d, r);
     needs->upscale = !needs->resolve && (rung->upscale == MASU_ON || !same);
-    needs->easu = rung->easu == MASU_EASU_AUTO ? MASU_EASU_FULL : rung->easu;
-    int plain = needs->easu == MASU_EASU_BILINEAR; /* what it blurs, RCAS would not bring back */
-    needs->sharpen =
-        rung->sharpen == MASU_ON || (rung->sharpen == MASU_AUTO && needs->upscale && !plain);
+    needs->easu = rung->easu;
+    needs->sharpen = rung->sharpen == MASU_ON;
     needs->fxaa = !needs->resolve && rung->aa == MASU_AA_FXAA;
     needs->smaa = !needs->resolve && rung->aa >= MASU_AA_SMAA_LOW;
     needs->fused = needs->upscale && needs->sharpen && needs->easu == MASU_EASU_FULL &&
@@ -196,8 +182,7 @@ static int wants_ao(const masu_desc *d) {
 
 /* The same of traced reflections. */
 static int rung_has_specular(const masu_desc *d, uint32_t r) {
-    return d->scene && d->scene->reflections && d->rungs[r].specular != MASU_OFF &&
-           d->scene->glossiest < d->rungs[r].specular_cutoff;
+    return d->rungs[r].specular != MASU_OFF && masu_could_trace(d->scene, &d->rungs[r]);
 }
 
 static int rung_has_taa(const masu_desc *d, uint32_t r) {
@@ -273,7 +258,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .any_silhouettes = wants(d, rung_has_silhouettes),
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d) ||
-                                           wants(d, rung_has_resolve),
+                                           wants(d, masu_rung_resolves),
                                .blit = !d->targets.storage};
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
     plan->most = plan->whole = d->output;
@@ -293,9 +278,9 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     }
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];
-        rp->render_width = d->scene ? scaled(d->output.width, d->rungs[r].scale) : d->source.width;
-        rp->render_height =
-            d->scene ? scaled(d->output.height, d->rungs[r].scale) : d->source.height;
+        VkExtent2D size = masu_render_size(d, r);
+        rp->render_width = size.width;
+        rp->render_height = size.height;
         int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
         if (d->rungs[r].upscale == MASU_OFF && !same) {
             return masu_fail(detail, MASU_ERROR_ARGUMENT, "rungs[].upscale", 0, 0,
@@ -364,8 +349,9 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
 void masu_plan_resize(masu_frame_plan *plan, VkExtent2D output) {
     plan->desc.output = output;
     for (uint32_t r = 0; r < plan->desc.rung_count; r++) {
-        plan->rungs[r].render_width = scaled(output.width, plan->desc.rungs[r].scale);
-        plan->rungs[r].render_height = scaled(output.height, plan->desc.rungs[r].scale);
+        VkExtent2D size = masu_render_size(&plan->desc, r);
+        plan->rungs[r].render_width = size.width;
+        plan->rungs[r].render_height = size.height;
     }
 }
 

@@ -12,6 +12,67 @@
 
 /* ---- Defaults -------------------------------------------------------------------------------- */
 
+/* Render size of a scale: at least one pixel, rounded to nearest. 1080 lines give 864 at 0.8 and
+ * 432 at 0.4. */
+static uint32_t scaled(uint32_t size, float scale) {
+    double v = floor((double)size * (double)scale + 0.5);
+    return v < 1.0 ? 1u : v > (double)size ? size : (uint32_t)v;
+}
+
+VkExtent2D masu_render_size(const masu_desc *d, uint32_t r) {
+    if (!d->scene) return (VkExtent2D){d->source.width, d->source.height};
+    float scale = d->rungs[r].scale;
+    return (VkExtent2D){scaled(d->output.width, scale), scaled(d->output.height, scale)};
+}
+
+/* The sum of debug.reference is of one place in each pixel. */
+int masu_rung_resolves(const masu_desc *d, uint32_t r) {
+    return d->scene && !d->debug.reference && d->rungs[r].temporal == MASU_ON;
+}
+
+int masu_could_trace(const masu_scene *scene, const masu_rung *rung) {
+    return scene && scene->reflections && scene->glossiest < rung->specular_cutoff;
+}
+
+static void fill(masu_switch *word, masu_switch with) {
+    if (*word == MASU_AUTO) *word = with;
+}
+
+/* Words that mean the same whatever is drawn. */
+static void resolve_words(masu_rung *rung) {
+    if (rung->easu == MASU_EASU_AUTO) rung->easu = MASU_EASU_FULL;
+    if (rung->aa == MASU_AA_AUTO) rung->aa = MASU_AA_OFF;
+    fill(&rung->fuse, MASU_OFF);
+    fill(&rung->temporal, MASU_OFF);
+    fill(&rung->silhouettes, MASU_OFF);
+    fill(&rung->frustum, MASU_ON);
+    fill(&rung->ao, MASU_ON);
+    fill(&rung->light_tiles, MASU_ON);
+    fill(&rung->specular_reuse, MASU_ON);
+    fill(&rung->specular_temporal, MASU_ON);
+    fill(&rung->specular_fine, MASU_ON);
+    fill(&rung->specular_filter, MASU_ON);
+    fill(&rung->specular_taa, MASU_ON);
+}
+
+/* What follows from the sizes, and from the words. What is blurred by a bilinear mean RCAS would not bring
+ * back. */
+static void resolve_sizes(masu_desc *d, uint32_t r) {
+    masu_rung *rung = &d->rungs[r];
+    VkExtent2D size = masu_render_size(d, r);
+    int same = size.width == d->output.width && size.height == d->output.height;
+    fill(&rung->upscale, same ? MASU_OFF : MASU_ON);
+    int upscales = !masu_rung_resolves(d, r) && (rung->upscale == MASU_ON || !same);
+    fill(&rung->sharpen, upscales && rung->easu != MASU_EASU_BILINEAR ? MASU_ON : MASU_OFF);
+}
+
+/* What a device may lack the storage buffers for stays AUTO, which goes without where ON fails; what the scene has
+ * no use for is off. */
+static void resolve_scene(const masu_desc *d, masu_rung *rung) {
+    if (!d->scene->placed_occluders) fill(&rung->occlusion, MASU_OFF);
+    if (!masu_could_trace(d->scene, rung)) fill(&rung->specular, MASU_OFF);
+}
+
 masu_desc masu_desc_resolved(const masu_desc *desc) {
     masu_desc d;
     memset(&d, 0, sizeof d);
@@ -21,13 +82,16 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
     if (d.rung_count == 0) {
         d.rung_count = 3;
         d.rungs[0] = (masu_rung){.scale = 1.0f};
-        d.rungs[1] = (masu_rung){.scale = 0.8f, .sharpness = 0.2f};
-        d.rungs[2] = (masu_rung){.scale = 0.4f, .sharpness = 0.2f};
+        d.rungs[1] = (masu_rung){.scale = 0.8f};
+        d.rungs[2] = (masu_rung){.scale = 0.4f};
     }
     for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
         masu_rung_defaults(&d.rungs[r]);
         if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
             d.rungs[r].specular_cutoff = d.scene->specular_cutoff;
+        resolve_words(&d.rungs[r]);
+        if (d.scene) resolve_scene(&d, &d.rungs[r]);
+        if ((d.scene || d.source.view) && d.output.width && d.output.height) resolve_sizes(&d, r);
     }
     masu_governor_defaults(&d.governor, d.rung_count);
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;

@@ -8,6 +8,12 @@
 
 #include "masu.h"
 
+/* Of a resolved description: what a rung is shaded at, and whether it is resolved over frames. */
+VkExtent2D masu_render_size(const masu_desc *d, uint32_t r);
+int masu_rung_resolves(const masu_desc *d, uint32_t r);
+/* Whether a surface of the scene is glossy enough for a rung to trace its reflections. */
+int masu_could_trace(const masu_scene *scene, const masu_rung *rung);
+
 /* MASU_ERROR_ARGUMENT: a field is missing or out of its range, and the detail names it. */
 masu_result masu_desc_check(const masu_desc *d, masu_detail *detail);
 

@@ -2,6 +2,7 @@
 #include "plan/push.h"
 
 #include "plan/output.h"
+#include "quality/knobs.h"
 
 #include <math.h>
 #include <string.h>

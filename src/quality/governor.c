@@ -5,6 +5,8 @@
  * bounded, so there is nothing that could wind up at the end of the ladder. */
 #include "quality/governor.h"
 
+#include "shared/floats.h"
+
 #include <math.h>
 #include <string.h>
 

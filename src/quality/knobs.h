@@ -14,4 +14,9 @@ void masu_rung_defaults(masu_rung *rung);
 /* MASU_ERROR_ARGUMENT: a knob of rungs[r] has a value that it does not take. */
 masu_result masu_rung_check(const masu_rung *rung, uint32_t r, masu_detail *detail);
 
+/* Of a rung with its defaults: below 0 is none. */
+static inline float masu_rung_stops(const masu_rung *rung) {
+    return rung->sharpness > 0.0f ? rung->sharpness : 0.0f;
+}
+
 #endif

@@ -3,6 +3,8 @@
  * (-ffp-contract=off), so both forms agree bit for bit. */
 #include "scene/cull.h"
 
+#include "shared/floats.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>

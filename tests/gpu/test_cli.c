@@ -27,6 +27,21 @@ static void help_and_version_are_there_for_every_command(void **state) {
         assert_true(strlen(cli_out) > 200);
         assert_string_equal(cli_err, "");
     }
+    static const char *const same[][2] = {{"help", "--help"},
+                                          {"help render", "render --help"},
+                                          {"help study", "study --help"},
+                                          {"help study march", "study march --help"},
+                                          {"study help march", "study march --help"}};
+    for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
+        static char asked[sizeof cli_out];
+        assert_int_equal(cli_run("%s", same[i][0]), 0);
+        assert_string_equal(cli_err, "");
+        memcpy(asked, cli_out, sizeof asked);
+        assert_int_equal(cli_run("%s", same[i][1]), 0);
+        assert_string_equal(asked, cli_out);
+    }
+    assert_int_equal(cli_run("help nothing"), 2);
+    assert_non_null(strstr(cli_err, "unknown command \"nothing\""));
     assert_int_equal(cli_run("--version"), 0);
     assert_non_null(strstr(cli_out, "0.1.0"));
 }

@@ -137,6 +137,7 @@ static void timestamps_change_nothing_and_name_the_passes_that_ran(void **state)
     masu_stats_info stats;
     open_session(&s, &d);
     assert_int_equal(masu_stats(s.m, 0, &stats), MASU_INCOMPLETE);
+    assert_true(stats.frame == UINT64_MAX);
     draw_rung(&s, 2, NULL);
     assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
     assert_int_equal(stats.timed, 1);
@@ -146,6 +147,39 @@ static void timestamps_change_nothing_and_name_the_passes_that_ran(void **state)
         if (!strcmp(stats.pass_names[p], "present")) assert_int_equal(stats.pass_ns[p], 0);
     }
     assert_int_equal(masu_stats(s.m, 7, &stats), MASU_ERROR_ARGUMENT);
+    close_session(&s);
+}
+
+/* A slot that is handed out again does not tell the times of its last frame as those of the next. */
+static void a_frame_that_has_not_ended_has_no_times(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_both", W, H);
+    d.desc.debug.timestamps = 1;
+    d.desc.frames_in_flight = 1;
+    d.desc.readback = MASU_READBACK_DEPTH;
+    masu_session s;
+    masu_stats_info stats;
+    masu_readback_image image;
+    masu_commands commands;
+    char error[ERROR_SIZE];
+    const masu_frame_desc frame = {.rung = 1};
+    open_session(&s, &d);
+    for (uint32_t n = 0; n < 4; n++) {
+        assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_OK);
+        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_INCOMPLETE);
+        assert_int_equal(stats.frame, n);
+        assert_int_equal(stats.rung, 1);
+        assert_int_equal(stats.timed, 0);
+        assert_int_equal(stats.gpu_ns, 0);
+        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image), MASU_INCOMPLETE);
+        if (n == 2) continue; /* and one that is never submitted */
+        assert_ok(masu_headless_run(&s.host, commands.buffer, error, sizeof error));
+        assert_int_equal(masu_stats(s.m, 0, &stats), MASU_OK);
+        assert_int_equal(stats.frame, n);
+        assert_int_equal(stats.timed, 1);
+        assert_true(stats.gpu_ns > 0);
+        assert_int_equal(masu_readback(s.m, 0, MASU_READBACK_DEPTH, &image), MASU_OK);
+    }
     close_session(&s);
 }
 
@@ -283,6 +317,7 @@ int main(void) {
         cmocka_unit_test(separate_memory_per_role_changes_nothing),
         cmocka_unit_test(one_and_three_frames_in_flight_change_nothing),
         cmocka_unit_test(timestamps_change_nothing_and_name_the_passes_that_ran),
+        cmocka_unit_test(a_frame_that_has_not_ended_has_no_times),
         cmocka_unit_test(a_rung_does_not_see_what_larger_rungs_left),
         cmocka_unit_test(a_blitted_bgra_target_has_the_same_colours),
         cmocka_unit_test(each_of_several_targets_gets_the_picture),

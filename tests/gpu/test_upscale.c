@@ -53,7 +53,7 @@ static void run_gpu(const job *j, const void *texels, uint32_t beyond, uint8_t *
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.upscale = j->upscale,
                              .sharpen = j->sharpen,
-                             .sharpness = j->stops,
+                             .sharpness = j->stops > 0.0f ? j->stops : -1.0f,
                              .easu = j->easu,
                              .fuse = j->fuse};
     draw_rungs_of(&s, &d, &out, NULL);

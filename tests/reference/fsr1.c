@@ -11,16 +11,13 @@
  */
 #include "reference/fsr1.h"
 
-#include <float.h>
+#include "shared/floats.h"
+
 #include <math.h>
 #include <string.h>
 
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
-#endif
-
-#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
-#error "the FSR1 reference needs float arithmetic that rounds to float"
 #endif
 
 /* The twelve taps, in the order in which AMD's shader accumulates them:

@@ -130,9 +130,23 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(clock_user);
 }
 
+/* Words that depend on the scene or on sizes are not known yet. */
 static masu_rung default_rung(float scale, float sharpness) {
     return (masu_rung){.scale = scale,
+                       .easu = MASU_EASU_FULL,
                        .sharpness = sharpness,
+                       .fuse = MASU_OFF,
+                       .aa = MASU_AA_OFF,
+                       .temporal = MASU_OFF,
+                       .silhouettes = MASU_OFF,
+                       .frustum = MASU_ON,
+                       .ao = MASU_ON,
+                       .light_tiles = MASU_ON,
+                       .specular_reuse = MASU_ON,
+                       .specular_temporal = MASU_ON,
+                       .specular_fine = MASU_ON,
+                       .specular_filter = MASU_ON,
+                       .specular_taa = MASU_ON,
                        .march_steps = 2048,
                        .lod_error = 1.0f,
                        .ao_slices = 2,
@@ -157,7 +171,7 @@ static void every_zero_becomes_its_documented_default(void **state) {
     expected.frames_in_flight = 2;
     expected.rung_count = 3;
     expected.ladder = MASU_OFF;
-    expected.rungs[0] = default_rung(1.0f, 0.0f);
+    expected.rungs[0] = default_rung(1.0f, 0.2f);
     expected.rungs[1] = default_rung(0.8f, 0.2f);
     expected.rungs[2] = default_rung(0.4f, 0.2f);
     masu_desc resolved = masu_desc_resolved(&zero);
@@ -178,7 +192,7 @@ static void zeros_inside_given_rungs_become_defaults_too(void **state) {
     given.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     given.targets.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     default_output(&given);
-    given.rungs[0] = default_rung(1.0f, 0.0f);
+    given.rungs[0] = default_rung(1.0f, 0.2f);
     given.rungs[1] = default_rung(1.0f, 1.5f);
     assert_same_desc(&expected, &given); /* rungs 2 to 7 stay zero */
 }
@@ -317,6 +331,50 @@ static void what_is_given_stays_as_it_is(void **state) {
     (void)state;
     masu_desc given = full_desc(), resolved = masu_desc_resolved(&given);
     assert_same_desc(&resolved, &given);
+}
+
+/* What is left at AUTO is what masu.h names; resolved again it is the same, and masu_compile has the same. */
+static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
+    (void)state;
+    static masu_frame_plan plan;
+    masu_desc d = scene_desc(RASTER | SDF, 640, 360);
+    d.rung_count = 6;
+    for (uint32_t r = 0; r < 6; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f};
+    d.rungs[2].easu = MASU_EASU_BILINEAR;
+    d.rungs[3].sharpen = MASU_OFF;
+    d.rungs[4].temporal = MASU_ON;
+    d.rungs[5].sharpness = -1.0f;
+    static const masu_switch upscale[] = {MASU_OFF, MASU_ON, MASU_ON, MASU_ON, MASU_ON, MASU_ON};
+    static const masu_switch sharpen[] = {MASU_OFF, MASU_ON, MASU_OFF, MASU_OFF, MASU_OFF, MASU_ON};
+    masu_desc is = masu_desc_resolved(&d), twice = masu_desc_resolved(&is);
+    compile(&d, &plan);
+    for (uint32_t r = 0; r < 6; r++) {
+        assert_int_equal(is.rungs[r].upscale, upscale[r]);
+        assert_int_equal(is.rungs[r].sharpen, sharpen[r]);
+        assert_int_equal(masu_has_pass(&plan.rungs[r].active, MASU_PASS_RCAS),
+                         sharpen[r] == MASU_ON);
+        for (const masu_knob *k = masu_knob_table(); k->name; k++) {
+            assert_false(masu_knob_differs(k, &is.rungs[r], &twice.rungs[r]));
+            assert_false(masu_knob_differs(k, &is.rungs[r], &plan.desc.rungs[r]));
+            if (k->kind != MASU_KNOB_WORD || masu_knob_get(k, &is.rungs[r], 0) != 0.0) continue;
+            if (strcmp(k->name, "march") && strcmp(k->name, "specular") &&
+                strcmp(k->name, "occlusion"))
+                fail_msg("rungs[%u].%s is still AUTO", r, k->name);
+        }
+    }
+    /* What the scene has no use for is off; what a device may lack the buffers for stays. */
+    assert_int_equal(is.rungs[0].occlusion, support_scene.placed_occluders ? MASU_AUTO : MASU_OFF);
+    support_scene.placed_occluders = 3;
+    assert_int_equal(masu_desc_resolved(&d).rungs[0].occlusion, MASU_AUTO);
+    support_scene.placed_occluders = 0;
+    assert_int_equal(masu_desc_resolved(&d).rungs[0].occlusion, MASU_OFF);
+    support_scene.reflections = 0;
+    assert_int_equal(masu_desc_resolved(&d).rungs[0].specular, MASU_OFF);
+    support_scene.reflections = 1, support_scene.glossiest = 0.1f;
+    support_scene.specular_cutoff = 0.5f;
+    assert_int_equal(masu_desc_resolved(&d).rungs[0].specular, MASU_AUTO);
+    support_scene.glossiest = 0.9f;
+    assert_int_equal(masu_desc_resolved(&d).rungs[0].specular, MASU_OFF);
 }
 
 /* More rungs than there are is an error for later, not a reason to write behind the array. */
@@ -763,8 +821,62 @@ static void a_missing_vulkan_handle_is_named(void **state) {
     masu_memory memory;
     masu_detail detail;
     d.vulkan = full_desc().vulkan;
+    d.vulkan.allocator = NULL;
     assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_DEVICE);
     assert_string_equal(detail.what, "vkGetDeviceProcAddr"); /* no_function knows none */
+}
+
+static void *VKAPI_PTR no_allocation(void *user, size_t size, size_t align, VkSystemAllocationScope s) {
+    (void)user, (void)size, (void)align, (void)s;
+    return NULL;
+}
+static void *VKAPI_PTR no_reallocation(void *user, void *from, size_t size, size_t align,
+                                       VkSystemAllocationScope s) {
+    (void)user, (void)from, (void)size, (void)align, (void)s;
+    return NULL;
+}
+static void VKAPI_PTR no_free(void *user, void *at) { (void)user, (void)at; }
+static void VKAPI_PTR no_notice(void *user, size_t size, VkInternalAllocationType t,
+                                VkSystemAllocationScope s) {
+    (void)user, (void)size, (void)t, (void)s;
+}
+
+/* A driver calls them without a look. */
+static void a_missing_callback_of_the_allocator_is_named(void **state) {
+    (void)state;
+    const VkAllocationCallbacks all = {
+        NULL, no_allocation, no_reallocation, no_free, no_notice, no_notice};
+    static const char *const names[] = {"pfnAllocation", "pfnReallocation", "pfnFree",
+                                        "pfnInternalAllocation", "pfnInternalFree"};
+    for (int missing = -1; missing <= 5; missing++) {
+        masu_desc d = source_desc(64, 64);
+        masu_memory memory;
+        masu_detail detail;
+        VkAllocationCallbacks some = all;
+        d.vulkan = full_desc().vulkan;
+        d.vulkan.allocator = &some;
+        if (missing == 0) some.pfnAllocation = NULL;
+        if (missing == 1) some.pfnReallocation = NULL;
+        if (missing == 2) some.pfnFree = NULL;
+        if (missing == 3 || missing == 5) some.pfnInternalAllocation = NULL;
+        if (missing == 4 || missing == 5) some.pfnInternalFree = NULL;
+        if (missing < 0 || missing == 5) { /* taken: what comes next is missing */
+            assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_DEVICE);
+            continue;
+        }
+        assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_ARGUMENT);
+        assert_memory_equal(detail.what, "vulkan.allocator.", 17);
+        assert_string_equal(detail.what + 17, names[missing]);
+        assert_non_null(strstr(detail.text, " is NULL"));
+    }
+    const VkAllocationCallbacks none = {0};
+    masu_desc d = source_desc(64, 64);
+    masu_detail detail;
+    masu_memory memory;
+    d.vulkan = full_desc().vulkan;
+    d.vulkan.allocator = &none;
+    assert_int_equal(masu_memory_query(&d, &memory, &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.text, "vulkan.allocator.pfnAllocation is NULL");
 }
 
 static void every_result_has_its_text(void **state) {
@@ -786,6 +898,7 @@ int main(void) {
         cmocka_unit_test(zeros_inside_given_rungs_become_defaults_too),
         cmocka_unit_test(output_follows_from_target_and_scene),
         cmocka_unit_test(what_is_given_stays_as_it_is),
+        cmocka_unit_test(words_are_resolved_by_the_rule_of_the_plan),
         cmocka_unit_test(an_absurd_number_of_rungs_is_resolved_without_harm),
         cmocka_unit_test(a_bad_size_is_named),
         cmocka_unit_test(a_bad_count_is_named),
@@ -807,6 +920,7 @@ int main(void) {
         cmocka_unit_test(more_transparents_than_can_be_recorded_are_refused),
         cmocka_unit_test(what_no_device_is_needed_for_is_refused_without_one),
         cmocka_unit_test(a_missing_vulkan_handle_is_named),
+        cmocka_unit_test(a_missing_callback_of_the_allocator_is_named),
         cmocka_unit_test(every_result_has_its_text),
     };
     return cmocka_run_group_tests_name("desc", tests, NULL, NULL);

@@ -299,9 +299,21 @@ bool masu_cli_choice(const masu_cli *cli, const char *const *names, uint32_t *in
 
 /* ---- main ---- */
 
+/* "help a b" as "a b --help", behind the word `help`, which has been read. */
+static void turn_help(masu_cli *cli) {
+    static char option[] = "--help";
+    for (int i = cli->next; i < cli->argc; i++) cli->argv[i - 1] = cli->argv[i];
+    cli->argv[cli->argc - 1] = option;
+    cli->next--;
+}
+
 int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command *const *commands) {
     if (cli->next >= cli->argc) return masu_cli_usage_error("no command given");
     const char *word = cli->argv[cli->next++];
+    if (strcmp(word, "help") == 0) {
+        turn_help(cli);
+        word = cli->argv[cli->next++];
+    }
     if (strcmp(word, "-h") == 0 || strcmp(word, "--help") == 0) {
         print_commands(summary, commands);
         return MASU_CLI_OK;

@@ -4,7 +4,8 @@
  *                a value that may be left out only as --name=VALUE;
  *                before or after the arguments; `--` ends the options
  *   -h, --help, --version, --quiet
- *                in every program and subcommand, handled here
+ *                in every program and subcommand, handled here; `masu help COMMAND` is
+ *                `masu COMMAND --help`
  *   exit code    0 done, 1 failed, 2 the command line is wrong
  *   stderr       one line per error or warning, "masu-bake: cannot read x.glb: ...", and a progress
  *                line, only on a terminal and without --quiet

@@ -9,6 +9,8 @@
 #ifndef MASU_SMAA_TABLES_H
 #define MASU_SMAA_TABLES_H
 
+#include "shared/floats.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <string.h>

@@ -88,6 +88,7 @@ static int upscale_file(const masu_session_desc *given, const char *from, const 
     if (!masu_image_load_png(from, &image, error, sizeof error)) return masu_cli_error("%s", error);
     if (!d->desc.output.width) d->desc.output = (VkExtent2D){image.width, image.height};
     masu_rung *rung = &d->desc.rungs[0];
+    if (rung->sharpness == 0.0f) rung->sharpness = -1.0f; /* 0 stops, and not the default */
     int same = d->desc.output.width == image.width && d->desc.output.height == image.height;
     if (rung->aa > MASU_AA_OFF && same) rung->upscale = rung->sharpen = MASU_OFF;
     uint32_t width = d->desc.output.width, height = d->desc.output.height;
