@@ -260,7 +260,7 @@ sim_result sim_run(const sim_model *p, const sim_controller *c, uint64_t seed,
         if (uniform(&random) < p->spikes) ms *= 3.0;
         out[f] = (sim_frame){ms, scale, rung};
         masu_governor_sample *k = &samples[f];
-        *k = (masu_governor_sample){f, rung, ms, 0.0, 0.0};
+        *k = (masu_governor_sample){.frame = f, .rung = rung, .gpu_ms = ms};
         if (p->quantum > 0.0) k->gpu_ms = p->quantum * floor(ms / p->quantum + 0.5);
         if (p->wall) k->wall_ms = (ms + 0.3) * (1.0 + 0.02 * (uniform(&random) - 0.5));
         bool lies = f >= p->lie_from && f < p->lie_until;
