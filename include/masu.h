@@ -785,6 +785,10 @@ typedef struct masu_governor_desc {
                                     for the class of the GPU where that is known
                                     (masu_plan_info.computed_for), else measured on a CPU; without a
                                     ladder scale^2 */
+    uint32_t steady_clock; /* not 0: the clock of the GPU does not follow its load. 0: at rest for 1,800
+                              frames at a rung that takes less than 0.92 of the target, a better one that
+                              is expected to take at most 1.25 of it is tried for 12 frames, to see whether
+                              the clock follows; seldomer after each that did not */
 } masu_governor_desc;
 
 #define MASU_GOVERNOR_REASONS(X)                                                                   \
@@ -802,7 +806,8 @@ typedef struct masu_governor_desc {
     X(MASU_GOVERNOR_REASON_BLIND, 11, "no frame has been measured for long: the rung stays")       \
     X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
     X(MASU_GOVERNOR_REASON_HOST, 13, "the host has chosen the rung")                                \
-    X(MASU_GOVERNOR_REASON_UNUSUAL, 14, "the frame's time will say nothing: the rung stays")
+    X(MASU_GOVERNOR_REASON_UNUSUAL, 14, "the frame's time will say nothing: the rung stays")  \
+    X(MASU_GOVERNOR_REASON_TRIAL, 15, "a better rung: does the clock follow the load?")
 
 /* Why the rung is what it is. */
 typedef enum masu_governor_reason {
@@ -884,6 +889,8 @@ typedef struct masu_governor_state {
     uint32_t held;      /* frames that `rung` has been drawn for, at most 4096 */
     uint32_t patience;  /* a rise waits so many dwells, 1..64 */
     uint32_t wall_only; /* 1: timestamps were found to lie */
+    uint32_t follows;   /* 1: the clock was seen to follow the load; */
+    uint32_t trials;    /* trials since that it did not follow, 0..6 */
     double fixed_ms, load_ms;                         /* as in masu_governor_info */
     double fixed_variance, load_variance, covariance; /* of them, ms^2 */
     double noise, overhead_ms, unit;                  /* as in masu_governor_info */

@@ -62,6 +62,14 @@
 #define PENALTY_LEAST 1.02
 #define PENALTY_MOST 1.15
 #define PATIENCE_MOST 64u
+/* A clock that follows its own load makes a low rung as slow as a better one. Whether it does is tried: */
+#define TRIAL_BUSY 0.92    /* of the target: a rung that takes less at rest may be so because of it, */
+#define TRIAL_MOST 1.25    /* and one is tried that is expected to take at most so much of it, */
+#define TRIAL_FRAMES 12u   /* for so long; */
+#define TRIAL_WAIT 1800u   /* frames at rest until then where nothing is known of the clock, */
+#define TRIAL_AGAIN 300u   /* or after one that failed where clocks have followed: both double, */
+#define TRIALS_MOST 6u     /* so often */
+#define TRIALS_DOUBT 3u    /* failures in a row, and nothing is known of the clock any more */
 #define HOLD 8u /* frames: the least that a rung is kept for while the target is */
 #define FUTILE 1.05 /* rungs within this factor of the least time save nothing */
 
@@ -108,6 +116,7 @@ void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
         g->penalty[r] = 1.0;
     }
     g->noise = NOISE_FIRST;
+    g->steady_clock = desc->steady_clock != 0;
     masu_trust_start(&g->trust);
     g->cut = NEVER;
     g->patience = 1;
@@ -424,6 +433,7 @@ static void change(masu_governor *g, uint64_t frame, uint32_t rung, masu_governo
     g->changed = frame;
     g->reason = reason;
     g->held_before = 0;
+    g->trial = reason == MASU_GOVERNOR_REASON_TRIAL;
     g->misses = 0;
     g->changes++;
     g->settled_load = -1.0;
@@ -474,6 +484,43 @@ double masu_governor_lead(const masu_governor *g, uint64_t frame) {
     return masu_within(frame > g->newest ? (double)(frame - g->newest) : 0.0, 0.0, LEAD_MOST);
 }
 
+/* A trial ends: the rung is kept if it takes no longer than it may by now. */
+static void end_trial(masu_governor *g, uint64_t frame, int over) {
+    g->trial = 0;
+    g->trial_load = g->load;
+    g->trial_ended = frame;
+    if (!over) {
+        g->follows = 1;
+        g->trials = 0;
+        return;
+    }
+    if (g->trials < TRIALS_MOST) g->trials++;
+    if (g->trials >= TRIALS_DOUBT) g->follows = 0;
+    change(g, frame, g->trial_from, MASU_GOVERNOR_REASON_DOWN);
+    g->rising = 0;
+}
+
+/* Nothing better fits, and there is room: begins a trial if it is time for one. */
+static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
+    uint32_t r = g->rung - 1;
+    if (g->rung <= g->best || g->steady_clock || g->odd_count || moves(g) > 0.0 || g->noise > 0.05)
+        return;
+    if (!g->follows && g->settled_load < 0.0) return;
+    while (r > g->best && g->cost[r] < FUTILE * g->cost[g->rung]) r--;
+    if (masu_governor_predict(g, g->rung) > TRIAL_BUSY * g->target ||
+        masu_governor_predict(g, r) > TRIAL_MOST * g->target)
+        return;
+    /* Elsewhere the clock may have room again. */
+    if (g->follows && !is_near(g->load, g->trial_load, FORGET_LOAD)) g->trials = 0;
+    uint64_t wait = !g->follows ? TRIAL_WAIT : g->trials ? TRIAL_AGAIN : g->dwell;
+    if (still < (g->follows ? g->dwell : TRIAL_WAIT) ||
+        (g->trials && frame - g->trial_ended < wait << g->trials))
+        return;
+    g->trial_from = g->rung;
+    g->rising = 0;
+    change(g, frame, r, MASU_GOVERNOR_REASON_TRIAL);
+}
+
 static void choose(masu_governor *g, uint64_t frame) {
     double lead = masu_governor_lead(g, frame);
     double keep = MARGIN_REST + (MARGIN_MOVES - MARGIN_REST) * rises(g);
@@ -490,6 +537,11 @@ static void choose(masu_governor *g, uint64_t frame) {
                                : over    ? MASU_GOVERNOR_REASON_DOWN
                                          : MASU_GOVERNOR_REASON_PANIC;
     g->jumped = 0;
+    if (g->trial) {
+        if (held < TRIAL_FRAMES && masu_governor_predict(g, g->rung) < TRIAL_MOST * g->target) return;
+        end_trial(g, frame, over);
+        if (over) return;
+    }
     if (over || panic) {
         uint32_t r = fall(g, lead, &why);
         g->misses = 0;
@@ -514,6 +566,7 @@ static void choose(masu_governor *g, uint64_t frame) {
     if (r == g->rung) {
         if (!g->odd_count) g->urged = 0;
         g->reason = r == g->best ? MASU_GOVERNOR_REASON_BEST : MASU_GOVERNOR_REASON_HOLD;
+        try_clock(g, frame, still);
         return;
     }
     if (g->urged && (held >= HOLD || g->urged > 1)) {

@@ -83,6 +83,13 @@ typedef struct masu_governor {
     int failed;          /* the last rise was taken back */
     int rising;          /* the last change was a rise */
     double settled_load; /* < 0: not settled */
+    /* Whether the clock follows the load: tried by drawing at a better rung that does not fit yet. */
+    int steady_clock; /* the host says that it does not */
+    int follows;      /* it did when it was tried */
+    int trial;        /* the rung is one, and this was drawn before: */
+    uint32_t trial_from, trials; /* failures since one that did not */
+    uint64_t trial_ended;
+    double trial_load;
     masu_governor_reason reason;
     masu_governor_lock lock;
     uint64_t samples, rejected, missed, changes;

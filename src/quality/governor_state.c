@@ -27,6 +27,8 @@ void masu_governor_keep(const masu_governor *g, VkExtent2D output, masu_governor
     out->held = held < HELD_MOST ? (uint32_t)held : HELD_MOST;
     out->patience = g->patience;
     out->wall_only = g->trust.wall_only != 0;
+    out->follows = g->follows != 0;
+    out->trials = g->trials;
     out->fixed_ms = g->fixed;
     out->load_ms = g->load;
     out->fixed_variance = g->p[0][0];
@@ -76,6 +78,8 @@ masu_result masu_governor_state_check(const masu_governor_state *s, masu_detail 
     RANGE(held, 0, HELD_MOST);
     RANGE(patience, 1, 64);
     RANGE(wall_only, 0, 1);
+    RANGE(follows, 0, 1);
+    RANGE(trials, 0, 6);
     RANGE(fixed_ms, 0, 1e4);
     RANGE(load_ms, 1e-9, LOAD_MOST);
     RANGE(fixed_variance, 0, 1e8);
@@ -142,6 +146,10 @@ void masu_governor_take_over(masu_governor *g, const masu_governor_state *s, VkE
     g->odd_count = g->misses = 0;
     g->newest = g->since = frame;
     g->known = 1;
+    g->follows = s->follows != 0;
+    g->trials = s->trials;
+    g->trial_ended = frame;
+    g->trial = 0;
     if (all) {
         g->patience = s->patience;
         g->mistake_load = s->mistake_ms;
@@ -174,6 +182,7 @@ void masu_governor_scale(masu_governor *g, double pixels, uint64_t frame) {
     g->settled_load = -1.0;
     g->odd_count = 0;
     g->misses = 0;
+    g->trial = 0;
     g->newest = g->since = frame;
     g->urged = 2;
 }
