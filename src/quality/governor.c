@@ -5,15 +5,13 @@
  * bounded, so there is nothing that could wind up at the end of the ladder. */
 #include "quality/governor.h"
 
+#include "quality/governor_desc.h"
+
 #include <math.h>
 #include <string.h>
 
 /* ---- Constants: all are times in frames, deviations, or parts
  * ------------------------------------ */
-
-#define TARGET_MS 16.67
-#define HEADROOM 0.02
-#define DWELL 24u
 
 #define PAUSE 1e3 /* ms: longer is rather a pause than a frame */
 #define NOISE_FIRST 0.02
@@ -68,6 +66,8 @@
 #define TRIAL_FRAMES 12u   /* for so long; */
 #define TRIAL_WAIT 1800u   /* frames at rest until then where nothing is known of the clock, */
 #define TRIAL_AGAIN 300u   /* or after one that failed where clocks have followed: both double, */
+#define TRIAL_FOLLOWS 0.96 /* of what was expected: a time that is less shows a clock that followed */
+#define RISE_FOLLOWS 0.8   /* the same of one that was over the target just after a rise */
 #define TRIALS_MOST 6u     /* so often */
 #define TRIALS_DOUBT 3u    /* failures in a row, and nothing is known of the clock any more */
 #define HOLD 8u /* frames: the least that a rung is kept for while the target is */
@@ -77,24 +77,16 @@
 
 /* ---- Init ------------------------------------------------------------------------------------ */
 
-void masu_governor_defaults(masu_governor_desc *d, uint32_t rungs) {
-    if (d->mode == MASU_GOVERNOR_OFF) return;
-    if (d->target_ms == 0.0f) d->target_ms = (float)TARGET_MS;
-    if (d->headroom == 0.0f) d->headroom = (float)HEADROOM;
-    if (d->worst_rung == 0 && rungs) d->worst_rung = rungs - 1;
-    if (d->dwell == 0) d->dwell = DWELL;
-}
-
 /* What can be changed later of a description; what is out of range counts as 0. */
 static void take(masu_governor *g, const masu_governor_desc *desc) {
     g->mode = desc->mode;
     g->asked =
-        desc->target_ms >= 1.0f && desc->target_ms <= 1000.0f ? (double)desc->target_ms : TARGET_MS;
+        desc->target_ms >= 1.0f && desc->target_ms <= 1000.0f ? (double)desc->target_ms : MASU_GOVERNOR_TARGET_MS;
     g->target = masu_pacing_target(&g->pacing, g->asked);
     g->headroom = desc->headroom < 0.0f                             ? 0.0
                   : desc->headroom > 0.0f && desc->headroom <= 0.5f ? (double)desc->headroom
-                                                                    : HEADROOM;
-    g->dwell = desc->dwell >= 1 && desc->dwell <= 600 ? desc->dwell : DWELL;
+                                                                    : MASU_GOVERNOR_HEADROOM;
+    g->dwell = desc->dwell >= 1 && desc->dwell <= 600 ? desc->dwell : MASU_GOVERNOR_DWELL;
     g->worst =
         desc->worst_rung >= 1 && desc->worst_rung < g->count ? desc->worst_rung : g->count - 1;
     g->best = desc->best_rung <= g->worst ? desc->best_rung : 0;
@@ -336,6 +328,19 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     g->slope = masu_within(g->slope, -most, most);
 }
 
+/* A frame over the target just after a rise, and a few frames later the same rung takes much less: loads
+ * seldom fall just then, clocks that follow them rise. */
+static void watch_clock(masu_governor *g, const masu_governor_sample *s, double ms) {
+    if (s->rung != g->seen_rung) {
+        g->seen_ms = s->rung < g->seen_rung && ms > g->target ? ms : 0.0;
+        g->seen_frame = s->frame;
+        g->seen_rung = s->rung;
+    } else if (ms < RISE_FOLLOWS * g->seen_ms && s->frame - g->seen_frame <= TRIAL_FRAMES) {
+        g->seen_ms = 0.0;
+        if (!g->steady_clock) g->follows = 1;
+    }
+}
+
 static int is_sound(const masu_governor *g) {
     double sum =
         g->fixed + g->load + g->slope + g->noise + g->trend + g->trust.overhead + g->trust.distrust + g->grain;
@@ -364,6 +369,7 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
         g->rejected++;
         return;
     }
+    watch_clock(g, s, ms);
     g->samples++;
     if (g->pacing.refresh == 0.0) g->missed += ms > g->target; /* else the display tells */
     if (s->rung == g->rung && s->frame >= g->changed)
@@ -401,7 +407,7 @@ double masu_governor_predict(const masu_governor *g, uint32_t rung) {
 /* The best rung below what is drawn that keeps the target for a dwell, at the present slope; if
  * none does, the cheapest, or one that is as cheap as that. */
 static uint32_t fall(const masu_governor *g, double lead, masu_governor_reason *reason) {
-    double last = lead + FALL_AHEAD * (double)g->dwell, least = 0.0;
+    double last = lead + (g->follows ? 0.0 : FALL_AHEAD * (double)g->dwell), least = 0.0;
     for (uint32_t r = g->best; r <= g->worst; r++) {
         double ms = masu_governor_upper(g, r, last, 0, 0.0);
         if (r == g->best || ms < least) least = ms;
@@ -473,8 +479,10 @@ void masu_governor_forget_mistakes(masu_governor *g) {
     g->failed = 0;
 }
 
-/* 0: the load does not rise; 1: it does, for certain. */
+/* 0: the load does not rise; 1: it does, for certain. What a clock does that follows is no rise: it ends
+ * before the target is missed. */
 static double rises(const masu_governor *g) {
+    if (g->follows) return 0.0;
     double part = g->slope * (double)g->dwell / g->load;
     if (g->settled_load >= 0.0 && g->load < (1.0 + SETTLE_BAND) * g->settled_load) return 0.0;
     return moves(g) * masu_within((part - RISES_LEAST) / (RISES_MOST - RISES_LEAST), 0.0, 1.0);
@@ -484,18 +492,19 @@ double masu_governor_lead(const masu_governor *g, uint64_t frame) {
     return masu_within(frame > g->newest ? (double)(frame - g->newest) : 0.0, 0.0, LEAD_MOST);
 }
 
-/* A trial ends: the rung is kept if it takes no longer than it may by now. */
+/* A trial ends: the rung is kept if it takes no longer than it may by now, whatever the reason. */
 static void end_trial(masu_governor *g, uint64_t frame, int over) {
     g->trial = 0;
     g->trial_load = g->load;
     g->trial_ended = frame;
-    if (!over) {
+    if (!over && masu_governor_predict(g, g->rung) < TRIAL_FOLLOWS * g->trial_ms) {
         g->follows = 1;
         g->trials = 0;
         return;
     }
     if (g->trials < TRIALS_MOST) g->trials++;
     if (g->trials >= TRIALS_DOUBT) g->follows = 0;
+    if (!over) return;
     change(g, frame, g->trial_from, MASU_GOVERNOR_REASON_DOWN);
     g->rising = 0;
 }
@@ -517,6 +526,7 @@ static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
         (g->trials && frame - g->trial_ended < wait << g->trials))
         return;
     g->trial_from = g->rung;
+    g->trial_ms = masu_governor_predict(g, r);
     g->rising = 0;
     change(g, frame, r, MASU_GOVERNOR_REASON_TRIAL);
 }
@@ -600,21 +610,18 @@ static void pace(masu_governor *g, uint64_t frame, int unusual) {
     masu_pacing_choose(&g->pacing, frame, masu_largest(ms, g->trust.cpu), g->target, unusual);
 }
 
-static int is_blind(const masu_governor *g, uint64_t frame) {
-    return frame > g->newest && frame - g->newest > BLIND_FRAMES;
+/* The host may have changed the mode or moved the range. */
+static void obey(masu_governor *g, uint64_t frame) {
+    int fixed = g->mode == MASU_GOVERNOR_FIXED;
+    uint32_t best = fixed ? g->fixed_rung : g->best, worst = fixed ? g->fixed_rung : g->worst;
+    uint32_t rung = g->rung < best ? best : g->rung > worst ? worst : g->rung;
+    change(g, frame, rung, MASU_GOVERNOR_REASON_HOST);
+    if (fixed) g->reason = MASU_GOVERNOR_REASON_FIXED;
 }
 
 static void decide(masu_governor *g, uint64_t frame) {
-    if (g->mode == MASU_GOVERNOR_FIXED) {
-        change(g, frame, g->fixed_rung, MASU_GOVERNOR_REASON_FIXED);
-        g->reason = MASU_GOVERNOR_REASON_FIXED;
-        return;
-    }
-    /* The host may have moved the range. */
-    if (g->rung < g->best) change(g, frame, g->best, MASU_GOVERNOR_REASON_HOST);
-    if (g->rung > g->worst) change(g, frame, g->worst, MASU_GOVERNOR_REASON_HOST);
-    if (!g->known) return;
-    if (is_blind(g, frame))
+    if (!g->known || g->mode == MASU_GOVERNOR_FIXED) return;
+    if (frame > g->newest && frame - g->newest > BLIND_FRAMES)
         g->reason = MASU_GOVERNOR_REASON_BLIND;
     else
         choose(g, frame);
@@ -633,6 +640,7 @@ static masu_governor_lock lock_of(const masu_governor *g) {
 
 uint32_t masu_governor_pick(masu_governor *g, uint64_t frame) {
     if (g->mode == MASU_GOVERNOR_OFF || !begin(g, frame)) return g->rung;
+    obey(g, frame);
     decide(g, frame);
     g->lock = lock_of(g);
     pace(g, frame, 0);
@@ -641,6 +649,7 @@ uint32_t masu_governor_pick(masu_governor *g, uint64_t frame) {
 
 uint32_t masu_governor_hold(masu_governor *g, uint64_t frame) {
     if (g->mode == MASU_GOVERNOR_OFF || !begin(g, frame)) return g->rung;
+    obey(g, frame);
     if (g->mode == MASU_GOVERNOR_ON) g->reason = MASU_GOVERNOR_REASON_UNUSUAL;
     pace(g, frame, 1);
     return g->rung;

@@ -89,14 +89,15 @@ typedef struct masu_governor {
     int trial;        /* the rung is one, and this was drawn before: */
     uint32_t trial_from, trials; /* failures since one that did not */
     uint64_t trial_ended;
-    double trial_load;
+    double trial_load, trial_ms; /* load when the last ended; what it was expected to take */
+    double seen_ms; /* of the first frame after a rise, if it was over the target; its frame and rung */
+    uint64_t seen_frame;
+    uint32_t seen_rung;
     masu_governor_reason reason;
     masu_governor_lock lock;
     uint64_t samples, rejected, missed, changes;
 } masu_governor;
 
-/* Fills what is 0 with defaults; without a governor nothing. */
-void masu_governor_defaults(masu_governor_desc *desc, uint32_t rungs);
 /* Out-of-range fields of `desc` count as 0; a count of 0 or above MASU_GOVERNOR_RUNGS is
  * clamped. */
 void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "quality/governor.h"
+#include "quality/governor_state.h"
 #include "simulate/simulate.h"
 #include "support/random.h"
 
@@ -329,7 +329,16 @@ static void it_stays_sound_under_a_million_samples(void **state) {
         if (support_random(&random) % 1000 == 0)
             masu_governor_override(&g, frame, (uint32_t)(i % 20), 0);
         if (support_random(&random) % 5000 == 0) frame += support_random(&random) >> 50;
-        uint32_t rung = masu_governor_pick(&g, frame);
+        if (support_random(&random) % 100 == 0)
+            masu_governor_shown(&g, frame - support_random_in(&random, 0, 9), support_random(&random) >> 40,
+                                i % 7 ? 16666667 : support_random(&random) >> 36);
+        if (support_random(&random) % 3000 == 0) {
+            masu_governor_desc d = {.mode = MASU_GOVERNOR_ON, .target_ms = (float)any_time(&random),
+                                    .best_rung = (uint32_t)(i % 3), .worst_rung = (uint32_t)(i % 18)};
+            masu_governor_adjust(&g, &d);
+        }
+        if (support_random(&random) % 3000 == 0) masu_governor_scale(&g, any_time(&random), frame);
+        uint32_t rung = i % 40 < 38 ? masu_governor_pick(&g, frame) : masu_governor_hold(&g, frame);
         frame++;
         if (rung < g.best || rung > g.worst || g.worst >= g.count)
             fail_msg("rung %u at %u", rung, i);
