@@ -796,6 +796,10 @@ typedef struct masu_governor_desc {
                                     for the class of the GPU where that is known
                                     (masu_plan_info.computed_for), else measured on a CPU; without a
                                     ladder scale^2 */
+    uint32_t steady_clock; /* not 0: the clock of the GPU does not follow its load. 0: at rest for 1,800
+                              frames at a rung that takes less than 0.92 of the target, a better one that
+                              is expected to take at most 1.25 of it is tried for 12 frames, to see whether
+                              the clock follows; seldomer after each that did not */
 } masu_governor_desc;
 
 #define MASU_GOVERNOR_REASONS(X)                                                                   \
@@ -812,7 +816,9 @@ typedef struct masu_governor_desc {
     X(MASU_GOVERNOR_REASON_FUTILE, 10, "no rung keeps the target; cheaper ones save nothing")         \
     X(MASU_GOVERNOR_REASON_BLIND, 11, "no frame has been measured for long: the rung stays")       \
     X(MASU_GOVERNOR_REASON_FIXED, 12, "the rung is fixed")                                         \
-    X(MASU_GOVERNOR_REASON_HOST, 13, "the host has chosen the rung")
+    X(MASU_GOVERNOR_REASON_HOST, 13, "the host has chosen the rung")                                \
+    X(MASU_GOVERNOR_REASON_UNUSUAL, 14, "the frame's time will say nothing: the rung stays")  \
+    X(MASU_GOVERNOR_REASON_TRIAL, 15, "a better rung: does the clock follow the load?")
 
 /* Why the rung is what it is. */
 typedef enum masu_governor_reason {
@@ -835,7 +841,9 @@ typedef enum masu_governor_lock {
     MASU_GOVERNOR_LOCKED_FIXED = 1,  /* there is one rung to choose from */
     MASU_GOVERNOR_LOCKED_WORST = 2,  /* over the target at the cheapest rung */
     MASU_GOVERNOR_LOCKED_FUTILE = 3, /* over the target, and rungs hardly differ in time */
-    MASU_GOVERNOR_LOCKED_BLIND = 4   /* there are no samples to go by */
+    MASU_GOVERNOR_LOCKED_BLIND = 4,  /* there are no samples to go by */
+    MASU_GOVERNOR_LOCKED_CPU = 5     /* the host's own work is over the target: no rung helps, and for its
+                                        sake none is left */
 } masu_governor_lock;
 
 /* What the governor knows, and what it has done. */
@@ -856,12 +864,54 @@ typedef struct masu_governor_info {
     float overhead_ms; /* wall time that timestamps do not show; part of the predictions */
     float unit; /* GPU times are multiplied by this: not 1 where the clock's unit is wrong */
     float start_delay_ms; /* pacing: a frame of this rung that is submitted so long after its interval
-                             of target_ms has begun is expected to end within it. Waiting so long
-                             before input is read makes it that much fresher */
-    uint64_t samples, rejected; /* used; left out as no frame's time */
-    uint64_t missed;  /* of the used ones: longer than the target */
+                             has begun is expected to end within it. Waiting so long before input is
+                             read makes it that much fresher. The interval is target_ms, or, with a
+                             refresh that is known, `refreshes` of them */
+    uint64_t samples, rejected; /* used; left out as no frame's time, or unusual */
+    uint64_t missed;  /* of the used ones: longer than the target. With a refresh that is known: frames
+                         shown more than half a refresh later than they should have been */
     uint64_t changes; /* of the rung */
+    float cpu_ms;     /* the host's own work for a frame (masu_frame_times), without single long ones;
+                         0: not known */
+    float refresh_ms;   /* of the display (masu_frame_presented); 0: not known */
+    uint32_t refreshes; /* that this frame should be shown for, 1..16: the least that it, and the host's
+                           own work, is expected to fit into, and not fewer than target_ms does. More
+                           after 4 frames in a row that do not fit, or 4 late ones of 16; one fewer after
+                           60 that would, later where that was a mistake. 0: refresh_ms is not known */
 } masu_governor_info;
+
+/* What of masu_governor_desc can be changed between frames (masu_governor_set): the same fields, units,
+ * ranges and defaults, but that `mode` is ON or FIXED. */
+typedef struct masu_governor_setting {
+    masu_governor_mode mode;
+    float target_ms, headroom;
+    uint32_t best_rung, worst_rung, rung, dwell;
+} masu_governor_setting;
+
+#define MASU_GOVERNOR_STATE_VERSION 1u
+
+/* What a governor has learnt (masu_governor_save): plain numbers without pointers, which may be copied and
+ * written to a file for the same machine. Its fields are the library's; a host need not look at them. */
+typedef struct masu_governor_state {
+    uint32_t bytes, version; /* sizeof, MASU_GOVERNOR_STATE_VERSION */
+    uint32_t known;          /* 0: it had measured nothing: all below is 0 */
+    uint32_t width, height;  /* output, pixels */
+    uint32_t rung_count, rung;
+    uint32_t held;      /* frames that `rung` has been drawn for, at most 4096 */
+    uint32_t patience;  /* a rise waits so many dwells, 1..64 */
+    uint32_t wall_only; /* 1: timestamps were found to lie */
+    uint32_t follows;   /* 1: the clock was seen to follow the load; */
+    uint32_t trials;    /* trials since that it did not follow, 0..6 */
+    double fixed_ms, load_ms;                         /* as in masu_governor_info */
+    double fixed_variance, load_variance, covariance; /* of them, ms^2 */
+    double noise, overhead_ms, unit;                  /* as in masu_governor_info */
+    double settled_ms, mistake_ms; /* load where it came to rest; at the last rise that was taken back */
+    struct {
+        double scale, prior;   /* as described: what rungs are told apart by */
+        double cost, variance; /* as learnt, and of its relative error */
+        double penalty;        /* factor on what it is expected to take, after rises taken back */
+    } rungs[MASU_MAX_RUNGS];
+} masu_governor_state;
 
 /* In English, without a newline. Never NULL. */
 MASU_API const char *masu_governor_reason_string(masu_governor_reason reason);
@@ -1154,6 +1204,9 @@ typedef struct masu_frame_desc {
     const float *sdf_params;  /* `sdf_param_count` values, NULL: the scene's defaults */
     uint32_t sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
                             clamped to their declared range; one that is not finite is an error */
+    uint32_t unusual; /* not 0: this frame's times say nothing of the next ones' (a level is loaded, shaders
+                         are compiled, a debugger has stopped it): the governor keeps its rung, does not
+                         learn of it (`rejected`) and does not count it as missed. Of the governor alone */
 } masu_frame_desc;
 
 /* Writes this frame's uniforms and hands out the command buffer to submit. Call when the slot is
@@ -1190,6 +1243,59 @@ MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const mas
  * to wait, the time is too long by the difference: wait on it as soon as nothing else is to be done, or leave the
  * call out for such a frame. */
 MASU_API void masu_frame_wall(masu_renderer *renderer, uint32_t slot, double wall_ms);
+
+/* The same, and better: when the slot's last frame was handed to vkQueueSubmit and when its fence was seen
+ * signalled, ns by one clock of the host's that never goes back, whatever its start. With frames in flight
+ * a frame waits for the one before: the library begins its time where that one ended, whichever was told
+ * first. It takes the times of every frame: after one that was left out, the next one's are too (with one
+ * frame in flight none is). Look at the fence as soon as it is due: a host that comes late makes frames
+ * longer. done_ns <= submit_ns: no times. To be called when masu_frame_wall would be, which then says
+ * nothing.
+ *
+ * `cpu_ms`: what the host itself worked for this frame, from frame to frame without waiting for fences,
+ * images or sleep; 0: not known. A time by the clock that is no longer than that is the host's and not the
+ * GPU's: then timestamps alone are believed, and without them, where cpu_ms is over the target, nothing.
+ * Over the target governor.locked is MASU_GOVERNOR_LOCKED_CPU, unless the GPU is, too. */
+MASU_API void masu_frame_times(masu_renderer *renderer, uint32_t slot, uint64_t submit_ns,
+                               uint64_t done_ns, double cpu_ms);
+
+/* For the governor: frame number `frame` (masu_commands.frame) was shown at `present_ns`, of which
+ * VK_GOOGLE_display_timing, VK_KHR_present_wait or the host's own clock tells, at a display whose refresh
+ * takes `refresh_ns`, 1e6..1e9. Frames in their order, each once, within 16 frames; some may be left out.
+ * From then on governor.refreshes says for how many refreshes the next frame should be shown, `missed`
+ * counts frames that were shown later than that, and a target that is up to 5 % of a refresh above whole
+ * refreshes is taken as these. A refresh_ns out of range, such as 0: it is known no longer. Values that are
+ * none are left out. */
+MASU_API void masu_frame_presented(masu_renderer *renderer, uint64_t frame, uint64_t present_ns,
+                                   uint64_t refresh_ns);
+
+/* Another mode, target, headroom, range, fixed rung or dwell for the governor, from the next masu_frame on.
+ * All of it is replaced: fields that are 0 become their defaults. What was learnt of times and costs stays,
+ * but for which rises were mistakes; a better rung that now fits is taken without waiting for the dwell.
+ * Any rung is held for 8 frames, unless it is over the target or out of the range. MASU_ERROR_ARGUMENT: a
+ * NULL pointer, or a field out of range, named, with what is allowed; nothing is changed then.
+ * MASU_ERROR_STATE: governor.mode was OFF in masu_init. */
+MASU_API MASU_MUST_USE masu_result masu_governor_set(masu_renderer *renderer,
+                                                     const masu_governor_setting *setting);
+
+/* What the governor has learnt: for masu_governor_restore after a masu_destroy and masu_init, in another
+ * renderer, on another day. May be asked between any two frames. MASU_ERROR_ARGUMENT: a NULL pointer.
+ * MASU_ERROR_STATE: as masu_governor_set. */
+MASU_API MASU_MUST_USE masu_result masu_governor_save(masu_renderer *renderer,
+                                                      masu_governor_state *out);
+
+/* Takes it over; to be called before the first frame, or between any two. With the same rungs (scales and
+ * governor.costs) and output size the first frame has the rung that the next of the old renderer would have
+ * had. Else the first frame has the best rung that is expected to keep the target:
+ *  - of another output size load_ms goes with the pixels; fixed_ms half with them, and its deviation is what
+ *    none or all of it would make;
+ *  - a rung that was described alike keeps its learnt cost, others begin with their own governor.costs,
+ *    which are taken to be in the same unit on both sides, as scale^2 and those of built-in ladders are.
+ * A state that had measured nothing changes nothing. MASU_ERROR_VERSION: of another version or size.
+ * MASU_ERROR_ARGUMENT: a NULL pointer, or a number that no governor can have, named. MASU_ERROR_STATE: as
+ * masu_governor_set. On an error nothing is changed: a host with a file of any bytes may go on without. */
+MASU_API MASU_MUST_USE masu_result masu_governor_restore(masu_renderer *renderer,
+                                                         const masu_governor_state *state);
 
 /* Why the last masu_load, masu_frame, or call that asks or changes an instance, model or punctual light
  * failed. Never NULL. */

@@ -8,6 +8,7 @@
 #include "device/ray_query.h"
 #include "device/shaders.h"
 #include "quality/governor_desc.h"
+#include "governed.h"
 #include "renderer.h"
 #include "scene/scene.h"
 #include "stats.h"
@@ -161,17 +162,6 @@ void masu_plan_of(const masu_renderer *m, masu_plan_info *out) {
 
 /* ---- Life ------------------------------------------------------------------------------------ */
 
-/* Rungs of a source image have no scale: what they cost has to be learnt. */
-static void start_governor(masu_renderer *m) {
-    const masu_desc *d = &m->plan.desc;
-    masu_governor_rung rungs[MASU_MAX_RUNGS];
-    for (uint32_t r = 0; r < d->rung_count; r++) {
-        rungs[r].scale = d->source.view ? 1.0 : (double)d->rungs[r].scale;
-        rungs[r].cost = (double)d->governor.costs[r];
-    }
-    masu_governor_init(m->governor, &d->governor, rungs, d->rung_count);
-}
-
 static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes,
                         masu_renderer **out, masu_detail *detail) {
     masu_vk vk;
@@ -210,7 +200,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
     m->device.plan = &m->plan;
     m->device.objects = objects;
     masu_timeline_start(&m->timeline);
-    if (m->governor) start_governor(m);
+    if (m->governor) masu_governed_start(m);
     masu_keep_scene(m);
     result = masu_device_make(&m->device, &m->draws, detail);
     if (result) {
@@ -311,17 +301,6 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
     return MASU_OK;
 }
 
-/* The governor learns of the frame whose slot comes free, and says at which rung the next is drawn where
- * the host leaves it open. */
-static void pick_rung(masu_renderer *m, masu_frame_data *f) {
-    masu_governor_sample sample;
-    if (masu_slot_sample(m, f->slot, &sample)) {
-        m->timeline.slots[f->slot].wall_ms = 0.0;
-        masu_governor_sample_in(m->governor, &sample);
-    }
-    if (f->desc.rung == MASU_RUNG_AUTO) f->desc.rung = masu_governor_pick(m->governor, f->number);
-}
-
 /* Each step reads what those before it have found: their order is part of what they do. */
 masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_result result = masu_frame_read_time(f, &m->error);
@@ -369,30 +348,22 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
     if (frame->viewport < MASU_MAX_VIEWPORTS) masu_plan_look_at(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
     masu_result result = check_frame(m, frame);
-    if (!result && m->governor) pick_rung(m, &f);
+    if (!result && m->governor) masu_governed_pick(m, &f);
     if (!result && m->plan.desc.scene) result = masu_write_frame(m, &f);
     if (result) {
         masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
         return result;
     }
-    m->timeline.cut = 0;
-    m->timeline.slots[f.slot].frame = m->timeline.frame++;
-    m->timeline.slots[f.slot].rung = f.desc.rung;
-    m->timeline.slots[f.slot].viewport = m->timeline.viewport = f.desc.viewport;
     const masu_rung_plan *rp = &m->plan.rungs[f.desc.rung];
-    m->timeline.slots[f.slot].render = (VkExtent2D){rp->render_width, rp->render_height};
     masu_slot_begin(m, f.slot);
-    if (m->governor) {
-        if (frame->rung != MASU_RUNG_AUTO && !frame->viewport)
-            masu_governor_override(m->governor, f.number, frame->rung);
-        if (f.cut && f.number) masu_governor_cut(m->governor, f.number);
-    }
+    masu_timeline_begin(&m->timeline, f.slot,
+                        &(masu_slot){.rung = f.desc.rung,
+                                     .viewport = f.desc.viewport,
+                                     .render = {rp->render_width, rp->render_height},
+                                     .unusual = f.desc.unusual != 0});
+    if (m->governor) masu_governed_begin(m, &f, frame->rung);
     *commands = (masu_commands){pick_recording(m, &f), f.slot, f.desc.rung, f.number};
     return MASU_OK;
-}
-
-void masu_frame_wall(masu_renderer *m, uint32_t slot, double wall_ms) {
-    if (m && slot < m->plan.desc.frames_in_flight) m->timeline.slots[slot].wall_ms = wall_ms;
 }
 
 const masu_detail *masu_last_error(const masu_renderer *m) {

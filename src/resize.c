@@ -2,9 +2,11 @@
  * allocated for the largest output, and a pass of a smaller one uses their upper left part, as rungs of a
  * smaller scale always have; what depends on sizes stands in the recordings, which are made again. */
 #include "base/error.h"
+#include "governed.h"
 #include "device/record.h"
 #include "plan/compile.h"
 #include "plan/desc.h"
+#include "quality/governor_state.h"
 #include "renderer.h"
 
 /* What may stay 0 stays what it is. */
@@ -78,10 +80,16 @@ masu_result masu_resize(masu_renderer *m, VkExtent2D output, const masu_targets 
     masu_targets t = *targets;
     masu_result result = check(m, output, &t, viewports, detail);
     if (result) return result;
+    VkExtent2D was = masu_governed_output(m);
     m->plan.desc.targets = t;
     m->plan.whole = output;
     for (uint32_t i = 0; i < m->plan.desc.viewport_count; i++)
         m->plan.desc.viewports[i] = viewports[i];
+    VkExtent2D is = masu_governed_output(m);
+    if (m->governor) {
+        double pixels = (double)is.width * is.height / ((double)was.width * was.height);
+        masu_governor_scale(m->governor, pixels, m->timeline.frame);
+    }
     m->timeline.cut = 1;
     result = masu_record_again(&m->device, &m->draws, detail);
     if (result) m->loaded = 0; /* no frame is handed out any more */

@@ -58,8 +58,11 @@ static int is_fixed_pass(uint32_t pass) {
 int masu_slot_sample(const masu_renderer *m, uint32_t slot, masu_governor_sample *out) {
     uint32_t stamps = masu_stamps(&m->plan.desc);
     const masu_slot *held = &m->timeline.slots[slot];
-    *out =
-        (masu_governor_sample){.frame = held->frame, .rung = held->rung, .wall_ms = held->wall_ms};
+    *out = (masu_governor_sample){.frame = held->frame,
+                                  .rung = held->rung,
+                                  .wall_ms = held->wall_ms,
+                                  .cpu_ms = held->cpu_ms,
+                                  .unusual = held->unusual};
     /* None, never submitted, or not the governor's, whose are those of the first viewport. */
     if (held->frame == UINT64_MAX || held->viewport || !has_ended(m, slot)) return 0;
     if (stamps) out->gpu_ms = (double)stamp_ns(m, slot, 0, stamps - 1) * 1e-6;

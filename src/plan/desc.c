@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "plan/output.h"
-#include "quality/governor.h"
+#include "quality/governor_desc.h"
 #include "quality/knobs.h"
 #include "quality/ladder.h"
 

@@ -1,11 +1,12 @@
 /* governor.c: frame times in, a rung of the ladder out. See governor.h.
  *
- * Three parts: what is believed of a sample; the filter that follows fixed part, load and slope;
- * the laws by which a rung is left. Nothing is summed up over time but variances, which are
+ * Two parts: the filter that follows fixed part, load and slope; the laws by which a rung is left.
+ * What is believed of a sample is in trust.c. Nothing is summed up over time but variances, which are
  * bounded, so there is nothing that could wind up at the end of the ladder. */
 #include "quality/governor.h"
 
 #include "shared/floats.h"
+#include "quality/governor_desc.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,20 +14,7 @@
 /* ---- Constants: all are times in frames, deviations, or parts
  * ------------------------------------ */
 
-#define TARGET_MS 16.67
-#define HEADROOM 0.02
-#define DWELL 24u
-
-#define TIME_MOST 1e4 /* ms: longer is no frame */
-#define PAUSE 1e3     /* ms: longer is rather a pause than a frame */
-#define NEAREST 0.5   /* of the wall: GPU times between the two are believed */
-#define FARTHEST 1.05
-#define BUSY 0.8 /* below it the wall is what counts: what it has on top follows the rung */
-#define DISTRUST_MOST 30.0 /* GPU times that the wall contradicts, and it alone is believed */
-#define UNIT_SAMPLES 16u   /* that agree on a factor of the clock's unit */
-#define FROZEN_SAMPLES 4u  /* the same GPU time to the bit, while the wall moves */
-#define SCALE_RANGE 64.0   /* a wall time so far from the target says nothing of units */
-
+#define PAUSE 1e3 /* ms: longer is rather a pause than a frame */
 #define NOISE_FIRST 0.02
 #define NOISE_LEAST 0.003 /* timers are no better */
 #define NOISE_MOST 0.5
@@ -54,7 +42,7 @@
 #define LEAST_TIME 0.02   /* of the target, and half of the fixed part: what a frame can take */
 #define ODD_PAUSE_COUNT 8u
 
-#define MARGIN 2.5       /* deviations of one sample that a rung is chosen with */
+#define MARGIN MASU_GOVERNOR_MARGIN
 #define MARGIN_REST 1.25 /* and those with which it is kept, at rest */
 #define MARGIN_MOVES 3.5 /* and while the load rises, where the prediction is late: */
 #define RISES_LEAST 0.05 /* by this part in a dwell it does not yet, */
@@ -73,52 +61,56 @@
 #define PENALTY_LEAST 1.02
 #define PENALTY_MOST 1.15
 #define PATIENCE_MOST 64u
+/* A clock that follows its own load makes a low rung as slow as a better one. Whether it does is tried: */
+#define TRIAL_BUSY 0.92    /* of the target: a rung that takes less at rest may be so because of it, */
+#define TRIAL_MOST 1.25    /* and one is tried that is expected to take at most so much of it, */
+#define TRIAL_FRAMES 12u   /* for so long; */
+#define TRIAL_WAIT 1800u   /* frames at rest until then where nothing is known of the clock, */
+#define TRIAL_AGAIN 300u   /* or after one that failed where clocks have followed: both double, */
+#define TRIAL_FOLLOWS 0.96 /* of what was expected: a time that is less shows a clock that followed */
+#define RISE_FOLLOWS 0.8   /* the same of one that was over the target just after a rise */
+#define TRIALS_MOST 6u     /* so often */
+#define TRIALS_DOUBT 3u    /* failures in a row, and nothing is known of the clock any more */
+#define HOLD 8u /* frames: the least that a rung is kept for while the target is */
 #define FUTILE 1.05 /* rungs within this factor of the least time save nothing */
 
 #define NEVER UINT64_MAX
 
 /* ---- Init ------------------------------------------------------------------------------------ */
 
-static double within(double x, double low, double high) {
-    return x >= low ? x <= high ? x : high : low; /* NaN: low */
-}
-
-static double largest(double a, double b) { return a > b ? a : b; }
-
-void masu_governor_defaults(masu_governor_desc *d, uint32_t rungs) {
-    if (d->mode == MASU_GOVERNOR_OFF) return;
-    if (d->target_ms == 0.0f) d->target_ms = (float)TARGET_MS;
-    if (d->headroom == 0.0f) d->headroom = (float)HEADROOM;
-    if (d->worst_rung == 0 && rungs) d->worst_rung = rungs - 1;
-    if (d->dwell == 0) d->dwell = DWELL;
+/* What can be changed later of a description; what is out of range counts as 0. */
+static void take(masu_governor *g, const masu_governor_desc *desc) {
+    g->mode = desc->mode;
+    g->asked =
+        desc->target_ms >= 1.0f && desc->target_ms <= 1000.0f ? (double)desc->target_ms : MASU_GOVERNOR_TARGET_MS;
+    g->target = masu_pacing_target(&g->pacing, g->asked);
+    g->headroom = desc->headroom < 0.0f                             ? 0.0
+                  : desc->headroom > 0.0f && desc->headroom <= 0.5f ? (double)desc->headroom
+                                                                    : MASU_GOVERNOR_HEADROOM;
+    g->dwell = desc->dwell >= 1 && desc->dwell <= 600 ? desc->dwell : MASU_GOVERNOR_DWELL;
+    g->worst =
+        desc->worst_rung >= 1 && desc->worst_rung < g->count ? desc->worst_rung : g->count - 1;
+    g->best = desc->best_rung <= g->worst ? desc->best_rung : 0;
+    g->fixed_rung = desc->rung < g->count ? desc->rung : g->count - 1;
 }
 
 void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
                         const masu_governor_rung *rungs, uint32_t count) {
     memset(g, 0, sizeof *g);
     g->count = count < 1 ? 1 : count > MASU_GOVERNOR_RUNGS ? MASU_GOVERNOR_RUNGS : count;
-    g->mode = desc->mode;
-    g->target =
-        desc->target_ms >= 1.0f && desc->target_ms <= 1000.0f ? (double)desc->target_ms : TARGET_MS;
-    g->headroom = desc->headroom < 0.0f                             ? 0.0
-                  : desc->headroom > 0.0f && desc->headroom <= 0.5f ? (double)desc->headroom
-                                                                    : HEADROOM;
-    g->dwell = desc->dwell >= 1 && desc->dwell <= 600 ? desc->dwell : DWELL;
-    g->worst =
-        desc->worst_rung >= 1 && desc->worst_rung < g->count ? desc->worst_rung : g->count - 1;
-    g->best = desc->best_rung <= g->worst ? desc->best_rung : 0;
-    g->fixed_rung = desc->rung < g->count ? desc->rung : g->count - 1;
+    take(g, desc);
     for (uint32_t r = 0; r < g->count; r++) {
-        double s = within(rungs[r].scale, 0.01, 1.0);
+        double s = masu_within(rungs[r].scale, 0.01, 1.0);
         double cost = rungs[r].cost;
         g->scale[r] = s;
-        g->prior[r] = cost > 0.0 && cost <= 1e6 ? largest(cost, 1e-6) : s * s;
+        g->prior[r] = cost > 0.0 && cost <= 1e6 ? masu_largest(cost, 1e-6) : s * s;
         g->cost[r] = g->prior[r];
         g->cost_variance[r] = COST_DEVIATION * COST_DEVIATION;
         g->penalty[r] = 1.0;
     }
     g->noise = NOISE_FIRST;
-    g->unit = 1.0;
+    g->steady_clock = desc->steady_clock != 0;
+    masu_trust_start(&g->trust);
     g->cut = NEVER;
     g->patience = 1;
     g->settled_load = -1.0;
@@ -128,91 +120,14 @@ void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
                                                : MASU_GOVERNOR_REASON_NONE;
 }
 
-/* ---- What is believed ------------------------------------------------------------------------ */
-
-static int is_time(double ms) { return ms > 0.0 && ms <= TIME_MOST; } /* NaN: no */
-
-static int agrees(double gpu, double wall) {
-    return gpu >= NEAREST * wall && gpu <= FARTHEST * wall;
-}
-
-/* A clock whose unit is wrong is off by thousands, by the same factor always. A timer that lies
- * may come near such a factor by chance, not so often in a row. Of the two clocks the wall is
- * taken as the right one, if what it says can be a frame of this target. */
-static void find_unit(masu_governor *g, double raw, double wall) {
-    static const double units[] = {1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9};
-    double unit = 0.0;
-    if (!(raw > 0.0 && raw < 1e19) || !is_time(wall) || wall > SCALE_RANGE * g->target ||
-        wall < g->target / SCALE_RANGE)
-        return;
-    for (uint32_t i = 0; i < sizeof units / sizeof *units; i++) {
-        if (agrees(raw * units[i], wall)) unit = units[i];
-    }
-    g->unit_count = unit > 0.0 && unit == g->unit_try ? g->unit_count + 1 : 1;
-    g->unit_try = unit;
-    if (unit > 0.0 && g->unit_count >= UNIT_SAMPLES) g->unit = unit;
-}
-
-/* Whether the GPU's clock stands still while the other moves, or the rung does. */
-static int is_frozen(masu_governor *g, double gpu, double wall, uint32_t rung) {
-    if (gpu == g->frozen_gpu && rung != g->frozen_rung) {
-        g->frozen = FROZEN_SAMPLES;
-    } else if (gpu != g->frozen_gpu) {
-        g->frozen = 0;
-        g->frozen_rung = rung;
-        g->frozen_gpu = gpu;
-        g->frozen_wall = wall;
-    } else if (is_time(wall) && fabs(wall - g->frozen_wall) > 0.02 * wall) {
-        if (g->frozen < FROZEN_SAMPLES) g->frozen++;
-    }
-    return g->frozen >= FROZEN_SAMPLES;
-}
-
-/* The time of a sample, ms; 0: it has none. *sure: two clocks say so. */
-static double believe(masu_governor *g, const masu_governor_sample *s, int *sure) {
-    double wall = is_time(s->wall_ms) ? s->wall_ms : 0.0;
-    find_unit(g, s->gpu_ms, wall);
-    double gpu = s->gpu_ms * g->unit;
-    if (!is_time(gpu)) gpu = 0.0;
-    int frozen = is_frozen(g, s->gpu_ms, wall, s->rung);
-    *sure = 0;
-    if (wall > 0.0 && gpu > 0.0 && agrees(gpu, wall) && !frozen) {
-        g->distrust = largest(g->distrust - 0.1, 0.0);
-        /* What the wall has on top is followed slowly: it is scheduling, and has spikes. */
-        double step = wall - gpu - g->overhead, most = 0.02 * g->target;
-        g->overhead =
-            g->overhead_known ? g->overhead + within(step, -most, most) / 8.0 : wall - gpu;
-        g->overhead = within(g->overhead, 0.0, wall);
-        g->overhead_known = 1;
-        *sure = 1;
-        if (!g->wall_only && gpu >= BUSY * wall) {
-            g->source = MASU_GOVERNOR_SOURCE_GPU;
-            return gpu + g->overhead;
-        }
-    } else if (wall > 0.0 && (s->gpu_ms > 0.0 || s->gpu_ms < 0.0)) {
-        g->distrust += 1.0;
-        if (g->distrust >= DISTRUST_MOST) g->wall_only = 1;
-    }
-    if (wall > 0.0) {
-        g->source = MASU_GOVERNOR_SOURCE_WALL;
-        *sure = 1;
-        return wall;
-    }
-    if (gpu > 0.0 && !g->wall_only && !frozen) {
-        g->source = MASU_GOVERNOR_SOURCE_GPU;
-        return gpu + g->overhead;
-    }
-    return 0.0;
-}
-
 /* ---- The filter ------------------------------------------------------------------------------ */
 
 /* 0: at rest; 1: the load moves; more: the filter is late. */
 static double late(const masu_governor *g) {
-    return within((fabs(g->trend) - TREND_REST) / (TREND_MOVES - TREND_REST), 0.0, TREND_MOST);
+    return masu_within((fabs(g->trend) - TREND_REST) / (TREND_MOVES - TREND_REST), 0.0, TREND_MOST);
 }
 
-static double moves(const masu_governor *g) { return within(late(g), 0.0, 1.0); }
+static double moves(const masu_governor *g) { return masu_within(late(g), 0.0, 1.0); }
 
 /* Timers that count in coarse steps give the same time again and again; real ones never do. The
  * step is the least difference that is seen; a time is then off by a variance of a twelfth of
@@ -234,7 +149,7 @@ static double sample_variance(const masu_governor *g, double ms) {
 /* The load is where this time says; how it moves is forgotten, the fixed part is kept. */
 static void restart(masu_governor *g, uint32_t rung, double ms) {
     double c = g->cost[rung], variance = g->p[0][0];
-    g->fixed = within(g->fixed, 0.0, 0.5 * ms);
+    g->fixed = masu_within(g->fixed, 0.0, 0.5 * ms);
     g->load = (ms - g->fixed) / c;
     g->slope = 0.0;
     memset(g->p, 0, sizeof g->p);
@@ -257,7 +172,7 @@ static int refit(masu_governor *g, uint32_t rung, double ms) {
     double load = (g->fixed + g->cost[other] * g->load - ms) / step;
     double noise = 3.0 * sqrt(2.0 * sample_variance(g, ms)) / fabs(step);
     if (!(load >= -noise)) return 0;
-    load = largest(load, 0.01 * g->target);
+    load = masu_largest(load, 0.01 * g->target);
     double fixed = ms - c * load;
     if (!(fixed >= 0.0)) return 0;
     restart(g, rung, ms);
@@ -288,8 +203,8 @@ static void follow_noise(masu_governor *g, uint32_t rung, double ms) {
         double d = fabs(ms - 2.0 * g->before[0] + g->before[1]) / ms * (1.2533 / 2.4495);
         g->noise_samples += g->noise_samples < NOISE_WINDOW;
         uint32_t n = g->noise_samples + 8 < NOISE_WINDOW ? g->noise_samples + 8 : NOISE_WINDOW;
-        g->noise += (within(d, 0.0, 3.0 * g->noise) - g->noise) / (double)n;
-        g->noise = within(g->noise, NOISE_LEAST, NOISE_MOST);
+        g->noise += (masu_within(d, 0.0, 3.0 * g->noise) - g->noise) / (double)n;
+        g->noise = masu_within(g->noise, NOISE_LEAST, NOISE_MOST);
     }
     g->before[1] = g->before[0];
     g->before[0] = ms;
@@ -301,7 +216,7 @@ static void follow_noise(masu_governor *g, uint32_t rung, double ms) {
 static void advance(masu_governor *g, double frames) {
     double(*p)[3] = g->p;
     double q = REST + (1.0 - REST) * late(g);
-    double size = largest(g->load, 0.02 * g->target);
+    double size = masu_largest(g->load, 0.02 * g->target);
     g->load += g->slope * frames;
     p[1][1] += 2.0 * frames * p[1][2] + frames * frames * p[2][2];
     p[0][1] += frames * p[0][2];
@@ -338,7 +253,7 @@ static int is_certain(masu_governor *g, const masu_governor_sample *s, double ms
     uint32_t needed = 2;
     if (!sure && ms > ODD_FAR * expected) needed = ODD_FAR_COUNT;
     if (!sure && ms * ODD_FAR < expected) {
-        int can_be = ms >= largest(0.5 * g->fixed, LEAST_TIME * g->target);
+        int can_be = ms >= masu_largest(0.5 * g->fixed, LEAST_TIME * g->target);
         needed = can_be ? ODD_NEAR_COUNT : ODD_LIE_COUNT;
     }
     if (ms > PAUSE && ms > ODD_FAR * expected) needed = ODD_PAUSE_COUNT;
@@ -354,9 +269,9 @@ static int is_certain(masu_governor *g, const masu_governor_sample *s, double ms
  * of it, and not all of them are fixed. */
 static void follow_fixed(masu_governor *g, const masu_governor_sample *s, double ms) {
     static const double h[3] = {1.0, 0.0, 0.0};
-    double fixed = s->fixed_ms * g->unit;
-    if (!(fixed > 0.0 && fixed <= ms) || g->source != MASU_GOVERNOR_SOURCE_GPU) return;
-    fixed += g->overhead;
+    double fixed = s->fixed_ms * g->trust.unit;
+    if (!(fixed > 0.0 && fixed <= ms) || g->trust.source != MASU_GOVERNOR_SOURCE_GPU) return;
+    fixed += g->trust.overhead;
     double d = 0.1 * fixed + 0.02 * g->target;
     correct(g, h, fixed - g->fixed, d * d);
 }
@@ -367,7 +282,7 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     double load = g->load, p[3][3];
     uint64_t newest = g->newest;
     memcpy(p, g->p, sizeof p);
-    advance(g, within(frames, 0.0, 60.0));
+    advance(g, masu_within(frames, 0.0, 60.0));
     g->newest = s->frame;
     if (g->cut <= s->frame) {
         g->cut = NEVER;
@@ -379,9 +294,9 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     const double h[3] = {1.0, c, 0.0};
     double state = g->p[0][0] + 2.0 * c * g->p[0][1] + c * c * g->p[1][1];
     double pixel = c * g->load, rung = pixel * pixel * g->cost_variance[s->rung];
-    double variance = largest(state, 0.0) + rung + own, deviation = sqrt(variance);
+    double variance = masu_largest(state, 0.0) + rung + own, deviation = sqrt(variance);
     if (ms < ODD_FAR * expected && ms * ODD_FAR > expected) follow_noise(g, s->rung, ms);
-    if (fabs(innovation) > largest(GATE * deviation, GATE_LEAST * expected)) {
+    if (fabs(innovation) > masu_largest(GATE * deviation, GATE_LEAST * expected)) {
         if (is_certain(g, s, ms, expected, sure)) {
             if (!refit(g, s->rung, ms)) restart(g, s->rung, ms);
             g->fitted = s->rung;
@@ -395,7 +310,7 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     }
     g->odd_count = 0;
     g->fitted = s->rung;
-    follow_grain(g, g->source == MASU_GOVERNOR_SOURCE_GPU ? s->gpu_ms * g->unit : ms);
+    follow_grain(g, g->trust.source == MASU_GOVERNOR_SOURCE_GPU ? s->gpu_ms * g->trust.unit : ms);
     g->trend += TREND_WEIGHT * (innovation / deviation - g->trend);
     correct(g, h, innovation, own + rung);
     /* What the rung's own cost is to blame for. Its covariance with the load is left out: while it
@@ -404,19 +319,32 @@ static void follow(masu_governor *g, const masu_governor_sample *s, double ms, i
     if (pixel > 0.0) {
         double cost = c * (1.0 + share * innovation / pixel);
         g->cost[s->rung] =
-            within(cost, g->prior[s->rung] / COST_RANGE, g->prior[s->rung] * COST_RANGE);
+            masu_within(cost, g->prior[s->rung] / COST_RANGE, g->prior[s->rung] * COST_RANGE);
     }
     g->cost_variance[s->rung] *= 1.0 - share;
     follow_fixed(g, s, ms);
-    g->fixed = within(g->fixed, 0.0, ms);
-    g->load = within(g->load, 1e-6 * g->target, 1e9 * g->target);
-    double most = SLOPE_MOST * largest(g->load, 0.02 * g->target);
-    g->slope = within(g->slope, -most, most);
+    g->fixed = masu_within(g->fixed, 0.0, ms);
+    g->load = masu_within(g->load, 1e-6 * g->target, 1e9 * g->target);
+    double most = SLOPE_MOST * masu_largest(g->load, 0.02 * g->target);
+    g->slope = masu_within(g->slope, -most, most);
+}
+
+/* A frame over the target just after a rise, and a few frames later the same rung takes much less: loads
+ * seldom fall just then, clocks that follow them rise. */
+static void watch_clock(masu_governor *g, const masu_governor_sample *s, double ms) {
+    if (s->rung != g->seen_rung) {
+        g->seen_ms = s->rung < g->seen_rung && ms > g->target ? ms : 0.0;
+        g->seen_frame = s->frame;
+        g->seen_rung = s->rung;
+    } else if (ms < RISE_FOLLOWS * g->seen_ms && s->frame - g->seen_frame <= TRIAL_FRAMES) {
+        g->seen_ms = 0.0;
+        if (!g->steady_clock) g->follows = 1;
+    }
 }
 
 static int is_sound(const masu_governor *g) {
     double sum =
-        g->fixed + g->load + g->slope + g->noise + g->trend + g->overhead + g->distrust + g->grain;
+        g->fixed + g->load + g->slope + g->noise + g->trend + g->trust.overhead + g->trust.distrust + g->grain;
     for (int i = 0; i < 3; i++) {
         if (!(g->p[i][i] >= 0.0)) return 0;
         for (int j = 0; j < 3; j++) sum += g->p[i][j];
@@ -432,14 +360,19 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
     g->any = 1;
     g->last = s->frame;
     int sure;
-    double ms = believe(g, s, &sure);
+    if (s->unusual || s->frame < g->since) {
+        g->rejected++;
+        return;
+    }
+    double ms = masu_trust_time(&g->trust, g->target, s, &sure);
     if (!(ms > 0.0) || !g->warm) { /* drivers still compile in the first frame */
         g->warm = g->warm || ms > 0.0;
         g->rejected++;
         return;
     }
+    watch_clock(g, s, ms);
     g->samples++;
-    g->missed += ms > g->target;
+    if (g->pacing.refresh == 0.0) g->missed += ms > g->target; /* else the display tells */
     if (s->rung == g->rung && s->frame >= g->changed)
         g->misses = ms > g->target ? g->misses + (g->misses < 1000) : 0;
     if (!g->known) {
@@ -450,7 +383,7 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
     }
     follow(g, s, ms, sure);
     if (is_sound(g)) return;
-    g->overhead = g->distrust = g->grain = 0.0;
+    g->trust.overhead = g->trust.distrust = g->grain = 0.0;
     g->noise = NOISE_FIRST;
     start(g, s->rung, ms);
 }
@@ -459,12 +392,12 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *s) {
 
 /* What a frame `lead` frames past the newest sample takes at a rung, and `margin` deviations more.
  * falls: a load that falls is followed too; else it is taken as it is. */
-static double upper(const masu_governor *g, uint32_t rung, double lead, int falls, double margin) {
+double masu_governor_upper(const masu_governor *g, uint32_t rung, double lead, int falls, double margin) {
     double c = g->cost[rung], slope = g->slope < 0.0 && !falls ? 0.0 : g->slope;
-    double load = largest(g->load + slope * lead, 0.0), mean = g->fixed + c * load;
+    double load = masu_largest(g->load + slope * lead, 0.0), mean = g->fixed + c * load;
     double v = g->p[0][0] + 2.0 * c * g->p[0][1] + c * c * g->p[1][1] + sample_variance(g, mean) +
                c * load * c * load * g->cost_variance[rung];
-    return mean + margin * sqrt(largest(v, 0.0));
+    return mean + margin * sqrt(masu_largest(v, 0.0));
 }
 
 double masu_governor_predict(const masu_governor *g, uint32_t rung) {
@@ -475,14 +408,14 @@ double masu_governor_predict(const masu_governor *g, uint32_t rung) {
 /* The best rung below what is drawn that keeps the target for a dwell, at the present slope; if
  * none does, the cheapest, or one that is as cheap as that. */
 static uint32_t fall(const masu_governor *g, double lead, masu_governor_reason *reason) {
-    double last = lead + FALL_AHEAD * (double)g->dwell, least = 0.0;
+    double last = lead + (g->follows ? 0.0 : FALL_AHEAD * (double)g->dwell), least = 0.0;
     for (uint32_t r = g->best; r <= g->worst; r++) {
-        double ms = upper(g, r, last, 0, 0.0);
+        double ms = masu_governor_upper(g, r, last, 0, 0.0);
         if (r == g->best || ms < least) least = ms;
-        if (g->cost[r] < g->cost[g->rung] && upper(g, r, last, 0, MARGIN) <= g->target) return r;
+        if (g->cost[r] < g->cost[g->rung] && masu_governor_upper(g, r, last, 0, MARGIN) <= g->target) return r;
     }
     for (uint32_t r = g->best; r <= g->worst; r++) {
-        if (upper(g, r, last, 0, 0.0) > FUTILE * least) continue;
+        if (masu_governor_upper(g, r, last, 0, 0.0) > FUTILE * least) continue;
         *reason = r < g->worst && g->cost[r] > 1.2 * g->cost[g->worst] ? MASU_GOVERNOR_REASON_FUTILE
                                                                        : MASU_GOVERNOR_REASON_WORST;
         return r;
@@ -494,18 +427,20 @@ static uint32_t fall(const masu_governor *g, double lead, masu_governor_reason *
 static uint32_t rise(const masu_governor *g, double lead) {
     double most = g->target * (1.0 - g->headroom);
     for (uint32_t r = g->best; r < g->rung; r++) {
-        double now = upper(g, r, lead, 1, MARGIN), then = upper(g, r, lead + g->dwell, 0, MARGIN);
-        if (largest(now, then) * g->penalty[r] <= most) return r;
+        double now = masu_governor_upper(g, r, lead, 1, MARGIN), then = masu_governor_upper(g, r, lead + g->dwell, 0, MARGIN);
+        if (masu_largest(now, then) * g->penalty[r] <= most) return r;
     }
     return g->rung;
 }
 
 static void change(masu_governor *g, uint64_t frame, uint32_t rung, masu_governor_reason reason) {
     if (rung == g->rung) return;
-    g->cost_variance[rung] = largest(g->cost_variance[rung], COST_KNOWN * COST_KNOWN);
+    g->cost_variance[rung] = masu_largest(g->cost_variance[rung], COST_KNOWN * COST_KNOWN);
     g->rung = rung;
     g->changed = frame;
     g->reason = reason;
+    g->held_before = 0;
+    g->trial = reason == MASU_GOVERNOR_REASON_TRIAL;
     g->misses = 0;
     g->changes++;
     g->settled_load = -1.0;
@@ -530,46 +465,98 @@ static int repeats_a_mistake(masu_governor *g) {
         !is_near(g->load_low, g->raised_load, MISTAKE_RANGE) ||
         !is_near(g->load_high, g->raised_load, MISTAKE_RANGE))
         return 0;
-    double penalty = within(g->failed_ms / g->raised_ms, PENALTY_LEAST, PENALTY_MOST);
+    double penalty = masu_within(g->failed_ms / g->raised_ms, PENALTY_LEAST, PENALTY_MOST);
     for (uint32_t r = g->best; r <= g->raised_rung; r++)
-        g->penalty[r] = largest(g->penalty[r], penalty);
+        g->penalty[r] = masu_largest(g->penalty[r], penalty);
     g->mistake_load = g->load;
     if (g->patience < PATIENCE_MOST) g->patience *= 2;
     g->failed = 0;
     return 1;
 }
 
-static void forget_mistakes(masu_governor *g) {
+void masu_governor_forget_mistakes(masu_governor *g) {
     for (uint32_t r = 0; r < g->count; r++) g->penalty[r] = 1.0;
     g->patience = 1;
     g->failed = 0;
 }
 
-/* 0: the load does not rise; 1: it does, for certain. */
+/* 0: the load does not rise; 1: it does, for certain. What a clock does that follows is no rise: it ends
+ * before the target is missed. */
 static double rises(const masu_governor *g) {
+    if (g->follows) return 0.0;
     double part = g->slope * (double)g->dwell / g->load;
     if (g->settled_load >= 0.0 && g->load < (1.0 + SETTLE_BAND) * g->settled_load) return 0.0;
-    return moves(g) * within((part - RISES_LEAST) / (RISES_MOST - RISES_LEAST), 0.0, 1.0);
+    return moves(g) * masu_within((part - RISES_LEAST) / (RISES_MOST - RISES_LEAST), 0.0, 1.0);
+}
+
+double masu_governor_lead(const masu_governor *g, uint64_t frame) {
+    return masu_within(frame > g->newest ? (double)(frame - g->newest) : 0.0, 0.0, LEAD_MOST);
+}
+
+/* A trial ends: the rung is kept if it takes no longer than it may by now, whatever the reason. */
+static void end_trial(masu_governor *g, uint64_t frame, int over) {
+    g->trial = 0;
+    g->trial_load = g->load;
+    g->trial_ended = frame;
+    if (!over && masu_governor_predict(g, g->rung) < TRIAL_FOLLOWS * g->trial_ms) {
+        g->follows = 1;
+        g->trials = 0;
+        return;
+    }
+    if (g->trials < TRIALS_MOST) g->trials++;
+    if (g->trials >= TRIALS_DOUBT) g->follows = 0;
+    if (!over) return;
+    change(g, frame, g->trial_from, MASU_GOVERNOR_REASON_DOWN);
+    g->rising = 0;
+}
+
+/* Nothing better fits, and there is room: begins a trial if it is time for one. */
+static void try_clock(masu_governor *g, uint64_t frame, uint64_t still) {
+    uint32_t r = g->rung - 1;
+    if (g->rung <= g->best || g->steady_clock || g->odd_count || moves(g) > 0.0 || g->noise > 0.05)
+        return;
+    if (!g->follows && g->settled_load < 0.0) return;
+    while (r > g->best && g->cost[r] < FUTILE * g->cost[g->rung]) r--;
+    if (masu_governor_predict(g, g->rung) > TRIAL_BUSY * g->target ||
+        masu_governor_predict(g, r) > TRIAL_MOST * g->target)
+        return;
+    /* Elsewhere the clock may have room again. */
+    if (g->follows && !is_near(g->load, g->trial_load, FORGET_LOAD)) g->trials = 0;
+    uint64_t wait = !g->follows ? TRIAL_WAIT : g->trials ? TRIAL_AGAIN : g->dwell;
+    if (still < (g->follows ? g->dwell : TRIAL_WAIT) ||
+        (g->trials && frame - g->trial_ended < wait << g->trials))
+        return;
+    g->trial_from = g->rung;
+    g->trial_ms = masu_governor_predict(g, r);
+    g->rising = 0;
+    change(g, frame, r, MASU_GOVERNOR_REASON_TRIAL);
 }
 
 static void choose(masu_governor *g, uint64_t frame) {
-    double lead = within(frame > g->newest ? (double)(frame - g->newest) : 0.0, 0.0, LEAD_MOST);
+    double lead = masu_governor_lead(g, frame);
     double keep = MARGIN_REST + (MARGIN_MOVES - MARGIN_REST) * rises(g);
     if (g->jumped || moves(g) > 0.5) g->restless = frame;
     if (g->load < g->load_low) g->load_low = g->load;
     if (g->load > g->load_high) g->load_high = g->load;
     if (g->jumped || !is_near(g->load, g->mistake_load, FORGET_LOAD)) {
-        if (g->patience > 1) forget_mistakes(g);
+        if (g->patience > 1) masu_governor_forget_mistakes(g);
     }
-    uint64_t held = frame - g->changed, dwell = (uint64_t)g->dwell * g->patience;
-    int over = upper(g, g->rung, lead, 1, keep) > g->target, panic = g->misses >= 2;
+    uint64_t held = frame - g->changed + g->held_before;
+    uint64_t dwell = (uint64_t)(g->dwell > HOLD ? g->dwell : HOLD) * g->patience;
+    int over = masu_governor_upper(g, g->rung, lead, 1, keep) > g->target, panic = g->misses >= 2;
     masu_governor_reason why = g->jumped ? MASU_GOVERNOR_REASON_JUMP
                                : over    ? MASU_GOVERNOR_REASON_DOWN
                                          : MASU_GOVERNOR_REASON_PANIC;
     g->jumped = 0;
+    if (g->trial) {
+        if (held < TRIAL_FRAMES && masu_governor_predict(g, g->rung) < TRIAL_MOST * g->target) return;
+        end_trial(g, frame, over);
+        if (over) return;
+    }
     if (over || panic) {
         uint32_t r = fall(g, lead, &why);
         g->misses = 0;
+        g->urged = 0;
         if (r == g->rung || (r < g->rung && held < dwell)) {
             g->reason = why == MASU_GOVERNOR_REASON_FUTILE ? why : MASU_GOVERNOR_REASON_WORST;
             return;
@@ -588,7 +575,15 @@ static void choose(masu_governor *g, uint64_t frame) {
     if (g->settled_load < 0.0 && still * 2 >= SETTLE_WAIT * dwell) g->settled_load = g->load;
     uint32_t r = g->odd_count ? g->rung : rise(g, lead);
     if (r == g->rung) {
+        if (!g->odd_count) g->urged = 0;
         g->reason = r == g->best ? MASU_GOVERNOR_REASON_BEST : MASU_GOVERNOR_REASON_HOLD;
+        try_clock(g, frame, still);
+        return;
+    }
+    if (g->urged && (held >= HOLD || g->urged > 1)) {
+        g->urged = 0;
+        g->rising = 0; /* what is found there is no mistake of this load */
+        change(g, frame, r, MASU_GOVERNOR_REASON_UP);
         return;
     }
     int worth = g->cost[r] >= STEP_UP * g->cost[g->rung] || r == g->best;
@@ -601,75 +596,104 @@ static void choose(masu_governor *g, uint64_t frame) {
     raise_to(g, frame, r, MASU_GOVERNOR_REASON_UP);
 }
 
-uint32_t masu_governor_pick(masu_governor *g, uint64_t frame) {
-    if (g->mode != MASU_GOVERNOR_ON) return g->rung;
-    if (g->started && frame <= g->frame) return g->rung;
+/* Whether it is asked for this frame for the first time. */
+static int begin(masu_governor *g, uint64_t frame) {
+    if (g->started && frame <= g->frame) return 0;
     if (!g->started) g->changed = frame;
     g->started = 1;
     g->frame = frame;
-    if (!g->known) return g->rung;
-    g->lock = MASU_GOVERNOR_FREE;
-    if (frame > g->newest && frame - g->newest > BLIND_FRAMES) {
+    g->target = masu_pacing_target(&g->pacing, g->asked);
+    return 1;
+}
+
+static void pace(masu_governor *g, uint64_t frame, int unusual) {
+    double ms = g->known ? masu_governor_upper(g, g->rung, masu_governor_lead(g, frame), 1, MARGIN_REST) : 0.0;
+    masu_pacing_choose(&g->pacing, frame, masu_largest(ms, g->trust.cpu), g->target, unusual);
+}
+
+/* The host may have changed the mode or moved the range. */
+static void obey(masu_governor *g, uint64_t frame) {
+    int fixed = g->mode == MASU_GOVERNOR_FIXED;
+    uint32_t best = fixed ? g->fixed_rung : g->best, worst = fixed ? g->fixed_rung : g->worst;
+    uint32_t rung = g->rung < best ? best : g->rung > worst ? worst : g->rung;
+    change(g, frame, rung, MASU_GOVERNOR_REASON_HOST);
+    if (fixed) g->reason = MASU_GOVERNOR_REASON_FIXED;
+}
+
+static void decide(masu_governor *g, uint64_t frame) {
+    if (!g->known || g->mode == MASU_GOVERNOR_FIXED) return;
+    if (frame > g->newest && frame - g->newest > BLIND_FRAMES)
         g->reason = MASU_GOVERNOR_REASON_BLIND;
-        g->lock = MASU_GOVERNOR_LOCKED_BLIND;
-        return g->rung;
+    else
+        choose(g, frame);
+}
+
+static masu_governor_lock lock_of(const masu_governor *g) {
+    if (g->mode != MASU_GOVERNOR_FIXED && g->known) {
+        if (g->best == g->worst && g->reason != MASU_GOVERNOR_REASON_BLIND)
+            return MASU_GOVERNOR_LOCKED_FIXED;
+        if (g->reason == MASU_GOVERNOR_REASON_WORST) return MASU_GOVERNOR_LOCKED_WORST;
+        if (g->reason == MASU_GOVERNOR_REASON_FUTILE) return MASU_GOVERNOR_LOCKED_FUTILE;
     }
-    choose(g, frame);
-    if (g->reason == MASU_GOVERNOR_REASON_WORST) g->lock = MASU_GOVERNOR_LOCKED_WORST;
-    if (g->reason == MASU_GOVERNOR_REASON_FUTILE) g->lock = MASU_GOVERNOR_LOCKED_FUTILE;
-    if (g->best == g->worst) g->lock = MASU_GOVERNOR_LOCKED_FIXED;
+    if (g->trust.cpu > g->target) return MASU_GOVERNOR_LOCKED_CPU;
+    return g->reason == MASU_GOVERNOR_REASON_BLIND ? MASU_GOVERNOR_LOCKED_BLIND : MASU_GOVERNOR_FREE;
+}
+
+uint32_t masu_governor_pick(masu_governor *g, uint64_t frame) {
+    if (g->mode == MASU_GOVERNOR_OFF || !begin(g, frame)) return g->rung;
+    obey(g, frame);
+    decide(g, frame);
+    g->lock = lock_of(g);
+    pace(g, frame, 0);
     return g->rung;
 }
 
-void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung) {
+uint32_t masu_governor_hold(masu_governor *g, uint64_t frame) {
+    if (g->mode == MASU_GOVERNOR_OFF || !begin(g, frame)) return g->rung;
+    obey(g, frame);
+    if (g->mode == MASU_GOVERNOR_ON) g->reason = MASU_GOVERNOR_REASON_UNUSUAL;
+    pace(g, frame, 1);
+    return g->rung;
+}
+
+void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int unusual) {
     if (g->mode == MASU_GOVERNOR_OFF || rung >= g->count) return;
-    if (g->mode == MASU_GOVERNOR_FIXED) return;
-    g->started = 1;
-    g->frame = frame;
-    /* The range is the governor's own: what comes next is chosen within it. */
-    rung = rung < g->best ? g->best : rung > g->worst ? g->worst : rung;
-    change(g, frame, rung, MASU_GOVERNOR_REASON_HOST);
-    g->reason = MASU_GOVERNOR_REASON_HOST;
+    if (g->mode == MASU_GOVERNOR_ON) {
+        g->started = 1;
+        g->frame = frame;
+        /* The range is the governor's own: what comes next is chosen within it. */
+        rung = rung < g->best ? g->best : rung > g->worst ? g->worst : rung;
+        change(g, frame, rung, MASU_GOVERNOR_REASON_HOST);
+        g->reason = MASU_GOVERNOR_REASON_HOST;
+    }
+    pace(g, frame, unusual);
 }
 
 void masu_governor_cut(masu_governor *g, uint64_t frame) { g->cut = frame; }
 
-/* ---- Looking --------------------------------------------------------------------------------- */
-
-const char *masu_governor_reason_string(masu_governor_reason reason) {
-    switch (reason) {
-#define REASON_CASE(name, value, text)                                                             \
-    case name: return text;
-        MASU_GOVERNOR_REASONS(REASON_CASE)
-#undef REASON_CASE
-    default: return "unknown reason";
-    }
+void masu_governor_shown(masu_governor *g, uint64_t frame, uint64_t ns, uint64_t refresh_ns) {
+    if (g->mode != MASU_GOVERNOR_OFF)
+        g->missed += (uint64_t)masu_pacing_shown(&g->pacing, frame, ns, refresh_ns);
 }
 
-void masu_governor_report(const masu_governor *g, masu_governor_info *out) {
-    memset(out, 0, sizeof *out);
-    out->mode = g->mode;
-    out->rung = g->rung;
-    out->reason = g->reason;
-    out->reason_text = masu_governor_reason_string(g->reason);
-    out->locked = g->lock;
-    out->source = g->source;
-    out->rung_count = g->count;
-    out->target_ms = (float)g->target;
-    out->noise = (float)g->noise;
-    out->overhead_ms = (float)g->overhead;
-    out->unit = (float)g->unit;
-    out->samples = g->samples;
-    out->rejected = g->rejected;
-    out->missed = g->missed;
-    out->changes = g->changes;
-    if (!g->known) return;
-    for (uint32_t r = 0; r < g->count && r < MASU_MAX_RUNGS; r++)
-        out->predicted_ms[r] = (float)masu_governor_predict(g, r);
-    out->fixed_ms = (float)g->fixed;
-    out->load_ms = (float)g->load;
-    out->slope_ms = (float)g->slope;
-    double lead =
-        within(g->frame > g->newest ? (double)(g->frame - g->newest) : 0.0, 0.0, LEAD_MOST);
-    out->start_delay_ms = (float)largest(g->target - upper(g, g->rung, lead, 0, MARGIN), 0.0);
+/* ---- What the host changes ------------------------------------------------------------------- */
+
+void masu_governor_adjust(masu_governor *g, const masu_governor_desc *desc) {
+    masu_governor old = *g;
+    take(g, desc);
+    if (old.mode != g->mode && g->mode == MASU_GOVERNOR_ON)
+        g->reason = g->known ? MASU_GOVERNOR_REASON_HOLD : MASU_GOVERNOR_REASON_START;
+    if (old.asked == g->asked && old.headroom == g->headroom && old.best == g->best &&
+        old.worst == g->worst && old.mode == g->mode)
+        return;
+    /* Where the load has settled and which rises were mistakes was learnt beside the old target. */
+    masu_governor_forget_mistakes(g);
+    g->settled_load = -1.0;
+    g->misses = 0;
+    g->urged = 1;
+}
+
+void masu_governor_settle_at_best(masu_governor *g) {
+    g->rung = g->worst;
+    g->rung = rise(g, 0.0);
 }

@@ -16,29 +16,23 @@
 #ifndef MASU_GOVERNOR_H
 #define MASU_GOVERNOR_H
 
-#include "masu.h"
+#include "quality/pacing.h"
+#include "quality/trust.h"
 
 #define MASU_GOVERNOR_RUNGS 16u
+/* Deviations of one sample that a rung is chosen with. */
+#define MASU_GOVERNOR_MARGIN 2.5
 
 typedef struct masu_governor_rung {
     double scale; /* render size / output size */
     double cost;  /* of the part that depends on the rung, beside the others; 0: scale^2 */
 } masu_governor_rung;
 
-/* One finished frame. What is not known is 0, negative or NaN. */
-typedef struct masu_governor_sample {
-    uint64_t frame;  /* samples come in rising order; others are left out */
-    uint32_t rung;   /* that it was drawn at */
-    double gpu_ms;   /* by timestamps */
-    double wall_ms;  /* by the host's clock: from its submit, or the end of the previous frame if that
-                       was later, to its end */
-    double fixed_ms; /* of gpu_ms: passes whose cost does not follow the rung */
-} masu_governor_sample;
-
 typedef struct masu_governor {
     /* The description, every default filled in. */
     masu_governor_mode mode;
-    double target, headroom;
+    double asked; /* target, as described; */
+    double target, headroom; /* and as whole refreshes allow it */
     uint32_t best, worst, fixed_rung, dwell, count;
     double scale[MASU_GOVERNOR_RUNGS], prior[MASU_GOVERNOR_RUNGS];
 
@@ -58,6 +52,7 @@ typedef struct masu_governor {
     uint32_t fitted; /* rung of the last sample that was not odd */
     uint64_t newest; /* frame of the last sample that was used */
     uint64_t last; /* frame of the last sample that was given; one is rejected if it is not newer */
+    uint64_t since; /* samples of frames before it are of another output size */
     int any, warm; /* a sample has been given, has been dropped as the first */
     uint64_t cut;  /* the first sample from this frame on is taken as it is; UINT64_MAX: none */
 
@@ -66,20 +61,14 @@ typedef struct masu_governor {
     int odd_sign;
     double odd_load;
 
-    /* Trust. */
-    masu_governor_source source;
-    double overhead; /* wall - gpu, ms, where both are believed */
-    int overhead_known;
-    double distrust; /* rises with each GPU time that the wall contradicts */
-    int wall_only;
-    double unit, unit_try; /* what GPU times are multiplied by */
-    uint32_t unit_count, unit_bad;
-    double frozen_gpu, frozen_wall;
-    uint32_t frozen, frozen_rung;
+    masu_trust trust;
+    masu_pacing pacing;
 
     /* The decision. */
     uint32_t rung;
     uint64_t frame, changed; /* last frame asked for; first frame of this rung */
+    uint64_t held_before; /* frames that the rung was held for in another renderer */
+    int urged; /* what was asked has changed: the next rise need not wait for the dwell; 2: for nothing */
     int started;
     int jumped;      /* the load has just been found elsewhere */
     uint32_t misses; /* samples in a row of this rung that were over the target */
@@ -94,13 +83,21 @@ typedef struct masu_governor {
     int failed;          /* the last rise was taken back */
     int rising;          /* the last change was a rise */
     double settled_load; /* < 0: not settled */
+    /* Whether the clock follows the load: tried by drawing at a better rung that does not fit yet. */
+    int steady_clock; /* the host says that it does not */
+    int follows;      /* it did when it was tried */
+    int trial;        /* the rung is one, and this was drawn before: */
+    uint32_t trial_from, trials; /* failures since one that did not */
+    uint64_t trial_ended;
+    double trial_load, trial_ms; /* load when the last ended; what it was expected to take */
+    double seen_ms; /* of the first frame after a rise, if it was over the target; its frame and rung */
+    uint64_t seen_frame;
+    uint32_t seen_rung;
     masu_governor_reason reason;
     masu_governor_lock lock;
     uint64_t samples, rejected, missed, changes;
 } masu_governor;
 
-/* Fills what is 0 with defaults; without a governor nothing. */
-void masu_governor_defaults(masu_governor_desc *desc, uint32_t rungs);
 /* Out-of-range fields of `desc` count as 0; a count of 0 or above MASU_GOVERNOR_RUNGS is
  * clamped. */
 void masu_governor_init(masu_governor *g, const masu_governor_desc *desc,
@@ -109,11 +106,28 @@ void masu_governor_sample_in(masu_governor *g, const masu_governor_sample *sampl
 /* The rung for a frame; asked for again, the same one. */
 uint32_t masu_governor_pick(masu_governor *g, uint64_t frame);
 /* The host draws this frame at a rung of its own choice. */
-void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung);
+void masu_governor_override(masu_governor *g, uint64_t frame, uint32_t rung, int unusual);
+/* The same as masu_governor_pick for a frame whose times will say nothing: the rung stays. */
+uint32_t masu_governor_hold(masu_governor *g, uint64_t frame);
 /* From this frame on the picture has nothing to do with the one before: so may its cost. */
 void masu_governor_cut(masu_governor *g, uint64_t frame);
+/* When the display showed a frame: see masu_pacing_shown. */
+void masu_governor_shown(masu_governor *g, uint64_t frame, uint64_t ns, uint64_t refresh_ns);
+/* Mode, target, headroom, range, dwell and fixed rung from the next frame on; costs stay. What was learnt
+ * of times stays. Fields out of range as of masu_governor_init. */
+void masu_governor_adjust(masu_governor *g, const masu_governor_desc *desc);
+/* Before the first frame, with a load that is known: to the best rung that keeps the target. */
+void masu_governor_settle_at_best(masu_governor *g);
 /* What a frame now would take at a rung, ms; 0: nothing is known yet. */
 double masu_governor_predict(const masu_governor *g, uint32_t rung);
+/* What a frame `lead` frames past the newest sample takes at a rung, and `margin` deviations more.
+ * falls: a load that falls is followed too; else it is taken as it is. */
+double masu_governor_upper(const masu_governor *g, uint32_t rung, double lead, int falls,
+                           double margin);
+/* Frames from the newest sample to this one, as far as a slope is followed. */
+double masu_governor_lead(const masu_governor *g, uint64_t frame);
+/* Which rises were taken back. */
+void masu_governor_forget_mistakes(masu_governor *g);
 void masu_governor_report(const masu_governor *g, masu_governor_info *out);
 
 #endif

@@ -3,6 +3,14 @@
 
 #include "base/error.h"
 
+void masu_governor_defaults(masu_governor_desc *d, uint32_t rungs) {
+    if (d->mode == MASU_GOVERNOR_OFF) return;
+    if (d->target_ms == 0.0f) d->target_ms = (float)MASU_GOVERNOR_TARGET_MS;
+    if (d->headroom == 0.0f) d->headroom = (float)MASU_GOVERNOR_HEADROOM;
+    if (d->worst_rung == 0 && rungs) d->worst_rung = rungs - 1;
+    if (d->dwell == 0) d->dwell = MASU_GOVERNOR_DWELL;
+}
+
 static masu_result bad(masu_detail *detail, const char *what, double given, double low,
                        double high) {
     return masu_fail(detail, MASU_ERROR_ARGUMENT, what, 0, 0, "%s is %g, allowed are %g to %g",

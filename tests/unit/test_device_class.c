@@ -12,6 +12,7 @@
 
 #include "quality/device_class.h"
 #include "quality/governor.h"
+#include "quality/governor_desc.h"
 #include "quality/ladder.h"
 #include "support/desc.h"
 #include "support/random.h"

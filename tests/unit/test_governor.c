@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "quality/governor.h"
+#include "quality/governor_state.h"
 #include "simulate/simulate.h"
 #include "support/random.h"
 
@@ -316,16 +316,29 @@ static void it_stays_sound_under_a_million_samples(void **state) {
             masu_governor_init(&g, &d, ladder, n);
             frame = 0;
         }
-        masu_governor_sample s = {frame + support_random_in(&random, 0, 5) - 3,
-                                  (uint32_t)support_random_in(&random, 0, 17), any_time(&random),
-                                  any_time(&random), any_time(&random)};
+        masu_governor_sample s = {.frame = frame + support_random_in(&random, 0, 5) - 3,
+                                  .rung = (uint32_t)support_random_in(&random, 0, 17),
+                                  .gpu_ms = any_time(&random),
+                                  .wall_ms = any_time(&random),
+                                  .fixed_ms = any_time(&random),
+                                  .cpu_ms = i % 4 ? 0.0 : any_time(&random),
+                                  .unusual = i % 50 == 0};
         if (support_random(&random) % 50 == 0) s.frame = support_random(&random) >> 40;
         masu_governor_sample_in(&g, &s);
         if (support_random(&random) % 1000 == 0) masu_governor_cut(&g, frame);
         if (support_random(&random) % 1000 == 0)
-            masu_governor_override(&g, frame, (uint32_t)(i % 20));
+            masu_governor_override(&g, frame, (uint32_t)(i % 20), 0);
         if (support_random(&random) % 5000 == 0) frame += support_random(&random) >> 50;
-        uint32_t rung = masu_governor_pick(&g, frame);
+        if (support_random(&random) % 100 == 0)
+            masu_governor_shown(&g, frame - support_random_in(&random, 0, 9), support_random(&random) >> 40,
+                                i % 7 ? 16666667 : support_random(&random) >> 36);
+        if (support_random(&random) % 3000 == 0) {
+            masu_governor_desc d = {.mode = MASU_GOVERNOR_ON, .target_ms = (float)any_time(&random),
+                                    .best_rung = (uint32_t)(i % 3), .worst_rung = (uint32_t)(i % 18)};
+            masu_governor_adjust(&g, &d);
+        }
+        if (support_random(&random) % 3000 == 0) masu_governor_scale(&g, any_time(&random), frame);
+        uint32_t rung = i % 40 < 38 ? masu_governor_pick(&g, frame) : masu_governor_hold(&g, frame);
         frame++;
         if (rung < g.best || rung > g.worst || g.worst >= g.count)
             fail_msg("rung %u at %u", rung, i);
@@ -363,7 +376,8 @@ static uint32_t feed(masu_governor *g, uint64_t *frame, uint32_t frames, double 
     for (uint32_t i = 0; i < frames; i++, (*frame)++) {
         rung = masu_governor_pick(g, *frame);
         double s = g->scale[rung];
-        masu_governor_sample k = {*frame, rung, ms * s * s * (1.0 + 0.004 * (i % 3)), 0.0, 0.0};
+        masu_governor_sample k = {
+            .frame = *frame, .rung = rung, .gpu_ms = ms * s * s * (1.0 + 0.004 * (i % 3))};
         masu_governor_sample_in(g, &k);
     }
     return rung;
@@ -439,7 +453,7 @@ static void it_says_why(void **state) {
     masu_governor_report(&g, &info);
     assert_int_equal(info.reason, MASU_GOVERNOR_REASON_BLIND);
     assert_int_equal(info.locked, MASU_GOVERNOR_LOCKED_BLIND);
-    for (int r = 0; r < 14; r++) {
+    for (int r = 0; r < 15; r++) {
         const char *text = masu_governor_reason_string((masu_governor_reason)r);
         assert_true(strlen(text) > 10 && strcmp(text, "unknown reason") != 0);
     }
@@ -467,7 +481,7 @@ static void it_takes_the_hosts_rungs(void **state) {
     uint64_t frame = 0;
     masu_governor_init(&g, &(masu_governor_desc){.mode = MASU_GOVERNOR_ON}, three, 3);
     feed(&g, &frame, 60, 10.0);
-    masu_governor_override(&g, frame, 2);
+    masu_governor_override(&g, frame, 2, 0);
     masu_governor_report(&g, &info);
     assert_int_equal(info.reason, MASU_GOVERNOR_REASON_HOST);
     assert_int_equal(info.rung, 2);
@@ -482,7 +496,8 @@ static void it_learns_from_fixed_passes(void **state) {
     masu_governor_init(&g, &(masu_governor_desc){.mode = MASU_GOVERNOR_ON}, three, 3);
     for (uint64_t f = 0; f < 60; f++) {
         masu_governor_pick(&g, f);
-        masu_governor_sample k = {f, 0, 14.0 + 0.1 * (double)(f % 3), 0.0, 9.0};
+        masu_governor_sample k = {
+            .frame = f, .gpu_ms = 14.0 + 0.1 * (double)(f % 3), .fixed_ms = 9.0};
         masu_governor_sample_in(&g, &k);
     }
     double error = masu_governor_predict(&g, 2) - (9.0 + 5.1 * 0.16);

@@ -66,6 +66,11 @@ static double thermal(uint32_t f) {
 }
 static double flips(uint32_t f) { return f / 200 % 2 ? 1040.0 / 200.0 : 1.0; }
 
+/* A handheld's, by figures of SteamOS; two of Linux's devfreq on a phone. */
+static const sim_dvfs handheld = {200, 1040, 0.9, 0.7, 1.15, 4};
+static const sim_dvfs ondemand = {200, 1040, 0.9, 0.85, 0, 3};
+static const sim_dvfs slow_ondemand = {200, 1040, 0.9, 0.85, 0, 12};
+
 #define STEADY .frames = 1500
 const sim_model sim_models[] = {
     {"standard", "steps, then a sine of 40 +- 30 ms", .frames = 1800, .event = 600,
@@ -95,6 +100,18 @@ const sim_model sim_models[] = {
      .clock = thermal},
     {"clock_flips", "1040 and 200 MHz by turns, 200 frames each", STEADY, .event = 200, .a = 4,
      .fixed = 0.5, .clock = flips},
+    {"dvfs_steps", "the clock steps up above 90 % busy, down below 70 %; the load steps", .frames = 4000,
+     .event = 300, .load = step, .a = 8, .b = 20, .dvfs = &handheld},
+    {"dvfs_ondemand", "to the highest clock above 90 %, else as low as 87 % busy; the load steps", .frames = 4000,
+     .event = 300, .load = step, .a = 8, .b = 20, .dvfs = &ondemand},
+    {"dvfs_slow", "the same, looking every 12 frames", .frames = 4000, .event = 300, .load = step, .a = 8,
+     .b = 20, .dvfs = &slow_ondemand},
+    {"dvfs_light", "the best rung always fits at the highest clock", .frames = 4000, .event = 300, .load = step,
+     .a = 4, .b = 10, .dvfs = &ondemand},
+    {"dvfs_peak", "a load that no clock carries at scale 1 for 100 frames", .frames = 4000, .event = 400,
+     .load = burst, .a = 9, .b = 40, .period = 300, .dvfs = &handheld},
+    {"dvfs_fixed", "three rungs and 5 ms that none of them changes", .frames = 4000, .event = 300, .load = step,
+     .a = 6, .b = 15, .fixed = 5, .rungs = 3, .dvfs = &ondemand},
     {"latency_1", "the standard model, samples a frame late", .frames = 1800, .event = 600,
      .load = standard, .latency = 1},
     {"latency_2", "two frames late", .frames = 1800, .event = 600, .load = standard, .latency = 2},
@@ -237,6 +254,26 @@ static sim_result judge(const sim_model *p, const sim_frame *frames) {
     return out;
 }
 
+/* The clock for the next frame, after one of `ms`. */
+typedef struct dvfs_state {
+    double mhz, busy, time;
+    uint32_t frames;
+} dvfs_state;
+
+static void follow_load(const sim_dvfs *d, dvfs_state *s, double ms) {
+    s->busy += ms;
+    s->time += ms > SIM_BUDGET ? ms : SIM_BUDGET;
+    if (++s->frames < d->period) return;
+    double busy = s->busy / s->time, mhz = s->mhz;
+    if (d->step > 0.0)
+        mhz *= busy > d->up ? d->step : busy < d->down ? 1.0 / d->step : 1.0;
+    else if (busy > d->up)
+        mhz = d->high;
+    else if (busy < d->down)
+        mhz *= busy / (0.5 * (d->up + d->down));
+    *s = (dvfs_state){.mhz = mhz < d->low ? d->low : mhz > d->high ? d->high : mhz};
+}
+
 sim_result sim_run(const sim_model *p, const sim_controller *c, uint64_t seed,
                        sim_frame *frames, sim_state *state) {
     static sim_frame own_frames[SIM_FRAMES_MOST];
@@ -248,6 +285,7 @@ sim_result sim_run(const sim_model *p, const sim_controller *c, uint64_t seed,
     uint32_t rungs = sim_ladder(p, ladder), latency = p->latency ? p->latency : 3, invalid = 0;
     uint64_t random = seed * 0x632BE59BD9B4E019u + 1;
     double honest = 0.0;
+    dvfs_state clock = {.mhz = p->dvfs ? p->dvfs->high : 1.0};
     c->init(s, ladder, rungs, sim_budget(p));
     for (uint32_t f = 0; f < p->frames; f++) {
         if (f >= latency && samples[f - latency].frame == f - latency)
@@ -258,9 +296,11 @@ sim_result sim_run(const sim_model *p, const sim_controller *c, uint64_t seed,
         if (!(scale >= 0.01 && scale <= 1.0)) invalid++, scale = 1.0;
         double u = uniform(&random), ms = mean_ms(p, f, scale) * (1.0 + noise_of(p) * (u - 0.5));
         if (uniform(&random) < p->spikes) ms *= 3.0;
-        out[f] = (sim_frame){ms, scale, rung};
+        if (p->dvfs) ms *= p->dvfs->high / clock.mhz;
+        out[f] = (sim_frame){ms, scale, clock.mhz, rung};
+        if (p->dvfs) follow_load(p->dvfs, &clock, ms);
         masu_governor_sample *k = &samples[f];
-        *k = (masu_governor_sample){f, rung, ms, 0.0, 0.0};
+        *k = (masu_governor_sample){.frame = f, .rung = rung, .gpu_ms = ms};
         if (p->quantum > 0.0) k->gpu_ms = p->quantum * floor(ms / p->quantum + 0.5);
         if (p->wall) k->wall_ms = (ms + 0.3) * (1.0 + 0.02 * (uniform(&random) - 0.5));
         bool lies = f >= p->lie_from && f < p->lie_until;

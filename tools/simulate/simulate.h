@@ -44,6 +44,16 @@ typedef struct sim_trace {
     double budget_ms; /* halfway between its dearest and cheapest mean */
 } sim_trace;
 
+/* A clock that follows its own load: the driver looks at the part of the time that the GPU was busy for,
+ * frames being shown at the budget or later. Times of the model are those at the highest clock. */
+typedef struct sim_dvfs {
+    double low, high; /* MHz */
+    double up, down;  /* busy: above up the clock rises, below down it falls */
+    double step;      /* factor; 0: to the highest at once, and down to where it would be busy in the
+                         middle of the two (simple_ondemand of Linux) */
+    uint32_t period;  /* frames from one look to the next */
+} sim_dvfs;
+
 typedef struct sim_model {
     const char *name;
     const char *what; /* one line */
@@ -51,6 +61,7 @@ typedef struct sim_model {
     uint32_t event; /* the frame from which settling is counted */
     double (*load)(const struct sim_model *model, uint32_t frame); /* NULL: a */
     double (*clock)(uint32_t frame);                           /* factor on times; NULL: 1 */
+    const sim_dvfs *dvfs;                                      /* or a clock of its own */
     double a, b, period;                                       /* of the load */
     double fixed;                                              /* ms; 0: 2 */
     double exponent;                                           /* 0: 2 */
@@ -102,6 +113,7 @@ extern const uint32_t sim_controller_count;
 /* One frame of a run. */
 typedef struct sim_frame {
     double ms, scale;
+    double mhz; /* of a model with dvfs */
     uint32_t rung;
 } sim_frame;
 

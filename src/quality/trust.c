@@ -1,0 +1,116 @@
+/* trust.c: see trust.h. */
+#include "quality/trust.h"
+
+#include <math.h>
+#include <string.h>
+
+#define NEAREST 0.5 /* of the wall: GPU times between the two are believed */
+#define FARTHEST 1.05
+#define BUSY 0.8 /* below it the wall is what counts: what it has on top follows the rung */
+#define DISTRUST_MOST 30.0 /* GPU times that the wall contradicts, and it alone is believed */
+#define UNIT_SAMPLES 16u   /* that agree on a factor of the clock's unit */
+#define FROZEN_SAMPLES 4u  /* the same GPU time to the bit, while the wall moves */
+#define SCALE_RANGE 64.0   /* a wall time so far from the target says nothing of units */
+#define LATE 1.1           /* of the host's own work: a wall no longer is that of a host that came late */
+#define CPU_WEIGHT 0.25    /* of a new time of the host's work in what is taken for it, */
+#define CPU_STEP 0.1       /* and how far one may be from that, as part of it */
+
+void masu_trust_start(masu_trust *t) {
+    memset(t, 0, sizeof *t);
+    t->unit = 1.0;
+}
+
+static int agrees(double gpu, double wall) {
+    return gpu >= NEAREST * wall && gpu <= FARTHEST * wall;
+}
+
+/* A clock whose unit is wrong is off by thousands, by the same factor always. A timer that lies
+ * may come near such a factor by chance, not so often in a row. Of the two clocks the wall is
+ * taken as the right one, if what it says can be a frame of this target. */
+static void find_unit(masu_trust *t, double target, double raw, double wall) {
+    static const double units[] = {1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9};
+    double unit = 0.0;
+    if (!(raw > 0.0 && raw < 1e19) || !masu_is_time(wall) || wall > SCALE_RANGE * target ||
+        wall < target / SCALE_RANGE)
+        return;
+    for (uint32_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (agrees(raw * units[i], wall)) unit = units[i];
+    }
+    t->unit_count = unit > 0.0 && unit == t->unit_try ? t->unit_count + 1 : 1;
+    t->unit_try = unit;
+    if (unit > 0.0 && t->unit_count >= UNIT_SAMPLES) t->unit = unit;
+}
+
+/* Whether the GPU's clock stands still while the other moves, or the rung does. */
+static int is_frozen(masu_trust *t, double gpu, double wall, uint32_t rung) {
+    if (gpu == t->frozen_gpu && rung != t->frozen_rung) {
+        t->frozen = FROZEN_SAMPLES;
+    } else if (gpu != t->frozen_gpu) {
+        t->frozen = 0;
+        t->frozen_rung = rung;
+        t->frozen_gpu = gpu;
+        t->frozen_wall = wall;
+    } else if (masu_is_time(wall) && fabs(wall - t->frozen_wall) > 0.02 * wall) {
+        if (t->frozen < FROZEN_SAMPLES) t->frozen++;
+    }
+    return t->frozen >= FROZEN_SAMPLES;
+}
+
+static void follow_cpu(masu_trust *t, double target, double cpu) {
+    if (!masu_is_time(cpu)) return;
+    double most = CPU_STEP * (t->cpu + target);
+    t->cpu = t->cpu > 0.0 ? t->cpu + CPU_WEIGHT * masu_within(cpu - t->cpu, -most, most) : cpu;
+}
+
+/* Wall and GPU agree: what the wall has on top is followed slowly: it is scheduling, and has spikes. */
+static void follow_overhead(masu_trust *t, double target, double gpu, double wall) {
+    double step = wall - gpu - t->overhead, most = 0.02 * target;
+    t->overhead =
+        t->overhead_known ? t->overhead + masu_within(step, -most, most) / 8.0 : wall - gpu;
+    t->overhead = masu_within(t->overhead, 0.0, wall);
+    t->overhead_known = 1;
+}
+
+double masu_trust_time(masu_trust *t, double target, const masu_governor_sample *s, int *sure) {
+    double wall = masu_is_time(s->wall_ms) ? s->wall_ms : 0.0;
+    /* A host that is busy longer than the GPU finds the fence signalled long ago: its wall is its own
+     * work, and all that it says of the GPU is that it took no longer. Nor is it one to find units by. */
+    int late = wall > 0.0 && masu_is_time(s->cpu_ms) && wall <= LATE * s->cpu_ms;
+    follow_cpu(t, target, s->cpu_ms);
+    if (!late) find_unit(t, target, s->gpu_ms, wall);
+    double gpu = s->gpu_ms * t->unit;
+    if (!masu_is_time(gpu)) gpu = 0.0;
+    int frozen = is_frozen(t, s->gpu_ms, wall, s->rung);
+    *sure = 0;
+    if (late) {
+        if (gpu > 0.0 && gpu <= FARTHEST * wall && !frozen && !t->wall_only) {
+            t->source = MASU_GOVERNOR_SOURCE_GPU;
+            return gpu + t->overhead;
+        }
+        if (s->cpu_ms > target) return 0.0;
+        t->source = MASU_GOVERNOR_SOURCE_WALL;
+        return wall;
+    }
+    if (wall > 0.0 && gpu > 0.0 && agrees(gpu, wall) && !frozen) {
+        t->distrust = masu_largest(t->distrust - 0.1, 0.0);
+        follow_overhead(t, target, gpu, wall);
+        *sure = 1;
+        if (!t->wall_only && gpu >= BUSY * wall) {
+            t->source = MASU_GOVERNOR_SOURCE_GPU;
+            return gpu + t->overhead;
+        }
+    } else if (wall > 0.0 && (s->gpu_ms > 0.0 || s->gpu_ms < 0.0)) {
+        t->distrust += 1.0;
+        if (t->distrust >= DISTRUST_MOST) t->wall_only = 1;
+    }
+    if (wall > 0.0) {
+        t->source = MASU_GOVERNOR_SOURCE_WALL;
+        *sure = 1;
+        return wall;
+    }
+    if (gpu > 0.0 && !t->wall_only && !frozen) {
+        t->source = MASU_GOVERNOR_SOURCE_GPU;
+        return gpu + t->overhead;
+    }
+    return 0.0;
+}
