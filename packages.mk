@@ -16,9 +16,13 @@ PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels
 # to bake the world forza: the data of TORCS
 PACKAGES_worlds := torcs-data
 
+# to build masu-view: the window, and the font that becomes part of the program. Without, `make` leaves
+# it out
+PACKAGES_view := libsdl2-dev fonts-dejavu-core
+
 # to run the tests; g++, cmake, and pkgconf from above, look at what is installed as a user of theirs would;
-# ImageMagick measures pictures beside us
-PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick cmake
+# ImageMagick measures pictures beside us; masu-view has a screen of Xvfb
+PACKAGES_test := libcmocka-dev vulkan-validationlayers g++ imagemagick cmake $(PACKAGES_view) xvfb
 
 # to build everything a second time with the other compiler and its sanitizers, whose library is a package of
 # its own (make check FULL=1), and for `make fuzz`; and another measure of SSIM
@@ -57,15 +61,17 @@ $$apt update && $$apt install -y $$missing > /dev/null || { \
     echo "masu: apt-get could not install:$$missing" >&2; exit 1; }
 endef
 
-.PHONY: packages deps-build deps-demo deps-worlds deps-test
+.PHONY: packages deps-build deps-demo deps-worlds deps-view deps-test
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo worlds test full plots isa cross dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds view test full plots isa cross dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs
 	$(call install-packages,$(PACKAGES_build) $(PACKAGES_demo))
 deps-worlds: ## install the packages that the worlds need
 	$(call install-packages,$(PACKAGES_build) $(PACKAGES_worlds))
+deps-view: ## install the packages that masu-view needs
+	$(call install-packages,$(PACKAGES_build) $(PACKAGES_view))
 deps-test: ## install the packages that the tests need
 	$(call install-packages,$(PACKAGES_build) $(PACKAGES_demo) $(PACKAGES_test) \
 	    $(if $(FULL),$(PACKAGES_full)))
