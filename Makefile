@@ -137,6 +137,12 @@ worlds: deps-build ## bake the worlds city and forza to build/worlds; installs t
 	    echo "masu: no world forza: the package torcs-data cannot be installed here"; \
 	fi
 
+.PHONY: drive drive-built
+drive: deps-demo deps-view deps-worlds ## install what is missing, build, bake, play the game on forza: DRIVE_ARGS='--dusk'
+	+$(V)$(more) drive-built
+	$(V)$(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(DRIVE_ARGS)
+drive-built: $(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
+
 hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmodels, broken ones too: RENDER=1
 	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
 

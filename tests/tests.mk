@@ -45,6 +45,8 @@ KEPT_KINDS += Fence Framebuffer Image ImageView QueryPool Instance Device
 KEPT_FUNCTIONS := $(foreach k,$(KEPT_KINDS),Create$(k) Destroy$(k)) CreateComputePipelines CreateGraphicsPipelines
 KEPT_FUNCTIONS += DestroyPipeline AllocateMemory FreeMemory GetInstanceProcAddr GetDeviceProcAddr
 $(BUILD)/tests/gpu/%: LIBS = $(patsubst %,-Wl$(comma)--wrap=vk%,$(KEPT_FUNCTIONS)) $(TEST_LIBS)
+# The game's physics needs neither SDL2 nor a driver.
+$(BUILD)/tests/unit/test_drive: $(call objects,examples/drive/car.c examples/drive/track.c)
 # The hook of masu model knows passes by their layouts, of which equal ones would be one.
 $(BUILD)/tests/gpu/test_model: LIBS = $(TEST_LIBS)
 

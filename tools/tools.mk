@@ -129,6 +129,17 @@ $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(KEEP_LOADED) $(BUILD)/lib/libma
 	$(link)
 EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
+# A game of its own, of masu.h, Vulkan and SDL2 alone; where there is no SDL2 there is no game. What it and the
+# library ask of the heap goes to examples/drive/heap.c.
+HAS_SDL2 := $(wildcard /usr/include/SDL2/SDL.h)
+EXAMPLES += $(if $(HAS_SDL2),$(BUILD)/examples/drive)
+$(BUILD)/obj/examples/drive/%.o: FOLDER_FLAGS += $$(pkg-config --cflags sdl2)
+$(BUILD)/examples/drive: LIBS = $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc) $$(pkg-config --libs sdl2) -lvulkan -lm
+$(BUILD)/examples/drive: $(call objects,$(wildcard examples/drive/*.c)) $(KEEP_LOADED) $(BUILD)/lib/libmasu.a
+	$(link)
+$(BUILD)/worlds/forza.track: $(BUILD)/worlds/forza/forza.json
+	$(V)cp $(@D)/forza/forza.track $@
+
 # For masu study march: each .sdf scene with all ways to march it, and its double-precision truth
 # beside it. Not part of `all` or of the tests.
 MARCH_SCENES := $(patsubst scenes/%.sdf,$(BUILD)/march/%.masu,$(wildcard scenes/*.sdf))

@@ -119,6 +119,18 @@ if [ -d $torcs/tracks/road/forza ] && [ -d $torcs/cars/p406 ]; then
         END { if (cars != 10 || wheels != 40 || turned != 20) print cars, wheels, turned }
     ' "$folder/forza/forza.json" > "$folder/wheels"
     [ ! -s "$folder/wheels" ] || fail "wheels: $(cat "$folder/wheels")"
+    # The road in numbers: rows of twelve, unit normals, barriers beyond the edges; the cars stand on it.
+    awk '
+        NR == 2 { points = $2 }
+        NF == 12 && $1 != "car" {
+            rows++
+            if ($4 * $4 + $5 * $5 + $6 * $6 < 0.999 || $5 < 0.9 || $9 < $7 || $10 < $8 || $11 < -5 || $11 > 5) print
+        }
+        $1 == "car" { cars++ }
+        $1 == "wheel" { wheels++; if ($5 < 0.25 || $5 > 0.4) print }
+        END { if (rows != points || points < 1400 || cars != 10 || wheels != 40) print rows, points, cars, wheels }
+    ' "$folder/forza/forza.track" > "$folder/road"
+    [ ! -s "$folder/road" ] || fail "forza.track: $(head -3 "$folder/road")"
     for relief in asphalt grass gravel; do
         "$(dirname "$bake")/masu-meso" --make $relief -o "$folder/forza/$relief" --size 32 --rays 24 \
             --sky-rays 4 --no-plots > /dev/null || fail "masu-meso --make $relief"

@@ -96,10 +96,9 @@ static masu_bake_vec3 angles_of(masu_bake_vec3 ahead, masu_bake_vec3 up, masu_ba
 }
 
 /* more: members of the model, after a comma. */
-static void place(FILE *out, const char *file, const char *name, int group, masu_bake_vec3 angles,
+static void place(FILE *out, const char *file, const char *name, masu_bake_vec3 angles,
                   masu_bake_vec3 scale, masu_bake_vec3 at, const char *more) {
-    fprintf(out, ",\n    {\"file\": \"%s\", \"name\": \"%s\", \"group\": \"cars/%d\", ", file, name,
-            group);
+    fprintf(out, ",\n    {\"file\": \"%s\", \"name\": \"%s\", \"moving\": true, ", file, name);
     if (scale.x != 1 || scale.y != 1 || scale.z != 1) {
         fprintf(out, "\"scale\": [%.4f, %.4f, %.4f], ", scale.x, scale.y, scale.z);
     }
@@ -108,7 +107,7 @@ static void place(FILE *out, const char *file, const char *name, int group, masu
             angles.x, angles.y, angles.z, at.x, at.y, at.z, more);
 }
 
-static bool put(FILE *out, const char *torcs, const char *name, int index, const car *c,
+static bool put(FILE *out, FILE *road, const char *torcs, const char *name, int index, const car *c,
                 masu_bake_vec3 at, double heading, masu_world_height height, void *user) {
     double ch = cos(heading), sh = sin(heading);
     double under[4];
@@ -135,9 +134,11 @@ static bool put(FILE *out, const char *torcs, const char *name, int index, const
     char file[4096], label[32];
     snprintf(file, sizeof file, "%s/cars/%s/%s.acc", torcs, name, name);
     snprintf(label, sizeof label, "car%d", index);
-    place(out, file, label, index, angles, masu_bake_v3(1, 1, 1),
+    place(out, file, label, angles, masu_bake_v3(1, 1, 1),
           masu_bake_mad(ground, up, c->clearance),
           ",\n     \"material\": {\"roughness\": 0.35, \"coat\": 1, \"coat_roughness\": 0.05}");
+    fprintf(road, "car %s  %.3f %.3f %.3f  %.6f %.6f %.6f  %.6f %.6f %.6f  %.3f\n", label, ground.x, ground.y,
+            ground.z, ahead.x, ahead.y, ahead.z, up.x, up.y, up.z, c->clearance);
     snprintf(file, sizeof file, "%s/wheels/%s/wheel0.acc", torcs, c->rim);
     masu_bake_vec3 size;
     if (!measure(file, &size)) return false;
@@ -150,12 +151,13 @@ static bool put(FILE *out, const char *torcs, const char *name, int index, const
         masu_bake_vec3 scale = {side * 2 * w->radius / size.x, 2 * w->radius / size.y,
                                 side * w->width / size.z};
         snprintf(label, sizeof label, "car%d/wheel%d", index, i);
-        place(out, file, label, index, angles, scale, middle, "");
+        place(out, file, label, angles, scale, middle, "");
+        fprintf(road, "wheel %s  %.3f %.3f %.3f %d\n", label, w->x, -w->left, w->radius, i < 2);
     }
     return true;
 }
 
-bool masu_world_car(FILE *out, const char *torcs, int index, masu_bake_vec3 at, double heading,
+bool masu_world_car(FILE *out, FILE *road, const char *torcs, int index, masu_bake_vec3 at, double heading,
                     masu_world_height height, void *user) {
     static const struct {
         const char *name, *wheel; /* for a car that names none */
@@ -167,5 +169,5 @@ bool masu_world_car(FILE *out, const char *torcs, int index, masu_bake_vec3 at, 
     };
     car c = {.clearance = 0};
     return read_car(torcs, cars[index].name, cars[index].wheel, &c) &&
-           put(out, torcs, cars[index].name, index, &c, at, heading, height, user);
+           put(out, road, torcs, cars[index].name, index, &c, at, heading, height, user);
 }

@@ -9,7 +9,9 @@
  *   grounds  road, grass and sand get the small reliefs asphalt, grass and gravel of masu-meso, whose files
  *            are to lie beside the scene; their colours stay the track's
  *   camera   a lap at 50 m/s from 0 s on; then, for pictures, a look at the stands ("crowd") and one
- *            from above ("high"): their times are printed */
+ *            from above ("high"): their times are printed
+ *   lights   two spots that are off, "head0" and "head1", for a program to give to a car
+ *   track    forza.track: the road and the cars in numbers, for a program that drives (docs/drive.md) */
 #include "world/world.h"
 
 #include "bake/base/file.h"
@@ -25,16 +27,22 @@
 #define SPEED 50.0
 #define OFFSET_X 36.0 /* of the path's least x and y from the model's origin */
 #define OFFSET_Y 45.7
+#define WIDTH 11.0 /* of the road, where the XML names none */
+#define LEAN_AT 4.0 /* metres beside the middle, where the road's lean is measured */
 
 typedef struct point {
     double x, y, heading; /* TORCS's plane, radians */
     double height, along;
+    double wall[2]; /* left, right: metres from the middle to the barrier */
+    double up[3];   /* world */
+    double rise[2]; /* of the ground before the barrier over the plane of the road */
 } point;
 
 typedef struct track {
     point points[POINTS_MAX];
     int count;
     double x, y, heading;
+    double width;
 } track;
 
 /* ---- the path ---- */
@@ -65,7 +73,29 @@ static bool bend(track *t, double arc, double radius0, double radius1, int side)
     return true;
 }
 
+/* Beside the road lie a border and a side, whose width changes evenly; behind them the barrier. */
+static void read_sides(track *t, int first, const char *segment) {
+    static const char *const names[2][2] = {{"Left Side", "Left Border"},
+                                            {"Right Side", "Right Border"}};
+    int count = t->count - first;
+    for (int side = 0; side < 2; side++) {
+        const char *end, *border_end;
+        const char *at = masu_world_section(segment, names[side][0], &end);
+        const char *border = masu_world_section(segment, names[side][1], &border_end);
+        double w0 = at ? masu_world_number(at, end, "start width", 0) : 0;
+        double w1 = at ? masu_world_number(at, end, "end width", w0) : 0;
+        double edge = t->width / 2;
+        if (border) edge += masu_world_number(border, border_end, "width", 0);
+        for (int i = 0; i < count; i++) {
+            t->points[first + i].wall[side] = edge + w0 + (w1 - w0) * (i + 1) / count;
+        }
+    }
+}
+
 static bool read_segments(const char *text, track *t) {
+    const char *main_end = NULL, *main_track = strstr(text, "<section name=\"Main Track\"");
+    if (main_track) main_end = strchr(main_track + 1, '\0');
+    t->width = main_track ? masu_world_number(main_track, main_end, "width", WIDTH) : WIDTH;
     const char *at = strstr(text, "<section name=\"Track Segments\"");
     while (at && (at = strstr(at, "<attstr name=\"type\" val=\""))) {
         const char *type = at + strlen("<attstr name=\"type\" val=\"");
@@ -75,6 +105,7 @@ static bool read_segments(const char *text, track *t) {
                arc = masu_world_number(type, end, "arc", 0);
         double radius = masu_world_number(type, end, "radius", 0);
         double radius1 = masu_world_number(type, end, "end radius", radius);
+        int first = t->count;
         if (strncmp(type, "str", 3) == 0 && length > 0 && length < 1e4) {
             int n = (int)(length / STEP) > 1 ? (int)(length / STEP) : 1;
             for (int i = 0; i < n; i++) {
@@ -84,6 +115,7 @@ static bool read_segments(const char *text, track *t) {
             int side = strncmp(type, "lft", 3) == 0 ? 1 : -1;
             if (!bend(t, arc * (MASU_BAKE_PI / 180), radius, radius1, side)) return false;
         }
+        read_sides(t, first, type);
         at = type;
     }
     return t->count > 100;
@@ -181,11 +213,44 @@ static double height_below(void *user, double x, double z, double guess) {
     return height_at(user, x, z, guess, &y) && fabs(y - guess) < 1 ? y : guess;
 }
 
-static bool cars(const track *t, ground *g, const char *torcs, FILE *out) {
+/* Where the road leans, from the ground on either side of its middle. */
+static void find_normals(track *t, ground *g) {
+    for (int i = 0; i < t->count; i++) {
+        int before = (i + t->count - 1) % t->count, after = (i + 1) % t->count;
+        masu_bake_vec3 left = beside(t, i, LEAN_AT, 0), right = beside(t, i, -LEAN_AT, 0);
+        left.y = height_below(g, left.x, left.z, left.y);
+        right.y = height_below(g, right.x, right.z, right.y);
+        masu_bake_vec3 up = masu_bake_cross(masu_bake_sub(right, left),
+                                            masu_bake_sub(beside(t, after, 0, 0), beside(t, before, 0, 0)));
+        if (!masu_bake_normalize(&up) || up.y < 0.5) up = masu_bake_v3(0, 1, 0);
+        point *p = &t->points[i];
+        p->up[0] = up.x, p->up[1] = up.y, p->up[2] = up.z;
+        for (int side = 0; side < 2; side++) {
+            double off = fmax(p->wall[side] - 1, 0);
+            masu_bake_vec3 at = beside(t, i, side ? -off : off, 0);
+            double plane = at.y - (up.x * (at.x - p->x) + up.z * (at.z + p->y)) / up.y, y = plane;
+            p->rise[side] = height_at(g, at.x, at.z, plane, &y) && fabs(y - plane) < 5 ? y - plane : 0;
+        }
+    }
+}
+
+/* docs/drive.md has the format. */
+static void write_road(const track *t, FILE *out) {
+    fprintf(out, "masu-track 1\npoints %d\n", t->count);
+    for (int i = 0; i < t->count; i++) {
+        const point *p = &t->points[i];
+        masu_bake_vec3 at = beside(t, i, 0, 0);
+        fprintf(out, "%.3f %.3f %.3f  %.4f %.4f %.4f  %.2f %.2f  %.2f %.2f  %.3f %.3f\n", at.x, at.y, at.z,
+                p->up[0], p->up[1], p->up[2], t->width / 2, t->width / 2, p->wall[0], p->wall[1], p->rise[0],
+                p->rise[1]);
+    }
+}
+
+static bool cars(const track *t, ground *g, const char *torcs, FILE *out, FILE *road) {
     for (int i = 0; i < MASU_WORLD_CARS; i++) {
         int at = i < 6 ? 6 + 3 * i : 60 + 70 * (i - 6); /* a grid of six, the others on the track */
         masu_bake_vec3 p = beside(t, at, i & 1 ? 3.2 : -3.2, 0);
-        if (!masu_world_car(out, torcs, i, p, t->points[at].heading, height_below, g)) return false;
+        if (!masu_world_car(out, road, torcs, i, p, t->points[at].heading, height_below, g)) return false;
     }
     return true;
 }
@@ -220,14 +285,19 @@ static void grounds(FILE *out) {
 }
 
 static bool write_scene(const track *t, ground *g, const char *folder, const char *torcs) {
+    FILE *road = masu_world_create(folder, "forza.track");
+    if (!road) return false;
     FILE *out = masu_world_create(folder, "forza.json");
-    if (!out) return false;
+    if (!out) return fclose(road), false;
+    write_road(t, road);
     fprintf(out,
             "{\n  \"models\": [\n    {\"file\": \"%s/tracks/road/forza/forza.acc\", \"merge\": 128",
             torcs);
     grounds(out);
     fputs("}", out);
-    if (!cars(t, g, torcs, out)) return fclose(out), false;
+    bool placed = cars(t, g, torcs, out, road);
+    bool good = masu_world_close(road, folder, "forza.track") && placed;
+    if (!good) return fclose(out), false;
     fputs("\n  ],\n  \"camera\": {\n    \"fov_y\": 60,\n    \"near\": 0.2,\n    \"keys\": [\n",
           out);
     for (int i = 0; i < t->count; i += 2) {
@@ -251,6 +321,11 @@ static bool write_scene(const track *t, ground *g, const char *folder, const cha
           "          \"shadows\": {\"cascades\": 4, \"resolution\": 1024, \"distance\": 300}},\n"
           "  \"sky\": {\"turbidity\": 3, \"ground\": [0.12, 0.13, 0.1]}, \"exposure\": 0.8,\n"
           "  \"ambient_occlusion\": {\"radius\": 1.5}, \"reflections\": {\"cutoff\": 0.4},\n"
+          "  \"lights\": [\n"
+          "    {\"name\": \"head0\", \"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [1, 0, 0], "
+          "\"intensity\": 0},\n"
+          "    {\"name\": \"head1\", \"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [1, 0, 0], "
+          "\"intensity\": 0}],\n"
           "  \"fog\": {\"visibility\": 8000, \"falloff\": 0.004},\n  \"lods\": 3,\n  "
           "\"occluders\": 4\n}\n",
           out);
@@ -283,6 +358,7 @@ static bool write_track(const char *folder, const char *torcs, const char *xml, 
                            t.count);
             good = false;
         }
+        if (good) find_normals(&t, &g);
         good = good && write_scene(&t, &g, folder, torcs);
         free(g.corners);
     }

@@ -5,7 +5,7 @@
  *   city.c   a city on several decks, from parts
  *   parts.c  the parts, as OBJ files
  *   mesh.c   closed solids
- *   forza.c  a camera path on a track of TORCS
+ *   forza.c  a camera path on a track of TORCS, and the track in numbers
  *   cars.c   the cars on it, with their wheels
  *   xml.c    TORCS's parameter files */
 #ifndef MASU_WORLD_H
@@ -25,10 +25,10 @@ bool masu_world_forza(const char *folder, const char *torcs);
 /* The height of the ground at (x, z), near `guess`. */
 typedef double (*masu_world_height)(void *user, double x, double z, double guess);
 
-/* Writes car `index` as the next elements of "models": on the road at `at` (whose y is a guess),
- * pointing to `heading`, radians about y. Reports its own errors. */
+/* Writes car `index` as the next elements of "models", and of a track file (docs/drive.md): on the road at
+ * `at` (whose y is a guess), pointing to `heading`, radians about y. Reports its own errors. */
 #define MASU_WORLD_CARS 10
-bool masu_world_car(FILE *out, const char *torcs, int index, masu_bake_vec3 at, double heading,
+bool masu_world_car(FILE *out, FILE *road, const char *torcs, int index, masu_bake_vec3 at, double heading,
                     masu_world_height height, void *user);
 
 /* Of an XML's text between two places: a number, or `otherwise`; a string, false if there is none

@@ -1,0 +1,149 @@
+#!/bin/bash
+# The game examples/drive on a screen of its own: a drive by script with keys, pause, dusk, another window
+# size; the same script twice; what it may include; that its heap is closed once it runs; what it refuses.
+# Without SDL2 there is no game to look at.
+#
+# shellcheck disable=SC2155
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+game=${BUILD:-build}/examples/drive
+scene=${MADE:-build}/scenes/test_drive.masu
+folder=$(mktemp -d)
+server=
+trap 'rm -rf "$folder"; [ -z "$server" ] || kill "$server"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+if [ ! -x "$game" ] || ! command -v Xvfb > /dev/null; then
+    echo "skipped: no SDL2 or no Xvfb here (make deps-test)"
+    exit 77
+fi
+
+# The server takes a free number and writes it once it listens.
+Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 3> "$folder/display" 2> /dev/null &
+server=$!
+for ((i = 0; i < 300; i++)); do
+    [ -s "$folder/display" ] && break
+    sleep 0.1
+done
+[ -s "$folder/display" ] || { echo "FAILED: Xvfb does not start" && exit 1; }
+export DISPLAY=:$(cat "$folder/display") SDL_VIDEODRIVER=x11 SDL_AUDIODRIVER=dummy
+unset WAYLAND_DISPLAY
+
+# drive NAME ARGUMENTS...: leaves NAME.out, NAME.err; the script is NAME.txt
+drive() {
+    local name=$1
+    shift
+    timeout 300 "$game" "$scene" --track tests/scenes/test_drive.track --size 192x108 "$@" \
+        --script "$folder/$name.txt" > "$folder/$name.out" 2> "$folder/$name.err"
+}
+count() { sed -n "s/.* \?$2 \([^ ]*\).*/\1/p" "$folder/$1.out"; }
+is() { [ "$(count "$1" "$2")" = "$3" ] || fail "$1: $2 is not $3: $(cat "$folder/$1.out")"; }
+size() { identify -format '%wx%h' "$1"; }
+colors() { identify -format '%k' "$1"; }
+
+# ---- what it is made of ----------------------------------------------------------------------------
+
+# The public header alone: with no other folder to look in, it compiles.
+for source in examples/drive/*.c; do
+    # shellcheck disable=SC2046
+    "${CC:-gcc}" -std=c11 -D_POSIX_C_SOURCE=200809L -Iinclude $(pkg-config --cflags sdl2) -fsyntax-only "$source" ||
+        fail "$source needs more than masu.h, SDL2 and Vulkan"
+done
+grep -hE '#include "\.\.|#include <(bake|cli|platform)' examples/drive/* && fail "it looks into other folders"
+
+# ---- a drive: at one rung, twice, under the validation layer ---------------------------------------
+
+script() {
+    cat << END
+# forward, a bend, a pause, dusk, another size
+frame 0 key up down
+frame 2 screenshot $folder/$1-start.png
+frame 40 key left down
+frame 48 key left up
+frame 60 screenshot $folder/$1-driven.png
+frame 61 key p
+frame 66 screenshot $folder/$1-paused.png
+frame 70 key p
+frame 72 key n
+frame 74 screenshot $folder/$1-dusk.png
+frame 76 key c
+frame 80 resize 320x180
+frame 84 screenshot $folder/$1-large.png
+frame 90 resize 128x96
+frame 94 screenshot $folder/$1-small.png
+frame 100 quit
+END
+}
+for run in a b; do
+    script $run > "$folder/$run.txt"
+    drive $run --rung 0 --validate || fail "$run: exit code $?: $(cat "$folder/$run.err")"
+    [ ! -s "$folder/$run.err" ] || fail "$run says $(cat "$folder/$run.err")"
+    is $run frames 100
+    is $run rungs 0x01
+    is $run resizes 2
+    is $run validation 0
+done
+cmp -s "$folder/a.out" "$folder/b.out" || sed 's/missed [0-9]*//' "$folder/a.out" "$folder/b.out" | uniq | wc -l |
+    grep -qx 1 || fail "the same script drives otherwise: $(cat "$folder/a.out" "$folder/b.out")"
+for shot in start driven paused dusk large small; do
+    cmp -s "$folder/a-$shot.png" "$folder/b-$shot.png" || fail "the same script shows another $shot"
+    [ "$(colors "$folder/a-$shot.png")" -gt 100 ] || fail "$shot is hardly a picture"
+    [ "$shot" = start ] || ! cmp -s "$folder/a-$shot.png" "$folder/a-start.png" || fail "$shot looks like the start"
+done
+[ "$(size "$folder/a-start.png") $(size "$folder/a-large.png") $(size "$folder/a-small.png")" = \
+    "192x108 320x180 128x96" ] || fail "sizes of the pictures"
+awk '{ for (i = 1; i < NF; i++) if ($i == "distance") exit !($(i + 1) > 5 && $(i + 1) < 30) }' "$folder/a.out" ||
+    fail "distance: $(cat "$folder/a.out")"
+# The head lights show: what lies before the car is brighter with them than without.
+printf 'frame 0 key up down\nframe 6 screenshot %s/on.png\nframe 7 key l\nframe 10 screenshot %s/off.png\nframe 11 quit\n' \
+    "$folder" "$folder" > "$folder/lamps.txt"
+drive lamps --rung 0 --dusk || fail "dusk: $(cat "$folder/lamps.err")"
+mean() { convert "$1" -crop 64x24+64+44 -colorspace Gray -format '%[fx:1000*mean]' info:; }
+awk "BEGIN { exit !($(mean "$folder/on.png") > 1.05 * $(mean "$folder/off.png")) }" ||
+    fail "head lights: $(mean "$folder/on.png") with, $(mean "$folder/off.png") without"
+
+# ---- the governor: a target that no rung keeps, one that the first does ----------------------------
+
+printf 'frame 60 quit\n' > "$folder/slow.txt"
+cp "$folder/slow.txt" "$folder/fast.txt"
+drive slow --target 1 || fail "slow: $(cat "$folder/slow.err")"
+is slow frames 60
+[ "$(($(count slow rungs)))" -gt 1 ] || fail "no rung but the first: $(cat "$folder/slow.out")"
+drive fast --target 1000 || fail "fast: $(cat "$folder/fast.err")"
+is fast frames 60
+
+# ---- the heap is closed ----------------------------------------------------------------------------
+
+printf 'frame 3 quit\n' > "$folder/heap.txt"
+(drive heap --rung 0 --allocate) 2> /dev/null && fail "an allocation in the first frame is let through"
+grep -q 'the heap is closed' "$folder/heap.err" || fail "heap: $(cat "$folder/heap.err")"
+
+# ---- what it refuses, each in one line -------------------------------------------------------------
+
+# refuses NAME PATTERN ARGUMENTS...
+refuses() {
+    local name=$1 pattern=$2
+    shift 2
+    drive "$name" "$@" && fail "$name: is taken"
+    [ "$(wc -l < "$folder/$name.err")" = 1 ] || fail "$name: not one line: $(cat "$folder/$name.err")"
+    grep -q -e "$pattern" "$folder/$name.err" || fail "$name: \"$pattern\" is not in $(cat "$folder/$name.err")"
+}
+echo 'frame 3 key nosuch' > "$folder/key.txt"
+refuses key 'key.txt:1: no line of a script'
+printf 'frame 3 quit\nframe 2 key up\n' > "$folder/order.txt"
+refuses order 'order.txt:2: no line of a script'
+printf 'frame 1 quit\n' | tee "$folder/car.txt" "$folder/track.txt" "$folder/blob.txt" "$folder/big.txt" > /dev/null
+refuses car '\-\-car 3: the track has 3' --car 3
+echo 'masu-track 1 points 2' > "$folder/bad.track"
+refuses track 'bad.track: no track of version 1' --track "$folder/bad.track"
+scene=tests/scenes/test_drive.track refuses blob 'scene blob'
+"$game" > /dev/null 2> "$folder/err"
+[ $? = 2 ] && grep -q '^usage' "$folder/err" || fail "no usage without a scene"
+
+[ $failures = 0 ] && echo "drive: all as expected: $(cat "$folder/a.out")"
+[ $failures = 0 ]
