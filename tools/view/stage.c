@@ -140,7 +140,7 @@ bool masu_stage_resize(masu_stage *s, VkExtent2D output, char *error, size_t siz
     bool good = masu_headless_target_create(s->host, output.width, output.height, VK_FORMAT_R8G8B8A8_UNORM,
                                             true, &s->target, error, size);
     masu_targets targets = {.images = &s->target.image, .views = &s->target.view, .count = 1, .storage = 1};
-    if (good && masu_resize(s->m, output, &targets, &s->detail)) {
+    if (good && masu_resize(s->m, output, &targets, NULL, &s->detail)) {
         good = said(s, error, size);
         masu_headless_target_destroy(s->host, &s->target);
         if (s->detail.result == MASU_ERROR_VULKAN || s->detail.result == MASU_ERROR_DEVICE_LOST) {
