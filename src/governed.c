@@ -103,7 +103,7 @@ masu_result masu_governor_set(masu_renderer *m, const masu_governor_setting *set
 }
 
 masu_result masu_governor_save(masu_renderer *m, masu_governor_state *out) {
-    masu_result result = check(m, out, "state");
+    masu_result result = check(m, out, "out");
     if (!result) masu_governor_keep(m->governor, masu_governed_output(m), out);
     return result;
 }

@@ -24,6 +24,8 @@ enum { NO_RESULT = 1000, PARAMETERS_MAX = 8 };
 static masu_desc desc;
 static masu_pipelines pool;
 static masu_viewport screen;
+static masu_governor_setting setting;
+static masu_governor_state learnt;
 static masu_detail detail;
 static masu_scene look;
 static masu_commands commands;
@@ -90,6 +92,11 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_load, masu_load(P(0, &m), P(1, &commands)))                                             \
     X(masu_frame, masu_frame(P(0, &m), P(1, &still), P(2, &commands)))                             \
     X(masu_frame_wall, (masu_frame_wall(P(0, &m), 0, 1.0), NO_RESULT))                             \
+    X(masu_frame_times, (masu_frame_times(P(0, &m), 0, 1, 2, 0.0), NO_RESULT))                     \
+    X(masu_frame_presented, (masu_frame_presented(P(0, &m), 0, 1, 2), NO_RESULT))                  \
+    X(masu_governor_set, masu_governor_set(P(0, &m), P(1, &setting)))                              \
+    X(masu_governor_save, masu_governor_save(P(0, &m), P(1, &learnt)))                             \
+    X(masu_governor_restore, masu_governor_restore(P(0, &m), P(1, &learnt)))                       \
     X(masu_last_error, (masu_last_error(P(0, &m)), NO_RESULT))                                     \
     X(masu_camera_at, masu_camera_at(P(0, &m), 0.0, P(1, &camera)))                                \
     X(masu_light_of, masu_light_of(P(0, &m), P(1, &light)))                                        \
