@@ -20,7 +20,7 @@ static bool read_row(FILE *in, track_point *p) {
 static bool read_cars(FILE *in, track *t) {
     char word[8];
     while (fscanf(in, "%7s", word) == 1) {
-        track_car *c = &t->car[t->cars - 1];
+        track_car *c = t->cars ? &t->car[t->cars - 1] : t->car;
         if (strcmp(word, "car") == 0 && t->cars < TRACK_CARS) {
             c = &t->car[t->cars++];
             if (fscanf(in, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", c->name, &c->at.x, &c->at.y,

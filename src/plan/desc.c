@@ -16,7 +16,8 @@
  * 432 at 0.4. */
 static uint32_t scaled(uint32_t size, float scale) {
     double v = floor((double)size * (double)scale + 0.5);
-    return v < 1.0 ? 1u : v > (double)size ? size : (uint32_t)v;
+    if (!(v >= 1.0)) return 1u; /* no number, too: it is refused later */
+    return v > (double)size ? size : (uint32_t)v;
 }
 
 VkExtent2D masu_render_size(const masu_desc *d, uint32_t r) {

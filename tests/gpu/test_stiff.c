@@ -497,7 +497,8 @@ static void a_parameter_that_is_no_number_is_refused_and_nothing_is_written(void
             masu_frame_desc frame = {
                 .camera = &c.camera, .sdf_params = params, .sdf_param_count = PARAMS};
             assert_int_equal(masu_frame(s.m, &frame, &commands), MASU_ERROR_ARGUMENT);
-            snprintf(text, sizeof text, "sdf_params[%u] is not finite", p);
+            snprintf(text, sizeof text, "sdf_params[%u] is %g, allowed are finite numbers", p,
+                     (double)none[v]);
             assert_string_equal(masu_last_error(s.m)->text, text);
         }
     }

@@ -183,7 +183,7 @@ posed posed_at(const char *path, unsigned animation, double time) {
 
 const posed_vertex *posed_find(const posed *all, const float rest[3], vec position, vec normal) {
     const posed_vertex *best = NULL;
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (size_t i = 0; i < all->count; i++) {
         const posed_vertex *v = &all->vertices[i];
         if (v->rest[0] != rest[0] || v->rest[1] != rest[1] || v->rest[2] != rest[2]) continue;

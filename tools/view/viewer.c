@@ -194,10 +194,14 @@ static void want_given(masu_viewer *v) {
     v->want.scene = &v->scene;
     v->want = masu_desc_resolved(&v->want);
     for (uint32_t r = 0; r < v->want.rung_count; r++) {
+        masu_desc plain = v->want; /* what a rung of that scale would be if nothing were said of it */
+        plain.rung_count = 1;
+        plain.rungs[0] = (masu_rung){.scale = v->want.rungs[r].scale};
+        plain = masu_desc_resolved(&plain);
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             if (!strcmp(k->name, "scale")) continue;
             for (uint32_t i = 0; i < k->values; i++) {
-                if (masu_knob_get(k, &v->want.rungs[r], i) == k->zero)
+                if (masu_knob_get(k, &v->want.rungs[r], i) == masu_knob_get(k, &plain.rungs[0], i))
                     masu_knob_set(k, &v->want.rungs[r], i, 0.0);
             }
         }
