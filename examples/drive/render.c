@@ -30,8 +30,10 @@ bool render_open(render *r, window *w, const char *path) {
     size_t bytes = blob ? fread(blob, 1, SCENE_BYTES, in) : 0;
     bool whole = bytes && bytes < SCENE_BYTES && !ferror(in);
     if (in) fclose(in);
-    if (!whole) return fprintf(stderr, "drive: cannot read %s (of at most %u bytes)\n", path, SCENE_BYTES), false;
-    return masu_scene_bind(blob, bytes, &r->scene, &detail) == MASU_OK || failed(&detail);
+    if (whole && masu_scene_bind(blob, bytes, &r->scene, &detail) == MASU_OK) return true;
+    free(blob);
+    if (whole) return failed(&detail);
+    return fprintf(stderr, "drive: cannot read %s (of at most %u bytes)\n", path, SCENE_BYTES), false;
 }
 
 static masu_desc describe(const render *r) {
