@@ -333,8 +333,8 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 /* What is submitted: of the frame's slot, rung and target the recording that draws its cascades. */
 static VkCommandBuffer pick_recording(const masu_renderer *m, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
-    uint32_t recording = f->desc.viewport * m->plan.viewport_recordings + rp->first_recording + f->desc.target * rp->variants +
-                         masu_recording_variant(rp, f->cascades);
+    uint32_t recording = f->desc.viewport * m->plan.viewport_recordings + rp->first_recording +
+                         f->desc.target * rp->variants + masu_recording_variant(rp, f->cascades);
     return m->device.frames[f->slot * m->plan.recordings + recording];
 }
 
@@ -345,7 +345,7 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
         masu_log(&m->plan.desc, MASU_LOG_ERROR, m->error.text);
         return MASU_ERROR_ARGUMENT;
     }
-    if (frame->viewport < MASU_MAX_VIEWPORTS) masu_plan_look_at(&m->plan, frame->viewport);
+    if (frame->viewport < m->plan.desc.viewport_count) masu_plan_look_at(&m->plan, frame->viewport);
     masu_frame_data f = masu_frame_begin(&m->plan, &m->device, &m->draws, &m->timeline, frame);
     masu_result result = check_frame(m, frame);
     if (!result && m->governor) masu_governed_pick(m, &f);

@@ -41,7 +41,8 @@ $(BUILD)/bin/masu-sdfc: $(BUILD)/obj/tools/sdfc/main.o $(call tool_archive,sdfc)
 # other programs are built all the same.
 VIEW_FONT  := /usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf
 SDL_CFLAGS := $$(pkg-config --cflags sdl2 | sed 's/-I/-isystem /g')
-HAVE_VIEW  := $(and $(wildcard $(addsuffix /SDL2/SDL.h,/usr/include /usr/local/include)),$(wildcard $(VIEW_FONT)))
+HAVE_SDL2  := $(wildcard $(addsuffix /SDL2/SDL.h,/usr/include /usr/local/include))
+HAVE_VIEW  := $(and $(HAVE_SDL2),$(wildcard $(VIEW_FONT)))
 VIEW_OBJECTS := $(call objects,$(wildcard tools/view/*.c) tools/masu/options.c)
 
 $(BUILD)/obj/tools/view/%.o: FOLDER_FLAGS += $(SDL_CFLAGS)
@@ -131,8 +132,7 @@ EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c)
 
 # A game of its own, of masu.h, Vulkan and SDL2 alone; where there is no SDL2 there is no game. What it and the
 # library ask of the heap goes to examples/drive/heap.c.
-HAS_SDL2 := $(wildcard /usr/include/SDL2/SDL.h)
-EXAMPLES += $(if $(HAS_SDL2),$(BUILD)/examples/drive)
+EXAMPLES += $(if $(HAVE_SDL2),$(BUILD)/examples/drive)
 $(BUILD)/obj/examples/drive/%.o: FOLDER_FLAGS += $$(pkg-config --cflags sdl2)
 $(BUILD)/examples/drive: LIBS = $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc) $$(pkg-config --libs sdl2) -lvulkan -lm
 $(BUILD)/examples/drive: $(call objects,$(wildcard examples/drive/*.c)) $(KEEP_LOADED) $(BUILD)/lib/libmasu.a

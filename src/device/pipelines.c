@@ -69,8 +69,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                                     : MASU_OUTPUT_SRGB;
     constants[7] = m->plan->output.steps[0] || (m->plan->output.flags & MASU_OUTPUT_SWAP);
     VkExtent2D output = m->plan->desc.output;
-    constants[8] = !m->plan->desc.resizable && !m->plan->desc.viewport_count && output.width % MASU_GROUP == 0 &&
-                   output.height % MASU_GROUP == 0;
+    int sized = !m->plan->desc.resizable && !m->plan->desc.viewport_count;
+    constants[8] = sized && output.width % MASU_GROUP == 0 && output.height % MASU_GROUP == 0;
     /* Nothing is left of the root, and of the lowest nodes nothing is entered. */
     const masu_scene *scene = &m->plan->scene;
     constants[9] = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
@@ -210,10 +210,7 @@ static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, Vk
     VkSpecializationInfo special = specialise(m, m->plan->desc.debug.counters != 0, constants);
     masu_code codes[2] = {masu_compute_code(m->plan, pass, last), {0}};
     uint64_t key = key_of(m, pass, codes, 0, constants);
-    if (masu_pool_take(m, key, out)) {
-        masu_pool_note(m, out, key);
-        return MASU_OK;
-    }
+    if (masu_pool_take(m, key, out)) return MASU_OK;
     masu_result result = make_module(m, codes[0], &module, detail);
     if (result) return result;
     VkComputePipelineCreateInfo info = {
@@ -230,7 +227,7 @@ static masu_result make_compute_form(masu_device *m, uint32_t pass, int last, Vk
     m->pipeline_ns[pass] += now(m) - start;
     m->vk.DestroyShaderModule(m->vk.device, module, m->vk.allocator);
     if (MASU_FAILED(r, *out)) return masu_fail_vulkan(detail, r, "vkCreateComputePipelines");
-    masu_pool_note(m, out, key);
+    masu_pool_made(m, out, key);
     name_form(m, pass, last, *out);
     return MASU_OK;
 }
@@ -424,10 +421,7 @@ static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, Vk
     VkBool32 constants[SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
     uint64_t key = key_of(m, pass, codes, textured, constants);
-    if (masu_pool_take(m, key, out)) {
-        masu_pool_note(m, out, key);
-        return MASU_OK;
-    }
+    if (masu_pool_take(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     masu_result result = make_module(m, code.vertex, &modules[0], detail);
     if (!result && code.fragment.bytes) result = make_module(m, code.fragment, &modules[1], detail);
@@ -438,7 +432,7 @@ static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, Vk
         if (MASU_FAILED(r, *out))
             result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
         else
-            masu_pool_note(m, out, key);
+            masu_pool_made(m, out, key);
     }
     for (uint32_t i = 0; i < 2; i++)
         m->vk.DestroyShaderModule(m->vk.device, modules[i], m->vk.allocator);

@@ -50,19 +50,6 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
 
 /* ---- Taking and giving ----------------------------------------------------------------------- */
 
-int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
-    masu_pipelines *pool = pool_of(m);
-    for (uint32_t i = 0; pool && i < pool->count; i++) {
-        if (pool->rows[i].key != key) continue;
-        *out = pool->rows[i].pipeline;
-        pool->rows[i] = pool->rows[--pool->count];
-        pool->taken++;
-        return 1;
-    }
-    if (pool) pool->made++;
-    return 0;
-}
-
 /* Each pipeline of the device has a place. */
 static VkPipeline *place(masu_device *m, uint32_t i) {
     if (i < MASU_PASS_COUNT) return &m->pipelines[i];
@@ -71,10 +58,30 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
     return i < MASU_TEXTURED_COUNT ? &m->textured[i] : &m->masked_casters;
 }
 
-void masu_pool_note(masu_device *m, const VkPipeline *at, uint64_t key) {
-    for (uint32_t i = 0; pool_of(m) && i < MASU_POOL_KEYS; i++) {
+/* Notes what a pipeline is known by. */
+static void note(masu_device *m, const VkPipeline *at, uint64_t key) {
+    for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
         if (place(m, i) == at) m->pool_keys[i] = key;
     }
+}
+
+int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
+    masu_pipelines *pool = pool_of(m);
+    for (uint32_t i = 0; pool && i < pool->count; i++) {
+        if (pool->rows[i].key != key) continue;
+        *out = pool->rows[i].pipeline;
+        pool->rows[i] = pool->rows[--pool->count];
+        pool->taken++;
+        note(m, out, key);
+        return 1;
+    }
+    return 0;
+}
+
+void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key) {
+    if (!pool_of(m)) return;
+    pool_of(m)->made++;
+    note(m, at, key);
 }
 
 void masu_pool_give(masu_device *m) {

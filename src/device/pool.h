@@ -20,10 +20,10 @@
 uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code codes[2], int textured,
                        const uint32_t *constants, uint32_t constant_count);
 
-/* Into *out, if there is one of that key. */
+/* Into *out, a pipeline of the device, if there is one of that key. */
 int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out);
-/* Notes what a pipeline that was made or taken is known by. */
-void masu_pool_note(masu_device *m, const VkPipeline *at, uint64_t key);
+/* Notes what a pipeline of the device that had to be made is known by. */
+void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key);
 /* Gives all pipelines and samplers back; what has no place any more, or no key, stays with the renderer. */
 void masu_pool_give(masu_device *m);
 

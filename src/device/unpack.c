@@ -35,16 +35,18 @@ static uint32_t run_byte(unpacking *u) {
     return *u->run++;
 }
 
-static uint32_t run_literal(unpacking *u) {
+static uint32_t literal_of(unpacking *u, uint32_t (*next)(unpacking *)) {
     uint32_t value = 0;
     for (uint32_t shift = 0; shift < 35; shift += 7) {
-        uint32_t b = run_byte(u);
+        uint32_t b = next(u);
         value |= (b & 127) << shift;
         if (b < 128) return value;
     }
     u->failed = 1;
     return 0;
 }
+
+static uint32_t run_literal(unpacking *u) { return literal_of(u, run_byte); }
 
 static uint32_t signed_of(uint32_t code) { return code >> 1 ^ (0u - (code & 1)); }
 
@@ -79,16 +81,7 @@ static uint32_t pool_byte(unpacking *u) {
 
 /* ---- Words ----------------------------------------------------------------------------------- */
 
-static uint32_t literal(unpacking *u) {
-    uint32_t value = 0;
-    for (uint32_t shift = 0; shift < 35; shift += 7) {
-        uint32_t b = pool_byte(u);
-        value |= (b & 127) << shift;
-        if (b < 128) return value;
-    }
-    u->failed = 1;
-    return 0;
-}
+static uint32_t literal(unpacking *u) { return literal_of(u, pool_byte); }
 
 static uint32_t whole(unpacking *u) {
     uint32_t value = 0;

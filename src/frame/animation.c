@@ -118,17 +118,9 @@ void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan,
 
 uint32_t masu_animation_clips(const masu_animation *a, const masu_frame_plan *plan, uint32_t like,
                               uint32_t *first) {
-    uint32_t low = 0, end = plan->scene.clips, count = 0;
-    while (low < end) { /* the first that is not of a model before it */
-        uint32_t middle = low + (end - low) / 2;
-        if (a->clips[middle].model < like)
-            low = middle + 1;
-        else
-            end = middle;
-    }
-    *first = low;
-    while (low + count < plan->scene.clips && a->clips[low + count].model == like) count++;
-    return count;
+    *first = 0;
+    if (!plan->scene.clips) return 0;
+    return masu_scene_range(&a->clips->model, sizeof *a->clips, plan->scene.clips, like, first);
 }
 
 /* Seconds from the clip's start. */

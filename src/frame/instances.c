@@ -26,9 +26,7 @@ void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan,
     for (uint32_t i = 0; i < plan->scene.instances; i++) {
         memcpy(&in->now[i], v->instances[i].transform, sizeof in->now[i]);
         if (plan->needs.velocity) in->previous[i] = in->now[i];
-        uint32_t name = v->instances[i].name;
-        in->names[i] =
-            name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
+        in->names[i] = masu_scene_name_hash(v, v->instances[i].name);
         in->meshes[i] = v->instances[i].mesh;
         in->flags[i] = frames_to_write(plan);
     }

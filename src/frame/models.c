@@ -16,10 +16,6 @@ void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *p
     masu_skins_lay(&s->skins, arena, plan);
 }
 
-static uint64_t hash_of(const masu_scene_view *v, uint32_t name) {
-    return name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
-}
-
 static void multiply(const float a[12], const float b[12], float out[12]) {
     for (uint32_t i = 0; i < 12; i += 4) {
         for (uint32_t j = 0; j < 4; j++) {
@@ -54,7 +50,7 @@ void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan 
         const masu_blob_model_node *from = &v->model_nodes[n];
         masu_node *to = &s->nodes[n];
         *to = (masu_node){
-            .name = hash_of(v, from->name), .parent = from->parent, .instance = from->instance};
+            .name = masu_scene_name_hash(v, from->name), .parent = from->parent, .instance = from->instance};
         memcpy(to->local, from->local, sizeof to->local);
     }
     masu_animation_keep(&s->animation, plan, v);
@@ -62,7 +58,7 @@ void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan 
     for (uint32_t i = 0; i < scene->models; i++) {
         const masu_blob_model *from = &v->models[i];
         masu_placed_model *to = &s->models[i];
-        *to = (masu_placed_model){.name = hash_of(v, from->name),
+        *to = (masu_placed_model){.name = masu_scene_name_hash(v, from->name),
                                   .first_node = from->first_node,
                                   .node_count = from->node_count,
                                   .like = from->like,

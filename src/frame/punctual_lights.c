@@ -16,10 +16,8 @@ void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *p
 void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v) {
     l->handles = masu_handles_of(v->hash, MASU_HANDLE_LIGHT, plan->scene.lights);
     for (uint32_t i = 0; i < plan->scene.lights; i++) {
-        uint32_t name = v->lights[i].name;
         l->states[i] = masu_light_state_of(&v->lights[i]);
-        l->names[i] =
-            name == MASU_BLOB_NONE ? 0 : masu_fnv1a64(v->names + name, strlen(v->names + name));
+        l->names[i] = masu_scene_name_hash(v, v->lights[i].name);
     }
 }
 

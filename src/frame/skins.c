@@ -51,17 +51,9 @@ void masu_skins_keep(masu_skins *s, const masu_frame_plan *plan, const masu_scen
 
 uint32_t masu_skins_of(const masu_skins *s, const masu_frame_plan *plan, uint32_t model,
                        uint32_t *first) {
-    uint32_t low = 0, end = plan->scene.skins, count = 0;
-    while (low < end) { /* the first that is not of a model before it */
-        uint32_t middle = low + (end - low) / 2;
-        if (s->skins[middle].model < model)
-            low = middle + 1;
-        else
-            end = middle;
-    }
-    *first = low;
-    while (low + count < plan->scene.skins && s->skins[low + count].model == model) count++;
-    return count;
+    *first = 0;
+    if (!plan->scene.skins) return 0;
+    return masu_scene_range(&s->skins->model, sizeof *s->skins, plan->scene.skins, model, first);
 }
 
 /* ---- Matrices, row by row, in double --------------------------------------------------------- */

@@ -6,6 +6,8 @@
 #include "scene/blob.h"
 #include "scene/cull.h"
 
+#include <stddef.h>
+
 /* Sections of a validated blob; absent ones are NULL with count 0. */
 typedef struct masu_scene_view {
     uint64_t hash; /* of the blob */
@@ -63,6 +65,14 @@ typedef struct masu_scene_view {
 
 /* World box of an instance as the scene places it. */
 masu_cull_box masu_scene_box(const masu_scene_view *view, uint32_t instance);
+
+/* Of `count` elements of `stride` bytes that are sorted by a number: those with this one. `numbers` points to the
+ * first element's. `*first` is the index of the first of them, the result how many there are. */
+uint32_t masu_scene_range(const uint32_t *numbers, size_t stride, uint32_t count, uint32_t wanted,
+                          uint32_t *first);
+
+/* FNV-1a 64 of a name, 0: none. */
+uint64_t masu_scene_name_hash(const masu_scene_view *view, uint32_t name);
 
 /* The LODs of a mesh, finest first: `*first` is the first one's index in view->lods, the
  * result how many there are (0 to MASU_BLOB_LODS_MAX). */

@@ -11,12 +11,6 @@
 
 enum { W = 160, H = 90, BYTES = W * H * 4, RUNGS = 5, FRAMES = 3 };
 
-typedef struct made {
-    masu_renderer *m;
-    void *block;
-    masu_headless_target target;
-} made;
-
 static uint8_t pixels[2][BYTES];
 
 static masu_desc desc_of(masu_session *s, uint32_t width, uint32_t height) {
@@ -33,43 +27,14 @@ static masu_desc desc_of(masu_session *s, uint32_t width, uint32_t height) {
     return d;
 }
 
-static void make_target(masu_session *s, made *x, uint32_t width, uint32_t height) {
-    char error[ERROR_SIZE];
-    assert_ok(masu_headless_target_create(&s->host, width, height, VK_FORMAT_R8G8B8A8_UNORM, true,
-                                          &x->target, error, sizeof error));
-}
-
-static void make(masu_session *s, made *x, const masu_desc *desc) {
-    char error[ERROR_SIZE];
-    masu_desc d = *desc;
-    masu_memory need;
-    masu_detail detail;
-    masu_commands commands;
-    make_target(s, x, d.output.width, d.output.height);
-    d.targets.images = &x->target.image;
-    d.targets.views = &x->target.view;
-    d.targets.count = 1;
-    if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
-    x->block = host_block(need.host_bytes);
-    if (masu_init(&d, x->block, need.host_bytes, &x->m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(x->m, &commands) == MASU_INCOMPLETE)
-        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
-}
-
-static void unmake(masu_session *s, made *x) {
-    masu_destroy(x->m);
-    free(x->block);
-    masu_headless_target_destroy(&s->host, &x->target);
-}
-
-static masu_result resize(made *x, uint32_t width, uint32_t height, masu_detail *detail) {
+static masu_result resize(own_renderer *x, uint32_t width, uint32_t height, masu_detail *detail) {
     masu_targets t = {
         .images = &x->target.image, .views = &x->target.view, .count = 1, .storage = 1};
     return masu_resize(x->m, (VkExtent2D){width, height}, &t, NULL, detail);
 }
 
 /* So many frames of a rung; the number of the first says which noise they have. */
-static void draw_frames(masu_session *s, made *x, uint32_t rung, uint32_t frames, uint8_t *out) {
+static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out) {
     char error[ERROR_SIZE];
     masu_commands commands;
     for (uint32_t i = 0; i < frames; i++) {
@@ -88,19 +53,19 @@ static void compare_sizes(const char *scene, size_t count) {
     masu_session_desc d = test_desc(scene, W, H);
     d.no_renderer = true;
     open_session(&s, &d);
-    made live;
+    own_renderer live;
     masu_desc own = desc_of(&s, W, H);
-    make(&s, &live, &own);
+    make_own(&s, &live, &own);
     uint32_t drawn = 0;
     for (size_t i = 0; i < count; i++) {
         uint32_t w = sizes[i][0], h = sizes[i][1];
         masu_detail detail;
         masu_headless_target_destroy(&s.host, &live.target);
-        make_target(&s, &live, w, h);
+        make_target(&s, &live, w, h, 1);
         if (resize(&live, w, h, &detail)) fail_msg("%s", detail.text);
-        made fresh;
+        own_renderer fresh;
         masu_desc fit = desc_of(&s, w, h);
-        make(&s, &fresh, &fit);
+        make_own(&s, &fresh, &fit);
         if (drawn) draw_frames(&s, &fresh, 1, drawn, pixels[1]); /* to the same frame number */
         for (uint32_t r = 0; r < RUNGS; r++) {
             draw_frames(&s, &live, r, FRAMES, pixels[0]);
@@ -112,9 +77,9 @@ static void compare_sizes(const char *scene, size_t count) {
                 fail_msg("%s, rung %u at %ux%u: off by %u", scene, r, w, h, most);
         }
         drawn += RUNGS * FRAMES;
-        unmake(&s, &fresh);
+        unmake_own(&s, &fresh);
     }
-    unmake(&s, &live);
+    unmake_own(&s, &live);
     close_session(&s);
 }
 
@@ -136,10 +101,10 @@ static void what_cannot_be_leaves_all_as_it_was(void **state) {
     masu_session_desc d = test_desc("test_both", W, H);
     d.no_renderer = true;
     open_session(&s, &d);
-    made x;
+    own_renderer x;
     masu_detail detail = {0};
     masu_desc own = desc_of(&s, W, H);
-    make(&s, &x, &own);
+    make_own(&s, &x, &own);
     draw_frames(&s, &x, 1, 1, pixels[0]);
     assert_int_equal(resize(&x, W + 1, H, &detail), MASU_ERROR_LIMIT);
     assert_string_equal(detail.what, "output");
@@ -168,12 +133,12 @@ static void what_cannot_be_leaves_all_as_it_was(void **state) {
     assert_int_equal(masu_resize(NULL, size, &t, NULL, NULL), MASU_ERROR_ARGUMENT);
     draw_frames(&s, &x, 1, 1, pixels[1]);
     assert_memory_equal(pixels[0], pixels[1], BYTES);
-    unmake(&s, &x);
+    unmake_own(&s, &x);
     own.resizable = 0;
-    make(&s, &x, &own);
+    make_own(&s, &x, &own);
     assert_int_equal(resize(&x, W, H, &detail), MASU_ERROR_STATE);
     assert_string_equal(detail.what, "resizable");
-    unmake(&s, &x);
+    unmake_own(&s, &x);
     close_session(&s);
 }
 
@@ -181,14 +146,14 @@ static void what_cannot_be_leaves_all_as_it_was(void **state) {
 
 /* What the process holds more after 100 times than after 10: of a target made anew, resized to or not, drawn to
  * or not. What frames take is the driver's. */
-static int64_t grown(masu_session *s, made *x, int resizes, int frames) {
+static int64_t grown(masu_session *s, own_renderer *x, int resizes, int frames) {
     size_t before = 0;
     for (uint32_t i = 0; i < 100; i++) {
         uint32_t w = 1 + (i * 37) % W, h = 1 + (i * 53) % H;
         masu_detail detail;
         if (resizes || !frames) {
             masu_headless_target_destroy(&s->host, &x->target);
-            make_target(s, x, w, h);
+            make_target(s, x, w, h, 1);
         }
         uint64_t setup = wrap.creates;
         if (resizes && resize(x, w, h, &detail)) fail_msg("%s", detail.text);
@@ -208,10 +173,10 @@ static void a_hundred_resizes_take_nothing(void **state) {
     d.host.validate = false; /* the layer keeps books of its own */
     d.no_renderer = true;
     open_session(&s, &d);
-    made x;
+    own_renderer x;
     masu_desc own = desc_of(&s, W, H);
     own.governor.mode = MASU_GOVERNOR_ON;
-    make(&s, &x, &own);
+    make_own(&s, &x, &own);
     memset(s.blob, 0xEE, (size_t)s.scene.blob_bytes); /* it is not looked at again */
     int64_t frames = grown(&s, &x, 0, 1), targets = grown(&s, &x, 0, 0), own_too = grown(&s, &x, 1, 0);
     int64_t all = grown(&s, &x, 1, 1);
@@ -230,7 +195,7 @@ static void a_hundred_resizes_take_nothing(void **state) {
     assert_int_equal(resize(&x, x.target.width, x.target.height, &detail), MASU_ERROR_VULKAN);
     assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.rung = 0}, &commands), MASU_ERROR_STATE);
     wrap.fail_at = 0;
-    unmake(&s, &x);
+    unmake_own(&s, &x);
     close_session(&s);
 }
 

@@ -15,12 +15,6 @@ static const masu_camera cameras[VIEWS] = {
     {.position = {0, 14, 0}, .forward = {0, -1, 0}, .up = {0, 0, -1}, .fov_y = 0.8f, .near_distance = 0.05f}};
 static const uint32_t rungs[VIEWS] = {0, 1, 2};
 
-typedef struct made {
-    masu_renderer *m;
-    void *block;
-    masu_headless_target target;
-} made;
-
 static uint8_t shown[W * H * 4], alone[W * H * 4];
 
 static masu_desc desc_of(const masu_session *s, uint32_t width, uint32_t height) {
@@ -36,32 +30,7 @@ static masu_desc desc_of(const masu_session *s, uint32_t width, uint32_t height)
     return d;
 }
 
-static void make(masu_session *s, made *x, const masu_desc *desc) {
-    char error[ERROR_SIZE];
-    masu_desc d = *desc;
-    masu_memory need;
-    masu_detail detail;
-    masu_commands commands;
-    assert_ok(masu_headless_target_create(&s->host, d.output.width, d.output.height,
-                                          VK_FORMAT_R8G8B8A8_UNORM, d.targets.storage != 0,
-                                          &x->target, error, sizeof error));
-    d.targets.images = &x->target.image;
-    d.targets.views = &x->target.view;
-    d.targets.count = 1;
-    if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
-    x->block = host_block(need.host_bytes);
-    if (masu_init(&d, x->block, need.host_bytes, &x->m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(x->m, &commands) == MASU_INCOMPLETE)
-        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
-}
-
-static void unmake(masu_session *s, made *x) {
-    masu_destroy(x->m);
-    free(x->block);
-    masu_headless_target_destroy(&s->host, &x->target);
-}
-
-static masu_commands frame_of(masu_session *s, made *x, uint32_t view, uint32_t viewport) {
+static masu_commands frame_of(masu_session *s, own_renderer *x, uint32_t view, uint32_t viewport) {
     char error[ERROR_SIZE];
     masu_commands commands;
     masu_frame_desc frame = {
@@ -71,7 +40,7 @@ static masu_commands frame_of(masu_session *s, made *x, uint32_t view, uint32_t 
     return commands;
 }
 
-static void read_target(masu_session *s, made *x, uint8_t *out) {
+static void read_target(masu_session *s, own_renderer *x, uint8_t *out) {
     char error[ERROR_SIZE];
     assert_ok(masu_headless_target_read(&s->host, &x->target, error, sizeof error));
     memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
@@ -87,7 +56,7 @@ static uint32_t view_at(const masu_viewport *views, uint32_t x, uint32_t y) {
     return found;
 }
 
-static void compare(masu_session *s, made *x, const masu_viewport *views, uint32_t first) {
+static void compare(masu_session *s, own_renderer *x, const masu_viewport *views, uint32_t first) {
     for (uint32_t k = 0; k < VIEWS; k++) {
         masu_commands commands = frame_of(s, x, k, k);
         masu_readback_image depth;
@@ -97,9 +66,9 @@ static void compare(masu_session *s, made *x, const masu_viewport *views, uint32
     }
     read_target(s, x, shown);
     for (uint32_t k = 0; k < VIEWS; k++) {
-        made fresh;
+        own_renderer fresh;
         masu_desc d = desc_of(s, views[k].width, views[k].height);
-        make(s, &fresh, &d);
+        make_own(s, &fresh, &d);
         for (uint32_t i = 0; i < first + k; i++) (void)frame_of(s, &fresh, k, 0); /* to the same number */
         (void)frame_of(s, &fresh, k, 0);
         read_target(s, &fresh, alone);
@@ -112,7 +81,7 @@ static void compare(masu_session *s, made *x, const masu_viewport *views, uint32
                 off += memcmp(shown + 4 * (py * W + px), alone + 4 * (y * views[k].width + i), 4) != 0;
             }
         }
-        unmake(s, &fresh);
+        unmake_own(s, &fresh);
         if (off || seen < 500) fail_msg("view %u: %u of %u pixels differ", k, off, seen);
     }
 }
@@ -123,13 +92,13 @@ static void each_part_is_its_own_picture(void **state) {
     masu_session_desc session = test_desc("test_live", W, H);
     session.no_renderer = true;
     open_session(&s, &session);
-    made x;
+    own_renderer x;
     masu_desc d = desc_of(&s, W, H);
     d.readback = MASU_READBACK_DEPTH;
     d.resizable = 1;
     d.viewport_count = VIEWS;
     memcpy(d.viewports, left_right_map, sizeof left_right_map);
-    make(&s, &x, &d);
+    make_own(&s, &x, &d);
     compare(&s, &x, left_right_map, 0);
     /* Stacked instead of side by side. */
     static const masu_viewport stacked[VIEWS] = {{0, 0, 160, 40}, {3, 41, 150, 49}, {1, 1, 40, 30}};
@@ -137,7 +106,7 @@ static void each_part_is_its_own_picture(void **state) {
     masu_detail detail;
     if (masu_resize(x.m, (VkExtent2D){W, H}, &t, stacked, &detail)) fail_msg("%s", detail.text);
     compare(&s, &x, stacked, VIEWS);
-    unmake(&s, &x);
+    unmake_own(&s, &x);
     close_session(&s);
 }
 
@@ -149,9 +118,9 @@ static void what_is_no_part_is_refused(void **state) {
     open_session(&s, &session);
     masu_memory need;
     masu_detail detail;
-    made x;
+    own_renderer x;
     masu_desc d = desc_of(&s, W, H);
-    make(&s, &x, &d); /* for its target */
+    make_own(&s, &x, &d); /* for its target */
     d.targets.images = &x.target.image;
     d.viewport_count = 5;
     assert_int_equal(masu_memory_query(&d, &need, &detail), MASU_ERROR_ARGUMENT);
@@ -174,20 +143,25 @@ static void what_is_no_part_is_refused(void **state) {
     masu_commands commands;
     assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.viewport = 1}, &commands), MASU_ERROR_ARGUMENT);
     assert_string_equal(masu_last_error(x.m)->text, "viewport 1 does not exist, the last one is 0");
-    unmake(&s, &x);
+    unmake_own(&s, &x);
     d = desc_of(&s, W, H);
     d.governor.mode = MASU_GOVERNOR_ON;
     d.viewport_count = VIEWS;
     memcpy(d.viewports, left_right_map, sizeof left_right_map);
-    make(&s, &x, &d);
+    make_own(&s, &x, &d);
     const masu_frame_desc by_itself = {.viewport = 1, .rung = MASU_RUNG_AUTO};
     assert_int_equal(masu_frame(x.m, &by_itself, &commands), MASU_ERROR_ARGUMENT);
     assert_string_equal(masu_last_error(x.m)->what, "rung");
+    static masu_plan_info before, after; /* what is refused has not been looked at */
+    masu_plan_of(x.m, &before);
+    assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.viewport = VIEWS}, &commands), MASU_ERROR_ARGUMENT);
+    masu_plan_of(x.m, &after);
+    assert_memory_equal(before.rungs, after.rungs, sizeof before.rungs);
     for (uint32_t i = 0; i < 12; i++) (void)frame_of(&s, &x, 0, i % VIEWS);
     masu_stats_info stats;
     assert_int_equal(masu_stats(x.m, 0, &stats), MASU_OK);
     assert_in_range(stats.governor.samples + stats.governor.rejected, 1, 4); /* of the first alone */
-    unmake(&s, &x);
+    unmake_own(&s, &x);
     close_session(&s);
 }
 

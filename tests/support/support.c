@@ -118,36 +118,50 @@ void *host_block(uint64_t bytes) {
     return block;
 }
 
-void draw_rungs_of(masu_session *s, const masu_desc *desc, uint8_t *const *out,
-                   masu_stats_info *stats) {
+void make_target(masu_session *s, own_renderer *x, uint32_t width, uint32_t height, int storage) {
     char error[ERROR_SIZE];
-    masu_headless_target target;
+    assert_ok(masu_headless_target_create(&s->host, width, height, VK_FORMAT_R8G8B8A8_UNORM, storage,
+                                          &x->target, error, sizeof error));
+}
+
+void make_own(masu_session *s, own_renderer *x, const masu_desc *desc) {
+    char error[ERROR_SIZE];
     masu_desc d = *desc;
     masu_memory need;
     masu_detail detail;
-    masu_renderer *m;
     masu_commands commands;
-    assert_ok(masu_headless_target_create(&s->host, d.output.width, d.output.height,
-                                          VK_FORMAT_R8G8B8A8_UNORM, true, &target, error,
-                                          sizeof error));
-    d.targets.images = &target.image;
-    d.targets.views = &target.view;
+    make_target(s, x, d.output.width, d.output.height, d.targets.storage != 0);
+    d.targets.images = &x->target.image;
+    d.targets.views = &x->target.view;
+    d.targets.count = 1;
     if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
-    void *block = host_block(need.host_bytes);
-    if (masu_init(&d, block, need.host_bytes, &m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(m, &commands) == MASU_INCOMPLETE)
+    x->block = host_block(need.host_bytes);
+    if (masu_init(&d, x->block, need.host_bytes, &x->m, &detail)) fail_msg("%s", detail.text);
+    while (masu_load(x->m, &commands) == MASU_INCOMPLETE)
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
-    for (uint32_t r = 0; r < d.rung_count; r++) {
+}
+
+void unmake_own(masu_session *s, own_renderer *x) {
+    masu_destroy(x->m);
+    free(x->block);
+    masu_headless_target_destroy(&s->host, &x->target);
+}
+
+void draw_rungs_of(masu_session *s, const masu_desc *d, uint8_t *const *out,
+                   masu_stats_info *stats) {
+    char error[ERROR_SIZE];
+    own_renderer x;
+    masu_commands commands;
+    make_own(s, &x, d);
+    for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_frame_desc frame = {.rung = r};
-        assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
+        assert_int_equal(masu_frame(x.m, &frame, &commands), MASU_OK);
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
-        if (stats) assert_int_equal(masu_stats(m, commands.slot, &stats[r]), MASU_OK);
-        assert_ok(masu_headless_target_read(&s->host, &target, error, sizeof error));
-        memcpy(out[r], target.mapped, (size_t)target.width * target.height * 4);
+        if (stats) assert_int_equal(masu_stats(x.m, commands.slot, &stats[r]), MASU_OK);
+        assert_ok(masu_headless_target_read(&s->host, &x.target, error, sizeof error));
+        memcpy(out[r], x.target.mapped, (size_t)x.target.width * x.target.height * 4);
     }
-    masu_destroy(m);
-    free(block);
-    masu_headless_target_destroy(&s->host, &target);
+    unmake_own(s, &x);
 }
 
 uint32_t max_difference(const uint8_t *a, const uint8_t *b, size_t bytes) {

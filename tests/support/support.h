@@ -62,7 +62,17 @@ void open_device(masu_session *s);
 /* Host memory as masu_init wants it; free(). */
 void *host_block(uint64_t bytes);
 
-/* A renderer of its own on the device of a session, with a target of the size d->output: one frame
+/* A renderer of a test's own on the device of a session, and its one target, of the size d->output: loaded. */
+typedef struct own_renderer {
+    masu_renderer *m;
+    void *block;
+    masu_headless_target target;
+} own_renderer;
+void make_target(masu_session *s, own_renderer *x, uint32_t width, uint32_t height, int storage);
+void make_own(masu_session *s, own_renderer *x, const masu_desc *d);
+void unmake_own(masu_session *s, own_renderer *x);
+
+/* Such a renderer: one frame
  * with each rung, its pixels to out[rung], its numbers to stats[rung] unless that is NULL. */
 void draw_rungs_of(masu_session *s, const masu_desc *d, uint8_t *const *out,
                    masu_stats_info *stats);
