@@ -1,4 +1,5 @@
-/* masu.h: the whole public interface of Masu, and its manual.
+/* masu.h: the whole public interface of Masu, and its manual. Knobs and limits are in masu_knobs.h, what no port needs
+ * in masu_study.h; both are parts of this header, which includes them.
  *
  * Masu renders baked scenes of polygons and signed distance fields (SDF) inside a box of memory
  * whose size is known before the first frame. It is a library for a host that owns the Vulkan
@@ -53,8 +54,9 @@
  *    live until masu_destroy; the description itself, its arrays and pipeline_cache only during the
  *    call.
  *  - Another output size or other targets: masu_resize. Beyond what was planned for, or another scene:
- *    masu_destroy, then masu_init again, in the same blocks if they are large enough for all. A frame that is not submitted after all (a
- *    swapchain out of date) still counts: its slot's numbers are those of an older frame.
+ *    masu_destroy, then masu_init again, in the same blocks if they are large enough for all. A frame
+ *    that is not submitted after all (a swapchain out of date) still counts: its slot's numbers are
+ *    those of an older frame.
  *
  * CONVENTIONS
  *  - World: right-handed, +Y up, metres. Colour: linear, unless said otherwise. Angles: radians.
@@ -255,325 +257,8 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 #define MASU_MAX_CASCADES 4u
 #define MASU_MAX_REFRESH 64u
 
-/* ---- Knobs ----------------------------------------------------------------------------------- */
-
-/* Words that a knob can be set to: enumerator, value, its name in ladder.json, in suites and on the
- * command line, what it means. */
-#define MASU_SWITCH_WORDS(X)                                                                       \
-    X(MASU_AUTO, 0, "auto", "as the knob says")                                                    \
-    X(MASU_OFF, 1, "off", "")                                                                      \
-    X(MASU_ON, 2, "on", "")
-
-/* How the SDF is marched. All but AUTO are for comparison; those marked * need a blob baked with
- * --variants, else masu_init fails with MASU_ERROR_SCENE. */
-#define MASU_MARCH_WORDS(X)                                                                        \
-    X(MASU_MARCH_AUTO, 0, "auto", "the fast way, tile by tile with the parts that matter there")   \
-    X(MASU_MARCH_PLAIN, 1, "plain", "* each pixel by itself, in a compute shader")                 \
-    X(MASU_MARCH_FRAGMENT, 2, "fragment",                                                          \
-      "* each pixel by itself, in a fragment shader; only without polygons")                       \
-    X(MASU_MARCH_SEED, 3, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
-    X(MASU_MARCH_CONE8, 4, "cone8", "cones of 8x8 pixels alone")                                   \
-    X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
-    X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
-      "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
-    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
-
-/* How the picture is upscaled. */
-#define MASU_EASU_WORDS(X)                                                                         \
-    X(MASU_EASU_AUTO, 0, "auto", "full")                                                           \
-    X(MASU_EASU_FULL, 1, "full", "FSR1's EASU as AMD published it")                                \
-    X(MASU_EASU_FAST, 2, "fast",                                                                   \
-      "edges are looked for once instead of four times, and where the four texels around a pixel"  \
-      " differ by at most 1/255 their bilinear mean is taken, which is within 1/255 of full"       \
-      " (errors elsewhere: docs/design/29-fsr1.md)")                                                       \
-    X(MASU_EASU_BILINEAR, 3, "bilinear", "the four texels around, for comparison")
-
-/* Anti-aliasing of the shaded picture, before it is upscaled. All blend linear colour. */
-#define MASU_AA_WORDS(X)                                                                           \
-    X(MASU_AA_AUTO, 0, "auto", "off")                                                              \
-    X(MASU_AA_OFF, 1, "off", "")                                                                   \
-    X(MASU_AA_FXAA, 2, "fxaa", "one pass that looks at the nearest pixels alone")                  \
-    X(MASU_AA_SMAA_LOW, 3, "smaa-low",                                                             \
-      "SMAA 1x: edges from a contrast of 0.15 on, followed for 8 pixels")                          \
-    X(MASU_AA_SMAA_MEDIUM, 4, "smaa-medium", "from 0.1 on, for 16 pixels")                         \
-    X(MASU_AA_SMAA_HIGH, 5, "smaa-high", "from 0.1 on, for 32 pixels; diagonals and corners too")  \
-    X(MASU_AA_SMAA_ULTRA, 6, "smaa-ultra", "from 0.05 on, for 64 pixels; diagonals and corners too")
-
-#define MASU_WORD_ENUM(name, value, word, text) name = value,
-typedef enum masu_switch { MASU_SWITCH_WORDS(MASU_WORD_ENUM) } masu_switch;
-typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
-typedef enum masu_easu { MASU_EASU_WORDS(MASU_WORD_ENUM) } masu_easu;
-typedef enum masu_aa { MASU_AA_WORDS(MASU_WORD_ENUM) } masu_aa;
-#undef MASU_WORD_ENUM
-
-/* A number for each cascade. */
-typedef uint32_t masu_per_cascade[MASU_MAX_CASCADES];
-
-/* What a knob takes to change anything: name, where it is so, and what is said where it is not. */
-#define MASU_KNOB_USES(X)                                                                          \
-    X(ALWAYS, "everywhere", "")                                                                    \
-    X(UPSCALED, "rungs that upscale", "nothing is upscaled")                                       \
-    X(SHARPEN, "rungs that would sharpen, or do", "nothing is sharpened")                          \
-    X(SHARPENED, "rungs that sharpen", "nothing is sharpened")                                     \
-    X(SDF, "scenes with an SDF", "the scene has no SDF")                                           \
-    X(POLYGONS, "scenes with polygons", "the scene has no polygons")                               \
-    X(OCCLUDERS, "scenes with occluders", "the scene has no occluders")                            \
-    X(LODS, "scenes whose meshes have LODs", "the scene's meshes have no LODs")           \
-    X(AO, "scenes with ambient occlusion in screen space",                                         \
-      "the scene asks for no ambient occlusion")                                                   \
-    X(SHADOWS, "scenes with a shadow map", "the scene has no shadow map")                          \
-    X(LIGHTS, "scenes with punctual lights", "the scene has no punctual lights")                      \
-    X(SPECULAR, "scenes with traced reflections", "no reflections are traced")
-
-typedef enum masu_knob_use {
-#define MASU_KNOB_USE_ENUM(name, where, missing) MASU_USE_##name,
-    MASU_KNOB_USES(MASU_KNOB_USE_ENUM)
-#undef MASU_KNOB_USE_ENUM
-} masu_knob_use;
-
-/* Every knob of a rung: a row each, in this order in masu_rung, in names of settings, in files and
- * tables. A row is all that a new knob takes; `make docs-tables` then writes docs/knobs.md anew.
- * Below its columns stand what the knob does and what it costs.
- *
- * 0 is always taken: it becomes the number of its column or, where that is 0 too, means what the
- * text says. All other numbers lie within min and max. WORD takes the words of its enum, of which 0
- * is AUTO: the text says what that is. */
-/* clang-format off */
-#define MASU_KNOBS(NUMBER, WORD)                                                                   \
-    /*     type              name                  min   max   0 is  of use in  unit          */   \
-    /* Size and upscaling. Render size is in pixels per axis; all that is shaded has it. */        \
-    NUMBER(float,            scale,                0,    1,    1,    ALWAYS,    "",                \
-           "Render size / output size, per axis. Ignored with a source image.",                    \
-           "Time of the passes before upscaling, and their images, grow with its square.")         \
-    WORD(  masu_switch,      upscale,                                UPSCALED,                     \
-           "EASU. AUTO: where the render size differs from the output size. OFF is an error"       \
-           " there.",                                                                              \
-           "A pass of the output size.")                                                           \
-    WORD(  masu_easu,        easu,                                   UPSCALED,                     \
-           "How the picture is upscaled. AUTO: full.",                                             \
-           "Full takes the most time, then fast, then bilinear.")                                  \
-    WORD(  masu_switch,      sharpen,                                SHARPEN,                      \
-           "RCAS. AUTO: where EASU runs, full or fast; not after bilinear.",                       \
-           "A pass of the output size.")                                                           \
-    NUMBER(float,            sharpness,            -1,   64,   0.2,  SHARPENED, "stops",           \
-           "How much less RCAS sharpens: each stop halves it (AMD's definition). Below 0: no stop,"\
-           " the sharpest.",                                                                       \
-           "None.")                                                                                \
-    WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
-           "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
-           " deep_color. AUTO: off.",                                                              \
-           "1.13 times the time of upscaling; saves the image between the two.")                   \
-    WORD(  masu_aa,          aa,                                     ALWAYS,                       \
-           "Anti-aliasing, before upscaling. AUTO: off.",                                          \
-           "Device bytes per pixel of the render size: SMAA 4.5, FXAA 4, of which other images"    \
-           " may share all but SMAA's last 0.5. SMAA takes two passes, of which a picture"         \
-           " without edges costs the first; FXAA takes one.")                                      \
-    WORD(  masu_switch,      temporal,                               ALWAYS,                       \
-           "Anti-aliasing and upscaling over frames, in place of aa, EASU and RCAS (RCAS where"    \
-           " sharpen is on): each frame looks at another place in its pixels. Scenes alone."       \
-           " AUTO: off.",                                                                          \
-           "Two passes of the output size and a small one. Device bytes per pixel of the output: 16,"\
-           " of which 8 outlive the frame; of the render size: 4 that do, and velocities, 8.")         \
-    /* Geometry. */                                                                                \
-    WORD(  masu_march,       march,                                  SDF,                          \
-           "How the SDF is marched. AUTO: the fast way.",                                          \
-           "All others took longer where they were measured (docs/design/11-march-measured.md).")                    \
-    WORD(  masu_switch,      silhouettes,                            SDF,                          \
-           "Smooth silhouettes of the SDF: pixels beside them are blended by what the nearer thing"  \
-           " covers. AUTO: off.",                                                                  \
-           "A pass that asks the field at such pixels; 4 device bytes per pixel of the render"     \
-           " size, which other images may share.")                                                 \
-    NUMBER(uint32_t,         march_steps,          1,    2048, 2048, SDF,       "steps",           \
-           "Most SDF steps per ray. A ray that uses them up ends where it is.",                    \
-           "Time of rays that graze surfaces: the more, the longer.")                              \
-    WORD(  masu_switch,      frustum,                                POLYGONS,                     \
-           "Leaves out instances outside of the view; the picture is the same. AUTO: on.",         \
-           "Tests on the host; saves draws.")                                                      \
-    WORD(  masu_switch,      occlusion,                              OCCLUDERS,                    \
-           "Leaves out instances hidden by occluders; the picture is the same. AUTO: on, if the"   \
-           " scene has occluders.",                                                                \
-           "Passes that draw the occluders and test against them; memory: limits.instances.")      \
-    NUMBER(float,            lod_error,            -1e9, 1e9,  1,    LODS,      "pixels",          \
-           "How far, at the render size, a surface may be from its place where an LOD of its"      \
-           " mesh is drawn. Below 0: the finest form alone.",                                      \
-           "Triangles: the larger, the fewer.")                                                    \
-    /* Ambient occlusion in screen space, at half the render size. */                              \
-    WORD(  masu_switch,      ao,                                     AO,                           \
-           "Ambient occlusion in screen space. AUTO: on.",                                         \
-           "2 * slices * steps samples per texel of half the render size.")                        \
-    NUMBER(uint32_t,         ao_slices,            1,    8,    2,    AO,        "",                \
-           "Directions that are looked along.",                                                    \
-           "Samples grow with it.")                                                                \
-    NUMBER(uint32_t,         ao_steps,             1,    16,   8,    AO,        "",                \
-           "Samples on either side of a slice.",                                                   \
-           "Samples grow with it.")                                                                \
-    /* The sun's shadow map. A rung that asks for more than the scene has gets what it has. */     \
-    NUMBER(uint32_t,         shadow_cascades,      1,    4,    0,    SHADOWS,   "",                \
-           "Cascades. 0: the scene's.",                                                            \
-           "A pass each, and its part of the map.")                                                \
-    NUMBER(uint32_t,         shadow_resolution,    16,   8192, 0,    SHADOWS,   "texels",          \
-           "Along an edge of a cascade. 0: the scene's.",                                          \
-           "4 n^2 device bytes for each cascade.")                                                 \
-    NUMBER(float,            shadow_distance,      0,    1e9,  0,    SHADOWS,   "m",               \
-           "View depth where shadows end. 0: the scene's.",                                        \
-           "Instances in the cascades: the farther, the more.")                                    \
-    NUMBER(masu_per_cascade, shadow_refresh,       1,    64,   1,    SHADOWS,   "frames",          \
-           "Each cascade is drawn anew every so many frames, and at once after a cut or when the"  \
-           " view has left it. In between, what moves leaves its shadow behind.",                  \
-           "Saves draws. Any above 1 keeps the map's memory from being shared with other images"   \
-           " and doubles the rung's recordings.")                                                  \
-    WORD(  masu_switch,      light_tiles,                            LIGHTS,                       \
-           "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO:"    \
-           " on, if the scene has any.",                                                           \
-           "A pass over the tiles; saves work at each pixel where lights are many.")               \
-    /* Traced reflections, at half the render size: one ray per 2x2 pixels, then filters. */       \
-    WORD(  masu_switch,      specular,                               SPECULAR,                     \
-           "Traced reflections. AUTO: on, if a surface is glossy enough and the device has the"    \
-           " storage buffers for it.",                                                             \
-           "The rays, and the passes and images of all that follows.")                             \
-    NUMBER(float,            specular_cutoff,      0,    1,    0,    SPECULAR,  "",                \
-           "Perceptual roughness from which surfaces reflect the sky or the probes instead; both"  \
-           " are blended from 3/4 of it on. 0: the scene's.",                                      \
-           "Pixels that trace: the higher, the more.")                                             \
-    WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
-           "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on.",    \
-           "A pass of specular_reuse_taps.")                                                       \
-    WORD(  masu_switch,      specular_temporal,                      SPECULAR,                     \
-           "Temporal accumulation. AUTO: on.",                                                     \
-           "A pass, and images that outlive the frame.")                                           \
-    WORD(  masu_switch,      specular_fine,                          SPECULAR,                     \
-           "A full-resolution history for smooth surfaces, and for 2x2 pixels that are not one"    \
-           " surface; only with specular_temporal. AUTO: on.",                                     \
-           "A pass, and an image that outlives the frame.")                                        \
-    WORD(  masu_switch,      specular_filter,                        SPECULAR,                     \
-           "The spatial filter, as wide as noise is left. AUTO: on.",                              \
-           "A pass of specular_filter_taps.")                                                      \
-    WORD(  masu_switch,      specular_taa,                           SPECULAR,                     \
-           "Evens out what still flickers; only with specular_temporal. AUTO: on.",                \
-           "A pass, and an image that outlives the frame.")                                        \
-    NUMBER(uint32_t,         specular_reuse_taps,  1,    16,   8,    SPECULAR,  "",                \
-           "Neighbours that specular_reuse looks at.",                                             \
-           "Time of its pass.")                                                                    \
-    NUMBER(uint32_t,         specular_filter_taps, 1,    32,   12,   SPECULAR,  "",                \
-           "Neighbours that specular_filter looks at.",                                            \
-           "Time of its pass.")                                                                    \
-    NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
-           "How far back the temporal accumulation reaches, in frames of 1/60 s.",                 \
-           "None.")
-/* clang-format on */
-
-/* One rung of the quality ladder: a setting of all knobs. Each is recorded once and may be chosen
- * freshly every frame. All zero: the size of the output, all that the scene has use for, no
- * anti-aliasing. */
-typedef struct masu_rung {
-#define MASU_KNOB_FIELD(type, name, ...) type name;
-    MASU_KNOBS(MASU_KNOB_FIELD, MASU_KNOB_FIELD)
-#undef MASU_KNOB_FIELD
-} masu_rung;
-
-/* The same as data, for settings menus and files. */
-typedef struct masu_word {
-    const char *word; /* "smaa-high" */
-    const char *name; /* of the enumerator, "MASU_AA_SMAA_HIGH" */
-    const char *text; /* may be empty */
-    uint32_t value;
-} masu_word;
-
-typedef enum masu_knob_kind {
-    MASU_KNOB_FLOAT = 0,
-    MASU_KNOB_COUNT = 1, /* a uint32_t */
-    MASU_KNOB_WORD = 2   /* an enum: its value is the place in `words` */
-} masu_knob_kind;
-
-typedef struct masu_knob {
-    const char *name; /* of the field of masu_rung */
-    masu_knob_kind kind;
-    uint32_t offset;       /* of the field, bytes */
-    uint32_t values;       /* of 4 bytes each: 1, or one for each cascade */
-    double min, max, zero; /* the row's; of a WORD the first, the last and AUTO */
-    masu_knob_use use;
-    const char *where;   /* "scenes with an SDF" */
-    const char *missing; /* "the scene has no SDF" */
-    const char *unit;    /* may be empty */
-    const char *text, *cost;
-    const masu_word *words; /* of a WORD, by value; else NULL */
-    uint32_t word_count;
-} masu_knob;
-
-/* All of them, in order; behind the last one a row whose name is NULL. Constant. */
-MASU_API const masu_knob *masu_knob_table(void);
-
-/* One of a knob's values, 0 .. values - 1, and how it is changed, which checks no range. A value
- * that is not there is 0 and cannot be set. */
-MASU_API double masu_knob_get(const masu_knob *knob, const masu_rung *rung, uint32_t value);
-MASU_API void masu_knob_set(const masu_knob *knob, masu_rung *rung, uint32_t value, double to);
-
-/* 1: masu_init takes it: 0, or within min and max; of a COUNT or WORD whole numbers alone. */
-MASU_API int masu_knob_takes(const masu_knob *knob, double to);
-
-/* How much of each thing a scene may have: a row each. Name, the maximum of any scene (0: what a
- * blob holds), what each costs.
- *
- * Memory is sized by what the scene has: a limit is a promise to the port that no scene of its own
- * will need more. masu_peaks() returns what is used under the same names. */
-#define MASU_LIMITS(X)                                                                             \
-    X(vertices, 0, "16 bytes each, device")                                                        \
-    X(indices, 0, "4 bytes each, device")                                                          \
-    X(materials, 0, "48 bytes each, device")                                                       \
-    X(instances, 0,                                                                                \
-      "52 bytes each per frame in flight, device, and 98 bytes each, host; with velocities 100"    \
-      " and 146. With occlusion 32 more on the device, 4 once, and 8 for each of its occluders;"   \
-      " with a shadow map for each cascade 4 more, with occlusion 12 and 4 once. With LODs 1 more" \
-      " on the host, and on the device for each LOD of its mesh and each view 4 (8 with"           \
-      " occlusion)")                                                                               \
-    X(models, 0,                                                                                   \
-      "that move as one, hidden and spare ones too: 72 bytes each, host, and 4 for each instance " \
-      "of the scene")                                                                              \
-    X(model_nodes, 0, "of all models: 112 bytes each, host")                                       \
-    X(sdf_params, MASU_MAX_SDF_PARAMS, "16 bytes each, host")                                      \
-    X(shadow_cascades, MASU_MAX_CASCADES, "of the shadow map, as the largest rung has it")         \
-    X(shadow_resolution, 8192, "texels along an edge of a cascade; n take 4 n^2 bytes, device")    \
-    X(probes, 0,                                                                                   \
-      "light probes: 48 bytes each, 56 more for each set, and its map of distances; device")       \
-    X(textures, 0, "pictures with their mip chains; texture_bytes has their cost")                 \
-    X(texture_bytes, 0,                                                                            \
-      "of texels on the device, as blocks or decoded, whichever is used; the device may add"       \
-      " padding")                                                                                  \
-    /* Nor more than 65536 times their texture sets, of which there are at most 64. */             \
-    X(transparents, 4096,                                                                          \
-      "blended primitives, counted for each instance: 76 bytes each, host; 24, and 20 for each"    \
-      " texture set of theirs, per frame in flight, device")                                       \
-    X(lights, 4096,                                                                                \
-      "punctual lights: 80 bytes each per frame in flight, device, and 80 bytes each, host")       \
-    X(trace_triangles, 0,                                                                          \
-      "that rays meet: 16 bytes each, and for each about a quarter of a node of 48, device")       \
-    X(trace_instances, 0,                                                                          \
-      "that rays meet: 208 bytes each per frame in flight, device, and about 200 bytes each, host")
-
-#define MASU_LIMIT_FIELD(name, ...) uint64_t name;
-
-/* 0: no limit. A scene that needs more is refused with MASU_ERROR_LIMIT, which names the field. */
-typedef struct masu_limits {
-    MASU_LIMITS(MASU_LIMIT_FIELD)
-} masu_limits;
-
-typedef struct masu_peak_info {
-    MASU_LIMITS(MASU_LIMIT_FIELD)
-    uint64_t host_bytes;   /* of the host block */
-    uint64_t device_bytes; /* of all device blocks */
-} masu_peak_info;
-#undef MASU_LIMIT_FIELD
-
-/* The same as data. */
-typedef struct masu_limit {
-    const char *name; /* of the field of masu_limits and masu_peak_info */
-    uint32_t offset;  /* in both, bytes */
-    uint64_t max;     /* of any scene; 0: none */
-    const char *text;
-} masu_limit;
-
-/* All of them, in order; behind the last one a row whose name is NULL. Constant. */
-MASU_API const masu_limit *masu_limit_table(void);
+/* Rungs, their knobs, limits; with masu_study.h, which is for studies alone. */
+#include "masu_knobs.h"
 
 /* Device memory roles. On unified memory all of it is one block of role MASU_ROLE_DEVICE. */
 typedef enum masu_role {
@@ -732,42 +417,6 @@ typedef struct masu_viewport {
 } masu_viewport;
 #define MASU_MAX_VIEWPORTS 4u
 
-typedef struct masu_debug {
-    uint32_t timestamps; /* not 0: GPU time of each pass in masu_stats, with a full barrier around
-                            each pass */
-    uint32_t counters;   /* not 0: SDF evaluations and the like in masu_stats; costs atomics */
-    uint32_t labels; /* not 0: object names and pass labels, where VK_EXT_debug_utils is enabled on
-                        the instance */
-    uint32_t poison; /* not 0: fills all transient image memory with NaN patterns before each frame;
-                        the picture must not change. A value of 2 uses infinities */
-    uint32_t casters; /* not 0: culls for the sun as well, with all of the scene in its view, for the
-                         numbers in masu_stats */
-    uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
-    uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
-    uint32_t all_terms;  /* not 0: a march asks for all of the SDF that its tile sees, not only for what
-                            matters to its block: for comparison, the same to the bit */
-    masu_switch share_rays; /* any invocation of a 16x16 tile may march any of its rays, so that none waits long for others;
-                               the same picture. AUTO: on GPUs, where waiting costs more than sharing */
-    uint32_t no_bias; /* not 0: rungs of fewer pixels take the mips of these: for comparison */
-    uint32_t reference; /* not 0: reflections are traced at each pixel, summed up over frames of a
-                           resting scene, weighted exactly and not filtered: the truth after many frames.
-                           A cut begins a new sum */
-    uint32_t exact; /* not 0: full EASU, RCAS and both in one give the same bits on every driver, where inputs have
-                       8 or 10 bits: these become the nearest step, nothing is fused or reordered, divisions are
-                       exact. Three to five times the instructions; without, a pixel in some ten thousands differs */
-    float mip_bias; /* added to the level of detail of textures, -16..16; below 0: finer. What many places in a
-                       pixel are averaged over wants finer ones; log2 of the size undoes a rung's own */
-} masu_debug;
-
-/* Switches off what would be used where the device offers it: to test the other path, or around a
- * driver's fault. */
-typedef struct masu_deny {
-    uint32_t
-        unified_memory; /* not 0: separate blocks per role even where one type could serve all */
-    uint32_t compressed_textures; /* not 0: textures are decoded even where the device takes them
-                                     compressed */
-} masu_deny;
-
 /* ---- The governor ---------------------------------------------------------------------------- */
 
 typedef enum masu_governor_mode {
@@ -801,6 +450,174 @@ typedef struct masu_governor_desc {
                               is expected to take at most 1.25 of it is tried for 12 frames, to see whether
                               the clock follows; seldomer after each that did not */
 } masu_governor_desc;
+
+typedef struct masu_desc {
+    masu_vulkan vulkan;
+    const masu_scene
+        *scene; /* NULL: no scene; then source must be given. Read during the call only */
+    masu_source source;
+    VkExtent2D output; /* pixels, 1..16384 and within the device's maxImageDimension2D */
+    masu_targets targets;
+    uint32_t frames_in_flight; /* 1..3; 0: 2 */
+    uint32_t rung_count; /* 0: as `ladder` says */
+    masu_rung rungs[MASU_MAX_RUNGS]; /* in falling quality by convention; any order works */
+    /* The rungs where rung_count is 0. ON: up to eight that were measured beforehand for the scene's
+     * class (masu_ladder_of), with their flips, and their times as those governor.costs that are 0.
+     * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS). AUTO: ON
+     * with a governor, else OFF. */
+    masu_switch ladder;
+    float flips[MASU_MAX_RUNGS]; /* error of each rung, mean FLIP, 0..1; 0: unknown. Decides nothing: the
+                                    plan says it again */
+    masu_limits limits;
+    uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
+    uint64_t device_budget; /* bytes over all roles; 0: none */
+    masu_device_block device_blocks[MASU_ROLE_COUNT];
+    uint32_t analytic_sky; /* not 0: frames may have light.turbidity where the scene has none */
+    /* Several views of the one scene: a frame is drawn to viewports[masu_frame_desc.viewport], with a camera and
+     * a rung of its own. 0: one, all of the output. Each is within the output, and of storage targets begins at
+     * 0, 0 (they may have a target each). They may overlap: what is drawn later covers. Costs a set of
+     * recordings for each. Scenes alone. */
+    uint32_t viewport_count;
+    masu_viewport viewports[MASU_MAX_VIEWPORTS];
+    /* not 0: masu_resize may make the output smaller, and larger again up to `output`. 32 host bytes for each
+     * draw of a G-buffer pass, LODs too, and a bounds test where the last pass stores. Scenes alone. */
+    uint32_t resizable;
+    /* What finds the polygons that reflections show: ray queries of the device, or the library's own
+     * tree in a compute shader, which needs nothing of the device. Both find the same. AUTO:
+     * queries, if vulkan.ray_query says that they are there, the device is a discrete or integrated
+     * GPU, and its limits suffice: on a CPU they are slower than the own tree. ON: queries, or
+     * MASU_ERROR_DEVICE. OFF: the own tree. Without reflections of polygons nothing is asked.
+     * Queries take more memory, which is planned as all is: see masu_memory. */
+    masu_switch ray_query;
+    /* What weighs the texels that EASU takes: floats of 16 bits, or of 32. AUTO: of MASU_EASU_FAST 16, if
+     * vulkan.shader_float16 says that they are there and the device is a discrete or integrated GPU: CPUs
+     * emulate them; of MASU_EASU_FULL 32. ON: 16 of both, which changes EASU by up to 2/255, or
+     * MASU_ERROR_DEVICE; rungs with `fuse`, and all with debug.exact, stay at 32. OFF: 32. */
+    masu_switch half_floats;
+    masu_exposure exposure;
+    masu_tone tone;
+    /* Slow ramps without bands: the pass that writes the target rounds each pixel up or down, by a
+     * pattern that depends on place and frame number alone, so that the mean is right. What is a step
+     * of the target stays one: 0 and 1 do. AUTO: off for storage targets, which tools read back and
+     * compare, on for others of at most 8 bits. Nothing happens without a scene, or beyond 10 bits. */
+    masu_switch dither;
+    /* 16-bit floats between tone curve and target instead of 10 bits, twice the bytes of those images. AUTO:
+     * on for targets of more than 8 bits, which take it; OFF leaves them 8. ON with 8 bits: neither as
+     * storage targets nor in an SRGB format, which gets a copy of bytes. */
+    masu_switch deep_color;
+    uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
+    masu_governor_desc governor;
+    masu_debug debug;
+    masu_deny deny;
+    masu_log_fn log; /* NULL: silent */
+    void *log_user;
+    uint64_t (*clock_ns)(
+        void *user); /* monotonic nanoseconds; NULL: build times of pipelines are not measured */
+    void *clock_user;
+} masu_desc;
+
+/* ---- Memory ---------------------------------------------------------------------------------- */
+
+typedef struct masu_role_need {
+    uint64_t bytes; /* 0: this role is not used */
+    uint64_t alignment;
+    uint32_t type_bits;    /* memory types that can serve it, most of them wished for */
+    uint32_t type;         /* the one masu_init would take */
+    uint32_t host_visible; /* 1: the block must be mapped */
+    uint32_t device_address; /* 1: the memory must be allocated with
+                                VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT */
+} masu_role_need;
+
+typedef struct masu_memory {
+    uint64_t host_bytes;
+    uint64_t host_alignment; /* a power of two, at most 64 */
+    uint64_t device_bytes;   /* sum over the roles */
+    uint32_t unified;        /* 1: all roles are one block */
+    masu_role_need roles[MASU_ROLE_COUNT];
+    uint64_t transient_unaliased;   /* bytes of transient images, each for itself */
+    uint64_t transient_aliased;     /* as planned */
+    uint64_t transient_lower_bound; /* largest set alive at once: no plan can be smaller */
+} masu_memory;
+
+/* Runs the layout walk of masu_init without a block. Creates no lasting object. Errors as
+ * masu_init, except MEMORY. */
+MASU_API MASU_MUST_USE masu_result masu_memory_query(const masu_desc *desc, masu_memory *out,
+                                                     masu_detail *detail);
+
+typedef struct masu_renderer masu_renderer; /* lives inside the caller's block */
+
+/* Creates everything: plans memory, makes the device allocations that the host did not bring, all
+ * images, buffers, pipelines, descriptor sets and one command buffer per (frame in flight, rung,
+ * target), twice as many for each slow cascade (rungs[].shadow_refresh). `block` is `block_bytes` of any content, aligned to masu_memory.host_alignment; it
+ * belongs to the renderer until masu_destroy. Nothing is written outside it. On failure *out is
+ * NULL and every object is destroyed again. MASU_ERROR_ARGUMENT: a bad field, named.
+ * MASU_ERROR_MEMORY: block NULL, misaligned or too small (needed, given); the same for device
+ * blocks. MASU_ERROR_LIMIT: a limit or budget. MASU_ERROR_DEVICE: something is missing, named.
+ * MASU_ERROR_VULKAN / _DEVICE_LOST: the call is named, its VkResult is in the detail. */
+MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
+                                             uint64_t block_bytes, masu_renderer **out,
+                                             masu_detail *detail);
+
+/* Destroys every Vulkan object of the renderer and frees device memory that masu_init allocated.
+ * The device must be idle. NULL is fine. */
+MASU_API void masu_destroy(masu_renderer *renderer);
+
+/* Destroys what a pool holds, and makes it zero. Renderers that have taken from it must be destroyed before. Of
+ * `vulkan` function, instance, device and allocator are read. NULL is fine. */
+MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines);
+
+/* Another output size and other targets, without a pipeline, an allocation or a load: the recordings are made
+ * again (a millisecond or some). Takes desc.resizable and a finished masu_load; the blob may be gone. `output`:
+ * 1 x 1 to desc.output. `targets`: as many, of the same format, storage, layout and encoding as the
+ * description's; format, layout and encoding may be 0, for these. Its arrays are read during the call, its
+ * handles must live until the next masu_resize or masu_destroy. `viewports`: desc.viewport_count of them, NULL where
+ * there are none. The device must be idle. The next frame is a
+ * cut; frames, slots, transforms, and what the governor knows go on. MASU_ERROR_ARGUMENT: something other
+ * than said. MASU_ERROR_LIMIT: larger than desc.output: masu_destroy and masu_init. MASU_ERROR_STATE: not
+ * resizable, or not loaded. All of these leave everything as it was. MASU_ERROR_VULKAN / _DEVICE_LOST: a call
+ * has failed half-way; all that is left to do is masu_destroy. */
+MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
+                                               const masu_targets *targets,
+                                               const masu_viewport *viewports, masu_detail *detail);
+
+/* The description with the defaults filled in, as masu_init uses it: by the same function. Needs no device, and
+ * is the same when resolved again. What depends on the scene (or source) or on the output's size is left as it
+ * is where these are not given; resolve after the last change, for what follows from another field then stays.
+ * These words stay AUTO:
+ *  - rungs[].march: it is the name of the fast way itself;
+ *  - rungs[].specular and .occlusion where the scene has use for them: with ON masu_init fails on a device
+ *    that lacks the storage buffers, with AUTO it goes without;
+ *  - ray_query, half_floats, debug.share_rays: these follow from the device. */
+MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
+
+/* Fills rung_count, rungs, flips and governor.costs with the measured ladder of the scene's class, or of
+ * the nearest class that was measured: to be changed and given to masu_init. What the scene lacks, rungs
+ * that turn it change nothing by. `from` may be NULL: scene, size, driver and date of the measurement.
+ * MASU_ERROR_ARGUMENT: a NULL pointer. */
+MASU_API MASU_MUST_USE masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc,
+                                                  const char **from);
+
+/* One row of the memory plan. */
+typedef struct masu_memory_row {
+    const char *name;
+    const char *kind; /* "host", "buffer", "texture" (an array of them), "image" */
+    masu_role role;   /* of device rows */
+    uint64_t count;   /* elements, or texels of an image */
+    uint64_t bytes;   /* total */
+    uint64_t alignment;
+    uint64_t offset; /* in its block */
+    /* 1: lives from first_pass to last_pass only, may share its bytes with others. A buffer that
+     * has it lives in masu_load alone: it shares them with any image that has it. */
+    uint32_t transient;
+    uint32_t first_pass, last_pass; /* rows of masu_plan.passes */
+} masu_memory_row;
+
+/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, none where `rows` is NULL,
+ * and returns how many there are. */
+MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows,
+                                     uint32_t capacity);
+
+/* ---- What the governor knows ----------------------------------------------------------------- */
 
 #define MASU_GOVERNOR_REASONS(X)                                                                   \
     X(MASU_GOVERNOR_REASON_NONE, 0, "there is no governor")                                        \
@@ -915,219 +732,6 @@ typedef struct masu_governor_state {
 
 /* In English, without a newline. Never NULL. */
 MASU_API const char *masu_governor_reason_string(masu_governor_reason reason);
-
-typedef struct masu_desc {
-    masu_vulkan vulkan;
-    const masu_scene
-        *scene; /* NULL: no scene; then source must be given. Read during the call only */
-    masu_source source;
-    VkExtent2D output; /* pixels, 1..16384 and within the device's maxImageDimension2D */
-    masu_targets targets;
-    uint32_t frames_in_flight; /* 1..3; 0: 2 */
-    uint32_t rung_count; /* 0: as `ladder` says */
-    masu_rung rungs[MASU_MAX_RUNGS]; /* in falling quality by convention; any order works */
-    /* The rungs where rung_count is 0. ON: up to eight that were measured beforehand for the scene's
-     * class (masu_ladder_of), with their flips, and their times as those governor.costs that are 0.
-     * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS). AUTO: ON with a governor, else OFF. */
-    masu_switch ladder;
-    float flips[MASU_MAX_RUNGS]; /* error of each rung, mean FLIP, 0..1; 0: unknown. Decides nothing: the
-                                    plan says it again */
-    masu_limits limits;
-    uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
-    uint64_t device_budget; /* bytes over all roles; 0: none */
-    masu_device_block device_blocks[MASU_ROLE_COUNT];
-    uint32_t analytic_sky; /* not 0: frames may have light.turbidity where the scene has none */
-    /* Several views of the one scene: a frame is drawn to viewports[masu_frame_desc.viewport], with a camera and
-     * a rung of its own. 0: one, all of the output. Each is within the output, and of storage targets begins at
-     * 0, 0 (they may have a target each). They may overlap: what is drawn later covers. Costs a set of
-     * recordings for each. Scenes alone. */
-    uint32_t viewport_count;
-    masu_viewport viewports[MASU_MAX_VIEWPORTS];
-    /* not 0: masu_resize may make the output smaller, and larger again up to `output`. 32 host bytes for each
-     * draw of a G-buffer pass, LODs too, and a bounds test where the last pass stores. Scenes alone. */
-    uint32_t resizable;
-    /* What finds the polygons that reflections show: ray queries of the device, or the library's own
-     * tree in a compute shader, which needs nothing of the device. Both find the same. AUTO:
-     * queries, if vulkan.ray_query says that they are there, the device is a discrete or integrated
-     * GPU, and its limits suffice: on a CPU they are slower than the own tree. ON: queries, or
-     * MASU_ERROR_DEVICE. OFF: the own tree. Without reflections of polygons nothing is asked.
-     * Queries take more memory, which is planned as all is: see masu_memory. */
-    masu_switch ray_query;
-    /* What weighs the texels that EASU takes: floats of 16 bits, or of 32. AUTO: of MASU_EASU_FAST 16, if
-     * vulkan.shader_float16 says that they are there and the device is a discrete or integrated GPU: CPUs
-     * emulate them; of MASU_EASU_FULL 32. ON: 16 of both, which changes EASU by up to 2/255, or
-     * MASU_ERROR_DEVICE; rungs with `fuse`, and all with debug.exact, stay at 32. OFF: 32. */
-    masu_switch half_floats;
-    masu_exposure exposure;
-    masu_tone tone;
-    /* Slow ramps without bands: the pass that writes the target rounds each pixel up or down, by a
-     * pattern that depends on place and frame number alone, so that the mean is right. What is a step
-     * of the target stays one: 0 and 1 do. AUTO: off for storage targets, which tools read back and
-     * compare, on for others of at most 8 bits. Nothing happens without a scene, or beyond 10 bits. */
-    masu_switch dither;
-    /* 16-bit floats between tone curve and target instead of 10 bits, twice the bytes of those images. AUTO:
-     * on for targets of more than 8 bits, which take it; OFF leaves them 8. ON with 8 bits: neither as storage targets nor
-     * in an SRGB format, which gets a copy of bytes. */
-    masu_switch deep_color;
-    uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
-    masu_governor_desc governor;
-    masu_debug debug;
-    masu_deny deny;
-    masu_log_fn log; /* NULL: silent */
-    void *log_user;
-    uint64_t (*clock_ns)(
-        void *user); /* monotonic nanoseconds; NULL: build times of pipelines are not measured */
-    void *clock_user;
-} masu_desc;
-
-/* ---- Memory ---------------------------------------------------------------------------------- */
-
-typedef struct masu_role_need {
-    uint64_t bytes; /* 0: this role is not used */
-    uint64_t alignment;
-    uint32_t type_bits;    /* memory types that can serve it, most of them wished for */
-    uint32_t type;         /* the one masu_init would take */
-    uint32_t host_visible; /* 1: the block must be mapped */
-    uint32_t device_address; /* 1: the memory must be allocated with
-                                VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT */
-} masu_role_need;
-
-typedef struct masu_memory {
-    uint64_t host_bytes;
-    uint64_t host_alignment; /* a power of two, at most 64 */
-    uint64_t device_bytes;   /* sum over the roles */
-    uint32_t unified;        /* 1: all roles are one block */
-    masu_role_need roles[MASU_ROLE_COUNT];
-    uint64_t transient_unaliased;   /* bytes of transient images, each for itself */
-    uint64_t transient_aliased;     /* as planned */
-    uint64_t transient_lower_bound; /* largest set alive at once: no plan can be smaller */
-} masu_memory;
-
-/* Runs the layout walk of masu_init without a block. Creates no lasting object. Errors as
- * masu_init, except MEMORY. */
-MASU_API MASU_MUST_USE masu_result masu_memory_query(const masu_desc *desc, masu_memory *out,
-                                                     masu_detail *detail);
-
-typedef struct masu_renderer masu_renderer; /* lives inside the caller's block */
-
-/* Creates everything: plans memory, makes the device allocations that the host did not bring, all
- * images, buffers, pipelines, descriptor sets and one command buffer per (frame in flight, rung,
- * target), twice as many for each slow cascade (rungs[].shadow_refresh). `block` is `block_bytes` of any content, aligned to masu_memory.host_alignment; it
- * belongs to the renderer until masu_destroy. Nothing is written outside it. On failure *out is
- * NULL and every object is destroyed again. MASU_ERROR_ARGUMENT: a bad field, named.
- * MASU_ERROR_MEMORY: block NULL, misaligned or too small (needed, given); the same for device
- * blocks. MASU_ERROR_LIMIT: a limit or budget. MASU_ERROR_DEVICE: something is missing, named.
- * MASU_ERROR_VULKAN / _DEVICE_LOST: the call is named, its VkResult is in the detail. */
-MASU_API MASU_MUST_USE masu_result masu_init(const masu_desc *desc, void *block,
-                                             uint64_t block_bytes, masu_renderer **out,
-                                             masu_detail *detail);
-
-/* Destroys every Vulkan object of the renderer and frees device memory that masu_init allocated.
- * The device must be idle. NULL is fine. */
-MASU_API void masu_destroy(masu_renderer *renderer);
-
-/* Destroys what a pool holds, and makes it zero. Renderers that have taken from it must be destroyed before. Of
- * `vulkan` function, instance, device and allocator are read. NULL is fine. */
-MASU_API void masu_pipelines_destroy(const masu_vulkan *vulkan, masu_pipelines *pipelines);
-
-/* Another output size and other targets, without a pipeline, an allocation or a load: the recordings are made
- * again (a millisecond or some). Takes desc.resizable and a finished masu_load; the blob may be gone. `output`:
- * 1 x 1 to desc.output. `targets`: as many, of the same format, storage, layout and encoding as the
- * description's; format, layout and encoding may be 0, for these. Its arrays are read during the call, its
- * handles must live until the next masu_resize or masu_destroy. `viewports`: desc.viewport_count of them, NULL where
- * there are none. The device must be idle. The next frame is a
- * cut; frames, slots, transforms, and what the governor knows go on. MASU_ERROR_ARGUMENT: something other
- * than said. MASU_ERROR_LIMIT: larger than desc.output: masu_destroy and masu_init. MASU_ERROR_STATE: not
- * resizable, or not loaded. All of these leave everything as it was. MASU_ERROR_VULKAN / _DEVICE_LOST: a call
- * has failed half-way; all that is left to do is masu_destroy. */
-MASU_API MASU_MUST_USE masu_result masu_resize(masu_renderer *renderer, VkExtent2D output,
-                                               const masu_targets *targets,
-                                               const masu_viewport *viewports, masu_detail *detail);
-
-/* The description with the defaults filled in, as masu_init uses it: by the same function. Needs no device, and
- * is the same when resolved again. What depends on the scene (or source) or on the output's size is left as it
- * is where these are not given; resolve after the last change, for what follows from another field then stays.
- * These words stay AUTO:
- *  - rungs[].march: it is the name of the fast way itself;
- *  - rungs[].specular and .occlusion where the scene has use for them: with ON masu_init fails on a device
- *    that lacks the storage buffers, with AUTO it goes without;
- *  - ray_query, half_floats, debug.share_rays: these follow from the device. */
-MASU_API masu_desc masu_desc_resolved(const masu_desc *desc);
-
-/* Fills rung_count, rungs, flips and governor.costs with the measured ladder of the scene's class, or of
- * the nearest class that was measured: to be changed and given to masu_init. What the scene lacks, rungs
- * that turn it change nothing by. `from` may be NULL: scene, size, driver and date of the measurement.
- * MASU_ERROR_ARGUMENT: a NULL pointer. */
-MASU_API MASU_MUST_USE masu_result masu_ladder_of(const masu_scene *scene, masu_desc *desc,
-                                                  const char **from);
-
-/* One row of the memory plan. */
-typedef struct masu_memory_row {
-    const char *name;
-    const char *kind; /* "host", "buffer", "texture" (an array of them), "image" */
-    masu_role role;   /* of device rows */
-    uint64_t count;   /* elements, or texels of an image */
-    uint64_t bytes;   /* total */
-    uint64_t alignment;
-    uint64_t offset; /* in its block */
-    /* 1: lives from first_pass to last_pass only, may share its bytes with others. A buffer that
-     * has it lives in masu_load alone: it shares them with any image that has it. */
-    uint32_t transient;
-    uint32_t first_pass, last_pass; /* rows of masu_plan.passes */
-} masu_memory_row;
-
-/* Rows of the renderer's memory: host rows first. Writes at most `capacity` rows, none where `rows` is NULL,
- * and returns how many there are. */
-MASU_API uint32_t masu_memory_report(const masu_renderer *renderer, masu_memory_row *rows,
-                                     uint32_t capacity);
-
-/* ---- Plan ------------------------------------------------------------------------------------ */
-
-typedef struct masu_plan_pass {
-    const char *name; /* also the shader's file name, the debug label and the timestamp's name */
-    uint32_t active;  /* bit r: runs in rung r; 0: left out */
-    const char *why;  /* why it is in or was left out */
-    const char *reads[12];
-    const char *writes[6];
-    uint64_t pipeline_ns; /* time to build its pipeline in masu_init; 0 without a clock or before
-                             masu_init */
-} masu_plan_pass;
-
-typedef struct masu_plan_image {
-    const char *name;
-    VkFormat format;
-    uint32_t width, height; /* as allocated: the largest rung */
-    uint32_t used;          /* 0: this plan does not need it */
-    uint64_t bytes, offset; /* in the device role */
-    uint32_t first_pass, last_pass;
-} masu_plan_image;
-
-typedef struct masu_plan_rung {
-    uint32_t render_width, render_height;
-    uint32_t dispatches; /* per frame; a graphics or transfer pass counts as one */
-    uint32_t barriers;   /* per frame; 0 from masu_plan: they are counted while recording */
-    /* As given in governor.costs and flips, or by the measured ladder; 0: unknown. */
-    float ratio, flip; /* time beside other rungs; error */
-} masu_plan_rung;
-
-typedef struct masu_plan_info {
-    uint32_t pass_count, image_count, rung_count;
-    masu_plan_pass passes[MASU_MAX_PASSES]; /* every row of the frame table, in order */
-    masu_plan_image images[MASU_MAX_RESOURCES];
-    masu_plan_rung rungs[MASU_MAX_RUNGS];
-    /* The class of GPUs, by vendor and device id, whose instructions the ratios of the built-in ladder were computed
-     * of: "Xe80", "UHD620", "Vega8", "Deck", "low mobile". "": they were measured on a CPU, or are the host's. */
-    const char *computed_for;
-    masu_memory memory;
-    uint64_t left_out_bytes; /* image bytes that leaving passes out has saved at this size */
-} masu_plan_info;
-
-/* The compiled frame of a description, without creating a renderer. Errors as masu_memory_query. */
-MASU_API MASU_MUST_USE masu_result masu_plan(const masu_desc *desc, masu_plan_info *out,
-                                             masu_detail *detail);
-
-/* The same of a live renderer, with pipeline build times. */
-MASU_API void masu_plan_of(const masu_renderer *renderer, masu_plan_info *out);
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
@@ -1491,6 +1095,54 @@ MASU_API MASU_MUST_USE masu_result masu_punctual_light_get(masu_renderer *render
 MASU_API MASU_MUST_USE masu_result masu_punctual_light_set(masu_renderer *renderer,
                                                         masu_punctual_light light,
                                                         const masu_punctual_light_state *state);
+
+/* ---- Plan ------------------------------------------------------------------------------------ */
+
+typedef struct masu_plan_pass {
+    const char *name; /* also the shader's file name, the debug label and the timestamp's name */
+    uint32_t active;  /* bit r: runs in rung r; 0: left out */
+    const char *why;  /* why it is in or was left out */
+    const char *reads[12];
+    const char *writes[6];
+    uint64_t pipeline_ns; /* time to build its pipeline in masu_init; 0 without a clock or before
+                             masu_init */
+} masu_plan_pass;
+
+typedef struct masu_plan_image {
+    const char *name;
+    VkFormat format;
+    uint32_t width, height; /* as allocated: the largest rung */
+    uint32_t used;          /* 0: this plan does not need it */
+    uint64_t bytes, offset; /* in the device role */
+    uint32_t first_pass, last_pass;
+} masu_plan_image;
+
+typedef struct masu_plan_rung {
+    uint32_t render_width, render_height;
+    uint32_t dispatches; /* per frame; a graphics or transfer pass counts as one */
+    uint32_t barriers;   /* per frame; 0 from masu_plan: they are counted while recording */
+    /* As given in governor.costs and flips, or by the measured ladder; 0: unknown. */
+    float ratio, flip; /* time beside other rungs; error */
+} masu_plan_rung;
+
+typedef struct masu_plan_info {
+    uint32_t pass_count, image_count, rung_count;
+    masu_plan_pass passes[MASU_MAX_PASSES]; /* every row of the frame table, in order */
+    masu_plan_image images[MASU_MAX_RESOURCES];
+    masu_plan_rung rungs[MASU_MAX_RUNGS];
+    /* The class of GPUs, by vendor and device id, whose instructions the ratios of the built-in ladder were computed
+     * of: "Xe80", "UHD620", "Vega8", "Deck", "low mobile". "": they were measured on a CPU, or are the host's. */
+    const char *computed_for;
+    masu_memory memory;
+    uint64_t left_out_bytes; /* image bytes that leaving passes out has saved at this size */
+} masu_plan_info;
+
+/* The compiled frame of a description, without creating a renderer. Errors as masu_memory_query. */
+MASU_API MASU_MUST_USE masu_result masu_plan(const masu_desc *desc, masu_plan_info *out,
+                                             masu_detail *detail);
+
+/* The same of a live renderer, with pipeline build times. */
+MASU_API void masu_plan_of(const masu_renderer *renderer, masu_plan_info *out);
 
 /* ---- Looking at frames ----------------------------------------------------------------------- */
 

@@ -50,6 +50,7 @@ DOCUMENTS := README.md CHANGELOG.md LICENSE $(wildcard docs/*.md docs/*.jpg)
 # What masu conform takes besides itself. Baking takes minutes and is nobody's surprise: scenes are installed
 # that are there.
 SMOKE_SCENES := $(sort $(shell sed -n 's/.*"scene": "\([^"]*\)".*/\1/p' suites/smoke.json))
+PUBLIC_HEADERS := include/masu.h include/masu_knobs.h include/masu_study.h
 # $(1) of package/, as FILE
 fill = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@MAJOR@|$(MAJOR)|' -e 's|@MINOR@|$(MINOR)|' \
     $(2) package/$(1) >
@@ -58,7 +59,7 @@ fill = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@MAJOR@
 install: install-lib install-tools install-data install-docs ## install to DESTDIR/PREFIX, by default /usr/local
 install-lib: lib ## install header, libraries, and what pkg-config and CMake find them by
 	$(V)install -d "$(root)/include" "$(root)/lib/pkgconfig" "$(root)/lib/cmake/masu"
-	$(V)install -m 644 include/masu.h "$(root)/include/masu.h"
+	$(V)install -m 644 $(PUBLIC_HEADERS) "$(root)/include"
 	$(V)install -m 644 $(BUILD)/lib/libmasu.a $(SHARED) "$(root)/lib"
 	$(V)ln -sf libmasu.so.$(VERSION) "$(root)/lib/libmasu.so.$(MAJOR)"
 	$(V)ln -sf libmasu.so.$(MAJOR) "$(root)/lib/libmasu.so"
@@ -85,7 +86,7 @@ install-docs: ## install licence and documents to share/doc/masu
 	$(V)install -m 644 $(filter-out docs/%,$(DOCUMENTS)) "$(root)/share/doc/masu"
 	$(V)install -m 644 $(filter docs/%,$(DOCUMENTS)) "$(root)/share/doc/masu/docs"
 uninstall: ## remove what install has put there
-	$(V)cd "$(root)" && rm -f include/masu.h $(addprefix lib/,libmasu.a libmasu.so libmasu.so.$(MAJOR) libmasu.so.$(VERSION))
+	$(V)cd "$(root)" && rm -f $(PUBLIC_HEADERS) $(addprefix lib/,libmasu.a libmasu.so libmasu.so.$(MAJOR) libmasu.so.$(VERSION))
 	$(V)cd "$(root)" && rm -f lib/pkgconfig/masu.pc lib/pkgconfig/masu-static.pc $(PROGRAMS:%=bin/%)
 	$(V)cd "$(root)" && rm -f $(PROGRAMS:%=share/man/man1/%.1) $(PROGRAMS:%=share/bash-completion/completions/%)
 	$(V)cd "$(root)" && rm -f $(SUITES:$(BUILD)/%=share/masu/%) $(SMOKE_SCENES:%=share/masu/scenes/%.masu)

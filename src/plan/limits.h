@@ -1,5 +1,5 @@
 /* limits.h: what a scene needs of each thing that masu_limits limits, and whether it may have it. The
- * rows are MASU_LIMITS (masu.h).
+ * rows are MASU_LIMITS (masu_knobs.h).
  *
  * All take a resolved description. Pure functions: no Vulkan call, no allocation, nothing kept. */
 #ifndef MASU_LIMITS_H

@@ -1,4 +1,4 @@
-/* knobs.h: the knobs of a rung as data, out of MASU_KNOBS (masu.h): what is there to be turned, within
+/* knobs.h: the knobs of a rung as data, out of MASU_KNOBS (masu_knobs.h): what is there to be turned, within
  * what, and what a 0 becomes. Whatever names, checks, reads or writes knobs walks the table, so that a
  * new row is known everywhere.
  *

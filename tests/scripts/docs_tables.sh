@@ -6,7 +6,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$masu" plan --knobs=md > "$folder/knobs.md"
 diff -u docs/knobs.md "$folder/knobs.md" || {
-    echo "docs/knobs.md is not what include/masu.h says: make docs-tables"
+    echo "docs/knobs.md is not what include/masu_knobs.h says: make docs-tables"
     exit 1
 }
 "$masu" plan --knobs > "$folder/plan"

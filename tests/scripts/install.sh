@@ -28,6 +28,8 @@ sort > "$folder/expected" << END
 .$prefix/bin/masu-meso
 .$prefix/bin/masu-sdfc
 .$prefix/include/masu.h
+.$prefix/include/masu_knobs.h
+.$prefix/include/masu_study.h
 .$prefix/lib/cmake/masu/masu-config-version.cmake
 .$prefix/lib/cmake/masu/masu-config.cmake
 .$prefix/lib/libmasu.a

@@ -254,8 +254,8 @@ static void names_are_read_again(void **state) {
                                    "shadow_distance=1e+09+march=cone8",
                                    &rung, error, sizeof error));
     masu_setting_name(&rung, name);
-    assert_string_equal(name, "scale=0.625+march=cone8+lod_error=-1+ao_steps=3+"
-                              "shadow_distance=1e+09+shadow_refresh=1-2-4-8");
+    assert_string_equal(name, "scale=0.625+lod_error=-1+ao_steps=3+shadow_distance=1e+09+"
+                              "shadow_refresh=1-2-4-8+march=cone8");
 }
 
 /* Both ends and the middle of each knob, by itself and all together. */

@@ -287,7 +287,7 @@ void masu_knobs_document(FILE *to) {
     char values[200], zero[40];
     fprintf(to,
             "# Knobs and limits\n\nWritten by `make docs-tables` out of `MASU_KNOBS` and "
-            "`MASU_LIMITS` in include/masu.h.\n\n## Knobs of a rung\n\n"
+            "`MASU_LIMITS` in include/masu_knobs.h.\n\n## Knobs of a rung\n\n"
             "Fields of `masu_rung`, in the order in which settings (`scale=0.5+aa=fxaa`) name them. "
             "ladder.json and\nsuites have them under the same names and with the same words. A field "
             "of 0 is the default.\n\n"

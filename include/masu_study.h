@@ -1,0 +1,110 @@
+/* masu_study.h: what no port needs: other ways to the same picture, stages switched off one by one, numbers to look at.
+ * Ladders and studies turn these. A part of masu.h, which includes it by masu_knobs.h; all zero is what a port wants. */
+#ifndef MASU_H
+#error "masu_study.h is a part of masu.h: include that"
+#endif
+#ifndef MASU_STUDY_PART_H
+#define MASU_STUDY_PART_H
+
+/* How the SDF is marched. All but AUTO are for comparison; those marked * need a blob baked with
+ * --variants, else masu_init fails with MASU_ERROR_SCENE. */
+#define MASU_MARCH_WORDS(X)                                                                        \
+    X(MASU_MARCH_AUTO, 0, "auto", "the fast way, tile by tile with the parts that matter there")   \
+    X(MASU_MARCH_PLAIN, 1, "plain", "* each pixel by itself, in a compute shader")                 \
+    X(MASU_MARCH_FRAGMENT, 2, "fragment",                                                          \
+      "* each pixel by itself, in a fragment shader; only without polygons")                       \
+    X(MASU_MARCH_SEED, 3, "seed", "* two-phase checkerboard with capped, unchecked restarts")      \
+    X(MASU_MARCH_CONE8, 4, "cone8", "cones of 8x8 pixels alone")                                   \
+    X(MASU_MARCH_CONES, 5, "cones", "cones of 8x8, then of 4x4 pixels")                            \
+    X(MASU_MARCH_CHECKERBOARD, 6, "checkerboard",                                                  \
+      "* cones of 8x8 pixels, then a two-phase checkerboard with provably safe restarts")          \
+    X(MASU_MARCH_UNPRUNED, 7, "unpruned", "as auto, but every tile with all parts")
+
+typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
+
+/* Rows as in MASU_PRODUCT_KNOBS, behind which they come. */
+/* clang-format off */
+#define MASU_STUDY_KNOBS(NUMBER, WORD)                                                             \
+    /*     type              name                  min   max   0 is  of use in  unit          */   \
+    /* The picture is the same either way. */                                                      \
+    WORD(  masu_switch,      frustum,                                POLYGONS,                     \
+           "Leaves out instances outside of the view; the picture is the same. AUTO: on.",         \
+           "Tests on the host; saves draws.")                                                      \
+    WORD(  masu_switch,      occlusion,                              OCCLUDERS,                    \
+           "Leaves out instances hidden by occluders; the picture is the same. AUTO: on, if the"   \
+           " scene has occluders.",                                                                \
+           "Passes that draw the occluders and test against them; memory: limits.instances.")      \
+    WORD(  masu_switch,      light_tiles,                            LIGHTS,                       \
+           "Each pixel asks the lights of its 16x16 tile alone; the picture is the same. AUTO:"    \
+           " on, if the scene has any.",                                                           \
+           "A pass over the tiles; saves work at each pixel where lights are many.")               \
+    WORD(  masu_switch,      fuse,                                   UPSCALED,                     \
+           "EASU (full) and RCAS in one pass where both run: the same picture. Ignored with"       \
+           " deep_color. AUTO: off.",                                                              \
+           "1.13 times the time of upscaling; saves the image between the two.")                   \
+    /* Another way to the same surface. */                                                         \
+    WORD(  masu_march,       march,                                  SDF,                          \
+           "How the SDF is marched. AUTO: the fast way.",                                          \
+           "All others took longer where they were measured (docs/design/11-march-measured.md).")  \
+    /* Single stages of traced reflections, and how far they look. */                              \
+    WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
+           "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on.",    \
+           "A pass of specular_reuse_taps.")                                                       \
+    WORD(  masu_switch,      specular_temporal,                      SPECULAR,                     \
+           "Temporal accumulation. AUTO: on.",                                                     \
+           "A pass, and images that outlive the frame.")                                           \
+    WORD(  masu_switch,      specular_fine,                          SPECULAR,                     \
+           "A full-resolution history for smooth surfaces, and for 2x2 pixels that are not one"    \
+           " surface; only with specular_temporal. AUTO: on.",                                     \
+           "A pass, and an image that outlives the frame.")                                        \
+    WORD(  masu_switch,      specular_filter,                        SPECULAR,                     \
+           "The spatial filter, as wide as noise is left. AUTO: on.",                              \
+           "A pass of specular_filter_taps.")                                                      \
+    WORD(  masu_switch,      specular_taa,                           SPECULAR,                     \
+           "Evens out what still flickers; only with specular_temporal. AUTO: on.",                \
+           "A pass, and an image that outlives the frame.")                                        \
+    NUMBER(uint32_t,         specular_reuse_taps,  1,    16,   8,    SPECULAR,  "",                \
+           "Neighbours that specular_reuse looks at.",                                             \
+           "Time of its pass.")                                                                    \
+    NUMBER(uint32_t,         specular_filter_taps, 1,    32,   12,   SPECULAR,  "",                \
+           "Neighbours that specular_filter looks at.",                                            \
+           "Time of its pass.")
+/* clang-format on */
+
+typedef struct masu_debug {
+    uint32_t timestamps; /* not 0: GPU time of each pass in masu_stats, with a full barrier around
+                            each pass */
+    uint32_t counters;   /* not 0: SDF evaluations and the like in masu_stats; costs atomics */
+    uint32_t labels; /* not 0: object names and pass labels, where VK_EXT_debug_utils is enabled on
+                        the instance */
+    uint32_t poison; /* not 0: fills all transient image memory with NaN patterns before each frame;
+                        the picture must not change. A value of 2 uses infinities */
+    uint32_t casters; /* not 0: culls for the sun as well, with all of the scene in its view, for the
+                         numbers in masu_stats */
+    uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */
+    uint32_t ao_nearest; /* and without the mean over 4x4 texels: both for comparison */
+    uint32_t all_terms;  /* not 0: a march asks for all of the SDF that its tile sees, not only for what
+                            matters to its block: for comparison, the same to the bit */
+    masu_switch share_rays; /* any invocation of a 16x16 tile may march any of its rays, so that none waits long for others;
+                               the same picture. AUTO: on GPUs, where waiting costs more than sharing */
+    uint32_t no_bias; /* not 0: rungs of fewer pixels take the mips of these: for comparison */
+    uint32_t reference; /* not 0: reflections are traced at each pixel, summed up over frames of a
+                           resting scene, weighted exactly and not filtered: the truth after many frames.
+                           A cut begins a new sum */
+    uint32_t exact; /* not 0: full EASU, RCAS and both in one give the same bits on every driver, where inputs have
+                       8 or 10 bits: these become the nearest step, nothing is fused or reordered, divisions are
+                       exact. Three to five times the instructions; without, a pixel in some ten thousands differs */
+    float mip_bias; /* added to the level of detail of textures, -16..16; below 0: finer. What many places in a
+                       pixel are averaged over wants finer ones; log2 of the size undoes a rung's own */
+} masu_debug;
+
+/* Switches off what would be used where the device offers it: to test the other path, or around a
+ * driver's fault. */
+typedef struct masu_deny {
+    uint32_t
+        unified_memory; /* not 0: separate blocks per role even where one type could serve all */
+    uint32_t compressed_textures; /* not 0: textures are decoded even where the device takes them
+                                     compressed */
+} masu_deny;
+
+#endif
