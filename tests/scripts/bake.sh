@@ -281,7 +281,7 @@ cat > "$folder/nodes.gltf" << END
  "bufferViews": [{"buffer": 0, "byteLength": 36}],
  "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,$positions"}]}
 END
-accepts "$folder/nodes.gltf" "${x[@]}" --stats "$folder/stats.json"
+accepts "$folder/nodes.gltf" "${x[@]}" --bare --stats "$folder/stats.json"
 says stdout ' 3 vertices, 1 triangles (3 drawn), 1 meshes, 3 instances, 1 materials'
 bounds_found=$(tr -d ' \n' < "$folder/stats.json" | sed 's/.*"bounds":\(\[\[.*\]\]\).*/\1/')
 [ "$bounds_found" = '[[-1.0,0.0,0.0],[12.0,7.0,0.0]]' ] || fail "nodes: bounds $bounds_found"
@@ -294,7 +294,7 @@ nan=AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAwH8AAAAA
 two=$(printf '%s%s' "$positions" "$nan")
 sed -e 's/"count": 3/"count": 6/; s/"byteLength": 36/"byteLength": 72/g' \
     -e "s|base64,.*\"}|base64,$two\"}|" "$folder/nodes.gltf" > "$folder/half.gltf"
-accepts "$folder/half.gltf" "${x[@]}"
+accepts "$folder/half.gltf" "${x[@]}" --bare
 says stderr 'half.gltf: 1 of 2 triangles left out, a vertex is not finite (in 1 meshes: "triangle")'
 says stdout ' 3 vertices, 1 triangles'
 sed "s|base64,.*\"}|base64,$nan\"}|" "$folder/nodes.gltf" > "$folder/nan.gltf"
@@ -320,7 +320,7 @@ cat > "$folder/sets.dae" << END
 <node><translate>9 0 0</translate><instance_geometry url="#a"/><instance_geometry url="#b"/></node>
 </visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
 END
-accepts "$folder/sets.dae" "${x[@]}"
+accepts "$folder/sets.dae" "${x[@]}" --bare
 says stdout ' 6 vertices, 3 triangles (5 drawn), 2 meshes, 3 instances'
 
 # A model placed twice is stored once; an override makes new materials, not new geometry.

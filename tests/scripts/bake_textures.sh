@@ -18,7 +18,7 @@ fail() {
 
 # bakes ARGUMENT...: exit code 0, the blob in $folder/x.masu, statistics in $folder/stats
 bakes() {
-    "$bake" "$@" -o "$folder/x.masu" --stats "$folder/stats" > "$folder/stdout" 2> "$folder/stderr" ||
+    "$bake" "$@" --bare -o "$folder/x.masu" --stats "$folder/stats" > "$folder/stdout" 2> "$folder/stderr" ||
         fail "$*: $(cat "$folder/stderr")"
 }
 

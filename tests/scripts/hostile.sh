@@ -19,7 +19,7 @@ fail() {
 try() {
     (
         [ "${config:-}" = sanitize ] || ulimit -v 2097152
-        exec timeout 30 "$bake" "$1" -o "$folder/x.masu" --stats "$folder/x.json" --quiet
+        exec timeout 30 "$bake" "$1" --bare -o "$folder/x.masu" --stats "$folder/x.json" --quiet
     ) > "$folder/stdout" 2> "$folder/stderr"
     code=$?
 }

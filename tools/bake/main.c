@@ -37,6 +37,7 @@ enum {
     OPTION_STATS,
     OPTION_MODELS,
     OPTION_VARIANTS,
+    OPTION_BARE,
     OPTION_NO_TEXTURES,
     OPTION_TEXTURE_PATH,
     OPTION_PROBES,
@@ -71,6 +72,7 @@ static int run(masu_cli *cli) {
         case OPTION_THREADS:
             if (!masu_cli_uint(cli, 1, 64, &o.threads)) return MASU_CLI_USAGE;
             break;
+        case OPTION_BARE: o.bare = true; break;
         case OPTION_VARIANTS: o.variants = true; break;
         case MASU_CLI_ARGUMENT:
             if (o.input) return masu_cli_usage_error("more than one input: %s", cli->value);
@@ -92,6 +94,7 @@ int main(int argc, char **argv) {
          'o'},
         {"variants", NULL, "add the other ways to march the SDF, for masu study march",
          OPTION_VARIANTS, 0},
+        {"bare", NULL, "a MODEL alone: without ground, shadows, occlusion and reflections", OPTION_BARE, 0},
         {"no-textures", NULL, "leave textures out; the materials' factors stay", OPTION_NO_TEXTURES,
          0},
         {"texture-path", "DIR:...", "where to look for textures that are not where models say",
@@ -115,7 +118,7 @@ int main(int argc, char **argv) {
         .details =
             "A MODEL is any file that Assimp reads (.glb, .gltf, .obj, .ac, ...); it gets a "
             "camera\n"
-            "that frames it, a sun and a sky. A SCENE.json places models, a camera path, light "
+            "that frames it, a ground, sun and sky, shadows and reflections. A SCENE.json places models, a camera path, light "
             "and\n"
             "an SDF; docs/scene.md describes it. An SDF needs glslangValidator, spirv-val and\n"
             "spirv-opt. The same input gives the same bytes.\n\n"

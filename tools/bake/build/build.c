@@ -4,6 +4,7 @@
  * occluders are dropped and trees are grown; instances are sorted before anything is kept by their
  * number. */
 #include "bake/build/build.h"
+#include "bake/build/first_look.h"
 #include "bake/build/look.h"
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
@@ -59,18 +60,25 @@ static bool add_environment_map(const masu_bake_environment *e, masu_bake_conten
 
 /* What is shown, and what it is shown in. */
 static bool build_scene(const masu_bake_description *d, const masu_bake_options *options,
-                        masu_bake_content *content, masu_bake_report *report) {
+                        masu_bake_reflections *reflections, masu_bake_content *content,
+                        masu_bake_report *report) {
+    masu_bake_first_look first = {.look = d->look};
     if (!masu_bake_build_models(d, options->textures, content)) return false;
     make_detail(d, content, report);
     masu_bake_affine identity = masu_bake_identity();
-    masu_bake_box bounds = masu_bake_bounds(content, &identity);
+    masu_bake_box bounds = report->bounds = masu_bake_bounds(content, &identity);
     if (!masu_bake_build_lights(d, content)) return false;
     if (d->sdf.source) {
         add_sdf(&d->sdf, content);
         /* Models say better than an endless world's bounds what the camera should look at. */
         if (masu_bake_box_is_empty(&bounds)) bounds = d->sdf.bounds;
     }
-    masu_bake_build_look(&d->look, &bounds, content);
+    if (d->first_look && !masu_bake_box_is_empty(&bounds)) {
+        const char *problem = masu_bake_make_first_look(&bounds, content, &first);
+        if (problem) return masu_bake_wrong(d, "", "gives %s", problem);
+        *reflections = first.reflections;
+    }
+    masu_bake_build_look(&first.look, &bounds, content);
     if (!add_environment_map(&d->environment, content)) return false;
     return !d->sdf.source || masu_bake_compile_march(content, d->sdf.source, &d->sdf.occlusion,
                                                      d->reflections.wanted, options->variants);
@@ -102,16 +110,18 @@ static bool build_probes(const masu_bake_description *d, const masu_bake_options
 
 bool masu_bake_build(const masu_bake_description *d, const masu_bake_options *options,
                      masu_bake_content *content, masu_bake_report *report) {
-    content->pictures_wanted = report->reflected = d->reflections.wanted;
-    content->picture_side = d->reflections.texture_size;
-    if (!build_scene(d, options, content, report)) return false;
+    masu_bake_reflections reflections = d->reflections;
+    content->pictures_wanted = reflections.wanted;
+    content->picture_side = reflections.texture_size;
+    if (!build_scene(d, options, &reflections, content, report)) return false;
+    report->reflected = reflections.wanted;
     if (!masu_bake_make_textures(content, options->texture_path)) return false;
     masu_bake_gather_skins(content);
     masu_bake_sort_instances(content);
     masu_bake_groups(content);
     masu_bake_sort_occluders(content);
     masu_bake_drop_occluders(content);
-    if (!masu_bake_make_bvh(content, &d->reflections, &report->reflections)) return false;
+    if (!masu_bake_make_bvh(content, &reflections, &report->reflections)) return false;
     masu_bake_trace_textures(content);
     return build_probes(d, options, content);
 }

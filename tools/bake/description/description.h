@@ -122,6 +122,7 @@ typedef struct masu_bake_sdf {
 
 typedef struct masu_bake_description {
     const char *file; /* that was read */
+    bool first_look;  /* camera, light, ground and reflections by the model's shape (build/first_look.h) */
     masu_bake_model *models;
     size_t model_count;
     masu_bake_shape *shapes; /* different ones */

@@ -9,6 +9,7 @@ typedef struct masu_bake_options {
     /* read */
     const char *input;            /* a scene's .json, or a model */
     const char *models_directory; /* what "@assimp/" stands for */
+    bool bare;                    /* a model gets no ground, no shadows, no reflections */
     /* build */
     masu_bake_textures textures; /* WANTED or OFF */
     const char *texture_path;    /* folders with ':' between, or NULL */

@@ -90,6 +90,7 @@ bool masu_bake_read(const masu_bake_options *options, masu_bake_description *out
                                    .reflections = masu_bake_reflection_defaults()};
     if (is_scene(options->input)) return read_scene(options, out);
     describe_model(options->input, out);
+    out->first_look = out->reflections.wanted = !options->bare;
     return true;
 }
 

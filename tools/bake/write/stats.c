@@ -74,8 +74,7 @@ bool masu_bake_write_stats(const masu_bake_options *options, const masu_bake_con
                                       (json_int_t)masu_bake_count(content, kind), "bytes",
                                       (json_int_t)content->section[kind].bytes));
     }
-    masu_bake_affine identity = masu_bake_identity();
-    masu_bake_box b = masu_bake_bounds(content, &identity);
+    masu_bake_box b = report->bounds;
     json_t *bounds = json_null();
     if (!masu_bake_box_is_empty(&b)) {
         bounds =

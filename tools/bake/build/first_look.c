@@ -1,0 +1,156 @@
+/* first_look.c: a model without a scene, as a photographer would put it: three-quarter view, the model nearly as
+ * large as the frame, a lamp of the sky from the side, a dark enough background that white things stand out, a ground
+ * that takes shadow and a soft reflection; see first_look.h.
+ *
+ * The camera's direction is given; where it stands is then exact. In axes of the camera a point (x, y, z), z
+ * into the picture, is within the frame if |x - cx| <= a (z - cz) and |y - cy| <= b (z - cz), for the half angles'
+ * tangents a and b. The four bounds are planes, the point that meets most of each is found in one pass over the
+ * vertices, and the nearest cz that satisfies all follows.
+ *
+ * Can fail: a ground that the scene has no room for (see masu_bake_place). */
+#include "bake/build/first_look.h"
+#include "bake/mesh/shape.h"
+
+#include <string.h>
+
+#define FRAME_SHARE 0.89   /* of the height or width of the picture, whichever the model meets first */
+#define ASPECT (16.0 / 9) /* of the picture that it is made for: in narrower ones a wide model is cut off */
+#define FLAT 0.12         /* height / the shorter side of what is a place, not a thing: no ground, seen from higher up */
+#define GROUND_RADII 60   /* half a side of the ground, in radii of the model: it ends in the haze */
+#define TRACED_TRIANGLES_MAX 500000u /* more take seconds to bake and hardly an integrated GPU would trace them */
+
+typedef struct axes {
+    masu_bake_vec3 right, up, forward;
+} axes;
+
+static axes axes_of(masu_bake_vec3 towards_camera) {
+    const masu_bake_vec3 zero = {0, 0, 0};
+    axes a = {.forward = masu_bake_mad(zero, towards_camera, -1)};
+    masu_bake_normalize(&a.forward);
+    a.right = masu_bake_cross(a.forward, masu_bake_v3(0, 1, 0));
+    masu_bake_normalize(&a.right);
+    a.up = masu_bake_cross(a.right, a.forward);
+    return a;
+}
+
+/* How far vertices reach across the four planes that bound the frame. */
+typedef struct reach {
+    double right, left, above, below; /* most of x - a z, -x - a z, y - b z, -y - b z */
+} reach;
+
+static void reach_of(const masu_bake_content *c, const axes *at, double a, double b, reach *r) {
+    *r = (reach){-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (uint64_t i = 0; i < masu_bake_count(c, MASU_BLOB_INSTANCES); i++) {
+        const masu_blob_instance *instance = &MASU_BAKE_INSTANCES(c)[i];
+        const masu_blob_mesh *mesh = &MASU_BAKE_MESHES(c)[instance->mesh];
+        masu_bake_affine world = masu_bake_transform(instance);
+        for (uint32_t j = 0; j < mesh->primitive_count; j++) {
+            const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(c)[mesh->first_primitive + j];
+            for (uint32_t k = 0; k < p->vertex_count; k++) {
+                const float *v = MASU_BAKE_VERTICES(c)[p->first_vertex + k].position;
+                masu_bake_vec3 q = masu_bake_apply(&world, masu_bake_v3f(v));
+                double x = masu_bake_dot(q, at->right), y = masu_bake_dot(q, at->up);
+                double z = masu_bake_dot(q, at->forward);
+                r->right = fmax(r->right, x - a * z);
+                r->left = fmax(r->left, -x - a * z);
+                r->above = fmax(r->above, y - b * z);
+                r->below = fmax(r->below, -y - b * z);
+            }
+        }
+    }
+}
+
+static masu_bake_vec3 extent_of(const masu_bake_box *box) {
+    return masu_bake_sub(box->high, box->low);
+}
+
+static bool is_flat(const masu_bake_box *box) {
+    masu_bake_vec3 e = extent_of(box);
+    return e.y < FLAT * fmin(e.x, e.z);
+}
+
+/* Not nearer than the model is deep: a stick that points at the camera would else touch it. */
+static masu_blob_camera_key frame(const masu_bake_content *c, const masu_bake_box *box, double fov_y,
+                                  masu_bake_vec3 towards) {
+    const masu_bake_vec3 zero = {0, 0, 0};
+    axes at = axes_of(towards);
+    double b = tan(fov_y * (MASU_BAKE_PI / 360)) * FRAME_SHARE, a = b * ASPECT;
+    reach r;
+    reach_of(c, &at, a, b, &r);
+    masu_bake_vec3 center = masu_bake_mad(box->low, extent_of(box), 0.5);
+    double middle = masu_bake_dot(center, at.forward);
+    double radius = fmax(masu_bake_length(extent_of(box)) / 2, 1e-3);
+    double z = fmin(-(r.right + r.left) / (2 * a), -(r.above + r.below) / (2 * b));
+    z = fmin(z, middle - radius * 0.25);
+    double x = (r.right - r.left) / 2, y = (r.above - r.below) / 2;
+    masu_bake_vec3 across = masu_bake_mad(masu_bake_mad(zero, at.right, x), at.up, y);
+    masu_blob_camera_key key = {.fov_y = (float)(fov_y * (MASU_BAKE_PI / 180))};
+    masu_bake_store(masu_bake_mad(across, at.forward, z), key.position);
+    masu_bake_store(masu_bake_mad(across, at.forward, fmax(middle, z + radius * 0.25)), key.target);
+    return key;
+}
+
+/* Just under the model: what lies on it, as soles and tyres do, must not flicker through. */
+static const char *add_ground(const masu_bake_box *box, masu_bake_content *content) {
+    masu_bake_vec3 e = extent_of(box);
+    double radius = fmax(masu_bake_length(e) / 2, 1e-3);
+    masu_bake_vec3 center = masu_bake_mad(box->low, e, 0.5);
+    center.y = box->low.y - radius * 1e-3;
+    masu_bake_content piece = {0};
+    masu_bake_plane(&piece, 2 * GROUND_RADII * radius, 2 * GROUND_RADII * radius, 0);
+    masu_bake_override grey = {.base_color = true, .roughness = true, .metallic = true, .specular = true};
+    const float color[3] = {0.16f, 0.16f, 0.165f};
+    memcpy(grey.value.base_color, color, sizeof color);
+    grey.value.base_color[3] = 1;
+    grey.value.roughness = 0.28f;
+    grey.value.specular = 0.5f;
+    masu_bake_overrides overrides = {&grey, 1};
+    masu_bake_residence residence = {0};
+    masu_bake_affine placement = masu_bake_translation(center);
+    const char *problem =
+        masu_bake_place(content, &piece, &residence, &placement, &overrides, "ground");
+    masu_bake_content_release(&piece);
+    return problem;
+}
+
+static void set_light(const masu_bake_box *box, bool flat, masu_bake_first_look *out) {
+    masu_bake_look *l = &out->look;
+    const float *p = out->key.position;
+    masu_bake_vec3 e = extent_of(box), center = masu_bake_mad(box->low, e, 0.5);
+    double radius = fmax(masu_bake_length(e) / 2, 1e-3);
+    /* From the left of the camera and above it: form is seen by its shade. */
+    l->sun_direction = masu_bake_v3(-0.55, 1.0, 0.95);
+    masu_bake_normalize(&l->sun_direction);
+    l->sun_color = masu_bake_v3(1, 0.95, 0.87);
+    l->sun_intensity = 1.5;
+    l->ambient = masu_bake_v3(0.17, 0.19, 0.23);
+    l->zenith = masu_bake_v3(0.05, 0.09, 0.17);
+    l->horizon = masu_bake_v3(0.3, 0.35, 0.42);
+    l->shadows = true;
+    l->shadow = (masu_blob_shadow){.cascades = flat ? 3 : 2, .resolution = 2048, .lambda = 0.5f};
+    l->shadow_distance = masu_bake_length(masu_bake_sub(center, masu_bake_v3f(p))) +
+                         radius * (flat ? 1.0 : 2.5);
+    l->occlusion_radius = radius * 0.2;
+    if (flat) return;
+    /* The ground's far side becomes the horizon. */
+    l->fog_color = l->horizon;
+    l->fog_density = 3.9 / (GROUND_RADII * 0.8 * radius);
+    l->fog_start = l->shadow_distance;
+}
+
+const char *masu_bake_make_first_look(const masu_bake_box *bounds, masu_bake_content *content,
+                                      masu_bake_first_look *out) {
+    bool flat = is_flat(bounds);
+    double radius = fmax(masu_bake_length(extent_of(bounds)) / 2, 1e-3);
+    out->look = masu_bake_default_look();
+    out->key = frame(content, bounds, out->look.fov_y,
+                     masu_bake_v3(0.62, flat ? 0.85 : 0.38, 1.0));
+    out->look.keys = &out->key;
+    out->look.key_count = 1;
+    set_light(bounds, flat, out);
+    out->reflections = masu_bake_reflection_defaults();
+    out->reflections.smallest = radius * 2 * MASU_BAKE_TRACED_SHARE; /* the ground is not to count */
+    out->reflections.wanted =
+        masu_bake_count(content, MASU_BLOB_INDICES) / 3 <= TRACED_TRIANGLES_MAX;
+    return flat ? NULL : add_ground(bounds, content);
+}
