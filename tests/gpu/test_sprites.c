@@ -313,7 +313,7 @@ static void compare_decals(const masu_decal *decals, uint32_t count, uint32_t to
 static void a_decal_paints_polygons_and_the_sdf_alike(void **state) {
     (void)state;
     open_room("test_pane");
-    for (uint32_t form = 0; form < 6; form++) {
+    for (uint32_t form = 0; form < 7; form++) {
         masu_decal d = {.rows = {2, 0, 0, 0.1f, 0, 0.5f, 0, 0.15f, 0, 0, 1.5f, 0.2f},
                         .color = {0.8f, 0.1f, 0.3f},
                         .opacity = 1,
@@ -324,6 +324,7 @@ static void a_decal_paints_polygons_and_the_sdf_alike(void **state) {
         if (form == 3) d.flags = MASU_DECAL_KEEP_COLOR;
         if (form == 4) d.roughness = 0, d.inner = 0.2f, d.outer = 0.9f;
         if (form == 5) d.rows[10] = 8, d.rows[11] = 2; /* through the near plane */
+        if (form == 6) d.rows[10] = 0.2f, d.rows[11] = 0.6f, d.rows[5] = 2; /* a slice before the middles */
         uint32_t touched[2];
         compare_decals(&d, 1, touched);
         print_message("form %u: %u pixels of the SDF, %u of polygons\n", form, touched[0], touched[1]);
@@ -738,7 +739,7 @@ static void run_own(own_renderer *x, masu_frame_desc frame, uint8_t *out) {
 static void viewports_and_sizes_are_right(void **state) {
     (void)state;
     enum { W = 61, H = 43 };
-    const masu_decal d = {.rows = {2, 0, 0, 0, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
+    const masu_decal d = {.rows = {0.3f, 0, 0, 1.5f, 0, 0.4f, 0, 0, 0, 0, 2, 0}, .color = {1, 0, 0}, .opacity = 1};
     const masu_line l = {.from = {-2, -1, 1}, .to = {2, 1, 1}, .from_color = {255, 255, 0}, .to_color = {0, 255, 255}};
     masu_frame_desc frame = {.camera = &camera, .cut = 1, .particles = &disc, .particle_count = 1, .decals = &d,
                              .decal_count = 1, .lines = &l, .line_count = 1};
