@@ -260,6 +260,16 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 /* Rungs, their knobs, limits; with masu_study.h, which is for studies alone. */
 #include "masu_knobs.h"
 
+/* Room for what the host adds while it runs, beyond what the scene has. All of it counts in masu_memory; 0 of a kind
+ * costs nothing. */
+typedef struct masu_reserve {
+    /* What a frame may bring (masu_frame_desc); without a scene nothing. */
+    uint32_t particles; /* 0..65536: 64 bytes each per frame in flight, and 16 for each blended primitive, device; 16
+                           bytes each, host */
+    uint32_t decals;    /* 0..1024: 112 bytes each per frame in flight, device */
+    uint32_t lines;     /* 0..65536: 32 bytes each per frame in flight, and 4 for each pixel of the output, device */
+} masu_reserve;
+
 /* Device memory roles. On unified memory all of it is one block of role MASU_ROLE_DEVICE. */
 typedef enum masu_role {
     MASU_ROLE_DEVICE = 0,   /* resident buffers and transient images */
@@ -469,6 +479,7 @@ typedef struct masu_desc {
     float flips[MASU_MAX_RUNGS]; /* error of each rung, mean FLIP, 0..1; 0: unknown. Decides nothing: the
                                     plan says it again */
     masu_limits limits;
+    masu_reserve reserve;
     uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes over all roles; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
@@ -788,6 +799,59 @@ typedef struct masu_light {
 
 #define MASU_RUNG_AUTO UINT32_MAX
 
+/* A quad that faces the eye: a round spot, softer towards its edge, of smoke, sparks, dust. Sorted with what is
+ * blended by the distance of its middle, blended in linear light before exposure and tone curve, hidden by what is
+ * before it. Reflections and shadows know nothing of it; it is exposed, metered and anti-aliased with the
+ * picture. One with a number that is not finite, beyond 1e15 m, or of no size or opacity is left out; what is out
+ * of range is clamped. */
+#define MASU_PARTICLE_LIT 1u      /* color is an albedo: a share of the light of the sun, as far as the shadow map
+                                     lets it through to the middle, and of ambient light. It scatters evenly, as
+                                     thin smoke does: color * (sun_color / 4 + ambient). Else color is radiance */
+#define MASU_PARTICLE_ADDITIVE 2u /* it adds to what is behind and hides nothing */
+typedef struct masu_particle {
+    double position[3];     /* of its middle, world, metres */
+    float half_width;       /* metres, at most 1e9 */
+    float half_height;      /* 0: as wide */
+    float rotation;         /* radians, counterclockwise as it is seen */
+    float color[3];         /* linear, 0..4096, not multiplied by the opacity */
+    float opacity;          /* 0..1, in its middle */
+    float edge;             /* part of the radius from which on it fades out: 0 (from the middle on) .. 1 (a disc) */
+    float soft;             /* metres before a surface or the near plane over which it fades, so that no line is seen where it
+                               cuts through; 0: it does not */
+    uint32_t flags;         /* MASU_PARTICLE_* */
+} masu_particle;
+
+/* A box that paints what is in it, of polygons and the SDF, before light falls on it: what is transparent or
+ * shines by itself stays as it is, and reflections show surfaces without it. Later ones lie over earlier
+ * ones. One with a number that is not finite, no volume or no opacity is left out; what is out of range is clamped. */
+#define MASU_DECAL_ROUND 1u      /* an ellipse in x and y of the box; else a rectangle */
+#define MASU_DECAL_KEEP_COLOR 2u /* colour and metal stay: water on a street is roughness alone */
+typedef struct masu_decal {
+    float rows[12];    /* the 3x4 matrix from the box, -1..1 along each axis, to the world, row by row. It is
+                          painted along its z axis, on what faces that */
+    float color[3];    /* albedo, linear, 0..1 */
+    float opacity;     /* 0..1 */
+    float roughness;   /* perceptual, 0..1; 0: the surface's own. What is smooth enough is traced, where the scene has
+                          reflections */
+    float metallic;    /* 0..1 */
+    float edge;        /* part of the half width over which it fades out at its edge, 0..1 */
+    float inner, outer; /* radians between its z axis and the surface's normal: all of it up to inner, nothing from
+                           outer on, 0..pi. Both 0: 1.05 and 1.4 */
+    uint32_t flags;    /* MASU_DECAL_* */
+} masu_decal;
+
+/* A line to look at what a program thinks: one pixel of the output wide, drawn after the tone curve,
+ * anti-aliasing and upscaling, in the colour that is asked for; of lines that cross the later one is seen. One
+ * with a number that is not finite or beyond 1e15 m is left out. */
+#define MASU_LINE_ON_TOP 1u /* nothing hides it; else what is nearer than it by more than 0.5 % does */
+typedef struct masu_line {
+    double from[3], to[3];   /* world, metres */
+    uint8_t from_color[4], to_color[4]; /* red, green, blue as in an sRGB picture; the fourth means nothing */
+    uint32_t flags;          /* MASU_LINE_* */
+} masu_line;
+
+#define MASU_RUNG_AUTO UINT32_MAX
+
 typedef struct masu_frame_desc {
     const masu_camera *camera; /* NULL: the scene's camera path at `time` */
     const masu_light *light;   /* NULL: the scene's */
@@ -811,13 +875,19 @@ typedef struct masu_frame_desc {
     uint32_t unusual; /* not 0: this frame's times say nothing of the next ones' (a level is loaded, shaders
                          are compiled, a debugger has stopped it): the governor keeps its rung, does not
                          learn of it (`rejected`) and does not count it as missed. Of the governor alone */
+    /* Of this frame, read during the call: at most desc.reserve of each; NULL with a count of 0. */
+    const masu_particle *particles;
+    const masu_decal *decals;
+    const masu_line *lines;
+    uint32_t particle_count, decal_count, line_count;
 } masu_frame_desc;
 
 /* Writes this frame's uniforms and hands out the command buffer to submit. Call when the slot is
  * free: the frame that came frames_in_flight previous frames has finished on the GPU. Costs no
  * allocation and no recording. commands->rung is the rung that it is drawn at. MASU_ERROR_ARGUMENT: a
- * rung, target, camera, light or parameter that is out of range or not finite, or MASU_RUNG_AUTO
- * without a governor; nothing has been written and the frame number has not moved.
+ * rung, target, camera, light or parameter that is out of range or not finite, MASU_RUNG_AUTO
+ * without a governor, or an array that is NULL with a count. MASU_ERROR_LIMIT: more particles, decals or lines
+ * than desc.reserve. Nothing has been written then and the frame number has not moved.
  * MASU_ERROR_STATE: masu_load has not finished. */
 MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
                                               masu_commands *commands);
@@ -1173,6 +1243,7 @@ typedef struct masu_stats_info {
     uint64_t draws; /* submitted to the G-buffer, but those of no instance; before occlusion */
     uint64_t triangles; /* the same; with debug.counters after occlusion */
     uint64_t transparents; /* blended primitives drawn, each with a draw of its own */
+    uint32_t particles, decals, lines; /* drawn: in view, as far as that is looked at, and not left out */
     uint64_t occlusion_tests; /* with debug.counters */
     uint32_t lights, lights_in_view; /* local ones of the scene; those that may light something seen */
     /* With debug.counters: pairs of a light and a pixel that were looked at, those of them where

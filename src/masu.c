@@ -42,6 +42,7 @@ static void lay_host(masu_arena *arena, const masu_frame_plan *plan, masu_render
     masu_visible_lay(&to->visible, arena, plan);
     masu_occlusion_lay(&to->occlusion, arena, plan);
     masu_transparents_lay(&to->transparents, arena, plan);
+    masu_sprites_lay(&to->sprites, arena, plan);
     masu_reflections_lay(&to->reflections, arena, plan);
     int governed = plan->desc.governor.mode != MASU_GOVERNOR_OFF;
     to->governor = masu_arena_take(arena, "governor", governed, sizeof *to->governor, 8);
@@ -298,7 +299,7 @@ static masu_result check_frame(masu_renderer *m, const masu_frame_desc *frame) {
                          frame->target, "target %u does not exist, the last one is %u",
                          frame->target, d->targets.count - 1);
     }
-    return MASU_OK;
+    return masu_sprites_check(d, frame, &m->error);
 }
 
 /* Each step reads what those before it have found: their order is part of what they do. */
@@ -326,6 +327,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 
     masu_visible_write(&m->visible, &m->bounds, &m->instances, &m->views, f);
     masu_transparents_write(&m->transparents, &m->instances, &m->visible, f);
+    masu_sprites_write(&m->sprites, &m->transparents, f);
     masu_occlusion_write(&m->occlusion, &m->visible, &m->views, f);
     return MASU_OK;
 }

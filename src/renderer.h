@@ -22,6 +22,7 @@
 #include "frame/punctual_lights.h"
 #include "frame/reflections.h"
 #include "frame/sdf.h"
+#include "frame/sprites.h"
 #include "frame/shadow.h"
 #include "frame/sun_sky.h"
 #include "frame/timeline.h"
@@ -59,6 +60,7 @@ struct masu_renderer {
     masu_visible visible;
     masu_occlusion occlusion;
     masu_transparents transparents;
+    masu_sprites sprites;
     masu_reflections reflections;
 };
 

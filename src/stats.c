@@ -146,6 +146,9 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     out->draws = out->views[0].draws;
     out->triangles = out->views[0].triangles;
     out->transparents = m->transparents.slot_count[slot];
+    out->particles = m->sprites.slots[slot].particles;
+    out->decals = m->sprites.slots[slot].decals;
+    out->lines = m->sprites.slots[slot].lines;
     if (m->plan.desc.debug.counters) read_counters(m, slot, out);
     if (m->device.queries) read_times(m, slot, out);
     return MASU_OK;

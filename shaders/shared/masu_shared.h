@@ -254,6 +254,35 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_OUTPUT_DITHER 2u
 #define MASU_OUTPUT_SWAP 4u /* red and blue change places */
 
+/* Particles, debug lines and decals of a frame, in one buffer of vec4:
+ *   SPRITE_DISPATCH   arguments of the dispatch over the part of the picture that decals are in, as integers; w how many decals
+ *   SPRITE_PLACE      xy first pixel of that part, as integers
+ *   SPRITE_LINES      arguments of the lines' draw, as integers
+ *   SPRITE_DRAWS + k  of the particles' draw before the k-th slot of what is blended, the last before none: six
+ *                     vertices each
+ *   then, where push constants say, of each particle: middle relative to the eye, m over which it is soft; half width
+ *   and height, cosine and sine of its turn; colour, opacity; flags as an integer, edge, 0, 0
+ *   of each line two: x and y in the picture, -1..1, depth, colour of 8 bits each and flags above, as an integer
+ *   of each decal: three rows from relative to the eye into the box; colour, opacity; roughness, metallic, edge, flags as
+ *   an integer; unit z axis, 0; first and last pixel that it may touch, 16 bits each, as integers, cosine of outer,
+ *   1 / (cosine of inner - that) */
+#define MASU_SPRITE_DISPATCH 0u
+#define MASU_SPRITE_PLACE 1u
+#define MASU_SPRITE_LINES 2u
+#define MASU_SPRITE_DRAWS 3u
+#define MASU_PARTICLE_VEC4S 4u
+#define MASU_LINE_VEC4S 2u
+#define MASU_DECAL_VEC4S 7u
+#define MASU_PARTICLES_MAX 65536
+#define MASU_LINES_MAX 65536
+#define MASU_DECALS_MAX 1024
+/* Flags, those of masu.h. */
+#define MASU_SPRITE_LIT 1u
+#define MASU_SPRITE_ADDITIVE 2u
+#define MASU_SPRITE_ROUND 1u
+#define MASU_SPRITE_KEEP_COLOR 2u
+#define MASU_SPRITE_ON_TOP 1u
+
 /* Rows of the analytic sky's table. Row r is the view whose sine of elevation is t |t|, with t from
  * -1 (down) to 1 (up); no row is the horizon itself, half of them lie above it. */
 #define MASU_SKY_ROWS 48

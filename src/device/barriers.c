@@ -125,6 +125,9 @@ void masu_barrier_before(masu_recorder *rec, uint32_t pass) {
         masu_usage usage = (masu_usage)rec->rp->access[pass][a].usage;
         if (id == MASU_IMAGE_SOURCE) continue; /* the host's contract: readable already */
         masu_use next = masu_use_of(usage, masu_passes[pass].kind), *now = &rec->states[id];
+        /* Particles are lit at their middles, among what is transparent too. */
+        if (usage == MASU_READ && masu_passes[pass].kind == MASU_PASS_GRAPHICS && rec->m->plan->needs.particles)
+            next.stages |= VK_PIPELINE_STAGE_VERTEX_SHADER_BIT;
         if (masu_is_buffer(id)) {
             /* A buffer. Its first use in a frame is behind the barrier at the frame's top. */
             if (now->used && (now->writes || next.writes)) {

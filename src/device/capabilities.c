@@ -97,7 +97,7 @@ static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
     if (has < plain) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", plain,
                          has,
-                         "the scene's lights, probes, skins or metered exposure, or SMAA, need %u storage "
+                         "the scene's lights, probes, skins or metered exposure, SMAA, or decals need %u storage "
                          "buffers in a stage, the "
                          "device has %u",
                          plain, has);
@@ -142,6 +142,17 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
     return MASU_OK;
 }
 
+/* Of the vertex stage only frames that bring something ask more than Vulkan promises. */
+static masu_result check_vertex_stage(const masu_frame_plan *plan, const VkPhysicalDeviceLimits *limits,
+                                      masu_detail *detail) {
+    uint32_t needed = masu_vertex_buffers(plan), has = limits->maxPerStageDescriptorStorageBuffers;
+    if (!plan->needs.sprites || has >= needed) return MASU_OK;
+    return masu_fail(detail, MASU_ERROR_DEVICE, "maxPerStageDescriptorStorageBuffers", needed, has,
+                     "reserve: the scene and particles or lines need %u storage buffers in the vertex stage, the "
+                     "device has %u",
+                     needed, has);
+}
+
 static masu_result check_shadow_map(const masu_frame_plan *plan,
                                     const VkPhysicalDeviceLimits *limits, masu_detail *detail) {
     VkExtent2D map = masu_plan_extent(plan, MASU_EXTENT_SHADOW, plan->desc.output);
@@ -161,6 +172,7 @@ masu_result masu_capabilities_check(const masu_frame_plan *plan, const masu_vk *
                                     masu_detail *detail) {
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     masu_result result = check_ranges(plan, limits, detail);
+    if (!result) result = check_vertex_stage(plan, limits, detail);
     return result ? result : check_shadow_map(plan, limits, detail);
 }
 

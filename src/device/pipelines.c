@@ -143,6 +143,8 @@ static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *
     VkDescriptorSetLayoutBinding bindings[MASU_PASS_ACCESSES];
     uint32_t n = 0;
     int compute = masu_passes[pass].kind == MASU_PASS_COMPUTE;
+    VkShaderStageFlags stages = compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
+    if (masu_passes[pass].geometry == MASU_GEOMETRY_SPRITES) stages |= VK_SHADER_STAGE_VERTEX_BIT;
     for (int writes = 0; writes < 2 && masu_has_set(pass); writes++) {
         for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
             if (!masu_access_binds(rp->access[pass][a], writes)) continue;
@@ -150,7 +152,7 @@ static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *
                 n,
                 writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                        : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                1, compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT,
+                1, stages,
                 writes ? NULL
                 : rp->access[pass][a].usage == MASU_READ_LINEAR ? &m->linear
                                                                 : &m->sampler};
@@ -319,13 +321,22 @@ static uint32_t color_attachments(const masu_device *m, uint32_t pass) {
     return count;
 }
 
+/* Whether it is drawn over what is there. */
+static int blends_color(const masu_device *m, uint32_t pass) {
+    const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
+    for (uint32_t a = 0; a < rp->access_count[pass]; a++) {
+        if (rp->access[pass][a].usage == MASU_BLEND_COLOR) return 1;
+    }
+    return 0;
+}
+
 /* textured: with texture coordinates; masked: with the discard of masks. */
 static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
                                          VkBool32 masked, VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
-    int blends = geometry == MASU_GEOMETRY_BLENDED;
+    int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
                  geometry == MASU_GEOMETRY_BOXES;
     VkBool32 constants[SPECIAL_COUNT];

@@ -54,6 +54,11 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
                         (push->sizes.output_height + edge - 1) / edge};
 }
 
+/* Where in MASU_BUFFER_SPRITES a vec4 of the frame lies. */
+static VkDeviceSize sprites_at(const masu_recorder *rec, uint64_t vec4) {
+    return rec->flight * rec->m->plan->buffers[MASU_BUFFER_SPRITES].stride + vec4 * sizeof(masu_vec4);
+}
+
 static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
@@ -69,7 +74,10 @@ static void record_compute(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
                               &set, 0, NULL);
     vk->CmdPushConstants(rec->cmd, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
     masu_buffer_id tiles = tiles_of(masu_passes[pass].extent);
-    if (tiles != MASU_BUFFER_COUNT) {
+    if (masu_passes[pass].extent == MASU_EXTENT_DECALS) {
+        vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[MASU_BUFFER_SPRITES],
+                                sprites_at(rec, MASU_SPRITE_DISPATCH));
+    } else if (tiles != MASU_BUFFER_COUNT) {
         vk->CmdDispatchIndirect(rec->cmd, rec->m->objects.buffers[tiles], 0);
     } else {
         VkExtent2D groups = groups_of(rec, pass, &push);
@@ -175,33 +183,56 @@ static void record_polygons(masu_recorder *rec, uint32_t pass) {
     for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep);
 }
 
-/* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. */
-static void record_transparents(masu_recorder *rec, VkDescriptorSet set) {
+/* One draw of what the vertex shader makes up of MASU_BUFFER_SPRITES, as many as the frame says. */
+static void record_sprites(masu_recorder *rec, uint32_t pass, VkDescriptorSet set, uint64_t command) {
+    const masu_device *m = rec->m;
+    const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
+    masu_push_block push = push_of(rec, pass);
+    m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[pass]);
+    m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->layouts[pass],
+                                MASU_SET_GLOBAL, 2, sets, 0, NULL);
+    m->vk.CmdPushConstants(rec->cmd, m->layouts[pass], GRAPHICS_STAGES, 0, sizeof push, &push);
+    m->vk.CmdDrawIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_SPRITES], sprites_at(rec, command), 1,
+                          sizeof(masu_vec4));
+}
+
+static void bind_transparents(masu_recorder *rec, VkDescriptorSet set) {
+    const VkDescriptorSet sets[] = {rec->m->global_sets[rec->flight], set};
+    rec->m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                               rec->m->pipelines[MASU_PASS_TRANSPARENTS]);
+    rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                     rec->m->layouts[MASU_PASS_TRANSPARENTS], MASU_SET_GLOBAL, 2, sets, 0, NULL);
+}
+
+/* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. Before each
+ * slot those particles that are farther; render passes of both are compatible. */
+static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
     const masu_scene *scene = &m->plan->scene;
     VkPipelineLayout layout = m->layouts[MASU_PASS_TRANSPARENTS];
     VkDeviceSize zero = 0, at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
                                 m->plan->transparent_draws * MASU_DRAW_BYTES;
-    const VkDescriptorSet sets[] = {m->global_sets[rec->flight], set};
+    int among = m->plan->needs.particles;
     masu_push_block block = push_of(rec, MASU_PASS_TRANSPARENTS);
     struct masu_push_transparents push;
     memcpy(&push, &block.own, sizeof push);
-    vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                        m->pipelines[MASU_PASS_TRANSPARENTS]);
-    vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 2,
-                              sets, 0, NULL);
+    if (!among) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS]);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
     if (m->texture_layout)
         vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
     vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
                            VK_INDEX_TYPE_UINT32);
     for (uint32_t k = 0; k < rec->draws->transparent_count; k++) {
+        if (among) {
+            record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES], MASU_SPRITE_DRAWS + k);
+            bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS]);
+        }
         push.instances = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
         memcpy(&block.own, &push, sizeof push);
         vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
         for (uint32_t c = 0; c < scene->transparent_sets; c++) {
-            if (m->texture_layout && (k == 0 || scene->transparent_sets > 1)) {
+            if (m->texture_layout && (k == 0 || among || scene->transparent_sets > 1)) {
                 vk->CmdBindDescriptorSets(
                     rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_TEXTURES, 1,
                     &m->texture_sets[rec->draws->transparent_sets[c]], 0, NULL);
@@ -260,12 +291,14 @@ static VkRect2D render_area(const masu_recorder *rec, uint32_t pass) {
     if (pass == MASU_PASS_OCCLUDERS)
         return (VkRect2D){{0, 0}, {MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT}};
     if (!masu_is_cascade(pass))
-        return (VkRect2D){{0, 0}, {rec->rp->render_width, rec->rp->render_height}};
+        return (VkRect2D){{0, 0},
+                          masu_plan_extent(rec->m->plan, masu_passes[pass].extent,
+                                           (VkExtent2D){rec->rp->render_width, rec->rp->render_height})};
     return (VkRect2D){masu_cascade_place(rec->m->plan, pass - MASU_PASS_CASCADE_0),
                       {rec->rp->cascade_size, rec->rp->cascade_size}};
 }
 
-static void record_graphics(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
+static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescriptorSet *sets) {
     const masu_vk *vk = &rec->m->vk;
     uint32_t objects = masu_is_cascade(pass) ? MASU_PASS_CASCADE_0 : pass;
     VkClearValue clear[5];
@@ -289,7 +322,10 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, VkDescriptorSet s
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
         if (pass == MASU_PASS_GBUFFER || masu_is_cascade(pass)) record_polygons(rec, pass);
         if (pass == MASU_PASS_OCCLUDERS) record_occluders(rec);
-        if (pass == MASU_PASS_TRANSPARENTS) record_transparents(rec, set);
+        if (pass == MASU_PASS_TRANSPARENTS) record_transparents(rec, sets);
+        if (pass == MASU_PASS_PARTICLES) /* the last draw */
+            record_sprites(rec, pass, sets[pass], MASU_SPRITE_DRAWS + rec->m->plan->scene.transparents);
+        if (pass == MASU_PASS_LINES) record_sprites(rec, pass, sets[pass], MASU_SPRITE_LINES);
         if (pass == MASU_PASS_MARCH_FRAGMENT) record_fullscreen(rec, pass);
     }
     vk->CmdEndRenderPass(rec->cmd);
@@ -482,7 +518,7 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
         if (masu_has_pass(&rec->rp->active, p) && drawn) {
             begin_label(rec, masu_passes[p].name);
             masu_barrier_before(rec, p);
-            if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets[p]);
+            if (masu_passes[p].kind == MASU_PASS_GRAPHICS) record_graphics(rec, p, sets);
             if (p == MASU_PASS_READBACK) record_readback(rec, p);
             if (p == MASU_PASS_PRESENT) record_present(rec, p);
             if (masu_passes[p].kind == MASU_PASS_BUILD)

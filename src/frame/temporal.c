@@ -73,6 +73,24 @@ static int has_changed(const struct masu_frame_uniforms *now, const struct masu_
     return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
 }
 
+static uint64_t hash_words(uint64_t hash, const void *data, size_t bytes) {
+    for (size_t at = 0; at + 8 <= bytes; at += 8) {
+        uint64_t word;
+        memcpy(&word, (const char *)data + at, sizeof word);
+        hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+        hash ^= hash >> 29;
+    }
+    return hash;
+}
+
+_Static_assert(sizeof(masu_particle) % 8 == 0 && sizeof(masu_decal) % 8 == 0, "whole words, without padding");
+
+/* Of what the frame brings and its history shows: of particles that hang in the air it may be as long as of the rest. */
+static uint64_t sprites_of(const masu_frame_desc *d) {
+    uint64_t hash = hash_words(d->particle_count, d->particles, d->particle_count * sizeof *d->particles);
+    return hash_words(hash ^ d->decal_count, d->decals, d->decal_count * sizeof *d->decals);
+}
+
 void masu_temporal_read(masu_temporal *t, const masu_history *history, const masu_instances *in,
                         const masu_lights *lights, masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
@@ -80,9 +98,10 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     if (!kept) t->changed = 0;
     t->kept = has_resolve(f);
     if (!t->kept) return;
+    uint64_t sprites = sprites_of(&f->desc);
     if (kept) {
         int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes ||
-                      t->lights != lights->changes ||
+                      t->lights != lights->changes || t->sprites != sprites ||
                       !shows_the_same(masu_frame_rung(f), &f->plan->desc.rungs[t->rung]);
         t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
@@ -93,5 +112,6 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     t->size[1] = rp->render_height;
     t->lights = lights->changes;
     t->instances = in->changes;
+    t->sprites = sprites;
     t->rung = f->desc.rung;
 }

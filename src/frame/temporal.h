@@ -14,6 +14,7 @@ typedef struct masu_temporal {
     uint32_t changed; /* frames for which what has changed may still be found */
     uint32_t rung;    /* and this rung */
     uint32_t lights, instances; /* changes of them that it knew of */
+    uint64_t sprites; /* hash of its particles and decals */
 } masu_temporal;
 
 /* By how much beside the middle of its pixels the frame looks, in pixels of the render size: Halton's sequence of bases 2

@@ -131,5 +131,6 @@ void masu_transparents_write(masu_transparents *s, const masu_instances *in,
         memcpy(words, thing, sizeof thing);
         words += MASU_TRANSPARENT_WORDS;
     }
+    s->sorted = order;
     s->slot_count[f->slot] = seen;
 }

@@ -139,6 +139,24 @@ static void lay_drawn(masu_frame_plan *plan) {
     d->words = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
 }
 
+/* Nothing at all where nothing is reserved. */
+static void lay_sprites(masu_frame_plan *plan) {
+    const masu_needs *n = &plan->needs;
+    const masu_reserve *r = &plan->desc.reserve;
+    masu_sprites_plan *s = &plan->sprites;
+    if (!n->sprites) return;
+    uint64_t draws = n->particles ? plan->scene.transparents + (uint64_t)1 : 0;
+    s->particles = MASU_SPRITE_DRAWS + draws;
+    s->lines = s->particles + MASU_PARTICLE_VEC4S * (uint64_t)r->particles;
+    s->decals = s->lines + MASU_LINE_VEC4S * (uint64_t)r->lines;
+    s->end = s->decals + MASU_DECAL_VEC4S * (uint64_t)r->decals;
+}
+
+static uint64_t masu_sprite_count(const masu_frame_plan *plan) {
+    const masu_reserve *r = &plan->desc.reserve;
+    return plan->needs.sprites ? (uint64_t)r->particles + r->lines + r->decals : 0;
+}
+
 /* Of frustum and occlusion culling, then of the occluders, then of what is blended. */
 static uint64_t own_draws(const masu_frame_plan *plan) {
     uint64_t draws = (uint64_t)plan->views * plan->draws;
@@ -233,6 +251,7 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         plan->transparent_draws = own_draws(plan);
         if (plan->receiver_mask) plan->receiver_mask = seen_instances(plan);
     }
+    lay_sprites(plan);
     readback_slot slot = lay_readback(plan);
     plan->readback_times = slot.times;
     memcpy(plan->readback_offset, slot.images, sizeof slot.images);
@@ -315,6 +334,17 @@ static uint32_t storage_of_compute(const masu_frame_plan *plan, masu_binding_gro
         count += bindings[i].group == group && (all || bindings[i].bound) &&
                  bindings[i].type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER &&
                  bindings[i].stages & COMPUTE;
+    }
+    return count;
+}
+
+uint32_t masu_vertex_buffers(const masu_frame_plan *plan) {
+    masu_binding bindings[MASU_BIND_COUNT];
+    uint32_t count = 0;
+    masu_bindings(plan, bindings);
+    for (uint32_t i = 0; i < MASU_BIND_COUNT; i++) {
+        count += bindings[i].bound && bindings[i].type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER &&
+                 bindings[i].stages & VERTEX_STAGE;
     }
     return count;
 }

@@ -35,6 +35,8 @@ void masu_bindings(const masu_frame_plan *plan, masu_binding out[]);
  * those that a group adds. */
 uint32_t masu_plain_buffers(const masu_frame_plan *plan);
 uint32_t masu_group_buffers(const masu_frame_plan *plan, masu_binding_group group);
+/* Those of the vertex stage. */
+uint32_t masu_vertex_buffers(const masu_frame_plan *plan);
 
 typedef struct masu_buffer_row {
     const char *name;

@@ -259,7 +259,11 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d) ||
                                            wants(d, masu_rung_resolves),
+                               .particles = d->scene && d->reserve.particles,
+                               .decals = d->scene && d->reserve.decals,
+                               .lines = d->scene && d->reserve.lines,
                                .blit = !d->targets.storage};
+    plan->needs.sprites = plan->needs.particles || plan->needs.decals || plan->needs.lines;
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
     plan->most = plan->whole = d->output;
     masu_output_plan(plan);

@@ -6,6 +6,7 @@
 #include "quality/governor_desc.h"
 #include "quality/knobs.h"
 #include "quality/ladder.h"
+#include "shared/masu_shared.h"
 
 #include <math.h>
 #include <string.h>
@@ -94,6 +95,7 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         if (d.scene) resolve_scene(&d, &d.rungs[r]);
         if ((d.scene || d.source.view) && d.output.width && d.output.height) resolve_sizes(&d, r);
     }
+    if (!d.scene) d.reserve.particles = d.reserve.decals = d.reserve.lines = 0;
     masu_governor_defaults(&d.governor, d.rung_count);
     if (d.targets.format == VK_FORMAT_UNDEFINED) d.targets.format = VK_FORMAT_R8G8B8A8_UNORM;
     if (d.targets.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) {
@@ -141,6 +143,17 @@ static masu_result check_viewports(const masu_desc *d, masu_detail *detail) {
                          "viewports[%u] is at %u, %u: of storage targets they begin at 0, 0", i,
                          v->x, v->y);
     }
+    return MASU_OK;
+}
+
+static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
+    const masu_reserve *r = &d->reserve;
+    if (r->particles > MASU_PARTICLES_MAX)
+        return bad_range(detail, "reserve.particles", r->particles, 0, MASU_PARTICLES_MAX);
+    if (r->decals > MASU_DECALS_MAX)
+        return bad_range(detail, "reserve.decals", r->decals, 0, MASU_DECALS_MAX);
+    if (r->lines > MASU_LINES_MAX)
+        return bad_range(detail, "reserve.lines", r->lines, 0, MASU_LINES_MAX);
     return MASU_OK;
 }
 
@@ -221,6 +234,7 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
         masu_result result = masu_rung_check(&d->rungs[r], r, detail);
         if (result) return result;
     }
-    masu_result viewports = check_viewports(d, detail);
-    return viewports ? viewports : masu_output_check(d, detail);
+    masu_result result = check_viewports(d, detail);
+    if (!result) result = check_reserve(d, detail);
+    return result ? result : masu_output_check(d, detail);
 }

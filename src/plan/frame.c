@@ -142,7 +142,9 @@ int masu_is_cascade(uint32_t pass) {
 }
 
 int masu_has_set(uint32_t pass) {
-    return masu_passes[pass].kind == MASU_PASS_COMPUTE || masu_passes[pass].geometry == MASU_GEOMETRY_BLENDED;
+    masu_geometry geometry = masu_passes[pass].geometry;
+    return masu_passes[pass].kind == MASU_PASS_COMPUTE || geometry == MASU_GEOMETRY_BLENDED ||
+           geometry == MASU_GEOMETRY_SPRITES;
 }
 
 int masu_access_binds(masu_access access, int writes) {

@@ -55,6 +55,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_TILES, /* the same, for active tiles only: indirect */
     MASU_EXTENT_EDGED, /* one workgroup per tile of SMAA_TILES: indirect */
     MASU_EXTENT_GLOSSY, /* one workgroup per tile of SPECULAR_TILES, 8x8 texels of TRACED: indirect */
+    MASU_EXTENT_DECALS, /* an invocation per render pixel, near decals only: indirect, by the host */
     MASU_EXTENT_ONE,   /* one workgroup */
     MASU_EXTENT_ATLAS, /* of occluders */
     MASU_EXTENT_KEPT,    /* an invocation per instance and view */
@@ -142,6 +143,8 @@ typedef struct masu_needs {
     int any_silhouettes; /* silhouettes */
     int smoothing;     /* smaa */
     int metered;       /* the exposure follows the picture */
+    int sprites;       /* frames may bring some of these: */
+    int particles, decals, lines;
     /* of one rung: */
     int upscale, sharpen, occlusion;
     int fxaa, smaa; /* at most one of them */
@@ -168,6 +171,7 @@ typedef enum masu_geometry {
     MASU_GEOMETRY_CASCADE,  /* depth alone */
     MASU_GEOMETRY_BLENDED,  /* over what is there, back to front */
     MASU_GEOMETRY_BOXES,    /* made up by the vertex shader; depth alone */
+    MASU_GEOMETRY_SPRITES,  /* the same; colour, which is blended where the row says BLEND */
     MASU_GEOMETRY_SCREEN    /* one triangle over everything */
 } masu_geometry;
 

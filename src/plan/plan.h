@@ -73,6 +73,11 @@ typedef struct masu_drawn_plan {
     uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, transparents, words;
 } masu_drawn_plan;
 
+/* Where in a slot of MASU_BUFFER_SPRITES the three kinds begin, in vec4; masu_shared.h says what is there. */
+typedef struct masu_sprites_plan {
+    uint64_t particles, lines, decals, end;
+} masu_sprites_plan;
+
 /* An array of textures on the device. Plans have as many as their scene, in the host block; while
  * only asked for, on the stack. */
 typedef struct masu_texture_plan {
@@ -116,6 +121,7 @@ typedef struct masu_frame_plan {
     } output;
     uint32_t draws, listed; /* draws of a view; words of its lists: a list for each form */
     masu_drawn_plan drawn;
+    masu_sprites_plan sprites;
     uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
     uint64_t receiver_mask; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */

@@ -101,6 +101,9 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     SAME(ray_query);
     SAME(half_floats);
     SAME(deny.compressed_textures);
+    SAME(reserve.particles);
+    SAME(reserve.decals);
+    SAME(reserve.lines);
     SAME(host_budget);
     SAME(device_budget);
     for (uint32_t k = 0; k < MASU_ROLE_COUNT; k++) {
@@ -484,6 +487,18 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     compile(&d, &plan);
     BAD("debug.share_rays", d.debug.share_rays = (masu_switch)3);
     BAD("half_floats", d.half_floats = (masu_switch)3);
+    BAD("reserve.particles", d.reserve.particles = MASU_PARTICLES_MAX + 1);
+    BAD("reserve.decals", d.reserve.decals = MASU_DECALS_MAX + 1);
+    BAD("reserve.lines", d.reserve.lines = MASU_LINES_MAX + 1);
+    d = scene_desc(RASTER, 64, 64);
+    d.reserve = (masu_reserve){.particles = MASU_PARTICLES_MAX, .decals = MASU_DECALS_MAX, .lines = MASU_LINES_MAX};
+    compile(&d, &plan);
+    /* Without a scene there is no eye to see them: nothing is planned for them. */
+    masu_desc none = source_desc(64, 64);
+    none.reserve = d.reserve;
+    assert_int_equal(masu_desc_resolved(&none).reserve.lines, 0);
+    compile(&none, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].bytes, 0);
 }
 
 /* What says which knob: as a whole and once in words, for each kind. */

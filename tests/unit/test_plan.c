@@ -736,6 +736,50 @@ static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
                            " transparents(r:scene_depth r:shadow_map b:hdr) tonemap(r:hdr "));
 }
 
+/* What a frame may bring: a pass for each kind that there is room for, one buffer for all, an image for lines. Without room,
+ * or for others, nothing. */
+static void what_is_reserved_has_passes_and_nothing_else_has(void **state) {
+    (void)state;
+    static masu_frame_plan plan, bare;
+    masu_desc d = scene_desc(RASTER | SDF, 64, 64);
+    d.rung_count = 1;
+    compile(&d, &bare);
+    assert_int_equal(bare.buffers[MASU_BUFFER_SPRITES].bytes, 0);
+    assert_false(bare.images[MASU_IMAGE_OVERLAY].used);
+    assert_string_equal(bare.why[MASU_PASS_DECALS], "desc.reserve has no decals");
+    d.reserve.particles = 7;
+    assert_frame(&d, 0, GBUFFER MARCH_ON_RASTER LIGHT_SDF "particles(r:scene_depth b:hdr) " TONEMAP);
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 1 + 4 * 7) + 63) / 64));
+    assert_int_equal(masu_vertex_buffers(&plan), masu_vertex_buffers(&bare) + 1);
+    assert_int_equal(masu_plain_buffers(&plan), masu_plain_buffers(&bare));
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
+        if (b != MASU_BUFFER_SPRITES) assert_int_equal(plan.buffers[b].bytes, bare.buffers[b].bytes);
+    }
+    d.reserve = (masu_reserve){.decals = 7};
+    assert_frame(&d, 0,
+                 GBUFFER MARCH_ON_RASTER "decals(r:scene_depth u:albedo u:normal) " LIGHT_SDF TONEMAP);
+    compile(&d, &plan);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 7 * 7) + 63) / 64));
+    assert_int_equal(masu_vertex_buffers(&plan), masu_vertex_buffers(&bare));
+    assert_int_equal(masu_plain_buffers(&plan), masu_plain_buffers(&bare) + 1);
+    d.reserve = (masu_reserve){.lines = 7};
+    assert_frame(&d, 0,
+                 GBUFFER MARCH_ON_RASTER LIGHT_SDF
+                 "tonemap(r:hdr w:target) lines(r:scene_depth c:overlay) lines_show(r:overlay u:target)");
+    compile(&d, &plan);
+    assert_true(plan.images[MASU_IMAGE_OVERLAY].used);
+    assert_int_equal(plan.buffers[MASU_BUFFER_SPRITES].stride, 64 * ((16 * (3 + 2 * 7) + 63) / 64));
+    d.targets.storage = 0; /* they are in what is blitted */
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), "lines_show(r:overlay u:final) present(from:final to:target)"));
+    /* Draws among what is blended: one before each slot, one behind. */
+    d.reserve = (masu_reserve){.particles = 2};
+    support_scene.blends = 1, support_scene.transparents = 5, support_scene.transparent_sets = 1;
+    compile(&d, &plan);
+    assert_int_equal(plan.sprites.particles, 3 + 6);
+}
+
 /* Shadows and ambient occlusion of the SDF: a pass and an image more, another way to light; nothing
  * of it in scenes that do not ask. */
 static void sdf_occlusion_comes_between_march_and_light_if_asked(void **state) {
@@ -1193,9 +1237,9 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].first_pass, image->first);
         assert_int_equal(info.images[i].last_pass, image->last);
     }
-    /* scene_depth, surface, occlusion, silhouettes, smooth and final, history_depth, cone8, cone4, ao: 4 bytes each per
+    /* scene_depth, surface, occlusion, silhouettes, smooth, overlay and final, history_depth, cone8, cone4, ao: 4 bytes each per
      * texel; velocity, history and accumulated 8; the atlas; SPECULAR_BYTES at half size */
-    assert_int_equal(info.left_out_bytes, 4 * (13 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
+    assert_int_equal(info.left_out_bytes, 4 * (14 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
                                               SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
@@ -1210,13 +1254,13 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     56 * 1000 * 500 + 24 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
+                     56 * 1000 * 500 + 28 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
                          SPECULAR_BYTES * 500 * 250);
-    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, silhouettes, ldr, smooth, upscaled, final, velocity, temporal's */
+    d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, silhouettes, ldr, smooth, upscaled, overlay, final, velocity, temporal's */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 56 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
+    assert_int_equal(info.left_out_bytes, 60 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
@@ -1469,6 +1513,7 @@ int main(void) {
         cmocka_unit_test(temporal_stands_in_for_anti_aliasing_and_upscaling),
         cmocka_unit_test(velocities_keep_the_frame_before_and_nothing_else_does),
         cmocka_unit_test(what_is_blended_comes_over_the_light_if_there_is_any),
+        cmocka_unit_test(what_is_reserved_has_passes_and_nothing_else_has),
         cmocka_unit_test(sdf_occlusion_comes_between_march_and_light_if_asked),
         cmocka_unit_test(ao_comes_after_all_that_writes_occlusion),
         cmocka_unit_test(in_every_frame_the_last_colour_writer_alone_writes_the_target),

@@ -28,3 +28,5 @@ for scene in engine city; do
 done
 sed 's/"aa": "auto"/"aa": "auto", "temporal": "on"/' docs/report/engine/ladder.json > "$ladder"
 rows "engine with temporal" engine 'temporal|tonemap' --ladder "$ladder"
+rows 'engine with particles' engine 'particles|decals|lines' --particles 1 --decals 1 --lines 1
+rows 'shadows with particles' test_shadows particles --particles 1

@@ -1,0 +1,123 @@
+/*
+ * decals.comp: boxes that paint the G-buffer before light falls on it: base colour, metallic, roughness. Runs over
+ * the part of the picture that decals are in (an indirect dispatch; src/frame/decals.c). A workgroup looks once which of
+ * them may touch its 8x8 pixels, a bit each; each pixel with a surface then goes through these, in the order of the
+ * frame's array, which is that of the bits. What is painted is mixed as linear colour; a pixel that none touches is not written.
+ *
+ * What shines by itself has radiance in place of a base colour and stays as it is.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_decals
+#include "shared/masu_shared.h"
+#include "shared/counters.glsl"
+#include "shared/globals.glsl"
+#include "shared/pack.glsl"
+#include "shared/store.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
+layout(set = MASU_SET_PASS, binding = 1, rgba8) uniform image2D albedo_image;
+layout(set = MASU_SET_PASS, binding = 2, r32ui) uniform uimage2D normal_image;
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SPRITES, std430) readonly buffer Sprites
+{
+    vec4 sprites[];
+};
+
+#define INVOCATIONS (MASU_GROUP * MASU_GROUP)
+#define WORDS (MASU_DECALS_MAX / 32)
+shared uint touched[WORDS];
+
+/* How much of a decal is at a point relative to the eye, where the surface has the normal n. */
+float painted(uint at, vec3 rel, vec3 n, vec4 look)
+{
+    vec4 row0 = sprites[at], row1 = sprites[at + 1u], row2 = sprites[at + 2u], axis = sprites[at + 5u];
+    vec4 place = sprites[at + 6u];
+    vec3 p = vec3(dot(row0.xyz, rel) + row0.w, dot(row1.xyz, rel) + row1.w, dot(row2.xyz, rel) + row2.w);
+    bool round_one = (floatBitsToUint(look.w) & MASU_SPRITE_ROUND) != 0u;
+    float far = round_one ? masu_sqrt(dot(p.xy, p.xy)) : max(abs(p.x), abs(p.y));
+    float rest = 1.0 - far;
+    if (!(rest >= 0.0 && abs(p.z) <= 1.0)) {
+        return 0.0;
+    }
+    float edge = rest >= look.z ? 1.0 : rest / max(look.z, masu_tiny);
+    return edge * clamp((dot(axis.xyz, n) - place.z) * place.w, 0.0, 1.0);
+}
+
+void paint(ivec2 at, uvec2 size, uint words)
+{
+    float depth = texelFetch(depth_image, at, 0).r;
+    if (!(depth > masu_tiny)) {
+        return;
+    }
+    uint packed_normal = imageLoad(normal_image, at).r;
+    if ((masu_unpack_flags(packed_normal) & MASU_SURFACE_EMISSIVE) != 0u) {
+        return;
+    }
+    vec3 rel = masu_pixel_ray(uvec2(at), size) * (frame.forward.w / depth);
+    vec3 n = masu_unpack_normal(packed_normal);
+    vec4 texel = imageLoad(albedo_image, at);
+    vec3 base = texel.rgb * texel.rgb;
+    float roughness = texel.a, metallic = masu_unpack_metallic(packed_normal);
+    bool changed = false;
+    for (uint w = 0u; w < uint(WORDS); w++) {
+        if (w >= words) {
+            break;
+        }
+        uint left = touched[w];
+        for (uint k = 0u; k < 32u && left != 0u; k++) {
+            uint bit = uint(findLSB(left));
+            left &= left - 1u;
+            uint decal = push.first + uint(MASU_DECAL_VEC4S) * (32u * w + bit);
+            vec4 color = sprites[decal + 3u], look = sprites[decal + 4u];
+            float share = masu_sane(color.w * painted(decal, rel, n, look), 0.0, 1.0);
+            if (share > 0.0) {
+                changed = true;
+                if ((floatBitsToUint(look.w) & MASU_SPRITE_KEEP_COLOR) == 0u) {
+                    base = mix(base, color.rgb, share);
+                    metallic = mix(metallic, look.y, share);
+                }
+                roughness = mix(roughness, look.x >= 0.0 ? look.x : roughness, share);
+            }
+        }
+    }
+    if (changed) {
+        uint steps = uint(masu_sane(metallic, 0.0, 1.0) * 15.0 + 0.5);
+        MASU_STORE_UNORM(albedo_image, at, vec4(sqrt(masu_sane(base, 0.0, 1.0)), roughness));
+        MASU_STORE_UINT(normal_image, at, (packed_normal & ~(15u << 26)) | steps << 26);
+    }
+}
+
+void main()
+{
+    masu_count_begin();
+    uint count = min(floatBitsToUint(sprites[MASU_SPRITE_DISPATCH].w), uint(MASU_DECALS_MAX));
+    uint words = (count + 31u) / 32u;
+    uvec2 size = uvec2(pc.output_width, pc.output_height);
+    uvec2 first = floatBitsToUint(sprites[MASU_SPRITE_PLACE].xy) + uint(MASU_GROUP) * gl_WorkGroupID.xy;
+    uvec2 last = first + uint(MASU_GROUP - 1);
+    uint lane = gl_LocalInvocationIndex;
+    if (lane < words) {
+        touched[lane] = 0u;
+    }
+    barrier();
+    for (uint k = 0u; k < uint(MASU_DECALS_MAX / INVOCATIONS); k++) {
+        uint i = k * uint(INVOCATIONS) + lane;
+        if (i >= count) {
+            break;
+        }
+        uvec2 ends = floatBitsToUint(sprites[push.first + uint(MASU_DECAL_VEC4S) * i + 6u].xy);
+        uvec2 low = uvec2(ends.x & 0xFFFFu, ends.x >> 16), high = uvec2(ends.y & 0xFFFFu, ends.y >> 16);
+        if (all(lessThanEqual(low, last)) && all(greaterThanEqual(high, first))) {
+            atomicOr(touched[i >> 5], 1u << (i & 31u));
+        }
+    }
+    barrier();
+    uvec2 at = first + gl_LocalInvocationID.xy;
+    if (all(lessThan(at, size))) {
+        paint(ivec2(at), size, words);
+    }
+    masu_count_end();
+}

@@ -1,0 +1,51 @@
+/*
+ * particles.frag: what a particle adds to the lit picture, and in alpha what it takes of what is behind, as
+ * transparents.frag. A round spot: full from the middle to `edge` of the radius, then smoothly less; less, too, where a
+ * surface is close behind, or the near plane. The depth is the latest image's, of polygons and the SDF alike.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_particles
+#include "shared/masu_shared.h"
+#include "shared/globals.glsl"
+#include "light/air.glsl"
+
+layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
+
+layout(location = 0) in vec2 in_place;
+layout(location = 1) in vec3 in_rel;
+layout(location = 2) flat in vec4 in_color;
+layout(location = 3) flat in vec4 in_more;
+
+layout(location = 0) out vec4 out_color;
+
+/* As that of transparents.frag. */
+const float brightest = 4096.0;
+
+void main()
+{
+    float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
+    float rest = (1.0 - masu_sqrt(dot(in_place, in_place))) / max(1.0 - in_more.x, 1e-3);
+    if (!(rest > 0.0) || !(gl_FragCoord.z >= nearest)) {
+        discard;
+    }
+    float cover = min(rest, 1.0);
+    cover *= cover * (3.0 - 2.0 * cover);
+    float soft = in_more.w;
+    if (soft > 0.0) {
+        float near = frame.forward.w;
+        /* Of the sky, whose depth is 0, there is no end. */
+        float room = nearest > masu_tiny ? near / nearest - in_more.z : soft;
+        cover *= clamp(min(room, in_more.z - near) / soft, 0.0, 1.0);
+    }
+    float alpha = in_color.a * cover;
+    float taken = alpha * in_more.y;
+    vec3 color = in_color.rgb * alpha;
+    if (foggy) {
+        vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
+        color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), taken);
+    }
+    out_color = vec4(masu_sane(color, 0.0, brightest), masu_sane(taken, 0.0, 1.0));
+}
