@@ -137,10 +137,13 @@ worlds: deps-build ## bake the worlds city and forza to build/worlds; installs t
 	    echo "masu: no world forza: the package torcs-data cannot be installed here"; \
 	fi
 
-.PHONY: drive drive-built
-drive: deps-demo deps-view deps-worlds ## install what is missing, build, bake, play the game on forza: DRIVE_ARGS='--dusk'
+.PHONY: drive drive-long drive-built
+drive: deps-demo deps-view deps-worlds ## install what is missing, build, bake, play the game on forza: DRIVE_ARGS='-t 16'
 	+$(V)$(more) drive-built
-	$(V)$(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(DRIVE_ARGS)
+	$(V)$(BUILD)/examples/drive $(DRIVE_ARGS) $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
+drive-long: deps-test deps-view deps-worlds ## a lap of forza by script, under the validation layer; pictures in build/drive-long
+	+$(V)$(more) drive-built
+	$(V)BUILD='$(BUILD)' tests/drive_long.sh $(DRIVE_ARGS)
 drive-built: $(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
 
 hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmodels, broken ones too: RENDER=1

@@ -130,12 +130,16 @@ $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(KEEP_LOADED) $(BUILD)/lib/libma
 	$(link)
 EXAMPLES := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-# A game of its own, of masu.h, Vulkan and SDL2 alone; where there is no SDL2 there is no game. What it and the
-# library ask of the heap goes to examples/drive/heap.c.
-EXAMPLES += $(if $(HAVE_SDL2),$(BUILD)/examples/drive)
-$(BUILD)/obj/examples/drive/%.o: FOLDER_FLAGS += $$(pkg-config --cflags sdl2)
-$(BUILD)/examples/drive: LIBS = $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc) $$(pkg-config --libs sdl2) -lvulkan -lm
-$(BUILD)/examples/drive: $(call objects,$(wildcard examples/drive/*.c)) $(KEEP_LOADED) $(BUILD)/lib/libmasu.a
+# Those with a window are of masu.h, Vulkan, SDL2 and examples/shared alone; where there is no SDL2 they are left
+# out. What the game and the library ask of the heap goes to examples/drive/heap.c.
+WINDOW_EXAMPLES := $(addprefix $(BUILD)/examples/,drive loop)
+WINDOW_FLAGS    := -Iexamples/shared $$(pkg-config --cflags sdl2)
+EXAMPLES := $(filter-out $(if $(HAVE_SDL2),,$(WINDOW_EXAMPLES)),$(EXAMPLES) $(BUILD)/examples/drive)
+$(BUILD)/obj/examples/drive/%.o $(BUILD)/obj/examples/shared/%.o $(BUILD)/obj/examples/loop.o: FOLDER_FLAGS += $(WINDOW_FLAGS)
+$(WINDOW_EXAMPLES): LIBS = $(HEAP_FLAGS) $$(pkg-config --libs sdl2) -lvulkan -lm
+$(WINDOW_EXAMPLES): $(call objects,$(wildcard examples/shared/*.c)) $(KEEP_LOADED) $(BUILD)/lib/libmasu.a
+$(BUILD)/examples/drive: HEAP_FLAGS = $(patsubst %,-Wl$(comma)--wrap=%,malloc calloc realloc)
+$(BUILD)/examples/drive: $(call objects,$(wildcard examples/drive/*.c))
 	$(link)
 $(BUILD)/worlds/forza.track: $(BUILD)/worlds/forza/forza.json
 	$(V)cp $(@D)/forza/forza.track $@

@@ -1,5 +1,5 @@
-/* track.c: see track.h. Between two points all is linear; the last is followed by the first. */
-#include "track.h"
+/* track.c: see race.h. Between two points all is linear; the last is followed by the first. */
+#include "race.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #define GRIP 9.0    /* m/s2 that the careful driver takes bends with, */
 #define BRAKING 6.0 /* and brakes with */
 #define FASTEST 58.0
-#define WINDOW 12 /* points looked at before and behind the last one */
+#define REACH 12 /* points looked at before and behind the last one */
 
 static bool read_row(FILE *in, track_point *p) {
     double *to[12] = {&p->at.x, &p->at.y, &p->at.z, &p->up.x, &p->up.y, &p->up.z, &p->edge[0], &p->edge[1],
@@ -19,18 +19,15 @@ static bool read_row(FILE *in, track_point *p) {
 
 static bool read_cars(FILE *in, track *t) {
     char word[8];
-    while (fscanf(in, "%7s", word) == 1) {
-        track_car *c = t->cars ? &t->car[t->cars - 1] : t->car;
-        if (strcmp(word, "car") == 0 && t->cars < TRACK_CARS) {
+    for (track_car *c = NULL; fscanf(in, "%7s", word) == 1;) {
+        if (!strcmp(word, "car") && t->cars < TRACK_CARS) {
             c = &t->car[t->cars++];
-            if (fscanf(in, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", c->name, &c->at.x, &c->at.y,
-                       &c->at.z, &c->ahead.x, &c->ahead.y, &c->ahead.z, &c->up.x, &c->up.y, &c->up.z,
-                       &c->clearance) != 11)
+            if (fscanf(in, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", c->name, &c->at.x, &c->at.y, &c->at.z,
+                       &c->ahead.x, &c->ahead.y, &c->ahead.z, &c->up.x, &c->up.y, &c->up.z, &c->clearance) != 11)
                 return false;
-        } else if (strcmp(word, "wheel") == 0 && t->cars && c->wheels < TRACK_WHEELS) {
-            int i = c->wheels++;
-            if (fscanf(in, "%31s %lf %lf %lf %d", c->wheel[i].name, &c->wheel[i].ahead, &c->wheel[i].right,
-                       &c->wheel[i].radius, &c->wheel[i].steers) != 5)
+        } else if (!strcmp(word, "wheel") && c && c->wheels < TRACK_WHEELS) {
+            track_wheel *w = &c->wheel[c->wheels++];
+            if (fscanf(in, "%31s %lf %lf %lf %d", w->name, &w->ahead, &w->right, &w->radius, &w->steers) != 5)
                 return false;
         } else {
             return false;
@@ -44,15 +41,15 @@ static bool read_cars(FILE *in, track *t) {
 static void measure(track *t) {
     int n = t->count;
     for (int i = 0; i < n; i++) {
-        track_point *p = &t->points[i];
-        p->ahead = unit(add(t->points[(i + 1) % n].at, t->points[(i + n - 1) % n].at, -1));
-        vec step = add(t->points[(i + 1) % n].at, p->at, -1);
+        track_point *p = &t->points[i], *next = &t->points[(i + 1) % n];
+        vec step = add(next->at, p->at, -1);
+        p->ahead = unit(add(next->at, t->points[(i + n - 1) % n].at, -1));
         p->along = t->length;
         t->length += sqrt(dot(step, step));
     }
     for (int i = 0; i < n; i++) {
-        vec turn = add(t->points[(i + 2) % n].ahead, t->points[(i + n - 2) % n].ahead, -1);
-        vec chord = add(t->points[(i + 2) % n].at, t->points[(i + n - 2) % n].at, -1);
+        const track_point *a = &t->points[(i + n - 2) % n], *b = &t->points[(i + 2) % n];
+        vec turn = add(b->ahead, a->ahead, -1), chord = add(b->at, a->at, -1);
         double bend = sqrt(dot(turn, turn) / fmax(dot(chord, chord), 1e-6));
         t->points[i].pace = fmin(FASTEST, sqrt(GRIP / fmax(bend, 1e-6)));
     }
@@ -74,36 +71,33 @@ bool track_read(track *t, const char *path) {
     good = good && read_cars(in, t);
     fclose(in);
     if (good) measure(t);
-    good = good && t->length > 1 && t->length < 1e6;
-    if (!good) {
-        fprintf(stderr, "drive: %s: no track of version 1 with 8 to %d points and 1 to %d cars\n", path,
-                TRACK_POINTS, TRACK_CARS);
-    }
-    return good;
+    if (good && t->length > 1 && t->length < 1e6) return true;
+    return fprintf(stderr, "drive: %s: no track of version 1 with 8 to %d points and 1 to %d cars\n", path,
+                   TRACK_POINTS, TRACK_CARS), false;
 }
 
 static track_place between(const track *t, int i, double share, double side) {
     const track_point *a = &t->points[i], *b = &t->points[(i + 1) % t->count];
     double step = (i + 1 < t->count ? b->along : t->length) - a->along;
-    int right = side > 0;
+    int k = side > 0;
     track_place p = {.point = i,
                      .along = a->along + share * step,
                      .side = side,
                      .ahead = unit(mix(a->ahead, b->ahead, share)),
                      .up = unit(mix(a->up, b->up, share)),
-                     .edge = a->edge[right] + share * (b->edge[right] - a->edge[right]),
-                     .barrier = a->barrier[right] + share * (b->barrier[right] - a->barrier[right]),
+                     .edge = a->edge[k] + share * (b->edge[k] - a->edge[k]),
+                     .barrier = a->barrier[k] + share * (b->barrier[k] - a->barrier[k]),
                      .pace = a->pace + share * (b->pace - a->pace)};
-    double rise = a->rise[right] + share * (b->rise[right] - a->rise[right]); /* evenly, from the edge on */
+    p.right = unit(cross(p.ahead, p.up));
+    double rise = a->rise[k] + share * (b->rise[k] - a->rise[k]); /* evenly, from the edge on */
     double beyond = clamp((fabs(side) - p.edge) / fmax(p.barrier - p.edge, 0.1), 0, 1);
-    p.ground = add(add(mix(a->at, b->at, share), cross(p.ahead, p.up), side), p.up, rise * beyond);
+    p.ground = add(add(mix(a->at, b->at, share), p.right, side), p.up, rise * beyond);
     return p;
 }
 
 track_place track_find(const track *t, vec at, int near) {
-    int n = t->count, first = near < 0 ? 0 : near - WINDOW, many = near < 0 ? n : 2 * WINDOW + 1;
+    int n = t->count, first = near < 0 ? 0 : near - REACH, many = near < 0 ? n : 2 * REACH + 1, found = 0;
     double best = HUGE_VAL, best_share = 0;
-    int found = 0;
     for (int k = 0; k < many; k++) {
         int i = ((first + k) % n + n) % n;
         vec from = t->points[i].at, step = add(t->points[(i + 1) % n].at, from, -1), to = add(at, from, -1);
@@ -113,18 +107,13 @@ track_place track_find(const track *t, vec at, int near) {
         best = dot(off, off), best_share = share, found = i;
     }
     track_place p = between(t, found, best_share, 0);
-    return between(t, found, best_share, dot(add(at, p.ground, -1), unit(cross(p.ahead, p.up))));
+    return between(t, found, best_share, dot(add(at, p.ground, -1), p.right));
 }
 
 track_place track_along(const track *t, double along, double side) {
-    along = fmod(along, t->length);
-    if (along < 0) along += t->length;
-    int low = 0, high = t->count;
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (t->points[middle].along <= along) low = middle;
-        else high = middle;
-    }
-    double end = low + 1 < t->count ? t->points[low + 1].along : t->length;
-    return between(t, low, (along - t->points[low].along) / fmax(end - t->points[low].along, 1e-9), side);
+    int i = 0;
+    along -= t->length * floor(along / t->length);
+    while (i + 1 < t->count && t->points[i + 1].along <= along) i++;
+    double end = i + 1 < t->count ? t->points[i + 1].along : t->length;
+    return between(t, i, (along - t->points[i].along) / fmax(end - t->points[i].along, 1e-9), side);
 }

@@ -2,15 +2,15 @@
 # The game examples/drive on a screen of its own: a drive by script with keys, pause, dusk, another window
 # size; the same script twice; what it may include; that its heap is closed once it runs; what it refuses.
 # Without SDL2 there is no game to look at.
-#
-# shellcheck disable=SC2155
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+# shellcheck source=tests/xvfb.sh
+. tests/xvfb.sh
 game=${BUILD:-build}/examples/drive
 scene=${MADE:-build}/scenes/test_drive.masu
+track=tests/scenes/test_drive.track
 folder=$(mktemp -d)
-server=
-trap 'rm -rf "$folder"; [ -z "$server" ] || kill "$server"' EXIT
+trap 'rm -rf "$folder"; stop_screen' EXIT
 failures=0
 
 fail() {
@@ -23,23 +23,13 @@ if [ ! -x "$game" ] || ! command -v Xvfb > /dev/null; then
     exit 77
 fi
 
-# The server takes a free number and writes it once it listens.
-Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 3> "$folder/display" 2> /dev/null &
-server=$!
-for ((i = 0; i < 300; i++)); do
-    [ -s "$folder/display" ] && break
-    sleep 0.1
-done
-[ -s "$folder/display" ] || { echo "FAILED: Xvfb does not start" && exit 1; }
-export DISPLAY=:$(cat "$folder/display") SDL_VIDEODRIVER=x11 SDL_AUDIODRIVER=dummy
-unset WAYLAND_DISPLAY
+start_screen "$folder" || exit 1
 
 # drive NAME ARGUMENTS...: leaves NAME.out, NAME.err; the script is NAME.txt
 drive() {
     local name=$1
     shift
-    timeout 300 "$game" "$scene" --track tests/scenes/test_drive.track --size 192x108 "$@" \
-        --script "$folder/$name.txt" > "$folder/$name.out" 2> "$folder/$name.err"
+    timeout 300 "$game" -s 192x108 "$@" -f "$folder/$name.txt" "$scene" "$track" > "$folder/$name.out" 2> "$folder/$name.err"
 }
 count() { sed -n "s/.* \?$2 \([^ ]*\).*/\1/p" "$folder/$1.out"; }
 is() { [ "$(count "$1" "$2")" = "$3" ] || fail "$1: $2 is not $3: $(cat "$folder/$1.out")"; }
@@ -48,13 +38,16 @@ colors() { identify -format '%k' "$1"; }
 
 # ---- what it is made of ----------------------------------------------------------------------------
 
-# The public header alone: with no other folder to look in, it compiles.
-for source in examples/drive/*.c; do
+# The public header and the examples' window alone: with no other folder to look in, it compiles.
+for source in examples/drive/*.c examples/shared/*.c; do
     # shellcheck disable=SC2046
-    "${CC:-gcc}" -std=c11 -D_POSIX_C_SOURCE=200809L -Iinclude $(pkg-config --cflags sdl2) -fsyntax-only "$source" ||
-        fail "$source needs more than masu.h, SDL2 and Vulkan"
+    "${CC:-gcc}" -std=c11 -D_POSIX_C_SOURCE=200809L -Iinclude -Iexamples/shared $(pkg-config --cflags sdl2) -fsyntax-only "$source" ||
+        fail "$source needs more than masu.h, examples/shared, SDL2 and Vulkan"
 done
-grep -hE '#include "\.\.|#include <(bake|cli|platform)' examples/drive/* && fail "it looks into other folders"
+grep -hE '#include "\.\.|#include <(bake|cli|platform)' examples/drive/* examples/shared/* &&
+    fail "it looks into other folders"
+lines=$(cat examples/drive/*.[ch] | wc -l)
+[ "$lines" -le 800 ] || fail "the game has $lines lines: it is to be read, at most 800"
 
 # ---- a drive: at one rung, twice, under the validation layer ---------------------------------------
 
@@ -62,65 +55,63 @@ script() {
     cat << END
 # forward, a bend, a pause, dusk, another size
 frame 0 key up down
-frame 2 screenshot $folder/$1-start.png
+frame 2 screenshot $folder/$1-start.bmp
 frame 40 key left down
 frame 48 key left up
-frame 60 screenshot $folder/$1-driven.png
+frame 60 screenshot $folder/$1-driven.bmp
 frame 61 key p
-frame 66 screenshot $folder/$1-paused.png
+frame 66 screenshot $folder/$1-paused.bmp
 frame 70 key p
 frame 72 key n
-frame 74 screenshot $folder/$1-dusk.png
-frame 76 key c
+frame 74 screenshot $folder/$1-dusk.bmp
 frame 80 resize 320x180
-frame 84 screenshot $folder/$1-large.png
+frame 84 screenshot $folder/$1-large.bmp
 frame 90 resize 128x96
-frame 94 screenshot $folder/$1-small.png
+frame 94 screenshot $folder/$1-small.bmp
 frame 100 quit
 END
 }
 for run in a b; do
     script $run > "$folder/$run.txt"
-    drive $run --rung 0 --validate || fail "$run: exit code $?: $(cat "$folder/$run.err")"
+    drive $run -r 0 -v || fail "$run: exit code $?: $(cat "$folder/$run.err")"
     [ ! -s "$folder/$run.err" ] || fail "$run says $(cat "$folder/$run.err")"
     is $run frames 100
     is $run rungs 0x01
     is $run resizes 2
-    is $run validation 0
 done
-cmp -s "$folder/a.out" "$folder/b.out" || sed 's/missed [0-9]*//' "$folder/a.out" "$folder/b.out" | uniq | wc -l |
+cmp -s "$folder/a.out" "$folder/b.out" || sed 's/over [0-9]*//' "$folder/a.out" "$folder/b.out" | uniq | wc -l |
     grep -qx 1 || fail "the same script drives otherwise: $(cat "$folder/a.out" "$folder/b.out")"
 for shot in start driven paused dusk large small; do
-    cmp -s "$folder/a-$shot.png" "$folder/b-$shot.png" || fail "the same script shows another $shot"
-    [ "$(colors "$folder/a-$shot.png")" -gt 100 ] || fail "$shot is hardly a picture"
-    [ "$shot" = start ] || ! cmp -s "$folder/a-$shot.png" "$folder/a-start.png" || fail "$shot looks like the start"
+    cmp -s "$folder/a-$shot.bmp" "$folder/b-$shot.bmp" || fail "the same script shows another $shot"
+    [ "$(colors "$folder/a-$shot.bmp")" -gt 100 ] || fail "$shot is hardly a picture"
+    [ "$shot" = start ] || ! cmp -s "$folder/a-$shot.bmp" "$folder/a-start.bmp" || fail "$shot looks like the start"
 done
-[ "$(size "$folder/a-start.png") $(size "$folder/a-large.png") $(size "$folder/a-small.png")" = \
+[ "$(size "$folder/a-start.bmp") $(size "$folder/a-large.bmp") $(size "$folder/a-small.bmp")" = \
     "192x108 320x180 128x96" ] || fail "sizes of the pictures"
 awk '{ for (i = 1; i < NF; i++) if ($i == "distance") exit !($(i + 1) > 5 && $(i + 1) < 30) }' "$folder/a.out" ||
     fail "distance: $(cat "$folder/a.out")"
 # The head lights show: what lies before the car is brighter with them than without.
-printf 'frame 0 key up down\nframe 6 screenshot %s/on.png\nframe 7 key l\nframe 10 screenshot %s/off.png\nframe 11 quit\n' \
+printf 'frame 0 key n\nframe 0 key up down\nframe 6 screenshot %s/on.bmp\nframe 7 key l\nframe 10 screenshot %s/off.bmp\nframe 11 quit\n' \
     "$folder" "$folder" > "$folder/lamps.txt"
-drive lamps --rung 0 --dusk || fail "dusk: $(cat "$folder/lamps.err")"
+drive lamps -r 0 || fail "dusk: $(cat "$folder/lamps.err")"
 mean() { convert "$1" -crop 64x24+64+44 -colorspace Gray -format '%[fx:1000*mean]' info:; }
-awk "BEGIN { exit !($(mean "$folder/on.png") > 1.05 * $(mean "$folder/off.png")) }" ||
-    fail "head lights: $(mean "$folder/on.png") with, $(mean "$folder/off.png") without"
+awk "BEGIN { exit !($(mean "$folder/on.bmp") > 1.05 * $(mean "$folder/off.bmp")) }" ||
+    fail "head lights: $(mean "$folder/on.bmp") with, $(mean "$folder/off.bmp") without"
 
 # ---- the governor: a target that no rung keeps, one that the first does ----------------------------
 
 printf 'frame 60 quit\n' > "$folder/slow.txt"
 cp "$folder/slow.txt" "$folder/fast.txt"
-drive slow --target 1 || fail "slow: $(cat "$folder/slow.err")"
+drive slow -t 1 || fail "slow: $(cat "$folder/slow.err")"
 is slow frames 60
 [ "$(($(count slow rungs)))" -gt 1 ] || fail "no rung but the first: $(cat "$folder/slow.out")"
-drive fast --target 1000 || fail "fast: $(cat "$folder/fast.err")"
+drive fast -t 1000 || fail "fast: $(cat "$folder/fast.err")"
 is fast frames 60
 
 # ---- the heap is closed ----------------------------------------------------------------------------
 
-printf 'frame 3 quit\n' > "$folder/heap.txt"
-(drive heap --rung 0 --allocate) 2> /dev/null && fail "an allocation in the first frame is let through"
+printf 'frame 3 allocate\nframe 4 quit\n' > "$folder/heap.txt"
+(drive heap -r 0) 2> /dev/null && fail "an allocation in a frame is let through"
 grep -q 'the heap is closed' "$folder/heap.err" || fail "heap: $(cat "$folder/heap.err")"
 
 # ---- what it refuses, each in one line -------------------------------------------------------------
@@ -134,13 +125,12 @@ refuses() {
     grep -q -e "$pattern" "$folder/$name.err" || fail "$name: \"$pattern\" is not in $(cat "$folder/$name.err")"
 }
 echo 'frame 3 key nosuch' > "$folder/key.txt"
-refuses key 'key.txt:1: no line of a script'
-printf 'frame 3 quit\nframe 2 key up\n' > "$folder/order.txt"
-refuses order 'order.txt:2: no line of a script'
-printf 'frame 1 quit\n' | tee "$folder/car.txt" "$folder/track.txt" "$folder/blob.txt" "$folder/big.txt" > /dev/null
-refuses car '\-\-car 3: the track has 3' --car 3
+refuses key 'no line of a script: key nosuch'
+echo 'fly away' > "$folder/word.txt"
+refuses word 'no line of a script: fly away'
+printf 'frame 1 quit\n' | tee "$folder/track.txt" "$folder/blob.txt" "$folder/big.txt" > /dev/null
 echo 'masu-track 1 points 2' > "$folder/bad.track"
-refuses track 'bad.track: no track of version 1' --track "$folder/bad.track"
+track=$folder/bad.track refuses track 'bad.track: no track of version 1'
 scene=tests/scenes/test_drive.track refuses blob 'scene blob'
 "$game" > /dev/null 2> "$folder/err"
 [ $? = 2 ] && grep -q '^usage' "$folder/err" || fail "no usage without a scene"

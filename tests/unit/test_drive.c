@@ -1,6 +1,6 @@
 /* test_drive.c: the game's physics, without a picture: the track file of the test scene, laps, barriers, the
  * other cars. */
-#include "../../examples/drive/car.h"
+#include "../../examples/drive/race.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,15 +14,6 @@
 
 static track road;
 static race r;
-
-/* Keeps to the middle as a driver would: steers to a point ahead. */
-static car_input steady(const race *at) {
-    const car *c = &at->cars[at->player];
-    track_place ahead = track_along(at->track, c->place.along + 9, 0);
-    vec to = add(ahead.ground, c->at, -1);
-    double side = dot(unit(to), cross(c->ahead, c->up)), speed = car_speed(c);
-    return (car_input){.steer = clamp(4 * side, -1, 1), .throttle = speed < 11, .brake = speed > 13};
-}
 
 static void places_are_found_again(void **state) {
     (void)state;
@@ -51,15 +42,15 @@ static void ground_rises_from_the_edge_to_the_barrier(void **state) {
 
 static void a_lap_counts_once(void **state) {
     (void)state;
-    race_start(&r, &road, 0);
+    race_start(&r, &road);
     double started = r.cars[0].travelled;
     for (int i = 0; i < 60 * 60 && r.laps < 2; i++) {
-        car_input in = steady(&r);
+        car_input in = race_autopilot(&r, 0);
         race_step(&r, &in, 1.0 / 60);
         assert_false(r.cars[0].off);
     }
     assert_int_equal(r.laps, 2);
-    assert_true(r.best > 20 && r.best < 40 && r.best <= r.last);
+    assert_true(r.best > 20 && r.best < 40);
     assert_true(r.cars[0].travelled >= 2 * road.length && started < road.length);
     /* Back over the line and forth again: no third lap. */
     for (int i = 0; i < 240; i++) race_step(&r, &(car_input){.brake = 1}, 1.0 / 60);
@@ -72,14 +63,16 @@ static void a_lap_counts_once(void **state) {
 static void barriers_hold(void **state) {
     (void)state;
     for (int way = -1; way <= 1; way++) {
-        race_start(&r, &road, 0);
+        race_start(&r, &road);
+        bool reached = false;
         for (int i = 0; i < 1200; i++) {
             race_step(&r, &(car_input){.throttle = 1, .steer = way}, 1.0 / 60);
             const car *c = &r.cars[0];
+            reached = reached || fabs(c->place.side) > c->place.barrier - 1.1;
             assert_true(fabs(c->place.side) <= c->place.barrier - 0.9);
             assert_true(isfinite(c->at.x) && isfinite(c->heading) && fabs(car_speed(c)) < 80);
         }
-        assert_true(r.hits > 0);
+        assert_true(reached);
     }
 }
 
@@ -87,7 +80,7 @@ static void grass_is_slow(void **state) {
     (void)state;
     double speed[2];
     for (int grass = 0; grass < 2; grass++) {
-        race_start(&r, &road, 0);
+        race_start(&r, &road);
         if (grass) r.cars[0].at.z += 4; /* 27 + 4: 6 m beside the middle, whose edge is at 5 */
         for (int i = 0; i < 150; i++) race_step(&r, &(car_input){.throttle = 1}, 1.0 / 60);
         assert_int_equal(r.cars[0].off, grass);
@@ -98,23 +91,21 @@ static void grass_is_slow(void **state) {
 
 static void the_others_drive_the_lap(void **state) {
     (void)state;
-    race_start(&r, &road, 0);
-    assert_int_equal(race_position(&r), 3);
+    race_start(&r, &road);
     for (int i = 0; i < 60 * 40; i++) {
         race_step(&r, &(car_input){0}, 1.0 / 60);
-        for (int k = 1; k < 3; k++) assert_true(fabs(r.cars[k].place.side) <= 2.01);
+        for (int k = 1; k < 3; k++) assert_false(r.cars[k].off);
     }
     for (int k = 1; k < 3; k++) assert_true(r.cars[k].travelled > road.length);
-    assert_int_equal(race_position(&r), 3);
 }
 
 static void the_same_drive_twice(void **state) {
     (void)state;
     static race first;
     for (int run = 0; run < 2; run++) {
-        race_start(&r, &road, 0);
+        race_start(&r, &road);
         for (int i = 0; i < 600; i++) {
-            car_input in = steady(&r);
+            car_input in = race_autopilot(&r, 0);
             race_step(&r, &in, 1.0 / 60);
         }
         if (!run) first = r;

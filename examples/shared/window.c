@@ -1,5 +1,4 @@
-/* window.c: see window.h. Nothing here is particular to Masu but what its contract asks for: images that
- * can be copied to, one queue with graphics and compute, features told as they were enabled. */
+/* window.c: see window.h. */
 #include "window.h"
 
 #include <SDL_vulkan.h>
@@ -10,24 +9,22 @@
 #define MANY 16u
 #define INFO(type) .sType = VK_STRUCTURE_TYPE_##type
 #define TRY(call) if (!check(call, #call)) return false
-static const VkImageSubresourceRange whole = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
 
 static bool check(VkResult r, const char *what) {
-    if (r < 0) fprintf(stderr, "drive: %s failed: VkResult %d\n", what, (int)r);
+    if (r < 0) fprintf(stderr, "%s failed: VkResult %d\n", what, (int)r);
     return r >= 0;
 }
 
 static bool sdl_failed(const char *what) {
-    return fprintf(stderr, "drive: %s: %s\n", what, SDL_GetError()), false;
+    return fprintf(stderr, "%s: %s\n", what, SDL_GetError()), false;
 }
 
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                  VkDebugUtilsMessageTypeFlagsEXT types,
-                                                 const VkDebugUtilsMessengerCallbackDataEXT *data,
-                                                 void *user) {
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data, void *user) {
     (void)severity, (void)types;
     ((window *)user)->messages++;
-    fprintf(stderr, "drive: validation: %s\n", data->pMessage);
+    fprintf(stderr, "validation: %s\n", data->pMessage);
     return VK_FALSE;
 }
 
@@ -67,11 +64,10 @@ static bool choose_device(window *w) {
             vkGetPhysicalDeviceSurfaceSupportKHR(gpus[i], f, w->surface, &shows);
             if (!shows || (families[f].queueFlags & wanted) != wanted) continue;
             w->gpu = gpus[i], w->family = f;
-            vkGetPhysicalDeviceMemoryProperties(w->gpu, &w->memory);
             return true;
         }
     }
-    return fprintf(stderr, "drive: no Vulkan device draws to this window\n"), false;
+    return fprintf(stderr, "no Vulkan device draws to this window\n"), false;
 }
 
 static bool create_device(window *w) {
@@ -108,109 +104,63 @@ static bool create_device(window *w) {
     return true;
 }
 
-bool window_allocate(window *w, uint32_t type, VkDeviceSize bytes, VkDeviceMemory *memory) {
-    VkMemoryAllocateInfo info = {INFO(MEMORY_ALLOCATE_INFO), NULL, bytes, type};
-    TRY(vkAllocateMemory(w->device, &info, NULL, memory));
-    return true;
-}
-
-static bool create_photo(window *w) {
-    VkBufferCreateInfo info = {INFO(BUFFER_CREATE_INFO), .size = PHOTO_BYTES,
-                               .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT};
-    TRY(vkCreateBuffer(w->device, &info, NULL, &w->photo));
-    VkMemoryRequirements need;
-    vkGetBufferMemoryRequirements(w->device, w->photo, &need);
-    VkMemoryPropertyFlags wanted =
-        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    uint32_t type = 0; /* Vulkan promises that there is one */
-    while (!(need.memoryTypeBits >> type & 1) ||
-           (w->memory.memoryTypes[type].propertyFlags & wanted) != wanted) type++;
-    if (!window_allocate(w, type, need.size, &w->photo_memory)) return false;
-    TRY(vkBindBufferMemory(w->device, w->photo, w->photo_memory, 0));
-    TRY(vkMapMemory(w->device, w->photo_memory, 0, VK_WHOLE_SIZE, 0, &w->photo_pixels));
-    return true;
-}
-
-/* Between the library's commands and what copies or shows the image. */
-static bool create_pass(window *w) {
+static bool choose_format(window *w) {
     VkSurfaceFormatKHR formats[64];
     uint32_t n = 64;
     TRY(vkGetPhysicalDeviceSurfaceFormatsKHR(w->gpu, w->surface, &n, formats));
-    for (uint32_t i = 0; i < n && !w->format; i++) {
-        VkFormat f = formats[i].format; /* photos are read as four bytes */
-        if (f == VK_FORMAT_B8G8R8A8_UNORM || f == VK_FORMAT_R8G8B8A8_UNORM) w->format = f;
+    for (uint32_t i = 0; i < n; i++) {
+        w->format = formats[i].format;
+        if (w->format == VK_FORMAT_B8G8R8A8_UNORM || w->format == VK_FORMAT_R8G8B8A8_UNORM) return true;
     }
-    if (!w->format) return fprintf(stderr, "drive: the window has no format of 8 bits\n"), false;
-    VkAttachmentDescription color = {0, w->format, VK_SAMPLE_COUNT_1_BIT,
-                                     VK_ATTACHMENT_LOAD_OP_LOAD, VK_ATTACHMENT_STORE_OP_STORE,
-                                     VK_ATTACHMENT_LOAD_OP_DONT_CARE, VK_ATTACHMENT_STORE_OP_DONT_CARE,
-                                     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                     VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
-    VkAttachmentReference reference = {0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    VkSubpassDescription subpass = {.colorAttachmentCount = 1, .pColorAttachments = &reference};
-    VkPipelineStageFlags draws = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-    VkAccessFlags reads = VK_ACCESS_COLOR_ATTACHMENT_READ_BIT;
-    VkAccessFlags writes = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-    VkSubpassDependency around[2] = {
-        {VK_SUBPASS_EXTERNAL, 0, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, draws, VK_ACCESS_MEMORY_WRITE_BIT,
-         reads | writes, 0},
-        {0, VK_SUBPASS_EXTERNAL, draws, VK_PIPELINE_STAGE_TRANSFER_BIT, writes,
-         VK_ACCESS_TRANSFER_READ_BIT, 0}};
-    VkRenderPassCreateInfo info = {INFO(RENDER_PASS_CREATE_INFO), .attachmentCount = 1,
-                                   .pAttachments = &color, .subpassCount = 1, .pSubpasses = &subpass,
-                                   .dependencyCount = 2, .pDependencies = around};
-    TRY(vkCreateRenderPass(w->device, &info, NULL, &w->pass));
-    return true;
+    return fprintf(stderr, "the window has no format of 8 bits\n"), false;
 }
 
-bool window_open(window *w, int width, int height, bool validate) {
+bool window_open(window *w, const char *title, int width, int height, bool validate) {
+    int any = SDL_WINDOWPOS_CENTERED;
     if (SDL_Init(SDL_INIT_VIDEO | SDL_INIT_GAMECONTROLLER)) return sdl_failed("SDL");
-    int where = SDL_WINDOWPOS_CENTERED;
-    w->sdl = SDL_CreateWindow("Masu: drive", where, where, width, height,
-                              SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE);
+    w->sdl = SDL_CreateWindow(title, any, any, width, height, SDL_WINDOW_VULKAN | SDL_WINDOW_RESIZABLE);
     if (!w->sdl) return sdl_failed("no window");
     if (!create_instance(w, validate)) return false;
     if (!SDL_Vulkan_CreateSurface(w->sdl, w->instance, &w->surface)) return sdl_failed("no surface");
-    return choose_device(w) && create_device(w) && create_photo(w) && create_pass(w) &&
-           window_swapchain(w);
+    return choose_device(w) && create_device(w) && choose_format(w) && window_swapchain(w);
 }
 
-static void forget_images(window *w) {
-    for (uint32_t i = 0; i < w->count; i++) {
-        vkDestroyFramebuffer(w->device, w->framebuffers[i], NULL);
-        vkDestroyImageView(w->device, w->views[i], NULL);
-    }
-    w->count = 0;
+masu_vulkan window_vulkan(const window *w) {
+    return (masu_vulkan){.get_instance_proc_addr = vkGetInstanceProcAddr,
+                         .instance = w->instance,
+                         .physical_device = w->gpu,
+                         .device = w->device,
+                         .queue_family = w->family,
+                         .texture_compression_bc = w->features.textureCompressionBC,
+                         .max_anisotropy = w->anisotropy};
+}
+
+masu_targets window_targets(const window *w) {
+    return (masu_targets){.images = w->images, .count = w->count, .format = w->format};
 }
 
 bool window_swapchain(window *w) {
     VkSurfaceCapabilitiesKHR can;
+    int width, height;
+    SDL_Vulkan_GetDrawableSize(w->sdl, &width, &height); /* where the surface leaves it to the host */
     TRY(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(w->gpu, w->surface, &can));
-    if (can.currentExtent.width != UINT32_MAX) w->size = can.currentExtent;
-    forget_images(w);
-    w->replaced = w->swapchain;
+    VkExtent2D size = {(uint32_t)width, (uint32_t)height};
+    if (can.currentExtent.width != UINT32_MAX) size = can.currentExtent;
+    if (!size.width || !size.height) return false;
     uint32_t least = can.minImageCount > 3 ? can.minImageCount : 3;
+    w->size = size, w->replaced = w->swapchain;
     VkSwapchainCreateInfoKHR info = {
         INFO(SWAPCHAIN_CREATE_INFO_KHR), .surface = w->surface, .oldSwapchain = w->replaced,
         .minImageCount = can.maxImageCount && least > can.maxImageCount ? can.maxImageCount : least,
         .imageFormat = w->format, .imageColorSpace = VK_COLOR_SPACE_SRGB_NONLINEAR_KHR,
-        .imageExtent = w->size, .imageArrayLayers = 1,
-        .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+        .imageExtent = size, .imageArrayLayers = 1,
+        .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
         .preTransform = can.currentTransform, .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
         .presentMode = VK_PRESENT_MODE_FIFO_KHR, .clipped = VK_TRUE};
     TRY(vkCreateSwapchainKHR(w->device, &info, NULL, &w->swapchain));
-    uint32_t n = WINDOW_IMAGES;
-    TRY(vkGetSwapchainImagesKHR(w->device, w->swapchain, &n, w->images));
-    for (; w->count < n; w->count++) {
-        VkImageViewCreateInfo view = {INFO(IMAGE_VIEW_CREATE_INFO), .image = w->images[w->count],
-                                      .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = w->format,
-                                      .subresourceRange = whole};
-        TRY(vkCreateImageView(w->device, &view, NULL, &w->views[w->count]));
-        VkFramebufferCreateInfo frame = {INFO(FRAMEBUFFER_CREATE_INFO), NULL, 0, w->pass, 1,
-                                         &w->views[w->count], w->size.width, w->size.height, 1};
-        TRY(vkCreateFramebuffer(w->device, &frame, NULL, &w->framebuffers[w->count]));
-    }
+    memset(w->submit_ns, 0, sizeof w->submit_ns); /* what is between two sizes is no frame's time */
+    w->count = WINDOW_IMAGES;
+    TRY(vkGetSwapchainImagesKHR(w->device, w->swapchain, &w->count, w->images));
     return true;
 }
 
@@ -219,27 +169,32 @@ void window_drop(window *w) {
     w->replaced = VK_NULL_HANDLE;
 }
 
-bool window_wait(window *w, uint32_t slot) {
-    TRY(vkWaitForFences(w->device, 1, &w->fences[slot], VK_TRUE, UINT64_MAX));
-    return true;
+static uint64_t clock_ns(void) {
+    return (uint64_t)(1e9 * (double)SDL_GetPerformanceCounter() / (double)SDL_GetPerformanceFrequency());
 }
 
-VkResult window_acquire(window *w, uint32_t slot, uint32_t *image) {
-    VkResult r = vkAcquireNextImageKHR(w->device, w->swapchain, UINT64_MAX, w->acquired[slot],
-                                       VK_NULL_HANDLE, image);
-    return r == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : r;
+VkResult window_begin(window *w, uint32_t slot, uint32_t *image) {
+    VkResult r = vkWaitForFences(w->device, 1, &w->fences[slot], VK_TRUE, UINT64_MAX);
+    uint64_t before = w->done_ns[!slot], from = w->submit_ns[slot] > before ? w->submit_ns[slot] : before;
+    w->done_ns[slot] = clock_ns();
+    w->frame_ms = (double)(w->done_ns[slot] - from) / 1e6;
+    if (!r) r = vkAcquireNextImageKHR(w->device, w->swapchain, UINT64_MAX, w->acquired[slot], VK_NULL_HANDLE, image);
+    if (r != VK_ERROR_OUT_OF_DATE_KHR) (void)check(r, "taking an image of the window");
+    return r == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : r; /* it can be drawn to; window_end tells */
 }
 
-VkResult window_show(window *w, uint32_t slot, uint32_t image, VkCommandBuffer library) {
+VkResult window_end(window *w, uint32_t slot, uint32_t image, const VkCommandBuffer *list, uint32_t count) {
     VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
-    VkCommandBuffer both[2] = {library, w->commands[slot]};
-    VkSubmitInfo submit = {INFO(SUBMIT_INFO), NULL, 1, &w->acquired[slot], &stage, 2, both, 1,
+    VkSubmitInfo submit = {INFO(SUBMIT_INFO), NULL, 1, &w->acquired[slot], &stage, count, list, 1,
                            &w->drawn[image]};
     vkResetFences(w->device, 1, &w->fences[slot]);
+    w->submit_ns[slot] = clock_ns();
     VkResult r = vkQueueSubmit(w->queue, 1, &submit, w->fences[slot]);
     VkPresentInfoKHR present = {INFO(PRESENT_INFO_KHR), NULL, 1, &w->drawn[image], 1, &w->swapchain,
                                 &image, NULL};
-    return r ? r : vkQueuePresentKHR(w->queue, &present);
+    if (!r) r = vkQueuePresentKHR(w->queue, &present);
+    if (r != VK_ERROR_OUT_OF_DATE_KHR) (void)check(r, "showing a frame");
+    return r;
 }
 
 bool window_run(window *w, VkCommandBuffer commands) {
@@ -249,24 +204,28 @@ bool window_run(window *w, VkCommandBuffer commands) {
     return true;
 }
 
-void window_copy_photo(window *w, VkCommandBuffer to, uint32_t image) {
-    VkImageLayout shown = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, read = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    VkPipelineStageFlags transfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    VkImageMemoryBarrier barrier = {INFO(IMAGE_MEMORY_BARRIER), NULL, 0, VK_ACCESS_TRANSFER_READ_BIT,
-                                    shown, read, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
-                                    w->images[image], whole};
-    VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                .imageExtent = {w->size.width, w->size.height, 1}};
-    vkCmdPipelineBarrier(to, transfer, transfer, 0, 0, NULL, 0, NULL, 1, &barrier);
-    vkCmdCopyImageToBuffer(to, w->images[image], read, w->photo, 1, &region);
-    barrier.oldLayout = read, barrier.newLayout = shown, barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-    vkCmdPipelineBarrier(to, transfer, VK_PIPELINE_STAGE_HOST_BIT | transfer, 0, 0, NULL, 0, NULL, 1,
-                         &barrier);
+bool window_memory(window *w, uint32_t type, VkDeviceSize bytes, VkDeviceMemory *memory, void **mapped) {
+    VkMemoryAllocateInfo info = {INFO(MEMORY_ALLOCATE_INFO), NULL, bytes, type};
+    TRY(vkAllocateMemory(w->device, &info, NULL, memory));
+    if (mapped) TRY(vkMapMemory(w->device, *memory, 0, VK_WHOLE_SIZE, 0, mapped));
+    return true;
+}
+
+bool window_blocks(window *w, const masu_memory *need, const VkDeviceSize bytes[MASU_ROLE_COUNT],
+                   masu_device_block out[MASU_ROLE_COUNT]) {
+    for (int i = 0; i < MASU_ROLE_COUNT; i++) {
+        const masu_role_need *role = &need->roles[i];
+        if (!role->bytes) continue;
+        out[i].bytes = bytes[i], out[i].memory_type = role->type;
+        void **mapped = role->host_visible ? &out[i].mapped : NULL;
+        if (!window_memory(w, role->type, bytes[i], &out[i].memory, mapped)) return false;
+    }
+    return true;
 }
 
 void window_close(window *w) {
     if (w->device) {
-        forget_images(w);
+        vkDeviceWaitIdle(w->device);
         window_drop(w);
         vkDestroySwapchainKHR(w->device, w->swapchain, NULL);
         for (int i = 0; i < WINDOW_IMAGES; i++) vkDestroySemaphore(w->device, w->drawn[i], NULL);
@@ -274,9 +233,6 @@ void window_close(window *w) {
             vkDestroySemaphore(w->device, w->acquired[i], NULL);
             vkDestroyFence(w->device, w->fences[i], NULL);
         }
-        vkDestroyBuffer(w->device, w->photo, NULL);
-        vkFreeMemory(w->device, w->photo_memory, NULL);
-        vkDestroyRenderPass(w->device, w->pass, NULL);
         vkDestroyCommandPool(w->device, w->pool, NULL);
         vkDestroyDevice(w->device, NULL);
     }

@@ -1,0 +1,74 @@
+#!/bin/bash
+# The small examples beside minimal.c: loop in a window of a screen of its own, under the validation layer, with a
+# smaller window (masu_resize), a larger one (masu_destroy, masu_init) and rungs of the governor; split_screen,
+# whose halves show the scene from two places. drive.sh has the game.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+examples=${BUILD:-build}/examples
+scenes=${MADE:-build}/scenes
+folder=$(mktemp -d)
+# shellcheck source=tests/xvfb.sh
+. tests/xvfb.sh
+trap 'rm -rf "$folder"; stop_screen' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+colors() { convert "$1" ${2:+-crop "$2"} -format '%k' info:; }
+
+for example in minimal loop split_screen; do
+    lines=$(wc -l < examples/$example.c)
+    [ "$lines" -le 150 ] || fail "$example.c has $lines lines: at most 150"
+done
+
+# ---- split_screen ----------------------------------------------------------------------------------
+
+"$examples/split_screen" "$scenes/test_live.masu" "$folder/split.png" > "$folder/out" 2> "$folder/err" ||
+    fail "split_screen: $(cat "$folder/out" "$folder/err")"
+grep -q 'validation 0' "$folder/out" || fail "split_screen: $(cat "$folder/out")"
+convert "$folder/split.png" -crop 320x360 +repage "$folder/half%d.png"
+for half in 0 1; do
+    [ "$(colors "$folder/half$half.png")" -gt 100 ] || fail "half $half of the split screen is hardly a picture"
+done
+[ "$(compare -metric AE "$folder/half0.png" "$folder/half1.png" null: 2>&1)" -gt 20000 ] ||
+    fail "both halves show the same"
+"$examples/split_screen" 2> /dev/null
+[ $? = 2 ] || fail "split_screen without arguments"
+"$examples/split_screen" /dev/null "$folder/none.png" 2> /dev/null && fail "split_screen takes an empty scene"
+
+# ---- loop ------------------------------------------------------------------------------------------
+
+if [ ! -x "$examples/loop" ] || ! command -v Xvfb > /dev/null; then
+    echo "skipped: no SDL2 or no Xvfb here (make deps-test)"
+    [ $failures = 0 ] && exit 77
+    exit 1
+fi
+start_screen "$folder" || exit 1
+cat > "$folder/script" << END
+# 640x360, then another
+frame 9 screenshot $folder/first.bmp
+frame 10 resize 320x180
+frame 19 screenshot $folder/small.bmp
+frame 20 resize 800x450
+frame 29 screenshot $folder/large.bmp
+frame 30 quit
+END
+timeout 300 "$examples/loop" "$scenes/test_live.masu" "$folder/script" > "$folder/out" 2> "$folder/err" ||
+    fail "loop: $? $(cat "$folder/out" "$folder/err")"
+grep -Eq 'frames 30 rungs 0x[0-9a-f]+ resizes 2 inits 2 validation 0' "$folder/out" || fail "loop: $(cat "$folder/out")"
+[ "$(identify -format '%wx%h ' "$folder"/{first,small,large}.bmp)" = "640x360 320x180 800x450 " ] ||
+    fail "sizes of the pictures"
+for shot in first small large; do
+    [ "$(colors "$folder/$shot.bmp")" -gt 100 ] || fail "$shot is hardly a picture"
+done
+# No rung keeps 16.7 ms on a CPU: it has left the first.
+rungs=$(sed -n 's/.* rungs \([^ ]*\) .*/\1/p' "$folder/out")
+[ $((rungs)) -gt 1 ] || fail "no rung but the first: $(cat "$folder/out")"
+echo 'frame 1 fly' > "$folder/script"
+"$examples/loop" "$scenes/test_live.masu" "$folder/script" 2> "$folder/err" > /dev/null && fail "loop flies"
+grep -q 'no line of a script: fly' "$folder/err" || fail "loop: $(cat "$folder/err")"
+
+[ $failures = 0 ] && echo "examples: all as expected: $(cat "$folder/out")"
+[ $failures = 0 ]
