@@ -261,6 +261,7 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
                                      .pQueuePriorities = &priority};
     VkPhysicalDeviceFeatures offered;
     vkGetPhysicalDeviceFeatures(host->physical, &offered);
+    if (host->desc.deny) offered = (VkPhysicalDeviceFeatures){0};
     VkPhysicalDeviceFeatures features = {.samplerAnisotropy = offered.samplerAnisotropy,
                                          .textureCompressionBC = offered.textureCompressionBC};
     host->stores = host->desc.stores && offered.vertexPipelineStoresAndAtomics &&
@@ -278,13 +279,13 @@ static bool create_device(masu_headless *host, char *error, size_t size) {
     VkPhysicalDeviceShaderFloat16Int8Features halves = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES};
     ray_features rays;
-    host->ray_query = host->desc.ray_query && offers_rays(host->physical, &rays);
+    host->ray_query = !host->desc.deny && host->desc.ray_query && offers_rays(host->physical, &rays);
     if (host->ray_query) {
         info.pNext = &rays.query;
         info.enabledExtensionCount = RAY_EXTENSIONS;
         memcpy(names, ray_extensions, sizeof ray_extensions);
     }
-    host->float16 = offers_halves(host->physical);
+    host->float16 = !host->desc.deny && offers_halves(host->physical);
     if (host->float16) {
         halves.shaderFloat16 = VK_TRUE;
         halves.pNext = (void *)info.pNext;

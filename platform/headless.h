@@ -29,6 +29,7 @@ typedef struct masu_headless_desc {
     bool labels;        /* VK_EXT_debug_utils for names and labels; validation turns it on too */
     bool ray_query;     /* ray queries, where they are offered */
     bool stores;        /* stores and atomics of vertex and fragment shaders, where they are offered */
+    bool deny;          /* none of the optional features, whatever is offered or asked for */
     void (*message)(void *user,
                     const char *text); /* each validation warning or error; NULL: counted only */
     void *message_user;

@@ -80,12 +80,23 @@ bool masu_session_start(masu_session *s, char *error, size_t size) {
     return load(s, error, size);
 }
 
+bool masu_session_denied(void) {
+    const char *what = getenv("MASU_DENY");
+    return what && !strcmp(what, "all");
+}
+
 bool masu_session_open(const masu_session_desc *d, masu_session *s, char *error,
                        size_t error_size) {
     memset(s, 0, sizeof *s);
     s->desc = d->desc;
     masu_headless_desc host = d->host;
     host.labels = host.labels || d->desc.debug.labels;
+    host.deny = host.deny || masu_session_denied();
+    if (host.deny) {
+        s->desc.deny = (masu_deny){.unified_memory = 1, .compressed_textures = 1};
+        s->desc.debug.timestamps = 0;
+        s->desc.governor.wall_only = 1;
+    }
     if (!open_scene(d, s, error, error_size) ||
         !masu_headless_open(&host, &s->host, error, error_size)) {
         masu_session_close(s);

@@ -1,6 +1,9 @@
 /* session.h: a scene file (or none), a headless host, targets and a renderer in one block: what
  * each tool and most tests need before the first frame. Where a port has its own device and memory,
- * a session has the plain ones. */
+ * a session has the plain ones.
+ *
+ * With MASU_DENY=all in the environment a session is that of a device which offers nothing that is optional: no
+ * compressed textures, anisotropy, ray queries, 16-bit floats, unified memory or timestamps. */
 #ifndef MASU_SESSION_H
 #define MASU_SESSION_H
 
@@ -30,6 +33,8 @@ typedef struct masu_session {
     VkImage images[MASU_MAX_TARGETS];
     VkImageView views[MASU_MAX_TARGETS];
 } masu_session;
+
+bool masu_session_denied(void); /* MASU_DENY=all */
 
 /* On false `error` says why in one line and everything is closed again. The session must not be
  * moved afterwards. */

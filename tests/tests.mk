@@ -49,6 +49,8 @@ $(BUILD)/tests/gpu/%: LIBS = $(patsubst %,-Wl$(comma)--wrap=vk%,$(KEPT_FUNCTIONS
 $(BUILD)/tests/unit/test_drive: $(call objects,examples/drive/car.c examples/drive/track.c)
 # The hook of masu model knows passes by their layouts, of which equal ones would be one.
 $(BUILD)/tests/gpu/test_model: LIBS = $(TEST_LIBS)
+# What is kept would not be made again.
+$(BUILD)/tests/gpu/test_reinit: LIBS = $(TEST_LIBS)
 
 $(BUILD)/tests/unit/%: $(BUILD)/obj/tests/unit/%.o $(TEST_ARCHIVES)
 	$(link)

