@@ -32,7 +32,8 @@ convert "$folder/split.png" -crop 320x360 +repage "$folder/half%d.png"
 for half in 0 1; do
     [ "$(colors "$folder/half$half.png")" -gt 100 ] || fail "half $half of the split screen is hardly a picture"
 done
-[ "$(compare -metric AE "$folder/half0.png" "$folder/half1.png" null: 2>&1)" -gt 20000 ] ||
+# Of the same place twice it is 2,400 pixels: reflections have noise.
+[ "$(compare -metric AE -fuzz 10% "$folder/half0.png" "$folder/half1.png" null: 2>&1)" -gt 20000 ] ||
     fail "both halves show the same"
 "$examples/split_screen" 2> /dev/null
 [ $? = 2 ] || fail "split_screen without arguments"
