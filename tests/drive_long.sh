@@ -13,7 +13,7 @@ trap stop_screen EXIT
 rm -rf "$folder" && mkdir -p "$folder"
 start_screen "$folder" || exit 1
 
-# Ten frames a second: a CPU draws no more. Of 1,800 frames five are paused.
+# Ten frames a second: a CPU draws no more. Of 1,800 frames six are paused.
 {
     echo "frame 0 step 0.1"
     echo "frame 0 key o"
