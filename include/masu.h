@@ -517,6 +517,10 @@ typedef struct masu_desc {
      * storage targets nor in an SRGB format, which gets a copy of bytes. */
     masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
+    /* not 0: a frame may ask what one pixel shows (masu_frame_desc.pick, masu_pick). A frame that asks draws what
+     * is near that pixel a second time; all others have an empty command for each primitive. Per frame in flight 20
+     * bytes for each of these and 4 for each instance, LODs too. Without a scene ignored. */
+    uint32_t picking;
     masu_governor_desc governor;
     masu_debug debug;
     masu_deny deny;
@@ -764,8 +768,8 @@ typedef struct masu_camera {
     double position[3];
     float forward[3];    /* need not be unit length */
     float up[3];         /* not parallel to forward; all zero: +Y */
-    float fov_y;         /* vertical field of view, radians, 0.001 .. 3.1 */
-    float near_distance; /* metres, > 0; 0: the scene's. There is no far plane */
+    float fov_y;         /* vertical field of view, radians, 0.001 .. 3.1. With a window: not read */
+    float near_distance; /* metres, 1e-9 .. 1e9; 0: the scene's. There is no far plane */
     /* Pixels of the render size, right and down, -1..1: by how much beside its own middle each pixel
      * looks. The projection is shifted and nothing turned, so that all pixels move alike. The mean of
      * frames with places all over a pixel is what a larger picture made smaller shows. Rungs with
@@ -773,6 +777,21 @@ typedef struct masu_camera {
      * frame, too; cascades that are not drawn in every frame are drawn again whenever its size
      * changes. */
     float jitter[2];
+    /* A projection of one's own: the window that is seen through, a metre ahead of the eye and square to
+     * `forward`: its sides, metres to the right of the middle and above it. They are tangents of angles; the
+     * middle of the window need not be straight ahead, nor has it to have the shape of the output. All four 0:
+     * fov_y, and the output's width by its height. Each -100 .. 100, left < right and bottom < top, apart by 0.0001 and by
+     * 1/1024 of the farther of the two at least. A part of a picture is the same part of its window; ambient
+     * occlusion in screen space, filters and metering see of the rest nothing. Velocities and histories follow
+     * a window that changes. Cascades that are not drawn in every frame are drawn again when its farthest corner
+     * comes to be at another angle.
+     *
+     * What a host draws itself fits by this matrix, of a point (x to the right, y up, z ahead of the eye), whose
+     * depth (reversed, infinitely far: 1 at near_distance n, n / z at z, 0 at infinity) is to be compared
+     * by GREATER; l, r, b, t: the window, j: jitter in pixels + that of a rung with temporal, W and H the render size:
+     *     clip.x =  (2 x - (r + l) z) / (r - l) - 2 j[0] / W z      clip.z = n
+     *     clip.y = -(2 y - (t + b) z) / (t - b) - 2 j[1] / H z      clip.w = z */
+    float left, right, bottom, top;
 } masu_camera;
 
 typedef struct masu_light {
@@ -880,6 +899,9 @@ typedef struct masu_frame_desc {
     const masu_decal *decals;
     const masu_line *lines;
     uint32_t particle_count, decal_count, line_count;
+    /* pick not 0: masu_pick will tell what this pixel of the output (or viewport) shows, counted from the upper
+     * left corner: 0 .. width - 1, 0 .. height - 1. Takes desc.picking. */
+    uint32_t pick, pick_x, pick_y;
 } masu_frame_desc;
 
 /* Writes this frame's uniforms and hands out the command buffer to submit. Call when the slot is
@@ -1287,6 +1309,36 @@ typedef struct masu_readback_image {
  * MASU_ERROR_ARGUMENT: not asked for, no such slot, or a NULL pointer. MASU_INCOMPLETE: as masu_stats. */
 MASU_API masu_result masu_readback(const masu_renderer *renderer, uint32_t slot,
                                    masu_readback_bits which, masu_readback_image *out);
+
+/* What a pixel shows. */
+typedef enum masu_pick_what {
+    MASU_PICK_NOTHING = 0, /* the frame has not asked */
+    MASU_PICK_SKY = 1,
+    MASU_PICK_SDF = 2,
+    MASU_PICK_INSTANCE = 3
+} masu_pick_what;
+
+typedef struct masu_pick_info {
+    masu_pick_what what;
+    uint64_t frame; /* whose pixel it is */
+    uint32_t x, y;  /* as it has asked */
+    /* MASU_PICK_INSTANCE: which, by the handle that it keeps wherever it is moved to; id 0, rarely: a polygon thinner than what
+     * rasterisation tells apart. And the moving model that it is a node of, and which: id 0 and MASU_NODE_NONE of
+     * others. */
+    masu_instance instance;
+    masu_model model;
+    uint32_t node;
+    float depth;        /* near_distance / view depth, as MASU_READBACK_DEPTH has it but of what is blended; the sky: 0 */
+    double position[3]; /* of that point, world, metres; the sky: 0 */
+} masu_pick_info;
+
+/* What the pixel shows that the slot's last frame has asked for. Instances are told apart where the G-buffer tells
+ * them apart: through the holes of an alpha-tested material, in the LOD that is drawn, as joints have bent it. What
+ * is blended is picked before what is behind it, be it ever so clear; where it has textures, where the alpha of its base
+ * colour is 0.5 or more. At rungs of another scale it is the render pixel in which the middle of the output's lies,
+ * and with temporal or camera.jitter where that looked. Call as masu_stats. MASU_ERROR_ARGUMENT: without desc.picking, no such slot, or a NULL pointer.
+ * MASU_INCOMPLETE: as masu_stats. */
+MASU_API masu_result masu_pick(const masu_renderer *renderer, uint32_t slot, masu_pick_info *out);
 
 /* Unpacks one texel of MASU_READBACK_NORMAL to a unit vector in world space. */
 MASU_API void masu_unpack_normal(uint32_t texel, float out[3]);

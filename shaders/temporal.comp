@@ -128,7 +128,7 @@ vec4 motion_at(vec2 place, around a, vec2 size)
 bool is_known(vec2 before, around a, float growth)
 {
     vec2 size = vec2(frame.temporal.xy);
-    vec2 place = (before / vec2(pc.output_width, pc.output_height) - 0.5 * previous.jitter.xy) * size;
+    vec2 place = (before / vec2(pc.output_width, pc.output_height) - 0.5 * previous.jitter.zw) * size;
     vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* of a size of 1 it is the same texel four times */
     vec4 depths = textureGather(old_depth_image, inside / vec2(textureSize(old_depth_image, 0)));
     float then = previous.forward.w * masu_rcp(frame.forward.w * (1.0 + growth));
@@ -206,7 +206,7 @@ void main()
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
         vec2 render = vec2(pc.render_width, pc.render_height);
         ivec2 last = ivec2(pc.render_width, pc.render_height) - 1;
-        vec2 place = (vec2(at) + 0.5) * vec2(push.scale_x, push.scale_y) - 0.5 * frame.jitter.xy * render;
+        vec2 place = (vec2(at) + 0.5) * vec2(push.scale_x, push.scale_y) - 0.5 * frame.jitter.zw * render;
         around a;
         samples s;
         look_around(place, clamp(ivec2(floor(place)), ivec2(0), last), last, a, s);

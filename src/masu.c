@@ -40,6 +40,7 @@ static void lay_host(masu_arena *arena, const masu_frame_plan *plan, masu_render
     masu_models_lay(&to->models, arena, plan);
     masu_lights_lay(&to->lights, arena, plan);
     masu_visible_lay(&to->visible, arena, plan);
+    masu_picking_lay(&to->picking, arena, plan);
     masu_occlusion_lay(&to->occlusion, arena, plan);
     masu_transparents_lay(&to->transparents, arena, plan);
     masu_sprites_lay(&to->sprites, arena, plan);
@@ -259,6 +260,7 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     if (m->plan.desc.scene) {
         masu_scene_view v = masu_scene_look(m->plan.desc.scene);
         masu_visible_write_scene(&m->device, &m->draws, &v);
+        masu_picking_write_scene(&m->device, &m->draws, &v);
         masu_occlusion_write_scene(&m->device, &m->draws, &v);
     }
     m->loaded = 1;
@@ -308,6 +310,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     if (!result) result = masu_camera_read(&m->camera, f, &m->error);
     if (!result) result = masu_sun_sky_read(&m->sun_sky, f, &m->error);
     if (!result) result = masu_sdf_read(&m->sdf, f, &m->error);
+    if (!result) result = masu_picking_read(f, &m->error);
     if (result) return result;
 
     masu_sun_sky_write(&m->sun_sky, f);
@@ -326,6 +329,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_instances_write(&m->instances, f);
 
     masu_visible_write(&m->visible, &m->bounds, &m->instances, &m->views, f);
+    masu_picking_write(&m->picking, &m->visible, &m->bounds, f);
     masu_transparents_write(&m->transparents, &m->instances, &m->visible, f);
     masu_sprites_write(&m->sprites, &m->transparents, f);
     masu_occlusion_write(&m->occlusion, &m->visible, &m->views, f);

@@ -19,6 +19,7 @@
 #include "frame/instances.h"
 #include "frame/models.h"
 #include "frame/occlusion.h"
+#include "frame/picking.h"
 #include "frame/punctual_lights.h"
 #include "frame/reflections.h"
 #include "frame/sdf.h"
@@ -58,6 +59,7 @@ struct masu_renderer {
     masu_shadow shadow;
     masu_views views;
     masu_visible visible;
+    masu_picking picking;
     masu_occlusion occlusion;
     masu_transparents transparents;
     masu_sprites sprites;

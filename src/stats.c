@@ -50,6 +50,7 @@ static int is_fixed_pass(uint32_t pass) {
     case MASU_EXTENT_KEPT:
     case MASU_EXTENT_BATCHES:
     case MASU_EXTENT_PROBES:
+    case MASU_EXTENT_PICK:
     case MASU_EXTENT_SHADOW: return 1;
     default: return pass == MASU_PASS_PRESENT;
     }
@@ -186,6 +187,44 @@ masu_result masu_readback(const masu_renderer *m, uint32_t slot, masu_readback_b
     *out = (masu_readback_image){
         masu_buffer_pointer(&m->device, MASU_BUFFER_READBACK, slot) + m->plan.readback_offset[bit],
         size.width, size.height, (uint64_t)size.width * masu_format_bytes(format), format};
+    return MASU_OK;
+}
+
+/* The node of a model that shows an instance. */
+static uint32_t node_of(const masu_models *s, uint32_t model, uint32_t instance) {
+    const masu_placed_model *of = &s->models[model];
+    for (uint32_t n = 0; n < of->node_count; n++) {
+        if (s->nodes[of->first_node + n].instance == instance) return n;
+    }
+    return MASU_NODE_NONE;
+}
+
+masu_result masu_pick(const masu_renderer *m, uint32_t slot, masu_pick_info *out) {
+    if (!m || !out || slot >= m->plan.desc.frames_in_flight || !m->plan.needs.picking)
+        return MASU_ERROR_ARGUMENT;
+    *out = (masu_pick_info){.frame = m->timeline.slots[slot].frame, .node = MASU_NODE_NONE};
+    if (out->frame == UINT64_MAX || !has_ended(m, slot)) return MASU_INCOMPLETE;
+    const masu_picking_slot *asked = &m->picking.slots[slot];
+    if (!asked->asked) return MASU_OK;
+    uint32_t words[MASU_PICKED_WORDS];
+    float told[4]; /* depth, from the eye */
+    memcpy(words, masu_buffer_pointer(&m->device, MASU_BUFFER_PICKED, slot), sizeof words);
+    memcpy(told, words + 2, sizeof told);
+    out->what = words[0] == MASU_PICKED_INSTANCE ? MASU_PICK_INSTANCE
+                : words[0] == MASU_PICKED_SDF    ? MASU_PICK_SDF
+                                                 : MASU_PICK_SKY;
+    out->x = asked->x;
+    out->y = asked->y;
+    if (out->what == MASU_PICK_SKY) return MASU_OK;
+    out->depth = told[0];
+    for (uint32_t k = 0; k < 3; k++) out->position[k] = asked->eye[k] + (double)told[1 + k];
+    uint32_t i = words[1];
+    if (out->what != MASU_PICK_INSTANCE || i >= m->plan.scene.instances) return MASU_OK;
+    out->instance = masu_instance_at(m, i);
+    uint32_t model = m->plan.scene.models ? m->models.of_instance[i] : MASU_BLOB_NONE;
+    if (model == MASU_BLOB_NONE) return MASU_OK;
+    out->model = masu_model_at(m, model);
+    out->node = node_of(&m->models, model, i);
     return MASU_OK;
 }
 

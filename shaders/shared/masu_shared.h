@@ -293,6 +293,13 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 /* Of the lobe that stands for the aureole in the sky's irradiance: src/frame/sky.c. */
 #define MASU_SKY_ROUND (1.0f / 3.0f)
 
+/* What pick_tell leaves for the host: what it is, number of the instance, depth (near / view z), xyz from the eye. */
+#define MASU_PICKED_SKY 1u
+#define MASU_PICKED_SDF 2u
+#define MASU_PICKED_INSTANCE 3u
+#define MASU_PICKED_WORDS 6
+#define MASU_PICK_BLENDED 0x80000000u /* in PICK_ID */
+
 /* G-buffer material flags: two bits of the packed normal word. */
 #define MASU_SURFACE_EMISSIVE 1u
 #define MASU_SURFACE_MORE 2u /* the surface image holds the rest of it */
@@ -340,11 +347,11 @@ struct masu_frame_uniforms {
     /* xyz anchor that traced geometry is relative to; w longest ray */
     masu_vec4 trace_anchor;
     masu_vec4 trace_eye; /* xyz eye minus that anchor; w unused */
-    /* xy what jitter adds to a place in the picture, whose sides are -1 and 1; zw the most that it adds in any
-     * frame, so that what is made wide enough for it stays as it is */
+    /* What is added to a place in the picture, whose sides are -1 and 1: xy by jitter and by a window whose middle
+     * is not straight ahead, zw by jitter alone */
     masu_vec4 jitter;
     /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; z not 0: not the
-     * camera alone has changed of late; w unused */
+     * camera alone has changed of late. w the pixel to be picked: its x, and its y from bit 16 on */
     masu_uvec4 temporal;
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
 };

@@ -49,7 +49,7 @@ vec4 masu_velocity(vec4 rel, vec4 before, vec2 size)
  * them looked. Histories are found so: their texels are means over such places. */
 vec2 masu_unjittered(vec2 moved, vec2 size)
 {
-    return moved + (previous.jitter.xy - frame.jitter.xy) * (0.5 * size);
+    return moved + (previous.jitter.zw - frame.jitter.zw) * (0.5 * size);
 }
 
 vec4 masu_sky_velocity(uvec2 at, uvec2 size)

@@ -113,7 +113,8 @@ static masu_result make_global_layout(masu_device *m, masu_detail *detail) {
 
 static int draws_polygons(uint32_t pass) {
     masu_geometry g = masu_passes[pass].geometry;
-    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE || g == MASU_GEOMETRY_BLENDED;
+    return g == MASU_GEOMETRY_POLYGONS || g == MASU_GEOMETRY_CASCADE || g == MASU_GEOMETRY_BLENDED ||
+           g == MASU_GEOMETRY_PICK;
 }
 
 /* Set 2: the textures of a draw. */
@@ -338,7 +339,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
     int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
     int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
-                 geometry == MASU_GEOMETRY_BOXES;
+                 geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
@@ -470,6 +471,13 @@ static masu_result make_masked_casters(masu_device *m, uint32_t pass, masu_detai
     return result;
 }
 
+/* Nor is one picked there, or what is blended where its map is clear. */
+static masu_result make_masked_picks(masu_device *m, uint32_t pass, masu_detail *detail) {
+    masu_result result = make_pipeline(m, pass, 1, VK_TRUE, &m->masked_picks, detail);
+    masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_picks), "pick, masks");
+    return result;
+}
+
 static masu_result make_graphics(masu_device *m, uint32_t pass, masu_detail *detail) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int textures = m->texture_layout != VK_NULL_HANDLE;
@@ -485,6 +493,8 @@ static masu_result make_graphics(masu_device *m, uint32_t pass, masu_detail *det
         result = make_textured(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_CASCADE && textures)
         result = make_masked_casters(m, pass, detail);
+    if (!result && geometry == MASU_GEOMETRY_PICK && textures)
+        result = make_masked_picks(m, pass, detail);
     return result;
 }
 

@@ -55,7 +55,8 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
     if (i < MASU_PASS_COUNT) return &m->pipelines[i];
     if (i < 2 * MASU_PASS_COUNT) return &m->last[i - MASU_PASS_COUNT];
     i -= 2 * MASU_PASS_COUNT;
-    return i < MASU_TEXTURED_COUNT ? &m->textured[i] : &m->masked_casters;
+    if (i < MASU_TEXTURED_COUNT) return &m->textured[i];
+    return i == MASU_TEXTURED_COUNT ? &m->masked_casters : &m->masked_picks;
 }
 
 /* Notes what a pipeline is known by. */

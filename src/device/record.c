@@ -94,6 +94,18 @@ SAME_PLACE(layers);
 SAME_PLACE(detail_u);
 SAME_PLACE(detail_v);
 SAME_PLACE(instances);
+#undef SAME_PLACE
+#define SAME_PLACE(member, of_pick)                                                                \
+    _Static_assert(offsetof(struct masu_push_pick, of_pick) ==                                     \
+                       offsetof(struct masu_push_gbuffer, member),                                 \
+                   "what is picked is drawn as polygons are: " #member)
+SAME_PLACE(flags, flags);
+SAME_PLACE(layers, layers);
+SAME_PLACE(mip_bias, mip_bias);
+SAME_PLACE(detail_u, detail_u);
+SAME_PLACE(detail_v, detail_v);
+SAME_PLACE(instances, instances);
+SAME_PLACE(material, blended);
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
@@ -104,6 +116,17 @@ static uint32_t sweep_of(const masu_draw_look *material, uint32_t view) {
     if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
     if (material->flags & MASU_MATERIAL_IS_MASK) return 1 + MASU_TEXTURED_MASK;
     return view ? 0 : 1 + MASU_TEXTURED_OPAQUE;
+}
+
+/* The same of what is picked: whatever has holes is asked for its map, and what is blended is there where its map
+ * is by half. */
+#define HALF_THERE (128u << MASU_MAP_CUTOFF_SHIFT)
+
+static uint32_t pick_sweep_of(masu_draw_look *material) {
+    int blended = (material->flags & MASU_MATERIAL_IS_BLEND) != 0;
+    int holes = blended || (material->flags & MASU_MATERIAL_IS_MASK);
+    if (blended) material->flags = (material->flags & ~(0xFFu << MASU_MAP_CUTOFF_SHIFT)) | HALF_THERE;
+    return holes && (material->flags & MASU_MATERIAL_HAS_MAPS) ? 1 + MASU_TEXTURED_MASK : 0;
 }
 
 /* A material's flags and layers into the push constants, and its textures bound where they are not
@@ -134,12 +157,14 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
     if (!kept) v = masu_scene_look(m->plan->desc.scene);
     VkPipelineLayout layout = m->layouts[pass];
     VkDeviceSize zero = 0;
-    int sun = masu_is_cascade(pass);
+    int sun = masu_is_cascade(pass), pick = pass == MASU_PASS_PICK;
     uint32_t bound = MASU_BLOB_NONE, view = sun ? 1 + pass - MASU_PASS_CASCADE_0 : 0;
     VkPipeline pipeline = !sweep ? m->pipelines[sun ? MASU_PASS_CASCADE_0 : pass]
                           : sun  ? m->masked_casters
+                          : pick ? m->masked_picks
                                  : m->textured[sweep - 1];
-    if (!pipeline || (sun && sweep == 1 + MASU_TEXTURED_OPAQUE)) return; /* nothing is drawn so */
+    /* Nothing is drawn so. */
+    if (!pipeline || ((sun || pick) && sweep == 1 + MASU_TEXTURED_OPAQUE)) return;
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
                               &m->global_sets[rec->flight], 0, NULL);
@@ -151,8 +176,9 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
     int occlusion = masu_has_pass(&rec->rp->active, MASU_PASS_CULL);
     uint32_t lists = view * m->plan->listed;
     if (occlusion) lists += (uint32_t)m->plan->drawn.lists;
-    VkDeviceSize commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
-                            MASU_DRAWS_OF(m->plan, view, occlusion);
+    VkDeviceSize commands = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride;
+    commands += pick ? m->plan->pick_draws * MASU_DRAW_BYTES : MASU_DRAWS_OF(m->plan, view, occlusion);
+    if (pick) lists = (uint32_t)m->plan->drawn.picks;
     masu_push_block block = push_of(rec, pass);
     struct masu_push_gbuffer push; /* a cascade is told the same, but its number for the material */
     memcpy(&push, &block.own, sizeof push);
@@ -162,8 +188,11 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
         for (uint32_t d = 0; d < batch->draw_count; d++) {
             masu_draw_look look = kept ? rec->draws->looks[batch->first_draw + d]
                                        : masu_draw_look_of(&v, batch->first_primitive + d);
-            if (sweep_of(&look, view) != sweep) continue;
-            if (!sun) {
+            int blended = (look.flags & MASU_MATERIAL_IS_BLEND) != 0;
+            if ((pick ? pick_sweep_of(&look) : sweep_of(&look, view)) != sweep) continue;
+            if (pick) {
+                push.material = blended ? 1 : 0;
+            } else if (!sun) {
                 push.material = look.material;
                 push.meso = look.meso;
             }
@@ -290,6 +319,7 @@ static void record_fullscreen(masu_recorder *rec, uint32_t pass) {
 static VkRect2D render_area(const masu_recorder *rec, uint32_t pass) {
     if (pass == MASU_PASS_OCCLUDERS)
         return (VkRect2D){{0, 0}, {MASU_ATLAS_WIDTH, MASU_ATLAS_HEIGHT}};
+    if (pass == MASU_PASS_PICK) return (VkRect2D){{0, 0}, {2, 2}};
     if (!masu_is_cascade(pass))
         return (VkRect2D){{0, 0},
                           masu_plan_extent(rec->m->plan, masu_passes[pass].extent,
@@ -320,7 +350,8 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
     if (rec->m->pipelines[objects]) { /* else it only clears */
         vk->CmdSetViewport(rec->cmd, 0, 1, &viewport);
         vk->CmdSetScissor(rec->cmd, 0, 1, &area);
-        if (pass == MASU_PASS_GBUFFER || masu_is_cascade(pass)) record_polygons(rec, pass);
+        if (pass == MASU_PASS_GBUFFER || pass == MASU_PASS_PICK || masu_is_cascade(pass))
+            record_polygons(rec, pass);
         if (pass == MASU_PASS_OCCLUDERS) record_occluders(rec);
         if (pass == MASU_PASS_TRANSPARENTS) record_transparents(rec, sets);
         if (pass == MASU_PASS_PARTICLES) /* the last draw */
@@ -485,6 +516,10 @@ static void record_epilogue(masu_recorder *rec) {
     }
     if (readback->bytes) {
         masu_memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                            VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    }
+    if (m->plan->buffers[MASU_BUFFER_PICKED].bytes) {
+        masu_memory_barrier(rec, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                             VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
     }
     /* The target to where the host wants it, visible to whatever comes next. */

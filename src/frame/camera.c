@@ -86,13 +86,37 @@ static masu_result find_axes(const masu_camera *c, float right[3], float up[3], 
     return MASU_OK;
 }
 
+static int has_window(const masu_camera *c) {
+    return c->left != 0.0f || c->right != 0.0f || c->bottom != 0.0f || c->top != 0.0f;
+}
+
+/* Two sides of a window. That they are not nearer to each other than that keeps the middle in pixels exact. */
+static masu_result check_sides(const char *low_name, double low, const char *high_name, double high,
+                               masu_detail *detail) {
+    const char *name[2] = {low_name, high_name};
+    double side[2] = {low, high};
+    for (uint32_t i = 0; i < 2; i++) {
+        if (!(fabs(side[i]) <= 100.0))
+            return masu_fail_number(detail, name[i], side[i], "-100 to 100");
+    }
+    double apart = fmax(1e-4, fmax(fabs(low), fabs(high)) / 1024.0);
+    if (high - low >= apart) return MASU_OK;
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, high_name, 0, 0,
+                     "%s is %g, needed is %s (%g) + %g or more", high_name, high, low_name, low, apart);
+}
+
 /* What is no direction; near_distance with its default. */
 static masu_result check_lens(const masu_camera *c, float near_distance, masu_detail *detail) {
     if (!(near_distance >= 1e-9f && near_distance <= 1e9f)) {
         return masu_fail_number(detail, "camera.near_distance", (double)near_distance,
                                 "0 and 1e-9 to 1e9 m");
     }
-    if (!(c->fov_y >= 0.001f && c->fov_y <= 3.1f)) {
+    if (has_window(c)) {
+        masu_result result = check_sides("camera.left", (double)c->left, "camera.right",
+                                         (double)c->right, detail);
+        if (!result) result = check_sides("camera.bottom", (double)c->bottom, "camera.top", (double)c->top, detail);
+        if (result) return result;
+    } else if (!(c->fov_y >= 0.001f && c->fov_y <= 3.1f)) {
         return masu_fail_number(detail, "camera.fov_y", (double)c->fov_y, "0.001 to 3.1 radians");
     }
     for (uint32_t k = 0; k < 2; k++) {
@@ -103,18 +127,40 @@ static masu_result check_lens(const masu_camera *c, float near_distance, masu_de
     return MASU_OK;
 }
 
+/* Half of the window's sides, and where its middle is, in units of those: right and down. */
+typedef struct lens {
+    double half[2];
+    double middle[2];
+} lens;
+
+static lens lens_of(const masu_camera *c, const masu_frame_data *f) {
+    const VkExtent2D shown = f->plan->desc.output;
+    lens l = {{0, 0}, {0, 0}};
+    l.half[1] = tan((double)c->fov_y * 0.5);
+    l.half[0] = l.half[1] * (double)shown.width / (double)shown.height;
+    if (!has_window(c)) return l;
+    double left = (double)c->left, right = (double)c->right, bottom = (double)c->bottom, top = (double)c->top;
+    l.half[0] = 0.5 * (right - left);
+    l.half[1] = 0.5 * (top - bottom);
+    l.middle[0] = (right + left) / (right - left);
+    l.middle[1] = -(top + bottom) / (top - bottom);
+    return l;
+}
+
 static void project(const masu_camera *c, const float right[3], const float up[3],
                     const float forward[3], float near_distance, masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     struct masu_frame_uniforms *u = &f->u;
     const float pixel[2] = {2.0f / (float)rp->render_width, 2.0f / (float)rp->render_height};
     float own[2], most = masu_temporal_jitter(f, own);
+    lens l = lens_of(c, f);
     for (uint32_t k = 0; k < 2; k++) {
-        u->jitter[k] = (c->jitter[k] + own[k]) * pixel[k];
-        u->jitter[2 + k] = (fabsf(c->jitter[k]) + most) * pixel[k];
+        u->jitter[2 + k] = (c->jitter[k] + own[k]) * pixel[k];
+        u->jitter[k] = (float)((double)u->jitter[2 + k] + l.middle[k]);
+        float moves = (fabsf(c->jitter[k]) + most) * pixel[k];
+        f->widest[k] = (double)(float)l.half[k] * (1.0 + fabs(l.middle[k]) + (double)moves);
     }
-    double tan_y = tan((double)c->fov_y * 0.5);
-    double tan_x = tan_y * (double)f->plan->desc.output.width / (double)f->plan->desc.output.height;
+    double tan_x = l.half[0], tan_y = l.half[1];
     for (uint32_t i = 0; i < 3; i++) {
         float high = (float)c->position[i];
         u->eye_hi[i] = high;

@@ -21,6 +21,9 @@ typedef struct masu_frame_data {
 
     /* What its steps have found. */
     double eye[3];
+    /* Tangents of the angles between `forward` and the picture's farthest sides, in any frame with this lens: as if
+     * jitter moved them as far out as it does in any, so that what is made wide enough for it stays as it is. */
+    double widest[2];
     masu_light light; /* with defaults */
     struct masu_frame_uniforms u;
     uint32_t cascades; /* bit per cascade of the shadow map that it draws */

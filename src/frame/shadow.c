@@ -115,8 +115,7 @@ static masu_shadow_view shadow_view(const masu_bounds *bounds, const masu_frame_
     const struct masu_frame_uniforms *u = &f->u;
     masu_shadow_view v;
     memset(&v, 0, sizeof v);
-    double x = (double)u->right[3] * (1.0 + (double)u->jitter[2]);
-    double y = (double)u->up[3] * (1.0 + (double)u->jitter[3]), length = 0.0;
+    double x = f->widest[0], y = f->widest[1], length = 0.0;
     v.tan2 = x * x + y * y;
     v.near_distance = (double)u->forward[3];
     memcpy(v.casters, bounds->swept, sizeof v.casters);

@@ -43,6 +43,19 @@ void masu_visible_keep(masu_visible *s, const masu_frame_plan *plan, const masu_
     for (uint32_t l = 0; plan->lods && l < plan->scene.lods; l++) s->lods[l] = v->lods[l];
 }
 
+VkDrawIndexedIndirectCommand *masu_draws_write(const masu_draws *draws, const masu_scene_view *v,
+                                               VkDrawIndexedIndirectCommand *to) {
+    for (uint32_t b = 0; b < draws->batch_count; b++) {
+        const masu_batch *batch = &draws->batches[b];
+        for (uint32_t d = 0; d < batch->draw_count; d++) {
+            const masu_blob_primitive *p = &v->primitives[batch->first_primitive + d];
+            *to++ = (VkDrawIndexedIndirectCommand){p->index_count, 0, p->first_index,
+                                                   (int32_t)p->first_vertex, 0};
+        }
+    }
+    return to;
+}
+
 /* All of each command but the count, for every slot and view. */
 void masu_visible_write_scene(const masu_device *device, const masu_draws *draws,
                               const masu_scene_view *v) {
@@ -53,16 +66,7 @@ void masu_visible_write_scene(const masu_device *device, const masu_draws *draws
             (VkDrawIndexedIndirectCommand *)(void *)masu_buffer_pointer(device, MASU_BUFFER_DRAWS,
                                                                         slot);
         uint32_t lists = plan->views * (plan->occlusion ? 2 : 1);
-        for (uint32_t list = 0; list < lists; list++) {
-            for (uint32_t b = 0; b < draws->batch_count; b++) {
-                const masu_batch *batch = &draws->batches[b];
-                for (uint32_t d = 0; d < batch->draw_count; d++) {
-                    const masu_blob_primitive *p = &v->primitives[batch->first_primitive + d];
-                    *to++ = (VkDrawIndexedIndirectCommand){p->index_count, 0, p->first_index,
-                                                           (int32_t)p->first_vertex, 0};
-                }
-            }
-        }
+        for (uint32_t list = 0; list < lists; list++) to = masu_draws_write(draws, v, to);
     }
 }
 

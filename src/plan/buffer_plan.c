@@ -136,7 +136,8 @@ static void lay_drawn(masu_frame_plan *plan) {
         }
     }
     d->transparents = next;
-    d->words = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
+    d->picks = next + MASU_TRANSPARENT_WORDS * (uint64_t)s->transparents;
+    d->words = d->picks + (plan->needs.picking ? plan->listed : 0);
 }
 
 /* Nothing at all where nothing is reserved. */
@@ -166,7 +167,8 @@ static uint64_t own_draws(const masu_frame_plan *plan) {
 static uint64_t masu_draw_count(const masu_frame_plan *plan) {
     const masu_scene *s = &plan->scene;
     if (!s->instances) return 0;
-    return own_draws(plan) + (uint64_t)s->transparents * s->transparent_sets;
+    return own_draws(plan) + (uint64_t)s->transparents * s->transparent_sets +
+           (plan->needs.picking ? plan->draws : 0);
 }
 
 /* Of instances; behind them, of receivers. */
@@ -249,6 +251,7 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
     if (s->instances) {
         lay_drawn(plan);
         plan->transparent_draws = own_draws(plan);
+        plan->pick_draws = plan->transparent_draws + (uint64_t)s->transparents * s->transparent_sets;
         if (plan->receiver_mask) plan->receiver_mask = seen_instances(plan);
     }
     lay_sprites(plan);
@@ -264,9 +267,9 @@ void masu_size_buffers(masu_frame_plan *plan, uint64_t uniform_alignment,
         *buffer = (masu_buffer_plan){                                                              \
             .name = title, .role = MASU_ROLE_##part, .usage = (VkBufferUsageFlags)(use)};          \
         sized;                                                                                     \
-        alignment = buffer->role == MASU_ROLE_READBACK ? 1                                         \
-                    : buffer->usage & UNIFORM          ? uniform_alignment                         \
-                                                       : storage_alignment;                        \
+        alignment = buffer->usage & UNIFORM                                          ? uniform_alignment  \
+                    : buffer->usage & STORAGE || buffer->role != MASU_ROLE_READBACK ? storage_alignment  \
+                                                                                    : 1;                 \
         lay_slots(plan, buffer, SLOTS_##slots, bytes, alignment);                                  \
     }
 #include "plan/buffers.inc"

@@ -256,6 +256,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .any_taa = wants(d, rung_has_taa),
                                .any_fine = wants(d, rung_has_fine),
                                .any_silhouettes = wants(d, rung_has_silhouettes),
+                               .picking = d->scene && d->picking,
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d) ||
                                            wants(d, masu_rung_resolves),

@@ -165,6 +165,7 @@ VkExtent2D masu_extent_of(masu_image_extent extent, VkExtent2D render, VkExtent2
     if (extent == MASU_EXTENT_ONE || extent == MASU_EXTENT_KEPT || extent == MASU_EXTENT_BATCHES ||
         extent == MASU_EXTENT_PROBES || extent == MASU_EXTENT_SKINS || extent == MASU_EXTENT_SKIN_TREES)
         return (VkExtent2D){1, 1};
+    if (extent == MASU_EXTENT_PICK) return (VkExtent2D){2, 2};
     if (extent == MASU_EXTENT_SHADOW) return (VkExtent2D){0, 0};
     int shown = extent == MASU_EXTENT_OUTPUT || extent == MASU_EXTENT_OUTPUT32;
     VkExtent2D size = shown ? output : render;

@@ -63,6 +63,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_SKINS,   /* an invocation per vertex of the largest skin, for each skin */
     MASU_EXTENT_SKIN_TREES, /* a workgroup per skin */
     MASU_EXTENT_PROBES,  /* an invocation per light probe */
+    MASU_EXTENT_PICK,    /* the 2x2 pixels with the one that is picked */
     MASU_EXTENT_SHADOW   /* all cascades of the shadow map; plan.c knows how large */
 } masu_image_extent;
 
@@ -142,6 +143,7 @@ typedef struct masu_needs {
     int any_fine;        /* fine */
     int any_silhouettes; /* silhouettes */
     int smoothing;     /* smaa */
+    int picking;       /* the host may ask what is under a pixel */
     int metered;       /* the exposure follows the picture */
     int sprites;       /* frames may bring some of these: */
     int particles, decals, lines;
@@ -169,6 +171,7 @@ typedef enum masu_geometry {
     MASU_GEOMETRY_NONE,
     MASU_GEOMETRY_POLYGONS, /* colour and depth */
     MASU_GEOMETRY_CASCADE,  /* depth alone */
+    MASU_GEOMETRY_PICK,     /* as polygons, what is blended too; numbers of instances */
     MASU_GEOMETRY_BLENDED,  /* over what is there, back to front */
     MASU_GEOMETRY_BOXES,    /* made up by the vertex shader; depth alone */
     MASU_GEOMETRY_SPRITES,  /* the same; colour, which is blended where the row says BLEND */

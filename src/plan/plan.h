@@ -70,7 +70,7 @@ typedef struct masu_block_plan {
 /* Words of a slot of MASU_BUFFER_DRAWN; masu_shared.h says what is where. Without occlusion there
  * are the lists of stage 1 alone. */
 typedef struct masu_drawn_plan {
-    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, transparents, words;
+    uint64_t header, lists, kept, batches, large, boxes, occluders, pairs, transparents, picks, words;
 } masu_drawn_plan;
 
 /* Where in a slot of MASU_BUFFER_SPRITES the three kinds begin, in vec4; masu_shared.h says what is there. */
@@ -123,6 +123,7 @@ typedef struct masu_frame_plan {
     masu_drawn_plan drawn;
     masu_sprites_plan sprites;
     uint64_t transparent_draws; /* of MASU_BUFFER_DRAWS: where theirs begin */
+    uint64_t pick_draws; /* of the same: where those of the picked pixel begin */
     uint64_t receiver_mask; /* first word of MASU_BUFFER_SEEN that is of receivers; 0: it has none */
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
     uint32_t recordings; /* of one frame in flight: viewports, their rungs, their targets, their variants */

@@ -139,6 +139,15 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
         unit3(right);
         cross3(right, forward, up);
         double tan_y = tan((double)c.fov_y / 2.0), tan_x = tan_y * 1280.0 / 720.0;
+        if (n % 3 == 0) { /* any window */
+            double x = random_between(&random, -3.0, 3.0), y = random_between(&random, -3.0, 3.0);
+            c.left = (float)x, c.right = (float)(x + random_between(&random, 0.5, 3.0));
+            c.bottom = (float)y, c.top = (float)(y + random_between(&random, 0.5, 3.0));
+            c.fov_y = n % 2 ? 0.0f : (float)NAN;
+            tan_x = 0.5 * ((double)c.right - (double)c.left), tan_y = 0.5 * ((double)c.top - (double)c.bottom);
+            left += 0.5 * ((double)c.right + (double)c.left) / tan_x;
+            above -= 0.5 * ((double)c.top + (double)c.bottom) / tan_y;
+        }
         masu_frame_desc f = {.camera = &c};
         write_good(&f, 0);
         struct masu_frame_uniforms u = uniforms(0);
@@ -151,12 +160,14 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
             }
             project(&u, rel, clip);
             assert_near(clip[3], z, 1e-5 * z + 1e-5);
-            assert_near(clip[0] / clip[3], x - left, 2e-5);
-            assert_near(clip[1] / clip[3], -y - above, 2e-5); /* down is positive */
+            assert_near(clip[0] / clip[3], x - left, 2e-5 * (1 + fabs(left)));
+            assert_near(clip[1] / clip[3], -y - above, 2e-5 * (1 + fabs(above))); /* down is positive */
             assert_near(clip[2] / clip[3], (double)c.near_distance / z, 1e-5);
         }
-        assert_near((double)u.jitter[0], left, 1e-6);
-        assert_near((double)u.jitter[1], above, 1e-6);
+        assert_near((double)u.jitter[0], left, 2e-6 * (1 + fabs(left)));
+        assert_near((double)u.jitter[1], above, 2e-6 * (1 + fabs(above)));
+        assert_near((double)u.jitter[2], 2.0 * (double)c.jitter[0] / 1280.0, 1e-6);
+        assert_near((double)u.jitter[3], 2.0 * (double)c.jitter[1] / 720.0, 1e-6);
         for (int k = 0; k < 3; k++) { /* what the march makes its rays of */
             assert_near((double)u.right[k], right[k] * tan_x, 1e-5);
             assert_near((double)u.up[k], up[k] * tan_y, 1e-5);
@@ -166,6 +177,52 @@ static void the_matrix_projects_as_a_camera_does(void **state) {
         assert_near((double)u.up[3], tan_y, 1e-5);
         assert_true(u.forward[3] == c.near_distance);
     }
+}
+
+/* What the header tells a host that draws something itself. */
+static void the_header_has_the_matrix(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    masu_camera c = good_camera();
+    c.left = -0.25f, c.right = 1.0f, c.bottom = -2.0f, c.top = -1.5f;
+    c.jitter[0] = 0.5f, c.jitter[1] = -0.75f;
+    write_good(&(masu_frame_desc){.camera = &c}, 0);
+    struct masu_frame_uniforms u = uniforms(0);
+    double forward[3], right[3], up[3], rel[3], clip[4];
+    direction_of(u.forward, forward);
+    direction_of(u.right, right);
+    direction_of(u.up, up);
+    double x = 1.5, y = -3.75, z = 2.0, w = 1280, h = 720;
+    for (int k = 0; k < 3; k++) rel[k] = x * right[k] + y * up[k] + z * forward[k];
+    project(&u, rel, clip);
+    double l = -0.25, r = 1.0, b = -2.0, t = -1.5;
+    assert_near(clip[0], (2 * x - (r + l) * z) / (r - l) - 2 * 0.5 / w * z, 1e-5);
+    assert_near(clip[1], -(2 * y - (t + b) * z) / (t - b) - 2 * -0.75 / h * z, 1e-4);
+    assert_near(clip[2], (double)u.forward[3], 0);
+    assert_near(clip[3], z, 1e-5);
+}
+
+/* Symmetric, of fov_y: the same bits. */
+static void a_window_straight_ahead_is_a_field_of_view(void **state) {
+    (void)state;
+    static struct masu_frame_uniforms by_fov, by_window;
+    make_renderer(SUPPORT_ALL, 0);
+    masu_camera c = good_camera();
+    c.fov_y = 2.0f * atanf(0.5f);
+    double tan_y = tan((double)c.fov_y * 0.5);
+    write_good(&(masu_frame_desc){.camera = &c, .cut = 1}, 0);
+    by_fov = uniforms(0);
+    c.top = (float)tan_y, c.bottom = -c.top;
+    c.right = (float)(tan_y * 1280.0 / 720.0), c.left = -c.right;
+    write_good(&(masu_frame_desc){.camera = &c, .cut = 1}, 0);
+    by_window = uniforms(0);
+    for (int k = 0; k < 4; k++) {
+        assert_near((double)by_window.right[k], (double)by_fov.right[k], 0);
+        assert_near((double)by_window.up[k], (double)by_fov.up[k], 0);
+        assert_near((double)by_window.jitter[k], 0, 0);
+    }
+    for (int k = 0; k < 16; k++)
+        assert_near((double)by_window.clip_from_rel[k], (double)by_fov.clip_from_rel[k], 2e-7);
 }
 
 static void the_eye_keeps_its_precision_in_two_floats(void **state) {
@@ -266,6 +323,29 @@ static void a_bad_camera_is_named(void **state) {
     BAD_CAMERA("camera.near_distance", c.near_distance = 1.1e9f);
 }
 
+#define WINDOW(l, r, b, t) (c.left = l, c.right = r, c.bottom = b, c.top = t)
+
+static void a_bad_window_is_named(void **state) {
+    (void)state;
+    make_renderer(SUPPORT_ALL, 0);
+    for (size_t i = 0; i < COUNT(not_finite); i++) {
+        BAD_CAMERA("camera.left", WINDOW(not_finite[i], 1, -1, 1));
+        BAD_CAMERA("camera.right", WINDOW(-1, not_finite[i], -1, 1));
+        BAD_CAMERA("camera.bottom", WINDOW(-1, 1, not_finite[i], 1));
+        BAD_CAMERA("camera.top", WINDOW(-1, 1, -1, not_finite[i]));
+    }
+    BAD_CAMERA("camera.right", WINDOW(1, 1, -1, 1));
+    BAD_CAMERA("camera.right", WINDOW(1, -1, -1, 1));
+    BAD_CAMERA("camera.right", WINDOW(0, 0, -1, 1));
+    BAD_CAMERA("camera.top", WINDOW(-1, 1, 0, 0));
+    BAD_CAMERA("camera.top", WINDOW(-1, 1, 1, -1));
+    BAD_CAMERA("camera.left", WINDOW(-101, 1, -1, 1));
+    BAD_CAMERA("camera.top", WINDOW(-1, 1, -1, 100.1f));
+    BAD_CAMERA("camera.right", WINDOW(99.95f, 100, -1, 1));
+    if (strcmp(detail.text, "camera.right is 100, needed is camera.left (99.95) + 0.0976562 or more"))
+        fail_msg("\"%s\"", detail.text);
+}
+
 #define BAD_LIGHT(what, ...)                                                                       \
     do {                                                                                           \
         masu_light l = good_light();                                                               \
@@ -349,6 +429,10 @@ static void the_extremes_of_each_range_are_accepted(void **state) {
     write_good(&f, 0);
     c.fov_y = 3.1f, c.near_distance = 1e9f, l.exposure = 1e9f, l.sky_horizon[2] = 1e9f;
     write_good(&f, 0);
+    WINDOW(-100, 100, -100, 100);
+    write_good(&f, 0);
+    WINDOW(99.9f, 100, 0, 1.01e-4f);
+    write_good(&f, 0);
 }
 
 /* The shaders trust every uniform to be finite: whatever is accepted must be. */
@@ -375,6 +459,7 @@ static void whatever_is_accepted_makes_finite_uniforms(void **state) {
         }
         if (support_random(&random) % 4 == 0) c.fov_y = PICK;
         if (support_random(&random) % 4 == 0) c.near_distance = PICK;
+        if (support_random(&random) % 4 == 0) WINDOW(PICK, PICK, PICK, PICK);
         if (support_random(&random) % 4 == 0) l.exposure = PICK;
         masu_frame_desc f = {.camera = &c,
                              .light = support_random(&random) % 2 ? &l : NULL,
@@ -505,10 +590,13 @@ int main(void) {
         cmocka_unit_test(a_path_of_one_key_stands_still),
         cmocka_unit_test(keys_that_cross_over_keep_a_direction),
         cmocka_unit_test(the_matrix_projects_as_a_camera_does),
+        cmocka_unit_test(the_header_has_the_matrix),
+        cmocka_unit_test(a_window_straight_ahead_is_a_field_of_view),
         cmocka_unit_test(the_eye_keeps_its_precision_in_two_floats),
         cmocka_unit_test(looking_straight_up_or_down_needs_no_up),
         cmocka_unit_test(the_near_distance_of_the_scene_is_the_default),
         cmocka_unit_test(a_bad_camera_is_named),
+        cmocka_unit_test(a_bad_window_is_named),
         cmocka_unit_test(a_bad_light_is_named),
         cmocka_unit_test(the_text_has_what_is_given),
         cmocka_unit_test(a_bad_sdf_parameter_is_named),

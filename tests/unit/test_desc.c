@@ -114,6 +114,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
         SAME(device_blocks[k].memory_type);
     }
     SAME(readback);
+    SAME(picking);
     SAME(debug.timestamps);
     SAME(debug.counters);
     SAME(debug.labels);
@@ -261,6 +262,7 @@ static masu_desc full_desc(void) {
         d.device_blocks[k] = (masu_device_block){FAKE(VkDeviceMemory, 6 + k), 16, 17, &d, 18 + k};
     }
     d.readback = 3;
+    d.picking = 1;
     d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, MASU_ON, 9, 10, 11, 12.0f};
     d.deny.unified_memory = 1;
     d.log = no_log;

@@ -37,6 +37,7 @@ static masu_memory_row rows_of_memory[2];
 static masu_peak_info peaks;
 static masu_stats_info stats;
 static masu_readback_image image;
+static masu_pick_info pick;
 static masu_instance_state instance_state;
 static masu_model_state model_state;
 static masu_model added;
@@ -125,6 +126,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats)))                                           \
     X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
     X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image)))                \
+    X(masu_pick, masu_pick(P(0, &m), 0, P(1, &pick)))                                              \
     X(masu_unpack_normal, (masu_unpack_normal(0, P(0, unpacked)), NO_RESULT))
 
 #define DEFINE_CALL(name, expression)                                                              \

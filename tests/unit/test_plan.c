@@ -697,6 +697,35 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     assert_string_equal(plan.why[MASU_PASS_UPDATE_PREVIOUS], "nothing reads velocities");
 }
 
+/* What a pixel shows: two small passes, 2x2 pixels and six words where a host may ask; else nothing. */
+static void picking_costs_nothing_unless_it_is_asked_for(void **state) {
+    (void)state;
+    static masu_frame_plan with, without;
+    static const uint32_t parts[] = {RASTER, SDF, RASTER | SDF};
+    for (size_t i = 0; i < COUNT(parts); i++) {
+        masu_desc d = scene_desc(parts[i], 64, 64);
+        compile(&d, &without);
+        d.picking = 1;
+        compile(&d, &with);
+        assert_string_equal(without.why[MASU_PASS_PICK], "desc.picking does not ask for it");
+        assert_string_equal(without.why[MASU_PASS_PICK_TELL], "desc.picking does not ask for it");
+        assert_int_equal(without.buffers[MASU_BUFFER_PICKED].bytes, 0);
+        assert_int_equal(without.images[MASU_IMAGE_PICK_ID].used + without.images[MASU_IMAGE_PICK_DEPTH].used, 0);
+        int raster = (parts[i] & RASTER) != 0;
+        for (uint32_t r = 0; r < with.desc.rung_count; r++) {
+            assert_int_equal(masu_has_pass(&without.rungs[r].active, MASU_PASS_PICK_TELL), 0);
+            assert_int_equal(masu_has_pass(&with.rungs[r].active, MASU_PASS_PICK_TELL), 1);
+            assert_int_equal(masu_has_pass(&with.rungs[r].active, MASU_PASS_PICK), raster);
+        }
+        assert_int_equal(with.buffers[MASU_BUFFER_PICKED].role, MASU_ROLE_READBACK);
+        assert_int_equal(with.images[MASU_IMAGE_PICK_ID].width, raster ? 2 : 0);
+        if (!raster) continue;
+        assert_int_equal(with.buffers[MASU_BUFFER_DRAWS].count, without.buffers[MASU_BUFFER_DRAWS].count + with.draws);
+        assert_int_equal(with.pick_draws, without.buffers[MASU_BUFFER_DRAWS].count);
+        assert_int_equal(with.drawn.words, without.drawn.words + with.listed);
+    }
+}
+
 /* What is blended: a pass over the lit picture, and memory by how much there is; nothing of it in
  * scenes that have nothing of the kind. */
 static void what_is_blended_comes_over_the_light_if_there_is_any(void **state) {
@@ -1239,7 +1268,7 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
     }
     /* scene_depth, surface, occlusion, silhouettes, smooth, overlay and final, history_depth, cone8, cone4, ao: 4 bytes each per
      * texel; velocity, history and accumulated 8; the atlas; SPECULAR_BYTES at half size */
-    assert_int_equal(info.left_out_bytes, 4 * (14 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384) +
+    assert_int_equal(info.left_out_bytes, 4 * (14 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384 + 2 * 4) +
                                               SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
@@ -1254,13 +1283,13 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     56 * 1000 * 500 + 28 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384) +
+                     56 * 1000 * 500 + 28 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384 + 2 * 4) +
                          SPECULAR_BYTES * 500 * 250);
     d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, silhouettes, ldr, smooth, upscaled, overlay, final, velocity, temporal's */
     d.rung_count = 1;
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
-    assert_int_equal(info.left_out_bytes, 60 * 100 * 100 + 4 * (50 * 50 + 256 * 384) + SPECULAR_BYTES * 50 * 50);
+    assert_int_equal(info.left_out_bytes, 60 * 100 * 100 + 4 * (50 * 50 + 256 * 384 + 2 * 4) + SPECULAR_BYTES * 50 * 50);
 }
 
 static void the_public_memory_sums_the_blocks(void **state) {
@@ -1512,6 +1541,7 @@ int main(void) {
         cmocka_unit_test(silhouettes_are_a_pass_where_a_rung_asks_for_them),
         cmocka_unit_test(temporal_stands_in_for_anti_aliasing_and_upscaling),
         cmocka_unit_test(velocities_keep_the_frame_before_and_nothing_else_does),
+        cmocka_unit_test(picking_costs_nothing_unless_it_is_asked_for),
         cmocka_unit_test(what_is_blended_comes_over_the_light_if_there_is_any),
         cmocka_unit_test(what_is_reserved_has_passes_and_nothing_else_has),
         cmocka_unit_test(sdf_occlusion_comes_between_march_and_light_if_asked),

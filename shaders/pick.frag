@@ -1,0 +1,29 @@
+/*
+ * pick.frag: whose polygon it is. push.blended: not 0 where it is blended. With MASU_TEXTURES only where the map's alpha
+ * leaves it: push.flags are the material's flags, push.layers the layers of its maps.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_pick
+#include "shared/masu_shared.h"
+#include "shared/pack.glsl"
+
+#include "shared/push.glsl"
+
+#ifdef MASU_TEXTURES
+#include "shared/maps.glsl"
+layout(location = 3) in vec2 in_texcoord;
+#endif
+
+layout(location = 0) flat in uint in_id;
+layout(location = 0) out uint out_id;
+
+void main()
+{
+#ifdef MASU_TEXTURES
+    if (!(masu_base(in_texcoord).a >= masu_cutoff())) {
+        discard;
+    }
+#endif
+    out_id = (in_id + 1u) | (push.blended != 0u ? MASU_PICK_BLENDED : 0u);
+}

@@ -1,0 +1,39 @@
+/*
+ * pick.vert: polygons once more, for 2x2 pixels: those with the one that the host asks for (frame.temporal.w), where
+ * the picture has a block of 2x2. So each pixel is the same part of what is drawn as in the picture, and its
+ * neighbours, by whose difference textures choose their mips, are the same.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_pick
+#include "shared/masu_shared.h"
+#include "shared/polygons.glsl"
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_FRAME, std140) uniform Frame
+{
+    masu_frame_uniforms frame;
+};
+
+#ifdef MASU_TEXTURES
+layout(location = 2) in vec2 texcoord;
+layout(location = 3) out vec2 out_texcoord;
+#endif
+
+layout(location = 0) flat out uint out_id;
+
+void main()
+{
+    uint id = masu_instance_id();
+    out_id = id;
+#ifdef MASU_TEXTURES
+    out_texcoord = texcoord;
+#endif
+    vec3 rel = masu_seen_from(instances[id], frame.eye_hi.xyz, frame.eye_lo.xyz);
+    vec4 clip = frame.clip_from_rel * vec4(rel, 1.0);
+    vec2 size = vec2(pc.render_width, pc.render_height);
+    uvec2 pixel = uvec2(frame.temporal.w & 0xFFFFu, frame.temporal.w >> 16);
+    /* Pixels from the middle of the block: 1 is the edge of the target. */
+    vec2 middle = vec2(pixel & ~1u) + 1.0;
+    precise vec2 moved = clip.xy * (0.5 * size) + clip.w * (0.5 * size - middle);
+    gl_Position = vec4(moved, clip.zw);
+}

@@ -1,0 +1,59 @@
+/*
+ * pick_tell.comp: what the pixel that the host asks for shows (frame.temporal.w): the nearest of the polygons that
+ * pick has found there, the SDF, or the sky; and where that is. The depth is the picture's own, but of what
+ * is blended, which has none there.
+ *
+ * Where there are polygons and an SDF, the picture's depth is the SDF's where it is not the raster's, bit by bit:
+ * classify.comp has copied it from there. (Depths that pick has drawn differ from the raster's by what
+ * interpolation rounds; comparing them with the picture's would make ground that the SDF touches either.)
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "shared/masu_shared.h"
+#include "shared/guard.glsl"
+#include "shared/globals.glsl"
+
+layout(local_size_x = 1) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
+#ifdef MASU_POLYGONS
+layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D id_image;
+layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D pick_depth_image;
+layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D raster_depth_image;
+#endif
+
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_PICKED, std430) buffer Picked
+{
+    uint picked[];
+};
+
+void main()
+{
+    uvec2 size = uvec2(pc.render_width, pc.render_height);
+    uvec2 pixel = min(uvec2(frame.temporal.w & 0xFFFFu, frame.temporal.w >> 16), size - 1u);
+    float depth = texelFetch(depth_image, ivec2(pixel), 0).r;
+    uint what = depth > 0.0 ? MASU_PICKED_SDF : MASU_PICKED_SKY;
+    uint id = 0xFFFFFFFFu;
+#ifdef MASU_POLYGONS
+    ivec2 at = ivec2(pixel & 1u);
+    uint found = texelFetch(id_image, at, 0).r;
+    float nearest = texelFetch(pick_depth_image, at, 0).r;
+    bool sdf = depth != texelFetch(raster_depth_image, ivec2(pixel), 0).r;
+    bool blended = (found & MASU_PICK_BLENDED) != 0u;
+    if (depth > 0.0 && !sdf) {
+        what = MASU_PICKED_INSTANCE; /* whichever */
+    }
+    if (found != 0u && (sdf || blended ? nearest > depth : depth > 0.0)) {
+        what = MASU_PICKED_INSTANCE;
+        id = (found & ~MASU_PICK_BLENDED) - 1u;
+        depth = sdf || blended ? nearest : depth;
+    }
+#endif
+    vec3 rel = what == MASU_PICKED_SKY ? vec3(0.0) : masu_pixel_ray(pixel, size) * (frame.forward.w * masu_rcp(depth));
+    picked[0] = what;
+    picked[1] = id;
+    picked[2] = floatBitsToUint(depth);
+    picked[3] = floatBitsToUint(rel.x);
+    picked[4] = floatBitsToUint(rel.y);
+    picked[5] = floatBitsToUint(rel.z);
+}
