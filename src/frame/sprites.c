@@ -38,6 +38,8 @@ static masu_sprite_eye eye_of(const masu_frame_data *f) {
     masu_sprite_eye e = {.tan_x = (double)f->u.right[3],
                          .tan_y = (double)f->u.up[3],
                          .near_distance = (double)f->u.forward[3]};
+    for (uint32_t k = 0; k < 2; k++)
+        e.middle[k] = (double)f->u.jitter[k] - (double)f->u.jitter[2 + k];
     for (uint32_t k = 0; k < 3; k++) {
         e.at[k] = f->eye[k];
         e.right[k] = (double)f->u.right[k] / e.tan_x;

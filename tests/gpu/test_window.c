@@ -19,6 +19,16 @@ typedef struct picture {
 
 static picture whole, quarters;
 
+/* What the host adds to each frame, where `added` is set: beside the middle, where quarters meet. */
+static int added;
+static const masu_particle particles[] = {
+    {.position = {0.3, 0.2, 1.2}, .half_width = 0.4f, .color = {3, 1, 0.2f}, .opacity = 0.7f},
+    {.position = {-0.5, -0.2, 0.9}, .half_width = 0.3f, .color = {0.1f, 0.6f, 2}, .opacity = 0.8f, .edge = 0.5f}};
+static const masu_decal decals[] = {
+    {.rows = {1.1f, 0, 0, 0, 0, 1.1f, 0, 0, 0, 0, 1.5f, 0}, .color = {0.9f, 0.1f, 0.1f}, .opacity = 0.9f, .roughness = 0.5f}};
+static const masu_line lines[] = {
+    {.from = {-1.5, -0.6, 0.6}, .to = {1.4, 0.9, 0.5}, .from_color = {255, 255, 0, 0}, .to_color = {255, 255, 0, 0}, .flags = MASU_LINE_ON_TOP}};
+
 static void open_at(masu_session *s, const char *scene, uint32_t width, uint32_t height) {
     masu_session_desc d = test_desc(scene, width, height);
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
@@ -26,6 +36,7 @@ static void open_at(masu_session *s, const char *scene, uint32_t width, uint32_t
     /* In screen space, and so of another reach; over neighbours, and so another one at the edge of a quarter. */
     d.desc.rungs[0] = (masu_rung){.scale = 1, .ao = MASU_OFF, .specular_filter = MASU_OFF,
                                   .specular_reuse = MASU_OFF, .specular_temporal = MASU_OFF};
+    if (added) d.desc.reserve.particles = 2, d.desc.reserve.decals = 1, d.desc.reserve.lines = 1;
     open_session(s, &d);
 }
 
@@ -40,7 +51,13 @@ static void draw_two(masu_session *s, const masu_camera *camera, const float win
         float scale = i ? 1.0f : 1.0625f;
         c.left = window[0] * scale, c.right = window[1] * scale;
         c.bottom = window[2] * scale, c.top = window[3] * scale;
-        draw(s, &(masu_frame_desc){.camera = &c, .cut = !i, .time = 1}, &commands, pixels);
+        masu_frame_desc frame = {.camera = &c, .cut = !i, .time = 1};
+        if (added) {
+            frame.particles = particles, frame.particle_count = 2;
+            frame.decals = decals, frame.decal_count = 1;
+            frame.lines = lines, frame.line_count = 1;
+        }
+        draw(s, &frame, &commands, pixels);
     }
     const float *depth = read_image(s, commands.slot, MASU_READBACK_DEPTH);
     const uint16_t *velocity = read_image(s, commands.slot, MASU_READBACK_VELOCITY);
@@ -143,6 +160,20 @@ static void quarters_make_the_whole_of_blended_things_and_an_analytic_sky(void *
     quarters_of("glass", (masu_camera){.position = {0, 2, 7}, .forward = {0, -0.2f, -1}, .near_distance = 0.1f}, EDGES, 0);
 }
 
+/* They are also seen: the picture without them is another one. */
+static void quarters_make_the_whole_with_what_the_host_adds(void **state) {
+    (void)state;
+    static uint8_t without[sizeof whole.color];
+    quarters_of("test_both", before_it, EDGES, 0);
+    memcpy(without, whole.color, sizeof without);
+    added = 1;
+    quarters_of("test_both", before_it, EDGES, 0);
+    added = 0;
+    uint32_t changed = 0;
+    for (uint32_t i = 0; i < W * H; i++) changed += max_difference(without + 4 * i, whole.color + 4 * i, 4) > 8;
+    assert_in_range(changed, W * H / 16, W * H);
+}
+
 /* A portal's window far to the side, narrow and high: what is seen through it is what a wide picture shows there. */
 static void a_window_far_to_the_side_is_part_of_a_wide_picture(void **state) {
     (void)state;
@@ -196,6 +227,7 @@ static void history_follows_a_window_that_moves(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quarters_make_the_whole_of_polygons_and_sdf),
+        cmocka_unit_test(quarters_make_the_whole_with_what_the_host_adds),
         cmocka_unit_test(quarters_make_the_whole_with_cascades),
         cmocka_unit_test(quarters_make_the_whole_with_punctual_lights),
         cmocka_unit_test(quarters_make_the_whole_with_reflections),
