@@ -313,6 +313,10 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
 uint32_t masu_import_material(masu_import *m, unsigned index) {
     masu_blob_material to = masu_bake_default_material();
     const struct aiScene *s = m->source;
+    if (m->given) {
+        const masu_import_given *given = &m->given[index];
+        return masu_bake_mapped_material(m->piece, &given->material, &given->maps, given->name);
+    }
     if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) {
         return masu_bake_material(m->piece, &to, "");
     }
