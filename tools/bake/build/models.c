@@ -220,10 +220,19 @@ static void warn_of_namesake(const model_builder *b, const masu_bake_model *mode
     }
 }
 
+static void warn_of_changes(const model_builder *b, const masu_bake_model *model, const loaded_model *from) {
+    for (size_t i = 0; i < model->change_count; i++) {
+        const masu_bake_override *o = &model->changes[i].value;
+        if (!*o->match || masu_bake_override_matches(&from->piece, o)) continue;
+        masu_cli_warn("%s: %s: no material matches \"%s\"", b->description->file, model->where, o->match);
+    }
+}
+
 /* The model, and its spare ones: "car", "car.1", "car.2". */
 static bool place_all(model_builder *b, const masu_bake_model *model, loaded_model *from) {
     uint32_t like = MASU_BLOB_NONE;
     warn_of_namesake(b, model);
+    warn_of_changes(b, model, from);
     if (!place(b, model, model->name, model->hidden, from, &like)) return false;
     for (uint32_t i = 1; i <= model->spare; i++) {
         char number[16];

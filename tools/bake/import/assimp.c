@@ -26,6 +26,9 @@ static void report(masu_import *m) {
                            (const char *)m->textures.data,
                            m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
     }
+    if (m->invisible) {
+        masu_import_format(w, "%u materials have an opacity of 0: they are taken for opaque\n", m->invisible);
+    }
     if (m->turned) {
         masu_import_format(w, "%u meshes have textures that are turned: they are not\n", m->turned);
     }

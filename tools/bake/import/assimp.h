@@ -86,6 +86,7 @@ typedef struct masu_import {
     masu_import_loss losses[MASU_LOSSES];
     uint64_t triangles;
     uint32_t texture_count, bad_nodes, skins, unmapped, turned;
+    uint32_t invisible;    /* materials with an opacity of 0 */
     uint32_t other_lights; /* neither points nor spots, or of no use */
     bool full, moving;
     /* Of a model that has skins, or that moves and has clips: */

@@ -326,6 +326,12 @@ uint32_t masu_import_material(masu_import *m, unsigned index) {
     convert_color(from, &to, &alpha);
     convert_shine(from, &to);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
+    /* Many files of Collada and 3DS say 0 where they mean that nothing shines through. */
+    if (opacity <= 0 || alpha <= 0) {
+        m->invisible++;
+        opacity = opacity <= 0 ? 1 : opacity;
+        alpha = alpha <= 0 ? 1 : alpha;
+    }
     masu_bake_maps maps = convert_maps(m, from);
     /* One number under two names in some formats, so not their product. */
     alpha = alpha < opacity ? alpha : opacity;
