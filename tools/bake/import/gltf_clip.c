@@ -63,13 +63,15 @@ static void cut(keys *k, const piece *p, double low, double high, int depth) {
     add_key(k, p->from + (p->to - p->from) * high, value);
 }
 
-static void widen(const float *values, size_t count, unsigned components, keys *k) {
+/* The values of a spline stand between their tangents. */
+static void find_error(const float *values, size_t count, unsigned components, keys *k) {
     double range = 0;
     for (unsigned c = 0; c < components; c++) {
         double low = INFINITY, high = -INFINITY;
         for (size_t i = 0; i < count; i++) {
-            low = fmin(low, (double)values[i * components + c]);
-            high = fmax(high, (double)values[i * components + c]);
+            double value = (double)values[(3 * i + 1) * components + c];
+            low = fmin(low, value);
+            high = fmax(high, value);
         }
         range = fmax(range, high - low);
     }
@@ -85,7 +87,7 @@ enum { LINEAR, STEP, CUBIC };
 static void make_keys(keys *k, const float *times, uint32_t count, const float *values, int how) {
     unsigned n = k->components;
     double value[4];
-    if (how == CUBIC) widen(values, (size_t)count * 3, n, k);
+    if (how == CUBIC) find_error(values, count, n, k);
     for (uint32_t i = 0; i < count; i++) {
         const float *at = values + (size_t)i * n * (how == CUBIC ? 3 : 1);
         if (how == STEP && i) {
