@@ -77,6 +77,13 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(GENERATED)
 	@echo "  CC      $<"
 	$(V)$(CC) $(ALL_FLAGS) $(FOLDER_FLAGS) -MMD -MP -c $< -o $@
 
+# What libraries without an interface for C need. clang's sanitizers are not gcc's.
+CXX_FLAGS = -std=c++17 -Wall -Wextra $(if $(filter-out 0,$(WERROR)),-Werror) $(CONFIG_$(config)) $(CXXFLAGS)
+$(BUILD)/obj/%.o: %.cpp $(BUILD)/flags
+	@mkdir -p $(@D)
+	@echo "  CXX     $<"
+	$(V)$(if $(findstring clang,$(CC)),$(subst clang,clang++,$(CC)),$(CXX)) $(CXX_FLAGS) -MMD -MP -c $< -o $@
+
 $(BUILD)/lib/%.a:
 	@mkdir -p $(@D)
 	@echo "  AR      $@"

@@ -8,7 +8,7 @@
 PACKAGES_build := gcc libc6-dev libvulkan-dev
 PACKAGES_build += glslang-tools spirv-tools
 PACKAGES_build += libassimp-dev libjansson-dev libstb-dev libmagickwand-dev pkgconf libmeshoptimizer-dev
-PACKAGES_build += libembree-dev
+PACKAGES_build += libembree-dev libdraco-dev g++
 
 # to bake and render the demo: a Vulkan driver for any processor, and the models that scenes/ places
 PACKAGES_demo := libvulkan1 mesa-vulkan-drivers assimp-testmodels

@@ -103,6 +103,9 @@ $(BUILD)/tests/fuzz/fuzz_scene: | $(FUZZ_SEEDS_scene)
 # Every feature in a few lines, and a scene.
 FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf
 
+# Every feature that is read, in a small file.
+FUZZ_SEEDS_gltf := tests/fuzz/all.gltf
+
 FUZZ      ?= scene
 FUZZ_TIME ?= 60
 fuzz-%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(TEST_ARCHIVES) $(FUZZ_SEEDS_$(FUZZ))

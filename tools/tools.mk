@@ -9,6 +9,8 @@ tool_sources = $(filter-out %/main.c,$(wildcard tools/$(1)/*.c tools/$(1)/*/*.c)
 TOOL_FOLDERS := cli spirv sdfc bake meso world metric bench model isa conform simulate
 $(foreach f,$(TOOL_FOLDERS),$(eval $(call tool_archive,$(f)): $(call objects,$(call tool_sources,$(f)))))
 
+$(call tool_archive,bake): $(BUILD)/obj/tools/bake/import/gltf_draco.o
+
 PLATFORM  := $(BUILD)/lib/libmasu-platform.a $(BUILD)/lib/libmasu.a
 BAKE_ARCHIVES := $(foreach f,bake sdfc spirv cli,$(call tool_archive,$(f))) $(PLATFORM)
 MEASURE_ARCHIVES := $(foreach f,conform bench model isa simulate metric,$(call tool_archive,$(f)))
@@ -16,7 +18,7 @@ MEASURE_ARCHIVES := $(foreach f,conform bench model isa simulate metric,$(call t
 # Where ImageMagick has its headers differs by machine. Its headers are not ours to warn about.
 $(BUILD)/obj/tools/bake/texture/image.o: FOLDER_FLAGS += $$(pkg-config --cflags MagickWand | \
     sed 's/-I/-isystem /g; s/-fopenmp//g')
-BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer -lembree3 $$(pkg-config --libs MagickWand) -lm -lpthread
+BAKE_LIBS := -lassimp -ljansson -lmeshoptimizer -ldraco -lembree3 $$(pkg-config --libs MagickWand) -lm -lpthread -lstdc++
 MASU_LIBS := -lvulkan -ljansson -lembree3 -lm -ldl -lpthread
 
 # ---- Programs ------------------------------------------------------------------------------------

@@ -25,6 +25,8 @@
 #include "cli/cli.h"
 #include "masu.h"
 
+#include <string.h>
+
 #define TEXT(x) #x
 #define NUMBER(x) TEXT(x)
 #define VERSION                                                                                    \
@@ -42,17 +44,33 @@ enum {
     OPTION_TEXTURE_PATH,
     OPTION_PROBES,
     OPTION_PROBE_REPORT,
-    OPTION_THREADS
+    OPTION_THREADS,
+    OPTION_STRICT
 };
+
+/* For --stats, which lists them: each with its NUL. */
+static void keep_warning(void *user, const char *text) {
+    masu_bake_append(user, text, strlen(text) + 1);
+}
+
+static bool is_clean(const masu_bake_options *options) {
+    uint32_t warnings = masu_cli_warnings();
+    if (!options->strict || !warnings) return true;
+    masu_cli_error("%s: %u warnings, which --strict takes for errors", options->input, warnings);
+    return false;
+}
 
 static bool bake(const masu_bake_options *options) {
     double started = masu_bake_seconds();
     masu_bake_description description;
     masu_bake_content content = {0};
     masu_bake_report report = {0};
+    masu_cli_hear_warnings(keep_warning, &report.warnings);
     bool good = masu_bake_read(options, &description) &&
-                masu_bake_build(&description, options, &content, &report) &&
+                masu_bake_build(&description, options, &content, &report) && is_clean(options) &&
                 masu_bake_write(options, &content, &report, started);
+    masu_cli_hear_warnings(NULL, NULL);
+    masu_bake_release(&report.warnings);
     masu_bake_content_release(&content);
     masu_bake_description_release(&description);
     return good;
@@ -74,6 +92,7 @@ static int run(masu_cli *cli) {
             break;
         case OPTION_BARE: o.bare = true; break;
         case OPTION_VARIANTS: o.variants = true; break;
+        case OPTION_STRICT: o.strict = true; break;
         case MASU_CLI_ARGUMENT:
             if (o.input) return masu_cli_usage_error("more than one input: %s", cli->value);
             o.input = cli->value;
@@ -105,7 +124,9 @@ int main(int argc, char **argv) {
          OPTION_PROBE_REPORT, 0},
         {"threads", "N", "threads that trace light probes; default: all processors", OPTION_THREADS,
          0},
-        {"stats", "FILE", "write counts, bytes, bounds, seconds and peak memory as JSON",
+        {"strict", NULL, "warnings are errors: what cannot be shown as its file has it gives no blob",
+         OPTION_STRICT, 0},
+        {"stats", "FILE", "write counts, bytes, bounds, warnings, seconds and peak memory as JSON",
          OPTION_STATS, 0},
         {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
          OPTION_MODELS, 0},

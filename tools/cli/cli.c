@@ -24,7 +24,9 @@ static struct {
     uint32_t warnings;
     bool quiet;
     bool progress_shown;
-} state = {"masu", 0, false, false};
+    void (*hears)(void *user, const char *text); /* of warnings */
+    void *user;
+} state = {"masu", 0, false, false, NULL, NULL};
 
 /* ---- messages ---- */
 
@@ -71,11 +73,21 @@ int masu_cli_usage_error(const char *format, ...) {
 }
 
 void masu_cli_warn(const char *format, ...) {
+    char text[4096];
     va_list arguments;
     va_start(arguments, format);
-    message("warning: ", format, arguments, "");
+    if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
     va_end(arguments);
+    sanitize(text);
+    masu_cli_progress_clear();
+    fprintf(stderr, "%s: warning: %s\n", state.name, text);
+    if (state.hears) state.hears(state.user, text);
     state.warnings++;
+}
+
+void masu_cli_hear_warnings(void (*hears)(void *user, const char *text), void *user) {
+    state.hears = hears;
+    state.user = user;
 }
 
 uint32_t masu_cli_warnings(void) { return state.warnings; }

@@ -120,6 +120,8 @@ int masu_cli_usage_error(const char *format, ...) MASU_CLI_PRINTF(1, 2);
 /* "NAME: warning: ...", with --quiet too. */
 void masu_cli_warn(const char *format, ...) MASU_CLI_PRINTF(1, 2);
 uint32_t masu_cli_warnings(void); /* how many so far */
+/* Is called with the text of each from now on, behind "warning: "; NULL: no more. */
+void masu_cli_hear_warnings(void (*hears)(void *user, const char *text), void *user);
 
 /* What is going on now: replaced by the next one, wiped by any message and at the end. */
 void masu_cli_progress(const char *format, ...) MASU_CLI_PRINTF(1, 2);

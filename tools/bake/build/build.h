@@ -20,6 +20,7 @@ typedef struct masu_bake_report {
     masu_bake_bvh_report reflections;
     bool reflected; /* reflections were asked for */
     masu_bake_box bounds; /* of the models, without the ground of a first look */
+    masu_bake_buffer warnings; /* the texts of all, each with its NUL */
 } masu_bake_report;
 
 /* False after reporting. */

@@ -31,6 +31,7 @@ typedef struct loaded_model {
     uint32_t shape;              /* of the description's */
     double merge;                /* metres, 0: as the file has it */
     bool moving;                 /* with its clips and skins */
+    const char *variant;         /* of its materials, or NULL */
     masu_bake_textures textures; /* as imported; of a shape FORCED: it has coordinates */
     masu_bake_content piece;
     masu_bake_residence residence; /* of the vertices: the first variant's */
@@ -50,7 +51,7 @@ static loaded_model *find_loaded(const model_builder *b, const loaded_model *wan
         bool same = wanted->path ? at->path && strcmp(at->path, wanted->path) == 0
                                  : !at->path && at->shape == wanted->shape;
         if (same && at->merge == wanted->merge && at->moving == wanted->moving &&
-            at->textures == wanted->textures)
+            at->textures == wanted->textures && strcmp(at->variant ? at->variant : "", wanted->variant ? wanted->variant : "") == 0)
             return at;
     }
     return NULL;
@@ -69,9 +70,8 @@ static bool make_piece(const model_builder *b, const masu_bake_model *model, loa
         return true;
     }
     masu_cli_progress("importing %s", made->path);
-    if (!(made->moving ? masu_bake_import_moving : masu_bake_import)(made->path, made->textures,
-                                                                     &made->piece))
-        return false;
+    masu_bake_wanted wanted = {made->textures, made->moving, made->variant};
+    if (!masu_bake_import_as(made->path, &wanted, &made->piece)) return false;
     const char *problem = made->merge > 0 ? masu_bake_merge(&made->piece, made->merge) : NULL;
     return !problem || masu_bake_wrong(b->description, model->where, "gives %s", problem);
 }
@@ -92,6 +92,7 @@ static loaded_model *fetch(model_builder *b, const masu_bake_model *model) {
                            .merge = model->merge,
                            /* What is merged has lost its nodes. */
                            .moving = model->file && model->moving && !(model->merge > 0),
+                           .variant = model->variant,
                            .textures = model->file ? b->textures : MASU_BAKE_TEXTURES_OFF};
     if (b->textures != MASU_BAKE_TEXTURES_OFF && is_mapped(model))
         wanted.textures = MASU_BAKE_TEXTURES_FORCED;
@@ -219,10 +220,19 @@ static void warn_of_namesake(const model_builder *b, const masu_bake_model *mode
     }
 }
 
+static void warn_of_changes(const model_builder *b, const masu_bake_model *model, const loaded_model *from) {
+    for (size_t i = 0; i < model->change_count; i++) {
+        const masu_bake_override *o = &model->changes[i].value;
+        if (!*o->match || masu_bake_override_matches(&from->piece, o)) continue;
+        masu_cli_warn("%s: %s: no material matches \"%s\"", b->description->file, model->where, o->match);
+    }
+}
+
 /* The model, and its spare ones: "car", "car.1", "car.2". */
 static bool place_all(model_builder *b, const masu_bake_model *model, loaded_model *from) {
     uint32_t like = MASU_BLOB_NONE;
     warn_of_namesake(b, model);
+    warn_of_changes(b, model, from);
     if (!place(b, model, model->name, model->hidden, from, &like)) return false;
     for (uint32_t i = 1; i <= model->spare; i++) {
         char number[16];

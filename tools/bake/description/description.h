@@ -52,6 +52,7 @@ typedef struct masu_bake_model {
     const char *where; /* in the description, for errors: "models[3]"; "": the whole of it */
     const char *file;  /* NULL: by formula */
     uint32_t shape;    /* of the description's shapes, without a file */
+    const char *variant; /* of the file's materials, or NULL */
     const char *name;  /* before the instances' names, or NULL */
     const char *group; /* "outer/inner", or NULL */
     bool moving; /* it is a model of the scene for the host, too */

@@ -16,6 +16,7 @@ typedef struct masu_bake_options {
     bool variants;               /* with the marching variants for comparisons */
     bool probes, probe_report;   /* also if the scene asks for none; judged by path tracing */
     uint32_t threads;            /* that trace probes; 0: all processors */
+    bool strict; /* warnings are errors */
     /* write */
     const char *output; /* the blob; NULL: none is written */
     const char *stats;  /* or NULL */

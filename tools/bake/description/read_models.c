@@ -201,7 +201,7 @@ static bool read_traced(const masu_bake_json *model, masu_bake_model *out) {
 
 static bool read_source(const masu_bake_json *model, masu_bake_reader *r, const json_t **written,
                         masu_bake_model *out) {
-    const char *file = NULL;
+    const char *file = NULL, *variant = NULL;
     if (!masu_bake_json_string(model, "file", &file) ||
         !masu_bake_json_number(model, "merge", 1e-3, 1e9, &out->merge)) {
         return false;
@@ -209,6 +209,9 @@ static bool read_source(const masu_bake_json *model, masu_bake_reader *r, const 
     masu_bake_json mesh = masu_bake_json_member(model, "mesh");
     if (out->merge > 0 && masu_bake_json_has(model, "occluder"))
         return masu_bake_json_wrong(model, "what is \"merge\"d has no \"occluder\"");
+    if (!masu_bake_json_string(model, "variant", &variant)) return false;
+    if (variant && !file) return masu_bake_json_wrong(model, "\"variant\" is for files");
+    if (variant) out->variant = masu_bake_take_text(&r->out->pool, variant);
     if (!file == !mesh.value)
         return masu_bake_json_wrong(model, "needs either \"file\" or \"mesh\"");
     if (!file) {
@@ -224,7 +227,7 @@ static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const j
     static const char *const members[] = {"file",      "mesh",      "name",     "group", "moving",
                                           "translate", "rotate",    "rotate_y", "scale", "fit",
                                           "material",  "materials", "occluder", "merge", "lights",
-                                          "traced",    "hidden",    "spare",    NULL};
+                                          "traced",    "hidden",    "spare",    "variant", NULL};
     const char *name = NULL;
     out->where = masu_bake_take_text(&r->out->pool, model->where);
     out->lights = 1;

@@ -1,7 +1,8 @@
-/* assimp.c: Assimp reads a file; see assimp.h. */
+/* assimp.c: Assimp, or our reader of glTF, reads a file; see assimp.h. */
 #include "bake/import/assimp.h"
 #include "bake/base/file.h"
 #include "bake/import/acc.h"
+#include "bake/import/gltf.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
@@ -25,6 +26,9 @@ static void report(masu_import *m) {
                            (const char *)m->textures.data,
                            m->texture_count > MASU_IMPORT_NAMES_MAX ? ", ..." : "");
     }
+    if (m->invisible) {
+        masu_import_format(w, "%u materials have an opacity of 0: they are taken for opaque\n", m->invisible);
+    }
     if (m->turned) {
         masu_import_format(w, "%u meshes have textures that are turned: they are not\n", m->turned);
     }
@@ -39,7 +43,7 @@ static void report(masu_import *m) {
         masu_import_format(w, "%u lights are neither points nor spots: there is nothing of them\n",
                            m->other_lights);
     }
-    if (!m->live && (m->skins || m->source->mNumAnimations)) {
+    if (!m->moving && (m->skins || m->source->mNumAnimations)) {
         masu_bake_append_text(w, "animations are of models that are \"moving\": this one has its rest pose\n");
     }
 }
@@ -85,6 +89,7 @@ static void convert(masu_import *m, masu_bake_buffer *error) {
         else
             masu_import_show_all(m);
         if (m->live) masu_import_live(m);
+        if (!m->moving) masu_import_forget(m);
         report(m);
         if (masu_bake_count(m->piece, MASU_BLOB_INSTANCES) == 0) {
             masu_bake_append_text(error, "no node shows its meshes with a finite transform");
@@ -118,9 +123,14 @@ static void note_remark(const char *text, char *user) {
     masu_bake_release(&line);
 }
 
-void masu_bake_read_model(const char *path, masu_bake_textures textures, bool moving,
-                          masu_bake_content *piece, masu_bake_buffer *warnings,
-                          masu_bake_buffer *error) {
+/* False after an error, or where the file is of an older glTF. */
+static bool read_gltf(masu_gltf *g) {
+    if (masu_gltf_read(g)) return true;
+    if (!g->old && !masu_gltf_failed(g)) masu_bake_append_text(g->error, "it is not glTF");
+    return false;
+}
+
+static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *warnings, masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     if (properties) {
         aiSetImportPropertyFloat(properties, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, CREASE_DEGREES);
@@ -143,15 +153,28 @@ void masu_bake_read_model(const char *path, masu_bake_textures textures, bool mo
     if (!scene) {
         const char *why = aiGetErrorString();
         masu_bake_append_text(error, why && *why ? why : "the importer gives no reason");
-        return; /* this process ends now: nothing is worth releasing */
     }
-    const char *dot = strrchr(path, '.');
+    return scene;
+}
+
+/* Its process ends after it: nothing is worth releasing. */
+void masu_bake_read_model(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece,
+                          masu_bake_buffer *warnings, masu_bake_buffer *error) {
+    masu_gltf g = {.path = path, .variant = wanted->variant, .wanted = wanted->textures, .piece = piece,
+                   .warnings = warnings, .error = error};
+    bool ours = masu_gltf_is_named(path) && read_gltf(&g);
+    const struct aiScene *scene = ours ? &g.scene : NULL;
+    if (!ours && error->bytes) return;
+    if (!ours && wanted->variant) masu_bake_append_text(warnings, "it is no glTF 2 file: it has no variants\n");
+    if (!ours && !(scene = read_assimp(path, warnings, error))) return;
     masu_import m = {.source = scene,
+                     .given = (const masu_import_given *)(const void *)g.given.data,
+                     .ranges = (const float *)(const void *)g.ranges.data,
                      .path = path,
-                     .wanted = textures,
+                     .wanted = wanted->textures,
                      .piece = piece,
-                     .gltf = dot && (!strcmp(dot, ".gltf") || !strcmp(dot, ".glb")),
-                     .live = moving && scene->mRootNode && masu_import_is_live(scene),
+                     .moving = wanted->moving,
+                     .live = scene->mRootNode && masu_import_is_live(scene, wanted->moving),
                      .warnings = warnings};
     convert(&m, error);
 }

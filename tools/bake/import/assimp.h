@@ -1,4 +1,5 @@
-/* assimp.h: Assimp's picture of a model becomes ours; runs in a child process (import.h).
+/* assimp.h: Assimp's picture of a model becomes ours; runs in a child process (import.h). Of glTF that picture is
+ * by our own reader (gltf.h).
  *
  *   assimp.c            the library is called; what it lost is told
  *   assimp_material.c   aiMaterial  -> factors, and names of pictures that bake/texture reads
@@ -40,6 +41,7 @@ enum {
     MASU_LOST_AREA,
     MASU_LOST_NORMAL,
     MASU_LOST_TEXCOORD,
+    MASU_LOST_FACE,
     MASU_LOSSES
 };
 
@@ -59,8 +61,18 @@ typedef struct masu_import_node {
     uint32_t number; /* of the piece's nodes, once it is needed */
 } masu_import_node;
 
+/* A material as gltf.h makes it: nothing of it is an aiMaterial's. */
+typedef struct masu_import_given {
+    masu_blob_material material;
+    masu_bake_maps maps;
+    const char *name;
+} masu_import_given;
+
 typedef struct masu_import {
     const struct aiScene *source;
+    /* Of our own reader, else NULL: then texture coordinates are as the pictures want them. */
+    const masu_import_given *given; /* by aiMesh.mMaterialIndex */
+    const float *ranges;            /* by aiLight */
     const char *path;
     masu_bake_textures wanted;
     masu_bake_content *piece;
@@ -74,9 +86,10 @@ typedef struct masu_import {
     masu_import_loss losses[MASU_LOSSES];
     uint64_t triangles;
     uint32_t texture_count, bad_nodes, skins, unmapped, turned;
+    uint32_t invisible;    /* materials with an opacity of 0 */
     uint32_t other_lights; /* neither points nor spots, or of no use */
-    bool full, gltf;
-    /* Of a model that moves and has clips or skins: */
+    bool full, moving;
+    /* Of a model that has skins, or that moves and has clips: */
     bool live;
     uint32_t crowded, unbound; /* vertices of more than four joints, of none */
     uint32_t lost_joints;      /* that are no nodes */
@@ -107,8 +120,10 @@ void masu_import_report_losses(masu_import *m);
 bool masu_import_walk(masu_import *m, bool convert);
 /* ---- assimp_skin.c ---- */
 
-/* Whether the file has clips or skins. */
-bool masu_import_is_live(const struct aiScene *scene);
+/* Whether its nodes are kept: for skins, which need them to rest, and for clips if it is moving. */
+bool masu_import_is_live(const struct aiScene *scene, bool moving);
+/* Of a model that does not move its vertices are enough: what would move them goes. */
+void masu_import_forget(masu_import *m);
 /* Whether a mesh is kept in `bent`. */
 bool masu_import_bends(const masu_import *m, unsigned mesh);
 /* Converts its triangles into `bent`. */

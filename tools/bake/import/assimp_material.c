@@ -313,6 +313,10 @@ static void convert_shine(const struct aiMaterial *from, masu_blob_material *to)
 uint32_t masu_import_material(masu_import *m, unsigned index) {
     masu_blob_material to = masu_bake_default_material();
     const struct aiScene *s = m->source;
+    if (m->given) {
+        const masu_import_given *given = &m->given[index];
+        return masu_bake_mapped_material(m->piece, &given->material, &given->maps, given->name);
+    }
     if (index >= s->mNumMaterials || !s->mMaterials || !s->mMaterials[index]) {
         return masu_bake_material(m->piece, &to, "");
     }
@@ -322,6 +326,12 @@ uint32_t masu_import_material(masu_import *m, unsigned index) {
     convert_color(from, &to, &alpha);
     convert_shine(from, &to);
     get_factor(from, KEY(AI_MATKEY_OPACITY), &opacity);
+    /* Many files of Collada and 3DS say 0 where they mean that nothing shines through. */
+    if (opacity <= 0 || alpha <= 0) {
+        m->invisible++;
+        opacity = opacity <= 0 ? 1 : opacity;
+        alpha = alpha <= 0 ? 1 : alpha;
+    }
     masu_bake_maps maps = convert_maps(m, from);
     /* One number under two names in some formats, so not their product. */
     alpha = alpha < opacity ? alpha : opacity;

@@ -31,6 +31,7 @@ void masu_import_report_losses(masu_import *m) {
         [MASU_LOST_POSITION] = "triangles left out, a vertex is not finite",
         [MASU_LOST_AREA] = "triangles left out, they have no area",
         [MASU_LOST_NORMAL] = "normals made new, they were not usable",
+        [MASU_LOST_FACE] = "points and lines left out",
         [MASU_LOST_TEXCOORD] = "texture coordinates set to 0, they were not finite or beyond 16384",
     };
     for (int kind = 0; kind < MASU_LOSSES; kind++) {
@@ -38,7 +39,7 @@ void masu_import_report_losses(masu_import *m) {
         if (l->count == 0) continue;
         masu_bake_append(&l->names, "", 1);
         masu_import_format(m->warnings, "%llu ", (unsigned long long)l->count);
-        if (kind != MASU_LOST_NORMAL && kind != MASU_LOST_TEXCOORD) {
+        if (kind != MASU_LOST_NORMAL && kind != MASU_LOST_TEXCOORD && kind != MASU_LOST_FACE) {
             masu_import_format(m->warnings, "of %llu ", (unsigned long long)m->triangles);
         }
         masu_import_format(m->warnings, "%s (in %u meshes: ", what[kind], l->meshes);
@@ -72,7 +73,7 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
     const struct aiScene *s = m->source;
     int channel = 0;
     unsigned count = 1;
-    if (mesh->mMaterialIndex < s->mNumMaterials && s->mMaterials[mesh->mMaterialIndex]) {
+    if (!m->given && mesh->mMaterialIndex < s->mNumMaterials && s->mMaterials[mesh->mMaterialIndex]) {
         aiGetMaterialIntegerArray(s->mMaterials[mesh->mMaterialIndex],
                                   AI_MATKEY_UVWSRC(aiTextureType_BASE_COLOR, 0), &channel, &count);
     }
@@ -86,7 +87,7 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
         return NULL;
     }
     struct aiUVTransform transform;
-    bool moved = texture_transform(m, mesh, &transform);
+    bool moved = !m->given && texture_transform(m, mesh, &transform);
     if (moved && transform.mRotation != 0) m->turned++;
     float *out = masu_bake_allocate((size_t)mesh->mNumVertices * 2 * sizeof *out);
     for (unsigned i = 0; i < mesh->mNumVertices; i++) {
@@ -96,7 +97,7 @@ static float *texcoords_of(masu_import *m, const struct aiMesh *mesh) {
             v = v * (double)transform.mScaling.y + (double)transform.mTranslation.y;
         }
         out[2 * i] = (float)u;
-        out[2 * i + 1] = (float)(1 - v);
+        out[2 * i + 1] = (float)(m->given ? v : 1 - v);
     }
     return out;
 }
@@ -109,9 +110,13 @@ void masu_import_mesh(masu_import *m, unsigned index) {
     m->mesh_parts[index].first = (uint32_t)masu_bake_count(to, MASU_BLOB_PRIMITIVES);
     if (!mesh->mVertices || !mesh->mFaces || mesh->mNumVertices == 0 || m->full) return;
     masu_bake_buffer indices = {0};
+    uint64_t left_out = 0;
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
         const struct aiFace *face = &mesh->mFaces[i];
-        if (face->mNumIndices != 3 || !face->mIndices) continue; /* points and lines */
+        if (face->mNumIndices != 3 || !face->mIndices) {
+            left_out++;
+            continue;
+        }
         for (int k = 0; k < 3; k++) {
             uint32_t corner = face->mIndices[k];
             masu_bake_append(&indices, &corner, sizeof corner);
@@ -142,6 +147,7 @@ void masu_import_mesh(masu_import *m, unsigned index) {
     masu_bake_release(&indices);
     free(texcoords);
     note_losses(m, mesh, &lost);
+    note_loss(m, MASU_LOST_FACE, left_out, mesh);
     if (mesh->mNumBones) m->skins++;
     m->mesh_parts[index].count =
         (uint32_t)masu_bake_count(to, MASU_BLOB_PRIMITIVES) - m->mesh_parts[index].first;

@@ -76,8 +76,7 @@ static masu_bake_affine node_transform(const struct aiNode *node) {
 
 /* glTF gives intensities; a white matt surface has the luminance of the intensity over pi and the
  * squared distance. A range that is not given stays 0 until the factor of the placement is known. */
-static bool convert_light(const struct aiLight *from, const struct aiNode *node,
-                          const masu_bake_affine *space, masu_blob_light *to) {
+static bool convert_light(const struct aiLight *from, const masu_bake_affine *space, masu_blob_light *to) {
     const ai_real color[3] = {from->mColorDiffuse.r, from->mColorDiffuse.g, from->mColorDiffuse.b};
     masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y,
                           (double)from->mPosition.z};
@@ -92,17 +91,6 @@ static bool convert_light(const struct aiLight *from, const struct aiNode *node,
     for (int k = 0; k < 3; k++)
         to->color[k] = masu_import_clamped((double)color[k] / MASU_BAKE_PI, 0, 1e9);
     to->radius = 0.01f;
-    const struct aiMetadata *about = node->mMetaData;
-    for (unsigned i = 0; about && about->mKeys && about->mValues && i < about->mNumProperties;
-         i++) {
-        const struct aiMetadataEntry *e = &about->mValues[i];
-        if (masu_import_length(&about->mKeys[i]) != 14 || !e->mData ||
-            memcmp(about->mKeys[i].data, "PBR_LightRange", 14) != 0) {
-            continue;
-        }
-        if (e->mType == AI_FLOAT)
-            to->range = masu_import_clamped((double)*(const float *)e->mData, 0, 1e9);
-    }
     if (from->mType == aiLightSource_POINT) return true;
     to->type = MASU_LIGHT_SPOT;
     if (!masu_bake_normalize(&direction)) return false;
@@ -114,20 +102,20 @@ static bool convert_light(const struct aiLight *from, const struct aiNode *node,
     return true;
 }
 
-/* Assimp ties a light to the node of its name. */
+/* Lights of glTF alone are in known units. An aiScene ties a light to the node of its name. */
 static void convert_lights(masu_import *m, const struct aiNode *node, const masu_bake_affine *space,
                            uint32_t instance) {
     const struct aiScene *s = m->source;
     int length = masu_import_length(&node->mName);
-    if (!m->gltf || !s->mLights || length == 0) return;
+    if (!m->ranges || !s->mLights || length == 0) return;
     for (unsigned i = 0; i < s->mNumLights && i < LIGHTS_MAX; i++) {
         const struct aiLight *from = s->mLights[i];
         if (!from || masu_import_length(&from->mName) != length ||
             memcmp(from->mName.data, node->mName.data, (size_t)length) != 0) {
             continue;
         }
-        masu_blob_light light = {.parent = instance};
-        if (!convert_light(from, node, space, &light)) {
+        masu_blob_light light = {.parent = instance, .range = m->ranges[i]};
+        if (!convert_light(from, space, &light)) {
             m->other_lights++;
             continue;
         }

@@ -16,8 +16,8 @@ static uint32_t node_count(const masu_import *m) {
     return (uint32_t)(m->nodes.bytes / sizeof(masu_import_node));
 }
 
-bool masu_import_is_live(const struct aiScene *s) {
-    bool live = s->mAnimations && s->mNumAnimations;
+bool masu_import_is_live(const struct aiScene *s, bool moving) {
+    bool live = moving && s->mAnimations && s->mNumAnimations;
     for (unsigned i = 0; s->mMeshes && i < s->mNumMeshes; i++)
         live = live || (s->mMeshes[i] && s->mMeshes[i]->mNumBones);
     return live;
@@ -442,7 +442,7 @@ void masu_import_live(masu_import *m) {
     masu_bake_buffer instances = {0};
     masu_bake_affine identity = masu_bake_identity();
     make_skins(m, &instances);
-    for (unsigned i = 0; m->source->mAnimations && i < m->source->mNumAnimations; i++) {
+    for (unsigned i = 0; m->moving && m->source->mAnimations && i < m->source->mNumAnimations; i++) {
         if (m->source->mAnimations[i]) make_clip(m, m->source->mAnimations[i]);
     }
     masu_blob_joint *joints = MASU_BAKE_ARRAY(c, MASU_BLOB_JOINTS, masu_blob_joint);
@@ -462,4 +462,10 @@ void masu_import_live(masu_import *m) {
     }
     report_live(m);
     masu_bake_release(&instances);
+}
+
+void masu_import_forget(masu_import *m) {
+    static const int kinds[] = {MASU_BLOB_MODEL_NODES, MASU_BLOB_CLIPS,  MASU_BLOB_CHANNELS, MASU_BLOB_KEYS,
+                                MASU_BLOB_SKINS,       MASU_BLOB_JOINTS, MASU_BLOB_SKIN_VERTICES};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) masu_bake_release(&m->piece->section[kinds[i]]);
 }

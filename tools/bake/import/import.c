@@ -24,8 +24,7 @@ static void send_buffer(int fd, const masu_bake_buffer *buffer) {
 
 typedef struct import {
     const char *path;
-    masu_bake_textures textures;
-    bool moving;
+    masu_bake_wanted how;
 } import;
 
 /* A file of a hundred bytes may claim that it holds a billion faces. What an honest one needs grows
@@ -46,8 +45,7 @@ static void import_in_child(void *argument, int fd) {
     limit_memory(wanted->path);
     masu_bake_content piece = {0};
     masu_bake_buffer warnings = {0}, error = {0};
-    masu_bake_read_model(wanted->path, wanted->textures, wanted->moving, &piece, &warnings,
-                         &error);
+    masu_bake_read_model(wanted->path, &wanted->how, &piece, &warnings, &error);
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
         send_buffer(fd, &piece.section[kind]);
     }
@@ -174,10 +172,9 @@ static bool import_file(import wanted, masu_bake_content *piece) {
 }
 
 bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece) {
-    return import_file((import){path, textures, false}, piece);
+    return import_file((import){path, {.textures = textures}}, piece);
 }
 
-bool masu_bake_import_moving(const char *path, masu_bake_textures textures,
-                             masu_bake_content *piece) {
-    return import_file((import){path, textures, true}, piece);
+bool masu_bake_import_as(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece) {
+    return import_file((import){path, *wanted}, piece);
 }

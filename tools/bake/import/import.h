@@ -2,6 +2,7 @@
  *
  *   import.c   runs the reader in a child process and checks what comes back
  *   assimp.c   the reader: Assimp's scene to ours
+ *   gltf.c     our reader of glTF, whose scene has Assimp's form
  *   acc.c      a dialect that Assimp does not know
  *
  * Model files are hostile: the importing library is large, and asserts, overruns and endless loops
@@ -18,8 +19,7 @@
 /* Fills `piece`. On false the error has been reported; losses are reported as warnings. */
 bool masu_bake_import(const char *path, masu_bake_textures textures, masu_bake_content *piece);
 
-/* The same of a model that moves: with its clips and skins, and nodes for both. */
-bool masu_bake_import_moving(const char *path, masu_bake_textures textures,
-                             masu_bake_content *piece);
+/* The same with more to want. */
+bool masu_bake_import_as(const char *path, const masu_bake_wanted *wanted, masu_bake_content *piece);
 
 #endif

@@ -47,6 +47,13 @@ static bool matches(const masu_bake_content *piece, uint32_t index, const masu_b
     return fnmatch(o->match, last_part(path), 0) == 0;
 }
 
+bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_override *override) {
+    for (uint32_t i = 0; i < masu_bake_count(piece, MASU_BLOB_MATERIALS); i++) {
+        if (matches(piece, i, override)) return true;
+    }
+    return false;
+}
+
 static void apply_override(const masu_bake_override *o, masu_blob_material *to,
                            masu_bake_maps *maps, bool own[MASU_BAKE_MAPS]) {
     const masu_blob_material *v = &o->value;

@@ -23,6 +23,8 @@ typedef struct masu_bake_overrides {
     size_t count;
 } masu_bake_overrides;
 
+/* Whether it is for any material of the piece. */
+bool masu_bake_override_matches(const masu_bake_content *piece, const masu_bake_override *override);
 bool masu_bake_overrides_equal(const masu_bake_overrides *a, const masu_bake_overrides *b);
 
 /* Where a piece already lies in the scene, for the second and later placements with the same

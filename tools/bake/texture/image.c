@@ -190,7 +190,9 @@ static void decode(const job *j, const unsigned char *data, size_t bytes, int fd
     }
     const char *format = masu_bake_image_format(data, bytes, j->name);
     if (!format) {
-        give_up(fd, "not a picture of a kind that is read");
+        bool ktx = bytes > 12 && memcmp(data, "\xABKTX 20\xBB\r\n\x1A\n", 12) == 0;
+        give_up(fd, ktx ? "a KTX2 (Basis) picture, which is not read: PNG, JPEG or WebP are"
+                        : "not a picture of a kind that is read");
         return;
     }
     char forced[16];

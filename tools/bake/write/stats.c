@@ -58,6 +58,17 @@ static json_t *reflections_json(const masu_bake_bvh_report *r) {
                      "seconds", r->seconds);
 }
 
+static json_t *warnings_json(const masu_bake_report *r) {
+    json_t *all = json_array();
+    for (size_t at = 0; at < r->warnings.bytes;) {
+        const char *text = (const char *)r->warnings.data + at;
+        json_t *line = json_string(text);
+        json_array_append_new(all, line ? line : json_string("(not UTF-8)"));
+        at += strlen(text) + 1;
+    }
+    return all;
+}
+
 bool masu_bake_write_stats(const masu_bake_options *options, const masu_bake_content *content,
                            const masu_bake_buffer *blob, const masu_bake_report *report,
                            double seconds) {
@@ -86,6 +97,7 @@ bool masu_bake_write_stats(const masu_bake_options *options, const masu_bake_con
         "triangles", (json_int_t)t.triangles, "drawn_triangles", (json_int_t)t.drawn_triangles,
         "warnings", (json_int_t)masu_cli_warnings(), "bounds", bounds, "sections", sections,
         "detail", detail_json(report), "seconds", seconds, "peak_bytes", (json_int_t)peak_memory());
+    if (root) json_object_set_new(root, "warning_lines", warnings_json(report));
     if (root && report->reflected)
         json_object_set_new(root, "reflections", reflections_json(&report->reflections));
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;

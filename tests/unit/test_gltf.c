@@ -1,0 +1,679 @@
+/* test_gltf.c: each thing that glTF says, as it is baked: small files are written here, with what they must become
+ * known from how they were made. What is not read is told; what is wrong or hostile is refused in one line. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <meshoptimizer.h>
+
+#include "bake/import/gltf.h"
+#include "bake/import/import.h"
+#include "cli/cli.h"
+#include "support/files.h"
+
+enum { BYTE = 5120, UBYTE, SHORT, USHORT, UINT = 5125, FLOAT };
+
+/* ---- Files ----------------------------------------------------------------------------------- */
+
+static struct {
+    unsigned char data[16384];
+    size_t bytes;
+    char views[4096], accessors[8192];
+    int view_count, accessor_count;
+} file;
+
+static void begin(void) { memset(&file, 0, sizeof file); }
+
+static void add(char *to, size_t room, const char *format, ...) {
+    size_t length = strlen(to);
+    va_list arguments;
+    va_start(arguments, format);
+    int wrote = vsnprintf(to + length, room - length, format, arguments);
+    va_end(arguments);
+    assert_true(wrote >= 0 && (size_t)wrote < room - length);
+}
+
+static size_t put(const void *data, size_t bytes) {
+    size_t at = file.bytes = (file.bytes + 3) & ~(size_t)3;
+    assert_true(at + bytes <= sizeof file.data);
+    memcpy(file.data + at, data, bytes);
+    file.bytes = at + bytes;
+    return at;
+}
+
+static int view(const void *data, size_t bytes, int stride) {
+    size_t at = put(data, bytes);
+    add(file.views, sizeof file.views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu", file.view_count ? "," : "", at, bytes);
+    if (stride) add(file.views, sizeof file.views, ",\"byteStride\":%d", stride);
+    add(file.views, sizeof file.views, "}");
+    return file.view_count++;
+}
+
+static int accessor(int view_index, int type, const char *shape, unsigned count, const char *more) {
+    add(file.accessors, sizeof file.accessors, "%s{\"componentType\":%d,\"type\":\"%s\",\"count\":%u%s", file.accessor_count ? "," : "",
+        type, shape, count, more);
+    if (view_index >= 0) add(file.accessors, sizeof file.accessors, ",\"bufferView\":%d", view_index);
+    add(file.accessors, sizeof file.accessors, "}");
+    return file.accessor_count++;
+}
+
+static int floats(const float *values, const char *shape, unsigned count, unsigned components) {
+    return accessor(view(values, count * components * sizeof *values, 0), FLOAT, shape, count, "");
+}
+
+static int shorts(const uint16_t *indices, unsigned count) {
+    return accessor(view(indices, count * sizeof *indices, 0), USHORT, "SCALAR", count, "");
+}
+
+/* The rest of the file's members; written as a .glb. Returns its path. */
+static const char *finish(const char *format, ...) {
+    static unsigned char out[65536];
+    static char text[32768], rest[16384];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(rest, sizeof rest, format, arguments);
+    va_end(arguments);
+    while (file.bytes % 4) file.bytes++;
+    size_t length = (size_t)snprintf(text, sizeof text,
+                                     "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":4096}],"
+                                     "\"bufferViews\":[%s],\"accessors\":[%s],%s}",
+                                     file.bytes, file.views, file.accessors, rest);
+    while (length % 4) text[length++] = ' ';
+    uint32_t head[5] = {0x46546C67, 2, (uint32_t)(20 + length + 8 + file.bytes), (uint32_t)length, 0x4E4F534A};
+    uint32_t chunk[2] = {(uint32_t)file.bytes, 0x004E4942};
+    memcpy(out, head, 20);
+    memcpy(out + 20, text, length);
+    memcpy(out + 20 + length, chunk, 8);
+    memcpy(out + 28 + length, file.data, file.bytes);
+    return write_bytes("x.glb", out, 28 + length + file.bytes);
+}
+
+/* A quad in z = 0, with these members besides in its primitive. */
+static const float corners[12] = {0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0};
+static const uint16_t two[6] = {0, 1, 2, 0, 2, 3};
+static int quad_positions, quad_indices;
+
+static void begin_quad(void) {
+    begin();
+    quad_positions = floats(corners, "VEC3", 4, 3);
+    quad_indices = shorts(two, 6);
+}
+
+static const char *finish_quad(const char *attributes, const char *primitive, const char *rest) {
+    return finish("\"meshes\":[{\"name\":\"quad\",\"primitives\":[{\"attributes\":{\"POSITION\":%d%s},\"indices\":%d%s}]}],"
+                  "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]%s",
+                  quad_positions, attributes, quad_indices, primitive, rest);
+}
+
+/* ---- What they become ------------------------------------------------------------------------ */
+
+static masu_bake_content piece;
+static char heard[8192];
+
+static void hear(void *user, const char *text) {
+    (void)user;
+    add(heard, sizeof heard, "%s\n", text);
+}
+
+static void import_as(const char *path, masu_bake_wanted wanted) {
+    masu_bake_content_release(&piece);
+    heard[0] = '\0';
+    masu_cli_hear_warnings(hear, NULL);
+    assert_true(masu_bake_import_as(path, &wanted, &piece));
+    masu_cli_hear_warnings(NULL, NULL);
+}
+
+static void import_quietly(const char *path) {
+    import_as(path, (masu_bake_wanted){0});
+    assert_string_equal(heard, "");
+}
+
+static void import_warned(const char *path, const char *warning) {
+    import_as(path, (masu_bake_wanted){0});
+    if (!strstr(heard, warning) || strchr(heard, '\n') != strrchr(heard, '\n')) fail_msg("heard: %s", heard);
+}
+
+/* Read alone, without the process around it: the line that says why not. */
+static void refused(const char *path, const char *variant, const char *why) {
+    masu_bake_content content = {0};
+    masu_bake_buffer warnings = {0}, error = {0};
+    masu_gltf g = {.path = path, .variant = variant, .piece = &content, .warnings = &warnings, .error = &error};
+    assert_false(masu_gltf_read(&g));
+    masu_bake_append(&error, "", 1);
+    if (!strstr((const char *)error.data, why) || strchr((const char *)error.data, '\n'))
+        fail_msg("\"%s\" is not in: %s", why, (const char *)error.data);
+    masu_gltf_release(&g);
+    masu_bake_content_release(&content);
+    masu_bake_release(&warnings);
+    masu_bake_release(&error);
+}
+
+static const masu_blob_material *material(uint32_t index) {
+    assert_true(index < masu_bake_count(&piece, MASU_BLOB_MATERIALS));
+    return &MASU_BAKE_MATERIALS(&piece)[index];
+}
+
+static uint64_t triangles(void) { return masu_bake_count(&piece, MASU_BLOB_INDICES) / 3; }
+
+static void assert_near(double a, double b, double error) {
+    if (!(fabs(a - b) <= error)) fail_msg("%.9g is not %.9g within %g", a, b, error);
+}
+
+/* The vertex at that place; its number. */
+static uint32_t vertex_at(double x, double y, double z, double error) {
+    for (uint32_t i = 0; i < masu_bake_count(&piece, MASU_BLOB_VERTICES); i++) {
+        const float *p = MASU_BAKE_VERTICES(&piece)[i].position;
+        if (fabs((double)p[0] - x) <= error && fabs((double)p[1] - y) <= error && fabs((double)p[2] - z) <= error) return i;
+    }
+    fail_msg("no vertex at %g %g %g", x, y, z);
+    return 0;
+}
+
+static const float *texcoord_at(double x, double y) {
+    return MASU_BAKE_ARRAY(&piece, MASU_BLOB_TEXCOORDS, float) + 2 * (size_t)vertex_at(x, y, 0, 0);
+}
+
+/* ---- Geometry -------------------------------------------------------------------------------- */
+
+static void quantized_positions_and_normals(void **state) {
+    (void)state;
+    int16_t p[8][4] = {{0}};
+    int8_t n[8][4] = {{0}};
+    for (int i = 0; i < 8; i++) {
+        for (int k = 0; k < 3; k++) {
+            p[i][k] = i >> k & 1 ? 32767 : -32767;
+            n[i][k] = i >> k & 1 ? 73 : -73;
+        }
+    }
+    static const uint8_t faces[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                      2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    begin();
+    int positions = accessor(view(p, sizeof p, 8), SHORT, "VEC3", 8, ",\"normalized\":true");
+    int normals = accessor(view(n, sizeof n, 4), BYTE, "VEC3", 8, ",\"normalized\":true");
+    int indices = accessor(view(faces, sizeof faces, 0), UBYTE, "SCALAR", 36, "");
+    import_quietly(finish("\"extensionsUsed\":[\"KHR_mesh_quantization\"],\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+                          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d},\"indices\":%d}]}],"
+                          "\"nodes\":[{\"name\":\"cube\",\"mesh\":0,\"scale\":[2,3,4],\"translation\":[0,5,0]}],\"scenes\":[{\"nodes\":[0]}]",
+                          positions, normals, indices));
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_VERTICES), 8);
+    assert_int_equal(triangles(), 12);
+    uint32_t v = vertex_at(1, -1, 1, 1e-6);
+    masu_bake_vec3 normal = masu_bake_decode_normal(MASU_BAKE_VERTICES(&piece)[v].normal);
+    assert_near(normal.x, sqrt(1 / 3.0), 1e-3);
+    assert_near(normal.y, -sqrt(1 / 3.0), 1e-3);
+    masu_bake_affine to = masu_bake_identity();
+    masu_bake_box box = masu_bake_bounds(&piece, &to);
+    assert_near(box.high.x, 2, 1e-5);
+    assert_near(box.low.y, 2, 1e-5);
+    assert_near(box.high.z, 4, 1e-5);
+    assert_string_equal(masu_bake_name_text(&piece, MASU_BAKE_INSTANCES(&piece)[0].name), "cube");
+}
+
+static void indices_of_all_types_strips_and_fans(void **state) {
+    (void)state;
+    static const uint8_t bytes[4] = {0, 1, 3, 2};
+    static const uint32_t words[4] = {0, 1, 2, 3};
+    begin_quad();
+    int strip = accessor(view(bytes, 4, 0), UBYTE, "SCALAR", 4, "");
+    int fan = accessor(view(words, 16, 0), UINT, "SCALAR", 4, "");
+    import_quietly(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d},"
+                          "{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"mode\":5},"
+                          "{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"mode\":6}]}],\"nodes\":[{\"mesh\":0}]",
+                          quad_positions, quad_indices, quad_positions, strip, quad_positions, fan));
+    assert_int_equal(triangles(), 6);
+    for (uint32_t i = 0; i < masu_bake_count(&piece, MASU_BLOB_VERTICES); i++) { /* none is turned over */
+        masu_bake_vec3 n = masu_bake_decode_normal(MASU_BAKE_VERTICES(&piece)[i].normal);
+        assert_near(n.z, 1, 1e-4);
+    }
+}
+
+static void sparse_accessors_change_some_elements(void **state) {
+    (void)state;
+    static const uint8_t changed[2] = {1, 2};
+    static const float to[6] = {3, 0, 0, 0, 4, 0};
+    begin();
+    int at = view(changed, 2, 0), values = view(to, sizeof to, 0);
+    char sparse[256];
+    snprintf(sparse, sizeof sparse,
+             ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":%d,\"componentType\":5121},\"values\":{\"bufferView\":%d}}", at, values);
+    int positions = accessor(-1, FLOAT, "VEC3", 3, sparse); /* zeros else */
+    import_quietly(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d}}]}],\"nodes\":[{\"mesh\":0}]", positions));
+    assert_int_equal(triangles(), 1);
+    vertex_at(0, 0, 0, 0);
+    vertex_at(3, 0, 0, 0);
+    vertex_at(0, 4, 0, 0);
+}
+
+static void morph_weights_of_the_node_rest(void **state) {
+    (void)state;
+    static const float up[12] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+    begin_quad();
+    int target = floats(up, "VEC3", 4, 3);
+    import_quietly(finish("\"meshes\":[{\"weights\":[1],\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"targets\":[{\"POSITION\":%d}]}]}],"
+                          "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"weights\":[0.25]}]",
+                          quad_positions, quad_indices, target));
+    assert_int_equal(triangles(), 4); /* two meshes: their weights differ */
+    vertex_at(2, 1, 1, 1e-6);
+    vertex_at(2, 1, 0.25, 1e-6);
+}
+
+static void instances_of_a_node(void **state) {
+    (void)state;
+    static const float places[15] = {0, 0, 0, 10, 0, 0, 20, 0, 0, 30, 0, 0, 40, 0, 5};
+    static const float sizes[15] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3};
+    begin_quad();
+    int t = floats(places, "VEC3", 5, 3), s = floats(sizes, "VEC3", 5, 3);
+    import_quietly(finish("\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"],"
+                          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],"
+                          "\"nodes\":[{\"name\":\"many\",\"mesh\":0,\"translation\":[0,1,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":"
+                          "{\"attributes\":{\"TRANSLATION\":%d,\"SCALE\":%d}}}}]",
+                          quad_positions, quad_indices, t, s));
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_INSTANCES), 5);
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_MESHES), 1);
+    masu_bake_affine last = masu_bake_transform(&MASU_BAKE_INSTANCES(&piece)[4]);
+    masu_bake_vec3 p = masu_bake_apply(&last, masu_bake_v3(2, 1, 0));
+    assert_near(p.x, 46, 1e-4);
+    assert_near(p.y, 4, 1e-4);
+    assert_near(p.z, 5, 1e-4);
+    assert_string_equal(masu_bake_name_text(&piece, MASU_BAKE_INSTANCES(&piece)[4].name), "many.4");
+}
+
+/* ---- Compression ----------------------------------------------------------------------------- */
+
+static void meshopt_unpacks(void **state) {
+    (void)state;
+    static const unsigned order[6] = {0, 1, 2, 2, 1, 3};
+    static const float positions[12] = {0, 0, 0, 7, 0, 0, 0, 8, 0, 7, 8, 0};
+    unsigned char packed[2][512];
+    size_t bytes[2];
+    bytes[0] = meshopt_encodeVertexBuffer(packed[0], sizeof packed[0], positions, 4, 12);
+    bytes[1] = meshopt_encodeIndexBuffer(packed[1], sizeof packed[1], order, 6);
+    assert_true(bytes[0] && bytes[1]);
+    begin();
+    size_t at[2] = {put(packed[0], bytes[0]), put(packed[1], bytes[1])};
+    add(file.views, sizeof file.views,
+        "{\"buffer\":1,\"byteLength\":48,\"byteStride\":12,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,"
+        "\"byteLength\":%zu,\"byteStride\":12,\"count\":4,\"mode\":\"ATTRIBUTES\"}}},"
+        "{\"buffer\":1,\"byteLength\":12,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,"
+        "\"byteLength\":%zu,\"byteStride\":2,\"count\":6,\"mode\":\"TRIANGLES\"}}}",
+        at[0], bytes[0], at[1], bytes[1]);
+    int p = accessor(0, FLOAT, "VEC3", 4, ""), i = accessor(1, USHORT, "SCALAR", 6, "");
+    char rest[512];
+    snprintf(rest, sizeof rest,
+             "\"extensionsRequired\":[\"EXT_meshopt_compression\"],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],"
+             "\"nodes\":[{\"mesh\":0}]", p, i);
+    import_quietly(finish("%s", rest));
+    assert_int_equal(triangles(), 2);
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_VERTICES), 4);
+    vertex_at(7, 8, 0, 0);
+    file.data[at[0]] ^= 0x55; /* the head of the packed vertices */
+    refused(finish("%s", rest), NULL, "EXT_meshopt_compression: the bytes are damaged");
+}
+
+/* A quad of 2 x 1, positions as attribute 0 and coordinates as 1, by draco::Encoder of 11 and 10 bits. */
+static const unsigned char packed_quad[132] = {
+    0x44, 0x52, 0x41, 0x43, 0x4F, 0x02, 0x02, 0x01, 0x01, 0x00, 0x00, 0x00, 0x04, 0x02, 0x01, 0x02,
+    0x00, 0x00, 0x01, 0x1F, 0xFF, 0x01, 0x11, 0xFF, 0x01, 0x11, 0x02, 0xFF, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x01, 0x00, 0x09, 0x03, 0x00, 0x00, 0x02, 0x01, 0x03, 0x09, 0x02, 0x00, 0x01, 0x02, 0x01,
+    0x01, 0x01, 0x00, 0x0C, 0x03, 0x01, 0x20, 0x01, 0x10, 0x1F, 0x01, 0x10, 0x03, 0x00, 0x14, 0x90,
+    0x08, 0xC0, 0xFF, 0x01, 0x20, 0x00, 0x00, 0x00, 0x00, 0x00, 0xFF, 0x07, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x0B, 0x01,
+    0x01, 0x01, 0x00, 0x03, 0x03, 0x01, 0x20, 0x01, 0x20, 0x03, 0x00, 0xF0, 0x83, 0xA6, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0xFF, 0x03, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x80, 0x3F, 0x0A};
+
+static const char *packed(size_t bytes, const char *attributes) {
+    begin();
+    int v = view(packed_quad, bytes, 0);
+    int p = accessor(-1, FLOAT, "VEC3", 4, ""), t = accessor(-1, FLOAT, "VEC2", 4, ""), i = accessor(-1, USHORT, "SCALAR", 6, "");
+    return finish("\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"meshes\":[{\"primitives\":[{\"attributes\":"
+                  "{\"POSITION\":%d,\"TEXCOORD_0\":%d},\"indices\":%d,\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":%d,"
+                  "\"attributes\":%s}}}]}],\"nodes\":[{\"mesh\":0}]",
+                  p, t, i, v, attributes);
+}
+
+static void draco_unpacks(void **state) {
+    (void)state;
+    const char *both = "{\"POSITION\":0,\"TEXCOORD_0\":1}";
+    import_as(packed(sizeof packed_quad, both), (masu_bake_wanted){.textures = MASU_BAKE_TEXTURES_FORCED});
+    assert_string_equal(heard, "");
+    assert_int_equal(triangles(), 2);
+    uint32_t v = vertex_at(2, 1, 0, 2e-3);
+    const float *t = MASU_BAKE_ARRAY(&piece, MASU_BLOB_TEXCOORDS, float) + 2 * (size_t)v;
+    assert_near((double)t[0], 1, 1e-3);
+    assert_near((double)t[1], 0, 1e-3);
+    refused(packed(sizeof packed_quad - 60, both), NULL, "KHR_draco_mesh_compression: the bytes are damaged");
+    refused(packed(sizeof packed_quad, "{\"POSITION\":7}"), NULL, "no attribute 7 for POSITION");
+}
+
+/* ---- Textures and colours -------------------------------------------------------------------- */
+
+/* 4 x 4 red texels: a lossless WebP of 36 bytes. */
+static const unsigned char webp[36] = {0x52, 0x49, 0x46, 0x46, 0x1c, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50,
+                                       0x56, 0x50, 0x38, 0x4c, 0x0f, 0x00, 0x00, 0x00, 0x2f, 0x03, 0xc0, 0x00,
+                                       0x00, 0x07, 0x10, 0xfd, 0x8f, 0xfe, 0x07, 0x22, 0xa2, 0xff, 0x01, 0x00};
+
+/* Two textures of one picture, and a material. */
+static const char *finish_textured(const char *attributes, const char *about) {
+    char rest[2048];
+    int v = view(webp, sizeof webp, 0);
+    snprintf(rest, sizeof rest,
+             ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"}],\"samplers\":[{\"wrapS\":33071,\"wrapT\":33648}],"
+             "\"textures\":[{\"sampler\":0,\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}},{\"sampler\":0,\"source\":0}],\"materials\":[%s]",
+             v, about);
+    return finish_quad(attributes, ",\"material\":0", rest);
+}
+
+static int begin_mapped(char *attributes, size_t room) {
+    static const float first[8] = {9, 9, 9, 9, 9, 9, 9, 9}, second[8] = {0, 1, 1, 1, 1, 0, 0, 0};
+    begin_quad();
+    int a = floats(first, "VEC2", 4, 2), b = floats(second, "VEC2", 4, 2);
+    snprintf(attributes, room, ",\"TEXCOORD_0\":%d,\"TEXCOORD_1\":%d", a, b);
+    return b;
+}
+
+static void coordinates_are_of_the_set_and_turned(void **state) {
+    (void)state;
+    char attributes[128];
+    begin_mapped(attributes, sizeof attributes);
+    import_quietly(finish_textured(
+        attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":0,\"extensions\":{\"KHR_texture_transform\":"
+                    "{\"texCoord\":1,\"rotation\":0.5235987755982988,\"scale\":[2,3],\"offset\":[0.5,0.25]}}}}}"));
+    const masu_bake_maps *maps = MASU_BAKE_MAPS_OF(&piece);
+    assert_int_not_equal(maps->image[MASU_BAKE_BASE], MASU_BLOB_NONE);
+    assert_int_equal(MASU_BAKE_IMAGES(&piece)[maps->image[MASU_BAKE_BASE]].data_bytes, sizeof webp);
+    assert_int_equal(maps->wrap[0], 1);
+    assert_int_equal(maps->wrap[1], 2);
+    double c = sqrt(0.75), s = 0.5; /* (1, 0) of the set is at (2, 1) */
+    assert_near((double)texcoord_at(2, 1)[0], c * 2 + 0.5, 1e-6);
+    assert_near((double)texcoord_at(2, 1)[1], -s * 2 + 0.25, 1e-6);
+    assert_near((double)texcoord_at(0, 0)[0], s * 3 + 0.5, 1e-6); /* (0, 1) */
+    assert_near((double)texcoord_at(0, 0)[1], c * 3 + 0.25, 1e-6);
+}
+
+static void maps_of_other_coordinates_are_told(void **state) {
+    (void)state;
+    char attributes[128];
+    begin_mapped(attributes, sizeof attributes);
+    import_warned(finish_textured(attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}},"
+                                              "\"normalTexture\":{\"index\":1,\"texCoord\":0}}"),
+                  "1 textures want other coordinates than the base colour of their material: left out");
+    assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->image[MASU_BAKE_NORMAL], MASU_BLOB_NONE);
+    begin_mapped(attributes, sizeof attributes);
+    import_quietly(finish_textured(attributes, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}},\"normalTexture\":"
+                                               "{\"index\":1,\"texCoord\":1,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[4,8]}}}}"));
+    assert_int_not_equal(MASU_BAKE_MAPS_OF(&piece)->image[MASU_BAKE_NORMAL], MASU_BLOB_NONE);
+    assert_near((double)material(0)->detail[0], 4, 1e-5);
+    assert_near((double)material(0)->detail[1], 8, 1e-5);
+}
+
+static const char *colored(const float *colors, const char *about) {
+    char attributes[64], rest[512];
+    begin_quad();
+    snprintf(attributes, sizeof attributes, ",\"COLOR_0\":%d", floats(colors, "VEC4", 4, 4));
+    snprintf(rest, sizeof rest, ",\"materials\":[{%s}]", about);
+    return finish_quad(attributes, ",\"material\":0", rest);
+}
+
+static void colours_of_vertices_become_materials(void **state) {
+    (void)state;
+    static const float one[16] = {1, 0.5f, 0.25f, 1, 1, 0.5f, 0.25f, 1, 1, 0.5f, 0.25f, 1, 1, 0.5f, 0.25f, 1};
+    static const float many[16] = {1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 1};
+    static const uint8_t bytes[16] = {255, 51, 0, 255, 255, 51, 0, 255, 255, 51, 0, 255, 255, 51, 0, 255};
+    import_quietly(colored(one, "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0.5,1]}"));
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_MATERIALS), 1);
+    assert_near((double)material(0)->base_color[0], 0.5, 1e-6);
+    assert_near((double)material(0)->base_color[2], 0.125, 1e-6);
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_VERTICES), 4);
+    import_warned(colored(many, ""), "2 triangles have colours at their vertices: each is of one colour");
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_MATERIALS), 2);
+    assert_int_equal(triangles(), 2);
+    double red = 0, green = 0;
+    for (uint32_t i = 0; i < 2; i++) {
+        red = fmax(red, (double)material(i)->base_color[0]);
+        green = fmax(green, (double)material(i)->base_color[1]);
+    }
+    assert_near(red, 1 / 3.0, 1e-6);
+    assert_near(green, 1 / 3.0, 1e-6);
+    char attributes[64];
+    begin_quad();
+    snprintf(attributes, sizeof attributes, ",\"COLOR_0\":%d", accessor(view(bytes, 16, 4), UBYTE, "VEC3", 4, ",\"normalized\":true"));
+    import_quietly(finish_quad(attributes, "", ""));
+    assert_near((double)material(0)->base_color[1], 0.2, 1e-6);
+}
+
+/* ---- Materials ------------------------------------------------------------------------------- */
+
+static const masu_blob_material *only(const char *about) {
+    char rest[1024];
+    begin_quad();
+    snprintf(rest, sizeof rest, ",\"materials\":[{\"name\":\"m\",%s}]", about);
+    import_quietly(finish_quad("", ",\"material\":0", rest));
+    return material(0);
+}
+
+static void factors_of_materials(void **state) {
+    (void)state;
+    const masu_blob_material *m = only("\"emissiveFactor\":[0.5,0.25,0],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8}}");
+    assert_near((double)m->emissive[0], 4, 1e-6);
+    assert_near((double)m->emissive[1], 2, 1e-6);
+    assert_near((double)m->metallic, 1, 0);
+    m = only("\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.4},\"KHR_materials_ior\":{\"ior\":1.5}}");
+    assert_near((double)m->specular, 0.2, 1e-6);
+    m = only("\"extensions\":{\"KHR_materials_ior\":{\"ior\":1.3333333333}}");
+    assert_near((double)m->specular, 0.020408163 / 0.08, 1e-6);
+    m = only("\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75,\"clearcoatRoughnessFactor\":0.125}}");
+    assert_near((double)m->coat, 0.75, 0);
+    assert_near((double)m->coat_roughness, 0.125, 0);
+    m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1]},\"extensions\":{\"KHR_materials_unlit\":{}}");
+    assert_near((double)m->emissive[1], 0.5, 0);
+    assert_near((double)m->specular, 0, 0);
+    m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1],\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9}}");
+    assert_near((double)m->opacity, 1 - 0.9 * 0.5, 1e-6);
+    assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->alpha, MASU_BAKE_ALPHA_BLEND);
+    m = only("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.125,1],\"specularFactor\":[0.04,0.04,0.04],\"glossinessFactor\":0.75}}");
+    assert_near((double)m->base_color[0], 0.5, 1e-5);
+    assert_near((double)m->roughness, 0.25, 1e-6);
+    assert_near((double)m->metallic, 0, 1e-6);
+    m = only("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0,0,0,1],\"specularFactor\":[0.9,0.7,0.3],\"glossinessFactor\":1}}");
+    assert_near((double)m->metallic, 1, 0.03);
+    assert_near((double)m->base_color[2], 0.3, 0.03);
+    m = only("\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.5]}");
+    assert_near((double)m->opacity, 0.5, 0);
+}
+
+static void what_is_not_read_is_told(void **state) {
+    (void)state;
+    begin_quad();
+    import_warned(finish_quad("", ",\"material\":0",
+                              ",\"materials\":[{\"name\":\"silk\",\"extensions\":{\"KHR_materials_sheen\":{}}},{\"name\":\"wool\",\"extensions\":{\"KHR_materials_sheen\":{}}}]"),
+                  "2 times KHR_materials_sheen, which is not read (first: silk)");
+    begin_quad();
+    char attributes[64];
+    snprintf(attributes, sizeof attributes, ",\"_WETNESS\":%d", quad_positions);
+    import_warned(finish_quad(attributes, "", ""), "1 primitives have _WETNESS, which is not read (first: quad)");
+    begin_quad();
+    import_warned(finish("\"meshes\":[{\"name\":\"quad\",\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d},{\"attributes\":{\"POSITION\":%d},\"mode\":1}]}],\"nodes\":[{\"mesh\":0}]",
+                         quad_positions, quad_indices, quad_positions),
+                  "1 primitives are lines: left out (first: quad)");
+}
+
+static void variants_by_name(void **state) {
+    (void)state;
+    const char *rest = ",\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"day\"},{\"name\":\"night\"}]}},"
+                       "\"materials\":[{\"pbrMetallicRoughness\":{\"roughnessFactor\":0.25}},{\"pbrMetallicRoughness\":{\"roughnessFactor\":0.75}}]";
+    const char *mapped = ",\"material\":0,\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,\"variants\":[1]}]}}";
+    begin_quad();
+    const char *path = finish_quad("", mapped, rest);
+    import_quietly(path);
+    assert_near((double)material(0)->roughness, 0.25, 0);
+    import_as(path, (masu_bake_wanted){.variant = "night"});
+    assert_string_equal(heard, "");
+    assert_near((double)material(0)->roughness, 0.75, 0);
+    refused(path, "dusk", "it has no variant \"dusk\"; there are: \"day\", \"night\"");
+}
+
+static void lights_in_candela(void **state) {
+    (void)state;
+    begin_quad();
+    import_quietly(finish("\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"color\":[1,0.5,0],\"intensity\":10,\"range\":7,"
+                          "\"spot\":{\"outerConeAngle\":0.5,\"innerConeAngle\":0.25}}]}},"
+                          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d}]}],"
+                          "\"nodes\":[{\"mesh\":0},{\"name\":\"lamp\",\"translation\":[1,2,3],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]",
+                          quad_positions, quad_indices));
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_LIGHTS), 1);
+    const masu_blob_light *l = MASU_BAKE_LIGHTS(&piece);
+    assert_int_equal(l->type, MASU_LIGHT_SPOT);
+    assert_near((double)l->color[0], 10 / 3.14159265, 1e-5);
+    assert_near((double)l->range, 7, 0);
+    assert_near((double)l->outer, 0.5, 0);
+    assert_near((double)l->position[1], 2, 0);
+    assert_near((double)l->direction[2], -1, 1e-6);
+}
+
+/* ---- Skins and clips ------------------------------------------------------------------------- */
+
+/* Two joints: the second, of the upper vertices, lies 5 to the right of where it was bound. how: the interpolation of
+ * a clip of it, of three keys of values `moves`. */
+static const char *skinned(const char *how, const float *moves, unsigned count) {
+    static const uint8_t joints[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    static const float weights[16] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    static const float bind[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
+                                   1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1};
+    static const float times[3] = {0, 1, 2};
+    begin_quad();
+    int j = accessor(view(joints, 16, 4), UBYTE, "VEC4", 4, ""), w = floats(weights, "VEC4", 4, 4), b = floats(bind, "MAT4", 2, 16);
+    int t = floats(times, "SCALAR", 3, 1), m = floats(moves, "VEC3", count, 3);
+    return finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"JOINTS_0\":%d,\"WEIGHTS_0\":%d},\"indices\":%d}]}],"
+                  "\"nodes\":[{\"name\":\"skin\",\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},{\"name\":\"low\",\"children\":[2]},"
+                  "{\"name\":\"high\",\"translation\":[6,0,0]}],\"scenes\":[{\"nodes\":[0,1]}],"
+                  "\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":%d}],"
+                  "\"animations\":[{\"name\":\"go\",\"channels\":[{\"sampler\":0,\"target\":{\"node\":2,\"path\":\"translation\"}}],"
+                  "\"samplers\":[{\"input\":%d,\"output\":%d,\"interpolation\":\"%s\"}]}]",
+                  quad_positions, j, w, quad_indices, b, t, m, how);
+}
+
+static void skins_rest_as_their_joints_have_them(void **state) {
+    (void)state;
+    static const float moves[9] = {0, 0, 0, 3, 0, 0, 3, 4, 0};
+    const char *path = skinned("STEP", moves, 3);
+    import_warned(path, "this one has its rest pose");
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_SKINS), 0);
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_KEYS), 0);
+    vertex_at(2, 0, 0, 1e-6); /* the node of the mesh does not move it */
+    vertex_at(7, 1, 0, 1e-6);
+    import_as(path, (masu_bake_wanted){.moving = true});
+    assert_string_equal(heard, "");
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_SKINS), 1);
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_CLIPS), 1);
+    assert_int_equal(masu_bake_count(&piece, MASU_BLOB_KEYS), 5); /* steps: two keys each */
+    const masu_blob_key *k = MASU_BAKE_ARRAY(&piece, MASU_BLOB_KEYS, masu_blob_key);
+    assert_near((double)k[1].value[0], 0, 0);
+    assert_true(k[1].time < 1 && k[1].time > 0.999f);
+    assert_near((double)k[2].time, 1, 0);
+    assert_near((double)k[2].value[0], 3, 0);
+}
+
+static void cubic_keys_are_cut_into_lines(void **state) {
+    (void)state;
+    /* In-tangent, value, out-tangent of each. */
+    static const float moves[27] = {0, 0, 0, 0, 0, 0, 6, 0, 0, 0, 0, 0, 2, 0, 0, 0, 5, 0, -4, 0, 0, 0, 1, 0, 0, 0, 0};
+    import_as(skinned("CUBICSPLINE", moves, 9), (masu_bake_wanted){.moving = true});
+    const masu_blob_key *k = MASU_BAKE_ARRAY(&piece, MASU_BLOB_KEYS, masu_blob_key);
+    uint64_t count = masu_bake_count(&piece, MASU_BLOB_KEYS);
+    assert_true(count > 10 && count < 200);
+    for (int i = 0; i <= 1000; i++) {
+        double t = i / 500.0, s = t - (t >= 1 ? 1 : 0), want[2];
+        const float *at = moves + (t >= 1 ? 9 : 0);
+        uint64_t n = 1;
+        while (n < count - 1 && (double)k[n].time < t) n++;
+        double share = (t - (double)k[n - 1].time) / ((double)k[n].time - (double)k[n - 1].time);
+        for (int c = 0; c < 2; c++) {
+            want[c] = (2 * s * s * s - 3 * s * s + 1) * (double)at[3 + c] + (s * s * s - 2 * s * s + s) * (double)at[6 + c] +
+                      (3 * s * s - 2 * s * s * s) * (double)at[12 + c] + (s * s * s - s * s) * (double)at[9 + c];
+            assert_near((double)k[n - 1].value[c] * (1 - share) + (double)k[n].value[c] * share, want[c], 2 * 2e-3);
+        }
+    }
+}
+
+/* ---- Files that are wrong -------------------------------------------------------------------- */
+
+static void names_with_percent_signs(void **state) {
+    (void)state;
+    const float p[9] = {0, 0, 0, 5, 0, 0, 0, 5, 0};
+    write_bytes("a b.bin", p, sizeof p);
+    import_quietly(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"a%20b.bin\",\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+                                        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3}],"
+                                        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}]}"));
+    vertex_at(0, 5, 0, 0);
+    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"c%20d.bin\",\"byteLength\":36}]}"), NULL, "c d.bin");
+    refused(write_text("x.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"http://x/y.bin\",\"byteLength\":36}]}"), NULL, "is no file beside the model");
+}
+
+static void what_a_file_requires(void **state) {
+    (void)state;
+    begin_quad();
+    refused(finish_quad("", "", ",\"extensionsRequired\":[\"EXT_from_tomorrow\"]"), NULL, "it requires EXT_from_tomorrow, which is not read");
+}
+
+static void hostile_files_are_refused(void **state) {
+    (void)state;
+    begin();
+    accessor(view(corners, 24, 0), FLOAT, "VEC3", 4, "");
+    const char *mesh = "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}]";
+    refused(finish("%s", mesh), NULL, "4 elements of 12 bytes, 12 apart, from byte 0 on: bufferViews[0] has 24 bytes");
+    begin();
+    accessor(view(corners, 48, 0), FLOAT, "VEC3", 4, ",\"byteOffset\":9007199254740992");
+    refused(finish("%s", mesh), NULL, "bufferViews[0] has 48 bytes");
+    begin();
+    accessor(-1, FLOAT, "VEC3", 2147483647, "");
+    refused(finish("%s", mesh), NULL, "accessors[0] has 2147483647 elements and no bufferView");
+    begin();
+    accessor(view(corners, 48, 0), FLOAT, "VEC3", 4, ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,\"componentType\":5125,\"byteOffset\":12},\"values\":{\"bufferView\":0}}");
+    refused(finish("%s", mesh), NULL, "\"sparse\" changes element 1073741824 of 4");
+    begin_quad();
+    refused(finish("\"nodes\":[{\"children\":[1]},{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]"), NULL, "nodes[0] is a root and below a node");
+    refused(finish("\"nodes\":[{\"children\":[1,1]},{}]"), NULL, "nodes[1] is a child of two nodes");
+    refused(finish("\"nodes\":[{\"mesh\":3}]"), NULL, "nodes[0]: \"mesh\" is 3, of 0 that there are");
+    refused(finish("\"nodes\":[{}],\"skins\":[{\"joints\":[-1]}]"), NULL, "joints[0] is no node");
+    size_t bytes;
+    char *whole = read_file(finish("\"nodes\":[]"), &bytes);
+    for (size_t cut = 1; cut < bytes; cut += 7) refused(write_bytes("x.glb", whole, cut), NULL, "");
+    free(whole);
+}
+
+static int clean(void **state) {
+    masu_bake_content_release(&piece);
+    return remove_scratch(state);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quantized_positions_and_normals),
+        cmocka_unit_test(indices_of_all_types_strips_and_fans),
+        cmocka_unit_test(sparse_accessors_change_some_elements),
+        cmocka_unit_test(morph_weights_of_the_node_rest),
+        cmocka_unit_test(instances_of_a_node),
+        cmocka_unit_test(meshopt_unpacks),
+        cmocka_unit_test(draco_unpacks),
+        cmocka_unit_test(coordinates_are_of_the_set_and_turned),
+        cmocka_unit_test(maps_of_other_coordinates_are_told),
+        cmocka_unit_test(colours_of_vertices_become_materials),
+        cmocka_unit_test(factors_of_materials),
+        cmocka_unit_test(what_is_not_read_is_told),
+        cmocka_unit_test(variants_by_name),
+        cmocka_unit_test(lights_in_candela),
+        cmocka_unit_test(skins_rest_as_their_joints_have_them),
+        cmocka_unit_test(cubic_keys_are_cut_into_lines),
+        cmocka_unit_test(names_with_percent_signs),
+        cmocka_unit_test(what_a_file_requires),
+        cmocka_unit_test(hostile_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, make_scratch, clean);
+}

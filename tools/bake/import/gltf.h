@@ -1,0 +1,175 @@
+/* gltf.h: our reader of glTF 2.0, .gltf and .glb; runs in a child process (import.h).
+ *
+ * It fills what Assimp would (an aiScene, assimp.h), so that one converter makes pieces of both, and hands
+ * materials over in our own form, since Assimp's keep too little of glTF's. Why a reader of ours: Assimp 5.2 knows
+ * glTF of 2019, and drops what it does not know without a word; Debian's tinygltf is C++, brings a JSON parser and a
+ * picture reader of its own, and knows neither quantization nor meshopt. jansson, which the tools read JSON
+ * with, and meshoptimizer, which makes LODs, are here anyway.
+ *
+ *   gltf.c            a file: its two containers, buffers, extensions that it requires, notes
+ *   gltf_json.c       members of its JSON, each of a type
+ *   gltf_access.c     views and accessors to numbers; EXT_meshopt_compression
+ *   gltf_material.c   materials and the names of their pictures
+ *   gltf_mesh.c       primitives: triangles, morph weights, colours of vertices
+ *   gltf_nodes.c      nodes, instances, skins, lights
+ *   gltf_clip.c       animations
+ *   gltf_draco.cpp    KHR_draco_mesh_compression, by libdraco
+ *
+ * Nothing in a file is believed: every index, view and accessor is checked before it is followed. The first thing
+ * that is wrong ends the reading, with a line that names its place. What is well-formed but of a kind that is not
+ * read is counted in a note, one for each kind with the first name, and becomes one warning.
+ *
+ * All memory is of one pool, which masu_gltf_release frees. */
+#ifndef MASU_BAKE_GLTF_H
+#define MASU_BAKE_GLTF_H
+
+#include "bake/import/assimp.h"
+
+#include <jansson.h>
+
+typedef struct masu_gltf_bytes {
+    const unsigned char *data; /* NULL: none, or not read yet */
+    size_t bytes;
+} masu_gltf_bytes;
+
+typedef struct masu_gltf_note {
+    struct masu_gltf_note *next;
+    const char *what, *first;
+    uint64_t count;
+} masu_gltf_note;
+
+/* A material, with what it asks of its meshes. */
+typedef struct masu_gltf_material {
+    masu_import_given given;
+    int set;         /* of the texture coordinates: TEXCOORD_n */
+    double uv[6];    /* rows of what turns them into those of its pictures */
+    double alpha;    /* of the base colour */
+    bool blends, unlit;
+} masu_gltf_material;
+
+/* A primitive with one skin and set of morph weights, as one aiMesh or, of many colours, several. */
+typedef struct masu_gltf_made {
+    struct masu_gltf_made *next;
+    json_int_t skin;       /* -1: none */
+    const json_t *weights; /* the node's own, or NULL */
+    const unsigned *meshes;
+    unsigned count;
+} masu_gltf_made;
+
+typedef struct masu_gltf {
+    const char *path;        /* NULL: of bytes alone, without files beside them */
+    const char *variant;     /* of KHR_materials_variants, or NULL */
+    masu_bake_textures wanted;
+    masu_bake_content *piece; /* gets pictures */
+    masu_bake_buffer *warnings, *error;
+    json_t *root;
+    masu_bake_pool pool;
+    masu_gltf_bytes file, chunk; /* the binary one of a .glb */
+    masu_gltf_bytes *buffers, *views; /* views: those that have been unpacked */
+    size_t buffer_count, view_count;
+    bool old; /* glTF 1 */
+    char where[192]; /* what is being read, for errors */
+    masu_gltf_note *notes;
+    json_int_t variant_index; /* -1: none */
+    masu_gltf_material *materials; /* of the file, and behind them the default one */
+    size_t material_count;
+    masu_bake_buffer given;  /* masu_import_given: by aiMesh.mMaterialIndex */
+    masu_bake_buffer meshes; /* struct aiMesh * */
+    masu_gltf_made **made;   /* by mesh of the file */
+    size_t mesh_count;
+    struct aiNode *nodes; /* by node of the file, then instances, then a root */
+    size_t node_count;
+    masu_bake_buffer lights; /* struct aiLight * */
+    masu_bake_buffer ranges; /* float, one of each light */
+    struct aiScene scene;
+} masu_gltf;
+
+/* Whether a file is glTF, by its name. */
+bool masu_gltf_is_named(const char *path);
+/* Reads all of it; g holds path, variant, wanted, piece, warnings and error. False: one line in error, or it is
+ * `old`, which Assimp may try. */
+bool masu_gltf_read(masu_gltf *g);
+/* The same of bytes. */
+bool masu_gltf_read_bytes(masu_gltf *g, const unsigned char *data, size_t bytes);
+void masu_gltf_release(masu_gltf *g);
+
+/* ---- gltf.c ---- */
+
+/* One line, behind g->where; the first one stays. Always false. */
+bool masu_gltf_fail(masu_gltf *g, const char *format, ...);
+bool masu_gltf_failed(const masu_gltf *g);
+/* Another one of a kind that is not read; first: what it is called. */
+void masu_gltf_note_one(masu_gltf *g, const char *what, const char *first);
+void masu_gltf_note_many(masu_gltf *g, uint64_t count, const char *what, const char *first);
+/* "meshes", 3: says where we are, with its name if it has one. */
+void masu_gltf_at(masu_gltf *g, const char *array, size_t index, const json_t *object);
+/* What the object is called, or "meshes[3]"; of the pool. */
+const char *masu_gltf_name_of(masu_gltf *g, const char *array, size_t index, const json_t *object);
+/* The bytes of a URI: of data, or of a file beside the model. False: they are not there. */
+bool masu_gltf_fetch(masu_gltf *g, const char *uri, masu_gltf_bytes *out);
+/* The path of a URI without a scheme, '%20' resolved; of the pool. NULL: it is none. */
+const char *masu_gltf_path(masu_gltf *g, const char *uri);
+void *masu_gltf_take(masu_gltf *g, size_t count, size_t size);
+
+/* ---- gltf_json.c: absent members leave the output; others of a wrong type fail ---- */
+
+const json_t *masu_gltf_object(masu_gltf *g, const json_t *of, const char *name);
+const json_t *masu_gltf_array(masu_gltf *g, const json_t *of, const char *name);
+const char *masu_gltf_string(masu_gltf *g, const json_t *of, const char *name);
+bool masu_gltf_number(masu_gltf *g, const json_t *of, const char *name, double *out);
+bool masu_gltf_numbers(masu_gltf *g, const json_t *of, const char *name, size_t count, double *out);
+bool masu_gltf_flag(masu_gltf *g, const json_t *of, const char *name, bool *out);
+/* An unsigned number of at most 2^53. */
+bool masu_gltf_size(masu_gltf *g, const json_t *of, const char *name, uint64_t *out);
+/* An index below `count`; -1: absent. False: failed. */
+bool masu_gltf_index(masu_gltf *g, const json_t *of, const char *name, size_t count, json_int_t *out);
+const json_t *masu_gltf_extension(masu_gltf *g, const json_t *of, const char *name);
+/* An element of an array of the file that masu_gltf_index has checked; NULL and failed: not an object. */
+const json_t *masu_gltf_element(masu_gltf *g, const char *array, json_int_t index);
+size_t masu_gltf_count(const masu_gltf *g, const char *array);
+
+/* ---- gltf_access.c ---- */
+
+/* The numbers of an accessor, integers that are normalised as fractions. components: what it must have, or 0.
+ * NULL: failed. */
+float *masu_gltf_floats(masu_gltf *g, json_int_t accessor, unsigned components, uint32_t *count,
+                        unsigned *found);
+/* Of unsigned integers alone. */
+uint32_t *masu_gltf_integers(masu_gltf *g, json_int_t accessor, unsigned components, uint32_t *count);
+/* The bytes of a view, unpacked if it is compressed. */
+bool masu_gltf_view(masu_gltf *g, json_int_t view, masu_gltf_bytes *out, size_t *stride);
+
+/* ---- gltf_draco.cpp ---- */
+
+/* What a compressed primitive holds. Attributes are floats, of joints too. */
+typedef struct masu_gltf_draco {
+    void *mesh;
+    uint32_t points, faces;
+} masu_gltf_draco;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+bool masu_gltf_draco_open(const unsigned char *data, size_t bytes, masu_gltf_draco *out);
+void masu_gltf_draco_indices(const masu_gltf_draco *draco, uint32_t *out); /* 3 * faces */
+/* Components of an attribute, or 0; 4 at most. */
+unsigned masu_gltf_draco_components(const masu_gltf_draco *draco, uint32_t id);
+bool masu_gltf_draco_floats(const masu_gltf_draco *draco, uint32_t id, unsigned components, float *out);
+void masu_gltf_draco_close(masu_gltf_draco *draco);
+#ifdef __cplusplus
+}
+#endif
+
+/* ---- the others; false: failed ---- */
+
+bool masu_gltf_read_materials(masu_gltf *g);
+/* The number that an aiMesh has for a material of the file under a colour (linear, with alpha); -1: the default. */
+unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4]);
+/* The aiMeshes of a mesh of the file under a skin and a node's morph weights. */
+bool masu_gltf_make_mesh(masu_gltf *g, json_int_t mesh, json_int_t skin, const json_t *weights,
+                         const masu_gltf_made **out);
+bool masu_gltf_read_nodes(masu_gltf *g);
+bool masu_gltf_read_clips(masu_gltf *g);
+void masu_gltf_set_string(struct aiString *to, const char *text);
+
+#endif

@@ -1,0 +1,450 @@
+/* gltf_material.c: materials of a glTF file and the names of their pictures; see gltf.h.
+ *
+ * A mesh has one set of texture coordinates here. It is that of the base colour, else of the first map that there
+ * is, with its transform worked in (gltf_mesh.c). A map that wants other coordinates is left out, with a note; but
+ * where all but colour and emission are repeated so many times more often, the material's detail says it.
+ *
+ * What has no counterpart is brought near: glass of KHR_materials_transmission is blended, by what it lets through
+ * of its brightest channel; unlit surfaces emit their colour; specular and glossiness become metallic and
+ * roughness, as the appendix of that extension has it. */
+#include "bake/import/gltf.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct texture {
+    uint32_t image;
+    int set;
+    double uv[6];
+    uint8_t wrap[2];
+} texture;
+
+/* ---- pictures ---- */
+
+/* The piece's number of a picture; NONE with a note. */
+static uint32_t add_image(masu_gltf *g, json_int_t index) {
+    const json_t *image = masu_gltf_element(g, "images", index);
+    json_int_t view = -1;
+    masu_bake_buffer name = {0};
+    masu_bake_image about = {0};
+    masu_gltf_bytes bytes = {0};
+    size_t stride;
+    if (!image) return MASU_BLOB_NONE;
+    const char *uri = masu_gltf_string(g, image, "uri");
+    if (!masu_gltf_index(g, image, "bufferView", g->view_count, &view)) return MASU_BLOB_NONE;
+    const char *called = masu_gltf_name_of(g, "images", (size_t)index, image);
+    if (uri && strncmp(uri, "data:", 5) != 0) {
+        const char *path = masu_gltf_path(g, uri);
+        if (!path) {
+            masu_gltf_note_one(g, "pictures that are no files beside the model: left out", uri);
+            return MASU_BLOB_NONE;
+        }
+        return masu_bake_add_image(g->piece, path, &about, NULL);
+    }
+    if (uri ? !masu_gltf_fetch(g, uri, &bytes) : view >= 0 && !masu_gltf_view(g, view, &bytes, &stride))
+        return MASU_BLOB_NONE;
+    if (!bytes.bytes) {
+        masu_gltf_note_one(g, "pictures that are empty: left out", called);
+        return MASU_BLOB_NONE;
+    }
+    masu_import_format(&name, "%s:%lld", g->path ? g->path : "", (long long)index);
+    masu_bake_append(&name, "", 1);
+    about.data_bytes = bytes.bytes;
+    uint32_t made = masu_bake_add_image(g->piece, (const char *)name.data, &about, bytes.data);
+    masu_bake_release(&name);
+    return made;
+}
+
+/* Whichever of a texture's pictures can be read: its own, else one of its extensions'. */
+static bool source_of(masu_gltf *g, const json_t *about, json_int_t *image) {
+    static const char *const others[] = {"EXT_texture_webp", "MSFT_texture_dds", "KHR_texture_basisu"};
+    size_t images = masu_gltf_count(g, "images");
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *extension = masu_gltf_extension(g, about, others[i]);
+        if (extension && !masu_gltf_index(g, extension, "source", images, image)) return false;
+        if (extension && *image >= 0) return true;
+    }
+    if (!masu_gltf_index(g, about, "source", images, image)) return false;
+    if (*image >= 0) return true;
+    const json_t *basis = masu_gltf_extension(g, about, others[2]);
+    return !basis || masu_gltf_index(g, basis, "source", images, image);
+}
+
+static bool read_sampler(masu_gltf *g, const json_t *about, texture *t) {
+    json_int_t index = -1;
+    uint64_t wrap[2] = {10497, 10497}, filter = 9729;
+    if (!masu_gltf_index(g, about, "sampler", masu_gltf_count(g, "samplers"), &index)) return false;
+    if (index < 0) return true;
+    const json_t *sampler = masu_gltf_element(g, "samplers", index);
+    if (!sampler || !masu_gltf_size(g, sampler, "wrapS", &wrap[0]) ||
+        !masu_gltf_size(g, sampler, "wrapT", &wrap[1]) ||
+        !masu_gltf_size(g, sampler, "magFilter", &filter))
+        return false;
+    for (int k = 0; k < 2; k++) t->wrap[k] = wrap[k] == 33071 ? 1 : wrap[k] == 33648 ? 2 : 0;
+    if (filter == 9728) {
+        masu_gltf_note_one(g, "textures want the nearest texel: they are filtered",
+                           masu_gltf_name_of(g, "samplers", (size_t)index, sampler));
+    }
+    return true;
+}
+
+/* The picture's coordinates are the set's, scaled, then turned, then moved. v is down the picture, and a positive
+ * angle turns counter-clockwise as one sees it. */
+static bool read_transform(masu_gltf *g, const json_t *info, texture *t) {
+    const json_t *about = masu_gltf_extension(g, info, "KHR_texture_transform");
+    double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0, set = t->set;
+    if (!about) return !masu_gltf_failed(g);
+    if (!masu_gltf_numbers(g, about, "offset", 2, offset) || !masu_gltf_numbers(g, about, "scale", 2, scale) ||
+        !masu_gltf_number(g, about, "rotation", &angle) || !masu_gltf_number(g, about, "texCoord", &set))
+        return false;
+    double c = cos(angle), s = sin(angle);
+    const double uv[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    memcpy(t->uv, uv, sizeof uv);
+    t->set = set >= 0 && set < 64 ? (int)set : 0;
+    return true;
+}
+
+/* A textureInfo; image NONE: there is none. False: failed. */
+static bool read_texture(masu_gltf *g, const json_t *of, const char *member, texture *t) {
+    const json_t *info = of ? masu_gltf_object(g, of, member) : NULL;
+    json_int_t index = -1, image = -1;
+    uint64_t set = 0;
+    *t = (texture){.image = MASU_BLOB_NONE, .uv = {1, 0, 0, 0, 1, 0}};
+    if (!info) return !masu_gltf_failed(g);
+    if (!masu_gltf_index(g, info, "index", masu_gltf_count(g, "textures"), &index) ||
+        !masu_gltf_size(g, info, "texCoord", &set))
+        return false;
+    if (index < 0) return masu_gltf_fail(g, "\"%s\" has no \"index\"", member);
+    const json_t *about = masu_gltf_element(g, "textures", index);
+    t->set = set < 64 ? (int)set : 63;
+    if (!about || !read_transform(g, info, t) || !read_sampler(g, about, t) ||
+        !source_of(g, about, &image))
+        return false;
+    if (image < 0) {
+        masu_gltf_note_one(g, "textures have no picture that is read",
+                           masu_gltf_name_of(g, "textures", (size_t)index, about));
+        return !masu_gltf_failed(g);
+    }
+    t->image = g->wanted == MASU_BAKE_TEXTURES_OFF ? MASU_BLOB_NONE : add_image(g, image);
+    return !masu_gltf_failed(g);
+}
+
+/* ---- maps ---- */
+
+typedef struct maps {
+    texture all[MASU_BAKE_MAPS];
+} maps;
+
+static const int order[] = {MASU_BAKE_BASE,     MASU_BAKE_EMISSIVE, MASU_BAKE_NORMAL,
+                            MASU_BAKE_ROUGHNESS, MASU_BAKE_METALLIC, MASU_BAKE_OCCLUSION};
+#define ORDER (sizeof order / sizeof *order)
+
+static bool near(double a, double b) { return fabs(a - b) <= 1e-5 * fmax(1, fmax(fabs(a), fabs(b))); }
+
+/* How often b repeats in a along u and v, where it is that alone. */
+static bool repeats(const texture *a, const texture *b, double times[2]) {
+    if (a->set != b->set) return false;
+    for (int k = 0; k < 2; k++) {
+        const double *x = a->uv + 3 * k, *y = b->uv + 3 * k;
+        int most = fabs(x[0]) > fabs(x[1]) ? 0 : 1;
+        times[k] = x[most] != 0 ? y[most] / x[most] : 0;
+        if (!(times[k] >= 0.001 && times[k] <= 10000)) return false;
+        for (int i = 0; i < 3; i++) {
+            if (!near(x[i] * times[k], y[i])) return false;
+        }
+    }
+    return true;
+}
+
+static void leave_out(masu_gltf *g, texture *t, const char *why) {
+    const masu_bake_image *image = &MASU_BAKE_IMAGES(g->piece)[t->image];
+    masu_gltf_note_one(g, why, (const char *)g->piece->image_text.data + image->name);
+    t->image = MASU_BLOB_NONE;
+}
+
+/* One set of coordinates for all; returns the map that has it, or NULL. */
+static const texture *agree(masu_gltf *g, maps *m, float detail[2]) {
+    const texture *first = NULL;
+    double times[2] = {1, 1};
+    bool scaled = true;
+    for (size_t i = 0; i < ORDER && !first; i++) {
+        if (m->all[order[i]].image != MASU_BLOB_NONE) first = &m->all[order[i]];
+    }
+    if (!first) return NULL;
+    for (size_t i = 2, seen = 0; i < ORDER && scaled; i++) { /* all but colours, alike */
+        const texture *t = &m->all[order[i]];
+        double own[2];
+        if (t->image == MASU_BLOB_NONE) continue;
+        scaled = repeats(first, t, own) && (!seen || (near(own[0], times[0]) && near(own[1], times[1])));
+        memcpy(times, own, sizeof times);
+        seen = 1;
+    }
+    if (!scaled) times[0] = times[1] = 1;
+    for (size_t i = 0; i < ORDER; i++) {
+        texture *t = &m->all[order[i]];
+        double own[2] = {0, 0};
+        if (t->image == MASU_BLOB_NONE) continue;
+        bool same = repeats(first, t, own) && near(own[0], i < 2 ? 1 : times[0]) &&
+                    near(own[1], i < 2 ? 1 : times[1]);
+        if (!same)
+            leave_out(g, t, "textures want other coordinates than the base colour of their material: left out");
+        else if (memcmp(t->wrap, first->wrap, sizeof t->wrap) != 0)
+            masu_gltf_note_one(g, "textures repeat in another way than the base colour of their material: as that does",
+                               g->where);
+    }
+    detail[0] = (float)times[0];
+    detail[1] = (float)times[1];
+    return first;
+}
+
+static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
+    static const uint8_t channel[MASU_BAKE_MAPS] = {[MASU_BAKE_ROUGHNESS] = 1, [MASU_BAKE_METALLIC] = 2};
+    masu_bake_maps *to = &out->given.maps;
+    const texture *first = agree(g, m, out->given.material.detail);
+    for (size_t i = 0; i < ORDER; i++) {
+        int map = order[i];
+        to->image[map] = m->all[map].image;
+        to->channel[map] = m->all[map].image == MASU_BLOB_NONE || to->gloss ? 0 : channel[map];
+    }
+    if (to->gloss) to->channel[MASU_BAKE_ROUGHNESS] = 3;
+    if (!first) return;
+    memcpy(to->wrap, first->wrap, sizeof to->wrap);
+    memcpy(out->uv, first->uv, sizeof out->uv);
+    out->set = first->set;
+}
+
+/* ---- factors ---- */
+
+static void note_texture(masu_gltf *g, const json_t *of, const char *member) {
+    char what[128];
+    if (!of || !json_object_get(of, member)) return;
+    snprintf(what, sizeof what, "materials have a \"%s\", which is not read", member);
+    masu_gltf_note_one(g, what, g->where);
+}
+
+static bool read_metallic(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
+    const json_t *pbr = masu_gltf_object(g, about, "pbrMetallicRoughness");
+    double color[4] = {1, 1, 1, 1}, metallic = 1, roughness = 1;
+    masu_blob_material *to = &out->given.material;
+    if (!masu_gltf_numbers(g, pbr, "baseColorFactor", 4, color) ||
+        !masu_gltf_number(g, pbr, "metallicFactor", &metallic) ||
+        !masu_gltf_number(g, pbr, "roughnessFactor", &roughness) ||
+        !read_texture(g, pbr, "baseColorTexture", &m->all[MASU_BAKE_BASE]) ||
+        !read_texture(g, pbr, "metallicRoughnessTexture", &m->all[MASU_BAKE_ROUGHNESS]))
+        return false;
+    m->all[MASU_BAKE_METALLIC] = m->all[MASU_BAKE_ROUGHNESS];
+    for (int k = 0; k < 3; k++) to->base_color[k] = masu_import_clamped(color[k], 0, 1);
+    out->alpha = (double)masu_import_clamped(color[3], 0, 1);
+    to->metallic = masu_import_clamped(metallic, 0, 1);
+    to->roughness = masu_import_clamped(roughness, 0, 1);
+    return true;
+}
+
+static double brightness(const double c[3]) {
+    return sqrt(0.299 * c[0] * c[0] + 0.587 * c[1] * c[1] + 0.114 * c[2] * c[2]);
+}
+
+/* The metal share at which a dielectric of 0.04 and a metal of this colour reflect as both say. */
+static double solve_metallic(double diffuse, double specular, double rest) {
+    const double plain = 0.04;
+    if (specular < plain) return 0;
+    double b = diffuse * rest / (1 - plain) + specular - 2 * plain, c = plain - specular;
+    double d = fmax(b * b - 4 * plain * c, 0);
+    return fmin(fmax((-b + sqrt(d)) / (2 * plain), 0), 1);
+}
+
+static bool read_glossiness(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
+    const json_t *pbr = masu_gltf_extension(g, about, "KHR_materials_pbrSpecularGlossiness");
+    double diffuse[4] = {1, 1, 1, 1}, specular[3] = {1, 1, 1}, gloss = 1;
+    masu_blob_material *to = &out->given.material;
+    if (!pbr) return !masu_gltf_failed(g);
+    if (!masu_gltf_numbers(g, pbr, "diffuseFactor", 4, diffuse) ||
+        !masu_gltf_numbers(g, pbr, "specularFactor", 3, specular) ||
+        !masu_gltf_number(g, pbr, "glossinessFactor", &gloss) ||
+        !read_texture(g, pbr, "diffuseTexture", &m->all[MASU_BAKE_BASE]) ||
+        !read_texture(g, pbr, "specularGlossinessTexture", &m->all[MASU_BAKE_ROUGHNESS]))
+        return false;
+    m->all[MASU_BAKE_METALLIC].image = MASU_BLOB_NONE;
+    for (int k = 0; k < 3; k++) specular[k] = (double)masu_import_clamped(specular[k], 0, 1);
+    for (int k = 0; k < 4; k++) diffuse[k] = (double)masu_import_clamped(diffuse[k], 0, 1);
+    double rest = 1 - fmax(specular[0], fmax(specular[1], specular[2])), metallic = 0;
+    bool pictured = m->all[MASU_BAKE_ROUGHNESS].image != MASU_BLOB_NONE;
+    if (pictured) { /* the factor is that of a picture */
+        masu_gltf_note_one(g, "materials have a picture of their specular colour: its glossiness alone is read",
+                           g->where);
+        rest = 1;
+    } else {
+        metallic = solve_metallic(brightness(diffuse), brightness(specular), rest);
+    }
+    for (int k = 0; k < 3; k++) {
+        double from_diffuse = pictured ? diffuse[k] : diffuse[k] * rest / 0.96 / fmax(1 - metallic, 1e-6);
+        double from_specular = (specular[k] - 0.04 * (1 - metallic)) / fmax(metallic, 1e-6);
+        double share = metallic * metallic;
+        to->base_color[k] = masu_import_clamped(from_diffuse * (1 - share) + from_specular * share, 0, 1);
+    }
+    out->alpha = diffuse[3];
+    to->metallic = (float)metallic;
+    to->roughness = pictured ? 1 : masu_import_clamped(1 - gloss, 0, 1);
+    out->given.maps.gloss = pictured;
+    return true;
+}
+
+static bool read_alpha(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
+    const char *mode = masu_gltf_string(g, about, "alphaMode");
+    double cutoff = 0.5;
+    if (!masu_gltf_number(g, about, "alphaCutoff", &cutoff)) return false;
+    masu_bake_maps *maps = &out->given.maps;
+    out->blends = mode && strcmp(mode, "BLEND") == 0;
+    maps->cutoff = masu_import_clamped(cutoff, 0, 1);
+    if (g->wanted == MASU_BAKE_TEXTURES_OFF) return !masu_gltf_failed(g);
+    maps->alpha = mode && strcmp(mode, "MASK") == 0 ? MASU_BAKE_ALPHA_MASK
+                  : out->blends                     ? MASU_BAKE_ALPHA_BLEND
+                                                    : MASU_BAKE_ALPHA_OPAQUE;
+    return !masu_gltf_failed(g);
+}
+
+static bool read_emission(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
+    const json_t *strong = masu_gltf_extension(g, about, "KHR_materials_emissive_strength");
+    double color[3] = {0, 0, 0}, strength = 1;
+    if (!masu_gltf_numbers(g, about, "emissiveFactor", 3, color) ||
+        !masu_gltf_number(g, strong, "emissiveStrength", &strength) ||
+        !read_texture(g, about, "emissiveTexture", &m->all[MASU_BAKE_EMISSIVE]))
+        return false;
+    for (int k = 0; k < 3; k++)
+        out->given.material.emissive[k] = masu_import_clamped(color[k] * strength, 0, 65504);
+    return true;
+}
+
+/* The reflectance of a dielectric is that of its index of refraction, times the specular factor. */
+static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material *to) {
+    const json_t *specular = masu_gltf_extension(g, about, "KHR_materials_specular");
+    const json_t *refraction = masu_gltf_extension(g, about, "KHR_materials_ior");
+    double factor = 1, color[3] = {1, 1, 1}, index = 1.5;
+    if (!masu_gltf_number(g, specular, "specularFactor", &factor) ||
+        !masu_gltf_numbers(g, specular, "specularColorFactor", 3, color) ||
+        !masu_gltf_number(g, refraction, "ior", &index))
+        return false;
+    note_texture(g, specular, "specularTexture");
+    note_texture(g, specular, "specularColorTexture");
+    if (!near(color[0], color[1]) || !near(color[1], color[2]))
+        masu_gltf_note_one(g, "materials have a specular colour: its brightness alone is read", g->where);
+    if (!specular && !refraction) return true;
+    double root = (index - 1) / (index + 1), share = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+    double reflectance = index > 0 ? root * root : 1; /* 0 stands for infinity */
+    to->specular = masu_import_clamped(reflectance * share * factor / 0.08, 0, 1);
+    return true;
+}
+
+static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to) {
+    const json_t *coat = masu_gltf_extension(g, about, "KHR_materials_clearcoat");
+    double factor = 0, roughness = 0;
+    if (!masu_gltf_number(g, coat, "clearcoatFactor", &factor) ||
+        !masu_gltf_number(g, coat, "clearcoatRoughnessFactor", &roughness))
+        return false;
+    note_texture(g, coat, "clearcoatTexture");
+    note_texture(g, coat, "clearcoatRoughnessTexture");
+    note_texture(g, coat, "clearcoatNormalTexture");
+    to->coat = masu_import_clamped(factor, 0, 1);
+    if (to->coat > 0) to->coat_roughness = masu_import_clamped(roughness, 0, 1);
+    return true;
+}
+
+/* What shines through is as bright as the brightest channel says; its hue is lost. */
+static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
+    const json_t *through = masu_gltf_extension(g, about, "KHR_materials_transmission");
+    masu_blob_material *to = &out->given.material;
+    double factor = 0;
+    if (!masu_gltf_number(g, through, "transmissionFactor", &factor)) return false;
+    note_texture(g, through, "transmissionTexture");
+    factor = (double)masu_import_clamped(factor, 0, 1) * (1 - (double)to->metallic);
+    if (!(factor > 0) || out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) return true;
+    const float *c = to->base_color;
+    out->alpha *= 1 - factor * (double)fmaxf(c[0], fmaxf(c[1], c[2]));
+    out->blends = true;
+    out->given.maps.alpha = MASU_BAKE_ALPHA_BLEND;
+    return true;
+}
+
+/* What is unlit sends its colour, whatever shines on it. */
+static void make_unlit(masu_gltf_material *out, maps *m) {
+    masu_blob_material *to = &out->given.material;
+    memcpy(to->emissive, to->base_color, sizeof to->emissive);
+    m->all[MASU_BAKE_EMISSIVE] = m->all[MASU_BAKE_BASE];
+    to->metallic = to->specular = to->coat = 0;
+    to->roughness = 1;
+    out->unlit = true;
+    m->all[MASU_BAKE_NORMAL].image = m->all[MASU_BAKE_ROUGHNESS].image = MASU_BLOB_NONE;
+    m->all[MASU_BAKE_METALLIC].image = m->all[MASU_BAKE_OCCLUSION].image = MASU_BLOB_NONE;
+}
+
+static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
+    maps m;
+    double scale = 1, strength = 1;
+    for (int i = 0; i < MASU_BAKE_MAPS; i++) m.all[i] = (texture){.image = MASU_BLOB_NONE};
+    (void)masu_gltf_string(g, about, "name");
+    if (masu_gltf_failed(g) || !read_metallic(g, about, out, &m) || !read_glossiness(g, about, out, &m) ||
+        !read_alpha(g, about, out) || !read_emission(g, about, out, &m) ||
+        !read_specular(g, about, &out->given.material) || !read_coat(g, about, &out->given.material) ||
+        !read_transmission(g, about, out) ||
+        !read_texture(g, about, "normalTexture", &m.all[MASU_BAKE_NORMAL]) ||
+        !read_texture(g, about, "occlusionTexture", &m.all[MASU_BAKE_OCCLUSION]) ||
+        !masu_gltf_number(g, masu_gltf_object(g, about, "normalTexture"), "scale", &scale) ||
+        !masu_gltf_number(g, masu_gltf_object(g, about, "occlusionTexture"), "strength", &strength))
+        return false;
+    out->given.maps.normal_scale = masu_import_clamped(scale, -16, 16);
+    if (!near(strength, 1) && m.all[MASU_BAKE_OCCLUSION].image != MASU_BLOB_NONE)
+        masu_gltf_note_one(g, "occlusion maps have a strength, which is not read", g->where);
+    if (masu_gltf_extension(g, about, "KHR_materials_unlit")) make_unlit(out, &m);
+    settle(g, &m, out);
+    return !masu_gltf_failed(g);
+}
+
+bool masu_gltf_read_materials(masu_gltf *g) {
+    g->material_count = masu_gltf_count(g, "materials");
+    g->materials = masu_gltf_take(g, g->material_count + 1, sizeof *g->materials);
+    for (size_t i = 0; i <= g->material_count; i++) {
+        masu_gltf_material *out = &g->materials[i];
+        *out = (masu_gltf_material){.given = {masu_bake_default_material(), masu_bake_no_maps(), ""},
+                                    .uv = {1, 0, 0, 0, 1, 0},
+                                    .alpha = 1};
+        if (i == g->material_count) { /* what glTF takes where none is named */
+            masu_blob_material *to = &out->given.material;
+            to->base_color[0] = to->base_color[1] = to->base_color[2] = 1;
+            to->metallic = to->roughness = 1;
+            break;
+        }
+        const json_t *about = masu_gltf_element(g, "materials", (json_int_t)i);
+        if (!about) return false;
+        masu_gltf_at(g, "materials", i, about);
+        const char *name = json_string_value(json_object_get(about, "name"));
+        out->given.name = masu_bake_take_text(&g->pool, name ? name : "");
+        if (!read_material(g, about, out)) return false;
+    }
+    g->where[0] = '\0';
+    return true;
+}
+
+unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4]) {
+    const masu_gltf_material *from = &g->materials[material < 0 ? g->material_count : (size_t)material];
+    masu_import_given made = from->given;
+    masu_blob_material *to = &made.material;
+    double alpha = from->alpha;
+    for (int k = 0; k < 3; k++) {
+        to->base_color[k] = masu_import_clamped((double)to->base_color[k] * color[k], 0, 1);
+        if (from->unlit) to->emissive[k] = to->base_color[k];
+    }
+    if (from->blends) alpha *= (double)masu_import_clamped(color[3], 0, 1);
+    if (from->blends && alpha < 0.999) {
+        made.maps.alpha = MASU_BAKE_ALPHA_BLEND;
+        to->opacity = masu_import_clamped(alpha, 0, 1);
+    }
+    size_t count = g->given.bytes / sizeof made;
+    const masu_import_given *all = (const masu_import_given *)(const void *)g->given.data;
+    for (size_t i = count; i > 0 && i + 256 > count; i--) { /* the last few: what one mesh asks for */
+        if (all[i - 1].name == made.name && memcmp(&all[i - 1].maps, &made.maps, sizeof made.maps) == 0 &&
+            memcmp(&all[i - 1].material, to, sizeof *to) == 0)
+            return (unsigned)(i - 1);
+    }
+    masu_bake_append(&g->given, &made, sizeof made);
+    return (unsigned)count;
+}
