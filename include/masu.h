@@ -38,7 +38,7 @@
  *    reflections, shaderFloat16 upscaling (masu_vulkan). What the device offers, the scene would use, and
  *    the host has not said to be enabled, masu_init tells the log in a line each.
  *  - `commands.buffer` is a primary command buffer of `queue_family`, recorded in masu_init. It is
- *    to be submitted once; all frames and loads go to one and the same queue, in order. It starts
+ *    to be submitted once (with desc.split, it is the first of several: commands.parts); all frames and loads go to one and the same queue, in order. It starts
  *    with a full barrier against the previous frame.
  *  - Target images: an array of views of host images, all `output` large. Storage targets
  *    (targets.storage != 0) must be VK_FORMAT_R8G8B8A8_UNORM, or VK_FORMAT_R16G16B16A16_SFLOAT, with
@@ -248,6 +248,7 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 /* ---- Description ----------------------------------------------------------------------------- */
 
 #define MASU_MAX_RUNGS 8u
+#define MASU_MAX_PARTS 3u /* of a frame (masu_desc.split) */
 #define MASU_MAX_TARGETS 8u
 #define MASU_MAX_FLIGHT 3u
 #define MASU_MAX_PASSES 128u
@@ -317,6 +318,26 @@ typedef enum masu_readback_bits {
     MASU_READBACK_SHADOW_MAP = 64,
     MASU_READBACK_ALL = 127
 } masu_readback_bits;
+
+/* Where a frame is split, so that the host's own commands go between its parts: masu_frame then hands out
+ * masu_commands.parts, and masu_split_of tells which images the host has there. */
+typedef enum masu_split_bits {
+    /* Before exposure and tone curve: linear radiance before exposure at the render size, to be drawn into,
+     * depth to be tested against. Behind everything of the scene, blended surfaces too, and behind
+     * desc.readback, which is of the scene alone; what is drawn here is metered, tone-mapped, anti-aliased
+     * and upscaled with the rest. Of scenes */
+    MASU_SPLIT_BEFORE_TONE = 1,
+    /* After anti-aliasing, upscaling and sharpening, at the output size: before the blit or copy to the target,
+     * or, of storage targets, when the target has been written. What is drawn after the frame's last part,
+     * on the target, lies over it */
+    MASU_SPLIT_AFTER_UPSCALE = 2,
+    /* Velocities, as of MASU_READBACK_VELOCITY, in every rung, at the same cost. With BEFORE_TONE or KEEP */
+    MASU_SPLIT_VELOCITY = 4,
+    /* HDR, depth, and velocity where it is asked for, AFTER_UPSCALE, too: their bytes are not used again for
+     * what comes in between. With AFTER_UPSCALE */
+    MASU_SPLIT_KEEP = 8,
+    MASU_SPLIT_ALL = 15
+} masu_split_bits;
 
 /* Pipelines that outlive a renderer: masu_init takes from it what it needs and makes what is missing,
  * masu_destroy gives all back. So another scene, or another size, makes only pipelines that no renderer before
@@ -517,6 +538,7 @@ typedef struct masu_desc {
      * storage targets nor in an SRGB format, which gets a copy of bytes. */
     masu_switch deep_color;
     uint32_t readback; /* masu_readback_bits; without a scene there is nothing to read: ignored */
+    uint32_t split;    /* masu_split_bits; 0: a frame is one command buffer */
     /* not 0: a frame may ask what one pixel shows (masu_frame_desc.pick, masu_pick). A frame that asks draws what
      * is near that pixel a second time; all others have an empty command for each primitive. Per frame in flight 20
      * bytes for each of these and 4 for each instance, LODs too. Without a scene ignored. */
@@ -751,11 +773,16 @@ MASU_API const char *masu_governor_reason_string(masu_governor_reason reason);
 /* ---- Frames ---------------------------------------------------------------------------------- */
 
 typedef struct masu_commands {
-    VkCommandBuffer buffer;
+    VkCommandBuffer buffer; /* parts[0] */
     uint32_t slot; /* frame-in-flight slot: its fence must be waited for before the slot comes round
                       again */
     uint32_t rung;
     uint64_t frame; /* number of this frame, from 0 */
+    /* All of it, in order: one, and one more for each point that desc.split names, behind which the host's own
+     * commands go. All parts are to be submitted, each once, with or without something between them, and
+     * best in one vkQueueSubmit: it takes 20 us or so each time. 1 for masu_load. */
+    uint32_t part_count;
+    VkCommandBuffer parts[MASU_MAX_PARTS];
 } masu_commands;
 
 /* Copies the scene to the device. MASU_INCOMPLETE: submit commands->buffer, wait for it, call
@@ -914,6 +941,104 @@ typedef struct masu_frame_desc {
 MASU_API MASU_MUST_USE masu_result masu_frame(masu_renderer *renderer, const masu_frame_desc *frame,
                                               masu_commands *commands);
 
+/* ---- The host's own passes ------------------------------------------------------------------- */
+
+/* With desc.split a frame is submitted so:
+ *
+ *     masu_frame(m, &frame, &commands);
+ *     masu_split_of(m, MASU_SPLIT_BEFORE_TONE, commands.rung, frame.viewport, &split);
+ *     masu_frame_view_of(m, &view);                       // the matrices of this frame
+ *     record `own`;                                       // in a command buffer of the host's
+ *     VkCommandBuffer all[] = {commands.parts[0], own, commands.parts[1]};
+ *     vkQueueSubmit(queue, 1, &{.commandBufferCount = 3, .pCommandBuffers = all}, fence);
+ *
+ * examples/host_pass.c does it.
+ *  - Barriers at a split are the library's. The part before it ends with one from all that it has done to all
+ *    commands and accesses (VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | _WRITE_BIT), and
+ *    with the images in `layout`; the next part begins with one from all of the host's commands. A render pass
+ *    of the host's has `layout` as its initial and its final layout, LOAD and STORE. Between its own commands
+ *    barriers are the host's, other layouts too, which it must undo.
+ *  - Of the images the host may read and write what `usage` allows, within `width` x `height` from 0, 0;
+ *    all else of them is undefined, as are images that are not named: they share bytes.
+ *  - Images and views are the same in all frames, rungs and viewports, and after masu_resize, until
+ *    masu_destroy: a framebuffer is made once, of the size `image_width` x `image_height`, and render area,
+ *    viewport and scissor are of the frame's `width` x `height`.
+ *  - Depth is reversed: near / view z, 1 at near_distance, 0 at infinity, 32-bit floats. Test by
+ *    VK_COMPARE_OP_GREATER or _GREATER_OR_EQUAL. In `layout` it can be an attachment that is not written, and
+ *    sampled in the same pass. Written it is a host's transition to DEPTH_STENCIL_ATTACHMENT_OPTIMAL and back;
+ *    what is written the rest of the frame sees: a rung with temporal follows surfaces by it.
+ *  - HDR holds radiance before exposure: what a shader writes as v is shown as tone(v * exposure).
+ *    Blending is as with any attachment; alpha is not looked at, and need not be kept. NaN is shown
+ *    as black.
+ *  - Velocities, reflections and shadows know nothing of what the host draws. Velocities (and a rung with
+ *    temporal) take it for a part of the surface behind it.
+ *  - The two timestamps of a governor, and what it makes of frames, are of all parts, the host's commands between
+ *    them included. With debug.timestamps the host's commands have times of their own, of the rows split_tone
+ *    and split_output. */
+
+/* Of an image as a split point gives it. */
+typedef struct masu_split_image {
+    VkImage image; /* VK_NULL_HANDLE: it is not there; but see masu_split.color */
+    VkImageView view; /* of all of it, with all of its usage */
+    VkFormat format;
+    VkImageUsageFlags usage;
+    VkImageLayout layout; /* that it is in, and has to be left in */
+    uint32_t image_width, image_height; /* of the VkImage: the largest rung's */
+    uint32_t width, height; /* of the picture in it, from 0, 0: this rung's, this viewport's */
+} masu_split_image;
+
+typedef struct masu_split {
+    uint32_t part; /* the host's commands go behind masu_commands.parts[part] */
+    /* BEFORE_TONE HDR, R16G16B16A16_SFLOAT, in COLOR_ATTACHMENT_OPTIMAL: COLOR_ATTACHMENT, SAMPLED, STORAGE,
+     * TRANSFER_SRC. AFTER_UPSCALE what is shown, in the encoding of the target (display-encoded colour of 0..1
+     * in R8G8B8A8_UNORM; with deep_color R16G16B16A16_SFLOAT), the same layout and usage. Of storage targets it is
+     * targets.images[frame.target] itself, in GENERAL: image and view are null then, and `usage` is the host's. */
+    masu_split_image color;
+    /* D32_SFLOAT, in DEPTH_STENCIL_READ_ONLY_OPTIMAL: DEPTH_STENCIL_ATTACHMENT, SAMPLED, TRANSFER_SRC. Of scenes with
+     * an SDF an image and a pass of its own (split_depth), since what the march leaves is no attachment. AFTER_UPSCALE
+     * with KEEP alone, at the render size */
+    masu_split_image depth;
+    /* R16G16B16A16_SFLOAT, in SHADER_READ_ONLY_OPTIMAL: SAMPLED, TRANSFER_SRC. With VELOCITY; AFTER_UPSCALE with
+     * KEEP, too. What its texels are says MASU_READBACK_VELOCITY */
+    masu_split_image velocity;
+    /* AFTER_UPSCALE with KEEP: HDR as it went into the tone curve, read only, as velocity */
+    masu_split_image hdr;
+    uint32_t swapped; /* 1: AFTER_UPSCALE, of a target of B8G8R8A8_SRGB: red is where blue should be in `color` */
+} masu_split;
+
+/* What the host has at a split point in a frame of that rung and viewport (0 where there are none). May be asked at
+ * any time after masu_init. `which` is one of BEFORE_TONE, AFTER_UPSCALE. MASU_ERROR_ARGUMENT: a NULL
+ * pointer, a point that desc.split does not name, or there is no such rung or viewport. */
+MASU_API MASU_MUST_USE masu_result masu_split_of(masu_renderer *renderer, masu_split_bits which,
+                                                 uint32_t rung, uint32_t viewport, masu_split *out);
+
+/* How a frame sees the world. Matrices are given row by row and multiply columns: a mat4 of GLSL takes them
+ * transposed, or as layout(row_major). View space: x to the right, y up, the camera looks along -z, metres.
+ * Clip space is Vulkan's, y down, depth reversed. */
+typedef struct masu_frame_view {
+    uint64_t frame; /* that it is of */
+    double position[3]; /* of the eye, world */
+    /* From the world to view space. Far from the origin floats are coarse: take world - position in doubles,
+     * and of this matrix the rotation alone (its last column is -rotation * position). */
+    float view[16];
+    /* From view space to the clip space of BEFORE_TONE, depth and velocity: with the frame's jitter, the camera's and
+     * that of a rung with temporal. What is drawn with it lands on the pixels and depths of the scene. */
+    float projection[16];
+    /* The same of AFTER_UPSCALE and of what is drawn on the target: without jitter in a rung with temporal, whose
+     * result has none; else the same. */
+    float output_projection[16];
+    float jitter[2];     /* in `projection`: pixels of the render size, right and down */
+    float near_distance; /* metres: what a depth d is of lies near_distance / d ahead */
+    float exposure; /* masu_light.exposure: the factor before the tone curve. Metered: times what the GPU finds
+                       (masu_stats_info.exposure) */
+    uint32_t render_width, render_height, output_width, output_height; /* of the viewport */
+} masu_frame_view;
+
+/* That of the frame that masu_frame handed out last. MASU_ERROR_ARGUMENT: a NULL pointer. MASU_ERROR_STATE: there
+ * was none yet, or there is no scene. */
+MASU_API MASU_MUST_USE masu_result masu_frame_view_of(const masu_renderer *renderer,
+                                                      masu_frame_view *out);
+
 /* For the governor: how long the slot's last frame took by the host's clock, ms: from its submit, or
  * from the end of the previous frame if that was later, to its fence. To be called, if at all, after the
  * fence has been waited for and before the slot is used again. A time of the whole interval between
@@ -993,7 +1118,7 @@ MASU_API MASU_MUST_USE masu_result masu_governor_save(masu_renderer *renderer,
 MASU_API MASU_MUST_USE masu_result masu_governor_restore(masu_renderer *renderer,
                                                          const masu_governor_state *state);
 
-/* Why the last masu_load, masu_frame, or call that asks or changes an instance, model or punctual light
+/* Why the last masu_load, masu_frame, masu_split_of, or call that asks or changes an instance, model or punctual light
  * failed. Never NULL. */
 MASU_API const masu_detail *masu_last_error(const masu_renderer *renderer);
 

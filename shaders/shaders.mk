@@ -18,7 +18,7 @@ SPIRV_TARGET := --target-env vulkan1.1
 STAGES       := comp vert frag
 
 SHADERS := $(filter-out $(SCENE_SHADERS:%=shaders/%),$(wildcard $(STAGES:%=shaders/*.%)))
-SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%) $(STAGES:%=tools/view/*.%))
+SHADERS += $(wildcard $(STAGES:%=tests/gpu/*.%) $(STAGES:%=tools/view/*.%) $(STAGES:%=examples/*.%))
 
 # What follows from the rows of the frame's tables: bindings and push constants (tables.h), every shader's
 # permutations and how each is compiled. Rows are read by awk: nothing is compiled for it.
@@ -48,7 +48,7 @@ left_out      = $(foreach p,$(PARTS),$(if $(filter-out $(call parts_of,$(1)),$(s
 # dir/NAME.STAGE is NAME_STAGE
 SPIRV         := $(foreach s,$(notdir $(SHADERS)),$(MADE)/gen/$(subst .,_,$(s)).opt.spv)
 SPIRV         += $(foreach b,$(PERMUTATIONS),$(MADE)/gen/$(firstword $(subst :, ,$(b))).opt.spv)
-SPIRV_HEADERS := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' tools tests)))
+SPIRV_HEADERS := $(addprefix $(MADE)/gen/,$(sort $(shell grep -rhoE '\b[a-z0-9_]+\.spv\.h' --include='*.[ch]' tools tests examples)))
 # The slow ones first: nothing is compiled before the last of them is there.
 GENERATED     := $(patsubst %,$(MADE)/gen/%.h,blue_noise split_sum smaa_area tables permutations scene_sources packed)
 GENERATED     += $(SPIRV_HEADERS) $(SPIRV)
@@ -66,7 +66,7 @@ $(MADE)/gen/$(1).spv: $(2) | $(MADE)/gen/tables.h
 	    sed '1d; /./s/$$$$/:/' >> $$(@:.spv=.d)
 	$$(V)spirv-val $(SPIRV_TARGET) $$@
 endef
-$(foreach d,shaders tests/gpu tools/view,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
+$(foreach d,shaders tests/gpu tools/view examples,$(foreach s,$(STAGES),$(eval $(call shader_rule,%_$(s),$(d)/%.$(s)))))
 field = $(word $(2),$(subst :, ,$(1)))
 $(foreach b,$(PERMUTATIONS),$(eval $(call \
     shader_rule,$(call field,$(b),1),shaders/$(call field,$(b),2),$(call field,$(b),3))))

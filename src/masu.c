@@ -255,7 +255,8 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     if (!commands) return masu_fail_null(&m->error, "commands");
     memset(commands, 0, sizeof *commands);
     if (m->loaded) return MASU_OK;
-    commands->buffer = masu_load_next(&m->device);
+    commands->buffer = commands->parts[0] = masu_load_next(&m->device);
+    commands->part_count = commands->buffer ? 1 : 0;
     if (commands->buffer) return MASU_INCOMPLETE;
     if (m->plan.desc.scene) {
         masu_scene_view v = masu_scene_look(m->plan.desc.scene);
@@ -337,11 +338,11 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 }
 
 /* What is submitted: of the frame's slot, rung and target the recording that draws its cascades. */
-static VkCommandBuffer pick_recording(const masu_renderer *m, const masu_frame_data *f) {
+static const VkCommandBuffer *pick_recording(const masu_renderer *m, const masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     uint32_t recording = f->desc.viewport * m->plan.viewport_recordings + rp->first_recording +
                          f->desc.target * rp->variants + masu_recording_variant(rp, f->cascades);
-    return m->device.frames[f->slot * m->plan.recordings + recording];
+    return &m->device.frames[(f->slot * m->plan.recordings + recording) * m->plan.parts];
 }
 
 masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_commands *commands) {
@@ -368,7 +369,14 @@ masu_result masu_frame(masu_renderer *m, const masu_frame_desc *frame, masu_comm
                                      .render = {rp->render_width, rp->render_height},
                                      .unusual = f.desc.unusual != 0});
     if (m->governor) masu_governed_begin(m, &f, frame->rung);
-    *commands = (masu_commands){pick_recording(m, &f), f.slot, f.desc.rung, f.number};
+    if (m->plan.desc.scene) masu_frame_view_write(&m->view, &f);
+    const VkCommandBuffer *parts = pick_recording(m, &f);
+    *commands = (masu_commands){.buffer = parts[0],
+                                .slot = f.slot,
+                                .rung = f.desc.rung,
+                                .frame = f.number,
+                                .part_count = m->plan.parts};
+    memcpy(commands->parts, parts, m->plan.parts * sizeof *parts);
     return MASU_OK;
 }
 

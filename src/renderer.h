@@ -15,6 +15,7 @@
 #include "frame/bounds.h"
 #include "frame/camera.h"
 #include "frame/frame_data.h"
+#include "frame/frame_view.h"
 #include "frame/temporal.h"
 #include "frame/instances.h"
 #include "frame/models.h"
@@ -50,6 +51,7 @@ struct masu_renderer {
     masu_temporal temporal;
     masu_governor *governor; /* NULL where the description asks for none */
     masu_camera_path camera;
+    masu_frame_view view; /* of the frame that was handed out last; all 0: there was none */
     masu_sun_sky sun_sky;
     masu_sdf sdf;
     masu_instances instances;

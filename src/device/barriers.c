@@ -7,6 +7,8 @@
  *  - a full barrier at the top of the frame orders it behind the previous frame, so no state crosses
  *    frames, but for an image whose content outlives them: it rests in the layout that shaders
  *    read, and comes from UNDEFINED only where the recording draws all that its rung reads of it.
+ *  - the host's own commands (desc.split) are a use by all stages, and the part of the recording behind them
+ *    begins with a full barrier.
  * Each pass gets at most one vkCmdPipelineBarrier. */
 #include "device/barriers.h"
 
@@ -66,6 +68,16 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
                           VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR |
                               VK_ACCESS_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
                           VK_IMAGE_LAYOUT_UNDEFINED, 1};
+    case MASU_READ_HOST:
+        return (masu_use){1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT,
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
+    case MASU_HOST_COLOR:
+    case MASU_HOST_DEPTH:
+        return (masu_use){1, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                          VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+                          usage == MASU_HOST_DEPTH ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
+                                                   : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                          1};
     case MASU_USE_NONE: break;
     }
     return (masu_use){0, 0, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0};
@@ -128,6 +140,8 @@ void masu_barrier_before(masu_recorder *rec, uint32_t pass) {
         /* Particles are lit at their middles, among what is transparent too. */
         if (usage == MASU_READ && masu_passes[pass].kind == MASU_PASS_GRAPHICS && rec->m->plan->needs.particles)
             next.stages |= VK_PIPELINE_STAGE_VERTEX_SHADER_BIT;
+        /* A storage target need not be an attachment: the host knows what it can be. */
+        if (id == MASU_IMAGE_TARGET && usage == MASU_HOST_COLOR) next.layout = VK_IMAGE_LAYOUT_GENERAL;
         if (masu_is_buffer(id)) {
             /* A buffer. Its first use in a frame is behind the barrier at the frame's top. */
             if (now->used && (now->writes || next.writes)) {
@@ -157,6 +171,11 @@ void masu_barrier_before(masu_recorder *rec, uint32_t pass) {
             next.stages |= now->stages; /* one more reader: a later writer waits for all of them */
         }
         *now = next;
+    }
+    if (masu_passes[pass].kind == MASU_PASS_HOST) { /* whatever the host does, all that we did is done */
+        from = to = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+        memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+        memory.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     }
     if (!to) return;
     rec->m->vk.CmdPipelineBarrier(rec->cmd, from, to, 0, memory.dstAccessMask != 0, &memory, 0,

@@ -56,7 +56,8 @@ typedef struct masu_device {
 
     /* record.c */
     VkCommandPool command_pool;
-    VkCommandBuffer *frames; /* [flight][rung][target][variant]; plan->recordings of each flight */
+    /* [flight][rung][target][variant][part]; plan->recordings of each flight, of plan->parts parts */
+    VkCommandBuffer *frames;
     VkQueryPool queries;     /* [flight][MASU_PASS_COUNT + 1] */
 
     /* load.c */

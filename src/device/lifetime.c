@@ -9,7 +9,7 @@
 #include "device/record.h"
 
 void masu_device_lay(masu_device *m, masu_arena *arena, const masu_frame_plan *plan) {
-    uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings;
+    uint64_t frames = (uint64_t)plan->desc.frames_in_flight * plan->recordings * plan->parts;
     m->frames = masu_arena_take(arena, "command buffers", frames, sizeof *m->frames, 8);
     m->loads =
         masu_arena_take(arena, "load command buffers", masu_load_chunks(plan), sizeof *m->loads, 8);

@@ -339,7 +339,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
     int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
     int blends = blends_color(m, pass);
     int depths = geometry == MASU_GEOMETRY_POLYGONS || geometry == MASU_GEOMETRY_CASCADE ||
-                 geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK;
+                 geometry == MASU_GEOMETRY_BOXES || geometry == MASU_GEOMETRY_PICK || geometry == MASU_GEOMETRY_DEPTHS;
     VkBool32 constants[SPECIAL_COUNT];
     VkSpecializationInfo special = specialise(m, masked, constants);
     VkPipelineShaderStageCreateInfo stages[2];
@@ -557,7 +557,7 @@ masu_result masu_make_pipelines(masu_device *m, masu_detail *detail) {
     if (!result) result = make_texture_layout(m, detail);
     if (!result) result = make_samplers(m, detail);
     for (uint32_t p = 0; p < MASU_PASS_COUNT && !result; p++) {
-        if (masu_passes[p].kind == MASU_PASS_TRANSFER || masu_passes[p].kind == MASU_PASS_BUILD)
+        if (masu_passes[p].kind != MASU_PASS_GRAPHICS && masu_passes[p].kind != MASU_PASS_COMPUTE)
             continue;
         result = make_pass_layout(m, p, detail);
         if (result || !m->layouts[p]) continue;

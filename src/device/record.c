@@ -1,6 +1,7 @@
 /* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and
  * where a rung draws cascades of the shadow map less often than every frame: set of those that it
- * draws), made once in masu_init and submitted again and again. */
+ * draws), made once in masu_init and submitted again and again. A recording is one command buffer, or, where
+ * desc.split has the host's own commands in a frame, one more for each such row of the table. */
 #include "device/record.h"
 
 #include "base/error.h"
@@ -304,13 +305,14 @@ static void record_occluders(masu_recorder *rec) {
     }
 }
 
-/* One triangle over everything, for the SDF as a fragment shader. */
-static void record_fullscreen(masu_recorder *rec, uint32_t pass) {
+/* One triangle over everything: the SDF as a fragment shader, or depths of an image of its set. */
+static void record_fullscreen(masu_recorder *rec, uint32_t pass, VkDescriptorSet set) {
     const masu_vk *vk = &rec->m->vk;
     masu_push_block push = push_of(rec, pass);
     vk->CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->pipelines[pass]);
+    const VkDescriptorSet sets[] = {rec->m->global_sets[rec->flight], set};
     vk->CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, rec->m->layouts[pass],
-                              MASU_SET_GLOBAL, 1, &rec->m->global_sets[rec->flight], 0, NULL);
+                              MASU_SET_GLOBAL, set ? 2 : 1, sets, 0, NULL);
     vk->CmdPushConstants(rec->cmd, rec->m->layouts[pass], GRAPHICS_STAGES, 0, sizeof push, &push);
     vk->CmdDraw(rec->cmd, 3, 1, 0, 0);
 }
@@ -357,7 +359,8 @@ static void record_graphics(masu_recorder *rec, uint32_t pass, const VkDescripto
         if (pass == MASU_PASS_PARTICLES) /* the last draw */
             record_sprites(rec, pass, sets[pass], MASU_SPRITE_DRAWS + rec->m->plan->scene.transparents);
         if (pass == MASU_PASS_LINES) record_sprites(rec, pass, sets[pass], MASU_SPRITE_LINES);
-        if (pass == MASU_PASS_MARCH_FRAGMENT) record_fullscreen(rec, pass);
+        if (pass == MASU_PASS_MARCH_FRAGMENT || pass == MASU_PASS_SPLIT_DEPTH)
+            record_fullscreen(rec, pass, sets[pass]);
     }
     vk->CmdEndRenderPass(rec->cmd);
 }
@@ -532,13 +535,36 @@ static void record_epilogue(masu_recorder *rec) {
     rec->barriers++;
 }
 
+static masu_result begin_part(masu_recorder *rec, uint32_t part, masu_detail *detail) {
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    rec->cmd = rec->parts[part];
+    VkResult r = rec->m->vk.BeginCommandBuffer(rec->cmd, &begin);
+    return r ? masu_fail_vulkan(detail, r, "vkBeginCommandBuffer") : MASU_OK;
+}
+
+static masu_result end_part(masu_recorder *rec, masu_detail *detail) {
+    VkResult r = rec->m->vk.EndCommandBuffer(rec->cmd);
+    return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
+}
+
+/* The host's commands go here. Images that it is given are in their layouts, and stay in them. */
+static masu_result record_split(masu_recorder *rec, uint32_t *part, masu_detail *detail) {
+    masu_result result = end_part(rec, detail);
+    if (!result) result = begin_part(rec, ++*part, detail);
+    if (result) return result;
+    masu_memory_barrier(rec, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                        VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+    return MASU_OK;
+}
+
 /* sets: the rung's, of this target; see masu_make_pass_sets for the order. */
 static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                                 masu_detail *detail) {
     const masu_device *m = rec->m;
-    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    VkResult r = m->vk.BeginCommandBuffer(rec->cmd, &begin);
-    if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
+    uint32_t part = 0;
+    masu_result result = begin_part(rec, part, detail);
+    if (result) return result;
     record_prologue(rec);
     if (rec->viewport) { /* what the first has drawn stays */
         rec->states[MASU_IMAGE_TARGET] =
@@ -560,13 +586,14 @@ static masu_result record_frame(masu_recorder *rec, const VkDescriptorSet *sets,
                 masu_ray_record_top(rec->m, rec->cmd, rec->flight);
             if (masu_passes[p].kind == MASU_PASS_COMPUTE) record_compute(rec, p, sets[p]);
             end_label(rec);
+            if (masu_passes[p].kind == MASU_PASS_HOST) result = record_split(rec, &part, detail);
+            if (result) return result;
         }
         timestamp(rec, p + 1);
     }
     masu_leave_persistent(rec);
     record_epilogue(rec);
-    r = m->vk.EndCommandBuffer(rec->cmd);
-    return r ? masu_fail_vulkan(detail, r, "vkEndCommandBuffer") : MASU_OK;
+    return end_part(rec, detail);
 }
 
 /* ---- All recordings -------------------------------------------------------------------------- */
@@ -615,7 +642,7 @@ static masu_result record_frames(masu_device *m, const masu_draws *draws, masu_d
             masu_plan_look_at(m->plan, v);
             masu_recorder rec = {.m = m,
                                  .draws = draws,
-                                 .cmd = m->frames[f * recordings + recording],
+                                 .parts = &m->frames[(f * recordings + recording) * m->plan->parts],
                                  .flight = f,
                                  .viewport = v,
                                  .rung = r,
@@ -635,7 +662,7 @@ masu_result masu_record(masu_device *m, const masu_draws *draws, masu_detail *de
     masu_result result = masu_make_sets(m, detail);
     if (!result) result = make_queries(m, detail);
     if (!result)
-        result = make_command_buffers(m, d->frames_in_flight * m->plan->recordings, detail);
+        result = make_command_buffers(m, d->frames_in_flight * m->plan->recordings * m->plan->parts, detail);
     if (!result) result = record_frames(m, draws, detail);
     return result ? result : masu_load_record(m, detail);
 }

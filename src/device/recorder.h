@@ -17,7 +17,8 @@ typedef struct masu_use {
 typedef struct masu_recorder {
     masu_device *m;
     const masu_draws *draws;
-    VkCommandBuffer cmd;
+    VkCommandBuffer *parts; /* of this recording; plan->parts of them */
+    VkCommandBuffer cmd;    /* the part at hand */
     uint32_t flight, viewport, rung, target, variant;
     masu_rung_plan *rp;
     masu_use states[MASU_RESOURCE_END]; /* images, then the buffers that rows name */

@@ -59,8 +59,17 @@ static uint8_t resolve(uint8_t resource, const latest *l) {
     return l->before[resource - MASU_BEFORE(0)];
 }
 
+/* Whether desc.split gives an image to the host's commands, in the row where they go; of other accesses 1. */
+static int is_given(const masu_frame_plan *plan, uint32_t pass, uint8_t resource, masu_usage usage) {
+    uint32_t split = plan->desc.split;
+    if (usage != MASU_READ_HOST && usage != MASU_HOST_DEPTH) return 1;
+    if (pass == MASU_PASS_SPLIT_OUTPUT && !(split & MASU_SPLIT_KEEP)) return 0;
+    if (resource == MASU_IMAGE_VELOCITY) return (split & MASU_SPLIT_VELOCITY) != 0;
+    return 1;
+}
+
 /* Whether a rung has what an access names: an image, or a buffer that a pass and not the host has written. */
-static int keeps_access(const masu_frame_plan *plan, uint8_t resource, masu_usage usage) {
+static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t resource, masu_usage usage) {
     const masu_needs *n = &plan->needs;
     switch (resource) {
     case MASU_IMAGE_NONE: return 0;
@@ -75,6 +84,7 @@ static int keeps_access(const masu_frame_plan *plan, uint8_t resource, masu_usag
     }
     if (masu_is_buffer(resource)) return 1;
     if (usage == MASU_READ_BACK && !(masu_images[resource].readback & plan->desc.readback)) return 0;
+    if (!is_given(plan, pass, resource, usage)) return 0;
     return masu_has_image(n, resource);
 }
 
@@ -99,7 +109,7 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
         for (uint32_t a = 0; a < MASU_PASS_ACCESSES && row->access[a].image; a++) {
             masu_usage usage = (masu_usage)row->access[a].usage;
             uint8_t resource = resolve(row->access[a].image, &l);
-            if (!keeps_access(plan, resource, usage)) continue;
+            if (!keeps_access(plan, p, resource, usage)) continue;
             rp->access[p][rp->access_count[p]++] = (masu_access){resource, (uint8_t)usage};
             if (masu_usage_writes(usage) && !masu_is_buffer(resource)) write_latest(&l, resource);
         }
@@ -118,12 +128,17 @@ static void compile_rung(masu_frame_plan *plan, uint32_t r) {
 
 /* ---- All rungs ------------------------------------------------------------------------------- */
 
+#define HOST_READS (VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT)
+
 static VkImageUsageFlags usage_flag(masu_usage usage) {
     switch (usage) {
     case MASU_READ:
     case MASU_READ_LINEAR: return VK_IMAGE_USAGE_SAMPLED_BIT;
     case MASU_READ_COPY:
     case MASU_READ_BACK: return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    case MASU_READ_HOST: return HOST_READS;
+    case MASU_HOST_COLOR: return HOST_READS | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    case MASU_HOST_DEPTH: return HOST_READS | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     case MASU_WRITE:
     case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
     case MASU_WRITE_COLOR:
@@ -247,6 +262,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .environment = d->scene && d->scene->environment_size,
                                .sky = d->scene && (d->scene->analytic_sky || d->analytic_sky),
                                .readback = d->readback,
+                               .split = d->split,
                                .reflections = wants_specular(d),
                                .traced = wants_specular(d) && d->scene->trace_instances,
                                .traced_sdf = wants_specular(d) && d->scene->trace_sdf,
@@ -258,7 +274,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .any_silhouettes = wants(d, rung_has_silhouettes),
                                .picking = d->scene && d->picking,
                                .metered = d->scene && d->exposure.metered == MASU_ON,
-                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || wants_specular(d) ||
+                               .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || (d->split & MASU_SPLIT_VELOCITY) != 0 ||
+                                           wants_specular(d) ||
                                            wants(d, masu_rung_resolves),
                                .particles = d->scene && d->reserve.particles,
                                .decals = d->scene && d->reserve.decals,
@@ -266,6 +283,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .blit = !d->targets.storage};
     plan->needs.sprites = plan->needs.particles || plan->needs.decals || plan->needs.lines;
     for (uint32_t r = 0; r < d->rung_count; r++) plan->needs.smoothing |= masu_is_smaa(d->rungs[r].aa);
+    plan->parts = 1 + ((d->split & MASU_SPLIT_BEFORE_TONE) != 0) +
+                  ((d->split & MASU_SPLIT_AFTER_UPSCALE) != 0);
     plan->most = plan->whole = d->output;
     masu_output_plan(plan);
     if (plan->needs.query) plan->scene.trace_nodes = 0; /* the device has trees of its own */
@@ -422,7 +441,7 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
             const masu_rung_plan *rp = &plan->rungs[r];
             if (!masu_has_pass(&rp->active, p)) continue;
             pass->active |= 1u << r;
-            out->rungs[r].dispatches++;
+            if (masu_passes[p].kind != MASU_PASS_HOST) out->rungs[r].dispatches++;
             if (named) continue;
             named = 1;
             uint32_t reads = 0, writes = 0;

@@ -157,6 +157,26 @@ static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
     return MASU_OK;
 }
 
+static masu_result bad_split(const masu_desc *d, uint32_t needed, const char *problem, masu_detail *detail) {
+    return masu_fail(detail, MASU_ERROR_ARGUMENT, "split", needed, d->split, "split is %u: %s", d->split,
+                     problem);
+}
+
+static masu_result check_split(const masu_desc *d, masu_detail *detail) {
+    uint32_t split = d->split;
+    if (split & ~(uint32_t)MASU_SPLIT_ALL) return bad_range(detail, "split", split, 0, MASU_SPLIT_ALL);
+    if (!d->scene && (split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE))
+        return bad_split(d, MASU_SPLIT_AFTER_UPSCALE, "without a scene there is MASU_SPLIT_AFTER_UPSCALE alone",
+                         detail);
+    if ((split & MASU_SPLIT_KEEP) && !(split & MASU_SPLIT_AFTER_UPSCALE))
+        return bad_split(d, MASU_SPLIT_AFTER_UPSCALE, "MASU_SPLIT_KEEP keeps for MASU_SPLIT_AFTER_UPSCALE",
+                         detail);
+    if ((split & MASU_SPLIT_VELOCITY) && !(split & (MASU_SPLIT_BEFORE_TONE | MASU_SPLIT_KEEP)))
+        return bad_split(d, MASU_SPLIT_BEFORE_TONE,
+                         "MASU_SPLIT_VELOCITY takes MASU_SPLIT_BEFORE_TONE or MASU_SPLIT_KEEP", detail);
+    return MASU_OK;
+}
+
 masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
     const masu_targets *t = &d->targets;
     if (d->rung_count > MASU_MAX_RUNGS) {
@@ -234,7 +254,8 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
         masu_result result = masu_rung_check(&d->rungs[r], r, detail);
         if (result) return result;
     }
-    masu_result result = check_viewports(d, detail);
+    masu_result result = check_split(d, detail);
+    if (!result) result = check_viewports(d, detail);
     if (!result) result = check_reserve(d, detail);
     return result ? result : masu_output_check(d, detail);
 }

@@ -30,6 +30,7 @@ int masu_has_image(const masu_needs *n, uint32_t image) {
 
 #define NO_SCENE "no scene: a source image is upscaled"
 #define NO_SDF "the scene has no SDF"
+#define NO_SPLIT "desc.split does not ask for it"
 #define NOTHING_KEPT "without specular_temporal nothing is kept"
 
 int masu_is_occluded(const masu_needs *n) { return n->sdf_occlusion || n->shadow || n->ao; }
@@ -50,7 +51,8 @@ static const char *no_march(const masu_needs *n) {
 
 /* Whether a rung has anything that reads velocities. */
 static int wants_velocity(const masu_needs *n) {
-    return n->velocity && (n->temporal || n->resolve || (n->readback & MASU_READBACK_VELOCITY));
+    return n->velocity && (n->temporal || n->resolve || (n->readback & MASU_READBACK_VELOCITY) ||
+                           (n->split & MASU_SPLIT_VELOCITY));
 }
 
 /* Of two kinds of velocities the other one runs, or none. */
@@ -115,6 +117,9 @@ static const char *no_upscale(const masu_needs *n) {
 #define UPDATE_LATEST(class_of) {MASU_LATEST(MASU_CLASS_##class_of), MASU_UPDATE}
 #define COPY_LATEST(class_of) {MASU_LATEST(MASU_CLASS_##class_of), MASU_READ_COPY}
 #define COPY_BACK_LATEST(class_of) {MASU_LATEST(MASU_CLASS_##class_of), MASU_READ_BACK}
+#define HOST_READS(id) IMAGE_ACCESS(id, READ_HOST)
+#define HOST_COLOR(id) IMAGE_ACCESS(id, HOST_COLOR)
+#define HOST_LATEST(class_of) {MASU_LATEST(MASU_CLASS_##class_of), MASU_HOST_##class_of}
 #define READS(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_READ_BUFFER}
 #define FETCHES(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_READ_VERTICES}
 #define WRITES(id) {MASU_RESOURCE(MASU_BUFFER_##id), MASU_WRITE_BUFFER}
@@ -144,7 +149,7 @@ int masu_is_cascade(uint32_t pass) {
 int masu_has_set(uint32_t pass) {
     masu_geometry geometry = masu_passes[pass].geometry;
     return masu_passes[pass].kind == MASU_PASS_COMPUTE || geometry == MASU_GEOMETRY_BLENDED ||
-           geometry == MASU_GEOMETRY_SPRITES;
+           geometry == MASU_GEOMETRY_SPRITES || geometry == MASU_GEOMETRY_DEPTHS;
 }
 
 int masu_access_binds(masu_access access, int writes) {

@@ -86,6 +86,7 @@ typedef enum masu_usage {
     MASU_READ_COPY,   /* transfer source */
     MASU_READ_BACK,   /* the same, of what desc.readback asks for */
     MASU_READ_STRUCTURE, /* of ray queries: binding of set 0 */
+    MASU_READ_HOST,      /* by the host's own commands, sampled or copied */
     MASU_WRITE,       /* storage, whole sub-rectangle, earlier content is lost */
     MASU_UPDATE,      /* storage, some texels, the rest is kept */
     MASU_WRITE_COLOR, /* colour attachment, cleared first */
@@ -94,14 +95,17 @@ typedef enum masu_usage {
     MASU_UPDATE_DEPTH, /* the same of a part of the image, the rest is kept */
     MASU_WRITE_BUFFER, /* storage buffer */
     MASU_WRITE_COPY,   /* transfer destination */
-    MASU_WRITE_STRUCTURE /* built by the device, for ray queries */
+    MASU_WRITE_STRUCTURE, /* built by the device, for ray queries */
+    MASU_HOST_COLOR, /* drawn over or otherwise changed by the host's own commands */
+    MASU_HOST_DEPTH  /* the same of depth, which they test against */
 } masu_usage;
 
 typedef enum masu_pass_kind {
     MASU_PASS_GRAPHICS,
     MASU_PASS_COMPUTE,
     MASU_PASS_TRANSFER,
-    MASU_PASS_BUILD /* of a structure for ray queries: src/device/ray_query.c */
+    MASU_PASS_BUILD, /* of a structure for ray queries: src/device/ray_query.c */
+    MASU_PASS_HOST   /* nothing of ours: a recording ends, the host's commands go here */
 } masu_pass_kind;
 
 #define MASU_PASS_ACCESSES 12u
@@ -121,6 +125,7 @@ typedef struct masu_needs {
     int skins;         /* joints bend some of them */
     int sdf;           /* it has an SDF */
     uint32_t readback; /* masu_readback_bits */
+    uint32_t split;    /* masu_split_bits */
     int blit;          /* targets are filled by a blit */
     int dynamic;       /* slots of the SDF depend on parameters or time */
     int anchored;      /* and on where the eye is: the SDF reaches far from the origin */
@@ -175,7 +180,8 @@ typedef enum masu_geometry {
     MASU_GEOMETRY_BLENDED,  /* over what is there, back to front */
     MASU_GEOMETRY_BOXES,    /* made up by the vertex shader; depth alone */
     MASU_GEOMETRY_SPRITES,  /* the same; colour, which is blended where the row says BLEND */
-    MASU_GEOMETRY_SCREEN    /* one triangle over everything */
+    MASU_GEOMETRY_SCREEN,   /* one triangle over everything */
+    MASU_GEOMETRY_DEPTHS    /* the same that writes depth, as an image has it */
 } masu_geometry;
 
 typedef struct masu_pass_row {
@@ -232,6 +238,11 @@ static inline int masu_is_smaa(masu_aa aa) { return aa >= MASU_AA_SMAA_LOW; }
 
 /* Whether a way to march works on lists of parts by tile. */
 int masu_march_has_tiles(masu_march march);
+
+/* Whether the host's own commands are given what is known of the scene at each pixel, depth above all. */
+static inline int masu_split_shows_scene(uint32_t split) {
+    return (split & (MASU_SPLIT_BEFORE_TONE | MASU_SPLIT_KEEP)) != 0;
+}
 
 /* Whether a row's images are bound as set 1: those of compute rows, and of what is drawn over them. */
 int masu_has_set(uint32_t pass);

@@ -128,6 +128,7 @@ typedef struct masu_frame_plan {
     uint32_t pass_sets; /* descriptor sets of set 1 over all rungs and targets */
     uint32_t recordings; /* of one frame in flight: viewports, their rungs, their targets, their variants */
     uint32_t viewport_recordings; /* of one viewport */
+    uint32_t parts; /* command buffers of a recording: 1, and one more for each point where it is split */
     uint32_t cascades, cascade_size; /* of the shadow map: the most of any rung */
 } masu_frame_plan;
 

@@ -31,6 +31,8 @@ static masu_scene look;
 static masu_commands commands;
 static masu_camera camera;
 static masu_light light;
+static masu_split split;
+static masu_frame_view view;
 static masu_plan_info plan;
 static masu_memory need;
 static masu_memory_row rows_of_memory[2];
@@ -92,6 +94,8 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_plan_of, (masu_plan_of(P(0, &m), P(1, &plan)), NO_RESULT))                              \
     X(masu_load, masu_load(P(0, &m), P(1, &commands)))                                             \
     X(masu_frame, masu_frame(P(0, &m), P(1, &still), P(2, &commands)))                             \
+    X(masu_split_of, masu_split_of(P(0, &m), MASU_SPLIT_BEFORE_TONE, 0, 0, P(1, &split)))          \
+    X(masu_frame_view_of, masu_frame_view_of(P(0, &m), P(1, &view)))                               \
     X(masu_frame_wall, (masu_frame_wall(P(0, &m), 0, 1.0), NO_RESULT))                             \
     X(masu_frame_times, (masu_frame_times(P(0, &m), 0, 1, 2, 0.0), NO_RESULT))                     \
     X(masu_frame_presented, (masu_frame_presented(P(0, &m), 0, 1, 2), NO_RESULT))                  \
