@@ -17,6 +17,7 @@
 #include "frame/frame_data.h"
 #include "frame/temporal.h"
 #include "frame/instances.h"
+#include "frame/materials.h"
 #include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/punctual_lights.h"
@@ -54,6 +55,7 @@ struct masu_renderer {
     masu_bounds bounds;
     masu_models models;
     masu_lights lights;
+    masu_materials materials;
     masu_shadow shadow;
     masu_views views;
     masu_visible visible;

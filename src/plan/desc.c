@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "plan/output.h"
+#include "plan/reserve.h"
 #include "quality/governor_desc.h"
 #include "quality/knobs.h"
 #include "quality/ladder.h"
@@ -221,6 +222,10 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
         masu_result result = masu_rung_check(&d->rungs[r], r, detail);
         if (result) return result;
     }
+    if (d->reserve.models > MASU_RESERVE_MODELS_MAX)
+        return bad_range(detail, "reserve.models", d->reserve.models, 0, MASU_RESERVE_MODELS_MAX);
+    if (d->reserve.lights > MASU_RESERVE_LIGHTS_MAX)
+        return bad_range(detail, "reserve.lights", d->reserve.lights, 0, MASU_RESERVE_LIGHTS_MAX);
     masu_result viewports = check_viewports(d, detail);
     return viewports ? viewports : masu_output_check(d, detail);
 }
