@@ -217,11 +217,12 @@ MASU_API MASU_MUST_USE masu_result masu_scene_bind(const void *blob, uint64_t bl
 /* Number of the SDF parameter `name`, or -1. Looks at the blob, which must still be readable. */
 MASU_API int32_t masu_scene_sdf_param(const masu_scene *scene, const char *name);
 
-/* Names of what a scene has, by index: 0 .. instances - 1, models - 1, lights - 1. "": it has none, or there is
+/* Names of what a scene has, by index: 0 .. instances - 1, models - 1, lights - 1, materials - 1. "": it has none, or there is
  * no such index. They lie in the blob, which must still be readable. */
 MASU_API const char *masu_scene_instance_name(const masu_scene *scene, uint32_t index);
 MASU_API const char *masu_scene_model_name(const masu_scene *scene, uint32_t index);
 MASU_API const char *masu_scene_light_name(const masu_scene *scene, uint32_t index);
+MASU_API const char *masu_scene_material_name(const masu_scene *scene, uint32_t index);
 /* The same of the clip-th clip of a model. */
 MASU_API const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32_t clip);
 
@@ -261,9 +262,15 @@ MASU_API const char *masu_scene_class_name(masu_scene_class scene_class);
 /* Rungs, their knobs, limits; with masu_study.h, which is for studies alone. */
 #include "masu_knobs.h"
 
-/* Room for what the host adds while it runs, beyond what the scene has. All of it counts in masu_memory; 0 of a kind
- * costs nothing. */
+/* Room for what the host adds while it runs, beyond what the scene has. All of it counts in masu_memory, models and
+ * lights in limits and in peaks too, as if the scene had them; 0 of a kind costs nothing. */
 typedef struct masu_reserve {
+    /* Copies of models that move, besides those that the scene has spare (masu_model_add), 0..16384. A place holds
+     * any of them: each is as large as the largest, in nodes, instances, blended primitives and traced instances,
+     * and costs what limits say of these; where the scene has occluders, those of its meshes too. All places
+     * together have at most 2^20 of any of these. Models with skins are not copied and do not count. */
+    uint32_t models;
+    uint32_t lights; /* punctual lights (masu_punctual_light_add), 0..4096 and with the scene's at most 4096 */
     /* What a frame may bring (masu_frame_desc); without a scene nothing. */
     uint32_t particles; /* 0..65536: 64 bytes each per frame in flight, and 16 for each blended primitive, device; 16
                            bytes each, host */
@@ -501,6 +508,9 @@ typedef struct masu_desc {
                                     plan says it again */
     masu_limits limits;
     masu_reserve reserve;
+    uint32_t live_materials; /* not 0: masu_material_set. 60 host bytes for each material and 48 per frame in
+                                flight on the device, which each frame copies to where shaders read them; with
+                                reflections of polygons 84 and 112. 0: nothing. Without a scene ignored */
     uint64_t host_budget;   /* bytes; 0: none. A plan that needs more is MASU_ERROR_LIMIT */
     uint64_t device_budget; /* bytes over all roles; 0: none */
     masu_device_block device_blocks[MASU_ROLE_COUNT];
@@ -1152,7 +1162,8 @@ MASU_API MASU_MUST_USE masu_result masu_instance_set_transform(masu_renderer *re
                                                                masu_instance instance,
                                                                const float rows[12]);
 
-/* The index-th instance of the scene, in the order of masu_scene_instance_name; id 0 beyond the last. */
+/* The index-th instance of the scene, in the order of masu_scene_instance_name; behind those, of copies of models
+ * (desc.reserve). id 0 beyond the last, and where no copy is. */
 MASU_API masu_instance masu_instance_at(const masu_renderer *renderer, uint32_t index);
 
 /* Handle of a model that the scene says moves ("moving", "hidden" or "spare" in its description): all of
@@ -1185,7 +1196,8 @@ MASU_API MASU_MUST_USE masu_result masu_instance_show(masu_renderer *renderer, m
 /* The first model of that name, the name of its description; id 0 if there is none. */
 MASU_API masu_model masu_model_find(const masu_renderer *renderer, const char *name);
 
-/* The index-th model of the scene, in the order of masu_scene_model_name; id 0 beyond the last. */
+/* The index-th model of the scene, in the order of masu_scene_model_name; behind those, the places of desc.reserve. id 0
+ * beyond the last, and of a place that is free. */
 MASU_API masu_model masu_model_at(const masu_renderer *renderer, uint32_t index);
 
 typedef struct masu_model_state {
@@ -1214,11 +1226,20 @@ MASU_API MASU_MUST_USE masu_result masu_model_set_transform(masu_renderer *rende
 MASU_API MASU_MUST_USE masu_result masu_model_show(masu_renderer *renderer, masu_model model,
                                                    uint32_t shown);
 
-/* One more of the kind of `like`, at `rows`: shows a hidden one of the same kind, a spare one, say, and
- * gives its handle. masu_model_show(.., 0) gives it back. Nothing is allocated: how many there can be is in
- * the scene. MASU_ERROR_LIMIT: all are shown. MASU_ERROR_ARGUMENT: as masu_model_set_transform. */
+/* One more of the kind of `like`, at `rows`, from the next masu_frame on, and its handle: a hidden one of the same kind
+ * that the scene has, a spare one, say; where all of these are shown, a copy in a place of desc.reserve.models. The copy
+ * has no name, and its nodes are as those of `like` are now; lights that `like` carries are copied too, of
+ * desc.reserve.lights. Nothing is allocated. It had been nowhere before: it has not moved in its first frame.
+ * MASU_ERROR_LIMIT: all are shown, and the reserve has no place left, or `like` has skins, of which there are no copies;
+ * or reserve.lights are too few. MASU_ERROR_ARGUMENT: as masu_model_set_transform. Nothing is changed then. */
 MASU_API MASU_MUST_USE masu_result masu_model_add(masu_renderer *renderer, masu_model like,
                                                   const float rows[12], masu_model *out);
+
+/* A copy goes, and its place is free: its handle, those of its instances, and of lights of the reserve that these
+ * carry, are refused from then on; lights of the scene that they carry are put out and carried no more. A model of the
+ * scene is hidden, as masu_model_show(.., 0) does it: its handle stays. MASU_ERROR_ARGUMENT: a handle that is not of
+ * this renderer, or of what was removed. */
+MASU_API MASU_MUST_USE masu_result masu_model_remove(masu_renderer *renderer, masu_model model);
 
 #define MASU_NODE_NONE UINT32_MAX
 
@@ -1298,7 +1319,8 @@ typedef struct masu_punctual_light_state {
 /* The first light of that name in the scene; id 0 if there is none. */
 MASU_API masu_punctual_light masu_punctual_light_find(const masu_renderer *renderer, const char *name);
 
-/* The index-th light of the scene, in the order of masu_scene_light_name; id 0 beyond the last. */
+/* The index-th light of the scene, in the order of masu_scene_light_name; behind those, desc.reserve.lights. id 0 beyond
+ * the last, and of one that is not taken. */
 MASU_API masu_punctual_light masu_punctual_light_at(const masu_renderer *renderer, uint32_t index);
 
 /* What it is set to: at first, what the scene says. MASU_ERROR_ARGUMENT: a NULL pointer, or a handle
@@ -1312,6 +1334,63 @@ MASU_API MASU_MUST_USE masu_result masu_punctual_light_get(masu_renderer *render
 MASU_API MASU_MUST_USE masu_result masu_punctual_light_set(masu_renderer *renderer,
                                                         masu_punctual_light light,
                                                         const masu_punctual_light_state *state);
+
+/* One more light, of desc.reserve.lights, from the next masu_frame on. MASU_ERROR_LIMIT: all of these are taken.
+ * MASU_ERROR_ARGUMENT: as masu_punctual_light_set. */
+MASU_API MASU_MUST_USE masu_result masu_punctual_light_add(masu_renderer *renderer,
+                                                           const masu_punctual_light_state *state,
+                                                           masu_punctual_light *out);
+
+/* A light that was added goes: its handle is refused from then on. MASU_ERROR_ARGUMENT: a handle that is not of this
+ * renderer or of what was removed, or of a light that the scene has: a colour of 0 puts that out. */
+MASU_API MASU_MUST_USE masu_result masu_punctual_light_remove(masu_renderer *renderer,
+                                                              masu_punctual_light light);
+
+/* Handle of a material. Without desc.live_materials there are none. */
+typedef struct masu_material {
+    uint32_t id;
+} masu_material;
+
+typedef enum masu_material_mode {
+    MASU_MATERIAL_OPAQUE = 0,
+    MASU_MATERIAL_MASKED = 1,  /* where the alpha of its map is below `cutoff`, it is not there */
+    MASU_MATERIAL_BLENDED = 2,
+    MASU_MATERIAL_ADDITIVE = 3 /* blended: adds its light, hides nothing */
+} masu_material_mode;
+
+/* Its factors. Of what it has a map for, the map is times it. */
+typedef struct masu_material_state {
+    float base_color[3]; /* linear, 0..1 */
+    float opacity;       /* 0..1, of blended ones; of others 1 */
+    float emissive[3];   /* linear radiance, 0..1e9 */
+    float roughness;     /* perceptual, 0..1 */
+    float metallic;      /* 0..1 */
+    float specular;      /* 0..1: reflectance of a dielectric at normal incidence / 0.08; plain: 0.5 */
+    float coat;          /* 0..1: how much of a clear coat lies on it */
+    float coat_roughness; /* perceptual, 0..1 */
+    masu_material_mode mode; /* told, not changed; */
+    float cutoff;            /* the same */
+} masu_material_state;
+
+/* The first material of that name in the scene; id 0 if there is none. */
+MASU_API masu_material masu_material_find(const masu_renderer *renderer, const char *name);
+
+/* The index-th material of the scene, in the order of masu_scene_material_name; id 0 beyond the last. */
+MASU_API masu_material masu_material_at(const masu_renderer *renderer, uint32_t index);
+
+/* What it is set to: at first, what the scene says. MASU_ERROR_ARGUMENT: a NULL pointer, or a handle that is not of
+ * this renderer. MASU_ERROR_STATE: desc.live_materials is 0. */
+MASU_API MASU_MUST_USE masu_result masu_material_get(masu_renderer *renderer, masu_material material,
+                                                     masu_material_state *out);
+
+/* Changes what it looks like from the next masu_frame on, wherever it is: in the picture, what is blended, traced
+ * reflections, whose histories fade over some frames. Light probes, which are baked, know nothing of it, nor does the
+ * choice of rungs that trace: it goes by what the scene had. MASU_ERROR_ARGUMENT: as masu_material_get, a value out of
+ * range or not finite, or one that would change a pass, an image or a pipeline, by name: mode; cutoff; opacity of what
+ * is not blended; specular and coat where nothing opaque in the scene has either, nor a small relief or an occlusion
+ * map, coat where no material has one. Nothing is changed then. MASU_ERROR_STATE: desc.live_materials is 0. */
+MASU_API MASU_MUST_USE masu_result masu_material_set(masu_renderer *renderer, masu_material material,
+                                                     const masu_material_state *state);
 
 /* ---- Plan ------------------------------------------------------------------------------------ */
 

@@ -1,6 +1,5 @@
-/* live.c: the public functions that ask and change the instances, models and punctual
- * lights of a scene between frames. What
- * they change is the host's truth in src/frame/; masu_frame carries it to the GPU. */
+/* live.c: the public functions that ask and change the instances, models, punctual lights
+ * and materials of a scene between frames (added.c: those that add and remove). What they change is the host's truth in src/frame/; masu_frame carries it to the GPU. */
 #include "base/error.h"
 #include "renderer.h"
 
@@ -104,28 +103,6 @@ masu_result masu_model_show(masu_renderer *m, masu_model model, uint32_t shown) 
     masu_result result = check_model(m, model, &i);
     if (!result) masu_models_show(&m->models, &m->instances, &m->plan, i, shown != 0);
     return result;
-}
-
-masu_result masu_model_add(masu_renderer *m, masu_model like, const float rows[12],
-                           masu_model *out) {
-    uint32_t i;
-    if (out) *out = (masu_model){0};
-    if (!m || !rows || !out) return missing(m, rows ? "out" : "rows");
-    masu_result result = check_model(m, like, &i);
-    if (result) return result;
-    uint32_t spare = masu_models_spare(&m->models, &m->plan, i);
-    if (spare == UINT32_MAX) {
-        return masu_fail(&m->error, MASU_ERROR_LIMIT, "models", 1, 0,
-                         "model %u: all of its kind are shown; \"spare\" in its description gives "
-                         "the scene more",
-                         i);
-    }
-    result = masu_models_move(&m->models, &m->instances, &m->bounds, &m->plan, spare, rows,
-                              &m->error);
-    if (result) return result;
-    masu_models_show(&m->models, &m->instances, &m->plan, spare, 1);
-    *out = masu_model_at(m, spare);
-    return MASU_OK;
 }
 
 /* ---- Nodes ----------------------------------------------------------------------------------- */
@@ -234,4 +211,39 @@ masu_result masu_punctual_light_set(masu_renderer *m, masu_punctual_light light,
     masu_result result = check_light(m, light, &i);
     if (result) return result;
     return masu_lights_set(&m->lights, &m->instances, i, state, &m->error);
+}
+
+/* ---- Materials ------------------------------------------------------------------------------- */
+
+static masu_result check_material(masu_renderer *m, masu_material material, uint32_t *index) {
+    if (m->plan.desc.live_materials)
+        return masu_handle_check(&m->materials.handles, "material", material.id, index, &m->error);
+    return masu_fail(&m->error, MASU_ERROR_STATE, "live_materials", 1, 0,
+                     "materials are neither told nor changed: desc.live_materials is 0");
+}
+
+masu_material masu_material_at(const masu_renderer *m, uint32_t index) {
+    return (masu_material){m ? masu_handle_at(&m->materials.handles, index) : 0};
+}
+
+masu_material masu_material_find(const masu_renderer *m, const char *name) {
+    if (!m || !name || !*name) return (masu_material){0};
+    return masu_material_at(m, masu_materials_find(&m->materials, name));
+}
+
+masu_result masu_material_get(masu_renderer *m, masu_material material, masu_material_state *out) {
+    uint32_t i;
+    if (!m || !out) return missing(m, "out");
+    masu_result result = check_material(m, material, &i);
+    if (!result) *out = masu_materials_get(&m->materials, i);
+    return result;
+}
+
+masu_result masu_material_set(masu_renderer *m, masu_material material,
+                              const masu_material_state *state) {
+    uint32_t i;
+    if (!m || !state) return missing(m, "state");
+    masu_result result = check_material(m, material, &i);
+    if (result) return result;
+    return masu_materials_set(&m->materials, &m->plan, i, state, &m->error);
 }

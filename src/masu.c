@@ -39,6 +39,7 @@ static void lay_host(masu_arena *arena, const masu_frame_plan *plan, masu_render
     masu_bounds_lay(&to->bounds, arena, plan);
     masu_models_lay(&to->models, arena, plan);
     masu_lights_lay(&to->lights, arena, plan);
+    masu_materials_lay(&to->materials, arena, plan);
     masu_visible_lay(&to->visible, arena, plan);
     masu_picking_lay(&to->picking, arena, plan);
     masu_occlusion_lay(&to->occlusion, arena, plan);
@@ -71,6 +72,7 @@ void masu_keep_scene(masu_renderer *m) {
     masu_bounds_keep(&m->bounds, plan, &m->instances, &v);
     masu_models_keep(&m->models, &m->instances, plan, &v);
     masu_lights_keep(&m->lights, plan, &v);
+    masu_materials_keep(&m->materials, plan, &v);
     masu_visible_keep(&m->visible, plan, &v);
     masu_occlusion_keep(&m->occlusion, plan, &v);
     masu_transparents_keep(&m->transparents, plan, &m->draws, &v);
@@ -316,12 +318,13 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
 
     masu_sun_sky_write(&m->sun_sky, f);
     masu_reflections_read(&m->reflections, f);
-    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, f);
+    masu_temporal_read(&m->temporal, &m->history, &m->instances, &m->lights, &m->materials, f);
     masu_frame_write_uniforms(&m->history, f);
 
     masu_shadow_write(&m->shadow, &m->bounds, f);
     masu_views_set(&m->views, &m->bounds, &m->shadow, f);
     masu_lights_write(&m->lights, &m->instances, f);
+    masu_materials_write(&m->materials, f);
 
     /* Whatever asks which instances have moved, then those themselves. */
     masu_reflections_write_instances(&m->reflections, &m->instances, &m->bounds, f);
@@ -333,7 +336,7 @@ masu_result masu_write_frame(masu_renderer *m, masu_frame_data *f) {
     masu_picking_write(&m->picking, &m->visible, &m->bounds, f);
     masu_transparents_write(&m->transparents, &m->instances, &m->visible, f);
     masu_sprites_write(&m->sprites, &m->transparents, f);
-    masu_occlusion_write(&m->occlusion, &m->visible, &m->views, f);
+    masu_occlusion_write(&m->occlusion, &m->visible, &m->instances, &m->views, f);
     return MASU_OK;
 }
 

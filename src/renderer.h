@@ -18,6 +18,7 @@
 #include "frame/frame_view.h"
 #include "frame/temporal.h"
 #include "frame/instances.h"
+#include "frame/materials.h"
 #include "frame/models.h"
 #include "frame/occlusion.h"
 #include "frame/picking.h"
@@ -58,6 +59,7 @@ struct masu_renderer {
     masu_bounds bounds;
     masu_models models;
     masu_lights lights;
+    masu_materials materials;
     masu_shadow shadow;
     masu_views views;
     masu_visible visible;

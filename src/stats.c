@@ -142,7 +142,9 @@ masu_result masu_stats(const masu_renderer *m, uint32_t slot, masu_stats_info *o
     if (!has_ended(m, slot)) return MASU_INCOMPLETE;
     out->view_count = m->plan.needs.raster ? m->plan.views : 0;
     memcpy(out->views, m->visible.slot_views[slot], sizeof out->views);
-    out->lights = m->plan.scene.lights;
+    out->lights = 0;
+    for (uint32_t i = 0; i < m->plan.scene.lights; i++)
+        out->lights += masu_handle_lives(&m->lights.handles, i) != 0;
     out->lights_in_view = m->lights.slot_count[slot];
     out->draws = out->views[0].draws;
     out->triangles = out->views[0].triangles;

@@ -6,6 +6,7 @@
 #include "device/bind.h"
 #include "device/ray_query.h"
 #include "plan/buffer_plan.h"
+#include "scene/material.h"
 #include "scene/scene.h"
 #include "scene/trace_scene.h"
 #include "shared/masu_shared.h"
@@ -152,21 +153,13 @@ masu_result masu_load_record(masu_device *m, masu_detail *detail) {
 
 /* ---- What is written ------------------------------------------------------------------------- */
 
-static struct masu_material_data device_material(const masu_blob_material *m) {
-    struct masu_material_data d = {
-        {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
-        {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic},
-        {m->specular, m->coat, m->coat_roughness, m->opacity}};
-    return d;
-}
-
 _Static_assert(sizeof(masu_blob_meso) == 2 * sizeof(struct masu_material_data),
                "curves lie in the buffer of materials");
 
 /* An element of the buffer of materials: a material, or half of the curves of a small relief. */
 static struct masu_material_data material_element(const masu_scene_view *v, uint64_t i) {
     struct masu_material_data d;
-    if (i < v->material_count) return device_material(&v->materials[i]);
+    if (i < v->material_count) return masu_material_data_of(&v->materials[i]);
     memcpy(&d, (const unsigned char *)v->meso + (i - v->material_count) * sizeof d, sizeof d);
     return d;
 }

@@ -11,6 +11,7 @@
 #include "device/ray_query.h"
 #include "plan/push.h"
 #include "scene/scene.h"
+#include "scene/trace_scene.h"
 #include "shared/masu_shared.h"
 
 #include <string.h>
@@ -452,6 +453,20 @@ static void timestamp(masu_recorder *rec, uint32_t index) {
 /* NaN or infinity, read as fp32, fp16 or unorm alike. */
 static uint32_t poison_word(uint32_t kind) { return kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
 
+/* Of the slot, to where shaders and rays read them. */
+static void copy_materials(masu_recorder *rec) {
+    const masu_device *m = rec->m;
+    const masu_scene *scene = &m->plan->scene;
+    VkBuffer from = m->objects.buffers[MASU_BUFFER_LIVE_MATERIALS];
+    VkDeviceSize at = rec->flight * m->plan->buffers[MASU_BUFFER_LIVE_MATERIALS].stride;
+    VkBufferCopy plain = {at, 0, scene->materials * sizeof(struct masu_material_data)};
+    m->vk.CmdCopyBuffer(rec->cmd, from, m->objects.buffers[MASU_BUFFER_MATERIALS], 1, &plain);
+    if (!m->plan->needs.traced) return;
+    VkBufferCopy traced = {at + plain.size, 16 * masu_trace_lay(scene).materials,
+                           scene->materials * sizeof(struct masu_trace_material)};
+    m->vk.CmdCopyBuffer(rec->cmd, from, m->objects.buffers[MASU_BUFFER_TRACE], 1, &traced);
+}
+
 static void record_prologue(masu_recorder *rec) {
     const masu_device *m = rec->m;
     int counters = m->plan->desc.debug.counters && m->plan->buffers[MASU_BUFFER_COUNTERS].bytes;
@@ -481,12 +496,14 @@ static void record_prologue(masu_recorder *rec) {
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_EXPOSURE],
                             MASU_EXPOSURE_HEADER * sizeof(uint32_t), VK_WHOLE_SIZE, 0);
     }
+    int live = m->plan->buffers[MASU_BUFFER_LIVE_MATERIALS].bytes != 0;
+    if (live) copy_materials(rec);
     int receivers = masu_has_pass(&rec->rp->active, MASU_PASS_RECEIVER_MASK);
     if (receivers) { /* none yet: the least depth is the farthest from the sun */
         m->vk.CmdFillBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_SEEN],
                             m->plan->receiver_mask * sizeof(uint32_t), VK_WHOLE_SIZE, UINT32_MAX);
     }
-    if (counters || receivers || tiled || m->plan->needs.metered ||
+    if (counters || receivers || tiled || live || m->plan->needs.metered ||
         m->plan->buffers[MASU_BUFFER_POISON].bytes) {
         masu_memory_barrier(rec, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                             VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,

@@ -106,7 +106,7 @@ void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan,
             a->moved[v->models[c->model].first_node + node] = 1;
         }
     }
-    for (uint32_t i = 0; i < s->models; i++) {
+    for (uint32_t i = 0; i < masu_own_models(plan); i++) {
         const masu_blob_model *m = &v->models[i];
         for (uint32_t n = 0; n < m->node_count; n++) {
             uint32_t node = m->first_node + n;
@@ -114,6 +114,13 @@ void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan,
             if (a->moved[node]) a->rest[node] = masu_pose_of(v->model_nodes[node].local);
         }
     }
+}
+
+void masu_animation_copy(masu_animation *a, const masu_frame_plan *plan, uint32_t from, uint32_t to,
+                         uint32_t nodes) {
+    if (!plan->scene.clips) return;
+    memcpy(a->moved + to, a->moved + from, nodes);
+    memcpy(a->rest + to, a->rest + from, nodes * sizeof *a->rest);
 }
 
 uint32_t masu_animation_clips(const masu_animation *a, const masu_frame_plan *plan, uint32_t like,

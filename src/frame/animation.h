@@ -38,6 +38,10 @@ typedef struct masu_animation {
 void masu_animation_lay(masu_animation *a, masu_arena *arena, const masu_frame_plan *plan);
 void masu_animation_keep(masu_animation *a, const masu_frame_plan *plan, const masu_scene_view *v);
 
+/* Nodes of a copy rest as those that they are copied of. */
+void masu_animation_copy(masu_animation *a, const masu_frame_plan *plan, uint32_t from, uint32_t to,
+                         uint32_t nodes);
+
 /* The clips of a kind, that of model `like`: how many, and the first of them. */
 uint32_t masu_animation_clips(const masu_animation *a, const masu_frame_plan *plan, uint32_t like,
                               uint32_t *first);

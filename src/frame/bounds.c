@@ -77,14 +77,18 @@ void masu_bounds_keep(masu_bounds *b, const masu_frame_plan *plan, const masu_in
     }
     uint32_t behind = scene->group_items;
     for (uint32_t p = 0; p < scene->group_items; p++) b->items[p] = v->group_items[p];
-    for (uint32_t i = 0; i < scene->instances; i++) {
+    for (uint32_t i = 0; i < in->own; i++) {
         if (v->instances[i].group == MASU_BLOB_NONE) b->items[behind++] = i;
     }
-    for (uint32_t p = 0; p < scene->instances; p++) {
+    for (uint32_t p = 0; p < in->own; p++) {
         b->positions[b->items[p]] = p;
         set_box(b, in, p, b->items[p]);
     }
-    b->initial = around_all(b, scene->instances);
+    b->initial = around_all(b, in->own);
+    for (uint32_t p = in->own; p < scene->instances; p++) { /* of the reserve: a point, until it is added */
+        b->items[p] = b->positions[p] = p;
+        for (uint32_t k = 0; k < 6; k++) b->boxes[k * b->box_stride + p] = 0.0f;
+    }
 }
 
 /* Once it has moved, an instance is tested by itself: groups keep the boxes they were baked with. */

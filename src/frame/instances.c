@@ -13,6 +13,12 @@ void masu_instances_lay(masu_instances *in, masu_arena *arena, const masu_frame_
     in->names = masu_arena_take(arena, "instance names", count, sizeof *in->names, 8);
     in->meshes = masu_arena_take(arena, "instance meshes", count, sizeof *in->meshes, 4);
     in->flags = masu_arena_take(arena, "instance flags", count, sizeof *in->flags, 1);
+    uint32_t reserve = plan->reserve.places.instances;
+    in->of_mesh = NULL;
+    if (!reserve) return;
+    in->of_mesh = masu_arena_take(arena, "reserve of meshes", plan->scene.meshes, sizeof *in->of_mesh, 4);
+    in->next = masu_arena_take(arena, "reserve lists", reserve, sizeof *in->next, 4);
+    in->lives = masu_arena_take(arena, "reserve instances", reserve, sizeof *in->lives, 4);
 }
 
 /* A transform must reach every slot, each when it is free; with the previous frame, once more: the slot
@@ -21,18 +27,48 @@ static uint8_t frames_to_write(const masu_frame_plan *plan) {
     return (uint8_t)(plan->desc.frames_in_flight + (plan->needs.velocity ? 1 : 0));
 }
 
+/* Nothing is anywhere yet. */
+static void keep_reserve(masu_instances *in, const masu_frame_plan *plan) {
+    for (uint32_t mesh = 0; mesh < plan->scene.meshes; mesh++) in->of_mesh[mesh] = MASU_BLOB_NONE;
+    for (uint32_t i = in->own; i < plan->scene.instances; i++) {
+        memset(&in->now[i], 0, sizeof in->now[i]);
+        if (plan->needs.velocity) in->previous[i] = in->now[i];
+        in->names[i] = in->meshes[i] = 0;
+        in->flags[i] = (uint8_t)(MASU_INSTANCE_HIDDEN | frames_to_write(plan));
+        in->hidden_count++;
+    }
+}
+
 void masu_instances_keep(masu_instances *in, const masu_frame_plan *plan,
                          const masu_scene_view *v) {
-    for (uint32_t i = 0; i < plan->scene.instances; i++) {
+    in->own = masu_own_instances(plan);
+    for (uint32_t i = 0; i < in->own; i++) {
         memcpy(&in->now[i], v->instances[i].transform, sizeof in->now[i]);
         if (plan->needs.velocity) in->previous[i] = in->now[i];
         in->names[i] = masu_scene_name_hash(v, v->instances[i].name);
         in->meshes[i] = v->instances[i].mesh;
         in->flags[i] = frames_to_write(plan);
     }
-    in->handles = masu_handles_of(v->hash, MASU_HANDLE_INSTANCE, plan->scene.instances);
+    in->handles = masu_handles_of(v->hash, MASU_HANDLE_INSTANCE, in->own,
+                                  plan->reserve.places.instances, in->lives);
     in->dirty_count = plan->scene.instances;
     in->hidden_count = in->changes = 0;
+    if (plan->reserve.places.instances) keep_reserve(in, plan);
+}
+
+void masu_instances_add(masu_instances *in, uint32_t instance, uint32_t mesh) {
+    in->meshes[instance] = mesh;
+    in->next[instance - in->own] = in->of_mesh[mesh];
+    in->of_mesh[mesh] = instance;
+    masu_handle_turn(&in->handles, instance);
+}
+
+void masu_instances_remove(masu_instances *in, const masu_frame_plan *plan, uint32_t instance) {
+    uint32_t *link = &in->of_mesh[in->meshes[instance]];
+    while (*link != instance) link = &in->next[*link - in->own];
+    *link = in->next[instance - in->own];
+    masu_instances_show(in, plan, instance, 0);
+    masu_handle_turn(&in->handles, instance);
 }
 
 static void make_dirty(masu_instances *in, const masu_frame_plan *plan, uint32_t i) {

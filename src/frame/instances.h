@@ -22,6 +22,11 @@ typedef struct masu_instances {
     uint32_t hidden_count;
     uint32_t changes; /* how often one was moved, shown or hidden */
     uint32_t *meshes;
+    /* Of the reserve, which the blob knows nothing of: those of each mesh are a list. Of no length without one. */
+    uint32_t *of_mesh; /* [mesh]: the first, or MASU_BLOB_NONE */
+    uint32_t *next;    /* [instance of the reserve]: the next of the same mesh */
+    uint32_t *lives;
+    uint32_t own; /* instances of the blob; the reserve's come behind */
     masu_handles handles;
 } masu_instances;
 
@@ -50,6 +55,17 @@ uint32_t masu_instances_find(const masu_instances *in, const masu_frame_plan *pl
                              const char *name);
 masu_result masu_instances_set(masu_instances *in, const masu_frame_plan *plan, uint32_t instance,
                                const float rows[12], masu_detail *detail);
+
+/* One of the reserve becomes one of a mesh, hidden as yet, or is none any more. */
+void masu_instances_add(masu_instances *in, uint32_t instance, uint32_t mesh);
+void masu_instances_remove(masu_instances *in, const masu_frame_plan *plan, uint32_t instance);
+/* Those of a mesh, one after the other, until MASU_BLOB_NONE. */
+static inline uint32_t masu_instances_added(const masu_instances *in, uint32_t mesh) {
+    return in->of_mesh ? in->of_mesh[mesh] : MASU_BLOB_NONE;
+}
+static inline uint32_t masu_instances_next(const masu_instances *in, uint32_t instance) {
+    return in->next[instance - in->own];
+}
 
 void masu_instance_rows(const struct masu_instance_data *at, float rows[12]);
 

@@ -12,6 +12,7 @@ void masu_models_lay(masu_models *s, masu_arena *arena, const masu_frame_plan *p
     s->nodes = masu_arena_take(arena, "model nodes", scene->model_nodes, sizeof *s->nodes, 8);
     s->of_instance = masu_arena_take(arena, "models of instances",
                                      scene->models ? scene->instances : 0, sizeof *s->of_instance, 4);
+    s->lives = masu_arena_take(arena, "reserve models", plan->reserve.models, sizeof *s->lives, 4);
     masu_animation_lay(&s->animation, arena, plan);
     masu_skins_lay(&s->skins, arena, plan);
 }
@@ -43,10 +44,11 @@ static int place(masu_models *s, const masu_frame_plan *plan, uint32_t model) {
 void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       const masu_scene_view *v) {
     const masu_scene *scene = &plan->scene;
-    s->handles = masu_handles_of(v->hash, MASU_HANDLE_MODEL, scene->models);
+    s->handles = masu_handles_of(v->hash, MASU_HANDLE_MODEL, masu_own_models(plan),
+                                 plan->reserve.models, s->lives);
     for (uint32_t i = 0; scene->models && i < scene->instances; i++)
         s->of_instance[i] = MASU_BLOB_NONE;
-    for (uint32_t n = 0; n < scene->model_nodes; n++) {
+    for (uint32_t n = 0; n < masu_own_nodes(plan); n++) {
         const masu_blob_model_node *from = &v->model_nodes[n];
         masu_node *to = &s->nodes[n];
         *to = (masu_node){
@@ -55,7 +57,7 @@ void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan 
     }
     masu_animation_keep(&s->animation, plan, v);
     masu_skins_keep(&s->skins, plan, v);
-    for (uint32_t i = 0; i < scene->models; i++) {
+    for (uint32_t i = 0; i < masu_own_models(plan); i++) {
         const masu_blob_model *from = &v->models[i];
         masu_placed_model *to = &s->models[i];
         *to = (masu_placed_model){.name = masu_scene_name_hash(v, from->name),
@@ -70,11 +72,34 @@ void masu_models_keep(masu_models *s, masu_instances *in, const masu_frame_plan 
         (void)place(s, plan, i); /* what the instances say already; checked when the scene was bound */
         if (from->flags & MASU_MODEL_HIDDEN) masu_models_show(s, in, plan, i, 0);
     }
+    for (uint32_t i = masu_own_models(plan); i < scene->models; i++)
+        s->models[i] = (masu_placed_model){.like = MASU_BLOB_NONE};
+}
+
+void masu_models_copy(masu_models *s, const masu_frame_plan *plan, uint32_t place, uint32_t like) {
+    const masu_placed_model *from = &s->models[like];
+    masu_placed_model *to = &s->models[masu_own_models(plan) + place];
+    uint32_t first = masu_own_nodes(plan) + place * plan->reserve.place.nodes;
+    *to = (masu_placed_model){
+        .first_node = first, .node_count = from->node_count, .like = from->like};
+    memcpy(to->rows, from->rows, sizeof to->rows);
+    for (uint32_t n = 0; n < from->node_count; n++) {
+        masu_node *node = &s->nodes[first + n];
+        *node = s->nodes[from->first_node + n];
+        if (node->parent != MASU_BLOB_NONE) node->parent += first - from->first_node;
+        node->instance = MASU_BLOB_NONE;
+    }
+    masu_animation_copy(&s->animation, plan, from->first_node, first, from->node_count);
+}
+
+int masu_models_bends(const masu_models *s, const masu_frame_plan *plan, uint32_t model) {
+    uint32_t first;
+    return masu_skins_of(&s->skins, plan, model, &first) != 0;
 }
 
 uint32_t masu_models_find(const masu_models *s, const masu_frame_plan *plan, const char *name) {
     uint64_t hash = masu_fnv1a64(name, strlen(name));
-    for (uint32_t i = 0; i < plan->scene.models; i++) {
+    for (uint32_t i = 0; i < masu_own_models(plan); i++) {
         if (s->models[i].name == hash) return i;
     }
     return UINT32_MAX;
@@ -219,7 +244,7 @@ void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan 
 }
 
 uint32_t masu_models_spare(const masu_models *s, const masu_frame_plan *plan, uint32_t like) {
-    for (uint32_t i = 0; i < plan->scene.models; i++) {
+    for (uint32_t i = 0; i < masu_own_models(plan); i++) {
         if (s->models[i].like == s->models[like].like && !s->models[i].shown) return i;
     }
     return UINT32_MAX;

@@ -21,7 +21,8 @@ typedef struct masu_models {
     masu_placed_model *models;
     masu_node *nodes;
     uint32_t *of_instance; /* [instance]: its model, or MASU_BLOB_NONE; none without models */
-    masu_handles handles;
+    masu_handles handles; /* of the last plan->reserve.models, which come and go */
+    uint32_t *lives;
     masu_animation animation;
     masu_skins skins; /* bent by what the nodes are */
 } masu_models;
@@ -52,7 +53,12 @@ masu_result masu_models_animate(masu_models *s, masu_instances *in, masu_bounds 
                                 const masu_clip_use *uses, uint32_t count, masu_detail *detail);
 void masu_models_show(masu_models *s, masu_instances *in, const masu_frame_plan *plan,
                       uint32_t model, int shown);
-/* A hidden one of that kind, or UINT32_MAX. */
+/* A free place of the reserve becomes a copy of a model: its nodes are as they are there; they show nothing yet.
+ * Refuses no model: of one with skins nothing is to be copied (masu_models_bends). */
+void masu_models_copy(masu_models *s, const masu_frame_plan *plan, uint32_t place, uint32_t like);
+/* Whether joints bend something of it. */
+int masu_models_bends(const masu_models *s, const masu_frame_plan *plan, uint32_t model);
+/* A hidden one of that kind that the scene has, or UINT32_MAX. */
 uint32_t masu_models_spare(const masu_models *s, const masu_frame_plan *plan, uint32_t like);
 /* What is around all that it shows, or would. */
 void masu_models_box(const masu_models *s, const masu_bounds *b, uint32_t model, float low[3],

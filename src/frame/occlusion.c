@@ -27,10 +27,10 @@ void masu_occlusion_keep(masu_occlusion *o, const masu_frame_plan *plan, const m
     for (uint32_t k = 0; k < plan->scene.occluders; k++) {
         uint32_t mesh = v->occluders[k].mesh;
         if (!k || mesh != v->occluders[k - 1].mesh) {
-            end = masu_scene_mesh_instances(v, plan->scene.instances, mesh, from, &first);
+            end = masu_scene_mesh_instances(v, masu_own_instances(plan), mesh, from, &first);
             from = end;
         }
-        o->occluders[k] = (masu_placed_occluder){first, end - first, v->occluders[k].lods};
+        o->occluders[k] = (masu_placed_occluder){mesh, first, end - first, v->occluders[k].lods};
     }
 }
 
@@ -65,7 +65,7 @@ static void write_tables(const masu_frame_plan *plan, const masu_draws *draws,
         to[1] = batch->first_draw;
         to[2] = batch->draw_count;
         to[3] = (uint32_t)batch->triangles;
-        if (batch->instance_count > 64) words[d->large + large++] = b;
+        if (batch->room > 64) words[d->large + large++] = b;
     }
     for (uint32_t o = 0; o < plan->scene.occluders; o++) {
         uint32_t *to = words + d->occluders + 6 * (uint64_t)o;
@@ -108,7 +108,8 @@ void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances 
 /* Occluders that any view of `marks` keeps, and that lie in what it draws. Those of hidden instances
  * too: what they hide is hidden anyway. */
 static uint32_t write_pairs(const masu_occlusion *o, const masu_visible *s,
-                            const masu_frame_plan *plan, uint32_t marks, uint32_t *to) {
+                            const masu_instances *in, const masu_frame_plan *plan, uint32_t marks,
+                            uint32_t *to) {
     uint32_t n = 0;
     for (uint32_t k = 0; k < plan->scene.occluders; k++) {
         const masu_placed_occluder *p = &o->occluders[k];
@@ -118,12 +119,18 @@ static uint32_t write_pairs(const masu_occlusion *o, const masu_visible *s,
             to[2 * (uint64_t)n] = k;
             to[2 * (uint64_t)n++ + 1] = p->first_instance + i;
         }
+        for (uint32_t i = masu_instances_added(in, p->mesh); i != MASU_BLOB_NONE;
+             i = masu_instances_next(in, i)) {
+            if (!(s->marks[i] & marks) || (plan->lods && s->levels[i] > p->lods)) continue;
+            to[2 * (uint64_t)n] = k;
+            to[2 * (uint64_t)n++ + 1] = i;
+        }
     }
     return n;
 }
 
-void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_views *views,
-                          const masu_frame_data *f) {
+void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instances *in,
+                          const masu_views *views, const masu_frame_data *f) {
     const masu_frame_plan *plan = f->plan;
     const masu_drawn_plan *d = &plan->drawn;
     if (!masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_CULL)) return;
@@ -138,7 +145,7 @@ void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_views *
     memcpy(header + MASU_CULL_HEADER, stage2, plan->views * sizeof *stage2);
     for (uint32_t part = 0; part < MASU_ATLAS_PARTS(plan); part++) {
         uint64_t pairs = 2 * (uint64_t)part * plan->scene.placed_occluders;
-        uint32_t n = write_pairs(o, s, plan, part ? ~1u : 1u, words + d->pairs + pairs);
+        uint32_t n = write_pairs(o, s, in, plan, part ? ~1u : 1u, words + d->pairs + pairs);
         unsigned char *draw =
             masu_frame_slot(f, MASU_BUFFER_DRAWS) + MASU_OCCLUDER_DRAW(plan, part);
         memcpy(draw + offsetof(VkDrawIndirectCommand, instanceCount), &n, sizeof n);

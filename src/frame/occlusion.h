@@ -4,9 +4,9 @@
 
 #include "frame/visible.h"
 
-/* An occluder, the instances of its mesh, and how many LODs hide it too. */
+/* An occluder, its mesh, the instances of that, and how many LODs hide it too. */
 typedef struct masu_placed_occluder {
-    uint32_t first_instance, instance_count, lods;
+    uint32_t mesh, first_instance, instance_count, lods;
 } masu_placed_occluder;
 
 typedef struct masu_occlusion {
@@ -25,7 +25,7 @@ void masu_occlusion_write_boxes(const masu_bounds *bounds, const masu_instances 
                                 const masu_frame_data *f);
 /* What stage 2 reads of the frame, if its rung has it; after masu_visible_write, whose counts get those
  * of occluders. */
-void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_views *views,
-                          const masu_frame_data *f);
+void masu_occlusion_write(masu_occlusion *o, masu_visible *s, const masu_instances *in,
+                          const masu_views *views, const masu_frame_data *f);
 
 #endif

@@ -11,11 +11,17 @@ void masu_lights_lay(masu_lights *l, masu_arena *arena, const masu_frame_plan *p
     uint32_t count = plan->scene.lights;
     l->states = masu_arena_take(arena, "punctual lights", count, sizeof *l->states, 8);
     l->names = masu_arena_take(arena, "light names", count, sizeof *l->names, 8);
+    l->lives = masu_arena_take(arena, "reserve lights", plan->reserve.lights, sizeof *l->lives, 4);
 }
 
 void masu_lights_keep(masu_lights *l, const masu_frame_plan *plan, const masu_scene_view *v) {
-    l->handles = masu_handles_of(v->hash, MASU_HANDLE_LIGHT, plan->scene.lights);
-    for (uint32_t i = 0; i < plan->scene.lights; i++) {
+    uint32_t own = masu_own_lights(plan);
+    l->handles = masu_handles_of(v->hash, MASU_HANDLE_LIGHT, own, plan->reserve.lights, l->lives);
+    for (uint32_t i = own; i < plan->scene.lights; i++) {
+        memset(&l->states[i], 0, sizeof l->states[i]);
+        l->names[i] = 0;
+    }
+    for (uint32_t i = 0; i < own; i++) {
         l->states[i] = masu_light_state_of(&v->lights[i]);
         l->names[i] = masu_scene_name_hash(v, v->lights[i].name);
     }
@@ -55,6 +61,7 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
         struct masu_punctual_light_data placed;
         double position[3], direction[3];
         uint32_t carrier = l->states[i].instance.id;
+        if (!masu_handle_lives(&l->handles, i)) continue;
         if (carrier && masu_instance_hidden(in, carrier - 1)) continue;
         carry(in, &l->states[i], position, direction);
         for (uint32_t k = 0; k < 3; k++) position[k] -= f->eye[k];
@@ -70,7 +77,7 @@ void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_fram
 
 uint32_t masu_lights_find(const masu_lights *l, const masu_frame_plan *plan, const char *name) {
     uint64_t hash = masu_fnv1a64(name, strlen(name));
-    for (uint32_t i = 0; i < plan->scene.lights; i++) {
+    for (uint32_t i = 0; i < masu_own_lights(plan); i++) {
         if (l->names[i] == hash) return i;
     }
     return UINT32_MAX;
@@ -107,4 +114,26 @@ masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t l
     l->changes += memcmp(now, &to, sizeof to) != 0;
     *now = to;
     return MASU_OK;
+}
+
+masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
+                            const masu_punctual_light_state *state, uint32_t *light,
+                            masu_detail *detail) {
+    *light = masu_handle_free(&l->handles);
+    if (*light == UINT32_MAX) {
+        return masu_fail(detail, MASU_ERROR_LIMIT, "reserve.lights", l->handles.reserve + (uint64_t)1,
+                         l->handles.reserve, "reserve.lights: %u are needed, %u are given",
+                         l->handles.reserve + 1, l->handles.reserve);
+    }
+    memset(&l->states[*light], 0, sizeof l->states[*light]);
+    masu_result result = masu_lights_set(l, in, *light, state, detail);
+    if (result) return result;
+    masu_handle_turn(&l->handles, *light);
+    l->changes++;
+    return MASU_OK;
+}
+
+void masu_lights_remove(masu_lights *l, uint32_t light) {
+    masu_handle_turn(&l->handles, light);
+    l->changes++;
 }

@@ -16,6 +16,7 @@ typedef struct masu_lights {
     uint64_t *names;                      /* FNV-1a 64 of the name, 0: none */
     uint32_t slot_count[MASU_MAX_FLIGHT]; /* in view */
     uint32_t changes;                     /* how often one was set */
+    uint32_t *lives;                      /* of the reserve */
     masu_handles handles;
 } masu_lights;
 
@@ -29,6 +30,12 @@ masu_punctual_light_state masu_lights_get(const masu_lights *l, const masu_insta
                                           uint32_t light);
 masu_result masu_lights_set(masu_lights *l, const masu_instances *in, uint32_t light,
                             const masu_punctual_light_state *state, masu_detail *detail);
+
+/* One of the reserve is taken, or given back. MASU_ERROR_LIMIT: all are taken. */
+masu_result masu_lights_add(masu_lights *l, const masu_instances *in,
+                            const masu_punctual_light_state *state, uint32_t *light,
+                            masu_detail *detail);
+void masu_lights_remove(masu_lights *l, uint32_t light);
 
 /* Those that may be seen to light something to the slot; after the camera. */
 void masu_lights_write(masu_lights *l, const masu_instances *in, const masu_frame_data *f);

@@ -22,20 +22,49 @@ void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_fra
 
 void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
                            const masu_scene_view *v) {
-    uint32_t count = plan->scene.trace_instances;
+    uint32_t count = plan->scene.trace_instances, own = masu_own_traced(plan);
     if (!plan->needs.traced) return;
-    for (uint32_t i = 0; i < count; i++) s->traced[i] = v->trace_instances[i];
+    for (uint32_t i = 0; i < count; i++)
+        s->traced[i] = i < own ? v->trace_instances[i] : MASU_BLOB_NONE;
     for (uint32_t i = 0; i < count && plan->scene.skins; i++) s->bends[i] = 0;
-    for (uint32_t n = 0; n < plan->scene.model_nodes && plan->scene.skins; n++) {
-        for (uint32_t i = 0; i < count && v->model_nodes[n].skin; i++)
+    for (uint32_t n = 0; n < masu_own_nodes(plan) && plan->scene.skins; n++) {
+        for (uint32_t i = 0; i < own && v->model_nodes[n].skin; i++)
             s->bends[i] |= v->trace_instances[i] == v->model_nodes[n].instance;
     }
     if (plan->needs.query) return;
     masu_trace_top_make(&s->tree, s->tree_memory, count);
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < own; i++) {
         masu_trace_root root = masu_trace_root_of(v, i);
         masu_trace_top_set(&s->tree, i, &root);
     }
+}
+
+/* Those of a place: the first, and one behind the last. */
+static uint32_t traced_of(const masu_frame_plan *plan, uint32_t place, uint32_t *end) {
+    uint32_t first = masu_own_traced(plan) + place * plan->reserve.place.traced;
+    *end = plan->needs.traced ? first + plan->reserve.place.traced : first;
+    return first;
+}
+
+void masu_reflections_copy(masu_reflections *s, const masu_frame_plan *plan, uint32_t place,
+                           uint32_t from, uint32_t to) {
+    uint32_t end, next = traced_of(plan, place, &end);
+    while (next < end && s->traced[next] != MASU_BLOB_NONE) next++;
+    for (uint32_t i = 0; i < plan->scene.trace_instances && next < end; i++) {
+        if (s->traced[i] != from) continue;
+        s->traced[next] = to;
+        if (!plan->needs.query) {
+            masu_trace_root root = *masu_trace_top_root(&s->tree, i);
+            root.instance = to;
+            masu_trace_top_set(&s->tree, next, &root);
+        }
+        return;
+    }
+}
+
+void masu_reflections_clear(masu_reflections *s, const masu_frame_plan *plan, uint32_t place) {
+    uint32_t end, next = traced_of(plan, place, &end);
+    for (; next < end; next++) s->traced[next] = MASU_BLOB_NONE;
 }
 
 /* Those that have moved, or all where nothing has been written yet, are placed anew. */
@@ -44,9 +73,11 @@ static void place(masu_reflections *s, const masu_instances *in, const masu_boun
     if (!in->dirty_count && s->versions) return;
     for (uint32_t i = 0; i < f->plan->scene.trace_instances; i++) {
         uint32_t instance = s->traced[i];
-        if (!masu_instance_dirty(in, instance) && s->versions) continue;
+        int none = instance == MASU_BLOB_NONE;
+        if (!none && !masu_instance_dirty(in, instance) && s->versions) continue;
         float rows[12] = {0}; /* no place: hidden ones are not seen */
-        if (!masu_instance_hidden(in, instance)) masu_instance_rows(&in->now[instance], rows);
+        if (!none && !masu_instance_hidden(in, instance))
+            masu_instance_rows(&in->now[instance], rows);
         if (f->plan->scene.skins && s->bends[i]) { /* its tree is fitted on the device */
             masu_trace_root *root = masu_trace_top_root(&s->tree, i);
             memcpy(root->box.low, b->meshes[in->meshes[instance]], sizeof root->box.low);
@@ -97,6 +128,7 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
     memcpy(to + 12, &header[3], 4);
     for (uint32_t i = 0; i < plan->scene.trace_instances; i++) {
         uint32_t instance = s->traced[i];
+        if (instance == MASU_BLOB_NONE) instance = masu_own_instances(plan); /* of the reserve: not looked at */
         const struct masu_instance_data *now = &in->now[instance];
         const struct masu_instance_data *before = &in->previous[instance];
         float both[2][3][4];

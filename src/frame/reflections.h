@@ -10,7 +10,7 @@
 typedef struct masu_reflections {
     masu_trace_top tree; /* over instances, in tree_memory; with ray queries the device has one */
     void *tree_memory;
-    uint32_t *traced; /* [traced instance]: instance */
+    uint32_t *traced; /* [traced instance]: instance; MASU_BLOB_NONE: none, in a place of the reserve */
     uint8_t *bends;   /* [traced instance]: it is a skin, whose box changes; none without skins */
     uint8_t *live;    /* of ray queries, [traced instance]: it is not left out */
     double origin[3]; /* that the frame measures traced things from */
@@ -25,6 +25,11 @@ typedef struct masu_reflections {
 void masu_reflections_lay(masu_reflections *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_reflections_keep(masu_reflections *s, const masu_frame_plan *plan,
                            const masu_scene_view *v);
+
+/* Into a place of the reserve: a traced instance as another is traced, and away again. */
+void masu_reflections_copy(masu_reflections *s, const masu_frame_plan *plan, uint32_t place,
+                           uint32_t from, uint32_t to);
+void masu_reflections_clear(masu_reflections *s, const masu_frame_plan *plan, uint32_t place);
 
 /* Origin and history of a frame into the uniforms; after its camera. */
 void masu_reflections_read(masu_reflections *s, masu_frame_data *f);

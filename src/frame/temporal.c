@@ -92,7 +92,8 @@ static uint64_t sprites_of(const masu_frame_desc *d) {
 }
 
 void masu_temporal_read(masu_temporal *t, const masu_history *history, const masu_instances *in,
-                        const masu_lights *lights, masu_frame_data *f) {
+                        const masu_lights *lights, const masu_materials *materials,
+                        masu_frame_data *f) {
     const masu_rung_plan *rp = masu_frame_rung_plan(f);
     int kept = t->kept && !f->cut;
     if (!kept) t->changed = 0;
@@ -102,6 +103,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     if (kept) {
         int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes ||
                       t->lights != lights->changes || t->sprites != sprites ||
+                      t->materials != materials->changes ||
                       !shows_the_same(masu_frame_rung(f), &f->plan->desc.rungs[t->rung]);
         t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
@@ -111,6 +113,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     t->size[0] = rp->render_width;
     t->size[1] = rp->render_height;
     t->lights = lights->changes;
+    t->materials = materials->changes;
     t->instances = in->changes;
     t->sprites = sprites;
     t->rung = f->desc.rung;

@@ -77,7 +77,7 @@ void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
                             const masu_draws *draws, const masu_scene_view *v) {
     masu_transparent *next = s->things;
     if (!plan->needs.transparents) return;
-    for (uint32_t i = 0; i < plan->scene.instances; i++) {
+    for (uint32_t i = 0; i < masu_own_instances(plan); i++) {
         const masu_blob_mesh *mesh = &v->meshes[v->instances[i].mesh];
         for (uint32_t k = 0; k < mesh->primitive_count; k++) {
             const masu_blob_primitive *p = &v->primitives[mesh->first_primitive + k];
@@ -86,6 +86,28 @@ void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
                 keep_primitive(next++, draws, i, p, material);
         }
     }
+    masu_transparent *end = s->things + plan->scene.transparents;
+    for (; next < end; next++) *next = (masu_transparent){.instance = MASU_BLOB_NONE};
+}
+
+void masu_transparents_copy(masu_transparents *s, const masu_frame_plan *plan, uint32_t place,
+                            uint32_t from, uint32_t to) {
+    masu_transparent *next = s->things + masu_own_transparents(plan) +
+                             (uint64_t)place * plan->reserve.place.transparents;
+    masu_transparent *end = next + plan->reserve.place.transparents;
+    if (!plan->needs.transparents) return;
+    while (next < end && next->instance != MASU_BLOB_NONE) next++;
+    for (uint32_t i = 0; i < plan->scene.transparents && next < end; i++) {
+        if (s->things[i].instance != from) continue;
+        *next = s->things[i];
+        (next++)->instance = to;
+    }
+}
+
+void masu_transparents_clear(masu_transparents *s, const masu_frame_plan *plan, uint32_t place) {
+    uint32_t each = plan->needs.transparents ? plan->reserve.place.transparents : 0;
+    masu_transparent *first = s->things + masu_own_transparents(plan) + (uint64_t)place * each;
+    for (uint32_t i = 0; i < each; i++) first[i].instance = MASU_BLOB_NONE;
 }
 
 /* Square of the distance from the eye to the middle of a thing's box: finite, since all of it is. */
@@ -108,7 +130,7 @@ void masu_transparents_write(masu_transparents *s, const masu_instances *in,
     if (!count) return;
     for (uint32_t i = 0; i < count; i++) {
         const masu_transparent *t = &s->things[i];
-        if (!(visible->marks[t->instance] & 1u)) continue;
+        if (t->instance == MASU_BLOB_NONE || !(visible->marks[t->instance] & 1u)) continue;
         s->order[seen++] = (masu_back_to_front){distance_of(t, &in->now[t->instance], f->eye), i};
     }
     const masu_back_to_front *order = masu_sort_back_to_front(s->order, s->order + count, seen);

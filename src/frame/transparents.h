@@ -7,7 +7,8 @@
 
 typedef struct masu_transparent {
     VkDrawIndexedIndirectCommand draw;
-    uint32_t instance, material, flags, layers;
+    uint32_t instance; /* MASU_BLOB_NONE: there is none, in a place of the reserve */
+    uint32_t material, flags, layers;
     float detail[2];
     uint32_t column; /* which of the texture sets */
     float center[3]; /* of its box, object space */
@@ -33,6 +34,10 @@ typedef struct masu_transparents {
 void masu_transparents_lay(masu_transparents *s, masu_arena *arena, const masu_frame_plan *plan);
 void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
                             const masu_draws *draws, const masu_scene_view *v);
+/* Into a place of the reserve: what one instance shows, as of another. */
+void masu_transparents_copy(masu_transparents *s, const masu_frame_plan *plan, uint32_t place,
+                            uint32_t from, uint32_t to);
+void masu_transparents_clear(masu_transparents *s, const masu_frame_plan *plan, uint32_t place);
 /* Sorted to the slot; after masu_visible_write, which says what the camera sees. */
 void masu_transparents_write(masu_transparents *s, const masu_instances *in,
                              const masu_visible *visible, const masu_frame_data *f);

@@ -117,6 +117,27 @@ static void mark(masu_visible *s, const masu_bounds *bounds, const masu_instance
     }
 }
 
+typedef struct lister {
+    masu_visible *s;
+    const masu_bounds *bounds;
+    const masu_instances *in;
+    const masu_views *views;
+    const masu_frame_data *f;
+    const masu_batch *mesh; /* and its LODs behind it */
+    uint32_t view;
+    uint32_t *ids, *kept; /* [form]: so many */
+} lister;
+
+static void list_one(const lister *l, uint32_t i) {
+    if (!(l->s->marks[i] >> l->view & 1u)) return;
+    uint32_t level = 0;
+    if (l->f->plan->lods) {
+        level = level_of(l->s, &l->views->lod, l->bounds, l->in, l->mesh, i);
+        l->s->levels[i] = (uint8_t)level;
+    }
+    l->ids[l->mesh[level].first_listed + l->kept[level]++] = i;
+}
+
 /* What is marked, into the lists and counts of the forms of its mesh. */
 static void list(masu_visible *s, const masu_bounds *bounds, const masu_instances *in,
                  const masu_views *views, const masu_frame_data *f, uint32_t view) {
@@ -132,13 +153,11 @@ static void list(masu_visible *s, const masu_bounds *bounds, const masu_instance
         uint32_t kept[1 + MASU_BLOB_LODS_MAX] = {0};
         uint32_t end = mesh->first_instance + mesh->instance_count;
         forms = 1 + mesh->lod_count;
-        for (uint32_t i = mesh->first_instance; i < end; i++) {
-            if (!(s->marks[i] >> view & 1u)) continue;
-            uint32_t level = 0;
-            if (f->plan->lods)
-                s->levels[i] = (uint8_t)(level = level_of(s, &views->lod, bounds, in, mesh, i));
-            ids[mesh[level].first_listed + kept[level]++] = i;
-        }
+        const lister l = {s, bounds, in, views, f, mesh, view, ids, kept};
+        for (uint32_t i = mesh->first_instance; i < end; i++) list_one(&l, i);
+        for (uint32_t i = masu_instances_added(in, mesh->mesh); i != MASU_BLOB_NONE;
+             i = masu_instances_next(in, i))
+            list_one(&l, i);
         for (uint32_t level = 0; level < forms; level++) {
             const masu_batch *batch = &mesh[level];
             for (uint32_t d = 0; d < batch->draw_count; d++) {

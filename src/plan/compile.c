@@ -235,11 +235,15 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     plan->desc = masu_desc_resolved(desc);
     masu_desc *d = &plan->desc;
     masu_result result = masu_desc_check(d, detail);
-    if (!result) result = masu_limits_check(d, detail);
     if (result) return result;
     if (d->scene) {
         plan->scene = *d->scene;
         d->scene = &plan->scene;
+        result = masu_reserve_add(&d->reserve, &plan->scene, &plan->reserve, detail);
+    }
+    if (!result) result = masu_limits_check(d, detail);
+    if (result) return result;
+    if (d->scene) {
         if (!d->scene->sdf_occlusion && !d->scene->shadow_cascades && !wants_ao(d))
             d->readback &= ~(uint32_t)MASU_READBACK_OCCLUSION;
         if (!d->scene->shadow_cascades) d->readback &= ~(uint32_t)MASU_READBACK_SHADOW_MAP;
@@ -298,7 +302,8 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
     }
     if (d->scene) {
         plan->draws = d->scene->draws + (plan->lods ? d->scene->lod_draws : 0);
-        plan->listed = d->scene->instances + (plan->lods ? d->scene->lod_instances : 0);
+        plan->listed = masu_own_instances(plan) + plan->reserve.listed;
+        if (plan->lods) plan->listed += d->scene->lod_instances + plan->reserve.lod_listed;
     }
     for (uint32_t r = 0; r < d->rung_count; r++) {
         masu_rung_plan *rp = &plan->rungs[r];

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "plan/output.h"
+#include "plan/reserve.h"
 #include "quality/governor_desc.h"
 #include "quality/knobs.h"
 #include "quality/ladder.h"
@@ -148,6 +149,10 @@ static masu_result check_viewports(const masu_desc *d, masu_detail *detail) {
 
 static masu_result check_reserve(const masu_desc *d, masu_detail *detail) {
     const masu_reserve *r = &d->reserve;
+    if (r->models > MASU_RESERVE_MODELS_MAX)
+        return bad_range(detail, "reserve.models", r->models, 0, MASU_RESERVE_MODELS_MAX);
+    if (r->lights > MASU_RESERVE_LIGHTS_MAX)
+        return bad_range(detail, "reserve.lights", r->lights, 0, MASU_RESERVE_LIGHTS_MAX);
     if (r->particles > MASU_PARTICLES_MAX)
         return bad_range(detail, "reserve.particles", r->particles, 0, MASU_PARTICLES_MAX);
     if (r->decals > MASU_DECALS_MAX)

@@ -5,21 +5,29 @@ void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan 
     uint64_t lods = plan->lods ? plan->scene.lods : 0;
     draws->batches =
         masu_arena_take(arena, "batches", plan->scene.meshes + lods, sizeof *draws->batches, 8);
+    draws->added = NULL;
+    if (plan->reserve.models) {
+        draws->added = masu_arena_take(arena, "reserve draws", plan->scene.meshes,
+                                       sizeof *draws->added, 4);
+    }
     draws->looks = masu_arena_take(arena, "draw looks", plan->desc.resizable ? plan->draws : 0,
                                    sizeof *draws->looks, 4);
 }
 
 /* A form of a mesh that has instances. */
-static masu_batch *add_batch(masu_draws *draws, const masu_scene_view *v, uint32_t first_primitive,
-                             uint32_t primitives, uint32_t first, uint32_t instances) {
+static masu_batch *add_batch(masu_draws *draws, const masu_scene_view *v, uint32_t mesh,
+                             uint32_t first_primitive, uint32_t first, uint32_t instances) {
     masu_batch *b = &draws->batches[draws->batch_count];
+    uint32_t primitives = v->meshes[mesh].primitive_count;
     *b = (masu_batch){.first_primitive = first_primitive,
                       .draw_count = primitives,
+                      .mesh = mesh,
                       .first_instance = first,
-                      .instance_count = instances};
+                      .instance_count = instances,
+                      .room = instances + (draws->added ? draws->added[mesh] : 0)};
     if (draws->batch_count) {
         b->first_draw = b[-1].first_draw + b[-1].draw_count;
-        b->first_listed = b[-1].first_listed + b[-1].instance_count;
+        b->first_listed = b[-1].first_listed + b[-1].room;
     }
     for (uint32_t p = 0; p < primitives; p++) {
         const masu_blob_primitive *one = &v->primitives[first_primitive + p];
@@ -30,8 +38,22 @@ static masu_batch *add_batch(masu_draws *draws, const masu_scene_view *v, uint32
         }
     }
     draws->batch_count++;
-    draws->large_count += instances > 64;
+    draws->large_count += b->room > 64;
     return b;
+}
+
+/* Of each mesh so many as all copies could have, whatever models they are of. */
+static void count_added(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
+    for (uint32_t mesh = 0; mesh < plan->scene.meshes; mesh++) draws->added[mesh] = 0;
+    for (uint32_t i = 0; i < masu_own_models(plan); i++) {
+        const masu_blob_model *model = &v->models[i];
+        if (model->like != i || !masu_reserve_copies(v, model)) continue;
+        for (uint32_t n = 0; n < model->node_count; n++) {
+            uint32_t instance = v->model_nodes[model->first_node + n].instance;
+            if (instance != MASU_BLOB_NONE)
+                draws->added[v->instances[instance].mesh] += plan->reserve.models;
+        }
+    }
 }
 
 static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
@@ -39,18 +61,17 @@ static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const ma
     uint32_t from = 0;
     for (uint32_t mesh = 0; mesh < scene->meshes; mesh++) {
         uint32_t first, first_lod,
-            end = masu_scene_mesh_instances(v, scene->instances, mesh, from, &first);
+            end = masu_scene_mesh_instances(v, masu_own_instances(plan), mesh, from, &first);
         from = end;
         const masu_blob_mesh *what = &v->meshes[mesh];
         if (end == first || !what->primitive_count) continue;
-        masu_batch *b =
-            add_batch(draws, v, what->first_primitive, what->primitive_count, first, end - first);
+        masu_batch *b = add_batch(draws, v, mesh, what->first_primitive, first, end - first);
         if (!plan->lods) continue;
         b->lod_count = masu_scene_mesh_lods(v, scene->lods, mesh, &first_lod);
         b->first_lod = first_lod;
         for (uint32_t l = 0; l < b->lod_count; l++) {
-            (void)add_batch(draws, v, v->lods[first_lod + l].first_primitive, what->primitive_count,
-                            first, end - first);
+            (void)add_batch(draws, v, mesh, v->lods[first_lod + l].first_primitive, first,
+                            end - first);
         }
     }
 }
@@ -66,8 +87,9 @@ static void add_transparent(masu_draws *draws, const masu_blob_material *materia
         draws->transparent_sets[draws->transparent_set_count++] = material->texture_set;
 }
 
-static void add_transparents(masu_draws *draws, const masu_scene *scene, const masu_scene_view *v) {
-    for (uint32_t i = 0; i < scene->instances; i++) {
+static void add_transparents(masu_draws *draws, const masu_frame_plan *plan,
+                             const masu_scene_view *v) {
+    for (uint32_t i = 0; i < masu_own_instances(plan); i++) {
         const masu_blob_mesh *mesh = &v->meshes[v->instances[i].mesh];
         for (uint32_t p = 0; p < mesh->primitive_count; p++) {
             const masu_blob_material *material =
@@ -75,6 +97,7 @@ static void add_transparents(masu_draws *draws, const masu_scene *scene, const m
             if (material->flags & MASU_MATERIAL_IS_BLEND) add_transparent(draws, material);
         }
     }
+    draws->transparent_count += plan->reserve.places.transparents;
 }
 
 masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive) {
@@ -92,13 +115,14 @@ masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive) {
 }
 
 void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v) {
+    if (draws->added) count_added(draws, plan, v);
     add_batches(draws, plan, v);
     for (uint32_t b = 0; plan->desc.resizable && b < draws->batch_count; b++) {
         const masu_batch *batch = &draws->batches[b];
         for (uint32_t d = 0; d < batch->draw_count; d++)
             draws->looks[batch->first_draw + d] = masu_draw_look_of(v, batch->first_primitive + d);
     }
-    if (plan->needs.transparents) add_transparents(draws, &plan->scene, v);
+    if (plan->needs.transparents) add_transparents(draws, plan, v);
 }
 
 VkRect2D masu_atlas_part(uint32_t part) {

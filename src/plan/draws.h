@@ -20,7 +20,9 @@ enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
  * first, then its LODs, if the plan has any, the finer first. */
 typedef struct masu_batch {
     uint32_t first_primitive, first_draw, draw_count;
+    uint32_t mesh;
     uint32_t first_instance, instance_count;
+    uint32_t room;                 /* instances that its list holds: its own, and what may be added */
     uint32_t first_listed;         /* where in a view's lists its own begins */
     uint32_t first_lod, lod_count; /* of the mesh itself: its LODs */
     uint32_t blended;              /* of the draws those of blended materials: never recorded */
@@ -38,8 +40,9 @@ typedef struct masu_draw_look {
 
 typedef struct masu_draws {
     masu_batch *batches;
+    uint32_t *added; /* [mesh]: instances that may be added; of no length without a reserve */
     masu_draw_look *looks; /* [draw]; of no length unless they are recorded again, when the blob is gone */
-    uint32_t batch_count, large_count; /* large: of over 64 instances */
+    uint32_t batch_count, large_count; /* large: with room for over 64 instances */
     /* Slots of blended things, and the texture sets of each. */
     uint32_t transparent_count, transparent_set_count;
     uint32_t transparent_sets[MASU_TRANSPARENT_SETS_MAX];

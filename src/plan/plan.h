@@ -6,6 +6,7 @@
 
 #include "plan/frame.h"
 #include "plan/limits.h"
+#include "plan/reserve.h"
 #include "masu.h"
 
 /* Timestamps of a frame: one before the first pass and one after each; of the governor the first and
@@ -91,7 +92,8 @@ typedef struct masu_texture_plan {
 
 typedef struct masu_frame_plan {
     masu_desc desc; /* resolved; `scene` points to the copy below, or is NULL */
-    masu_scene scene;
+    masu_scene scene; /* with the reserve: */
+    masu_reserve_plan reserve;
     VkExtent2D whole; /* output that targets have; desc.output is that of the viewport looked at */
     VkExtent2D most; /* output that images are allocated for: desc.output, but after masu_resize */
     masu_needs needs; /* of the scene; upscale and sharpen are of the last rung looked at */
@@ -143,6 +145,33 @@ void masu_plan_look_at(masu_frame_plan *plan, uint32_t viewport);
 #define MASU_SKIN_HEADER_BYTES 32u
 static inline uint64_t masu_joints_bytes(const masu_scene *s) {
     return s->skins * (uint64_t)MASU_SKIN_HEADER_BYTES + s->skinned_joints * (uint64_t)48;
+}
+
+/* Bytes of a slot of MASU_BUFFER_LIVE_MATERIALS: of all materials, then the same as rays know them. */
+static inline uint64_t masu_live_material_bytes(const masu_frame_plan *p) {
+    return p->scene.materials *
+           (sizeof(struct masu_material_data) +
+            (p->needs.traced ? sizeof(struct masu_trace_material) : 0));
+}
+
+/* What the blob has of what a reserve adds to. */
+static inline uint32_t masu_own_instances(const masu_frame_plan *p) {
+    return p->scene.instances - p->reserve.places.instances;
+}
+static inline uint32_t masu_own_models(const masu_frame_plan *p) {
+    return p->scene.models - p->reserve.models;
+}
+static inline uint32_t masu_own_nodes(const masu_frame_plan *p) {
+    return p->scene.model_nodes - p->reserve.places.nodes;
+}
+static inline uint32_t masu_own_lights(const masu_frame_plan *p) {
+    return p->scene.lights - p->reserve.lights;
+}
+static inline uint32_t masu_own_transparents(const masu_frame_plan *p) {
+    return p->scene.transparents - p->reserve.places.transparents;
+}
+static inline uint32_t masu_own_traced(const masu_frame_plan *p) {
+    return p->scene.trace_instances - p->reserve.places.traced;
 }
 
 /* Where a cascade lies in the shadow map, of the size that the map is laid out for. */

@@ -151,6 +151,12 @@ const char *masu_scene_clip_name(const masu_scene *scene, uint32_t model, uint32
     return "";
 }
 
+const char *masu_scene_material_name(const masu_scene *scene, uint32_t index) {
+    if (!scene || !scene->blob || index >= scene->materials) return "";
+    masu_scene_view v = masu_scene_look(scene);
+    return text_of(&v, v.materials[index].name);
+}
+
 const char *masu_scene_light_name(const masu_scene *scene, uint32_t index) {
     if (!scene || !scene->blob || index >= scene->lights) return "";
     masu_scene_view v = masu_scene_look(scene);

@@ -3,7 +3,6 @@
 
 #include "blue_noise.h"
 #include "scene/trace.h"
-#include "shared/masu_shared.h"
 
 #include <string.h>
 
@@ -62,9 +61,8 @@ static void blur_surface(const masu_scene *scene, const masu_scene_view *v,
     if (m->flags & MASU_MATERIAL_HAS_METAL) out->emissive[3] *= metallic * metallic;
 }
 
-static struct masu_trace_material material_of(const masu_scene *scene, const masu_scene_view *v,
-                                              uint64_t i) {
-    const masu_blob_material *m = &v->materials[i];
+struct masu_trace_material masu_trace_material_of(const masu_scene *scene, const masu_scene_view *v,
+                                                  const masu_blob_material *m) {
     struct masu_trace_material out = {
         {m->base_color[0], m->base_color[1], m->base_color[2], m->roughness},
         {m->emissive[0], m->emissive[1], m->emissive[2], m->metallic},
@@ -104,7 +102,8 @@ static void element(const masu_scene *scene, const masu_scene_view *v, const mas
     } else if (i < p->materials) {
         memcpy(out, &masu_blue_noise[4 * (i - p->noise)], 16);
     } else if (i < p->pictures) {
-        struct masu_trace_material m = material_of(scene, v, (i - p->materials) / 4);
+        struct masu_trace_material m =
+            masu_trace_material_of(scene, v, &v->materials[(i - p->materials) / 4]);
         memcpy(out, (const unsigned char *)&m + 16 * ((i - p->materials) % 4), 16);
     } else if (i < p->texels) {
         const masu_blob_trace_texture *t = &v->trace_textures[i - p->pictures];

@@ -12,6 +12,7 @@
 
 #include "masu.h"
 #include "scene/view.h"
+#include "shared/masu_shared.h"
 
 #define MASU_TRACE_ROWS 6u /* of four floats, of each traced instance */
 
@@ -33,6 +34,10 @@ uint64_t masu_trace_rows_at(const masu_scene *scene, int query);
 /* Bytes [offset, offset + bytes) of the first buffer; both multiples of 16, but for the end. */
 void masu_trace_write(const masu_scene *scene, const masu_scene_view *v, uint64_t offset,
                       uint64_t bytes, unsigned char *to);
+
+/* A material of the scene, or one that differs from it in its factors, as rays know it. */
+struct masu_trace_material masu_trace_material_of(const masu_scene *scene, const masu_scene_view *v,
+                                                  const masu_blob_material *m);
 
 /* 1: some of what is traced has holes: the permutation of the shader that looks them up. */
 uint32_t masu_ray_masks(const masu_scene *scene);

@@ -23,7 +23,7 @@ static void a_handle_is_its_index_and_back(void **state) {
     for (uint64_t scene = 0; scene < 200; scene++) {
         for (size_t c = 0; c < COUNT(counts); c++) {
             uint32_t count = counts[c], index;
-            masu_handles h = masu_handles_of(scene, MASU_HANDLE_INSTANCE, count);
+            masu_handles h = masu_handles_of(scene, MASU_HANDLE_INSTANCE, count, 0, NULL);
             masu_detail detail;
             assert_true(h.first >= 1);
             assert_true((uint64_t)h.first + count <= 1ull << 32); /* 0 is in no range */
@@ -50,6 +50,43 @@ static void a_handle_is_its_index_and_back(void **state) {
     }
 }
 
+/* Of the reserve each life has an id of its own, and that of the last life is refused; so many ids never meet 0. */
+static void what_was_removed_is_refused(void **state) {
+    (void)state;
+    static const uint32_t reserves[] = {1, 3, 64, 16384, 1u << 20};
+    static uint32_t lives[1u << 20];
+    for (size_t c = 0; c < COUNT(reserves); c++) {
+        uint32_t reserve = reserves[c], own = 7, index;
+        masu_handles h = masu_handles_of(c, MASU_HANDLE_MODEL, own, reserve, lives);
+        masu_detail detail;
+        assert_true((uint64_t)h.first + own + (uint64_t)reserve * h.generations <= 1ull << 32);
+        assert_true(h.generations >= 1024);
+        assert_int_equal(masu_handle_at(&h, own), 0);
+        assert_int_equal(masu_handle_free(&h), own);
+        uint32_t last = own + reserve - 1, before = 0;
+        for (uint32_t life = 0; life < 100; life++) {
+            masu_handle_turn(&h, last);
+            uint32_t id = masu_handle_at(&h, last);
+            assert_int_not_equal(id, 0);
+            assert_int_not_equal(id, before);
+            assert_int_equal(masu_handle_check(&h, "model", id, &index, &detail), MASU_OK);
+            assert_int_equal(index, last);
+            if (before) {
+                assert_int_equal(masu_handle_check(&h, "model", before, &index, &detail),
+                                 MASU_ERROR_ARGUMENT);
+            }
+            masu_handle_turn(&h, last);
+            assert_int_equal(masu_handle_at(&h, last), 0);
+            assert_int_equal(masu_handle_check(&h, "model", id, &index, &detail), MASU_ERROR_ARGUMENT);
+            assert_non_null(strstr(detail.text, "removed"));
+            before = id;
+        }
+        for (uint32_t i = 0; i < own; i++) /* those of the scene go on */
+            assert_int_equal(masu_handle_index(&h, masu_handle_at(&h, i)), i);
+        assert_int_not_equal(masu_handle_check(&h, "model", h.first - 1, &index, NULL), MASU_OK);
+    }
+}
+
 /* Hashes that differ in one bit, and the kinds of one scene, have ranges far from each other. */
 static void ranges_of_others_do_not_meet(void **state) {
     (void)state;
@@ -58,7 +95,7 @@ static void ranges_of_others_do_not_meet(void **state) {
     for (uint32_t i = 0; i < HASHES; i++) {
         uint64_t scene = 0x0123456789ABCDEFu ^ (i ? 1ull << (i - 1) : 0);
         for (uint32_t k = 0; k < KINDS; k++)
-            all[KINDS * i + k] = masu_handles_of(scene, (masu_handle_kind)(k + 1), 1000);
+            all[KINDS * i + k] = masu_handles_of(scene, (masu_handle_kind)(k + 1), 1000, 0, NULL);
     }
     for (uint32_t a = 0; a < ALL; a++) {
         for (uint32_t b = 0; b < ALL; b++) {
@@ -129,6 +166,7 @@ static void handles_of_another_scene_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_handle_is_its_index_and_back),
+        cmocka_unit_test(what_was_removed_is_refused),
         cmocka_unit_test(ranges_of_others_do_not_meet),
         cmocka_unit_test(handles_of_another_scene_are_refused),
     };

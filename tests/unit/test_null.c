@@ -46,6 +46,8 @@ static masu_model added;
 static const masu_clip_use clip_use = {.weight = 1.0f};
 static masu_node_state node_state;
 static masu_punctual_light_state light_state;
+static masu_punctual_light made_light;
+static masu_material_state material_state;
 static masu_renderer *made;
 static masu_rung rung;
 static const char *from;
@@ -71,6 +73,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_scene_model_name, (masu_scene_model_name(P(0, &scene), 0), NO_RESULT))                  \
     X(masu_scene_clip_name, (masu_scene_clip_name(P(0, &scene), 0, 0), NO_RESULT))                 \
     X(masu_scene_light_name, (masu_scene_light_name(P(0, &scene), 0), NO_RESULT))                  \
+    X(masu_scene_material_name, (masu_scene_material_name(P(0, &scene), 0), NO_RESULT))            \
     X(masu_scene_class_of, ((void)masu_scene_class_of(P(0, &scene)), NO_RESULT))                   \
     X(masu_scene_class_name, (masu_scene_class_name(MASU_SCENE_SDF), NO_RESULT))                   \
     X(masu_knob_table, (masu_knob_table(), NO_RESULT))                                             \
@@ -116,6 +119,7 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_model_set_transform, masu_model_set_transform(P(0, &m), MODEL, P(1, unit)))             \
     X(masu_model_show, masu_model_show(P(0, &m), MODEL, 1))                                        \
     X(masu_model_add, masu_model_add(P(0, &m), MODEL, P(1, unit), P(2, &added)))                   \
+    X(masu_model_remove, masu_model_remove(P(0, &m), MODEL))                                       \
     X(masu_model_node_find, ((void)masu_model_node_find(P(0, &m), MODEL, P(1, "a")), NO_RESULT))   \
     X(masu_model_node_get, masu_model_node_get(P(0, &m), MODEL, 0, P(1, &node_state)))             \
     X(masu_model_node_set, masu_model_node_set(P(0, &m), MODEL, 0, P(1, unit)))                    \
@@ -127,6 +131,12 @@ static const float unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     X(masu_punctual_light_at, ((void)masu_punctual_light_at(P(0, &m), 0), NO_RESULT))              \
     X(masu_punctual_light_get, masu_punctual_light_get(P(0, &m), LIGHT, P(1, &light_state)))       \
     X(masu_punctual_light_set, masu_punctual_light_set(P(0, &m), LIGHT, P(1, &light_state)))       \
+    X(masu_punctual_light_add, masu_punctual_light_add(P(0, &m), P(1, &light_state), P(2, &made_light))) \
+    X(masu_punctual_light_remove, masu_punctual_light_remove(P(0, &m), LIGHT))                     \
+    X(masu_material_find, ((void)masu_material_find(P(0, &m), P(1, "a")), NO_RESULT))              \
+    X(masu_material_at, ((void)masu_material_at(P(0, &m), 0), NO_RESULT))                          \
+    X(masu_material_get, masu_material_get(P(0, &m), (masu_material){1}, P(1, &material_state)))   \
+    X(masu_material_set, masu_material_set(P(0, &m), (masu_material){1}, P(1, &material_state)))   \
     X(masu_stats, masu_stats(P(0, &m), 0, P(1, &stats)))                                           \
     X(masu_peaks, (masu_peaks(P(0, &m), P(1, &peaks)), NO_RESULT))                                 \
     X(masu_readback, masu_readback(P(0, &m), 0, MASU_READBACK_DEPTH, P(1, &image)))                \

@@ -1,0 +1,418 @@
+/* test_reserve.c: what is added to a scene while it runs is the picture of a scene that was baked so: copies of models in
+ * the reserve with all that they cast, mirror, hide, blend and carry; lights; factors of materials. Room that is not
+ * used changes no bit; the box is as large as was said; at its end it is refused; what was removed is refused. */
+#include "support/support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { W = 160, H = 90, BYTES = W * H * 4, FRAMES = 6 };
+enum { KINDS = 5 };
+
+static uint8_t pictures[3][FRAMES][BYTES];
+
+static const struct {
+    const char *name;
+    float at[3]; /* of the second one, as test_reserve_baked.json has it */
+} kinds[KINDS] = {{"truck", {1.2f, 0.25f, -0.5f}},
+                  {"lamp", {-1, 1, 1.2f}},
+                  {"pane", {-2, 0.6f, 2.5f}},
+                  {"block", {0.9f, 0.8f, 1.8f}},
+                  {"ball", {0, 0.5f, -2}}};
+
+static masu_session_desc desc_of(const char *scene, uint32_t models, uint32_t lights) {
+    masu_session_desc d = test_desc(scene, W, H);
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.scale = 1.0f};
+    d.desc.reserve.models = models;
+    d.desc.reserve.lights = lights;
+    return d;
+}
+
+static masu_result add(masu_session *s, const char *name, const float at[3], masu_model *out) {
+    const float rows[12] = {1, 0, 0, at[0], 0, 1, 0, at[1], 0, 0, 1, at[2]};
+    return masu_model_add(s->m, masu_model_find(s->m, name), rows, out);
+}
+
+static const masu_punctual_light_state spot = {.position = {0, 3, 2},
+                                               .direction = {0.2f, -1, -0.3f},
+                                               .color = {2, 4, 6},
+                                               .range = 8,
+                                               .radius = 0.01f,
+                                               .spot = 1,
+                                               .inner = 0.2617994f,
+                                               .outer = 0.5235988f};
+
+/* Adds all that the other scene has. */
+static void add_all(masu_session *s, masu_model added[KINDS], masu_punctual_light *light) {
+    for (uint32_t k = 0; k < KINDS; k++)
+        assert_int_equal(add(s, kinds[k].name, kinds[k].at, &added[k]), MASU_OK);
+    assert_int_equal(masu_punctual_light_add(s->m, &spot, light), MASU_OK);
+}
+
+/* So many frames after a cut: reflections gather. */
+static void draw_frames(masu_session *s, uint8_t out[FRAMES][BYTES]) {
+    for (uint32_t i = 0; i < FRAMES; i++) {
+        masu_commands commands;
+        draw(s, &(masu_frame_desc){.cut = i == 0, .time_step = 1.0f / 60}, &commands, out[i]);
+    }
+}
+
+static uint32_t far_off(const uint8_t *a, const uint8_t *b) {
+    uint32_t off = 0;
+    for (uint32_t i = 0; i < BYTES; i++) off += abs(a[i] - b[i]) > 4;
+    return off;
+}
+
+/* ---- Models and lights ----------------------------------------------------------------------- */
+
+static void what_is_added_is_as_if_baked_so(void **state) {
+    (void)state;
+    masu_session live, baked;
+    masu_model added[KINDS];
+    masu_punctual_light light;
+    masu_session_desc d = desc_of("test_reserve", KINDS, 2), truth = desc_of("test_reserve_baked", 0, 0);
+    open_session(&baked, &truth);
+    draw_frames(&baked, pictures[1]);
+    masu_stats_info expected = stats_of(&baked, 1), is;
+    for (uint32_t flight = 1; flight <= 3; flight++) {
+        d.desc.frames_in_flight = flight;
+        open_session(&live, &d);
+        draw_frames(&live, pictures[2]); /* and then, in the midst */
+        add_all(&live, added, &light);
+        draw_frames(&live, pictures[0]);
+        uint32_t off = far_off(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1]);
+        uint32_t before = far_off(pictures[2][FRAMES - 1], pictures[1][FRAMES - 1]);
+        printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, before %u\n",
+               flight, off, BYTES, before);
+        assert_true(off < BYTES / 100);
+        assert_true(before > BYTES / 5);
+        is = stats_of(&live, (2 * FRAMES - 1) % flight);
+        assert_int_equal(is.lights, expected.lights);
+        assert_int_equal(is.transparents, expected.transparents);
+        assert_int_equal(is.views[0].triangles, expected.views[0].triangles);
+        close_session(&live);
+    }
+    close_session(&baked);
+}
+
+/* Models and lights that go leave the picture as it was; what takes their places is as if it were the first. */
+static void what_is_removed_leaves_nothing(void **state) {
+    (void)state;
+    masu_session s, fresh;
+    masu_model added[KINDS], other;
+    masu_punctual_light light;
+    masu_session_desc d = desc_of("test_reserve", KINDS, 2);
+    open_session(&s, &d);
+    open_session(&fresh, &d);
+    add_all(&s, added, &light);
+    draw_frames(&s, pictures[0]);
+    for (uint32_t k = 0; k < KINDS; k++) assert_int_equal(masu_model_remove(s.m, added[k]), MASU_OK);
+    assert_int_equal(masu_punctual_light_remove(s.m, light), MASU_OK);
+    draw_frames(&s, pictures[0]);
+    draw_frames(&fresh, pictures[2]);
+    draw_frames(&fresh, pictures[1]);
+    assert_int_equal(stats_of(&s, 1).lights, 1);
+    assert_int_equal(max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]), 0);
+    /* All places hold something else now. */
+    for (uint32_t k = 0; k < KINDS; k++) {
+        uint32_t kind = (k + 1) % KINDS;
+        const char *name = kinds[kind].name;
+        assert_int_equal(add(&s, name, kinds[kind].at, &other), MASU_OK);
+        assert_int_not_equal(other.id, added[k].id);
+        assert_int_equal(add(&fresh, name, kinds[kind].at, &other), MASU_OK);
+    }
+    draw_frames(&s, pictures[0]);
+    draw_frames(&fresh, pictures[1]);
+    assert_int_equal(max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]), 0);
+    close_session(&s);
+    close_session(&fresh);
+}
+
+static void room_that_is_not_used_changes_no_bit(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"test_reserve", "test_skin", "test_both"};
+    for (uint32_t i = 0; i < 3; i++) {
+        masu_session_desc with = desc_of(scenes[i], 3, i < 2 ? 4 : 0), without = desc_of(scenes[i], 0, 0);
+        masu_session s;
+        with.desc.live_materials = 1;
+        open_session(&s, &without);
+        draw_frames(&s, pictures[0]);
+        close_session(&s);
+        open_session(&s, &with);
+        draw_frames(&s, pictures[1]);
+        close_session(&s);
+        printf("  %s: %u\n", scenes[i], max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]));
+        assert_int_equal(max_difference(pictures[0][0], pictures[1][0], sizeof pictures[0]), 0);
+    }
+}
+
+static void at_the_limit_is_refused(void **state) {
+    (void)state;
+    masu_session s;
+    masu_model added[3];
+    masu_punctual_light light[2];
+    masu_session_desc d = desc_of("test_reserve", 2, 1);
+    open_session(&s, &d);
+    assert_int_equal(add(&s, "lamp", kinds[0].at, &added[0]), MASU_OK); /* with its light */
+    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0]), MASU_ERROR_LIMIT);
+    assert_string_equal(masu_last_error(s.m)->text, "reserve.lights: 2 are needed, 1 are given");
+    assert_int_equal(add(&s, "lamp", kinds[1].at, &added[1]), MASU_ERROR_LIMIT);
+    assert_string_equal(masu_last_error(s.m)->what, "reserve.lights");
+    assert_int_equal(added[1].id, 0);
+    assert_int_equal(add(&s, "block", (const float[3]){NAN, 0, 0}, &added[1]), MASU_ERROR_ARGUMENT);
+    assert_int_equal(add(&s, "block", kinds[1].at, &added[1]), MASU_OK);
+    assert_int_equal(add(&s, "block", kinds[1].at, &added[2]), MASU_ERROR_LIMIT);
+    assert_string_equal(masu_last_error(s.m)->text, "reserve.models: 3 are needed, 2 are given");
+    assert_int_equal(added[2].id, 0);
+    assert_int_equal(masu_model_remove(s.m, added[0]), MASU_OK);
+    assert_int_equal(masu_model_remove(s.m, added[0]), MASU_ERROR_ARGUMENT);
+    masu_punctual_light_state bad = spot;
+    bad.range = -1;
+    assert_int_equal(masu_punctual_light_add(s.m, &bad, &light[0]), MASU_ERROR_ARGUMENT);
+    assert_int_equal(masu_punctual_light_add(s.m, &spot, &light[0]), MASU_OK); /* the lamp's has gone */
+    assert_int_equal(masu_punctual_light_remove(s.m, masu_punctual_light_find(s.m, "glow")),
+                     MASU_ERROR_ARGUMENT);
+    draw_rung(&s, 0, pictures[0][0]);
+    close_session(&s);
+}
+
+/* Of skins there are none; a scene of them alone pays nothing. */
+static void what_bends_is_not_copied(void **state) {
+    (void)state;
+    masu_session s;
+    masu_model added;
+    masu_session_desc d = desc_of("test_skin", 2, 0), plain = desc_of("test_skin", 0, 0);
+    masu_memory need[2];
+    open_session(&s, &plain);
+    assert_int_equal(masu_memory_query(&s.desc, &need[0], NULL), MASU_OK);
+    close_session(&s);
+    open_session(&s, &d);
+    assert_int_equal(masu_memory_query(&s.desc, &need[1], NULL), MASU_OK);
+    assert_int_equal(need[0].device_bytes, need[1].device_bytes);
+    assert_int_equal(need[0].host_bytes, need[1].host_bytes);
+    assert_int_equal(add(&s, "arm", kinds[0].at, &added), MASU_OK); /* its spare one */
+    assert_int_equal(add(&s, "arm", kinds[0].at, &added), MASU_ERROR_LIMIT);
+    close_session(&s);
+}
+
+static void handles_of_what_is_gone_are_refused(void **state) {
+    (void)state;
+    masu_session s;
+    masu_model added, again;
+    masu_session_desc d = desc_of("test_reserve", 1, 1);
+    open_session(&s, &d);
+    assert_int_equal(masu_model_at(s.m, 5).id, 0);
+    assert_int_equal(add(&s, "lamp", kinds[1].at, &added), MASU_OK);
+    assert_int_equal(masu_model_at(s.m, 5).id, added.id);
+    masu_instance bulb = masu_instance_at(s.m, s.scene.instances);
+    masu_instance_state is;
+    masu_punctual_light glow = masu_punctual_light_at(s.m, 1);
+    masu_punctual_light_state light;
+    assert_int_equal(masu_instance_get(s.m, bulb, &is), MASU_OK);
+    assert_int_equal(is.model.id, added.id);
+    assert_int_equal(masu_punctual_light_get(s.m, glow, &light), MASU_OK);
+    assert_int_equal(light.instance.id, bulb.id);
+    /* A light of the scene's own that it carries goes dark and is left behind. */
+    masu_punctual_light own = masu_punctual_light_find(s.m, "glow");
+    assert_int_equal(masu_punctual_light_set(s.m, own, &light), MASU_OK);
+    assert_int_equal(masu_model_remove(s.m, added), MASU_OK);
+    assert_int_equal(masu_punctual_light_get(s.m, own, &light), MASU_OK);
+    assert_int_equal(light.instance.id, 0);
+    assert_true(light.color[0] == 0.0f);
+    for (uint32_t round = 0; round < 2; round++) {
+        assert_int_equal(masu_model_show(s.m, added, 1), MASU_ERROR_ARGUMENT);
+        assert_non_null(strstr(masu_last_error(s.m)->text, "removed"));
+        assert_int_equal(masu_instance_get(s.m, bulb, &is), MASU_ERROR_ARGUMENT);
+        assert_int_equal(masu_punctual_light_set(s.m, glow, &light), MASU_ERROR_ARGUMENT);
+        light.instance = bulb;
+        assert_int_equal(masu_punctual_light_set(s.m, own, &light), MASU_ERROR_ARGUMENT);
+        if (!round) assert_int_equal(add(&s, "truck", kinds[0].at, &again), MASU_OK);
+    }
+    assert_int_equal(masu_model_remove(s.m, masu_model_find(s.m, "block")), MASU_OK); /* is hidden */
+    assert_int_equal(add(&s, "block", kinds[0].at, &again), MASU_OK);
+    assert_int_equal(again.id, masu_model_find(s.m, "block").id);
+    close_session(&s);
+}
+
+/* The box is as large as was said, with and without; a smaller one is refused. */
+static void the_box_is_as_large_as_was_said(void **state) {
+    (void)state;
+    masu_session s;
+    masu_memory need[2];
+    masu_peak_info peaks;
+    masu_detail detail;
+    masu_session_desc d = desc_of("test_reserve", 8, 16);
+    d.desc.live_materials = 1;
+    open_session(&s, &d);
+    masu_desc plain = s.desc;
+    plain.reserve = (masu_reserve){0, 0};
+    plain.live_materials = 0;
+    assert_int_equal(masu_memory_query(&s.desc, &need[1], NULL), MASU_OK);
+    assert_int_equal(masu_memory_query(&plain, &need[0], NULL), MASU_OK);
+    masu_peaks(s.m, &peaks);
+    assert_int_equal(peaks.host_bytes, need[1].host_bytes);
+    assert_int_equal(peaks.device_bytes, need[1].device_bytes);
+    assert_int_equal(peaks.lights, s.scene.lights + 16);
+    assert_int_equal(peaks.models, s.scene.models + 8);
+    printf("  8 models, 16 lights, live materials: %llu bytes host, %llu device\n",
+           (unsigned long long)(need[1].host_bytes - need[0].host_bytes),
+           (unsigned long long)(need[1].device_bytes - need[0].device_bytes));
+    assert_true(need[1].device_bytes > need[0].device_bytes);
+    static masu_memory_row rows[256];
+    uint32_t count = masu_memory_report(s.m, rows, 256), named = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        named |= !strcmp(rows[i].name, "reserve models") ? 1u : 0;
+        named |= !strcmp(rows[i].name, "reserve lights") ? 2u : 0;
+        named |= !strcmp(rows[i].name, "reserve instances") ? 4u : 0;
+        named |= !strcmp(rows[i].name, "live materials") && rows[i].role == MASU_ROLE_UPLOAD ? 8u : 0;
+    }
+    assert_int_equal(named, 15);
+    masu_desc tight = s.desc;
+    tight.limits.models = s.scene.models + 7;
+    assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_LIMIT);
+    assert_string_equal(detail.what, "limits.models");
+    tight = s.desc;
+    tight.reserve.models = 16385;
+    assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "reserve.models");
+    tight.reserve = (masu_reserve){0, 4097};
+    assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_ARGUMENT);
+    assert_string_equal(detail.what, "reserve.lights");
+    tight.reserve.lights = 4096; /* with the scene's one too many */
+    assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_LIMIT);
+    assert_string_equal(detail.what, "limits.lights");
+    close_session(&s);
+}
+
+/* ---- Materials ------------------------------------------------------------------------------- */
+
+static masu_material_state material(masu_session *s, const char *model, masu_material *out) {
+    masu_material_state state;
+    *out = masu_material_find(s->m, model);
+    assert_int_not_equal(out->id, 0);
+    assert_int_equal(masu_material_get(s->m, *out, &state), MASU_OK);
+    return state;
+}
+
+static void paint(masu_session *s) {
+    masu_material of;
+    masu_material_state to = material(s, "floor", &of);
+    const float red[3] = {0.7f, 0.4f, 0.3f}, glow[3] = {0.2f, 0.4f, 0.1f}, blue[3] = {0.2f, 0.4f, 0.9f};
+    assert_true(to.roughness == 0.1f && to.metallic == 0.9f && to.base_color[1] == 0.5f);
+    to.roughness = 0.3f;
+    memcpy(to.base_color, red, sizeof red);
+    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+    to = material(s, "wall", &of);
+    memcpy(to.emissive, glow, sizeof glow);
+    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+    to = material(s, "pane", &of);
+    assert_int_equal(to.mode, MASU_MATERIAL_BLENDED);
+    to.opacity = 0.8f;
+    memcpy(to.base_color, blue, sizeof blue);
+    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+    to = material(s, "ball", &of);
+    to.metallic = 1;
+    to.roughness = 0.25f;
+    assert_int_equal(masu_material_set(s->m, of, &to), MASU_OK);
+}
+
+static void what_is_painted_is_as_if_baked_so(void **state) {
+    (void)state;
+    masu_session live, baked;
+    masu_session_desc d = desc_of("test_reserve", 0, 0), truth = desc_of("test_reserve_painted", 0, 0);
+    d.desc.live_materials = 1;
+    open_session(&baked, &truth);
+    draw_frames(&baked, pictures[2]);
+    draw_frames(&baked, pictures[1]);
+    for (uint32_t flight = 1; flight <= 3; flight++) {
+        d.desc.frames_in_flight = flight;
+        open_session(&live, &d);
+        draw_frames(&live, pictures[2]);
+        paint(&live);
+        draw_frames(&live, pictures[0]); /* the first frame already */
+        uint32_t off = 0, before = far_off(pictures[2][0], pictures[1][0]);
+        for (uint32_t i = 0; i < FRAMES; i++) off += far_off(pictures[0][i], pictures[1][i]);
+        printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, before %u\n",
+               flight, off, FRAMES * BYTES, FRAMES * before);
+        assert_true(off < FRAMES * BYTES / 500);
+        assert_true(before > BYTES / 5);
+        close_session(&live);
+    }
+    close_session(&baked);
+}
+
+/* While a history gathers, a change is found as that of a light is. */
+static void a_history_is_told(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = desc_of("test_reserve", 0, 0);
+    d.desc.live_materials = 1;
+    d.desc.rungs[0].temporal = MASU_ON;
+    open_session(&s, &d);
+    masu_commands commands;
+    for (uint32_t i = 0; i < 40; i++) draw(&s, &(masu_frame_desc){.cut = i == 0}, &commands, pictures[0][0]);
+    paint(&s);
+    for (uint32_t i = 0; i < 40; i++) draw(&s, &(masu_frame_desc){.rung = 0}, &commands, pictures[0][0]);
+    draw(&s, &(masu_frame_desc){.cut = 1}, &commands, pictures[1][0]);
+    for (uint32_t i = 0; i < 40; i++) draw(&s, &(masu_frame_desc){.rung = 0}, &commands, pictures[1][0]);
+    uint32_t off = far_off(pictures[0][0], pictures[1][0]);
+    printf("  %u of %u bytes differ by more than 4 from a history that began anew\n", off, BYTES);
+    assert_true(off < BYTES / 100);
+    close_session(&s);
+}
+
+static void what_would_change_a_pass_is_refused(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = desc_of("test_reserve", 0, 0);
+    open_session(&s, &d);
+    masu_material of = {1};
+    masu_material_state was, to;
+    assert_int_equal(masu_material_find(s.m, "floor").id, 0);
+    assert_int_equal(masu_material_get(s.m, of, &was), MASU_ERROR_STATE);
+    close_session(&s);
+    d.desc.live_materials = 1;
+    open_session(&s, &d);
+    was = material(&s, "wall", &of);
+    assert_string_equal(masu_scene_material_name(&s.scene, 1), "wall");
+    assert_int_equal(masu_material_at(s.m, s.scene.materials).id, 0);
+#define REFUSED(field, value, name)                                                                \
+    do {                                                                                           \
+        to = was;                                                                                  \
+        to.field = (value);                                                                        \
+        assert_int_equal(masu_material_set(s.m, of, &to), MASU_ERROR_ARGUMENT);                    \
+        assert_string_equal(masu_last_error(s.m)->what, name);                                     \
+    } while (0)
+    REFUSED(mode, MASU_MATERIAL_BLENDED, "mode");
+    REFUSED(cutoff, 0.5f, "cutoff");
+    REFUSED(opacity, 0.5f, "opacity");
+    REFUSED(specular, 0.9f, "specular");
+    REFUSED(coat, 0.5f, "coat");
+    REFUSED(roughness, 1.5f, "roughness");
+    REFUSED(metallic, NAN, "metallic");
+    REFUSED(base_color[2], -0.1f, "base_color");
+    REFUSED(emissive[1], INFINITY, "emissive");
+    assert_int_equal(masu_material_get(s.m, of, &to), MASU_OK);
+    assert_memory_equal(&to, &was, sizeof to);
+    assert_int_equal(masu_material_set(s.m, (masu_material){of.id + 100}, &was), MASU_ERROR_ARGUMENT);
+    close_session(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_added_is_as_if_baked_so),
+        cmocka_unit_test(what_is_removed_leaves_nothing),
+        cmocka_unit_test(room_that_is_not_used_changes_no_bit),
+        cmocka_unit_test(at_the_limit_is_refused),
+        cmocka_unit_test(what_bends_is_not_copied),
+        cmocka_unit_test(handles_of_what_is_gone_are_refused),
+        cmocka_unit_test(the_box_is_as_large_as_was_said),
+        cmocka_unit_test(what_is_painted_is_as_if_baked_so),
+        cmocka_unit_test(a_history_is_told),
+        cmocka_unit_test(what_would_change_a_pass_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
