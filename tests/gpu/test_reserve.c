@@ -76,6 +76,7 @@ static void what_is_added_is_as_if_baked_so(void **state) {
     masu_session_desc d = desc_of("test_reserve", KINDS, 2), truth = desc_of("test_reserve_baked", 0, 0);
     open_session(&baked, &truth);
     draw_frames(&baked, pictures[1]);
+    draw_frames(&baked, pictures[1]); /* of the same numbers: noise goes by them */
     masu_stats_info expected = stats_of(&baked, 1), is;
     for (uint32_t flight = 1; flight <= 3; flight++) {
         d.desc.frames_in_flight = flight;
@@ -87,8 +88,8 @@ static void what_is_added_is_as_if_baked_so(void **state) {
         uint32_t before = far_off(pictures[2][FRAMES - 1], pictures[1][FRAMES - 1]);
         printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, before %u\n",
                flight, off, BYTES, before);
-        assert_true(off < BYTES / 100);
-        assert_true(before > BYTES / 5);
+        assert_true(off < BYTES / 1000);
+        assert_true(before > BYTES / 10);
         is = stats_of(&live, (2 * FRAMES - 1) % flight);
         assert_int_equal(is.lights, expected.lights);
         assert_int_equal(is.transparents, expected.transparents);
@@ -185,14 +186,14 @@ static void what_bends_is_not_copied(void **state) {
     masu_session s;
     masu_model added;
     masu_session_desc d = desc_of("test_skin", 2, 0), plain = desc_of("test_skin", 0, 0);
-    masu_memory need[2];
+    masu_peak_info is[2];
     open_session(&s, &plain);
-    assert_int_equal(masu_memory_query(&s.desc, &need[0], NULL), MASU_OK);
+    masu_peaks(s.m, &is[0]);
     close_session(&s);
     open_session(&s, &d);
-    assert_int_equal(masu_memory_query(&s.desc, &need[1], NULL), MASU_OK);
-    assert_int_equal(need[0].device_bytes, need[1].device_bytes);
-    assert_int_equal(need[0].host_bytes, need[1].host_bytes);
+    masu_peaks(s.m, &is[1]);
+    assert_int_equal(is[0].device_bytes, is[1].device_bytes);
+    assert_int_equal(is[0].host_bytes, is[1].host_bytes);
     assert_int_equal(add(&s, "arm", kinds[0].at, &added), MASU_OK); /* its spare one */
     assert_int_equal(add(&s, "arm", kinds[0].at, &added), MASU_ERROR_LIMIT);
     close_session(&s);
@@ -246,13 +247,16 @@ static void the_box_is_as_large_as_was_said(void **state) {
     masu_detail detail;
     masu_session_desc d = desc_of("test_reserve", 8, 16);
     d.desc.live_materials = 1;
+    d.no_renderer = true; /* a plan with places looks at the blob, which is gone once it is loaded */
     open_session(&s, &d);
     masu_desc plain = s.desc;
-    plain.reserve = (masu_reserve){0, 0};
+    plain.reserve = (masu_reserve){.models = 0};
     plain.live_materials = 0;
     assert_int_equal(masu_memory_query(&s.desc, &need[1], NULL), MASU_OK);
     assert_int_equal(masu_memory_query(&plain, &need[0], NULL), MASU_OK);
-    masu_peaks(s.m, &peaks);
+    own_renderer made;
+    make_own(&s, &made, &s.desc);
+    masu_peaks(made.m, &peaks);
     assert_int_equal(peaks.host_bytes, need[1].host_bytes);
     assert_int_equal(peaks.device_bytes, need[1].device_bytes);
     assert_int_equal(peaks.lights, s.scene.lights + 16);
@@ -262,12 +266,12 @@ static void the_box_is_as_large_as_was_said(void **state) {
            (unsigned long long)(need[1].device_bytes - need[0].device_bytes));
     assert_true(need[1].device_bytes > need[0].device_bytes);
     static masu_memory_row rows[256];
-    uint32_t count = masu_memory_report(s.m, rows, 256), named = 0;
+    uint32_t count = masu_memory_report(made.m, rows, 256), named = 0;
     for (uint32_t i = 0; i < count; i++) {
         named |= !strcmp(rows[i].name, "reserve models") ? 1u : 0;
         named |= !strcmp(rows[i].name, "reserve lights") ? 2u : 0;
         named |= !strcmp(rows[i].name, "reserve instances") ? 4u : 0;
-        named |= !strcmp(rows[i].name, "live materials") && rows[i].role == MASU_ROLE_UPLOAD ? 8u : 0;
+        named |= !strcmp(rows[i].name, "live materials") && !strcmp(rows[i].kind, "buffer") ? 8u : 0;
     }
     assert_int_equal(named, 15);
     masu_desc tight = s.desc;
@@ -278,12 +282,13 @@ static void the_box_is_as_large_as_was_said(void **state) {
     tight.reserve.models = 16385;
     assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "reserve.models");
-    tight.reserve = (masu_reserve){0, 4097};
+    tight.reserve = (masu_reserve){.lights = 4097};
     assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_ARGUMENT);
     assert_string_equal(detail.what, "reserve.lights");
     tight.reserve.lights = 4096; /* with the scene's one too many */
     assert_int_equal(masu_memory_query(&tight, &need[0], &detail), MASU_ERROR_LIMIT);
     assert_string_equal(detail.what, "limits.lights");
+    unmake_own(&s, &made);
     close_session(&s);
 }
 
@@ -338,7 +343,7 @@ static void what_is_painted_is_as_if_baked_so(void **state) {
         printf("  %u in flight: %u of %u bytes differ by more than 4 from the scene baked so, before %u\n",
                flight, off, FRAMES * BYTES, FRAMES * before);
         assert_true(off < FRAMES * BYTES / 500);
-        assert_true(before > BYTES / 5);
+        assert_true(before > BYTES / 10);
         close_session(&live);
     }
     close_session(&baked);
@@ -348,20 +353,21 @@ static void what_is_painted_is_as_if_baked_so(void **state) {
 static void a_history_is_told(void **state) {
     (void)state;
     masu_session s;
-    masu_session_desc d = desc_of("test_reserve", 0, 0);
-    d.desc.live_materials = 1;
-    d.desc.rungs[0].temporal = MASU_ON;
-    open_session(&s, &d);
     masu_commands commands;
-    for (uint32_t i = 0; i < 40; i++) draw(&s, &(masu_frame_desc){.cut = i == 0}, &commands, pictures[0][0]);
-    paint(&s);
-    for (uint32_t i = 0; i < 40; i++) draw(&s, &(masu_frame_desc){.rung = 0}, &commands, pictures[0][0]);
-    draw(&s, &(masu_frame_desc){.cut = 1}, &commands, pictures[1][0]);
-    for (uint32_t i = 0; i < 40; i++) draw(&s, &(masu_frame_desc){.rung = 0}, &commands, pictures[1][0]);
+    for (uint32_t baked = 0; baked <= 1; baked++) {
+        masu_session_desc d = desc_of(baked ? "test_reserve_painted" : "test_reserve", 0, 0);
+        d.desc.live_materials = !baked;
+        d.desc.rungs[0] = (masu_rung){.scale = 0.5f, .temporal = MASU_ON, .specular = MASU_OFF};
+        open_session(&s, &d);
+        for (uint32_t i = 0; i < 40; i++) {
+            if (i == 32 && !baked) paint(&s);
+            draw(&s, &(masu_frame_desc){.cut = i == 0}, &commands, pictures[baked][0]);
+        }
+        close_session(&s);
+    }
     uint32_t off = far_off(pictures[0][0], pictures[1][0]);
-    printf("  %u of %u bytes differ by more than 4 from a history that began anew\n", off, BYTES);
-    assert_true(off < BYTES / 100);
-    close_session(&s);
+    printf("  8 frames later %u of %u bytes differ by more than 4 from the scene baked so\n", off, BYTES);
+    assert_true(off < BYTES / 20);
 }
 
 static void what_would_change_a_pass_is_refused(void **state) {
@@ -377,7 +383,6 @@ static void what_would_change_a_pass_is_refused(void **state) {
     d.desc.live_materials = 1;
     open_session(&s, &d);
     was = material(&s, "wall", &of);
-    assert_string_equal(masu_scene_material_name(&s.scene, 1), "wall");
     assert_int_equal(masu_material_at(s.m, s.scene.materials).id, 0);
 #define REFUSED(field, value, name)                                                                \
     do {                                                                                           \

@@ -92,6 +92,7 @@ static uint32_t placed_material(masu_bake_content *scene, const masu_bake_conten
     for (size_t i = 0; i < overrides->count; i++) {
         if (!matches(piece, index, &overrides->items[i])) continue;
         apply_override(&overrides->items[i], &material, &maps, own);
+        if (*overrides->items[i].name) name = overrides->items[i].name;
     }
     for (int i = 0; i < MASU_BAKE_MAPS; i++) {
         if (own[i] || maps.image[i] == MASU_BLOB_NONE) continue;
