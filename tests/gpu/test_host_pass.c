@@ -654,7 +654,7 @@ static void matrices_are_those_of_the_picture(void **state) {
 static void what_is_drawn_over_the_picture_is_shown(void **state) {
     (void)state;
     masu_session s;
-    open_scene(&s, "test_live_bare");
+    open_scene(&s, "test_velocity_mesh"); /* nothing in it has noise of its own in each frame */
     own_renderer x;
     masu_desc d = desc_of(&s, MASU_SPLIT_AFTER_UPSCALE);
     d.targets.storage = 0;
@@ -685,13 +685,14 @@ static void what_is_drawn_over_the_picture_is_shown(void **state) {
                 finish(&s, own[0]);
                 continue;
             }
+            uint32_t off = 0;
             for (uint32_t i = 0; i < BYTES; i++) {
                 double expected = pixels[0][i];
                 if (i / 4 % W < W / 2 && i % 4 < 3) expected = expected * 0.5 + 255.0 * (double)q.color[i % 4];
-                /* Occlusion and reflections have other noise in the second frame, a rung with temporal other places too. */
-                if (fabs(pixels[1][i] - expected) > (r == 3 ? 255.0 : 8.0))
-                    fail_msg("rung %u, byte %u: %u, not %g", r, i, pixels[1][i], expected);
+                off += fabs(pixels[1][i] - expected) > 1.5;
             }
+            /* Reflections have other noise in the second frame, a rung with temporal other places too. */
+            if (off > (r == 3 ? BYTES / 4 : BYTES / 50)) fail_msg("rung %u: %u bytes are not as said", r, off);
             double sum = 0;
             for (uint32_t i = 0; i < BYTES; i += 4) sum += abs(pixels[1][i] - pixels[0][i]) * (i / 4 % W < W / 2);
             assert_true(sum > 5.0 * W * H / 2);
