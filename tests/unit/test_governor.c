@@ -348,6 +348,11 @@ static void it_stays_sound_under_a_million_samples(void **state) {
                    isfinite(info.noise) && isfinite(info.start_delay_ms) && isfinite(info.unit);
         for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) good = good && isfinite(info.predicted_ms[r]);
         if (!good || !info.reason_text) fail_msg("not finite at %u", i);
+        /* What was learnt of a rung stays within a factor of what the ladder says of it. */
+        for (uint32_t r = 0; r < g.count; r++) {
+            double learnt = g.cost[r] / g.prior[r];
+            if (!(learnt > 0.2499 && learnt < 4.001)) fail_msg("rung %u: %g of its cost at %u", r, learnt, i);
+        }
     }
 }
 

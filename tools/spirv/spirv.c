@@ -8,6 +8,7 @@
 #define MAGIC 0x07230203u
 #define HEADER_WORDS 5u
 #define WORDS_MOST ((size_t)4 << 20)
+#define IDS_A_WORD 16u
 
 /* Where the result id of an instruction stands; 0: it has none, or none that matters here. */
 static uint32_t result_word(uint32_t op) {
@@ -56,7 +57,8 @@ int spirv_from_words(const uint32_t *words, size_t count, spirv_module *out) {
     out->words = malloc(count * sizeof *words);
     out->list = calloc(count, sizeof *out->list);
     out->bound = words[3];
-    if (out->bound < WORDS_MOST) out->def = calloc(out->bound + 1, sizeof *out->def);
+    /* An id takes two words at least; optimisers leave some unused. */
+    if (out->bound / IDS_A_WORD <= count) out->def = calloc(out->bound + 1, sizeof *out->def);
     if (!out->words || !out->list || !out->def) {
         spirv_free(out);
         return 0;
@@ -73,7 +75,7 @@ int spirv_from_words(const uint32_t *words, size_t count, spirv_module *out) {
             return 0;
         }
         uint32_t w = result_word(i->op);
-        if (w && (i->word[w] == 0 || i->word[w] >= out->bound)) {
+        if (w && (w >= i->count || i->word[w] == 0 || i->word[w] >= out->bound)) {
             spirv_free(out);
             return 0;
         }
