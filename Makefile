@@ -156,7 +156,7 @@ drive-built: $(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(BUILD)/worlds/
 hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmodels, broken ones too: RENDER=1
 	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh
 
-.PHONY: check check-built unit gpu stiff fuzz coverage
+.PHONY: check check-built unit gpu stiff fuzz fuzz-all coverage
 check: deps-test ## install what is missing, build, run every test: DRIVERS=system, FULL=, LONG=
 	+$(V)$(more) check-built
 
@@ -177,6 +177,8 @@ stiff: all scenes $(BUILD)/tests/gpu/test_stiff $(DRIVER_INFO) ## print the marc
 
 fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 	+$(V)$(more) config=fuzz CC=clang fuzz-$(FUZZ)
+fuzz-all: ## fuzz every target of tests/fuzz for so long each: FUZZ_TIME=600
+	+$(V)for f in $(FUZZ_ALL); do $(more) config=fuzz CC=clang fuzz-$$f FUZZ=$$f || exit 1; done
 
 # An hour on a CPU driver. Of docs/report are kept: ladders.txt, and of each scene the page, the rows, the ladder,
 # what was measured.

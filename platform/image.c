@@ -329,22 +329,14 @@ static bool png_is_whole(const char *path, const uint8_t *bytes, size_t count, c
     }
 }
 
-bool masu_image_load_png(const char *path, struct masu_image *image, char *error,
-                         size_t error_size) {
+bool masu_image_decode_png(const char *path, const uint8_t *bytes, size_t count, struct masu_image *image,
+                           char *error, size_t error_size) {
+    int width = 0, height = 0;
     *image = (struct masu_image){0};
-    uint8_t *bytes;
-    size_t count;
-    if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size)) {
-        return false;
-    }
     if (!png_is_whole(path, bytes, count, error, error_size)) {
-        free(bytes);
         return false;
     }
-    int width = 0;
-    int height = 0;
     uint8_t *rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, NULL, 4);
-    free(bytes);
     if (!rgba) {
         return fail(error, error_size, "%s: cannot decode the PNG file: %s", path,
                     stbi_failure_reason());
@@ -354,6 +346,45 @@ bool masu_image_load_png(const char *path, struct masu_image *image, char *error
     image->channels = 4;
     image->rgba = rgba; /* stb allocates with malloc */
     return true;
+}
+
+bool masu_image_png_size(const char *path, const uint8_t *bytes, size_t count, uint32_t *width, uint32_t *height,
+                         char *error, size_t error_size) {
+    if (!png_is_whole(path, bytes, count, error, error_size)) {
+        return false;
+    }
+    *width = big_endian(bytes + 16);
+    *height = big_endian(bytes + 20);
+    return true;
+}
+
+uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t count, uint32_t *width,
+                                 uint32_t *height, char *error, size_t error_size) {
+    int w = 0, h = 0;
+    if (!png_is_whole(path, bytes, count, error, error_size)) {
+        return NULL;
+    }
+    uint16_t *values = stbi_load_16_from_memory(bytes, (int)count, &w, &h, NULL, 1);
+    if (!values) {
+        (void)fail(error, error_size, "%s: cannot decode the PNG file: %s", path, stbi_failure_reason());
+        return NULL;
+    }
+    *width = (uint32_t)w;
+    *height = (uint32_t)h;
+    return values;
+}
+
+bool masu_image_load_png(const char *path, struct masu_image *image, char *error,
+                         size_t error_size) {
+    uint8_t *bytes;
+    size_t count;
+    *image = (struct masu_image){0};
+    if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size)) {
+        return false;
+    }
+    bool good = masu_image_decode_png(path, bytes, count, image, error, error_size);
+    free(bytes);
+    return good;
 }
 
 bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,

@@ -39,6 +39,18 @@ void masu_image_free(struct masu_image *image);
 bool masu_image_load_png(const char *path, struct masu_image *image, char *error,
                          size_t error_size);
 
+/* The same of a file's bytes; the path is for messages. */
+bool masu_image_decode_png(const char *path, const uint8_t *bytes, size_t count, struct masu_image *image,
+                           char *error, size_t error_size);
+
+/* Of a file that is whole and within the limits; nothing is decoded. */
+bool masu_image_png_size(const char *path, const uint8_t *bytes, size_t count, uint32_t *width, uint32_t *height,
+                         char *error, size_t error_size);
+
+/* Grey values of 16 bits, width * height, freed by free(); NULL: `error` says why. */
+uint16_t *masu_image_decode_gray(const char *path, const uint8_t *bytes, size_t count, uint32_t *width,
+                                 uint32_t *height, char *error, size_t error_size);
+
 /* rgba: height rows of width * 4 bytes, row_bytes apart (0 = tightly packed). */
 bool masu_image_save_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,
                          size_t row_bytes, char *error, size_t error_size);

@@ -4,8 +4,8 @@
 #   tests/gpu/test_NAME.c     one cmocka group, run on each driver of DRIVERS
 #   tests/scripts/NAME.sh     exit 0: passed, 77: skipped
 #   tests/full/NAME.sh        the same, with FULL=1 only
-#   tests/fuzz/fuzz_NAME.c    LLVMFuzzerTestOneInput; its seeds are the files of FUZZ_SEEDS_NAME,
-#                             which tests/fuzz/seed_NAME.c writes where no file will do
+#   tests/fuzz/fuzz_NAME.c    LLVMFuzzerTestOneInput; its seeds are the files of FUZZ_SEEDS_NAME: small ones in
+#                             tests/fuzz/corpus/NAME, or what tests/fuzz/seed_NAME.c writes
 #   tests/support/*.c         what several tests need
 #   tests/reference/*.c       what shaders do, again: in C, in double precision
 #   tests/scenes/NAME.json    a scene for tests, baked to $(BUILD)/scenes
@@ -105,14 +105,17 @@ FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf
 
 # Every feature that is read, in a small file.
 FUZZ_SEEDS_gltf := tests/fuzz/all.gltf
+# Modules, and what `masu conform`, `masu bench` and `masu simulate` read.
+$(foreach n,spirv suite ladder sweep trace png,$(eval FUZZ_SEEDS_$(n) := $(wildcard tests/fuzz/corpus/$(n)/*)))
 
 FUZZ      ?= scene
 FUZZ_TIME ?= 60
+FUZZ_ALL  := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 fuzz-%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(TEST_ARCHIVES) $(FUZZ_SEEDS_$(FUZZ))
 	$(V)mkdir -p $(BUILD)/corpus/$*
 	$(V)$(CC) -fsanitize=fuzzer $(LINK_FLAGS) $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TEST_LIBS) -o $(BUILD)/fuzz_$*
 	$(V)cp $(FUZZ_SEEDS_$*) $(BUILD)/corpus/$*/
-	$(V)$(BUILD)/fuzz_$* -max_total_time=$(FUZZ_TIME) -artifact_prefix=$(BUILD)/ $(BUILD)/corpus/$*
+	$(V)$(BUILD)/fuzz_$* -max_total_time=$(FUZZ_TIME) -timeout=25 -print_final_stats=1 -artifact_prefix=$(BUILD)/ $(BUILD)/corpus/$*
 
 # ---- Running -------------------------------------------------------------------------------------
 

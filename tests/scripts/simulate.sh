@@ -36,6 +36,13 @@ awk -F, 'NR > 1 && $NF != 0 { print; bad = 1 } END { exit bad }' "$folder/all.cs
 if command -v gnuplot > /dev/null; then
     "$masu" simulate --quiet --seeds 1 --model constant --plots "$folder/plots" || fail 'plots fail'
     grep -q '</svg>' "$folder/plots/constant.svg" || fail 'there is no whole constant.svg'
+    # A name is a title, whatever stands in it.
+    trace="$folder/it's \`touch STRUCK\`.csv"
+    head -40 tools/simulate/traces/city.csv > "$trace"
+    "$masu" simulate --quiet --seeds 1 --model "it's \`touch STRUCK\`" --controller masu \
+        --plots "$folder/plots" "$trace" || fail 'a name with quotes is refused'
+    [ ! -e "$folder/plots/STRUCK" ] && [ ! -e STRUCK ] || { rm -f STRUCK; fail 'a name was run'; }
+    grep -q '</svg>' "$folder/plots/it's \`touch STRUCK\`.svg" || fail 'there is no plot of a name with quotes'
 fi
 
 refuses 2 "there is no model 'no'" --model no

@@ -1,5 +1,6 @@
 /* test_conform.c: suites of `masu conform`: what is read, what is refused and with which words,
  * which cases are chosen, what makes a verdict, and reports that other programs can read. */
+#include "cli/markup.h"
 #include "conform/report.h"
 
 #include <math.h>
@@ -106,6 +107,7 @@ static void what_is_no_suite_is_refused(void **state) {
     refuses(parse("{\"format\": 1,"), "s.json:1:");
     refuses(parse(""), "s.json:");
     refuses(parse("[1]"), "needed is an object, given is an array");
+    refuses(parse("{\"format\": 1, \"cases\": [], \"a\\nb\\u001b\": 1}"), "a?b?: there is no such key");
     refuses(parse("{\"cases\": []}"),
             "format: needed is a whole number from 1 to 1, given is nothing");
     refuses(parse("{\"format\": 2, \"cases\": []}"), "given is 2");
@@ -315,7 +317,7 @@ static char text[8192];
 static void escaped(const char *from, const char *to) {
     FILE *f = fmemopen(text, sizeof text, "w");
     assert_non_null(f);
-    masu_xml_escape(f, from);
+    masu_markup_text(f, from);
     fclose(f);
     assert_string_equal(text, to);
 }

@@ -348,6 +348,38 @@ static void it_stays_sound_under_a_million_samples(void **state) {
                    isfinite(info.noise) && isfinite(info.start_delay_ms) && isfinite(info.unit);
         for (uint32_t r = 0; r < MASU_MAX_RUNGS; r++) good = good && isfinite(info.predicted_ms[r]);
         if (!good || !info.reason_text) fail_msg("not finite at %u", i);
+        /* What was learnt of a rung stays within a factor of what the ladder says of it. */
+        for (uint32_t r = 0; r < g.count; r++) {
+            double learnt = g.cost[r] / g.prior[r];
+            if (!(learnt > 0.2499 && learnt < 4.001)) fail_msg("rung %u: %g of its cost at %u", r, learnt, i);
+        }
+    }
+}
+
+/* However sure the samples are, and however little is known of the cost. */
+static void what_it_learns_of_a_rung_stays_near_what_the_ladder_says(void **state) {
+    (void)state;
+    static const double times[] = {200.0, 0.2};
+    for (int k = 0; k < 2; k++) {
+        masu_governor g;
+        const masu_governor_rung ladder[2] = {{.scale = 1.0, .cost = 1.0}, {.scale = 0.5, .cost = 0.25}};
+        const masu_governor_desc d = {.mode = MASU_GOVERNOR_ON, .target_ms = 16.0f};
+        masu_governor_init(&g, &d, ladder, 2);
+        uint64_t frame = 0;
+        for (; frame < 60; frame++) {
+            masu_governor_sample s = {.frame = frame, .rung = 0, .gpu_ms = 10.0, .wall_ms = 10.0};
+            masu_governor_sample_in(&g, &s);
+        }
+        double prior = g.prior[1], most = 1.0;
+        for (; frame < 70; frame++) {
+            g.cost_variance[1] = 1e4;
+            masu_governor_sample s = {.frame = frame, .rung = 1, .gpu_ms = times[k], .wall_ms = times[k]};
+            masu_governor_sample_in(&g, &s);
+            double off = g.cost[1] > prior ? g.cost[1] / prior : prior / g.cost[1];
+            most = off > most ? off : most;
+        }
+        assert_true(most > 2.0); /* it was learnt */
+        assert_true(most < 4.0001);
     }
 }
 
@@ -547,6 +579,7 @@ int main(void) {
         cmocka_unit_test(it_reports_what_it_trusts),
         cmocka_unit_test(it_finds_the_fixed_part),
         cmocka_unit_test(it_stays_sound_under_a_million_samples),
+        cmocka_unit_test(what_it_learns_of_a_rung_stays_near_what_the_ladder_says),
         cmocka_unit_test(no_model_makes_it_emit_an_invalid_rung),
         cmocka_unit_test(it_keeps_its_modes_and_range),
         cmocka_unit_test(it_says_why),

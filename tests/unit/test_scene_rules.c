@@ -195,6 +195,9 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("probes", 0, PROBES[0].counts[0] = PROBES[0].counts[1] = 1u << 20);
     LIT("probe data", 74, PROBES[0].counts[0] = 3);
     LIT("probe data", 74, PROBES[0].visibility = 2);
+    /* Neither a word too few nor one too many. */
+    LIT("probe data", 73, support_blob_row(&blob, MASU_BLOB_PROBE_DATA)->count--);
+    LIT("probe data", 75, support_blob_row(&blob, MASU_BLOB_PROBE_DATA)->count++);
     LIT("probes", 0, PROBES[0].spacing[0] = 0.0f);
     LIT("probe data", 3, AT(PROBE_DATA, uint32_t)[3] = 0x7C00u);
     LIT("probe data", 4, AT(PROBE_DATA, uint32_t)[4] = 0xFE000000u);

@@ -16,6 +16,9 @@
 #include "device/load.h"
 #include "scene/scene.h"
 #include "split_sum.h"
+#include "stats.h"
+#include "plan/plan.h"
+#include "support/desc.h"
 #include "support/dry_renderer.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -224,6 +227,33 @@ static void a_moved_instance_reaches_every_slot_once(void **state) {
     }
 }
 
+/* With three frames in flight too; where motion is told, a frame more, or the last slot would say that it still moves. */
+static void a_moved_instance_reaches_as_many_slots_as_there_are(void **state) {
+    (void)state;
+    static const float rows[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    for (uint32_t flight = 1; flight <= MASU_MAX_FLIGHT; flight++) {
+        for (uint32_t velocity = 0; velocity < 2; velocity++) {
+            make_renderer(SUPPORT_ALL, 0);
+            m.plan.desc.frames_in_flight = flight;
+            m.plan.needs.velocity = velocity;
+            m.plan.buffers[MASU_BUFFER_INSTANCES].stride = 2 * 4 * sizeof(struct masu_instance_data);
+            masu_scene_view v = masu_scene_look(&scene);
+            masu_instances_keep(&m.instances, &m.plan, &v);
+            for (uint32_t n = 0; n < flight + velocity; n++) {
+                assert_int_equal(m.instances.dirty_count, 3);
+                write_instances(0);
+            }
+            assert_int_equal(m.instances.dirty_count, 0);
+            masu_instances_place(&m.instances, &m.plan, 1, rows);
+            for (uint32_t n = 0; n < flight + velocity; n++) {
+                assert_int_equal(m.instances.dirty_count, 1);
+                write_instances(0);
+            }
+            assert_int_equal(m.instances.dirty_count, 0);
+        }
+    }
+}
+
 static void moving_twice_before_a_frame_keeps_the_last(void **state) {
     (void)state;
     float rows[12] = {0};
@@ -271,6 +301,39 @@ static void a_bad_instance_or_transform_is_refused(void **state) {
     assert_int_equal(m.instances.dirty_count, 0);
 }
 
+/* ---- Times ----------------------------------------------------------------------------------- */
+
+/* A counter of few bits, from just below its end to just beyond it. */
+static void times_of_a_clock_that_wraps_are_right(void **state) {
+    (void)state;
+    masu_commands commands;
+    masu_governor_sample sample;
+    masu_stats_info stats;
+    static const uint32_t bits[] = {32, 36, 48, 63, 64};
+    for (size_t i = 0; i < COUNT(bits); i++) {
+        make_renderer(SUPPORT_ALL, 0);
+        m.plan.desc.debug.timestamps = 1;
+        m.plan.readback_times = 0;
+        m.device.queries = FAKE(VkQueryPool, 1);
+        m.device.vk.queue_family.timestampValidBits = bits[i];
+        m.device.vk.properties.limits.timestampPeriod = 2.0f;
+        assert_int_equal(masu_load(&m, &commands), MASU_OK);
+        assert_int_equal(masu_frame(&m, &(masu_frame_desc){.rung = 0}, &commands), MASU_OK);
+        uint64_t *stamps = (uint64_t *)(void *)masu_buffer_pointer(&m.device, MASU_BUFFER_READBACK, commands.slot);
+        uint64_t mask = bits[i] == 64 ? UINT64_MAX : (UINT64_C(1) << bits[i]) - 1;
+        uint32_t count = masu_stamps(&m.plan.desc);
+        assert_true(count > 2);
+        assert_false(masu_slot_sample(&m, commands.slot, &sample)); /* not ended */
+        for (uint32_t k = 0; k < count; k++) stamps[k] = (mask - 999 + 500 * (uint64_t)k) & mask;
+        assert_true(masu_slot_sample(&m, commands.slot, &sample));
+        assert_true(fabs(sample.gpu_ms - 500.0 * (count - 1) * 2.0 * 1e-6) < 1e-9);
+        assert_int_equal(masu_stats(&m, commands.slot, &stats), MASU_OK);
+        assert_true(stats.timed);
+        assert_int_equal(stats.gpu_ns, 1000 * (count - 1));
+        for (uint32_t k = 0; k + 1 < count; k++) assert_true(stats.pass_ns[k] == 0 || stats.pass_ns[k] == 1000);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mapped_memory_is_loaded_at_once),
@@ -282,6 +345,8 @@ int main(void) {
         cmocka_unit_test(a_frame_that_is_refused_changes_nothing),
         cmocka_unit_test(instances_are_found_by_name),
         cmocka_unit_test(a_moved_instance_reaches_every_slot_once),
+        cmocka_unit_test(a_moved_instance_reaches_as_many_slots_as_there_are),
+        cmocka_unit_test(times_of_a_clock_that_wraps_are_right),
         cmocka_unit_test(moving_twice_before_a_frame_keeps_the_last),
         cmocka_unit_test(a_bad_instance_or_transform_is_refused),
     };

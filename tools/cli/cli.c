@@ -39,7 +39,7 @@ void masu_cli_progress_clear(void) {
     state.progress_shown = false;
 }
 
-static void sanitize(char *text) {
+void masu_cli_plain(char *text) {
     for (; *text; text++) {
         unsigned char c = (unsigned char)*text;
         if (c < 0x20 || c == 0x7F) *text = '?';
@@ -49,7 +49,7 @@ static void sanitize(char *text) {
 static void message(const char *before, const char *format, va_list arguments, const char *after) {
     char text[4096];
     if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
-    sanitize(text);
+    masu_cli_plain(text);
     masu_cli_progress_clear();
     fprintf(stderr, "%s: %s%s%s\n", state.name, before, text, after);
 }
@@ -101,7 +101,7 @@ void masu_cli_progress(const char *format, ...) {
     va_start(arguments, format);
     if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
     va_end(arguments);
-    sanitize(text);
+    masu_cli_plain(text);
     fprintf(stderr, "\r\033[K%s", text);
     fflush(stderr);
     state.progress_shown = true;

@@ -111,6 +111,9 @@ bool masu_cli_extent(const masu_cli *cli, uint32_t maximum, uint32_t *width, uin
 /* one of the names; NULL ends the list */
 bool masu_cli_choice(const masu_cli *cli, const char *const *names, uint32_t *index);
 
+/* Control characters, ends of lines among them, become '?': what a file says in a message is one line. */
+void masu_cli_plain(char *text);
+
 /* One line on stderr behind the program's name; control characters become '?', so that a name out
  * of a file cannot forge lines. Each returns its exit code, for `return masu_cli_error(...)`; the
  * usage form adds "(see NAME --help)". */

@@ -1,47 +1,12 @@
 /* report.c: see report.h. */
 #include "conform/report.h"
 
+#include "cli/markup.h"
+
 #include <math.h>
 #include <string.h>
 
 /* ---- Quoting --------------------------------------------------------------------------------- */
-
-/* Bytes of the character at `p` if XML 1.0 can hold it, else 0. Overlong forms, surrogates and what
- * lies beyond U+10FFFF are no UTF-8 (RFC 3629). */
-static size_t character(const unsigned char *p) {
-    if (*p < 0x80) return *p >= ' ' || *p == '\t' || *p == '\n' || *p == '\r';
-    size_t n = *p >= 0xF0 ? 4 : *p >= 0xE0 ? 3 : 2;
-    uint32_t code = *p & (0x7Fu >> n);
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    if (*p < 0xC0 || *p > 0xF4) return 0;
-    for (size_t i = 1; i < n; i++) {
-        if ((p[i] & 0xC0) != 0x80) return 0; /* the terminating 0, too */
-        code = code << 6 | (p[i] & 0x3Fu);
-    }
-    bool good = code >= least[n] && code <= 0x10FFFF && !(code >= 0xD800 && code <= 0xDFFF) &&
-                code != 0xFFFE && code != 0xFFFF;
-    return good ? n : 0;
-}
-
-void masu_xml_escape(FILE *f, const char *text) {
-    const unsigned char *p = (const unsigned char *)text;
-    while (*p) {
-        size_t n = character(p);
-        switch (n ? *p : 0) {
-        case 0: fputc('?', f); break;
-        case '&': fputs("&amp;", f); break;
-        case '<': fputs("&lt;", f); break;
-        case '>': fputs("&gt;", f); break;
-        case '"': fputs("&quot;", f); break;
-        case '\'': fputs("&apos;", f); break;
-        case '\t':
-        case '\n':
-        case '\r': fprintf(f, "&#%u;", *p); break; /* else an attribute would have spaces */
-        default: fwrite(p, 1, n, f);
-        }
-        p += n ? n : 1;
-    }
-}
 
 void masu_shell_quote(FILE *f, const char *text) {
     static const char plain[] =
@@ -145,9 +110,7 @@ void masu_conform_csv(FILE *f, const masu_suite *suite, const masu_conform_resul
 }
 
 static void attribute(FILE *f, const char *name, const char *value) {
-    fprintf(f, " %s=\"", name);
-    masu_xml_escape(f, value);
-    fputc('"', f);
+    masu_markup(f, " %s=\"%s\"", name, value);
 }
 
 static void property(FILE *f, const char *name, const char *value) {
@@ -174,10 +137,10 @@ static void junit_case(FILE *f, const masu_suite *suite, const masu_conform_resu
         fputs("/>\n", f);
     }
     fputs("      <system-out>", f);
-    masu_xml_escape(f, masu_verdict_name(r->verdict));
+    masu_markup_text(f, masu_verdict_name(r->verdict));
     if (r->verdict == MASU_VERDICT_WARNING) {
         fputs(": ", f);
-        masu_xml_escape(f, r->why);
+        masu_markup_text(f, r->why);
     }
     for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
         if (!isnan(r->values[m]))
@@ -185,7 +148,7 @@ static void junit_case(FILE *f, const masu_suite *suite, const masu_conform_resu
     }
     if (masu_replay_token(suite, r->of, token, sizeof token)) {
         fputs("\nreplay ", f);
-        masu_xml_escape(f, token);
+        masu_markup_text(f, token);
     }
     fputs("</system-out>\n    </testcase>\n", f);
 }

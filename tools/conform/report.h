@@ -29,10 +29,6 @@ void masu_conform_csv(FILE *f, const masu_suite *suite, const masu_conform_resul
 void masu_conform_junit(FILE *f, const masu_suite *suite, const masu_conform_result *results,
                         uint32_t n, const char *driver);
 
-/* Text for XML 1.0, in an attribute or between tags: markup is escaped, what XML cannot hold
- * (control characters, bytes that are no UTF-8, U+FFFE and U+FFFF) becomes '?'. */
-void masu_xml_escape(FILE *f, const char *text);
-
 /* One word for a POSIX shell. */
 void masu_shell_quote(FILE *f, const char *text);
 

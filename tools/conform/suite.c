@@ -1,6 +1,8 @@
 /* suite.c: see suite.h. */
 #include "conform/suite.h"
 
+#include "cli/cli.h"
+
 #include "bench/sweep/knobs.h"
 
 #include <fnmatch.h>
@@ -550,9 +552,11 @@ bool masu_suite_parse(const char *file, const char *text, size_t bytes, masu_sui
     if (!suite->root) {
         snprintf(error, error_size, "%s:%d:%d: %s", file, json_error.line, json_error.column,
                  json_error.text);
+        masu_cli_plain(error);
         return false;
     }
     if (read_suite(&at)) return true;
+    masu_cli_plain(error);
     masu_suite_free(suite);
     return false;
 }

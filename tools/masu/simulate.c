@@ -4,16 +4,15 @@
 #include "masu/simulate_record.h"
 #include "masu/table.h"
 
+#include "cli/gnuplot.h"
 #include "simulate/simulate.h"
 
 #include <errno.h>
 #include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 #define TRACES_MOST 8u
 #define CONTROLLERS_MOST 8u
@@ -56,12 +55,18 @@ static row measure(const sim_model *p, const sim_controller *c, uint32_t seeds) 
 
 /* Times above, scales below, a line for each controller; all data inline, so that gnuplot reads no
  * file of ours. */
-static void plot(FILE *to, const char *folder, const sim_model *p, const sim_controller *const *list,
+static void plot(FILE *to, const sim_model *p, const sim_controller *const *list,
                  uint32_t count) {
     static sim_frame frames[CONTROLLERS_MOST][SIM_FRAMES_MOST];
     for (uint32_t c = 0; c < count; c++) sim_run(p, list[c], 1, frames[c], NULL);
-    fprintf(to, "set output \"%s/%s.svg\"\nset multiplot layout 2,1 title \"%s: %s\" noenhanced\n",
-            folder, p->name, p->name, p->what);
+    char file[80], title[256];
+    snprintf(file, sizeof file, "%s.svg", p->name);
+    snprintf(title, sizeof title, "%s: %s", p->name, p->what);
+    fprintf(to, "set output ");
+    masu_gnuplot_quote(to, file);
+    fprintf(to, "\nset multiplot layout 2,1 title ");
+    masu_gnuplot_quote(to, title);
+    fprintf(to, " noenhanced\n");
     for (uint32_t half = 0; half < 2; half++) {
         fprintf(to, "unset arrow\nset xrange [0:%" PRIu32 "]\n", p->frames);
         if (!half) {
@@ -72,8 +77,9 @@ static void plot(FILE *to, const char *folder, const sim_model *p, const sim_con
                 half ? "scale" : "ms (dashed: budget)", half ? "0.35:1.05" : "0:*");
         for (uint32_t c = 0; c < count; c++) {
             uint32_t line = count - c; /* ours on top */
-            fprintf(to, "'-' with lines lw %s lt %" PRIu32 " title \"%s\" noenhanced%s",
-                    line == 1 ? "2" : "0.7", line, list[line - 1]->name, line > 1 ? ", " : "\n");
+            fprintf(to, "'-' with lines lw %s lt %" PRIu32 " title ", line == 1 ? "2" : "0.7", line);
+            masu_gnuplot_quote(to, list[line - 1]->name);
+            fprintf(to, " noenhanced%s", line > 1 ? ", " : "\n");
         }
         for (uint32_t c = 0; c < count; c++) {
             const sim_frame *of = frames[count - 1 - c];
@@ -85,32 +91,30 @@ static void plot(FILE *to, const char *folder, const sim_model *p, const sim_con
     fprintf(to, "unset multiplot\n");
 }
 
-static FILE *open_gnuplot(const options *o) {
+typedef struct script {
+    FILE *f; /* NULL: no plots are asked for */
+    char *text;
+    size_t bytes;
+} script;
+
+static bool open_script(const options *o, script *s) {
     if (mkdir(o->plots, 0777) && errno != EEXIST) {
         masu_cli_error("%s: cannot be made: %s", o->plots, strerror(errno));
-        return NULL;
+        return false;
     }
-    if (strpbrk(o->plots, "\"\\\n")) {
-        masu_cli_error("--plots: no quotes or backslashes in the name");
-        return NULL;
-    }
-    FILE *to =
-        popen("command -v gnuplot > /dev/null || exit 127; exec gnuplot > /dev/null 2>&1", "w");
-    if (!to)
-        masu_cli_error("gnuplot cannot be started");
-    else
-        fprintf(to, "set terminal svg size 1000,560\nset key outside\nset xlabel \"frame\"\n");
-    return to;
+    s->f = open_memstream(&s->text, &s->bytes);
+    if (!s->f) return masu_cli_error("out of memory"), false;
+    fprintf(s->f, "set terminal svg size 1000,560\nset key outside\nset xlabel 'frame'\n");
+    return true;
 }
 
-static int close_gnuplot(FILE *to, const options *o) {
-    int status = pclose(to);
-    if (status == 0) return MASU_CLI_OK;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
-        masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
-        return MASU_CLI_OK;
-    }
-    return masu_cli_error("gnuplot could not write the plots to %s", o->plots);
+static int draw_script(script *s, const options *o) {
+    masu_gnuplot_end end = MASU_GNUPLOT_FAILED;
+    if (!fclose(s->f)) end = masu_gnuplot_run(o->plots, s->text, s->bytes);
+    free(s->text);
+    if (end == MASU_GNUPLOT_MISSING) masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
+    return end == MASU_GNUPLOT_FAILED ? masu_cli_error("gnuplot could not write the plots to %s", o->plots)
+                                      : MASU_CLI_OK;
 }
 
 /* ---- Rows ------------------------------------------------------------------------------------ */
@@ -157,13 +161,13 @@ static void run_model(const sim_model *p, const options *o, masu_table *t, FILE 
         masu_table_print(t, stdout);
         printf("  oracle: %.4f\n", sim_oracle(p));
     }
-    if (plots) plot(plots, o->plots, p, list, count);
+    if (plots) plot(plots, p, list, count);
 }
 
 static int run_all(const options *o) {
-    FILE *plots = NULL;
+    script plots = {0};
     masu_table t;
-    if (o->plots && !(plots = open_gnuplot(o))) return MASU_CLI_FAILURE;
+    if (o->plots && !open_script(o, &plots)) return MASU_CLI_FAILURE;
     masu_table_open(&t, columns, "");
     if (!masu_cli_quiet()) {
         printf("Means of %" PRIu32 " seeds. late: changes from %u frames after the event on.\n",
@@ -171,13 +175,13 @@ static int run_all(const options *o) {
     }
     for (uint32_t i = 0; i < sim_model_count; i++) {
         if (!o->model || !strcmp(o->model, sim_models[i].name))
-            run_model(&sim_models[i], o, &t, plots);
+            run_model(&sim_models[i], o, &t, plots.f);
     }
     for (uint32_t i = 0; i < o->trace_count; i++) {
         sim_model p = sim_of_trace(&o->traces[i]);
-        if (!o->model || !strcmp(o->model, p.name)) run_model(&p, o, &t, plots);
+        if (!o->model || !strcmp(o->model, p.name)) run_model(&p, o, &t, plots.f);
     }
-    int code = plots ? close_gnuplot(plots, o) : MASU_CLI_OK;
+    int code = plots.f ? draw_script(&plots, o) : MASU_CLI_OK;
     return masu_table_close(&t, o->csv) | code;
 }
 
@@ -234,7 +238,6 @@ static int run(masu_cli *cli) {
             return masu_cli_error("%s", error);
     }
     if (!is_known(&o)) return masu_cli_usage_error("there is no model '%s'", o.model);
-    signal(SIGPIPE, SIG_IGN); /* gnuplot may not be there to read */
     return run_all(&o);
 }
 

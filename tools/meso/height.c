@@ -1,4 +1,4 @@
-/* height.c: see input.h. stb reads the picture; its code is part of the platform library. */
+/* height.c: see input.h. The picture is somebody's: what is no whole PNG, or no period by its header, is not decoded. */
 #include "meso/input.h"
 
 #include <stdlib.h>
@@ -6,23 +6,13 @@
 #include "cli/cli.h"
 #include "image.h"
 
-/* As platform/image.c defines them: the header then declares what is there. */
-#if defined(__GNUC__)
-#define STBIDEF extern __attribute__((visibility("hidden")))
-#endif
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#define STBI_NO_HDR
-#define STBI_NO_LINEAR
-#include <stb/stb_image.h>
-
-static bool fits(const char *path, int width, int height) {
+static bool fits(const char *path, uint32_t width, uint32_t height) {
     if (width != height) {
-        masu_cli_error("%s: a period is square, this is %dx%d", path, width, height);
+        masu_cli_error("%s: a period is square, this is %ux%u", path, width, height);
         return false;
     }
-    if (width < 4 || (uint32_t)width > MASU_MESO_HEIGHT_SIDE_MAX) {
-        masu_cli_error("%s: an edge is from 4 to %u pixels, not %d", path,
+    if (width < 4 || width > MASU_MESO_HEIGHT_SIDE_MAX) {
+        masu_cli_error("%s: an edge is from 4 to %u pixels, not %u", path,
                        MASU_MESO_HEIGHT_SIDE_MAX, width);
         return false;
     }
@@ -35,28 +25,28 @@ bool masu_meso_read_heights(const char *path, const masu_meso_input *input,
     uint8_t *bytes = NULL;
     size_t count = 0;
     *patch = (masu_meso_patch){0};
-    if (!masu_file_read(path, (size_t)256 << 20, &bytes, &count, error, sizeof error)) {
+    if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, sizeof error)) {
         masu_cli_error("%s", error);
         return false;
     }
-    int width = 0, height = 0, channels = 0;
-    stbi_us *values = NULL;
-    bool good = stbi_info_from_memory(bytes, (int)count, &width, &height, &channels) != 0;
+    uint32_t width = 0, height = 0;
+    uint16_t *values = NULL;
+    bool good = masu_image_png_size(path, bytes, count, &width, &height, error, sizeof error);
     if (!good) {
-        masu_cli_error("%s: no PNG: %s", path, stbi_failure_reason());
+        masu_cli_error("%s", error);
     } else if ((good = fits(path, width, height))) {
-        values = stbi_load_16_from_memory(bytes, (int)count, &width, &height, &channels, 1);
-        if (!values) masu_cli_error("%s: broken PNG: %s", path, stbi_failure_reason());
+        values = masu_image_decode_gray(path, bytes, count, &width, &height, error, sizeof error);
+        if (!values) masu_cli_error("%s", error);
         good = values != NULL;
     }
     free(bytes);
     if (!good) return false;
-    size_t texels = (size_t)width * (size_t)width;
+    size_t texels = (size_t)width * width;
     double *heights = malloc(texels * sizeof *heights);
     if (!heights) exit(masu_cli_error("out of memory"));
     for (size_t i = 0; i < texels; i++) heights[i] = input->height * values[i] / 65535.0;
     free(values);
-    masu_meso_patch_from_grid(patch, heights, NULL, input->albedo, (uint32_t)width);
+    masu_meso_patch_from_grid(patch, heights, NULL, input->albedo, width);
     free(heights);
     patch->roughness = input->roughness;
     masu_meso_patch_finish(patch);

@@ -1,6 +1,5 @@
 /* main.c: the program masu-meso: a patch of relief in, the curves of its look by angle, its maps and a
  * report out. docs/meso.md is its manual. */
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -51,7 +50,6 @@ static bool get_patch(const request *r, masu_meso_patch *patch) {
 static int run_request(const request *r) {
     masu_meso_patch patch = {0};
     masu_meso_study study = {0};
-    signal(SIGPIPE, SIG_IGN); /* gnuplot may not be there to read */
     bool good = get_patch(r, &patch) && masu_meso_study_run(&patch, &r->study, &study);
     if (good) {
         good = masu_meso_write_curves(r->output, &study) &&

@@ -7,6 +7,7 @@
 
 #include "bake/texture/texel.h"
 #include "cli/cli.h"
+#include "cli/gnuplot.h"
 #include "image.h"
 
 #define DEGREES (180 / MASU_BAKE_PI)
@@ -183,32 +184,25 @@ void masu_meso_print(const char *name, const masu_meso_study *study) {
 
 /* ---- plots ---- */
 
-static void add_data(text *t, const masu_meso_study *study) {
-    add(t, "$curves << end\n");
+static void add_data(FILE *f, const masu_meso_study *study) {
+    fprintf(f, "$curves << end\n");
     for (uint32_t i = 0; i < study->setup.view_count; i++) {
         masu_meso_pair p = masu_meso_compare(study, i);
-        add(t, "%.5f %.3f %.3f %.4f %.4f %.4f %.4f\n", p.x, p.tilt[0], p.tilt[1], p.rough[0],
+        fprintf(f, "%.5f %.3f %.3f %.4f %.4f %.4f %.4f\n", p.x, p.tilt[0], p.tilt[1], p.rough[0],
             p.rough[1], p.ao[0], p.ao[1]);
     }
-    add(t, "end\n$shadow << end\n");
+    fprintf(f, "end\n$shadow << end\n");
     for (uint32_t i = 0; i < MASU_MESO_BINS; i++) {
         if (!(study->bins[i].count > 100)) continue;
-        add(t, "%.4f %.4f %.4f\n", masu_meso_bin_value(i), study->bins[i].lit, fitted_shadow(i));
+        fprintf(f, "%.4f %.4f %.4f\n", masu_meso_bin_value(i), study->bins[i].lit, fitted_shadow(i));
     }
-    add(t, "end\n$error << end\n");
+    fprintf(f, "end\n$error << end\n");
     for (uint32_t i = 0; i < MASU_MESO_JUDGED; i++) {
         const double *e = study->verdict[i].far;
-        add(t, "%g %.4f %.4f %.4f\n", masu_meso_judged[i], e[MASU_MESO_PLAIN],
+        fprintf(f, "%g %.4f %.4f %.4f\n", masu_meso_judged[i], e[MASU_MESO_PLAIN],
             e[MASU_MESO_OCCLUDED], e[MASU_MESO_CURVES]);
     }
-    add(t, "end\n");
-}
-
-/* A name in single quotes: gnuplot doubles the quote itself and knows no other escape. */
-static void add_output(text *t, const char *name, const char *end) {
-    add(t, "set output '");
-    for (const char *c = name; *c; c++) add(t, *c == '\'' ? "''" : "%c", *c);
-    add(t, "%s'\n", end);
+    fprintf(f, "end\n");
 }
 
 bool masu_meso_write_plots(const char *name, const masu_meso_study *study) {
@@ -229,29 +223,30 @@ bool masu_meso_write_plots(const char *name, const masu_meso_study *study) {
         {"_error.svg", "radiance against ray tracing", "relative RMS error",
          "$error using 1:2 with linespoints title 'plain', '' using 1:3 with linespoints title "
          "'plain and AO', '' using 1:4 with linespoints title 'curves'"}};
-    text t = {0};
-    add(&t, "set terminal svg size 560,360\nset grid\nset key top left\n");
-    add_data(&t, study);
-    for (size_t i = 0; i < sizeof plots / sizeof *plots; i++) {
-        add_output(&t, name, plots[i].end);
-        add(&t, "set title '%s'\nset ylabel '%s'\nset yrange [%s]\n", plots[i].title, plots[i].y,
-            i == 1 || i == 2 ? "0:1.05" : "*:*");
-        add(&t, "set xlabel '%s'\n",
-            i < 3    ? "cosine between view and polygon"
-            : i == 3 ? "offset - alpha (1 - AO)"
-                     : "view angle, degrees");
-        add(&t, "plot %s\n", plots[i].plot);
-    }
-    FILE *pipe =
-        popen("command -v gnuplot > /dev/null || exit 127; exec gnuplot > /dev/null 2>&1", "w");
-    if (pipe) (void)fwrite(t.data, 1, t.bytes, pipe);
-    free(t.data);
-    int status = pipe ? pclose(pipe) : -1;
-    if (status == 127 << 8) {
-        masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
-    } else if (status != 0) {
-        masu_cli_error("gnuplot could not write %s_*.svg", name);
+    char *commands = NULL;
+    size_t bytes = 0;
+    FILE *f = masu_gnuplot_can_name(name) ? open_memstream(&commands, &bytes) : NULL;
+    if (!f) {
+        masu_cli_error("no plots: gnuplot takes no name with control characters");
         return false;
     }
-    return true;
+    fprintf(f, "set terminal svg size 560,360\nset grid\nset key top left\n");
+    add_data(f, study);
+    for (size_t i = 0; i < sizeof plots / sizeof *plots; i++) {
+        fprintf(f, "set output ");
+        masu_gnuplot_quote(f, path_of(name, plots[i].end));
+        fprintf(f, "\nset title '%s'\nset ylabel '%s'\nset yrange [%s]\n", plots[i].title, plots[i].y,
+                i == 1 || i == 2 ? "0:1.05" : "*:*");
+        fprintf(f, "set xlabel '%s'\n",
+                i < 3    ? "cosine between view and polygon"
+                : i == 3 ? "offset - alpha (1 - AO)"
+                         : "view angle, degrees");
+        fprintf(f, "plot %s\n", plots[i].plot);
+    }
+    masu_gnuplot_end end = MASU_GNUPLOT_FAILED;
+    if (!fclose(f)) end = masu_gnuplot_run(NULL, commands, bytes);
+    free(commands);
+    if (end == MASU_GNUPLOT_MISSING) masu_cli_warn("no plots: there is no gnuplot (package gnuplot-nox)");
+    if (end == MASU_GNUPLOT_FAILED) masu_cli_error("gnuplot could not write %s_*.svg", name);
+    return end != MASU_GNUPLOT_FAILED;
 }

@@ -77,16 +77,21 @@ static const range_cost extended[] = {
 /* clang-format on */
 
 uint32_t masu_spirv_components(const spirv_module *m, uint32_t type) {
-    const spirv_instruction *t = type < m->bound ? m->def[type] : NULL;
-    if (!t) return 0;
-    if (t->op == 20 || t->op == SPIRV_TYPE_INT || t->op == SPIRV_TYPE_FLOAT) return 1;
-    if (t->op == SPIRV_TYPE_VECTOR || t->op == SPIRV_TYPE_MATRIX)
-        return masu_spirv_components(m, t->word[2]) * t->word[3];
+    uint32_t n = 1;
+    /* A matrix of vectors of scalars; a type may name itself. */
+    for (uint32_t depth = 0; depth < 3; depth++) {
+        const spirv_instruction *t = spirv_def(m, type);
+        if (!t) return 0;
+        if (t->op == 20 || t->op == SPIRV_TYPE_INT || t->op == SPIRV_TYPE_FLOAT) return n;
+        if (t->op != SPIRV_TYPE_VECTOR && t->op != SPIRV_TYPE_MATRIX) return 0;
+        n *= t->word[3];
+        type = t->word[2];
+    }
     return 0;
 }
 
 uint32_t masu_spirv_type_of(const spirv_module *m, uint32_t id) {
-    const spirv_instruction *d = id < m->bound ? m->def[id] : NULL;
+    const spirv_instruction *d = spirv_def(m, id);
     if (!d || d->count < 3 || (d->op >= 19 && d->op <= 39) || d->op == SPIRV_LABEL) return 0;
     return d->word[1];
 }

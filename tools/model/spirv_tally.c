@@ -37,6 +37,7 @@ typedef struct text {
 typedef struct maker {
     const spirv_module *m;
     masu_tally *out;
+    uint32_t *type_bytes; /* by id */
     text to;
     uint32_t next, base, set;
     uint32_t uint_type, function; /* type of counts; id of the entry function */
@@ -74,14 +75,10 @@ static void put_op(text *t, uint32_t op, uint32_t n, const uint32_t *operands) {
 
 /* ---- What a block does ----------------------------------------------------------------------- */
 
-static const spirv_instruction *def_of(const spirv_module *m, uint32_t id) {
-    return id < m->bound ? m->def[id] : NULL;
-}
-
 /* The variable that a pointer, an image or a sampled image comes from. */
 static const spirv_instruction *root_of(const spirv_module *m, uint32_t id) {
     for (uint32_t guard = 0; guard < 64; guard++) {
-        const spirv_instruction *d = def_of(m, id);
+        const spirv_instruction *d = spirv_def(m, id);
         if (!d || d->op == SPIRV_VARIABLE) return d;
         bool through = d->op == SPIRV_ACCESS_CHAIN || d->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN ||
                        d->op == SPIRV_LOAD || d->op == SPIRV_COPY_OBJECT || d->op == 86 ||
@@ -92,24 +89,34 @@ static const spirv_instruction *root_of(const spirv_module *m, uint32_t id) {
     return NULL;
 }
 
-static uint32_t type_bytes(const spirv_module *m, uint32_t type) {
-    const spirv_instruction *t = def_of(m, type);
-    uint32_t sum = 0;
-    if (!t) return 0;
-    switch (t->op) {
-    case SPIRV_TYPE_INT:
-    case SPIRV_TYPE_FLOAT: return t->word[2] / 8;
-    case SPIRV_TYPE_VECTOR:
-    case SPIRV_TYPE_MATRIX: return type_bytes(m, t->word[2]) * t->word[3];
-    case SPIRV_TYPE_ARRAY: {
-        const spirv_instruction *n = def_of(m, t->word[3]);
-        return n && n->op == SPIRV_CONSTANT ? type_bytes(m, t->word[2]) * n->word[3] : 0;
+static uint32_t bytes_of(const spirv_module *m, const uint32_t *bytes, uint32_t type) {
+    return type < m->bound ? bytes[type] : 0;
+}
+
+/* Of each type, by its id. In the order of the module, where what a type is made of stands before it: a type that
+ * names a later one, or itself, has no size, and none is looked at twice. */
+static uint32_t *size_types(const spirv_module *m) {
+    uint32_t *bytes = calloc(m->bound + 1u, sizeof *bytes);
+    for (size_t i = 0; bytes && i < m->count; i++) {
+        const spirv_instruction *t = &m->list[i], *n;
+        uint32_t sum = 0;
+        switch (t->op) {
+        case SPIRV_TYPE_INT:
+        case SPIRV_TYPE_FLOAT: sum = t->word[2] / 8; break;
+        case SPIRV_TYPE_VECTOR:
+        case SPIRV_TYPE_MATRIX: sum = bytes_of(m, bytes, t->word[2]) * t->word[3]; break;
+        case SPIRV_TYPE_ARRAY:
+            n = spirv_def(m, t->word[3]);
+            if (n && n->op == SPIRV_CONSTANT) sum = bytes_of(m, bytes, t->word[2]) * n->word[3];
+            break;
+        case SPIRV_TYPE_STRUCT:
+            for (uint32_t k = 2; k < t->count; k++) sum += bytes_of(m, bytes, t->word[k]);
+            break;
+        default: continue;
+        }
+        bytes[t->word[1]] = sum;
     }
-    case SPIRV_TYPE_STRUCT:
-        for (uint32_t k = 2; k < t->count; k++) sum += type_bytes(m, t->word[k]);
-        return sum;
-    default: return 0;
-    }
+    return bytes;
 }
 
 static bool number_of(masu_tally *p, masu_tally_kind kind, uint32_t set, uint32_t binding,
@@ -142,7 +149,7 @@ static bool touched_buffer(maker *k, uint32_t pointer, uint32_t type, masu_tally
                            sums s) {
     const spirv_instruction *v = root_of(k->m, pointer);
     if (!v || v->word[3] != STORAGE_BUFFER) return true;
-    return touched(k, pointer, kind, type_bytes(k->m, type), s);
+    return touched(k, pointer, kind, bytes_of(k->m, k->type_bytes, type), s);
 }
 
 static bool add_instruction(maker *k, const spirv_instruction *i, sums s) {
@@ -318,6 +325,7 @@ static void look(maker *k, size_t *first_type, size_t *first_function, bool *ear
 static void put_entry(maker *k, const spirv_instruction *one) {
     bool names = k->m->words[1] >= VERSION_1_4;
     uint32_t more = names ? 1 + k->out->count : 0;
+    if (one->count + more > 0xFFFFu) k->to.failed = true; /* more than an instruction can have */
     put(&k->to, (one->count + more) << 16 | one->op);
     for (uint32_t w = 1; w < one->count; w++) put(&k->to, one->word[w]);
     for (uint32_t n = 0; n < more; n++) put(&k->to, n ? k->variable[n - 1] : k->buffer);
@@ -374,7 +382,8 @@ bool masu_tally_make(const uint32_t *words, size_t count, uint32_t set, uint32_t
     memset(out, 0, sizeof *out);
     if (!spirv_from_words(words, count, &m)) return false;
     maker k = {.m = &m, .out = out, .next = m.bound, .base = base, .set = set};
-    sums *all = sum_blocks(&k);
+    k.type_bytes = size_types(&m);
+    sums *all = k.type_bytes ? sum_blocks(&k) : NULL;
     bool good = all && make(&k, all);
     out->words = k.to.words;
     out->word_count = k.to.count;
@@ -384,6 +393,7 @@ bool masu_tally_make(const uint32_t *words, size_t count, uint32_t set, uint32_t
     }
     free(all);
     free(k.constants);
+    free(k.type_bytes);
     spirv_free(&m);
     return good;
 }

@@ -2,6 +2,7 @@
 #include "model/write.h"
 
 #include "bench/sweep/ladder_file.h"
+#include "cli/markup.h"
 #include "image.h"
 
 #include <math.h>
@@ -186,23 +187,12 @@ bool masu_model_csv(const masu_model_sheet *m, FILE *f) {
 
 /* ---- XHTML ----------------------------------------------------------------------------------- */
 
-static void put(FILE *f, const char *text) {
-    for (; *text; text++) {
-        switch (*text) {
-        case '&': fputs("&amp;", f); break;
-        case '<': fputs("&lt;", f); break;
-        case '>': fputs("&gt;", f); break;
-        case '"': fputs("&quot;", f); break;
-        default: fputc((unsigned char)*text < 32 ? ' ' : *text, f); break;
-        }
-    }
-}
-
+/* columns: markup of ours. */
 static void put_head(FILE *f, const char *caption, const char *columns) {
-    fprintf(f, "<div class=\"wide\"><table>\n<caption>COMPUTED, not measured: %s</caption>\n<tr>%s",
-            caption, columns);
+    masu_markup(f, "<div class=\"wide\"><table>\n<caption>COMPUTED, not measured: %s</caption>\n<tr>", caption);
+    fputs(columns, f);
     for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++)
-        fprintf(f, "<th title=\"%s\">%s</th>", masu_model_classes[k].what,
+        masu_markup(f, "<th title=\"%s\">%s</th>", masu_model_classes[k].what,
                 masu_model_classes[k].name);
 }
 
@@ -214,15 +204,15 @@ static void put_passes(const masu_model_sheet *m, uint32_t r, FILE *f) {
         bool sum = p == MASU_PASS_COUNT;
         const masu_model_row *row = sum ? &one->sum : &one->rows[p];
         if (!row->runs) continue;
-        fprintf(f, "<tr><td>%s</td><td>%.2f</td><td>%.1f</td>",
+        masu_markup(f, "<tr><td>%s</td><td>%.2f</td><td>%.1f</td>",
                 sum ? "sum" : masu_model_pass_name(p), row->bytes * 1e-6, row->weighted * 1e-6);
         for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
             char text[24];
             floor_text(row, k, text);
             if (sum) snprintf(text, sizeof text, "%.2f", one->floor[k]);
-            fprintf(f, "<td>%s</td>", text);
+            masu_markup(f, "<td>%s</td>", text);
         }
-        fprintf(f, "<td>%s</td><td>%s</td></tr>\n", masu_model_sure_name(row->bytes_sure),
+        masu_markup(f, "<td>%s</td><td>%s</td></tr>\n", masu_model_sure_name(row->bytes_sure),
                 masu_model_sure_name(row->weighted_sure));
     }
     fputs("</table></div>\n", f);
@@ -234,17 +224,16 @@ static void put_rungs(const masu_model_sheet *m, FILE *f) {
     fputs("<th>part of rung 0, Xe80</th><th>measured ratio</th></tr>\n", f);
     for (uint32_t r = 0; r < m->rung_count; r++) {
         const masu_model_rung *one = &m->rungs[r];
-        fprintf(f, "<tr><td>%u: ", r);
-        put(f, one->name);
-        fprintf(f, "</td><td>%ux%u</td><td>%.1f</td><td>%.1f</td>", one->width, one->height,
+        masu_markup(f, "<tr><td>%u: %s</td>", r, one->name);
+        masu_markup(f, "<td>%ux%u</td><td>%.1f</td><td>%.1f</td>", one->width, one->height,
                 one->sum.bytes * 1e-6, one->sum.weighted * 1e-6);
         for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++)
-            fprintf(f, "<td>%.2f (%.2f)</td>", one->realistic[k], one->floor[k]);
-        fprintf(f, "<td>%.3f</td>", one->realistic[0] / m->rungs[0].realistic[0]);
+            masu_markup(f, "<td>%.2f (%.2f)</td>", one->realistic[k], one->floor[k]);
+        masu_markup(f, "<td>%.3f</td>", one->realistic[0] / m->rungs[0].realistic[0]);
         if (isnan(one->measured)) {
             fputs("<td></td></tr>\n", f);
         } else {
-            fprintf(f, "<td>%.3f</td></tr>\n", one->measured);
+            masu_markup(f, "<td>%.3f</td></tr>\n", one->measured);
         }
     }
     fputs("</table></div>\n", f);
@@ -255,11 +244,11 @@ static void put_chosen(const masu_model_sheet *m, FILE *f) {
     put_head(f, "the first rung whose realistic time fits", "<th></th>");
     fputs("</tr>\n", f);
     for (uint32_t b = 0; b < MASU_MODEL_BUDGETS; b++) {
-        fprintf(f, "<tr><td>%s</td>", names[b]);
+        masu_markup(f, "<tr><td>%s</td>", names[b]);
         for (uint32_t k = 0; k < MASU_MODEL_CLASSES; k++) {
             char text[16];
             chosen_text(m, k, b, text);
-            fprintf(f, "<td>%s</td>", text);
+            masu_markup(f, "<td>%s</td>", text);
         }
         fputs("</tr>\n", f);
     }
@@ -267,20 +256,15 @@ static void put_chosen(const masu_model_sheet *m, FILE *f) {
 }
 
 bool masu_model_xhtml(const masu_model_sheet *m, FILE *f) {
-    fprintf(f,
+    masu_markup(f,
             "<section id=\"model\">\n<h2>Model sheet: computed, not measured</h2>\n"
-            "<p>What each pass would take on five classes of GPU, at %ux%u. Counted at %ux%u on ",
-            m->sheet.width, m->sheet.height, m->drawn.width, m->drawn.height);
-    put(f, m->driver);
+            "<p>What each pass would take on five classes of GPU, at %ux%u. Counted at %ux%u on %s",
+            m->sheet.width, m->sheet.height, m->drawn.width, m->drawn.height, m->driver);
     fputs("; what is counted by pixel is scaled to the sheet's pixels.</p>\n", f);
     put_chosen(m, f);
     put_rungs(m, f);
     put_passes(m, 0, f);
-    for (size_t i = 0; i < sizeof notes / sizeof *notes; i++) {
-        fputs("<p>", f);
-        put(f, notes[i]);
-        fputs("</p>\n", f);
-    }
+    for (size_t i = 0; i < sizeof notes / sizeof *notes; i++) masu_markup(f, "<p>%s</p>\n", notes[i]);
     fputs("</section>\n", f);
     return !ferror(f);
 }

@@ -335,11 +335,9 @@ double sim_oracle(const sim_model *p) {
 /* ---- Traces
  * ------------------------------------------------------------------------------------ */
 
-bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t size) {
+bool sim_trace_parse(FILE *file, const char *path, sim_trace *out, char *error, size_t size) {
     char line[1024];
     memset(out, 0, sizeof *out);
-    FILE *file = fopen(path, "r");
-    if (!file) return snprintf(error, size, "%s: cannot be opened", path), false;
     const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     snprintf(out->name, sizeof out->name, "%.*s", (int)strcspn(name, "."), name);
     bool head = true, good = true;
@@ -350,7 +348,7 @@ bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t size) 
         if (line[0] == '#') continue;
         char *at = line + strcspn(line, ",");
         uint32_t n = 0;
-        double values[SIM_TRACE_RUNGS];
+        double values[SIM_TRACE_RUNGS] = {0};
         for (; *at == ',' && n < SIM_TRACE_RUNGS; n++) {
             char *end;
             values[n] = strtod(at + 1, &end);
@@ -371,7 +369,6 @@ bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t size) 
         }
         head = false;
     }
-    fclose(file);
     if (!good || out->columns < 2) {
         snprintf(error, size, "%s: line %u is no row of at least 2 and at most %u times", path,
                  number, SIM_TRACE_RUNGS);
@@ -383,6 +380,14 @@ bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t size) 
     }
     out->budget_ms = 0.5 * (sums[0] + sums[out->columns - 1]) / out->frames;
     return true;
+}
+
+bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t size) {
+    FILE *file = fopen(path, "r");
+    if (!file) return snprintf(error, size, "%s: cannot be opened", path), false;
+    bool good = sim_trace_parse(file, path, out, error, size);
+    fclose(file);
+    return good;
 }
 
 sim_model sim_of_trace(const sim_trace *trace) {

@@ -13,6 +13,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #define SIM_FRAMES_MOST 4096u
 #define SIM_RUNGS 16u
@@ -139,7 +140,9 @@ uint32_t sim_ladder(const sim_model *p, masu_governor_rung out[SIM_RUNGS]);
  * load: what nobody can beat. */
 double sim_oracle(const sim_model *p);
 
-/* "frame,1,0.88,...": a line of scales, then a line per frame. False: `error` says why. */
+/* "frame,1,0.88,...": a line of scales, then a line per frame. False: `error` says why. The path of what is parsed is
+ * for its name, and for messages. */
+bool sim_trace_parse(FILE *file, const char *path, sim_trace *out, char *error, size_t error_size);
 bool sim_trace_read(const char *path, sim_trace *out, char *error, size_t error_size);
 sim_model sim_of_trace(const sim_trace *trace);
 

@@ -1,7 +1,11 @@
 /* spirv.h: looking into SPIR-V modules: instructions, definitions, names. Enough of the
  * format (Khronos SPIR-V specification, sections 2.3 and 3) for tests that ask what a compiler has
- * made of a shader, and for the model sheet, which counts operations; modules are trusted to be
- * valid, since spirv-val has passed them. */
+ * made of a shader, and for the model sheet, which counts operations.
+ *
+ * A blob's modules may be anybody's. What is promised of a module that has been read: instructions are as long as
+ * their kind needs at least (operands up to there may be read by their place), their results are ids below the
+ * bound, names end. What is not: operands may be any number, so ids are looked up with spirv_def; a definition may
+ * be of any kind, stand anywhere, name itself. */
 #ifndef MASU_SPIRV_H
 #define MASU_SPIRV_H
 
@@ -86,6 +90,9 @@ typedef struct spirv_module {
 int spirv_from_words(const uint32_t *words, size_t count, spirv_module *out);
 int spirv_from_file(const char *path, spirv_module *out);
 void spirv_free(spirv_module *module);
+
+/* What defines an id; NULL: nothing, or it is none. */
+const spirv_instruction *spirv_def(const spirv_module *module, uint32_t id);
 
 /* Name of an id, or of a struct's member; "" if it has none. */
 const char *spirv_name(const spirv_module *module, uint32_t id);

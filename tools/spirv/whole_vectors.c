@@ -46,7 +46,10 @@ typedef struct state {
     uint32_t bound;
 } state;
 
-static const spirv_instruction *def(const state *s, uint32_t id) { return s->m.def[id]; }
+static const spirv_instruction *def(const state *s, uint32_t id) { return spirv_def(&s->m, id); }
+
+/* What is known of a pointer; one that is no id is not known. */
+static chain *chain_of(const state *s, uint32_t id) { return &s->chains[id < s->m.bound ? id : s->m.bound]; }
 
 static bool same(const place *a, const place *b, uint32_t depth) {
     return a->root == b->root && a->depth >= depth && b->depth >= depth &&
@@ -61,12 +64,13 @@ static bool start(const state *s, uint32_t base, chain *c) {
     if (b->op == SPIRV_VARIABLE) {
         const spirv_instruction *pointer = def(s, b->word[1]);
         uint32_t storage = b->word[3];
+        if (!pointer || pointer->op != SPIRV_TYPE_POINTER) return false;
         if (storage != UNIFORM && storage != PUSH_CONSTANT && storage != STORAGE_BUFFER) return false;
         *c = (chain){.known = true, .at = {.root = base}, .storage = storage, .type = pointer->word[3]};
         return true;
     }
     if (b->op != SPIRV_ACCESS_CHAIN && b->op != SPIRV_IN_BOUNDS_ACCESS_CHAIN) return false;
-    *c = s->chains[base];
+    *c = *chain_of(s, base);
     return c->known && !c->component;
 }
 
@@ -76,6 +80,7 @@ static bool follow(const state *s, const spirv_instruction *i, chain *c) {
     uint32_t last = i->count - 1;
     for (uint32_t k = 4; k <= last; k++) {
         const spirv_instruction *type = def(s, c->type), *number = def(s, i->word[k]);
+        if (!type) return false;
         if (type->op == SPIRV_TYPE_VECTOR) {
             c->component = true;
             c->number = i->word[k];
@@ -84,7 +89,8 @@ static bool follow(const state *s, const spirv_instruction *i, chain *c) {
         }
         if (c->at.depth == DEPTH) return false;
         bool structure = type->op == SPIRV_TYPE_STRUCT;
-        if (structure && (!number || number->op != SPIRV_CONSTANT)) return false;
+        if (structure && (!number || number->op != SPIRV_CONSTANT || number->word[3] >= type->count - 2)) return false;
+        if (type->count < 3) return false; /* made of nothing */
         c->at.index[c->at.depth++] = structure ? number->word[3] : ANY;
         c->type = type->word[structure ? 2 + number->word[3] : 2];
     }
@@ -101,9 +107,9 @@ static group *group_of(state *s, const place *at) {
 
 static void note_load(state *s, const spirv_instruction *load) {
     uint32_t id = load->word[3];
-    chain c = s->chains[id];
+    chain c = *chain_of(s, id);
     if (!c.known && !start(s, id, &c)) return;
-    uint32_t op = def(s, c.type)->op;
+    uint32_t op = def(s, c.type) ? def(s, c.type)->op : 0;
     if (c.component) {
         const spirv_instruction *number = def(s, c.number);
         s->chains[id].loaded = true;
@@ -150,11 +156,13 @@ static void decide(state *s) {
     for (size_t k = 0; k < s->m.count; k++) {
         const spirv_instruction *i = &s->m.list[k];
         chain c = {0};
-        if ((i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN) && follow(s, i, &c)) {
+        inside |= i->op == SPIRV_FUNCTION;
+        if (inside && (i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN) && follow(s, i, &c)) {
             c.alone = true;
             s->chains[i->word[2]] = c;
         }
     }
+    inside = false;
     for (size_t k = 0; k < s->m.count; k++) {
         const spirv_instruction *i = &s->m.list[k];
         inside |= i->op == SPIRV_FUNCTION;
@@ -227,8 +235,8 @@ static void write_out(state *s, pointer_type *list) {
         inside |= i->op == SPIRV_FUNCTION;
         if ((i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN) && s->chains[i->word[2]].change)
             put_chain(s, i, list);
-        else if (i->op == SPIRV_LOAD && s->chains[i->word[3]].change)
-            put_load(s, i, &s->chains[i->word[3]]);
+        else if (i->op == SPIRV_LOAD && chain_of(s, i->word[3])->change)
+            put_load(s, i, chain_of(s, i->word[3]));
         else
             put(s, i->word, i->count);
     }

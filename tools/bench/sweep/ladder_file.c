@@ -2,6 +2,7 @@
 #include "bench/sweep/ladder_file.h"
 
 #include "bench/sweep/knobs.h"
+#include "cli/cli.h"
 #include "image.h"
 
 #include <stdarg.h>
@@ -25,9 +26,7 @@ static bool wrong(const place *at, const char *format, ...) {
     va_end(arguments);
     if (at->rung >= 0) snprintf(rung, sizeof rung, "rungs[%d]: ", at->rung);
     snprintf(at->error, at->error_size, "%s: %s%s", at->file, rung, text);
-    for (char *c = at->error; *c; c++) {
-        if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
-    }
+    masu_cli_plain(at->error);
     return false;
 }
 

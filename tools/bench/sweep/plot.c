@@ -2,21 +2,17 @@
 #include "bench/sweep/plot.h"
 
 #include "bench/sweep/sweep.h"
+#include "cli/gnuplot.h"
 #include "image.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 /* What has no error at all has a place on a logarithmic axis, too. */
 #define LEAST_ERROR 1e-5
-
-enum { CANNOT_START = 127 };
 
 static double shown_error(const masu_row *row) { return fmax(row->flip, LEAST_ERROR); }
 
@@ -73,11 +69,10 @@ static uint32_t write_arrows(FILE *f, const masu_plot *p) {
         const char *name =
             strncmp(row->setting, "scale=", 6) ? row->setting : strchr(row->setting, '+');
         bool named = is_far(p->ratios[from], shown_error(parent), p->ratios[i], shown_error(row));
-        fprintf(f, "%.9g %.9g %.9g %.9g \"%s\"\n", p->ratios[from], shown_error(parent),
-                p->ratios[i], shown_error(row),
-                !named ? ""
-                : name ? name + (*name == '+')
-                       : row->setting);
+        fprintf(f, "%.9g %.9g %.9g %.9g ", p->ratios[from], shown_error(parent), p->ratios[i],
+                shown_error(row));
+        masu_gnuplot_label(f, !named ? "" : name ? name + (*name == '+') : row->setting);
+        fprintf(f, "\n");
         count++;
     }
     fprintf(f, "nan nan nan nan \"\"\nEOD\n");
@@ -109,6 +104,14 @@ static void write_ranges(FILE *f, const masu_plot *p) {
     fprintf(f, "set yrange [%.9g:%.9g]\n", low[1] / 1.15, 1.25 * high[1]);
 }
 
+static void write_title(FILE *f, const masu_plot *p, const char *what) {
+    char title[512];
+    snprintf(title, sizeof title, "%.400s: %s", p->title, what);
+    fprintf(f, "set title ");
+    masu_gnuplot_quote(f, title);
+    fprintf(f, " noenhanced\n");
+}
+
 static void write_commands(FILE *f, const masu_plot *p) {
     write_points(f, p);
     write_list(f, "front", p, p->front, p->front_count);
@@ -118,7 +121,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     write_ranges(f, p);
     fprintf(f, "set xlabel 'time / time of the base setting (%s)'\n", p->clock);
     fprintf(f, "set output 'front.svg'\nset key top right\n");
-    fprintf(f, "set title \"%s: error against time, and the ladder\" noenhanced\n", p->title);
+    write_title(f, p, "error against time, and the ladder");
     fprintf(f, "plot $front using 1:2 with lines lw 2 lc rgb '#222222' title 'Pareto front', \\\n");
     static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                          "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#999999"};
@@ -137,9 +140,7 @@ static void write_commands(FILE *f, const masu_plot *p) {
     }
     fprintf(f, "\n");
     fprintf(f, "set output 'techniques.svg'\nset key off\n");
-    fprintf(f,
-            "set title \"%s: what each technique does, from the setting without it\" noenhanced\n",
-            p->title);
+    write_title(f, p, "what each technique does, from the setting without it");
     fprintf(f, "plot $front using 1:2 with lines lw 1 dt 2 lc rgb '#888888'");
     if (arrows) {
         fprintf(f, ", \\\n  $arrows using 1:2:($3-$1):($4-$2) with vectors head size screen 0.01,20 "
@@ -149,51 +150,30 @@ static void write_commands(FILE *f, const masu_plot *p) {
     fprintf(f, "\n");
 }
 
-static bool write_file(const masu_plot *p, char *error, size_t error_size) {
-    char path[4096], *text = NULL;
-    size_t bytes = 0;
-    if (!masu_sweep_path(p->folder, "plots", path) || (mkdir(path, 0777) && errno != EEXIST) ||
-        !masu_sweep_path(p->folder, "plots/plots.gp", path)) {
-        snprintf(error, error_size, "%.500s: no folder for plots", p->folder);
-        return false;
-    }
-    FILE *f = open_memstream(&text, &bytes);
-    if (f) write_commands(f, p);
-    bool good = f && !fclose(f);
-    if (good) {
-        good = masu_file_write(path, text, bytes, error, error_size);
-    } else {
-        snprintf(error, error_size, "out of memory");
-    }
-    free(text);
-    return good;
-}
-
-/* gnuplot says what it dislikes on stderr, which goes nowhere: its exit code will do. */
-static int run_gnuplot(const char *folder) {
+/* The commands are left beside the plots, for who wants to change them. */
+static bool write_file(const masu_plot *p, const char *text, size_t bytes, char folder[4096], char *error,
+                       size_t error_size) {
     char path[4096];
-    int status = 0;
-    if (!masu_sweep_path(folder, "plots", path)) return CANNOT_START;
-    pid_t child = fork();
-    if (child == 0) {
-        int nowhere = open("/dev/null", O_RDWR);
-        if (nowhere < 0 || chdir(path)) _exit(1);
-        for (int fd = 0; fd < 3; fd++) dup2(nowhere, fd);
-        execlp("gnuplot", "gnuplot", "plots.gp", (char *)NULL);
-        _exit(CANNOT_START);
-    }
-    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    if (masu_sweep_path(p->folder, "plots", folder) && (!mkdir(folder, 0777) || errno == EEXIST) &&
+        masu_sweep_path(p->folder, "plots/plots.gp", path))
+        return masu_file_write(path, text, bytes, error, error_size);
+    snprintf(error, error_size, "%.500s: no folder for plots", p->folder);
+    return false;
 }
 
 bool masu_plot_draw(const masu_plot *plot, bool *drawn, char *error, size_t error_size) {
-    *drawn = false;
-    if (!write_file(plot, error, error_size)) return false;
-    int code = run_gnuplot(plot->folder);
-    *drawn = code == 0;
-    if (!code || code == CANNOT_START) return true;
-    snprintf(error, error_size, "%.500s/plots/plots.gp: gnuplot ends with exit code %d",
-             plot->folder, code);
+    char folder[4096], *text = NULL;
+    size_t bytes = 0;
+    masu_gnuplot_end end = MASU_GNUPLOT_FAILED;
+    FILE *f = open_memstream(&text, &bytes);
+    if (f) write_commands(f, plot);
+    bool good = f && !fclose(f);
+    if (!good) snprintf(error, error_size, "out of memory");
+    good = good && write_file(plot, text, bytes, folder, error, error_size);
+    if (good) end = masu_gnuplot_run(folder, text, bytes);
+    free(text);
+    *drawn = end == MASU_GNUPLOT_DRAWN;
+    if (!good || end != MASU_GNUPLOT_FAILED) return good;
+    snprintf(error, error_size, "%.500s/plots.gp: gnuplot cannot draw it", folder);
     return false;
 }

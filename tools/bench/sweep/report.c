@@ -8,6 +8,7 @@
 #include "bench/sweep/plot.h"
 #include "bench/sweep/sweep.h"
 #include "bench/sweep/sweep_files.h"
+#include "cli/markup.h"
 #include "image.h"
 #include "metric/flip.h"
 
@@ -56,6 +57,12 @@ static const json_t *setting_of(const report *r, const char *id) {
     return NULL;
 }
 
+/* 0 of what is no side of a picture. */
+static uint32_t side_of(const report *r, const char *key) {
+    double side = number_of(r, key);
+    return side >= 1.0 && side <= MASU_IMAGE_SIDE_MAX ? (uint32_t)side : 0;
+}
+
 /* Rows that sweep.json does not know are of no use: what their knobs are is not known. */
 static bool read_all(report *r) {
     char path[4096];
@@ -71,7 +78,7 @@ static bool read_all(report *r) {
         if (setting_of(r, r->rows[i].setting)) r->rows[kept++] = r->rows[i];
     }
     r->count = kept;
-    r->size = (VkExtent2D){(uint32_t)number_of(r, "width"), (uint32_t)number_of(r, "height")};
+    r->size = (VkExtent2D){side_of(r, "width"), side_of(r, "height")};
     r->out->rows = kept;
     r->out->settings = (uint32_t)json_array_size(json_object_get(r->sweep, "settings"));
     uint64_t pixels = (uint64_t)r->size.width * r->size.height;
@@ -152,18 +159,6 @@ static bool write_ladder(report *r) {
 
 /* ---- The page -------------------------------------------------------------------------------- */
 
-static void put(report *r, const char *text) {
-    for (; *text; text++) {
-        switch (*text) {
-        case '&': fputs("&amp;", r->page); break;
-        case '<': fputs("&lt;", r->page); break;
-        case '>': fputs("&gt;", r->page); break;
-        case '"': fputs("&quot;", r->page); break;
-        default: fputc((unsigned char)*text < 32 ? ' ' : *text, r->page); break;
-        }
-    }
-}
-
 static void put_base64(FILE *f, const uint8_t *bytes, size_t count) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t i = 0; i < count; i += 3) {
@@ -178,11 +173,9 @@ static bool put_image(report *r, const char *path, const char *type, const char 
     size_t count = 0;
     if (!masu_file_read(path, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, r->error, r->error_size))
         return false;
-    fprintf(r->page, "<img alt=\"");
-    put(r, text);
-    fprintf(r->page, "\" src=\"data:%s;base64,", type);
+    masu_markup(r->page, "<img alt=\"%s\" src=\"data:%s;base64,", text, type);
     put_base64(r->page, bytes, count);
-    fprintf(r->page, "\"/>");
+    masu_markup(r->page, "\"/>");
     free(bytes);
     return true;
 }
@@ -247,13 +240,8 @@ static void put_machines(report *r) {
     fputs("<p>", r->page);
     for (uint32_t i = 0; masu_machine_read(r->folder, i, &m); i++) {
         fputs(i ? "<br/>\n" : "", r->page);
-        put(r, m.date);
-        fputs(": ", r->page);
-        put(r, m.cpu);
-        fprintf(r->page, ", %u thread%s; ", m.threads, m.threads == 1 ? "" : "s");
-        put(r, m.driver);
-        fputs("; Masu ", r->page);
-        put(r, m.masu);
+        masu_markup(r->page, "%s: %s, %u thread%s; %s; Masu %s", m.date, m.cpu, m.threads,
+                    m.threads == 1 ? "" : "s", m.driver, m.masu);
     }
     fputs("</p>\n", r->page);
 }
@@ -261,9 +249,9 @@ static void put_machines(report *r) {
 /* What one must know to read the tables, in eight lines. */
 static void put_note(report *r) {
     FILE *f = r->page;
-    fprintf(f, "<ul>\n<li>The <b>base</b> is every knob at its default at full size; a setting is "
+    masu_markup(f, "<ul>\n<li>The <b>base</b> is every knob at its default at full size; a setting is "
                "named by the knobs that differ. Ratios are times by the base's.</li>\n");
-    fprintf(f,
+    masu_markup(f,
             "<li>The <b>truth</b> is the mean of %.0f full renders at places all over each pixel, "
             "with nothing left out for speed (masu render --truth). A picture is the last of up to "
             "%.0f frames in motion.</li>\n",
@@ -274,25 +262,25 @@ static void put_note(report *r) {
           "<li><b>RMSE</b> and flicker are of 255; flicker is the mean difference of successive "
           "frames at rest.</li>\n<li><b>hit/miss</b> and <b>depth</b> are of surfaces, beside ",
           f);
-    put(r, text_of(r->sweep, "depth"));
+    masu_markup(r->page, "%s", text_of(r->sweep, "depth"));
     fputs(" at the same size: pixels where one of the two sees sky, and how far apart the others "
           "are in widths of a pixel there. <b>relMSE</b> is of pixels that trace reflections, "
           "against many rays. A dash: the setting has no such value.</li>\n",
           f);
-    fprintf(f,
+    masu_markup(f,
             "<li><b>Times</b>: %.0f runs of each setting in turns with the base, the first round "
             "dropped; the ratio is the median of the rounds' own, beside it that of the least "
             "times. Where they differ by much, the machine was busy: by more than a tenth in %u "
             "rows of %u.</li>\n",
             number_of(r, "runs"), r->out->unsteady, r->out->rows);
     if (r->steady_count) {
-        fprintf(f,
+        masu_markup(f,
                 "<li>What looks best of many noisy times is lucky, too: so %u settings, the rungs "
                 "among them, were timed again by themselves and for longer (steady.csv); those are "
                 "the times of their rows.</li>\n",
                 r->steady_count);
     }
-    fprintf(f, "<li>The ladder goes by %s.</li>\n",
+    masu_markup(f, "<li>The ladder goes by %s.</li>\n",
             r->out->by_timestamps ? "the device's timestamps, which fit the wall clock"
                                   : "the wall clock: not all timestamps fit it");
     fputs("<li><b>Look for</b> the rung whose error you can bear, and what it saves; then for the "
@@ -303,17 +291,15 @@ static void put_note(report *r) {
 
 static void put_head(report *r) {
     FILE *f = r->page;
+    const char *scene = text_of(r->sweep, "scene");
     fputs(head, f);
-    put(r, text_of(r->sweep, "scene"));
-    fputs("</title>\n</head>\n<body>\n<h1>Error against run time: ", f);
-    put(r, text_of(r->sweep, "scene"));
-    fprintf(f, "</h1>\n<p>%ux%u at %.6g s; ", r->size.width, r->size.height, number_of(r, "time"));
-    put(r, text_of(r->sweep, "driver"));
-    fprintf(f, "; scene %s.</p>\n", text_of(r->sweep, "hash"));
+    masu_markup(f, "%s</title>\n</head>\n<body>\n<h1>Error against run time: %s</h1>\n", scene, scene);
+    masu_markup(f, "<p>%ux%u at %.6g s; %s; scene %s.</p>\n", r->size.width, r->size.height,
+                number_of(r, "time"), text_of(r->sweep, "driver"), text_of(r->sweep, "hash"));
     put_machines(r);
     put_note(r);
     if (r->out->rows < r->out->settings)
-        fprintf(f, "<p><b>%u of %u settings have been measured.</b></p>\n", r->out->rows,
+        masu_markup(f, "<p><b>%u of %u settings have been measured.</b></p>\n", r->out->rows,
                 r->out->settings);
 }
 
@@ -346,7 +332,7 @@ enum { COLUMNS = sizeof columns / sizeof *columns };
 static void put_columns(FILE *f, bool brief) {
     fputs("<tr><th>setting</th><th>render size</th>", f);
     for (size_t k = 0; k < COLUMNS; k++) {
-        if (!brief || columns[k].brief) fprintf(f, "<th>%s</th>", columns[k].name);
+        if (!brief || columns[k].brief) masu_markup(f, "<th>%s</th>", columns[k].name);
     }
     fputs("</tr>\n", f);
 }
@@ -359,15 +345,15 @@ static void put_cell(FILE *f, const char *format, double value) {
     } else {
         snprintf(text, sizeof text, format, value);
     }
-    fprintf(f, "<td>%s</td>", text);
+    masu_markup(f, "<td>%s</td>", text);
 }
 
 static void put_row(report *r, uint32_t i, const char *label, bool brief, bool marked) {
     const masu_row *row = &r->rows[i];
     FILE *f = r->page;
-    fprintf(f, "<tr%s><td>%s", marked ? " class=\"rung\"" : "", label);
-    put(r, row->setting);
-    fprintf(f, "</td><td>%.0fx%.0f</td>", row->render_width, row->render_height);
+    fputs(marked ? "<tr class=\"rung\">" : "<tr>", f);
+    masu_markup(f, "<td>%s%s</td><td>%.0fx%.0f</td>", label, row->setting, row->render_width,
+                row->render_height);
     const double values[COLUMNS] = {r->ratios[i],
                                     row->flip,
                                     row->flip_p99,
@@ -437,11 +423,8 @@ static void put_techniques(report *r) {
     for (uint32_t i = 0; i < r->count; i++) {
         const masu_row *row = &r->rows[i], *parent = masu_rows_find(r->rows, r->count, row->parent);
         if (!parent || parent == row) continue;
-        fputs("<tr><td>", f);
-        put(r, row->setting);
-        fputs("</td><td>", f);
-        put(r, row->parent);
-        fprintf(f, "</td><td>%.3f</td><td>%+.4f</td><td>%+.2f</td><td>%+.0f</td></tr>\n",
+        masu_markup(f, "<tr><td>%s</td><td>%s</td>", row->setting, row->parent);
+        masu_markup(f, "<td>%.3f</td><td>%+.4f</td><td>%+.2f</td><td>%+.0f</td></tr>\n",
                 r->ratios[i] / r->ratios[parent - r->rows], row->flip - parent->flip,
                 row->rmse - parent->rmse, (row->device_bytes - parent->device_bytes) / 1024.0);
     }
@@ -465,11 +448,7 @@ static void put_all(report *r) {
           "<tr><th>setting</th><th>why</th></tr>\n",
           r->page);
     json_array_foreach(json_object_get(r->sweep, "dropped"), k, one) {
-        fputs("<tr><td>", r->page);
-        put(r, text_of(one, "setting"));
-        fputs("</td><td>", r->page);
-        put(r, text_of(one, "why"));
-        fputs("</td></tr>\n", r->page);
+        masu_markup(r->page, "<tr><td>%s</td><td>%s</td></tr>\n", text_of(one, "setting"), text_of(one, "why"));
     }
     fputs("</table></div>\n", r->page);
 }
@@ -494,9 +473,8 @@ static bool put_pictures(report *r) {
     fputs("</p>\n", r->page);
     for (uint32_t i = 0; i < r->rung_count; i++) {
         const masu_row *row = &r->rows[r->rungs[i]];
-        fprintf(r->page, "<h3>Rung %u: ", i);
-        put(r, row->setting);
-        fprintf(r->page,
+        masu_markup(r->page, "<h3>Rung %u: %s", i, row->setting);
+        masu_markup(r->page,
                 "</h3>\n<p>%.3f of the base's time, FLIP %.4f; beside it the map of FLIP: "
                 "violet 0.06, red 0.25, orange 0.56, white 1."
                 "</p>\n<p class=\"pair\">",

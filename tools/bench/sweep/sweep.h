@@ -94,7 +94,7 @@ masu_row *masu_sweep_rows(const char *folder, uint32_t *count, char *error, size
 masu_row *masu_sweep_steady_rows(const char *folder, uint32_t *count, char *error,
                                  size_t error_size);
 
-/* FOLDER/NAME, or FOLDER/pictures/NAME. False: too long. */
+/* FOLDER/NAME, or FOLDER/pictures/NAME. False: too long, or the setting is no name. */
 bool masu_sweep_path(const char *folder, const char *name, char out[4096]);
 bool masu_sweep_picture(const char *folder, const char *setting, const char *suffix,
                         char out[4096]);

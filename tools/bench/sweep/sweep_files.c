@@ -23,7 +23,8 @@ bool masu_sweep_path(const char *folder, const char *name, char out[4096]) {
 
 bool masu_sweep_picture(const char *folder, const char *setting, const char *suffix,
                         char out[4096]) {
-    return snprintf(out, 4096, "%s/pictures/%s%s.png", folder, setting, suffix) < 4096;
+    return masu_setting_is_name(setting) &&
+           snprintf(out, 4096, "%s/pictures/%s%s.png", folder, setting, suffix) < 4096;
 }
 
 /* ---- sweep.json ------------------------------------------------------------------------------ */
@@ -256,11 +257,17 @@ bool masu_sweep_append(const char *folder, const char *name, const masu_row *row
 
 /* ---- Merging --------------------------------------------------------------------------------- */
 
+/* What says that it is a PNG is looked at: others' files are not spread as they are. */
 static bool copy(const char *from, const char *to, char *error, size_t error_size) {
     uint8_t *bytes = NULL;
     size_t count = 0;
-    bool good =
-        masu_file_read(from, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size) &&
+    struct masu_image picture = {0};
+    const char *end = strrchr(from, '.');
+    bool good = end && (!strcmp(end, ".png") ? masu_image_load_png(from, &picture, error, error_size)
+                                             : masu_image_load_pfm(from, &picture, error, error_size));
+    masu_image_free(&picture);
+    good =
+        good && masu_file_read(from, MASU_IMAGE_FILE_BYTES_MAX, &bytes, &count, error, error_size) &&
         masu_file_write(to, bytes, count, error, error_size);
     free(bytes);
     return good;
@@ -284,9 +291,10 @@ static bool merge_part(const char *folder, const char *part, merged *all, char *
         if (masu_rows_find(all->rows, all->count, rows[i].setting)) continue;
         if (all->count == MASU_SETTINGS_MOST)
             good = fail(error, error_size, part, "more settings than there are");
-        good = good && masu_sweep_picture(part, rows[i].setting, "", from) &&
-               masu_sweep_picture(folder, rows[i].setting, "", to) &&
-               (!strcmp(from, to) || copy(from, to, error, error_size));
+        if (good && (!masu_sweep_picture(part, rows[i].setting, "", from) ||
+                     !masu_sweep_picture(folder, rows[i].setting, "", to)))
+            good = fail(error, error_size, part, "has a setting whose picture has no path");
+        good = good && (!strcmp(from, to) || copy(from, to, error, error_size));
         if (!good) break;
         const masu_row *again = masu_rows_find(steady, steady_count, rows[i].setting);
         all->rows[all->count++] = rows[i];

@@ -40,6 +40,15 @@ int masu_rows_write(FILE *f, const masu_row *row) {
     return fprintf(f, "\n");
 }
 
+/* A setting's name is a file's, a plot's and a page's: knobs and their values have no other characters, and none
+ * begins with a dot. */
+static bool is_name(const char *text, size_t n) {
+    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=+.- ";
+    return n < MASU_SETTING_ID && *text != '.' && strspn(text, allowed) >= n;
+}
+
+bool masu_setting_is_name(const char *text) { return *text && is_name(text, strlen(text)); }
+
 bool masu_row_parse(const char *line, masu_row *out) {
     memset(out, 0, sizeof *out);
     for (uint32_t c = 0; c < COLUMNS; c++) {
@@ -47,7 +56,7 @@ bool masu_row_parse(const char *line, masu_row *out) {
         char *to = (char *)out + columns[c].offset, *end;
         if (!n || (line[n] == ',') != (c + 1 < COLUMNS)) return false;
         if (columns[c].text) {
-            if (n >= MASU_SETTING_ID) return false;
+            if (!is_name(line, n)) return false;
             memcpy(to, line, n);
         } else {
             double number = strtod(line, &end);

@@ -51,7 +51,11 @@ typedef struct masu_row {
 int masu_rows_header(FILE *f);
 int masu_rows_write(FILE *f, const masu_row *row);
 
-/* One line without its end. False: not as many fields, a text that is too long, or no number. */
+/* Whether it may be a setting's name, which is a file's, too: letters, digits, `_=+.-` and spaces, no dot in front,
+ * fewer than MASU_SETTING_ID. */
+bool masu_setting_is_name(const char *text);
+
+/* One line without its end. False: not as many fields, a text that is no name, or no number. */
 bool masu_row_parse(const char *line, masu_row *out);
 
 /* All rows of `text`, of which the last line may be torn. NULL and an `error` of one line: another

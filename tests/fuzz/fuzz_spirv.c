@@ -1,0 +1,53 @@
+/* fuzz_spirv.c: any bytes as a SPIR-V module, for all that reads one: the counters of the model sheet, what an
+ * instruction costs, what constants leave of it, loads of whole vectors. A module with counters, or with whole
+ * vectors, is one that can be read again. */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/spirv_reach.h"
+#include "model/spirv_tally.h"
+#include "spirv/whole_vectors.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+#define EXPECT(condition)                                                                          \
+    do {                                                                                           \
+        if (!(condition)) die(#condition);                                                         \
+    } while (0)
+
+static void die(const char *what) {
+    fprintf(stderr, "fuzz_spirv: %s\n", what);
+    abort();
+}
+
+static void read_again(uint32_t *words, size_t count) {
+    spirv_module m;
+    EXPECT(spirv_from_words(words, count, &m));
+    spirv_free(&m);
+    free(words);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    size_t count = size / 4, changed = 0;
+    uint32_t *words = malloc(count ? 4 * count : 1);
+    spirv_module m;
+    masu_tally tally;
+    if (!words) return 0;
+    memcpy(words, data, 4 * count);
+    if (spirv_from_words(words, count, &m)) {
+        const uint32_t value = 1;
+        const VkSpecializationMapEntry entry = {.constantID = 0, .size = sizeof value};
+        const VkSpecializationInfo special = {1, &entry, sizeof value, &value};
+        masu_spirv_cost all = masu_spirv_cost_straight(&m), some = masu_spirv_cost_reached(&m, NULL);
+        EXPECT(masu_spirv_cost_reached(&m, &special).plain != UINT32_MAX || all.plain || some.plain);
+        for (uint32_t id = 0; id < 8; id++) EXPECT(strlen(spirv_name(&m, id)) < size);
+        spirv_free(&m);
+    }
+    if (masu_tally_make(words, count, 3, 64, &tally)) read_again(tally.words, tally.word_count);
+    uint32_t *whole = masu_whole_vectors(words, count, &changed);
+    if (whole) read_again(whole, changed);
+    free(words);
+    return 0;
+}
