@@ -78,7 +78,7 @@ void masu_cli_warn(const char *format, ...) {
     va_start(arguments, format);
     if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
     va_end(arguments);
-    sanitize(text);
+    masu_cli_plain(text);
     masu_cli_progress_clear();
     fprintf(stderr, "%s: warning: %s\n", state.name, text);
     if (state.hears) state.hears(state.user, text);
