@@ -790,7 +790,7 @@ typedef struct masu_commands {
     uint64_t frame; /* number of this frame, from 0 */
     /* All of it, in order: one, and one more for each point that desc.split names, behind which the host's own
      * commands go. All parts are to be submitted, each once, with or without something between them, and
-     * best in one vkQueueSubmit: it takes 20 us or so each time. 1 for masu_load. */
+     * best in one vkQueueSubmit. 1 for masu_load that is MASU_INCOMPLETE. */
     uint32_t part_count;
     VkCommandBuffer parts[MASU_MAX_PARTS];
 } masu_commands;

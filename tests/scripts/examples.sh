@@ -1,7 +1,7 @@
 #!/bin/bash
 # The small examples beside minimal.c: loop in a window of a screen of its own, under the validation layer, with a
 # smaller window (masu_resize), a larger one (masu_destroy, masu_init) and rungs of the governor; split_screen,
-# whose halves show the scene from two places. drive.sh has the game.
+# whose halves show the scene from two places; host_pass, with commands of its own in a frame. drive.sh has the game.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 examples=${BUILD:-build}/examples
@@ -38,6 +38,18 @@ done
 "$examples/split_screen" 2> /dev/null
 [ $? = 2 ] || fail "split_screen without arguments"
 "$examples/split_screen" /dev/null "$folder/none.png" 2> /dev/null && fail "split_screen takes an empty scene"
+
+# ---- host_pass -------------------------------------------------------------------------------------
+
+"$examples/host_pass" "$scenes/test_both.masu" "$folder/own.png" > "$folder/out" 2> "$folder/err" ||
+    fail "host_pass: $(cat "$folder/out" "$folder/err")"
+grep -q '^3 parts, .*validation 0$' "$folder/out" || fail "host_pass: $(cat "$folder/out")"
+# Left of the box the sheet, bluer than the sky above it; the bar below.
+blue() { convert "$folder/own.png" -format "%[fx:int(255*(u.p{$1}.b-u.p{$1}.r))]" info:; }
+[ "$(blue 200,360)" -gt $(($(blue 200,160) + 10)) ] || fail "the sheet of host_pass is not there"
+[ "$(blue 200,659)" -lt -100 ] || fail "the bar of host_pass is not there"
+"$examples/host_pass" 2> /dev/null
+[ $? = 2 ] || fail "host_pass without arguments"
 
 # ---- loop ------------------------------------------------------------------------------------------
 
