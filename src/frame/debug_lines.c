@@ -1,6 +1,6 @@
 /* debug_lines.c: debug lines to the slot, as two places in the picture: cut off at the near plane and at the picture's sides in
  * double, so that nothing of them is beyond what a float holds, and 1 / depth is linear between them. */
-#include "frame/sprites.h"
+#include "frame/sprite_kinds.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
  * that the box may be seen in, by which decals.comp sorts them out. One that the camera does not see is left out.
  * The rectangle is that of the box's corners, two pixels wider for jitter and rounding; of a box that reaches through the
  * near plane it is the whole picture. */
-#include "frame/sprites.h"
+#include "frame/sprite_kinds.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * Both are sorted by the same key. The recording has a draw of particles before each slot of what is blended
  * (transparents.c) and one behind the last; each draws the run of them that lies between, as vertices from
  * 6 * first on: firstInstance stays 0, since another one would need the feature drawIndirectFirstInstance. */
-#include "frame/sprites.h"
+#include "frame/sprite_kinds.h"
 
 #include <math.h>
 #include <string.h>

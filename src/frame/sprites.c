@@ -1,6 +1,8 @@
 /* sprites.c: see sprites.h. */
 #include "frame/sprites.h"
 
+#include "frame/sprite_kinds.h"
+
 #include "base/error.h"
 
 #include <string.h>

@@ -1,0 +1,40 @@
+/* sprite_kinds.h: particles, decals and debug lines, a writer each: what of the host's arrays is seen goes to the slot, as
+ * the shaders read it. sprites.c calls them and owns what they write to; none of them can fail. */
+#ifndef MASU_SPRITE_KINDS_H
+#define MASU_SPRITE_KINDS_H
+
+#include "frame/frame_data.h"
+#include "frame/transparents.h"
+
+typedef struct masu_sprite_eye {
+    double at[3];
+    double right[3], up[3], forward[3]; /* unit */
+    double tan_x, tan_y, near_distance;
+    double middle[2]; /* of the picture, as a share of the tangents: 0, 0 but with a window of one's own */
+} masu_sprite_eye;
+
+/* A point as the eye has it: x to the right, y up, z ahead; sheared, where the picture's middle is not straight
+ * ahead, so that it is at x = y = 0. */
+static inline void masu_to_eye(const masu_sprite_eye *e, const double rel[3], double out[3]) {
+    out[0] = rel[0] * e->right[0] + rel[1] * e->right[1] + rel[2] * e->right[2];
+    out[1] = rel[0] * e->up[0] + rel[1] * e->up[1] + rel[2] * e->up[2];
+    out[2] = rel[0] * e->forward[0] + rel[1] * e->forward[1] + rel[2] * e->forward[2];
+    out[0] -= e->middle[0] * e->tan_x * out[2];
+    out[1] += e->middle[1] * e->tan_y * out[2];
+}
+
+/* No number becomes the lower bound. */
+static inline float masu_clamped(float v, float low, float high) {
+    return !(v > low) ? low : v > high ? high : v;
+}
+
+/* Each writes what it draws from `to` on and returns how many. draws: of the particles, before each slot of what is
+ * blended and after the last. part: the smallest rectangle of pixels around all decals: x, y, width, height. */
+uint32_t masu_particles_write(const masu_frame_data *f, const masu_sprite_eye *eye, masu_back_to_front *order,
+                              const masu_back_to_front *blended, uint32_t blended_count,
+                              VkDrawIndirectCommand *draws, unsigned char *to);
+uint32_t masu_decals_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to,
+                           uint32_t part[4]);
+uint32_t masu_debug_lines_write(const masu_frame_data *f, const masu_sprite_eye *eye, unsigned char *to);
+
+#endif
