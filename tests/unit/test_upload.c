@@ -316,6 +316,7 @@ static void times_of_a_clock_that_wraps_are_right(void **state) {
         m.plan.readback_times = 0;
         m.device.queries = FAKE(VkQueryPool, 1);
         m.device.vk.queue_family.timestampValidBits = bits[i];
+        m.plan.buffers[MASU_BUFFER_READBACK].bytes = m.plan.buffers[MASU_BUFFER_READBACK].stride = 4096;
         m.device.vk.properties.limits.timestampPeriod = 2.0f;
         assert_int_equal(masu_load(&m, &commands), MASU_OK);
         assert_int_equal(masu_frame(&m, &(masu_frame_desc){.rung = 0}, &commands), MASU_OK);
