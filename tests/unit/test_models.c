@@ -10,7 +10,9 @@
 
 #include <cmocka.h>
 
+#include "plan/compile.h"
 #include "support/bind.h"
+#include "support/desc.h"
 #include "support/dry_renderer.h"
 
 /* ---- Rules of the blob ----------------------------------------------------------------------- */
@@ -205,6 +207,51 @@ static void a_spare_one_is_shown(void **state) {
     assert_int_equal(masu_model_add(&m, masu_model_find(&m, "lid"), there, &added), MASU_ERROR_LIMIT);
 }
 
+/* ---- Places for copies ----------------------------------------------------------------------- */
+
+static masu_frame_plan plan_with(uint32_t parts, masu_reserve reserve, uint32_t live) {
+    static support_blob blob;
+    static masu_scene of;
+    masu_frame_plan plan;
+    masu_detail detail;
+    support_blob_write(&blob, parts);
+    support_accepted(&blob, &of);
+    masu_desc d = scene_desc(0, 1280, 720);
+    d.scene = &of;
+    d.reserve = reserve;
+    d.live_materials = live;
+    if (masu_compile(&d, 64, 64, &plan, &detail)) fail_msg("%s", detail.text);
+    return plan;
+}
+
+/* Of each place the size is that of the largest kind; a reserve of nothing, and of what nothing can be copied of,
+ * changes no buffer. */
+static void places_are_as_large_as_the_largest(void **state) {
+    (void)state;
+    static masu_frame_plan none, some;
+    const masu_reserve empty = {.models = 0};
+    none = plan_with(SUPPORT_ALL | SUPPORT_LIVE, empty, 0);
+    assert_int_equal(none.buffers[MASU_BUFFER_LIVE_MATERIALS].bytes, 0);
+    some = plan_with(SUPPORT_ALL | SUPPORT_LIVE, (masu_reserve){.models = 5, .lights = 3}, 1);
+    assert_int_equal(some.scene.models, none.scene.models + 5);
+    assert_int_equal(some.scene.model_nodes, none.scene.model_nodes + 5 * 2); /* of the lid */
+    assert_int_equal(some.scene.instances, none.scene.instances + 5);
+    assert_int_equal(some.scene.lights, none.scene.lights + 3);
+    assert_int_equal(masu_own_models(&some), none.scene.models);
+    assert_int_equal(masu_own_nodes(&some), none.scene.model_nodes);
+    assert_int_equal(some.draws, none.draws);
+    assert_true(some.listed >= none.listed + 5);
+    uint64_t each = sizeof(struct masu_material_data);
+    if (some.needs.traced) each += sizeof(struct masu_trace_material);
+    assert_int_equal(masu_live_material_bytes(&some), some.scene.materials * each);
+    assert_true(some.buffers[MASU_BUFFER_LIVE_MATERIALS].bytes >= 2 * some.scene.materials * each);
+    none = plan_with(SUPPORT_ALL, empty, 0);
+    some = plan_with(SUPPORT_ALL, (masu_reserve){.models = 5}, 0); /* nothing moves */
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++)
+        assert_int_equal(some.buffers[b].bytes, none.buffers[b].bytes);
+    assert_memory_equal(&some.scene, &none.scene, sizeof some.scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_blob_tells_its_models),
@@ -213,6 +260,7 @@ int main(void) {
         cmocka_unit_test(a_model_carries_its_nodes),
         cmocka_unit_test(what_cannot_be_changes_nothing),
         cmocka_unit_test(a_spare_one_is_shown),
+        cmocka_unit_test(places_are_as_large_as_the_largest),
     };
     return cmocka_run_group_tests(tests, support_make_edge, NULL);
 }
