@@ -43,7 +43,7 @@ static int is_fine(const masu_decal *d) {
 /* First and last pixel that it may touch; 0: the camera does not see it. */
 static int find_pixels(const masu_decal *d, const masu_sprite_eye *eye, const uint32_t size[2], uint32_t low[2],
                        uint32_t high[2]) {
-    double least[2] = {INFINITY, INFINITY}, greatest[2] = {-INFINITY, -INFINITY};
+    double least[2] = {HUGE_VAL, HUGE_VAL}, greatest[2] = {-HUGE_VAL, -HUGE_VAL};
     uint32_t before = 0;
     for (uint32_t corner = 0; corner < 8; corner++) {
         double rel[3], seen[3];
