@@ -101,7 +101,6 @@ static const char *add_ground(const masu_bake_box *box, masu_bake_content *conte
     masu_bake_override grey = {.base_color = true, .roughness = true, .metallic = true, .specular = true};
     const float color[3] = {0.16f, 0.16f, 0.165f};
     memcpy(grey.value.base_color, color, sizeof color);
-    grey.value.base_color[3] = 1;
     grey.value.roughness = 0.28f;
     grey.value.specular = 0.5f;
     masu_bake_overrides overrides = {&grey, 1};

@@ -67,7 +67,7 @@ static void cut(keys *k, const piece *p, double low, double high, int depth) {
 static void find_error(const float *values, size_t count, unsigned components, keys *k) {
     double range = 0;
     for (unsigned c = 0; c < components; c++) {
-        double low = INFINITY, high = -INFINITY;
+        double low = HUGE_VAL, high = -HUGE_VAL;
         for (size_t i = 0; i < count; i++) {
             double value = (double)values[(3 * i + 1) * components + c];
             low = fmin(low, value);
