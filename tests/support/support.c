@@ -137,8 +137,9 @@ void make_own(masu_session *s, own_renderer *x, const masu_desc *desc) {
     if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
     x->block = host_block(need.host_bytes);
     if (masu_init(&d, x->block, need.host_bytes, &x->m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(x->m, &commands) == MASU_INCOMPLETE)
-        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+    while (masu_load(x->m, &commands) == MASU_INCOMPLETE) {
+        if (commands.part_count) assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+    }
 }
 
 void unmake_own(masu_session *s, own_renderer *x) {
