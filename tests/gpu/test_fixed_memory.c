@@ -172,7 +172,6 @@ static void query_and_use(const char *scene) {
          * */
         masu_memory_row rows[MEMORY_ROWS];
         uint32_t n = memory_rows(m, rows);
-        assert_true(n <= 96);
         uint64_t end = 0;
         for (uint32_t k = 0; k < n; k++) {
             uint64_t row_end = rows[k].offset + rows[k].bytes;
