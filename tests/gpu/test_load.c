@@ -97,12 +97,13 @@ static uint64_t host_bytes_of(const masu_desc *d) {
     return need.host_bytes;
 }
 
-/* All steps of x, each in the submit of a frame of `now`, whose next frame is number *n. */
-static void load_in_steps(masu_session *s, own_renderer *x, own_renderer *now, uint32_t *n) {
+/* All steps of x, each in the submit of a frame of `now`, whose next frame is number *n. Returns how many are submitted
+ * without a byte. */
+static uint32_t load_in_steps(masu_session *s, own_renderer *x, own_renderer *now, uint32_t *n) {
     masu_commands step;
     masu_result result;
     uint64_t sum = 0, left = UINT64_MAX;
-    uint32_t steps = 0, submitted = 0;
+    uint32_t steps = 0, submitted = 0, built = 0;
     do {
         result = masu_load(x->m, &step);
         assert_true(result == MASU_OK || result == MASU_INCOMPLETE);
@@ -112,26 +113,28 @@ static void load_in_steps(masu_session *s, own_renderer *x, own_renderer *now, u
         left = step.load_left;
         steps++;
         submitted += step.part_count;
+        built += step.part_count && !step.load_bytes; /* structures of ray queries; kept images get their layout */
         assert_true(*n < MOST);
         draw_next(s, now, (*n)++, &step);
     } while (result == MASU_INCOMPLETE);
     assert_int_equal(left, 0);
     assert_true(steps > 1 && steps >= sum / STEP);
-    printf("  %llu bytes in %u steps, %u of them submitted\n", (unsigned long long)sum, steps, submitted);
+    printf("  %llu bytes in %u steps, %u of them submitted, %u without any\n", (unsigned long long)sum, steps,
+           submitted, built);
+    return built;
 }
 
 /* Three scenes one after the other in two blocks, with a frame to each step. */
-static void change_scenes(const char *const names[3], const masu_desc *more) {
-    masu_session s, scenes[3];
+static void change_scenes(masu_session *device, const char *const names[3], const masu_desc *more) {
+    masu_session scenes[3];
     masu_desc all[3];
     own_renderer x[3];
     static masu_pipelines pool;
     uint64_t bytes = 0;
     memset(&pool, 0, sizeof pool);
     for (uint32_t i = 0; i < 3; i++) open_scene(&scenes[i], names[i]);
-    open_device(&s);
     for (uint32_t i = 0; i < 3; i++) {
-        all[i] = desc_of(&s, &scenes[i], more);
+        all[i] = desc_of(device, &scenes[i], more);
         all[i].vulkan.pipelines = &pool;
         all[i].load_step = STEP;
         uint64_t own = host_bytes_of(&all[i]);
@@ -139,56 +142,74 @@ static void change_scenes(const char *const names[3], const masu_desc *more) {
     }
     void *blocks[2] = {host_block(bytes), host_block(bytes)};
     masu_commands step;
-    begin(&s, &x[0], &all[0], blocks[0], bytes);
+    begin(device, &x[0], &all[0], blocks[0], bytes);
     while (masu_load(x[0].m, &step) == MASU_INCOMPLETE) {
         char error[ERROR_SIZE];
-        if (step.part_count) assert_ok(masu_headless_run(&s.host, step.buffer, error, sizeof error));
+        if (step.part_count) assert_ok(masu_headless_run(&device->host, step.buffer, error, sizeof error));
     }
     for (uint32_t i = 0; i < 3; i++) {
         masu_desc at_once = all[i];
         at_once.load_step = 0;
         at_once.vulkan.pipelines = NULL;
-        draw_alone(&s, &at_once, MOST);
+        draw_alone(device, &at_once, MOST);
         uint32_t n = 0;
-        while (n < AFTER) draw_next(&s, &x[i], n++, NULL);
-        if (i) end(&s, &x[i - 1]); /* its block is free for the next */
-        draw_next(&s, &x[i], n++, NULL);
+        while (n < AFTER) draw_next(device, &x[i], n++, NULL);
+        if (i) end(device, &x[i - 1]); /* its block is free for the next */
+        draw_next(device, &x[i], n++, NULL);
         if (i == 2) break;
         uint32_t made = pool.made, taken = pool.taken;
-        begin(&s, &x[i + 1], &all[i + 1], blocks[(i + 1) % 2], bytes);
+        begin(device, &x[i + 1], &all[i + 1], blocks[(i + 1) % 2], bytes);
         printf("  %s after %s: %u pipelines made, %u taken\n", names[i + 1], names[i], pool.made - made,
                pool.taken - taken);
-        draw_next(&s, &x[i], n++, NULL);
-        load_in_steps(&s, &x[i + 1], &x[i], &n);
+        draw_next(device, &x[i], n++, NULL);
+        uint32_t built = load_in_steps(device, &x[i + 1], &x[i], &n);
+        if (more->ray_query == MASU_ON && !i) assert_true(built > 2);
     }
     assert_true(pool.taken > 15);
-    end(&s, &x[2]);
+    end(device, &x[2]);
     free(blocks[0]);
     free(blocks[1]);
     for (uint32_t i = 0; i < pool.count; i++) assert_int_equal(pool.rows[i].users, 0);
-    masu_pipelines_destroy(&s.desc.vulkan, &pool);
-    close_session(&s);
+    masu_pipelines_destroy(&device->desc.vulkan, &pool);
     for (uint32_t i = 0; i < 3; i++) close_session(&scenes[i]);
 }
 
 static const char *const names[3] = {"test_live", "test_live_moved", "test_both"};
 
+static void change_on_device(const masu_desc *more) {
+    masu_session device;
+    masu_session_desc d = test_desc(NULL, 8, 8);
+    d.no_renderer = true;
+    d.host.ray_query = more->ray_query == MASU_ON;
+    open_session(&device, &d);
+    if (!d.host.ray_query || device.host.ray_query) change_scenes(&device, names, more);
+    close_session(&device);
+}
+
 static void in_memory_that_the_host_writes(void **state) {
     (void)state;
     masu_desc more = {0};
-    change_scenes(names, &more);
+    change_on_device(&more);
 }
 
 static void through_a_staging_buffer(void **state) {
     (void)state;
     masu_desc more = {.deny.unified_memory = 1};
-    change_scenes(names, &more);
+    change_on_device(&more);
+}
+
+/* Their structures are built in steps, too. */
+static void with_ray_queries(void **state) {
+    (void)state;
+    masu_desc more = {.ray_query = MASU_ON};
+    change_on_device(&more);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(in_memory_that_the_host_writes),
         cmocka_unit_test(through_a_staging_buffer),
+        cmocka_unit_test(with_ray_queries),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
