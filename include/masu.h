@@ -207,8 +207,11 @@ typedef struct masu_scene {
     uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
 } masu_scene;
 
-/* Checks every offset, count, index, float and the hash of `blob` and fills `*out`. Allocates
- * nothing, keeps nothing. `blob` must be 16-byte aligned. It must stay readable and unchanged until
+/* Checks every offset, count, index, float and the hash of `blob` and fills `*out`; in time that grows with
+ * its size alone. A blob with an SDF holds SPIR-V, which the driver will compile and run: that it is whole, asks for
+ * nothing that Masu does not bind and was compiled for this blob's counts is checked, that it does no harm is not, and
+ * cannot be. Such a blob is as trusted as the program (docs/blob.md, Trust): take it from your own build, or
+ * check a signature first. Allocates nothing, keeps nothing. `blob` must be 16-byte aligned. It must stay readable and unchanged until
  * masu_load has returned MASU_OK for the last renderer made from it; afterwards it may be freed.
  * MASU_ERROR_ARGUMENT: `blob` or `out` is NULL, or `blob` misaligned. MASU_ERROR_VERSION: a blob of another format
  * version. MASU_ERROR_SCENE: anything else; the detail names the section and the element. */
