@@ -1,5 +1,6 @@
 #!/bin/bash
-# masu-bake: what a scene takes from where its models are: their cameras, and the ground that they fall on.
+# masu-bake: what a scene takes from where its models are (their cameras, and the ground that they fall on), and that
+# what is left out is said.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 bake=$(realpath "${BUILD:-build}/bin/masu-bake")
@@ -90,5 +91,23 @@ rests 4 -1.5 -1.5 5.5
 rests 4 false 4.5 10.0
 wrong ': models\[0\].drop: expected' "{\"models\": [$sphere, \"drop\": \"down\"}]}"
 
-[ $failures = 0 ] && echo "masu-bake: cameras and drops as expected"
+# ---- what is left out is said ----------------------------------------------------------------------
+
+# Points and lines, of glTF by our reader, of other formats by Assimp; a pattern that no material has.
+sed 's/"primitives": \[/"primitives": [{"attributes": {"POSITION": 0}, "mode": 0}, {"attributes": {"POSITION": 0}, "mode": 1}, /' \
+    "$folder/camera.gltf" > "$folder/points.gltf"
+accepts "$folder/points.gltf" "${x[@]}"
+says stderr 'points.gltf: 1 primitives are points: left out (first: triangle)'
+says stderr 'points.gltf: 1 primitives are lines: left out (first: triangle)'
+printf 'o thing\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\nl 2 3\n' > "$folder/lines.obj"
+accepts "$folder/lines.obj" "${x[@]}"
+says stderr 'lines.obj: 2 points and lines left out (in 1 meshes: "thing")'
+scene '{"models": [{"file": "lines.obj", "materials": [{"match": "pai?t", "coat": 1}]}]}'
+accepts "$json" "${x[@]}"
+says stderr 'models\[0\]: no material matches "pai?t"'
+run "$json" "${x[@]}" --strict
+[ $code = 1 ] || fail "--strict takes warnings: exit code $code"
+says stderr '2 warnings, which --strict takes for errors'
+
+[ $failures = 0 ] && echo "masu-bake: cameras, drops and warnings as expected"
 [ $failures = 0 ]
