@@ -27,7 +27,7 @@ one() {
     {
         echo "<figure>"
         if [ $code = 0 ] && [ ! "${NO_PICTURES:-}" ]; then
-            if timeout 120 "$masu" render "$at.masu" -o "$at.png" --size "$size" --aa smaa-high --quiet > /dev/null 2>> "$at.err"; then
+            if timeout 300 "$masu" render "$at.masu" -o "$at.png" --size "$size" --aa smaa-high --quiet > /dev/null 2>> "$at.err"; then
                 echo "<img src=\"$number.png\" loading=\"lazy\" alt=\"\">"
             else
                 echo "WRONG: does not render" > "$at.outcome"
@@ -62,6 +62,7 @@ for folder in "$@"; do
     [ -d "$folder" ] || continue
     while read -r file; do
         is_model "$file" || continue
+        case $folder in */tracks | */tracks/) [[ $file == *.acc ]] || continue ;; esac # beside descriptions in XML
         number=$((number + 1))
         printf '%s\0%s\0%s\0%s\0%s\0' --one "$out" "$(printf %04d $number)" "$file" "${file#"${folder%/}"/}"
     done < <(find "$folder" -type f ! -size +64M -path "${MATCH:-*}" | LC_ALL=C sort)
