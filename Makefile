@@ -27,7 +27,7 @@ CC     := $(if $(filter default,$(origin CC)),gcc,$(CC))
 CXX    := $(if $(filter default,$(origin CXX)),g++,$(CXX))
 PREFIX ?= /usr/local
 DESTDIR ?=
-WORLD  ?= engine
+WORLD  ?= garden
 SIZE   ?= 1920x1080
 DRIVERS ?= system
 FULL   ?=
@@ -113,19 +113,21 @@ tools: $(addprefix $(BUILD)/bin/,masu masu-bake masu-sdfc masu-meso $(if $(HAVE_
 shaders: $(SPIRV) ## compile, validate and optimise all shaders
 scenes: $(SCENES) ## bake scenes/*.json to build/scenes/*.masu
 
-.PHONY: demo demo-picture view view-window worlds hostile
+.PHONY: demo demo-picture view view-window worlds hostile gallery
 demo: deps-demo $(if $(filter forza,$(WORLD)),deps-worlds)
-demo: ## install what is missing, build, bake, render: WORLD=engine|forza|city|... SIZE=1920x1080 TIME=
+demo: ## install what is missing, build, bake, render: WORLD=garden|engine|forza|city|... SIZE=1920x1080 TIME= DEMO_ARGS=
 	+$(V)$(more) demo-picture
 
-picture := $(BUILD)/demo$(if $(filter-out engine,$(WORLD)),-$(WORLD)).png
+# At full size with smooth edges; what else is best is the scene's.
+DEMO_ARGS ?= --setting aa=smaa-high+silhouettes=on
+picture := $(BUILD)/demo$(if $(filter-out garden,$(WORLD)),-$(WORLD)).png
 picture_of := $(BUILD)/$(if $(filter $(WORLDS),$(WORLD)),worlds,scenes)/$(WORLD).masu
 demo-picture: $(BUILD)/bin/masu $(picture_of)
-	$(V)$(BUILD)/bin/masu render $(picture_of) -o $(picture) --size $(SIZE) --time $(or $(TIME),$(TIME_$(WORLD)),0)
+	$(V)$(BUILD)/bin/masu render $(picture_of) -o $(picture) --size $(SIZE) --time $(or $(TIME),$(TIME_$(WORLD)),0) $(DEMO_ARGS)
 	@echo "The picture is $(abspath $(picture))"
 
 view: deps-demo deps-view $(if $(filter forza,$(WORLD)),deps-worlds)
-view: ## install what is missing, build, bake, look at it in a window: WORLD=engine|forza|city|... VIEW_ARGS=
+view: ## install what is missing, build, bake, look at it in a window: WORLD=garden|engine|forza|city|... VIEW_ARGS=
 	+$(V)$(more) view-window
 
 # A scene with a description is baked again when that or its field changes; worlds take too long for that.
@@ -152,6 +154,10 @@ drive-long: deps-test deps-view deps-worlds ## a lap of forza by script, under t
 	+$(V)$(more) drive-built
 	$(V)BUILD='$(BUILD)' tests/drive_long.sh $(DRIVE_ARGS)
 drive-built: $(BUILD)/examples/drive $(BUILD)/worlds/forza.masu $(BUILD)/worlds/forza.track
+
+gallery: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## a page of all of assimp-testmodels and TORCS's tracks, build/gallery/index.html: MATCH='*OBJ*' SIZE=
+	$(V)BUILD='$(BUILD)' SIZE='$(if $(filter command line,$(origin SIZE)),$(SIZE),480x270)' MATCH='$(or $(MATCH),*)' \
+	    tools/gallery/gallery.sh $(BUILD)/gallery $(or $(MODELS),/usr/share/assimp/models) $(TORCS)/tracks
 
 hostile: $(BUILD)/bin/masu-bake $(BUILD)/bin/masu ## bake all of assimp-testmodels, broken ones too: RENDER=1
 	$(V)BUILD='$(BUILD)' config='$(config)' RENDER='$(RENDER)' tests/hostile.sh

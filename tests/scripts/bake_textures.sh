@@ -148,6 +148,78 @@ warns 0
 [ "$(counts textures)" = 1 ] || fail "quad.acc: $(counts textures) textures"
 grep -aq near.png "$folder/x.masu" || fail "quad.acc: another texture"
 
+# What a material of an OBJ calls a bump map: heights become normals, normals stay. The strength is -bm.
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n' > "$folder/quad.obj"
+material() { printf 'newmtl m\nKd 1 1 1\nNs 0\n%s\n' "$1" > "$folder/m.mtl"; }
+# texels_of NAME: what NAME is drawn with, as text
+texels_of() { bakes "$folder/quad.obj" && cp "$folder/x.masu" "$folder/$1.masu"; }
+convert "$pictures/bricks.png" -colorspace gray "$folder/heights.png"
+cp "$pictures/bricks_normal.png" "$folder/normals.png"
+for line in 'bump heights.png' 'bump -bm 4 heights.png' 'map_bump normals.png' 'norm normals.png' 'norm heights.png'; do
+    material "$line"
+    texels_of "${line// /_}"
+    warns 0
+    [ "$(counts textures)" = 1 ] || fail "$line: $(counts textures) textures"
+done
+differ() { ! cmp -s "$folder/$1.masu" "$folder/$2.masu" || fail "$1 is as $2"; }
+differ bump_heights.png bump_-bm_4_heights.png
+cmp "$folder/map_bump_normals.png.masu" "$folder/norm_normals.png.masu" || fail "normals called bump are something else"
+cmp "$folder/bump_heights.png.masu" "$folder/norm_heights.png.masu" || fail "heights called normals are something else"
+# Heights in a normal map's place would be one slope; a plane of them none at all.
+convert -size 64x64 xc:'gray(30%)' "$folder/heights.png"
+material 'bump heights.png'
+texels_of flat
+convert -size 64x64 xc:'rgb(128,128,255)' "$folder/heights.png"
+material 'norm heights.png'
+texels_of up
+cmp "$folder/flat.masu" "$folder/up.masu" || fail "a level of heights is no plane"
+# Beside normals heights are of no use, which is said.
+material "$(printf 'norm normals.png\nbump heights.png')"
+bakes "$folder/quad.obj"
+warns 1 'textures that nothing is made of: heights.png'
+
+# Alpha: a mask where the picture looks like one, or has been given for it; of gloss nothing is a hole.
+convert -size 64x64 gradient:'gray(10%)-gray(70%)' "$folder/gloss.png"
+convert "$pictures/checker.png" -resize 64x64! "$folder/gloss.png" -alpha off -compose CopyOpacity -composite "$folder/shiny.png"
+material 'map_Kd shiny.png'
+bakes "$folder/quad.obj"
+warns 1 'shiny.png: its alpha is not that of a mask (.* % of it is below the cut-off): taken for opaque'
+[ "$(counts texels)" = 172 ] || fail "a gloss in alpha: $(counts texels) units of texels"
+"$bake" "$folder/quad.obj" --strict -o "$folder/y.masu" > /dev/null 2>&1 && fail "--strict takes a gloss for opaque"
+material "$(printf 'map_Kd shiny.png\nmap_d shiny.png')"
+bakes "$folder/quad.obj"
+warns 0
+[ "$(counts texels)" = 343 ] || fail "an opacity map: $(counts texels) units of texels"
+cp "$pictures/disc.png" "$folder/disc.png"
+material 'map_Kd disc.png'
+bakes "$folder/quad.obj"
+warns 0
+[ "$(counts texels)" = 343 ] || fail "a disc in alpha: $(counts texels) units of texels"
+# AC3D says that alpha is what is there.
+sed -i 's/near.png/shiny.png/' "$folder/quad.acc"
+bakes "$folder/quad.acc"
+warns 0
+[ "$(counts texels)" = 343 ] || fail "alpha of AC3D: $(counts texels) units of texels"
+
+# Names with spaces, as URIs have them; of a track's textures those of its installation.
+cp "$pictures/gradient.png" "$folder/a picture.png"
+material 'map_Kd a%20picture.png'
+bakes "$folder/quad.obj"
+warns 0
+[ "$(counts textures)" = 1 ] || fail "a name with %20 is not found"
+mkdir -p "$folder/torcs/tracks/road/short" "$folder/torcs/data/textures"
+cp "$pictures/gradient.png" "$folder/torcs/data/textures/shared.png"
+sed 's/shiny.png/shared.png/' "$folder/quad.acc" > "$folder/torcs/tracks/road/short/short.acc"
+bakes "$folder/torcs/tracks/road/short/short.acc"
+warns 0
+[ "$(counts textures)" = 1 ] || fail "a texture that tracks share is not found"
+
+# A picture that is not read is named, with what would be.
+printf '\253KTX 20\273\r\n\032\n0123456789' > "$folder/basis.ktx2"
+quad '"base_color_map": "basis.ktx2"'
+bakes "$scene"
+warns 1 'basis.ktx2: a KTX2 (Basis) picture, which is not read: PNG, JPEG or WebP are; left out'
+
 # ---- pictures that are none ----------------------------------------------------------------------
 
 # broken NAME REASON [TYPE]: one warning, no texture, a blob all the same

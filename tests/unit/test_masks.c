@@ -252,6 +252,27 @@ static void masks_of_everything_or_nothing_stay_so(void **state) {
     assert_float_equal(masu_mask_coverage(alpha, 1, 1, 0), 1, 0);
 }
 
+/* What is a mask by its histogram alone: the foliage above is, a gloss or a smoke is not. */
+static void masks_are_told_from_what_else_is_in_alpha(void **state) {
+    (void)state;
+    uint64_t histogram[256];
+    for (int p = 0; p < PICTURES; p++) {
+        draw(p);
+        memset(histogram, 0, sizeof histogram);
+        for (uint32_t i = 0; i < TEXELS; i++) histogram[(int)(levels[0][4 * i + 3] * 255 + 0.5f)]++;
+        if (!masu_mask_is_meant(histogram, CUTOFF)) fail_msg("%s are no mask", names[p]);
+    }
+    for (int kind = 0; kind < 5; kind++) {
+        for (int a = 0; a < 256; a++)
+            histogram[a] = kind == 0   ? 1                        /* a gradient */
+                           : kind == 1 ? (a < 200 ? 256u - (unsigned)a : 0) /* a gloss, mostly dull */
+                           : kind == 2 ? a == 0                   /* nothing is there */
+                           : kind == 3 ? a >= 200                 /* nothing is below */
+                                       : a == 0 || a == 120;      /* nothing is solid */
+        if (masu_mask_is_meant(histogram, CUTOFF)) fail_msg("kind %d is a mask", kind);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_mip_covers_what_the_first_covers),
@@ -259,6 +280,7 @@ int main(void) {
         cmocka_unit_test(coverage_is_what_random_places_say),
         cmocka_unit_test(compression_moves_no_texel_across_the_cut_off),
         cmocka_unit_test(masks_of_everything_or_nothing_stay_so),
+        cmocka_unit_test(masks_are_told_from_what_else_is_in_alpha),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

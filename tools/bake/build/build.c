@@ -8,6 +8,7 @@
 #include "bake/build/look.h"
 #include "bake/build/parts.h"
 #include "bake/light/environment.h"
+#include "bake/scene/camera.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/skin.h"
 #include "bake/texture/texture.h"
@@ -58,6 +59,33 @@ static bool add_environment_map(const masu_bake_environment *e, masu_bake_conten
     return true;
 }
 
+/* The key of a model's camera. */
+static bool take_camera(const masu_bake_description *d, const masu_bake_content *content,
+                        masu_blob_camera_key *key) {
+    const masu_bake_camera *camera = masu_bake_find_camera(content, d->look.camera);
+    if (!camera) {
+        masu_bake_buffer names = {0};
+        for (uint32_t i = 0; i < masu_bake_camera_count(content) && names.bytes < 300; i++) {
+            masu_bake_append_text(&names, i ? ", \"" : "\"");
+            masu_bake_append_text(&names, MASU_BAKE_CAMERAS(content)[i].name);
+            masu_bake_append_text(&names, "\"");
+        }
+        masu_bake_append(&names, "", 1);
+        (void)masu_bake_wrong(d, "camera.from", "no model has a camera \"%s\"; there are: %s", d->look.camera,
+                              names.bytes > 1 ? (const char *)names.data : "none");
+        masu_bake_release(&names);
+        return false;
+    }
+    masu_bake_vec3 at = masu_bake_v3f(camera->position);
+    /* A float of a large coordinate still has to tell the two points apart. */
+    double ahead = fmax(1, masu_bake_length(at) * 1e-3);
+    *key = (masu_blob_camera_key){.fov_y = d->look.own_fov_y ? (float)(d->look.fov_y * (MASU_BAKE_PI / 180))
+                                                             : camera->fov_y};
+    masu_bake_store(at, key->position);
+    masu_bake_store(masu_bake_mad(at, masu_bake_v3f(camera->direction), ahead), key->target);
+    return true;
+}
+
 /* What is shown, and what it is shown in. */
 static bool build_scene(const masu_bake_description *d, const masu_bake_options *options,
                         masu_bake_reflections *reflections, masu_bake_content *content,
@@ -77,6 +105,12 @@ static bool build_scene(const masu_bake_description *d, const masu_bake_options 
         const char *problem = masu_bake_make_first_look(&bounds, content, &first);
         if (problem) return masu_bake_wrong(d, "", "gives %s", problem);
         *reflections = first.reflections;
+    }
+    masu_blob_camera_key key;
+    if (d->look.camera) {
+        if (!take_camera(d, content, &key)) return false;
+        first.look.keys = &key;
+        first.look.key_count = 1;
     }
     masu_bake_build_look(&first.look, &bounds, content);
     if (!add_environment_map(&d->environment, content)) return false;

@@ -4,7 +4,9 @@
 #include "bake/base/file.h"
 #include "bake/build/parts.h"
 #include "bake/mesh/detail.h"
+#include "bake/mesh/drop.h"
 #include "bake/mesh/occluders.h"
+#include "bake/scene/camera.h"
 #include "bake/scene/groups.h"
 #include "bake/scene/live.h"
 #include "bake/scene/skin.h"
@@ -188,6 +190,13 @@ static bool place(model_builder *b, const masu_bake_model *model, const char *na
     if (!fit(b, model, &from->piece, &placement)) return false;
     masu_bake_affine move = masu_bake_translation(model->translation);
     placement = masu_bake_multiply(&move, &placement);
+    masu_bake_vec3 translation = model->translation;
+    if (model->drop) {
+        double fall = masu_bake_drop(content, &from->piece, &placement, model->ground);
+        move = masu_bake_translation(masu_bake_v3(0, -fall, 0));
+        placement = masu_bake_multiply(&move, &placement);
+        translation.y -= fall;
+    }
     uint32_t first = (uint32_t)masu_bake_count(content, MASU_BLOB_INSTANCES);
     masu_bake_overrides overrides = settle(b, model);
     variant *v = variant_of(b, from, &overrides);
@@ -197,9 +206,10 @@ static bool place(model_builder *b, const masu_bake_model *model, const char *na
         problem = masu_bake_place_lights(content, &from->piece, &placement, first, model->lights,
                                          name);
     if (problem) return masu_bake_wrong(b->description, model->where, "gives %s", problem);
+    masu_bake_place_cameras(content, &from->piece, &placement, name);
     from->residence = v->residence;
     if (!model->moving || masu_bake_count(content, MASU_BLOB_INSTANCES) == first) return true;
-    uint32_t made = masu_bake_add_model(content, &from->piece, first, &placement, model->translation, name,
+    uint32_t made = masu_bake_add_model(content, &from->piece, first, &placement, translation, name,
                                         hidden, *like);
     if (*like == MASU_BLOB_NONE) *like = made;
     masu_bake_carry_lights(content, lights, first);

@@ -63,6 +63,8 @@ typedef struct masu_bake_model {
     masu_bake_affine placement; /* scale and rotation, before the fit */
     masu_bake_fit fit;
     masu_bake_vec3 translation;
+    bool drop;     /* then it falls on what has been placed before, or on y = ground */
+    double ground; /* metres */
     masu_bake_hides hides;
     masu_bake_box occluder; /* of HIDES_BOX: in object space */
     int traced;             /* MASU_BAKE_TRACED_* */
@@ -80,7 +82,9 @@ typedef struct masu_bake_light {
 typedef struct masu_bake_look {
     masu_blob_camera_key *keys; /* none: one that frames the scene */
     size_t key_count;
+    const char *camera;           /* of a model, instead of keys; or NULL */
     double fov_y;                 /* degrees, of that one */
+    bool own_fov_y;               /* the scene says so */
     double near;                  /* metres; 0: by the scene's size */
     masu_bake_vec3 sun_direction; /* towards the sun */
     masu_bake_vec3 sun_color;

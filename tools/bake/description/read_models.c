@@ -126,12 +126,21 @@ static bool read_fit(const masu_bake_json *model, masu_bake_fit *out) {
     return masu_bake_json_wrong(&fit, "give either \"center\" or \"base\"");
 }
 
+/* true, or the height of the ground where nothing else is below. */
+static bool read_drop(const masu_bake_json *model, masu_bake_model *out) {
+    masu_bake_json drop = masu_bake_json_member(model, "drop");
+    const double most = MASU_BAKE_COORDINATE_MAX;
+    if (!json_is_number(drop.value)) return masu_bake_json_boolean(model, "drop", &out->drop);
+    out->drop = true;
+    return masu_bake_json_number(model, "drop", -most, most, &out->ground);
+}
+
 static bool read_placement(const masu_bake_json *model, masu_bake_model *out) {
     masu_bake_affine scale, rotation;
     const double most = MASU_BAKE_COORDINATE_MAX;
     if (!read_scale(model, &scale) || !read_rotation(model, &rotation) ||
         !masu_bake_json_vec3(model, "translate", -most, most, &out->translation) ||
-        !read_fit(model, &out->fit)) {
+        !read_fit(model, &out->fit) || !read_drop(model, out)) {
         return false;
     }
     out->placement = masu_bake_multiply(&rotation, &scale);
@@ -227,7 +236,7 @@ static bool read_model(const masu_bake_json *model, masu_bake_reader *r, const j
     static const char *const members[] = {"file",      "mesh",      "name",     "group", "moving",
                                           "translate", "rotate",    "rotate_y", "scale", "fit",
                                           "material",  "materials", "occluder", "merge", "lights",
-                                          "traced",    "hidden",    "spare",    "variant", NULL};
+                                          "traced",    "hidden",    "spare",    "variant", "drop", NULL};
     const char *name = NULL;
     out->where = masu_bake_take_text(&r->out->pool, model->where);
     out->lights = 1;

@@ -3,13 +3,15 @@
  * glTF factors are linear; the colours of older formats (OBJ, AC3D) were chosen on a screen and are
  * decoded from sRGB. A specular exponent n becomes the roughness (2 / (n + 2))^(1/4), at which GGX has
  * the same lobe width. */
-#include "bake/base/inside.h"
 #include "bake/import/assimp.h"
+#include "bake/import/picture_path.h"
 
 #include <assimp/GltfMaterial.h>
+#include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static double decode_srgb(double c) {
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
@@ -74,18 +76,7 @@ static uint32_t image_of(masu_import *m, const struct aiString *path) {
         }
         if (about.data_bytes > (uint64_t)1 << 30) about.data_bytes = 0;
     } else {
-        for (char *c = text; *c; c++) {
-            if (*c == '\\') *c = '/'; /* written where that was the separator */
-        }
-        if (text[0] != '/') {
-            const char *slash = strrchr(m->path, '/');
-            if (slash) masu_bake_append(&name, m->path, (size_t)(slash - m->path) + 1);
-        }
-        const char *from = text;
-        while (strncmp(from, "./", 2) == 0) from += 2;
-        masu_bake_append_text(&name, from);
-        masu_bake_append(&name, "", 1);
-        about.outside = !masu_bake_inside(m->path, (const char *)name.data);
+        about.outside = !masu_bake_picture_path(m->path, text, &name);
     }
     masu_bake_append(&name, "", 1);
     uint32_t image = masu_bake_add_image(m->piece, (const char *)name.data, &about, data);
@@ -138,7 +129,19 @@ static bool same_texture(const struct aiMaterial *m, enum aiTextureType a, enum 
            memcmp(x.data, y.data, (size_t)masu_import_length(&x)) == 0;
 }
 
-static void convert_alpha(const struct aiMaterial *from, masu_bake_maps *maps) {
+/* Whether the format itself says that the alpha of a picture is what is there of the surface: AC3D, and what Assimp
+ * has a flag for. */
+static bool alpha_covers(const masu_import *m, const struct aiMaterial *from) {
+    const char *dot = strrchr(m->path, '.');
+    int flags = 0;
+    unsigned count = 1;
+    if (dot && (strcasecmp(dot, ".ac") == 0 || strcasecmp(dot, ".acc") == 0)) return true;
+    return aiGetMaterialIntegerArray(from, AI_MATKEY_TEXFLAGS(aiTextureType_DIFFUSE, 0), &flags, &count) ==
+               aiReturn_SUCCESS && flags & aiTextureFlags_UseAlpha;
+}
+
+static void convert_alpha(const masu_import *m, const struct aiMaterial *from, masu_bake_maps *maps) {
+    if (alpha_covers(m, from)) maps->alpha = MASU_BAKE_ALPHA_COVERS;
     struct aiString mode = {0};
     double cutoff = 0.5;
     if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS) {
@@ -154,12 +157,25 @@ static void convert_alpha(const struct aiMaterial *from, masu_bake_maps *maps) {
     }
 }
 
+/* OBJ's -bm, the height of 3DS and FBX. */
+static double bump_strength(const struct aiMaterial *from, enum aiTextureType type) {
+    double scale = 1;
+    ai_real value = 1;
+    unsigned count = 1;
+    get_factor(from, KEY(AI_MATKEY_BUMPSCALING), &scale);
+    if (aiGetMaterialFloatArray(from, _AI_MATKEY_OBJ_BUMPMULT_BASE, type, 0, &value, &count) ==
+            aiReturn_SUCCESS && count == 1)
+        scale = (double)value;
+    return scale;
+}
+
 static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from) {
     static const map_request requests[] = {
         {MASU_BAKE_BASE, aiTextureType_BASE_COLOR, 0},
         {MASU_BAKE_BASE, aiTextureType_DIFFUSE, 0},
         {MASU_BAKE_NORMAL, aiTextureType_NORMALS, 0},
         {MASU_BAKE_NORMAL, aiTextureType_NORMAL_CAMERA, 0},
+        {MASU_BAKE_NORMAL, aiTextureType_HEIGHT, 0},
         {MASU_BAKE_EMISSIVE, aiTextureType_EMISSIVE, 0},
         {MASU_BAKE_EMISSIVE, aiTextureType_EMISSION_COLOR, 0},
         {MASU_BAKE_OPACITY, aiTextureType_OPACITY, 0},
@@ -173,10 +189,11 @@ static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from
     static const map_request apart[] = {{MASU_BAKE_ROUGHNESS, aiTextureType_DIFFUSE_ROUGHNESS, 0},
                                         {MASU_BAKE_METALLIC, aiTextureType_METALNESS, 0}};
     masu_bake_maps maps = masu_bake_no_maps();
+    enum aiTextureType relief = aiTextureType_NONE;
     if (m->wanted == MASU_BAKE_TEXTURES_OFF) return maps;
-    convert_alpha(from, &maps);
+    convert_alpha(m, from, &maps);
     for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
-        take_map(m, from, &requests[i], &maps);
+        if (take_map(m, from, &requests[i], &maps) && requests[i].map == MASU_BAKE_NORMAL) relief = requests[i].type;
     }
     struct aiString mode = {0};
     bool gltf = aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) == aiReturn_SUCCESS;
@@ -196,13 +213,20 @@ static masu_bake_maps convert_maps(masu_import *m, const struct aiMaterial *from
         count == 1) {
         scale = (double)value;
     }
+    if (!gltf && relief != aiTextureType_NONE) {
+        maps.relief = relief == aiTextureType_HEIGHT ? MASU_BAKE_RELIEF_NAMED_HEIGHTS : MASU_BAKE_RELIEF_NAMED_NORMALS;
+        scale = bump_strength(from, relief);
+    }
     maps.normal_scale = masu_import_clamped(scale, -16, 16);
     return maps;
 }
 
 /* Types of texture that nothing is made of. */
-static bool is_used(int type) {
+static bool is_used(const struct aiMaterial *m, int type) {
     switch (type) {
+    case aiTextureType_HEIGHT: /* where there are normals these are it */
+        return !aiGetMaterialTextureCount(m, aiTextureType_NORMALS) &&
+               !aiGetMaterialTextureCount(m, aiTextureType_NORMAL_CAMERA);
     case aiTextureType_BASE_COLOR:
     case aiTextureType_DIFFUSE:
     case aiTextureType_NORMALS:
@@ -222,7 +246,7 @@ static bool is_used(int type) {
 static void note_textures(masu_import *m, const struct aiMaterial *material) {
     for (int type = 1; type <= AI_TEXTURE_TYPE_MAX; type++) {
         unsigned count = aiGetMaterialTextureCount(material, (enum aiTextureType)type);
-        if (is_used(type) && m->wanted != MASU_BAKE_TEXTURES_OFF) continue;
+        if (is_used(material, type) && m->wanted != MASU_BAKE_TEXTURES_OFF) continue;
         for (unsigned i = 0; i < count && i < 16; i++) {
             struct aiString path = {0};
             if (aiGetMaterialTexture(material, (enum aiTextureType)type, i, &path, NULL, NULL, NULL,

@@ -1,5 +1,6 @@
 /* assimp_nodes.c: nodes become instances, with the lights that hang on them; see assimp.h. */
 #include "bake/import/assimp.h"
+#include "bake/scene/camera.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +8,7 @@
 /* More nodes than any model has; a cycle among nodes ends here too. */
 #define NODES_MAX 4000000u
 #define LIGHTS_MAX 4096u /* looked for among the nodes */
+#define CAMERAS_MAX 256u
 
 static bool same_set(const masu_import_set *g, const unsigned *meshes, unsigned count) {
     return g->count == count && memcmp(g->meshes, meshes, count * sizeof *meshes) == 0;
@@ -124,6 +126,31 @@ static void convert_lights(masu_import *m, const struct aiNode *node, const masu
     }
 }
 
+/* As lights are: by the name of the node. What an aiCamera's angle is of, its importers do not agree on; most mean the
+ * whole width. */
+static void convert_cameras(masu_import *m, const struct aiNode *node, const masu_bake_affine *world) {
+    const struct aiScene *s = m->source;
+    int length = masu_import_length(&node->mName);
+    if (!s->mCameras || length == 0) return;
+    for (unsigned i = 0; i < s->mNumCameras && i < CAMERAS_MAX; i++) {
+        const struct aiCamera *from = s->mCameras[i];
+        if (!from || masu_import_length(&from->mName) != length ||
+            memcmp(from->mName.data, node->mName.data, (size_t)length) != 0) {
+            continue;
+        }
+        masu_bake_vec3 own = {(double)from->mPosition.x, (double)from->mPosition.y, (double)from->mPosition.z};
+        masu_bake_vec3 ahead = {(double)from->mLookAt.x, (double)from->mLookAt.y, (double)from->mLookAt.z};
+        masu_bake_vec3 at = masu_bake_apply(world, own);
+        masu_bake_vec3 direction = masu_bake_sub(masu_bake_apply(world, masu_bake_mad(own, ahead, 1)), at);
+        double aspect = from->mAspect > 0 ? (double)from->mAspect : 16.0 / 9;
+        double width = (double)masu_import_clamped((double)from->mHorizontalFOV, 0, 3.1);
+        char name[sizeof from->mName.data + 1];
+        memcpy(name, from->mName.data, (size_t)length);
+        name[length] = '\0';
+        masu_bake_add_camera(m->piece, name, 2 * atan(tan(width / 2) / aspect), at, direction);
+    }
+}
+
 /* Of a node's meshes those that no bones bend; as it has them, where that is all. */
 static unsigned stiff_meshes(const masu_import *m, const struct aiNode *node,
                              const unsigned **meshes) {
@@ -194,6 +221,7 @@ bool masu_import_walk(masu_import *m, bool convert) {
             if (shows) space = masu_bake_identity();
             if (m->live) kept = keep_node(m, &v, &own, &world, shows ? instance : MASU_BLOB_NONE);
             convert_lights(m, v.node, &space, instance);
+            convert_cameras(m, v.node, &world);
         }
         unsigned children = v.node->mChildren ? v.node->mNumChildren : 0;
         if (children > NODES_MAX) break;

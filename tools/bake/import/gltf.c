@@ -2,6 +2,7 @@
  * see gltf.h. */
 #include "bake/base/inside.h"
 #include "bake/import/gltf.h"
+#include "bake/import/picture_path.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -79,31 +80,10 @@ void *masu_gltf_take(masu_gltf *g, size_t count, size_t size) {
 
 /* ---- files and data: URIs ---- */
 
-static int hex(char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-}
-
 /* Has a scheme: letters and a colon. One letter is a drive of another system, and no file here either. */
 static bool has_scheme(const char *uri) {
     size_t n = strspn(uri, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
     return n && uri[n] == ':';
-}
-
-/* "%20" becomes a space; never a NUL. */
-static void resolve(char *to, const char *from) {
-    for (; *from; from++) {
-        int high = *from == '%' ? hex(from[1]) : -1, low = high >= 0 ? hex(from[2]) : -1;
-        if (low >= 0 && (high || low)) {
-            *to++ = (char)(high * 16 + low);
-            from += 2;
-        } else {
-            *to++ = *from == '\\' ? '/' : *from;
-        }
-    }
-    *to = '\0';
 }
 
 const char *masu_gltf_path(masu_gltf *g, const char *uri) {
@@ -115,7 +95,7 @@ const char *masu_gltf_path(masu_gltf *g, const char *uri) {
     while (strncmp(uri, "./", 2) == 0) uri += 2;
     memcpy(out + folder, uri, strlen(uri) + 1);
     if (strchr(uri, '%') && access(out, F_OK) == 0) return out; /* a name with a % of its own */
-    resolve(out + folder, uri);
+    masu_bake_resolve_uri(out + folder, uri);
     return out;
 }
 
@@ -370,12 +350,9 @@ static bool read_all(masu_gltf *g) {
     g->scene.mNumMeshes = (unsigned)(g->meshes.bytes / sizeof(struct aiMesh *));
     g->scene.mLights = (struct aiLight **)(void *)g->lights.data;
     g->scene.mNumLights = (unsigned)(g->lights.bytes / sizeof(struct aiLight *));
+    g->scene.mCameras = (struct aiCamera **)(void *)g->cameras.data;
+    g->scene.mNumCameras = (unsigned)(g->cameras.bytes / sizeof(struct aiCamera *));
     note_extensions(g, g->root, "the file", 0);
-    size_t cameras = masu_gltf_count(g, "cameras");
-    if (cameras) {
-        masu_gltf_note_many(g, cameras, "cameras, which are not read",
-                            masu_gltf_name_of(g, "cameras", 0, json_array_get(json_object_get(g->root, "cameras"), 0)));
-    }
     report_notes(g);
     return !masu_gltf_failed(g);
 }
@@ -398,5 +375,6 @@ void masu_gltf_release(masu_gltf *g) {
     masu_bake_release(&g->meshes);
     masu_bake_release(&g->lights);
     masu_bake_release(&g->ranges);
+    masu_bake_release(&g->cameras);
     masu_bake_pool_release(&g->pool);
 }

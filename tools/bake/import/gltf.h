@@ -11,7 +11,7 @@
  *   gltf_access.c     views and accessors to numbers; EXT_meshopt_compression
  *   gltf_material.c   materials and the names of their pictures
  *   gltf_mesh.c       primitives: triangles, morph weights, colours of vertices
- *   gltf_nodes.c      nodes, instances, skins, lights
+ *   gltf_nodes.c      nodes, instances, skins, lights, cameras
  *   gltf_clip.c       animations
  *   gltf_draco.cpp    KHR_draco_mesh_compression, by libdraco
  *
@@ -81,6 +81,7 @@ typedef struct masu_gltf {
     size_t node_count;
     masu_bake_buffer lights; /* struct aiLight * */
     masu_bake_buffer ranges; /* float, one of each light */
+    masu_bake_buffer cameras; /* struct aiCamera * */
     struct aiScene scene;
 } masu_gltf;
 

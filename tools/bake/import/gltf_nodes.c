@@ -164,6 +164,31 @@ static bool add_light(masu_gltf *g, const json_t *node, const struct aiNode *at)
     return true;
 }
 
+static bool add_camera(masu_gltf *g, const json_t *node, const struct aiNode *at) {
+    json_int_t index = -1;
+    if (!masu_gltf_index(g, node, "camera", masu_gltf_count(g, "cameras"), &index)) return false;
+    if (index < 0) return true;
+    const json_t *camera = masu_gltf_element(g, "cameras", index);
+    const json_t *lens = camera ? masu_gltf_object(g, camera, "perspective") : NULL;
+    double height = 0, aspect = 16.0 / 9;
+    if (!camera || masu_gltf_failed(g)) return false;
+    if (!lens) {
+        masu_gltf_note_one(g, "cameras without a perspective, which are not read", at->mName.data);
+        return true;
+    }
+    if (!masu_gltf_number(g, lens, "yfov", &height) || !masu_gltf_number(g, lens, "aspectRatio", &aspect)) return false;
+    aspect = aspect > 1e-3 && aspect < 1e3 ? aspect : 16.0 / 9;
+    height = (double)masu_import_clamped(height, 0, 3.1);
+    struct aiCamera *made = masu_gltf_take(g, 1, sizeof *made);
+    made->mName = at->mName;
+    made->mLookAt.z = -1;
+    made->mUp.y = 1;
+    made->mAspect = (float)aspect;
+    made->mHorizontalFOV = (float)(2 * atan(tan(height / 2) * aspect));
+    masu_bake_append(&g->cameras, &made, sizeof made);
+    return true;
+}
+
 /* Many of a node's meshes, each with a transform of its own: children that show them. */
 static bool add_instances(masu_gltf *g, const json_t *about, struct aiNode *node) {
     static const char *const names[] = {"TRANSLATION", "ROTATION", "SCALE"};
@@ -212,7 +237,8 @@ static bool fill_node(masu_gltf *g, size_t index) {
     masu_gltf_at(g, "nodes", index, node);
     const json_t *weights = masu_gltf_array(g, node, "weights");
     if (!masu_gltf_index(g, node, "mesh", g->mesh_count, &mesh) ||
-        !masu_gltf_index(g, node, "skin", masu_gltf_count(g, "skins"), &skin) || !add_light(g, node, to))
+        !masu_gltf_index(g, node, "skin", masu_gltf_count(g, "skins"), &skin) || !add_light(g, node, to) ||
+        !add_camera(g, node, to))
         return false;
     if (mesh >= 0) {
         const masu_gltf_made *made = NULL;

@@ -4,6 +4,7 @@
  *   assimp.c   the reader: Assimp's scene to ours
  *   gltf.c     our reader of glTF, whose scene has Assimp's form
  *   acc.c      a dialect that Assimp does not know
+ *   picture_path.c   where pictures are that models name
  *
  * Model files are hostile: the importing library is large, and asserts, overruns and endless loops
  * in it must end the child, not masu-bake. The child has a time limit and a limit of memory. */

@@ -266,7 +266,8 @@ const char *masu_bake_merge(masu_bake_content *piece, double cell) {
         masu_bake_buffer *const kept[][2] = {{&out.maps, &piece->maps},
                                              {&out.images, &piece->images},
                                              {&out.image_text, &piece->image_text},
-                                             {&out.image_data, &piece->image_data}};
+                                             {&out.image_data, &piece->image_data},
+                                             {&out.cameras, &piece->cameras}};
         for (size_t i = 0; i < sizeof kept / sizeof kept[0]; i++) {
             *kept[i][0] = *kept[i][1];
             *kept[i][1] = (masu_bake_buffer){0};

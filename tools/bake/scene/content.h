@@ -8,6 +8,7 @@
  *   piece.c     pieces placed in a scene, with what the scene changes of their materials
  *   check.c     the rules of blob.h, before a piece from another process is trusted
  *   groups.c    what is culled together
+ *   camera.c    cameras of model files
  *
  * Whoever declares a content owns it, and releases it.
  * Running out of memory ends the program with a message; nothing else here can fail unless it says
@@ -26,6 +27,7 @@ typedef struct masu_bake_content {
     masu_bake_buffer images;     /* masu_bake_image */
     masu_bake_buffer image_text; /* their names, each with its NUL */
     masu_bake_buffer image_data; /* files that lie inside a model */
+    masu_bake_buffer cameras;    /* masu_bake_camera: bake/scene/camera.h */
     float sdf_glossiest;         /* least roughness of the SDF's surfaces */
     masu_bake_buffer
         traced; /* what the scene says of the first so many instances: bake/mesh/bvh.h */
@@ -58,17 +60,33 @@ enum {
     MASU_BAKE_MAPS
 };
 
-enum { MASU_BAKE_ALPHA_AUTO, MASU_BAKE_ALPHA_OPAQUE, MASU_BAKE_ALPHA_MASK, MASU_BAKE_ALPHA_BLEND };
+/* AUTO: the picture decides whether it is a mask. COVERS: the format says that alpha is what is there; it is a mask
+ * if anything is below the cut-off. */
+enum {
+    MASU_BAKE_ALPHA_AUTO,
+    MASU_BAKE_ALPHA_OPAQUE,
+    MASU_BAKE_ALPHA_MASK,
+    MASU_BAKE_ALPHA_BLEND,
+    MASU_BAKE_ALPHA_COVERS
+};
+
+/* What a model says of its picture of normals. */
+enum {
+    MASU_BAKE_RELIEF_NORMALS,       /* normals, whatever they look like */
+    MASU_BAKE_RELIEF_NAMED_NORMALS, /* normals, unless the picture is grey: then heights */
+    MASU_BAKE_RELIEF_NAMED_HEIGHTS  /* heights, unless the picture has normals in it */
+};
 
 typedef struct masu_bake_maps {
     uint32_t image[MASU_BAKE_MAPS];  /* MASU_BLOB_NONE: no such map */
     uint8_t channel[MASU_BAKE_MAPS]; /* 0..3: of the picture, for maps of one channel */
     uint8_t gloss;                   /* roughness is 1 minus the picture */
-    uint8_t alpha;                   /* MASU_BAKE_ALPHA_*; AUTO: the picture decides */
+    uint8_t alpha;                   /* MASU_BAKE_ALPHA_* */
     uint8_t additive;                /* with ALPHA_BLEND: adds its light, hides nothing */
     uint8_t wrap[2];                 /* as in masu_blob_texture_set */
-    uint8_t reserved[4];             /* no padding: it is compared as bytes */
-    float cutoff, normal_scale;
+    uint8_t relief;                  /* MASU_BAKE_RELIEF_* */
+    uint8_t reserved[3];             /* no padding: it is compared as bytes */
+    float cutoff, normal_scale;      /* normal_scale: of heights their strength */
 } masu_bake_maps;
 
 uint32_t masu_bake_stride(uint32_t kind); /* sizeof the section's element; 1 for NAMES */

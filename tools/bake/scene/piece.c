@@ -74,6 +74,10 @@ static void apply_override(const masu_bake_override *o, masu_blob_material *to,
         own[i] = true;
     }
     if (o->map[MASU_BAKE_ROUGHNESS]) maps->gloss = 0;
+    if (o->map[MASU_BAKE_NORMAL] && maps->relief) { /* the strength was of another picture */
+        maps->relief = 0;
+        maps->normal_scale = 1;
+    }
     if (o->alpha) {
         maps->alpha = o->maps.alpha;
         maps->additive = o->maps.additive;

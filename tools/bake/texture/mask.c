@@ -8,6 +8,11 @@
 
 #define HALVINGS 18 /* of a range of 256: to 2^-15 of the scale, finer than bytes */
 #define LARGEST 16.0f
+/* Of 140 masks of trees, fences and lamps that were measured at most 17 % is in between, of what is none at least 24. */
+#define CLEAR 26
+#define SOLID 230
+#define BETWEEN_MOST 0.25
+#define SOLID_LEAST 0.01
 
 /* Places between four texels at odd eighths: their weights are whole 64ths. */
 static uint32_t places(int a, int b, int c, int d, int cutoff) {
@@ -21,6 +26,18 @@ static uint32_t places(int a, int b, int c, int d, int cutoff) {
         }
     }
     return there;
+}
+
+bool masu_mask_is_meant(const uint64_t histogram[256], uint8_t cutoff) {
+    uint64_t all = 0, below = 0, clear = 0, solid = 0;
+    for (int a = 0; a < 256; a++) {
+        all += histogram[a];
+        below += a < cutoff ? histogram[a] : 0;
+        clear += a < CLEAR ? histogram[a] : 0;
+        solid += a >= SOLID ? histogram[a] : 0;
+    }
+    return below && (double)solid >= SOLID_LEAST * (double)all &&
+           (double)(all - clear - solid) <= BETWEEN_MOST * (double)all;
 }
 
 double masu_mask_coverage(const uint8_t *alpha, uint32_t width, uint32_t height, uint8_t cutoff) {

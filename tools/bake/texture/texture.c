@@ -9,6 +9,7 @@
  * added up as vectors, and what their mean lacks in length makes the surface rougher: in its roughness
  * map, which is as large as the normals', or in one made for it where there is none. */
 #include "bake/texture/texture.h"
+#include "bake/texture/bump.h"
 #include "bake/texture/image.h"
 #include "bake/texture/mask.h"
 #include "bake/texture/texel.h"
@@ -24,6 +25,8 @@ typedef struct request {
     uint32_t image[3]; /* base: colour, opacity. surface: roughness, metallic, normal. Or one */
     uint8_t channel[2];
     uint8_t gloss, alpha;
+    uint8_t relief, clamped[2]; /* of a picture of normals or heights; what it does at its edge counts for heights */
+    uint8_t reserved;
     float cutoff, normal_scale, roughness;
 } request;
 
@@ -188,19 +191,34 @@ static void finish(texture *t, float *level, float *normals) {
 
 /* ---- the three kinds ---- */
 
+static const char *name_of(const maker *m, uint32_t image) {
+    const masu_bake_content *c = m->content;
+    return (const char *)c->image_text.data + MASU_BAKE_IMAGES(c)[image].name;
+}
+
 /* What alpha is meant for, where the model does not say: nothing where no texel is under the cut-off,
- * else a mask. Never blending: it costs a draw for each thing, and an order that meshes of many leaves
- * do not have. */
-static uint8_t judge_alpha(const float *level, size_t texels, float cutoff, uint8_t meant) {
-    size_t below = 0, less = 0;
+ * else a mask, if the picture looks like one. Never blending: it costs a draw for each thing, and an order that meshes
+ * of many leaves do not have. */
+static uint8_t judge_alpha(const maker *m, const request *wanted, const float *level, size_t texels) {
+    uint64_t below = 0, less = 0, histogram[256] = {0};
+    uint8_t meant = wanted->alpha;
     for (size_t i = 0; i < texels; i++) {
         float a = level[4 * i + 3];
         less += a < 0.999f;
-        below += a < cutoff;
+        below += a < wanted->cutoff;
+        histogram[masu_texel_to_unorm(a)]++;
     }
     if (meant == MASU_BAKE_ALPHA_OPAQUE || !less) return MASU_BAKE_ALPHA_OPAQUE;
-    if (meant != MASU_BAKE_ALPHA_AUTO) return meant;
-    return below ? MASU_BAKE_ALPHA_MASK : MASU_BAKE_ALPHA_OPAQUE;
+    if (meant == MASU_BAKE_ALPHA_MASK || meant == MASU_BAKE_ALPHA_BLEND) return meant;
+    if (!below) return MASU_BAKE_ALPHA_OPAQUE;
+    if (meant == MASU_BAKE_ALPHA_COVERS || masu_mask_is_meant(histogram, masu_texel_to_unorm(wanted->cutoff)))
+        return MASU_BAKE_ALPHA_MASK;
+    if (!m->sizes) {
+        masu_cli_warn("texture %s: its alpha is not that of a mask (%.0f %% of it is below the cut-off): "
+                      "taken for opaque",
+                      name_of(m, wanted->image[0]), 100 * (double)below / (double)texels);
+    }
+    return MASU_BAKE_ALPHA_OPAQUE;
 }
 
 /* Opacity as a picture: its alpha where that says something, else its brightness. */
@@ -234,7 +252,12 @@ static void make_color(maker *m, texture *t) {
             }
         }
         size_t texels = (size_t)w * h;
-        t->alpha = judge_alpha(level, texels, t->wanted.cutoff, t->wanted.alpha);
+        request judged = t->wanted;
+        /* A picture of its own says what it is for. */
+        if (has_opacity && judged.alpha == MASU_BAKE_ALPHA_AUTO) judged.alpha = MASU_BAKE_ALPHA_COVERS;
+        /* Of emission nobody looks at it. */
+        if (judged.slot != MASU_SLOT_BASE) judged.alpha = MASU_BAKE_ALPHA_OPAQUE;
+        t->alpha = judge_alpha(m, &judged, level, texels);
         bool opaque = t->alpha == MASU_BAKE_ALPHA_OPAQUE || t->wanted.slot != MASU_SLOT_BASE;
         begin(t, opaque ? MASU_TEXTURE_BC1_SRGB : MASU_TEXTURE_BC3_SRGB, w, h);
         finish(t, level, NULL);
@@ -244,8 +267,26 @@ static void make_color(maker *m, texture *t) {
     if (has_opacity) masu_bake_release(&opacity.rgba);
 }
 
+/* Heights as normals of a map of this size. */
+static float *bump_level(const masu_bake_picture *p, const request *wanted, uint32_t w, uint32_t h) {
+    const bool clamped[2] = {wanted->clamped[0] != 0, wanted->clamped[1] != 0};
+    float *own = allocate_level(p->width, p->height);
+    masu_bump_normals(p->rgba.data, p->width, p->height, (double)wanted->normal_scale, clamped, own);
+    if (w == p->width && h == p->height) return own;
+    float *level = allocate_level(w, h);
+    for (size_t i = 0; i < (size_t)w * h; i++) {
+        size_t x = i % w * p->width / w, y = i / w * p->height / h;
+        memcpy(level + 4 * i, own + 4 * (y * p->width + x), 4 * sizeof *level);
+    }
+    free(own);
+    return level;
+}
+
 /* As normals of a map of this size. */
-static float *normal_level(const masu_bake_picture *p, float scale, uint32_t w, uint32_t h) {
+static float *normal_level(const masu_bake_picture *p, const request *wanted, uint32_t w, uint32_t h) {
+    float scale = wanted->normal_scale;
+    if (masu_bump_is_height(p->rgba.data, p->width, p->height, wanted->relief))
+        return bump_level(p, wanted, w, h);
     float *level = allocate_level(w, h);
     for (size_t i = 0; i < (size_t)w * h; i++) {
         size_t x = i % w * p->width / w, y = i / w * p->height / h;
@@ -264,7 +305,7 @@ static float *normal_level(const masu_bake_picture *p, float scale, uint32_t w, 
 static void make_normal(maker *m, texture *t) {
     masu_bake_picture p;
     if (!read_picture(m, t->wanted.image[0], &p)) return;
-    float *level = normal_level(&p, t->wanted.normal_scale, p.width, p.height);
+    float *level = normal_level(&p, &t->wanted, p.width, p.height);
     begin(t, MASU_TEXTURE_BC5, p.width, p.height);
     finish(t, level, NULL);
     free(level);
@@ -295,7 +336,7 @@ static void make_surface(maker *m, texture *t) {
             }
         }
         if (has[2]) {
-            normals = normal_level(&p[2], t->wanted.normal_scale, w, h);
+            normals = normal_level(&p[2], &t->wanted, w, h);
             t->absolute = true;
         }
         begin(t, has[1] ? MASU_TEXTURE_BC5 : MASU_TEXTURE_BC4, w, h);
@@ -333,6 +374,13 @@ static uint32_t obtain(maker *m, const request *wanted) {
     return m->count++;
 }
 
+static void ask_for_normals(request *r, uint32_t which, const masu_bake_maps *maps) {
+    r->image[which] = maps->image[MASU_BAKE_NORMAL];
+    r->normal_scale = maps->normal_scale;
+    r->relief = maps->relief;
+    for (int i = 0; i < 2 && r->relief; i++) r->clamped[i] = maps->wrap[i] == 1;
+}
+
 /* The textures of a material by slot, NONE where there are none. */
 static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
                         uint32_t out[MASU_SLOT_COUNT]) {
@@ -349,8 +397,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             r.cutoff = maps->cutoff;
             break;
         case MASU_SLOT_NORMAL:
-            r.image[0] = maps->image[MASU_BAKE_NORMAL];
-            r.normal_scale = maps->normal_scale;
+            ask_for_normals(&r, 0, maps);
             break;
         case MASU_SLOT_SURFACE:
             r.image[0] = maps->image[MASU_BAKE_ROUGHNESS];
@@ -361,8 +408,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             /* Normals alone make a roughness map too, unless the surface is as rough as can be. */
             if (maps->image[MASU_BAKE_NORMAL] != MASU_BLOB_NONE &&
                 (r.image[0] != MASU_BLOB_NONE || material->roughness < 0.99f)) {
-                r.image[2] = maps->image[MASU_BAKE_NORMAL];
-                r.normal_scale = maps->normal_scale;
+                ask_for_normals(&r, 2, maps);
                 r.roughness = material->roughness;
             }
             break;
@@ -433,7 +479,7 @@ static void write_arrays(maker *m, uint32_t made) {
         if (t->layer == 0) {
             uint32_t image = t->wanted.image[0];
             for (int k = 1; k < 3 && image == MASU_BLOB_NONE; k++) image = t->wanted.image[k];
-            const char *name = (const char *)c->image_text.data + MASU_BAKE_IMAGES(c)[image].name;
+            const char *name = name_of(m, image);
             const char *slash = strrchr(name, '/');
             if (slash) name = slash + 1;
             masu_bake_append(texels, NULL, (size_t)(-texels->bytes % MASU_BLOB_ALIGN));

@@ -1,6 +1,7 @@
 /* stats.c: see stats.h. */
 #include "bake/write/stats.h"
 #include "bake/base/file.h"
+#include "bake/scene/camera.h"
 #include "bake/write/blob.h"
 #include "cli/cli.h"
 
@@ -69,6 +70,15 @@ static json_t *warnings_json(const masu_bake_report *r) {
     return all;
 }
 
+static json_t *cameras_json(const masu_bake_content *content) {
+    json_t *all = json_array();
+    for (uint32_t i = 0; i < masu_bake_camera_count(content); i++) {
+        json_t *name = json_string(MASU_BAKE_CAMERAS(content)[i].name);
+        json_array_append_new(all, name ? name : json_string("(not UTF-8)"));
+    }
+    return all;
+}
+
 bool masu_bake_write_stats(const masu_bake_options *options, const masu_bake_content *content,
                            const masu_bake_buffer *blob, const masu_bake_report *report,
                            double seconds) {
@@ -98,6 +108,7 @@ bool masu_bake_write_stats(const masu_bake_options *options, const masu_bake_con
         "warnings", (json_int_t)masu_cli_warnings(), "bounds", bounds, "sections", sections,
         "detail", detail_json(report), "seconds", seconds, "peak_bytes", (json_int_t)peak_memory());
     if (root) json_object_set_new(root, "warning_lines", warnings_json(report));
+    if (root) json_object_set_new(root, "cameras", cameras_json(content));
     if (root && report->reflected)
         json_object_set_new(root, "reflections", reflections_json(&report->reflections));
     char *text = root ? json_dumps(root, JSON_INDENT(2)) : NULL;
