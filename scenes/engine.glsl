@@ -250,7 +250,11 @@ void pillar_surface(vec3 p, inout masu_surface s)
         s.emissive = mix(flame * flicker, horizon, mist);
     } else if (mist > 0.0) {
         s.emissive = mix(rough_light(s.albedo, masu_normal), horizon, mist);
+    } else {
+        return;
     }
+    s.albedo = vec3(0.0); /* and as rough as can be: it is not lit */
+    s.roughness = 1.0;
 }
 
 void masu_sdf_surface(vec3 p, inout masu_surface s)

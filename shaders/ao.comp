@@ -160,7 +160,7 @@ void main()
         surface_point p;
         p.pixel = vec2(at) + 0.5;
         float z = ao_view_z(depth);
-        bool there = z < ao_farthest && (masu_unpack_flags(packed) & MASU_SURFACE_EMISSIVE) == 0u;
+        bool there = z < ao_farthest && !masu_is_unlit_texel(packed);
         p.place = ao_place(lens, p.pixel, there ? z : 1.0);
         p.slope = ao_place(lens, p.pixel, 1.0).xy;
         p.eye = -p.place * masu_rsqrt(dot(p.place, p.place));

@@ -86,7 +86,7 @@ void main()
             uint packed = texelFetch(normal_image, ivec2(at), 0).r;
             float z = ao_view_z(texelFetch(depth_image, ivec2(at), 0).r);
             vec3 normal = masu_unpack_normal(packed);
-            bool lit = (masu_unpack_flags(packed) & MASU_SURFACE_EMISSIVE) == 0u;
+            bool lit = !masu_is_unlit_texel(packed);
             plane_x[k] = normal.x;
             plane_y[k] = normal.y;
             plane_z[k] = normal.z;

@@ -4,7 +4,7 @@
  * them may touch its 8x8 pixels, a bit each; each pixel with a surface then goes through these, in the order of the
  * frame's array, which is that of the bits. What is painted is mixed as linear colour; a pixel that none touches is not written.
  *
- * What shines by itself has radiance in place of a base colour and stays as it is.
+ * Paint covers what shines through it. What only shines (masu_is_unlit) stays as it is.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -53,14 +53,12 @@ void paint(ivec2 at, uvec2 size, uint words)
         return;
     }
     uint packed_normal = imageLoad(normal_image, at).r;
-    if ((masu_unpack_flags(packed_normal) & MASU_SURFACE_EMISSIVE) != 0u) {
+    if (masu_is_unlit_texel(packed_normal)) {
         return;
     }
     vec3 rel = masu_pixel_ray(uvec2(at), size) * (frame.forward.w / depth);
     vec3 n = masu_unpack_normal(packed_normal);
-    vec4 texel = imageLoad(albedo_image, at);
-    vec3 base = texel.rgb * texel.rgb;
-    float roughness = texel.a, metallic = masu_unpack_metallic(packed_normal);
+    masu_surface s = masu_unpack_look(imageLoad(albedo_image, at), packed_normal);
     bool changed = false;
     for (uint w = 0u; w < uint(WORDS); w++) {
         if (w >= words) {
@@ -76,17 +74,18 @@ void paint(ivec2 at, uvec2 size, uint words)
             if (share > 0.0) {
                 changed = true;
                 if ((floatBitsToUint(look.w) & MASU_SPRITE_KEEP_COLOR) == 0u) {
-                    base = mix(base, color.rgb, share);
-                    metallic = mix(metallic, look.y, share);
+                    s.albedo = mix(s.albedo, color.rgb, share);
+                    s.metallic = mix(s.metallic, look.y, share);
+                    s.emissive *= 1.0 - share;
                 }
-                roughness = mix(roughness, look.x >= 0.0 ? look.x : roughness, share);
+                s.roughness = mix(s.roughness, look.x >= 0.0 ? look.x : s.roughness, share);
             }
         }
     }
     if (changed) {
-        uint steps = uint(masu_sane(metallic, 0.0, 1.0) * 15.0 + 0.5);
-        MASU_STORE_UNORM(albedo_image, at, vec4(sqrt(masu_sane(base, 0.0, 1.0)), roughness));
-        MASU_STORE_UINT(normal_image, at, (packed_normal & ~(15u << 26)) | steps << 26);
+        uint kept = packed_normal & (0x3FFFFFFu | MASU_SURFACE_MORE << 30);
+        MASU_STORE_UNORM(albedo_image, at, masu_pack_albedo(s));
+        MASU_STORE_UINT(normal_image, at, kept | masu_pack_look(s));
     }
 }
 

@@ -59,11 +59,10 @@ vec2 arriving(uvec2 at)
 #endif
 }
 
-/* What the G-buffer says of a pixel that is lit. */
+/* What the G-buffer says of a pixel. */
 masu_surface surface_at(ivec2 at, vec4 albedo, uint normal)
 {
-    masu_surface s = masu_plain_surface(albedo.rgb * albedo.rgb, albedo.a);
-    s.metallic = masu_unpack_metallic(normal);
+    masu_surface s = masu_unpack_look(albedo, normal);
 #ifdef MASU_SURFACE
     if ((masu_unpack_flags(normal) & MASU_SURFACE_MORE) != 0u) {
         masu_unpack_surface(texelFetch(surface_image, at, 0), s);
@@ -121,10 +120,9 @@ void main()
         } else {
             vec4 albedo = texelFetch(albedo_image, ivec2(at), 0);
             uint normal = texelFetch(normal_image, ivec2(at), 0).r;
-            if ((masu_unpack_flags(normal) & MASU_SURFACE_EMISSIVE) != 0u) {
-                color = albedo.rgb * albedo.rgb * masu_emissive_range;
-            } else {
-                masu_surface s = surface_at(ivec2(at), albedo, normal);
+            masu_surface s = surface_at(ivec2(at), albedo, normal);
+            color = s.emissive;
+            if (!masu_is_unlit_texel(normal)) {
                 vec3 rel = ray * (frame.forward.w * masu_rcp(depth));
                 vec2 kept = vec2(1.0);
                 if (reflections) {
@@ -137,7 +135,7 @@ void main()
 #ifdef MASU_LIGHTS
                 add_lights(lit, s, b, at, ray * masu_light_depth(depth));
 #endif
-                color = lit.diffuse + lit.specular;
+                color += lit.diffuse + lit.specular;
             }
             if (foggy) {
                 float far = frame.forward.w * masu_rcp(depth) * length(ray);

@@ -69,7 +69,7 @@ void main()
         uint texel = texelFetch(normal_image, ivec2(at), 0).r;
         float z = frame.forward.w * masu_rcp(depth);
         vec3 rel = masu_pixel_ray(at, size) * z;
-        bool there = depth > 0.0 && (masu_unpack_flags(texel) & MASU_SURFACE_EMISSIVE) == 0u;
+        bool there = depth > 0.0 && !masu_is_unlit_texel(texel);
         bool faces = dot(masu_unpack_normal(texel), frame.sun_direction.xyz) > -1e-3;
         bool fades = (z - shadow.reach.y) * shadow.reach.z > 1.001;
         if (there && faces && !fades && masu_finite(rel)) {

@@ -212,7 +212,7 @@ void main()
         depth = texelFetch(depth_image, ivec2(at), 0).r;
         texel = texelFetch(normal_image, ivec2(at), 0).r;
     }
-    bool there = depth > 0.0 && (masu_unpack_flags(texel) & MASU_SURFACE_EMISSIVE) == 0u;
+    bool there = depth > 0.0 && !masu_is_unlit_texel(texel);
     vec3 through = masu_pixel_ray(at, size);
     vec3 place = there ? through * (frame.forward.w / depth) : vec3(0.0);
     vec3 normal = masu_unpack_normal(texel);

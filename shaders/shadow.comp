@@ -33,7 +33,7 @@ void main()
         vec3 n = masu_unpack_normal(texel);
         float z = frame.forward.w * masu_rcp(depth);
         vec3 rel = masu_pixel_ray(at, size) * z;
-        bool there = depth > 0.0 && (masu_unpack_flags(texel) & MASU_SURFACE_EMISSIVE) == 0u;
+        bool there = depth > 0.0 && !masu_is_unlit_texel(texel);
         bool asks = there && masu_finite(rel) && dot(n, frame.sun_direction.xyz) > 0.0;
         if (asks && seen.x > 0.0) {
             seen.x *= masu_sun_seen(rel, n, z);

@@ -58,12 +58,7 @@ struct met {
 met met_sdf(uvec4 hit)
 {
     met m;
-    vec4 look = unpackUnorm4x8(hit.w);
-    m.surface = masu_plain_surface(look.rgb * look.rgb, look.a);
-    m.surface.metallic = masu_unpack_metallic(hit.z);
-    if ((masu_unpack_flags(hit.z) & MASU_SURFACE_EMISSIVE) != 0u) {
-        m.surface.emissive = look.rgb * look.rgb * masu_emissive_range;
-    }
+    m.surface = masu_unpack_look(unpackUnorm4x8(hit.w), hit.z);
     m.normal = masu_unpack_normal(hit.z);
     return m;
 }
@@ -113,10 +108,8 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
             uint map = i == 0 ? look.maps.x : look.maps.y;
             if (map != MASU_TRACE_NONE) {
                 vec3 texel = masu_trace_sized(map, uv, lod, look.maps.w).rgb;
-                /* As shared/maps.glsl: a trace of light from a neighbouring texel puts out no surface. */
-                bool glows = max(texel.r, max(texel.g, texel.b)) >= 0.2;
                 m.surface.albedo *= i == 0 ? texel : vec3(1.0);
-                m.surface.emissive *= i == 0 ? vec3(1.0) : glows ? texel : vec3(0.0);
+                m.surface.emissive *= i == 0 ? vec3(1.0) : texel;
             }
         }
     }
@@ -128,7 +121,7 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
 /* Radiance of what is met at a point relative to the eye. */
 vec3 radiance(met m, vec3 rel, vec3 direction)
 {
-    if (masu_is_emissive(m.surface)) {
+    if (masu_is_unlit(m.surface)) {
         return m.surface.emissive;
     }
     masu_mirrored sky = masu_mirrored_sky(m.surface, m.normal, -direction, vec2(1.0));
@@ -153,7 +146,7 @@ vec3 radiance(met m, vec3 rel, vec3 direction)
         }
     }
 #endif
-    return lit.diffuse + lit.specular;
+    return lit.diffuse + lit.specular + m.surface.emissive;
 }
 
 vec4 light_of(uvec2 texel, masu_guide g)

@@ -92,13 +92,13 @@ void main()
     bool additive = (in_thing.y & MASU_MAP_ADDITIVE) != 0u;
     vec3 color;
     float taken = opacity;
-    if (masu_is_emissive(s)) {
+    if (masu_is_unlit(s)) {
         color = s.emissive * opacity;
     } else {
         masu_mirrored sky = masu_mirrored_sky(s, n, -direction, vec2(1.0));
         masu_lit lit = masu_shade(s, masu_bsdf_make(s, n, -direction), in_rel, seen, sky);
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
-        color = lit.diffuse * opacity + (additive ? vec3(0.0) : lit.specular);
+        color = (lit.diffuse + s.emissive) * opacity + (additive ? vec3(0.0) : lit.specular);
         taken = 1.0 - (1.0 - opacity) * (1.0 - mirrored);
     }
     color *= cover;

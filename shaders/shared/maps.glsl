@@ -62,10 +62,7 @@ float masu_sample_maps(vec2 at, inout masu_surface s)
         }
     }
     if ((MASU_MAPS_FLAGS & MASU_MAP_EMISSIVE) != 0u) {
-        vec3 glow = texture(emissive_map, vec3(at, masu_layer(3u)), bias).rgb;
-        /* What glows is not lit (pack.glsl). A trace of light that filtering or a block brings from
-         * a neighbouring texel must not put out the surface there. */
-        s.emissive *= max(glow.r, max(glow.g, glow.b)) < 0.2 ? vec3(0.0) : glow;
+        s.emissive *= texture(emissive_map, vec3(at, masu_layer(3u)), bias).rgb;
     }
     if ((MASU_MAPS_FLAGS & MASU_MAP_OCCLUSION) != 0u) {
         float layer = float(MASU_MAPS_FLAGS >> MASU_MAP_OCCLUSION_SHIFT);

@@ -17,7 +17,7 @@ layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D surface_image;
 #define MASU_AFTER_SURFACE 3
 #endif
 
-/* What is not lit, the sky and what shines itself, mirrors nothing: depth 0. */
+/* What is not lit, the sky and what only shines, mirrors nothing: depth 0. */
 struct masu_pixel {
     masu_surface surface;
     uint normal; /* packed */
@@ -30,15 +30,13 @@ masu_pixel masu_pixel_at(uvec2 at)
     vec4 albedo = texelFetch(albedo_image, ivec2(at), 0);
     p.normal = texelFetch(normal_image, ivec2(at), 0).r;
     p.depth = texelFetch(depth_image, ivec2(at), 0).r;
-    p.surface = masu_plain_surface(albedo.rgb * albedo.rgb, albedo.a);
-    p.surface.metallic = masu_unpack_metallic(p.normal);
-    uint flags = masu_unpack_flags(p.normal);
+    p.surface = masu_unpack_look(albedo, p.normal);
 #ifdef MASU_SURFACE
-    if ((flags & MASU_SURFACE_MORE) != 0u) {
+    if ((masu_unpack_flags(p.normal) & MASU_SURFACE_MORE) != 0u) {
         masu_unpack_surface(texelFetch(surface_image, ivec2(at), 0), p.surface);
     }
 #endif
-    if ((flags & MASU_SURFACE_EMISSIVE) != 0u || !(p.depth > 0.0)) {
+    if (masu_is_unlit_texel(p.normal) || !(p.depth > 0.0)) {
         p.depth = 0.0;
     }
     return p;

@@ -2,6 +2,7 @@
 #include "specular.h"
 
 #include "bench/study/shade.h"
+#include "bench/study/texel.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
 #include "split_sum.h"
@@ -149,7 +150,7 @@ bool masu_ref_surface_of(const masu_ref_mirror *m, uint32_t x, uint32_t y, float
                          const uint8_t albedo[4], uint32_t normal, masu_ref_surface *s) {
     float unpacked[3];
     memset(s, 0, sizeof *s);
-    if (!(depth > 0.0f) || (normal >> 30 & 1u)) return false;
+    if (!(depth > 0.0f) || masu_texel_is_unlit(normal)) return false;
     masu_view_ray ray = masu_view_ray_at(&m->view, x, y);
     double z = m->view.near_distance / (double)depth;
     masu_unpack_normal(normal, unpacked);
@@ -157,12 +158,10 @@ bool masu_ref_surface_of(const masu_ref_mirror *m, uint32_t x, uint32_t y, float
         s->direction[k] = ray.direction[k];
         s->normal[k] = (double)unpacked[k];
         s->at[k] = m->view.eye[k] + ray.direction[k] * ray.z_scale * z;
-        s->look[k] = (albedo[k] / 255.0) * (albedo[k] / 255.0);
     }
     (void)unit3(s->normal);
     s->width = z * 2 * m->view.tan_y / m->view.height;
-    s->look[3] = albedo[3] / 255.0;
-    s->look[7] = (normal >> 26 & 15) / 15.0;
+    masu_texel_unpack(albedo, normal, s->look);
     return true;
 }
 

@@ -659,9 +659,9 @@ static void the_least_roughness_of_what_is_lit_is_known(void **state) {
                  {"roughness 1 - time", 0},
                  {"roughness -3", 0},
                  {"roughness 7", 1},
-                 {"roughness 0.1; emissive (0, 2, 0)", 1},
-                 {"roughness 0.1; emissive (0, p, 0)", 0.1},
-                 {"roughness 0.1; emissive (0, p, 1)", 1}};
+                 {"roughness 0.1; emissive (0, 2, 0)", 0.1},
+                 {"roughness 0.1; emissive (0, p, 1)", 0.1},
+                 {"roughness 1; emissive (0, 2, 0)", 1}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[256], error[256];
         masu_sdfc_result result;

@@ -8,6 +8,7 @@
 #include "masu/study.h"
 
 #include "bench/study/ao.h"
+#include "bench/study/texel.h"
 #include "image.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
@@ -160,7 +161,7 @@ static bool trace(bench *b, uint32_t slot) {
             double at[3], normal[3], u, v, z;
             memcpy(&depth, texel_at(&depths, x, y), sizeof depth);
             memcpy(&texel, texel_at(&normals, x, y), sizeof texel);
-            if (!(depth > 0.0f) || (texel >> 30 & MASU_SURFACE_EMISSIVE)) continue;
+            if (!(depth > 0.0f) || masu_texel_is_unlit(texel)) continue;
             masu_unpack_normal(texel, n);
             u = ((x + 0.5) / size.width * 2 - 1) * e.tan_x;
             v = ((y + 0.5) / size.height * 2 - 1) * e.tan_y;

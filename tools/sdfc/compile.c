@@ -73,10 +73,6 @@ static double least_roughness(const sdfc *c) {
     double least = 1;
     for (int i = 0; i < c->part_count; i++) {
         const int *value = c->materials[c->parts[i].material].value;
-        bool shines = false;
-        for (int k = 4; k < 7; k++)
-            shines = shines || (sdfc_constant(c, value[k]) && c->exprs[value[k]].value > 0);
-        if (shines) continue;
         double roughness = sdfc_constant(c, value[3]) ? c->exprs[value[3]].value : 0;
         least = fmin(least, fmax(roughness, 0));
     }

@@ -433,7 +433,9 @@ unsigned masu_gltf_given(masu_gltf *g, json_int_t material, const double color[4
     double alpha = from->alpha;
     for (int k = 0; k < 3; k++) {
         to->base_color[k] = masu_import_clamped((double)to->base_color[k] * color[k], 0, 1);
-        if (from->unlit) to->emissive[k] = to->base_color[k];
+        if (!from->unlit) continue;
+        to->emissive[k] = to->base_color[k]; /* black, and with make_unlit's roughness not lit */
+        to->base_color[k] = 0;
     }
     if (from->blends) alpha *= (double)masu_import_clamped(color[3], 0, 1);
     if (from->blends && alpha < 0.999) {

@@ -207,15 +207,12 @@ static float least_of(const masu_bake_content *content, const masu_blob_material
     return m->coat > 0 && m->coat_roughness < roughness ? m->coat_roughness : roughness;
 }
 
-/* The least roughness that anything may have. What shines by a map may have places
- * that do not. */
+/* The least roughness that anything may have. */
 static float glossiest(const masu_bake_content *content) {
     float least = masu_bake_count(content, MASU_BLOB_SDF) ? content->sdf_glossiest : 1.0f;
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_MATERIALS); i++) {
         const masu_blob_material *m = &MASU_BAKE_MATERIALS(content)[i];
         if (m->flags & MASU_MATERIAL_IS_BLEND) continue;
-        bool shines = m->emissive[0] > 0 || m->emissive[1] > 0 || m->emissive[2] > 0;
-        if (shines && !(m->flags & 1u << MASU_SLOT_EMISSIVE)) continue;
         float roughness = least_of(content, m);
         if (roughness < least) least = roughness;
     }

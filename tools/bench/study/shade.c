@@ -1,6 +1,8 @@
 /* shade.c: see shade.h. The names are those of the shaders. */
 #include "bench/study/shade.h"
 
+#include "bench/study/texel.h"
+
 #include "shared/masu_shared.h"
 
 #include "split_sum.h"
@@ -80,19 +82,12 @@ static double matte(double f0, double f90, double rest, albedo a) {
     return f0 * a.white + (f90 - f0) * a.weight + rest * lost(a);
 }
 
-/* As a texel of `steps` + 1 levels. */
-static double stored(double x, double steps) { return rint(clamped(x, 0, 1) * steps) / steps; }
-
-bool masu_shade_emits(const double material[8]) {
-    return material[4] > 0 || material[5] > 0 || material[6] > 0;
-}
-
 void masu_shade_exact(const masu_view *view, const double direction[3], const double n[3],
                       const double material[8], double lit[3], double mirrored[3]) {
     const double *color = material, *l = view->sun_direction;
     double v[3], h[3], mirror_way[3], reflected[3];
     for (int c = 0; c < 3; c++) lit[c] = material[4 + c], mirrored[c] = 0;
-    if (masu_shade_emits(material)) return;
+    if (masu_texel_unlit(material)) return;
     double roughness = material[3], metallic = material[7];
     for (int i = 0; i < 3; i++) v[i] = -direction[i];
     double n_v = clamped(dot(n, v), 1e-4, 1), n_l = clamped(dot(n, l), 0, 1);
@@ -125,40 +120,31 @@ void masu_shade_exact(const masu_view *view, const double direction[3], const do
                    color[c] * below * (1 - matte(0.04, 1, matte_rest, lit_by)) /
                        fmax(1 - matte(0.04, 1, matte_rest, all), 1e-6);
         double mirror = f0 * seen.white + (f90 - f0) * seen.weight;
-        lit[c] = view->sun_color[c] * f * n_l + view->ambient[c] * (rest + color[c] * below);
+        lit[c] += view->sun_color[c] * f * n_l + view->ambient[c] * (rest + color[c] * below);
         mirrored[c] = mirror * mix(reflected[c], view->ambient[c], roughness);
     }
 }
 
 void masu_shade_surface(const masu_view *view, const double direction[3], const double n[3],
                         const double material[8], double out[3]) {
-    double rounded[8] = {0}, mirrored[3];
-    bool emits = masu_shade_emits(material);
-    for (int c = 0; c < 3; c++) {
-        double given = emits ? material[4 + c] / 16 : material[c];
-        double root = stored(sqrt(clamped(given, 0, 1)), 255);
-        rounded[emits ? 4 + c : c] = emits ? 16 * root * root : root * root;
-    }
-    rounded[3] = stored(material[3], 255);
-    rounded[7] = stored(material[7], 15);
+    double rounded[8], mirrored[3];
+    uint8_t albedo[4];
+    uint32_t look;
+    masu_texel_pack(material, albedo, &look);
+    masu_texel_unpack(albedo, look, rounded);
     masu_shade_exact(view, direction, n, rounded, out, mirrored);
     for (int c = 0; c < 3; c++) out[c] += mirrored[c];
 }
 
 void masu_shade_texel(const masu_view *view, const double direction[3], const uint8_t albedo[4],
                       uint32_t normal, double out[3]) {
-    double material[8] = {0}, n[3];
+    double material[8], n[3], mirrored[3];
     float unpacked[3];
-    bool emits = (normal >> 30 & MASU_SURFACE_EMISSIVE) != 0;
-    for (int c = 0; c < 3; c++) {
-        double color = (albedo[c] / 255.0) * (albedo[c] / 255.0);
-        material[emits ? 4 + c : c] = emits ? 16 * color : color;
-    }
-    material[3] = albedo[3] / 255.0;
-    material[7] = (normal >> 26 & 15) / 15.0;
+    masu_texel_unpack(albedo, normal, material);
     masu_unpack_normal(normal, unpacked);
     for (int i = 0; i < 3; i++) n[i] = (double)unpacked[i];
-    masu_shade_surface(view, direction, n, material, out);
+    masu_shade_exact(view, direction, n, material, out, mirrored);
+    for (int c = 0; c < 3; c++) out[c] += mirrored[c];
 }
 
 /* ---- tonemap.comp ---------------------------------------------------------------------------- */

@@ -1,8 +1,7 @@
 /* shade.h: the colour of a true surface: light.comp and tonemap.comp in double precision, so
  * that the truth is a picture too and pictures can be compared by what a viewer sees.
  *
- * The material is rounded as the G-buffer's texels are (sqrt of albedo and roughness in 8 bits,
- * metallic in 4): that is no error of the march. Normals, radiance and the tone curve are not.
+ * The material is rounded as the G-buffer's texels are (texel.h): that is no error of the march. Normals, radiance and the tone curve are not.
  *
  * A frame's own G-buffer can be shaded too. Two pictures shaded here differ by what the march found
  * and by nothing else; the picture that the GPU shows also has the driver's rounding in it
@@ -21,8 +20,7 @@ void masu_shade_surface(const masu_view *view, const double direction[3], const 
 /* The sky alone, without the glow around the sun: what surfaces mirror. */
 void masu_shade_open_sky(const masu_view *view, const double direction[3], double out[3]);
 /* A surface without the rounding, in two parts: what it mirrors of the open sky, by the lobe's albedo, and
- * the rest, sun and ambient light. What emits does nothing else. */
-bool masu_shade_emits(const double material[8]);
+ * the rest, sun and ambient light, and what it emits. */
 void masu_shade_exact(const masu_view *view, const double direction[3], const double normal[3],
                       const double material[8], double lit[3], double mirrored[3]);
 /* A texel of MASU_READBACK_ALBEDO and one of _NORMAL, as light.comp reads them. */

@@ -1,6 +1,7 @@
 /* specular.c: see specular.h. */
 #include "bench/study/specular.h"
 
+#include "bench/study/texel.h"
 #include "scene/scene.h"
 #include "shared/masu_shared.h"
 
@@ -119,7 +120,7 @@ bool masu_specular_classes(masu_session *s, float cutoff, uint8_t *classes) {
             float z, roughness = (float)row_of(&albedo, y)[4 * (size_t)x + 3] / 255.0f;
             memcpy(&packed, row_of(&normal, y) + 4 * (size_t)x, sizeof packed);
             memcpy(&z, row_of(&depth, y) + 4 * (size_t)x, sizeof z);
-            int none = !(z > 0.0f) || roughness >= cutoff || (packed >> 30 & MASU_SURFACE_EMISSIVE);
+            int none = !(z > 0.0f) || roughness >= cutoff || masu_texel_is_unlit(packed);
             *classes++ = none                  ? 0xFF
                          : roughness < 0.05f   ? MASU_SPECULAR_MIRROR
                          : roughness < 0.15f   ? MASU_SPECULAR_FILTERED

@@ -1,0 +1,369 @@
+/* test_gltf_pictures.c: pictures of glTF files: each shows one thing that glTF can say. What must be seen is known from how
+ * a file was made: parallelograms in world space, found and shaded here ray by ray in double precision
+ * (bench/study/shade.h). Nothing of geometry or materials comes from what was baked.
+ *
+ * Compared is the lit picture before exposure. Pixels near an edge, whose neighbourhood lies on two faces, are left out. */
+#include "support/support.h"
+#include "support/floats.h"
+#include "support/gltf_file.h"
+
+#include "bench/study/shade.h"
+#include "image.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SIDE = 64, FACES = 8 };
+
+/* ---- What must be seen ----------------------------------------------------------------------- */
+
+typedef struct face {
+    double at[3], u[3], v[3]; /* a corner, the two edges there */
+    double look[8];           /* albedo, roughness, emissive, metallic */
+    bool single;              /* not seen from behind: from where u x v points away */
+} face;
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* The nearest face along a ray, or -1; its normal, towards the eye. */
+static int face_at(const face *faces, int count, const double eye[3], const double direction[3], double normal[3]) {
+    double nearest = 1e30;
+    int found = -1;
+    for (int i = 0; i < count; i++) {
+        const face *f = &faces[i];
+        double n[3], from[3], on[3], across[3];
+        cross(f->u, f->v, n);
+        double facing = dot(n, direction), area = dot(n, n);
+        if (fabs(facing) < 1e-12 || (f->single && facing > 0)) continue;
+        for (int k = 0; k < 3; k++) from[k] = f->at[k] - eye[k];
+        double t = dot(from, n) / facing;
+        for (int k = 0; k < 3; k++) on[k] = eye[k] + t * direction[k] - f->at[k];
+        cross(on, f->v, across);
+        double u = dot(across, n) / area;
+        cross(f->u, on, across);
+        double v = dot(across, n) / area;
+        if (!(t > 0 && t < nearest && u >= 0 && u <= 1 && v >= 0 && v <= 1)) continue;
+        nearest = t;
+        found = i;
+        for (int k = 0; k < 3; k++) normal[k] = (facing > 0 ? -n[k] : n[k]) / sqrt(area);
+    }
+    return found;
+}
+
+/* ---- What is seen ---------------------------------------------------------------------------- */
+
+typedef struct shot {
+    double from[3], to[3];
+} shot;
+
+static const shot ahead = {{1, 0.5, 3}, {1, 0.5, 0}}, behind = {{1, 0.5, -3}, {1, 0.5, 0}};
+
+static const uint16_t *photograph(masu_session *s, const char *path, shot p, masu_view *view) {
+    static unsigned made;
+    char json[1024], name[32], error[ERROR_SIZE];
+    masu_scene scene;
+    masu_detail detail;
+    masu_camera camera;
+    uint8_t *blob = NULL;
+    size_t bytes = 0;
+    snprintf(name, sizeof name, "picture%u", made++);
+    path = strrchr(path, '/') + 1;
+    snprintf(json, sizeof json,
+             "{\"models\": [{\"file\": \"%s\"}], \"camera\": {\"fov_y\": 50, \"near\": 0.05, \"keys\": [{\"position\": [%g, %g, %g], "
+             "\"target\": [%g, %g, %g]}]}, \"sun\": {\"azimuth\": 30, \"elevation\": 35, \"intensity\": 1.5}, "
+             "\"ambient\": [0.3, 0.35, 0.45], \"sky\": {\"zenith\": [0.25, 0.4, 0.8], \"horizon\": [0.7, 0.75, 0.85]}}",
+             path, p.from[0], p.from[1], p.from[2], p.to[0], p.to[1], p.to[2]);
+    bake_scene(name, json);
+    masu_session_desc d = test_desc(NULL, SIDE, SIDE);
+    d.scene_path = baked_scene(name);
+    d.desc.readback = MASU_READBACK_HDR;
+    d.desc.rung_count = 1;
+    open_session(s, &d);
+    assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
+    assert_int_equal(masu_scene_bind(blob, bytes, &scene, &detail), MASU_OK);
+    assert_int_equal(masu_camera_at(s->m, 0, &camera), MASU_OK);
+    assert_ok(masu_view_seen(&scene, &camera, SIDE, SIDE, view, error, sizeof error));
+    free(blob);
+    masu_frame_desc frame = {0};
+    return draw_image(s, &frame, MASU_READBACK_HDR, NULL);
+}
+
+/* Every pixel against the faces; of each face there must be some. loose: how far rounding may take it. */
+static void compare(const char *path, shot p, const face *faces, int count, double loose) {
+    masu_session s;
+    masu_view v;
+    const uint16_t *hdr = photograph(&s, path, p, &v);
+    uint32_t pixels[FACES + 1] = {0}, wrong = 0;
+    char first[256] = "";
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        double want[3], normal[3], ignored[3];
+        masu_view_ray ray = masu_view_ray_at(&v, i % SIDE, i / SIDE);
+        int at = face_at(faces, count, v.eye, ray.direction, normal);
+        bool rim = false;
+        for (int k = 0; k < 4; k++) {
+            double d[3], x = (k & 1 ? 1 : -1) * 5.0 / SIDE, y = (k & 2 ? 1 : -1) * 5.0 / SIDE;
+            for (int c = 0; c < 3; c++) d[c] = ray.direction[c] * ray.z_scale + x * v.right[c] + y * v.up[c];
+            rim = rim || face_at(faces, count, v.eye, d, ignored) != at;
+        }
+        if (rim) continue;
+        if (at < 0) {
+            masu_shade_sky(&v, ray.direction, want);
+        } else if (loose > 0) {
+            masu_shade_exact(&v, ray.direction, normal, faces[at].look, want, ignored);
+            for (int c = 0; c < 3; c++) want[c] += ignored[c];
+        } else {
+            masu_shade_surface(&v, ray.direction, normal, faces[at].look, want);
+        }
+        pixels[at + 1]++;
+        for (int c = 0; c < 3; c++) {
+            double got = half_float(hdr[4 * i + (uint32_t)c]);
+            if (fabs(got - want[c]) <= 0.004 + (0.006 + loose) * want[c]) continue;
+            if (!wrong++)
+                snprintf(first, sizeof first, "pixel %u, %u, face %d, channel %d: %g, not %g", i % SIDE, i / SIDE, at, c, got, want[c]);
+        }
+    }
+    close_session(&s);
+    if (wrong) fail_msg("%u values are wrong: %s", wrong, first);
+    for (int k = 0; k <= count; k++) {
+        if (k && faces[k - 1].single && pixels[k] == 0) continue;
+        if (pixels[k] < 12) fail_msg("face %d: %u pixels", k - 1, pixels[k]);
+    }
+}
+
+/* A rectangle in a plane of constant z. */
+static face flat(double x, double y, double z, double width, double height, double red, double green, double blue, double roughness) {
+    return (face){.at = {x, y, z}, .u = {width, 0, 0}, .v = {0, height, 0}, .look = {red, green, blue, roughness}};
+}
+
+static const char *quad_of(const char *material) {
+    char rest[1024];
+    begin_quad();
+    snprintf(rest, sizeof rest, ",\"materials\":[{%s}]", material);
+    return finish_quad("", ",\"material\":0", rest);
+}
+
+#define CLAY "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.4,0.3,1],\"metallicFactor\":0,\"roughnessFactor\":0.75}"
+
+/* ---- Light that a surface sends itself ------------------------------------------------------- */
+
+static void emission_is_added(void **state) {
+    (void)state;
+    face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
+    for (int c = 0; c < 3; c++) f.look[4 + c] = 0.06;
+    const char *weak = CLAY ",\"emissiveFactor\":[0.06,0.06,0.06]";
+    compare(quad_of(weak), ahead, &f, 1, 0);
+    compare(quad_of(weak), ahead, &f, 1, 0.04); /* and what is rounded is not much */
+    const char *strong = CLAY ",\"emissiveFactor\":[1,0.5,0.025],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4}}";
+    f.look[4] = 4, f.look[5] = 2, f.look[6] = 0.1;
+    compare(quad_of(strong), ahead, &f, 1, 0);
+    compare(quad_of(strong), ahead, &f, 1, 0.08);
+}
+
+/* A lamp behind black glass: the glass still shines. And black chalk, which does nothing but emit. */
+static void what_is_black_and_emits_still_mirrors(void **state) {
+    (void)state;
+    face f = flat(0, 0, 0, 2, 1, 0, 0, 0, 0.25);
+    f.look[4] = 0.5, f.look[5] = 0.25, f.look[6] = 0.02;
+    const char *format = "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1],\"metallicFactor\":0,\"roughnessFactor\":%s},"
+                         "\"emissiveFactor\":[0.5,0.25,0.02]";
+    char about[512];
+    snprintf(about, sizeof about, format, "0.25");
+    compare(quad_of(about), ahead, &f, 1, 0);
+    snprintf(about, sizeof about, format, "1");
+    f.look[3] = 1;
+    compare(quad_of(about), ahead, &f, 1, 0);
+}
+
+static void what_is_unlit_sends_its_colour(void **state) {
+    (void)state;
+    face f = flat(0, 0, 0, 2, 1, 0, 0, 0, 1);
+    f.look[4] = 0.5, f.look[5] = 0.4, f.look[6] = 0.3;
+    compare(quad_of(CLAY ",\"extensions\":{\"KHR_materials_unlit\":{}}"), ahead, &f, 1, 0);
+}
+
+/* Four squares of one picture: sRGB bytes. */
+static void write_squares(const char *name, const uint8_t colors[4][3]) {
+    static uint8_t rgba[64 * 64 * 4];
+    char error[ERROR_SIZE];
+    for (int i = 0; i < 64 * 64; i++) {
+        const uint8_t *c = colors[(i % 64 >= 32) + 2 * (i / 64 >= 32)];
+        for (int k = 0; k < 3; k++) rgba[4 * i + k] = c[k];
+        rgba[4 * i + 3] = 255;
+    }
+    assert_ok(masu_image_save_png(in_scratch(name), rgba, 64, 64, 0, error, sizeof error));
+}
+
+/* Two sets of coordinates: the first says nothing. */
+static const char *mapped(const char *picture, const char *about) {
+    static const float first[8] = {9, 9, 9, 9, 9, 9, 9, 9}, second[8] = {0, 1, 1, 1, 1, 0, 0, 0};
+    char attributes[128], rest[1024];
+    begin_quad();
+    int a = floats(first, "VEC2", 4, 2), b = floats(second, "VEC2", 4, 2);
+    snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d,\"TEXCOORD_1\":%d", a, b);
+    snprintf(rest, sizeof rest, ",\"images\":[{\"uri\":\"%s\"}],\"textures\":[{\"source\":0}],\"materials\":[{%s}]", picture, about);
+    return finish_quad(attributes, ",\"material\":0", rest);
+}
+
+static double linear(int byte) { return byte <= 10 ? byte / 255.0 / 12.92 : pow((byte / 255.0 + 0.055) / 1.055, 2.4); }
+
+/* The quad in four parts, in the order of the squares as they are seen. */
+static void quarter(face *f) {
+    for (int i = 0; i < 4; i++) f[i] = flat(i & 1, i & 2 ? 0 : 0.5, 0, 1, 0.5, 0.5, 0.4, 0.3, 0.75);
+}
+
+/* Some of them shine less than a fifth: they were dark. */
+static void weak_maps_of_emission_shine(void **state) {
+    (void)state;
+    static const uint8_t colors[4][3] = {{0, 0, 0}, {100, 100, 100}, {60, 60, 60}, {255, 255, 255}};
+    face f[4];
+    write_squares("glow.png", colors);
+    quarter(f);
+    for (int i = 0; i < 4; i++)
+        for (int c = 0; c < 3; c++) f[i].look[4 + c] = linear(colors[i][c]);
+    compare(mapped("glow.png", CLAY ",\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0,\"texCoord\":1}"), ahead, f, 4, 0.06);
+}
+
+/* ---- Coordinates, pictures, colours ---------------------------------------------------------- */
+
+static void pictures_are_of_the_second_set_and_turned(void **state) {
+    (void)state;
+    static const uint8_t colors[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
+    /* A quarter turn moves (u, v) to (v, -u) + (0, 1): what is seen at upper left lies at lower left. */
+    static const int seen[4] = {2, 0, 3, 1};
+    face f[4];
+    write_squares("squares.png", colors);
+    quarter(f);
+    for (int i = 0; i < 4; i++)
+        for (int c = 0; c < 3; c++) f[i].look[c] = linear(colors[i][c]);
+#define ROUGH "\"metallicFactor\":0,\"roughnessFactor\":0.75"
+    compare(mapped("squares.png", "\"pbrMetallicRoughness\":{" ROUGH ",\"baseColorTexture\":{\"index\":0,\"texCoord\":1}}"), ahead, f, 4, 0);
+    for (int i = 0; i < 4; i++)
+        for (int c = 0; c < 3; c++) f[i].look[c] = linear(colors[seen[i]][c]);
+    compare(mapped("squares.png", "\"pbrMetallicRoughness\":{" ROUGH ",\"baseColorTexture\":{\"index\":0,\"texCoord\":0,\"extensions\":"
+                                  "{\"KHR_texture_transform\":{\"texCoord\":1,\"rotation\":1.5707963267948966,\"offset\":[0,1]}}}}"),
+            ahead, f, 4, 0);
+}
+
+static void pictures_are_webp(void **state) {
+    (void)state;
+    static const float at[8] = {0, 1, 1, 1, 1, 0, 0, 0};
+    char attributes[64], rest[1024];
+    face f = flat(0, 0, 0, 2, 1, 1, 0, 0, 0.75);
+    begin_quad();
+    int v = view(webp, sizeof webp, 0);
+    snprintf(attributes, sizeof attributes, ",\"TEXCOORD_0\":%d", floats(at, "VEC2", 4, 2));
+    snprintf(rest, sizeof rest,
+             ",\"images\":[{\"bufferView\":%d,\"mimeType\":\"image/webp\"}],\"textures\":[{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}}}],"
+             "\"materials\":[{\"pbrMetallicRoughness\":{" ROUGH ",\"baseColorTexture\":{\"index\":0}}}]", v);
+    compare(finish_quad(attributes, ",\"material\":0", rest), ahead, &f, 1, 0);
+}
+
+static void vertices_have_colours(void **state) {
+    (void)state;
+    static const float colors[16] = {1, 0.5f, 0.25f, 1, 1, 0.5f, 0.25f, 1, 1, 0.5f, 0.25f, 1, 1, 0.5f, 0.25f, 1};
+    char attributes[64];
+    face f = flat(0, 0, 0, 2, 1, 0.5, 0.2, 0.075, 0.75);
+    begin_quad();
+    snprintf(attributes, sizeof attributes, ",\"COLOR_0\":%d", floats(colors, "VEC4", 4, 4));
+    compare(finish_quad(attributes, ",\"material\":0", ",\"materials\":[{" CLAY "}]"), ahead, &f, 1, 0);
+}
+
+/* ---- Shapes ---------------------------------------------------------------------------------- */
+
+#define MATERIALS ",\"materials\":[{" CLAY "}]"
+
+/* Shorts, in a cube of 2 that its node makes 1 x 0.5 x 1; two of its faces are seen. */
+static void a_quantized_cube(void **state) {
+    (void)state;
+    int16_t p[24][4] = {{0}};
+    int8_t n[24][4] = {{0}};
+    uint8_t order[36];
+    for (int i = 0; i < 24; i++) {
+        int axis = i / 8, side = i / 4 % 2, a = i & 1, b = i >> 1 & 1;
+        p[i][axis] = side ? 32767 : -32767;
+        p[i][(axis + 1) % 3] = a ? 32767 : -32767;
+        p[i][(axis + 2) % 3] = b ? 32767 : -32767;
+        n[i][axis] = side ? 127 : -127;
+    }
+    for (int i = 0; i < 6; i++) {
+        static const uint8_t out[6] = {0, 1, 3, 0, 3, 2}, in[6] = {0, 3, 1, 0, 2, 3};
+        for (int k = 0; k < 6; k++) order[6 * i + k] = (uint8_t)(4 * i + (i & 1 ? out[k] : in[k]));
+    }
+    begin();
+    int positions = accessor(view(p, sizeof p, 8), SHORT, "VEC3", 24, ",\"normalized\":true");
+    int normals = accessor(view(n, sizeof n, 4), BYTE, "VEC3", 24, ",\"normalized\":true");
+    int indices = accessor(view(order, sizeof order, 0), UBYTE, "SCALAR", 36, "");
+    const char *path = finish("\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"meshes\":[{\"primitives\":[{\"attributes\":"
+                              "{\"POSITION\":%d,\"NORMAL\":%d},\"indices\":%d,\"material\":0}]}],"
+                              "\"nodes\":[{\"mesh\":0,\"scale\":[1,0.5,1],\"translation\":[1,0.5,0]}]" MATERIALS,
+                              positions, normals, indices);
+    face f[2] = {flat(0, 0, 1, 2, 1, 0.5, 0.4, 0.3, 0.75), flat(0, 0, 0, 0, 0, 0.5, 0.4, 0.3, 0.75)};
+    f[1] = (face){.at = {2, 0, 1}, .u = {0, 0, -2}, .v = {0, 1, 0}, .look = {0.5, 0.4, 0.3, 0.75}};
+    compare(path, (shot){{3.5, 0.5, 4}, {1.3, 0.5, 0.4}}, f, 2, 0);
+}
+
+static void draco_is_unpacked(void **state) {
+    (void)state;
+    face f = flat(0, 0, 0, 2, 1, 1, 1, 1, 1); /* glTF's own material: white metal, rough */
+    f.look[7] = 1;
+    compare(packed(sizeof packed_quad, "{\"POSITION\":0,\"TEXCOORD_0\":1}"), ahead, &f, 1, 0);
+}
+
+static void nodes_have_instances(void **state) {
+    (void)state;
+    static const float places[9] = {0, -1, 0, 0, 0.25f, 0, 0, 1.5f, -1}, sizes[9] = {1, 1, 1, 1, 1, 1, 0.5f, 0.5f, 1};
+    face f[3] = {flat(0, -1, 0, 2, 1, 0.5, 0.4, 0.3, 0.75), flat(0, 0.25, 0, 2, 1, 0.5, 0.4, 0.3, 0.75),
+                 flat(0, 1.5, -1, 1, 0.5, 0.5, 0.4, 0.3, 0.75)};
+    begin_quad();
+    int t = floats(places, "VEC3", 3, 3), s = floats(sizes, "VEC3", 3, 3);
+    compare(finish("\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},"
+                   "\"indices\":%d,\"material\":0}]}],\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
+                   "{\"attributes\":{\"TRANSLATION\":%d,\"SCALE\":%d}}}}]" MATERIALS,
+                   quad_positions, quad_indices, t, s),
+            (shot){{1, 0.5, 4}, {1, 0.5, 0}}, f, 3, 0);
+}
+
+static void morphs_have_their_weights(void **state) {
+    (void)state;
+    static const float away[12] = {0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0, -4};
+    face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
+    f.v[2] = -1; /* a quarter of it */
+    begin_quad();
+    int target = floats(away, "VEC3", 4, 3);
+    compare(finish("\"meshes\":[{\"weights\":[1],\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":0,"
+                   "\"targets\":[{\"POSITION\":%d}]}]}],\"nodes\":[{\"mesh\":0,\"weights\":[0.25]}]" MATERIALS,
+                   quad_positions, quad_indices, target),
+            ahead, &f, 1, 0);
+}
+
+static void skins_stand_as_their_joints_have_them(void **state) {
+    (void)state;
+    static const float moves[9] = {0, 0, 0, 3, 0, 0, 3, 4, 0};
+    face f = flat(0, 0, 0, 2, 1, 1, 1, 1, 1);
+    f.v[0] = 5; /* the upper joint lies 5 to the right of where it was bound */
+    f.look[7] = 1;
+    compare(skinned("STEP", moves, 3), (shot){{3.5, 0.5, 2.5}, {3.5, 0.5, 0}}, &f, 1, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(emission_is_added),
+        cmocka_unit_test(what_is_black_and_emits_still_mirrors),
+        cmocka_unit_test(what_is_unlit_sends_its_colour),
+        cmocka_unit_test(weak_maps_of_emission_shine),
+        cmocka_unit_test(pictures_are_of_the_second_set_and_turned),
+        cmocka_unit_test(pictures_are_webp),
+        cmocka_unit_test(vertices_have_colours),
+        cmocka_unit_test(a_quantized_cube),
+        cmocka_unit_test(draco_is_unpacked),
+        cmocka_unit_test(nodes_have_instances),
+        cmocka_unit_test(morphs_have_their_weights),
+        cmocka_unit_test(skins_stand_as_their_joints_have_them),
+    };
+    return cmocka_run_group_tests(tests, make_scratch, remove_scratch);
+}
