@@ -228,8 +228,8 @@ static void inputs_of_reflections(void **state) {
 
 static void inputs_of_the_meter(void **state) {
     (void)state;
-    step_s = 1.0f; /* it adapts over time, from wherever it may be */
-    poison_each("test_exposure", &(masu_rung){.scale = 1.0f}, 2, 12);
+    step_s = 0.1f; /* it adapts over time, from wherever in its range it may be */
+    poison_each("test_exposure", &(masu_rung){.scale = 1.0f}, 2, 64);
     step_s = 1.0f / 60;
 }
 
