@@ -273,8 +273,8 @@ static void the_box_is_as_large_as_was_said(void **state) {
            (unsigned long long)(need[1].host_bytes - need[0].host_bytes),
            (unsigned long long)(need[1].device_bytes - need[0].device_bytes));
     assert_true(need[1].device_bytes > need[0].device_bytes);
-    static masu_memory_row rows[256];
-    uint32_t count = masu_memory_report(made.m, rows, 256), named = 0;
+    static masu_memory_row rows[MEMORY_ROWS];
+    uint32_t count = memory_rows(made.m, rows), named = 0;
     for (uint32_t i = 0; i < count; i++) {
         named |= !strcmp(rows[i].name, "reserve models") ? 1u : 0;
         named |= !strcmp(rows[i].name, "reserve lights") ? 2u : 0;

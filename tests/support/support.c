@@ -60,6 +60,12 @@ void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels) {
     draw(s, &frame, &commands, pixels);
 }
 
+uint32_t memory_rows(const masu_renderer *m, masu_memory_row rows[MEMORY_ROWS]) {
+    uint32_t count = masu_memory_report(m, rows, MEMORY_ROWS);
+    assert_true(count && count <= MEMORY_ROWS);
+    return count;
+}
+
 const void *read_image(const masu_session *s, uint32_t slot, masu_readback_bits which) {
     masu_readback_image image;
     assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
