@@ -63,11 +63,13 @@ void main()
         sum += inside * middle(k);
     }
     bool cut = (frame.history.w & uint(MASU_HISTORY_CUT)) != 0u;
-    float before = masu_sane(adapted, -126.0, 126.0);
+    /* What no frame leaves is not kept: it would take as long to go as it is far away. */
+    float least = min(masu_log2(push.min), 0.0), most = max(masu_log2(push.max), 0.0);
+    float before = masu_sane(adapted, least, most);
     float wanted = cut ? 0.0 : before;
     if (weight > 0.0) {
         wanted = masu_log2(MASU_EXPOSURE_KEY) - sum / weight;
-        wanted = clamp(wanted, masu_log2(push.min), masu_log2(push.max));
+        wanted = clamp(wanted, masu_log2(push.min), masu_log2(push.max)); /* within least .. most */
     }
     float speed = wanted > before ? push.brighten : push.darken;
     float share = 1.0 - masu_exp2(-1.44269504 * speed * max(frame.eye_lo.w, 0.0));

@@ -181,6 +181,11 @@ vec4 found_again(vec2 at, vec2 place, around a)
     }
     vec3 surroundings;
     vec4 old = history_at(before, size, surroundings);
+    /* What no frame stores, as NaN, would count as many samples as there can be, and be seen as long: begin anew. */
+    if (!(all(greaterThanEqual(surroundings, vec3(0.0))) && all(lessThanEqual(surroundings, vec3(1.5))) &&
+          old.a >= 0.0 && old.a <= 64.0)) {
+        return vec4(0.0);
+    }
     bool other = frame.temporal.z != 0u && any(greaterThan(abs(surroundings - a.mean), a.deviation + unseen));
     if (other || !rests) {
         old.rgb = clamp(old.rgb, max(a.least, a.mean - deviations * a.deviation),

@@ -34,9 +34,9 @@ require=${MASU_REQUIRE_DRIVERS:-}
 drivers=${DRIVERS:-system}
 [ "$drivers" != all ] || drivers="system lavapipe-25 swiftshader"
 jobs=${MASU_TEST_JOBS:-$(nproc)}
-# Tests of programs, and of what a layer says of shaders: the answers hardly depend on the driver, so of several drivers
+# Tests of programs, of what a layer says of shaders, and of the host's part alone: the answers hardly depend on the driver, so of several drivers
 # the first that is there runs them.
-once=" test_baseline test_bench test_cli test_gpu_av test_model test_study_march "
+once=" test_baseline test_bench test_cli test_gpu_av test_model test_soak test_study_march "
 
 export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
 export CMOCKA_MESSAGE_OUTPUT=stdout

@@ -79,6 +79,39 @@ $(MADE)/stiff/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
 
 $(BUILD)/tests/gpu/test_stiff $(BUILD)/tests/gpu/test_specular_sdf: | $(STIFF) $(STIFF:.masu=.truth.so)
 
+# ---- Those of `masu conform --suite extreme`, with all ways to march, and their truths ------------
+
+EXTREME := figures figures_far figures_far7 lipschitz_2 lipschitz_10 displace_sine lipschitz_100 lipschitz_1000
+EXTREME += rods ground grazing many
+EXTREME := $(EXTREME:%=$(MADE)/scenes/extreme/%.masu)
+
+$(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
+	@mkdir -p $(@D)
+	@echo "  BAKE    $< --variants"
+	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --variants --quiet
+$(MADE)/scenes/extreme/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
+	@mkdir -p $(@D)
+	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
+
+$(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
+
+# docs/stability.md: what the suite and the tests measure on each of the drivers.
+.PHONY: stability
+stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme input, what must hold, what was measured, on three drivers
+	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tests/stability.sh
+
+# Random rungs, cameras, scenes, sizes; the tests do a tenth of it.
+.PHONY: soak
+soak: scenes $(BUILD)/tests/gpu/test_soak $(DRIVER_INFO) ## 20,000 frames of everything at random, memory beside a bare loop's: SOAK_FRAMES= DRIVERS=
+	$(V)SOAK_FRAMES=$(or $(SOAK_FRAMES),20000) MASU_TEST_TIMEOUT=7200 $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_soak; code=$$?; \
+	    cat $(BUILD)/test-results/*/test_soak.log; exit $$code
+
+# Whatever GPU the Vulkan loader finds: one folder to send in.
+.PHONY: device-report
+device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(GPU_TESTS) $(DRIVER_INFO) ## tests, suites, ladder, times of the GPU that is here to docs/devices/NAME: DRIVERS=any NAME= MINUTES=20
+	$(V)BUILD='$(BUILD)' MADE='$(MADE)' NAME='$(NAME)' MINUTES='$(or $(MINUTES),20)' \
+	    TESTS='$(GPU_TESTS)' tests/device_report.sh $(if $(filter-out system,$(DRIVERS)),$(DRIVERS),any)
+
 # ---- Fuzzing. Seeds are whole files; without any, a fuzzer starts from nothing. ------------------
 
 # A blob of a kilobyte, in which most mutations hit something that is looked at, and a real

@@ -66,11 +66,13 @@ static masu_result check_sizes(const masu_desc *desc, const masu_vk *vk, masu_de
     const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
     uint32_t widest =
         desc->output.width > desc->output.height ? desc->output.width : desc->output.height;
-    if (widest > limits->maxImageDimension2D || widest > limits->maxFramebufferWidth ||
-        widest > limits->maxFramebufferHeight) {
-        return masu_fail(detail, MASU_ERROR_DEVICE, "output", widest, limits->maxImageDimension2D,
+    uint32_t most = limits->maxImageDimension2D;
+    if (most > limits->maxFramebufferWidth) most = limits->maxFramebufferWidth;
+    if (most > limits->maxFramebufferHeight) most = limits->maxFramebufferHeight;
+    if (widest > most) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "output", widest, most,
                          "output %ux%u is larger than the device's images may be (%u)",
-                         desc->output.width, desc->output.height, limits->maxImageDimension2D);
+                         desc->output.width, desc->output.height, most);
     }
     uint32_t groups = (widest + MASU_GROUP - 1) / MASU_GROUP;
     if (groups > limits->maxComputeWorkGroupCount[0] ||

@@ -44,6 +44,82 @@ static void a_part_of_the_smoke_suite_passes(void **state) {
     assert_string_equal(cli_err, "");
 }
 
+/* A fifteenth of what docs/stability.md shows; each driver has another one. */
+static void a_part_of_the_extreme_suite_passes(void **state) {
+    (void)state;
+    const char *driver = getenv("MASU_TEST_DRIVER");
+    int part = !driver || !strcmp(driver, "system") ? 0 : !strcmp(driver, "lavapipe-25") ? 6 : 11;
+    int code = conform("--suite suites/extreme.json --fraction %d,15", part);
+    if (code) fail_msg("exit code %d\n%s%s", code, cli_out, cli_err);
+    cli_said("0 resource errors, 0 failed");
+}
+
+/* What is planted in an extreme case is found: another view, a field that is not met, another material. */
+static void extreme_cases_judge(void **state) {
+    (void)state;
+    char table[8192];
+    write_suite("{\"name\": \"here\"},"
+                "{\"name\": \"same\", \"extreme\": {\"cut\": true}, \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+                "{\"name\": \"away\", \"input\": \"a|b\", \"extreme\": {\"camera\": {\"position\": [0, 0, 5]}},"
+                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+                "{\"name\": \"dark\", \"extreme\": {\"light\": {\"sun\": [0, -1, 0]}},"
+                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+                "{\"name\": \"gone\", \"extreme\": {\"transform\": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]},"
+                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+                "{\"name\": \"none\", \"extreme\": {\"instance\": 9999, \"transform\": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]}},"
+                "{\"name\": \"glow\", \"extreme\": {\"material\": {\"emissive\": 5}},"
+                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+                "{\"name\": \"rungs\", \"ladder\": [{}, {\"scale\": 0.2}], \"frames\": 2, \"extreme\": {\"cycle\": true},"
+                " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+                "{\"name\": \"field\", \"scene\": \"extreme/figures\", \"rung\": {\"march_steps\": 3},"
+                " \"extreme\": {\"camera\": {\"position\": [1.5, 2.2, 6], \"forward\": [-0.25, -0.28, -1], \"near\": 0.05}},"
+                " \"field\": {\"hitmiss_pct\": 0.1}},"
+                "{\"name\": \"truth\", \"extreme\": {\"camera\": {}}, \"field\": {\"hitmiss_pct\": 0.1}}");
+    char more[200];
+    snprintf(more, sizeof more, "--table %s/t.md", scratch);
+    assert_int_equal(planted(more), 1);
+    static const char *const failing[] = {"away", "dark", "gone", "none", "glow", "rungs", "field", "truth"};
+    for (size_t i = 0; i < sizeof failing / sizeof *failing; i++) {
+        char line[64];
+        snprintf(line, sizeof line, "fail             %s ", failing[i]);
+        cli_said(line);
+    }
+    cli_said("pass             same ");
+    cli_said("10 cases: 2 passed, 0 quality warnings, 0 not supported, 0 resource errors, 8 failed");
+    take_text("t.md", table, sizeof table);
+    assert_non_null(strstr(table, "| fail | away 32x24 | a\\|b | "));
+    assert_non_null(strstr(table, "pixels = 0, against here | "));
+}
+
+/* Odd frames have the other camera; a cut, a step, settling change what frames before have left. */
+static void extreme_frames_are_told(void **state) {
+    (void)state;
+    char cases[4096];
+    const char *here = "\"camera\": {\"position\": [1.2, 0.9, 3.2], \"forward\": [-0.3, -0.25, -1]}";
+    const char *there = "{\"position\": [0, 0, 4]}", *t = "\"rung\": {\"temporal\": \"on\"}, \"frames\": 6";
+    snprintf(cases, sizeof cases,
+             "{\"name\": \"odd\", \"frames\": 2, \"extreme\": {%s, \"other_camera\": %s},"
+             " \"error\": {\"against\": \"there\", \"pixels\": 0}},"
+             "{\"name\": \"there\", \"frames\": 2, \"extreme\": {\"camera\": %s}},"
+             "{\"name\": \"settled\", \"frames\": 2, \"extreme\": {%s, \"other_camera\": %s, \"settle\": 1},"
+             " \"error\": {\"against\": \"here\", \"pixels\": 0}},"
+             "{\"name\": \"here\", \"frames\": 2, \"extreme\": {%s}},"
+             "{\"name\": \"gathered\", %s}, {\"name\": \"cut\", %s, \"extreme\": {\"cut\": true},"
+             " \"error\": {\"against\": \"gathered\", \"pixels\": 0}},"
+             "{\"name\": \"slow\", \"scene\": \"test_exposure\", \"frames\": 2, \"extreme\": {\"step\": 0, %s,"
+             " \"other_camera\": {\"position\": [0, 0, 1.5]}}},"
+             "{\"name\": \"fast\", \"scene\": \"test_exposure\", \"frames\": 2, \"extreme\": {\"step\": 10, %s,"
+             " \"other_camera\": {\"position\": [0, 0, 1.5]}}, \"error\": {\"against\": \"slow\", \"steps\": 3}}",
+             here, there, there, here, there, here, t, t, here, here);
+    write_suite(cases);
+    assert_int_equal(planted(""), 1);
+    cli_said("pass             odd ");
+    cli_said("pass             settled ");
+    cli_said("fail             cut ");
+    cli_said("fail             fast ");
+    cli_said("8 cases: 6 passed");
+}
+
 /* The value in the only row's column. */
 static double column(const char *name) {
     const char *head = cli_out, *row = strchr(cli_out, '\n') + 1;
@@ -206,6 +282,9 @@ static void what_is_no_suite_is_refused_in_one_line(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_part_of_the_smoke_suite_passes),
+        cmocka_unit_test(a_part_of_the_extreme_suite_passes),
+        cmocka_unit_test(extreme_cases_judge),
+        cmocka_unit_test(extreme_frames_are_told),
         cmocka_unit_test(budgets_hold_to_the_byte),
         cmocka_unit_test(a_failure_is_replayed_by_its_token),
         cmocka_unit_test(what_is_planted_has_its_verdict),

@@ -157,6 +157,15 @@ static void what_the_device_lacks_is_named(void **state) {
     wrap.max_image = 16;
     expect_device_error("output");
     wrap_reset();
+    wrap.max_framebuffer = 16; /* images may be larger than what is drawn to */
+    masu_detail detail;
+    masu_memory need;
+    expect_device_error("output");
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
+    assert_int_equal(detail.needed, W);
+    assert_int_equal(detail.given, 16);
+    assert_non_null(strstr(detail.text, "may be (16)"));
+    wrap_reset();
     wrap.unknown_function = "vkCmdDispatch";
     expect_device_error("vkCmdDispatch");
     wrap.unknown_function = "vkGetPhysicalDeviceMemoryProperties";

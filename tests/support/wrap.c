@@ -169,6 +169,7 @@ static VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice device, VkImage im
 /* Dispatchable objects without a device parameter: the real functions are kept at look-up. */
 static PFN_vkBeginCommandBuffer real_begin;
 static PFN_vkEndCommandBuffer real_end;
+static PFN_vkResetCommandPool real_reset;
 static PFN_vkCmdPipelineBarrier real_barrier;
 static PFN_vkCmdFillBuffer real_fill;
 static PFN_vkCmdBeginDebugUtilsLabelEXT real_label;
@@ -207,6 +208,7 @@ static VKAPI_ATTR void VKAPI_CALL cmd_label(VkCommandBuffer cmd,
                                             const VkDebugUtilsLabelEXT *label) {
     wrap.labels++;
     real_label(cmd, label);
+    if (wrap.on_label) wrap.on_label(cmd, label->pLabelName);
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL begin_CommandBuffer(VkCommandBuffer cmd,
@@ -216,6 +218,11 @@ static VKAPI_ATTR VkResult VKAPI_CALL begin_CommandBuffer(VkCommandBuffer cmd,
 
 static VKAPI_ATTR VkResult VKAPI_CALL end_CommandBuffer(VkCommandBuffer cmd) {
     return fails("vkEndCommandBuffer") ? wrap.fail_with : real_end(cmd);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL reset_CommandPool(VkDevice device, VkCommandPool pool,
+                                                        VkCommandPoolResetFlags flags) {
+    return fails("vkResetCommandPool") ? wrap.fail_with : real_reset(device, pool, flags);
 }
 
 static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice device,
@@ -240,6 +247,7 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
                   {"vkMapMemory", (PFN_vkVoidFunction)map_Memory},
                   {"vkBeginCommandBuffer", (PFN_vkVoidFunction)begin_CommandBuffer},
                   {"vkEndCommandBuffer", (PFN_vkVoidFunction)end_CommandBuffer},
+                  {"vkResetCommandPool", (PFN_vkVoidFunction)reset_CommandPool},
                   {"vkGetBufferMemoryRequirements", (PFN_vkVoidFunction)buffer_requirements},
                   {"vkGetImageMemoryRequirements", (PFN_vkVoidFunction)image_requirements},
                   {"vkCmdPipelineBarrier", (PFN_vkVoidFunction)cmd_barrier},
@@ -248,6 +256,7 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
     real_fill = REAL(CmdFillBuffer);
     real_begin = REAL(BeginCommandBuffer);
     real_end = REAL(EndCommandBuffer);
+    real_reset = REAL(ResetCommandPool);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         if (!strcmp(name, others[i].name)) return others[i].function;
     }
@@ -261,6 +270,7 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
     vkGetPhysicalDeviceProperties(device, out);
     if (wrap.api_version) out->apiVersion = wrap.api_version;
     if (wrap.max_image) out->limits.maxImageDimension2D = wrap.max_image;
+    if (wrap.max_framebuffer) out->limits.maxFramebufferHeight = wrap.max_framebuffer;
     if (wrap.fake_memory) {
         out->deviceType = wrap.fake_memory == 1 ? VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU
                                                 : VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;

@@ -12,7 +12,7 @@
 
 typedef struct wrap_state {
     /* Counts. `setup` is every vkCreate*, vkAllocate*, vkBegin/EndCommandBuffer, vkBind*,
-     * vkMapMemory. */
+     * vkMapMemory, vkResetCommandPool. */
     uint64_t setup_calls, creates, destroys;
     int64_t live; /* created objects and allocations that are not destroyed yet */
     uint64_t
@@ -30,6 +30,7 @@ typedef struct wrap_state {
     bool no_compute;         /* queue families without compute */
     bool no_timestamps;
     uint32_t max_image;           /* maxImageDimension2D; 0: the truth */
+    uint32_t max_framebuffer;     /* maxFramebufferHeight; 0: the truth */
     const char *unknown_function; /* not found */
     /* 1: a discrete GPU: device-local memory that the host cannot see, and memory that it can.
      * 2: an APU: as 1, and a third type that is both. Behind all stands the driver's type 0. */
@@ -40,6 +41,8 @@ typedef struct wrap_state {
     bool host_barrier, counter_barrier;
     VkImageLayout last_layout;
     uint32_t labels, fills_of_poison;
+    /* Called when a pass begins to be recorded, in front of its barriers; with debug.labels. */
+    void (*on_label)(VkCommandBuffer cmd, const char *name);
 } wrap_state;
 
 extern wrap_state wrap;

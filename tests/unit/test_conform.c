@@ -102,6 +102,62 @@ static void a_whole_case_is_read(void **state) {
     masu_suite_free(&suite);
 }
 
+static void extreme_input_is_read(void **state) {
+    (void)state;
+    accepts(parse(
+        "{\"format\": 1, \"defaults\": {\"scene\": \"city\", \"size\": [8, 8]}, \"cases\": ["
+        "{\"name\": \"a\", \"input\": \"far | away\", \"extreme\": {\"camera\": {\"position\": [1e7, 2, 3],"
+        " \"forward\": [0, 1, 0], \"up\": [0, 0, 1], \"fov\": 90, \"near\": 0.5}, \"other_camera\": {\"fov\": 10},"
+        " \"light\": {\"sun\": [0, -1, 0], \"exposure\": 2, \"turbidity\": 3}, \"step\": -1e9, \"cut\": true,"
+        " \"settle\": 4, \"transform\": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], \"instance\": 3,"
+        " \"material\": {\"index\": 2, \"roughness\": [1, -1e-4], \"emissive\": 1e6}},"
+        " \"field\": {\"hitmiss_pct\": 1}, \"counts\": {\"non_finite\": 0}},"
+        "{\"name\": \"b\", \"ladder\": [{}, {\"scale\": 0.5}], \"extreme\": {\"cycle\": true}}]}"));
+    const masu_extreme *x = &suite.cases[0].extreme;
+    assert_string_equal(x->input, "far | away");
+    assert_true(x->has_camera && x->camera.position[0] == 1e7 && x->camera.forward[1] == 1.0f);
+    assert_true(x->camera.up[2] == 1.0f && fabsf(x->camera.fov_y - 1.5707964f) < 1e-6f);
+    assert_true(x->camera.near_distance == 0.5f && x->has_other && x->other.fov_y < 0.18f);
+    assert_true(x->has_light && x->light.sun_direction[1] == -1.0f && x->light.exposure == 2.0f);
+    assert_true(x->light.turbidity == 3.0f && x->has_step && x->step == -1e9f && x->cut);
+    assert_true(x->settle == 4 && x->has_transform && x->transform[11] == 12.0f && x->instance == 3);
+    assert_true(x->has_material && x->material == 2 && x->roughness[1] == -1e-4);
+    assert_true(x->has_emissive && x->emissive == 1e6);
+    assert_true(masu_case_field(&suite.cases[0]) && !masu_case_field(&suite.cases[1]));
+    assert_true(suite.cases[1].extreme.cycle && suite.cases[1].rung_count == 2);
+    masu_suite_free(&suite);
+#define ONE(more) "{\"format\": 1, \"cases\": [{\"name\": \"a\", \"scene\": \"s\", \"size\": [8, 8], " more "}]}"
+    static const char *const bad[][2] = {
+        {ONE("\"extreme\": 1"), "extreme: needed is an object"},
+        {ONE("\"extreme\": {\"more\": 1}"), "extreme.more: there is no such key"},
+        {ONE("\"extreme\": {\"camera\": {\"fov\": 180}}"), "camera.fov: needed is a number"},
+        {ONE("\"extreme\": {\"camera\": {\"position\": [1, 2]}}"), "needed is an array of 3 numbers"},
+        {ONE("\"extreme\": {\"camera\": {\"far\": 1}}"), "camera.far: there is no such key"},
+        {ONE("\"extreme\": {\"light\": {\"moon\": 1}}"), "light.moon: there is no such key"},
+        {ONE("\"extreme\": {\"material\": {\"gloss\": 1}}"), "material.gloss: there is no such key"},
+        {ONE("\"extreme\": {\"transform\": [0]}"), "needed is an array of 12 numbers"},
+        {ONE("\"extreme\": {\"cycle\": true}"), "extreme.cycle: needed is a ladder"},
+        {ONE("\"extreme\": {\"other_camera\": {}}"), "other_camera: needed is a camera beside it"},
+        {ONE("\"field\": {\"lost_pct\": 0}"), "field: needed are extreme.camera"},
+        {ONE("\"extreme\": {\"camera\": {}}, \"move\": 1, \"field\": {\"lost_pct\": 0}"), "time stands still"},
+        {ONE("\"extreme\": {\"cut\": true}, \"governed\": {\"target_ms\": 5}"), "that is not governed"},
+        {ONE("\"extreme\": {\"material\": {}}, \"error\": {\"against\": \"truth\", \"flip\": 1}"), "there is no truth"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) refuses(parse(bad[i][0]), bad[i][1]);
+}
+
+/* Two rows, with a gap behind each that holds anything. */
+static void what_is_not_finite_is_counted(void **state) {
+    (void)state;
+    const float depths[8] = {0.0f, 1.0f, NAN, NAN, -0.001f, 1.001f, INFINITY, NAN};
+    const uint16_t halves[16] = {0x0000, 0x7BFF, 0x7C00, 0xFC00, 0x7E00, 0xFFFF, 0x7C01, 0x7C00,
+                                 0x0001, 0xFBFF, 0x3C00, 0x7C00, 0x7C00, 0x7C00, 0x7C00, 0x7C00};
+    masu_readback_image image = {.pixels = depths, .width = 3, .height = 2, .row_bytes = 16};
+    assert_true(masu_extreme_count(&image, true) == 4);
+    image = (masu_readback_image){.pixels = halves, .width = 1, .height = 2, .row_bytes = 16};
+    assert_true(masu_extreme_count(&image, false) == 3);
+}
+
 static void what_is_no_suite_is_refused(void **state) {
     (void)state;
     refuses(parse("{\"format\": 1,"), "s.json:1:");
@@ -467,6 +523,8 @@ static void the_shipped_suites_are_good(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_whole_case_is_read),
+        cmocka_unit_test(extreme_input_is_read),
+        cmocka_unit_test(what_is_not_finite_is_counted),
         cmocka_unit_test(what_is_no_suite_is_refused),
         cmocka_unit_test(a_bad_case_is_named_with_its_key),
         cmocka_unit_test(a_suite_that_is_cut_is_refused),

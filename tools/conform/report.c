@@ -109,6 +109,76 @@ void masu_conform_csv(FILE *f, const masu_suite *suite, const masu_conform_resul
     }
 }
 
+/* ---- Tables ---------------------------------------------------------------------------------- */
+
+/* A cell of a row: nothing in it ends the cell or the row, or begins a tag. */
+static void cell(FILE *f, const char *text) {
+    for (; *text; text++) {
+        if (*text == '|' || *text == '<' || *text == '\\') fputc('\\', f);
+        fputc((unsigned char)*text < ' ' ? ' ' : *text, f);
+    }
+}
+
+static double limit_of(const masu_bound *b) { return isnan(b->fail) ? b->warn : b->fail; }
+
+static void print_limits(FILE *f, const masu_case *c) {
+    const char *join = "";
+    static const char *const same[] = MASU_SAME_NAMES;
+    for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
+        const char *name = masu_measure_name((masu_measure)m);
+        bool more = m == MASU_MEASURE_PSNR || m == MASU_MEASURE_SSIM;
+        if (masu_bound_is_set(&c->bounds[m])) {
+            double limit = limit_of(&c->bounds[m]);
+            if (!limit && !more) /* 0 may not be exceeded: it is what must be */
+                fprintf(f, "%s%s = 0", join, name);
+            else
+                fprintf(f, "%s%s %s %.4g", join, name, more ? "\xE2\x89\xA5" : "\xE2\x89\xA4", limit);
+            join = ", ";
+        }
+        if (masu_bound_is_set(&c->least[m])) {
+            fprintf(f, "%s%s \xE2\x89\xA5 %.4g", join, name, limit_of(&c->least[m]));
+            join = ", ";
+        }
+    }
+    if (c->exact_memory) fprintf(f, "%sa byte less is refused", join), join = ", ";
+    for (int i = 0; same[i]; i++) {
+        if (c->same & 1u << i) fprintf(f, "%sequal to the bit: %s", join, same[i]), join = ", ";
+    }
+    if (c->against) {
+        fprintf(f, "%sagainst ", join);
+        cell(f, c->against);
+    }
+}
+
+void masu_conform_table(FILE *f, const masu_suite *suite, const masu_conform_result *results,
+                        uint32_t n, const char *driver) {
+    (void)suite;
+    (void)driver;
+    for (uint32_t i = 0; i < n; i++) {
+        const masu_conform_result *r = &results[i];
+        const char *join = "";
+        fprintf(f, "| %s | ", masu_verdict_name(r->verdict));
+        cell(f, r->of->name);
+        fprintf(f, " %ux%u | ", r->of->width, r->of->height);
+        cell(f, r->of->extreme.input ? r->of->extreme.input : r->of->scene);
+        fputs(" | ", f);
+        print_limits(f, r->of);
+        fputs(" | ", f);
+        for (int m = 0; m < MASU_MEASURE_COUNT; m++) {
+            bool asked = masu_bound_is_set(&r->of->bounds[m]) || masu_bound_is_set(&r->of->least[m]);
+            bool unlimited = masu_bound_is_set(&r->of->bounds[m]) && !limit_of(&r->of->bounds[m]) &&
+                             !(r->values[m] > 0);
+            if (!asked || unlimited || isnan(r->values[m])) continue;
+            fprintf(f, "%s%s %.4g", join, masu_measure_name((masu_measure)m), r->values[m]);
+            join = ", ";
+        }
+        if (!*join) fputs(r->verdict == MASU_VERDICT_PASS ? "all 0" : "-", f);
+        fputs(" |\n", f);
+    }
+}
+
+/* ---- JUnit ----------------------------------------------------------------------------------- */
+
 static void attribute(FILE *f, const char *name, const char *value) {
     masu_markup(f, " %s=\"%s\"", name, value);
 }

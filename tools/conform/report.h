@@ -24,6 +24,10 @@ void masu_conform_sum(FILE *f, const masu_conform_result *results, uint32_t n);
 void masu_conform_csv(FILE *f, const masu_suite *suite, const masu_conform_result *results,
                       uint32_t n, const char *driver);
 
+/* Rows of a table in Markdown: what is given, what must hold, what was measured. */
+void masu_conform_table(FILE *f, const masu_suite *suite, const masu_conform_result *results,
+                        uint32_t n, const char *driver);
+
 /* One testsuite: fail is a failure, a resource error an error, not supported is skipped; a quality
  * warning passes and says so. */
 void masu_conform_junit(FILE *f, const masu_suite *suite, const masu_conform_result *results,

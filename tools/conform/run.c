@@ -121,6 +121,7 @@ static masu_session_desc describe(const masu_conform *c, const masu_case *of, co
     d.desc.deny.unified_memory = w->split;
     d.desc.debug.poison = w->poison;
     d.desc.debug.counters = counts(of);
+    masu_extreme_describe(of, &d.desc);
     if (w->first) {
         d.desc.host_budget = budget(&of->bounds[MASU_MEASURE_HOST_BYTES]);
         d.desc.device_budget = budget(&of->bounds[MASU_MEASURE_DEVICE_BYTES]);
@@ -182,6 +183,11 @@ static bool open_session(masu_conform *c, const masu_case *of, const way *w,
         return false;
     }
     if (w->first && of->exact_memory) check_memory(s, r);
+    if (w->first && masu_case_field(of) && !masu_field_look(s, of, &c->view, error, sizeof error)) {
+        find(r, MASU_VERDICT_FAIL, "%s", error);
+        masu_session_close(s);
+        return false;
+    }
     if (masu_session_start(s, error, sizeof error)) {
         masu_peak_info peaks;
         masu_peaks(s->m, &peaks);
@@ -278,6 +284,35 @@ static void take_counts(const masu_stats_info *s, masu_conform_result *r) {
         r->values[taken[i].m] = taken[i].value;
 }
 
+/* What is looked at in each frame. */
+static bool look(masu_conform *c, const masu_case *of, uint32_t slot, masu_conform_result *r) {
+    char error[1024];
+    double *count = &r->values[MASU_MEASURE_NON_FINITE];
+    if (!masu_bound_is_set(&of->bounds[MASU_MEASURE_NON_FINITE])) return true;
+    if (isnan(*count)) *count = 0.0;
+    if (!wait(&c->session, slot, r)) return false;
+    if (masu_extreme_non_finite(&c->session, slot, count, error, sizeof error)) return true;
+    find(r, MASU_VERDICT_FAIL, "%s", error);
+    return false;
+}
+
+static bool look_at_field(masu_conform *c, const masu_case *of, uint32_t slot,
+                          masu_conform_result *r) {
+    char path[4096], error[1024];
+    masu_field_figures f;
+    if (!masu_case_field(of)) return true;
+    scene_path(c, of, path, sizeof path);
+    if (!masu_field_compare(&c->session, slot, path, &c->view, &f, error, sizeof error)) {
+        find(r, MASU_VERDICT_FAIL, "%s", error);
+        return false;
+    }
+    r->values[MASU_MEASURE_HITMISS_PCT] = f.hitmiss_pct;
+    r->values[MASU_MEASURE_LOST_PCT] = f.lost_pct;
+    r->values[MASU_MEASURE_DEPTH_P50] = f.depth_p50;
+    r->values[MASU_MEASURE_DEPTH_P99] = f.depth_p99;
+    return true;
+}
+
 /* The last frame's picture: NULL after a failure. */
 static uint8_t *draw_frames(masu_conform *c, const masu_case *of, masu_conform_result *r,
                             bool keep_counts) {
@@ -287,11 +322,17 @@ static uint8_t *draw_frames(masu_conform *c, const masu_case *of, masu_conform_r
     char error[1024];
     for (uint32_t i = 0; i < of->frames; i++) {
         masu_frame_desc frame = frame_at(of, i);
+        if (!masu_extreme_frame(s, of, i, &frame, error, sizeof error)) {
+            find(r, MASU_VERDICT_FAIL, "%s", error);
+            return NULL;
+        }
         if (!submit(s, &frame, r, &commands)) return NULL;
+        if (keep_counts && !look(c, of, commands.slot, r)) return NULL;
     }
     if (!wait(s, commands.slot, r)) return NULL;
     if (keep_counts && counts(of) && !masu_stats(s->m, commands.slot, &stats))
         take_counts(&stats, r);
+    if (keep_counts && !look_at_field(c, of, commands.slot, r)) return NULL;
     size_t bytes = 4 * (size_t)of->width * of->height;
     uint8_t *rgba = malloc(bytes);
     if (!rgba) {
@@ -470,6 +511,8 @@ static void draw_ways(masu_conform *c, const masu_case *of, const uint8_t *pictu
 static bool same_truth(const masu_case *a, const masu_case *b) {
     return !strcmp(a->scene, b->scene) && a->width == b->width && a->height == b->height &&
            a->positions == b->positions && a->rays == b->rays &&
+           !memcmp(&a->extreme.camera, &b->extreme.camera, sizeof a->extreme.camera) &&
+           !memcmp(&a->extreme.light, &b->extreme.light, sizeof a->extreme.light) &&
            a->time + a->move * (a->frames - 1) == b->time + b->move * (b->frames - 1);
 }
 
@@ -492,6 +535,8 @@ static const uint8_t *truth_of(masu_conform *c, const masu_case *of, masu_confor
         return NULL;
     }
     masu_frame_desc frame = frame_at(of, of->frames - 1);
+    frame.camera = of->extreme.has_camera ? &of->extreme.camera : NULL;
+    frame.light = of->extreme.has_light ? &of->extreme.light : NULL;
     bool good = masu_picture_truth(s, &frame, of->positions, of->rays, rgba, masu_cli_progress_text, error,
                                    sizeof error);
     close_session(c, r);

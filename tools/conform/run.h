@@ -38,6 +38,7 @@ typedef struct masu_conform {
     masu_session calibration;
     masu_headless_source source;
     masu_session session;
+    masu_view view; /* of a case that is compared with its field */
     masu_truth_picture *truths;
     uint32_t truth_count;
 } masu_conform;

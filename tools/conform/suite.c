@@ -1,9 +1,9 @@
 /* suite.c: see suite.h. */
 #include "conform/suite.h"
 
-#include "cli/cli.h"
-
 #include "bench/sweep/knobs.h"
+#include "cli/cli.h"
+#include "conform/read.h"
 
 #include <fnmatch.h>
 #include <math.h>
@@ -56,134 +56,31 @@ masu_verdict masu_bound_judge(const masu_bound *bound, double value, bool least)
     return beyond(value, bound->warn, least) ? MASU_VERDICT_WARNING : MASU_VERDICT_PASS;
 }
 
-/* ---- Reading --------------------------------------------------------------------------------- */
-
-/* A place in the file, for messages. */
-typedef struct place {
-    masu_suite *suite;
-    const char *case_name; /* or "defaults" */
-    char *error;
-    size_t error_size;
-} place;
-
-static bool wrong(const place *at, const char *key, const char *format, ...) {
-    char text[400];
-    va_list arguments;
-    va_start(arguments, format);
-    if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
-    va_end(arguments);
-    snprintf(at->error, at->error_size, "%s: %s%s%s%s%s: %s", at->suite->file,
-             at->case_name ? "case '" : "", at->case_name ? at->case_name : "",
-             at->case_name ? "'" : "", at->case_name && key ? ": " : "", key ? key : "", text);
-    return false;
-}
-
-static bool read_number(const place *at, const char *key, const json_t *value, double low,
-                        double high, bool whole, double *out) {
-    char text[80];
-    double v = json_number_value(value);
-    if (json_is_number(value) && v >= low && v <= high && (!whole || v == floor(v))) {
-        *out = v;
-        return true;
-    }
-    return wrong(at, key, "needed is a %snumber from %.10g to %.10g, given is %s",
-                 whole ? "whole " : "", low, high, masu_json_given(value, text, sizeof text));
-}
-
-static bool read_count(const place *at, const char *key, const json_t *value, uint32_t low,
-                       uint32_t high, uint32_t *out) {
-    double v = 0.0;
-    if (!read_number(at, key, value, low, high, true, &v)) return false;
-    *out = (uint32_t)v;
-    return true;
-}
-
-static bool read_flag(const place *at, const char *key, const json_t *value, bool *out) {
-    char text[80];
-    if (!json_is_boolean(value))
-        return wrong(at, key, "needed is true or false, given is %s",
-                     masu_json_given(value, text, sizeof text));
-    *out = json_is_true(value);
-    return true;
-}
-
-static bool read_string(const place *at, const char *key, const json_t *value, const char **out) {
-    char text[80];
-    if (!json_is_string(value) || !json_string_length(value)) {
-        return wrong(at, key, "needed is a string that is not empty, given is %s",
-                     masu_json_given(value, text, sizeof text));
-    }
-    *out = json_string_value(value);
-    return true;
-}
-
-static bool read_object(const place *at, const char *key, const json_t *value) {
-    char text[80];
-    return json_is_object(value) ||
-           wrong(at, key, "needed is an object, given is %s", masu_json_given(value, text, sizeof text));
-}
-
-/* One of the names; their numbers begin at 0. */
-static bool read_choice(const place *at, const char *key, const json_t *value,
-                        const char *const *names, uint32_t *out) {
-    char text[80], list[200] = "";
-    for (uint32_t i = 0; names[i]; i++) {
-        if (json_is_string(value) && !strcmp(names[i], json_string_value(value))) {
-            *out = i;
-            return true;
-        }
-        size_t n = strlen(list);
-        snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
-    }
-    return wrong(at, key, "needed is one of %s, given is %s", list,
-                 masu_json_given(value, text, sizeof text));
-}
-
-/* A list of names, each a bit. */
-static bool read_names(const place *at, const char *key, const json_t *value,
-                       const char *const *names, uint32_t *out) {
-    char text[80];
-    if (!json_is_array(value))
-        return wrong(at, key, "needed is an array, given is %s", masu_json_given(value, text, sizeof text));
-    *out = 0;
-    for (size_t i = 0; i < json_array_size(value); i++) {
-        uint32_t bit = 0;
-        if (!read_choice(at, key, json_array_get(value, i), names, &bit)) return false;
-        *out |= 1u << bit;
-    }
-    return true;
-}
-
-static bool unknown(const place *at, const char *group, const char *key) {
-    char text[160];
-    snprintf(text, sizeof text, "%s%s%.100s", group, group[0] ? "." : "", key);
-    return wrong(at, text, "there is no such key");
-}
-
 /* ---- Rungs ----------------------------------------------------------------------------------- */
 
-static bool read_rung(const place *at, const json_t *value, masu_rung *rung) {
+static bool read_rung(const masu_suite_place *at, const json_t *value, masu_rung *rung) {
     const char *key;
     json_t *member;
-    if (!read_object(at, "rung", value)) return false;
+    if (!masu_suite_object(at, "rung", value)) return false;
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
         char name[80], error[300];
         const masu_knob *k = masu_knob_find(key, strlen(key));
-        if (!k) return unknown(at, "rung", key);
+        if (!k) return masu_suite_unknown(at, "rung", key);
         snprintf(name, sizeof name, "rung.%s", key);
         if (!masu_knob_from_json(k, member, rung, error, sizeof error))
-            return wrong(at, name, "%s", error);
+            return masu_suite_wrong(at, name, "%s", error);
     }
     return true;
 }
 
-static bool read_ladder(const place *at, const json_t *value, masu_case *c) {
+static bool read_ladder(const masu_suite_place *at, const json_t *value, masu_case *c) {
     size_t n = json_array_size(value);
     c->measured = json_is_string(value) && !strcmp(json_string_value(value), "auto");
     if (c->measured) return true;
     if (!json_is_array(value) || !n || n > MASU_MAX_RUNGS) {
-        return wrong(at, "ladder", "needed is 'auto' or an array of 1 to %u rungs, given are %zu",
-                     MASU_MAX_RUNGS, n);
+        return masu_suite_wrong(at, "ladder",
+                                "needed is 'auto' or an array of 1 to %u rungs, given are %zu",
+                                MASU_MAX_RUNGS, n);
     }
     memset(c->rungs, 0, sizeof c->rungs);
     for (size_t i = 0; i < n; i++) {
@@ -196,30 +93,34 @@ static bool read_ladder(const place *at, const json_t *value, masu_case *c) {
 /* ---- Groups of limits ------------------------------------------------------------------------ */
 
 /* A number: what is beyond fails. Or an object of warn and fail. */
-static bool read_bound(const place *at, const char *name, const json_t *value, bool least,
-                       masu_bound *bound) {
+static bool read_bound(const masu_suite_place *at, const char *name, const json_t *value,
+                       bool least, masu_bound *bound) {
     const char *key;
     json_t *member;
     *bound = (masu_bound){MASU_UNKNOWN, MASU_UNKNOWN};
-    if (!json_is_object(value)) return read_number(at, name, value, 0.0, 1e18, false, &bound->fail);
+    if (!json_is_object(value))
+        return masu_suite_number(at, name, value, 0.0, 1e18, false, &bound->fail);
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
         char text[200];
         snprintf(text, sizeof text, "%.160s.%.20s", name, key);
         bool warn = !strcmp(key, "warn");
-        if (!warn && strcmp(key, "fail")) return wrong(at, text, "there is no such key");
-        if (!read_number(at, text, member, 0.0, 1e18, false, warn ? &bound->warn : &bound->fail))
+        if (!warn && strcmp(key, "fail")) return masu_suite_wrong(at, text, "there is no such key");
+        if (!masu_suite_number(at, text, member, 0.0, 1e18, false,
+                               warn ? &bound->warn : &bound->fail))
             return false;
     }
-    if (!masu_bound_is_set(bound)) return wrong(at, name, "needed is warn, fail, or both");
+    if (!masu_bound_is_set(bound))
+        return masu_suite_wrong(at, name, "needed is warn, fail, or both");
     if (isnan(bound->warn) || isnan(bound->fail) ||
         (least ? bound->warn >= bound->fail : bound->warn <= bound->fail)) {
         return true;
     }
-    return wrong(at, name, "warn is %.10g, which is beyond fail, %.10g", bound->warn, bound->fail);
+    return masu_suite_wrong(at, name, "warn is %.10g, which is beyond fail, %.10g", bound->warn,
+                            bound->fail);
 }
 
-static bool read_measure(const place *at, const char *group, const char *key, const json_t *value,
-                         masu_case *c) {
+static bool read_measure(const masu_suite_place *at, const char *group, const char *key,
+                         const json_t *value, masu_case *c) {
     bool least = !strcmp(group, "at_least");
     char name[160];
     snprintf(name, sizeof name, "%s.%.100s", group, key);
@@ -229,89 +130,94 @@ static bool read_measure(const place *at, const char *group, const char *key, co
         bool more = least || measures[m].more_is_better;
         return read_bound(at, name, value, more, least ? &c->least[m] : &c->bounds[m]);
     }
-    return unknown(at, group, key);
+    return masu_suite_unknown(at, group, key);
 }
 
-static bool read_measures(const place *at, const char *group, const json_t *value, masu_case *c) {
+static bool read_measures(const masu_suite_place *at, const char *group, const json_t *value,
+                          masu_case *c) {
     const char *key;
     json_t *member;
-    if (!read_object(at, group, value)) return false;
+    if (!masu_suite_object(at, group, value)) return false;
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
         if (!read_measure(at, group, key, member, c)) return false;
     }
     return true;
 }
 
-static bool read_error(const place *at, const json_t *value, masu_case *c) {
+static bool read_error(const masu_suite_place *at, const json_t *value, masu_case *c) {
     const char *key;
     json_t *member;
-    if (!read_object(at, "error", value)) return false;
+    if (!masu_suite_object(at, "error", value)) return false;
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
-        bool good = !strcmp(key, "against") ? read_string(at, "error.against", member, &c->against)
+        bool good = !strcmp(key, "against")
+                        ? masu_suite_string(at, "error.against", member, &c->against)
                     : !strcmp(key, "positions")
-                        ? read_count(at, "error.positions", member, 1, 4096, &c->positions)
+                        ? masu_suite_count(at, "error.positions", member, 1, 4096, &c->positions)
                     : !strcmp(key, "rays")
-                        ? read_count(at, "error.rays", member, 1, 1000000, &c->rays)
+                        ? masu_suite_count(at, "error.rays", member, 1, 1000000, &c->rays)
                         : read_measure(at, "error", key, member, c);
         if (!good) return false;
     }
     return true;
 }
 
-static bool read_pair(const place *at, const char *key, const json_t *value, uint32_t low,
-                      uint32_t high, uint32_t *a, uint32_t *b) {
+static bool read_pair(const masu_suite_place *at, const char *key, const json_t *value,
+                      uint32_t low, uint32_t high, uint32_t *a, uint32_t *b) {
     char text[80];
     if (!json_is_array(value) || json_array_size(value) != 2) {
-        return wrong(at, key, "needed are two numbers in an array, given is %s",
-                     masu_json_given(value, text, sizeof text));
+        return masu_suite_wrong(at, key, "needed are two numbers in an array, given is %s",
+                                masu_json_given(value, text, sizeof text));
     }
-    return read_count(at, key, json_array_get(value, 0), low, high, a) &&
-           read_count(at, key, json_array_get(value, 1), low, high, b);
+    return masu_suite_count(at, key, json_array_get(value, 0), low, high, a) &&
+           masu_suite_count(at, key, json_array_get(value, 1), low, high, b);
 }
 
-static bool read_settles(const place *at, const json_t *value, masu_governed *g) {
+static bool read_settles(const masu_suite_place *at, const json_t *value, masu_governed *g) {
     uint32_t low = 0, high = 0;
     if (!read_pair(at, "governed.settles", value, 0, MASU_MAX_RUNGS - 1, &low, &high)) return false;
     if (low > high) {
-        return wrong(at, "governed.settles", "needed is the lower rung first, given are %u and %u",
-                     low, high);
+        return masu_suite_wrong(at, "governed.settles",
+                                "needed is the lower rung first, given are %u and %u", low, high);
     }
     g->settles[0] = (int32_t)low;
     g->settles[1] = (int32_t)high;
     return true;
 }
 
-static bool read_told(const place *at, const json_t *value, masu_governed *g) {
+static bool read_told(const masu_suite_place *at, const json_t *value, masu_governed *g) {
     const char *key;
     json_t *member;
     g->told = true;
-    if (!read_object(at, "governed.told", value)) return false;
+    if (!masu_suite_object(at, "governed.told", value)) return false;
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
         double *out = !strcmp(key, "fixed_ms")  ? &g->fixed_ms
                       : !strcmp(key, "load_ms") ? &g->load_ms
                                                 : NULL;
-        if (!out) return unknown(at, "governed.told", key);
-        if (!read_number(at, "governed.told", member, 0.0, 1e4, false, out)) return false;
+        if (!out) return masu_suite_unknown(at, "governed.told", key);
+        if (!masu_suite_number(at, "governed.told", member, 0.0, 1e4, false, out)) return false;
     }
     return true;
 }
 
-static bool read_governed(const place *at, const json_t *value, masu_case *c) {
+static bool read_governed(const masu_suite_place *at, const json_t *value, masu_case *c) {
     const char *key;
     json_t *member;
     masu_governed *g = &c->governed;
-    if (!read_object(at, "governed", value)) return false;
+    if (!masu_suite_object(at, "governed", value)) return false;
     *g = (masu_governed){.on = true, .frames = 60, .settles = {-1, -1}};
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
         bool good;
         if (!strcmp(key, "target_ms")) {
-            good = read_number(at, "governed.target_ms", member, 1, 1000, false, &g->target_ms);
+            good =
+                masu_suite_number(at, "governed.target_ms", member, 1, 1000, false, &g->target_ms);
         } else if (!strcmp(key, "frames")) {
-            good = read_count(at, "governed.frames", member, 1, 100000, &g->frames);
+            good = masu_suite_count(at, "governed.frames", member, 1, 100000, &g->frames);
         } else if (!strcmp(key, "best_rung")) {
-            good = read_count(at, "governed.best_rung", member, 0, MASU_MAX_RUNGS - 1, &g->best);
+            good =
+                masu_suite_count(at, "governed.best_rung", member, 0, MASU_MAX_RUNGS - 1, &g->best);
         } else if (!strcmp(key, "worst_rung")) {
-            good = read_count(at, "governed.worst_rung", member, 0, MASU_MAX_RUNGS - 1, &g->worst);
+            good = masu_suite_count(at, "governed.worst_rung", member, 0, MASU_MAX_RUNGS - 1,
+                                    &g->worst);
         } else if (!strcmp(key, "settles")) {
             good = read_settles(at, member, g);
         } else if (!strcmp(key, "told")) {
@@ -322,24 +228,27 @@ static bool read_governed(const place *at, const json_t *value, masu_case *c) {
         if (!good) return false;
     }
     return json_object_get(value, "target_ms") ||
-           wrong(at, "governed.target_ms", "needed is a number from 1 to 1000, given is nothing");
+           masu_suite_wrong(at, "governed.target_ms",
+                            "needed is a number from 1 to 1000, given is nothing");
 }
 
 /* ---- Cases ----------------------------------------------------------------------------------- */
 
-static bool read_key(const place *at, const char *key, const json_t *value, masu_case *c) {
+static bool read_key(const masu_suite_place *at, const char *key, const json_t *value,
+                     masu_case *c) {
     static const char *const same[] = MASU_SAME_NAMES, *const needs[] = MASU_NEEDS_NAMES;
     if (!strcmp(key, "name") || !strcmp(key, "sizes")) return true; /* read by the caller */
-    if (!strcmp(key, "scene")) return read_string(at, key, value, &c->scene);
+    if (!strcmp(key, "scene")) return masu_suite_string(at, key, value, &c->scene);
     if (!strcmp(key, "size")) return read_pair(at, key, value, 1, 16384, &c->width, &c->height);
-    if (!strcmp(key, "time")) return read_number(at, key, value, -1e9, 1e9, false, &c->time);
-    if (!strcmp(key, "move")) return read_number(at, key, value, 0.0, 1e6, false, &c->move);
-    if (!strcmp(key, "frames")) return read_count(at, key, value, 1, 100000, &c->frames);
-    if (!strcmp(key, "flight")) return read_count(at, key, value, 1, MASU_MAX_FLIGHT, &c->flight);
-    if (!strcmp(key, "validate")) return read_flag(at, key, value, &c->validate);
-    if (!strcmp(key, "exact_memory")) return read_flag(at, key, value, &c->exact_memory);
-    if (!strcmp(key, "same")) return read_names(at, key, value, same, &c->same);
-    if (!strcmp(key, "needs")) return read_names(at, key, value, needs, &c->needs);
+    if (!strcmp(key, "time")) return masu_suite_number(at, key, value, -1e9, 1e9, false, &c->time);
+    if (!strcmp(key, "move")) return masu_suite_number(at, key, value, 0.0, 1e6, false, &c->move);
+    if (!strcmp(key, "frames")) return masu_suite_count(at, key, value, 1, 100000, &c->frames);
+    if (!strcmp(key, "flight"))
+        return masu_suite_count(at, key, value, 1, MASU_MAX_FLIGHT, &c->flight);
+    if (!strcmp(key, "validate")) return masu_suite_flag(at, key, value, &c->validate);
+    if (!strcmp(key, "exact_memory")) return masu_suite_flag(at, key, value, &c->exact_memory);
+    if (!strcmp(key, "same")) return masu_suite_names(at, key, value, same, &c->same);
+    if (!strcmp(key, "needs")) return masu_suite_names(at, key, value, needs, &c->needs);
     if (!strcmp(key, "rung")) {
         memset(c->rungs, 0, sizeof c->rungs);
         c->rung_count = 1;
@@ -349,12 +258,15 @@ static bool read_key(const place *at, const char *key, const json_t *value, masu
     if (!strcmp(key, "ladder")) return read_ladder(at, value, c);
     if (!strcmp(key, "governed")) return read_governed(at, value, c);
     if (!strcmp(key, "error")) return read_error(at, value, c);
-    if (!strcmp(key, "budget") || !strcmp(key, "counts") || !strcmp(key, "at_least"))
+    if (!strcmp(key, "input")) return masu_suite_string(at, key, value, &c->extreme.input);
+    if (!strcmp(key, "extreme")) return masu_extreme_read(at, value, &c->extreme);
+    if (!strcmp(key, "budget") || !strcmp(key, "counts") || !strcmp(key, "at_least") ||
+        !strcmp(key, "field"))
         return read_measures(at, key, value, c);
-    return wrong(at, key, "there is no such key");
+    return masu_suite_wrong(at, key, "there is no such key");
 }
 
-static bool read_keys(const place *at, const json_t *value, masu_case *c) {
+static bool read_keys(const masu_suite_place *at, const json_t *value, masu_case *c) {
     const char *key;
     json_t *member;
     json_object_foreach((json_t *)(uintptr_t)value, key, member) {
@@ -363,36 +275,65 @@ static bool read_keys(const place *at, const json_t *value, masu_case *c) {
     return true;
 }
 
+bool masu_case_field(const masu_case *c) {
+    for (int m = MASU_MEASURE_HITMISS_PCT; m <= MASU_MEASURE_DEPTH_P99; m++) {
+        if (masu_bound_is_set(&c->bounds[m])) return true;
+    }
+    return false;
+}
+
+static bool check_extreme(const masu_suite_place *at, const masu_case *c) {
+    const masu_extreme *x = &c->extreme;
+    if (c->governed.on && (x->given || masu_bound_is_set(&c->bounds[MASU_MEASURE_NON_FINITE])))
+        return masu_suite_wrong(at, "extreme", "needed is a case that is not governed");
+    if (x->cycle && c->rung_count < 2)
+        return masu_suite_wrong(at, "extreme.cycle", "needed is a ladder of two rungs or more");
+    if (x->has_other && !x->has_camera)
+        return masu_suite_wrong(at, "extreme.other_camera", "needed is a camera beside it");
+    if (masu_case_field(c) && (!x->has_camera || x->cycle || c->rungs[0].scale > 0.0f))
+        return masu_suite_wrong(at, "field", "needed are extreme.camera and one rung of scale 1");
+    if (c->against && !strcmp(c->against, "truth") && (x->has_transform || x->has_material))
+        return masu_suite_wrong(at, "error.against", "of what has been changed there is no truth");
+    if (masu_case_field(c) && c->move > 0)
+        return masu_suite_wrong(at, "field", "needed is a case whose time stands still");
+    return true;
+}
+
 /* What keys alone do not show. */
-static bool check_case(const place *at, masu_case *c) {
+static bool check_case(const masu_suite_place *at, masu_case *c) {
     bool compares = false;
     for (int m = MASU_MEASURE_RMSE; m <= MASU_MEASURE_PIXELS; m++)
         compares = compares || masu_bound_is_set(&c->bounds[m]);
-    if (!c->scene) return wrong(at, "scene", "needed is the name of a scene, given is nothing");
+    if (!c->scene)
+        return masu_suite_wrong(at, "scene", "needed is the name of a scene, given is nothing");
     if (strstr(c->scene, "..") || c->scene[0] == '/')
-        return wrong(at, "scene", "needed is a name in the folder of scenes, given is '%s'",
-                     c->scene);
-    if (!c->width) return wrong(at, "size", "needed are width and height, given is nothing");
+        return masu_suite_wrong(
+            at, "scene", "needed is a name in the folder of scenes, given is '%s'", c->scene);
+    if (!c->width)
+        return masu_suite_wrong(at, "size", "needed are width and height, given is nothing");
     if (compares != (c->against != NULL)) {
-        return wrong(at, compares ? "error.against" : "error",
-                     compares ? "needed is 'truth' or the name of a case, given is nothing"
-                              : "needed is a limit beside 'against', given is none");
+        return masu_suite_wrong(at, compares ? "error.against" : "error",
+                                compares
+                                    ? "needed is 'truth' or the name of a case, given is nothing"
+                                    : "needed is a limit beside 'against', given is none");
     }
+    if (!check_extreme(at, c)) return false;
     masu_governed *g = &c->governed;
-    if (!g->on && (c->measured || c->rung_count > 1))
-        return wrong(at, "ladder", "needed is 'governed', for something to choose from it");
+    if (!g->on && (c->measured || (c->rung_count > 1 && !c->extreme.cycle)))
+        return masu_suite_wrong(at, "ladder",
+                                "needed is 'governed', for something to choose from it");
     if (!g->on) return true;
     if (c->against || c->same || masu_bound_is_set(&c->bounds[MASU_MEASURE_MS_RATIO])) {
-        return wrong(at, "governed",
-                     "needed is a picture of one rung for error, same and ms_ratio, "
-                     "which a governed case has not");
+        return masu_suite_wrong(at, "governed",
+                                "needed is a picture of one rung for error, same and ms_ratio, "
+                                "which a governed case has not");
     }
     if (c->measured) { /* as long as it is: that is known when the scene is */
         memset(c->rungs, 0, sizeof c->rungs);
         c->rung_count = 0;
         if (g->worst && g->best > g->worst) {
-            return wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u", g->best,
-                         MASU_MAX_RUNGS - 1, g->worst);
+            return masu_suite_wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u",
+                                    g->best, MASU_MAX_RUNGS - 1, g->worst);
         }
         return true;
     }
@@ -407,26 +348,26 @@ static bool check_case(const place *at, masu_case *c) {
     }
     if (!g->worst) g->worst = c->rung_count - 1;
     if (g->worst >= c->rung_count || g->best > g->worst) {
-        return wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u", g->best,
-                     c->rung_count - 1, g->worst);
+        return masu_suite_wrong(at, "governed.worst_rung", "needed is %u to %u, given is %u",
+                                g->best, c->rung_count - 1, g->worst);
     }
     return true;
 }
 
-static bool append(const place *at, const masu_case *c) {
+static bool append(const masu_suite_place *at, const masu_case *c) {
     masu_suite *s = at->suite;
     char size[40];
     for (uint32_t i = 0; i < s->count; i++) {
         const masu_case *o = &s->cases[i];
         if (strcmp(o->name, c->name) || o->width != c->width || o->height != c->height) continue;
         snprintf(size, sizeof size, "%ux%u", c->width, c->height);
-        return wrong(at, "name", "there are two cases of this name at %s", size);
+        return masu_suite_wrong(at, "name", "there are two cases of this name at %s", size);
     }
-    if (s->count == CASES_MOST) return wrong(at, NULL, "more than %u cases", CASES_MOST);
+    if (s->count == CASES_MOST) return masu_suite_wrong(at, NULL, "more than %u cases", CASES_MOST);
     if (!(s->count & (s->count - 1))) { /* full at each power of two */
         size_t room = s->count ? 2 * (size_t)s->count : 1;
         masu_case *more = realloc(s->cases, room * sizeof *more);
-        if (!more) return wrong(at, NULL, "no memory for %zu cases", room);
+        if (!more) return masu_suite_wrong(at, NULL, "no memory for %zu cases", room);
         s->cases = more;
     }
     s->cases[s->count++] = *c;
@@ -434,37 +375,39 @@ static bool append(const place *at, const masu_case *c) {
 }
 
 /* ':' parts a token, and what is not shown cannot be typed again. */
-static bool read_name(place *at, const json_t *value, masu_case *c) {
-    if (!read_string(at, "name", json_object_get(value, "name"), &c->name)) return false;
+static bool read_name(masu_suite_place *at, const json_t *value, masu_case *c) {
+    if (!masu_suite_string(at, "name", json_object_get(value, "name"), &c->name)) return false;
     size_t n = strlen(c->name);
     bool good = n <= NAME_MOST && n == json_string_length(json_object_get(value, "name"));
     for (size_t i = 0; i < n; i++)
         good = good && (unsigned char)c->name[i] >= ' ' && c->name[i] != ':' && c->name[i] != 127;
     if (!good) {
-        return wrong(at, "name",
-                     "needed are up to %u characters, none of them ':' or a control "
-                     "character, given are %zu",
-                     NAME_MOST, n);
+        return masu_suite_wrong(at, "name",
+                                "needed are up to %u characters, none of them ':' or a control "
+                                "character, given are %zu",
+                                NAME_MOST, n);
     }
     at->case_name = c->name;
     return true;
 }
 
-static bool read_case(place *at, size_t number, const json_t *value, const masu_case *defaults) {
+static bool read_case(masu_suite_place *at, size_t number, const json_t *value,
+                      const masu_case *defaults) {
     masu_case c = *defaults;
     char label[32], text[80];
     snprintf(label, sizeof label, "cases[%zu]", number);
     at->case_name = NULL;
-    if (!read_object(at, label, value)) return false;
+    if (!masu_suite_object(at, label, value)) return false;
     at->case_name = label;
     if (!read_name(at, value, &c) || !read_keys(at, value, &c)) return false;
     const json_t *sizes = json_object_get(value, "sizes");
     if (!sizes) return check_case(at, &c) && append(at, &c);
     if (!json_is_array(sizes) || !json_array_size(sizes)) {
-        return wrong(at, "sizes", "needed is an array of sizes, given is %s",
-                     masu_json_given(sizes, text, sizeof text));
+        return masu_suite_wrong(at, "sizes", "needed is an array of sizes, given is %s",
+                                masu_json_given(sizes, text, sizeof text));
     }
-    if (json_object_get(value, "size")) return wrong(at, "sizes", "given is 'size' as well");
+    if (json_object_get(value, "size"))
+        return masu_suite_wrong(at, "sizes", "given is 'size' as well");
     for (size_t i = 0; i < json_array_size(sizes); i++) {
         masu_case one = c;
         if (!read_pair(at, "sizes", json_array_get(sizes, i), 1, 16384, &one.width, &one.height) ||
@@ -476,7 +419,7 @@ static bool read_case(place *at, size_t number, const json_t *value, const masu_
 }
 
 /* A case is compared with another at the same size that has a picture of its own. */
-static bool find_others(place *at) {
+static bool find_others(masu_suite_place *at) {
     masu_suite *s = at->suite;
     for (uint32_t i = 0; i < s->count; i++) {
         masu_case *c = &s->cases[i];
@@ -490,27 +433,28 @@ static bool find_others(place *at) {
             }
         }
         if (c->other < 0) {
-            return wrong(at, "error.against",
-                         "needed is 'truth' or another case of %ux%u that is not "
-                         "governed, given is '%.60s'",
-                         c->width, c->height, c->against);
+            return masu_suite_wrong(at, "error.against",
+                                    "needed is 'truth' or another case of %ux%u that is not "
+                                    "governed, given is '%.60s'",
+                                    c->width, c->height, c->against);
         }
     }
     return true;
 }
 
-static bool read_suite(place *at) {
+static bool read_suite(masu_suite_place *at) {
     static const char *const known[] = {"format", "defaults", "cases", "about", NULL};
     const char *key;
     json_t *member, *root = at->suite->root;
     uint32_t format = 0;
-    if (!read_object(at, "the suite", root)) return false;
+    if (!masu_suite_object(at, "the suite", root)) return false;
     json_object_foreach(root, key, member) {
         const char *const *k = known;
         while (*k && strcmp(*k, key)) k++;
-        if (!*k) return wrong(at, key, "there is no such key");
+        if (!*k) return masu_suite_wrong(at, key, "there is no such key");
     }
-    if (!read_count(at, "format", json_object_get(root, "format"), 1, 1, &format)) return false;
+    if (!masu_suite_count(at, "format", json_object_get(root, "format"), 1, 1, &format))
+        return false;
     masu_case defaults = {.frames = 1,
                           .flight = 2,
                           .other = -1,
@@ -522,14 +466,14 @@ static bool read_suite(place *at) {
         defaults.bounds[m] = defaults.least[m] = (masu_bound){MASU_UNKNOWN, MASU_UNKNOWN};
     const json_t *given_defaults = json_object_get(root, "defaults");
     at->case_name = "defaults";
-    if (given_defaults &&
-        (!read_object(at, NULL, given_defaults) || !read_keys(at, given_defaults, &defaults))) {
+    if (given_defaults && (!masu_suite_object(at, NULL, given_defaults) ||
+                           !read_keys(at, given_defaults, &defaults))) {
         return false;
     }
     at->case_name = NULL;
     const json_t *cases = json_object_get(root, "cases");
     if (!json_array_size(cases))
-        return wrong(at, "cases", "needed is an array of cases, given is none");
+        return masu_suite_wrong(at, "cases", "needed is an array of cases, given is none");
     for (size_t i = 0; i < json_array_size(cases); i++) {
         if (!read_case(at, i, json_array_get(cases, i), &defaults)) return false;
     }
@@ -546,7 +490,7 @@ static uint32_t hash_of(const char *text, size_t bytes) {
 bool masu_suite_parse(const char *file, const char *text, size_t bytes, masu_suite *suite,
                       char *error, size_t error_size) {
     json_error_t json_error;
-    place at = {suite, NULL, error, error_size};
+    masu_suite_place at = {suite, NULL, error, error_size};
     *suite = (masu_suite){.file = file, .hash = hash_of(text, bytes)};
     suite->root = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &json_error);
     if (!suite->root) {

@@ -6,6 +6,7 @@
 #ifndef MASU_CONFORM_SUITE_H
 #define MASU_CONFORM_SUITE_H
 
+#include "conform/extreme.h"
 #include "masu.h"
 
 #include <jansson.h>
@@ -57,6 +58,7 @@ bool masu_verdict_failed(masu_verdict verdict);      /* makes the exit code 1 */
     X(SPECULAR_NODES, specular_nodes, "counts", 0)                                                 \
     X(SPECULAR_EVALS, specular_evals, "counts", 0)                                                 \
     X(SMAA_TILES, smaa_tiles, "counts", 0)                                                         \
+    X(NON_FINITE, non_finite, "counts", 0) /* in depth, radiance, velocity, of all frames */       \
     X(RMSE, rmse, "error", 0) /* steps of 8 bits */                                                \
     X(PSNR, psnr, "error", 1)                                                                      \
     X(SSIM, ssim, "error", 1)                                                                      \
@@ -64,6 +66,10 @@ bool masu_verdict_failed(masu_verdict verdict);      /* makes the exit code 1 */
     X(FLIP_P99, flip_p99, "error", 0)                                                              \
     X(STEPS, steps, "error", 0)   /* largest difference of a channel */                            \
     X(PIXELS, pixels, "error", 0) /* that differ at all */                                         \
+    X(HITMISS_PCT, hitmiss_pct, "field", 0) /* the march against its field: docs/conform.md */      \
+    X(LOST_PCT, lost_pct, "field", 0)                                                              \
+    X(DEPTH_P50, depth_p50, "field", 0)                                                            \
+    X(DEPTH_P99, depth_p99, "field", 0)                                                            \
     X(CHANGES, changes, "governed", 0)
 
 typedef enum masu_measure {
@@ -138,7 +144,11 @@ typedef struct masu_case {
     const char *against;      /* "truth", or the name of a case */
     int32_t other;            /* that case's number; -1: none */
     uint32_t positions, rays; /* of the truth */
+    masu_extreme extreme;
 } masu_case;
+
+/* There is a limit of the group `field`. */
+bool masu_case_field(const masu_case *c);
 
 typedef struct masu_suite {
     const char *file; /* as given; the caller's */

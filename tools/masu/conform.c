@@ -15,7 +15,7 @@
 
 typedef struct options {
     const char *suite, *scenes; /* as given */
-    const char *glob, *replay, *junit, *csv, *images;
+    const char *glob, *replay, *junit, *csv, *table, *images;
     uint32_t first, of, runs, rays;
     bool rays_given, list;
     char suite_file[MASU_DATA_PATH], scene_folder[MASU_DATA_PATH]; /* as found */
@@ -102,6 +102,7 @@ static int run_cases(const options *o, const masu_suite *suite, const bool *mark
     if (!quiet) masu_conform_sum(stdout, results, n);
     if (o->junit) code = write_file(o->junit, masu_conform_junit, suite, results, n, c.driver);
     if (o->csv) code |= write_file(o->csv, masu_conform_csv, suite, results, n, c.driver);
+    if (o->table) code |= write_file(o->table, masu_conform_table, suite, results, n, c.driver);
     return code || failed ? MASU_CLI_FAILURE : MASU_CLI_OK;
 }
 
@@ -198,7 +199,7 @@ static bool read_fraction(masu_cli *cli, void *to) {
 
 static const masu_option rows[] = {
     MASU_TEXT(options, suite, "suite", "NAME|FILE.json",
-              "the cases: smoke or full, which come with the program, or a file"),
+              "the cases: smoke, full or extreme, which come with the program, or a file"),
     MASU_TEXT(options, scenes, "scenes", "DIR",
               "where baked scenes are (default: those beside the program)"),
     MASU_FLAG(options, list, "list", "print the cases instead of running them"),
@@ -208,6 +209,8 @@ static const masu_option rows[] = {
     MASU_OUTPUT(options, junit, "junit", "FILE.xml", "the results as JUnit XML"),
     MASU_OUTPUT(options, csv, "csv", "FILE.csv",
                 "the results with all that was measured; - for stdout"),
+    MASU_OUTPUT(options, table, "table", "FILE.md",
+                "rows of a table: what is given, what must hold, what was measured"),
     MASU_TEXT(options, images, "images", "DIR", "the picture of each case, as PNG"),
     MASU_UINT(options, runs, "runs", 1, 999,
               "timed frames in each of up to four rounds, where a case has a limit"),
