@@ -54,7 +54,8 @@
  *    live until masu_destroy; the description itself, its arrays and pipeline_cache only during the
  *    call.
  *  - Another output size or other targets: masu_resize. Beyond what was planned for, or another scene:
- *    masu_destroy, then masu_init again, in the same blocks if they are large enough for all. A frame
+ *    masu_destroy, then masu_init again, in the same blocks if they are large enough for all; or, without a pause,
+ *    masu_init in other blocks, before (masu_load). A frame
  *    that is not submitted after all (a swapchain out of date) still counts: its slot's numbers are
  *    those of an older frame.
  *
@@ -206,8 +207,11 @@ typedef struct masu_scene {
     uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
 } masu_scene;
 
-/* Checks every offset, count, index, float and the hash of `blob` and fills `*out`. Allocates
- * nothing, keeps nothing. `blob` must be 16-byte aligned. It must stay readable and unchanged until
+/* Checks every offset, count, index, float and the hash of `blob` and fills `*out`; in time that grows with
+ * its size alone. A blob with an SDF holds SPIR-V, which the driver will compile and run: that it is whole, asks for
+ * nothing that Masu does not bind and was compiled for this blob's counts is checked, that it does no harm is not, and
+ * cannot be. Such a blob is as trusted as the program (docs/blob.md, Trust): take it from your own build, or
+ * check a signature first. Allocates nothing, keeps nothing. `blob` must be 16-byte aligned. It must stay readable and unchanged until
  * masu_load has returned MASU_OK for the last renderer made from it; afterwards it may be freed.
  * MASU_ERROR_ARGUMENT: `blob` or `out` is NULL, or `blob` misaligned. MASU_ERROR_VERSION: a blob of another format
  * version. MASU_ERROR_SCENE: anything else; the detail names the section and the element. */
@@ -346,19 +350,20 @@ typedef enum masu_split_bits {
     MASU_SPLIT_ALL = 15
 } masu_split_bits;
 
-/* Pipelines that outlive a renderer: masu_init takes from it what it needs and makes what is missing,
- * masu_destroy gives all back. So another scene, or another size, makes only pipelines that no renderer before
- * had. Zero at first; for one device, one renderer at a time, and one build of the library. The host owns it and
- * ends it with masu_pipelines_destroy. */
+/* Pipelines that outlive a renderer, and that several share: masu_init uses what is there and adds what it had to
+ * make, masu_destroy leaves all to it. So another scene, or another size, makes only pipelines that no renderer before
+ * had. Zero at first; for one device and one build of the library. masu_init and masu_destroy of renderers with the same
+ * pool must not run at the same time. The host owns it and ends it with masu_pipelines_destroy. */
 #define MASU_MAX_PIPELINES 384u
 typedef struct masu_pipelines {
-    uint32_t count;       /* that nobody has */
+    uint32_t count;       /* that are there */
     uint32_t made, taken; /* by all masu_init so far */
     VkSampler samplers[2];
     struct {
         uint64_t key; /* what it was made of */
         VkPipeline pipeline;
-    } rows[MASU_MAX_PIPELINES]; /* more are destroyed with their renderer */
+        uint32_t users; /* places in renderers that there are now */
+    } rows[MASU_MAX_PIPELINES]; /* what has no room here is destroyed with its renderer */
 } masu_pipelines;
 
 typedef struct masu_vulkan {
@@ -454,6 +459,8 @@ typedef struct masu_viewport {
     uint32_t x, y, width, height;
 } masu_viewport;
 #define MASU_MAX_VIEWPORTS 4u
+
+#define MASU_LOAD_STEP_MIN 65536u /* bytes: what the longest row of texels takes */
 
 /* ---- The governor ---------------------------------------------------------------------------- */
 
@@ -553,6 +560,10 @@ typedef struct masu_desc {
      * is near that pixel a second time; all others have an empty command for each primitive. Per frame in flight 20
      * bytes for each of these and 4 for each instance, LODs too. Without a scene ignored. */
     uint32_t picking;
+    /* Bytes that a masu_load writes at most, MASU_LOAD_STEP_MIN or more: for a scene that is loaded while frames of
+     * another renderer go on (masu_load says how). 8 host bytes for each step; where there is a staging buffer it is
+     * no larger. 0: at most 4 MiB into the staging buffer, and all at once what the host can write where it lives. */
+    uint64_t load_step;
     masu_governor_desc governor;
     masu_debug debug;
     masu_deny deny;
@@ -586,7 +597,8 @@ typedef struct masu_memory {
     uint64_t transient_lower_bound; /* largest set alive at once: no plan can be smaller */
 } masu_memory;
 
-/* Runs the layout walk of masu_init without a block. Creates no lasting object. Errors as
+/* Runs the layout walk of masu_init without a block. Creates no lasting object. Looks at the scene's blob, as masu_plan
+ * and masu_init do (sizes of textures, reserve.models, ray queries): it must still be readable. Errors as
  * masu_init, except MEMORY. */
 MASU_API MASU_MUST_USE masu_result masu_memory_query(const masu_desc *desc, masu_memory *out,
                                                      masu_detail *detail);
@@ -793,12 +805,34 @@ typedef struct masu_commands {
      * best in one vkQueueSubmit. 1 for masu_load that is MASU_INCOMPLETE. */
     uint32_t part_count;
     VkCommandBuffer parts[MASU_MAX_PARTS];
+    /* Of masu_load: bytes that this step has written, and that are left for those that follow. */
+    uint64_t load_bytes, load_left;
 } masu_commands;
 
 /* Copies the scene to the device. MASU_INCOMPLETE: submit commands->buffer, wait for it, call
  * again. MASU_OK: done; nothing to submit. On unified memory a scene without textures needs no
  * submit: the first call returns MASU_OK; but with ray queries, whose structures the device
- * builds. Without a scene there is nothing to copy but the table of SMAA, where a rung has it. */
+ * builds. Without a scene there is nothing to copy but the table of SMAA, where a rung has it.
+ *
+ * With desc.load_step a call writes no more bytes than that, of which the device copies what has no place that the
+ * host can write. It builds structures of ray queries of no more triangles than so many bytes hold, at 48 each, but
+ * always of whole meshes. A step that has written where the host can has nothing to submit: buffer is NULL and
+ * part_count 0. So another scene comes while frames of the one that is shown go on, in a renderer and blocks of its own:
+ *
+ *     masu_scene_bind(blob, ...); masu_memory_query(&desc, ...);  // they look at all of it, init makes all objects:
+ *     masu_init(&desc, other_block, ..., &next, &detail);         // a thread of the host's may do these, in between
+ *     for (;;) {                                                  // frames
+ *         wait for the fence of the frame frames_in_flight frames ago
+ *         step.part_count = 0;
+ *         if (next && the fence of the last step's submit was waited for)
+ *             loaded = masu_load(next, &step) == MASU_OK;
+ *         masu_frame(now, &frame, &commands);
+ *         submit(step.parts, then commands.parts, fence);
+ *         if (loaded) { now = next; next = NULL; }                // the first frame of it is a cut; the old one:
+ *     }                                                           // masu_destroy when its last frame was waited for
+ *
+ * Then its blocks are free for the scene after that: two boxes serve any number of scenes. With vulkan.pipelines both
+ * have the same pipelines, so that masu_init makes only those that are new. */
 MASU_API MASU_MUST_USE masu_result masu_load(masu_renderer *renderer, masu_commands *commands);
 
 typedef struct masu_camera {

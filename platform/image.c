@@ -10,6 +10,7 @@
 #endif
 
 #include "image.h"
+#include "draft.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -173,50 +174,19 @@ static bool write_straight(const char *path, const void *bytes, size_t count, ch
     return good || fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
 }
 
-/* A new file beside the target, named after it and this process; its permissions follow the umask,
- * which mkstemp's would not. Returns -1 with errno set. */
-static int create_beside(const char *target, char *name, size_t name_size) {
-    for (unsigned attempt = 0; attempt < 100; attempt++) {
-        int n = snprintf(name, name_size, "%s.%ld-%u.tmp", target, (long)getpid(), attempt);
-        if (n < 0 || (size_t)n >= name_size) {
-            errno = ENAMETOOLONG;
-            return -1;
-        }
-        int file = open(name, O_WRONLY | O_CREAT | O_EXCL, 0666);
-        if (file >= 0 || errno != EEXIST) {
-            return file;
-        }
-    }
-    return -1;
-}
-
+/* Without leftovers, whenever it ends: draft.h. */
 static bool write_beside_and_rename(const char *path, const char *target, const void *bytes,
                                     size_t count, char *error, size_t error_size) {
-    size_t name_size = strlen(target) + 48;
-    char *name = malloc(name_size);
-    int file = name ? create_beside(target, name, name_size) : -1;
-    if (file < 0) {
-        int why = name ? errno : ENOMEM;
-        free(name);
-        return fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
+    masu_draft draft;
+    int problem = masu_draft_open(&draft, target);
+    if (!problem) {
+        problem = masu_draft_write(&draft, bytes, count);
+        if (problem)
+            masu_draft_drop(&draft);
+        else
+            problem = masu_draft_finish(&draft, target);
     }
-    /* Without the sync, a power cut after the rename could still leave an empty file. */
-    bool good = write_all(file, bytes, count) && fsync(file) == 0;
-    int why = errno;
-    if (close(file) != 0 && good) {
-        good = false;
-        why = errno;
-    }
-    if (good && rename(name, target) != 0) {
-        good = false;
-        why = errno;
-    }
-    if (!good) {
-        (void)unlink(name);
-        (void)fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
-    }
-    free(name);
-    return good;
+    return !problem || fail(error, error_size, "%s: cannot write: %s", path, strerror(problem));
 }
 
 /* What stands in the way before anything is tried. */
@@ -238,18 +208,11 @@ bool masu_file_writable(const char *path, char *error, size_t error_size) {
     if (!may_write(path, &exists, &special, error, error_size)) return false;
     if (special) return true;
     char *resolved = exists ? realpath(path, NULL) : NULL;
-    const char *target = resolved ? resolved : path;
-    size_t name_size = strlen(target) + 48;
-    char *name = malloc(name_size);
-    int file = name ? create_beside(target, name, name_size) : -1;
-    int why = name ? errno : ENOMEM;
-    if (file >= 0) {
-        (void)close(file);
-        (void)unlink(name);
-    }
-    free(name);
+    masu_draft draft;
+    int problem = masu_draft_open(&draft, resolved ? resolved : path);
+    if (!problem) masu_draft_drop(&draft);
     free(resolved);
-    return file >= 0 || fail(error, error_size, "%s: cannot write: %s", path, strerror(why));
+    return !problem || fail(error, error_size, "%s: cannot write: %s", path, strerror(problem));
 }
 
 bool masu_file_write(const char *path, const void *bytes, size_t count, char *error,

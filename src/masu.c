@@ -79,6 +79,14 @@ void masu_keep_scene(masu_renderer *m) {
     masu_reflections_keep(&m->reflections, plan, &v);
 }
 
+void masu_write_scene(masu_renderer *m) {
+    if (!m->plan.desc.scene) return;
+    masu_scene_view v = masu_scene_look(m->plan.desc.scene);
+    masu_visible_write_scene(&m->device, &m->draws, &v);
+    masu_picking_write_scene(&m->device, &m->draws, &v);
+    masu_occlusion_write_scene(&m->device, &m->draws, &v);
+}
+
 /* ---- Plan and query -------------------------------------------------------------------------- */
 
 /* A plan needs the driver's sizes, so images and buffers are created; the caller keeps or destroys
@@ -211,6 +219,7 @@ static masu_result init(const masu_desc *desc, void *block, uint64_t block_bytes
         masu_destroy(m);
         return result;
     }
+    masu_write_scene(m);
     *out = m;
     return MASU_OK;
 }
@@ -257,15 +266,12 @@ masu_result masu_load(masu_renderer *m, masu_commands *commands) {
     if (!commands) return masu_fail_null(&m->error, "commands");
     memset(commands, 0, sizeof *commands);
     if (m->loaded) return MASU_OK;
-    commands->buffer = commands->parts[0] = masu_load_next(&m->device);
-    commands->part_count = commands->buffer ? 1 : 0;
-    if (commands->buffer) return MASU_INCOMPLETE;
-    if (m->plan.desc.scene) {
-        masu_scene_view v = masu_scene_look(m->plan.desc.scene);
-        masu_visible_write_scene(&m->device, &m->draws, &v);
-        masu_picking_write_scene(&m->device, &m->draws, &v);
-        masu_occlusion_write_scene(&m->device, &m->draws, &v);
-    }
+    masu_load_step step = masu_load_next(&m->device);
+    commands->buffer = commands->parts[0] = step.commands;
+    commands->part_count = step.commands ? 1 : 0;
+    commands->load_bytes = step.bytes;
+    commands->load_left = masu_load_bytes(&m->device) - m->device.load_done;
+    if (step.more) return MASU_INCOMPLETE;
     m->loaded = 1;
     m->plan.scene.blob = NULL; /* from here on the host may free it */
     return MASU_OK;

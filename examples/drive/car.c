@@ -1,8 +1,8 @@
 /* car.c: see race.h.
  *
- * A car is a point with a heading. Its front wheels ask for a turn, of which the tyres give as much as
- * they hold; what its velocity has across its heading they take away by and by, and that lag is the
- * slip. Grass holds less and slows down. Numbers are those that felt right, not those of any car. */
+ * A car is a point with a heading. Its front wheels ask for a turn, of which tyres give what they
+ * hold; what its velocity has across its heading they take away by and by: that lag is the slip.
+ * Grass holds less and slows down. Numbers are those that felt right, not those of any car. */
 #include "race.h"
 
 #include <string.h>
@@ -35,14 +35,16 @@ static void settle(const track *t, car *c, int near) {
     c->at.y = c->place.ground.y;
 }
 
-/* The eye follows its place behind the car by shares of the way that is left, the same whatever the step; it stays
- * above the ground and on this side of the barriers. dt 0: at once. */
+/* The eye follows its place behind the car by shares of the way that is left, whatever the step;
+ * it stays above the ground and on this side of the barriers. dt 0: at once. */
 static void chase(race *r, double dt) {
     const car *c = &r->cars[0];
     double share = dt > 0 ? 1 - exp(-FOLLOW * dt) : 1;
+    vec eye = add(add(c->at, c->ahead, -5.8), c->up, 1.9);
+    vec to = add(add(c->at, c->ahead, 6), c->up, 0.9);
     /* Both are carried along first: only what turns lags behind, not what drives straight on. */
-    r->eye = mix(add(r->eye, c->velocity, dt), add(add(c->at, c->ahead, -5.8), c->up, 1.9), share);
-    r->target = mix(add(r->target, c->velocity, dt), add(add(c->at, c->ahead, 6), c->up, 0.9), share);
+    r->eye = mix(add(r->eye, c->velocity, dt), eye, share);
+    r->target = mix(add(r->target, c->velocity, dt), to, share);
     track_place p = track_find(r->track, r->eye, c->place.point);
     double over = fabs(p.side) - fmax(p.barrier - 0.7, 0);
     if (over > 0) r->eye = add(r->eye, p.right, p.side > 0 ? -over : over);
@@ -57,8 +59,7 @@ void race_start(race *r, const track *t) {
         c->at = t->car[i].at;
         c->heading = atan2(-t->car[i].ahead.z, t->car[i].ahead.x);
         settle(t, c, -1);
-        c->travelled = c->place.along;
-        c->lane = c->place.side;
+        c->travelled = c->place.along, c->lane = c->place.side;
     }
     chase(r, 0);
 }
@@ -68,16 +69,19 @@ car_input race_autopilot(const race *r, int car_number) {
     double speed = car_speed(c), wanted = c->place.pace * (0.82 + 0.02 * (car_number % 6));
     track_place aim = track_along(r->track, c->place.along + 6 + 0.35 * speed, c->lane);
     for (int i = 0; i < r->track->cars; i++) {
-        double gap = remainder(r->cars[i].place.along - c->place.along, r->track->length);
-        bool beside = fabs(r->cars[i].place.side - c->place.side) > 2.2;
-        if (i != car_number && gap > 0 && gap < 25 && !beside) wanted = fmin(wanted, fmax(gap - 7, 0) * 3);
+        const track_place *p = &r->cars[i].place;
+        double gap = remainder(p->along - c->place.along, r->track->length);
+        if (i != car_number && gap > 0 && gap < 25 && fabs(p->side - c->place.side) <= 2.2)
+            wanted = fmin(wanted, fmax(gap - 7, 0) * 3);
     }
     double side = dot(unit(add(aim.ground, c->at, -1)), cross(c->ahead, c->up));
     return (car_input){.steer = clamp(4 * side, -1, 1), .throttle = clamp(wanted - speed, 0, 1),
                        .brake = speed > 0.5 ? clamp(0.5 * (speed - wanted), 0, 1) : 0};
 }
 
-static double toward(double from, double to, double most) { return from + clamp(to - from, -most, most); }
+static double toward(double from, double to, double most) {
+    return from + clamp(to - from, -most, most);
+}
 
 static void drive(car *c, const car_input *in, double dt) {
     vec forward = level(c->heading), right = level(c->heading - PI / 2);
@@ -106,9 +110,10 @@ static void push(car *c, vec out, double metres, double into, double back) {
 
 static void collide(const race *r, car *c) {
     for (int i = 0; i < r->track->cars; i++) {
-        vec from = add(c->at, r->cars[i].at, -1), out = unit((vec){from.x, 0, from.z});
-        double metres = sqrt(dot(from, from)), into = dot(add(r->cars[i].velocity, c->velocity, -1), out);
-        if (&r->cars[i] != c && metres < APART) push(c, out, APART - metres, into, 0.2);
+        const car *o = &r->cars[i];
+        vec from = add(c->at, o->at, -1), out = unit((vec){from.x, 0, from.z});
+        double metres = sqrt(dot(from, from)), into = dot(add(o->velocity, c->velocity, -1), out);
+        if (o != c && metres < APART) push(c, out, APART - metres, into, 0.2);
     }
     track_place p = track_find(r->track, c->at, c->place.point);
     double over = fabs(p.side) - fmax(p.barrier - WIDTH, 0), way = p.side > 0 ? -1 : 1;
@@ -127,8 +132,7 @@ void race_step(race *r, const car_input *input, double dt) {
         settle(r->track, c, c->place.point);
         c->travelled += remainder(c->place.along - along, r->track->length);
     }
-    r->distance += sqrt(dot(mine->velocity, mine->velocity)) * dt;
-    r->time += dt;
+    r->distance += sqrt(dot(mine->velocity, mine->velocity)) * dt, r->time += dt;
     chase(r, dt);
     if (floor(mine->travelled / r->track->length) <= r->laps) return;
     r->laps++; /* who turns round and crosses the line again has won nothing */

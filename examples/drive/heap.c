@@ -1,6 +1,6 @@
-/* heap.c: the proof that nothing is allocated once the game runs. The linker sends every malloc, calloc
- * and realloc of the game and of libmasu here (--wrap in tools/tools.mk); those of SDL, of the driver and
- * of the X libraries are theirs and do not come by. */
+/* heap.c: the proof that nothing is allocated once the game runs. The linker sends each malloc,
+ * calloc and realloc of the game and of libmasu here (--wrap in tools/tools.mk); those of SDL,
+ * driver and X libraries are theirs and do not come by. */
 #include <stdbool.h>
 #include <stdlib.h>
 #include <unistd.h>

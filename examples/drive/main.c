@@ -1,9 +1,9 @@
-/* main.c: drive SCENE.masu TRACK: a race for one, and an example of a game on Masu. docs/drive.md says how to
- * play it, and what each file shows.
+/* main.c: drive SCENE.masu TRACK: a race for one, and an example of a game on Masu. docs/drive.md
+ * says how to play it, and what each file shows.
  *
- * All of its memory is asked for before the first frame; then heap_closed is set, and whatever asks for more
- * ends the program. With a script the clock is not looked at: the same script gives the same drive, at a fixed
- * rung the same pictures. */
+ * All memory is asked for before the first frame; then heap_closed is set, and whatever asks for
+ * more ends the program. With a script the clock is not looked at: the same script gives the same
+ * drive, at a fixed rung the same pictures. */
 #include "render.h"
 #include "script.h"
 
@@ -38,8 +38,6 @@ static const char usage[] =
     "  -v       under the Khronos validation layer\n"
     "keys: arrows or WASD; L lights, N dusk, O autopilot, P pause, F12 photo, Escape\n";
 
-/* ---- input ---- */
-
 static void key(game *g, SDL_Scancode code, bool down) {
     g->keys[code] = down;
     if (!down) return;
@@ -55,18 +53,21 @@ static void pump_events(game *g) {
     SDL_Event e;
     while (SDL_PollEvent(&e)) {
         bool start = e.cbutton.button == SDL_CONTROLLER_BUTTON_START;
-        if (e.type == SDL_QUIT) g->quit = true;
-        if (e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) g->outdated = true;
+        bool sized = e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_SIZE_CHANGED;
+        g->quit = g->quit || e.type == SDL_QUIT;
+        g->outdated = g->outdated || sized;
         if ((e.type == SDL_KEYDOWN && !e.key.repeat) || e.type == SDL_KEYUP)
             key(g, e.key.keysym.scancode, e.type == SDL_KEYDOWN);
-        if (e.type == SDL_CONTROLLERDEVICEADDED && !g->pad) g->pad = SDL_GameControllerOpen(e.cdevice.which);
+        if (e.type == SDL_CONTROLLERDEVICEADDED && !g->pad)
+            g->pad = SDL_GameControllerOpen(e.cdevice.which);
         if (e.type == SDL_CONTROLLERBUTTONDOWN || e.type == SDL_CONTROLLERBUTTONUP)
             key(g, start ? SDL_SCANCODE_P : SDL_SCANCODE_L, e.type == SDL_CONTROLLERBUTTONDOWN);
     }
 }
 
 /* What of a key or a stick: 0..1, of the stick's other half below 0. */
-static double pedal(game *g, SDL_Scancode arrow, SDL_Scancode letter, SDL_GameControllerAxis axis, int way) {
+static double pedal(game *g, SDL_Scancode arrow, SDL_Scancode letter,
+                    SDL_GameControllerAxis axis, int way) {
     double stick = g->pad ? way * SDL_GameControllerGetAxis(g->pad, axis) / 32767.0 : 0;
     return g->keys[arrow] || g->keys[letter] ? 1 : stick > 0.1 ? fmin(stick, 1) : 0;
 }
@@ -101,16 +102,13 @@ static bool follow_script(game *g, unsigned frame) {
     return true;
 }
 
-/* ---- the game ---- */
-
-/* All that a window of another size takes. Where it has no size, hidden or rolled up, nothing is drawn. */
+/* All that another size of the window takes. Of none, hidden or rolled up, nothing is drawn. */
 static bool follow_window(game *g) {
     vkDeviceWaitIdle(g->window.device);
     if (!window_swapchain(&g->window)) return SDL_Delay(20), true;
     bool good = render_resize(&g->render, &g->track);
     window_drop(&g->window);
-    g->resizes++;
-    g->outdated = false;
+    g->resizes++, g->outdated = false;
     return good;
 }
 
@@ -139,7 +137,8 @@ static bool play(game *g) {
 
 static bool read_options(game *g, int argc, char **argv) {
     char more;
-    g->width = 1280, g->height = 720, g->step = 1.0 / 60, g->render.fixed_rung = -1, g->render.target_ms = 33;
+    g->width = 1280, g->height = 720, g->step = 1.0 / 60;
+    g->render.fixed_rung = -1, g->render.target_ms = 33;
     for (int c; (c = getopt(argc, argv, "s:t:r:f:v")) != -1;) {
         if (c == 's' && sscanf(optarg, "%dx%d%c", &g->width, &g->height, &more) == 2) continue;
         if (c == 't' && sscanf(optarg, "%f%c", &g->render.target_ms, &more) == 1) continue;
@@ -162,9 +161,9 @@ int main(int argc, char **argv) {
     good = good && play(&g);
     const render *r = &g.render;
     if (good)
-        printf("frames %llu rungs 0x%02x changes %u over %llu laps %d best %.2f distance %.1f resizes %d\n",
-               (unsigned long long)r->frames, r->rungs, r->changes, (unsigned long long)r->over, g.race.laps,
-               g.race.best, g.race.distance, g.resizes);
+        printf("frames %u rungs 0x%02x changes %u over %u laps %d best %.2f distance %.1f "
+               "resizes %d\n", r->frames, r->rungs, r->changes, r->over, g.race.laps, g.race.best,
+               g.race.distance, g.resizes);
     render_close(&g.render);
     window_close(&g.window);
     script_close(&g.script);

@@ -1,6 +1,6 @@
-/* race.h: the road in numbers, read from a file that lies beside the scene (docs/drive.md), and cars on it: yours by
- * its pedals, the others by an autopilot. Nothing here knows of pictures; the same inputs and steps give the
- * same drive. */
+/* race.h: the road in numbers, of a file beside the scene (docs/drive.md), and cars on it,
+ * yours by its pedals, the others by an autopilot. Nothing here knows of pictures; the same inputs
+ * and steps give the same drive. */
 #ifndef DRIVE_RACE_H
 #define DRIVE_RACE_H
 
@@ -30,15 +30,15 @@ static inline double clamp(double x, double low, double high) { return fmin(fmax
 typedef struct track_point {
     vec at, up, ahead;
     double along; /* metres from the first point */
-    /* Left, right: metres from the middle to the edge of the road, and to where no car gets through, where the
-     * ground lies `rise` above the plane of the road. */
+    /* Left, right: metres from the middle to the edge of the road, and to where no car gets by and
+     * the ground lies `rise` above the plane of the road. */
     double edge[2], barrier[2], rise[2];
     double pace; /* m/s that a careful driver has here */
 } track_point;
 
 typedef struct track_wheel {
     char name[32];
-    double ahead, right, radius; /* of its middle, from the car's; the middle is `radius` above the road */
+    double ahead, right, radius; /* of its middle, from the car's; it is `radius` above the road */
     int steers;
 } track_wheel;
 
@@ -63,13 +63,12 @@ typedef struct track_place {
     double along; /* of the lap */
     double side;  /* metres right of the middle */
     vec ground, up, ahead, right;
-    double edge, barrier; /* on this side */
-    double pace;
+    double edge, barrier, pace; /* on this side */
 } track_place;
 
 /* False, with one line on stderr: it is not such a file, or has more than fits. */
 bool track_read(track *t, const char *path);
-/* The place nearest to `at`. near: the point of the place before, which saves looking everywhere; -1. */
+/* The place nearest to `at`. near: the point of the place before, to look near; -1: everywhere. */
 track_place track_find(const track *t, vec at, int near);
 track_place track_along(const track *t, double along, double side);
 

@@ -1,8 +1,8 @@
 /* render.c: see render.h.
  *
- * The box: one static block of the host's memory and one of the device's for each role, as large as the
- * largest window that the game is for needs. masu_memory_query says what a plan needs; what does not fit is
- * refused before anything is made. On unified memory the first role is all there is. */
+ * The box: a static block of the host's memory and one of the device's for each role, as large as
+ * the largest window that the game is for needs. masu_memory_query says what a plan needs; what
+ * does not fit is refused before anything is made. On unified memory the first role is all. */
 #include "render.h"
 
 #include <stdio.h>
@@ -13,11 +13,9 @@ static const VkDeviceSize device_bytes[MASU_ROLE_COUNT] = {320u << 20, 64u << 20
 static _Alignas(64) unsigned char host_block[HOST_BYTES];
 
 static bool failed(const masu_detail *detail) {
-    fprintf(stderr, "drive: %s\n", detail->text[0] ? detail->text : masu_result_string(detail->result));
-    return false;
+    const char *text = detail->text[0] ? detail->text : masu_result_string(detail->result);
+    return fprintf(stderr, "drive: %s\n", text), false;
 }
-
-/* ---- memory ---- */
 
 static masu_desc describe(const render *r) {
     masu_desc d = {
@@ -30,8 +28,9 @@ static masu_desc describe(const render *r) {
         .analytic_sky = 1,
         .resizable = 1,
         .exposure = {.metered = MASU_ON},
-        .governor = {.mode = MASU_GOVERNOR_ON, .target_ms = r->target_ms}};
-    if (r->fixed_rung >= 0) d.governor.mode = MASU_GOVERNOR_FIXED, d.governor.rung = (uint32_t)r->fixed_rung;
+        .governor = {.mode = r->fixed_rung < 0 ? MASU_GOVERNOR_ON : MASU_GOVERNOR_FIXED,
+                     .rung = r->fixed_rung < 0 ? 0 : (uint32_t)r->fixed_rung,
+                     .target_ms = r->target_ms}};
     memcpy(d.device_blocks, r->blocks, sizeof d.device_blocks);
     return d;
 }
@@ -67,7 +66,8 @@ bool render_open(render *r, window *w, const char *path, const track *t) {
     if (masu_scene_bind(blob, bytes, &r->scene, &detail)) return SDL_free(blob), failed(&detail);
     masu_desc desc = describe(r); /* the blocks are to be of the types that it would take itself */
     if (masu_memory_query(&desc, &need, &detail)) return failed(&detail);
-    return window_blocks(w, &need, device_bytes, r->blocks) && overlay_open(&r->overlay, w) && build(r, t);
+    return window_blocks(w, &need, device_bytes, r->blocks) && overlay_open(&r->overlay, w) &&
+           build(r, t);
 }
 
 bool render_resize(render *r, const track *t) {
@@ -91,16 +91,14 @@ void render_close(render *r) {
     SDL_free((void *)r->scene.blob);
 }
 
-/* ---- what moves ---- */
-
-/* The model stands at `at`, its axes turned to these. The scene has turned its models already, by how the cars stand
- * at the start: that is taken back first. */
-static masu_result place(render *r, masu_model model, const vec now[3], vec at, const track_car *start) {
+/* The model stands at `at`, its axes turned to these. The scene has turned its models already, by
+ * how the cars stand at the start: that is taken back first. */
+static masu_result place(render *r, masu_model model, const vec now[3], vec at,
+                         const track_car *start) {
     const vec first[3] = {start->ahead, start->up, cross(start->ahead, start->up)};
     vec row[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int k = 0; k < 3; k++) {
-        row[0] = add(row[0], first[k], now[k].x);
-        row[1] = add(row[1], first[k], now[k].y);
+        row[0] = add(row[0], first[k], now[k].x), row[1] = add(row[1], first[k], now[k].y);
         row[2] = add(row[2], first[k], now[k].z);
     }
     float rows[12] = {(float)row[0].x, (float)row[0].y, (float)row[0].z, (float)at.x,
@@ -115,15 +113,16 @@ static masu_result place_car(render *r, int i, const car *c, const track_car *st
     for (int k = 0; !result && k < start->wheels; k++) {
         const track_wheel *w = &start->wheel[k];
         double yaw = w->steers ? c->steer : 0, roll = c->roll / w->radius;
-        vec ahead = add(add(none, road[0], cos(yaw)), road[2], sin(yaw)), right = cross(ahead, road[1]);
-        vec front = add(add(none, ahead, cos(roll)), road[1], -sin(roll)); /* it has rolled so far */
+        vec ahead = add(add(none, road[0], cos(yaw)), road[2], sin(yaw));
+        vec front = add(add(none, ahead, cos(roll)), road[1], -sin(roll)); /* so far it rolled */
+        vec right = cross(ahead, road[1]);
         vec at = add(add(add(c->at, road[0], w->ahead), road[2], w->right), road[1], w->radius);
         result = place(r, r->wheels[i][k], (vec[3]){front, cross(right, front), right}, at, start);
     }
     return result;
 }
 
-/* A spot that no instance carries is in world space: the head lights follow the car by being set anew. */
+/* A spot that no instance carries is in world space: head lights follow by being set anew. */
 static masu_result set_lamps(render *r, const car *c, float on) {
     vec right = cross(c->ahead, c->up), to = add(c->ahead, c->up, -0.06);
     masu_result result = MASU_OK;
@@ -132,7 +131,8 @@ static masu_result set_lamps(render *r, const car *c, float on) {
         masu_punctual_light_state s = {.position = {at.x, at.y, at.z},
                                        .direction = {(float)to.x, (float)to.y, (float)to.z},
                                        .color = {40 * on, 36 * on, 28 * on},
-                                       .range = 90, .radius = 0.05f, .spot = 1, .inner = 0.1f, .outer = 0.5f};
+                                       .range = 90, .radius = 0.05f,
+                                       .spot = 1, .inner = 0.1f, .outer = 0.5f};
         if (r->lamps[i].id) result = masu_punctual_light_set(r->masu, r->lamps[i], &s);
     }
     return result;
@@ -148,17 +148,17 @@ static masu_result set_light(render *r, bool dusk, masu_light *light) {
     return result;
 }
 
-/* ---- a frame ---- */
-
-static bool record_hud(render *r, uint32_t slot, uint32_t image, const race *race, const render_view *view) {
+static bool record_hud(render *r, uint32_t slot, uint32_t image, const race *race,
+                       const render_view *view) {
     const VkExtent2D size = r->window->size;
     int dot = size.height < 400 ? 1 : size.height < 1800 ? (int)size.height / 200 : 9;
     int bottom = (int)size.height - 11 * dot;
     overlay_line lines[3] = {{4 * dot, 4 * dot, dot, ""}, {4 * dot, bottom, dot, ""},
                              {(int)size.width / 2 - 25 * dot, bottom / 3, 2 * dot, "PAUSED"}};
-    snprintf(lines[0].text, 64, "LAP %d  %d:%05.2f  BEST %d:%05.2f", race->laps + 1, (int)(race->time / 60),
-             fmod(race->time, 60), (int)(race->best / 60), fmod(race->best, 60));
-    snprintf(lines[1].text, 64, "%.0f KM/H  RUNG %u", fabs(car_speed(&race->cars[0])) * 3.6, r->rung);
+    double now = race->time, best = race->best, speed = fabs(car_speed(&race->cars[0]));
+    snprintf(lines[0].text, 64, "LAP %d  %d:%05.2f  BEST %d:%05.2f", race->laps + 1,
+             (int)(now / 60), fmod(now, 60), (int)(best / 60), fmod(best, 60));
+    snprintf(lines[1].text, 64, "%.0f KM/H  RUNG %u", speed * 3.6, r->rung);
     return overlay_record(&r->overlay, slot, image, lines, view->paused ? 3 : 2, view->photo[0]);
 }
 
@@ -180,12 +180,13 @@ bool render_frame(render *r, const race *race, const render_view *view, bool *ou
     if (!result) result = set_lamps(r, &race->cars[0], view->lamps);
     if (!result) result = set_light(r, view->dusk, &light);
     vec forward = add(race->target, race->eye, -1);
+    double speed = fmin(fabs(car_speed(&race->cars[0])), 70);
     masu_camera camera = {.position = {race->eye.x, race->eye.y, race->eye.z},
                           .forward = {(float)forward.x, (float)forward.y, (float)forward.z},
-                          .fov_y = 1.05f + 0.0022f * (float)fmin(fabs(car_speed(&race->cars[0])), 70),
+                          .fov_y = 1.05f + 0.0022f * (float)speed,
                           .near_distance = 0.2f};
-    masu_frame_desc frame = {.camera = &camera, .light = &light, .time = view->time, .time_step = view->step,
-                             .rung = MASU_RUNG_AUTO, .target = image, .cut = view->cut};
+    masu_frame_desc frame = {.camera = &camera, .light = &light, .target = image, .cut = view->cut,
+                             .time = view->time, .time_step = view->step, .rung = MASU_RUNG_AUTO};
     if (result || masu_frame(r->masu, &frame, &commands)) return failed(masu_last_error(r->masu));
     r->changes += r->frames && commands.rung != r->rung;
     r->frame++, r->frames++, r->rungs |= 1u << commands.rung, r->rung = commands.rung;

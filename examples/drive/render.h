@@ -17,8 +17,8 @@ typedef struct render {
     masu_model bodies[TRACK_CARS], wheels[TRACK_CARS][TRACK_WHEELS];
     masu_punctual_light lamps[2]; /* "head0" and "head1", which your car carries */
     /* What has happened, for the line at the end: */
-    uint64_t frames, over; /* the latter took longer than the target */
-    uint32_t rungs, rung, changes; /* bit per rung that a frame was drawn at; the last; how often another */
+    uint32_t frames, over; /* the latter took longer than the target */
+    uint32_t rungs, rung, changes; /* a bit per rung that was drawn; the last; how often another */
 } render;
 
 typedef struct render_view {
@@ -30,7 +30,7 @@ typedef struct render_view {
 
 /* Takes all of its memory: nothing is asked for later. All say what went wrong. */
 bool render_open(render *r, window *w, const char *scene_path, const track *t);
-/* After window_swapchain, before window_drop: the renderer for the size and images that the window has now. */
+/* After window_swapchain, before window_drop: for the size and images that the window has now. */
 bool render_resize(render *r, const track *t);
 bool render_frame(render *r, const race *race, const render_view *view, bool *outdated);
 void render_close(render *r);

@@ -10,8 +10,8 @@
 #define REACH 12 /* points looked at before and behind the last one */
 
 static bool read_row(FILE *in, track_point *p) {
-    double *to[12] = {&p->at.x, &p->at.y, &p->at.z, &p->up.x, &p->up.y, &p->up.z, &p->edge[0], &p->edge[1],
-                      &p->barrier[0], &p->barrier[1], &p->rise[0], &p->rise[1]};
+    double *to[12] = {&p->at.x, &p->at.y, &p->at.z, &p->up.x, &p->up.y, &p->up.z, &p->edge[0],
+                      &p->edge[1], &p->barrier[0], &p->barrier[1], &p->rise[0], &p->rise[1]};
     int read = 0;
     while (read < 12 && fscanf(in, "%lf", to[read]) == 1 && fabs(*to[read]) < 1e6) read++;
     return read == 12;
@@ -20,24 +20,24 @@ static bool read_row(FILE *in, track_point *p) {
 static bool read_cars(FILE *in, track *t) {
     char word[8];
     for (track_car *c = NULL; fscanf(in, "%7s", word) == 1;) {
+        bool good = false;
         if (!strcmp(word, "car") && t->cars < TRACK_CARS) {
             c = &t->car[t->cars++];
-            if (fscanf(in, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", c->name, &c->at.x, &c->at.y, &c->at.z,
-                       &c->ahead.x, &c->ahead.y, &c->ahead.z, &c->up.x, &c->up.y, &c->up.z, &c->clearance) != 11)
-                return false;
+            good = fscanf(in, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", c->name, &c->at.x,
+                          &c->at.y, &c->at.z, &c->ahead.x, &c->ahead.y, &c->ahead.z, &c->up.x,
+                          &c->up.y, &c->up.z, &c->clearance) == 11;
         } else if (!strcmp(word, "wheel") && c && c->wheels < TRACK_WHEELS) {
             track_wheel *w = &c->wheel[c->wheels++];
-            if (fscanf(in, "%31s %lf %lf %lf %d", w->name, &w->ahead, &w->right, &w->radius, &w->steers) != 5)
-                return false;
-        } else {
-            return false;
+            good = fscanf(in, "%31s %lf %lf %lf %d", w->name, &w->ahead, &w->right, &w->radius,
+                          &w->steers) == 5;
         }
+        if (!good) return false;
     }
     return t->cars > 0;
 }
 
-/* Where the road points to, how far it is, and how fast one can be: first by the bend, then by what can
- * be braked before the next, twice round. */
+/* Where the road points to, how far it is, and how fast one can be: first by the bend, then by what
+ * can be braked before the next, twice round. */
 static void measure(track *t) {
     int n = t->count;
     for (int i = 0; i < n; i++) {
@@ -72,8 +72,8 @@ bool track_read(track *t, const char *path) {
     fclose(in);
     if (good) measure(t);
     if (good && t->length > 1 && t->length < 1e6) return true;
-    return fprintf(stderr, "drive: %s: no track of version 1 with 8 to %d points and 1 to %d cars\n", path,
-                   TRACK_POINTS, TRACK_CARS), false;
+    return fprintf(stderr, "drive: %s: no track of version 1, of 8 to %d points and 1 to %d cars\n",
+                   path, TRACK_POINTS, TRACK_CARS), false;
 }
 
 static track_place between(const track *t, int i, double share, double side) {
@@ -96,11 +96,13 @@ static track_place between(const track *t, int i, double share, double side) {
 }
 
 track_place track_find(const track *t, vec at, int near) {
-    int n = t->count, first = near < 0 ? 0 : near - REACH, many = near < 0 ? n : 2 * REACH + 1, found = 0;
+    int n = t->count, found = 0;
+    int first = near < 0 ? 0 : near - REACH, many = near < 0 ? n : 2 * REACH + 1;
     double best = HUGE_VAL, best_share = 0;
     for (int k = 0; k < many; k++) {
         int i = ((first + k) % n + n) % n;
-        vec from = t->points[i].at, step = add(t->points[(i + 1) % n].at, from, -1), to = add(at, from, -1);
+        vec from = t->points[i].at, to = add(at, from, -1);
+        vec step = add(t->points[(i + 1) % n].at, from, -1);
         double share = clamp(dot(to, step) / fmax(dot(step, step), 1e-12), 0, 1);
         vec off = add(to, step, -share);
         if (dot(off, off) >= best) continue;

@@ -63,6 +63,7 @@ typedef struct masu_device {
     /* load.c */
     VkCommandBuffer *loads;           /* one per staging chunk */
     uint32_t load_count, load_next;   /* chunks in all, chunks handed out */
+    uint64_t load_place, load_done;   /* bytes written in place, of all that place; in all steps */
     masu_texture_cursor texture_next; /* first texel row of the next chunk */
 
     /* ray_query.c */

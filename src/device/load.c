@@ -15,6 +15,8 @@
 
 #include <string.h>
 
+_Static_assert(MASU_LOAD_STEP_MIN >= MASU_TEXTURE_ROW_MAX, "a step holds a row of texels");
+
 /* ---- Chunks ---------------------------------------------------------------------------------- */
 
 /* Chunks of resident buffers: none where the host can write them. */
@@ -37,17 +39,16 @@ static int keeps_images(const masu_frame_plan *plan) {
 }
 
 uint32_t masu_load_chunks(const masu_frame_plan *plan) {
-    uint32_t chunks = buffer_chunks(plan) + (keeps_images(plan) ? 1 : 0);
-    if (plan->needs.query) chunks++;
+    uint32_t chunks = buffer_chunks(plan) + (keeps_images(plan) ? 1 : 0) + masu_ray_build_steps(plan);
     if (!plan->scene.texture_arrays) return chunks;
     masu_scene_view v = masu_scene_look(&plan->scene);
     return chunks + masu_texture_chunks(v.textures, plan->scene.texture_arrays, plan->compressed,
                                         plan->buffers[MASU_BUFFER_STAGING].bytes);
 }
 
-/* Whether structures of ray queries are built in it: behind all that is copied. */
-static int is_build_chunk(const masu_frame_plan *plan, uint32_t index, uint32_t chunks) {
-    return plan->needs.query && index + 1 + (keeps_images(plan) ? 1 : 0) == chunks;
+/* Those that copy stand first; behind them structures of ray queries are built. */
+static uint32_t copy_chunks(const masu_frame_plan *plan, uint32_t chunks) {
+    return chunks - (keeps_images(plan) ? 1 : 0) - masu_ray_build_steps(plan);
 }
 
 masu_chunk masu_load_chunk(const masu_frame_plan *plan, uint32_t index) {
@@ -122,15 +123,15 @@ static void record_kept(masu_device *m, VkCommandBuffer cmd) {
 }
 
 static masu_result record_load(masu_device *m, uint32_t index, masu_texture_cursor *next,
-                               masu_detail *detail) {
+                               uint32_t *mesh, masu_detail *detail) {
     VkCommandBuffer cmd = m->loads[index];
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     VkResult r = m->vk.BeginCommandBuffer(cmd, &begin);
     if (r) return masu_fail_vulkan(detail, r, "vkBeginCommandBuffer");
     if (keeps_images(m->plan) && index + 1 == m->load_count) {
         record_kept(m, cmd);
-    } else if (is_build_chunk(m->plan, index, m->load_count)) {
-        masu_ray_record_bottoms(m, cmd);
+    } else if (index >= copy_chunks(m->plan, m->load_count)) {
+        masu_ray_record_bottoms(m, cmd, mesh);
     } else if (index < buffer_chunks(m->plan)) {
         masu_chunk chunk = masu_load_chunk(m->plan, index);
         VkBufferCopy copy = {0, chunk.offset, chunk.bytes};
@@ -145,9 +146,10 @@ static masu_result record_load(masu_device *m, uint32_t index, masu_texture_curs
 
 masu_result masu_load_record(masu_device *m, masu_detail *detail) {
     masu_texture_cursor texture = {0};
+    uint32_t mesh = 0;
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < m->load_count && !result; i++)
-        result = record_load(m, i, &texture, detail);
+        result = record_load(m, i, &texture, &mesh, detail);
     return result;
 }
 
@@ -286,38 +288,68 @@ static void write_resident(const masu_scene *scene, const masu_scene_view *v, ma
     loads[chunk.buffer](&s, chunk, to);
 }
 
-static void write_textures(masu_device *m, const masu_scene_view *v, unsigned char *to) {
-    uint64_t used = 0, room = m->plan->buffers[MASU_BUFFER_STAGING].bytes;
+/* Returns how many bytes they are, without what lies between them. */
+static uint64_t write_textures(masu_device *m, const masu_scene_view *v, unsigned char *to) {
+    uint64_t used = 0, bytes = 0, room = m->plan->buffers[MASU_BUFFER_STAGING].bytes;
     masu_texture_region region;
     while (masu_texture_next(v->textures, m->plan->scene.texture_arrays, m->plan->compressed, room,
                              &m->texture_next, &used, &region)) {
         masu_texture_write(&v->textures[region.texture], v->texels, m->plan->compressed, &region,
                            to);
+        bytes += used - region.offset;
     }
+    return bytes;
 }
 
-/* Where the host can write them, all at once. */
-static void write_in_place(const masu_device *m, const masu_scene_view *v) {
-    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) {
-        masu_chunk all = {(masu_buffer_id)b, 0, m->plan->buffers[b].bytes, m->plan->buffers[b].bytes};
-        if (!masu_buffers[b].loaded || !all.bytes) continue;
-        if (!m->plan->desc.scene && loads[b] != load_smaa_area) continue; /* the library's own */
-        write_resident(&m->plan->scene, v, all, masu_buffer_pointer(m, all.buffer, 0));
-    }
+/* Bytes of a buffer that are loaded: without a scene the library's own alone. */
+static uint64_t loaded_bytes(const masu_frame_plan *plan, uint32_t b) {
+    if (!masu_buffers[b].loaded || (!plan->desc.scene && loads[b] != load_smaa_area)) return 0;
+    return plan->buffers[b].bytes;
 }
 
-VkCommandBuffer masu_load_next(masu_device *m) {
+/* Where the host can write them: at most `room` bytes from m->load_place on. Returns how many. */
+static uint64_t write_in_place(masu_device *m, const masu_scene_view *v, uint64_t room) {
+    uint64_t start = 0, written = 0;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT && written < room; b++) {
+        uint64_t whole = loaded_bytes(m->plan, b), from = m->load_place - start;
+        if (from < whole) {
+            uint64_t bytes = whole - from < room - written ? whole - from : room - written;
+            masu_chunk part = {(masu_buffer_id)b, from, bytes, whole};
+            write_resident(&m->plan->scene, v, part, masu_buffer_pointer(m, part.buffer, 0) + from);
+            m->load_place += bytes;
+            written += bytes;
+        }
+        start += whole;
+    }
+    return written;
+}
+
+uint64_t masu_load_bytes(const masu_device *m) {
+    const masu_frame_plan *plan = m->plan;
+    uint64_t bytes = 0;
+    for (uint32_t b = 0; b < MASU_BUFFER_COUNT; b++) bytes += loaded_bytes(plan, b);
+    return bytes + masu_scene_texture_bytes(&plan->desc);
+}
+
+masu_load_step masu_load_next(masu_device *m) {
+    masu_load_step step = {0};
     masu_scene_view v = {0}; /* without a scene there may still be tables */
+    uint64_t most = m->plan->desc.load_step;
     if (m->plan->desc.scene) v = masu_scene_look(m->plan->desc.scene);
-    if (!m->load_next && !m->plan->staged) write_in_place(m, &v);
-    if (m->load_next == m->load_count) return NULL;
-    unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0);
-    int copies = !(keeps_images(m->plan) && m->load_next + 1 == m->load_count) &&
-                 !is_build_chunk(m->plan, m->load_next, m->load_count);
-    if (copies && m->load_next < buffer_chunks(m->plan)) {
-        write_resident(&m->plan->scene, &v, masu_load_chunk(m->plan, m->load_next), to);
-    } else if (copies) {
-        write_textures(m, &v, to);
+    if (!m->plan->staged) step.bytes = write_in_place(m, &v, most ? most : UINT64_MAX);
+    int full = most && step.bytes; /* what is copied has a step of its own */
+    if (!full && m->load_next < m->load_count) {
+        unsigned char *to = masu_buffer_pointer(m, MASU_BUFFER_STAGING, 0);
+        if (m->load_next < buffer_chunks(m->plan)) {
+            masu_chunk chunk = masu_load_chunk(m->plan, m->load_next);
+            write_resident(&m->plan->scene, &v, chunk, to);
+            step.bytes += chunk.bytes;
+        } else if (m->load_next < copy_chunks(m->plan, m->load_count)) {
+            step.bytes += write_textures(m, &v, to);
+        }
+        step.commands = m->loads[m->load_next++];
     }
-    return m->loads[m->load_next++];
+    m->load_done += step.bytes;
+    step.more = step.commands || m->load_next < m->load_count || (most && step.bytes == most);
+    return step;
 }

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#define STAGING_BYTES ((uint64_t)4 << 20)
+#define STAGING_BYTES ((uint64_t)4 << 20) /* where desc.load_step does not say */
 
 /* ---- Placement ------------------------------------------------------------------------------- */
 
@@ -404,7 +404,8 @@ static masu_result create_staging(const masu_vk *vk, masu_frame_plan *plan, masu
     if (!plan->staged) resident = 0;
     if (resident < textures) resident = textures;
     if (!resident) return MASU_OK;
-    staging->bytes = resident < STAGING_BYTES ? resident : STAGING_BYTES;
+    uint64_t most = plan->desc.load_step ? plan->desc.load_step : STAGING_BYTES;
+    staging->bytes = resident < most ? resident : most;
     masu_result result = create_buffer(vk, plan, MASU_BUFFER_STAGING, objects, detail);
     if (!result) lay_out(vk, plan);
     return result;

@@ -71,7 +71,7 @@ int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
     for (uint32_t i = 0; pool && i < pool->count; i++) {
         if (pool->rows[i].key != key) continue;
         *out = pool->rows[i].pipeline;
-        pool->rows[i] = pool->rows[--pool->count];
+        pool->rows[i].users++;
         pool->taken++;
         note(m, out, key);
         return 1;
@@ -80,8 +80,13 @@ int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out) {
 }
 
 void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key) {
-    if (!pool_of(m)) return;
-    pool_of(m)->made++;
+    masu_pipelines *pool = pool_of(m);
+    if (!pool) return;
+    pool->made++;
+    if (pool->count == MASU_MAX_PIPELINES) return;
+    pool->rows[pool->count].key = key;
+    pool->rows[pool->count].users = 1;
+    pool->rows[pool->count++].pipeline = *at;
     note(m, at, key);
 }
 
@@ -90,10 +95,11 @@ void masu_pool_give(masu_device *m) {
     if (!pool) return;
     for (uint32_t i = 0; i < MASU_POOL_KEYS; i++) {
         VkPipeline *from = place(m, i);
-        if (!*from || !m->pool_keys[i] || pool->count == MASU_MAX_PIPELINES) continue;
-        pool->rows[pool->count].key = m->pool_keys[i];
-        pool->rows[pool->count++].pipeline = *from;
-        *from = VK_NULL_HANDLE;
+        for (uint32_t row = 0; row < pool->count && *from && m->pool_keys[i]; row++) {
+            if (pool->rows[row].pipeline != *from) continue;
+            pool->rows[row].users--;
+            *from = VK_NULL_HANDLE;
+        }
     }
     m->sampler = m->linear = VK_NULL_HANDLE; /* the pool has them all along */
 }

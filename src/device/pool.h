@@ -1,6 +1,6 @@
-/* pool.h: pipelines that outlive their renderer, masu_pipelines of the public header: masu_init takes what it
- * needs, masu_destroy gives it back. The host owns the pool; a pipeline in it is nobody's, one that was taken
- * is the renderer's.
+/* pool.h: pipelines that outlive their renderer, masu_pipelines of the public header: masu_init uses what is there
+ * and adds what it had to make, masu_destroy uses it no more. The host owns the pool, the pool its pipelines; several
+ * renderers may use one at a time.
  *
  * A key says what a pipeline was made of: its pass and code, its constants, what is bound to it, what it is
  * drawn to. Layouts and render passes are each renderer's own, and compatible where the keys agree
@@ -22,9 +22,9 @@ uint64_t masu_pool_key(const masu_device *m, uint32_t pass, const masu_code code
 
 /* Into *out, a pipeline of the device, if there is one of that key. */
 int masu_pool_take(masu_device *m, uint64_t key, VkPipeline *out);
-/* Notes what a pipeline of the device that had to be made is known by. */
+/* Adds a pipeline of the device that had to be made; where there is no room, it stays the renderer's. */
 void masu_pool_made(masu_device *m, const VkPipeline *at, uint64_t key);
-/* Gives all pipelines and samplers back; what has no place any more, or no key, stays with the renderer. */
+/* The renderer uses none of the pool's pipelines and samplers any more. */
 void masu_pool_give(masu_device *m);
 
 #endif

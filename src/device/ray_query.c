@@ -13,6 +13,7 @@
 #define TRIANGLES_MAX (1u << 24)
 #define STRUCTURE_ALIGNMENT 256u /* of an offset in a buffer: valid usage 03734 */
 #define INDEX_BYTES (3 * sizeof(uint32_t))
+#define TRIANGLE_BYTES (INDEX_BYTES + 9 * sizeof(float)) /* of what a build reads */
 #define ALL_RAYS 0xFFu
 
 _Static_assert(sizeof(VkAccelerationStructureInstanceKHR) == 64, "instances of the top level");
@@ -252,11 +253,40 @@ static void wait_before_build(masu_device *m, VkCommandBuffer cmd, VkPipelineSta
                              1, &barrier, 0, NULL, 0, NULL);
 }
 
-void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd) {
+/* The meshes from `mesh` on of one step, some of them: no more bytes than a step may have, but one at least. Returns the
+ * first of the next. */
+static uint32_t end_of_step(const masu_frame_plan *plan, const masu_scene_view *v, uint32_t mesh) {
+    uint64_t room = plan->desc.load_step, used = 0;
+    for (; mesh < plan->scene.meshes; mesh++) {
+        uint64_t bytes = v->trace_meshes[mesh].triangle_count * TRIANGLE_BYTES;
+        if (!v->trace_meshes[mesh].node_count) continue;
+        if (room && used && used + bytes > room) break;
+        used += bytes;
+    }
+    return mesh;
+}
+
+uint32_t masu_ray_build_steps(const masu_frame_plan *plan) {
+    uint32_t steps = 0, mesh = 0;
+    if (!plan->needs.query) return 0;
+    masu_scene_view v = masu_scene_look(&plan->scene);
+    do {
+        mesh = end_of_step(plan, &v, mesh);
+        steps++;
+    } while (mesh < plan->scene.meshes);
+    return steps;
+}
+
+void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd, uint32_t *next) {
     masu_scene_view v = masu_scene_look(&m->plan->scene);
-    VkPipelineStageFlags from = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    VkAccessFlags access = VK_ACCESS_TRANSFER_WRITE_BIT;
-    for (uint32_t mesh = 0; mesh < m->plan->scene.meshes; mesh++) {
+    uint32_t mesh = *next;
+    /* Of steps before this one, too. */
+    VkPipelineStageFlags from =
+        VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+    VkAccessFlags access =
+        VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
+    *next = end_of_step(m->plan, &v, mesh);
+    for (; mesh < *next; mesh++) {
         build b;
         if (!m->ray_meshes[mesh].structure) continue;
         describe_bottom(&m->plan->scene, &v, mesh, &b);

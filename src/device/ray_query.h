@@ -9,8 +9,7 @@
  *                   what specular_shade looks up; built in every frame, of a buffer that the host
  *                   writes
  *   loading         the triangles as an index buffer, and the scratch memory of the bottom levels:
- *                   needed in one command buffer of masu_load, so they lie where the transient
- *                   images of frames will
+ *                   needed in masu_load alone, so they lie where the transient images of frames will
  *
  * SIZES are the driver's for the geometry at hand, asked for while planning: nothing grows.
  * Structures are not compacted: how small one can be is known after it has been built, and the box
@@ -38,7 +37,10 @@ void masu_ray_bind(masu_device *m, VkDescriptorSet set);
 /* Bytes [offset, offset + bytes) of the index buffer. */
 void masu_ray_write_indices(const masu_scene_view *v, uint64_t offset, uint64_t bytes,
                             unsigned char *to);
-void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd);
+/* In how many steps of desc.load_step bytes bottom levels are built; without ray queries in none. */
+uint32_t masu_ray_build_steps(const masu_frame_plan *plan);
+/* Builds those of one step, from mesh *next on, which becomes the first of the next step. */
+void masu_ray_record_bottoms(masu_device *m, VkCommandBuffer cmd, uint32_t *next);
 void masu_ray_record_top(masu_device *m, VkCommandBuffer cmd, uint32_t slot);
 
 /* Traced instance `traced`, which places `mesh`, to a slot; rows: object to world minus anchor. One that

@@ -259,6 +259,11 @@ masu_result masu_desc_check(const masu_desc *d, masu_detail *detail) {
         masu_result result = masu_rung_check(&d->rungs[r], r, detail);
         if (result) return result;
     }
+    if (d->load_step && d->load_step < MASU_LOAD_STEP_MIN) {
+        return masu_fail(detail, MASU_ERROR_ARGUMENT, "load_step", MASU_LOAD_STEP_MIN, d->load_step,
+                         "load_step is %llu bytes, allowed are 0 and %u or more",
+                         (unsigned long long)d->load_step, MASU_LOAD_STEP_MIN);
+    }
     masu_result result = check_split(d, detail);
     if (!result) result = check_viewports(d, detail);
     if (!result) result = check_reserve(d, detail);

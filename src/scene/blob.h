@@ -13,8 +13,9 @@
  *  - every float is finite; every index is in range; instances are sorted by mesh;
  *  - the primitives together have no more indices, and meshes and LODs no more primitives,
  *    than there are (vertices may be shared): work stays linear in the blob's size;
- *  - SPIR-V is code: a blob is as trusted as the executable and comes from the port's own build.
- *    The hash finds damage, not malice.
+ *  - SPIR-V holds together and asks for nothing that its pass does not bind (code.h), and was compiled
+ *    for the counts that the blob has. It is code all the same: a blob is as trusted as the executable
+ *    and comes from the port's own build. The hash finds damage, not malice.
  * World space: right-handed, +Y up, metres, linear colour. docs/blob.md is the prose form of this
  * file. */
 #ifndef MASU_BLOB_H
@@ -23,9 +24,11 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 12u
+#define MASU_BLOB_VERSION 13u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
+#define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
+#define MASU_BLOB_NAME_MAX 255u    /* bytes of a name, without its NUL */
 
 enum masu_blob_kind {
     MASU_BLOB_VERTICES = 1,
@@ -39,7 +42,7 @@ enum masu_blob_kind {
     MASU_BLOB_SDF = 9,         /* at most one; then MARCH_SPIRV is present too */
     MASU_BLOB_SDF_PARAMS = 10,
     MASU_BLOB_MARCH_SPIRV = 11, /* uint32 words: the march pass specialised to this scene */
-    MASU_BLOB_NAMES = 12,       /* NUL-terminated UTF-8 strings, last byte is NUL */
+    MASU_BLOB_NAMES = 12,       /* NUL-terminated UTF-8 strings of at most MASU_BLOB_NAME_MAX bytes */
     MASU_BLOB_CLASSIFY_SPIRV = 13, /* these three are present exactly when MARCH_SPIRV is */
     MASU_BLOB_CONE8_SPIRV = 14,
     MASU_BLOB_CONE4_SPIRV = 15,

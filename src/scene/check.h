@@ -25,8 +25,9 @@ masu_result masu_check_looks(reader *r);
 void masu_look_at_looks(const reader *r, masu_scene *out);
 /* Textures, and what materials say of them. */
 masu_result masu_check_textures(reader *r);
-/* The SDF: its numbers and its code. */
+/* The SDF: its numbers, and that its code is there; then the code. */
 masu_result masu_check_sdf(reader *r);
+masu_result masu_check_code(reader *r);
 void masu_look_at_sdf(const reader *r, masu_scene *out);
 /* What rays are traced through. */
 masu_result masu_check_trace(reader *r);

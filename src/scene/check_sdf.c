@@ -1,4 +1,4 @@
-/* check_sdf.c: the SDF of a scene: its numbers, its parameters and slots, its code. */
+/* check_sdf.c: the SDF of a scene: its numbers, its parameters and slots, that its code is there (check_code.c). */
 #include "scene/check.h"
 
 #include "shared/masu_shared.h"
@@ -43,6 +43,11 @@ masu_result masu_check_sdf(reader *r) {
     if (!v->slots) return bad(r, "slots", 0, "are missing");
     for (uint64_t i = 0; i < v->slot_count; i++) {
         if (!finite_all(&v->slots[i], 1)) return bad(r, "slots", i, "is not finite");
+    }
+    /* Numbers of other things, which the code clamps; beyond these no float becomes one. */
+    for (uint64_t i = 0; i < s->part_count && v->slot_count >= (uint64_t)s->part_count * MASU_BLOB_PART_SLOTS; i++) {
+        uint64_t form = i * MASU_BLOB_PART_SLOTS + 5;
+        if (!within(&v->slots[form], 3, 0.0f, 65536.0f)) return bad(r, "slots", form, "is no number of a form, a slot and a material");
     }
     for (uint32_t k = 0; k < MASU_BLOB_KIND_COUNT; k++) {
         int needed = k == MASU_BLOB_MARCH_SPIRV || k == MASU_BLOB_CLASSIFY_SPIRV ||

@@ -75,6 +75,19 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
     look_at_draws(r, out);
 }
 
+/* Names are hashed for each thing that has one: a long one that many share would be work without measure. */
+static masu_result check_names(reader *r) {
+    uint64_t bytes = r->view.name_bytes;
+    for (uint64_t at = 0; at < bytes;) {
+        const char *end = memchr(r->view.names + at, '\0', (size_t)(bytes - at));
+        if (!end) return bad(r, "names", bytes - 1, "does not end with NUL");
+        if ((uint64_t)(end - r->view.names) - at > MASU_BLOB_NAME_MAX)
+            return bad(r, "names", at, "a name is longer than 255 bytes");
+        at = (uint64_t)(end - r->view.names) + 1;
+    }
+    return MASU_OK;
+}
+
 masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *out,
                             masu_detail *detail) {
     if (!blob || !out) return masu_fail_null(detail, blob ? "out" : "blob");
@@ -87,9 +100,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     reader r = {.bytes = blob, .detail = detail};
     masu_result result = masu_read_header(&r, blob_bytes);
     if (!result) result = masu_read_sections(&r, blob_bytes);
-    if (!result && r.view.names && r.view.names[r.view.name_bytes - 1]) {
-        result = bad(&r, "names", r.view.name_bytes - 1, "does not end with NUL");
-    }
+    if (!result) result = check_names(&r);
     if (!result) result = masu_check_geometry(&r);
     uint64_t pairs = 0;
     if (!result) result = masu_check_models(&r);
@@ -100,6 +111,7 @@ masu_result masu_scene_bind(const void *blob, uint64_t blob_bytes, masu_scene *o
     if (!result) result = masu_check_looks(&r);
     if (!result) result = masu_check_textures(&r);
     if (!result) result = masu_check_sdf(&r);
+    if (!result) result = masu_check_code(&r);
     if (!result) result = masu_check_trace(&r);
     if (!result) result = masu_check_skin_trees(&r);
     if (result) return result;

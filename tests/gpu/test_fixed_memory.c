@@ -170,9 +170,8 @@ static void query_and_use(const char *scene) {
         assert_int_equal(peaks.device_bytes, need.device_bytes);
         /* The report's host rows fill the block to its last byte; device rows stay inside theirs.
          * */
-        masu_memory_row rows[96];
-        uint32_t n = masu_memory_report(m, rows, 96);
-        assert_true(n <= 96);
+        masu_memory_row rows[MEMORY_ROWS];
+        uint32_t n = memory_rows(m, rows);
         uint64_t end = 0;
         for (uint32_t k = 0; k < n; k++) {
             uint64_t row_end = rows[k].offset + rows[k].bytes;

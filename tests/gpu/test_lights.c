@@ -535,13 +535,13 @@ static void a_scene_without_lights_has_no_pass_for_them(void **state) {
     for (uint32_t lights = 0; lights < 2; lights++) {
         pictures p;
         masu_plan_info plan;
-        masu_memory_row rows[96];
+        masu_memory_row rows[MEMORY_ROWS];
         begin_scene(1);
         add_lights(lights, 1, 1, 2);
         bake_scene("few", json);
         open_pictures(&p, "few", 16, 16, 1);
         masu_plan_of(p.s.m, &plan);
-        uint32_t passes = 0, buffers = 0, n = masu_memory_report(p.s.m, rows, 96);
+        uint32_t passes = 0, buffers = 0, n = memory_rows(p.s.m, rows);
         for (uint32_t i = 0; i < plan.pass_count; i++) {
             if (strcmp(plan.passes[i].name, "light_tiles")) continue;
             assert_int_equal(plan.passes[i].active, lights ? 1u << TILES | 1u << UNCULLED : 0);

@@ -199,13 +199,13 @@ static void a_ladder_without_lods_has_none_of_it(void **state) {
     for (uint32_t with = 0; with < 2; with++) {
         masu_session_desc d = test_desc("test_lods", W, H);
         masu_session s;
-        masu_memory_row rows[64];
+        masu_memory_row rows[MEMORY_ROWS];
         d.desc.rung_count = 2;
         d.desc.readback = MASU_READBACK_DEPTH;
         d.desc.rungs[0].lod_error = d.desc.rungs[1].lod_error = -1.0f;
         if (with) d.desc.rungs[1].lod_error = 0.5f;
         open_session(&s, &d);
-        uint32_t n = masu_memory_report(s.m, rows, 64);
+        uint32_t n = memory_rows(s.m, rows);
         assert_true(n < 64);
         assert_int_equal(row_of(rows, n, "instance LODs")->count > 0, with);
         bytes[with] = row_of(rows, n, "draw commands")->bytes;

@@ -311,8 +311,8 @@ static void scenes_without_occluders_have_none_of_it(void **state) {
     for (uint32_t i = 0; i < plan.image_count; i++) {
         if (!strcmp(plan.images[i].name, "occluders")) assert_int_equal(plan.images[i].used, 0);
     }
-    masu_memory_row rows[64];
-    uint32_t n = masu_memory_report(s.m, rows, 64);
+    masu_memory_row rows[MEMORY_ROWS];
+    uint32_t n = memory_rows(s.m, rows);
     for (uint32_t i = 0; i < n; i++) assert_string_not_equal(rows[i].name, "seen");
     close_session(&s);
 }

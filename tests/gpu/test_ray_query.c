@@ -198,8 +198,8 @@ static int runs(const masu_renderer *m, const char *pass) {
 }
 
 static uint64_t row_bytes(const masu_renderer *m, const char *kind, const char *name) {
-    masu_memory_row rows[160];
-    uint32_t n = masu_memory_report(m, rows, 160);
+    masu_memory_row rows[MEMORY_ROWS];
+    uint32_t n = memory_rows(m, rows);
     for (uint32_t i = 0; i < n; i++) {
         if (!strcmp(rows[i].kind, kind) && !strcmp(rows[i].name, name)) return rows[i].bytes;
     }

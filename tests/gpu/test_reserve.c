@@ -185,6 +185,91 @@ static void at_the_limit_is_refused(void **state) {
     close_session(&s);
 }
 
+/* A copy has clips and a pose of its own: its nodes are where those of the model are that it is a copy of, when that
+ * stands there in that pose, and it looks like it; the model itself rests meanwhile. */
+static void a_copy_is_animated_by_itself(void **state) {
+    (void)state;
+    masu_session own, copied;
+    masu_model copy, swing;
+    masu_node_state is, expected, rest, before;
+    const float at[3] = {1, 0.1f, -0.4f};
+    const float rows[12] = {1, 0, 0, at[0], 0, 1, 0, at[1], 0, 0, 1, at[2]};
+    const masu_clip_use turned = {.clip = 0, .loop = 1, .time = 0.35, .weight = 1};
+    masu_session_desc d = desc_of("test_swing", 1, 0);
+    open_session(&own, &d);
+    open_session(&copied, &d);
+    swing = masu_model_find(own.m, "swing");
+    assert_int_equal(masu_model_clips(own.m, swing), 1);
+    assert_int_equal(masu_model_set_transform(own.m, swing, rows), MASU_OK);
+    draw_frames(&own, pictures[2]); /* at rest */
+    assert_int_equal(masu_model_animate(own.m, swing, &turned, 1), MASU_OK);
+    draw_frames(&own, pictures[1]);
+    assert_int_equal(add(&copied, "swing", at, &copy), MASU_OK);
+    assert_int_equal(masu_model_clips(copied.m, copy), 1);
+    assert_true(masu_model_clip_duration(copied.m, copy, 0) == masu_model_clip_duration(own.m, swing, 0));
+    masu_model_state whole;
+    assert_int_equal(masu_model_get(copied.m, copy, &whole), MASU_OK);
+    uint32_t moved = 0;
+    for (uint32_t turn = 0; turn < 2; turn++) {
+        for (uint32_t n = 0; n < whole.nodes; n++) {
+            assert_int_equal(masu_model_node_get(copied.m, copy, n, &is), MASU_OK);
+            assert_int_equal(masu_model_node_get(own.m, swing, n, &expected), MASU_OK);
+            assert_int_equal(masu_model_node_get(copied.m, masu_model_find(copied.m, "swing"), n, &rest), MASU_OK);
+            if (turn) assert_memory_equal(is.world, expected.world, sizeof is.world);
+            else moved += memcmp(is.world, expected.world, sizeof is.world) != 0;
+            if (n == whole.nodes - 1 && !turn) before = rest;
+            if (n == whole.nodes - 1) assert_memory_equal(rest.world, before.world, sizeof rest.world);
+        }
+        if (!turn) assert_int_equal(masu_model_animate(copied.m, copy, &turned, 1), MASU_OK);
+    }
+    assert_true(moved > 0);
+    assert_int_equal(masu_model_show(copied.m, masu_model_find(copied.m, "swing"), 0), MASU_OK);
+    draw_frames(&copied, pictures[0]);
+    draw_frames(&copied, pictures[0]); /* of the same numbers */
+    uint32_t off = far_off(pictures[0][FRAMES - 1], pictures[1][FRAMES - 1]);
+    uint32_t turned_off = far_off(pictures[2][FRAMES - 1], pictures[1][FRAMES - 1]);
+    printf("  %u nodes moved by the clip; %u bytes differ by more than 4, at rest %u\n", moved, off, turned_off);
+    assert_int_equal(off, 0);
+    assert_true(turned_off > 20);
+    close_session(&own);
+    close_session(&copied);
+}
+
+/* Queries of the device find copies where the library's own trees find them; where there are none, that is asserted by
+ * test_ray_query. */
+static void rays_of_the_device_meet_copies(void **state) {
+    (void)state;
+    masu_model added[KINDS];
+    masu_punctual_light light;
+    static const masu_switch ways[3] = {MASU_OFF, MASU_ON, MASU_ON};
+    for (uint32_t i = 0; i < 3; i++) {
+        masu_session s;
+        masu_plan_info plan;
+        masu_session_desc d = desc_of("test_reserve", KINDS, 2);
+        d.host.ray_query = true;
+        d.desc.ray_query = ways[i];
+        d.no_renderer = true;
+        open_session(&s, &d);
+        bool offered = s.host.ray_query;
+        if (!offered && ways[i] == MASU_ON) {
+            close_session(&s);
+            return;
+        }
+        char error[ERROR_SIZE];
+        assert_ok(masu_session_start(&s, error, sizeof error));
+        masu_plan_of(s.m, &plan);
+        assert_int_equal(pass_of(&plan, "specular_query")->active, ways[i] == MASU_ON);
+        if (i < 2) add_all(&s, added, &light); /* the third one has no copies */
+        draw_frames(&s, pictures[i]);
+        close_session(&s);
+    }
+    uint32_t off = far_off(pictures[1][FRAMES - 1], pictures[0][FRAMES - 1]);
+    uint32_t without = far_off(pictures[2][FRAMES - 1], pictures[0][FRAMES - 1]);
+    printf("  %u bytes differ by more than 4 from those of the own trees, without copies %u\n", off, without);
+    assert_true(off < BYTES / 1000);
+    assert_true(without > BYTES / 10);
+}
+
 /* Of skins there are none; a scene of them alone pays nothing. */
 static void what_bends_is_not_copied(void **state) {
     (void)state;
@@ -273,8 +358,8 @@ static void the_box_is_as_large_as_was_said(void **state) {
            (unsigned long long)(need[1].host_bytes - need[0].host_bytes),
            (unsigned long long)(need[1].device_bytes - need[0].device_bytes));
     assert_true(need[1].device_bytes > need[0].device_bytes);
-    static masu_memory_row rows[256];
-    uint32_t count = masu_memory_report(made.m, rows, 256), named = 0;
+    static masu_memory_row rows[MEMORY_ROWS];
+    uint32_t count = memory_rows(made.m, rows), named = 0;
     for (uint32_t i = 0; i < count; i++) {
         named |= !strcmp(rows[i].name, "reserve models") ? 1u : 0;
         named |= !strcmp(rows[i].name, "reserve lights") ? 2u : 0;
@@ -420,6 +505,8 @@ int main(void) {
         cmocka_unit_test(what_is_removed_leaves_nothing),
         cmocka_unit_test(room_that_is_not_used_changes_no_bit),
         cmocka_unit_test(at_the_limit_is_refused),
+        cmocka_unit_test(a_copy_is_animated_by_itself),
+        cmocka_unit_test(rays_of_the_device_meet_copies),
         cmocka_unit_test(what_bends_is_not_copied),
         cmocka_unit_test(handles_of_what_is_gone_are_refused),
         cmocka_unit_test(the_box_is_as_large_as_was_said),

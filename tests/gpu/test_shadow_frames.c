@@ -354,9 +354,8 @@ static void a_caster_however_far_leaves_the_others_their_shadows(void **state) {
 /* ---- Plans ----------------------------------------------------------------------------------- */
 
 static int has_row(const char *name) {
-    static masu_memory_row rows[128];
-    uint32_t n = masu_memory_report(t.s.m, rows, 128);
-    assert_true(n <= 128);
+    static masu_memory_row rows[MEMORY_ROWS];
+    uint32_t n = memory_rows(t.s.m, rows);
     for (uint32_t i = 0; i < n; i++)
         if (!strcmp(rows[i].name, name)) return 1 + (int)rows[i].transient;
     return 0;

@@ -619,8 +619,8 @@ static void room_alone_changes_nothing(void **state) {
         masu_commands commands;
         draw(&s, &frame, &commands, room ? shown : without);
         /* The buffer is as large as its three kinds say: the report has it, and without room there is none. */
-        masu_memory_row rows[200];
-        uint32_t count = masu_memory_report(s.m, rows, 200), found = 0;
+        masu_memory_row rows[MEMORY_ROWS];
+        uint32_t count = memory_rows(s.m, rows), found = 0;
         for (uint32_t i = 0; i < count && i < 200; i++) {
             if (strcmp(rows[i].name, "particles, lines, decals")) continue;
             found++;

@@ -213,10 +213,10 @@ static void blocks_and_decoded_texels_give_one_picture(void **state) {
     uint64_t bytes[2] = {0};
     /* 1200 x 1200 is more than a staging buffer: it arrives in chunks. */
     for (int decoded = 0; decoded < 2; decoded++) {
-        masu_memory_row rows[64];
+        masu_memory_row rows[MEMORY_ROWS];
         open_textured("test_texture_large", decoded, 1.0f);
         draw_rung(&s, 0, pictures[decoded]);
-        uint32_t n = masu_memory_report(s.m, rows, 64);
+        uint32_t n = memory_rows(s.m, rows);
         for (uint32_t i = 0; i < n; i++) {
             if (!strcmp(rows[i].kind, "texture")) bytes[decoded] += rows[i].bytes;
             if (!strcmp(rows[i].name, "staging")) assert_true(rows[i].bytes < 5u << 20);
@@ -417,13 +417,13 @@ static void a_scene_without_textures_has_nothing_of_them(void **state) {
     (void)state;
     static uint8_t pictures[2][4 * PIXELS];
     for (int denied = 0; denied < 2; denied++) {
-        masu_memory_row rows[64];
+        masu_memory_row rows[MEMORY_ROWS];
         masu_session_desc d = test_desc("test_both", SIDE, SIDE);
         d.desc.deny.compressed_textures = (uint32_t)denied;
         d.desc.vulkan.max_anisotropy = denied ? 0.0f : 4.0f;
         open_session(&s, &d);
         draw_rung(&s, 0, pictures[denied]);
-        uint32_t n = masu_memory_report(s.m, rows, 64);
+        uint32_t n = memory_rows(s.m, rows);
         for (uint32_t i = 0; i < n; i++) {
             int of_textures = !strcmp(rows[i].kind, "texture") || strstr(rows[i].name, "texture");
             assert_true(!of_textures || rows[i].bytes == 0);

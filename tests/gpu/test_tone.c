@@ -296,7 +296,7 @@ static void what_is_not_metered_costs_nothing(void **state) {
     static masu_plan_info with, without;
     masu_session_desc d = test_desc("test_sphere_mesh", W, H);
     masu_detail detail;
-    masu_memory_row rows[96];
+    masu_memory_row rows[MEMORY_ROWS];
     d.no_renderer = true;
     open_session(&s, &d);
     assert_int_equal(masu_plan(&s.desc, &without, &detail), MASU_OK);
@@ -315,7 +315,7 @@ static void what_is_not_metered_costs_nothing(void **state) {
     s.desc.exposure.metered = MASU_AUTO; /* the scene does not ask for it */
     char error[ERROR_SIZE];
     assert_ok(masu_session_start(&s, error, sizeof error));
-    uint32_t n = masu_memory_report(s.m, rows, 96);
+    uint32_t n = memory_rows(s.m, rows);
     for (uint32_t i = 0; i < n; i++) assert_string_not_equal(rows[i].name, "exposure");
     draw_rung(&s, 0, NULL);
     masu_stats_info stats;

@@ -24,7 +24,7 @@ run() {
     code=$?
     left=$(ls -A "$TMPDIR")
     [ -z "$left" ] || fail "$*: leaves $left in TMPDIR" "$(rm -rf "${TMPDIR:?}"/*)"
-    drafts=$(find "$folder" -name '*.tmp*')
+    drafts=$(find "$folder" -name '*.part')
     [ -z "$drafts" ] || fail "$*: leaves $drafts"
 }
 

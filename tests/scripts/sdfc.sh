@@ -91,4 +91,22 @@ expect 1 'only a .sdf file can be "anchored"' "$bake" "$folder/s.json" -o "$fold
 json good.sdf ', "params": [{"name": "r", "value": 1}]'
 expect 1 'its parameters are declared in it' "$bake" "$folder/s.json" -o "$folder/t.masu"
 
+# ---- what comes from data is no index until it is clamped ------------------------------------------------
+
+# unclamped FILE: places where a slot becomes an index as it is. In the names base and first it may stand, of which
+# every use is clamped, and in the forms, which are compared.
+unclamped() {
+    grep -n 'uint(masu_slot(' "$1" | grep -v -e 'min(uint(masu_slot(' -e '^[0-9]*:    uint \(base\|first\|form\) = ' \
+        -e 'switch (uint(masu_slot('
+    grep -n -e '\(case .*\|return \)masu_shape_[0-9]*(.*z, base,' -e '= first' "$1" # but for what follows a clamp of its own
+}
+printf 'a\n    uint material = uint(masu_slot(part * 8u + 7u));\n' > "$folder/bare.glsl"
+[ "$(unclamped "$folder/bare.glsl" | wc -l)" = 1 ] || fail "an index that is not clamped is not found"
+for file in scenes/*.sdf tests/scenes/*.sdf "$folder/far.sdf"; do
+    "$sdfc" "$file" --glsl "$folder/x.glsl" --quiet 2> /dev/null || continue
+    found=$(unclamped "$folder/x.glsl")
+    [ -z "$found" ] || fail "$file: $found"
+    grep -q 'min(uint(masu_slot(' "$folder/x.glsl" || fail "$file: nothing is clamped"
+done
+
 [ $failures = 0 ]

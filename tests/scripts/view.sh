@@ -60,6 +60,8 @@ printf '\n# nothing\nframe 3 key Nokey\n' > nokey
 refuses 1 'nokey:3: ' "$both" --script nokey
 printf 'frame 3 dance\n' > dance
 refuses 1 'dance:1: there is no such action' "$both" --script dance
+printf 'frame 3 click 5\n' > half
+refuses 1 'half:1: what follows the action' "$both" --script half
 SDL_VIDEODRIVER=x11 DISPLAY='' refuses 1 'masu-view: no window: ' "$both"
 head -c 1000 "$both" > short.masu
 SDL_VIDEODRIVER=x11 DISPLAY='' refuses 1 'short.masu: ' short.masu
@@ -239,6 +241,37 @@ same fly1/start.png fly1/path.png 160x40+0+0 # below is a note
 for p in start flown path; do
     cmp -s fly1/$p.png fly2/$p.png || fail "$p.png is another one the second time"
 done
+
+# What a click is on: what moves, what does not, the sky; in split screen it takes the line instead.
+play pick $scenes/test_live.masu --size 320x180 --rung 0 << 'END'
+frame 0 key F1
+frame 0 key F1
+frame 0 key Space
+frame 2 screenshot before.png
+frame 2 click 120 75
+frame 5 screenshot truck.png
+frame 5 click 40 160
+frame 8 click 160 2
+frame 11 key F2
+frame 12 click 250 150
+frame 15 key F2
+frame 16 resize 160x90
+frame 16 click 319 179
+frame 20 quit
+END
+truck="120 75: node [0-9]* of model 'truck', instance 'truck/.*', depth [5-7]\.[0-9]* m, at -1\.[0-9]* 1\.[0-9]* [01]\.[0-9]*"
+grep -qx "$truck" pick/stdout || fail "a click on the truck: $(cat pick/stdout)"
+grep -q "^40 160: instance 'floor', depth " pick/stdout || fail "a click on the floor: $(cat pick/stdout)"
+grep -qx '160 2: the sky' pick/stdout || fail "a click on the sky: $(cat pick/stdout)"
+[ "$(wc -l < pick/stdout)" -le 4 ] || fail "a click in split screen: $(cat pick/stdout)"
+! grep -q '^250 150' pick/stdout || fail "a click in split screen is one on the picture"
+differ pick/before.png pick/truck.png 320x40+0+40
+play sdf $scenes/test_sphere_sdf.masu --size 160x90 --rung 0 << 'END'
+frame 0 key Space
+frame 2 click 80 45
+frame 6 quit
+END
+grep -q '^80 45: the SDF, depth ' sdf/stdout || fail "a click on the SDF: $(cat sdf/stdout)"
 
 # A baked scene that is exchanged, and one that is cut off.
 cp "$both" scene.masu

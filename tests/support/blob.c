@@ -1,5 +1,6 @@
-/* blob.c: see blob.h. Also linked to the writer of the fuzzer's seed: libc only. */
+/* blob.c: see blob.h. */
 #include "support/blob.h"
+#include "scene/code.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -228,9 +229,6 @@ static const masu_blob_key clip_keys[] = {
     {0.0f, {1, 1, 1, 0}}, {0.25f, {2, 3, 4, 0}},
 };
 
-/* Header of a module and one OpNop: the reader looks no further than that it is SPIR-V. */
-static const uint32_t code[] = {0x07230203u, 0x00010300u, 0, 8, 0, 0x00010000u};
-
 static const float slots[] = {0.5f, -1.0f, 2.0f};
 
 static size_t aligned(size_t at) {
@@ -252,6 +250,58 @@ static void add(support_blob *blob, enum masu_blob_kind kind, const void *data, 
 }
 
 #define ADD(kind, array) add(blob, kind, array, sizeof *(array), COUNT(array))
+
+static int is_code(uint32_t kind) {
+    return kind == MASU_BLOB_MARCH_SPIRV || (kind >= MASU_BLOB_CLASSIFY_SPIRV && kind <= MASU_BLOB_FRAGMENT_SPIRV) ||
+           (kind >= MASU_BLOB_UPDATE_PREVIOUS_SPIRV && kind <= MASU_BLOB_OCCLUSION_SPIRV) ||
+           kind == MASU_BLOB_TRACE_SDF_SPIRV || kind == MASU_BLOB_SILHOUETTES_SPIRV;
+}
+
+/* The smallest module that its pass could run: main returns. The record is filled in when all of the blob is there. */
+static void add_code(support_blob *blob, enum masu_blob_kind kind) {
+    int fragment = kind == MASU_BLOB_FRAGMENT_SPIRV;
+    uint32_t update = kind == MASU_BLOB_UPDATE_SPIRV || kind == MASU_BLOB_UPDATE_PREVIOUS_SPIRV;
+    uint32_t columns = update ? 1 : kind == MASU_BLOB_SEED_SPIRV ? 4 : 8;
+    const uint32_t head[] = {0x07230203u, 0x00010300u, 0, 5, 0,
+                             2u << 16 | 17, 1,    /* OpCapability Shader */
+                             3u << 16 | 14, 0, 1, /* OpMemoryModel Logical GLSL450 */
+                             5u << 16 | 15, fragment ? 4u : 5u, 1, 0x6E69616Du, 0}; /* OpEntryPoint %1 "main" */
+    const uint32_t compute[] = {6u << 16 | 16, 1, 17, columns, update ? 1u : 8u, 1}; /* OpExecutionMode LocalSize */
+    const uint32_t pixels[] = {3u << 16 | 16, 1, 7};                                /* OriginUpperLeft */
+    const uint32_t tail[] = {2u << 16 | 19, 2,          /* %2 = OpTypeVoid */
+                             3u << 16 | 33, 3, 2,       /* %3 = OpTypeFunction %2 */
+                             5u << 16 | 54, 2, 1, 0, 3, /* %1 = OpFunction %2 None %3 */
+                             2u << 16 | 248, 4,         /* %4 = OpLabel */
+                             1u << 16 | 253,            /* OpReturn */
+                             1u << 16 | 56};            /* OpFunctionEnd */
+    uint32_t words[64] = {0}, n = 0;
+    memcpy(words, head, sizeof head);
+    n += COUNT(head);
+    memcpy(words + n, fragment ? pixels : compute, fragment ? sizeof pixels : sizeof compute);
+    n += fragment ? COUNT(pixels) : COUNT(compute);
+    words[n] = MASU_MODULE_RECORD_FIRST;
+    n += MASU_MODULE_RECORD_WORDS;
+    memcpy(words + n, tail, sizeof tail);
+    add(blob, kind, words, sizeof *words, n + COUNT(tail));
+}
+
+void support_blob_recode(support_blob *blob) {
+    const masu_blob_section *slots = support_blob_row(blob, MASU_BLOB_SLOTS), *field = support_blob_row(blob, MASU_BLOB_SDF);
+    for (uint32_t kind = 0; kind < MASU_BLOB_KIND_COUNT && field; kind++) {
+        masu_blob_section *row = is_code(kind) ? support_blob_row(blob, (enum masu_blob_kind)kind) : NULL;
+        if (!row) continue;
+        const masu_blob_sdf *s = (const masu_blob_sdf *)(const void *)(blob->bytes + field->offset);
+        const masu_module_counts counts = {.kind = kind,
+                                         .parts = s->part_count,
+                                         .slots = slots ? (uint32_t)slots->count : 0,
+                                         .block_words = s->block_words,
+                                         .raster = s->has_raster,
+                                         .anchored = s->anchored,
+                                         .moves = support_blob_row(blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV) != NULL};
+        uint32_t *words = (uint32_t *)(void *)(blob->bytes + row->offset);
+        masu_module_record(&counts, (char *)(words + masu_module_record_place(words, row->count) - MASU_MODULE_RECORD_WORDS + 1));
+    }
+}
 
 void support_blob_write(support_blob *blob, uint32_t parts) {
     memset(blob, 0, sizeof *blob);
@@ -304,23 +354,30 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
                                 0}};
         ADD(MASU_BLOB_SDF, sdf);
         ADD(MASU_BLOB_SDF_PARAMS, sdf_params);
-        ADD(MASU_BLOB_MARCH_SPIRV, code);
+        add_code(blob, MASU_BLOB_MARCH_SPIRV);
     }
-    ADD(MASU_BLOB_NAMES, names);
+    if (parts & SUPPORT_LONG_NAME) {
+        char long_names[1 + MASU_BLOB_NAME_MAX + 1 + 2] = {0};
+        memset(long_names + 1, 'n', MASU_BLOB_NAME_MAX);
+        long_names[sizeof long_names - 2] = 'x';
+        add(blob, MASU_BLOB_NAMES, long_names, 1, sizeof long_names);
+    } else {
+        ADD(MASU_BLOB_NAMES, names);
+    }
     if (parts & SUPPORT_SDF) {
-        ADD(MASU_BLOB_CLASSIFY_SPIRV, code);
-        ADD(MASU_BLOB_CONE8_SPIRV, code);
-        ADD(MASU_BLOB_CONE4_SPIRV, code);
-        ADD(MASU_BLOB_VELOCITY_SPIRV, code);
-        ADD(MASU_BLOB_SILHOUETTES_SPIRV, code);
+        add_code(blob, MASU_BLOB_CLASSIFY_SPIRV);
+        add_code(blob, MASU_BLOB_CONE8_SPIRV);
+        add_code(blob, MASU_BLOB_CONE4_SPIRV);
+        add_code(blob, MASU_BLOB_VELOCITY_SPIRV);
+        add_code(blob, MASU_BLOB_SILHOUETTES_SPIRV);
         if (parts & SUPPORT_VARIANTS) {
-            ADD(MASU_BLOB_UPDATE_SPIRV, code);
-            ADD(MASU_BLOB_UPDATE_PREVIOUS_SPIRV, code);
-            ADD(MASU_BLOB_PLAIN_SPIRV, code);
-            ADD(MASU_BLOB_SEED_SPIRV, code);
-            ADD(MASU_BLOB_CHECKERBOARD_SPIRV, code);
-            ADD(MASU_BLOB_OCCLUSION_SPIRV, code);
-            if (!(parts & SUPPORT_RASTER)) ADD(MASU_BLOB_FRAGMENT_SPIRV, code);
+            add_code(blob, MASU_BLOB_UPDATE_SPIRV);
+            add_code(blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
+            add_code(blob, MASU_BLOB_PLAIN_SPIRV);
+            add_code(blob, MASU_BLOB_SEED_SPIRV);
+            add_code(blob, MASU_BLOB_CHECKERBOARD_SPIRV);
+            add_code(blob, MASU_BLOB_OCCLUSION_SPIRV);
+            if (!(parts & SUPPORT_RASTER)) add_code(blob, MASU_BLOB_FRAGMENT_SPIRV);
         }
         ADD(MASU_BLOB_SLOTS, slots);
     }
@@ -359,6 +416,7 @@ void support_blob_write(support_blob *blob, uint32_t parts) {
         ADD(MASU_BLOB_SKIN_VERTICES, skin_vertices);
         ((masu_blob_model_node *)support_blob_find(blob, MASU_BLOB_MODEL_NODES))[3].skin = 1;
     }
+    support_blob_recode(blob);
     support_blob_seal(blob->bytes, blob->size);
 }
 

@@ -49,6 +49,7 @@ enum {
     SUPPORT_TRACE = 256, /* with SUPPORT_RASTER: trees for rays. Not part of SUPPORT_ALL */
     SUPPORT_LIVE = 512, /* with SUPPORT_RASTER: models that move. Not part of SUPPORT_ALL */
     SUPPORT_SKIN = 1024, /* with SUPPORT_LIVE, without SUPPORT_DETAIL: mesh 1 bends, and has no occluder */
+    SUPPORT_LONG_NAME = 2048, /* names are "", one of 255 bytes, "x" */
     SUPPORT_LIGHTING = 128 /* with SUPPORT_RASTER: a small relief, lights, probes, a sky from a picture */
 };
 
@@ -70,6 +71,9 @@ void *support_blob_find(support_blob *blob, enum masu_blob_kind kind);
 
 /* Writes the blob again without a section. Does not seal. */
 void support_blob_drop(support_blob *blob, enum masu_blob_kind kind);
+
+/* What the modules say that they were compiled for made to fit the rest of the blob. Does not seal. */
+void support_blob_recode(support_blob *blob);
 
 /* Header.bytes and header.hash made to fit `size` bytes. */
 void support_blob_seal(unsigned char *bytes, size_t size);

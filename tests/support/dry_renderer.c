@@ -116,6 +116,7 @@ void make_renderer_with(uint32_t parts, uint64_t staging, const masu_rung *rungs
     m.device.load_count = masu_load_chunks(&m.plan);
     assert_true(m.device.load_count <= COUNT(load_handles));
     masu_keep_scene(&m);
+    masu_write_scene(&m);
 }
 
 const unsigned char *slot_bytes(masu_buffer_id buffer, uint32_t slot) {

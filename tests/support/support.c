@@ -60,6 +60,12 @@ void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels) {
     draw(s, &frame, &commands, pixels);
 }
 
+uint32_t memory_rows(const masu_renderer *m, masu_memory_row rows[MEMORY_ROWS]) {
+    uint32_t count = masu_memory_report(m, rows, MEMORY_ROWS);
+    assert_true(count && count <= MEMORY_ROWS);
+    return count;
+}
+
 const void *read_image(const masu_session *s, uint32_t slot, masu_readback_bits which) {
     masu_readback_image image;
     assert_int_equal(masu_readback(s->m, slot, which, &image), MASU_OK);
@@ -137,8 +143,9 @@ void make_own(masu_session *s, own_renderer *x, const masu_desc *desc) {
     if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
     x->block = host_block(need.host_bytes);
     if (masu_init(&d, x->block, need.host_bytes, &x->m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(x->m, &commands) == MASU_INCOMPLETE)
-        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+    while (masu_load(x->m, &commands) == MASU_INCOMPLETE) {
+        if (commands.part_count) assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+    }
 }
 
 void unmake_own(masu_session *s, own_renderer *x) {

@@ -16,6 +16,7 @@
 #include "session.h"
 
 #define ERROR_SIZE 1024u
+#define MEMORY_ROWS 256u /* of a masu_memory_report, with room */
 
 /* $MADE/scenes/NAME.masu; static storage, four names at a time. */
 const char *scene_path(const char *name);
@@ -31,6 +32,9 @@ void close_session(masu_session *s);
 void draw(masu_session *s, const masu_frame_desc *frame, masu_commands *commands, uint8_t *pixels);
 /* The same with nothing but a rung. */
 void draw_rung(masu_session *s, uint32_t rung, uint8_t *pixels);
+
+/* All rows of the renderer's memory, asserting that they had room. Returns how many. */
+uint32_t memory_rows(const masu_renderer *m, masu_memory_row rows[MEMORY_ROWS]);
 
 /* An image of the frame in that slot, which has no gaps between rows; valid until the slot's next. */
 const void *read_image(const masu_session *s, uint32_t slot, masu_readback_bits which);

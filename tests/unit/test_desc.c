@@ -118,6 +118,7 @@ static void assert_same_desc(const masu_desc *a, const masu_desc *b) {
     }
     SAME(readback);
     SAME(picking);
+    SAME(load_step);
     SAME(debug.timestamps);
     SAME(debug.counters);
     SAME(debug.labels);
@@ -268,6 +269,7 @@ static masu_desc full_desc(void) {
     }
     d.readback = 3;
     d.picking = 1;
+    d.load_step = MASU_LOAD_STEP_MIN + 1;
     d.debug = (masu_debug){1, 2, 3, 4, 5, 6, 7, 8, MASU_ON, 9, 10, 11, 12.0f};
     d.deny.unified_memory = 1;
     d.log = no_log;
@@ -494,6 +496,7 @@ static void a_knob_out_of_its_range_is_named(void **state) {
     compile(&d, &plan);
     BAD("debug.share_rays", d.debug.share_rays = (masu_switch)3);
     BAD("half_floats", d.half_floats = (masu_switch)3);
+    BAD("load_step", d.load_step = MASU_LOAD_STEP_MIN - 1);
     BAD("reserve.particles", d.reserve.particles = MASU_PARTICLES_MAX + 1);
     BAD("reserve.decals", d.reserve.decals = MASU_DECALS_MAX + 1);
     BAD("reserve.lines", d.reserve.lines = MASU_LINES_MAX + 1);

@@ -47,6 +47,7 @@ static void assert_refused(const char *what, uint64_t element) {
         masu_scene scene;                                                                          \
         support_blob_write(&blob, SUPPORT_ALL);                                                    \
         __VA_ARGS__;                                                                               \
+        support_blob_recode(&blob);                                                                \
         support_blob_seal(blob.bytes, blob.size);                                                  \
         support_accepted(&blob, &scene);                                                           \
     } while (0)
@@ -420,6 +421,20 @@ static void bytes_that_no_section_owns_are_refused(void **state) {
 static void names_that_do_not_end_are_refused(void **state) {
     (void)state;
     REFUSED("names", ROW(NAMES)->count - 1, AT(NAMES, char)[ROW(NAMES)->count - 1] = 'x');
+}
+
+/* Whoever shares it would have it hashed once more. */
+static void a_name_of_over_255_bytes_is_refused(void **state) {
+    (void)state;
+    support_blob_write(&blob, SUPPORT_LONG_NAME);
+    support_blob_seal(blob.bytes, blob.size);
+    masu_scene scene;
+    support_accepted(&blob, &scene); /* 255 */
+    AT(NAMES, char)[0] = 'x';        /* was the end of an empty one */
+    assert_refused("names", 0);
+    AT(NAMES, char)[0] = '\0';
+    AT(NAMES, char)[256] = 'x';      /* the end of the long one */
+    assert_refused("names", 1);
 }
 
 static void a_vertex_that_is_not_finite_is_refused(void **state) {
@@ -843,13 +858,13 @@ static void an_sdf_without_code_is_refused(void **state) {
         assert_refused(codes[i].name, 0);
         (void)write_with(kind);
         support_blob_row(&blob, kind)->count = 5; /* a module's header */
-        support_blob_seal(blob.bytes, blob.size);
-        support_accepted(&blob, &scene);
+        assert_refused(codes[i].name, 5);
         (void)write_with(kind);
         support_blob_drop(&blob, kind);
         if (codes[i].needed) {
             assert_refused(codes[i].name, 0);
         } else {
+            support_blob_recode(&blob);
             support_blob_seal(blob.bytes, blob.size);
             support_accepted(&blob, &scene);
         }
@@ -865,6 +880,7 @@ static void an_anchored_sdf_needs_the_code_that_moves_it(void **state) {
         support_blob_write(&blob, SUPPORT_ALL);
         AT(SDF, masu_blob_sdf)->anchored = 1;
         if (constant) support_blob_drop(&blob, MASU_BLOB_UPDATE_PREVIOUS_SPIRV);
+        support_blob_recode(&blob);
         support_blob_seal(blob.bytes, blob.size);
         support_accepted(&blob, &scene);
         assert_int_equal(scene.sdf_anchored, 1);
@@ -910,6 +926,7 @@ int main(void) {
         cmocka_unit_test(a_section_outside_the_blob_is_refused),
         cmocka_unit_test(bytes_that_no_section_owns_are_refused),
         cmocka_unit_test(names_that_do_not_end_are_refused),
+        cmocka_unit_test(a_name_of_over_255_bytes_is_refused),
         cmocka_unit_test(a_vertex_that_is_not_finite_is_refused),
         cmocka_unit_test(a_primitive_outside_its_sections_is_refused),
         cmocka_unit_test(primitives_that_share_indices_are_refused),

@@ -82,6 +82,38 @@ static void chunks_of_any_size_add_up_to_the_scene(void **state) {
     }
 }
 
+/* In place, too: any limit, also such as cuts a vertex in two, and what is told of it. */
+static void steps_of_any_size_add_up_to_the_scene(void **state) {
+    (void)state;
+    static unsigned char at_once[ROOM];
+    masu_commands commands;
+    make_renderer(SUPPORT_ALL | SUPPORT_LIGHTING, 0);
+    assert_int_equal(masu_load(&m, &commands), MASU_OK);
+    memcpy(at_once, memory[MASU_ROLE_DEVICE], ROOM);
+    uint64_t all = commands.load_bytes;
+    assert_true(all > 11 * sizeof(masu_blob_vertex) + 4 * MASU_TABLE_WORDS);
+    assert_int_equal(commands.load_left, 0);
+    for (uint64_t step = 1; step <= all + 1; step += step < 100 ? 1 : 3001) {
+        uint64_t sum = 0, calls = 0;
+        masu_result result;
+        make_renderer(SUPPORT_ALL | SUPPORT_LIGHTING, 0);
+        m.plan.desc.load_step = step;
+        do {
+            result = masu_load(&m, &commands);
+            sum += commands.load_bytes;
+            calls++;
+            assert_null(commands.buffer);
+            assert_int_equal(commands.part_count, 0);
+            assert_true(commands.load_bytes <= step);
+            assert_int_equal(commands.load_left, all - sum);
+            assert_true(calls <= all / step + 1);
+        } while (result == MASU_INCOMPLETE);
+        assert_int_equal(result, MASU_OK);
+        assert_int_equal(sum, all);
+        assert_memory_equal(memory[MASU_ROLE_DEVICE], at_once, ROOM);
+    }
+}
+
 /* The grid of light probes, its data, and room that nothing but zeros comes to. */
 static void chunks_of_probes_add_up_to_grid_data_and_room(void **state) {
     (void)state;
@@ -339,6 +371,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mapped_memory_is_loaded_at_once),
         cmocka_unit_test(chunks_of_any_size_add_up_to_the_scene),
+        cmocka_unit_test(steps_of_any_size_add_up_to_the_scene),
         cmocka_unit_test(chunks_of_probes_add_up_to_grid_data_and_room),
         cmocka_unit_test(without_a_scene_there_is_nothing_to_load),
         cmocka_unit_test(the_blob_is_not_looked_at_after_loading),

@@ -19,7 +19,9 @@
  *   write        content becomes a file
  *
  * The runtime trusts nothing and reads no other format; all parsing of foreign files is here. */
+#include "bake/base/inside.h"
 #include "bake/base/process.h"
+#include "bake/base/supervise.h"
 #include "bake/build/build.h"
 #include "bake/write/write.h"
 #include "cli/cli.h"
@@ -45,7 +47,9 @@ enum {
     OPTION_PROBES,
     OPTION_PROBE_REPORT,
     OPTION_THREADS,
-    OPTION_STRICT
+    OPTION_STRICT,
+    OPTION_MEMORY_LIMIT,
+    OPTION_TIME_LIMIT
 };
 
 /* For --stats, which lists them: each with its NUL. */
@@ -76,8 +80,14 @@ static bool bake(const masu_bake_options *options) {
     return good;
 }
 
+static int bake_in_child(const void *options) { return bake(options) ? MASU_CLI_OK : MASU_CLI_FAILURE; }
+
 static int run(masu_cli *cli) {
     masu_bake_options o = {.models_directory = ASSIMP_MODELS};
+    masu_bake_supervised work = {.body = bake_in_child,
+                                 .argument = &o,
+                                 .memory_mib = masu_bake_memory_default(),
+                                 .seconds = MASU_BAKE_SECONDS_DEFAULT};
     for (;;) {
         switch (masu_cli_next(cli)) {
         case OPTION_OUTPUT: o.output = cli->value; break;
@@ -93,6 +103,12 @@ static int run(masu_cli *cli) {
         case OPTION_BARE: o.bare = true; break;
         case OPTION_VARIANTS: o.variants = true; break;
         case OPTION_STRICT: o.strict = true; break;
+        case OPTION_MEMORY_LIMIT:
+            if (!masu_cli_uint(cli, 0, INT32_MAX, &work.memory_mib)) return MASU_CLI_USAGE;
+            break;
+        case OPTION_TIME_LIMIT:
+            if (!masu_cli_uint(cli, 0, INT32_MAX, &work.seconds)) return MASU_CLI_USAGE;
+            break;
         case MASU_CLI_ARGUMENT:
             if (o.input) return masu_cli_usage_error("more than one input: %s", cli->value);
             o.input = cli->value;
@@ -102,7 +118,10 @@ static int run(masu_cli *cli) {
             if (!o.input) return masu_cli_usage_error("no MODEL or SCENE.json given");
             if (!o.output && !o.probe_report)
                 return masu_cli_usage_error("no output given; add -o X.masu");
-            return bake(&o) ? MASU_CLI_OK : MASU_CLI_FAILURE;
+            work.about = o.input;
+            masu_bake_inside_also(o.texture_path);
+            work.output = o.output;
+            return masu_bake_supervise(&work);
         }
     }
 }
@@ -128,6 +147,9 @@ int main(int argc, char **argv) {
          OPTION_STRICT, 0},
         {"stats", "FILE", "write counts, bytes, bounds, warnings, seconds and peak memory as JSON",
          OPTION_STATS, 0},
+        {"memory-limit", "MIB", "address space that baking may take, 0: any; default: half of the machine's\n"
+         "memory, at least 4096", OPTION_MEMORY_LIMIT, 0},
+        {"time-limit", "SECONDS", "after which baking is ended, 0: never; default: 3600", OPTION_TIME_LIMIT, 0},
         {"models", "DIR", "what \"@assimp/\" in a scene stands for\n(" ASSIMP_MODELS ")",
          OPTION_MODELS, 0},
         {NULL, NULL, NULL, 0, 0},

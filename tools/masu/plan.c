@@ -76,8 +76,14 @@ static void print_pipelines(const masu_plan_info *p) {
     }
 }
 
-/* Tens, and one for each array of textures. */
-#define MEMORY_ROWS 160u
+/* All rows of the memory report, and how many; free them. NULL where there is no memory for them. */
+static masu_memory_row *memory_rows(const masu_session *s, uint32_t *count) {
+    *count = masu_memory_report(s->m, NULL, 0);
+    masu_memory_row *rows = calloc(*count, sizeof *rows);
+    if (rows) masu_memory_report(s->m, rows, *count);
+    else *count = 0;
+    return rows;
+}
 
 static void print_memory(const masu_session *s, const masu_plan_info *p) {
     static const char *const names[MASU_ROLE_COUNT] = {"device", "upload", "readback"};
@@ -94,14 +100,15 @@ static void print_memory(const masu_session *s, const masu_plan_info *p) {
            (unsigned long long)m->transient_unaliased, (unsigned long long)m->transient_aliased,
            (unsigned long long)m->transient_lower_bound);
     printf("  left out: %llu bytes of images\n", (unsigned long long)p->left_out_bytes);
-    masu_memory_row rows[MEMORY_ROWS];
-    uint32_t n = masu_memory_report(s->m, rows, MEMORY_ROWS);
+    uint32_t n;
+    masu_memory_row *rows = memory_rows(s, &n);
     printf("\n  %-22s %-7s %10s %12s %12s\n", "row", "kind", "count", "bytes", "offset");
-    for (uint32_t i = 0; i < n && i < MEMORY_ROWS; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         printf("  %-22s %-7s %10llu %12llu %12llu\n", rows[i].name, rows[i].kind,
                (unsigned long long)rows[i].count, (unsigned long long)rows[i].bytes,
                (unsigned long long)rows[i].offset);
     }
+    free(rows);
 }
 
 static int print_text(const masu_session *s, const masu_plan_info *p, const char *scene) {
@@ -149,16 +156,17 @@ static json_t *names_json(const char *const *names, size_t n) {
 }
 
 static json_t *rows_json(const masu_session *s) {
-    masu_memory_row rows[MEMORY_ROWS];
-    uint32_t n = masu_memory_report(s->m, rows, MEMORY_ROWS);
+    uint32_t n;
+    masu_memory_row *rows = memory_rows(s, &n);
     json_t *list = json_array();
-    for (uint32_t i = 0; i < n && i < MEMORY_ROWS; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         json_array_append_new(
             list, json_pack("{s:s, s:s, s:i, s:I, s:I, s:I, s:b}", "name", rows[i].name, "kind",
                             rows[i].kind, "role", (int)rows[i].role, "count",
                             (json_int_t)rows[i].count, "bytes", (json_int_t)rows[i].bytes, "offset",
                             (json_int_t)rows[i].offset, "transient", rows[i].transient != 0));
     }
+    free(rows);
     return list;
 }
 

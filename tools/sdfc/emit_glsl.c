@@ -20,6 +20,9 @@ static void put_terms_on(sdfc_writer *w, const sdfc_group *group, bool several) 
         PUT(w, "masu_term_bits(%d) >> %uu", group->first_term / 32, (unsigned)group->first_term % 32);
 }
 
+/* The last place where the arguments of a part of group g may begin: where they do begin comes from data. */
+static uint32_t last_base(const sdfc *c, int g) { return c->slot_count - (uint32_t)c->groups[g].slot_count; }
+
 /* "float NAME = f / L;" of a part of group g, whose number is in `part` where the group has several. */
 static void put_part_value(sdfc_writer *w, int g, const char *name, const char *point) {
     const sdfc *c = w->c;
@@ -38,7 +41,7 @@ static void put_part_value(sdfc_writer *w, int g, const char *name, const char *
         return;
     }
     PUT(w, "        uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
-    PUT(w, "        uint base = uint(masu_slot(record + 6u));\n");
+    PUT(w, "        uint base = min(uint(masu_slot(record + 6u)), %uu);\n", last_base(c, g));
     PUT(w, "        float %s = masu_shape_%d(%s.x, %s.y, %s.z, base, ", name, g, point, point, point);
     put_terms_on(w, group, true);
     PUT(w, ") * masu_slot(record + 4u);\n");
@@ -70,7 +73,7 @@ static void put_slot_base(sdfc_writer *w, int g) {
     if (group->part_count == 1)
         PUT(w, "%uu", w->c->parts[group->first_part].slot_base);
     else
-        PUT(w, "uint(masu_slot(part * %uu + 6u))", MASU_SDFC_PART_SLOTS);
+        PUT(w, "min(uint(masu_slot(part * %uu + 6u)), %uu)", MASU_SDFC_PART_SLOTS, last_base(w->c, g));
 }
 
 /* Half-spaces along a ray, and their normals. No part has a field that is not a number. */
@@ -148,12 +151,13 @@ static void put_glsl_dispatch(sdfc_writer *w) {
     PUT(w, "    float safe = masu_slot(record + 4u);\n");
     PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
     if (c->group_count == 1) {
-        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, base, 0xFFFFFFFFu) * safe;\n}\n\n");
+        PUT(w, "    return masu_shape_0(p.x, p.y, p.z, min(base, %uu), 0xFFFFFFFFu) * safe;\n}\n\n", last_base(c, 0));
         return;
     }
     PUT(w, "    float d = 1e30;\n    switch (uint(masu_slot(record + 5u))) {\n");
     for (int g = 0; g < c->group_count; g++) {
-        PUT(w, "    case %du: d = masu_shape_%d(p.x, p.y, p.z, base, 0xFFFFFFFFu); break;\n", g, g);
+        PUT(w, "    case %du: d = masu_shape_%d(p.x, p.y, p.z, min(base, %uu), 0xFFFFFFFFu); break;\n", g, g,
+            last_base(c, g));
     }
     PUT(w, "    }\n    return d * safe;\n}\n\n");
 }
@@ -401,13 +405,13 @@ static void put_roots(sdfc_writer *w) {
     PUT(w, "#ifdef MASU_MOTION\nvec3 masu_sdf_root(uint part, vec3 p, bool out_of)\n{\n");
     PUT(w, "    uint record = part * %uu;\n", MASU_SDFC_PART_SLOTS);
     PUT(w, "    uint form = uint(masu_slot(record + 5u));\n");
-    PUT(w, "    uint base = uint(masu_slot(record + 6u));\n");
+    PUT(w, "    uint first = uint(masu_slot(record + 6u));\n");
     for (int g = 0; g < c->group_count; g++) {
         const sdfc_program *p = &c->parts[c->groups[g].first_part].program;
         if (!c->groups[g].moves) continue;
-        PUT(w, "    if (form == %du && !out_of) {\n", g);
+        PUT(w, "    if (form == %du && !out_of) {\n        uint base = min(first, %uu);\n", g, last_base(c, g));
         for (int i = 0; i < p->root_count; i++) put_root_step(w, g, &p->root[i], false);
-        PUT(w, "    }\n    if (form == %du && out_of) {\n", g);
+        PUT(w, "    }\n    if (form == %du && out_of) {\n        uint base = min(first, %uu);\n", g, last_base(c, g));
         for (int i = p->root_count; i-- > 0;) put_root_step(w, g, &p->root[i], true);
         PUT(w, "    }\n");
     }
@@ -430,8 +434,8 @@ static void put_places(sdfc_writer *w) {
         "        vec2 period = vec2(masu_slot(at + 9u), masu_slot(at + 10u));\n"
         "        v = masu_wide_fold(v, period, vec2(masu_slot(at + 11u), 0.0));\n"
         "    }\n"
-        "    masu_slot_write(uint(masu_slot(at)), v.x + v.y);\n}\n",
-        w->c->place_count, w->c->place_base, SDFC_PLACE_SLOTS);
+        "    masu_slot_write(min(uint(masu_slot(at)), %uu), v.x + v.y);\n}\n",
+        w->c->place_count, w->c->place_base, SDFC_PLACE_SLOTS, w->c->slot_count - 1);
 }
 
 void sdfc_put_glsl(sdfc_writer *w) {
@@ -478,7 +482,7 @@ void sdfc_put_glsl(sdfc_writer *w) {
     put_flat(w);
     PUT(w,
         "void masu_sdf_part_surface(uint part, vec3 p, inout masu_surface s)\n{\n"
-        "    uint material = uint(masu_slot(part * %uu + 7u));\n"
+        "    uint material = min(uint(masu_slot(part * %uu + 7u)), %uu);\n"
         "    uint at = %uu + material * %uu;\n"
         "    s.albedo = vec3(masu_slot(at), masu_slot(at + 1u), masu_slot(at + 2u));\n"
         "    s.roughness = masu_slot(at + 3u);\n"
@@ -486,7 +490,7 @@ void sdfc_put_glsl(sdfc_writer *w) {
         "    s.metallic = masu_slot(at + 7u);\n}\n\n"
         "void masu_sdf_surface(vec3 p, inout masu_surface s)\n{\n"
         "    masu_sdf_part_surface(masu_sdf_nearest(p), p, s);\n}\n\n",
-        MASU_SDFC_PART_SLOTS, (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
+        MASU_SDFC_PART_SLOTS, (unsigned)(c->material_count > 0 ? c->material_count - 1 : 0), (unsigned)c->part_count * MASU_SDFC_PART_SLOTS,
         MASU_SDFC_MATERIAL_SLOTS);
     PUT(w, "#ifdef MASU_SDF_SETUP\n");
     bool has_mod = false;

@@ -39,6 +39,7 @@ static bool wait_for_slot(masu_viewer *v, uint32_t slot) {
         if (seen && v->show == MASU_SHOW_A && !v->scripted)
             masu_frame_wall(v->a.m, v->slot_of_a[slot], (double)(now - begin) / 1e6);
         (void)masu_stats(v->a.m, v->slot_of_a[slot], &v->stats);
+        masu_pick_take(v, slot);
     }
     v->finished_ns = now;
     return true;
@@ -52,12 +53,15 @@ static bool let_draw(masu_viewer *v, uint32_t slot) {
                              .time_step = v->time_step,
                              .rung = v->governed ? MASU_RUNG_AUTO : v->rung,
                              .cut = v->cut};
+    masu_pick_ask(v, &frame);
     if (masu_frame(v->a.m, &frame, &v->a.last)) return masu_failed(v, v->a.m);
     v->slot_of_a[slot] = v->a.last.slot;
     v->slot_known[slot] = true;
+    masu_pick_asked(v, slot);
     if (v->governed) v->rung = v->a.last.rung;
     if (v->show == MASU_SHOW_A) return true;
     frame.rung = 0;
+    frame.pick = 0;
     return masu_frame(v->b.m, &frame, &v->b.last) == MASU_OK || masu_failed(v, v->b.m);
 }
 

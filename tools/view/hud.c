@@ -241,6 +241,7 @@ void masu_hud_draw(masu_viewer *v) {
     }
     if (v->show == MASU_SHOW_SPLIT) draw_split(v);
     if (v->show == MASU_SHOW_MAP) draw_difference(v);
+    masu_pick_draw(v);
     if (*v->trouble) {
         banner(c, c->height - 3 * h, MASU_INK_BAD, v->trouble);
     } else if (*v->note && v->turns - v->note_turn < NOTE_TURNS) {

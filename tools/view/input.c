@@ -74,6 +74,7 @@ bool masu_hands_event(masu_hands *h, masu_viewer *v, const SDL_Event *e) {
         if (e->button.button == SDL_BUTTON_RIGHT) look(h, down);
         if (e->button.button == SDL_BUTTON_LEFT) h->dragging = down && v->show == MASU_SHOW_SPLIT;
         if (h->dragging) drag(v, e->button.x);
+        else if (down && e->button.button == SDL_BUTTON_LEFT) masu_pick_click(v, e->button.x, e->button.y);
         return true;
     }
     case SDL_MOUSEMOTION:

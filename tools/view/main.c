@@ -132,6 +132,7 @@ int main(int argc, char **argv) {
                    "  Tab or M              knobs: arrow keys select and change, Backspace: the default\n"
                    "  F1                    overlay off, short, full\n"
                    "  F2, [ ], left mouse   split screen: A, what is set, beside B; the line between them\n"
+                   "  left mouse            without split screen: what is under it\n"
                    "  B                     what is set becomes B (at first the best rung)\n"
                    "  F3                    FLIP of A against B\n"
                    "  F11, F12, Esc         full screen; picture to a file; end\n"

@@ -18,6 +18,7 @@ typedef enum masu_act {
     ACT_WHEEL,
     ACT_MOUSE,
     ACT_BUTTON,
+    ACT_CLICK,
     ACT_RESIZE,
     ACT_MINIMISE,
     ACT_RESTORE,
@@ -27,8 +28,8 @@ typedef enum masu_act {
     ACT_QUIT
 } masu_act;
 
-static const char *const act_names[] = {"key",      "down",    "up",         "wheel", "mouse", "button", "resize",
-                                        "minimise", "restore", "screenshot", "run",   "lose",  "quit"};
+static const char *const act_names[] = {"key",    "down",     "up",      "wheel",      "mouse", "button", "click",
+                                        "resize", "minimise", "restore", "screenshot", "run",   "lose",   "quit"};
 enum { ACTS = sizeof act_names / sizeof *act_names };
 
 typedef struct masu_script_line {
@@ -64,6 +65,7 @@ static bool read_text(masu_script_line *line) {
     case ACT_DOWN:
     case ACT_UP: return read_key(line->text, line);
     case ACT_WHEEL: return sscanf(line->text, "%d %c", &line->y, &end) == 1;
+    case ACT_CLICK:
     case ACT_MOUSE: return sscanf(line->text, "%d %d %c", &line->x, &line->y, &end) == 2;
     case ACT_BUTTON:
         line->x = !strncmp(line->text, "right", 5) ? SDL_BUTTON_RIGHT : SDL_BUTTON_LEFT;
@@ -178,6 +180,17 @@ static void push_button(const masu_viewer *v, const masu_script_line *l) {
     SDL_PushEvent(&e);
 }
 
+static void push_click(const masu_viewer *v, const masu_script_line *l) {
+    for (int down = 1; down >= 0; down--) {
+        SDL_Event e = {.button = {.type = down ? SDL_MOUSEBUTTONDOWN : SDL_MOUSEBUTTONUP,
+                                  .windowID = SDL_GetWindowID(v->window.sdl),
+                                  .button = SDL_BUTTON_LEFT,
+                                  .x = l->x,
+                                  .y = l->y}};
+        SDL_PushEvent(&e);
+    }
+}
+
 static bool run(masu_viewer *v, const char *command) {
     fflush(NULL);
     int status = system(command);
@@ -208,6 +221,7 @@ static bool play(masu_viewer *v, const masu_script_line *l) {
         SDL_PushEvent(&e);
         return true;
     case ACT_BUTTON: push_button(v, l); return true;
+    case ACT_CLICK: push_click(v, l); return true;
     case ACT_RESIZE: SDL_SetWindowSize(v->window.sdl, l->x, l->y); return true;
     case ACT_MINIMISE: push_window(v, SDL_WINDOWEVENT_MINIMIZED); return true;
     case ACT_RESTORE: push_window(v, SDL_WINDOWEVENT_RESTORED); return true;

@@ -6,6 +6,7 @@
  *     frame N wheel -1
  *     frame N mouse X Y          moved to, window coordinates
  *     frame N button left down   or right, up
+ *     frame N click X Y          left, down and up, there
  *     frame N resize 800x600
  *     frame N minimise           or restore
  *     frame N screenshot out.png of the frame before

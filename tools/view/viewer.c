@@ -112,9 +112,11 @@ static bool start_b(masu_viewer *v) {
 static bool start_a(masu_viewer *v) {
     masu_desc d = v->want;
     complete(v, &d);
+    d.picking = 1;
     v->cut = true;
     v->stale_overlay = true;
     v->difference.known = false;
+    v->picked.text[0] = '\0';
     for (uint32_t i = 0; i < MASU_WINDOW_FLIGHT; i++) v->slot_known[i] = false;
     if (!masu_stage_start(&v->a, &v->host, &d, v->error, sizeof v->error)) return stage_failed(v, &v->a);
     masu_plan_of(v->a.m, &v->plan);

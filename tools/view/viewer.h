@@ -5,6 +5,7 @@
  *   loop.c     turn after turn    keys.c    what each key does    difference.c  FLIP of A and B
  *   script.c   events by number   hud.c     the text on top       bake.c        files that change
  *   stage.c    a renderer         menu.c    knobs                 compose.c     the host's own pass
+ *   pick.c     what a click is on
  *
  * A is what is looked at; B is what it is compared with, and exists while it is shown. Both draw the same
  * scene from the same blob, which stays in memory: a changed knob makes the renderer anew. */
@@ -75,6 +76,16 @@ typedef struct masu_menu {
     uint32_t row;                /* that is selected, of those shown */
 } masu_menu;
 
+typedef struct masu_picked {
+    bool asked;                  /* by the next frame, for that pixel: */
+    uint32_t x, y;
+    bool of_slot[MASU_WINDOW_FLIGHT]; /* its last frame has asked */
+    double near_distance;        /* of the frame that has */
+    char text[256];              /* what the last click was on; "": there was none */
+    int at[2];
+    uint64_t turn;
+} masu_picked;
+
 typedef struct masu_viewer {
     const masu_viewer_options *o;
     bool scripted;               /* no clock: each frame is MASU_VIEWER_STEP long */
@@ -113,6 +124,7 @@ typedef struct masu_viewer {
     double split;                /* where the line is, 0..1 */
     uint32_t hud;
     masu_menu menu;
+    masu_picked picked;
     masu_difference difference;
     masu_baker baker;
     bool quit;
@@ -184,6 +196,14 @@ void masu_pad_pressed(masu_viewer *v, uint8_t button);
 void masu_hud_draw(masu_viewer *v);
 void masu_menu_draw(masu_viewer *v);
 bool masu_menu_key(masu_viewer *v, SDL_Keycode key); /* true: it was the menu's */
+
+/* pick.c: a click at a point of the window; the frame that asks, and that it was handed out; when its slot has ended;
+ * the answer on v->canvas */
+void masu_pick_click(masu_viewer *v, int x, int y);
+void masu_pick_ask(masu_viewer *v, masu_frame_desc *frame);
+void masu_pick_asked(masu_viewer *v, uint32_t slot);
+void masu_pick_take(masu_viewer *v, uint32_t slot);
+void masu_pick_draw(masu_viewer *v);
 
 /* difference.c */
 bool masu_difference_step(masu_viewer *v); /* after a frame: takes pictures, shows what is done */

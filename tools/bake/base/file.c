@@ -2,6 +2,7 @@
 #define _XOPEN_SOURCE 700
 #include "bake/base/file.h"
 #include "cli/cli.h"
+#include "draft.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -15,7 +16,8 @@
 static struct {
     pid_t owner; /* forked children inherit this state and must not act on it */
     char *directory;
-    char *file;
+    int lock; /* of the directory, until this process ends: platform/draft.h */
+    const char *file;
     bool registered;
 } temporary;
 
@@ -45,7 +47,6 @@ static void clean_up(void) {
     if (getpid() != temporary.owner) return;
     if (temporary.file) unlink(temporary.file);
     if (temporary.directory) remove_tree(temporary.directory, 0);
-    free(temporary.file);
     free(temporary.directory);
     temporary.file = temporary.directory = NULL;
 }
@@ -75,16 +76,49 @@ char *masu_bake_directory_of(const char *path) {
     return directory;
 }
 
-const char *masu_bake_temporary_directory(void) {
+#define TEMPORARY "masu-bake-"
+#define TEMPORARY_RANDOM 6u
+
+static const char *temporary_parent(void) {
     const char *parent = getenv("TMPDIR");
-    char *path = masu_bake_join(parent && *parent ? parent : "/tmp", "masu-bake-XXXXXX");
-    clean_up_at_exit();
-    if (!mkdtemp(path)) {
-        masu_cli_error("cannot make a temporary directory %s: %s", path, strerror(errno));
+    return parent && *parent ? parent : "/tmp";
+}
+
+void masu_bake_sweep_temporary(void) {
+    const char *parent = temporary_parent();
+    DIR *directory = opendir(parent);
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        if (strncmp(entry->d_name, TEMPORARY, sizeof TEMPORARY - 1) != 0 ||
+            strlen(entry->d_name) != sizeof TEMPORARY - 1 + TEMPORARY_RANDOM)
+            continue;
+        char *path = masu_bake_join(parent, entry->d_name);
+        int lock = masu_draft_take_dead(path, true);
+        if (lock >= 0) {
+            remove_tree(path, 0);
+            close(lock);
+        }
         free(path);
-        return NULL;
     }
-    return temporary.directory = path;
+    if (directory) closedir(directory);
+}
+
+const char *masu_bake_temporary_directory(void) {
+    masu_bake_sweep_temporary();
+    clean_up_at_exit();
+    for (int attempt = 0; attempt < 100; attempt++) {
+        char *path = masu_bake_join(temporary_parent(), TEMPORARY "XXXXXX");
+        if (!mkdtemp(path)) {
+            masu_cli_error("cannot make a temporary directory %s: %s", path, strerror(errno));
+            free(path);
+            return NULL;
+        }
+        temporary.lock = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (temporary.lock >= 0 && masu_draft_hold(temporary.lock, path)) return temporary.directory = path;
+        if (temporary.lock >= 0) close(temporary.lock); /* swept while it was new */
+        free(path);
+    }
+    masu_cli_error("cannot make a temporary directory in %s", temporary_parent());
+    return NULL;
 }
 
 /* ---- reading ---- */
@@ -150,28 +184,15 @@ static int write_straight(const char *path, const void *data, size_t bytes) {
 }
 
 static int write_and_rename(const char *path, const void *data, size_t bytes) {
-    size_t room = strlen(path) + 12;
-    char *draft = masu_bake_allocate(room);
-    snprintf(draft, room, "%s.tmpXXXXXX", path);
+    masu_draft draft;
     clean_up_at_exit();
-    int fd = mkstemp(draft);
-    if (fd < 0) {
-        int problem = errno;
-        free(draft);
-        return problem;
-    }
-    temporary.file = draft;
-    /* mkstemp makes a private file; the result should have the rights of any new file. */
-    mode_t mask = umask(0);
-    umask(mask);
-    int problem = fchmod(fd, 0666 & ~mask) != 0 ? errno : 0;
-    if (!problem) problem = write_all(fd, data, bytes);
-    if (!problem && fsync(fd) != 0 && errno != EINVAL && errno != ENOSYS) problem = errno;
-    if (close(fd) != 0 && !problem) problem = errno;
-    if (!problem && rename(draft, path) != 0) problem = errno;
-    if (problem) unlink(draft);
-    temporary.file = NULL;
-    free(draft);
+    int problem = masu_draft_open(&draft, path);
+    if (problem) return problem;
+    temporary.file = draft.name;
+    problem = masu_draft_write(&draft, data, bytes);
+    temporary.file = NULL; /* the next two remove it */
+    if (!problem) return masu_draft_finish(&draft, path);
+    masu_draft_drop(&draft);
     return problem;
 }
 

@@ -10,6 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -33,6 +36,15 @@ static void set_handlers(void (*handler)(int)) {
 }
 
 void masu_bake_catch_signals(void) { set_handlers(note_signal); }
+
+int masu_bake_heard(void) { return ending; }
+
+void masu_bake_end_with_parent(long parent, int number) {
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, number);
+#endif
+    if (getppid() != (pid_t)parent) raise(number); /* it has ended meanwhile */
+}
 
 double masu_bake_seconds(void) {
     struct timespec t;
@@ -127,7 +139,7 @@ static masu_bake_result start(void (*body)(void *argument, int fd), void *argume
     int ends[2];
     if (pipe(ends) != 0) return (masu_bake_result){MASU_BAKE_NO_CHILD, errno};
     fflush(NULL); /* or the child would write our buffered text a second time */
-    pid_t child = fork();
+    pid_t parent = getpid(), child = fork();
     if (child < 0) {
         int cause = errno;
         close(ends[0]);
@@ -137,6 +149,7 @@ static masu_bake_result start(void (*body)(void *argument, int fd), void *argume
     if (child == 0) {
         close(ends[0]);
         set_handlers(SIG_DFL);
+        masu_bake_end_with_parent(parent, SIGKILL);
         point_at_null(STDIN_FILENO, O_RDONLY);
         limit_child(seconds);
         body(argument, ends[1]);

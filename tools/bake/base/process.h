@@ -41,6 +41,10 @@ double masu_bake_seconds(void);
 
 /* Called once at the start of main. */
 void masu_bake_catch_signals(void);
+/* The signal that should end this process; 0: none has come. */
+int masu_bake_heard(void);
+/* For a child: whatever ends its parent ends it, by that signal, where the system can do that (Linux). */
+void masu_bake_end_with_parent(long parent, int number);
 
 /* Runs body(argument, fd) in a forked child; what it writes to fd lands in `output`. The child
  * ends with status 0 when body returns. Its standard output and, outside sanitizer builds, its

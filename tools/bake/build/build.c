@@ -123,5 +123,7 @@ bool masu_bake_build(const masu_bake_description *d, const masu_bake_options *op
     masu_bake_drop_occluders(content);
     if (!masu_bake_make_bvh(content, &reflections, &report->reflections)) return false;
     masu_bake_trace_textures(content);
+    if (content->names_cut)
+        masu_cli_warn("%u names of the scene are longer than %u bytes, and cut", content->names_cut, MASU_BLOB_NAME_MAX);
     return build_probes(d, options, content);
 }

@@ -1,5 +1,6 @@
 /* assimp.c: Assimp, or our reader of glTF, reads a file; see assimp.h. */
 #include "bake/import/assimp.h"
+#include "bake/import/assimp_file.h"
 #include "bake/base/file.h"
 #include "bake/import/acc.h"
 #include "bake/import/gltf.h"
@@ -148,7 +149,11 @@ static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *war
         scene = aiImportFileFromMemoryWithProperties((const char *)text.data, (unsigned)text.bytes,
                                                      flags, "ac", properties);
     } else {
-        scene = aiImportFileExWithProperties(path, flags, NULL, properties);
+        static masu_import_files files; /* the library keeps it */
+        files.model = path;
+        files.warnings = warnings;
+        masu_import_use_files(&files);
+        scene = aiImportFileExWithProperties(path, flags, &files.io, properties);
     }
     if (!scene) {
         const char *why = aiGetErrorString();

@@ -3,6 +3,7 @@
  * glTF factors are linear; the colours of older formats (OBJ, AC3D) were chosen on a screen and are
  * decoded from sRGB. A specular exponent n becomes the roughness (2 / (n + 2))^(1/4), at which GGX has
  * the same lobe width. */
+#include "bake/base/inside.h"
 #include "bake/import/assimp.h"
 
 #include <assimp/GltfMaterial.h>
@@ -83,6 +84,8 @@ static uint32_t image_of(masu_import *m, const struct aiString *path) {
         const char *from = text;
         while (strncmp(from, "./", 2) == 0) from += 2;
         masu_bake_append_text(&name, from);
+        masu_bake_append(&name, "", 1);
+        about.outside = !masu_bake_inside(m->path, (const char *)name.data);
     }
     masu_bake_append(&name, "", 1);
     uint32_t image = masu_bake_add_image(m->piece, (const char *)name.data, &about, data);

@@ -1,5 +1,6 @@
 /* gltf.c: a glTF file is opened: its containers and buffers, what it requires, and notes of what is not read;
  * see gltf.h. */
+#include "bake/base/inside.h"
 #include "bake/import/gltf.h"
 
 #include <stdarg.h>
@@ -164,6 +165,8 @@ bool masu_gltf_fetch(masu_gltf *g, const char *uri, masu_gltf_bytes *out) {
     if (strncmp(uri, "data:", 5) == 0) return decode_data(g, uri, out);
     const char *path = masu_gltf_path(g, uri);
     if (!path) return masu_gltf_fail(g, "%.100s is no file beside the model", uri);
+    if (!masu_bake_inside(g->path, path))
+        return masu_gltf_fail(g, "%.100s lies outside of the model's folder (--texture-path names others)", uri);
     return read_whole(g, path, out);
 }
 

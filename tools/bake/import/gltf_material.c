@@ -7,6 +7,7 @@
  * What has no counterpart is brought near: glass of KHR_materials_transmission is blended, by what it lets through
  * of its brightest channel; unlit surfaces emit their colour; specular and glossiness become metallic and
  * roughness, as the appendix of that extension has it. */
+#include "bake/base/inside.h"
 #include "bake/import/gltf.h"
 
 #include <stdio.h>
@@ -39,6 +40,7 @@ static uint32_t add_image(masu_gltf *g, json_int_t index) {
             masu_gltf_note_one(g, "pictures that are no files beside the model: left out", uri);
             return MASU_BLOB_NONE;
         }
+        about.outside = !masu_bake_inside(g->path, path);
         return masu_bake_add_image(g->piece, path, &about, NULL);
     }
     if (uri ? !masu_gltf_fetch(g, uri, &bytes) : view >= 0 && !masu_gltf_view(g, view, &bytes, &stride))

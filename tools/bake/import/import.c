@@ -9,6 +9,7 @@
 #include "cli/cli.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -46,6 +47,11 @@ static void import_in_child(void *argument, int fd) {
     masu_bake_content piece = {0};
     masu_bake_buffer warnings = {0}, error = {0};
     masu_bake_read_model(wanted->path, &wanted->how, &piece, &warnings, &error);
+    if (piece.names_cut) {
+        char text[96];
+        snprintf(text, sizeof text, "%u names are longer than %u bytes, and cut\n", piece.names_cut, MASU_BLOB_NAME_MAX);
+        masu_bake_append_text(&warnings, text);
+    }
     for (uint32_t kind = 1; kind < MASU_BLOB_KIND_COUNT; kind++) {
         send_buffer(fd, &piece.section[kind]);
     }

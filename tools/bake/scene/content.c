@@ -112,6 +112,11 @@ uint32_t masu_bake_name(masu_bake_content *content, const char *name, size_t len
     masu_bake_buffer *names = &content->section[MASU_BLOB_NAMES];
     const unsigned char *text = (const unsigned char *)name;
     length = strnlen(name, length);
+    if (length > MASU_BLOB_NAME_MAX) {
+        length = MASU_BLOB_NAME_MAX;
+        while (length > 1 && (text[length] & 0xC0) == 0x80) length--; /* not within a character */
+        content->names_cut++;
+    }
     if (length == 0 || names->bytes + length + 1 >= MASU_BLOB_NONE) return MASU_BLOB_NONE;
     uint32_t offset = (uint32_t)names->bytes;
     unsigned char *out = masu_bake_append(names, name, length);

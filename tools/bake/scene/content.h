@@ -34,13 +34,14 @@ typedef struct masu_bake_content {
     masu_bake_buffer picture_texels; /* uint32_t */
     uint32_t picture_side;           /* texels along the longer side; 0: of colours none are kept */
     bool pictures_wanted;
+    uint32_t names_cut;
 } masu_bake_content;
 
 /* A picture: a file, or `data_bytes` of one at `data` of image_data; its name is then made up. */
 typedef struct masu_bake_image {
     uint32_t name;                  /* offset into image_text */
     uint32_t raw_width, raw_height; /* the data are BGRA texels; 0: a file's bytes */
-    uint32_t reserved;
+    uint32_t outside;               /* 1: of a folder that its model may not name; looked for elsewhere alone */
     uint64_t data, data_bytes;
 } masu_bake_image;
 
@@ -84,7 +85,8 @@ void masu_bake_content_release(masu_bake_content *content);
 #define MASU_BAKE_LIGHTS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_LIGHTS, masu_blob_light)
 #define MASU_BAKE_MATERIALS(c) MASU_BAKE_ARRAY(c, MASU_BLOB_MATERIALS, masu_blob_material)
 
-/* A name's offset. Control characters and broken UTF-8 become '?'; an empty name is NONE. */
+/* A name's offset. Control characters and broken UTF-8 become '?'; an empty name is NONE; one that is longer than
+ * a blob takes is cut, and counted. */
 uint32_t masu_bake_name(masu_bake_content *content, const char *name, size_t length);
 const char *masu_bake_name_text(const masu_bake_content *content, uint32_t name); /* "" for NONE */
 

@@ -5,6 +5,7 @@
 #include "bake/base/process.h"
 #include "bake/shader/try.h"
 #include "cli/cli.h"
+#include "scene/code.h"
 #include "scene_sources.h"
 #include "sdfc/sdfc.h"
 #include "shared/masu_shared.h"
@@ -66,6 +67,7 @@ static void append_scene_header(masu_bake_buffer *text, const masu_bake_content 
     masu_bake_append_text(text, "\"\n");
 }
 
+_Static_assert(MASU_SDFC_PART_SLOTS == MASU_BLOB_PART_SLOTS, "the compiler and the reader agree");
 _Static_assert(MASU_SDFC_MASKED_MAX == MASU_TILE_MASKED_MAX, "the compiler and the tiles agree");
 
 /* ---- the language of docs/sdf.md ---- */
@@ -278,8 +280,31 @@ static bool load_whole_vectors(const char *path, const char *glsl_path) {
     }
 }
 
+/* What the module was compiled for, in the module itself: masu_scene_bind compares it with the blob's numbers. */
+static bool put_record(const char *path, const masu_module_counts *counts, const char *glsl_path) {
+    masu_bake_buffer words = {0};
+    uint32_t record[MASU_MODULE_RECORD_WORDS] = {MASU_MODULE_RECORD_FIRST};
+    char text[MASU_MODULE_RECORD_BYTES];
+    bool good = masu_bake_read_file(path, SPIRV_MAX, &words);
+    if (good) {
+        size_t place = 4 * (size_t)masu_module_record_place((const uint32_t *)(const void *)words.data, words.bytes / 4);
+        masu_module_record(counts, text);
+        memcpy(record + 1, text, sizeof text);
+        masu_bake_append(&words, NULL, sizeof record);
+        memmove(words.data + place + sizeof record, words.data + place, words.bytes - sizeof record - place);
+        memcpy(words.data + place, record, sizeof record);
+        FILE *file = fopen(path, "wb");
+        good = file && fwrite(words.data, 1, words.bytes, file) == words.bytes;
+        if (file && fclose(file) != 0) good = false;
+        if (!good) masu_cli_error("%s: %s cannot be written", glsl_path, path);
+    }
+    masu_bake_release(&words);
+    return good;
+}
+
+/* counts: NULL for what goes into no blob. */
 static bool run_tools(const paths *p, bool has_raster, const char *directory,
-                      const char *glsl_path) {
+                      const char *glsl_path, const masu_module_counts *counts) {
     const char *const compile[] = {"glslangValidator",
                                    "-V",
                                    "--target-env",
@@ -296,7 +321,7 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
                                    NULL};
     const char *const check[] = {"spirv-val", "--target-env", "vulkan1.1", p->raw, NULL};
     const char *const optimise[] = {
-        "spirv-opt", "--target-env=vulkan1.1", "-O", "--strip-debug", p->raw, "-o", p->optimised,
+        "spirv-opt", "--target-env=vulkan1.1", "-O", "--strip-debug", "--compact-ids", p->raw, "-o", p->optimised,
         NULL};
     const char *const recheck[] = {"spirv-val", "--target-env", "vulkan1.1", p->optimised, NULL};
     const struct {
@@ -309,7 +334,9 @@ static bool run_tools(const paths *p, bool has_raster, const char *directory,
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         masu_cli_progress("%s %s", steps[i].arguments[0], glsl_path);
         if (!run_tool(steps[i].arguments, steps[i].package, directory, glsl_path)) return false;
-        if (steps[i].arguments == optimise && !load_whole_vectors(p->optimised, glsl_path)) return false;
+        if (steps[i].arguments != optimise) continue;
+        if (!load_whole_vectors(p->optimised, glsl_path)) return false;
+        if (counts && !put_record(p->optimised, counts, glsl_path)) return false;
     }
     return true;
 }
@@ -398,7 +425,7 @@ static bool try_blocks(const masu_sdfc_result *scene, const char *directory, cha
                "comp"};
     masu_cli_progress("trying %s", path);
     bool good =
-        run_tools(&p, false, directory, path) &&
+        run_tools(&p, false, directory, path, NULL) &&
         masu_bake_read_file(p.optimised, SPIRV_MAX, &spirv) &&
         masu_bake_try(scene, (const uint32_t *)(const void *)spirv.data, spirv.bytes / 4, path);
     masu_bake_release(&spirv);
@@ -433,7 +460,15 @@ bool masu_bake_compile_march(masu_bake_content *content, const char *glsl_path,
                    include_scene,
                    scene_shaders[i].define,
                    strrchr(scene_shaders[i].source, '.') + 1};
-        good = run_tools(&p, has_raster, directory, glsl_path) &&
+        const masu_blob_sdf *sdf = MASU_BAKE_ARRAY(content, MASU_BLOB_SDF, const masu_blob_sdf);
+        const masu_module_counts counts = {.kind = scene_shaders[i].kind,
+                                         .parts = sdf->part_count,
+                                         .slots = (uint32_t)masu_bake_count(content, MASU_BLOB_SLOTS),
+                                         .block_words = sdf->block_words,
+                                         .raster = has_raster,
+                                         .anchored = sdf->anchored,
+                                         .moves = dynamic};
+        good = run_tools(&p, has_raster, directory, glsl_path, &counts) &&
                take_spirv(content, scene_shaders[i].kind, p.optimised, glsl_path) &&
                (i > 0 || try_blocks(&scene, directory, include_here, include_scene, glsl_path));
         free(p.source);

@@ -75,8 +75,8 @@ static FILE *open_regular(const char *path, off_t *bytes) {
 /* Where its name says, else by the last part of its name in one of the directories: models often
  * remember folders of another machine. */
 static FILE *find(const job *j, off_t *bytes) {
-    FILE *file = open_regular(j->name, bytes);
-    int cause = errno;
+    FILE *file = j->image->outside ? NULL : open_regular(j->name, bytes);
+    int cause = j->image->outside ? EACCES : errno;
     const char *slash = strrchr(j->name, '/'), *base = slash ? slash + 1 : j->name;
     char path[4096];
     for (const char *at = j->directories; !file && at && *at;) {
@@ -93,7 +93,9 @@ static unsigned char *read_bytes(const job *j, int fd, size_t *bytes) {
     off_t size = 0;
     FILE *file = find(j, &size);
     if (!file) {
-        give_up(fd, errno == EINVAL ? "not a regular file" : strerror(errno));
+        give_up(fd, j->image->outside ? "lies outside of its model's folder (--texture-path names others)"
+                    : errno == EINVAL ? "not a regular file"
+                                      : strerror(errno));
         return NULL;
     }
     if (size < 1 || (uint64_t)size > MASU_BAKE_IMAGE_BYTES) {
