@@ -12,6 +12,9 @@
  * flange) smear: the motor's error was 0.078 instead of 0.049. Where all 16 are something else, the
  * nearest to the plane is taken alone.
  *
+ * Out in the open, where all 16 are seen but for so little that no picture shows it (open), none of that is asked: all
+ * arrives.
+ *
  * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
  * would count twice as a product (docs/design/18-ambient-occlusion.md has the errors).
  *
@@ -42,6 +45,9 @@ vec3 ray_at(ao_lens lens, uvec2 pixel)
     return frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
 }
 
+/* Three steps of ao_texel.glsl's 1023 and what rounds. */
+const float open = 1.0 - 3.5 / 1023.0;
+
 #define EDGE (MASU_GROUP + 3)
 
 /* What the texels of the group and around it say: where they are and how much is seen (below 0:
@@ -70,6 +76,65 @@ void load_texels(ao_lens lens, uvec2 last)
     barrier();
 }
 
+/* What arrives at the four pixels of a texel, each component one of them, by the 16 texels from `corner` on. */
+vec4 filtered(uvec2 texel, uvec2 last, uint corner)
+{
+    ao_lens lens = ao_lens_of(last + 1u);
+    vec4 plane_x, plane_y, plane_z, plane_w, tolerance;
+    vec4 there;
+    for (int k = 0; k < 4; k++) {
+        uvec2 at = min(texel * push.size + uvec2(k & 1, k >> 1), last);
+        uint packed = texelFetch(normal_image, ivec2(at), 0).r;
+        float z = ao_view_z(texelFetch(depth_image, ivec2(at), 0).r);
+        vec3 normal = masu_unpack_normal(packed);
+        bool lit = !masu_is_unlit_texel(packed);
+        plane_x[k] = normal.x;
+        plane_y[k] = normal.y;
+        plane_z[k] = normal.z;
+        plane_w[k] = dot(ray_at(lens, at) * z, normal);
+        tolerance[k] = 0.5 * float(push.size) * lens.scale.y * z + 0.01 * push.radius;
+        there[k] = z < ao_farthest && lit ? 1.0 : 0.0;
+    }
+    vec4 sharp = 1.0 / (tolerance * tolerance);
+    vec4 sum = vec4(0.0);
+    vec4 weights = vec4(0.0);
+    for (int i = 0; i < 16; i++) {
+        vec4 place = texels[corner + uint((i >> 2) * EDGE + (i & 3))];
+        vec3 normal = normals[corner + uint((i >> 2) * EDGE + (i & 3))];
+        if (place.w < 0.0) {
+            continue;
+        }
+        float seen = place.w;
+        vec4 off = plane_x * place.x + plane_y * place.y + plane_z * place.z - plane_w;
+        vec4 facing = max(plane_x * normal.x + plane_y * normal.y + plane_z * normal.z, 0.0);
+        vec4 root = max(1.0 - off * off * sharp, 0.0) * (facing * facing);
+        vec4 weight = root * root;
+        sum += weight * seen;
+        weights += weight;
+    }
+    bvec4 trusted = greaterThan(weights, vec4(1e-3));
+    vec4 ambient = sum / max(weights, 1e-3);
+    /* Few pixels are alone: only for them the texels are gone through once more. */
+    if (any(greaterThan(there * vec4(not(trusted)), vec4(0.0)))) {
+        vec4 nearest = vec4(1e30);
+        vec4 fallback = vec4(1.0);
+        for (int i = 0; i < 16; i++) {
+            vec4 place = texels[corner + uint((i >> 2) * EDGE + (i & 3))];
+            vec3 normal = normals[corner + uint((i >> 2) * EDGE + (i & 3))];
+            if (place.w < 0.0) {
+                continue;
+            }
+            vec4 off = abs(plane_x * place.x + plane_y * place.y + plane_z * place.z - plane_w);
+            vec4 facing = max(plane_x * normal.x + plane_y * normal.y + plane_z * normal.z, 0.0);
+            vec4 cost = off + 4.0 * tolerance * (1.0 - facing * facing);
+            fallback = mix(fallback, vec4(place.w), lessThan(cost, nearest));
+            nearest = min(nearest, cost);
+        }
+        ambient = mix(fallback, ambient, trusted);
+    }
+    return mix(vec4(1.0), ambient, greaterThan(there, vec4(0.0)));
+}
+
 void main()
 {
     masu_count_begin();
@@ -77,65 +142,19 @@ void main()
     uvec2 last = uvec2(pc.render_width, pc.render_height) - 1u;
     load_texels(ao_lens_of(last + 1u), last);
     if (all(lessThan(texel, uvec2(pc.output_width, pc.output_height)))) {
-        ao_lens lens = ao_lens_of(last + 1u);
-        /* The four pixels side by side: each component is one of them. */
-        vec4 plane_x, plane_y, plane_z, plane_w, tolerance;
-        vec4 there;
-        for (int k = 0; k < 4; k++) {
-            uvec2 at = min(texel * push.size + uvec2(k & 1, k >> 1), last);
-            uint packed = texelFetch(normal_image, ivec2(at), 0).r;
-            float z = ao_view_z(texelFetch(depth_image, ivec2(at), 0).r);
-            vec3 normal = masu_unpack_normal(packed);
-            bool lit = !masu_is_unlit_texel(packed);
-            plane_x[k] = normal.x;
-            plane_y[k] = normal.y;
-            plane_z[k] = normal.z;
-            plane_w[k] = dot(ray_at(lens, at) * z, normal);
-            tolerance[k] = 0.5 * float(push.size) * lens.scale.y * z + 0.01 * push.radius;
-            there[k] = z < ao_farthest && lit ? 1.0 : 0.0;
-        }
-        vec4 sharp = 1.0 / (tolerance * tolerance);
-        vec4 sum = vec4(0.0);
-        vec4 weights = vec4(0.0);
         uint corner = gl_LocalInvocationID.y * EDGE + gl_LocalInvocationID.x;
-        float own = texels[corner + EDGE + 1].w;
-        own = own < 0.0 ? 1.0 : own;
+        float least = 1.0;
         for (int i = 0; i < 16; i++) {
-            vec4 place = texels[corner + uint((i >> 2) * EDGE + (i & 3))];
-            vec3 normal = normals[corner + uint((i >> 2) * EDGE + (i & 3))];
-            if (place.w < 0.0) {
-                continue;
-            }
-            float seen = place.w;
-            vec4 off = plane_x * place.x + plane_y * place.y + plane_z * place.z - plane_w;
-            vec4 facing = max(plane_x * normal.x + plane_y * normal.y + plane_z * normal.z, 0.0);
-            vec4 root = max(1.0 - off * off * sharp, 0.0) * (facing * facing);
-            vec4 weight = root * root;
-            sum += weight * seen;
-            weights += weight;
+            float seen = texels[corner + uint((i >> 2) * EDGE + (i & 3))].w;
+            least = min(least, seen < 0.0 ? 1.0 : seen);
         }
-        bvec4 trusted = greaterThan(weights, vec4(1e-3));
-        vec4 ambient = sum / max(weights, 1e-3);
-        /* Few pixels are alone: only for them the texels are gone through once more. */
-        if (any(greaterThan(there * vec4(not(trusted)), vec4(0.0)))) {
-            vec4 nearest = vec4(1e30);
-            vec4 fallback = vec4(1.0);
-            for (int i = 0; i < 16; i++) {
-                vec4 place = texels[corner + uint((i >> 2) * EDGE + (i & 3))];
-                vec3 normal = normals[corner + uint((i >> 2) * EDGE + (i & 3))];
-                if (place.w < 0.0) {
-                    continue;
-                }
-                vec4 off = abs(plane_x * place.x + plane_y * place.y + plane_z * place.z - plane_w);
-                vec4 facing = max(plane_x * normal.x + plane_y * normal.y + plane_z * normal.z, 0.0);
-                vec4 cost = off + 4.0 * tolerance * (1.0 - facing * facing);
-                fallback = mix(fallback, vec4(place.w), lessThan(cost, nearest));
-                nearest = min(nearest, cost);
-            }
-            ambient = mix(fallback, ambient, trusted);
+        vec4 ambient = vec4(1.0);
+        if (push.nearest != 0u) {
+            float own = texels[corner + EDGE + 1].w;
+            ambient = vec4(own < 0.0 ? 1.0 : own);
+        } else if (!(least > open)) {
+            ambient = filtered(texel, last, corner);
         }
-        ambient = push.nearest != 0u ? vec4(own) : ambient;
-        ambient = mix(vec4(1.0), ambient, greaterThan(there, vec4(0.0)));
         for (int k = 0; k < 4; k++) {
             uvec2 at = texel * push.size + uvec2(k & 1, k >> 1);
             if (uint(k) >= push.size * push.size || any(greaterThan(at, last))) {

@@ -121,9 +121,11 @@ bool tile_moves()
 #endif
 }
 
-vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
+/* now: in, the ray through the pixel, whose view z is 1; out, the point that is seen, seen from the eye; before: where
+ * that was, seen from the previous one. */
+void surface_points(uvec2 at, uvec2 size, float depth, inout vec4 now, out vec4 before)
 {
-    vec3 through = masu_pixel_ray(at, size);
+    vec3 through = now.xyz;
     float z_scale = length(through);
     vec3 direction = through / z_scale;
     float t = frame.forward.w * z_scale / depth;
@@ -145,8 +147,9 @@ vec4 surface_velocity(uvec2 at, uvec2 size, float depth)
     precise vec3 eye_step = (frame.eye_hi.xyz - previous.eye_hi.xyz) +
                             (frame.eye_lo.xyz - previous.eye_lo.xyz);
     precise vec3 rel = direction * t;
-    precise vec3 before = rel + (eye_step + (q - p));
-    return masu_velocity(vec4(rel, 1.0), vec4(before, 1.0), vec2(size));
+    precise vec3 was = rel + (eye_step + (q - p));
+    now = vec4(rel, 1.0);
+    before = vec4(was, 1.0);
 }
 
 void main()
@@ -161,11 +164,12 @@ void main()
         polygon = depth > 0.0 && depth == texelFetch(raster_depth, ivec2(at), 0).r;
 #endif
         if (!polygon) {
-            vec4 velocity = masu_sky_velocity(at, size);
+            vec4 now = vec4(masu_pixel_ray(at, size), 0.0); /* the sky is a direction */
+            vec4 before = now;
             if (depth > 0.0) {
-                velocity = surface_velocity(at, size, depth);
+                surface_points(at, size, depth, now, before);
             }
-            MASU_STORE_HALF(velocity_image, at, velocity);
+            MASU_STORE_HALF(velocity_image, at, masu_velocity(now, before, vec2(size)));
         }
     }
     masu_count_end();

@@ -48,7 +48,7 @@ vec3 add_edge(vec3 edge, float weight, float above, float left, float centre, fl
     return vec3(x, y, z);
 }
 
-masu_kernel kernel_of(vec3 edge)
+masu_kernel masu_kernel_of(vec3 edge)
 {
     SAME float x = edge.x;
     SAME float y = edge.y;
@@ -109,7 +109,7 @@ vec3 weighted_mean(masu_taps t, masu_kernel shape, vec2 p)
 #endif
 
 /* Weights of f, g, j, k. */
-vec4 centres_of(vec2 p)
+vec4 masu_bilinear_weights(vec2 p)
 {
     SAME vec2 q = 1.0 - p;
     SAME vec4 weights = vec4(q.x * q.y, p.x * q.y, q.x * p.y, p.x * p.y);
@@ -121,7 +121,7 @@ vec3 masu_edge_of(masu_taps t, vec2 p)
     float f = luma(t.f), g = luma(t.g), j = luma(t.j), k = luma(t.k);
     float b = luma(t.b), c = luma(t.c), e = luma(t.e), h = luma(t.h);
     float i = luma(t.i), l = luma(t.l), n = luma(t.n), o = luma(t.o);
-    vec4 w = centres_of(p);
+    vec4 w = masu_bilinear_weights(p);
     vec3 edge = vec3(0.0);
     edge = add_edge(edge, w.x, b, e, f, g, j);
     edge = add_edge(edge, w.y, c, f, g, h, k);
@@ -129,12 +129,30 @@ vec3 masu_edge_of(masu_taps t, vec2 p)
     return add_edge(edge, w.w, g, j, k, l, o);
 }
 
+/* The same at f, g, j and k, not weighted yet: gradient and straightness, for all pixels between them. */
+struct masu_centres {
+    vec4 x, y, z;
+};
+
+masu_centres masu_centres_of(masu_taps t)
+{
+    float f = luma(t.f), g = luma(t.g), j = luma(t.j), k = luma(t.k);
+    float b = luma(t.b), c = luma(t.c), e = luma(t.e), h = luma(t.h);
+    float i = luma(t.i), l = luma(t.l), n = luma(t.n), o = luma(t.o);
+    masu_centres m;
+    m.x = vec4(g - e, h - f, k - i, l - j);
+    m.y = vec4(j - b, k - c, n - f, o - g);
+    m.z = vec4(straightness(e, f, g) + straightness(b, f, j), straightness(f, g, h) + straightness(c, g, k),
+               straightness(i, j, k) + straightness(f, j, n), straightness(j, k, l) + straightness(g, k, o));
+    return m;
+}
+
 /* The clamp removes ringing, and makes a flat area come out exactly as it went in. */
 vec3 masu_easu(masu_taps t, vec3 edge, vec2 p)
 {
     vec3 least = min(min(t.f, t.g), min(t.j, t.k));
     vec3 most = max(max(t.f, t.g), max(t.j, t.k));
-    vec3 mean = weighted_mean(t, kernel_of(edge), p);
+    vec3 mean = weighted_mean(t, masu_kernel_of(edge), p);
     return min(most, max(least, mean));
 }
 

@@ -1,9 +1,10 @@
 /*
  * kernel.glsl: the mean of twelve texels that EASU takes (easu.glsl, easu_fast.glsl), weighted by where they
  * lie in a kernel that is turned and stretched along the edge (AMD, ffx_fsr1 v1.0.2). Taps lie at whole
- * steps from the first, two additions each, instead of each being turned.
+ * steps from the first: their squared distance is a polynomial of two whole numbers.
  *
- * With MASU_HALF taps are weighted and summed in 16-bit floats, two at a time.
+ * With MASU_HALF taps are weighted and summed in 16-bit floats, two at a time. The polynomial's terms cancel, which
+ * floats of 11 bits do not stand: there both coordinates of each tap are found, by two additions.
  */
 #ifndef MASU_KERNEL_GLSL
 #define MASU_KERNEL_GLSL
@@ -15,15 +16,12 @@
 #define ADD(sum, left, right, weight) sum += real2(vec2(left, right)) * weight
 #define TOTAL(sum) (sum.x + sum.y)
 #else /* one after the other: two sums would only take registers */
-#define real float
-#define real2 vec2
-#define SUM real
+#define SUM float
 #define ADD(sum, left, right, weight)                                                              \
     {                                                                                              \
         sum = left * weight.x + sum;                                                               \
         sum = right * weight.y + sum;                                                              \
     }
-#define TOTAL(sum) sum
 #endif
 
 /* These two are specification, not optimisation: a true reciprocal changes hard edges by 16/255 and
@@ -58,6 +56,8 @@ struct masu_kernel {
 struct masu_sums {
     SUM r, g, b, w;
 };
+
+#ifdef MASU_HALF
 
 /* Adds taps at (x.x, y.x) and (x.y, y.y). The weight is a polynomial stand-in for a windowed sinc, of the
  * squared distance d in the kernel's own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is (d (d - 5) + 4) / 4, and
@@ -96,5 +96,51 @@ vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
     vec3 sums = vec3(TOTAL(sum.r), TOTAL(sum.g), TOTAL(sum.b));
     return sums * (1.0 / float(TOTAL(sum.w))); /* the four keep the sum well above 0 */
 }
+
+#else
+
+/* Adds two taps. The weight is a polynomial stand-in for a windowed sinc, of the squared distance d in the kernel's
+ * own axes: 25/16 (2/5 d - 1)^2 - 9/16, which is ((d - 5/2)^2 - 9/4) / 4, and of weights that are divided by their
+ * sum a fourth is as good as all. distance: d - 5/2; window: lobe 5/2 - 1. */
+void add_pair(inout masu_sums sum, vec2 distance, float lobe, float window, float clip, vec3 left, vec3 right)
+{
+    distance = min(distance, vec2(clip));
+    vec2 base = distance * distance - 2.25;
+    vec2 open = lobe * distance + window;
+    vec2 weight = base * (open * open);
+    ADD(sum.r, left.r, right.r, weight);
+    ADD(sum.g, left.g, right.g, weight);
+    ADD(sum.b, left.b, right.b, weight);
+    ADD(sum.w, 1.0, 1.0, weight);
+}
+
+/* The squared distance of taps at whole steps is a x^2 + 2 b x y + c y^2 - 2 (d x + e y) + f: a number for each column,
+ * one for each row, and what both have together. */
+vec3 masu_weighted_mean(masu_taps t, masu_kernel k, vec2 p)
+{
+    vec2 square = k.scale * k.scale;
+    float xx = k.dir.x * k.dir.x, yy = k.dir.y * k.dir.y;
+    float a = square.x * xx + square.y * yy;
+    float c = square.x * yy + square.y * xx;
+    float b = (square.x - square.y) * (k.dir.x * k.dir.y);
+    float d = a * p.x + b * p.y, e = b * p.x + c * p.y;
+    float f = d * p.x + e * p.y - 2.5;
+    /* Columns -1, 1 and 2 beside 0, rows likewise. */
+    float left = a + 2.0 * d, right = a - 2.0 * d, far_right = 4.0 * (a - d);
+    float above = c + 2.0 * e + f, below = c - 2.0 * e + f, far_below = 4.0 * (c - e) + f;
+    float both = 2.0 * b;
+    float window = 2.5 * k.lobe - 1.0, clip = k.clip - 2.5;
+    masu_sums sum = masu_sums(SUM(0.0), SUM(0.0), SUM(0.0), SUM(0.0));
+    add_pair(sum, vec2(above, above + right - both), k.lobe, window, clip, t.b, t.c);
+    add_pair(sum, vec2(f + left, f + far_right), k.lobe, window, clip, t.e, t.h);
+    add_pair(sum, vec2(f, f + right), k.lobe, window, clip, t.f, t.g);
+    add_pair(sum, vec2(below + left - both, below + far_right + 2.0 * both), k.lobe, window, clip, t.i, t.l);
+    add_pair(sum, vec2(below, below + right + both), k.lobe, window, clip, t.j, t.k);
+    add_pair(sum, vec2(far_below, far_below + right + 2.0 * both), k.lobe, window, clip, t.n, t.o);
+    vec3 sums = vec3(sum.r, sum.g, sum.b);
+    return sums * (1.0 / sum.w); /* the four keep the sum well above 0 */
+}
+
+#endif
 
 #endif

@@ -47,6 +47,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_RENDER,
     MASU_EXTENT_OUTPUT,
     MASU_EXTENT_OUTPUT32, /* the same, a workgroup for 32x32 pixels */
+    MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for 2x2 pixels, the first one's coordinates odd or -1 */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
     MASU_EXTENT_BLOCK8,
@@ -157,6 +158,7 @@ typedef struct masu_needs {
     int fxaa, smaa; /* at most one of them */
     int resolve;   /* over frames */
     int fused;     /* upscale and sharpen in one pass */
+    int twice;     /* upscale in full to twice the size, not fused */
     int ao;        /* ambient occlusion in screen space */
     int casters;   /* occlusion, of a view of the sun too */
     int receiver_mask; /* and of cascades that every frame draws anew */

@@ -164,6 +164,27 @@ static void easu_as_shipped_differs_where_the_last_bit_decides(void **state) {
     }
 }
 
+/* Twice the width and height is a pass of its own (easu_twice.comp). Odd sizes, one pixel, and what does not fill a
+ * workgroup; the picture's last row and column are of texels that repeat. */
+static void twice_the_size_is_easu_as_shipped(void **state) {
+    (void)state;
+    static const uint32_t from[][2] = {{48, 40}, {31, 50}, {7, 3}, {1, 1}, {8, 8}, {64, 57}};
+    static uint8_t in[MOST], gpu[MOST], cpu[MOST];
+    for (uint32_t pattern = 0; pattern < MASU_PATTERN_COUNT; pattern++) {
+        difference d = {0, 0, 0};
+        for (size_t i = 0; i < sizeof from / sizeof *from; i++) {
+            job j = {from[i][0], from[i][1], 2 * from[i][0], 2 * from[i][1], MASU_ON, MASU_OFF, .shipped = 1};
+            masu_pattern_fill((enum masu_pattern)pattern, 31 + (uint32_t)i, j.in_w, j.in_h, in);
+            run_gpu(&j, in, i % 2 ? 0xFFFFFFFFu : 0xFF00FF00u, gpu);
+            reference_upscale(&j, in, cpu);
+            add_difference(gpu, cpu, j.out_w * j.out_h, &d);
+        }
+        print_message("  twice     %-12s %6u texels, worst %u/255, %u over 1\n",
+                      masu_pattern_name((enum masu_pattern)pattern), d.pixels, d.worst, d.over);
+        assert_true(d.over <= d.pixels / 1000);
+    }
+}
+
 static void rcas_as_shipped_is_the_scalar_reference_within_one_step(void **state) {
     (void)state;
     static const float stops[] = {0.0f, 0.2f, 1.0f, 2.0f};
@@ -647,6 +668,7 @@ int main(void) {
         cmocka_unit_test(bilinear_is_its_scalar_reference_within_one_step),
         cmocka_unit_test(rcas_is_the_scalar_reference_within_one_step),
         cmocka_unit_test(easu_as_shipped_differs_where_the_last_bit_decides),
+        cmocka_unit_test(twice_the_size_is_easu_as_shipped),
         cmocka_unit_test(rcas_as_shipped_is_the_scalar_reference_within_one_step),
         cmocka_unit_test(the_chain_is_easu_then_rcas_with_10_bits_between),
         cmocka_unit_test(the_chain_is_near_the_one_with_floats_between),

@@ -411,8 +411,8 @@ static void switches_force_upscaling_and_sharpening_on_and_off(void **state) {
         "tonemap(r:hdr w:ldr) easu(r:ldr w:target)",
         "tonemap(r:hdr w:ldr) rcas(r:ldr w:target)",
         "tonemap(r:hdr w:target)",
-        "tonemap(r:hdr w:ldr) easu(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)",
     };
     for (uint32_t r = 0; r < 6; r++) {
         char expected[512];
@@ -434,10 +434,10 @@ static void upscaling_and_sharpening_are_one_pass_where_asked(void **state) {
     d.rungs[4].fuse = MASU_AUTO;
     static const char *const ends[] = {
         "tonemap(r:hdr w:ldr) fsr1(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu(r:ldr w:target)",
+        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:target)",
         "tonemap(r:hdr w:ldr) easu_fast(r:ldr w:upscaled) rcas(r:upscaled w:target)",
         "tonemap(r:hdr w:ldr) rcas(r:ldr w:target)",
-        "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)",
     };
     for (uint32_t r = 0; r < 5; r++) {
         char expected[512];
@@ -465,7 +465,7 @@ static void a_rung_says_how_it_is_upscaled(void **state) {
     d.rungs[3] = (masu_rung){.scale = 0.5f, .easu = MASU_EASU_BILINEAR, .sharpen = MASU_ON};
     d.rungs[4] = (masu_rung){.easu = MASU_EASU_FAST}; /* nothing to upscale */
     static const char *const ends[] = {
-        "tonemap(r:hdr w:ldr) easu(r:ldr w:upscaled) rcas(r:upscaled w:target)",
+        "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)",
         "tonemap(r:hdr w:ldr) easu_fast(r:ldr w:upscaled) rcas(r:upscaled w:target)",
         "tonemap(r:hdr w:ldr) bilinear(r:ldr w:target)",
         "tonemap(r:hdr w:ldr) bilinear(r:ldr w:upscaled) rcas(r:upscaled w:target)",
@@ -482,6 +482,27 @@ static void a_rung_says_how_it_is_upscaled(void **state) {
     assert_string_equal(why_of(&d, MASU_PASS_BILINEAR), "render size is output size");
 }
 
+/* Four pixels look at the same texels where the output is twice as wide and high, and nothing asks for the bits of the
+ * specification or for halves. Of a scene the rung's scale decides, whatever the output is now. */
+static void twice_the_size_has_a_pass_of_its_own(void **state) {
+    (void)state;
+    masu_desc d = source_desc(960, 540);
+    assert_frame(&d, 0, "easu_twice(r:source w:upscaled) rcas(r:upscaled w:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU), "easu_twice does it");
+    d.debug.exact = 1;
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output is not twice as wide and high");
+    d.debug.exact = 0;
+    d.half_floats = MASU_ON;
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+    d = source_desc(960, 541);
+    assert_frame(&d, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
+    d = scene_desc(SDF, 1281, 719);
+    d.rung_count = 1;
+    d.rungs[0] = (masu_rung){.scale = 0.5f};
+    assert_frame(&d, 0, MARCH_ALONE LIGHT_SDF "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:upscaled) rcas(r:upscaled w:target)");
+}
+
 static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER, 1920, 1080);
@@ -496,7 +517,7 @@ static void a_target_that_is_no_storage_image_is_blitted_to(void **state) {
     d.rungs[0] = (masu_rung){.scale = 0.5f, .sharpen = MASU_OFF};
     d.rung_count = 1;
     assert_frame(&d, 0,
-                 GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu(r:ldr w:final) "
+                 GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) easu_twice(r:ldr w:final) "
                                       "present(from:final to:target)");
     d.targets.storage = 1;
     d.targets.views = support_views;
@@ -523,7 +544,7 @@ static void a_metered_exposure_is_two_passes(void **state) {
 static void the_last_pass_of_a_rung_makes_the_output(void **state) {
     (void)state;
     static masu_frame_plan plan;
-    static const uint32_t last[] = {MASU_PASS_TONEMAP, MASU_PASS_RCAS, MASU_PASS_EASU};
+    static const uint32_t last[] = {MASU_PASS_TONEMAP, MASU_PASS_RCAS, MASU_PASS_EASU_TWICE};
     for (uint32_t storage = 0; storage < 2; storage++) {
         masu_desc d = scene_desc(RASTER, 1920, 1080);
         d.targets.storage = storage;
@@ -559,8 +580,7 @@ static void the_reason_of_a_pass_is_that_of_the_first_rung_that_runs_it(void **s
     assert_string_equal(why_of(&d, MASU_PASS_RCAS), "nothing was upscaled, or rung.sharpen is off");
     d.rung_count = 3;
     d.rungs[1].scale = 0.5f; /* in this one alone */
-    assert_string_equal(why_of(&d, MASU_PASS_EASU),
-                        "render size differs from output size, or rung.upscale is on");
+    assert_string_equal(why_of(&d, MASU_PASS_EASU_TWICE), "the output is twice as wide and high as what is rendered");
     assert_string_equal(why_of(&d, MASU_PASS_READBACK), "desc.readback asks for no image");
     assert_string_equal(why_of(&d, MASU_PASS_LIGHT), "a scene is lit");
 }
@@ -1388,7 +1408,7 @@ static void anti_aliasing_reads_what_is_shown_and_hands_it_on(void **state) {
     d.rungs[3] = (masu_rung){.aa = MASU_AA_AUTO};
     assert_frame(&d, 0, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "target"));
     assert_frame(&d, 1, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) " EDGES("ldr", "smooth")
-                        " easu(r:smooth w:upscaled) rcas(r:upscaled w:target)");
+                        " easu_twice(r:smooth w:upscaled) rcas(r:upscaled w:target)");
     assert_frame(&d, 2, GBUFFER LIGHT_RASTER "tonemap(r:hdr w:ldr) fxaa(r:ldr w:target)");
     assert_frame(&d, 3, GBUFFER LIGHT_RASTER TONEMAP);
     assert_string_equal(why_of(&d, MASU_PASS_SMAA_BLEND), "rung.aa asks for it");
@@ -1533,6 +1553,7 @@ int main(void) {
         cmocka_unit_test(switches_force_upscaling_and_sharpening_on_and_off),
         cmocka_unit_test(a_rung_says_how_it_is_upscaled),
         cmocka_unit_test(upscaling_and_sharpening_are_one_pass_where_asked),
+        cmocka_unit_test(twice_the_size_has_a_pass_of_its_own),
         cmocka_unit_test(a_target_that_is_no_storage_image_is_blitted_to),
         cmocka_unit_test(a_metered_exposure_is_two_passes),
         cmocka_unit_test(the_last_pass_of_a_rung_makes_the_output),

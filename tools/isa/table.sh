@@ -28,5 +28,7 @@ for scene in engine city; do
 done
 sed 's/"aa": "auto"/"aa": "auto", "temporal": "on"/' docs/report/engine/ladder.json > "$ladder"
 rows "engine with temporal" engine 'temporal|tonemap' --ladder "$ladder"
+sed '0,/"scale": 1,/s//"scale": 0.5,/' docs/report/engine/ladder.json > "$ladder"
+rows 'engine at half size' engine easu_twice --ladder "$ladder"
 rows 'engine with particles' engine 'particles|decals|lines' --particles 1 --decals 1 --lines 1
 rows 'shadows with particles' test_shadows particles --particles 1

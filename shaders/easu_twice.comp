@@ -1,0 +1,66 @@
+/*
+ * easu_twice.comp: EASU (upscale/easu.glsl) to twice the width and height: what easu.comp makes of it, for less.
+ *
+ * Of four texels the same four pixels of the output lie between them, 2x2 of those whose first has odd coordinates,
+ * a quarter of a texel from the middle of each. They take the same twelve texels and have the same gradients and
+ * straightness at the four; only weights differ. So an invocation makes all four, and reads and looks once.
+ *
+ * Where the four texels differ by at most half a step of 8 bits, what EASU gives lies between them, and so does their
+ * bilinear mean: it is taken, and the other eight are not read.
+ *
+ * One invocation for each four texels, those at the picture's edge with what lies beyond: one more each way than there
+ * are texels. An output of odd size is twice the input less a row, or more: half a pixel at most by which the last
+ * lies elsewhere than easu.comp would put it.
+ *
+ * Push constants: render_* = valid corner of the input, output_* = size to write.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "shared/masu_shared.h"
+#include "shared/output.glsl"
+#include "shared/unorm.glsl"
+#include "upscale/easu.glsl"
+#include "upscale/taps.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D source; /* perceptual RGB in 0..1 */
+layout(set = MASU_SET_PASS, binding = 1, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
+
+void main()
+{
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) - 1;
+    if (any(greaterThanEqual(texel, ivec2(pc.render_width, pc.render_height)))) {
+        return;
+    }
+    masu_cross c = masu_cross_of(texel);
+    masu_taps t;
+    masu_fetch_middle(source, c, t);
+    vec3 least = min(min(t.f, t.g), min(t.j, t.k));
+    vec3 most = max(max(t.f, t.g), max(t.j, t.k));
+    bool same = all(lessThan(most - least, vec3(0.51 / 255.0)));
+    masu_centres e;
+    if (!same) {
+        masu_fetch_around(source, c, t);
+        e = masu_centres_of(t);
+    }
+    uvec2 size = uvec2(pc.output_width, pc.output_height);
+    [[dont_unroll]] for (uint i = 0u; i < 4u; i++) {
+        uvec2 at = uvec2(texel * 2 + 1) + uvec2(i & 1u, i >> 1);
+        vec2 p = 0.25 + 0.5 * vec2(i & 1u, i >> 1);
+        vec3 result;
+        if (same) {
+            vec3 above = t.f + p.x * (t.g - t.f);
+            vec3 below = t.j + p.x * (t.k - t.j);
+            result = above + p.y * (below - above);
+        } else {
+            vec4 w = masu_bilinear_weights(p);
+            vec3 mean = masu_weighted_mean(t, masu_kernel_of(vec3(dot(w, e.x), dot(w, e.y), dot(w, e.z))), p);
+            result = min(most, max(least, mean));
+        }
+        if (all(lessThan(at, size))) { /* -1, beyond the first, is not */
+            MASU_STORE_FILTERED(target, at, result);
+        }
+    }
+}
