@@ -84,8 +84,11 @@ void paint(ivec2 at, uvec2 size, uint words)
     }
     if (changed) {
         uint kept = packed_normal & (0x3FFFFFFu | MASU_SURFACE_MORE << 30);
-        MASU_STORE_UNORM(albedo_image, at, masu_pack_albedo(s));
-        MASU_STORE_UINT(normal_image, at, kept | masu_pack_look(s));
+        uint look;
+        vec4 albedo;
+        masu_pack_look(s, albedo, look);
+        MASU_STORE_UNORM(albedo_image, at, albedo);
+        MASU_STORE_UINT(normal_image, at, kept | look);
     }
 }
 

@@ -102,8 +102,7 @@ void main()
     }
 #endif
 #endif
-    out_albedo = masu_pack_albedo(s);
-    out_normal = masu_pack_normal(n, s);
+    masu_pack_texels(n, s, out_albedo, out_normal);
 #ifdef MASU_SURFACE
     out_normal |= MASU_SURFACE_MORE << 30;
     out_surface = masu_pack_surface(s);

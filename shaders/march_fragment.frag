@@ -36,7 +36,6 @@ void main()
     vec3 n = normal_at(r, t, part);
     masu_normal = n;
     masu_sdf_part_surface(part, world_at(r.direction, t), s);
-    out_albedo = masu_pack_albedo(s);
-    out_normal = masu_pack_normal(n, s);
+    masu_pack_texels(n, s, out_albedo, out_normal);
     out_depth = masu_sane(depth_of(t, z_scale), 0.0, 1.0);
 }

@@ -70,8 +70,10 @@ uvec4 hit_of(reflected m, float t, bool known, inout uint evals)
     masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
     masu_normal = n;
     masu_sdf_part_surface(part, p, s);
-    return uvec4(floatBitsToUint(max(t - m.apex, 0.0)), masu_pack_sdf_motion(moved(part, p)),
-                 masu_pack_normal(n, s), packUnorm4x8(masu_pack_albedo(s)));
+    vec4 albedo;
+    uint normal;
+    masu_pack_texels(n, s, albedo, normal);
+    return uvec4(floatBitsToUint(max(t - m.apex, 0.0)), masu_pack_sdf_motion(moved(part, p)), normal, packUnorm4x8(albedo));
 }
 
 void main()

@@ -22,8 +22,11 @@ float write_hit(uvec2 at, ray r, float t, bool known, uint part, float z_scale)
     masu_sdf_part_surface(part, p, s);
     masu_count(MASU_COUNTER_SDF_HITS, 1u);
     /* Both are made finite by packing, and the pixel is one of the picture. */
-    MASU_STORE_SAFE(albedo_image, at, masu_pack_albedo(s));
-    MASU_STORE_SAFE(normal_image, at, uvec4(masu_pack_normal(n, s)));
+    vec4 albedo;
+    uint normal;
+    masu_pack_texels(n, s, albedo, normal);
+    MASU_STORE_SAFE(albedo_image, at, albedo);
+    MASU_STORE_SAFE(normal_image, at, uvec4(normal));
     return depth_of(t, z_scale);
 }
 

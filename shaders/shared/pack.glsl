@@ -102,57 +102,47 @@ bool masu_is_unlit_texel(uint normal)
     return (normal >> 26 & 31u) == MASU_SURFACE_EMISSIVE << 4;
 }
 
-/* Bits 26-29 of the normal of what emits. */
-uint masu_pack_form(masu_surface s)
+/* The texel of albedo, and bits 26-31 of the normal, of what emits; `glow`, `albedo` and `roughness` are sane. */
+void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, out vec4 texel, out uint look)
 {
-    if (masu_is_unlit(s)) {
-        return 0u;
-    }
-    bool black = !(masu_brightest(masu_sane(s.albedo, 0.0, 1.0)) > 0.0) && !(s.metallic >= 0.5);
-    return black ? 15u : 1u + uint(masu_sane(s.roughness, 0.0, 1.0) * 13.0 + 0.5);
-}
-
-uint masu_pack_shining(masu_surface s)
-{
-    uvec3 albedo = uvec3(sqrt(masu_sane(s.albedo, 0.0, 1.0)) * 31.0 + 0.5);
-    vec3 glow = masu_sane(s.emissive, 0.0, masu_emissive_range);
     float brightest = masu_brightest(glow);
-    uint channel = glow.r >= brightest ? 0u : glow.g >= brightest ? 1u : 2u;
-    vec2 others = channel == 0u ? glow.gb : channel == 1u ? glow.br : glow.rg;
-    uvec2 hue = uvec2(sqrt(clamp(others * masu_rcp(brightest), 0.0, 1.0)) * 12.0 + 0.5);
-    uint level = uint(sqrt(sqrt(brightest / masu_emissive_range)) * 127.0 + 0.5);
-    return albedo.r | albedo.g << 5 | albedo.b << 10 | (s.metallic >= 0.5 ? 1u << 15 : 0u) |
-           min(level, 127u) << 16 | ((channel * 13u + hue.x) * 13u + hue.y) << 23;
+    bool black = !(masu_brightest(albedo) > 0.0), metal = s.metallic >= 0.5;
+    bool unlit = black && !(roughness < 1.0) && !(s.coat > 0.0);
+    texel = vec4(sqrt(glow * (1.0 / masu_emissive_range)), roughness);
+    look = MASU_SURFACE_EMISSIVE << 30 | (unlit ? 0u : 15u << 26);
+    if (unlit || (black && !metal)) {
+        return;
+    }
+    bool red = glow.r >= brightest, green = !red && glow.g >= brightest;
+    vec2 others = red ? glow.gb : green ? glow.br : glow.rg;
+    uvec2 hue = uvec2(sqrt(min(others / brightest, vec2(1.0))) * 12.0 + 0.5);
+    uint channel = red ? 0u : green ? 169u : 338u;
+    uint level = uint(sqrt(sqrt(brightest * (1.0 / masu_emissive_range))) * 127.0 + 0.5);
+    uvec3 base = uvec3(sqrt(albedo) * 31.0 + 0.5);
+    texel = unpackUnorm4x8(base.r | base.g << 5 | base.b << 10 | (metal ? 1u << 15 : 0u) | level << 16 |
+                           (channel + hue.x * 13u + hue.y) << 23);
+    look = MASU_SURFACE_EMISSIVE << 30 | (1u + uint(roughness * 13.0 + 0.5)) << 26;
 }
 
-vec4 masu_pack_albedo(masu_surface s)
+/* The texel of albedo, and the bits of the normal's texel that are not its direction. */
+void masu_pack_look(masu_surface s, out vec4 texel, out uint look)
 {
+    vec3 albedo = masu_sane(s.albedo, 0.0, 1.0), glow = masu_sane(s.emissive, 0.0, masu_emissive_range);
     float roughness = masu_sane(s.roughness, 0.0, 1.0);
-    if (!masu_is_emissive(s)) {
-        return vec4(sqrt(masu_sane(s.albedo, 0.0, 1.0)), roughness);
+    if (masu_brightest(glow) >= masu_emissive_least) {
+        masu_pack_shining(glow, albedo, roughness, s, texel, look);
+    } else {
+        texel = vec4(sqrt(albedo), roughness);
+        look = uint(masu_sane(s.metallic, 0.0, 1.0) * 15.0 + 0.5) << 26;
     }
-    uint form = masu_pack_form(s);
-    if (form == 0u || form == 15u) {
-        vec3 radiance = masu_sane(s.emissive, 0.0, masu_emissive_range) / masu_emissive_range;
-        return vec4(sqrt(radiance), roughness);
-    }
-    return unpackUnorm4x8(masu_pack_shining(s));
 }
 
-/* Bits 26-31 of a normal; its others are 0. */
-uint masu_pack_look(masu_surface s)
-{
-    if (masu_is_emissive(s)) {
-        return masu_pack_form(s) << 26 | MASU_SURFACE_EMISSIVE << 30;
-    }
-    return uint(masu_sane(s.metallic, 0.0, 1.0) * 15.0 + 0.5) << 26;
-}
-
-uint masu_pack_normal(vec3 n, masu_surface s)
+void masu_pack_texels(vec3 n, masu_surface s, out vec4 albedo, out uint normal)
 {
     vec2 p = masu_sane(vec4(masu_oct_encode(n), 0.0, 0.0), -1.0, 1.0).xy;
     uvec2 q = uvec2(round(p * 4095.0) + 4095.0);
-    return q.x | q.y << 13 | masu_pack_look(s);
+    masu_pack_look(s, albedo, normal);
+    normal |= q.x | q.y << 13;
 }
 
 vec4 masu_pack_surface(masu_surface s)
@@ -197,6 +187,7 @@ void masu_unpack_shining(vec4 texel, uint form, inout masu_surface s)
     s.albedo = vec3(0.0);
     s.emissive = texel.rgb * texel.rgb * masu_emissive_range;
     if (form == 0u || form == 15u) {
+        s.roughness = form == 0u ? 1.0 : texel.a;
         return;
     }
     uint word = packUnorm4x8(texel);
