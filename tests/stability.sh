@@ -72,7 +72,7 @@ What else is extreme, and which test has it:
 | deep zooms to 1e-6, cameras in and on solids, sizes of zero, equal surfaces | the table of [the march](design/11-march-measured.md), `make stiff` | `test_stiff` |
 | fields of NaN and infinity | a miss, and nothing beside it | `test_extremes` |
 | roughness, all of it, against double precision | a bound on the lobe's error | `test_brdf`, `test_vndf` |
-| each input image of each pass full of NaN, infinities, denormals, huge, negative | finite pictures; none keeps it | `test_poison` |
+| each input image of each pass full of NaN, infinities, denormals, huge, negative | finite pictures; none keeps it. On lavapipe: SwiftShader ends the process | `test_poison` |
 | the n-th Vulkan call fails, in init, load, resize; a device that is lost; a block one byte short | a named error, nothing left behind | `test_failures`, `test_faults` |
 | each limit of the description, and one over | refused by name, with the limit | `test_desc` |
 | rungs, cameras, scenes, sizes at random, 20,000 frames | memory flat, pictures finite | `make soak` |
