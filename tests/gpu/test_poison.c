@@ -4,7 +4,10 @@
  *
  * A recording is made anew for each, with a fill at the pass's label; the fill goes through a buffer of the test's own
  * that lies over the block of memory, as debug.poison does. What the host writes (uniforms, lists) and what is loaded
- * (meshes, materials) is checked when it comes in; first words of lists that are arguments of an indirect dispatch stay. */
+ * (meshes, materials) is checked when it comes in; first words of lists that are arguments of an indirect dispatch stay.
+ *
+ * Runs on the first driver alone (tests/run.sh): SwiftShader ends the process in the temporal group, for a reason that is
+ * not known yet. */
 #include "support/support.h"
 #include "support/files.h"
 #include "support/floats.h"
