@@ -43,10 +43,12 @@ masu_surface masu_plain_surface(vec3 albedo, float roughness)
     return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0);
 }
 
+/* Within -1..1 but for its rounding, whatever the bits of n. */
 vec2 masu_oct_encode(vec3 n)
 {
     float sum = abs(n.x) + abs(n.y) + abs(n.z);
-    vec2 p = n.xy * masu_rcp(sum);
+    bool usable = masu_finite(sum) && sum > masu_tiny;
+    vec2 p = usable ? n.xy * (1.0 / sum) : vec2(0.0);
     if (n.z < 0.0) {
         vec2 s = vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
         p = (1.0 - abs(p.yx)) * s;
@@ -73,15 +75,16 @@ bool masu_is_emissive(masu_surface s)
 
 vec4 masu_pack_albedo(masu_surface s)
 {
-    vec3 radiance = masu_sane(s.emissive, 0.0, masu_emissive_range) / masu_emissive_range;
-    vec3 color = masu_is_emissive(s) ? radiance : masu_sane(s.albedo, 0.0, 1.0);
+    vec3 color = masu_sane(s.albedo, 0.0, 1.0);
+    if (masu_is_emissive(s)) {
+        color = masu_sane(s.emissive, 0.0, masu_emissive_range) * (1.0 / masu_emissive_range);
+    }
     return vec4(sqrt(color), masu_sane(s.roughness, 0.0, 1.0));
 }
 
 uint masu_pack_normal(vec3 n, masu_surface s)
 {
-    vec2 p = masu_sane(vec4(masu_oct_encode(n), 0.0, 0.0), -1.0, 1.0).xy;
-    uvec2 q = uvec2(round(p * 4095.0) + 4095.0);
+    uvec2 q = uvec2(round(masu_oct_encode(n) * 4095.0) + 4095.0);
     uint metallic = uint(masu_sane(s.metallic, 0.0, 1.0) * 15.0 + 0.5);
     uint flags = masu_is_emissive(s) ? MASU_SURFACE_EMISSIVE : 0u;
     return q.x | q.y << 13 | metallic << 26 | flags << 30;
