@@ -45,62 +45,78 @@ shared float ray_limit[RAYS];
 shared float ray_flat[RAYS];
 shared uint taken; /* of them, by now */
 
-/* Of the tile. */
+/* Of the tile: its first pixel, through what that one looks, what is between two pixels of a row and of a column. */
 uvec2 size, corner;
-vec2 ndc_corner, ndc_step;
+vec3 first_through, to_right, to_below;
+float pixel_width; /* one unit of z away */
 
-/* Pixel i of the tile: 8x8 after 8x8. */
-uvec2 pixel_of(uint i)
+/* Where in the tile its pixel i is: 8x8 after 8x8. */
+uvec2 place_of(uint i)
 {
-    return corner + masu_block_at(i % uint(INVOCATIONS)) + uvec2(i >> 6 & 1u, i >> 7) * uint(MASU_GROUP);
+    return masu_block_at(i & uint(INVOCATIONS - 1)) + (uvec2(i >> 6 & 1u, i >> 7) << 3u);
 }
 
-ray ray_of(uint i, out float z_scale)
+ray ray_of(uvec2 place, out float z_scale)
 {
-    vec2 ndc = ndc_corner + ndc_step * vec2(pixel_of(i) - corner);
-    vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
+    vec3 through = first_through + (to_right * float(place.x) + to_below * float(place.y));
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
-    return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);
+    return ray(through * inverse, pixel_width * inverse, 0.0, 0.0);
 }
 
 void look_from(uvec2 tile)
 {
     size = uvec2(pc.output_width, pc.output_height);
     corner = tile * uint(MASU_TILE);
-    ndc_corner = masu_ndc(vec2(corner) + 0.5, vec2(size));
-    ndc_step = 2.0 / vec2(size);
+    vec2 ndc = masu_ndc(vec2(corner) + 0.5, vec2(size));
+    vec2 ndc_step = 2.0 / vec2(size);
+    first_through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
+    to_right = frame.right.xyz * ndc_step.x;
+    to_below = -frame.up.xyz * ndc_step.y;
+    pixel_width = frame.up.w * ndc_step.y;
+}
+
+/* Boxes as the eye sees them: the SDF's bounds, and that of the listed parts. */
+vec3 bounds_low, bounds_high, box_low, box_high;
+
+void look_at_boxes()
+{
+    masu_listed_box(box_low, box_high);
+    bounds_low = frame.sdf_min.xyz - eye_hi - eye_lo;
+    bounds_high = frame.sdf_max.xyz - eye_hi - eye_lo;
+    box_low = box_low - eye_hi - eye_lo;
+    box_high = box_high - eye_hi - eye_lo;
 }
 
 /* Between which distances the ray is within a box. */
 vec2 within(vec3 low, vec3 high, vec3 inverse)
 {
-    vec3 a = (low - eye_hi - eye_lo) * inverse;
-    vec3 b = (high - eye_hi - eye_lo) * inverse;
+    vec3 a = low * inverse;
+    vec3 b = high * inverse;
     vec3 enter = min(a, b);
     vec3 leave = max(a, b);
     return vec2(max(enter.x, max(enter.y, enter.z)), min(leave.x, min(leave.y, leave.z)));
 }
 
-/* Where the cone of a block has stopped. */
-float cone_end(uvec2 block)
+/* Where the cone of a pixel's block has stopped. */
+float cone_end(uvec2 at)
 {
 #if MASU_SDF_BLOCK_WORDS > 0
-    return uintBitsToFloat(masu_tiles[span_place(block, size)]);
+    return uintBitsToFloat(masu_tiles[span_word(at)]);
 #else
-    return texelFetch(cone_image, ivec2(block), 0).r;
+    return texelFetch(cone_image, ivec2(at >> 2u), 0).r;
 #endif
 }
 
 /* Where the ray of a pixel begins and ends, and the half-space that ends it, as pixel_ray and clip_to_box say, of
  * what the four share. A component of the direction that is zero is replaced by a tiny one. */
-vec3 prepare(uint i, vec3 low, vec3 high)
+vec3 prepare(uvec2 place)
 {
-    uvec2 at = pixel_of(i);
+    uvec2 at = corner + place;
     float z_scale;
-    ray r = ray_of(i, z_scale);
+    ray r = ray_of(place, z_scale);
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
-    vec2 bounds = within(frame.sdf_min.xyz, frame.sdf_max.xyz, inverse);
+    vec2 bounds = within(bounds_low, bounds_high, inverse);
     float nearest = frame.forward.w * z_scale;
     float first_t = max(nearest, bounds.x);
     float last_t = min(frame.sdf_max.w, bounds.y);
@@ -111,16 +127,16 @@ vec3 prepare(uint i, vec3 low, vec3 high)
     uint part;
     float end = masu_sdf_flat(eye_hi + eye_lo, r.direction, first_t, part);
     float farthest = min(last_t, end);
-    vec2 box = within(low, high, inverse);
+    vec2 box = within(box_low, box_high, inverse);
     /* What ends at the very side of the box may be found a little behind it. */
     last_t = min(min(last_t, box.y) * (1.0 + newton_reach * r.pixel), farthest);
-    first_t = max(max(first_t, box.x), cone_end(at / 4u));
+    first_t = max(max(first_t, box.x), cone_end(at));
     return vec3(first_t, last_t, end <= farthest && end < 1e30 ? end : -1.0);
 }
 
-void begin_spans(uint i, float t)
+void begin_spans(uvec2 place, float t)
 {
-    span_begin(min(pixel_of(i), size - 1u), size, t);
+    span_begin(min(corner + place, size - 1u), size, t);
 }
 
 /* The field at t by what matters there. Wrong turn: rays that look for themselves what matters in a ball of their own, at
@@ -135,11 +151,12 @@ float field_here(ray r, float t)
 march_state begin(uint i, out ray r)
 {
     float z_scale;
-    r = ray_of(i, z_scale);
+    uvec2 place = place_of(i);
+    r = ray_of(place, z_scale);
     r.start = -ray_start[i];
     r.limit = ray_limit[i];
     march_state m = march_begin(r);
-    begin_spans(i, m.t);
+    begin_spans(place, m.t);
     return m;
 }
 
@@ -178,17 +195,19 @@ void main()
     uint columns = masu_tile_grid(uvec2(pc.output_width, pc.output_height)).x;
     look_from(uvec2(tile % columns, tile / columns));
     bool listed = masu_use_tile(tile, size);
-    vec3 low, high;
-    masu_listed_box(low, high);
+    look_at_boxes();
     if (gl_LocalInvocationIndex == 0u) {
         taken = uint(INVOCATIONS);
     }
+    span_prepare(size);
+    uvec2 own = place_of(gl_LocalInvocationIndex);
     /* Pixels behind the edge of the picture march nothing. */
     MASU_LOOP for (int k = 0; k < 4; k++) {
         uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
+        uvec2 place = own + uvec2((k & 1) << 3, k >> 1 << 3);
         vec3 piece = vec3(-1.0);
-        if (all(lessThan(pixel_of(i), size))) {
-            piece = prepare(i, low, high);
+        if (all(lessThan(corner + place, size))) {
+            piece = prepare(place);
         }
         ray_start[i] = -abs(piece.x);
         ray_limit[i] = listed ? piece.y : -1.0;
@@ -197,25 +216,25 @@ void main()
     if (share_rays) {
         barrier();
     }
-    span_prepare(size);
     masu_count(MASU_COUNTER_SDF_EVALS, march_all());
     if (share_rays) {
         barrier();
     }
     MASU_LOOP for (int k = 0; k < 4; k++) {
         uint i = gl_LocalInvocationIndex + uint(k * INVOCATIONS);
-        uvec2 at = pixel_of(i);
+        uvec2 place = own + uvec2((k & 1) << 3, k >> 1 << 3);
+        uvec2 at = corner + place;
         float t = ray_start[i];
         bool known = !(t >= 0.0);
         t = known ? ray_flat[i] : t; /* -1 behind the edge of the picture */
         if (t >= 0.0) {
             float z_scale;
-            ray r = ray_of(i, z_scale);
-            uint part;
-            if (known) {
+            ray r = ray_of(place, z_scale);
+            uint part = uint(MASU_SDF_LISTED_COUNT); /* half-spaces are the last */
+            if (known && MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT + 1) {
                 masu_sdf_flat(eye_hi + eye_lo, r.direction, t, part);
-            } else {
-                begin_spans(i, t);
+            } else if (!known) {
+                begin_spans(place, t);
             }
             MASU_STORE_SAFE(depth_image, at, vec4(write_hit(at, r, t, known, part, z_scale)));
         }

@@ -31,12 +31,27 @@ float span_margin(ray r, float begin, float end)
 }
 
 /* A block's words stand behind the lists: where its pieces begin, as a float, then the bits of each piece. */
-uint span_place(uvec2 block, uvec2 size)
+uint span_words;   /* where the first block's are */
+uint span_columns; /* blocks in a row */
+
+void span_locate(uvec2 size)
 {
     uvec2 grid = masu_tile_grid(size);
-    uint first = uint(MASU_TILES_HEADER) + grid.x * grid.y * (1u + masu_list_stride());
-    uint at = block.y * ((size.x + 3u) / 4u) + block.x;
-    return first + at * uint(1 + MASU_BLOCK_SPANS * MASU_SDF_BLOCK_WORDS);
+    span_words = uint(MASU_TILES_HEADER) + grid.x * grid.y * (1u + masu_list_stride());
+    span_columns = (size.x + 3u) / 4u;
+}
+
+uint span_place(uvec2 block)
+{
+    return span_words + (block.y * span_columns + block.x) * uint(1 + MASU_BLOCK_SPANS * MASU_SDF_BLOCK_WORDS);
+}
+
+#if MASU_BLOCK_PIXELS != 4
+#error "blocks are of 4x4 pixels"
+#endif
+uint span_word(uvec2 at)
+{
+    return span_place(at >> 2u);
 }
 
 #endif
@@ -80,7 +95,7 @@ void span_look_up(float t, uvec2 size)
 
 void span_begin(uvec2 at, uvec2 size, float t)
 {
-    span_first = span_place(at / uint(MASU_BLOCK_PIXELS), size) + 1u;
+    span_first = span_word(at) + 1u;
     span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
     span_look_up(t, size);
 }
@@ -88,6 +103,7 @@ void span_begin(uvec2 at, uvec2 size, float t)
 /* Once, before the first. */
 void span_prepare(uvec2 size)
 {
+    span_locate(size);
     span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
 }
 

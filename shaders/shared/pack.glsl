@@ -56,10 +56,12 @@ masu_surface masu_plain_surface(vec3 albedo, float roughness)
     return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0);
 }
 
+/* Within -1..1 but for its rounding, whatever the bits of n. */
 vec2 masu_oct_encode(vec3 n)
 {
     float sum = abs(n.x) + abs(n.y) + abs(n.z);
-    vec2 p = n.xy * masu_rcp(sum);
+    bool usable = masu_finite(sum) && sum > masu_tiny;
+    vec2 p = usable ? n.xy * (1.0 / sum) : vec2(0.0);
     if (n.z < 0.0) {
         vec2 s = vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
         p = (1.0 - abs(p.yx)) * s;
@@ -139,8 +141,7 @@ void masu_pack_look(masu_surface s, out vec4 texel, out uint look)
 
 void masu_pack_texels(vec3 n, masu_surface s, out vec4 albedo, out uint normal)
 {
-    vec2 p = masu_sane(vec4(masu_oct_encode(n), 0.0, 0.0), -1.0, 1.0).xy;
-    uvec2 q = uvec2(round(p * 4095.0) + 4095.0);
+    uvec2 q = uvec2(round(masu_oct_encode(n) * 4095.0) + 4095.0);
     masu_pack_look(s, albedo, normal);
     normal |= q.x | q.y << 13;
 }

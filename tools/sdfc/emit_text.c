@@ -86,12 +86,29 @@ static void put_template(sdfc_writer *w, const sdfc_group *g, const sdfc_program
     }
 }
 
+static bool is_literal(const sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, int operand, double value) {
+    return operand < 0 && g->slot_of_arg[~operand] < 0 && w->c->exprs[p->args[~operand]].value == value;
+}
+
 /* x - 0 and x * 1 with a literal: the shape that stands at the origin beside others that do not. */
 static bool does_nothing(const sdfc_writer *w, const sdfc_group *g, const sdfc_program *p,
                          const sdfc_instr *i) {
-    if (i->op != SDFC_sub && i->op != SDFC_mul) return false;
-    if (i->operand[1] >= 0 || g->slot_of_arg[~i->operand[1]] >= 0) return false;
-    return w->c->exprs[p->args[~i->operand[1]]].value == (i->op == SDFC_mul ? 1 : 0);
+    return (i->op == SDFC_sub || i->op == SDFC_mul) && is_literal(w, g, p, i->operand[1], i->op == SDFC_mul);
+}
+
+/* Rows of turns about an axis, and planes across one, are mostly zeros and ones. */
+static void put_dot(sdfc_writer *w, const sdfc_group *g, const sdfc_program *p, const sdfc_instr *i) {
+    bool any = false;
+    for (int k = 0; k < 3; k++) {
+        if (is_literal(w, g, p, i->operand[3 + k], 0)) continue;
+        PUT(w, any ? " + " : "(");
+        sdfc_put_operand(w, g, p, i->operand[k]);
+        any = true;
+        if (is_literal(w, g, p, i->operand[3 + k], 1)) continue;
+        PUT(w, " * ");
+        sdfc_put_operand(w, g, p, i->operand[3 + k]);
+    }
+    PUT(w, any ? ")" : "0.0");
 }
 
 /* Whether other cells of a repetition can be left out by how far off they are. */
@@ -181,6 +198,8 @@ void sdfc_put_instr(sdfc_writer *w, int group, const sdfc_program *p, const sdfc
         }
     } else if (does_nothing(w, g, p, i)) {
         sdfc_put_operand(w, g, p, i->operand[0]);
+    } else if (i->op == SDFC_dot3) {
+        put_dot(w, g, p, i);
     } else if (sdfc_ops[i->op].text) {
         put_template(w, g, p, i);
     } else {
@@ -271,7 +290,7 @@ static void put_function(sdfc_writer *w, int group, const sdfc_program *p, int f
     PUT(w, "%sreal masu_shape_%d", w->glsl ? "" : "static ", group);
     if (!root) PUT(w, "_%d", function);
     PUT(w, w->glsl ? "(real x, real y, real z, uint base, uint on)\n{\n" : "(real x, real y, real z, uint base)\n{\n");
-    if (!w->glsl) PUT(w, "    (void)base;\n");
+    if (!w->glsl) PUT(w, "    (void)x;\n    (void)y;\n    (void)z;\n    (void)base;\n");
     if (terms && g->term_count) PUT(w, "    uint kept = 0u;\n");
     for (int k = 0; k < f->count; k++) {
         if (terms) open_terms(w, g, p, f, k);
