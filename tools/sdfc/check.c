@@ -5,12 +5,15 @@
  *              bisection, just left and right of the border of two cells of a repetition
  *   estimates  (fractals) within f / L of a point there is no solid
  *   bounds     outside of the box and of the sphere f is positive and at least growth * distance
+ *   mirrors    what stands in mirrored sectors (polar) is its own mirror image: what is mirrored wrongly is a
+ *              field as good as any, of something else
  *
  * Parameters are at their defaults first, then anywhere in their ranges; time likewise. A violation
  * is an error of the analysis (or of a constant that was measured), and fails the compilation. */
 #include "sdfc/internal.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define ENVIRONMENTS 16
@@ -232,7 +235,72 @@ static void set_environment(checker *k, int environment) {
     sdfc_evaluate(k->c, k->params, k->time, k->c->values);
 }
 
+static void free_program(sdfc_program *p) {
+    for (int f = 0; f < p->function_count; f++) {
+        free(p->functions[f].instrs);
+        free(p->functions[f].terms);
+    }
+    free(p->functions);
+    free(p->args);
+    free(p->root);
+}
+
+/* A shape by itself; its part has been lowered, so that lowering this much of it does not fail. */
+static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
+    checker k = {.c = c, .random = 0x6D617375, .part = part};
+    const sdfc_facts *f = &c->shapes[shape].facts;
+    const int instrs = c->instrs, before = c->at;
+    const bool anchored = c->anchored;
+    sdfc_part alone = {.shape = shape, .token = part->token};
+    c->anchored = false;
+    sdfc_lower(c, &alone);
+    c->anchored = anchored;
+    c->instrs = instrs;
+    c->at = before;
+    c->variables = sdfc_take(c, (size_t)alone.program.variable_count, sizeof *c->variables);
+    c->values = sdfc_take(c, (size_t)c->expr_count, sizeof *c->values);
+    double p[3], d = 0, other = 0;
+    bool same = true;
+    for (int n = 0; n < 256 && same; n++) {
+        if (n % 64 == 0) set_environment(&k, n / 64);
+        for (int i = 0; i < 3; i++) {
+            bool ends = isfinite(f->box.low[i]) && isfinite(f->box.high[i]);
+            double middle = ends ? (f->box.low[i] + f->box.high[i]) / 2 : 0;
+            double half = ends ? (f->box.high[i] - f->box.low[i]) / 2 : FAR_AWAY;
+            p[i] = middle + (2 * unit(&k) - 1) * (1.2 * half + 1e-6);
+        }
+        const double mirrored[3] = {p[0], p[1], -p[2]};
+        d = sdfc_run(c, &alone.program, p, NULL);
+        other = sdfc_run(c, &alone.program, mirrored, NULL);
+        same = fabs(d - other) <= 1e-9 * (1 + fabs(d));
+    }
+    free(c->variables);
+    free(c->values);
+    c->variables = c->values = NULL;
+    free_program(&alone.program);
+    if (same) return;
+    sdfc_fail(c, part->token,
+              "part %s: the field is that of mirrored sectors, of what is not its own mirror image: f(%.17g, %.17g, "
+              "%.17g) = %.17g, f(.., -z) = %.17g",
+              part->name, p[0], p[1], p[2], d, other);
+}
+
+static void check_mirrors(sdfc *c, const sdfc_part *part, int shape, bool *seen) {
+    if (seen[shape]) return;
+    seen[shape] = true;
+    const sdfc_shape *s = &c->shapes[shape];
+    if (s->facts.user) return;
+    if (s->kind == SDFC_KIND_POLAR && s->extra[0] == 1) check_mirror(c, part, s->child[0]);
+    for (int i = 0; i < s->children; i++) check_mirrors(c, part, c->shapes[shape].child[i], seen);
+}
+
 void sdfc_check(sdfc *c, uint32_t pairs) {
+    free(c->scratch);
+    c->scratch = NULL;
+    bool *seen = c->scratch = sdfc_take(c, (size_t)c->shape_count, sizeof *seen);
+    for (int i = 0; i < c->part_count; i++) check_mirrors(c, &c->parts[i], c->parts[i].shape, seen);
+    free(seen);
+    c->scratch = NULL;
     checker k = {.c = c, .random = 0x6D617375};
     int variables = 0;
     double operations = 0;
