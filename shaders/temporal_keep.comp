@@ -1,13 +1,13 @@
 /*
- * temporal_keep.comp: of each pixel the nearest depth of 3x3, for the next frame's temporal.comp: a pixel that a
+ * temporal_keep.comp: of each pixel the nearest depth of 3x3, for the next frame's temporal_find.comp: a pixel that a
  * silhouette is near belongs to what is in front.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
-#include "shared/counters.glsl"
-#include "shared/globals.glsl"
+#include "shared/push.glsl"
 #include "shared/store.glsl"
+#include "upscale/corners.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -16,16 +16,9 @@ layout(set = MASU_SET_PASS, binding = 1, r32f) uniform writeonly image2D kept_im
 
 void main()
 {
-    masu_count_begin();
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 last = ivec2(pc.output_width, pc.output_height) - 1;
-    if (all(lessThanEqual(at, last))) {
-        float nearest = 0.0;
-        for (int i = 0; i < 9; i++) {
-            ivec2 beside = ivec2(i % 3 - 1, i / 3 - 1);
-            nearest = max(nearest, texelFetch(depth_image, clamp(at + beside, ivec2(0), last), 0).r);
-        }
-        MASU_STORE_R32F(kept_image, at, nearest);
+    ivec2 size = ivec2(pc.output_width, pc.output_height);
+    if (all(lessThan(at, size))) {
+        MASU_STORE_SAFE(kept_image, at, vec4(masu_most_of(masu_corners_of(depth_image, vec2(at), vec2(size)))));
     }
-    masu_count_end();
 }

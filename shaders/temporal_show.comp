@@ -13,7 +13,6 @@
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_temporal_show
 #include "shared/masu_shared.h"
-#include "shared/counters.glsl"
 #include "shared/output.glsl"
 #include "shared/encode.glsl"
 
@@ -30,18 +29,17 @@ vec3 light_at(ivec2 at)
 
 void main()
 {
-    masu_count_begin();
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (!masu_is_outside(gl_GlobalInvocationID.xy)) {
-        ivec2 before = max(at - 1, 0), after = min(at + 1, ivec2(pc.output_width, pc.output_height) - 1);
-        vec4 mean = texelFetch(accumulated_image, at, 0);
-        vec3 left = light_at(ivec2(before.x, at.y)), right = light_at(ivec2(after.x, at.y)),
-             above = light_at(ivec2(at.x, before.y)), below = light_at(ivec2(at.x, after.y));
-        vec3 least = min(mean.rgb, min(min(left, right), min(above, below)));
-        vec3 most = max(mean.rgb, max(max(left, right), max(above, below)));
-        vec3 sharp = mean.rgb + push.sharpen * (4.0 * mean.rgb - left - right - above - below);
-        MASU_STORE_SAFE(history_image, at, mean); /* as it was stored: finite */
-        MASU_STORE_COLOR(target, at, masu_encoded(clamp(sharp, least, most) * push.peak, push.white));
+    if (masu_is_outside(gl_GlobalInvocationID.xy)) {
+        return;
     }
-    masu_count_end();
+    ivec2 before = max(at - 1, 0), after = min(at + 1, ivec2(pc.output_width, pc.output_height) - 1);
+    vec4 mean = texelFetch(accumulated_image, at, 0);
+    vec3 left = light_at(ivec2(before.x, at.y)), right = light_at(ivec2(after.x, at.y)),
+         above = light_at(ivec2(at.x, before.y)), below = light_at(ivec2(at.x, after.y));
+    vec3 least = min(mean.rgb, min(min(left, right), min(above, below)));
+    vec3 most = max(mean.rgb, max(max(left, right), max(above, below)));
+    vec3 sharp = mean.rgb + push.sharpen * (4.0 * mean.rgb - left - right - above - below);
+    MASU_STORE_SAFE(history_image, at, mean); /* as it was stored: finite, and light of 0 to 1 */
+    MASU_STORE_FILTERED(target, at, masu_encoded_unit(clamp(sharp, least, most), push.peak, push.white));
 }

@@ -114,6 +114,12 @@ float masu_pow(float x, float y)
     return positive ? r : (exponent == 0.0 ? 1.0 : 0.0);
 }
 
+/* x^y of numbers alone: x of 0 to 1, where less than 1e-30 is that, y of 0 to 1. */
+float masu_pow_unit(float x, float y)
+{
+    return exp2(log2(max(x, masu_tiny)) * y);
+}
+
 /* acos of x clamped to [-1,1]; pi/2 (that of 0) for NaN and Inf. */
 float masu_acos(float x)
 {

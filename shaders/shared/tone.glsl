@@ -48,6 +48,12 @@ float masu_srgb_encode(float x)
     return x <= 0.0031308 ? 12.92 * max(x, 0.0) : 1.055 * masu_pow(min(x, 1.0), 1.0 / 2.4) - 0.055;
 }
 
+/* The same of a number of 0 to 1. */
+float masu_srgb_encode_unit(float x)
+{
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * masu_pow_unit(x, 1.0 / 2.4) - 0.055;
+}
+
 /* SMPTE ST 2084: 10000 nits are 1. */
 const float masu_pq_m1 = 2610.0 / 16384.0;
 const float masu_pq_m2 = 2523.0 / 32.0;

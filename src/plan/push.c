@@ -23,6 +23,12 @@ static float masu_peak(const masu_targets *t) {
     return t->encoding == MASU_ENCODING_SRGB ? 1.0f : t->peak / t->white;
 }
 
+/* Whether the output has the render size. */
+static int shows_each_pixel(const masu_push_input *in) {
+    const masu_rung_plan *rp = &in->plan->rungs[in->rung];
+    return rp->render_width == in->plan->desc.output.width && rp->render_height == in->plan->desc.output.height;
+}
+
 /* Of the four settings of SMAA: the threshold of luma in the steps of smaa/color.glsl, steps of a search, and
  * of one along a diagonal. */
 static float masu_smaa_threshold(masu_aa aa) {

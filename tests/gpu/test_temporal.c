@@ -178,6 +178,36 @@ static void light_that_changes_is_seen(void **state) {
     close_session(&s);
 }
 
+/* The same while the camera goes along: what moves is held within what is there now, from above where the light goes
+ * out, from below where it comes on. Two frames later two thirds of two thirds of it would still be seen. */
+static void light_that_changes_in_motion_is_seen(void **state) {
+    (void)state;
+    static const float scales[] = {1.0f, 0.5f};
+    for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+        for (int rises = 0; rises < 2; rises++) {
+            masu_session s;
+            masu_light bright, dark;
+            masu_commands commands;
+            masu_session_desc d = temporal_desc("test_shadows", scales[i]);
+            open_session(&s, &d);
+            assert_int_equal(masu_light_of(s.m, &bright), MASU_OK);
+            dark = bright;
+            for (int k = 0; k < 3; k++) dark.sun_color[k] *= 0.3f;
+            find_truth("test_shadows", NULL, rises ? &bright : &dark);
+            for (int k = 13; k >= 0; k--) {
+                masu_camera camera = aside(&s, 0.02 * k);
+                masu_frame_desc f = {.camera = &camera, .light = (k < 2) == rises ? &bright : &dark};
+                draw(&s, &f, &commands, k == 2 ? b.rgba : a.rgba);
+            }
+            uint32_t all, off = ghosts(b.rgba, a.rgba, 6, &all);
+            print_message("  scale %.2f, %s: %u of %u pixels are more than 6 of 255 off\n", (double)scales[i],
+                          rises ? "on" : "out", off, all);
+            assert_true(all > 1000 && off < all / 20);
+            close_session(&s);
+        }
+    }
+}
+
 /* ---- What must not matter -------------------------------------------------------------------- */
 
 static void equal_frames_give_equal_bytes(void **state) {
@@ -300,6 +330,7 @@ int main(void) {
         cmocka_unit_test(in_motion_it_is_no_worse),
         cmocka_unit_test(what_leaves_leaves_no_ghost),
         cmocka_unit_test(light_that_changes_is_seen),
+        cmocka_unit_test(light_that_changes_in_motion_is_seen),
         cmocka_unit_test(equal_frames_give_equal_bytes),
         cmocka_unit_test(a_cut_forgets_all),
         cmocka_unit_test(a_change_of_scale_keeps_the_past),

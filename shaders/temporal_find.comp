@@ -1,0 +1,178 @@
+/*
+ * temporal_find.comp: of each pixel of the render size, where the previous frame has shown it, how many samples of what it
+ * was count, and within what it is held: all that temporal.comp need not ask again for each pixel of the output.
+ *
+ *   1. Where was it? By the velocity at the pixel; where a silhouette passes through the 3x3 samples around, by the
+ *      nearest one's, so that a smooth edge moves with what it is the edge of. Without what the frames' jitter differs by.
+ *   2. Is it the same thing? What rests in a world that does is. Else one of the four depths that the previous frame has
+ *      kept there has to lie between the nearest and the farthest of the nine of now, as far as they were then; else the
+ *      pixel begins anew. A surface that leans may differ by its slope.
+ *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
+ *      show: a standard deviation around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
+ *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
+ *      changed, and the mean of the history around is not that of the nine, it is, too, and counts as one sample.
+ *   4. How much does it count? At rest as many samples as it has, up to 30, and up to 8 while anything in the world
+ *      changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
+ *      that what moves counts at most 2, and less the faster it moves and the more it grows: it was smaller then.
+ *
+ * What is found is four words, of upscale/found.glsl.
+ *
+ * Push constants: output_* = the render size; push.history_* = size of the part of `history` that is shown / that of the
+ * image; push.shift: 1 where the sizes of input and output are one, and a pixel of the output looks at its own.
+ */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#define MASU_PUSH masu_push_temporal_find
+#include "shared/masu_shared.h"
+#include "shared/globals.glsl"
+#include "shared/store.glsl"
+#include "shared/motion.glsl"
+#include "upscale/corners.glsl"
+#include "upscale/found.glsl"
+
+layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
+
+layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots of display light */
+layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D depth_image;
+layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
+layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D old_depth_image;
+layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D history_image; /* linear */
+layout(set = MASU_SET_PASS, binding = 5, rgba32ui) uniform writeonly uimage2D found_image;
+
+const float most_at_rest = masu_found_most;
+const float most_changing = 8.0; /* the same in a world that changes */
+const float most_moving = 2.0;
+const float most_other = 1.0; /* of what rests and is no longer what it was */
+const float per_growth = 20.0; /* of view depth; */
+const float per_pixel = 0.1;   /* of motion: by how much that is divided */
+const float at_rest = 0.02;    /* pixels of the input */
+const float apart = 0.1;       /* of the nearest depth: a silhouette */
+const float same_depth = 0.01;
+const float deviations = 1.0;
+const float unseen = 0.01; /* display light that a mean over the surroundings may differ by */
+
+/* Depths around a pixel: large is near. */
+struct around {
+    float nearest, farthest;
+    float slope; /* by which depth differs from pixel to pixel of one surface */
+    ivec2 front; /* where the nearest is */
+};
+
+/* Of the nine samples around: display light. */
+struct colors {
+    vec3 mean, deviation, least, most;
+};
+
+around depths_around(ivec2 at, ivec2 size)
+{
+    masu_corners c = masu_corners_of(depth_image, vec2(at), vec2(size));
+    around found;
+    found.nearest = masu_most_of(c);
+    found.farthest = masu_least_of(c);
+    found.slope = min(abs(c.left - c.own), abs(c.right - c.own)) + min(abs(c.above - c.own), abs(c.below - c.own));
+    /* Of several the one that the pixel has a side in common with. */
+    ivec2 way = ivec2(1, 1);
+    way = c.diagonal.z == found.nearest ? ivec2(-1, 1) : way;
+    way = c.diagonal.y == found.nearest ? ivec2(1, -1) : way;
+    way = c.diagonal.x == found.nearest ? ivec2(-1, -1) : way;
+    way = c.below == found.nearest ? ivec2(0, 1) : way;
+    way = c.above == found.nearest ? ivec2(0, -1) : way;
+    way = c.right == found.nearest ? ivec2(1, 0) : way;
+    way = c.left == found.nearest ? ivec2(-1, 0) : way;
+    way = c.own == found.nearest ? ivec2(0) : way;
+    found.front = clamp(at + way, ivec2(0), size - 1);
+    return found;
+}
+
+/* Pixels that the pixel has moved, how its depth has grown; w as in the image. */
+vec4 motion_at(vec2 place, around a, vec2 size, out bool of_front)
+{
+    vec2 inside = min(max(place, vec2(0.5)), size - 0.51); /* not even with a weight of 0 what lies beyond */
+    vec4 moved = textureLod(velocity_image, inside / vec2(textureSize(velocity_image, 0)), 0.0);
+    of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99);
+    if (of_front) {
+        moved = texelFetch(velocity_image, a.front, 0);
+    }
+    return vec4(masu_unjittered(moved.xy, size), moved.zw);
+}
+
+/* before: the share of the picture at which the previous frame has shown it. */
+bool is_known(vec2 before, around a, float growth)
+{
+    vec2 size = vec2(frame.temporal.xy);
+    vec2 place = (before - 0.5 * previous.jitter.zw) * size;
+    vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* of a size of 1 it is the same texel four times */
+    vec4 depths = textureGather(old_depth_image, inside / vec2(textureSize(old_depth_image, 0)));
+    float then = previous.forward.w * masu_rcp(frame.forward.w * (1.0 + growth));
+    float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
+    return masu_least_of(depths) <= a.nearest * then + off && masu_most_of(depths) >= a.farthest * then - off;
+}
+
+colors colors_around(ivec2 at, ivec2 last)
+{
+    colors c = colors(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0));
+    for (int i = 0; i < 9; i++) {
+        ivec2 beside = clamp(at + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last);
+        vec3 root = texelFetch(color_image, beside, 0).rgb, light = root * root;
+        c.mean += light;
+        c.deviation += light * light;
+        c.least = min(c.least, light);
+        c.most = max(c.most, light);
+    }
+    c.mean *= 1.0 / 9.0;
+    c.deviation = sqrt(max(c.deviation * (1.0 / 9.0) - c.mean * c.mean, 0.0));
+    return c;
+}
+
+/* Whether the history around is no longer what the nine samples show. */
+bool is_other(vec2 before, colors c, vec2 size)
+{
+    vec2 texel = vec2(push.history_x, push.history_y) / size;
+    vec2 middle = before * vec2(push.history_x, push.history_y);
+    vec3 sum = textureLod(history_image, middle, 0.0).rgb;
+    for (int i = 0; i < 4; i++) {
+        vec2 way = i < 2 ? vec2(2 * i - 1, 0.0) : vec2(0.0, 2 * i - 5);
+        vec2 inside = min(middle + way * texel, vec2(push.history_x, push.history_y) - 0.5 * texel);
+        sum += textureLod(history_image, inside, 0.0).rgb;
+    }
+    return any(greaterThan(abs(0.2 * sum - c.mean), c.deviation + unseen));
+}
+
+uvec4 found_at(ivec2 at, vec2 size)
+{
+    around a = depths_around(at, ivec2(size));
+    vec2 jitter = 0.5 * frame.jitter.zw * size;
+    vec2 place = vec2(at) + 0.5 - push.shift * jitter;
+    bool of_front;
+    vec4 moved = motion_at(place, a, size, of_front);
+    vec2 before = (place + jitter + moved.xy) / size;
+    float speed = length(moved.xy);
+    bool rests = !(speed > at_rest);
+    bool changes = frame.temporal.z != 0u;
+    bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
+                 all(lessThanEqual(before, vec2(1.0)));
+    /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */
+    if (!there || !((rests && !changes) || is_known(before, a, moved.z))) {
+        return uvec4(0u);
+    }
+    if (rests && !changes) {
+        return masu_found(vec2(0.0), true, most_at_rest, vec3(0.0), vec3(1.0));
+    }
+    colors c = colors_around(at, ivec2(size) - 1);
+    bool other = changes && is_other(before, c, size);
+    vec3 least = max(c.least, c.mean - deviations * c.deviation), most = min(c.most, c.mean + deviations * c.deviation);
+    float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
+    float resting = changes ? most_changing : most_at_rest;
+    float count = rests && other ? most_other : mix(resting, moving, min(4.0 * speed, 1.0));
+    bool held = other || !rests;
+    return masu_found(moved.xy, of_front, count, held ? least : vec3(0.0), held ? most : vec3(1.0));
+}
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = ivec2(pc.output_width, pc.output_height);
+    if (all(lessThan(at, size))) {
+        MASU_STORE_UINT(found_image, at, found_at(at, vec2(size)));
+    }
+}
