@@ -233,7 +233,7 @@ static void blocks_and_decoded_texels_give_one_picture(void **state) {
     uint32_t worst = max_difference(pictures[0], pictures[1], sizeof pictures[0]);
     print_message("blocks: %llu bytes, decoded: %llu; pictures differ by %u of 255\n",
                   (unsigned long long)bytes[0], (unsigned long long)bytes[1], worst);
-    assert_true(worst <= 3);
+    assert_true(worst <= 9); /* a step of the hue of what shines and is lit; 3 without */
     uint32_t colours = 0; /* it is a picture */
     for (uint32_t i = 4; i < 4 * PIXELS; i += 4) {
         colours += memcmp(pictures[0] + i, pictures[0] + i - 4, 3) != 0;
