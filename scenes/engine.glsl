@@ -94,19 +94,13 @@ float footprint(vec2 p)
 
 float sand(vec3 p)
 {
-    /* Steepest: d(wave)/d(away) <= depth * number + 0.16 * furrow_depth, and |d(away)| <= 1. */
-    const float slope = furrow_depth * (furrow_number + 0.16);
-    const float safe = 1.0 / sqrt(1.0 + slope * slope);
-    /* All furrows are in this circle: they end 8.75 from the footprint, which its blends make at most 0.7 nearer. */
-    vec2 q = p.xz - vec2(-1.2, -2.4);
-    if (dot(q, q) > 190.0) {
-        return p.y * safe;
-    }
     float away = footprint(p.xz);
     /* Far furrows would be finer than a pixel. */
     float depth = furrow_depth * clamp(1.4 - away * 0.16, 0.0, 1.0);
     float wave = depth * cos(furrow_number * away);
-    return (p.y - wave) * safe;
+    /* Steepest: d(wave)/d(away) <= depth * number + 0.16 * furrow_depth, and |d(away)| <= 1. */
+    const float slope = furrow_depth * (furrow_number + 0.16);
+    return (p.y - wave) * (1.0 / sqrt(1.0 + slope * slope));
 }
 
 /* ---- ring, cube, pillars ---- */

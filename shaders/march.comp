@@ -50,7 +50,6 @@ shared uint taken; /* of them, by now */
  * 2.3e-6 instead of 1e-6. */
 uvec2 size, corner;
 vec2 ndc_corner, ndc_step;
-float pixel_width; /* one unit of z away */
 
 /* Where in the tile its pixel i is: 8x8 after 8x8. */
 uvec2 place_of(uint i)
@@ -64,7 +63,7 @@ ray ray_of(uvec2 place, out float z_scale)
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
-    return ray(through * inverse, pixel_width * inverse, 0.0, 0.0);
+    return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);
 }
 
 void look_from(uvec2 tile)
@@ -73,17 +72,15 @@ void look_from(uvec2 tile)
     corner = tile * uint(MASU_TILE);
     ndc_corner = masu_ndc(vec2(corner) + 0.5, vec2(size));
     ndc_step = 2.0 / vec2(size);
-    pixel_width = frame.up.w * ndc_step.y;
 }
 
-/* Boxes as the eye sees them: the SDF's bounds, and that of the listed parts. */
-vec3 bounds_low, bounds_high, box_low, box_high;
+/* The box of the listed parts as the eye sees it. Not that of the SDF's bounds, too: a Vega has no registers left for what
+ * all rays share, and would keep some of it elsewhere. */
+vec3 box_low, box_high;
 
 void look_at_boxes()
 {
     masu_listed_box(box_low, box_high);
-    bounds_low = frame.sdf_min.xyz - eye_hi - eye_lo;
-    bounds_high = frame.sdf_max.xyz - eye_hi - eye_lo;
     box_low = box_low - eye_hi - eye_lo;
     box_high = box_high - eye_hi - eye_lo;
 }
@@ -116,7 +113,7 @@ vec3 prepare(uvec2 place)
     float z_scale;
     ray r = ray_of(place, z_scale);
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
-    vec2 bounds = within(bounds_low, bounds_high, inverse);
+    vec2 bounds = within(frame.sdf_min.xyz - eye_hi - eye_lo, frame.sdf_max.xyz - eye_hi - eye_lo, inverse);
     float nearest = frame.forward.w * z_scale;
     float first_t = max(nearest, bounds.x);
     float last_t = min(frame.sdf_max.w, bounds.y);

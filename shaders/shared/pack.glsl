@@ -110,20 +110,17 @@ void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, 
     float brightest = masu_brightest(glow);
     bool black = !(masu_brightest(albedo) > 0.0), metal = s.metallic >= 0.5;
     bool unlit = black && !(roughness < 1.0) && !(s.coat > 0.0);
-    texel = vec4(sqrt(glow * (1.0 / masu_emissive_range)), roughness);
-    look = MASU_SURFACE_EMISSIVE << 30 | (unlit ? 0u : 15u << 26);
-    if (unlit || (black && !metal)) {
-        return;
-    }
     bool red = glow.r >= brightest, green = !red && glow.g >= brightest;
     vec2 others = red ? glow.gb : green ? glow.br : glow.rg;
     uvec2 hue = uvec2(sqrt(min(others / brightest, vec2(1.0))) * 12.0 + 0.5);
     uint channel = red ? 0u : green ? 169u : 338u;
     uint level = uint(sqrt(sqrt(brightest * (1.0 / masu_emissive_range))) * 127.0 + 0.5);
     uvec3 base = uvec3(sqrt(albedo) * 31.0 + 0.5);
-    texel = unpackUnorm4x8(base.r | base.g << 5 | base.b << 10 | (metal ? 1u << 15 : 0u) | level << 16 |
-                           (channel + hue.x * 13u + hue.y) << 23);
-    look = MASU_SURFACE_EMISSIVE << 30 | (1u + uint(roughness * 13.0 + 0.5)) << 26;
+    vec4 lit = unpackUnorm4x8(base.r | base.g << 5 | base.b << 10 | (metal ? 1u << 15 : 0u) | level << 16 |
+                              (channel + hue.x * 13u + hue.y) << 23);
+    bool colored = !unlit && (!black || metal);
+    texel = colored ? lit : vec4(sqrt(glow * (1.0 / masu_emissive_range)), roughness);
+    look = MASU_SURFACE_EMISSIVE << 30 | (unlit ? 0u : colored ? 1u + uint(roughness * 13.0 + 0.5) : 15u) << 26;
 }
 
 /* The texel of albedo, and the bits of the normal's texel that are not its direction. */

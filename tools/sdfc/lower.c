@@ -7,7 +7,8 @@
  * from the origin. So a point carries an offset that is still to be added to it, at first the
  * anchor: movements, turns, scalings and endless repetitions change the offset and not the point,
  * and what needs true coordinates adds it up. By then it is small, since what one sees stands near
- * the anchor. The offset's expressions are evaluated in two floats each (shared/wide.glsl). */
+ * the anchor. The offset's expressions are evaluated in two floats each (shared/wide.glsl).
+ * Over 700 lines: a function for each kind of shape, which all carry the same state. */
 #include "sdfc/internal.h"
 
 #include <stdlib.h>
