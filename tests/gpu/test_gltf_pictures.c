@@ -61,7 +61,7 @@ typedef struct shot {
     double from[3], to[3];
 } shot;
 
-static const shot ahead = {{1, 0.5, 3}, {1, 0.5, 0}}, behind = {{1, 0.5, -3}, {1, 0.5, 0}};
+static const shot ahead = {{1, 0.5, 3}, {1, 0.5, 0}};
 
 static const uint16_t *photograph(masu_session *s, const char *path, shot p, masu_view *view) {
     static unsigned made;
