@@ -77,8 +77,10 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(GENERATED)
 	@echo "  CC      $<"
 	$(V)$(CC) $(ALL_FLAGS) $(FOLDER_FLAGS) -MMD -MP -c $< -o $@
 
-# What libraries without an interface for C need. clang's sanitizers are not gcc's.
-CXX_FLAGS = -std=c++17 -Wall -Wextra $(if $(filter-out 0,$(WERROR)),-Werror) $(CONFIG_$(config)) $(CXXFLAGS)
+# What libraries without an interface for C need. clang's sanitizers are not gcc's. What clang calls virtually it would
+# ask its C++ library about, which programs that clang links are without.
+CXX_FLAGS = -std=c++17 -Wall -Wextra $(if $(filter-out 0,$(WERROR)),-Werror) $(CONFIG_$(config)) \
+    $(if $(filter sanitize fuzz,$(config)),-fno-sanitize=vptr) $(CXXFLAGS)
 $(BUILD)/obj/%.o: %.cpp $(BUILD)/flags
 	@mkdir -p $(@D)
 	@echo "  CXX     $<"

@@ -42,6 +42,7 @@ $(for f in README.md CHANGELOG.md LICENSE docs/*.md docs/*.jpg; do echo ".$prefi
 $(for p in masu masu-bake masu-meso masu-sdfc; do
     printf '%s\n' ".$prefix/share/man/man1/$p.1" ".$prefix/share/bash-completion/completions/$p"
 done)
+.$prefix/share/masu/suites/extreme.json
 .$prefix/share/masu/suites/full.json
 .$prefix/share/masu/suites/smoke.json$scenes
 END

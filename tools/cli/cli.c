@@ -344,16 +344,20 @@ int masu_cli_commands(masu_cli *cli, const char *summary, const masu_cli_command
     return masu_cli_usage_error("unknown command \"%s\"", word);
 }
 
-int masu_cli_main(const masu_cli_program *program, int argc, char **argv) {
-    masu_cli cli = {.program = program, .argc = argc, .next = 1, .argv = argv};
-    snprintf(state.name, sizeof state.name, "%s", program->name);
-    cli.command = program->commands[0];
-    int exit_code = cli.command->name ? masu_cli_commands(&cli, program->summary, program->commands)
-                                      : cli.command->run(&cli);
+int masu_cli_end(int exit_code) {
     masu_cli_progress_clear();
     if (fflush(stdout) != 0 || ferror(stdout)) {
         int code = masu_cli_error("cannot write to standard output: %s", strerror(errno));
         if (exit_code == MASU_CLI_OK) exit_code = code;
     }
     return exit_code;
+}
+
+int masu_cli_main(const masu_cli_program *program, int argc, char **argv) {
+    masu_cli cli = {.program = program, .argc = argc, .next = 1, .argv = argv};
+    snprintf(state.name, sizeof state.name, "%s", program->name);
+    cli.command = program->commands[0];
+    int exit_code = cli.command->name ? masu_cli_commands(&cli, program->summary, program->commands)
+                                      : cli.command->run(&cli);
+    return masu_cli_end(exit_code);
 }

@@ -88,5 +88,5 @@ int masu_bake_supervise(const masu_bake_supervised *what) {
     if (child > 0) return wait_for(what, child);
     masu_bake_end_with_parent(parent, SIGTERM);
     limit_memory(what->memory_mib);
-    exit(what->body(what->argument));
+    exit(masu_cli_end(what->body(what->argument)));
 }

@@ -157,7 +157,8 @@ static void complain(MagickWand *wand, int fd) {
     give_up(fd, line);
 }
 
-static void send_texels(MagickWand *wand, int sizes, int fd) {
+/* solid: has no alpha. ImageMagick gives what was in its memory for that of some of these, of a TGA of 24 bits. */
+static void send_texels(MagickWand *wand, int sizes, bool solid, int fd) {
     size_t width = MagickGetImageWidth(wand), height = MagickGetImageHeight(wand);
     size_t w = width, h = height;
     choose_size(sizes, &w, &h);
@@ -172,6 +173,7 @@ static void send_texels(MagickWand *wand, int sizes, int fd) {
         complain(wand, fd);
         return;
     }
+    for (size_t i = 0; i < w * h && (solid || !MagickGetImageAlphaChannel(wand)); i++) texels[4 * i + 3] = 255;
     head answer = {(uint32_t)w, (uint32_t)h};
     masu_bake_send(fd, &answer, sizeof answer);
     masu_bake_send(fd, texels, w * h * 4);
@@ -186,7 +188,7 @@ static void decode(const job *j, const unsigned char *data, size_t bytes, int fd
                                   CharPixel, (void *)(uintptr_t)data) == MagickFalse) {
             complain(wand, fd);
         } else {
-            send_texels(wand, j->sizes, fd);
+            send_texels(wand, j->sizes, false, fd);
         }
         return;
     }
@@ -211,7 +213,8 @@ static void decode(const job *j, const unsigned char *data, size_t bytes, int fd
     if (MagickGetImageColorspace(wand) == CMYKColorspace) {
         MagickTransformImageColorspace(wand, sRGBColorspace);
     }
-    send_texels(wand, j->sizes, fd);
+    bool solid = !strcmp(format, "TGA") && bytes > 17 && data[data[1] == 1 ? 7 : 16] == 24;
+    send_texels(wand, j->sizes, solid, fd);
 }
 
 static void read_in_child(void *argument, int fd) {
