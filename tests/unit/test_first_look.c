@@ -37,7 +37,7 @@ static void project(const masu_bake_content *c, uint64_t instances, const masu_b
     masu_bake_vec3 r = masu_bake_cross(f, masu_bake_v3(0, 1, 0));
     assert_true(masu_bake_normalize(&r));
     masu_bake_vec3 u = masu_bake_cross(r, f);
-    double t = tan(key->fov_y / 2);
+    double t = tan((double)key->fov_y / 2);
     most[0] = most[1] = 0;
     for (uint64_t i = 0; i < instances; i++) {
         masu_bake_affine world = masu_bake_transform(&MASU_BAKE_INSTANCES(c)[i]);
