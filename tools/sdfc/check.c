@@ -204,9 +204,9 @@ static void check_bounds(checker *k) {
 
 /* ---- all parts ---- */
 
-static void set_part(checker *k, int part) {
-    k->part = &k->c->parts[part];
-    k->facts = &k->c->shapes[k->part->shape].facts;
+static void set_shape(checker *k, const sdfc_part *part, int shape) {
+    k->part = part;
+    k->facts = &k->c->shapes[shape].facts;
     k->size = 0;
     k->tried = k->broken = 0;
     double furthest = 0;
@@ -235,20 +235,10 @@ static void set_environment(checker *k, int environment) {
     sdfc_evaluate(k->c, k->params, k->time, k->c->values);
 }
 
-static void free_program(sdfc_program *p) {
-    for (int f = 0; f < p->function_count; f++) {
-        free(p->functions[f].instrs);
-        free(p->functions[f].terms);
-    }
-    free(p->functions);
-    free(p->args);
-    free(p->root);
-}
-
 /* A shape by itself; its part has been lowered, so that lowering this much of it does not fail. */
 static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
-    checker k = {.c = c, .random = 0x6D617375, .part = part};
-    const sdfc_facts *f = &c->shapes[shape].facts;
+    checker k = {.c = c, .random = 0x6D617375};
+    set_shape(&k, part, shape);
     const int instrs = c->instrs, before = c->at;
     const bool anchored = c->anchored;
     sdfc_part alone = {.shape = shape, .token = part->token};
@@ -263,12 +253,7 @@ static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
     bool same = true;
     for (int n = 0; n < 256 && same; n++) {
         if (n % 64 == 0) set_environment(&k, n / 64);
-        for (int i = 0; i < 3; i++) {
-            bool ends = isfinite(f->box.low[i]) && isfinite(f->box.high[i]);
-            double middle = ends ? (f->box.low[i] + f->box.high[i]) / 2 : 0;
-            double half = ends ? (f->box.high[i] - f->box.low[i]) / 2 : FAR_AWAY;
-            p[i] = middle + (2 * unit(&k) - 1) * (1.2 * half + 1e-6);
-        }
+        any_point(&k, p);
         const double mirrored[3] = {p[0], p[1], -p[2]};
         d = sdfc_run(c, &alone.program, p, NULL);
         other = sdfc_run(c, &alone.program, mirrored, NULL);
@@ -277,7 +262,7 @@ static void check_mirror(sdfc *c, const sdfc_part *part, int shape) {
     free(c->variables);
     free(c->values);
     c->variables = c->values = NULL;
-    free_program(&alone.program);
+    sdfc_free_program(&alone.program);
     if (same) return;
     sdfc_fail(c, part->token,
               "part %s: the field is that of mirrored sectors, of what is not its own mirror image: f(%.17g, %.17g, "
@@ -318,7 +303,7 @@ void sdfc_check(sdfc *c, uint32_t pairs) {
     for (int e = 0; e < environments; e++) {
         set_environment(&k, e);
         for (int i = 0; i < c->part_count; i++) {
-            set_part(&k, i);
+            set_shape(&k, &c->parts[i], c->parts[i].shape);
             if (k.facts->user) continue;
             double share = (double)pairs * thin / c->groups[k.part->group].part_count;
             int rounds = (int)ceil(share / environments);

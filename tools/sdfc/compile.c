@@ -7,18 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+void sdfc_free_program(sdfc_program *p) {
+    for (int f = 0; f < p->function_count; f++) {
+        free(p->functions[f].instrs);
+        free(p->functions[f].terms);
+    }
+    free(p->functions);
+    free(p->args);
+    free(p->root);
+}
+
 void sdfc_free(sdfc *c) {
     for (int i = 0; i < c->shape_count; i++) free(c->shapes[i].child);
-    for (int i = 0; i < c->part_count; i++) {
-        sdfc_program *p = &c->parts[i].program;
-        for (int f = 0; f < p->function_count; f++) {
-            free(p->functions[f].instrs);
-            free(p->functions[f].terms);
-        }
-        free(p->functions);
-        free(p->args);
-        free(p->root);
-    }
+    for (int i = 0; i < c->part_count; i++) sdfc_free_program(&c->parts[i].program);
     for (int i = 0; i < c->group_count; i++) free(c->groups[i].slot_of_arg);
     free(c->tokens);
     free(c->exprs);
