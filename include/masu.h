@@ -179,6 +179,7 @@ typedef struct masu_scene {
     uint32_t textures;   /* pictures: layers of the texture arrays */
     uint32_t texture_arrays, texture_sets;
     uint32_t masks; /* 1: some material has an alpha mask */
+    uint32_t singles; /* 1: some material is not seen from behind */
     uint32_t surfaces; /* of those not blended: with a specular factor, a coat, small relief or
                         * occlusion map */
     uint32_t coats;    /* materials with a clear coat */
@@ -308,7 +309,7 @@ typedef struct masu_device_block {
 typedef enum masu_readback_bits {
     MASU_READBACK_DEPTH = 1,  /* float: near / view z of the nearest surface, 0: none */
     /* The next two are not defined where the depth is 0. */
-    MASU_READBACK_ALBEDO = 2, /* 4 x uint8: sqrt of linear albedo, roughness */
+    MASU_READBACK_ALBEDO = 2, /* 4 x uint8: sqrt of linear albedo, roughness; of what emits see shaders/shared/pack.glsl */
     MASU_READBACK_NORMAL =
         4, /* uint32: octahedral 13+13 bits, metallic 4 bits, flags 2 bits (masu_unpack_normal) */
     MASU_READBACK_HDR = 8, /* 4 x half: linear radiance before exposure */
@@ -911,8 +912,8 @@ typedef struct masu_particle {
     uint32_t flags;         /* MASU_PARTICLE_* */
 } masu_particle;
 
-/* A box that paints what is in it, of polygons and the SDF, before light falls on it: what is transparent or
- * shines by itself stays as it is, and reflections show surfaces without it. Later ones lie over earlier
+/* A box that paints what is in it, of polygons and the SDF, before light falls on it, and covers what shines there: what is
+ * transparent or does nothing but shine stays as it is, and reflections show surfaces without it. Later ones lie over earlier
  * ones. One with a number that is not finite, no volume or no opacity is left out; what is out of range is clamped. */
 #define MASU_DECAL_ROUND 1u      /* an ellipse in x and y of the box; else a rectangle */
 #define MASU_DECAL_KEEP_COLOR 2u /* colour and metal stay: water on a street is roughness alone */

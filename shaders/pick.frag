@@ -1,6 +1,6 @@
 /*
  * pick.frag: whose polygon it is. push.blended: not 0 where it is blended. With MASU_TEXTURES only where the map's alpha
- * leaves it: push.flags are the material's flags, push.layers the layers of its maps.
+ * leaves it: push.layers are the layers of its maps. push.flags: the material's.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -25,5 +25,8 @@ void main()
         discard;
     }
 #endif
+    if ((push.flags & MASU_MAP_SINGLE) != 0u && !gl_FrontFacing) {
+        discard;
+    }
     out_id = (in_id + 1u) | (push.blended != 0u ? MASU_PICK_BLENDED : 0u);
 }

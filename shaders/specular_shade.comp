@@ -85,7 +85,7 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
         m.normal = masu_normalize(m.normal - away * direction, -direction);
     }
 
-    masu_trace_material look = masu_trace_material_at(triangle.w & ~MASU_TRACE_HOLES);
+    masu_trace_material look = masu_trace_material_at(triangle.w & MASU_TRACE_MATERIAL);
     m.surface = masu_plain_surface(look.base_color.rgb, look.base_color.w);
     m.surface.emissive = look.emissive.rgb;
     m.surface.metallic = look.emissive.w;

@@ -80,7 +80,8 @@ void main()
     n = away ? -n : n;
 #endif
     float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
-    if (elsewhere || !(gl_FragCoord.z >= nearest)) {
+    bool back = (in_thing.y & MASU_MAP_SINGLE) != 0u && !gl_FrontFacing;
+    if (elsewhere || back || !(gl_FragCoord.z >= nearest)) {
         discard;
     }
     vec2 seen = vec2(1.0);

@@ -313,6 +313,7 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_MAP_METAL 32u
 #define MASU_MAP_ADDITIVE 0x10000u
 #define MASU_MAP_FAR_SIDE_FIRST 0x20000u /* of a blended thing that is drawn twice */
+#define MASU_MAP_SINGLE 0x40000u /* not seen from behind */
 #define MASU_MAP_CUTOFF_SHIFT 8
 #define MASU_MAP_OCCLUSION_SHIFT 24 /* 8 bits: the layer of the occlusion map */
 
@@ -407,7 +408,9 @@ struct masu_material_data {
 
 /* What rays know of a material. */
 #define MASU_TRACE_NONE 0xFFFFFFFFu
-#define MASU_TRACE_HOLES 0x80000000u /* in the word of a triangle's material: it may have holes */
+#define MASU_TRACE_HOLES 0x80000000u /* in the word of a triangle's material: it may have holes, */
+#define MASU_TRACE_SINGLE 0x40000000u /* it is not hit from behind */
+#define MASU_TRACE_MATERIAL 0x3FFFFFFFu
 #define MASU_TRACE_NOISE_WORDS 4096u
 struct masu_trace_material {
     masu_vec4 base_color; /* as in masu_material_data: rgb; w roughness */

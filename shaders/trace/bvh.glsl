@@ -6,7 +6,7 @@
  *   masu_trace_vertices[]   the vertices of the blob
  *   MASU_TRACE_LANES        how many invocations its group has
  * and may define
- *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics)   false: the ray goes on through this point
+ *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) false: the ray goes on through this point
  *   MASU_TRACE_COUNTERS                                    counts nodes and triangles that were looked at
  *
  * Rays live in world space minus the anchor. Directions need not have unit length; t counts them. A
@@ -40,7 +40,7 @@
 #include "shared/masu_shared.h"
 
 #ifndef MASU_TRACE_OPAQUE
-#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics) true
+#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) true
 #endif
 
 struct masu_ray_hit {
@@ -319,7 +319,7 @@ masu_ray_hit masu_trace_walk(vec3 origin, vec3 direction, float t_min, float t_m
 #ifdef MASU_TRACE_COUNTERS
                 masu_trace_triangles_seen++;
 #endif
-                if (found.x >= 0.0 && MASU_TRACE_OPAQUE(triangle, about.y, found.yz)) {
+                if (found.x >= 0.0 && MASU_TRACE_OPAQUE(triangle, about.y, found.yz, d)) {
                     far = found.x;
                     best = masu_ray_hit(found.x, triangle, about.y, record, found.yz);
                     if (any_will_do) {

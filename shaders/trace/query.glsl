@@ -3,7 +3,7 @@
  * of bvh.glsl; the answer is the same. The includer declares
  *   masu_trace_top   the accelerationStructureEXT over the traced instances, each with its mesh's first triangle
  * and may define
- *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics)   false: the ray goes on through this point. Of
+ *   MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d)   false: the ray of direction d in the object's space goes on through this point. Of
  *                                                          meshes that are not said to be opaque
  *
  * Rays live in world space minus the anchor. A ray that is not finite, has no direction, or begins farther
@@ -17,7 +17,7 @@
 #include "shared/masu_shared.h"
 
 #ifndef MASU_TRACE_OPAQUE
-#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics) true
+#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) true
 #endif
 
 struct masu_ray_hit {
@@ -51,7 +51,8 @@ masu_ray_hit masu_trace(vec3 origin, vec3 direction, float t_min, float t_max)
                         uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
         uint instance = uint(rayQueryGetIntersectionInstanceIdEXT(query, false));
         vec2 weights = rayQueryGetIntersectionBarycentricsEXT(query, false);
-        if (MASU_TRACE_OPAQUE(triangle, instance, weights)) rayQueryConfirmIntersectionEXT(query);
+        vec3 d = rayQueryGetIntersectionObjectRayDirectionEXT(query, false);
+        if (MASU_TRACE_OPAQUE(triangle, instance, weights, d)) rayQueryConfirmIntersectionEXT(query);
     }
     if (going) {
         masu_trace_exceeded = true;

@@ -8,7 +8,8 @@
  *                            of the previous frame
  *
  * Triangles hold the number of their material here, not that of their primitive as in the blob; MASU_TRACE_HOLES
- * with it: of a mask that has a picture. So a ray asks no material of what is whole.
+ * with it: of a mask that has a picture; MASU_TRACE_SINGLE: of what is not seen from behind. So a ray asks no material
+ * of what is whole.
  */
 #ifndef MASU_TRACE_SCENE_GLSL
 #define MASU_TRACE_SCENE_GLSL

@@ -79,18 +79,37 @@ vec2 masu_trace_uv(uvec3 vertices, vec2 b)
 
 /* Masks: whether the surface is there at all. By the largest mip: what its coverage is, a ray that is one
  * among many finds by itself. */
-bool masu_trace_opaque(uint triangle, vec2 b)
+bool masu_trace_there(uvec4 about, vec2 b)
 {
-    uvec4 about = masu_trace_static[masu_trace_static[0].x + triangle];
     if ((about.w & MASU_TRACE_HOLES) == 0u) {
         return true;
     }
-    uint at = masu_trace_static[masu_trace_static[0].w].x + 4u * (about.w & ~MASU_TRACE_HOLES);
+    uint at = masu_trace_static[masu_trace_static[0].w].x + 4u * (about.w & MASU_TRACE_MATERIAL);
     uvec4 maps = masu_trace_static[at + 3u];
     float alpha = masu_trace_picture(maps.x, masu_trace_uv(about.xyz, b), 0.0, maps.w).a;
     return alpha >= float(maps.z >> MASU_MAP_CUTOFF_SHIFT & 255u) / 255.0;
 }
-#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics) masu_trace_opaque(triangle, barycentrics)
 #endif
+
+/* d: of the ray, in the object's space, where what is not seen from behind turns counter-clockwise as in the file,
+ * even where an instance mirrors it. */
+bool masu_trace_opaque(uint triangle, vec2 b, vec3 d)
+{
+    uvec4 about = masu_trace_static[masu_trace_static[0].x + triangle];
+    if ((about.w & MASU_TRACE_SINGLE) != 0u) {
+        vec3 p = uintBitsToFloat(masu_trace_vertices[about.x].xyz);
+        vec3 u = uintBitsToFloat(masu_trace_vertices[about.y].xyz) - p;
+        vec3 v = uintBitsToFloat(masu_trace_vertices[about.z].xyz) - p;
+        if (dot(cross(u, v), d) > 0.0) {
+            return false;
+        }
+    }
+#ifdef MASU_TRACE_TEXTURES
+    return masu_trace_there(about, b);
+#else
+    return true;
+#endif
+}
+#define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) masu_trace_opaque(triangle, barycentrics, d)
 
 #endif

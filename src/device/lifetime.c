@@ -55,6 +55,8 @@ void masu_device_destroy(masu_device *m) {
     vk->DestroySampler(device, m->linear, vk->allocator);
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT; i++)
         vk->DestroyPipeline(device, m->textured[i], vk->allocator);
+    for (uint32_t i = 0; i < MASU_CULLED_COUNT; i++)
+        vk->DestroyPipeline(device, m->culled[i], vk->allocator);
     vk->DestroyPipeline(device, m->masked_casters, vk->allocator);
     vk->DestroyPipeline(device, m->masked_picks, vk->allocator);
     vk->DestroyDescriptorSetLayout(device, m->texture_layout, vk->allocator);

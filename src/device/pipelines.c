@@ -331,10 +331,10 @@ static int blends_color(const masu_device *m, uint32_t pass) {
     return 0;
 }
 
-/* textured: with texture coordinates; masked: with the discard of masks. */
+/* textured: with texture coordinates; masked: with the discard of masks; culled: not from behind. */
 static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
-                                         VkBool32 masked, VkPipeline *out) {
+                                         VkBool32 masked, int culled, VkPipeline *out) {
     masu_geometry geometry = masu_passes[pass].geometry;
     int polygons = draws_polygons(pass); /* else what the vertex shader makes up */
     int blends = blends_color(m, pass);
@@ -371,12 +371,13 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
         .viewportCount = 1,
         .scissorCount = 1};
-    /* No back-face culling: CAD data is not consistently wound, and the normal is turned towards
-     * the viewer. */
+    /* Back faces are culled only where a material says so: CAD data is not consistently wound, and the normal
+     * is turned towards the viewer. */
     VkPipelineRasterizationStateCreateInfo raster = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
         .polygonMode = VK_POLYGON_MODE_FILL,
-        .cullMode = VK_CULL_MODE_NONE,
+        .cullMode = culled ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE,
+        .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
         .lineWidth = 1.0f};
     VkPipelineMultisampleStateCreateInfo samples = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
@@ -426,20 +427,20 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
 }
 
 /* Times are added up per pass. */
-static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked,
+static masu_result make_pipeline(masu_device *m, uint32_t pass, int textured, VkBool32 masked, int culled,
                                  VkPipeline *out, masu_detail *detail) {
     masu_draw_code code = masu_draw_code_of(m->plan, pass, textured);
     const masu_code codes[2] = {code.vertex, code.fragment};
     VkBool32 constants[SPECIAL_COUNT];
     (void)specialise(m, masked, constants);
-    uint64_t key = key_of(m, pass, codes, textured, constants);
+    uint64_t key = key_of(m, pass, codes, textured | culled << 1, constants);
     if (masu_pool_take(m, key, out)) return MASU_OK;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     masu_result result = make_module(m, code.vertex, &modules[0], detail);
     if (!result && code.fragment.bytes) result = make_module(m, code.fragment, &modules[1], detail);
     if (!result) {
         uint64_t start = now(m);
-        VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, out);
+        VkResult r = create_graphics_pipeline(m, pass, modules, textured, masked, culled, out);
         m->pipeline_ns[pass] += now(m) - start;
         if (MASU_FAILED(r, *out))
             result = masu_fail_vulkan(detail, r, "vkCreateGraphicsPipelines");
@@ -456,9 +457,23 @@ static masu_result make_textured(masu_device *m, uint32_t pass, masu_detail *det
     masu_result result = MASU_OK;
     for (uint32_t i = 0; i < MASU_TEXTURED_COUNT && !result; i++) {
         if (i == MASU_TEXTURED_MASK && !m->plan->scene.masks) continue;
-        result = make_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, &m->textured[i], detail);
+        result = make_pipeline(m, pass, 1, i == MASU_TEXTURED_MASK, 0, &m->textured[i], detail);
         masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->textured[i]),
                   i == MASU_TEXTURED_MASK ? "gbuffer, masks" : "gbuffer, textured");
+    }
+    return result;
+}
+
+/* The same once more for what is not seen from behind. */
+static masu_result make_culled(masu_device *m, uint32_t pass, int textures, masu_detail *detail) {
+    static const char *const names[MASU_CULLED_COUNT] = {"gbuffer, culled", "gbuffer, textured, culled",
+                                                         "gbuffer, masks, culled"};
+    masu_result result = MASU_OK;
+    for (uint32_t i = 0; i < MASU_CULLED_COUNT && !result && m->plan->scene.singles; i++) {
+        int mask = i == 1 + MASU_TEXTURED_MASK;
+        if ((i && !textures) || (mask && !m->plan->scene.masks)) continue;
+        result = make_pipeline(m, pass, i > 0, mask ? VK_TRUE : VK_FALSE, 1, &m->culled[i], detail);
+        masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->culled[i]), names[i]);
     }
     return result;
 }
@@ -466,14 +481,14 @@ static masu_result make_textured(masu_device *m, uint32_t pass, masu_detail *det
 /* Through the holes of a mask the sun shines. */
 static masu_result make_masked_casters(masu_device *m, uint32_t pass, masu_detail *detail) {
     if (!m->plan->scene.masks) return MASU_OK;
-    masu_result result = make_pipeline(m, pass, 1, VK_TRUE, &m->masked_casters, detail);
+    masu_result result = make_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_casters, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_casters), "cascades, masks");
     return result;
 }
 
 /* Nor is one picked there, or what is blended where its map is clear. */
 static masu_result make_masked_picks(masu_device *m, uint32_t pass, masu_detail *detail) {
-    masu_result result = make_pipeline(m, pass, 1, VK_TRUE, &m->masked_picks, detail);
+    masu_result result = make_pipeline(m, pass, 1, VK_TRUE, 0, &m->masked_picks, detail);
     masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->masked_picks), "pick, masks");
     return result;
 }
@@ -488,9 +503,10 @@ static masu_result make_graphics(masu_device *m, uint32_t pass, masu_detail *det
     if (geometry == MASU_GEOMETRY_POLYGONS && !m->plan->needs.raster) return result;
     /* One pipeline for all that is blended: in scenes with textures what has none passes by them. */
     int textured = geometry == MASU_GEOMETRY_BLENDED && textures;
-    if (!result) result = make_pipeline(m, pass, textured, VK_FALSE, &m->pipelines[pass], detail);
+    if (!result) result = make_pipeline(m, pass, textured, VK_FALSE, 0, &m->pipelines[pass], detail);
     if (!result && geometry == MASU_GEOMETRY_POLYGONS && textures)
         result = make_textured(m, pass, detail);
+    if (!result && geometry == MASU_GEOMETRY_POLYGONS) result = make_culled(m, pass, textures, detail);
     if (!result && geometry == MASU_GEOMETRY_CASCADE && textures)
         result = make_masked_casters(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_PICK && textures)

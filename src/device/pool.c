@@ -56,7 +56,9 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
     if (i < 2 * MASU_PASS_COUNT) return &m->last[i - MASU_PASS_COUNT];
     i -= 2 * MASU_PASS_COUNT;
     if (i < MASU_TEXTURED_COUNT) return &m->textured[i];
-    return i == MASU_TEXTURED_COUNT ? &m->masked_casters : &m->masked_picks;
+    i -= MASU_TEXTURED_COUNT;
+    if (i < MASU_CULLED_COUNT) return &m->culled[i];
+    return i == MASU_CULLED_COUNT ? &m->masked_casters : &m->masked_picks;
 }
 
 /* Notes what a pipeline is known by. */

@@ -28,13 +28,14 @@ typedef struct build {
 } build;
 
 /* Whether rays may go through some of a mesh. One geometry serves all of its triangles, since their
- * order is that of the tree: where one of its materials is a mask, the shader is asked about each
+ * order is that of the tree: where one of its materials is a mask, or not seen from behind, the shader is asked about each
  * of them. */
 static int has_holes(const masu_scene *scene, const masu_scene_view *v, uint32_t mesh) {
     const masu_blob_mesh *m = &v->meshes[mesh];
-    for (uint32_t p = 0; p < m->primitive_count && masu_ray_masks(scene); p++) {
+    uint32_t holes = MASU_MATERIAL_IS_SINGLE | (masu_ray_masks(scene) ? MASU_MATERIAL_IS_MASK : 0);
+    for (uint32_t p = 0; p < m->primitive_count; p++) {
         uint32_t material = v->primitives[m->first_primitive + p].material;
-        if (v->materials[material].flags & MASU_MATERIAL_IS_MASK) return 1;
+        if (v->materials[material].flags & holes) return 1;
     }
     return 0;
 }

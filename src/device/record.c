@@ -153,7 +153,7 @@ static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
  * draw serves them all; visible.c says which, in commands that lie in the order of batches whatever the
  * order of drawing. A sweep draws what shares a pipeline: without textures, with, and masks last, so
  * that most of what they would hide or shade in vain is known already. */
-static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
+static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep, int culled) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
     int kept = m->plan->desc.resizable != 0; /* then the blob may be gone */
@@ -163,7 +163,8 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
     VkDeviceSize zero = 0;
     int sun = masu_is_cascade(pass), pick = pass == MASU_PASS_PICK;
     uint32_t bound = MASU_BLOB_NONE, view = sun ? 1 + pass - MASU_PASS_CASCADE_0 : 0;
-    VkPipeline pipeline = !sweep ? m->pipelines[sun ? MASU_PASS_CASCADE_0 : pass]
+    VkPipeline pipeline = culled ? m->culled[sweep]
+                          : !sweep ? m->pipelines[sun ? MASU_PASS_CASCADE_0 : pass]
                           : sun  ? m->masked_casters
                           : pick ? m->masked_picks
                                  : m->textured[sweep - 1];
@@ -193,9 +194,12 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
             masu_draw_look look = kept ? rec->draws->looks[batch->first_draw + d]
                                        : masu_draw_look_of(&v, batch->first_primitive + d);
             int blended = (look.flags & MASU_MATERIAL_IS_BLEND) != 0;
+            if (batch->mirrored) look.flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
             if ((pick ? pick_sweep_of(&look) : sweep_of(&look, view)) != sweep) continue;
+            if (!sun && !pick && culled != ((look.flags & MASU_MATERIAL_IS_SINGLE) != 0)) continue;
             if (pick) {
                 push.material = blended ? 1 : 0;
+                push.flags = look.flags;
             } else if (!sun) {
                 push.material = look.material;
                 push.meso = look.meso;
@@ -213,7 +217,9 @@ static void record_sweep(masu_recorder *rec, uint32_t pass, uint32_t sweep) {
 
 static void record_polygons(masu_recorder *rec, uint32_t pass) {
     uint32_t sweeps = rec->m->texture_layout ? 1 + MASU_TEXTURED_COUNT : 1;
-    for (uint32_t sweep = 0; sweep < sweeps; sweep++) record_sweep(rec, pass, sweep);
+    int sides = rec->m->plan->scene.singles && masu_passes[pass].geometry == MASU_GEOMETRY_POLYGONS ? 2 : 1;
+    for (uint32_t sweep = 0; sweep < sweeps; sweep++)
+        for (int side = 0; side < sides; side++) record_sweep(rec, pass, sweep, side);
 }
 
 /* One draw of what the vertex shader makes up of MASU_BUFFER_SPRITES, as many as the frame says. */

@@ -54,7 +54,7 @@ static uint32_t column_of(const masu_draws *draws, const masu_blob_material *mat
     return i;
 }
 
-static void keep_primitive(masu_transparent *t, const masu_draws *draws, uint32_t instance,
+static void keep_primitive(masu_transparent *t, const masu_draws *draws, uint32_t instance, int mirrored,
                            const masu_blob_primitive *p, const masu_blob_material *material) {
     *t = (masu_transparent){
         .draw = {p->index_count, 1, p->first_index, (int32_t)p->first_vertex, 0},
@@ -64,6 +64,7 @@ static void keep_primitive(masu_transparent *t, const masu_draws *draws, uint32_
         .layers = material->layers,
         .detail = {material->detail[0], material->detail[1]},
         .column = column_of(draws, material)};
+    if (mirrored) t->flags &= ~(uint32_t)MASU_MATERIAL_IS_SINGLE;
     int flat = 0;
     for (uint32_t k = 0; k < 3; k++) flat |= !(p->aabb_min[k] < p->aabb_max[k]);
     if (!flat) { /* transparents.frag says why */
@@ -83,7 +84,7 @@ void masu_transparents_keep(masu_transparents *s, const masu_frame_plan *plan,
             const masu_blob_primitive *p = &v->primitives[mesh->first_primitive + k];
             const masu_blob_material *material = &v->materials[p->material];
             if (material->flags & MASU_MATERIAL_IS_BLEND)
-                keep_primitive(next++, draws, i, p, material);
+                keep_primitive(next++, draws, i, masu_is_mirrored(v->instances[i].transform), p, material);
         }
     }
     masu_transparent *end = s->things + plan->scene.transparents;

@@ -15,7 +15,7 @@ void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan 
 }
 
 /* A form of a mesh that has instances. */
-static masu_batch *add_batch(masu_draws *draws, const masu_scene_view *v, uint32_t mesh,
+static masu_batch *add_batch(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v, uint32_t mesh,
                              uint32_t first_primitive, uint32_t first, uint32_t instances) {
     masu_batch *b = &draws->batches[draws->batch_count];
     uint32_t primitives = v->meshes[mesh].primitive_count;
@@ -37,9 +37,17 @@ static masu_batch *add_batch(masu_draws *draws, const masu_scene_view *v, uint32
             b->triangles += one->index_count / 3;
         }
     }
+    for (uint32_t i = 0; plan->scene.singles && i < instances && !b->mirrored; i++)
+        b->mirrored = (uint32_t)masu_is_mirrored(v->instances[first + i].transform);
     draws->batch_count++;
     draws->large_count += b->room > 64;
     return b;
+}
+
+int masu_is_mirrored(const float rows[12]) {
+    double m[12];
+    for (uint32_t k = 0; k < 12; k++) m[k] = (double)rows[k];
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]) < 0.0;
 }
 
 /* Of each mesh so many as all copies could have, whatever models they are of. */
@@ -65,12 +73,12 @@ static void add_batches(masu_draws *draws, const masu_frame_plan *plan, const ma
         from = end;
         const masu_blob_mesh *what = &v->meshes[mesh];
         if (end == first || !what->primitive_count) continue;
-        masu_batch *b = add_batch(draws, v, mesh, what->first_primitive, first, end - first);
+        masu_batch *b = add_batch(draws, plan, v, mesh, what->first_primitive, first, end - first);
         if (!plan->lods) continue;
         b->lod_count = masu_scene_mesh_lods(v, scene->lods, mesh, &first_lod);
         b->first_lod = first_lod;
         for (uint32_t l = 0; l < b->lod_count; l++) {
-            (void)add_batch(draws, v, mesh, v->lods[first_lod + l].first_primitive, first,
+            (void)add_batch(draws, plan, v, mesh, v->lods[first_lod + l].first_primitive, first,
                             end - first);
         }
     }

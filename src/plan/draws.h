@@ -13,6 +13,8 @@
 /* The ways to draw polygons with textures; those without have the pass's own pipeline. Alpha-tested ones
  * have theirs, so that only they lose the early depth test. */
 enum { MASU_TEXTURED_OPAQUE, MASU_TEXTURED_MASK, MASU_TEXTURED_COUNT };
+/* Of what is not seen from behind: without textures, then the same. */
+#define MASU_CULLED_COUNT (1u + MASU_TEXTURED_COUNT)
 
 #define MASU_TRANSPARENT_WORDS 6u /* of a slot in the buffer of drawn instances */
 
@@ -26,6 +28,7 @@ typedef struct masu_batch {
     uint32_t first_listed;         /* where in a view's lists its own begins */
     uint32_t first_lod, lod_count; /* of the mesh itself: its LODs */
     uint32_t blended;              /* of the draws those of blended materials: never recorded */
+    uint32_t mirrored; /* 1: some instance is, as it was baked: its materials are seen from both sides */
     uint64_t triangles;            /* of one instance, without those */
 } masu_batch;
 
@@ -50,6 +53,9 @@ typedef struct masu_draws {
 
 void masu_draws_lay(masu_draws *draws, masu_arena *arena, const masu_frame_plan *plan);
 void masu_draws_make(masu_draws *draws, const masu_frame_plan *plan, const masu_scene_view *v);
+
+/* Of an instance's transform: its triangles turn the other way in the picture. */
+int masu_is_mirrored(const float rows[12]);
 
 masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive);
 

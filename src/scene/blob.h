@@ -117,7 +117,8 @@ enum masu_blob_material_flags {
     MASU_MATERIAL_IS_BLEND = 0x80,  /* transparent: blended with what is behind it */
     MASU_MATERIAL_CUTOFF_SHIFT = 8, /* 8 bits: cut-off times 255 */
     MASU_MATERIAL_IS_ADDITIVE = 0x10000, /* with IS_BLEND: adds its light, hides nothing */
-    MASU_MATERIAL_KNOWN = 0x1FFFF
+    MASU_MATERIAL_IS_SINGLE = 0x40000,   /* not seen from behind: from where its triangles turn clockwise */
+    MASU_MATERIAL_KNOWN = 0x5FFFF
 };
 
 /* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */

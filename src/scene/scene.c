@@ -68,6 +68,7 @@ static void describe(const reader *r, uint64_t blob_bytes, uint64_t pairs, masu_
     }
     for (uint32_t i = 0; i < out->materials; i++) {
         if (r->view.materials[i].flags & MASU_MATERIAL_IS_MASK) out->masks = 1;
+        if (r->view.materials[i].flags & MASU_MATERIAL_IS_SINGLE) out->singles = 1;
     }
     masu_look_at_looks(r, out);
     masu_look_at_trace(r, out);

@@ -95,6 +95,7 @@ static void element(const masu_scene *scene, const masu_scene_view *v, const mas
         if (m->flags & MASU_MATERIAL_IS_MASK &&
             picture_of(scene, v, m, MASU_SLOT_BASE) != MASU_TRACE_NONE)
             out[3] |= MASU_TRACE_HOLES;
+        if (m->flags & MASU_MATERIAL_IS_SINGLE) out[3] |= MASU_TRACE_SINGLE;
     } else if (i < p->noise) {
         out[0] = (uint32_t)p->materials;
         out[1] = (uint32_t)p->pictures;

@@ -273,6 +273,63 @@ static void vertices_have_colours(void **state) {
     compare(finish_quad(attributes, ",\"material\":0", ",\"materials\":[{" CLAY "}]"), ahead, &f, 1, 0);
 }
 
+/* ---- Sides ----------------------------------------------------------------------------------- */
+
+static void single_sided_materials_are_not_seen_from_behind(void **state) {
+    (void)state;
+    face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
+    compare(quad_of(CLAY ",\"doubleSided\":true"), behind, &f, 1, 0); /* its normal is turned */
+    f.single = true;
+    compare(quad_of(CLAY), ahead, &f, 1, 0);
+    compare(quad_of(CLAY), behind, &f, 1, 0);
+    /* What a node mirrors is seen from where it was; it may be from the other side too. */
+    begin_quad();
+    compare(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":0}]}],"
+                   "\"nodes\":[{\"mesh\":0,\"scale\":[-1,1,1],\"translation\":[2,0,0]}],\"materials\":[{" CLAY "}]",
+                   quad_positions, quad_indices),
+            ahead, &f, 1, 0);
+}
+
+/* Pixels of a mirror, 2 behind a quad that shines red, that show it: its back. */
+static uint32_t seen_in_mirror(const char *material) {
+    static unsigned made;
+    char json[1024], name[32];
+    uint32_t red = 0;
+    masu_session s;
+    snprintf(name, sizeof name, "mirror%u", made++);
+    const char *path = strrchr(quad_of(material), '/') + 1;
+    snprintf(json, sizeof json,
+             "{\"models\": [{\"file\": \"%s\"}, {\"mesh\": {\"plane\": {\"size_x\": 9, \"size_z\": 9}}, \"rotate\": [90, 0, 0], "
+             "\"translate\": [1, 0.5, -2], \"material\": {\"base_color\": [1, 1, 1], \"metallic\": 1, \"roughness\": 0}}], "
+             "\"reflections\": {}, \"camera\": {\"fov_y\": 60, \"near\": 0.05, \"keys\": [{\"position\": [1, 3, 2], \"target\": [1, 0, -2]}]}}",
+             path);
+    bake_scene(name, json);
+    masu_session_desc d = test_desc(NULL, SIDE, SIDE);
+    d.scene_path = baked_scene(name);
+    d.desc.readback = MASU_READBACK_HDR | MASU_READBACK_DEPTH;
+    d.desc.rung_count = 1;
+    open_session(&s, &d);
+    masu_frame_desc frame = {0};
+    masu_commands commands;
+    draw(&s, &frame, &commands, NULL);
+    const uint16_t *hdr = read_image(&s, commands.slot, MASU_READBACK_HDR);
+    const float *depth = read_image(&s, commands.slot, MASU_READBACK_DEPTH);
+    /* The quad itself is nearer than 4. */
+    for (uint32_t i = 0; i < SIDE * SIDE; i++)
+        red += depth[i] > 0 && 0.05f / depth[i] > 4 && half_float(hdr[4 * i]) > 2;
+    close_session(&s);
+    return red;
+}
+
+static void nor_in_mirrors(void **state) {
+    (void)state;
+#define RED "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]},\"emissiveFactor\":[1,0,0],\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8}}"
+    uint32_t both = seen_in_mirror(RED ",\"doubleSided\":true"), one = seen_in_mirror(RED);
+    printf("  %u pixels of the mirror show the back of what has two sides\n", both);
+    assert_true(both > 40);
+    assert_int_equal(one, 0);
+}
+
 /* ---- Shapes ---------------------------------------------------------------------------------- */
 
 #define MATERIALS ",\"materials\":[{" CLAY "}]"
@@ -359,6 +416,8 @@ int main(void) {
         cmocka_unit_test(pictures_are_of_the_second_set_and_turned),
         cmocka_unit_test(pictures_are_webp),
         cmocka_unit_test(vertices_have_colours),
+        cmocka_unit_test(single_sided_materials_are_not_seen_from_behind),
+        cmocka_unit_test(nor_in_mirrors),
         cmocka_unit_test(a_quantized_cube),
         cmocka_unit_test(draco_is_unpacked),
         cmocka_unit_test(nodes_have_instances),

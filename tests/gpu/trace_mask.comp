@@ -17,7 +17,7 @@ bool opaque(uint triangle, uint instance, vec2 weights)
 {
     return triangle >= push.y || weights.x >= 0.5 || instance > 0u;
 }
-#define MASU_TRACE_OPAQUE(triangle, instance, weights) opaque(triangle, instance, weights)
+#define MASU_TRACE_OPAQUE(triangle, instance, weights, d) opaque(triangle, instance, weights)
 
 #define MASU_TRACE_LANES 64
 #include "trace/bvh.glsl"

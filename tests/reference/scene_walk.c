@@ -133,7 +133,7 @@ static void read_textures(walker *w) {
     const masu_scene *s = w->scene;
     const masu_scene_view *v = &w->view;
     uint64_t layers = 0, bytes = 0, decoded = 0;
-    int masks = 0;
+    int masks = 0, singles = 0;
     expect(w, s->texture_arrays <= 64, "too many textures");
     expect(w, !s->texture_arrays == !v->texcoords, "texture coordinates without textures");
     for (uint32_t i = 0; i < s->texture_arrays && !w->fault; i++) {
@@ -173,12 +173,14 @@ static void read_textures(walker *w) {
     }
     for (uint32_t i = 0; i < s->materials && !w->fault; i++) {
         masks |= (v->materials[i].flags & MASU_MATERIAL_IS_MASK) != 0;
+        singles |= (v->materials[i].flags & MASU_MATERIAL_IS_SINGLE) != 0;
         for (uint32_t k = 0; k < MASU_SLOT_COUNT; k++) read_map(w, &v->materials[i], k);
     }
     expect(w, s->textures == layers, "textures were counted wrongly");
     expect(w, s->texture_bytes == bytes, "texture bytes were counted wrongly");
     expect(w, s->texture_bytes_decoded == decoded, "decoded bytes were counted wrongly");
     expect(w, s->masks == (uint32_t)masks, "masks");
+    expect(w, s->singles == (uint32_t)singles, "what is not seen from behind");
 }
 
 static void read_primitive(walker *w, const masu_blob_primitive *p) {

@@ -168,12 +168,14 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "metallic_map",   "emissive_map",   "opacity_map", "surface_map",
         "alpha_cutoff",   "occlusion_map",  "specular",    "coat",
         "coat_roughness", "detail",         "match",       "opacity",
-        "blend",          "meso",           "name",        NULL};
+        "blend",          "meso",           "name",        "single_sided",
+        NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
     double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0;
     const char *match = NULL, *name = NULL;
+    bool single = false;
     if (!masu_bake_json_object(at, members) ||
         !masu_bake_json_vec3(at, "base_color", 0, 1, &color) ||
         !masu_bake_json_number(at, "roughness", 0, 1, &roughness) ||
@@ -182,7 +184,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_number(at, "coat", 0, 1, &coat) ||
         !masu_bake_json_number(at, "coat_roughness", 0, 1, &coat_roughness) ||
         !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
-        !masu_bake_json_string(at, "name", &name) ||
+        !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
         !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
         return false;
@@ -194,6 +196,8 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->specular = masu_bake_json_has(at, "specular");
     out->coat = masu_bake_json_has(at, "coat");
     out->coat_roughness = masu_bake_json_has(at, "coat_roughness");
+    out->single = masu_bake_json_has(at, "single_sided");
+    out->maps.single = single;
     out->value.specular = (float)specular;
     out->value.coat = (float)coat;
     out->value.coat_roughness = (float)coat_roughness;

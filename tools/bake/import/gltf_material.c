@@ -396,6 +396,7 @@ static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material 
     out->given.maps.normal_scale = masu_import_clamped(scale, -16, 16);
     if (!near(strength, 1) && m.all[MASU_BAKE_OCCLUSION].image != MASU_BLOB_NONE)
         masu_gltf_note_one(g, "occlusion maps have a strength, which is not read", g->where);
+    out->given.maps.single = !json_is_true(json_object_get(about, "doubleSided"));
     if (masu_gltf_extension(g, about, "KHR_materials_unlit")) make_unlit(out, &m);
     settle(g, &m, out);
     return !masu_gltf_failed(g);

@@ -86,15 +86,34 @@ bool masu_bake_is_box(const masu_bake_content *content, uint32_t mesh, masu_bake
     return true;
 }
 
+/* Six times the volume inside of what it shows, where its triangles turn counter-clockwise seen from outside. */
+static double volume_of(const masu_bake_content *content, const masu_blob_mesh *mesh) {
+    double sum = 0;
+    for (uint32_t i = 0; i < mesh->primitive_count; i++) {
+        const masu_blob_primitive *p = &MASU_BAKE_PRIMITIVES(content)[mesh->first_primitive + i];
+        const uint32_t *index = &MASU_BAKE_INDICES(content)[p->first_index];
+        for (uint32_t k = 0; k + 3 <= p->index_count; k += 3) {
+            masu_bake_vec3 c[3];
+            for (uint32_t n = 0; n < 3; n++)
+                c[n] = masu_bake_v3f(MASU_BAKE_VERTICES(content)[p->first_vertex + index[k + n]].position);
+            sum += masu_bake_dot(c[0], masu_bake_cross(c[1], c[2]));
+        }
+    }
+    return sum;
+}
+
+/* Of what is not seen from behind, what is inside out hides nothing: a room that is looked into. */
 static bool is_opaque(const masu_bake_content *content, const masu_blob_mesh *mesh) {
+    bool single = false;
     for (uint32_t i = 0; i < mesh->primitive_count; i++) {
         uint32_t material = MASU_BAKE_PRIMITIVES(content)[mesh->first_primitive + i].material;
         if (MASU_BAKE_MATERIALS(content)[material].flags &
             (MASU_MATERIAL_IS_MASK | MASU_MATERIAL_IS_BLEND)) {
             return false;
         }
+        single = single || MASU_BAKE_MATERIALS(content)[material].flags & MASU_MATERIAL_IS_SINGLE;
     }
-    return true;
+    return !single || volume_of(content, mesh) > 0;
 }
 
 void masu_bake_drop_occluders(masu_bake_content *content) {
@@ -107,7 +126,7 @@ void masu_bake_drop_occluders(masu_bake_content *content) {
             MASU_BAKE_OCCLUDERS(content)[kept++] = o;
         } else if (o.mesh != warned) {
             warned = o.mesh;
-            masu_cli_warn("the mesh \"%s\" is masked or blended: it is no occluder",
+            masu_cli_warn("the mesh \"%s\" is masked, blended or inside out: it is no occluder",
                           masu_bake_name_text(content, mesh->name));
         }
     }

@@ -83,9 +83,10 @@ typedef struct masu_bake_maps {
     uint8_t gloss;                   /* roughness is 1 minus the picture */
     uint8_t alpha;                   /* MASU_BAKE_ALPHA_* */
     uint8_t additive;                /* with ALPHA_BLEND: adds its light, hides nothing */
+    uint8_t single;                  /* 1: not seen from behind */
     uint8_t wrap[2];                 /* as in masu_blob_texture_set */
     uint8_t relief;                  /* MASU_BAKE_RELIEF_* */
-    uint8_t reserved[3];             /* no padding: it is compared as bytes */
+    uint8_t reserved[2];             /* no padding: it is compared as bytes */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
 } masu_bake_maps;
 

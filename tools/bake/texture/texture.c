@@ -547,6 +547,7 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         memset(material->emissive, 0, sizeof material->emissive);
     }
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
+    if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
     if (!(flags & MASU_MATERIAL_IS_BLEND)) material->opacity = 1;
     material->flags = flags;
     if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
