@@ -236,7 +236,7 @@ static void close_picking(masu_session *s) {
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-#define STEP 9u
+#define STEP 11u
 
 static void polygons_sdf_and_sky_are_told_apart(void **state) {
     (void)state;
@@ -302,7 +302,7 @@ static void lods_and_culling_change_nothing(void **state) {
     masu_session s;
     open_picking(&s, "test_lods");
     masu_camera c = {.position = {0, 4, 20}, .forward = {0, -0.2f, -1}, .fov_y = 1, .near_distance = 0.1f};
-    tally t = check_grid(&s, (masu_frame_desc){.camera = &c}, 1, 0.05, STEP + 4);
+    tally t = check_grid(&s, (masu_frame_desc){.camera = &c}, 1, 0.05, 9 + 4);
     assert_true(t.instances > 20);
     close_picking(&s);
 }

@@ -6,6 +6,7 @@
 
 #include "store_comp.spv.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -26,6 +27,12 @@ enum { COUNT = sizeof values / sizeof *values };
 
 static float sane(float x, float low, float high) { return isfinite(x) ? fminf(fmaxf(x, low), high) : 0.0f; }
 
+/* A driver may take what is less than the least normal number for 0. */
+static void assert_stored(float found, float wanted) {
+    if (fabsf(wanted) < FLT_MIN && found == 0.0f) wanted = 0.0f;
+    assert_float_equal(found, wanted, 0.0f);
+}
+
 static void run(stored out[EACH * COUNT]) {
     memset(out, 0, EACH * COUNT * sizeof *out);
     float given[COUNT][4];
@@ -45,12 +52,12 @@ static void what_is_not_finite_is_stored_as_0(void **state) {
             float v = values[i][c];
             bad |= !isfinite(v);
             bad_three |= c < 3 && !isfinite(v);
-            assert_float_equal(at[UNORM].value[c], sane(v, 0.0f, 1.0f), 0.0f);
-            assert_float_equal(at[HALF].value[c], sane(v, -65504.0f, 65504.0f), 0.0f);
+            assert_stored(at[UNORM].value[c], sane(v, 0.0f, 1.0f));
+            assert_stored(at[HALF].value[c], sane(v, -65504.0f, 65504.0f));
             uint32_t ten = at[TEN].bits[0] >> (10 * c) & (c < 3 ? 1023u : 3u);
             assert_int_equal(ten, c < 3 ? (uint32_t)(sane(v, 0.0f, 1.0f) * 1023.0f + 0.5f) : 3u);
         }
-        assert_float_equal(at[R32F].value[0], sane(values[i][0], -3.4e38f, 3.4e38f), 0.0f);
+        assert_stored(at[R32F].value[0], sane(values[i][0], -3.4e38f, 3.4e38f));
         for (uint32_t k = 0; k < PLACES; k++) assert_int_equal(at[k].bits[1], 1);
         assert_int_equal(at[UNORM].bits[2], bad);
         assert_int_equal(at[HALF].bits[2], bad);
