@@ -91,7 +91,10 @@ bool masu_trace_there(uvec4 about, vec2 b)
 }
 #endif
 
-/* d: of the ray, in the object's space, where what is not seen from behind turns counter-clockwise as in the file,
+#ifdef MASU_TRACE_SIDES
+/* With MASU_TRACE_SIDES a ray asks, of a triangle that may not be there, whether it is.
+ *
+ * d: of the ray, in the object's space, where what is not seen from behind turns counter-clockwise as in the file,
  * even where an instance mirrors it. */
 bool masu_trace_opaque(uint triangle, vec2 b, vec3 d)
 {
@@ -111,5 +114,6 @@ bool masu_trace_opaque(uint triangle, vec2 b, vec3 d)
 #endif
 }
 #define MASU_TRACE_OPAQUE(triangle, instance, barycentrics, d) masu_trace_opaque(triangle, barycentrics, d)
+#endif
 
 #endif

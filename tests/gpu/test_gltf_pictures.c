@@ -62,6 +62,7 @@ typedef struct shot {
 } shot;
 
 static const shot ahead = {{1, 0.5, 3}, {1, 0.5, 0}};
+static const shot behind = {{1, 0.5, -3}, {1, 0.5, 0}};
 
 static const uint16_t *photograph(masu_session *s, const char *path, shot p, masu_view *view) {
     static unsigned made;
