@@ -18,15 +18,16 @@ wanted := $(foreach t,$(TESTS),%/$(t) %/test_$(t) %/fuzz_$(t) %/$(t).sh)
 only = $(if $(wanted),$(filter $(wanted),$(1)),$(1))
 
 test_programs = $(call only,$(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard $(1))))
-# NESTED: below.
-UNIT_TESTS   := $(filter-out $(if $(NESTED),%/test_shader_gates),$(call test_programs,tests/unit/test_*.c))
 GPU_TESTS    := $(call test_programs,tests/gpu/test_*.c)
 FUZZ_TESTS   := $(call test_programs,tests/fuzz/fuzz_*.c)
 # Those that look at texts and not at what is built say nothing new a second time: NESTED is set by tests/full.
 TEXT_TESTS   := $(addprefix tests/scripts/,docs.sh docs_tables.sh layers.sh source_gates.sh install.sh bundle.sh exports.sh sizes.sh floats.sh)
+TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh isa.sh meso.sh view.sh worlds.sh)
-SCRIPT_TESTS := $(call only,$(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS)),$(wildcard tests/scripts/*.sh $(if $(FULL),tests/full/*.sh))))
+once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS)),$(1))
+UNIT_TESTS   := $(call once_is_enough,$(call test_programs,tests/unit/test_*.c))
+SCRIPT_TESTS := $(call only,$(call once_is_enough,$(wildcard tests/scripts/*.sh $(if $(FULL),tests/full/*.sh))))
 DRIVER_INFO  := $(BUILD)/tests/driver_info
 
 # Every program is linked with everything, of which the linker takes what is needed.

@@ -83,6 +83,7 @@ static const uint16_t *photograph(masu_session *s, const char *path, shot p, mas
     masu_session_desc d = test_desc(NULL, SIDE, SIDE);
     d.scene_path = baked_scene(name);
     d.desc.readback = MASU_READBACK_HDR;
+    d.desc.picking = 1;
     d.desc.rung_count = 1;
     open_session(s, &d);
     assert_ok(masu_file_read(baked_scene(name), 1u << 30, &blob, &bytes, error, sizeof error));
@@ -291,6 +292,41 @@ static void single_sided_materials_are_not_seen_from_behind(void **state) {
             ahead, &f, 1, 0);
 }
 
+#define THIN "\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.4,0.3,0.5],\"metallicFactor\":0}"
+
+static void nor_where_they_are_blended(void **state) {
+    (void)state;
+    face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 1);
+    f.single = true;
+    compare(quad_of(THIN), behind, &f, 1, 0); /* sky alone */
+}
+
+/* What a click into the middle finds. */
+static uint32_t picked(const char *material, shot p) {
+    masu_session s;
+    masu_view v;
+    masu_commands commands;
+    masu_pick_info info;
+    photograph(&s, quad_of(material), p, &v);
+    masu_frame_desc frame = {.pick = 1, .pick_x = SIDE / 2, .pick_y = SIDE / 2};
+    draw(&s, &frame, &commands, NULL);
+    assert_int_equal(masu_pick(s.m, commands.slot, &info), MASU_OK);
+    close_session(&s);
+    return info.what;
+}
+
+static void nor_by_a_click(void **state) {
+    (void)state;
+    static const char *const materials[] = {CLAY, THIN};
+    for (int i = 0; i < 2; i++) {
+        char both[512];
+        snprintf(both, sizeof both, "%s,\"doubleSided\":true", materials[i]);
+        assert_int_equal(picked(both, behind), MASU_PICK_INSTANCE);
+        assert_int_equal(picked(materials[i], ahead), MASU_PICK_INSTANCE);
+        assert_int_equal(picked(materials[i], behind), MASU_PICK_SKY);
+    }
+}
+
 /* Pixels of a mirror, 2 behind a quad that shines red, that show it: its back. */
 static uint32_t seen_in_mirror(const char *material) {
     static unsigned made;
@@ -418,6 +454,8 @@ int main(void) {
         cmocka_unit_test(pictures_are_webp),
         cmocka_unit_test(vertices_have_colours),
         cmocka_unit_test(single_sided_materials_are_not_seen_from_behind),
+        cmocka_unit_test(nor_where_they_are_blended),
+        cmocka_unit_test(nor_by_a_click),
         cmocka_unit_test(nor_in_mirrors),
         cmocka_unit_test(a_quantized_cube),
         cmocka_unit_test(draco_is_unpacked),
