@@ -4,6 +4,7 @@
 
 start_screen() {
     # The server takes a free number and writes it once it listens.
+    rm -f "$1/display"
     Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 3> "$1/display" 2> /dev/null &
     screen=$!
     for ((i = 0; i < 300; i++)); do
