@@ -268,6 +268,12 @@ format-check: ## fail if clang-format would change a file
 	$(V)bad=$$(for f in $(FORMATTED); do clang-format $$f | cmp -s - $$f || echo "  $$f"; done); \
 	    [ -z "$$bad" ] || { echo "make format would change:"; echo "$$bad"; exit 1; }
 
+.PHONY: analyse analyse-built
+analyse: deps-analyse ## install what is missing; what clang-tidy, cppcheck and gcc -fanalyzer say of src/
+	+$(V)$(more) analyse-built
+analyse-built: $(GENERATED)
+	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tools/analyse/analyse.sh $(ANALYSED)
+
 compdb: ## write compile_commands.json (with bear)
 	$(V)command -v bear > /dev/null || { echo "masu: compdb needs bear" >&2; exit 1; }
 	+$(V)bear -- $(MAKE) --no-print-directory -B all $(UNIT_TESTS) $(GPU_TESTS)

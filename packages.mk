@@ -39,6 +39,9 @@ PACKAGES_isa += pkgconf g++ glslang-tools curl ca-certificates
 PACKAGES_cross := gcc-mingw-w64-x86-64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross
 PACKAGES_cross += gcc-i686-linux-gnu libc6-dev-i386-cross qemu-user
 
+# for `make analyse`. Never installed by itself
+PACKAGES_analyse := gcc clang-tidy cppcheck
+
 # for who works on Masu: `make format`, `make compdb`. Never installed by itself
 PACKAGES_dev := clang-format bear
 
@@ -61,9 +64,9 @@ $$apt update && $$apt install -y $$missing > /dev/null || { \
     echo "masu: apt-get could not install:$$missing" >&2; exit 1; }
 endef
 
-.PHONY: packages deps-build deps-demo deps-worlds deps-view deps-test
+.PHONY: packages deps-build deps-demo deps-worlds deps-view deps-test deps-analyse
 packages: ## print the Debian packages by role
-	@$(foreach role,build demo worlds view test full plots isa cross dev,echo "$(role): $(PACKAGES_$(role))";)
+	@$(foreach role,build demo worlds view test full plots isa cross analyse dev,echo "$(role): $(PACKAGES_$(role))";)
 deps-build: ## install the packages that building needs
 	$(call install-packages,$(PACKAGES_build))
 deps-demo: ## install the packages that the demo needs
@@ -75,3 +78,5 @@ deps-view: ## install the packages that masu-view needs
 deps-test: ## install the packages that the tests need
 	$(call install-packages,$(PACKAGES_build) $(PACKAGES_demo) $(PACKAGES_test) \
 	    $(if $(FULL),$(PACKAGES_full)))
+deps-analyse: ## install the packages that make analyse needs
+	$(call install-packages,$(PACKAGES_build) $(PACKAGES_analyse))

@@ -67,8 +67,9 @@ static void write_fog(const masu_light *light, double eye_y, struct masu_frame_u
     u->air[0] = (float)(eye_y - (double)light->fog_height);
     u->air[1] = light->fog_falloff;
     u->air[2] = light->fog_start;
-    u->air[3] =
+    int bright =
         light->fog_color[0] > 0.0f || light->fog_color[1] > 0.0f || light->fog_color[2] > 0.0f;
+    u->air[3] = (float)bright;
 }
 
 static masu_light scene_light(const masu_blob_environment *e) {

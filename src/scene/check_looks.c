@@ -31,7 +31,9 @@ static masu_result check_path(reader *r) {
         if (!(k->fov_y >= 0.001f && k->fov_y <= 3.1f)) {
             return bad(r, "camera keys", i, "field of view is not 0.001 to 3.1 radians");
         }
-        if (!memcmp(k->position, k->target, sizeof k->position)) {
+        /* As numbers: -0 is where 0 is. */
+        if (k->position[0] == k->target[0] && k->position[1] == k->target[1] &&
+            k->position[2] == k->target[2]) {
             return bad(r, "camera keys", i, "position and target are the same");
         }
         if (i && !(k->time > v->camera_keys[i - 1].time)) {

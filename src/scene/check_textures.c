@@ -79,7 +79,7 @@ static masu_result check_maps(reader *r, uint64_t i) {
             return bad(r, "materials", i, "no such layer");
         }
     }
-    int has_base = maps & 1u << MASU_SLOT_BASE, has_surface = maps & 1u << MASU_SLOT_SURFACE;
+    uint32_t has_base = maps >> MASU_SLOT_BASE & 1, has_surface = maps >> MASU_SLOT_SURFACE & 1;
     if (m->flags & MASU_MATERIAL_IS_MASK &&
         (!has_base ||
          r->view.textures[set->texture[MASU_SLOT_BASE]].format != MASU_TEXTURE_BC3_SRGB)) {

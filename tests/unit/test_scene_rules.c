@@ -699,6 +699,8 @@ static void a_camera_key_that_sees_nothing_is_refused(void **state) {
     REFUSED("camera keys", 2, KEY[2].fov_y = 3.11f);
     REFUSED("camera keys", 2, KEY[2].fov_y = -1.0f);
     REFUSED("camera keys", 1, memcpy(KEY[1].target, KEY[1].position, sizeof KEY->target));
+    REFUSED("camera keys", 1, memset(KEY[1].position, 0, sizeof KEY->position),
+            memset(KEY[1].target, 0, sizeof KEY->target), KEY[1].target[1] = -0.0f);
     ACCEPTED(KEY[0].fov_y = 3.1f, KEY[1].fov_y = 0.001f);
 }
 
