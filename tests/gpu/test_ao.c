@@ -68,6 +68,12 @@ static const char floor_alone[] =
     "\"camera\": {\"fov_y\": 70, \"near\": 0.05, \"keys\": [{\"position\": [0, 0.4, 0], "
     "\"target\": [0.3, 0.3, -2]}]}";
 
+/* A plate in front of a wall that faces the same way. */
+static const char plate[] =
+    "\"models\": [{\"mesh\": {\"box\": {\"size\": [8, 8, 0.1]}}, \"translate\": [0, 0, -0.05]},"
+    "{\"mesh\": {\"box\": {\"size\": [1, 1, 0.02]}}, \"translate\": [0, 0, 0.29]}],"
+    "\"camera\": {\"fov_y\": 40, \"near\": 0.05, \"keys\": [{\"position\": [0, 0, 4], \"target\": [0, 0, 0]}]}";
+
 /* ---- Truth ----------------------------------------------------------------------------------- */
 
 /* Distance of the nearest surface along a ray that starts on one, by formula. */
@@ -254,6 +260,27 @@ static void a_plane_hides_nothing_of_itself(void **state) {
         assert_true(least > (coarse ? 0.85 : 0.985));
         assert_true(sum / surface > (coarse ? 0.98 : 0.99));
     }
+}
+
+/* What the wall sees little of beside the plate's edge is the wall's: the plate stands free. */
+static void what_lies_behind_darkens_nothing_before_it(void **state) {
+    (void)state;
+    bake_ao("plate", 1, plate);
+    open_ao("plate", 256, 192, NULL);
+    draw_from(NULL);
+    const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
+    const float *depths = read_image(&s, slot, MASU_READBACK_DEPTH);
+    uint32_t before = 0, dark = 0;
+    double least = 1;
+    for (uint32_t k = 0; k < 256 * 192; k++) {
+        double z = 0.05 / (double)depths[k], share = ambient_share(seen, k);
+        if (fabs(z - 3.7) < 0.01) least = fmin(least, share), before++;
+        if (fabs(z - 4.0) < 0.01) dark += share < 0.8;
+    }
+    close_session(&s);
+    print_message("%u pixels of the plate, %.4f seen at least; %u dark ones of the wall\n", before, least, dark);
+    assert_true(before > 1000 && dark > 200);
+    assert_true(least > 0.97);
 }
 
 static void a_camera_at_rest_sees_a_picture_at_rest(void **state) {
@@ -453,6 +480,7 @@ int main(void) {
         cmocka_unit_test(the_error_against_the_truth_is_as_stated),
         cmocka_unit_test(more_samples_are_nearer_to_the_truth),
         cmocka_unit_test(a_plane_hides_nothing_of_itself),
+        cmocka_unit_test(what_lies_behind_darkens_nothing_before_it),
         cmocka_unit_test(a_camera_at_rest_sees_a_picture_at_rest),
         cmocka_unit_test(a_camera_that_creeps_changes_it_little),
         cmocka_unit_test(nothing_outside_of_the_rectangle_is_looked_at),

@@ -1,5 +1,6 @@
 /* test_governor_host.c: what a host asks of the governor of a renderer between frames: settings, unusual
  * frames, times, a state kept over masu_destroy and masu_init. Times that decide are given by the test. */
+#include "renderer.h"
 #include "support/support.h"
 
 #include <math.h>
@@ -61,6 +62,21 @@ static void settings_count_from_the_next_frame_on(void **state) {
     assert_int_equal(masu_governor_set(s.m, NULL), MASU_ERROR_ARGUMENT);
     assert_int_equal(steps(&s, 3, 30.0, &stats), 3); /* nothing was changed */
     assert_int_equal(stats.governor.mode, MASU_GOVERNOR_FIXED);
+    close_session(&s);
+}
+
+/* What was not handed out was not shown. */
+static void a_frame_to_come_has_not_been_presented(void **state) {
+    (void)state;
+    masu_session s;
+    masu_stats_info stats;
+    open_governed(&s, W, H);
+    steps(&s, 3, 12.0, &stats);
+    masu_governor before = *s.m->governor;
+    masu_frame_presented(s.m, s.m->timeline.frame, 1, 16666667);
+    assert_memory_equal(s.m->governor, &before, sizeof before);
+    masu_frame_presented(s.m, s.m->timeline.frame - 1, 1, 16666667);
+    assert_memory_not_equal(s.m->governor, &before, sizeof before);
     close_session(&s);
 }
 
@@ -141,6 +157,7 @@ static void without_a_governor_it_is_said(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(settings_count_from_the_next_frame_on),
+        cmocka_unit_test(a_frame_to_come_has_not_been_presented),
         cmocka_unit_test(unusual_frames_are_left_out),
         cmocka_unit_test(the_hosts_own_work_is_said),
         cmocka_unit_test(a_state_outlives_its_renderer),

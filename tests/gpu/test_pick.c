@@ -332,6 +332,31 @@ static void holes_of_a_mask_are_not_picked(void **state) {
     close_picking(&s);
 }
 
+/* Through the holes of a mask what is behind them. */
+static void through_a_mask_what_is_behind_is_picked(void **state) {
+    (void)state;
+    masu_session s;
+    masu_commands commands;
+    uint32_t near = 0, behind = 0;
+    const float rows[12] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, -1};
+    open_picking(&s, "test_foliage");
+    place_instance(&s, "leaves", rows); /* a metre behind the needles */
+    masu_camera c = {.position = {0, 0, 4}, .forward = {0, 0, -1}, .fov_y = 0.5f, .near_distance = 0.005f};
+    for (uint32_t i = 0; i < 400u; i++) {
+        uint32_t x = i * 37 % W, y = i * 53 % H;
+        masu_pick_info info = pick_at(&s, (masu_frame_desc){.camera = &c}, x, y, &commands);
+        float depth = ((const float *)read_image(&s, commands.slot, MASU_READBACK_DEPTH))[y * W + x];
+        if (depth == 0) continue;
+        int first = 0.005f / depth < 4.5f;
+        near += first;
+        behind += !first;
+        assert_int_equal(info.instance.id, masu_instance_find(s.m, first ? "needles" : "leaves").id);
+    }
+    print_message("  %u pixels of the first, %u behind it\n", near, behind);
+    assert_true(near > 10 && behind > 3);
+    close_picking(&s);
+}
+
 /* As joints have bent it: what the picture shows beside the rigid floor and wall is one of the skinned. */
 static void what_bends_is_picked_where_it_is(void **state) {
     (void)state;
@@ -475,6 +500,7 @@ int main(void) {
         cmocka_unit_test(a_smaller_rung_picks_its_own_pixels),
         cmocka_unit_test(lods_and_culling_change_nothing),
         cmocka_unit_test(holes_of_a_mask_are_not_picked),
+        cmocka_unit_test(through_a_mask_what_is_behind_is_picked),
         cmocka_unit_test(what_bends_is_picked_where_it_is),
         cmocka_unit_test(a_part_of_the_output_has_pixels_of_its_own),
         cmocka_unit_test(a_window_of_its_own_is_picked_through),

@@ -28,22 +28,32 @@ static masu_desc desc_of(masu_session *s, uint32_t width, uint32_t height) {
 }
 
 static masu_result resize(own_renderer *x, uint32_t width, uint32_t height, masu_detail *detail) {
-    masu_targets t = {
-        .images = &x->target.image, .views = &x->target.view, .count = 1, .storage = 1};
+    /* Not where the ones before were: what is drawn to are those that are given. */
+    static VkImage images[2];
+    static VkImageView views[2];
+    static int turn;
+    turn = !turn;
+    images[turn] = x->target.image;
+    views[turn] = x->target.view;
+    masu_targets t = {.images = &images[turn], .views = &views[turn], .count = 1, .storage = 1};
     return masu_resize(x->m, (VkExtent2D){width, height}, &t, NULL, detail);
 }
 
-/* So many frames of a rung; the number of the first says which noise they have. */
-static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out) {
+/* So many frames of a rung; the number of the first says which noise they have. cut: what the host says of it. */
+static void draw_cut(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out, int cut) {
     char error[ERROR_SIZE];
     masu_commands commands;
     for (uint32_t i = 0; i < frames; i++) {
-        masu_frame_desc frame = {.rung = rung, .time = 0.1 * i, .time_step = 0.1f, .cut = i == 0};
+        masu_frame_desc frame = {.rung = rung, .time = 0.1 * i, .time_step = 0.1f, .cut = cut && i == 0};
         assert_int_equal(masu_frame(x->m, &frame, &commands), MASU_OK);
         assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     }
     assert_ok(masu_headless_target_read(&s->host, &x->target, error, sizeof error));
     memcpy(out, x->target.mapped, (size_t)x->target.width * x->target.height * 4);
+}
+
+static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_t frames, uint8_t *out) {
+    draw_cut(s, x, rung, frames, out, 1);
 }
 
 static const uint32_t sizes[][2] = {{97, 61}, {160, 90}, {33, 20}, {1, 1}, {2, 90}, {160, 1}, {128, 88}};
@@ -60,15 +70,20 @@ static void compare_sizes(const char *scene, size_t count) {
     for (size_t i = 0; i < count; i++) {
         uint32_t w = sizes[i][0], h = sizes[i][1];
         masu_detail detail;
-        masu_headless_target_destroy(&s.host, &live.target);
-        make_target(&s, &live, w, h, 1);
-        if (resize(&live, w, h, &detail)) fail_msg("%s", detail.text);
+        /* The targets of before are still there, and are not drawn to. */
+        own_renderer before = live, next = live;
+        make_target(&s, &next, w, h, 1);
+        if (resize(&next, w, h, &detail)) fail_msg("%s", detail.text);
+        live = next;
         own_renderer fresh;
         masu_desc fit = desc_of(&s, w, h);
         make_own(&s, &fresh, &fit);
         if (drawn) draw_frames(&s, &fresh, 1, drawn, pixels[1]); /* to the same frame number */
-        for (uint32_t r = 0; r < RUNGS; r++) {
-            draw_frames(&s, &live, r, FRAMES, pixels[0]);
+        /* Before and after another size the one that has a past, which masu_resize ends by itself. */
+        static const uint32_t order[] = {3, 0, 1, 2, 4, 3};
+        for (uint32_t k = 0; k <= RUNGS; k++) {
+            uint32_t r = order[k];
+            draw_cut(&s, &live, r, FRAMES, pixels[0], k > 0);
             draw_frames(&s, &fresh, r, FRAMES, pixels[1]);
             uint32_t most = max_difference(pixels[0], pixels[1], (size_t)w * h * 4);
             /* Of one pixel a fresh rung does not upscale, a resized one does as it always has. The history's
@@ -76,8 +91,9 @@ static void compare_sizes(const char *scene, size_t count) {
             if (most > (w * h == 1 ? 2u : r == 3 ? 1u : 0u))
                 fail_msg("%s, rung %u at %ux%u: off by %u", scene, r, w, h, most);
         }
-        drawn += RUNGS * FRAMES;
+        drawn += (RUNGS + 1) * FRAMES;
         unmake_own(&s, &fresh);
+        masu_headless_target_destroy(&s.host, &before.target);
     }
     unmake_own(&s, &live);
     close_session(&s);

@@ -178,6 +178,32 @@ static void light_that_changes_is_seen(void **state) {
     close_session(&s);
 }
 
+/* The same of a lamp, which no number of the frame tells of: as if it had never been on. */
+static void a_lamp_that_goes_out_is_seen(void **state) {
+    (void)state;
+    masu_session s;
+    masu_punctual_light_state lamp;
+    masu_session_desc d = temporal_desc("test_live", 0.5f);
+    d.desc.rungs[0].specular = MASU_OFF;
+    for (int goes = 0; goes < 2; goes++) {
+        open_session(&s, &d);
+        masu_punctual_light light = masu_punctual_light_find(s.m, "glow");
+        assert_int_equal(masu_punctual_light_get(s.m, light, &lamp), MASU_OK);
+        lamp.instance.id = 0; /* what carries it is hidden */
+        lamp.position[0] = 2, lamp.position[1] = 1.5, lamp.position[2] = -2.5;
+        lamp.range = 20;
+        assert_int_equal(masu_punctual_light_set(s.m, light, &lamp), MASU_OK);
+        if (goes) frames(&s, 40, (masu_frame_desc){0}, b.rgba);
+        for (int k = 0; k < 3; k++) lamp.color[k] = 0;
+        assert_int_equal(masu_punctual_light_set(s.m, light, &lamp), MASU_OK);
+        frames(&s, goes ? 8 : 48, (masu_frame_desc){0}, goes ? a.rgba : truth.rgba);
+        close_session(&s);
+    }
+    uint32_t all, off = ghosts(b.rgba, a.rgba, 6, &all);
+    print_message("  %u of %u pixels are more than 6 of 255 off\n", off, all);
+    assert_true(all > 100 && off < all / 20);
+}
+
 /* The same while the camera goes along: what moves is held within what is there now, from above where the light goes
  * out, from below where it comes on. Two frames later two thirds of two thirds of it would still be seen. */
 static void light_that_changes_in_motion_is_seen(void **state) {
@@ -330,6 +356,7 @@ int main(void) {
         cmocka_unit_test(in_motion_it_is_no_worse),
         cmocka_unit_test(what_leaves_leaves_no_ghost),
         cmocka_unit_test(light_that_changes_is_seen),
+        cmocka_unit_test(a_lamp_that_goes_out_is_seen),
         cmocka_unit_test(light_that_changes_in_motion_is_seen),
         cmocka_unit_test(equal_frames_give_equal_bytes),
         cmocka_unit_test(a_cut_forgets_all),

@@ -30,11 +30,12 @@ static masu_desc desc_of(const masu_session *s, uint32_t width, uint32_t height)
     return d;
 }
 
-static masu_commands frame_of(masu_session *s, own_renderer *x, uint32_t view, uint32_t viewport) {
+/* cut: whether the host says that nothing goes on from the frame before; from one view to another it need not. */
+static masu_commands frame_of(masu_session *s, own_renderer *x, uint32_t view, uint32_t viewport, int cut) {
     char error[ERROR_SIZE];
     masu_commands commands;
     masu_frame_desc frame = {
-        .camera = &cameras[view], .rung = rungs[view], .viewport = viewport, .cut = 1};
+        .camera = &cameras[view], .rung = rungs[view], .viewport = viewport, .cut = (uint32_t)cut};
     assert_int_equal(masu_frame(x->m, &frame, &commands), MASU_OK);
     assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
     return commands;
@@ -58,7 +59,7 @@ static uint32_t view_at(const masu_viewport *views, uint32_t x, uint32_t y) {
 
 static void compare(masu_session *s, own_renderer *x, const masu_viewport *views, uint32_t first) {
     for (uint32_t k = 0; k < VIEWS; k++) {
-        masu_commands commands = frame_of(s, x, k, k);
+        masu_commands commands = frame_of(s, x, k, k, 0);
         masu_readback_image depth;
         assert_int_equal(masu_readback(x->m, commands.slot, MASU_READBACK_DEPTH, &depth), MASU_OK);
         if (rungs[k] != 1) assert_int_equal(depth.width, views[k].width);
@@ -69,8 +70,8 @@ static void compare(masu_session *s, own_renderer *x, const masu_viewport *views
         own_renderer fresh;
         masu_desc d = desc_of(s, views[k].width, views[k].height);
         make_own(s, &fresh, &d);
-        for (uint32_t i = 0; i < first + k; i++) (void)frame_of(s, &fresh, k, 0); /* to the same number */
-        (void)frame_of(s, &fresh, k, 0);
+        for (uint32_t i = 0; i < first + k; i++) (void)frame_of(s, &fresh, k, 0, 1); /* to the same number */
+        (void)frame_of(s, &fresh, k, 0, 1);
         read_target(s, &fresh, alone);
         uint32_t off = 0, seen = 0;
         for (uint32_t y = 0; y < views[k].height; y++) {
@@ -157,7 +158,7 @@ static void what_is_no_part_is_refused(void **state) {
     assert_int_equal(masu_frame(x.m, &(masu_frame_desc){.viewport = VIEWS}, &commands), MASU_ERROR_ARGUMENT);
     masu_plan_of(x.m, &after);
     assert_memory_equal(before.rungs, after.rungs, sizeof before.rungs);
-    for (uint32_t i = 0; i < 12; i++) (void)frame_of(&s, &x, 0, i % VIEWS);
+    for (uint32_t i = 0; i < 12; i++) (void)frame_of(&s, &x, 0, i % VIEWS, 1);
     masu_stats_info stats;
     assert_int_equal(masu_stats(x.m, 0, &stats), MASU_OK);
     assert_in_range(stats.governor.samples + stats.governor.rejected, 1, 4); /* of the first alone */

@@ -337,6 +337,31 @@ static void boxes_beyond_the_slack_are_culled(void **state) {
     assert_true(tried > 1000);
 }
 
+/* Around the origin the group's share of the slack is all that it has: its middle says nothing of how large the
+ * numbers are. */
+static void a_group_is_kept_where_its_only_box_is(void **state) {
+    (void)state;
+    field *f = &fields[0];
+    for (int i = 0; i < 200; i++) {
+        masu_cull_box box = {{0, 0, 0}, {1 + (float)i, 1, 1}};
+        masu_cull_view view = {.count = 0};
+        const double n[3] = {1, 0, 0};
+        double by = 2.0 * i / 200 - 0.5; /* of the slack */
+        start(f, 1);
+        put(f, 0, &box);
+        masu_cull_add_plane(&view, n, -(double)box.half[0] * (1.0 + by * (double)MASU_CULL_SLACK));
+        cull(f, &view, 1);
+        uint32_t alone = f->marks[0] & 2u;
+        grow(f, 16);
+        for (int plain = 0; plain < 2; plain++) {
+            cull(f, &view, plain);
+            assert_int_equal(f->marks[0] & 2u, alone);
+        }
+        if (by < 0.4) assert_int_equal(alone, 2);
+        if (by > 1.2) assert_int_equal(alone, 0);
+    }
+}
+
 static void planes_that_are_no_planes_reject_nothing(void **state) {
     (void)state;
     static const double normals[][3] = {{0, 0, 0}, {(double)NAN, 0, 1}, {(double)INFINITY, 0, 0}, {0, 0, 0}};
@@ -600,6 +625,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_box_of_a_million_is_culled_that_the_exact_test_keeps),
         cmocka_unit_test(boxes_beyond_the_slack_are_culled),
+        cmocka_unit_test(a_group_is_kept_where_its_only_box_is),
         cmocka_unit_test(planes_that_are_no_planes_reject_nothing),
         cmocka_unit_test(an_empty_set_and_an_empty_view_keep_nothing),
         cmocka_unit_test(a_placed_box_holds_what_floats_make_of_its_points),

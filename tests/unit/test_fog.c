@@ -148,12 +148,26 @@ static void any_bits_give_a_depth(void **state) {
     }
 }
 
+/* What is no distance counts as 0, and so does one behind the eye. */
+static void fog_that_starts_nowhere_starts_at_the_eye(void **state) {
+    (void)state;
+    static const float odd[] = {-30, -INFINITY, INFINITY, NAN};
+    float near = masu_fog_depth(0.01f, 0.1f, 2, 0.5f, 0, 50), sky = masu_fog_depth_sky(0.01f, 0.1f, 2, 0.5f, 0);
+    assert_true(near > 0 && sky > near);
+    for (int i = 0; i < 4; i++) {
+        assert_true(masu_fog_depth(0.01f, 0.1f, 2, 0.5f, odd[i], 50) == near);
+        assert_true(masu_fog_depth_sky(0.01f, 0.1f, 2, 0.5f, odd[i]) == sky);
+        assert_true(masu_fog_depth(0.01f, 0.1f, 2, 0.5f, 0, odd[i]) == 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(depths_are_those_of_numeric_integrals),
         cmocka_unit_test(a_ray_to_the_sky_is_one_of_great_length),
         cmocka_unit_test(fog_is_the_same_both_ways_and_adds_up),
         cmocka_unit_test(any_bits_give_a_depth),
+        cmocka_unit_test(fog_that_starts_nowhere_starts_at_the_eye),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

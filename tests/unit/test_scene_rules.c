@@ -399,6 +399,9 @@ static void a_section_outside_the_blob_is_refused(void **state) {
     REFUSED("section", index, ROW(SLOTS)->offset = (blob.size + 31) / 16 * 16);
     REFUSED("section", index, ROW(SLOTS)->offset = UINT64_MAX - 15);
     REFUSED("section", index, ROW(SLOTS)->offset = (uint64_t)1 << 63);
+    /* Misaligned and all inside: bytes of the next ones. */
+    index = TABLE_INDEX(VERTICES);
+    REFUSED("section", index, ROW(VERTICES)->offset += 8);
 }
 
 /* The hash does not cover the count of sections: what none of them owns tells that it is wrong. */
@@ -457,6 +460,7 @@ static void a_primitive_outside_its_sections_is_refused(void **state) {
     REFUSED("primitives", 0, PRIMITIVE[0].vertex_count = 0);
     REFUSED("primitives", 0, PRIMITIVE[0].vertex_count = 0x1000000);
     REFUSED("primitives", 2, PRIMITIVE[2].first_vertex = 8);
+    REFUSED("primitives", 2, PRIMITIVE[2].vertex_count++); /* one too many, that no index asks for */
     REFUSED("primitives", 1, PRIMITIVE[1].first_vertex = UINT32_MAX - 2);
     REFUSED("primitives", 1, PRIMITIVE[1].material = 2);
     REFUSED("primitives", 1, PRIMITIVE[1].material = UINT32_MAX);

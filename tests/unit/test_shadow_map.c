@@ -168,6 +168,14 @@ static void what_a_cascade_still_holds_is_told(void **state) {
         double across = hypot(dot3(drawn.axis[0], by), dot3(drawn.axis[1], by)) * far;
         if (across > 0.17 * drawn.radius) assert_false(holds);
     }
+    /* Along the sun's direction: away from it as far as the map's depth goes, and towards it. */
+    const double away[] = {-0.4 * drawn.radius, -0.05 * drawn.radius, 0.05 * drawn.radius, drawn.ahead};
+    for (int i = 0; i < 4; i++) {
+        masu_shadow_view next = v;
+        for (int j = 0; j < 3; j++) next.eye[j] += drawn.axis[2][j] * away[i];
+        masu_cascade wanted = masu_cascade_fit(&next, 30, 0.1, 256);
+        assert_int_equal(masu_cascade_holds(&drawn, &wanted), i == 1 || i == 2);
+    }
     masu_cascade other = masu_cascade_fit(&v, 30, 0.1, 128);
     assert_false(masu_cascade_holds(&drawn, &other));
     other = masu_cascade_fit(&v, 31, 0.1, 256);

@@ -18,6 +18,7 @@
 #include "bake/mesh/bvh.h"
 #include "bake/build/look.h"
 #include "bake/mesh/shape.h"
+#include "bake/mesh/trace.h"
 #include "bake/texture/texture.h"
 #include "bake/texture/trace_texture.h"
 #include "masu.h"
@@ -324,12 +325,50 @@ static void rules_of_pictures_hold(void **state) {
     masu_bake_release(&blob);
 }
 
+static void base_at(const masu_bake_trace *trace, double u, float out[3]) {
+    const float from[3] = {(float)(u - 0.5), 1, 0.11f}, down[3] = {0, -1, 0};
+    masu_bake_hit hit;
+    assert_true(masu_bake_trace_ray(trace, from, down, 10, &hit));
+    memcpy(out, hit.albedo, sizeof hit.albedo);
+}
+
+/* Rays of masu-bake: beyond the picture as its texture set says. The plane shows it once, then from -1 to 2. */
+static void rays_see_textures_repeated_held_and_mirrored(void **state) {
+    (void)state;
+    masu_bake_content c = make(16);
+    masu_bake_trace *once = masu_bake_trace_make(&c);
+    assert_non_null(once);
+    float *uv = MASU_BAKE_ARRAY(&c, MASU_BLOB_TEXCOORDS, float);
+    uint64_t count = masu_bake_count(&c, MASU_BLOB_TEXCOORDS);
+    for (uint64_t i = 0; i < count; i++) uv[2 * i] = 3.0f * uv[2 * i] - 1.0f;
+    masu_blob_texture_set *sets = MASU_BAKE_ARRAY(&c, MASU_BLOB_TEXTURE_SETS, masu_blob_texture_set);
+    for (uint32_t wrap = 0; wrap < 3; wrap++) {
+        for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_TEXTURE_SETS); i++)
+            sets[i].wrap[0] = (uint8_t)wrap;
+        masu_bake_trace *thrice = masu_bake_trace_make(&c);
+        assert_non_null(thrice);
+        for (int k = -64; k < 128; k++) { /* the middles of texels */
+            double u = (k + 0.5) / 64, within = u - floor(u);
+            if (wrap == 1) within = fmin(fmax(u, 0.5 / 64), 1 - 0.5 / 64);
+            if (wrap == 2 && (u < 0 || u > 1)) within = 1 - within;
+            float is[3], ought[3];
+            base_at(thrice, (u + 1) / 3, is);
+            base_at(once, within, ought);
+            if (memcmp(is, ought, sizeof is)) fail_msg("wrap %u: texel %d is another", wrap, k);
+        }
+        masu_bake_trace_release(thrice);
+    }
+    masu_bake_trace_release(once);
+    masu_bake_content_release(&c);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_their_textures_made_small),
         cmocka_unit_test(roughness_and_metallic_are_their_means),
         cmocka_unit_test(size_0_keeps_no_colours),
         cmocka_unit_test(rules_of_pictures_hold),
+        cmocka_unit_test(rays_see_textures_repeated_held_and_mirrored),
     };
     return cmocka_run_group_tests_name("trace_textures", tests, NULL, NULL);
 }
