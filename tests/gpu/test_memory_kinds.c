@@ -1,5 +1,6 @@
 /* test_memory_kinds.c: memory as other devices have it, and what a recording must hold that no
  * software driver would miss: both seen through support_wrap. */
+#include "renderer.h"
 #include "support/support.h"
 #include "support/wrap.h"
 
@@ -169,6 +170,77 @@ static void recordings_hold_the_barriers_that_only_real_devices_need(void **stat
     wrap_reset();
 }
 
+/* ---- Bytes that several images have one after another ------------------------------------------ */
+
+typedef struct noted {
+    VkCommandBuffer cmd;
+    VkPipelineStageFlags from, to;
+    VkImageMemoryBarrier image;
+} noted;
+
+enum { NOTED = 8192 };
+static noted all_noted[NOTED];
+static uint32_t noted_count;
+
+static void note(VkCommandBuffer cmd, VkPipelineStageFlags from, VkPipelineStageFlags to,
+                 const VkImageMemoryBarrier *image) {
+    if (noted_count < NOTED) all_noted[noted_count] = (noted){cmd, from, to, *image};
+    noted_count++;
+}
+
+/* 0: none of the renderer's. */
+static uint32_t image_of(const masu_session *s, VkImage image) {
+    for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
+        if (image && s->m->device.objects.images[i] == image) return i;
+    }
+    return 0;
+}
+
+/* The first use of an image waits for whatever the same recording has done in its bytes, and for what it has written
+ * there: no driver of this processor's would show it. */
+static void an_image_waits_for_those_that_had_its_bytes(void **state) {
+    (void)state;
+    const VkAccessFlags writes = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
+                                 VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+    masu_session s;
+    masu_session_desc d = test_desc("test_live", W, H);
+    d.desc.rung_count = 2;
+    d.desc.rungs[0] = (masu_rung){.scale = 0.7f, .aa = MASU_AA_SMAA_HIGH};
+    d.desc.rungs[1] = (masu_rung){.scale = 0.5f, .temporal = MASU_ON};
+    wrap_reset();
+    d.host.get_instance_proc_addr = wrap_get_instance_proc_addr;
+    wrap.on_barrier = note;
+    noted_count = 0;
+    open_session(&s, &d);
+    assert_in_range(noted_count, 50, NOTED);
+    uint32_t waits = 0, written = 0;
+    for (uint32_t i = 0; i < noted_count; i++) {
+        const noted *n = &all_noted[i];
+        uint32_t own = image_of(&s, n->image.image);
+        if (!own || n->image.oldLayout != VK_IMAGE_LAYOUT_UNDEFINED) continue;
+        const masu_image_plan *here = &s.m->plan.images[own];
+        uint8_t seen[MASU_IMAGE_SOURCE] = {0};
+        for (uint32_t j = i; j-- > 0;) { /* of each image the last barrier */
+            const noted *before = &all_noted[j];
+            uint32_t other = image_of(&s, before->image.image);
+            if (before->cmd != n->cmd || !other || other == own || seen[other]) continue;
+            const masu_image_plan *there = &s.m->plan.images[other];
+            if (here->offset >= there->offset + there->bytes || there->offset >= here->offset + here->bytes) continue;
+            seen[other] = 1;
+            waits++;
+            if (!(n->from & before->to)) fail_msg("image %u does not wait for image %u", own, other);
+            if (!(before->image.dstAccessMask & writes)) continue;
+            written++;
+            if (!(n->image.srcAccessMask & before->image.dstAccessMask & writes))
+                fail_msg("image %u does not wait for what is written to image %u", own, other);
+        }
+    }
+    print_message("%u waits for images that had the bytes before, %u of them had been written last\n", waits, written);
+    assert_true(waits > 10);
+    close_session(&s);
+    wrap_reset();
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_type_for_everything_is_one_allocation_without_copies),
@@ -176,6 +248,7 @@ int main(void) {
         cmocka_unit_test(an_apu_gets_one_block_of_the_type_that_is_both),
         cmocka_unit_test(a_block_of_the_host_that_cannot_serve_is_refused),
         cmocka_unit_test(recordings_hold_the_barriers_that_only_real_devices_need),
+        cmocka_unit_test(an_image_waits_for_those_that_had_its_bytes),
     };
     return cmocka_run_group_tests_name("memory_kinds", tests, NULL, NULL);
 }

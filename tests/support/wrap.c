@@ -194,6 +194,7 @@ static VKAPI_ATTR void VKAPI_CALL cmd_barrier(VkCommandBuffer cmd, VkPipelineSta
                                 (b & VK_ACCESS_TRANSFER_READ_BIT);
     }
     for (uint32_t i = 0; i < image_count; i++) wrap.last_layout = images[i].newLayout;
+    for (uint32_t i = 0; i < image_count && wrap.on_barrier; i++) wrap.on_barrier(cmd, from, to, &images[i]);
     real_barrier(cmd, from, to, flags, memory_count, memory, buffer_count, buffers, image_count,
                  images);
 }

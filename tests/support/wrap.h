@@ -43,6 +43,9 @@ typedef struct wrap_state {
     uint32_t labels, fills_of_poison;
     /* Called when a pass begins to be recorded, in front of its barriers; with debug.labels. */
     void (*on_label)(VkCommandBuffer cmd, const char *name);
+    /* Called for each image of a barrier that is recorded. */
+    void (*on_barrier)(VkCommandBuffer cmd, VkPipelineStageFlags from, VkPipelineStageFlags to,
+                       const VkImageMemoryBarrier *image);
 } wrap_state;
 
 extern wrap_state wrap;
