@@ -25,7 +25,9 @@ TEXT_TESTS   := $(addprefix tests/scripts/,docs.sh docs_tables.sh layers.sh sour
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh isa.sh meso.sh view.sh worlds.sh)
-once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS)),$(1))
+# Nor sums in double precision, which touch no memory but their own variables.
+SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/,test_brdf test_sequence test_sky test_vndf)
+once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS) $(SUM_TESTS)),$(1))
 UNIT_TESTS   := $(call once_is_enough,$(call test_programs,tests/unit/test_*.c))
 SCRIPT_TESTS := $(call only,$(call once_is_enough,$(wildcard tests/scripts/*.sh $(if $(FULL),tests/full/*.sh))))
 DRIVER_INFO  := $(BUILD)/tests/driver_info
