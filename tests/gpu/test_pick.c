@@ -242,8 +242,7 @@ static void close_picking(masu_session *s) {
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
-/* Of pixels every eleventh of a row and of a column; on drivers after the first every fifteenth, of the rest a third: that
- * what is found is right is the driver's word, that it is found everywhere is not. */
+/* Every eleventh pixel of a row and of a column; on drivers after the first every fifteenth, of each kind some. */
 #define STEP trials(11, 11, 15)
 
 static void polygons_sdf_and_sky_are_told_apart(void **state) {
