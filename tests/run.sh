@@ -239,18 +239,16 @@ mkdir -p "$results/baked"
 # Scenes that tests bake themselves are baked for the first driver, and kept for the next.
 export MASU_BAKED=$PWD/$results/baked
 
-# The full checks build the tree anew and run this again: they have the machine to themselves, as
-# fuzzers have, which are told how long to run.
-for kind in unit script; do
+# The check that builds the tree anew and runs this again takes half of the processors. It goes on beside the GPU
+# tests, which build nothing, and not beside scripts that do.
+for kind in unit script fuzz; do
     for program in ${programs[$kind]}; do
-        [[ $program == */full/* ]] || start $kind $kind "$program"
+        [[ $program == */full/sanitize.sh ]] || start $kind $kind "$program"
     done
 done
 wait
-for kind in script fuzz; do
-    for program in ${programs[$kind]}; do
-        [[ $kind$program == script* && $program != */full/* ]] || run $kind $kind "$program"
-    done
+for program in ${programs[script]}; do
+    [[ $program != */full/sanitize.sh ]] || start script script "$program"
 done
 
 # The environment of each driver is found once, in a shell of its own: what one sets, the next does not
@@ -278,8 +276,8 @@ if [ "${programs[gpu]}" ]; then
                 start gpu "$driver" "$program"
         done
     done
-    wait
 fi
+wait
 read -r passed failed skipped known < <(cat "$results"/*/*.counts 2> /dev/null |
     awk '{ p += $1; f += $2; s += $3; k += $4 } END { print p + 0, f + 0, s + 0, k + 0 }')
 

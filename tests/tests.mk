@@ -25,7 +25,9 @@ TEXT_TESTS   := $(addprefix tests/scripts/,docs.sh docs_tables.sh layers.sh sour
 TEXT_TESTS   += $(BUILD)/tests/unit/test_shader_gates
 # Nor do those that take long for code that unit tests go through, or whose time goes by in a driver.
 LONG_TESTS   := $(addprefix tests/scripts/,bake_blocks.sh drive.sh isa.sh meso.sh view.sh worlds.sh)
-once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS)),$(1))
+# Nor sums in double precision, which touch no memory but their own variables.
+SUM_TESTS    := $(addprefix $(BUILD)/tests/unit/,test_brdf test_sequence test_sky test_vndf)
+once_is_enough = $(filter-out $(if $(NESTED),$(TEXT_TESTS) $(LONG_TESTS) $(SUM_TESTS)),$(1))
 UNIT_TESTS   := $(call once_is_enough,$(call test_programs,tests/unit/test_*.c))
 SCRIPT_TESTS := $(call only,$(call once_is_enough,$(wildcard tests/scripts/*.sh $(if $(FULL),tests/full/*.sh))))
 DRIVER_INFO  := $(BUILD)/tests/driver_info
@@ -102,7 +104,7 @@ $(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
 stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme input, what must hold, what was measured, on three drivers
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tests/stability.sh
 
-# Random rungs, cameras, scenes, sizes; the tests do a tenth of it.
+# Random rungs, cameras, scenes, sizes; the tests do a sixteenth of it.
 .PHONY: soak
 soak: scenes $(BUILD)/tests/gpu/test_soak $(DRIVER_INFO) ## 20,000 frames of everything at random, memory beside a bare loop's: SOAK_FRAMES= DRIVERS=
 	$(V)SOAK_FRAMES=$(or $(SOAK_FRAMES),20000) MASU_TEST_TIMEOUT=7200 $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_soak; code=$$?; \

@@ -258,7 +258,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
     uint32_t count, again;
     /* The base, no reflections, and the same at half size are those with numbers 0, 10 and 11. */
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(bench("%s " SMALL " --reference 16 --runs 1 --shard %d/16 --validate"
+        assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard %d/16 --validate"
                                " --truth %s/mirror.png --out %s/mirror%d",
                                scene, i ? 9 + i : 0, scratch, scratch, i),
                          0);
@@ -275,7 +275,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
     assert_true(rows[0].specular_relmse < 1e-4 && none->specular_relmse > 0.01);
     assert_true(none->hdr_flip > rows[0].hdr_flip);
     /* What was drawn first, read again from the files beside the truth. */
-    assert_int_equal(bench("%s " SMALL " --reference 16 --runs 1 --shard 0/16"
+    assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard 0/16"
                            " --truth %s/mirror.png --out %s/again",
                            scene, scratch, scratch),
                      0);

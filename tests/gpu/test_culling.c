@@ -228,7 +228,7 @@ static void shadows_are_the_same_without_culling(void **state) {
     (void)state;
     uint64_t every[WAYS], slow[WAYS];
     bake_shadows();
-    const uint32_t frames = trials(180, 60, 30), slow_frames = trials(60, 60, 30);
+    const uint32_t frames = trials(180, 60, 20), slow_frames = trials(60, 60, 20);
     compare_shadows(frames, (const uint32_t[3]){1, 1, 1}, every);
     compare_shadows(slow_frames, (const uint32_t[3]){2, 3, 5}, slow);
     assert_true(every[FRUSTUM] < every[NEITHER] * 9 / 10);

@@ -119,7 +119,7 @@ static void the_picture_is_the_same_without_culling(void **state) {
     masu_session s;
     d.host.validate = false; /* the long path; the other has the layers */
     open_session(&s, &d);
-    compare_path(&s, trials(FRAMES, FRAMES, 60), 0);
+    compare_path(&s, trials(FRAMES, FRAMES, 30), 0);
     close_session(&s);
 }
 
@@ -128,7 +128,7 @@ static void what_moves_is_drawn_by_where_it_is(void **state) {
     masu_session_desc d = lods_desc();
     masu_session s;
     open_session(&s, &d);
-    compare_path(&s, FRAMES / 4, 1);
+    compare_path(&s, trials(FRAMES / 4, FRAMES / 4, FRAMES / 8), 1);
     close_session(&s);
 }
 

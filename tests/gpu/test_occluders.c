@@ -154,12 +154,13 @@ static void random_scenes(uint32_t width, uint32_t height, uint64_t trials) {
 
 static void nothing_that_is_seen_is_left_out_at_more_than_a_pixel_per_texel(void **state) {
     (void)state;
-    random_scenes(384, 256, trials(60, 15, 10));
+    if (whole_run()) random_scenes(384, 256, trials(60, 15, 15));
+    else random_scenes(256, 170, 8); /* of 192 texels still */
 }
 
 static void nothing_that_is_seen_is_left_out_at_less_than_a_pixel_per_texel(void **state) {
     (void)state;
-    random_scenes(96, 50, trials(200, 50, 16));
+    random_scenes(96, 50, trials(200, 50, 10));
 }
 
 /* ---- Gaps ------------------------------------------------------------------------------------ */
@@ -176,7 +177,7 @@ static void gaps_narrower_than_a_texel_are_looked_through(void **state) {
     /* 768x32 of 90 degrees in width: at 10 m, a texel of 192 is 20/192 m wide. */
     float fov = 2.0f * atanf((float)GAP_H / GAP_W);
     masu_camera c = {.forward = {0, 0, -1}, .fov_y = fov, .near_distance = 0.1f};
-    const uint32_t gaps = trials(240, 80, 40);
+    const uint32_t gaps = trials(240, 80, 24);
     uint32_t through = 0, hidden = 0;
     for (uint32_t n = 0; n < gaps; n++) {
         seed = n;
@@ -216,8 +217,9 @@ static void a_mesh_that_is_cut_open_hides_nothing(void **state) {
     for (uint32_t i = 0; i < THINGS; i++) place_box(&s, "thing", i, 0, -1e4, 0, 1, 1, 1);
     place_box(&s, "hollow", 0, 0, 0, 0, 10, 10, 10);
     place_box(&s, "thing", 1, 0, 0, -4, 1, 1, 1);
-    uint32_t seen = 0, gone = 0;
-    for (uint32_t n = 0; n < 40; n++) {
+    uint32_t seen = 0, gone = 0, eyes = 0;
+    for (uint32_t n = 0; n < 40; n += whole_run() ? 1 : 3) { /* of both near planes in turn */
+        eyes++;
         masu_camera c = {.position = {0.1 * (n % 5), 0.1, 3.2 + 0.1 * n},
                          .forward = {0, 0, -1},
                          .fov_y = 1.0f,
@@ -226,8 +228,8 @@ static void a_mesh_that_is_cut_open_hides_nothing(void **state) {
         seen += colours_seen(96 * 64) > 1;
         gone += stats.views[0].visible_instances == 1;
     }
-    assert_true(seen > 18); /* from inside */
-    assert_true(gone > 5);  /* from outside */
+    assert_true(seen * 20 > 9 * eyes); /* from inside */
+    assert_true(gone * 8 > eyes);      /* from outside */
     close_session(&s);
 }
 
@@ -246,7 +248,7 @@ static void what_stands_before_a_slanted_wall_is_drawn(void **state) {
     const double a[2] = {2, -6}, b[2] = {30, -60}, half[2] = {(b[0] - a[0]) / 2, (b[1] - a[1]) / 2};
     const float wall[12] = {(float)(2 * half[0]), 0, 0.01f, (float)(a[0] + half[0]), 0, 60, 0, 0,
                             (float)(2 * half[1]), 0, 0.01f, (float)(a[1] + half[1])};
-    const uint32_t places = trials(150, 60, 30);
+    const uint32_t places = trials(150, 60, 20);
     uint32_t seen = 0;
     place(&s, "wall", 3, wall);
     for (uint32_t n = 0; n < places; n++) {
@@ -270,10 +272,11 @@ static void what_a_wall_hides_is_not_drawn(void **state) {
     (void)state;
     masu_session s;
     uint32_t hidden = 0;
+    const uint32_t turns = trials(64, 64, 24); /* 24 go round once */
     open_scene(&s, 96, 64);
     for (uint32_t i = 0; i < WALLS; i++) place_box(&s, "wall", i, 0, -1e4, 0, 1, 1, 1);
     for (uint32_t i = 0; i < THINGS; i++) place_box(&s, "thing", i, 0, -1e4, 0, 1, 1, 1);
-    for (uint32_t n = 0; n < 64; n++) {
+    for (uint32_t n = 0; n < turns; n++) {
         double a = n * 0.3, ca = cos(a), sa = sin(a), b = n * 0.17;
         const float wall[12] = {(float)(8 * cos(b)), 0, (float)(2 * sin(b)), (float)(10 * ca),
                                 0, 4, 0, 0,
@@ -292,7 +295,7 @@ static void what_a_wall_hides_is_not_drawn(void **state) {
         }
         hidden += (uint32_t)gone;
     }
-    assert_int_equal(hidden, 48);
+    assert_int_equal(hidden, turns * 3 / 4);
     close_session(&s);
 }
 

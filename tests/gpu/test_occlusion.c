@@ -109,12 +109,12 @@ static void compare(const masu_truth *truth, const masu_view *view, double tange
                 n_l += hit.normal[k] * view->sun_direction[k];
             }
             if (ambient)
-                note(ambient, masu_ref_ambient_seen(&field, p, hit.normal, 1, 1024),
+                note(ambient, masu_ref_ambient_seen(&field, p, hit.normal, 1, 256),
                      ambient_share(seen, at));
             if (n_l <= 0.02) continue; /* the sun hardly matters there */
             note(sun,
                  masu_ref_sun_seen(&field, p, hit.normal, view->sun_direction, tangent,
-                                   view->max_distance, 256),
+                                   view->max_distance, 128),
                  sun_share(seen, at));
         }
     }
@@ -210,7 +210,9 @@ static void nothing_shadows_itself(void **state) {
                                          "part a = rotate_euler((0.3, 0.5, 0.2), box((k, 2 * k, k)));"};
     for (int i = 0; i < 6; i++) {
         const double scale = scales[i % 2];
-        if (i % 4 == 0 && !long_run()) continue; /* the first two small ones */
+        /* Else each field at one size, and on drivers after the first two of them: each takes seconds to compile. */
+        if ((i == 0 || i == 3 || i == 4) && !long_run()) continue;
+        if (i == 1 && !whole_run()) continue;
         char options[128];
         snprintf(options, sizeof options, "\"shadows\": {}, \"ambient_occlusion\": {\"radius\": %g}",
                  scale);
@@ -272,6 +274,7 @@ static void lists_leave_out_nothing_that_matters(void **state) {
     static uint32_t listed[W * H];
     for (int i = 0; i < 3; i++) {
         if (i == 1 && !long_run()) continue;
+        if (i == 0 && !whole_run()) continue; /* parts300 has the more parts */
         bake_with(scenes[i], "\"shadows\": {\"sun_radius\": 1}, \"ambient_occlusion\": {}, ");
         masu_stats_info stats[2];
         uint32_t sun = 0, ambient = 0, surface = 0;
@@ -333,9 +336,10 @@ static void a_scene_that_does_not_ask_has_none_of_it(void **state) {
     static const char *const options[] = {"", "\"shadows\": {}, ", "\"ambient_occlusion\": {}, "};
     masu_readback_image out;
     masu_stats_info stats;
+    if (!whole_run()) return; /* the plan knows no driver */
     for (int i = 0; i < 3; i++) {
-        bake_with("spheres", options[i]);
-        open_scene("spheres", 64, 48, 0);
+        bake_with("test_sphere_sdf", options[i]);
+        open_scene("test_sphere_sdf", 64, 48, 0);
         draw_once();
         masu_plan_of(s.m, &plan);
         stats = stats_of(&s, 0);
@@ -364,7 +368,9 @@ static void extremes_give_finite_pixels(void **state) {
         "1e-3}, "};
     static const char *const scenes[] = {"test_broken_field", "spheres", "test_both"};
     for (int i = 0; i < 6; i++) {
-        if ((i == 2 || i == 5) && !long_run()) continue;
+        /* Else each scene once, and both options; on drivers after the first two of them. */
+        if (i != 0 && i != 3 && i != 4 && !long_run()) continue;
+        if (i == 4 && !whole_run()) continue;
         bake_with(scenes[i / 2], options[i % 2]);
         open_scene(scenes[i / 2], 64, 48, 0);
         draw_once();

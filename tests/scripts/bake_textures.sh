@@ -247,14 +247,18 @@ for name in bricks.png ground.jpg leaf.tga sign.rgb; do
     head -c 300 "$pictures/$name" > "$folder/cut.${name##*.}"
     quad "\"base_color_map\": \"$folder/cut.${name##*.}\""
     bakes "$scene"
-    # Every byte of the head wrong in turn.
+    # Every byte of the head wrong in turn, in a scene of all of them.
     for at in 0 1 2 3 4 5 6 7 8 12 13 16 17 18 19 20 21 22 23 24 25 28; do
-        cp "$pictures/$name" "$folder/bad.${name##*.}"
-        printf '\377' | dd of="$folder/bad.${name##*.}" bs=1 seek=$at conv=notrunc 2> /dev/null
-        quad "\"base_color_map\": \"$folder/bad.${name##*.}\""
-        bakes "$scene"
-        [ -s "$folder/x.masu" ] || fail "$name, byte $at: no blob"
-    done
+        cp "$pictures/$name" "$folder/bad$at.${name##*.}"
+        printf '\377' | dd of="$folder/bad$at.${name##*.}" bs=1 seek=$at conv=notrunc 2> /dev/null
+        printf '%s{"mesh": {"plane": {}}, "material": {"base_color_map": "%s"}}' "${planes:+, }" "bad$at.${name##*.}"
+        planes=1
+    done > "$folder/planes"
+    printf '{"models": [%s]}\n' "$(< "$folder/planes")" > "$scene"
+    planes= && rm -f "$folder/x.masu"
+    bakes "$scene"
+    [ -s "$folder/x.masu" ] || fail "$name with wrong bytes: no blob"
+    [ "$(counts materials)" = 22 ] || fail "$name with wrong bytes: $(counts materials) materials"
 done
 # A PNG that says it is 65,535 x 65,535, one that says it has no width, an SGI of 65,535 x 65,535.
 head -c 16 "$pictures/bricks.png" > "$folder/huge.png"

@@ -257,7 +257,7 @@ static void curves_are_twice_as_near_as_plain_maps(void **state) {
         if (name - masu_meso_made >= (int)trials(8, 2, 1)) break;
         masu_meso_patch p;
         assert_true(masu_meso_make(*name, 2, 1, &p));
-        masu_meso_options options = {.size = 64, .side = 64, .sky_rays = 16, .seed = 1};
+        masu_meso_options options = {.size = 64, .side = trials(64, 64, 32), .sky_rays = trials(16, 16, 4), .seed = 1};
         assert_true(masu_meso_study_run(&p, &options, &study));
         double angle = 0, gain = masu_meso_study_gain(&study, &angle);
         double kept = 0, between = 0;
