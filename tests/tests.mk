@@ -104,7 +104,7 @@ $(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
 stability: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(DRIVER_INFO) ## write docs/stability.md: extreme input, what must hold, what was measured, on three drivers
 	$(V)BUILD='$(BUILD)' MADE='$(MADE)' tests/stability.sh
 
-# Random rungs, cameras, scenes, sizes; the tests do a sixteenth of it.
+# Random rungs, cameras, scenes, sizes; the tests do a tenth of it.
 .PHONY: soak
 soak: scenes $(BUILD)/tests/gpu/test_soak $(DRIVER_INFO) ## 20,000 frames of everything at random, memory beside a bare loop's: SOAK_FRAMES= DRIVERS=
 	$(V)SOAK_FRAMES=$(or $(SOAK_FRAMES),20000) MASU_TEST_TIMEOUT=7200 $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_soak; code=$$?; \
