@@ -13,7 +13,8 @@
  * nearest to the plane is taken alone.
  *
  * Out in the open, where all 16 are seen but for so little that no picture shows it (open), none of that is asked: all
- * arrives.
+ * arrives. Nor where the 16 differ by no more than `even`, which is most of a picture: their plain mean is less far than
+ * that from any weighting of them, and mostly they differ by the pattern alone.
  *
  * Where the SDF has an ambient occlusion of its own, the lesser of the two counts: what both see they
  * would count twice as a product (docs/design/18-ambient-occlusion.md has the errors).
@@ -47,6 +48,9 @@ vec3 ray_at(ao_lens lens, uvec2 pixel)
 
 /* Three steps of ao_texel.glsl's 1023 and what rounds. */
 const float open = 1.0 - 3.5 / 1023.0;
+
+/* The most by which 16 texels differ that are averaged without a look at planes. */
+const float even = 0.125;
 
 #define EDGE (MASU_GROUP + 3)
 
@@ -144,14 +148,22 @@ void main()
     if (all(lessThan(texel, uvec2(pc.output_width, pc.output_height)))) {
         uint corner = gl_LocalInvocationID.y * EDGE + gl_LocalInvocationID.x;
         float least = 1.0;
+        float most = 0.0;
+        float sum = 0.0;
+        bool all_there = true;
         for (int i = 0; i < 16; i++) {
             float seen = texels[corner + uint((i >> 2) * EDGE + (i & 3))].w;
+            all_there = all_there && seen >= 0.0;
             least = min(least, seen < 0.0 ? 1.0 : seen);
+            most = max(most, seen);
+            sum += seen;
         }
         vec4 ambient = vec4(1.0);
         if (push.nearest != 0u) {
             float own = texels[corner + EDGE + 1].w;
             ambient = vec4(own < 0.0 ? 1.0 : own);
+        } else if (all_there && most - least <= even) {
+            ambient = vec4(sum * (1.0 / 16.0));
         } else if (!(least > open)) {
             ambient = filtered(texel, last, corner);
         }

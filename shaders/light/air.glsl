@@ -6,16 +6,11 @@
 #ifndef MASU_AIR_GLSL
 #define MASU_AIR_GLSL
 
-#extension GL_EXT_control_flow_attributes : require
-
 #include "light/fog.glsl"
 #include "light/shade.glsl"
 
 vec3 masu_air_glow(vec3 direction)
 {
-    if (masu_sky_is_analytic()) { /* that one has its glow in it */
-        return vec3(0.0);
-    }
     float towards = clamp(dot(direction, frame.sun_direction.xyz), 0.0, 1.0);
     return frame.sun_color.rgb * (0.05 * masu_pow(towards, 12.0));
 }
@@ -24,6 +19,9 @@ vec3 masu_air_color(vec3 direction)
 {
     if (frame.air.w != 0.0) {
         return frame.fog.rgb;
+    }
+    if (masu_sky_is_analytic()) { /* that one has its glow in it */
+        return masu_sky_horizon(direction);
     }
     return masu_sky(vec3(direction.x, 0.0, direction.z)) + masu_air_glow(direction);
 }
@@ -57,27 +55,14 @@ vec3 masu_through_air(vec3 color, vec3 direction, float depth, float alpha)
 }
 
 /* What is seen along a ray. color: of what it meets, or of the sun's disc; open: it meets nothing, and the sky
- * comes to that; depth: of the air before it, where there is fog. The sky and the colour of the air are one loop:
- * the code for the sky would stand there twice. */
+ * comes to that; depth: of the air before it, where there is fog. */
 vec3 masu_seen_along(vec3 color, bool open, vec3 direction, bool fog, float depth)
 {
-    if (!fog) { /* a constant of the scene: of the two ways one is compiled */
-        if (open) {
-            color += masu_sky(direction);
-        }
-        return color;
+    if (open) {
+        color += masu_sky(direction);
     }
-    bool air = !(frame.air.w != 0.0);
-    vec3 air_color = frame.fog.rgb;
-    [[dont_unroll]] for (int i = 0; i < 2; i++) {
-        if (i == 0 ? open : air) {
-            vec3 sky = masu_sky(i == 0 ? direction : vec3(direction.x, 0.0, direction.z));
-            color += i == 0 ? sky : vec3(0.0);
-            air_color = i == 0 ? air_color : sky;
-        }
-    }
-    float left = masu_fog_left(depth);
-    return color * left + (air ? air_color + masu_air_glow(direction) : air_color) * (1.0 - left);
+    /* A constant of the scene: of the two ways one is compiled. */
+    return fog ? masu_through_air(color, direction, depth, 1.0) : color;
 }
 
 #endif

@@ -87,6 +87,26 @@ vec3 masu_sky_light(vec3 direction)
     return masu_sky_sum(d.y, masu_sky_azimuth(d), weights);
 }
 
+/* Of the horizon beneath or above a direction: three terms of a table, where the sky takes nine powers. The cosine to
+ * the sun is that of the flat part as it is, which fades the phase functions towards the zenith and the ground, where a
+ * direction has no azimuth. */
+vec3 masu_sky_horizon(vec3 direction)
+{
+    vec3 d = masu_sane(direction, -1.0, 1.0);
+    float cosine = clamp(dot(d.xz, masu_sky_tables.sun.xz), -1.0, 1.0);
+    float at = (masu_sky_azimuth(d) + 1.0) * (0.5 * float(MASU_SKY_AZIMUTHS - 1));
+    int first = int(min(at, float(MASU_SKY_AZIMUTHS - 2)));
+    float part = at - float(first);
+    first *= MASU_SKY_TERMS;
+    vec3 weights = vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < MASU_SKY_TERMS; k++) {
+        sum += weights[k] * mix(masu_sky_tables.horizon[first + k].rgb,
+                                masu_sky_tables.horizon[first + MASU_SKY_TERMS + k].rgb, part);
+    }
+    return sum;
+}
+
 /* The same, blurred as by lobes whose bands 1 and 2 are a1 and a2: both phase functions exactly so, for
  * their bands are powers; of the rest the elevation, by three looks, as far apart as is
  * best (the lobe has long tails: its variance would ask for more). */
@@ -103,6 +123,22 @@ vec3 masu_sky_blurred(vec3 direction, float a1, float a2)
         sum += masu_sky_sum(clamp(d.y + float(i) * width, -1.0, 1.0), x, vec3(1.0, air_phase, haze_phase));
     }
     return sum * (1.0 / 3.0);
+}
+
+/* The same for a roughness of 0.4, of the table that src/frame/sky_table.c fills: a look without powers. */
+vec3 masu_sky_rough(vec3 direction)
+{
+    vec3 d = masu_sane(direction, -1.0, 1.0);
+    float half_angle = masu_sqrt(0.5 - 0.5 * masu_sky_azimuth(d));
+    vec2 at = vec2(half_angle * float(MASU_SKY_ROUGH_AZIMUTHS - 1),
+                   (0.5 + 0.5 * d.y) * float(MASU_SKY_ROUGH_ROWS - 1));
+    ivec2 first = ivec2(min(at, vec2(MASU_SKY_ROUGH_AZIMUTHS - 2, MASU_SKY_ROUGH_ROWS - 2)));
+    vec2 part = at - vec2(first);
+    int k = first.y * MASU_SKY_ROUGH_AZIMUTHS + first.x;
+    vec3 low = mix(masu_sky_tables.rough[k].rgb, masu_sky_tables.rough[k + 1].rgb, part.x);
+    k += MASU_SKY_ROUGH_AZIMUTHS;
+    vec3 high = mix(masu_sky_tables.rough[k].rgb, masu_sky_tables.rough[k + 1].rgb, part.x);
+    return mix(low, high, part.y);
 }
 
 /* The sun as it is drawn. Of its true size it would be two pixels wide and bright enough to swamp the

@@ -290,6 +290,12 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
  * aerosol's, each a polynomial of the cosine of the azimuth from the sun. */
 #define MASU_SKY_TERMS 3
 #define MASU_SKY_ROW 9
+/* Cosines of the azimuth, from -1 to 1, at which the horizon's terms are tabled. */
+#define MASU_SKY_AZIMUTHS 33
+/* Sines of elevation and cosines of azimuth, both from -1 to 1, at which the sky is tabled as a surface of roughness
+ * 0.4 mirrors it. */
+#define MASU_SKY_ROUGH_ROWS 16
+#define MASU_SKY_ROUGH_AZIMUTHS 9
 /* Of the lobe that stands for the aureole in the sky's irradiance: src/frame/sky.c. */
 #define MASU_SKY_ROUND (1.0f / 3.0f)
 
@@ -371,6 +377,8 @@ struct masu_sky_uniforms {
     masu_vec4 disc; /* rgb radiance of the sun's disc as drawn; w unused */
     masu_vec4 azimuth; /* xy: x and z of the unit vector to below the sun; w not 0: this is the sky */
     masu_vec4 rows[MASU_SKY_ROWS * MASU_SKY_ROW]; /* rgb log2 of radiance; w unused */
+    masu_vec4 horizon[MASU_SKY_AZIMUTHS * MASU_SKY_TERMS]; /* rgb radiance, term by term of a cosine; w unused */
+    masu_vec4 rough[MASU_SKY_ROUGH_ROWS * MASU_SKY_ROUGH_AZIMUTHS]; /* rgb radiance, row by row; w unused */
 };
 
 /* A point or spot of this frame, relative to its eye; shaders/light/lights.glsl says how it lights. */

@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "frame/sky_table.h"
+
 #define PI 3.14159265358979323846
 #define EARTH 6360.0
 #define TOP 90.0       /* nothing above scatters visibly */
@@ -352,50 +354,6 @@ static void add_night(row_values *v) {
         for (uint32_t c = 0; c < 3; c++) v->term[a][0][c] += NIGHT * night_color[c];
 }
 
-/* ---- Radiance -------------------------------------------------------------------------------- */
-
-/* Henyey and Greenstein, Astrophysical Journal 93, 1941. */
-static float haze_phase(float cosine, float g) {
-    float d = 1.0f + g * g - 2.0f * g * cosine;
-    return (1.0f - g * g) / (12.5663706f * d * sqrtf(d));
-}
-
-static float air_phase(float cosine) { return 0.0596831037f * (1.0f + cosine * cosine); }
-
-/* The terms of a row between two, at a cosine of azimuth. */
-static void look_up(const struct masu_sky_uniforms *sky, float y, float x,
-                    float out[MASU_SKY_TERMS][3]) {
-    float t = y < 0.0f ? -sqrtf(-y) : sqrtf(y);
-    float at = fminf(fmaxf(((float)HALF - 0.5f) * (1.0f + t), 0.0f), (float)MASU_SKY_ROWS - 1.0f);
-    uint32_t row = (uint32_t)fminf(at, (float)MASU_SKY_ROWS - 2.0f);
-    float part = at - (float)row;
-    const masu_vec4 *a = &sky->rows[row * MASU_SKY_ROW], *b = a + MASU_SKY_ROW;
-    for (uint32_t k = 0; k < MASU_SKY_TERMS; k++) {
-        for (uint32_t c = 0; c < 3; c++) {
-            float low = a[3 * k][c] + x * (a[3 * k + 1][c] + x * a[3 * k + 2][c]);
-            float high = b[3 * k][c] + x * (b[3 * k + 1][c] + x * b[3 * k + 2][c]);
-            out[k][c] = exp2f(low + part * (high - low));
-        }
-    }
-}
-
-static void radiance(const struct masu_sky_uniforms *sky, float y, float x, float cosine,
-                     float out[3]) {
-    float terms[MASU_SKY_TERMS][3];
-    look_up(sky, y, x, terms);
-    float air = air_phase(cosine), haze = haze_phase(cosine, sky->sun[3]);
-    for (uint32_t c = 0; c < 3; c++)
-        out[c] = terms[0][c] + air * terms[1][c] + haze * terms[2][c];
-}
-
-void masu_sky_radiance(const struct masu_sky_uniforms *sky, const float d[3], float out[3]) {
-    float flat = sqrtf(d[0] * d[0] + d[2] * d[2]);
-    float x = flat > 1e-6f ? (d[0] * sky->azimuth[0] + d[2] * sky->azimuth[1]) / flat : 0.0f;
-    float cosine = d[0] * sky->sun[0] + d[1] * sky->sun[1] + d[2] * sky->sun[2];
-    radiance(sky, fminf(fmaxf(d[1], -1.0f), 1.0f), fminf(fmaxf(x, -1.0f), 1.0f),
-             fminf(fmaxf(cosine, -1.0f), 1.0f), out);
-}
-
 /* ---- Irradiance ------------------------------------------------------------------------------ */
 
 /* Squares of the basis's normalisation times the cosine lobe's share of the band: 1, 2/3, 1/4
@@ -473,8 +431,7 @@ typedef struct sky_half {
 } sky_half;
 
 /* One half of the sky: rings with y of that sign. */
-static void look_around(const masu_sky *sky, double sun_y, double sign,
-                        sky_half *half) {
+static void look_around(const masu_sky *sky, double sun_y, double sign, sky_half *half) {
     double across = positive_root(1.0 - sun_y * sun_y);
     for (uint32_t r = 0; r < RINGS; r++) {
         double u = ((double)r + 0.5) / RINGS;
@@ -488,8 +445,8 @@ static void look_around(const masu_sky *sky, double sun_y, double sign,
             to->direction[0] = flat * x;
             to->direction[1] = y;
             to->direction[2] = flat * sin(angle);
-            radiance(&sky->uniforms, (float)y, (float)x, (float)(flat * x * across + y * sun_y),
-                     light);
+            masu_sky_look(&sky->uniforms, (float)y, (float)x, (float)(flat * x * across + y * sun_y),
+                          light);
             for (uint32_t c = 0; c < 3; c++)
                 to->light[c] = (double)light[c] * width * 2.0 * PI / RING_POINTS;
         }
@@ -540,8 +497,7 @@ static void add_half(masu_sky_irradiance *to, const sky_half *half) {
 #define ROUND ((double)MASU_SKY_ROUND)
 
 /* Band 4 along d and along the vertical. */
-static void measure_band_4(const sky_half *half, const double d[3],
-                           double glow[3], double ring[3]) {
+static void measure_band_4(const sky_half *half, const double d[3], double glow[3], double ring[3]) {
     for (uint32_t r = 0; r < RINGS; r++) {
         for (uint32_t p = 0; p < RING_POINTS; p++) {
             const double *at = half->points[r][p].direction;
@@ -652,6 +608,7 @@ static void update_sun(masu_sky *sky, const double haze[3]) {
         }
         store_row(sky, row, &rows[row]);
     }
+    masu_sky_tables(u);
     look_around(sky, sun_y, -1.0, &half);
     add_half(to, &half);
     measure_band_4(&half, middle, glow, ring);
