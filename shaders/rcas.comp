@@ -1,5 +1,6 @@
 /*
- * rcas.comp: FSR1 contrast-adaptive sharpening, fp32, one invocation for each pixel.
+ * rcas.comp: FSR1 contrast-adaptive sharpening, fp32, an invocation for two pixels side by side,
+ * which share two of their ten texels.
  *
  * Five taps in a cross; the lobe is the strongest that drives no channel out of 0..1. AMD's version
  * (ffx_fsr1 v1.0.2) ends with an approximate reciprocal; the true one here differs from it by at most
@@ -27,16 +28,47 @@ vec3 fetch(int x, int y)
     return masu_fetched_unorm(texelFetch(source, ivec2(x, y), 0).rgb);
 }
 
+#ifndef MASU_EXACT
+/* The share is at most 3: where a centre is that near to the mean of its ring, as on all that is flat or a gradient,
+ * half a step of 8 bits is what there is to gain, and it is left. */
+const float near = 1.0 / (6.0 * 255.0);
+
+float most_of(vec3 v)
+{
+    return max(max(abs(v.r), abs(v.g)), abs(v.b));
+}
+#endif
+
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (masu_is_outside(gl_GlobalInvocationID.xy)) {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy) * ivec2(2, 1);
+    ivec2 last = ivec2(push.last_x, push.last_y);
+    if (at.x > last.x || masu_is_outside(uvec2(at))) {
         return;
     }
     /* `at` is inside: each clamp has one side. */
-    ivec2 before = max(at - 1, 0), after = min(at + 1, ivec2(push.last_x, push.last_y));
-    vec3 sharpened = masu_rcas(fetch(at.x, before.y), fetch(before.x, at.y), fetch(at.x, at.y),
-                               fetch(after.x, at.y), fetch(at.x, after.y), push.lobe,
-                               push.stops);
-    MASU_STORE_FILTERED(target, at, sharpened);
+    ivec2 before = max(at - 1, 0), after = min(at + 1, last);
+    vec3 up = fetch(at.x, before.y), up2 = fetch(after.x, before.y);
+    vec3 down = fetch(at.x, after.y), down2 = fetch(after.x, after.y);
+    vec3 left = fetch(before.x, at.y), right2 = fetch(min(at.x + 2, last.x), at.y);
+    vec3 centre = fetch(at.x, at.y), centre2 = fetch(after.x, at.y);
+#ifdef MASU_EXACT
+    vec3 first = masu_rcas(up, left, centre, centre2, down, push.lobe, push.stops);
+    vec3 second = masu_rcas(up2, centre, centre2, right2, down2, push.lobe, push.stops);
+#else
+    vec3 off = masu_rcas_off(up, left, centre, centre2, down);
+    vec3 off2 = masu_rcas_off(up2, centre, centre2, right2, down2);
+    vec2 share = vec2(0.0);
+    if (max(most_of(off), most_of(off2)) > near) {
+        share.x = masu_rcas_share(up, left, centre, centre2, down, push.stops);
+        share.y = masu_rcas_share(up2, centre, centre2, right2, down2, push.stops);
+    }
+    vec3 first = centre + share.x * off;
+    vec3 second = centre2 + share.y * off2;
+#endif
+    MASU_STORE_FILTERED(target, at, first);
+    if (masu_whole_groups || at.x < last.x) { /* eight columns make pairs */
+        ivec2 next = at + ivec2(1, 0);
+        MASU_STORE_FILTERED(target, next, second);
+    }
 }

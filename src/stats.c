@@ -45,6 +45,7 @@ static int is_fixed_pass(uint32_t pass) {
     switch (masu_passes[pass].extent) {
     case MASU_EXTENT_OUTPUT:
     case MASU_EXTENT_OUTPUT32:
+    case MASU_EXTENT_OUTPUT_PAIRS:
     case MASU_EXTENT_OUTPUT_ODD:
     case MASU_EXTENT_ONE:
     case MASU_EXTENT_ATLAS:

@@ -55,7 +55,7 @@ const float room = 1.0 / 1048576.0;
  * max with the centre, least and most without; at most 3/16. Kept as l = 1 / (4 w), each fraction needs one guard.
  * And (c - w ring) / (1 - 4 w) = c + (c - ring / 4) / (l - 1): one reciprocal less, and whatever it
  * is, a constant picture stays what it was. */
-vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength, float stops)
+float masu_rcas_share(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float stops)
 {
     vec3 least = min(min(up, left), min(right, down));
     vec3 most = max(max(up, left), max(right, down));
@@ -64,9 +64,18 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
     float l = max(max(1.0 / 0.75, low.r), high.r); /* in this order each line is one max3, where there is one */
     l = max(max(l, low.g), high.g);
     l = max(max(l, low.b), high.b);
-    float share = 1.0 / (l * stops - 1.0); /* what it divides by is at least 1/3 */
-    vec3 ring = (up + left) + (right + down);
-    return centre + share * (centre - 0.25 * ring);
+    return 1.0 / (l * stops - 1.0); /* what it divides by is at least 1/3 */
+}
+
+/* How far the centre is from the mean of its ring: so many times the share are added to it. */
+vec3 masu_rcas_off(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down)
+{
+    return centre - 0.25 * ((up + left) + (right + down));
+}
+
+vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength, float stops)
+{
+    return centre + masu_rcas_share(up, left, centre, right, down, stops) * masu_rcas_off(up, left, centre, right, down);
 }
 
 #endif

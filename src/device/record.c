@@ -49,6 +49,9 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
     /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
     case MASU_EXTENT_TILE:
     case MASU_EXTENT_ONE: edge = 1; break;
+    case MASU_EXTENT_OUTPUT_PAIRS:
+        return (VkExtent2D){(push->sizes.output_width + 2 * edge - 1) / (2 * edge),
+                            (push->sizes.output_height + edge - 1) / edge};
     case MASU_EXTENT_OUTPUT32: edge = MASU_FSR1_BLOCK; break;
     case MASU_EXTENT_OUTPUT_ODD:
         return (VkExtent2D){push->sizes.render_width / edge + 1, push->sizes.render_height / edge + 1};
