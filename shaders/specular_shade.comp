@@ -12,7 +12,6 @@
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of what is met may have a coat */
 #define MASU_PUSH masu_push_specular_shade
-#define MASU_SKY_LOOP [[dont_unroll]]
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"
 #include "shared/globals.glsl"

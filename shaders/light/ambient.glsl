@@ -116,20 +116,19 @@ vec3 masu_ambient_mirror(vec3 direction, float roughness)
     }
     vec2 bands = masu_lobe_bands(clamp(roughness, 0.0, 1.0));
     float blend = smoothstep(0.15, 0.85, roughness);
-    vec3 color = masu_sane(masu_ambient_bands(direction, bands), 0.0, 1e9);
+    vec3 blurred = vec3(0.0);
     if (blend < 1.0) {
         /* Three looks by powers cost more than all the rest of a pixel's light: from 0.4 on a table has it. */
         float tabled = clamp(10.0 * roughness - 3.0, 0.0, 1.0);
-        vec3 blurred = vec3(0.0);
-        if (tabled > 0.0) {
-            blurred = tabled * masu_sky_rough(direction);
-        }
         if (tabled < 1.0) {
-            blurred += (1.0 - tabled) * masu_sky_blurred(direction, bands.x, bands.y);
+            blurred = (1.0 - tabled) * masu_sky_blurred(direction, bands.x, bands.y);
         }
-        color = mix(blurred, color, blend);
+        if (tabled > 0.0) {
+            blurred += tabled * masu_sky_rough(direction);
+        }
     }
-    return color;
+    /* Last: what waits for the looks takes registers. */
+    return mix(blurred, masu_sane(masu_ambient_bands(direction, bands), 0.0, 1e9), blend);
 }
 
 #endif

@@ -14,12 +14,6 @@
 
 #extension GL_EXT_control_flow_attributes : require
 
-/* Where a surface waits for the sky, its three terms are one after the other: all at once are 72 registers on Intel's
- * GPUs. Elsewhere at once is what leaves more waves. */
-#ifndef MASU_SKY_LOOP
-#define MASU_SKY_LOOP
-#endif
-
 layout(constant_id = 1) const bool masu_has_sky = false;
 
 layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_SKY, std140) uniform Sky
@@ -40,7 +34,7 @@ bool masu_sky_is_analytic()
 }
 
 /* The sum of the three terms, weighted, at a sine of elevation and a cosine of azimuth from the sun: what comes
- * evenly, of the air, of the haze. */
+ * evenly, of the air, of the haze. One after the other: all at once are 72 registers on Intel's GPUs. */
 vec3 masu_sky_sum(float y, float x, vec3 weights)
 {
     float t = y < 0.0 ? -masu_sqrt(-y) : masu_sqrt(y);
@@ -49,7 +43,7 @@ vec3 masu_sky_sum(float y, float x, vec3 weights)
     float part = at - float(row);
     row *= MASU_SKY_ROW;
     vec3 sum = vec3(0.0);
-    MASU_SKY_LOOP for (int k = 0; k < MASU_SKY_TERMS; k++) {
+    [[dont_unroll]] for (int k = 0; k < MASU_SKY_TERMS; k++) {
         int a = row + 3 * k;
         int b = a + MASU_SKY_ROW;
         vec3 low = masu_sky_tables.rows[a].rgb +
@@ -100,7 +94,7 @@ vec3 masu_sky_horizon(vec3 direction)
     first *= MASU_SKY_TERMS;
     vec3 weights = vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
     vec3 sum = vec3(0.0);
-    for (int k = 0; k < MASU_SKY_TERMS; k++) {
+    [[dont_unroll]] for (int k = 0; k < MASU_SKY_TERMS; k++) {
         sum += weights[k] * mix(masu_sky_tables.horizon[first + k].rgb,
                                 masu_sky_tables.horizon[first + MASU_SKY_TERMS + k].rgb, part);
     }
