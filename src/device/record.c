@@ -1,7 +1,7 @@
-/* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and
- * where a rung draws cascades of the shadow map less often than every frame: set of those that it
- * draws), made once in masu_init and submitted again and again. A recording is one command buffer, or, where
- * desc.split has the host's own commands in a frame, one more for each such row of the table. */
+/* record.c: the table becomes command buffers. One recording per (frame in flight, rung, target, and where a rung draws
+ * cascades of the shadow map less often than every frame: set of those that it draws), made once in masu_init and
+ * submitted again and again. A recording is one command buffer, or, where desc.split has the host's own commands in a
+ * frame, one more for each such row of the table. */
 #include "device/record.h"
 
 #include "base/error.h"
@@ -37,7 +37,7 @@ static masu_buffer_id tiles_of(masu_image_extent extent) {
 /* Workgroups of a direct dispatch. */
 static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_push_block *push) {
     const masu_frame_plan *plan = rec->m->plan;
-    uint32_t few = few_groups(rec), edge = MASU_GROUP;
+    uint32_t few = few_groups(rec), edge = MASU_GROUP, width = 0;
     /* Of culling views lie in y: the camera, or the sun's. */
     uint32_t views = push->own.word[offsetof(struct masu_push_cull, view) / 4] ? plan->views - 1 : 1;
     switch (masu_passes[pass].extent) {
@@ -49,15 +49,14 @@ static VkExtent2D groups_of(const masu_recorder *rec, uint32_t pass, const masu_
     /* Tiles are workgroups themselves; everything else has one invocation per pixel or block. */
     case MASU_EXTENT_TILE:
     case MASU_EXTENT_ONE: edge = 1; break;
-    case MASU_EXTENT_OUTPUT_PAIRS:
-        return (VkExtent2D){(push->sizes.output_width + 2 * edge - 1) / (2 * edge),
-                            (push->sizes.output_height + edge - 1) / edge};
+    case MASU_EXTENT_OUTPUT_PAIRS: width = 2 * edge; break;
     case MASU_EXTENT_OUTPUT32: edge = MASU_FSR1_BLOCK; break;
     case MASU_EXTENT_OUTPUT_ODD:
         return (VkExtent2D){push->sizes.render_width / edge + 1, push->sizes.render_height / edge + 1};
     default: break;
     }
-    return (VkExtent2D){(push->sizes.output_width + edge - 1) / edge,
+    width = width ? width : edge;
+    return (VkExtent2D){(push->sizes.output_width + width - 1) / width,
                         (push->sizes.output_height + edge - 1) / edge};
 }
 

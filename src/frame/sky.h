@@ -58,10 +58,6 @@ typedef struct masu_sky {
  * range is clamped, what is not finite becomes a sun straight up, the least turbidity, no albedo. */
 int masu_sky_update(masu_sky *sky, const float sun[3], float turbidity, const float ground[3]);
 
-/* Radiance towards a unit direction, without the sun's disc: the twin of masu_sky_light in
- * shaders/light/sky.glsl. */
-void masu_sky_radiance(const struct masu_sky_uniforms *sky, const float direction[3], float out[3]);
-
 /* Irradiance / pi on a surface of unit normal n. */
 void masu_sky_irradiance_at(const masu_sky_irradiance *irradiance, const float n[3], float out[3]);
 

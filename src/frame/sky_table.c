@@ -5,8 +5,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "frame/sky.h"
-
 /* Henyey and Greenstein, Astrophysical Journal 93, 1941. */
 static float haze_phase(float cosine, float g) {
     float d = 1.0f + g * g - 2.0f * g * cosine;

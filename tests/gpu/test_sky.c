@@ -14,6 +14,7 @@
 #include "support/floats.h"
 
 #include "frame/sky.h"
+#include "frame/sky_table.h"
 
 #define W 128u
 #define H 96u

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "frame/sky.h"
+#include "frame/sky_table.h"
 #include "support/floats.h"
 #include "support/random.h"
 
