@@ -115,8 +115,7 @@ SAME_PLACE(material, blended);
 
 #define GRAPHICS_STAGES (VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
 
-/* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the
- * masks. */
+/* How a material is drawn: 0 without textures, then as draws.h counts. The sun asks for no maps but the masks. */
 static uint32_t sweep_of(const masu_draw_look *material, uint32_t view) {
     if (material->flags & MASU_MATERIAL_IS_BLEND) return UINT32_MAX; /* transparents.c; no shadow */
     if (!(material->flags & MASU_MATERIAL_HAS_MAPS)) return 0;
