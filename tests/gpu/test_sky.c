@@ -12,6 +12,7 @@
 #include "support/support.h"
 #include "support/files.h"
 #include "support/floats.h"
+#include "support/sky_mirror.h"
 
 #include "frame/sky.h"
 #include "frame/sky_table.h"
@@ -126,6 +127,60 @@ static void a_matt_surface_shows_the_irradiance(void **state) {
     }
     print_message("%u pixels, irradiance off by %.4f at most\n", seen, worst);
     assert_true(seen > 1000 && worst < 0.02);
+    close_session(&s);
+}
+
+/* Four spheres of grey metal: the sky by three looks, by those and the table, by the table, and with order 2; their sun is
+ * below the horizon. Seen from above such a metal mirrors the same share everywhere, of all colours; a white one would send more
+ * than a hundredth of its light only after a second meeting with the surface, from elsewhere. */
+static void metals_mirror_the_sky_by_their_roughness(void **state) {
+    (void)state;
+    static const double roughness[] = {0.2, 0.35, 0.45, 0.7};
+    static const double azimuths[] = {120, 10, 250};
+    open_sky("test_sky_mirror", 0);
+    for (int a = 0; a < 3; a++) {
+        masu_light light = light_at(-1, azimuths[a], 3);
+        masu_camera camera = camera_of(0);
+        masu_frame_desc frame = {.light = &light, .camera = &camera};
+        const uint16_t *hdr;
+        const float *depth;
+        images(&frame, &hdr, &depth);
+        masu_sky_update(&sky, light.sun_direction, light.turbidity, light.ground);
+        for (int b = 0; b < 4; b++) {
+            double apart = 0, least = 1e9, most = 0;
+            uint32_t seen = 0;
+            for (uint32_t i = 0; i < W * H; i++) {
+                float d[3];
+                double n[3], v[3], want[3], ratio[3];
+                pixel_ray(i, 0, d);
+                const double eye[3] = {1.5 - b, 0, 4};
+                double half = 0, square = -0.45 * 0.45;
+                for (int k = 0; k < 3; k++) {
+                    half += eye[k] * (double)d[k];
+                    square += eye[k] * eye[k];
+                }
+                double root = half * half - square;
+                if (!(depth[i] > 0) || root < 0.13) continue; /* the rim apart */
+                double t = -half - sqrt(root), facing = 0;
+                for (int k = 0; k < 3; k++) {
+                    n[k] = (eye[k] + t * (double)d[k]) / 0.45;
+                    facing += n[k] * (double)d[k];
+                }
+                for (int k = 0; k < 3; k++) v[k] = (double)d[k] - 2 * facing * n[k];
+                sky_mirror(&sky, v, roughness[b], want);
+                seen++;
+                for (int c = 0; c < 3; c++) {
+                    ratio[c] = half_float(hdr[4 * i + (uint32_t)c]) / want[c];
+                    least = fmin(least, ratio[c]);
+                    most = fmax(most, ratio[c]);
+                }
+                apart = worst_of(apart, fmax(fabs(ratio[0] / ratio[1] - 1), fabs(ratio[2] / ratio[1] - 1)));
+            }
+            print_message("roughness %.2f, sun at %g: %u pixels, %.4f to %.4f of the twin, colours apart by %.4f\n",
+                          roughness[b], azimuths[a], seen, least, most, apart);
+            assert_true(seen > 60 && apart < 0.02 && most < 1.15 * least);
+        }
+    }
     close_session(&s);
 }
 
@@ -251,6 +306,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_of_the_sky_are_what_the_tables_say),
         cmocka_unit_test(a_matt_surface_shows_the_irradiance),
+        cmocka_unit_test(metals_mirror_the_sky_by_their_roughness),
         cmocka_unit_test(a_gradient_is_the_same_where_an_analytic_sky_is_possible),
         cmocka_unit_test(a_picture_is_seen_and_lights),
         cmocka_unit_test(a_sky_that_was_not_planned_is_refused),
