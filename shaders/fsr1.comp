@@ -61,10 +61,21 @@ void main()
         int centre = (at.y + 1) * side + at.x + 1;
         at += first;
         if (all(lessThanEqual(at, last))) {
-            vec3 sharpened =
-                masu_rcas(upscaled_at(centre - side), upscaled_at(centre - 1), upscaled_at(centre),
-                          upscaled_at(centre + 1), upscaled_at(centre + side), push.lobe,
-                          push.stops);
+            vec3 up = upscaled_at(centre - side), left = upscaled_at(centre - 1), c = upscaled_at(centre);
+            vec3 right = upscaled_at(centre + 1), down = upscaled_at(centre + side);
+#ifdef MASU_EXACT
+            vec3 sharpened = masu_rcas(up, left, c, right, down, push.lobe, push.stops);
+#else
+            /* The other one of the pair that rcas.comp makes at once. */
+            int other = centre + ((at.x & 1) == 0 ? 1 : -1);
+            vec3 off = masu_rcas_off(up, left, c, right, down);
+            vec3 off2 = masu_rcas_off(upscaled_at(other - side), upscaled_at(other - 1), upscaled_at(other),
+                                      upscaled_at(other + 1), upscaled_at(other + side));
+            vec3 sharpened = c;
+            if (masu_rcas_asked(off, off2)) {
+                sharpened = c + masu_rcas_share(up, left, c, right, down, push.stops) * off;
+            }
+#endif
             MASU_STORE_FILTERED(target, at, sharpened);
         }
     }

@@ -28,17 +28,6 @@ vec3 fetch(int x, int y)
     return masu_fetched_unorm(texelFetch(source, ivec2(x, y), 0).rgb);
 }
 
-#ifndef MASU_EXACT
-/* The share is at most 3: where a centre is that near to the mean of its ring, as on all that is flat or a gradient,
- * half a step of 8 bits is what there is to gain, and it is left. */
-const float near = 1.0 / (6.0 * 255.0);
-
-float most_of(vec3 v)
-{
-    return max(max(abs(v.r), abs(v.g)), abs(v.b));
-}
-#endif
-
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) * ivec2(2, 1);
@@ -59,7 +48,7 @@ void main()
     vec3 off = masu_rcas_off(up, left, centre, centre2, down);
     vec3 off2 = masu_rcas_off(up2, centre, centre2, right2, down2);
     vec2 share = vec2(0.0);
-    if (max(most_of(off), most_of(off2)) > near) {
+    if (masu_rcas_asked(off, off2)) {
         share.x = masu_rcas_share(up, left, centre, centre2, down, push.stops);
         share.y = masu_rcas_share(up2, centre, centre2, right2, down2, push.stops);
     }

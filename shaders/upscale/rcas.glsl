@@ -73,9 +73,13 @@ vec3 masu_rcas_off(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down)
     return centre - 0.25 * ((up + left) + (right + down));
 }
 
-vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float strength, float stops)
+/* Whether two pixels side by side, the first of an even column, are sharpened at all. The share is at most 3: where both
+ * centres are that near to the means of their rings, as on all that is flat or a gradient, half a step of 8 bits is what
+ * there is to gain, and it is left. */
+bool masu_rcas_asked(vec3 off, vec3 off2)
 {
-    return centre + masu_rcas_share(up, left, centre, right, down, stops) * masu_rcas_off(up, left, centre, right, down);
+    vec3 most = max(abs(off), abs(off2));
+    return max(max(most.r, most.g), most.b) > 1.0 / (6.0 * 255.0);
 }
 
 #endif
