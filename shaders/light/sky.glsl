@@ -64,6 +64,12 @@ float masu_haze_phase(float cosine, float g)
     return (1.0 - g * g) * 0.0795774715 * r * r * r;
 }
 
+/* What the three terms count for at a cosine to the sun. */
+vec3 masu_sky_phases(float cosine)
+{
+    return vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
+}
+
 /* Cosine of the azimuth between a direction and the sun; straight up and down it has none. */
 float masu_sky_azimuth(vec3 direction)
 {
@@ -77,7 +83,7 @@ vec3 masu_sky_light(vec3 direction)
 {
     vec3 d = masu_sane(direction, -1.0, 1.0);
     float cosine = clamp(dot(d, masu_sky_tables.sun.xyz), -1.0, 1.0);
-    vec3 weights = vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
+    vec3 weights = masu_sky_phases(cosine);
     return masu_sky_sum(d.y, masu_sky_azimuth(d), weights);
 }
 
@@ -92,7 +98,7 @@ vec3 masu_sky_horizon(vec3 direction)
     int first = int(min(at, float(MASU_SKY_AZIMUTHS - 2)));
     float part = at - float(first);
     first *= MASU_SKY_TERMS;
-    vec3 weights = vec3(1.0, 0.0596831037 * (1.0 + cosine * cosine), masu_haze_phase(cosine, masu_sky_tables.sun.w));
+    vec3 weights = masu_sky_phases(cosine);
     vec3 sum = vec3(0.0);
     [[dont_unroll]] for (int k = 0; k < MASU_SKY_TERMS; k++) {
         sum += weights[k] * mix(masu_sky_tables.horizon[first + k].rgb,

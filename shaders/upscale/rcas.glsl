@@ -49,7 +49,7 @@ vec3 masu_rcas(vec3 up, vec3 left, vec3 centre, vec3 right, vec3 down, float str
  * last place of 1; it moves a limit by less than 3e-4 of itself where there is a step of 8 bits to go. */
 const float room = 1.0 / 1048576.0;
 
-/* A cross of five texels of 0..1; strength: 0..1, 1 the sharpest, stops: 1 / strength, at most 2^64.
+/* What of masu_rcas_off is added, by a cross of five texels of 0..1; stops: exp2 of the stops, 1 the sharpest, at most 2^64.
  *
  * The strongest lobe w of a channel is a quarter of the lesser of min / most and (1 - max) / (1 - least), min and
  * max with the centre, least and most without; at most 3/16. Kept as l = 1 / (4 w), each fraction needs one guard.
