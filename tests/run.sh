@@ -221,11 +221,12 @@ use() {
     [ -z "$icd" ] || export VK_ICD_FILENAMES=$icd VK_DRIVER_FILES=$icd
     # One driver is visible: there is nothing to select, and Mesa's layer for that opens displays.
     export MASU_TEST_DRIVER=$1 NODEVICE_SELECT=1
-    # Compiled shaders stay with the build, not in the home of the user.
-    export MESA_SHADER_CACHE_DIR=$PWD/$build/cache/$1
-    mkdir -p "$MESA_SHADER_CACHE_DIR"
     # shellcheck disable=SC1090
     [ ! -e "build/drivers/$1/env" ] || . "build/drivers/$1/env"
+    # Compiled shaders stay with the build, not in the home of the user. Those for another width of vectors are not
+    # told apart in the driver's cache, and crash.
+    export MESA_SHADER_CACHE_DIR=$PWD/$build/cache/$1${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH}
+    mkdir -p "$MESA_SHADER_CACHE_DIR"
     if ! MASU_DRIVER_INFO=$("$build/tests/driver_info" 2>&1); then
         reason="it does not start: $MASU_DRIVER_INFO"
         return 1

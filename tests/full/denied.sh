@@ -18,7 +18,7 @@ icd=$(tests/drivers.sh lavapipe-25) || exit 77
 export VK_ICD_FILENAMES=$icd VK_DRIVER_FILES=$icd NODEVICE_SELECT=1 MASU_TEST_DRIVER=lavapipe-25
 # shellcheck disable=SC1091
 [ ! -e build/drivers/lavapipe-25/env ] || . build/drivers/lavapipe-25/env
-export MESA_SHADER_CACHE_DIR=$PWD/$build/cache/lavapipe-25 CMOCKA_MESSAGE_OUTPUT=stdout MASU_DENY=all
+export MESA_SHADER_CACHE_DIR=$PWD/$build/cache/lavapipe-25${LP_NATIVE_VECTOR_WIDTH:+-$LP_NATIVE_VECTOR_WIDTH} CMOCKA_MESSAGE_OUTPUT=stdout MASU_DENY=all
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 failures=0 passed=0 skipped=

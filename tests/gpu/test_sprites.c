@@ -3,6 +3,7 @@
  * ball of polygons and one of the SDF, and that nothing beside it changes; which pixels a line has. Then that any
  * numbers are safe, that capacity alone changes nothing, and that no trail stays in a history. */
 #include "support/support.h"
+#include "support/files.h"
 #include "support/floats.h"
 #include "support/random.h"
 
@@ -582,7 +583,7 @@ static void what_is_no_number_is_left_out(void **state) {
     open_room("test_pane");
     draw_lines(NULL, 0, 0);
     for (uint32_t b = 0; b < 3; b++) {
-        for (uint32_t field = 0; field < 12; field++) {
+        for (uint32_t field = whole_run() ? 0 : b; field < 12; field += whole_run() ? 1 : 3) {
             masu_particle p = disc;
             float *const fields[] = {&p.half_width, &p.half_height, &p.rotation, &p.color[0], &p.color[1], &p.color[2],
                                      &p.opacity,    &p.edge,        &p.soft};
@@ -593,7 +594,7 @@ static void what_is_no_number_is_left_out(void **state) {
             assert_memory_equal(shown, plain, sizeof shown);
         }
         masu_decal d = {.rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, .opacity = 1};
-        for (uint32_t field = 0; field < 21; field++) {
+        for (uint32_t field = whole_run() ? 0 : b; field < 21; field += whole_run() ? 1 : 3) {
             masu_decal x = d;
             float *const fields[] = {&x.color[0], &x.color[1], &x.color[2], &x.opacity, &x.roughness,
                                      &x.metallic, &x.edge,     &x.inner,    &x.outer};
@@ -714,7 +715,7 @@ static void no_trail_stays(void **state) {
     masu_session_desc desc = room_desc("test_pane");
     desc.desc.rungs[0] = (masu_rung){.scale = 0.75f, .temporal = MASU_ON};
     masu_commands commands;
-    for (uint32_t kind = 0; kind < 5; kind++) {
+    for (uint32_t kind = 0; kind < trials(5, 5, 3); kind++) { /* elsewhere those that end, not those that go away */
         open_session(&s, &desc);
         pane_at(100);
         uint32_t seen = 0, gone = AFTER;
