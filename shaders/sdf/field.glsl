@@ -195,15 +195,18 @@ uint masu_list_stride()
 #endif
 }
 
+#if MASU_TILE != 16
+#error "tiles are of 16x16 pixels"
+#endif
 uvec2 masu_tile_grid(uvec2 size)
 {
-    return (size + uint(MASU_TILE) - 1u) / uint(MASU_TILE);
+    return (size + uint(MASU_TILE) - 1u) >> 4u;
 }
 
 /* The number of a pixel's tile. */
 uint masu_tile_of(uvec2 at, uvec2 size)
 {
-    uvec2 tile = at / uint(MASU_TILE);
+    uvec2 tile = at >> 4u;
     return tile.y * masu_tile_grid(size).x + tile.x;
 }
 

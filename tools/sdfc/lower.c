@@ -639,6 +639,7 @@ static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
         int levels = constant(l, s->whole[1]);
         int d = s->whole[0] == 8 ? OP(l, mandelbulb8, p.x, p.y, p.z, limit, levels)
                                  : OP(l, mandelbulb, p.x, p.y, p.z, power, limit, levels);
+        if (s->whole[1] <= SDFC_SHALLOW_LEVELS) d = OP(l, mul, d, constant(l, 1.3));
         d = OP(l, min, d, constant(l, 0.25)); /* far away the estimate is none */
         int r = constant(l, pow(2, 1.0 / (s->whole[0] - 1)));
         return OP(l, max, d, OP(l, sphere, p.x, p.y, p.z, r));
