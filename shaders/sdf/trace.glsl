@@ -392,6 +392,16 @@ float march(ray r, out uint evals)
 
 #endif
 
+/* masu_normalize, of what mostly is neither tiny nor huge: half its operations. */
+vec3 unit_or(vec3 v, vec3 fallback)
+{
+    float squared = dot(v, v);
+    if (squared > masu_tiny && squared < masu_huge) {
+        return v * inversesqrt(squared);
+    }
+    return masu_normalize(v, fallback);
+}
+
 /* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The
  * step grows with distance (0.02 pixel: a quarter of one, as the plain march takes, rounds every edge of
  * a city; FLIP 0.013 against 0.002) and with the coordinates (64 ulp: the least total of truncation and rounding
@@ -421,11 +431,7 @@ vec3 normal_at(ray r, float t, out uint part)
 #endif
     }
     vec3 sum = f.xyz - f.yzx + (f.w - f.zxy);
-    float squared = dot(sum, sum);
-    if (squared > masu_tiny && squared < masu_huge) {
-        return sum * inversesqrt(squared);
-    }
-    return masu_normalize(sum, -r.direction);
+    return unit_or(sum, -r.direction);
 }
 
 #endif
