@@ -38,6 +38,8 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_WRITE, r32f) uniform writeonly 
 shared uint farthest; /* bits of the least reverse-Z depth; positive floats order like their bits */
 shared bool active_tile;
 shared uint masks[MASKS];
+shared vec3 planes[4];  /* the tile's side planes through the eye */
+shared bool sdf_seen, listed_seen; /* the box of the SDF, of the listed parts */
 
 uvec2 pixel_of(uvec2 corner, int i)
 {
@@ -72,26 +74,22 @@ void clear_depth(uvec2 corner, uvec2 size)
 }
 #endif
 
-/* The four side planes of the tile through the eye, normals inwards, half a pixel wider: the march
+/* One of the four side planes of the tile through the eye, normal inwards, half a pixel wider: the march
  * stops a tenth of a pixel before a surface. */
-void tile_planes(uvec2 corner, uvec2 size, out vec3 planes[4])
+vec3 tile_plane(uint i, uvec2 corner, uvec2 size)
 {
     vec2 low = masu_ndc(vec2(corner) - 0.5, vec2(size));
     vec2 high = masu_ndc(vec2(corner + uint(MASU_TILE)) + 0.5, vec2(size));
     vec3 f = frame.forward.xyz;
     vec3 right = frame.right.xyz;
     vec3 down = -frame.up.xyz;
-    planes[0] = masu_normalize(cross(f + right * low.x, frame.up.xyz), vec3(0.0));
-    planes[1] = -masu_normalize(cross(f + right * high.x, frame.up.xyz), vec3(0.0));
-    planes[2] = masu_normalize(cross(f + down * low.y, right), vec3(0.0));
-    planes[3] = -masu_normalize(cross(f + down * high.y, right), vec3(0.0));
-    for (int i = 0; i < 4; i++) {
-        vec3 middle = f + right * (low.x + high.x) * 0.5 + down * (low.y + high.y) * 0.5;
-        planes[i] = dot(planes[i], middle) < 0.0 ? -planes[i] : planes[i];
-    }
+    vec3 side = i == 0u ? right * low.x : i == 1u ? right * high.x : i == 2u ? down * low.y : down * high.y;
+    vec3 plane = masu_normalize(cross(f + side, i < 2u ? down : right), vec3(0.0));
+    vec3 middle = f + right * (low.x + high.x) * 0.5 + down * (low.y + high.y) * 0.5;
+    return dot(plane, middle) < 0.0 ? -plane : plane;
 }
 
-bool sphere_seen(vec4 sphere, vec3 planes[4], float z_far)
+bool sphere_seen(vec4 sphere, float z_far)
 {
     if (!(sphere.w >= 0.0)) {
         return true; /* unbounded, or not a number: kept */
@@ -108,7 +106,7 @@ bool sphere_seen(vec4 sphere, vec3 planes[4], float z_far)
 }
 
 /* A box against the same planes: the corner farthest along each normal. */
-bool box_seen(vec3 low, vec3 high, vec3 planes[4], float z_far)
+bool box_seen(vec3 low, vec3 high, float z_far)
 {
     low = low - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
     high = high - frame.sdf_eye_hi.xyz - frame.sdf_eye_lo.xyz;
@@ -189,6 +187,10 @@ void main()
             masks[uint(w * INVOCATIONS) + me] = 0u;
         }
     }
+    /* What is the same for all parts is found by as few invocations as it takes. */
+    if (me < 4u) {
+        planes[me] = tile_plane(me, corner, size);
+    }
     float least = 0.0;
 #if MASU_HAS_RASTER
     if (me == 0u) {
@@ -202,25 +204,24 @@ void main()
     barrier();
 #endif
     float z_far = least > 0.0 ? frame.forward.w / least : 3e38;
-    bool seen = false;
-    if (me < max(uint(MASU_SDF_LISTED_COUNT), 1u)) {
-        vec3 planes[4];
-        tile_planes(corner, size, planes);
-        seen = box_seen(frame.sdf_min.xyz, frame.sdf_max.xyz, planes, z_far);
+    if (me == 0u) {
+        sdf_seen = box_seen(frame.sdf_min.xyz, frame.sdf_max.xyz, z_far);
         vec3 low, high;
         masu_listed_box(low, high);
-        bool listed_seen = box_seen(low, high, planes, z_far);
+        listed_seen = box_seen(low, high, z_far);
+    }
+    barrier();
+    if (me < max(uint(MASU_SDF_LISTED_COUNT), 1u) && listed_seen) {
         for (int i = 0; i < (MASU_SDF_LISTED_COUNT + INVOCATIONS - 1) / INVOCATIONS; i++) {
             uint part = uint(i * INVOCATIONS) + me;
-            if (listed_seen && part < uint(MASU_SDF_LISTED_COUNT) &&
-                sphere_seen(masu_sdf_bounds(part), planes, z_far)) {
+            if (part < uint(MASU_SDF_LISTED_COUNT) && sphere_seen(masu_sdf_bounds(part), z_far)) {
                 atomicOr(masks[part >> 5], 1u << (part & 31u));
             }
         }
     }
     barrier();
     if (me == 0u) {
-        write_list(tile, size, seen && flat_parts_seen(corner, size));
+        write_list(tile, size, sdf_seen && flat_parts_seen(corner, size));
     }
 #if !MASU_HAS_RASTER
     barrier();

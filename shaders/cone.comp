@@ -56,9 +56,11 @@ void main()
         vec2 ndc = masu_ndc((vec2(at) + 0.5) * float(MASU_CONE_BLOCK), size);
         vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
         ray r;
-        r.direction = through / length(through);
+        r.direction = through * inversesqrt(dot(through, through)); /* at least 1 long */
         r.pixel = 2.0 * max(frame.up.w / size.y, frame.right.w / size.x);
         float k = float(MASU_CONE_BLOCK) * 0.70711 * r.pixel;
+        float k2 = k * k;
+        float shorter = 1.0 / (1.0 + k2);
         float t = frame.forward.w;
 #if MASU_CONE_BLOCK == 4
         t = max(t, texelFetch(parent_image, ivec2(at) / 2, 0).r);
@@ -79,37 +81,40 @@ void main()
             done = done || uint(i) >= push.steps || !(t < limit);
             float at_t = t;
 #if MASU_WRITES_BLOCKS
-            /* A sample more for each piece of the rays that begin here. */
-            vec4 ends = span_ends(t, r.pixel);
-            float begin = span == 0 ? t : span == 1 ? ends.x : span == 2 ? ends.y : ends.z;
-            float end = span == 0 ? ends.x : span == 1 ? ends.y : span == 2 ? ends.z : ends.w;
-            if (empty || (done && push.all_terms != 0u) || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
-                break;
+            if (done) {
+                /* A sample more for each piece of the rays that begin here. */
+                vec4 ends = span_ends(t, r.pixel);
+                float begin = span == 0 ? t : span == 1 ? ends.x : span == 2 ? ends.y : ends.z;
+                float end = span == 0 ? ends.x : span == 1 ? ends.y : span == 2 ? ends.z : ends.w;
+                if (empty || push.all_terms != 0u || span == MASU_BLOCK_SPANS || (span > 0 && !(begin < limit))) {
+                    break;
+                }
+                at_t = 0.5 * (begin + end);
+                masu_margin = span_margin(r, begin, end);
+                masu_keeping = true;
             }
-            at_t = done ? 0.5 * (begin + end) : t;
-            masu_margin = done ? span_margin(r, begin, end) : 0.0;
-            masu_keeping = done;
 #else
             if (done) {
                 break;
             }
 #endif
-            bool usable;
-            float f = step_at(r, at_t, usable);
+            vec3 p = world_at(r.direction, at_t);
+            float f = masu_sdf(p) * safe_step;
             evals++;
-            if (done) {
 #if MASU_WRITES_BLOCKS
+            if (done) {
                 uint place = span_place(at) + uint(1 + span * MASU_SDF_BLOCK_WORDS);
                 for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
                     masu_tiles_out[place + uint(w)] = masu_kept[w];
                 }
-#endif
                 span++;
                 continue;
             }
-            float radius = max(f, outside_box(world_at(r.direction, t)));
-            float inside = radius * radius * (1.0 + k * k) - k * k * t * t;
-            float gain = (t + sqrt(max(inside, 0.0))) / (1.0 + k * k) - t;
+#endif
+            bool usable = masu_finite(f);
+            float radius = max(f, outside_box(p));
+            float inside = radius * radius * (1.0 + k2) - k2 * t * t;
+            float gain = (t + sqrt(max(inside, 0.0))) * shorter - t;
             done = !usable || !(radius > 0.0) || !(inside > 0.0) || !(gain > 0.25 * k * t);
             t = done ? t : t + gain;
         }

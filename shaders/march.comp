@@ -61,9 +61,18 @@ ray ray_of(uvec2 place, out float z_scale)
 {
     vec2 ndc = ndc_corner + ndc_step * vec2(place);
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
-    z_scale = length(through);
-    float inverse = 1.0 / z_scale;
+    float squared = dot(through, through); /* at least 1 */
+    float inverse = inversesqrt(squared);
+    z_scale = squared * inverse;
     return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);
+}
+
+/* Row and column of a tile by a float's division: at most 2^20 tiles, 1024 in a row, and half a tile is further from a whole row
+ * than what rounding can add. */
+uvec2 tile_at(uint tile, uint columns)
+{
+    uint row = uint((float(tile) + 0.5) / float(columns));
+    return uvec2(tile - row * columns, row);
 }
 
 void look_from(uvec2 tile)
@@ -74,15 +83,16 @@ void look_from(uvec2 tile)
     ndc_step = 2.0 / vec2(size);
 }
 
-/* The box of the listed parts as the eye sees it. Not that of the SDF's bounds, too: a Vega has no registers left for what
- * all rays share, and would keep some of it elsewhere. */
-vec3 box_low, box_high;
+/* The boxes of the listed parts and of the SDF as the eye sees them. */
+vec3 box_low, box_high, bounds_low, bounds_high;
 
 void look_at_boxes()
 {
     masu_listed_box(box_low, box_high);
     box_low = box_low - eye_hi - eye_lo;
     box_high = box_high - eye_hi - eye_lo;
+    bounds_low = frame.sdf_min.xyz - eye_hi - eye_lo;
+    bounds_high = frame.sdf_max.xyz - eye_hi - eye_lo;
 }
 
 /* Between which distances the ray is within a box. */
@@ -113,7 +123,7 @@ vec3 prepare(uvec2 place)
     float z_scale;
     ray r = ray_of(place, z_scale);
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
-    vec2 bounds = within(frame.sdf_min.xyz - eye_hi - eye_lo, frame.sdf_max.xyz - eye_hi - eye_lo, inverse);
+    vec2 bounds = within(bounds_low, bounds_high, inverse);
     float nearest = frame.forward.w * z_scale;
     float first_t = max(nearest, bounds.x);
     float last_t = min(frame.sdf_max.w, bounds.y);
@@ -145,6 +155,19 @@ float field_here(ray r, float t)
     return field_at(r, t);
 }
 
+/* The next ray from i on that has a piece to march, at `most` if there is none. Not so late that one could not be marched to its
+ * end. */
+uint take(uint i, int step)
+{
+    MASU_LOOP for (int k = 0; k < RAYS; k++) {
+        if (i >= uint(RAYS) || ray_limit[i] > 0.0) {
+            break;
+        }
+        i = !share_rays ? i + uint(INVOCATIONS) : atomicAdd(taken, 1u);
+    }
+    return step < 3 * MASU_MARCH_STEPS_MAX || !share_rays ? i : uint(RAYS);
+}
+
 march_state begin(uint i, out ray r)
 {
     float z_scale;
@@ -152,9 +175,8 @@ march_state begin(uint i, out ray r)
     r = ray_of(place, z_scale);
     r.start = -ray_start[i];
     r.limit = ray_limit[i];
-    march_state m = march_begin(r);
-    begin_spans(place, m.t);
-    return m;
+    begin_spans(place, r.start);
+    return march_begin(r);
 }
 
 /* In one loop: an invocation that is done with one ray takes the next, instead of waiting for the slowest of its subgroup, which
@@ -164,18 +186,18 @@ march_state begin(uint i, out ray r)
 uint march_all()
 {
     uint evals = 0u;
-    uint i = gl_LocalInvocationIndex;
+    uint i = take(gl_LocalInvocationIndex, 0);
+    if (i >= uint(RAYS)) {
+        return 0u;
+    }
     ray r;
     march_state m = begin(i, r);
     MASU_LOOP for (int step = 0; step < 4 * MASU_MARCH_STEPS_MAX; step++) {
-        if (!m.done) {
-            evals++;
-            march_step(m, r, field_here(r, m.t));
-        }
+        march_step(m, r, field_here(r, m.t));
         if (m.done) {
+            evals += m.steps;
             ray_start[i] = m.t;
-            /* Not so late that a ray could not be marched to its end. */
-            i = !share_rays ? i + uint(INVOCATIONS) : step < 3 * MASU_MARCH_STEPS_MAX ? atomicAdd(taken, 1u) : uint(RAYS);
+            i = take(!share_rays ? i + uint(INVOCATIONS) : atomicAdd(taken, 1u), step);
             if (i >= uint(RAYS)) {
                 break;
             }
@@ -190,7 +212,7 @@ void main()
     masu_count_begin();
     uint tile = masu_tiles[uint(MASU_TILES_HEADER) + gl_WorkGroupID.x];
     uint columns = masu_tile_grid(uvec2(pc.output_width, pc.output_height)).x;
-    look_from(uvec2(tile % columns, tile / columns));
+    look_from(tile_at(tile, columns));
     bool listed = masu_use_tile(tile, size);
     look_at_boxes();
     if (gl_LocalInvocationIndex == 0u) {
@@ -206,8 +228,10 @@ void main()
         if (all(lessThan(corner + place, size))) {
             piece = prepare(place);
         }
-        ray_start[i] = -abs(piece.x);
-        ray_limit[i] = listed ? piece.y : -1.0;
+        /* What has no piece to march is marched: nothing is found. */
+        bool any = listed && piece.x < piece.y;
+        ray_start[i] = any ? -piece.x : -1.0;
+        ray_limit[i] = any ? piece.y : -1.0;
         ray_flat[i] = piece.z;
     }
     if (share_rays) {

@@ -135,27 +135,33 @@ uint masu_part_at(uint i)
  * lavapipe then runs every copy for all lanes: 1.3 to 2.6 times the time of the march. */
 #define MASU_LOOP [[dont_unroll]]
 
-/* Of a list, the first place at or behind i that the bits ask for; a list may be longer than they are. */
-uint masu_place_from(uint i)
+/* Of a list, the places that the bits ask for, one after the other; a list may be longer than they are. What has not come yet
+ * is kept: a place then takes 9 operations instead of 30. */
+uint masu_left_low = 0u;
+uint masu_left_high = 0u;
+
+uint masu_next_place(uint i)
 {
 #if defined(MASU_SDF_KEEP) || defined(MASU_SDF_ASK)
-    if (masu_list_count != MASU_TILE_ALL && i < 64u) {
-        uint low = i < 32u ? masu_list_bits[0] >> i : 0u;
-        uint high = masu_list_bits[1] & 0xFFFFFFFFu << (i < 32u ? 0u : i - 32u);
-        i = low != 0u ? i + masu_low_bit(low) : high != 0u ? 32u + masu_low_bit(high) : 64u;
+    if (masu_list_count != MASU_TILE_ALL) {
+        uint low = masu_left_low;
+        if (low != 0u) {
+            masu_left_low = low & (low - 1u);
+            return uint(findLSB(low));
+        }
+        uint high = masu_left_high;
+        masu_left_high = high & (high - 1u);
+        return high != 0u ? 32u + uint(findLSB(high)) : 64u;
     }
 #endif
-    return i;
+    return i + 1u;
 }
 
 uint masu_first_place()
 {
-    return masu_place_from(0u);
-}
-
-uint masu_next_place(uint i)
-{
-    return masu_place_from(i + 1u);
+    masu_left_low = masu_list_bits[0];
+    masu_left_high = masu_list_bits[1];
+    return masu_next_place(0xFFFFFFFFu);
 }
 
 /* Of the surface that masu_sdf_surface is asked about. */
@@ -195,15 +201,18 @@ uint masu_list_stride()
 #endif
 }
 
+#if MASU_TILE != 16
+#error "tiles are of 16x16 pixels"
+#endif
 uvec2 masu_tile_grid(uvec2 size)
 {
-    return (size + uint(MASU_TILE) - 1u) / uint(MASU_TILE);
+    return (size + uint(MASU_TILE) - 1u) >> 4u;
 }
 
 /* The number of a pixel's tile. */
 uint masu_tile_of(uvec2 at, uvec2 size)
 {
-    uvec2 tile = at / uint(MASU_TILE);
+    uvec2 tile = at >> 4u;
     return tile.y * masu_tile_grid(size).x + tile.x;
 }
 

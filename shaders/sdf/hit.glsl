@@ -13,7 +13,7 @@ float write_hit(uvec2 at, ray r, float t, bool known, uint part, float z_scale)
     masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
     vec3 n;
     if (known) {
-        n = masu_normalize(masu_sdf_flat_normal(part), -r.direction);
+        n = unit_or(masu_sdf_flat_normal(part), -r.direction);
     } else {
         n = normal_at(r, t, part);
         masu_count(MASU_COUNTER_SDF_EVALS, 4u);

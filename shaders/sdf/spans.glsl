@@ -97,7 +97,16 @@ void span_begin(uvec2 at, uvec2 size, float t)
 {
     span_first = span_word(at) + 1u;
     span_start = uintBitsToFloat(masu_tiles[span_first - 1u]);
-    span_look_up(t, size);
+    /* Nearly all begin where the pieces do. */
+    span_from = 0.0;
+    span_to = span_start * (1.0 + span_pixel * 8.0);
+    if (MASU_SPAN_BEFORE || !(t <= span_to)) {
+        span_look_up(t, size);
+        return;
+    }
+    for (int w = 0; w < MASU_SDF_BLOCK_WORDS; w++) {
+        masu_list_bits[w] = masu_tiles[span_first + uint(w)];
+    }
 }
 
 /* Once, before the first. */

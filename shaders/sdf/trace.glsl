@@ -185,6 +185,7 @@ struct march_state {
     float before_t, before_f; /* the last sample that was right: the ray is free up to their sum */
     float limit;              /* of the ray, or narrower: a sample below 0 */
     float best_t, best_f;     /* sample of least f/t, or where that is 2 pixels */
+    float apart;              /* what is further off, at distance 1, is far: two pixels' widths; 1e30 once it is narrowed */
     uint steps;
     bool narrowed, done;
 };
@@ -192,8 +193,15 @@ struct march_state {
 march_state march_begin(ray r)
 {
     bool any = r.start < r.limit;
-    return march_state(any ? r.start : -1.0, r.start, 0.0, r.limit, 1.0, 2.0 * r.pixel, 0u, false,
-                       !any);
+    return march_state(any ? r.start : -1.0, r.start, 0.0, r.limit, 1.0, 2.0 * r.pixel,
+                       2.0 * r.pixel + 8.0 * ulp, 0u, false, !any);
+}
+
+/* The sample that would stand for the surface is looked for in the second half of a ray's steps alone: hardly any ray comes
+ * there, and looking takes six operations a sample. */
+bool note_best(march_state m)
+{
+    return 2u * m.steps > MASU_MARCH_STEPS;
 }
 
 bool is_sure(float f, float pixel, float reach, float before_f)
@@ -234,8 +242,12 @@ bool is_sure(float f, float pixel, float reach, float before_f)
  * smaller than the tolerance. A sample that is near enough from above takes what is left by the last
  * slope, without another look. A camera inside a solid has no sample before: it sees it at the near
  * plane, as a clipped polygon's inside would. A field that is not a number is a miss. */
-void march_between(inout march_state m, ray r, float f, float pixel, float enough, float free, float reach)
+void march_between(inout march_state m, ray r, float f)
 {
+    float pixel = r.pixel * m.t;
+    float enough = tolerance(r, m.t);
+    float free = m.before_t + m.before_f;
+    float reach = m.t - m.before_t;
     bool touched = f < enough;
     /* A longer step: newton, as far as the field falls; else relaxed, with a slope of at most 0.9. */
     float fall = m.before_f - f;
@@ -259,7 +271,7 @@ void march_between(inout march_state m, ray r, float f, float pixel, float enoug
     if (meet) {
         masu_note_hint(m.t, f);
     }
-    bool better = meet && f * m.best_t < m.best_f * m.t;
+    bool better = meet && note_best(m) && f * m.best_t < m.best_f * m.t;
     m.best_t = better ? m.t : m.best_t;
     m.best_f = better ? f : m.best_f;
     bool spent = !hit && !gone && m.steps >= MASU_MARCH_STEPS;
@@ -272,21 +284,32 @@ void march_between(inout march_state m, ray r, float f, float pixel, float enoug
     bool narrows = meet && through;
     m.limit = narrows ? m.t : m.limit;
     m.narrowed = m.narrowed || narrows;
+    m.apart = m.narrowed ? 1e30 : m.apart;
     m.before_t = meet && !through ? m.t : m.before_t;
     m.before_f = meet ? (through ? 0.5 * m.before_f : f) : m.before_f;
     m.t = missed ? -1.0 : hit ? end : spent ? m.best_t : meet ? next : free;
 }
 
-/* The same of a ray that has met nothing below 0. */
-void march_near(inout march_state m, ray r, float f, float pixel, float enough, float free, float reach)
+/* The same of a ray that has met nothing below 0. Branches that end it early, since most samples need one or two of its
+ * questions. */
+void march_near(inout march_state m, ray r, float f)
 {
+    float pixel = r.pixel * m.t;
+    float enough = tolerance(r, m.t);
+    float free = m.before_t + m.before_f;
+    float reach = m.t - m.before_t;
     bool touched = f < enough;
-    bool meet = m.t - max(f, 0.0) <= free || (touched && reach <= newton_reach * pixel) ||
-                is_sure(f, pixel, reach, m.before_f);
+    bool meet = m.t - max(f, 0.0) <= free;
+    if (!meet) {
+        meet = (touched && reach <= newton_reach * pixel) || is_sure(f, pixel, reach, m.before_f);
+    }
     bool spent = m.steps >= MASU_MARCH_STEPS;
     if (!meet && !spent) {
         m.t = free;
         return;
+    }
+    if (meet) {
+        masu_note_hint(m.t, f);
     }
     float fall = m.before_f - f;
     bool newton = f < newton_from * pixel && fall > 0.0;
@@ -294,54 +317,62 @@ void march_near(inout march_state m, ray r, float f, float pixel, float enough, 
                  max(newton ? fall : max(reach + fall, 0.1 * reach), 1e-30);
     float longest = touched ? 16.0 * enough : newton_reach * pixel;
     float next = min(m.t + (newton ? min(f * rate, longest) : f * max(rate, 1.0)), m.limit);
-    if (meet) {
-        masu_note_hint(m.t, f);
+    if (touched && meet) {
+        m.t = next < r.limit ? next : -1.0;
+        m.done = true;
+        return;
     }
-    bool better = meet && f * m.best_t < m.best_f * m.t;
-    m.best_t = better ? m.t : m.best_t;
-    m.best_f = better ? f : m.best_f;
-    bool hit = meet && touched;
-    bool gone = meet && !hit && m.t + f >= m.limit;
-    m.done = hit || gone || spent;
-    spent = spent && !hit && !gone;
+    if (note_best(m)) {
+        bool better = meet && f * m.best_t < m.best_f * m.t;
+        m.best_t = better ? m.t : m.best_t;
+        m.best_f = better ? f : m.best_f;
+    }
+    if (meet && m.t + f >= m.limit) {
+        m.t = -1.0;
+        m.done = true;
+        return;
+    }
     if (spent) {
         masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
+        m.t = m.best_f < 2.0 * r.pixel * m.best_t ? m.best_t : -1.0;
+        m.done = true;
+        return;
     }
-    bool missed = gone || (hit && !(next < r.limit)) || (spent && !(m.best_f < 2.0 * r.pixel * m.best_t));
     m.before_t = m.t;
     m.before_f = f;
-    m.t = missed ? -1.0 : spent ? m.best_t : next;
+    m.t = next;
 }
 
 /* Two pixels' widths and more away: nothing that could stand for the surface, nothing to narrow down. */
-void march_far(inout march_state m, float f, float free, float reach)
+void march_far(inout march_state m, float f)
 {
-    bool meet = m.t - f <= free;
-    if (meet) {
-        masu_note_hint(m.t, f);
+    float free = m.before_t + m.before_f;
+    if (m.t - f > free) {
+        m.t = free;
+        return;
     }
+    masu_note_hint(m.t, f);
+    if (m.t + f >= m.limit) {
+        m.t = -1.0;
+        m.done = true;
+        return;
+    }
+    float reach = m.t - m.before_t;
     float rate = 1.9 * reach / max(max(reach + (m.before_f - f), 0.1 * reach), 1e-30);
-    float next = min(m.t + f * max(rate, 1.0), m.limit);
-    bool gone = meet && m.t + f >= m.limit;
-    m.before_t = meet ? m.t : m.before_t;
-    m.before_f = meet ? f : m.before_f;
-    m.t = gone ? -1.0 : meet ? next : free;
-    m.done = gone;
+    m.before_t = m.t;
+    m.before_f = f;
+    m.t = min(m.t + f * max(rate, 1.0), m.limit);
 }
 
 void march_step(inout march_state m, ray r, float f)
 {
-    float pixel = r.pixel * m.t;
-    float enough = tolerance(r, m.t);
-    float free = m.before_t + m.before_f;
-    float reach = m.t - m.before_t;
     m.steps++;
-    if (f > max(2.0 * pixel, enough) && !m.narrowed && m.steps < MASU_MARCH_STEPS) {
-        march_far(m, f, free, reach);
-    } else if (f >= -enough && !m.narrowed) {
-        march_near(m, r, f, pixel, enough, free, reach);
+    if (f > m.t * m.apart + coarse && m.steps < MASU_MARCH_STEPS) {
+        march_far(m, f);
+    } else if (!m.narrowed && f >= -tolerance(r, m.t)) {
+        march_near(m, r, f);
     } else {
-        march_between(m, r, f, pixel, enough, free, reach);
+        march_between(m, r, f);
     }
 }
 
@@ -361,6 +392,16 @@ float march(ray r, out uint evals)
 
 #endif
 
+/* masu_normalize, of what mostly is neither tiny nor huge: half its operations. */
+vec3 unit_or(vec3 v, vec3 fallback)
+{
+    float squared = dot(v, v);
+    if (squared > masu_tiny && squared < masu_huge) {
+        return v * inversesqrt(squared);
+    }
+    return masu_normalize(v, fallback);
+}
+
 /* Gradient from four samples at the corners of a tetrahedron (I. Quilez, "Normals for an SDF"). The
  * step grows with distance (0.02 pixel: a quarter of one, as the plain march takes, rounds every edge of
  * a city; FLIP 0.013 against 0.002) and with the coordinates (64 ulp: the least total of truncation and rounding
@@ -371,24 +412,26 @@ vec3 normal_at(ray r, float t, out uint part)
     vec3 p = world_at(r.direction, t);
     vec3 a = abs(p);
     float h = max(normal_step * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
-    vec3 sum = vec3(0.0);
+    vec3 corner = vec3(h, -h, -h);
+    vec4 f = vec4(0.0);
 #ifdef MASU_SDF_KEEP
     masu_keeping = MASU_SDF_BLOCK_WORDS > 0 && MASU_CHOOSING;
     masu_margin = masu_keeping ? field_margin(r, t, 3.0 * h) : 0.0;
 #endif
     MASU_LOOP for (int i = 0; i < 4; i++) {
-        bvec3 plus = bvec3(i == 1 || i == 3, i >= 2, i == 0 || i == 3);
-        vec3 corner = mix(vec3(-1.0), vec3(1.0), plus);
-        sum += corner * masu_sdf_with(p + corner * h, part);
+        f = vec4(f.yzw, masu_sdf_with(p + corner, part));
+        corner = i == 2 ? vec3(h) : corner.zxy;
 #ifdef MASU_SDF_KEEP
         /* The first one tells what matters to the other three. */
-        masu_list_bits[0] = masu_keeping ? masu_kept[0] : masu_list_bits[0];
-        masu_list_bits[1] = masu_keeping ? masu_kept[1] : masu_list_bits[1];
-        masu_margin = 0.0;
-        masu_keeping = false;
+        if (masu_keeping) {
+            masu_list_bits = masu_kept;
+            masu_margin = 0.0;
+            masu_keeping = false;
+        }
 #endif
     }
-    return masu_normalize(sum, -r.direction);
+    vec3 sum = f.xyz - f.yzx + (f.w - f.zxy);
+    return unit_or(sum, -r.direction);
 }
 
 #endif

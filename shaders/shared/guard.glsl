@@ -67,6 +67,11 @@ vec3 masu_sane_unit(vec3 v)
     return min(mix(v, vec3(0.0), bad), 1.0);
 }
 
+float masu_sane_unit(float x)
+{
+    return min(floatBitsToUint(x) >= masu_exponent_mask ? 0.0 : x, 1.0);
+}
+
 /* 1/x; 0 for |x| < 1e-30, NaN and Inf. */
 float masu_rcp(float x)
 {

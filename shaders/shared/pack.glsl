@@ -126,13 +126,13 @@ void masu_pack_shining(vec3 glow, vec3 albedo, float roughness, masu_surface s, 
 /* The texel of albedo, and the bits of the normal's texel that are not its direction. */
 void masu_pack_look(masu_surface s, out vec4 texel, out uint look)
 {
-    vec3 albedo = masu_sane(s.albedo, 0.0, 1.0), glow = masu_sane(s.emissive, 0.0, masu_emissive_range);
-    float roughness = masu_sane(s.roughness, 0.0, 1.0);
+    vec3 albedo = masu_sane_unit(s.albedo), glow = masu_emissive_range * masu_sane_unit(s.emissive * (1.0 / masu_emissive_range));
+    float roughness = masu_sane_unit(s.roughness);
     if (masu_brightest(glow) >= masu_emissive_least) {
         masu_pack_shining(glow, albedo, roughness, s, texel, look);
     } else {
         texel = vec4(sqrt(albedo), roughness);
-        look = uint(masu_sane(s.metallic, 0.0, 1.0) * 15.0 + 0.5) << 26;
+        look = uint(masu_sane_unit(s.metallic) * 15.0 + 0.5) << 26;
     }
 }
 

@@ -272,7 +272,7 @@ static void put_masked_group(sdfc_writer *w, int g) {
             word, own, high - low);
         PUT(w,
             "        if (bits == 0u) {\n            break;\n        }\n"
-            "        uint part = %du + masu_low_bit(bits);\n        bits &= bits - 1u;\n",
+            "        uint part = %du + uint(findLSB(bits));\n        bits &= bits - 1u;\n",
             word * 32);
         PUT(w, "        MASU_KEEP_BEGIN\n");
         put_part_value(w, g, "f", "p");
@@ -289,21 +289,18 @@ static bool any_estimate(const sdfc *c) {
     return false;
 }
 
+/* The part in work is read once and stays over the ends of loops; behind the last one there is none, 0xFFFFFFFF. */
 static void put_listed_group(sdfc_writer *w, int g) {
     const sdfc *c = w->c;
     const sdfc_group *group = &c->groups[g];
     int end = group->first_part + group->part_count;
     PUT(w, "    MASU_LOOP for (uint n = 0u; n < %du; n++) {\n", group->part_count);
-    PUT(w, "        if (i >= count) {\n            break;\n        }\n"
-           "        uint part = masu_part_at(i);\n");
-    if (end < c->part_count - c->flat_parts) {
-        PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
-    }
+    PUT(w, "        if (part >= %du) {\n            break;\n        }\n", end);
     put_part_value(w, g, "f", "p");
     PUT(w, any_estimate(c) ? "        MASU_KEEP_PART(0.0, 0.0, i >> 5, 1u << (i & 31u))\n"
                            : "        MASU_KEEP_PART(d, f, i >> 5, 1u << (i & 31u))\n");
     put_least(w);
-    PUT(w, "        i = masu_next_place(i);\n    }\n");
+    PUT(w, "        i = masu_next_place(i);\n        part = i < count ? masu_part_at(i) : 0xFFFFFFFFu;\n    }\n");
 }
 
 /* One loop per form: where a driver runs all arms of a switch and masks what they write, a part then
@@ -313,7 +310,8 @@ static void put_ascending(sdfc_writer *w) {
     bool masked = c->part_count <= MASU_SDFC_MASKED_MAX;
     put_head(w);
     PUT(w, "    MASU_KEEP_NONE\n");
-    if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = masu_first_place();\n");
+    if (!masked) PUT(w, "    uint count = masu_part_count();\n    uint i = masu_first_place();\n"
+                    "    uint part = i < count ? masu_part_at(i) : 0xFFFFFFFFu;\n");
     /* Estimates come last: they tell nothing about others. */
     for (int late = 0; late < 2; late++) {
         if (late && any_estimate(c)) PUT(w, "    float sure = d;\n");

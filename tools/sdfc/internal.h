@@ -229,6 +229,7 @@ typedef struct sdfc_place {
     uint32_t slot;
     double factor[3], term, period, inverse;
 } sdfc_place;
+enum { SDFC_SHALLOW_LEVELS = 2 }; /* a Mandelbulb of no more: its estimate is a bound, and a better one */
 enum { SDFC_PLACE_SLOTS = 12 }; /* the slot, then the rest in two floats each, inverse in one */
 
 typedef struct sdfc_text {

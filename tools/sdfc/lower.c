@@ -311,16 +311,17 @@ static int lower_repeat(lowering *l, const sdfc_shape *s, point p) {
         own[i] = beside[i] = in[i];
         if (s->extra[i] == 0) continue;
         int period = argument(l, s->number[i]), inverse = argument(l, s->number[3 + i]);
-        int half = 0;
+        int half = 0, shift = 0;
         if (limited) {
             half = constant(l, (s->whole[i] - 1) / 2.0);
-            own[i] = OP(l, fold_row, in[i], period, inverse, half);
+            shift = constant(l, s->whole[i] % 2 ? 0 : 0.5); /* where the middle of a cell is */
+            own[i] = OP(l, fold_row, in[i], period, inverse, half, shift);
         } else {
             own[i] = OP(l, fold, in[i], period, inverse);
         }
         if (s->extra[i] != 2) continue;
         bit[i] = ++bits;
-        beside[i] = limited ? OP(l, beside_row, in[i], period, inverse, half)
+        beside[i] = limited ? OP(l, beside_row, in[i], period, inverse, half, shift)
                             : OP(l, beside, own[i], period);
     }
     unsigned folded = l->folded;
@@ -588,7 +589,9 @@ static int lower_capsule(lowering *l, const sdfc_shape *s, point p) {
         const int *a = s->number, *d = s->number + 3;
         if (!sdfc_is(l->c, d[i], 0) || !sdfc_is(l->c, d[j], 0)) continue;
         if (!sdfc_constant(l->c, d[k]) || !(l->c->exprs[d[k]].value > 0)) continue;
-        int e[5] = {argument(l, a[i]), argument(l, a[k]), argument(l, a[j]), argument(l, d[k]),
+        double half = l->c->exprs[d[k]].value / 2;
+        int middle = sdfc_apply(l->c, SDFC_add, a[k], sdfc_number(l->c, half), a[k]);
+        int e[5] = {argument(l, a[i]), argument(l, middle), argument(l, a[j]), constant(l, half),
                     argument(l, s->number[7])};
         return OP(l, stick, v[i], v[k], v[j], e[0], e[1], e[2], e[3], e[4]);
     }
@@ -639,6 +642,7 @@ static int lower_primitive(lowering *l, const sdfc_shape *s, point p) {
         int levels = constant(l, s->whole[1]);
         int d = s->whole[0] == 8 ? OP(l, mandelbulb8, p.x, p.y, p.z, limit, levels)
                                  : OP(l, mandelbulb, p.x, p.y, p.z, power, limit, levels);
+        if (s->whole[1] <= SDFC_SHALLOW_LEVELS) d = OP(l, mul, d, constant(l, 1.3));
         d = OP(l, min, d, constant(l, 0.25)); /* far away the estimate is none */
         int r = constant(l, pow(2, 1.0 / (s->whole[0] - 1)));
         return OP(l, max, d, OP(l, sphere, p.x, p.y, p.z, r));
