@@ -185,11 +185,15 @@ void main()
                 own = min(own, g.mixed ? 4.0 : 100.0 * g.roughness * g.roughness);
             }
             float share = max(1.0 / (own + 1.0), masu_time_share(reach));
+            vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
+            float dither = noise.x;
             if (!(g.roughness > masu_mirror_roughness)) {
+                /* The same ray each time: rounded by another dither it would flicker, up to 6 of 255 in a dark channel
+                 * beside a bright one, and no mean would make up for it. */
                 share = 1.0;
+                dither = 0.5;
             }
             vec2 around = g.roughness > masu_fine_narrow ? sparks_around(ivec2(texel)) : vec2(0.0, masu_huge);
-            vec2 noise = masu_turn_noise2(masu_trace_noise(masu_noise_index(texel.x, texel.y, 4u)), frame.history.x);
             for (uint k = 0u; k < 4u; k++) {
                 uvec2 pixel = masu_guide_place(texel, k, 2u);
                 vec4 old = known && has_old() && !g.mixed ? look(pixel, moved, g) : vec4(0.0);
@@ -201,7 +205,7 @@ void main()
                     color = without_sparks(color, old, around);
                     old = vec4(old.a > 0.0 ? mix(old.rgb, color, share) : color, 1.0);
                 }
-                words[k] = old.a > 0.0 ? masu_pack_fine(old.rgb, noise.x) : masu_fine_none;
+                words[k] = old.a > 0.0 ? masu_pack_fine(old.rgb, dither) : masu_fine_none;
             }
         }
         MASU_STORE_UINT(fine_image, texel, words);

@@ -22,13 +22,15 @@ float masu_fine_share(masu_guide g, float roughness)
 }
 
 /* dither, 0..1: which share of the way to the next step is rounded up. A mean to which each frame adds a
- * little would else stop short of the truth by half a step over that little. */
+ * little would else stop short of the truth by half a step over that little. 0.5 rounds to the nearest: for what is
+ * replaced as a whole. */
 uint masu_pack_fine(vec3 color, float dither)
 {
     vec3 c = masu_sane(color, 0.0, 32000.0);
     float most = max(max(c.r, c.g), max(c.b, 1.0 / 65536.0));
-    /* One more than the exponent needs, so that rounding up stays within 9 bits. */
-    int e = clamp(int(floatBitsToUint(most * 1.004) >> 23) - 127 + 1, -15, 15);
+    /* From 511.5 on one more than the exponent needs: what rounds to 512 has room. Not from less: 511 must stay what it
+     * is, or the other channels, at half the steps, would be rounded anew in each frame that keeps the word. */
+    int e = clamp(int(floatBitsToUint(most * (512.0 / 511.5)) >> 23) - 127 + 1, -15, 15);
     float scale = uintBitsToFloat(uint(127 + 9 - e) << 23);
     uvec3 m = min(uvec3(c * scale + dither), uvec3(511u));
     return m.r | m.g << 9 | m.b << 18 | uint(e + 15) << 27;

@@ -260,6 +260,32 @@ static void a_flight_with_slow_cascades_keeps_its_shadows(void **state) {
     assert_true(worst * 100 < W * H);
 }
 
+/* A shadow's edge along the texels of both cascades runs away from the camera: the coarse ones have it somewhere
+ * else, and the picture goes from one to the other in steps that are a part of that. */
+static void cascades_meet_without_a_step(void **state) {
+    (void)state;
+    bake_scene("edge",
+               "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 96, \"size_z\": 96}}},"
+               "{\"mesh\": {\"box\": {\"size\": [4, 1, 96]}}, \"translate\": [2.3, 4, 0]}],"
+               "\"camera\": {\"near\": 0.125}, \"sun\": {\"azimuth\": 90, \"elevation\": 45, \"shadows\":"
+               "{\"cascades\": 2, \"resolution\": 64, \"distance\": 60}}}");
+    masu_camera c = {.position = {-2, 12, 20}, .forward = {0, -12, -16}, .fov_y = 0.873f, .near_distance = 4};
+    shadow_open(&t, "edge", W, H, NULL);
+    shadow_draw(&t, &c, 0);
+    take(NULL, seen_a);
+    shadow_close(&t);
+    double step = 0, between = 0;
+    for (uint32_t y = 0; y + 8 < H; y++) {
+        for (uint32_t x = 0; x < W / 2; x++) { /* to the right stands what casts it */
+            double here = sun_share(seen_a, y * W + x);
+            step = worst_of(step, fabs(sun_share(seen_a, (y + 1) * W + x) - here));
+            between = worst_of(between, fabs(sun_share(seen_a, (y + 8) * W + x) - here));
+        }
+    }
+    print_message("from one row to the next by at most %.3f, within eight by %.3f\n", step, between);
+    assert_true(between > 0.3 && step < 0.5 * between); /* 0.117 of 0.388; without a blend 0.296 */
+}
+
 /* ---- Rungs ----------------------------------------------------------------------------------- */
 
 static const masu_rung ladder[] = {
@@ -438,6 +464,7 @@ int main(void) {
         cmocka_unit_test(a_pace_changes_nothing_that_stands_still),
         cmocka_unit_test(what_moves_reaches_each_cascade_at_its_pace),
         cmocka_unit_test(a_flight_with_slow_cascades_keeps_its_shadows),
+        cmocka_unit_test(cascades_meet_without_a_step),
         cmocka_unit_test(rungs_by_turns_show_what_each_shows_alone),
         cmocka_unit_test(a_million_metres_away_it_is_the_same),
         cmocka_unit_test(a_caster_however_far_leaves_the_others_their_shadows),

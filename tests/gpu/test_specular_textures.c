@@ -303,6 +303,31 @@ static void without_pictures_factors_are_seen(void **state) {
     close_session(&s);
 }
 
+/* A mirror's ray has no noise: with a ray for each fourth pixel, and each pixel's own kept from frame to frame, the
+ * same is kept however long it is looked at. */
+static void a_mirror_looked_at_for_long_shows_the_same_to_the_bit(void **state) {
+    (void)state;
+    static uint16_t first[4 * PIXELS];
+    masu_session_desc d = test_desc(SCENE, SIDE, SIDE);
+    d.desc.readback = MASU_READBACK_HDR;
+    d.desc.rung_count = 1;
+    open_session(&s, &d);
+    uint32_t changed = 0, varied = 0;
+    for (uint32_t k = 0; k < 64; k++) {
+        masu_frame_desc frame = {.time_step = 1.0f / 60.0f, .cut = k == 0};
+        masu_commands commands;
+        draw(&s, &frame, &commands, NULL);
+        const uint16_t *hdr = read_image(&s, commands.slot, MASU_READBACK_HDR);
+        if (k == 24) memcpy(first, hdr, sizeof first);
+        for (uint32_t i = 0; k > 24 && i < 4 * PIXELS; i++) changed += hdr[i] != first[i];
+    }
+    close_session(&s);
+    for (uint32_t i = 4; i < 4 * PIXELS; i++) varied += first[i] != first[i - 4];
+    print_message("%u values changed in 39 frames; %u differ from their neighbours'\n", changed, varied);
+    assert_int_equal(changed, 0);
+    assert_true(varied > PIXELS / 4);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mirror_shows_textures_as_they_are),
@@ -310,6 +335,7 @@ int main(void) {
         cmocka_unit_test(what_is_far_is_its_mean),
         cmocka_unit_test(through_holes_a_mirror_shows_what_is_behind),
         cmocka_unit_test(without_pictures_factors_are_seen),
+        cmocka_unit_test(a_mirror_looked_at_for_long_shows_the_same_to_the_bit),
     };
     return cmocka_run_group_tests_name("specular_textures", tests, make_scratch, remove_scratch);
 }
