@@ -40,17 +40,24 @@ uint noise_at(uvec2 texel, uint key)
 }
 
 /* What a ray towards l is worth. turn: 0: there is no coat, 1: it is the base's ray, 2: the coat's. */
-vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
+vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 l, uint turn)
 {
     vec3 base;
     float coat;
     masu_lobes(b, l, base, coat);
-    vec3 local = masu_axes_in(f, l);
+    vec3 local = masu_axes_in(f, l), v = masu_axes_in(f, b.v);
     vec2 share = vec2(masu_traced_share(s.roughness, push.cutoff),
                       masu_traced_share(s.coat_roughness, push.cutoff));
     float pdf = masu_vndf_pdf(v, local, b.alpha);
 #ifdef MASU_SURFACE
     if (turn != 0u) {
+        if (masu_own_coats) { /* f is the ray's own lobe's */
+            masu_axes base_axes = masu_axes_of(b.n);
+            pdf = masu_vndf_pdf(masu_axes_in(base_axes, b.v), masu_axes_in(base_axes, l), b.alpha);
+            masu_axes coat_axes = masu_axes_of(b.coat_n);
+            local = masu_axes_in(coat_axes, l);
+            v = masu_axes_in(coat_axes, b.v);
+        }
         vec2 both = 0.5 * vec2(pdf, masu_vndf_pdf(v, local, b.coat_alpha));
         pdf = both.x + both.y;
         if (!(min(b.alpha, b.coat_alpha) > masu_mirror_alpha)) {
@@ -89,6 +96,13 @@ void main()
                 if (p.surface.coat > 0.0) {
                     turn = 1u + ((number + noise_at(texel, 1u)) & 1u);
                     alpha = turn == 1u ? b.alpha : alpha;
+#ifdef MASU_SURFACE
+                    if (masu_own_coats && turn == 1u) {
+                        n = b.n;
+                        f = masu_axes_of(n);
+                        v_local = masu_axes_in(f, v);
+                    }
+#endif
                 }
             }
             masu_vndf_ray r = masu_vndf_reflect(v_local, alpha, u);
@@ -101,7 +115,7 @@ void main()
             ray.y = floatBitsToUint(masu_sane(r.pdf, 1e-6, 1e9));
             if (push.accumulate != 0u) {
                 uint bits = masu_hash(masu_hash(number) ^ noise_at(texel, 2u));
-                ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn) : vec3(0.0),
+                ray.y = masu_pack_shared(above ? worth(p.surface, b, f, l, turn) : vec3(0.0),
                                          float(bits >> 8) * (1.0 / 16777216.0));
             }
             masu_count(MASU_COUNTER_SPECULAR_RAYS, 1u);

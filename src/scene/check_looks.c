@@ -84,6 +84,12 @@ static masu_result check_material(reader *r, uint64_t i) {
         return bad(r, "materials", i, "no such meso");
     if (m->flags & MASU_MATERIAL_IS_ADDITIVE && !(m->flags & MASU_MATERIAL_IS_BLEND))
         return bad(r, "materials", i, "is additive, but not blended");
+    if (m->flags & MASU_MATERIAL_IS_TINTED && !(m->flags & MASU_MATERIAL_IS_BLEND))
+        return bad(r, "materials", i, "is tinted, but not blended");
+    if (m->flags & MASU_MATERIAL_IS_TINTED && m->flags & MASU_MATERIAL_IS_ADDITIVE)
+        return bad(r, "materials", i, "is tinted, but hides nothing");
+    if (m->flags & MASU_MATERIAL_COAT_SMOOTH && m->flags & MASU_MATERIAL_BASE_SMOOTH)
+        return bad(r, "materials", i, "has a relief, but neither coat nor base has it");
     if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->opacity != 1.0f)
         return bad(r, "materials", i, "is not blended, but not opaque");
     return MASU_OK;
@@ -246,10 +252,13 @@ static void look_at_transparents(const reader *r, masu_scene *out) {
 }
 
 void masu_look_at_looks(const reader *r, masu_scene *out) {
+    const uint32_t own = 1u << MASU_SLOT_COAT | MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
     for (uint32_t i = 0; i < out->materials; i++) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
         if (m->coat > 0.0f) out->coats++;
+        if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
+        if (m->flags & MASU_MATERIAL_IS_TINTED) out->tints = 1;
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
     }
     look_at_transparents(r, out);
