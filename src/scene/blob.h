@@ -513,6 +513,8 @@ typedef struct masu_blob_environment {
     float fog_falloff;  /* >= 0, 1/m: the density falls by e over 1 / fog_falloff metres of height */
     float fog_start;    /* >= 0, m: nearer than this it is clear */
     float darken;       /* and too bright; 0: the default */
+    float smooth_edges; /* 1: anti-aliased by SMAA where nobody says how; 0: not */
+    float reserved[3];
 } masu_blob_environment;
 
 /* The sun's shadow map: of scenes that have instances too. Where it is absent nothing that has
@@ -600,7 +602,7 @@ _Static_assert(sizeof(masu_blob_material) == 80, "blob material");
 _Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
 _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
-_Static_assert(sizeof(masu_blob_environment) == 128, "blob environment");
+_Static_assert(sizeof(masu_blob_environment) == 144, "blob environment");
 _Static_assert(sizeof(masu_blob_meso) == 96, "blob meso");
 _Static_assert(sizeof(masu_blob_light) == 64, "blob light");
 _Static_assert(sizeof(masu_blob_probes) == 1344, "blob probes");

@@ -164,6 +164,8 @@ static masu_result check_environment(reader *r) {
     }
     if (e->metered != 0.0f && e->metered != 1.0f)
         return bad(r, "environment", 0, "metered is not 0 or 1");
+    if (e->smooth_edges != 0.0f && e->smooth_edges != 1.0f)
+        return bad(r, "environment", 0, "smooth edges are not 0 or 1");
     if (!within(&e->brighten, 1, 0.0f, 1e6f) || !within(&e->darken, 1, 0.0f, 1e6f))
         return bad(r, "environment", 0, "a speed of the exposure is out of range");
     if (e->occlusion_radius != 0.0f && !within(&e->occlusion_radius, 1, 1e-3f, 1e6f))
@@ -280,4 +282,5 @@ void masu_look_at_looks(const reader *r, masu_scene *out) {
     out->metered = r->view.environment->metered != 0.0f;
     out->brighten = r->view.environment->brighten;
     out->darken = r->view.environment->darken;
+    out->smooth_edges = r->view.environment->smooth_edges != 0.0f;
 }
