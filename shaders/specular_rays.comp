@@ -40,12 +40,12 @@ uint noise_at(uvec2 texel, uint key)
 }
 
 /* What a ray towards l is worth. turn: 0: there is no coat, 1: it is the base's ray, 2: the coat's. */
-vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 l, uint turn)
+vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
 {
     vec3 base;
     float coat;
     masu_lobes(b, l, base, coat);
-    vec3 local = masu_axes_in(f, l), v = masu_axes_in(f, b.v);
+    vec3 local = masu_axes_in(f, l);
     vec2 share = vec2(masu_traced_share(s.roughness, push.cutoff),
                       masu_traced_share(s.coat_roughness, push.cutoff));
     float pdf = masu_vndf_pdf(v, local, b.alpha);
@@ -115,7 +115,7 @@ void main()
             ray.y = floatBitsToUint(masu_sane(r.pdf, 1e-6, 1e9));
             if (push.accumulate != 0u) {
                 uint bits = masu_hash(masu_hash(number) ^ noise_at(texel, 2u));
-                ray.y = masu_pack_shared(above ? worth(p.surface, b, f, l, turn) : vec3(0.0),
+                ray.y = masu_pack_shared(above ? worth(p.surface, b, f, v_local, l, turn) : vec3(0.0),
                                          float(bits >> 8) * (1.0 / 16777216.0));
             }
             masu_count(MASU_COUNTER_SPECULAR_RAYS, 1u);

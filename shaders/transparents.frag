@@ -36,6 +36,7 @@
 #endif
 
 layout(constant_id = 0) const bool tints = false;
+layout(constant_id = 12) const bool any_tints = false; /* the scene has something for that */
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
@@ -101,7 +102,7 @@ void main()
     }
     vec3 hue = vec3(1.0); /* of what shines through, its brightest channel 1 */
     float through = 1.0 - opacity;
-    if ((in_thing.y & MASU_MAP_TINTED) != 0u) {
+    if (any_tints && (in_thing.y & MASU_MAP_TINTED) != 0u) {
         vec3 base = masu_sane(s.albedo, 0.0, 1.0);
         float most = masu_brightest(base);
         hue = base / max(most, 1e-6);
@@ -129,7 +130,10 @@ void main()
         color = (lit.diffuse + s.emissive) * opacity + (additive ? vec3(0.0) : lit.specular);
         taken = 1.0 - through * (1.0 - mirrored);
     }
-    color *= twice && away ? cover * hue : vec3(cover);
+    color *= cover;
+    if (any_tints && twice && away) {
+        color *= hue;
+    }
     taken = additive ? 0.0 : taken * cover;
     if (foggy) {
         color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), taken);

@@ -204,12 +204,14 @@ void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
     below = vec3(0.0);
     float n_l = masu_sane(dot(b.n, l), 0.0, 1.0);
     float over = n_l;
+    bool lit_at_all = n_l > 0.0;
 #ifdef MASU_SURFACE
     if (masu_own_coats) {
         over = masu_sane(dot(b.coat_n, l), 0.0, 1.0);
+        lit_at_all = lit_at_all || over > 0.0;
     }
 #endif
-    if (!(max(n_l, over) > 0.0)) {
+    if (!lit_at_all) {
         return;
     }
     vec3 sum = l + b.v;
