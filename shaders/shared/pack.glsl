@@ -185,6 +185,9 @@ vec2 masu_lean_of(vec3 n, vec3 below)
 /* The normal of what lies below the coat, which has n. */
 vec3 masu_below(vec3 n, vec2 lean)
 {
+    if (lean.x == 0.0 && lean.y == 0.0) { /* most of any picture */
+        return n;
+    }
     vec3 t, b;
     masu_lean_axes(n, t, b);
     vec2 xy = masu_sane(vec3(lean, 0.0), -1.0, 1.0).xy;
