@@ -206,6 +206,9 @@ typedef struct masu_scene {
     float trace_distance;   /* longest ray, m */
     uint64_t texture_bytes;         /* of their texels as compressed blocks */
     uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
+    uint32_t own_coats; /* 1: some coat has a map, or a normal that is not its base's */
+    uint32_t tints;     /* 1: what shines through some blended material has its colour */
+    uint32_t smooth_edges; /* 1: rungs that nobody gave are anti-aliased (MASU_AA_SMAA_HIGH) */
 } masu_scene;
 
 /* Checks every offset, count, index, float and the hash of `blob` and fills `*out`; in time that grows with

@@ -1,7 +1,7 @@
 /*
  * gbuffer.frag: the material of a polygon into the G-buffer. push.material is the draw's material. With
  * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: push.flags
- * its flags, push.layers the layers of its maps, 8 bits each; push.mip_bias the bias of mip levels, push.detail_* the
+ * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's; push.mip_bias the bias of mip levels, push.detail_* the
  * scale of texture coordinates of all maps but base colour and emissive.
  */
 #version 450
@@ -32,6 +32,9 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
 };
 
 #ifdef MASU_TEXTURES
+#ifdef MASU_SURFACE
+#define MASU_MAPS_COAT_LAYER push.coat_layer
+#endif
 #include "shared/maps.glsl"
 layout(location = 3) in vec2 in_texcoord;
 #endif
@@ -87,7 +90,11 @@ void main()
     vec3 n = masu_normalize(in_normal, masu_normalize(-in_rel, vec3(0.0, 1.0, 0.0)));
 #ifdef MASU_TEXTURES
     /* A face seen from behind is the same relief from below: all of its normal turns. */
-    bent = dot(n, in_rel) > 0.0 ? -bent : bent;
+    bool away = dot(n, in_rel) > 0.0;
+    bent = away ? -bent : bent;
+#ifdef MASU_SURFACE
+    vec3 even = away ? -n : n; /* without the relief */
+#endif
 #ifdef MASU_SURFACE
     if (push.meso > 0u) {
         bent = show_relief(bent, n, s);
@@ -102,7 +109,22 @@ void main()
     }
 #endif
 #endif
+#if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
+    /* Where there is so little of a coat that the texel has none, there is the base alone. */
+    const uint own = MASU_MAP_COAT_SMOOTH | MASU_MAP_BASE_SMOOTH;
+    bool two = masu_own_coats && (push.flags & own) != 0u && s.coat * 15.0 >= 0.5;
+    bool base_is_even = (push.flags & MASU_MAP_BASE_SMOOTH) != 0u;
+    vec3 below = base_is_even ? even : n;
+    if (masu_own_coats && (push.flags & own) != 0u) {
+        n = two != base_is_even ? even : n;
+    }
+#endif
     masu_pack_texels(n, s, out_albedo, out_normal);
+#if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
+    if (two) {
+        s.lean = masu_lean_of(masu_unpack_normal(out_normal), below);
+    }
+#endif
 #ifdef MASU_SURFACE
     out_normal |= MASU_SURFACE_MORE << 30;
     out_surface = masu_pack_surface(s);

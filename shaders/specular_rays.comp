@@ -51,6 +51,13 @@ vec3 worth(masu_surface s, masu_bsdf b, masu_axes f, vec3 v, vec3 l, uint turn)
     float pdf = masu_vndf_pdf(v, local, b.alpha);
 #ifdef MASU_SURFACE
     if (turn != 0u) {
+        if (masu_own_coats) { /* f is the ray's own lobe's */
+            masu_axes base_axes = masu_axes_of(b.n);
+            pdf = masu_vndf_pdf(masu_axes_in(base_axes, b.v), masu_axes_in(base_axes, l), b.alpha);
+            masu_axes coat_axes = masu_axes_of(b.coat_n);
+            local = masu_axes_in(coat_axes, l);
+            v = masu_axes_in(coat_axes, b.v);
+        }
         vec2 both = 0.5 * vec2(pdf, masu_vndf_pdf(v, local, b.coat_alpha));
         pdf = both.x + both.y;
         if (!(min(b.alpha, b.coat_alpha) > masu_mirror_alpha)) {
@@ -89,6 +96,13 @@ void main()
                 if (p.surface.coat > 0.0) {
                     turn = 1u + ((number + noise_at(texel, 1u)) & 1u);
                     alpha = turn == 1u ? b.alpha : alpha;
+#ifdef MASU_SURFACE
+                    if (masu_own_coats && turn == 1u) {
+                        n = b.n;
+                        f = masu_axes_of(n);
+                        v_local = masu_axes_in(f, v);
+                    }
+#endif
                 }
             }
             masu_vndf_ray r = masu_vndf_reflect(v_local, alpha, u);

@@ -7,6 +7,11 @@
  * mirror. The alpha of a map is another thing: how much of the pixel the surface covers at all.
  * Additive surfaces give what they scatter and take nothing.
  *
+ * Coloured glass (MASU_MAP_TINTED) lets through what its base colour says, and blending has one alpha for all
+ * channels. So it is drawn once more before, by a pipeline that multiplies (`tints`): the picture is given the hue, then
+ * alpha takes from it what the brightest channel loses. Both sides of a ball colour it before either adds its
+ * light; what the far one adds is coloured here. Fog between the eye and the glass takes the hue too.
+ *
  * A thing that is not flat is drawn twice, first what is turned away from the eye, then what faces it:
  * a ball is right in itself, whatever the order of its triangles. It goes by the normals, not by the
  * winding, which files get wrong and negative scales turn. Each fragment is drawn once.
@@ -18,6 +23,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of them may have a coat */
 #define MASU_PUSH masu_push_transparents
+#define MASU_MAPS_TINTS
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"
 #include "shared/pack.glsl"
@@ -29,6 +35,8 @@
 #include "light/sun_map.glsl"
 #endif
 
+layout(constant_id = 0) const bool tints = false;
+layout(constant_id = 12) const bool any_tints = false; /* the scene has something for that */
 layout(constant_id = 2) const bool foggy = false; /* the scene has fog */
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D depth_image;
@@ -70,12 +78,20 @@ void main()
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
     bool away = dot(n, in_rel) > 0.0;
-    bool elsewhere = (in_thing.y & MASU_MAP_FAR_SIDE_FIRST) != 0u && away != (in_thing.w == 0u);
+    bool twice = (in_thing.y & MASU_MAP_FAR_SIDE_FIRST) != 0u;
+    bool elsewhere = twice && away != (in_thing.w == 0u);
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
     cover = masu_sample_maps(in_texcoord, s);
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
+    vec3 even = away ? -n : n;
     n = masu_seen_normal(away ? -bent : bent, in_rel, n);
+    if (masu_own_coats && s.coat > 0.0 && (in_thing.y & (MASU_MAP_COAT_SMOOTH | MASU_MAP_BASE_SMOOTH)) != 0u) {
+        bool coat_is_even = (in_thing.y & MASU_MAP_COAT_SMOOTH) != 0u;
+        vec3 below = coat_is_even ? n : even;
+        n = coat_is_even ? even : n;
+        s.lean = masu_lean_of(n, below);
+    }
 #else
     n = away ? -n : n;
 #endif
@@ -83,6 +99,18 @@ void main()
     bool back = (in_thing.y & MASU_MAP_SINGLE) != 0u && !gl_FrontFacing;
     if (elsewhere || back || !(gl_FragCoord.z >= nearest)) {
         discard;
+    }
+    vec3 hue = vec3(1.0); /* of what shines through, its brightest channel 1 */
+    float through = 1.0 - opacity;
+    if (any_tints && (in_thing.y & MASU_MAP_TINTED) != 0u) {
+        vec3 base = masu_sane(s.albedo, 0.0, 1.0);
+        float most = masu_brightest(base);
+        hue = base / max(most, 1e-6);
+        through *= most;
+    }
+    if (tints) {
+        out_color = vec4(mix(vec3(1.0), hue, masu_sane(cover, 0.0, 1.0)), 1.0);
+        return;
     }
     vec2 seen = vec2(1.0);
 #ifdef MASU_SUN_MAP
@@ -100,9 +128,12 @@ void main()
         masu_lit lit = masu_shade(s, masu_bsdf_make(s, n, -direction), in_rel, seen, sky);
         float mirrored = clamp(dot(lit.mirror, vec3(1.0 / 3.0)), 0.0, 1.0);
         color = (lit.diffuse + s.emissive) * opacity + (additive ? vec3(0.0) : lit.specular);
-        taken = 1.0 - (1.0 - opacity) * (1.0 - mirrored);
+        taken = 1.0 - through * (1.0 - mirrored);
     }
     color *= cover;
+    if (any_tints && twice && away) {
+        color *= hue;
+    }
     taken = additive ? 0.0 : taken * cover;
     if (foggy) {
         color = masu_through_air(color, direction, masu_air_depth(direction, length(in_rel)), taken);

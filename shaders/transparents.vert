@@ -2,7 +2,8 @@
  * transparents.vert: one transparent thing, which push.instances of the push constants finds: six words in
  * the buffer of drawn instances, written anew for each frame (src/frame/transparents.c): instance, material,
  * flags, layers and detail of its maps. With MASU_TEXTURES texture coordinates go along. Of what is
- * drawn twice the first instance is for what is turned away from the eye.
+ * drawn twice the first instance is for what is turned away from the eye. Where it `tints`
+ * (transparents.frag), what has no colour for what is behind it shrinks to a point.
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -21,6 +22,8 @@ layout(location = 3) out vec2 out_texcoord;
 layout(location = 4) flat out vec2 out_detail;
 #endif
 
+layout(constant_id = 0) const bool tints = false;
+
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
 layout(location = 2) flat out uvec4 out_thing; /* material, flags, layers; which instance */
@@ -38,4 +41,7 @@ void main()
     out_detail = vec2(uintBitsToFloat(drawn[push.instances + 4u]), uintBitsToFloat(drawn[push.instances + 5u]));
 #endif
     gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
+    if (tints && (drawn[push.instances + 2u] & MASU_MAP_TINTED) == 0u) {
+        gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
+    }
 }

@@ -86,6 +86,9 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
     [[dont_unroll]] for (int i = 0; i < 2; i++) {
         float part = i == 0 ? kept.x : s.coat > 0.0 ? kept.y : 0.0;
         m.coat = vec3(0.0);
+        if (masu_own_coats) {
+            mirrored = reflect(-v, i == 0 ? masu_below(n, s.lean) : n);
+        }
         if (part > 0.0) {
             m.coat = part * masu_ambient_mirror(mirrored, i == 0 ? s.roughness : s.coat_roughness);
         }

@@ -21,13 +21,18 @@
 #define MASU_MAPS_DETAIL vec2(push.detail_u, push.detail_v)
 #endif
 
+#ifndef MASU_MAPS_TINTS
 layout(constant_id = 0) const bool masked = false;
+#endif
 
 layout(set = MASU_SET_TEXTURES, binding = 0) uniform sampler2DArray base_map;
 layout(set = MASU_SET_TEXTURES, binding = 1) uniform sampler2DArray normal_map;
 layout(set = MASU_SET_TEXTURES, binding = 2) uniform sampler2DArray surface_map;
 layout(set = MASU_SET_TEXTURES, binding = 3) uniform sampler2DArray emissive_map;
 layout(set = MASU_SET_TEXTURES, binding = 4) uniform sampler2DArray occlusion_map;
+#ifdef MASU_MAPS_COAT_LAYER
+layout(set = MASU_SET_TEXTURES, binding = 5) uniform sampler2DArray coat_map;
+#endif
 
 float masu_layer(uint slot)
 {
@@ -68,6 +73,13 @@ float masu_sample_maps(vec2 at, inout masu_surface s)
         float layer = float(MASU_MAPS_FLAGS >> MASU_MAP_OCCLUSION_SHIFT);
         s.occlusion *= texture(occlusion_map, vec3(at * MASU_MAPS_DETAIL, layer), bias).r;
     }
+#ifdef MASU_MAPS_COAT_LAYER
+    if (masu_own_coats && (MASU_MAPS_FLAGS & MASU_MAP_COAT) != 0u) {
+        vec2 coat = texture(coat_map, vec3(at * MASU_MAPS_DETAIL, float(MASU_MAPS_COAT_LAYER)), bias).rg;
+        s.coat *= coat.r;
+        s.coat_roughness *= coat.g;
+    }
+#endif
     return base.a;
 }
 

@@ -316,10 +316,14 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_MAP_SURFACE 4u
 #define MASU_MAP_EMISSIVE 8u
 #define MASU_MAP_OCCLUSION 16u
-#define MASU_MAP_METAL 32u
+#define MASU_MAP_COAT 32u
 #define MASU_MAP_ADDITIVE 0x10000u
 #define MASU_MAP_FAR_SIDE_FIRST 0x20000u /* of a blended thing that is drawn twice */
 #define MASU_MAP_SINGLE 0x40000u /* not seen from behind */
+#define MASU_MAP_METAL 0x80000u
+#define MASU_MAP_TINTED 0x100000u /* what shines through has the base colour */
+#define MASU_MAP_COAT_SMOOTH 0x200000u
+#define MASU_MAP_BASE_SMOOTH 0x400000u
 #define MASU_MAP_CUTOFF_SHIFT 8
 #define MASU_MAP_OCCLUSION_SHIFT 24 /* 8 bits: the layer of the occlusion map */
 

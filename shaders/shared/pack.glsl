@@ -19,10 +19,19 @@
  *                        coat: factor of the specular terms at grazing angles
  *                   b    occlusion
  *                   a    0: no small relief; else what its shadows leave of a light, (1 + 254 f) / 255
+ *   Where a scene has coats whose normal is not their base's (masu_own_coats) the normal of such a surface is the
+ *   coat's, and a has its upper bit set; in 14 bits lies where the base's normal points (masu_lean_axes),
+ *   the square root of x and y, 64 + 63 steps each:
+ *                   r    bits 3-7 specular, 0..30; 0-2 of y the lowest
+ *                   b    bits 4-7 occlusion; 0-3 of y the highest
+ *                   a    bits 0-6 x; without bit 7 a relief's (1 + 126 f) / 255
  *   depth, float:   near / view z; 0: nothing there
  *
  * 13 bits per axis leave a normal within 0.03 degrees. src/stats.c, masu_unpack_normal is the twin
  * in C; of what emits, bench/study/texel.c.
+ *
+ * A coat mirrors sharply and has all 26 bits; what lies below it is within 0.3 degrees where it leans by 6, 0.8 at
+ * 30, 1.9 at 60; half of that in the mean. The other way round, or both in 13 bits, a polished coat would show steps.
  *
  * What emits and is lit has 36 bits where two colours, roughness and metallic would take 60. Most of it is
  * black (lamps, screens) and loses nothing. Of the rest the radiance is within 3 % at 1 and 6 % at 1/16, its hue
@@ -49,11 +58,21 @@ struct masu_surface {
     float occlusion;      /* what of the ambient light its own relief lets through, 0..1 */
     float shadow;         /* what the shadows of its relief leave of a light, 0..1; below 0: no relief */
     float edge;           /* factor of the specular terms at grazing angles, 0..1 */
+    vec2 lean;            /* of what lies below a coat of another normal: x and y of its own, in masu_lean_axes */
 };
+
+#ifdef MASU_SURFACE
+/* The scene has coats with maps or normals of their own. */
+#ifdef MASU_OWN_COATS
+const bool masu_own_coats = true;
+#else
+layout(constant_id = 11) const bool masu_own_coats = false;
+#endif
+#endif
 
 masu_surface masu_plain_surface(vec3 albedo, float roughness)
 {
-    return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0);
+    return masu_surface(albedo, roughness, vec3(0.0), 0.0, 0.5, 0.0, 0.0, 1.0, -1.0, 1.0, vec2(0.0));
 }
 
 /* Within -1..1 but for its rounding, whatever the bits of n. */
@@ -143,15 +162,75 @@ void masu_pack_texels(vec3 n, masu_surface s, out vec4 albedo, out uint normal)
     normal |= q.x | q.y << 13;
 }
 
+#ifdef MASU_SURFACE
+/* Two directions across a unit normal, for every one (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6-1,
+ * 2017). They turn round where z changes its sign: whoever unpacks must have the very normal of whoever packed. */
+void masu_lean_axes(vec3 n, out vec3 t, out vec3 b)
+{
+    float sign_z = n.z < 0.0 ? -1.0 : 1.0;
+    float a = -1.0 / (sign_z + n.z);
+    float c = n.x * n.y * a;
+    t = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * c, -sign_z * n.x);
+    b = vec3(c, sign_z + n.y * n.y * a, -n.y);
+}
+
+/* Where `below` points, as a surface with the normal n has it; both unit. */
+vec2 masu_lean_of(vec3 n, vec3 below)
+{
+    vec3 t, b;
+    masu_lean_axes(n, t, b);
+    return vec2(dot(t, below), dot(b, below));
+}
+
+/* The normal of what lies below the coat, which has n. */
+vec3 masu_below(vec3 n, vec2 lean)
+{
+    if (lean.x == 0.0 && lean.y == 0.0) { /* most of any picture */
+        return n;
+    }
+    vec3 t, b;
+    masu_lean_axes(n, t, b);
+    vec2 xy = masu_sane(vec3(lean, 0.0), -1.0, 1.0).xy;
+    vec3 below = t * xy.x + b * xy.y + n * masu_sqrt(1.0 - dot(xy, xy));
+    return masu_normalize(below, n);
+}
+
+uvec2 masu_pack_lean(vec2 lean)
+{
+    vec2 root = sqrt(min(abs(lean), vec2(1.0))) * 63.0 + 0.5;
+    ivec2 steps = ivec2(root);
+    return uvec2(64 + (lean.x < 0.0 ? -steps.x : steps.x), 64 + (lean.y < 0.0 ? -steps.y : steps.y));
+}
+
+vec2 masu_unpack_lean(uvec2 steps)
+{
+    vec2 root = vec2(ivec2(steps) - 64) / 63.0;
+    return root * abs(root);
+}
+#endif
+
 vec4 masu_pack_surface(masu_surface s)
 {
     vec4 v = masu_sane(vec4(s.specular, s.coat, s.coat_roughness, s.occlusion), 0.0, 1.0);
     float coat = floor(v.y * 15.0 + 0.5) * 16.0 + floor(v.z * 15.0 + 0.5);
+    float relief_steps = 254.0;
+#ifdef MASU_SURFACE
+    if (masu_own_coats) {
+        relief_steps = 126.0;
+        vec2 lean = masu_sane(vec3(s.lean, 0.0), -1.0, 1.0).xy;
+        uvec2 steps = masu_pack_lean(lean);
+        if (!(s.shadow >= 0.0) && coat >= 16.0 && (steps.x != 64u || steps.y != 64u)) {
+            return vec4(8.0 * floor(v.x * 30.0 + 0.5) + float(steps.y & 7u), coat,
+                        16.0 * floor(v.w * 15.0 + 0.5) + float(steps.y >> 3), 128.0 + float(steps.x)) /
+                   255.0;
+        }
+    }
+#endif
     if (!(s.shadow >= 0.0)) {
         return vec4(v.x, coat / 255.0, v.w, 0.0);
     }
     vec2 relief = masu_sane(vec3(s.edge, s.shadow, 0.0), 0.0, 1.0).xy;
-    return vec4(v.x, relief.x, v.w, (1.0 + 254.0 * relief.y) / 255.0);
+    return vec4(v.x, relief.x, v.w, (1.0 + relief_steps * relief.y) / 255.0);
 }
 
 void masu_unpack_surface(vec4 texel, inout masu_surface s)
@@ -159,7 +238,21 @@ void masu_unpack_surface(vec4 texel, inout masu_surface s)
     s.specular = texel.r;
     s.occlusion = texel.b;
     s.shadow = (texel.a * 255.0 - 1.0) / 254.0;
-    if (texel.a > 0.0) {
+    bool relief = texel.a > 0.0;
+#ifdef MASU_SURFACE
+    if (masu_own_coats) {
+        uvec4 bytes = uvec4(texel * 255.0 + 0.5);
+        s.shadow = (texel.a * 255.0 - 1.0) / 126.0;
+        if (bytes.a >= 128u) {
+            relief = false;
+            s.shadow = -1.0;
+            s.specular = float(bytes.r >> 3) / 30.0;
+            s.occlusion = float(bytes.b >> 4) / 15.0;
+            s.lean = masu_unpack_lean(uvec2(bytes.a & 127u, (bytes.b & 15u) << 3 | (bytes.r & 7u)));
+        }
+    }
+#endif
+    if (relief) {
         s.edge = texel.g;
     } else {
         float coat = floor(texel.g * 255.0 + 0.5);

@@ -14,7 +14,15 @@ void masu_lobes(masu_bsdf b, vec3 l, out vec3 base, out float coat)
     base = vec3(0.0);
     coat = 0.0;
     float n_l = masu_sane(dot(b.n, l), 0.0, 1.0);
-    if (!(n_l > 0.0)) {
+    float over = n_l;
+    bool lit_at_all = n_l > 0.0;
+#ifdef MASU_SURFACE
+    if (masu_own_coats) {
+        over = masu_sane(dot(b.coat_n, l), 0.0, 1.0);
+        lit_at_all = lit_at_all || over > 0.0;
+    }
+#endif
+    if (!lit_at_all) {
         return;
     }
     vec3 sum = l + b.v;
@@ -23,9 +31,9 @@ void masu_lobes(masu_bsdf b, vec3 l, out vec3 base, out float coat)
     base = (b.f0 + (b.f90 - b.f0) * s) * masu_ggx(b.n, h, b.alpha, n_l, b.n_v) * n_l;
 #ifdef MASU_SURFACE
     if (b.coat > 0.0) {
-        float steep = masu_schlick(min(n_l, b.n_v));
+        float steep = masu_schlick(min(over, b.coat_n_v));
         base *= max(1.0 - b.coat * (b.coat_line.x + b.coat_line.y * steep), 0.0);
-        coat = b.coat * (0.04 + 0.96 * s) * masu_ggx(b.n, h, b.coat_alpha, n_l, b.n_v) * n_l;
+        coat = b.coat * (0.04 + 0.96 * s) * masu_ggx(b.coat_n, h, b.coat_alpha, over, b.coat_n_v) * over;
     }
 #endif
 }

@@ -43,7 +43,7 @@ typedef struct masu_device {
     VkRenderPass render_passes[MASU_PASS_COUNT];
     VkFramebuffer framebuffers[MASU_PASS_COUNT];
     VkDescriptorSetLayout texture_layout; /* null without textures, as are the next three */
-    VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters, masked_picks;
+    VkPipeline textured[MASU_TEXTURED_COUNT], masked_casters, masked_picks, tints;
     VkPipeline culled[MASU_CULLED_COUNT]; /* null where nothing is seen from one side only */
     VkSampler samplers[MASU_SAMPLER_COUNT]; /* wrap of u + 3 * wrap of v; those that sets ask for */
     uint64_t pipeline_ns[MASU_PASS_COUNT];

@@ -59,6 +59,7 @@ void masu_device_destroy(masu_device *m) {
         vk->DestroyPipeline(device, m->culled[i], vk->allocator);
     vk->DestroyPipeline(device, m->masked_casters, vk->allocator);
     vk->DestroyPipeline(device, m->masked_picks, vk->allocator);
+    vk->DestroyPipeline(device, m->tints, vk->allocator);
     vk->DestroyDescriptorSetLayout(device, m->texture_layout, vk->allocator);
     for (uint32_t i = 0; i < MASU_SAMPLER_COUNT; i++)
         vk->DestroySampler(device, m->samplers[i], vk->allocator);

@@ -35,13 +35,14 @@ static uint64_t now(const masu_device *m) {
     return m->plan->desc.clock_ns ? m->plan->desc.clock_ns(m->plan->desc.clock_user) : 0;
 }
 
-/* Constants 0 to 10 of all shaders, of which each has those it declares: of compute shaders whether counters
+/* Constants 0 to 12 of all shaders, of which each has those it declares: of compute shaders whether counters
  * are kept, of others whether masks are cut; whether the sky may be the analytic one; whether there is fog;
  * whether the sky is from a picture; whether reflections are traced; the tone curve; the target's
  * encoding; whether the last pass rounds to its steps or changes the order of its channels; whether the output
  * is whole groups of invocations; how many nodes a ray may have to come back to; whether a tile's rays
- * are shared by its invocations. */
-enum { SPECIAL_COUNT = 11 };
+ * are shared by its invocations; whether coats have maps or normals of their own; whether
+ * anything colours what shines through it. */
+enum { SPECIAL_COUNT = 13 };
 
 static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
                                        VkBool32 constants[SPECIAL_COUNT]) {
@@ -56,7 +57,9 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
         {7, 7 * sizeof *constants, sizeof *constants},
         {8, 8 * sizeof *constants, sizeof *constants},
         {9, 9 * sizeof *constants, sizeof *constants},
-        {10, 10 * sizeof *constants, sizeof *constants}};
+        {10, 10 * sizeof *constants, sizeof *constants},
+        {11, 11 * sizeof *constants, sizeof *constants},
+        {12, 12 * sizeof *constants, sizeof *constants}};
     constants[0] = first;
     constants[1] = m->plan->needs.sky != 0;
     constants[2] = m->plan->scene.fog != 0;
@@ -75,6 +78,8 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     const masu_scene *scene = &m->plan->scene;
     constants[9] = masu_trace_top_levels(scene->trace_instances) + scene->trace_levels - 2;
     constants[10] = m->plan->desc.debug.share_rays == MASU_ON;
+    constants[11] = scene->own_coats != 0;
+    constants[12] = scene->tints != 0;
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }
@@ -331,7 +336,8 @@ static int blends_color(const masu_device *m, uint32_t pass) {
     return 0;
 }
 
-/* textured: with texture coordinates; masked: with the discard of masks; culled: not from behind. */
+/* textured: with texture coordinates; masked: with the discard of masks, of what is blended: it multiplies;
+ * culled: not from behind. */
 static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
                                          const VkShaderModule modules[2], int textured,
                                          VkBool32 masked, int culled, VkPipeline *out) {
@@ -349,7 +355,7 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .module = modules[i],
             .pName = "main",
-            .pSpecializationInfo = (textured || blends) && i ? &special : NULL};
+            .pSpecializationInfo = i || geometry == MASU_GEOMETRY_BLENDED ? &special : NULL};
     }
     VkVertexInputBindingDescription bindings[] = {
         {0, sizeof(masu_blob_vertex), VK_VERTEX_INPUT_RATE_VERTEX},
@@ -399,6 +405,10 @@ static VkResult create_graphics_pipeline(masu_device *m, uint32_t pass,
         blend[0].dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
         blend[0].srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
         blend[0].dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+        if (geometry == MASU_GEOMETRY_BLENDED && masked) {
+            blend[0].srcColorBlendFactor = VK_BLEND_FACTOR_ZERO;
+            blend[0].dstColorBlendFactor = VK_BLEND_FACTOR_SRC_COLOR;
+        }
     }
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
@@ -504,6 +514,10 @@ static masu_result make_graphics(masu_device *m, uint32_t pass, masu_detail *det
     /* One pipeline for all that is blended: in scenes with textures what has none passes by them. */
     int textured = geometry == MASU_GEOMETRY_BLENDED && textures;
     if (!result) result = make_pipeline(m, pass, textured, VK_FALSE, 0, &m->pipelines[pass], detail);
+    if (!result && geometry == MASU_GEOMETRY_BLENDED && m->plan->scene.tints) {
+        result = make_pipeline(m, pass, textured, VK_TRUE, 0, &m->tints, detail);
+        masu_name(m, VK_OBJECT_TYPE_PIPELINE, MASU_HANDLE(m->tints), "transparents, tints");
+    }
     if (!result && geometry == MASU_GEOMETRY_POLYGONS && textures)
         result = make_textured(m, pass, detail);
     if (!result && geometry == MASU_GEOMETRY_POLYGONS) result = make_culled(m, pass, textures, detail);

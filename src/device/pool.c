@@ -58,7 +58,8 @@ static VkPipeline *place(masu_device *m, uint32_t i) {
     if (i < MASU_TEXTURED_COUNT) return &m->textured[i];
     i -= MASU_TEXTURED_COUNT;
     if (i < MASU_CULLED_COUNT) return &m->culled[i];
-    return i == MASU_CULLED_COUNT ? &m->masked_casters : &m->masked_picks;
+    i -= MASU_CULLED_COUNT;
+    return i == 0 ? &m->masked_casters : i == 1 ? &m->masked_picks : &m->tints;
 }
 
 /* Notes what a pipeline is known by. */

@@ -13,7 +13,7 @@
 #include "device/shaders.h"
 
 /* Most pipelines of a renderer: each pass's two forms, and those of textures. */
-#define MASU_POOL_KEYS (2 * MASU_PASS_COUNT + MASU_TEXTURED_COUNT + MASU_CULLED_COUNT + 2)
+#define MASU_POOL_KEYS (2 * MASU_PASS_COUNT + MASU_TEXTURED_COUNT + MASU_CULLED_COUNT + 3)
 
 /* codes: of both stages; the second none of a compute pass. The rest of what a key says follows from plan and
  * pass. */

@@ -139,8 +139,8 @@ static uint32_t pick_sweep_of(masu_draw_look *material) {
 static void bind_maps(masu_recorder *rec, VkPipelineLayout layout,
                       const masu_draw_look *material, struct masu_push_gbuffer *push,
                       uint32_t *bound) {
-    push->flags = (material->flags & 0xFFFFFFu) | material->occlusion_layer
-                                                       << MASU_MAP_OCCLUSION_SHIFT;
+    push->flags = (material->flags & 0xFFFFFFu) | material->more_layers << MASU_MAP_OCCLUSION_SHIFT;
+    push->coat_layer = material->more_layers >> 8 & 0xFFu;
     push->layers = material->layers;
     push->detail_u = material->detail[0];
     push->detail_v = material->detail[1];
@@ -236,51 +236,55 @@ static void record_sprites(masu_recorder *rec, uint32_t pass, VkDescriptorSet se
                           sizeof(masu_vec4));
 }
 
-static void bind_transparents(masu_recorder *rec, VkDescriptorSet set) {
+static void bind_transparents(masu_recorder *rec, VkDescriptorSet set, int tints) {
     const VkDescriptorSet sets[] = {rec->m->global_sets[rec->flight], set};
-    rec->m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                               rec->m->pipelines[MASU_PASS_TRANSPARENTS]);
+    VkPipeline pipeline = tints ? rec->m->tints : rec->m->pipelines[MASU_PASS_TRANSPARENTS];
+    rec->m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     rec->m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
                                      rec->m->layouts[MASU_PASS_TRANSPARENTS], MASU_SET_GLOBAL, 2, sets, 0, NULL);
 }
 
+/* The commands of a slot, from `at` on. */
+static void draw_slot(masu_recorder *rec, VkDeviceSize at, int bind) {
+    const masu_device *m = rec->m;
+    for (uint32_t c = 0; c < m->plan->scene.transparent_sets; c++) {
+        if (m->texture_layout && (bind || m->plan->scene.transparent_sets > 1))
+            m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->layouts[MASU_PASS_TRANSPARENTS],
+                                        MASU_SET_TEXTURES, 1, &m->texture_sets[rec->draws->transparent_sets[c]], 0, NULL);
+        m->vk.CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at + c * MASU_DRAW_BYTES, 1,
+                                     MASU_DRAW_BYTES);
+    }
+}
+
 /* Slot after slot, each with a command for each texture set: transparents.c has filled one of them. Before each
- * slot those particles that are farther; render passes of both are compatible. */
+ * slot those particles that are farther; render passes of both are compatible. Where anything gives what is behind it
+ * a colour, each slot is drawn twice: that first. */
 static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets) {
     const masu_device *m = rec->m;
     const masu_vk *vk = &m->vk;
-    const masu_scene *scene = &m->plan->scene;
     VkPipelineLayout layout = m->layouts[MASU_PASS_TRANSPARENTS];
-    VkDeviceSize zero = 0, at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride +
-                                m->plan->transparent_draws * MASU_DRAW_BYTES;
-    int among = m->plan->needs.particles;
+    VkDeviceSize zero = 0;
+    VkDeviceSize at = rec->flight * m->plan->buffers[MASU_BUFFER_DRAWS].stride + m->plan->transparent_draws * MASU_DRAW_BYTES;
+    int among = m->plan->needs.particles, tints = m->plan->scene.tints != 0;
     masu_push_block block = push_of(rec, MASU_PASS_TRANSPARENTS);
     struct masu_push_transparents push;
     memcpy(&push, &block.own, sizeof push);
-    if (!among) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS]);
+    if (!among && !tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], 0);
     vk->CmdBindVertexBuffers(rec->cmd, 0, 1, &m->objects.buffers[MASU_BUFFER_VERTICES], &zero);
-    if (m->texture_layout)
-        vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
-    vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0,
-                           VK_INDEX_TYPE_UINT32);
+    if (m->texture_layout) vk->CmdBindVertexBuffers(rec->cmd, 1, 1, &m->objects.buffers[MASU_BUFFER_TEXCOORDS], &zero);
+    vk->CmdBindIndexBuffer(rec->cmd, m->objects.buffers[MASU_BUFFER_INDICES], 0, VK_INDEX_TYPE_UINT32);
     for (uint32_t k = 0; k < rec->draws->transparent_count; k++) {
-        if (among) {
-            record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES], MASU_SPRITE_DRAWS + k);
-            bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS]);
-        }
+        if (among) record_sprites(rec, MASU_PASS_PARTICLES, sets[MASU_PASS_PARTICLES], MASU_SPRITE_DRAWS + k);
+        if (among || tints) bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], tints);
         push.instances = (uint32_t)m->plan->drawn.transparents + MASU_TRANSPARENT_WORDS * k;
         memcpy(&block.own, &push, sizeof push);
         vk->CmdPushConstants(rec->cmd, layout, GRAPHICS_STAGES, 0, sizeof block, &block);
-        for (uint32_t c = 0; c < scene->transparent_sets; c++) {
-            if (m->texture_layout && (k == 0 || among || scene->transparent_sets > 1)) {
-                vk->CmdBindDescriptorSets(
-                    rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_TEXTURES, 1,
-                    &m->texture_sets[rec->draws->transparent_sets[c]], 0, NULL);
-            }
-            vk->CmdDrawIndexedIndirect(rec->cmd, m->objects.buffers[MASU_BUFFER_DRAWS], at, 1,
-                                       MASU_DRAW_BYTES);
-            at += MASU_DRAW_BYTES;
+        draw_slot(rec, at, k == 0 || among);
+        if (tints) {
+            bind_transparents(rec, sets[MASU_PASS_TRANSPARENTS], 0);
+            draw_slot(rec, at, 0);
         }
+        at += m->plan->scene.transparent_sets * MASU_DRAW_BYTES;
     }
 }
 
@@ -288,21 +292,16 @@ static void record_transparents(masu_recorder *rec, const VkDescriptorSet *sets)
 static void record_occluders(masu_recorder *rec) {
     const masu_device *m = rec->m;
     VkPipelineLayout layout = m->layouts[MASU_PASS_OCCLUDERS];
-    m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                          m->pipelines[MASU_PASS_OCCLUDERS]);
-    m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL,
-                                1, &m->global_sets[rec->flight], 0, NULL);
+    m->vk.CmdBindPipeline(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, m->pipelines[MASU_PASS_OCCLUDERS]);
+    m->vk.CmdBindDescriptorSets(rec->cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, MASU_SET_GLOBAL, 1,
+                                &m->global_sets[rec->flight], 0, NULL);
     masu_push_block block = push_of(rec, MASU_PASS_OCCLUDERS);
     struct masu_push_occluders push;
     memcpy(&push, &block.own, sizeof push);
     for (uint32_t part = 0; part < MASU_ATLAS_PARTS(m->plan); part++) {
         VkRect2D area = masu_atlas_part(part);
-        VkViewport viewport = {(float)area.offset.x,
-                               (float)area.offset.y,
-                               (float)area.extent.width,
-                               (float)area.extent.height,
-                               0.0f,
-                               1.0f};
+        VkViewport viewport = {(float)area.offset.x, (float)area.offset.y, (float)area.extent.width,
+                               (float)area.extent.height, 0.0f, 1.0f};
         push.view = part;
         memcpy(&block.own, &push, sizeof push);
         m->vk.CmdSetViewport(rec->cmd, 0, 1, &viewport);

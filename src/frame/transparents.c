@@ -60,7 +60,7 @@ static void keep_primitive(masu_transparent *t, const masu_draws *draws, uint32_
         .draw = {p->index_count, 1, p->first_index, (int32_t)p->first_vertex, 0},
         .instance = instance,
         .material = p->material,
-        .flags = material->flags | material->occlusion_layer << MASU_MAP_OCCLUSION_SHIFT,
+        .flags = material->flags | material->more_layers << MASU_MAP_OCCLUSION_SHIFT,
         .layers = material->layers,
         .detail = {material->detail[0], material->detail[1]},
         .column = column_of(draws, material)};

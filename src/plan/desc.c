@@ -87,6 +87,8 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         d.rungs[0] = (masu_rung){.scale = 1.0f};
         d.rungs[1] = (masu_rung){.scale = 0.8f};
         d.rungs[2] = (masu_rung){.scale = 0.4f};
+        for (uint32_t r = 0; d.scene && d.scene->smooth_edges && r < d.rung_count; r++)
+            d.rungs[r].aa = MASU_AA_SMAA_HIGH;
     }
     for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
         masu_rung_defaults(&d.rungs[r]);

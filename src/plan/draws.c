@@ -117,7 +117,7 @@ masu_draw_look masu_draw_look_of(const masu_scene_view *v, uint32_t primitive) {
         .flags = of->flags,
         .texture_set = of->texture_set,
         .layers = of->layers,
-        .occlusion_layer = of->occlusion_layer,
+        .more_layers = of->more_layers,
         .detail = {of->detail[0], of->detail[1]},
         .meso = meso ? (uint32_t)(v->material_count + 2 * (uint64_t)of->meso) : 0};
 }

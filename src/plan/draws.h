@@ -36,7 +36,7 @@ typedef struct masu_batch {
 typedef struct masu_draw_look {
     uint32_t material;
     uint32_t flags; /* masu_blob_material_flags */
-    uint32_t texture_set, layers, occlusion_layer;
+    uint32_t texture_set, layers, more_layers;
     float detail[2];
     uint32_t meso; /* element of the buffer of materials where its curves begin; 0: none */
 } masu_draw_look;

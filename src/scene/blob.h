@@ -24,7 +24,7 @@
 #include <stdint.h>
 
 #define MASU_BLOB_MAGIC 0x5553414Du /* the bytes 'M' 'A' 'S' 'U' */
-#define MASU_BLOB_VERSION 13u
+#define MASU_BLOB_VERSION 14u
 #define MASU_BLOB_ALIGN 16u
 #define MASU_BLOB_NONE 0xFFFFFFFFu /* "no name", "no parent" */
 #define MASU_BLOB_PART_SLOTS 8u    /* of an SDF's part, in front of all others: sphere, slope, form, first argument, material */
@@ -105,20 +105,25 @@ enum masu_blob_texture_slot {
     MASU_SLOT_SURFACE = 2, /* BC4: roughness; BC5: roughness, metallic */
     MASU_SLOT_EMISSIVE = 3,
     MASU_SLOT_OCCLUSION = 4, /* BC4: what of the light from everywhere arrives, by the relief */
-    MASU_SLOT_COUNT = 5
+    MASU_SLOT_COAT = 5,      /* BC5: clear coat, its roughness; not of what is blended */
+    MASU_SLOT_COUNT = 6
 };
 
 /* Flags of a material; shaders/shared/masu_shared.h has them too. Bit of a slot: the map is there,
  * and the material's factor is multiplied by it. */
 enum masu_blob_material_flags {
-    MASU_MATERIAL_HAS_MAPS = 0x1F,
-    MASU_MATERIAL_HAS_METAL = 0x20, /* the surface map holds metallic as well */
+    MASU_MATERIAL_HAS_MAPS = 0x3F,
     MASU_MATERIAL_IS_MASK = 0x40,   /* texels with alpha below the cut-off are not there */
     MASU_MATERIAL_IS_BLEND = 0x80,  /* transparent: blended with what is behind it */
     MASU_MATERIAL_CUTOFF_SHIFT = 8, /* 8 bits: cut-off times 255 */
     MASU_MATERIAL_IS_ADDITIVE = 0x10000, /* with IS_BLEND: adds its light, hides nothing */
     MASU_MATERIAL_IS_SINGLE = 0x40000,   /* not seen from behind: from where its triangles turn clockwise */
-    MASU_MATERIAL_KNOWN = 0x5FFFF
+    MASU_MATERIAL_HAS_METAL = 0x80000,   /* the surface map holds metallic as well */
+    MASU_MATERIAL_IS_TINTED = 0x100000,  /* with IS_BLEND: what shines through has its base colour */
+    /* Whose relief the normal map is not: the mesh's own normal is the coat's, or what lies below it */
+    MASU_MATERIAL_COAT_SMOOTH = 0x200000,
+    MASU_MATERIAL_BASE_SMOOTH = 0x400000,
+    MASU_MATERIAL_KNOWN = 0x7DFFFF
 };
 
 /* The guarantees of Vulkan 1.1 for maxImageDimension2D and maxImageArrayLayers. */
@@ -303,7 +308,7 @@ typedef struct masu_blob_material {
     float coat_roughness; /* perceptual, 0..1 */
     float opacity;        /* 0..1, of blended materials; else 1 */
     uint32_t meso;        /* element of MESO, or MASU_BLOB_NONE */
-    uint32_t occlusion_layer; /* of slot OCCLUSION: 0..255 */
+    uint32_t more_layers; /* of the slots from OCCLUSION on, 8 bits each */
     float detail[2];          /* texture coordinates of all maps but colour and emissive are times it */
 } masu_blob_material;
 
@@ -408,7 +413,6 @@ typedef struct masu_blob_texture {
 typedef struct masu_blob_texture_set {
     uint32_t texture[MASU_SLOT_COUNT];
     uint32_t wrap[2]; /* along u and v: 0 repeat, 1 clamp, 2 mirror */
-    uint32_t reserved;
 } masu_blob_texture_set;
 
 /* Traced reflections; present with TRACE_NODES, TRACE_SDF_SPIRV or both. */
@@ -509,6 +513,8 @@ typedef struct masu_blob_environment {
     float fog_falloff;  /* >= 0, 1/m: the density falls by e over 1 / fog_falloff metres of height */
     float fog_start;    /* >= 0, m: nearer than this it is clear */
     float darken;       /* and too bright; 0: the default */
+    float smooth_edges; /* 1: anti-aliased by SMAA where nobody says how; 0: not */
+    float reserved[3];
 } masu_blob_environment;
 
 /* The sun's shadow map: of scenes that have instances too. Where it is absent nothing that has
@@ -596,7 +602,7 @@ _Static_assert(sizeof(masu_blob_material) == 80, "blob material");
 _Static_assert(sizeof(masu_blob_texture) == 32, "blob texture");
 _Static_assert(sizeof(masu_blob_texture_set) == 32, "blob texture set");
 _Static_assert(sizeof(masu_blob_camera_key) == 32, "blob camera key");
-_Static_assert(sizeof(masu_blob_environment) == 128, "blob environment");
+_Static_assert(sizeof(masu_blob_environment) == 144, "blob environment");
 _Static_assert(sizeof(masu_blob_meso) == 96, "blob meso");
 _Static_assert(sizeof(masu_blob_light) == 64, "blob light");
 _Static_assert(sizeof(masu_blob_probes) == 1344, "blob probes");

@@ -84,6 +84,12 @@ static masu_result check_material(reader *r, uint64_t i) {
         return bad(r, "materials", i, "no such meso");
     if (m->flags & MASU_MATERIAL_IS_ADDITIVE && !(m->flags & MASU_MATERIAL_IS_BLEND))
         return bad(r, "materials", i, "is additive, but not blended");
+    if (m->flags & MASU_MATERIAL_IS_TINTED && !(m->flags & MASU_MATERIAL_IS_BLEND))
+        return bad(r, "materials", i, "is tinted, but not blended");
+    if (m->flags & MASU_MATERIAL_IS_TINTED && m->flags & MASU_MATERIAL_IS_ADDITIVE)
+        return bad(r, "materials", i, "is tinted, but hides nothing");
+    if (m->flags & MASU_MATERIAL_COAT_SMOOTH && m->flags & MASU_MATERIAL_BASE_SMOOTH)
+        return bad(r, "materials", i, "has a relief, but neither coat nor base has it");
     if (!(m->flags & MASU_MATERIAL_IS_BLEND) && m->opacity != 1.0f)
         return bad(r, "materials", i, "is not blended, but not opaque");
     return MASU_OK;
@@ -158,6 +164,8 @@ static masu_result check_environment(reader *r) {
     }
     if (e->metered != 0.0f && e->metered != 1.0f)
         return bad(r, "environment", 0, "metered is not 0 or 1");
+    if (e->smooth_edges != 0.0f && e->smooth_edges != 1.0f)
+        return bad(r, "environment", 0, "smooth edges are not 0 or 1");
     if (!within(&e->brighten, 1, 0.0f, 1e6f) || !within(&e->darken, 1, 0.0f, 1e6f))
         return bad(r, "environment", 0, "a speed of the exposure is out of range");
     if (e->occlusion_radius != 0.0f && !within(&e->occlusion_radius, 1, 1e-3f, 1e6f))
@@ -246,10 +254,13 @@ static void look_at_transparents(const reader *r, masu_scene *out) {
 }
 
 void masu_look_at_looks(const reader *r, masu_scene *out) {
+    const uint32_t own = 1u << MASU_SLOT_COAT | MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
     for (uint32_t i = 0; i < out->materials; i++) {
         const masu_blob_material *m = &r->view.materials[i];
         if (has_surface(m)) out->surfaces++;
         if (m->coat > 0.0f) out->coats++;
+        if (m->coat > 0.0f && m->flags & own) out->own_coats = 1;
+        if (m->flags & MASU_MATERIAL_IS_TINTED) out->tints = 1;
         if (m->flags & MASU_MATERIAL_IS_BLEND) out->blends++;
     }
     look_at_transparents(r, out);
@@ -271,4 +282,5 @@ void masu_look_at_looks(const reader *r, masu_scene *out) {
     out->metered = r->view.environment->metered != 0.0f;
     out->brighten = r->view.environment->brighten;
     out->darken = r->view.environment->darken;
+    out->smooth_edges = r->view.environment->smooth_edges != 0.0f;
 }

@@ -30,6 +30,7 @@ static int slot_takes(uint32_t slot, uint32_t format) {
     case MASU_SLOT_NORMAL: return format == MASU_TEXTURE_BC5;
     case MASU_SLOT_SURFACE: return format == MASU_TEXTURE_BC4 || format == MASU_TEXTURE_BC5;
     case MASU_SLOT_OCCLUSION: return format == MASU_TEXTURE_BC4;
+    case MASU_SLOT_COAT: return format == MASU_TEXTURE_BC5;
     default: return format == MASU_TEXTURE_BC1_SRGB;
     }
 }
@@ -56,10 +57,11 @@ static masu_result check_texture_set(reader *r, uint64_t i) {
 static masu_result check_maps(reader *r, uint64_t i) {
     const masu_blob_material *m = &r->view.materials[i];
     uint32_t maps = m->flags & MASU_MATERIAL_HAS_MAPS;
-    uint32_t alpha = MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK;
+    uint32_t smooth = MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH;
+    uint32_t alpha = MASU_MATERIAL_HAS_METAL | MASU_MATERIAL_IS_MASK | smooth;
     if (m->flags & ~(uint32_t)MASU_MATERIAL_KNOWN) return bad(r, "materials", i, "unknown flags");
     if (!maps) {
-        if (m->texture_set || m->layers || m->occlusion_layer || m->flags & alpha) {
+        if (m->texture_set || m->layers || m->more_layers || m->flags & alpha) {
             return bad(r, "materials", i, "has no textures, but speaks of them");
         }
         return MASU_OK;
@@ -73,12 +75,13 @@ static masu_result check_maps(reader *r, uint64_t i) {
         if (set->texture[slot] == MASU_BLOB_NONE) {
             return bad(r, "materials", i, "its texture set lacks a texture");
         }
-        uint32_t layer =
-            slot == MASU_SLOT_OCCLUSION ? m->occlusion_layer : m->layers >> 8 * slot & 0xFF;
-        if (layer > 0xFF || layer >= r->view.textures[set->texture[slot]].layers) {
+        uint32_t layer = (slot < MASU_SLOT_OCCLUSION ? m->layers >> 8 * slot
+                                                     : m->more_layers >> 8 * (slot - MASU_SLOT_OCCLUSION)) & 0xFF;
+        if (layer >= r->view.textures[set->texture[slot]].layers) {
             return bad(r, "materials", i, "no such layer");
         }
     }
+    if (m->more_layers > 0xFFFF) return bad(r, "materials", i, "no such layer");
     uint32_t has_base = maps >> MASU_SLOT_BASE & 1, has_surface = maps >> MASU_SLOT_SURFACE & 1;
     if (m->flags & MASU_MATERIAL_IS_MASK &&
         (!has_base ||
@@ -90,6 +93,8 @@ static masu_result check_maps(reader *r, uint64_t i) {
          r->view.textures[set->texture[MASU_SLOT_SURFACE]].format != MASU_TEXTURE_BC5)) {
         return bad(r, "materials", i, "has no map of metallic");
     }
+    if (m->flags & smooth && !(maps >> MASU_SLOT_NORMAL & 1))
+        return bad(r, "materials", i, "has no relief that its coat or base could lack");
     return MASU_OK;
 }
 

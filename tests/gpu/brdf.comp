@@ -9,6 +9,7 @@
  */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#define MASU_OWN_COATS
 #define MASU_SURFACE
 #include "brdf/bsdf.glsl"
 
@@ -120,6 +121,7 @@ void main()
     s.specular = c.surface.y;
     s.coat = c.surface.z;
     s.coat_roughness = c.surface.w;
+    s.lean = vec2(c.normal.w, c.view.w);
     masu_bsdf b = masu_bsdf_make(s, c.normal.xyz, c.view.xyz);
     vec3 light = pc.x == 0u ? masu_bsdf_eval(b, c.light.xyz)
                             : furnace(b, c.view.xyz, masu_alpha(c.surface.w), pc.z);

@@ -18,7 +18,7 @@
 typedef struct test_case {
     float albedo[3], roughness;
     float metallic, specular, coat, coat_roughness;
-    float normal[4], view[4], light[4];
+    float normal[4], view[4], light[4]; /* normal[3], view[3]: where what lies below a coat leans to */
 } test_case;
 
 typedef struct test_result {
@@ -113,6 +113,50 @@ static void surfaces_are_those_of_the_reference(void **unused) {
     /* Of a lobe 0.002 wide, the step of a component of h, 6e-8, is a thousandth of 0.06 of its width. */
     assert_true(worst < 2e-3);
     assert_true(worst_broad < 1e-4);
+}
+
+/* A coat whose normal is not that of what lies below it, +z: half a right angle away at most. */
+static void coats_may_lean(void **unused) {
+    (void)unused;
+    for (int i = 0; i < MANY; i++) {
+        test_case *c = &cases[i];
+        *c = any_case();
+        c->coat = fmaxf(c->coat, 0.25f);
+        c->roughness = fmaxf(c->roughness, 0.1f);
+        c->coat_roughness = fmaxf(c->coat_roughness, 0.1f);
+        double z = 0.7 + 0.3 * (double)random_float(&state), phi = 6.283185307179586 * (double)random_float(&state);
+        if (i & 1) z = -z, c->view[2] = -c->view[2], c->light[2] = -c->light[2]; /* and its axes are turned round */
+        c->normal[0] = (float)(sqrt(1 - z * z) * cos(phi));
+        c->normal[1] = (float)(sqrt(1 - z * z) * sin(phi));
+        c->normal[2] = (float)z;
+        double n[3] = {(double)c->normal[0], (double)c->normal[1], (double)c->normal[2]};
+        float *v = c->view; /* which the coat sees, as pictures show none that does not */
+        while ((double)v[0] * n[0] + (double)v[1] * n[1] + (double)v[2] * n[2] < 1e-3) {
+            direction(v);
+            if (i & 1) v[2] = -v[2];
+        }
+        double s = n[2] < 0 ? -1 : 1; /* below is (0, 0, s): what it has along both axes (masu_lean_axes) */
+        c->normal[3] = (float)(s * -s * n[0]);
+        c->view[3] = (float)(s * -n[1]);
+    }
+    run(cases, results, MANY, 0, 0);
+    double worst = 0, beneath = 0;
+    for (int i = 0; i < MANY; i++) {
+        brdf_surface s = surface_of(&cases[i]);
+        double v[3], l[3], n[3], truth[3], turn = i & 1 ? -1 : 1; /* about the axis x: -z becomes z, y becomes -y */
+        for (int k = 0; k < 3; k++) {
+            double t = k ? turn : 1;
+            v[k] = t * (double)cases[i].view[k], l[k] = t * (double)cases[i].light[k];
+            n[k] = t * (double)cases[i].normal[k];
+        }
+        brdf_over(masu_split_sum, &s, n, v, l, truth);
+        beneath += n[0] * l[0] + n[1] * l[1] + n[2] * l[2] <= 0;
+        for (int k = 0; k < 3; k++)
+            worst = worst_of(worst, fabs((double)results[i].light[k] - truth[k]) / (1e-3 + truth[k]));
+    }
+    print_message("  off by %.1e of (0.001 + itself) at most; of %.0f lights the coat sees nothing\n", worst, beneath);
+    assert_true(worst < 1e-3);
+    assert_true(beneath > 100);
 }
 
 static void light_and_view_may_be_exchanged(void **unused) {
@@ -324,6 +368,7 @@ static void a_frame_shows_what_the_formulas_say(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces_are_those_of_the_reference),
+        cmocka_unit_test(coats_may_lean),
         cmocka_unit_test(light_and_view_may_be_exchanged),
         cmocka_unit_test(in_the_white_furnace_no_light_is_lost_or_made),
         cmocka_unit_test(any_bits_give_finite_light),

@@ -6,6 +6,8 @@
 #include "support/support.h"
 #include "support/floats.h"
 #include "support/gltf_file.h"
+#include "reference/brdf.h"
+#include "split_sum.h"
 
 #include "bench/study/shade.h"
 #include "image.h"
@@ -22,6 +24,9 @@ typedef struct face {
     double at[3], u[3], v[3]; /* a corner, the two edges there */
     double look[8];           /* albedo, roughness, emissive, metallic */
     bool single;              /* not seen from behind: from where u x v points away */
+    const brdf_surface *coat; /* instead of look; normals of coat and of what lies below, (0, 0, 1) being the face's */
+    double over[3], below[3];
+    bool glass;               /* all of the light goes through: the faces behind, times the colour of look */
 } face;
 
 static void cross(const double a[3], const double b[3], double out[3]) {
@@ -62,6 +67,7 @@ typedef struct shot {
 } shot;
 
 static const shot ahead = {{1, 0.5, 3}, {1, 0.5, 0}};
+static const shot in_the_glare = {{-0.23, -1.22, 2.13}, {1, 0.5, 0}}; /* the sun is mirrored in the middle */
 static const shot behind = {{1, 0.5, -3}, {1, 0.5, 0}};
 
 static const uint16_t *photograph(masu_session *s, const char *path, shot p, masu_view *view) {
@@ -95,6 +101,47 @@ static const uint16_t *photograph(masu_session *s, const char *path, shot p, mas
     return draw_image(s, &frame, MASU_READBACK_HDR, NULL);
 }
 
+/* Light of a coated surface by the formulas alone; `toward` the eye, both normals unit. */
+static void shade_coated(const masu_view *v, const double direction[3], const face *f, double out[3]) {
+    double axes[3][3] = {{0, 0, 0}, {0, 0, 0}, {f->below[0], f->below[1], f->below[2]}}, size;
+    const double aside[3] = {f->below[2], 0, -f->below[0]};
+    double eye[3] = {0, 0, 0}, sun[3] = {0, 0, 0}, over[3] = {0, 0, 0}, sky[2][3], way[3], diffuse[3], mirrors[3], coat;
+    size = sqrt(dot(aside, aside));
+    for (int k = 0; k < 3; k++) axes[0][k] = aside[k] / size;
+    cross(axes[2], axes[0], axes[1]);
+    for (int k = 0; k < 3; k++) {
+        eye[k] = -dot(axes[k], direction);
+        sun[k] = dot(axes[k], v->sun_direction);
+        over[k] = dot(axes[k], f->over);
+    }
+    for (int i = 0; i < 2; i++) { /* as blurred as the surface is rough, which is the share of the ambient light */
+        const double *n = i ? f->over : f->below;
+        double rough = i ? f->coat->coat_roughness : f->coat->roughness;
+        for (int k = 0; k < 3; k++) way[k] = direction[k] - 2 * dot(n, direction) * n[k];
+        masu_shade_open_sky(v, way, sky[i]);
+        for (int k = 0; k < 3; k++) sky[i][k] += (v->ambient[k] - sky[i][k]) * rough;
+    }
+    brdf_over(masu_split_sum, f->coat, over, eye, sun, out);
+    brdf_ambient(masu_split_sum, f->coat, over, eye, diffuse, mirrors, &coat);
+    for (int k = 0; k < 3; k++)
+        out[k] = out[k] * v->sun_color[k] + diffuse[k] * v->ambient[k] + mirrors[k] * sky[0][k] + coat * sky[1][k];
+}
+
+/* What glass without a colour of its own sends, and what it lets through of `behind`. */
+static void shade_glass(const masu_view *v, const double direction[3], const double n[3], const face *f, double out[3]) {
+    face own = *f;
+    const brdf_surface black = {.roughness = f->look[3], .specular = 0.5};
+    double diffuse[3], mirrors[3], coat, up = -dot(n, direction);
+    const double eye[3] = {sqrt(fmax(1 - up * up, 0)), 0, up}, upright[3] = {0, 0, 1};
+    own.coat = &black;
+    for (int k = 0; k < 3; k++) own.over[k] = own.below[k] = n[k];
+    brdf_ambient(masu_split_sum, &black, upright, eye, diffuse, mirrors, &coat);
+    double behind[3] = {out[0], out[1], out[2]};
+    shade_coated(v, direction, &own, out);
+    for (int k = 0; k < 3; k++) /* nothing comes from below a surface that lets all through */
+        out[k] += f->look[k] * (1 - mirrors[0]) * behind[k] - diffuse[k] * v->ambient[k];
+}
+
 /* Every pixel against the faces; of each face there must be some. loose: how far rounding may take it. */
 static void compare(const char *path, shot p, const face *faces, int count, double loose) {
     masu_session s;
@@ -115,6 +162,11 @@ static void compare(const char *path, shot p, const face *faces, int count, doub
         if (rim) continue;
         if (at < 0) {
             masu_shade_sky(&v, ray.direction, want);
+        } else if (faces[at].glass) { /* the first; behind it is the second */
+            masu_shade_surface(&v, ray.direction, normal, faces[at + 1].look, want);
+            shade_glass(&v, ray.direction, normal, &faces[at], want);
+        } else if (faces[at].coat) {
+            shade_coated(&v, ray.direction, &faces[at], want);
         } else if (loose > 0) {
             masu_shade_exact(&v, ray.direction, normal, faces[at].look, want, ignored);
             for (int c = 0; c < 3; c++) want[c] += ignored[c];
@@ -228,6 +280,66 @@ static void weak_maps_of_emission_shine(void **state) {
     for (int i = 0; i < 4; i++)
         for (int c = 0; c < 3; c++) f[i].look[4 + c] = linear(colors[i][c]);
     compare(mapped("glow.png", CLAY ",\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0,\"texCoord\":1}"), ahead, f, 4, 0.06);
+}
+
+/* ---- Coats and glass ------------------------------------------------------------------------- */
+
+#define COATED "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.4,0.3,1],\"metallicFactor\":0,\"roughnessFactor\":0.5}"
+#define COAT(more) ",\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatRoughnessFactor\":0.4" more "}}"
+static const brdf_surface lacquered = {{0.5, 0.4, 0.3}, 0.5, 0, 0.5, 1, 0.4};
+
+/* A picture of one normal, 30 degrees to the right. */
+static void a_coat_is_smooth_unless_it_names_a_picture(void **state) {
+    (void)state;
+    static const uint8_t leaning[4][3] = {{192, 128, 238}, {192, 128, 238}, {192, 128, 238}, {192, 128, 238}};
+    const double even[3] = {0, 0, 1}, right[3] = {64 / 127.0, 0, sqrt(1 - 64 / 127.0 * 64 / 127.0)};
+    face f = flat(0, 0, 0, 2, 1, 0, 0, 0, 0);
+    write_squares("leaning.png", leaning);
+    f.coat = &lacquered;
+    memcpy(f.over, even, sizeof even), memcpy(f.below, right, sizeof right);
+    compare(mapped("leaning.png", COATED ",\"normalTexture\":{\"index\":0,\"texCoord\":1}" COAT("")), ahead, &f, 1, 0.01);
+    compare(mapped("leaning.png", COATED ",\"normalTexture\":{\"index\":0,\"texCoord\":1}" COAT("")), in_the_glare, &f, 1, 0.01);
+    memcpy(f.over, right, sizeof right);
+    compare(mapped("leaning.png", COATED ",\"normalTexture\":{\"index\":0,\"texCoord\":1}"
+                                         COAT(",\"clearcoatNormalTexture\":{\"index\":0,\"texCoord\":1}")), ahead, &f, 1, 0.01);
+    memcpy(f.below, even, sizeof even);
+    compare(mapped("leaning.png", COATED COAT(",\"clearcoatNormalTexture\":{\"index\":0,\"texCoord\":1}")), ahead, &f, 1, 0.01);
+}
+
+static void coats_have_maps(void **state) {
+    (void)state;
+    static const uint8_t squares[4][3] = {{255, 255, 9}, {0, 255, 9}, {204, 128, 9}, {102, 255, 9}};
+    brdf_surface each[4];
+    face f[4];
+    write_squares("coats.png", squares);
+    quarter(f);
+    for (int i = 0; i < 4; i++) {
+        each[i] = lacquered;
+        each[i].coat = squares[i][0] / 255.0;
+        each[i].coat_roughness = rint(0.4 * 15 * squares[i][1] / 255.0) / 15; /* as far as it is kept */
+        f[i].coat = &each[i];
+        f[i].over[2] = f[i].below[2] = 1;
+    }
+    compare(mapped("coats.png", COATED COAT(",\"clearcoatTexture\":{\"index\":0,\"texCoord\":1},"
+                                            "\"clearcoatRoughnessTexture\":{\"index\":0,\"texCoord\":1}")), in_the_glare, f, 4, 0.01);
+}
+
+/* A pane before a wall that sends light of three colours. */
+static void glass_colours_what_is_behind(void **state) {
+    (void)state;
+    face f[2] = {flat(0, 0, 0, 2, 1, 0.8, 0.3, 0.1, 0.5), flat(-0.5, -0.5, -1, 3, 2, 0, 0, 0, 1)};
+    const double wall[3] = {0.25, 0.5, 1};
+    memcpy(f[1].look + 4, wall, sizeof wall);
+    f[0].glass = true;
+    begin_quad();
+    compare(finish("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":0}]},"
+                   "{\"primitives\":[{\"attributes\":{\"POSITION\":%d},\"indices\":%d,\"material\":1}]}],"
+                   "\"nodes\":[{\"mesh\":0},{\"mesh\":1,\"scale\":[1.5,2,1],\"translation\":[-0.5,-0.5,-1]}],\"materials\":["
+                   "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.8,0.3,0.1,1],\"metallicFactor\":0,\"roughnessFactor\":0.5},"
+                   "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}},"
+                   "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,1,1]},\"extensions\":{\"KHR_materials_unlit\":{}}}]",
+                   quad_positions, quad_indices, quad_positions, quad_indices),
+            (shot){{1, 0.5, 2.5}, {1, 0.5, 0}}, f, 2, 0.01);
 }
 
 /* ---- Coordinates, pictures, colours ---------------------------------------------------------- */
@@ -450,6 +562,9 @@ int main(void) {
         cmocka_unit_test(what_is_black_and_emits_still_mirrors),
         cmocka_unit_test(what_is_unlit_sends_its_colour),
         cmocka_unit_test(weak_maps_of_emission_shine),
+        cmocka_unit_test(a_coat_is_smooth_unless_it_names_a_picture),
+        cmocka_unit_test(coats_have_maps),
+        cmocka_unit_test(glass_colours_what_is_behind),
         cmocka_unit_test(pictures_are_of_the_second_set_and_turned),
         cmocka_unit_test(pictures_are_webp),
         cmocka_unit_test(vertices_have_colours),

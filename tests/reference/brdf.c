@@ -122,12 +122,18 @@ static returned combine(const model *m, const double base[4], const double coat[
     return r;
 }
 
-static returned returned_of(const model *m, double mu) {
-    double base[4], coat[4];
+/* over: the cosine with the coat's normal, which is what covers. */
+static returned returned_over(const model *m, double mu, double over) {
+    double base[4], covered[4], coat[4];
     brdf_looked_up(m->words, m->s->roughness, mu, base);
-    brdf_looked_up(m->words, m->s->coat_roughness, mu, coat);
+    brdf_looked_up(m->words, m->s->roughness, over, covered);
+    brdf_looked_up(m->words, m->s->coat_roughness, over, coat);
+    base[BRDF_COVERED] = covered[BRDF_COVERED];
+    base[BRDF_COVERED_WEIGHT] = covered[BRDF_COVERED_WEIGHT];
     return combine(m, base, coat);
 }
+
+static returned returned_of(const model *m, double mu) { return returned_over(m, mu, mu); }
 
 /* Interreflection between facets: F^2 E / (1 - F (1 - E)), F being Schlick's average over the hemisphere. */
 static double rest_color(double f0, double f90, double lost) {
@@ -185,26 +191,47 @@ static double lobe(double alpha, double n_h, double mu_v, double mu_l) {
     return a2 / (PI * q * q) * masking(alpha, mu_v, mu_l) / (4 * mu_v * mu_l);
 }
 
-void brdf_eval(const uint32_t *words, const brdf_surface *s, const double v[3], const double l[3],
-               double out[3]) {
+void brdf_over(const uint32_t *words, const brdf_surface *s, const double n[3], const double v[3],
+               const double l[3], double out[3]) {
     model m = model_of(words, s);
-    double mu_v = v[2] > 1e-4 ? v[2] : 1e-4, mu_l = l[2];
+    double mu_v = v[2] > 1e-4 ? v[2] : 1e-4, mu_l = unit_range(l[2]);
+    double over_v = dot3(n, v) > 1e-4 ? dot3(n, v) : 1e-4, over_l = unit_range(dot3(n, l));
     double h[3] = {v[0] + l[0], v[1] + l[1], v[2] + l[2]}, size = sqrt(dot3(h, h));
     out[0] = out[1] = out[2] = 0;
-    if (!(mu_l > 0)) return;
+    if (!(mu_l > 0) && !(over_l > 0)) return;
     /* v.h of unit vectors; those of fp32 are unit up to 1e-7, which counts where v + l is as short. */
     double v_h = size / 2, n_h = h[2] / size;
-    returned from = returned_of(&m, mu_v), to = returned_of(&m, mu_l);
+    returned from = returned_over(&m, mu_v, over_v), to = returned_over(&m, mu_l, over_l);
     for (int k = 0; k < 3; k++) {
         double rest, diffuse;
         broad_factors(&m, from, k, &rest, &diffuse);
-        double f = lobe(alpha_of(s->roughness), n_h, mu_v, mu_l) * fresnel(&m, k, v_h) *
-                   through(&m, mu_v, mu_l);
-        f += s->coat * (0.04 + 0.96 * power5(v_h)) *
-             lobe(alpha_of(s->coat_roughness), n_h, mu_v, mu_l);
+        double f = mu_l > 0 ? lobe(alpha_of(s->roughness), n_h, mu_v, mu_l) * fresnel(&m, k, v_h) *
+                                  through(&m, over_v, over_l)
+                            : 0;
+        double coat = over_l > 0 ? s->coat * (0.04 + 0.96 * power5(v_h)) *
+                                       lobe(alpha_of(s->coat_roughness), unit_range(dot3(n, h) / size), over_v, over_l)
+                                 : 0;
         f += (rest * to.lost + diffuse * (1 - matte(&m, to))) / PI;
-        out[k] = f * mu_l * PI;
+        out[k] = (f * mu_l + coat * over_l) * PI;
     }
+}
+
+void brdf_eval(const uint32_t *words, const brdf_surface *s, const double v[3], const double l[3],
+               double out[3]) {
+    brdf_over(words, s, (const double[]){0, 0, 1}, v, l, out);
+}
+
+void brdf_ambient(const uint32_t *words, const brdf_surface *s, const double n[3], const double v[3],
+                  double diffuse[3], double specular[3], double *coat) {
+    model m = model_of(words, s);
+    returned from = returned_over(&m, fmax(v[2], 1e-4), fmax(dot3(n, v), 1e-4));
+    for (int k = 0; k < 3; k++) {
+        double rest, below, f0 = fresnel(&m, k, 1), f90 = fresnel(&m, k, 0);
+        broad_factors(&m, from, k, &rest, &below);
+        diffuse[k] = rest * fmax(m.all.lost, 1e-6) + below * fmax(1 - matte(&m, m.all), 1e-6);
+        specular[k] = f0 * from.white + (f90 - f0) * from.weight;
+    }
+    *coat = from.coat;
 }
 
 void brdf_furnace(const uint32_t *words, const brdf_surface *s, double mu, int steps,

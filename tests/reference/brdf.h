@@ -23,6 +23,15 @@ void brdf_looked_up(const uint32_t *words, double roughness, double mu, double o
 void brdf_eval(const uint32_t *words, const brdf_surface *s, const double v[3], const double l[3],
                double out[3]);
 
+/* The same of a coat with a unit normal of its own: +z is that of what lies below. */
+void brdf_over(const uint32_t *words, const brdf_surface *s, const double coat_normal[3], const double v[3],
+               const double l[3], double out[3]);
+
+/* What the surface returns of light from everywhere: of irradiance / pi, of what lies in the mirror of the base, and
+ * in that of the coat. v is unit, the normal of what lies below +z. */
+void brdf_ambient(const uint32_t *words, const brdf_surface *s, const double coat_normal[3], const double v[3],
+                  double diffuse[3], double specular[3], double *coat);
+
 /* All that the surface returns of light of radiance 1 from everywhere, by quadrature of each lobe. */
 void brdf_furnace(const uint32_t *words, const brdf_surface *s, double mu, int steps,
                   double out[3]);

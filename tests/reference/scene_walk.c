@@ -116,10 +116,10 @@ static void read_map(walker *w, const masu_blob_material *m, uint32_t slot) {
     expect(w, texture < w->scene->texture_arrays, "a map has no texture");
     if (w->fault) return;
     const masu_blob_texture *t = &w->view.textures[texture];
-    uint32_t layer = slot == 4 ? m->occlusion_layer : m->layers >> 8 * slot & 255;
+    uint32_t layer = (slot < 4 ? m->layers >> 8 * slot : m->more_layers >> 8 * (slot - 4)) & 255;
     expect(w, layer < 256 && layer < t->layers, "a map has no layer");
     static const uint32_t formats[MASU_SLOT_COUNT] = {1u << 1 | 1u << 2, 1u << 4, 1u << 3 | 1u << 4,
-                                                      1u << 1, 1u << 3}; /* allowed, by number */
+                                                      1u << 1, 1u << 3, 1u << 4}; /* allowed, by number */
     expect(w, formats[slot] >> t->format & 1, "a map's format");
     if (slot == MASU_SLOT_BASE && m->flags & MASU_MATERIAL_IS_MASK) {
         expect(w, t->format == MASU_TEXTURE_BC3_SRGB, "a mask has no alpha");

@@ -109,5 +109,49 @@ run "$json" "${x[@]}" --strict
 [ $code = 1 ] || fail "--strict takes warnings: exit code $code"
 says stderr '2 warnings, which --strict takes for errors'
 
+# Many files of Collada say that nothing is to be seen of what is all there: it is taken for opaque, and not blended.
+cat > "$folder/unseen.dae" << END
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><phong><diffuse><color>0.5 0.5 0.5 1</color></diffuse>
+<transparent opaque="A_ONE"><color>1 1 1 1</color></transparent><transparency><float>0</float></transparency>
+</phong></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="f" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#f" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="m"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="m" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
+END
+accepts "$folder/unseen.dae" "${x[@]}" --stats "$folder/stats.json"
+says stderr 'unseen.dae: 1 materials have an opacity of 0: they are taken for opaque'
+# Rays meet the ground's two triangles and its one: they pass by what is blended.
+found=$(tr -d ' \n' < "$folder/stats.json" | sed 's/.*"reflections":{\([^}]*\)}.*/\1/')
+case $found in *'"triangles":3,'*) ;; *) fail "unseen.dae is blended: $found" ;; esac
+
+# ---- rest poses ----------------------------------------------------------------------------------
+
+# A mesh that follows a joint stands where the joint rests, in the formats of Assimp too: 5 above where it is bound.
+cat > "$folder/bent.x" << END
+xof 0303txt 0032
+template XSkinMeshHeader { <3cf169ce-ff7c-44ab-93c0-f78f62d172e2> WORD nMaxSkinWeightsPerVertex; WORD nMaxSkinWeightsPerFace; WORD nBones; }
+template SkinWeights { <6f0d123b-bad2-4167-a0d0-80224f25fabb> STRING transformNodeName; DWORD nWeights;
+ array DWORD vertexIndices[nWeights]; array float weights[nWeights]; Matrix4x4 matrixOffset; }
+Frame root {
+ FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
+ Frame joint { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,5.0,0.0,1.0;; } }
+ Frame bent { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,40.0,0.0,1.0;; }
+  Mesh skin { 3; 0.0;0.0;0.0;, 1.0;0.0;0.0;, 0.0;1.0;0.0;; 1; 3;0,1,2;;
+   XSkinMeshHeader { 1; 1; 1; }
+   SkinWeights { "joint"; 3; 0, 1, 2; 1.0, 1.0, 1.0; 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
+  }
+ }
+}
+END
+accepts "$folder/bent.x" "${x[@]}" --stats "$folder/stats.json" --bare
+found=$(tr -d ' \n' < "$folder/stats.json" | sed 's/.*"bounds":\[\[[^,]*,\([^,]*\),.*\],\[[^,]*,\([^,]*\),.*/\1 \2/')
+case $found in 5.0*\ 6.0*) ;; *) fail "a skin rests from $found, not 5 to 6" ;; esac
+
 [ $failures = 0 ] && echo "masu-bake: cameras, drops and warnings as expected"
 [ $failures = 0 ]

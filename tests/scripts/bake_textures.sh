@@ -297,9 +297,22 @@ refuses 'from 0 to 1' '"alpha_cutoff": 2'
 refuses 'another map' '"surface_map": "a.png", "roughness_map": "b.png"'
 refuses 'unknown key' '"colour_map": "a.png"'
 refuses 'from 0 to 1' '"opacity": 1.5'
-refuses 'expected "alpha" or "additive"' '"blend": "multiply"'
+refuses 'expected "alpha", "additive" or "tinted"' '"blend": "multiply"'
 refuses 'not transparent' '"alpha": "mask", "opacity": 0.5'
 refuses 'not transparent' '"alpha": "opaque", "blend": "additive"'
+
+# A coat may have maps, one picture for both or two; of what is blended it has none, which is said.
+quad "\"coat\": 1, \"coat_map\": \"$pictures/gradient.png\", \"coat_roughness_map\": \"$pictures/checker.png\", \"coat_smooth\": true"
+bakes "$scene"
+warns 0
+[ "$(counts textures)" = 1 ] || fail "maps of a coat: $(counts textures) textures"
+quad "\"coat_map\": \"$pictures/gradient.png\"" # and without one there is none
+bakes "$scene"
+[ "$(counts textures)" = 0 ] || fail "a map of no coat: $(counts textures) textures"
+quad "\"coat\": 1, \"coat_map\": \"$pictures/gradient.png\", \"blend\": \"tinted\", \"opacity\": 0.25"
+bakes "$scene"
+warns 1 'it is blended, and its coat is the same all over: its map is left out'
+refuses 'expected' '"coat_smooth": 1'
 
 # As many blended things as a renderer draws, and one more.
 pane='{"mesh": {"plane": {}}, "material": {"opacity": 0.5}}'

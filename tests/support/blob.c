@@ -136,8 +136,8 @@ static const masu_blob_texture textures[] = {
 };
 
 static const masu_blob_texture_set texture_sets[] = {
-    {{0, 1, 1, MASU_BLOB_NONE, MASU_BLOB_NONE}, {0, 2}, 0},
-    {{MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE, 2, MASU_BLOB_NONE}, {1, 1}, 0},
+    {{0, 1, 1, MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE}, {0, 2}},
+    {{MASU_BLOB_NONE, MASU_BLOB_NONE, MASU_BLOB_NONE, 2, MASU_BLOB_NONE, MASU_BLOB_NONE}, {1, 1}},
 };
 
 /* 7 blocks of 16 bytes twice, 2 + 1 + 1 of 16, 1 of 8 and padding. */

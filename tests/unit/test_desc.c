@@ -387,6 +387,14 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
     assert_int_equal(masu_desc_resolved(&d).rungs[0].specular, MASU_AUTO);
     support_scene.glossiest = 0.9f;
     assert_int_equal(masu_desc_resolved(&d).rungs[0].specular, MASU_OFF);
+    /* A scene may ask for smooth edges, of rungs that nobody gave. */
+    masu_desc none = d;
+    none.rung_count = 0;
+    assert_int_equal(masu_desc_resolved(&none).rungs[2].aa, MASU_AA_OFF);
+    support_scene.smooth_edges = 1;
+    assert_int_equal(masu_desc_resolved(&none).rungs[2].aa, MASU_AA_SMAA_HIGH);
+    assert_int_equal(masu_desc_resolved(&d).rungs[0].aa, MASU_AA_OFF);
+    support_scene.smooth_edges = 0;
 }
 
 /* More rungs than there are is an error for later, not a reason to write behind the array. */

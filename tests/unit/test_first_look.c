@@ -87,7 +87,7 @@ static void the_model_fills_the_frame(void **state) {
                     assert_true(gap > 0 && gap < 0.002 * scales[s] * fmax(e[0], fmax(e[1], e[2])));
                     assert_true(all.high.y == bounds.high.y && all.low.x < bounds.low.x);
                 }
-                assert_true(look.look.shadows && look.reflections.wanted);
+                assert_true(look.look.shadows && look.reflections.wanted && look.look.smooth_edges);
                 assert_true(look.look.shadow_distance > 0 && look.look.occlusion_radius > 0);
                 assert_true(look.look.sun_direction.y > 0.3);
                 masu_bake_content_release(&content);

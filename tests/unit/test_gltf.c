@@ -293,6 +293,44 @@ static void maps_of_other_coordinates_are_told(void **state) {
     assert_near((double)material(0)->detail[1], 8, 1e-5);
 }
 
+/* What is said of a material's coat, and which of both has the relief then. */
+static void coats_have_pictures_of_their_own(void **state) {
+    (void)state;
+#define NORMAL "\"normalTexture\":{\"index\":1,\"texCoord\":1},"
+#define COAT_OF(more) "\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.5" more "}}"
+    static const struct {
+        const char *about, *warning;
+        int relief_of;
+    } cases[] = {
+        {"{" NORMAL COAT_OF("") "}", NULL, MASU_BAKE_RELIEF_OF_BASE},
+        {"{" NORMAL COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1}") "}", NULL, MASU_BAKE_RELIEF_OF_BOTH},
+        {"{" COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1,\"scale\":3}") "}", NULL, MASU_BAKE_RELIEF_OF_COAT},
+        {"{" NORMAL COAT_OF(",\"clearcoatNormalTexture\":{\"index\":1,\"texCoord\":1,\"scale\":3}") "}",
+         "1 clear coats have another picture of normals than what lies below: it is left out, they are smooth", MASU_BAKE_RELIEF_OF_BASE},
+        {"{" NORMAL "\"name\":\"without\"}", NULL, MASU_BAKE_RELIEF_OF_BOTH}};
+    char attributes[128];
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        begin_mapped(attributes, sizeof attributes);
+        const char *path = finish_textured(attributes, cases[i].about);
+        if (cases[i].warning)
+            import_warned(path, cases[i].warning);
+        else
+            import_quietly(path);
+        const masu_bake_maps *maps = MASU_BAKE_MAPS_OF(&piece);
+        assert_int_equal(maps->relief_of, cases[i].relief_of);
+        assert_int_not_equal(maps->image[MASU_BAKE_NORMAL], MASU_BLOB_NONE);
+        assert_near((double)maps->normal_scale, cases[i].relief_of == MASU_BAKE_RELIEF_OF_COAT ? 3 : 1, 0);
+    }
+    begin_mapped(attributes, sizeof attributes);
+    import_quietly(finish_textured(attributes, "{" COAT_OF(",\"clearcoatTexture\":{\"index\":1,\"texCoord\":1},\"clearcoatRoughnessTexture\":"
+                                               "{\"index\":0,\"texCoord\":1}") "}"));
+    const masu_bake_maps *maps = MASU_BAKE_MAPS_OF(&piece);
+    assert_int_not_equal(maps->image[MASU_BAKE_COAT], MASU_BLOB_NONE);
+    assert_int_not_equal(maps->image[MASU_BAKE_COAT_ROUGHNESS], MASU_BLOB_NONE);
+    assert_int_equal(maps->channel[MASU_BAKE_COAT], 0);
+    assert_int_equal(maps->channel[MASU_BAKE_COAT_ROUGHNESS], 1);
+}
+
 static const char *colored(const float *colors, const char *about) {
     char attributes[64], rest[512];
     begin_quad();
@@ -355,8 +393,9 @@ static void factors_of_materials(void **state) {
     assert_near((double)m->emissive[1], 0.5, 0);
     assert_near((double)m->specular, 0, 0);
     m = only("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.5,0.125,1],\"metallicFactor\":0},\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9}}");
-    assert_near((double)m->opacity, 1 - 0.9 * 0.5, 1e-6);
+    assert_near((double)m->opacity, 1 - 0.9, 1e-6); /* the colour is that of what shines through */
     assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->alpha, MASU_BAKE_ALPHA_BLEND);
+    assert_int_equal(MASU_BAKE_MAPS_OF(&piece)->tinted, 1);
     m = only("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.125,1],\"specularFactor\":[0.04,0.04,0.04],\"glossinessFactor\":0.75}}");
     assert_near((double)m->base_color[0], 0.5, 1e-5);
     assert_near((double)m->roughness, 0.25, 1e-6);
@@ -524,6 +563,7 @@ int main(void) {
         cmocka_unit_test(draco_unpacks),
         cmocka_unit_test(coordinates_are_of_the_set_and_turned),
         cmocka_unit_test(maps_of_other_coordinates_are_told),
+        cmocka_unit_test(coats_have_pictures_of_their_own),
         cmocka_unit_test(colours_of_vertices_become_materials),
         cmocka_unit_test(factors_of_materials),
         cmocka_unit_test(what_is_not_read_is_told),

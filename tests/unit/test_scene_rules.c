@@ -159,6 +159,7 @@ static void what_lights_a_scene_is_checked(void **state) {
         LIT("environment", 0, SKY[0].metered = x);
         LIT("environment", 0, SKY[0].brighten = x);
         LIT("environment", 0, SKY[0].darken = x);
+        LIT("environment", 0, SKY[0].smooth_edges = x);
         LIT("environment", 0, SKY[0].fog_color[0] = x);
         LIT("environment", 0, SKY[0].fog_density = x);
         LIT("environment", 0, SKY[0].fog_height = x);
@@ -168,6 +169,8 @@ static void what_lights_a_scene_is_checked(void **state) {
     LIT("materials", 0, MATERIAL_OF[0].specular = 1.01f);
     LIT("materials", 0, MATERIAL_OF[0].opacity = 0.5f); /* but not blended */
     LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_ADDITIVE);
+    LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED);
+    LIT("materials", 0, MATERIAL_OF[0].flags = MASU_MATERIAL_IS_TINTED | MASU_MATERIAL_IS_ADDITIVE | MASU_MATERIAL_IS_BLEND);
     LIT("materials", 0, MATERIAL_OF[0].meso = 1);
     LIT("meso", 0, MESO[0].alpha = 4.5f);
     LIT("meso", 0, MESO[0].facet = 1.5f);
@@ -740,6 +743,7 @@ static void an_environment_out_of_range_is_refused(void **state) {
     REFUSED("environment", 0, SKY->metered = 0.5f);
     REFUSED("environment", 0, SKY->brighten = 2e6f);
     REFUSED("environment", 0, SKY->darken = -1.0f);
+    REFUSED("environment", 0, SKY->smooth_edges = 0.5f);
     REFUSED("environment", 0, SKY->near_distance = 0.0f);
 }
 

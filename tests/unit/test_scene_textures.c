@@ -163,6 +163,14 @@ static void a_material_asks_for_maps_that_are_there(void **state) {
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_IS_MASK);
     REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_HAS_METAL);
     REFUSED("texture sets", 0, SET[0].texture[4] = 1); /* BC5 is no occlusion */
+    REFUSED("texture sets", 0, SET[0].texture[MASU_SLOT_COAT] = 0); /* nor BC3 a coat */
+    REFUSED("materials", 0, SET[0].texture[MASU_SLOT_COAT] = 1, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT,
+            MATERIAL[0].more_layers = 0x900);
+    REFUSED("materials", 0, MATERIAL[0].more_layers = 0x10000);
+    REFUSED("materials", 1, MATERIAL[1].flags |= MASU_MATERIAL_COAT_SMOOTH); /* it has no normal map */
+    REFUSED("materials", 0, MATERIAL[0].flags |= MASU_MATERIAL_COAT_SMOOTH | MASU_MATERIAL_BASE_SMOOTH);
+    ACCEPTED(MATERIAL[0].flags |= MASU_MATERIAL_COAT_SMOOTH);
+    ACCEPTED(SET[0].texture[MASU_SLOT_COAT] = 1, MATERIAL[0].flags |= 1u << MASU_SLOT_COAT);
     REFUSED("materials", 0, MATERIAL[0].flags = 0); /* but a layer */
     REFUSED("materials", 1, MATERIAL[1].flags = 0); /* but a set */
     REFUSED("materials", 1, MATERIAL[1].flags = MASU_MATERIAL_IS_MASK, MATERIAL[1].texture_set = 0);

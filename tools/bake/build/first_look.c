@@ -130,6 +130,7 @@ static void set_light(const masu_bake_box *box, bool flat, masu_bake_first_look 
     l->shadow_distance = masu_bake_length(masu_bake_sub(center, masu_bake_v3f(p))) +
                          radius * (flat ? 1.0 : 2.5);
     l->occlusion_radius = radius * 0.2;
+    l->smooth_edges = true;
     if (flat) return;
     /* The ground's far side becomes the horizon. */
     l->fog_color = l->horizon;

@@ -60,7 +60,8 @@ static void add_environment(const masu_bake_look *l, const masu_bake_box *bounds
                                .fog_density = (float)l->fog_density,
                                .fog_height = (float)l->fog_height,
                                .fog_falloff = (float)l->fog_falloff,
-                               .fog_start = (float)l->fog_start};
+                               .fog_start = (float)l->fog_start,
+                               .smooth_edges = l->smooth_edges ? 1.0f : 0.0f};
     masu_bake_store(l->fog_color, e.fog_color);
     masu_bake_store(l->sun_direction, e.sun_direction);
     e.turbidity = (float)l->turbidity;

@@ -101,6 +101,7 @@ typedef struct masu_bake_look {
     masu_bake_vec3 fog_color;
     double fog_density, fog_height, fog_falloff, fog_start;
     double occlusion_radius; /* of ambient occlusion, metres; 0: none */
+    bool smooth_edges;
 } masu_bake_look;
 
 typedef struct masu_bake_environment {

@@ -40,6 +40,7 @@ static bool read_members(const masu_bake_json *scene, masu_bake_reader *r) {
                                           "sky",
                                           "fog",
                                           "exposure",
+                                          "smooth_edges",
                                           "sdf",
                                           "lods",
                                           "occluders",

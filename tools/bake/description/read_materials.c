@@ -17,7 +17,8 @@ static const struct {
     {"roughness_map", MASU_BAKE_ROUGHNESS, 0}, {"metallic_map", MASU_BAKE_METALLIC, 0},
     {"emissive_map", MASU_BAKE_EMISSIVE, 0},   {"opacity_map", MASU_BAKE_OPACITY, 0},
     {"surface_map", MASU_BAKE_ROUGHNESS, 1},   {"surface_map", MASU_BAKE_METALLIC, 2},
-    {"occlusion_map", MASU_BAKE_OCCLUSION, 0},
+    {"occlusion_map", MASU_BAKE_OCCLUSION, 0}, {"coat_map", MASU_BAKE_COAT, 0},
+    {"coat_roughness_map", MASU_BAKE_COAT_ROUGHNESS, 0},
 };
 #define MAP_MEMBERS (sizeof map_members / sizeof *map_members)
 
@@ -93,14 +94,15 @@ static bool read_blend(const masu_bake_json *at, masu_bake_override *out) {
     masu_bake_json where = masu_bake_json_member(at, blend ? "blend" : "opacity");
     out->opacity = masu_bake_json_has(at, "opacity");
     out->value.opacity = (float)opacity;
-    if (blend && strcmp(blend, "alpha") != 0 && strcmp(blend, "additive") != 0)
-        return masu_bake_json_wrong(&where, "expected \"alpha\" or \"additive\"");
+    if (blend && strcmp(blend, "alpha") != 0 && strcmp(blend, "additive") != 0 && strcmp(blend, "tinted") != 0)
+        return masu_bake_json_wrong(&where, "expected \"alpha\", \"additive\" or \"tinted\"");
     if (out->alpha && out->maps.alpha != MASU_BAKE_ALPHA_BLEND && (blend || opacity < 1))
         return masu_bake_json_wrong(&where, "\"alpha\" says that it is not transparent");
     if (blend) {
         out->alpha = true;
         out->maps.alpha = MASU_BAKE_ALPHA_BLEND;
         out->maps.additive = strcmp(blend, "additive") == 0;
+        out->maps.tinted = strcmp(blend, "tinted") == 0;
     }
     return true;
 }
@@ -169,13 +171,14 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         "alpha_cutoff",   "occlusion_map",  "specular",    "coat",
         "coat_roughness", "detail",         "match",       "opacity",
         "blend",          "meso",           "name",        "single_sided",
+        "coat_map",       "coat_roughness_map", "coat_smooth",
         NULL};
     out->value = masu_bake_default_material();
     out->maps = masu_bake_no_maps();
     masu_bake_vec3 color = {0, 0, 0}, emissive = {0, 0, 0};
     double roughness = 0, metallic = 0, specular = 0, coat = 0, coat_roughness = 0;
     const char *match = NULL, *name = NULL;
-    bool single = false;
+    bool single = false, even = false;
     if (!masu_bake_json_object(at, members) ||
         !masu_bake_json_vec3(at, "base_color", 0, 1, &color) ||
         !masu_bake_json_number(at, "roughness", 0, 1, &roughness) ||
@@ -185,6 +188,7 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
         !masu_bake_json_number(at, "coat_roughness", 0, 1, &coat_roughness) ||
         !read_detail(at, out) || !masu_bake_json_string(at, "match", &match) ||
         !masu_bake_json_string(at, "name", &name) || !masu_bake_json_boolean(at, "single_sided", &single) ||
+        !masu_bake_json_boolean(at, "coat_smooth", &even) ||
         !masu_bake_json_vec3(at, "emissive", 0, 65504, &emissive) || !read_meso(at, r, change) ||
         !read_maps(at, r, change) || !read_alpha(at, out) || !read_blend(at, out)) {
         return false;
@@ -198,6 +202,8 @@ static bool read_change(const masu_bake_json *at, masu_bake_reader *r,
     out->coat_roughness = masu_bake_json_has(at, "coat_roughness");
     out->single = masu_bake_json_has(at, "single_sided");
     out->maps.single = single;
+    out->relief_of = masu_bake_json_has(at, "coat_smooth");
+    out->maps.relief_of = even ? MASU_BAKE_RELIEF_OF_BASE : MASU_BAKE_RELIEF_OF_BOTH;
     out->value.specular = (float)specular;
     out->value.coat = (float)coat;
     out->value.coat_roughness = (float)coat_roughness;

@@ -168,10 +168,11 @@ static bool read_occlusion(const masu_bake_json *scene, masu_bake_look *l) {
            masu_bake_json_number(&occlusion, "radius", 1e-3, 1e6, &l->occlusion_radius);
 }
 
-/* A number is the exposure; an object asks for a metered one. */
+/* A number is the exposure; an object asks for a metered one. And whether edges are smooth. */
 static bool read_exposure(const masu_bake_json *scene, masu_bake_look *l) {
     static const char *const members[] = {"factor", "brighten", "darken", NULL};
     masu_bake_json exposure = masu_bake_json_member(scene, "exposure");
+    if (!masu_bake_json_boolean(scene, "smooth_edges", &l->smooth_edges)) return false;
     if (!exposure.value || !json_is_object(exposure.value))
         return masu_bake_json_number(scene, "exposure", 1e-6, 1e6, &l->exposure);
     l->metered = true;

@@ -4,8 +4,11 @@
  * is, with its transform worked in (gltf_mesh.c). A map that wants other coordinates is left out, with a note; but
  * where all but colour and emission are repeated so many times more often, the material's detail says it.
  *
- * What has no counterpart is brought near: glass of KHR_materials_transmission is blended, by what it lets through
- * of its brightest channel; unlit surfaces emit their colour; specular and glossiness become metallic and
+ * A coat has the mesh's normal where it names no picture, and one picture of normals is what a surface has: coat and base
+ * have the same one, or only one of them has any; of two different ones the coat's is left out, with a note.
+ *
+ * What has no counterpart is brought near: glass of KHR_materials_transmission is thin, and what shines through has
+ * its base colour; unlit surfaces emit their colour; specular and glossiness become metallic and
  * roughness, as the appendix of that extension has it. */
 #include "bake/base/inside.h"
 #include "bake/import/gltf.h"
@@ -138,7 +141,8 @@ typedef struct maps {
 } maps;
 
 static const int order[] = {MASU_BAKE_BASE,     MASU_BAKE_EMISSIVE, MASU_BAKE_NORMAL,
-                            MASU_BAKE_ROUGHNESS, MASU_BAKE_METALLIC, MASU_BAKE_OCCLUSION};
+                            MASU_BAKE_ROUGHNESS, MASU_BAKE_METALLIC, MASU_BAKE_OCCLUSION,
+                            MASU_BAKE_COAT,     MASU_BAKE_COAT_ROUGHNESS};
 #define ORDER (sizeof order / sizeof *order)
 
 static bool near(double a, double b) { return fabs(a - b) <= 1e-5 * fmax(1, fmax(fabs(a), fabs(b))); }
@@ -200,13 +204,14 @@ static const texture *agree(masu_gltf *g, maps *m, float detail[2]) {
 }
 
 static void settle(masu_gltf *g, maps *m, masu_gltf_material *out) {
-    static const uint8_t channel[MASU_BAKE_MAPS] = {[MASU_BAKE_ROUGHNESS] = 1, [MASU_BAKE_METALLIC] = 2};
+    static const uint8_t channel[MASU_BAKE_MAPS] = {
+        [MASU_BAKE_ROUGHNESS] = 1, [MASU_BAKE_METALLIC] = 2, [MASU_BAKE_COAT_ROUGHNESS] = 1};
     masu_bake_maps *to = &out->given.maps;
     const texture *first = agree(g, m, out->given.material.detail);
     for (size_t i = 0; i < ORDER; i++) {
         int map = order[i];
         to->image[map] = m->all[map].image;
-        to->channel[map] = m->all[map].image == MASU_BLOB_NONE || to->gloss ? 0 : channel[map];
+        to->channel[map] = m->all[map].image == MASU_BLOB_NONE || (to->gloss && map == MASU_BAKE_METALLIC) ? 0 : channel[map];
     }
     if (to->gloss) to->channel[MASU_BAKE_ROUGHNESS] = 3;
     if (!first) return;
@@ -337,21 +342,53 @@ static bool read_specular(masu_gltf *g, const json_t *about, masu_blob_material 
     return true;
 }
 
-static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to) {
+/* One picture of normals for both, with its strength; see above. */
+static void settle_normals(masu_gltf *g, masu_gltf_material *out, maps *m, texture *coat, double scale[2]) {
+    texture *base = &m->all[MASU_BAKE_NORMAL];
+    double times[2];
+    if (!(out->given.material.coat > 0) || (base->image == MASU_BLOB_NONE && coat->image == MASU_BLOB_NONE)) return;
+    out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_BASE;
+    if (coat->image == MASU_BLOB_NONE) return;
+    if (base->image == MASU_BLOB_NONE) {
+        out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_COAT;
+        *base = *coat;
+        scale[0] = scale[1];
+    } else if (base->image == coat->image && repeats(base, coat, times) && near(times[0], 1) && near(times[1], 1) &&
+               near(scale[0], scale[1])) {
+        out->given.maps.relief_of = MASU_BAKE_RELIEF_OF_BOTH;
+    } else {
+        leave_out(g, coat, "clear coats have another picture of normals than what lies below: it is left out, they are smooth");
+    }
+}
+
+static bool read_normals(masu_gltf *g, const json_t *about, masu_gltf_material *out, maps *m) {
+    const json_t *above = masu_gltf_extension(g, about, "KHR_materials_clearcoat");
+    double scale[2] = {1, 1};
+    texture coat;
+    if (!read_texture(g, about, "normalTexture", &m->all[MASU_BAKE_NORMAL]) ||
+        !read_texture(g, above, "clearcoatNormalTexture", &coat) ||
+        !masu_gltf_number(g, masu_gltf_object(g, about, "normalTexture"), "scale", &scale[0]) ||
+        !masu_gltf_number(g, above ? masu_gltf_object(g, above, "clearcoatNormalTexture") : NULL, "scale", &scale[1]))
+        return false;
+    settle_normals(g, out, m, &coat, scale);
+    out->given.maps.normal_scale = masu_import_clamped(scale[0], -16, 16);
+    return !masu_gltf_failed(g);
+}
+
+static bool read_coat(masu_gltf *g, const json_t *about, masu_blob_material *to, maps *m) {
     const json_t *coat = masu_gltf_extension(g, about, "KHR_materials_clearcoat");
     double factor = 0, roughness = 0;
     if (!masu_gltf_number(g, coat, "clearcoatFactor", &factor) ||
         !masu_gltf_number(g, coat, "clearcoatRoughnessFactor", &roughness))
         return false;
-    note_texture(g, coat, "clearcoatTexture");
-    note_texture(g, coat, "clearcoatRoughnessTexture");
-    note_texture(g, coat, "clearcoatNormalTexture");
     to->coat = masu_import_clamped(factor, 0, 1);
-    if (to->coat > 0) to->coat_roughness = masu_import_clamped(roughness, 0, 1);
-    return true;
+    if (!(to->coat > 0)) return true;
+    to->coat_roughness = masu_import_clamped(roughness, 0, 1);
+    return read_texture(g, coat, "clearcoatTexture", &m->all[MASU_BAKE_COAT]) &&
+           read_texture(g, coat, "clearcoatRoughnessTexture", &m->all[MASU_BAKE_COAT_ROUGHNESS]);
 }
 
-/* What shines through is as bright as the brightest channel says; its hue is lost. */
+/* Of what shines through a share is coloured; the alpha of the base colour counts where it is blended anyway. */
 static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
     const json_t *through = masu_gltf_extension(g, about, "KHR_materials_transmission");
     masu_blob_material *to = &out->given.material;
@@ -360,8 +397,8 @@ static bool read_transmission(masu_gltf *g, const json_t *about, masu_gltf_mater
     note_texture(g, through, "transmissionTexture");
     factor = (double)masu_import_clamped(factor, 0, 1) * (1 - (double)to->metallic);
     if (!(factor > 0) || out->given.maps.alpha == MASU_BAKE_ALPHA_MASK) return true;
-    const float *c = to->base_color;
-    out->alpha *= 1 - factor * (double)fmaxf(c[0], fmaxf(c[1], c[2]));
+    out->alpha = (out->blends ? out->alpha : 1) * (1 - factor);
+    out->given.maps.tinted = 1;
     out->blends = true;
     out->given.maps.alpha = MASU_BAKE_ALPHA_BLEND;
     return true;
@@ -377,23 +414,22 @@ static void make_unlit(masu_gltf_material *out, maps *m) {
     out->unlit = true;
     m->all[MASU_BAKE_NORMAL].image = m->all[MASU_BAKE_ROUGHNESS].image = MASU_BLOB_NONE;
     m->all[MASU_BAKE_METALLIC].image = m->all[MASU_BAKE_OCCLUSION].image = MASU_BLOB_NONE;
+    m->all[MASU_BAKE_COAT].image = m->all[MASU_BAKE_COAT_ROUGHNESS].image = MASU_BLOB_NONE;
 }
 
 static bool read_material(masu_gltf *g, const json_t *about, masu_gltf_material *out) {
     maps m;
-    double scale = 1, strength = 1;
+    double strength = 1;
     for (int i = 0; i < MASU_BAKE_MAPS; i++) m.all[i] = (texture){.image = MASU_BLOB_NONE};
     (void)masu_gltf_string(g, about, "name");
     if (masu_gltf_failed(g) || !read_metallic(g, about, out, &m) || !read_glossiness(g, about, out, &m) ||
         !read_alpha(g, about, out) || !read_emission(g, about, out, &m) ||
-        !read_specular(g, about, &out->given.material) || !read_coat(g, about, &out->given.material) ||
+        !read_specular(g, about, &out->given.material) || !read_coat(g, about, &out->given.material, &m) ||
         !read_transmission(g, about, out) ||
-        !read_texture(g, about, "normalTexture", &m.all[MASU_BAKE_NORMAL]) ||
+        !read_normals(g, about, out, &m) ||
         !read_texture(g, about, "occlusionTexture", &m.all[MASU_BAKE_OCCLUSION]) ||
-        !masu_gltf_number(g, masu_gltf_object(g, about, "normalTexture"), "scale", &scale) ||
         !masu_gltf_number(g, masu_gltf_object(g, about, "occlusionTexture"), "strength", &strength))
         return false;
-    out->given.maps.normal_scale = masu_import_clamped(scale, -16, 16);
     if (!near(strength, 1) && m.all[MASU_BAKE_OCCLUSION].image != MASU_BLOB_NONE)
         masu_gltf_note_one(g, "occlusion maps have a strength, which is not read", g->where);
     out->given.maps.single = !json_is_true(json_object_get(about, "doubleSided"));

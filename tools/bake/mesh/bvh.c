@@ -204,7 +204,8 @@ static float least_of(const masu_bake_content *content, const masu_blob_material
         float facet = MASU_BAKE_ARRAY(content, MASU_BLOB_MESO, const masu_blob_meso)[m->meso].facet;
         if (facet < roughness) roughness = facet;
     }
-    return m->coat > 0 && m->coat_roughness < roughness ? m->coat_roughness : roughness;
+    float coat = m->flags & 1u << MASU_SLOT_COAT ? 0 : m->coat_roughness;
+    return m->coat > 0 && coat < roughness ? coat : roughness;
 }
 
 /* The least roughness that anything may have. */

@@ -57,6 +57,8 @@ enum {
     MASU_BAKE_EMISSIVE,
     MASU_BAKE_OPACITY, /* alpha as a picture of its own */
     MASU_BAKE_OCCLUSION,
+    MASU_BAKE_COAT, /* apart here, as roughness and metallic are */
+    MASU_BAKE_COAT_ROUGHNESS,
     MASU_BAKE_MAPS
 };
 
@@ -77,6 +79,9 @@ enum {
     MASU_BAKE_RELIEF_NAMED_HEIGHTS  /* heights, unless the picture has normals in it */
 };
 
+/* Which of a coat and what lies below it has the relief of the normal map; the other has the mesh's normal. */
+enum { MASU_BAKE_RELIEF_OF_BOTH, MASU_BAKE_RELIEF_OF_BASE, MASU_BAKE_RELIEF_OF_COAT };
+
 typedef struct masu_bake_maps {
     uint32_t image[MASU_BAKE_MAPS];  /* MASU_BLOB_NONE: no such map */
     uint8_t channel[MASU_BAKE_MAPS]; /* 0..3: of the picture, for maps of one channel */
@@ -86,6 +91,8 @@ typedef struct masu_bake_maps {
     uint8_t single;                  /* 1: not seen from behind */
     uint8_t wrap[2];                 /* as in masu_blob_texture_set */
     uint8_t relief;                  /* MASU_BAKE_RELIEF_* */
+    uint8_t relief_of;               /* MASU_BAKE_RELIEF_OF_* */
+    uint8_t tinted;                  /* with ALPHA_BLEND: what shines through has the base colour */
     uint8_t reserved[2];             /* no padding: it is compared as bytes */
     float cutoff, normal_scale;      /* normal_scale: of heights their strength */
 } masu_bake_maps;

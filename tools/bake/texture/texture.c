@@ -22,7 +22,7 @@
 /* What to make; compared as bytes. */
 typedef struct request {
     uint32_t slot;
-    uint32_t image[3]; /* base: colour, opacity. surface: roughness, metallic, normal. Or one */
+    uint32_t image[3]; /* base: colour, opacity. surface: roughness, metallic, normal. coat: both. Or one */
     uint8_t channel[2];
     uint8_t gloss, alpha;
     uint8_t relief, clamped[2]; /* of a picture of normals or heights; what it does at its edge counts for heights */
@@ -168,7 +168,8 @@ static void finish(texture *t, float *level, float *normals) {
         texels = (size_t)w * h;
         if (t->wanted.slot == MASU_SLOT_NORMAL) {
             encode_normal(level, texels, bytes);
-        } else if (t->wanted.slot == MASU_SLOT_SURFACE || t->wanted.slot == MASU_SLOT_OCCLUSION) {
+        } else if (t->wanted.slot == MASU_SLOT_SURFACE || t->wanted.slot == MASU_SLOT_OCCLUSION ||
+                   t->wanted.slot == MASU_SLOT_COAT) {
             encode_surface(level, normals, texels, t->wanted.roughness, bytes);
         } else {
             encode_color(level, texels, bytes);
@@ -339,7 +340,7 @@ static void make_surface(maker *m, texture *t) {
             normals = normal_level(&p[2], &t->wanted, w, h);
             t->absolute = true;
         }
-        begin(t, has[1] ? MASU_TEXTURE_BC5 : MASU_TEXTURE_BC4, w, h);
+        begin(t, has[1] || t->wanted.slot == MASU_SLOT_COAT ? MASU_TEXTURE_BC5 : MASU_TEXTURE_BC4, w, h);
         finish(t, level, normals);
         free(normals);
         free(level);
@@ -368,6 +369,7 @@ static uint32_t obtain(maker *m, const request *wanted) {
     switch (wanted->slot) {
     case MASU_SLOT_NORMAL: make_normal(m, t); break;
     case MASU_SLOT_OCCLUSION: /* one channel, as roughness alone */
+    case MASU_SLOT_COAT:
     case MASU_SLOT_SURFACE: make_surface(m, t); break;
     default: make_color(m, t); break;
     }
@@ -406,7 +408,7 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             r.channel[1] = maps->channel[MASU_BAKE_METALLIC];
             r.gloss = maps->gloss;
             /* Normals alone make a roughness map too, unless the surface is as rough as can be. */
-            if (maps->image[MASU_BAKE_NORMAL] != MASU_BLOB_NONE &&
+            if (maps->image[MASU_BAKE_NORMAL] != MASU_BLOB_NONE && maps->relief_of != MASU_BAKE_RELIEF_OF_COAT &&
                 (r.image[0] != MASU_BLOB_NONE || material->roughness < 0.99f)) {
                 ask_for_normals(&r, 2, maps);
                 r.roughness = material->roughness;
@@ -415,6 +417,13 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
         case MASU_SLOT_OCCLUSION:
             r.image[0] = maps->image[MASU_BAKE_OCCLUSION];
             r.channel[0] = maps->channel[MASU_BAKE_OCCLUSION];
+            break;
+        case MASU_SLOT_COAT:
+            if (!(material->coat > 0)) break;
+            r.image[0] = maps->image[MASU_BAKE_COAT];
+            r.image[1] = maps->image[MASU_BAKE_COAT_ROUGHNESS];
+            r.channel[0] = maps->channel[MASU_BAKE_COAT];
+            r.channel[1] = maps->channel[MASU_BAKE_COAT_ROUGHNESS];
             break;
         default: r.image[0] = maps->image[MASU_BAKE_EMISSIVE]; break;
         }
@@ -521,10 +530,15 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
         set.texture[slot] = MASU_BLOB_NONE;
         if (slots[slot] == MASU_BLOB_NONE) continue;
+        if (slot == MASU_SLOT_COAT && flags & MASU_MATERIAL_IS_BLEND) {
+            masu_cli_warn("material %s: it is blended, and its coat is the same all over: its map is left out",
+                          masu_bake_name_text(m->content, material->name));
+            continue;
+        }
         const texture *t = &m->textures[slots[slot]];
         set.texture[slot] = t->array;
-        if (slot == MASU_SLOT_OCCLUSION)
-            material->occlusion_layer = t->layer;
+        if (slot >= MASU_SLOT_OCCLUSION)
+            material->more_layers |= t->layer << 8 * (slot - MASU_SLOT_OCCLUSION);
         else
             layers |= t->layer << 8 * slot;
         flags |= 1u << slot;
@@ -547,7 +561,12 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
         memset(material->emissive, 0, sizeof material->emissive);
     }
     if (maps->additive && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_ADDITIVE;
+    if (maps->tinted && flags & MASU_MATERIAL_IS_BLEND) flags |= MASU_MATERIAL_IS_TINTED;
     if (maps->single) flags |= MASU_MATERIAL_IS_SINGLE;
+    if (material->coat > 0 && flags & 1u << MASU_SLOT_NORMAL) {
+        if (maps->relief_of == MASU_BAKE_RELIEF_OF_BASE) flags |= MASU_MATERIAL_COAT_SMOOTH;
+        if (maps->relief_of == MASU_BAKE_RELIEF_OF_COAT) flags |= MASU_MATERIAL_BASE_SMOOTH;
+    }
     if (!(flags & MASU_MATERIAL_IS_BLEND)) material->opacity = 1;
     material->flags = flags;
     if (!(flags & MASU_MATERIAL_HAS_MAPS)) return;
