@@ -90,6 +90,7 @@ static bool create_instance(masu_headless *host, char *error, size_t size) {
     } else {
         enables[enable_count++] = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     }
+    if (host->desc.best) enables[enable_count++] = VK_VALIDATION_FEATURE_ENABLE_BEST_PRACTICES_EXT;
     VkValidationFeaturesEXT features = {.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
                                         .enabledValidationFeatureCount = enable_count,
                                         .pEnabledValidationFeatures = enables};

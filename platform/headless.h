@@ -26,6 +26,7 @@ typedef struct masu_headless_desc {
                            first that suits */
     bool validate;      /* Khronos validation with synchronisation validation */
     bool gpu_av;        /* Khronos validation with GPU-assisted shader checks instead */
+    bool best;          /* with either: the layer's best practices too */
     bool labels;        /* VK_EXT_debug_utils for names and labels; validation turns it on too */
     bool ray_query;     /* ray queries, where they are offered */
     bool stores;        /* stores and atomics of vertex and fragment shaders, where they are offered */

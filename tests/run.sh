@@ -36,7 +36,7 @@ drivers=${DRIVERS:-system}
 jobs=${MASU_TEST_JOBS:-$(nproc)}
 # Tests of programs, of what a layer says of shaders, and of the host's part alone: the answers hardly depend on the driver, so of several drivers
 # the first that is there runs them.
-once=" test_baseline test_bench test_cli test_gpu_av test_model test_poison test_soak test_study_march "
+once=" test_baseline test_bench test_cli test_gpu_av test_model test_soak test_study_march "
 
 export LONG=${LONG:-} BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect
 export CMOCKA_MESSAGE_OUTPUT=stdout

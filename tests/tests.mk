@@ -110,6 +110,13 @@ soak: scenes $(BUILD)/tests/gpu/test_soak $(DRIVER_INFO) ## 20,000 frames of eve
 	$(V)SOAK_FRAMES=$(or $(SOAK_FRAMES),20000) MASU_TEST_TIMEOUT=7200 $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_soak; code=$$?; \
 	    cat $(BUILD)/test-results/*/test_soak.log; exit $$code
 
+# Some minutes: instrumented shaders are slow to compile.
+.PHONY: gpu-av
+gpu-av: scenes $(STIFF) $(BUILD)/tests/gpu/test_gpu_av $(DRIVER_INFO) ## every scene for two frames at two rungs under GPU-assisted validation and best practices: DRIVERS=
+	$(V)GPU_AV_SCENES='$(or $(GPU_AV_SCENES),$(SCENES) $(STIFF))' MASU_TEST_TIMEOUT=7200 \
+	    $(RUN_TESTS) --gpu $(BUILD)/tests/gpu/test_gpu_av; code=$$?; \
+	    grep -h ' messages' $(BUILD)/test-results/*/test_gpu_av.log; exit $$code
+
 # Whatever GPU the Vulkan loader finds: one folder to send in.
 .PHONY: device-report
 device-report: scenes $(BUILD)/bin/masu $(SUITES) $(EXTREME) $(EXTREME:.masu=.truth.so) $(GPU_TESTS) $(DRIVER_INFO) ## tests, suites, ladder, times of the GPU that is here to docs/devices/NAME: DRIVERS=any NAME= MINUTES=20

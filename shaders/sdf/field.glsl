@@ -99,6 +99,7 @@ uint masu_part_bits(int word)
 }
 
 uint masu_part_count();
+uint masu_last_part();
 
 #ifdef MASU_OWN_PARTS
 /* Lists that the workgroup makes for itself, because it asks the field elsewhere than on the rays of
@@ -125,9 +126,10 @@ uint masu_part_at(uint i)
 }
 #endif
 #else
+/* By the number slots are looked up: no part, whatever memory says, is behind the last. */
 uint masu_part_at(uint i)
 {
-    return masu_list_count == MASU_TILE_ALL ? i : masu_tiles[masu_list_first + i];
+    return masu_list_count == MASU_TILE_ALL ? i : min(masu_tiles[masu_list_first + i], masu_last_part());
 }
 #endif
 
@@ -192,6 +194,11 @@ uint masu_part_count()
     return masu_list_count == MASU_TILE_ALL ? uint(MASU_SDF_LISTED_COUNT) : masu_list_count;
 }
 
+uint masu_last_part()
+{
+    return uint(MASU_SDF_PART_COUNT) - 1u;
+}
+
 uint masu_list_stride()
 {
 #if MASU_SDF_MASKED
@@ -217,11 +224,12 @@ uint masu_tile_of(uvec2 at, uvec2 size)
 }
 
 /* From here on the field is that of tile `tile` of a picture of `size` pixels. False: nothing is
- * there. */
+ * there. The number may come from memory: whatever is in that, what is read is a list. */
 bool masu_use_tile(uint tile, uvec2 size)
 {
     uvec2 grid = masu_tile_grid(size);
-    uint list = uint(MASU_TILES_HEADER) + grid.x * grid.y + tile * masu_list_stride();
+    uint tiles = grid.x * grid.y;
+    uint list = uint(MASU_TILES_HEADER) + tiles + min(tile, tiles - 1u) * masu_list_stride();
 #if MASU_SDF_MASKED
     uint any_bits = 0u;
     for (int w = 0; w < MASU_LIST_WORDS; w++) {
@@ -235,6 +243,9 @@ bool masu_use_tile(uint tile, uvec2 size)
 #else
     masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu);
     masu_list_count = masu_tiles[list];
+    if (masu_list_count != MASU_TILE_ALL) {
+        masu_list_count = min(masu_list_count, masu_list_stride() - 1u);
+    }
     masu_list_first = list + 1u;
     return masu_list_count != 0u;
 #endif

@@ -1,8 +1,13 @@
 /* test_gpu_av.c: shaders read and write only what is theirs. Software rasterisers check bounds
  * silently, so this is invisible without the layer's GPU-assisted mode; a planted fault proves that
- * the mode is awake. */
+ * the mode is awake. `make gpu-av` names scenes in GPU_AV_SCENES: each is drawn for two frames at each of two rungs,
+ * with the layer's best practices too. */
 #include "support/support.h"
 #include "support/files.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { W = 48, H = 32 };
 
@@ -45,10 +50,84 @@ static void a_planted_fault_is_seen(void **state) {
     masu_session_close(&s);
 }
 
+/* What has been said, by its name in brackets, which stands first. */
+enum { KINDS = 64 };
+/* Advice that is not taken. */
+static const struct {
+    const char *name, *why;
+} declined[] = {
+    {"BestPractices-DevLimit-", "the host of the tests asks once, with room for all there can be"},
+    {"BestPractices-pipeline-stage-flags", "loading, and what lies around a pass of the host, waits for everything"},
+    {"BestPractices-vkCmdBeginRenderPass-ClearValueCount", "one array for all passes; what has no image is ignored"},
+    {"BestPractices-ImageBarrierAccessLayout", "what the host's copy waits for is not told it"},
+    {"BestPractices-TransitionUndefinedToReadOnly", "a history that nothing has been written to is not looked at"},
+};
+static struct {
+    char name[128], text[512];
+    uint32_t count;
+} kinds[KINDS];
+static uint32_t kind_count, lost;
+
+static void note(void *user, const char *text) {
+    const char *from = strchr(text, '['), *to = from ? strchr(from, ']') : NULL;
+    (void)user;
+    if (!to) from = text, to = text + strlen(text);
+    int length = (int)(to - from) < 120 ? (int)(to - from) : 120;
+    char name[128];
+    snprintf(name, sizeof name, "%.*s", length, from);
+    uint32_t k = 0;
+    while (k < kind_count && strcmp(kinds[k].name, name)) k++;
+    if (k == KINDS) {
+        lost++;
+        return;
+    }
+    if (k == kind_count) {
+        kind_count++;
+        memcpy(kinds[k].name, name, sizeof name);
+        snprintf(kinds[k].text, sizeof kinds[k].text, "%s", text);
+    }
+    kinds[k].count++;
+}
+
+/* Messages of all scenes are gathered, so that one does not hide the next. */
+static void each_scene_asked_for_stays_inside(void **state) {
+    (void)state;
+    char *list = getenv("GPU_AV_SCENES"), *rest = list;
+    uint32_t scenes = 0, wrong = 0;
+    if (!list || !*list) skip();
+    for (char *path = strtok_r(list, " ", &rest); path; path = strtok_r(NULL, " ", &rest)) {
+        char error[ERROR_SIZE];
+        masu_session_desc d = gpu_av_desc(NULL);
+        masu_session s;
+        d.scene_path = path;
+        d.host.best = true;
+        d.host.message = note;
+        d.desc.readback = 0;
+        d.desc.rung_count = 1;
+        d.desc.rungs[0] = (masu_rung){.scale = 0.6f, .temporal = MASU_ON};
+        if (!masu_session_open(&d, &s, error, sizeof error)) fail_msg("%s: %s", path, error);
+        for (uint32_t k = 0; k < 2; k++) draw_rung(&s, 0, NULL);
+        masu_session_close(&s);
+        scenes++;
+        printf("  %s: %u messages\n", path, s.host.messages);
+        fflush(stdout);
+    }
+    for (uint32_t k = 0; k < kind_count; k++) {
+        const char *why = NULL;
+        for (size_t i = 0; i < sizeof declined / sizeof *declined; i++)
+            if (strstr(kinds[k].name, declined[i].name)) why = declined[i].why;
+        printf("  %6u messages of %s: %s\n", kinds[k].count, kinds[k].name + 1, why ? why : kinds[k].text);
+        wrong += !why;
+    }
+    printf("  %u scenes, %u kinds of messages that are faults\n", scenes, wrong);
+    assert_int_equal(wrong + lost, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pass_stays_inside_its_buffers_and_images),
         cmocka_unit_test(a_planted_fault_is_seen),
+        cmocka_unit_test(each_scene_asked_for_stays_inside),
     };
     return cmocka_run_group_tests_name("gpu_av", tests, NULL, NULL);
 }
