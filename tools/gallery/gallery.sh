@@ -27,7 +27,7 @@ one() {
     {
         echo "<figure>"
         if [ $code = 0 ] && [ ! "${NO_PICTURES:-}" ]; then
-            if timeout 300 "$masu" render "$at.masu" -o "$at.png" --size "$size" --aa smaa-high --quiet > /dev/null 2>> "$at.err"; then
+            if timeout 300 "$masu" render "$at.masu" -o "$at.png" --size "$size" --quiet > /dev/null 2>> "$at.err"; then
                 echo "<img src=\"$number.png\" loading=\"lazy\" alt=\"\">"
             else
                 echo "WRONG: does not render" > "$at.outcome"
@@ -43,6 +43,7 @@ one() {
         printf '</figcaption></figure>\n'
     } > "$at.row"
     echo "$took $name" > "$at.took"
+    sed -n 's/^  "peak_bytes": \([0-9]*\).*/\1/p' "$at.json" > "$at.peak" 2> /dev/null
     rm -f "$at.masu" "$at.json"
 }
 
@@ -56,7 +57,7 @@ out=$1
 shift
 mkdir -p "$out" || exit 1
 out=$(realpath "$out")
-rm -f "$out"/[0-9]*.{png,row,outcome,took,err} "$out"/index.html "$out"/counts.txt
+rm -f "$out"/[0-9]*.{png,row,outcome,took,peak,err} "$out"/index.html "$out"/counts.txt
 number=0
 for folder in "$@"; do
     [ -d "$folder" ] || continue
@@ -78,12 +79,14 @@ cat "$out"/[0-9]*.outcome 2> /dev/null | sort | uniq -c | sort -rn > "$out/count
     html < "$out/counts.txt"
     cut -d ' ' -f 1 "$out"/[0-9]*.took 2> /dev/null | sort -n | awk '{ t[NR] = $1 } END { if (NR)
         printf "seconds to bake: median %.2f, most %.2f\n", t[int((NR + 1) / 2)] / 1000, t[NR] / 1000 }' | tee -a "$out/counts.txt"
+    cat "$out"/[0-9]*.peak 2> /dev/null | sort -n | awk '{ p[NR] = $1 } END { if (NR)
+        printf "memory to bake, MB: median %.1f, most %.1f\n", p[int((NR + 1) / 2)] / 1e6, p[NR] / 1e6 }' | tee -a "$out/counts.txt"
     sort -rn "$out"/[0-9]*.took 2> /dev/null | head -5 | awk '{ $1 = $1 / 1000 " s "; print }' | html
     echo '</pre>'
     cat "$out"/[0-9]*.row 2> /dev/null
     echo '</html>'
 } > "$out/index.html"
-rm -f "$out"/[0-9]*.{row,outcome,took,err}
+rm -f "$out"/[0-9]*.{row,outcome,took,peak,err}
 cat "$out/counts.txt"
 echo "The page is $out/index.html"
 ! grep -q WRONG "$out/counts.txt"
