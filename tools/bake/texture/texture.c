@@ -383,6 +383,13 @@ static void ask_for_normals(request *r, uint32_t which, const masu_bake_maps *ma
     for (int i = 0; i < 2 && r->relief; i++) r->clamped[i] = maps->wrap[i] == 1;
 }
 
+/* base: its texture, or NONE. What may be blended but is opaque all over is not. */
+static bool is_blended(const maker *m, const masu_bake_maps *maps, const masu_blob_material *material, uint32_t base) {
+    if (maps->alpha == MASU_BAKE_ALPHA_BLEND && (maps->additive || material->opacity < 0.999f)) return true;
+    const texture *t = base != MASU_BLOB_NONE ? &m->textures[base] : NULL;
+    return t && t->format == MASU_TEXTURE_BC3_SRGB && t->alpha == MASU_BAKE_ALPHA_BLEND;
+}
+
 /* The textures of a material by slot, NONE where there are none. */
 static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_material *material,
                         uint32_t out[MASU_SLOT_COUNT]) {
@@ -420,6 +427,12 @@ static void request_all(maker *m, const masu_bake_maps *maps, const masu_blob_ma
             break;
         case MASU_SLOT_COAT:
             if (!(material->coat > 0)) break;
+            if (is_blended(m, maps, material, out[MASU_SLOT_BASE])) {
+                if (!m->sizes && (maps->image[MASU_BAKE_COAT] & maps->image[MASU_BAKE_COAT_ROUGHNESS]) != MASU_BLOB_NONE)
+                    masu_cli_warn("material \"%s\": it is blended, and its coat is the same all over: its map is left out",
+                                  masu_bake_name_text(m->content, material->name));
+                break;
+            }
             r.image[0] = maps->image[MASU_BAKE_COAT];
             r.image[1] = maps->image[MASU_BAKE_COAT_ROUGHNESS];
             r.channel[0] = maps->channel[MASU_BAKE_COAT];
@@ -523,18 +536,10 @@ static uint32_t set_of(masu_bake_content *c, const masu_blob_texture_set *set) {
 static void point(maker *m, masu_blob_material *material, const masu_bake_maps *maps,
                   const uint32_t slots[MASU_SLOT_COUNT]) {
     masu_blob_texture_set set = {.wrap = {maps->wrap[0], maps->wrap[1]}};
-    uint32_t flags = 0, layers = 0;
-    /* What may be blended but is opaque all over is not. */
-    if (maps->alpha == MASU_BAKE_ALPHA_BLEND && (maps->additive || material->opacity < 0.999f))
-        flags |= MASU_MATERIAL_IS_BLEND;
+    uint32_t flags = is_blended(m, maps, material, slots[MASU_SLOT_BASE]) ? MASU_MATERIAL_IS_BLEND : 0, layers = 0;
     for (uint32_t slot = 0; slot < MASU_SLOT_COUNT; slot++) {
         set.texture[slot] = MASU_BLOB_NONE;
         if (slots[slot] == MASU_BLOB_NONE) continue;
-        if (slot == MASU_SLOT_COAT && flags & MASU_MATERIAL_IS_BLEND) {
-            masu_cli_warn("material %s: it is blended, and its coat is the same all over: its map is left out",
-                          masu_bake_name_text(m->content, material->name));
-            continue;
-        }
         const texture *t = &m->textures[slots[slot]];
         set.texture[slot] = t->array;
         if (slot >= MASU_SLOT_OCCLUSION)
@@ -543,9 +548,7 @@ static void point(maker *m, masu_blob_material *material, const masu_bake_maps *
             layers |= t->layer << 8 * slot;
         flags |= 1u << slot;
         if (slot == MASU_SLOT_BASE && t->format == MASU_TEXTURE_BC3_SRGB) {
-            if (t->alpha == MASU_BAKE_ALPHA_BLEND) {
-                flags |= MASU_MATERIAL_IS_BLEND;
-            } else {
+            if (t->alpha != MASU_BAKE_ALPHA_BLEND) {
                 flags |= MASU_MATERIAL_IS_MASK;
                 flags |= (uint32_t)masu_texel_to_unorm(maps->cutoff) << MASU_MATERIAL_CUTOFF_SHIFT;
             }
