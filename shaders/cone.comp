@@ -56,7 +56,7 @@ void main()
         vec2 ndc = masu_ndc((vec2(at) + 0.5) * float(MASU_CONE_BLOCK), size);
         vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
         ray r;
-        r.direction = through * inversesqrt(dot(through, through)); /* at least 1 long */
+        r.direction = through * masu_rsqrt_sure(dot(through, through)); /* at least 1 long */
         r.pixel = 2.0 * max(frame.up.w / size.y, frame.right.w / size.x);
         float k = float(MASU_CONE_BLOCK) * 0.70711 * r.pixel;
         float k2 = k * k;

@@ -62,7 +62,7 @@ ray ray_of(uvec2 place, out float z_scale)
     vec2 ndc = ndc_corner + ndc_step * vec2(place);
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
     float squared = dot(through, through); /* at least 1 */
-    float inverse = inversesqrt(squared);
+    float inverse = masu_rsqrt_sure(squared);
     z_scale = squared * inverse;
     return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);
 }

@@ -397,7 +397,7 @@ vec3 unit_or(vec3 v, vec3 fallback)
 {
     float squared = dot(v, v);
     if (squared > masu_tiny && squared < masu_huge) {
-        return v * inversesqrt(squared);
+        return v * masu_rsqrt_sure(squared);
     }
     return masu_normalize(v, fallback);
 }

@@ -94,6 +94,12 @@ float masu_rsqrt(float x)
     return usable ? r : 0.0;
 }
 
+/* The same of an x that is known to be within 1e-30..1e30. */
+float masu_rsqrt_sure(float x)
+{
+    return inversesqrt(x);
+}
+
 /* log2(x) for x from 1e-30; smaller, negative and non-finite operands count as 1e-30 (-99.66). */
 float masu_log2(float x)
 {
