@@ -84,16 +84,15 @@ void look_from(uvec2 tile)
     ndc_step = 2.0 / vec2(size);
 }
 
-/* The boxes of the listed parts and of the SDF as the eye sees them. */
-vec3 box_low, box_high, bounds_low, bounds_high;
+/* The box of the listed parts as the eye sees it. Not that of the SDF's bounds, too: a Vega has no registers left for what
+ * all rays share, and would keep some of it elsewhere. */
+vec3 box_low, box_high;
 
 void look_at_boxes()
 {
     masu_listed_box(box_low, box_high);
     box_low = box_low - eye_hi - eye_lo;
     box_high = box_high - eye_hi - eye_lo;
-    bounds_low = frame.sdf_min.xyz - eye_hi - eye_lo;
-    bounds_high = frame.sdf_max.xyz - eye_hi - eye_lo;
 }
 
 /* Between which distances the ray is within a box. */
@@ -124,7 +123,7 @@ vec3 prepare(uvec2 place)
     float z_scale;
     ray r = ray_of(place, z_scale);
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
-    vec2 bounds = within(bounds_low, bounds_high, inverse);
+    vec2 bounds = within(frame.sdf_min.xyz - eye_hi - eye_lo, frame.sdf_max.xyz - eye_hi - eye_lo, inverse);
     float nearest = frame.forward.w * z_scale;
     float first_t = max(nearest, bounds.x);
     float last_t = min(frame.sdf_max.w, bounds.y);
