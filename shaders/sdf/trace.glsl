@@ -317,26 +317,21 @@ void march_near(inout march_state m, ray r, float f)
                  max(newton ? fall : max(reach + fall, 0.1 * reach), 1e-30);
     float longest = touched ? 16.0 * enough : newton_reach * pixel;
     float next = min(m.t + (newton ? min(f * rate, longest) : f * max(rate, 1.0)), m.limit);
-    if (touched && meet) {
-        m.t = next < r.limit ? next : -1.0;
-        m.done = true;
-        return;
-    }
     if (note_best(m)) {
         bool better = meet && f * m.best_t < m.best_f * m.t;
         m.best_t = better ? m.t : m.best_t;
         m.best_f = better ? f : m.best_f;
     }
-    if (meet && m.t + f >= m.limit) {
-        m.t = -1.0;
+    bool hit = touched && meet;
+    if (hit || spent || (meet && m.t + f >= m.limit)) {
+        bool gone = hit ? !(next < r.limit) : meet && m.t + f >= m.limit;
+        if (spent && !hit && !gone) {
+            masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
+            gone = !(m.best_f < 2.0 * r.pixel * m.best_t);
+            next = m.best_t;
+        }
         m.done = true;
-        return;
-    }
-    if (spent) {
-        masu_count(MASU_COUNTER_SDF_UNCONVERGED, 1u);
-        m.t = m.best_f < 2.0 * r.pixel * m.best_t ? m.best_t : -1.0;
-        m.done = true;
-        return;
+        next = gone ? -1.0 : next;
     }
     m.before_t = m.t;
     m.before_f = f;
@@ -352,16 +347,12 @@ void march_far(inout march_state m, float f)
         return;
     }
     masu_note_hint(m.t, f);
-    if (m.t + f >= m.limit) {
-        m.t = -1.0;
-        m.done = true;
-        return;
-    }
     float reach = m.t - m.before_t;
     float rate = 1.9 * reach / max(max(reach + (m.before_f - f), 0.1 * reach), 1e-30);
     m.before_t = m.t;
     m.before_f = f;
-    m.t = min(m.t + f * max(rate, 1.0), m.limit);
+    m.done = m.t + f >= m.limit;
+    m.t = m.done ? -1.0 : min(m.t + f * max(rate, 1.0), m.limit);
 }
 
 void march_step(inout march_state m, ray r, float f)

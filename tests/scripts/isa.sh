@@ -1,6 +1,7 @@
 #!/bin/bash
-# isa.sh: what RADV's compiler makes of the pipelines is what docs/report/isa.csv says: no spill, no scratch memory,
-# at most 5 % more instructions, the same pipelines (make isa-table writes it anew). Then what masu plan --isa refuses.
+# isa.sh: what RADV's compiler makes of the pipelines is what docs/report/isa.csv says: no spill to memory, no more
+# scalar registers kept in vector registers, no scratch memory, at most 5 % more instructions, the same pipelines
+# (make isa-table writes it anew). Then what masu plan --isa refuses.
 set -u
 build=${BUILD:-build} made=${MADE:-build}
 masu=$build/bin/masu
@@ -26,11 +27,11 @@ worse() {
     awk -F, '
         FNR == 1 { next }
         { key = $1 "," $2 "," $3 "," $4 }
-        NR == FNR { if ($2 == "vangogh" || $2 == "raven") was[key] = $8; next }
+        NR == FNR { if ($2 == "vangogh" || $2 == "raven") was[key] = $8; scalars[key] = $14; next }
         { seen[key] = 1 }
         !(key in was) { print key ": no row in the table"; next }
         $8 > was[key] * 1.05 { print key ": instructions " $8 ", in the table " was[key] }
-        $12 > 0 || $14 > 0 || $15 > 0 { print key ": spills " $12 ", of scalars " $14 ", scratch " $15 }
+        $12 > 0 || $14 > scalars[key] + 0 || $15 > 0 { print key ": spills " $12 ", of scalars " $14 ", scratch " $15 }
         END { for (key in was) if (!(key in seen)) print key ": no pipeline any more" }' "$1" "$2"
 }
 
