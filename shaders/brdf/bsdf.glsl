@@ -196,22 +196,27 @@ masu_bsdf masu_bsdf_make(masu_surface s, vec3 n, vec3 v)
     return b;
 }
 
+/* Cosines of light from l, unit, to the base and to its coat; false: it reaches neither. */
+bool masu_bsdf_lit(masu_bsdf b, vec3 l, out float n_l, out float over)
+{
+    n_l = masu_sane(dot(b.n, l), 0.0, 1.0);
+    over = n_l;
+#ifdef MASU_SURFACE
+    if (masu_own_coats) {
+        over = masu_sane(dot(b.coat_n, l), 0.0, 1.0);
+    }
+#endif
+    return n_l > 0.0 || over > 0.0;
+}
+
 /* f * N.L * pi of light from l, unit: what is mirrored, after however many bounces, and what comes from
  * below. */
 void masu_bsdf_parts(masu_bsdf b, vec3 l, out vec3 mirrored, out vec3 below)
 {
     mirrored = vec3(0.0);
     below = vec3(0.0);
-    float n_l = masu_sane(dot(b.n, l), 0.0, 1.0);
-    float over = n_l;
-    bool lit_at_all = n_l > 0.0;
-#ifdef MASU_SURFACE
-    if (masu_own_coats) {
-        over = masu_sane(dot(b.coat_n, l), 0.0, 1.0);
-        lit_at_all = lit_at_all || over > 0.0;
-    }
-#endif
-    if (!lit_at_all) {
+    float n_l, over;
+    if (!masu_bsdf_lit(b, l, n_l, over)) {
         return;
     }
     vec3 sum = l + b.v;

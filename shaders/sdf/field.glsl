@@ -137,8 +137,11 @@ uint masu_part_at(uint i)
  * lavapipe then runs every copy for all lanes: 1.3 to 2.6 times the time of the march. */
 #define MASU_LOOP [[dont_unroll]]
 
-/* Of a list, the places that the bits ask for, one after the other; a list may be longer than they are. What has not come yet
- * is kept: a place then takes 9 operations instead of 30. */
+/* Of a list, the places that the bits ask for, one after the other; 64 is behind its end. What has not come yet is kept: a
+ * place then takes 9 operations instead of 30. */
+#if MASU_TILE_PARTS_MAX >= 64
+#error "a list is longer than its bits"
+#endif
 uint masu_left_low = 0u;
 uint masu_left_high = 0u;
 

@@ -13,16 +13,8 @@ void masu_lobes(masu_bsdf b, vec3 l, out vec3 base, out float coat)
 {
     base = vec3(0.0);
     coat = 0.0;
-    float n_l = masu_sane(dot(b.n, l), 0.0, 1.0);
-    float over = n_l;
-    bool lit_at_all = n_l > 0.0;
-#ifdef MASU_SURFACE
-    if (masu_own_coats) {
-        over = masu_sane(dot(b.coat_n, l), 0.0, 1.0);
-        lit_at_all = lit_at_all || over > 0.0;
-    }
-#endif
-    if (!lit_at_all) {
+    float n_l, over;
+    if (!masu_bsdf_lit(b, l, n_l, over)) {
         return;
     }
     vec3 sum = l + b.v;
