@@ -8,6 +8,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_gbuffer
 #include "shared/masu_shared.h"
+#include "shared/facing.glsl"
 #include "shared/pack.glsl"
 
 #ifdef MASU_SURFACE
@@ -82,6 +83,9 @@ void main()
     /* Everything that takes derivatives comes before the discard. */
     float alpha = masu_sample_maps(in_texcoord, s);
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
+#endif
+    bool away = masu_seen_from_below(in_normal, in_rel);
+#ifdef MASU_TEXTURES
     if (masked && !(alpha >= masu_cutoff())) {
         discard;
     }
@@ -90,10 +94,9 @@ void main()
     vec3 n = masu_normalize(in_normal, masu_normalize(-in_rel, vec3(0.0, 1.0, 0.0)));
 #ifdef MASU_TEXTURES
     /* A face seen from behind is the same relief from below: all of its normal turns. */
-    bool away = dot(n, in_rel) > 0.0;
     bent = away ? -bent : bent;
 #ifdef MASU_SURFACE
-    vec3 even = away ? -n : n; /* without the relief */
+    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel), n); /* without the relief */
 #endif
 #ifdef MASU_SURFACE
     if (push.meso > 0u) {
@@ -102,9 +105,10 @@ void main()
 #endif
     n = masu_seen_normal(bent, in_rel, n);
 #else
-    n = dot(n, in_rel) > 0.0 ? -n : n;
+    n = masu_lean_to_eye(away ? -n : n, in_rel);
 #ifdef MASU_SURFACE
     if (push.meso > 0u) {
+        n = masu_normalize(n, vec3(0.0, 1.0, 0.0));
         n = masu_normalize(show_relief(n, n, s), n);
     }
 #endif

@@ -26,6 +26,7 @@
 #define MASU_MAPS_TINTS
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"
+#include "shared/facing.glsl"
 #include "shared/pack.glsl"
 #include "light/air.glsl"
 #include "light/shade.glsl"
@@ -77,14 +78,14 @@ void main()
     float cover = 1.0;
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
-    bool away = dot(n, in_rel) > 0.0;
+    bool away = masu_seen_from_below(in_normal, in_rel);
     bool twice = (in_thing.y & MASU_MAP_FAR_SIDE_FIRST) != 0u;
     bool elsewhere = twice && away != (in_thing.w == 0u);
 #ifdef MASU_TEXTURES
     /* Everything that takes derivatives comes before the discard. */
     cover = masu_sample_maps(in_texcoord, s);
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
-    vec3 even = away ? -n : n;
+    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel), n);
     n = masu_seen_normal(away ? -bent : bent, in_rel, n);
     if (masu_own_coats && s.coat > 0.0 && (in_thing.y & (MASU_MAP_COAT_SMOOTH | MASU_MAP_BASE_SMOOTH)) != 0u) {
         bool coat_is_even = (in_thing.y & MASU_MAP_COAT_SMOOTH) != 0u;
@@ -93,7 +94,7 @@ void main()
         s.lean = masu_lean_of(n, below);
     }
 #else
-    n = away ? -n : n;
+    n = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel), -direction);
 #endif
     float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
     bool back = (in_thing.y & MASU_MAP_SINGLE) != 0u && !gl_FrontFacing;

@@ -90,10 +90,8 @@ vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
 {
     vec3 view = masu_normalize(-rel, fallback);
     vec3 n = masu_normalize(normal, fallback);
-    if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
-        return n;
-    }
-    return masu_normalize(n + view * max(0.1 - dot(n, view), 0.0), fallback);
+    float least = (MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u ? 0.0 : 0.1;
+    return masu_normalize(n + view * max(least - dot(n, view), 0.0), fallback);
 }
 
 /* The normal of the map in world space, unnormalised, on the side of `normal`. */

@@ -10,8 +10,6 @@
 #include <assimp/postprocess.h>
 #include <string.h>
 
-/* Edges sharper than this stay sharp where normals have to be made. */
-#define CREASE_DEGREES 60.0f
 #define ACC_MAX ((size_t)512 << 20)
 
 static void report(masu_import *m) {
@@ -134,12 +132,11 @@ static bool read_gltf(masu_gltf *g) {
 static const struct aiScene *read_assimp(const char *path, masu_bake_buffer *warnings, masu_bake_buffer *error) {
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     if (properties) {
-        aiSetImportPropertyFloat(properties, AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, CREASE_DEGREES);
         aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
     }
     /* Welding, dropping bad triangles and the like are done here, where every index is checked:
      * each step of the library is one more that hostile data can break. */
-    unsigned flags = aiProcess_Triangulate | aiProcess_GenSmoothNormals;
+    unsigned flags = aiProcess_Triangulate | aiProcess_GenUVCoords;
     struct aiLogStream log = {note_remark, (char *)(void *)warnings};
     aiAttachLogStream(&log);
     const struct aiScene *scene;

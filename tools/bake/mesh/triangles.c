@@ -1,10 +1,12 @@
 /* triangles.c: triangles of unknown quality become primitives that the runtime may trust.
  *
  * Per triangle list: drop what cannot be drawn (counted, never silently), make normals where they
- * are missing or unusable, quantise, merge vertices that became equal bit for bit, and cut into
+ * are missing (creases.c) or unusable, quantise, merge vertices that became equal bit for bit, and cut into
  * primitives of at most MASU_BAKE_PRIMITIVE_VERTICES vertices. The order of triangles and of first
  * use of vertices is kept, so the same input gives the same bytes. */
 #include "bake/mesh/triangles.h"
+
+#include "bake/mesh/creases.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -98,12 +100,11 @@ static uint64_t keep_triangles(const masu_bake_triangles *t, uint32_t *kept,
 }
 
 static bool given_normal(const masu_bake_triangles *t, uint32_t vertex, masu_bake_vec3 *normal) {
-    if (!t->normals) return false;
     *normal = masu_bake_v3f(t->normals + 3 * (size_t)vertex);
     return masu_bake_normalize(normal);
 }
 
-/* Area-weighted sums of the faces around every vertex; only made when a normal is missing. */
+/* Area-weighted sums of the faces around every vertex; only made when a normal is not usable. */
 static masu_bake_vec3 *sum_face_normals(const masu_bake_triangles *t, const uint32_t *kept,
                                         uint64_t count) {
     masu_bake_vec3 *sums = masu_bake_allocate((size_t)t->vertex_count * sizeof *sums);
@@ -117,8 +118,8 @@ static masu_bake_vec3 *sum_face_normals(const masu_bake_triangles *t, const uint
     return sums;
 }
 
-/* The quantised normal of every used vertex. */
-static void make_normals(const masu_bake_triangles *t, const uint32_t *kept, uint64_t count,
+/* The quantised normal of every used vertex, of triangles that have normals. */
+static void mend_normals(const masu_bake_triangles *t, const uint32_t *kept, uint64_t count,
                          int16_t (*out)[2], masu_bake_losses *losses) {
     unsigned char *done = masu_bake_allocate(t->vertex_count);
     memset(done, 0, t->vertex_count);
@@ -129,7 +130,7 @@ static void make_normals(const masu_bake_triangles *t, const uint32_t *kept, uin
         done[vertex] = 1;
         masu_bake_vec3 normal;
         if (!given_normal(t, vertex, &normal)) {
-            if (t->normals) losses->bad_normals++;
+            losses->bad_normals++;
             if (!sums) sums = sum_face_normals(t, kept, count);
             normal = sums[vertex];
             /* Faces that cancel out leave no direction: any unit vector will do. */
@@ -262,10 +263,13 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
         free(kept);
         return false;
     }
-    int16_t(*normals)[2] = masu_bake_allocate((size_t)t->vertex_count * sizeof *normals);
-    make_normals(t, kept, count, normals, losses);
+    int16_t(*normals)[2] = masu_bake_allocate((size_t)(t->normals ? t->vertex_count : count) * sizeof *normals);
+    if (t->normals)
+        mend_normals(t, kept, count, normals, losses);
+    else
+        masu_bake_creased_normals(t, kept, count, normals);
     welder w = {.content = content,
-                .slot_count = slots_for(count, t->vertex_count),
+                .slot_count = slots_for(count, t->normals ? t->vertex_count : UINT32_MAX),
                 .bent = t->influences ? t->bent : NULL};
     w.slots = masu_bake_allocate(w.slot_count * sizeof *w.slots);
     if (t->repeats) find_shift(t, kept, count, w.shift);
@@ -279,7 +283,7 @@ bool masu_bake_add_triangles(masu_bake_content *content, const masu_bake_triangl
             uint32_t from = kept[i + k];
             corner made = {.influence = {{0}, {0}}};
             if (w.bent) made.influence = t->influences[from];
-            memcpy(made.vertex.normal, normals[from], sizeof made.vertex.normal);
+            memcpy(made.vertex.normal, normals[t->normals ? from : i + (uint64_t)k], sizeof made.vertex.normal);
             /* + 0 turns -0 into 0: equal positions are equal bits. */
             for (int c = 0; c < 3; c++) {
                 made.vertex.position[c] = t->positions[3 * (size_t)from + c] + 0;

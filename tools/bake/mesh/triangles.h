@@ -13,7 +13,7 @@ typedef struct masu_bake_influence {
 /* Triangles of unknown quality become one or more primitives at the end of `content`. */
 typedef struct masu_bake_triangles {
     const float *positions; /* 3 per vertex */
-    const float *normals;   /* 3 per vertex, or NULL */
+    const float *normals;   /* 3 per vertex; NULL: made, see creases.h */
     const float *texcoords; /* 2 per vertex, v down the picture, or NULL */
     bool repeats;           /* their textures repeat: whole turns may be taken off */
     uint32_t vertex_count;
