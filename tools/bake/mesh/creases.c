@@ -68,7 +68,7 @@ void masu_bake_creased_normals(const masu_bake_triangles *t, const uint32_t *cor
     corner *sorted = masu_bake_allocate((size_t)count * sizeof *sorted);
     for (uint64_t i = 0; i < count; i += 3) measure(t, corners + i, &faces[i / 3]);
     for (uint64_t i = 0; i < count; i++) {
-        memcpy(sorted[i].position, t->positions + 3 * (size_t)corners[i], sizeof sorted[i].position);
+        for (int k = 0; k < 3; k++) sorted[i].position[k] = t->positions[3 * (size_t)corners[i] + (size_t)k] + 0; /* -0 is 0 */
         sorted[i].at = (uint32_t)i;
     }
     qsort(sorted, (size_t)count, sizeof *sorted, by_position);
