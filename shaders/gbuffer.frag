@@ -91,12 +91,12 @@ void main()
     }
 #endif
     /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */
-    vec3 n = masu_normalize(in_normal, masu_normalize(-in_rel, vec3(0.0, 1.0, 0.0)));
+    vec3 n = masu_normalize(in_normal, vec3(0.0, 1.0, 0.0));
 #ifdef MASU_TEXTURES
     /* A face seen from behind is the same relief from below: all of its normal turns. */
     bent = away ? -bent : bent;
 #ifdef MASU_SURFACE
-    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel), n); /* without the relief */
+    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n); /* without the relief */
 #endif
 #ifdef MASU_SURFACE
     if (push.meso > 0u) {
@@ -105,7 +105,7 @@ void main()
 #endif
     n = masu_seen_normal(bent, in_rel, n);
 #else
-    n = masu_lean_to_eye(away ? -n : n, in_rel);
+    n = masu_lean_to_eye(away ? -n : n, in_rel, 0.0);
 #ifdef MASU_SURFACE
     if (push.meso > 0u) {
         n = masu_normalize(n, vec3(0.0, 1.0, 0.0));
@@ -126,7 +126,7 @@ void main()
     masu_pack_texels(n, s, out_albedo, out_normal);
 #if defined(MASU_TEXTURES) && defined(MASU_SURFACE)
     if (two) {
-        s.lean = masu_lean_of(masu_unpack_normal(out_normal), below);
+        s.lean = masu_lean_of(masu_unpack_normal(out_normal), masu_normalize(below, even));
     }
 #endif
 #ifdef MASU_SURFACE

@@ -85,8 +85,8 @@ void main()
     /* Everything that takes derivatives comes before the discard. */
     cover = masu_sample_maps(in_texcoord, s);
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
-    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel), n);
-    n = masu_seen_normal(away ? -bent : bent, in_rel, n);
+    vec3 even = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), n);
+    n = masu_normalize(masu_seen_normal(away ? -bent : bent, in_rel, n), -direction);
     if (masu_own_coats && s.coat > 0.0 && (in_thing.y & (MASU_MAP_COAT_SMOOTH | MASU_MAP_BASE_SMOOTH)) != 0u) {
         bool coat_is_even = (in_thing.y & MASU_MAP_COAT_SMOOTH) != 0u;
         vec3 below = coat_is_even ? n : even;
@@ -94,7 +94,7 @@ void main()
         s.lean = masu_lean_of(n, below);
     }
 #else
-    n = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel), -direction);
+    n = masu_normalize(masu_lean_to_eye(away ? -n : n, in_rel, 0.0), -direction);
 #endif
     float nearest = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).r;
     bool back = (in_thing.y & MASU_MAP_SINGLE) != 0u && !gl_FrontFacing;

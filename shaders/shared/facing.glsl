@@ -18,10 +18,11 @@ bool masu_seen_from_below(vec3 n, vec3 rel)
     return (dot(n, across) > 0.0) != (dot(across, rel) < 0.0);
 }
 
-/* n, unit, leaned towards the eye until it is edge-on at most; not renormalised. */
-vec3 masu_lean_to_eye(vec3 n, vec3 rel)
+/* n, unit, leaned towards the eye until its cosine is `least`, whatever rel; not renormalised. */
+vec3 masu_lean_to_eye(vec3 n, vec3 rel, float least)
 {
-    return n - rel * (max(dot(n, rel), 0.0) / max(dot(rel, rel), masu_tiny));
+    float per_length = masu_rsqrt(dot(rel, rel));
+    return n - rel * (per_length * max(least + dot(n, rel) * per_length, 0.0));
 }
 
 #endif

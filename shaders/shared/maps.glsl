@@ -13,6 +13,8 @@
 #ifndef MASU_MAPS_GLSL
 #define MASU_MAPS_GLSL
 
+#include "shared/facing.glsl"
+
 /* Flags of the material, layers of its maps, how much more often than its colour the others repeat: the
  * push constants', or whoever includes this says. */
 #ifndef MASU_MAPS_FLAGS
@@ -84,14 +86,12 @@ float masu_sample_maps(vec2 at, inout masu_surface s)
 }
 
 /* A relief is seen where it faces the viewer. Normals that point away, which near a silhouette some
- * of any map do, would shine there as if seen edge-on; they are turned until they are all but edge-on.
+ * of any map do, would shine there as if seen edge-on; they are turned until they are all but edge-on. Not renormalised.
  */
 vec3 masu_seen_normal(vec3 normal, vec3 rel, vec3 fallback)
 {
-    vec3 view = masu_normalize(-rel, fallback);
-    vec3 n = masu_normalize(normal, fallback);
     float least = (MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u ? 0.0 : 0.1;
-    return masu_normalize(n + view * max(least - dot(n, view), 0.0), fallback);
+    return masu_lean_to_eye(masu_normalize(normal, fallback), rel, least);
 }
 
 /* The normal of the map in world space, unnormalised, on the side of `normal`. */
