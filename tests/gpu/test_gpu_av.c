@@ -58,7 +58,7 @@ static const struct {
 } declined[] = {
     {"BestPractices-DevLimit-", "the host of the tests asks once, with room for all there can be"},
     {"BestPractices-pipeline-stage-flags", "loading, and what lies around a pass of the host, waits for everything"},
-    {"BestPractices-vkCmdBeginRenderPass-ClearValueCount", "one array for all passes; what has no image is ignored"},
+    {"BestPractices-vkCmdBeginRenderPass-ClearValue", "one array for all passes; what has no image or is loaded is ignored"},
     {"BestPractices-ImageBarrierAccessLayout", "what the host's copy waits for is not told it"},
     {"BestPractices-TransitionUndefinedToReadOnly", "a history that nothing has been written to is not looked at"},
 };
