@@ -183,7 +183,7 @@ static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack
             masu_access access = rp->access[p][a];
             if (!is_read(access.usage) || !is_poisoned(access.image)) continue;
             pairs++;
-            for (uint32_t w = whole_run() ? 0 : (pairs + a) % 3; w < WORDS; w += whole_run() ? 1 : 3) {
+            for (uint32_t w = long_run() ? 0 : (pairs + a) % 3; w < WORDS; w += long_run() ? 1 : 3) {
                 char what[160];
                 uint32_t frames = 0;
                 snprintf(what, sizeof what, "%s: %s of %s, which %s reads", scene, words[w].name,
