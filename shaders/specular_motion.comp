@@ -36,11 +36,12 @@ vec3 met_before(uvec4 hit)
 #ifdef MASU_TRACE_POLYGONS
     if ((hit.y & MASU_HIT_SDF) == 0u) {
         vec2 b = unpackUnorm2x16(hit.w);
-        uvec3 triangle = masu_trace_static[masu_trace_static[0].x + hit.z].xyz;
+        uvec3 triangle = masu_trace_triangle(hit.z).xyz;
+        uint traced = masu_trace_instance(hit.y);
         vec3 object = uintBitsToFloat(masu_trace_vertices[triangle.x].xyz) * (1.0 - b.x - b.y) +
                       uintBitsToFloat(masu_trace_vertices[triangle.y].xyz) * b.x +
                       uintBitsToFloat(masu_trace_vertices[triangle.z].xyz) * b.y;
-        return masu_trace_before(hit.y, vec4(object, 1.0)) - masu_trace_now(hit.y, vec4(object, 1.0));
+        return masu_trace_before(traced, vec4(object, 1.0)) - masu_trace_now(traced, vec4(object, 1.0));
     }
 #endif
     return masu_unpack_sdf_motion(hit.y);

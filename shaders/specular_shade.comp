@@ -68,7 +68,8 @@ met met_polygon(uvec4 hit, vec3 direction, float width)
     met m;
     vec2 b = unpackUnorm2x16(hit.w);
     vec3 weights = vec3(1.0 - b.x - b.y, b);
-    uvec4 triangle = masu_trace_static[masu_trace_static[0].x + hit.z];
+    uvec4 triangle = masu_trace_triangle(hit.z);
+    hit.y = masu_trace_instance(hit.y);
     vec3 p0 = uintBitsToFloat(masu_trace_vertices[triangle.x].xyz);
     vec3 p1 = uintBitsToFloat(masu_trace_vertices[triangle.y].xyz);
     vec3 p2 = uintBitsToFloat(masu_trace_vertices[triangle.z].xyz);

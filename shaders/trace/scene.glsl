@@ -4,6 +4,7 @@
  *
  *   masu_trace_static[0].w   where the rest begins: a header of where materials, pictures and texels begin; then
  *                            the tile of noise, four words to an element
+ *   masu_trace_static[0].z   how many triangles, masu_trace_frame[0].z how many traced instances there are
  *   masu_trace_frame[0].w    of each traced instance six rows: object to world minus anchor, and the same as
  *                            of the previous frame
  *
@@ -52,6 +53,19 @@ masu_trace_material masu_trace_material_at(uint material)
 vec3 masu_trace_vertex_normal(uint vertex)
 {
     return masu_oct_decode(max(unpackSnorm2x16(masu_trace_vertices[vertex].w), vec2(-1.0)));
+}
+
+/* What an image says that a ray has met, which may hold anything, as far as there is such a thing. */
+uint masu_trace_instance(uint traced)
+{
+    return min(traced, max(masu_trace_frame[0].z, 1u) - 1u);
+}
+
+/* Its three vertices, and its material. */
+uvec4 masu_trace_triangle(uint triangle)
+{
+    uvec4 head = masu_trace_static[0];
+    return masu_trace_static[head.x + min(triangle, max(head.z, 1u) - 1u)];
 }
 
 /* Row of a traced instance's transform, object to world minus anchor: 0 to 2 now, 3 to 5 in the previous frame. */

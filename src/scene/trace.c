@@ -204,7 +204,7 @@ uint64_t masu_trace_frame_bytes(uint32_t instances) {
 }
 
 void masu_trace_top_write(const masu_trace_top *top, void *frame) {
-    uint32_t header[4] = {1 + top->nodes * MASU_TRACE_NODE_UVEC4, top->nodes, top->live, 0};
+    uint32_t header[4] = {1 + top->nodes * MASU_TRACE_NODE_UVEC4, top->nodes, top->count, 0};
     unsigned char *out = frame;
     memcpy(out, header, sizeof header);
     out += sizeof header;

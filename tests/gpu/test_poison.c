@@ -232,11 +232,8 @@ static void inputs_of_shadows_and_occlusion(void **state) {
     poison_each("test_shadows", &(masu_rung){.scale = 1.0f, .aa = MASU_AA_FXAA}, 0, 1);
 }
 
-/* Not on SwiftShader, which it ends: something of the reflections' lists is still read as it stands in memory. */
 static void inputs_of_reflections(void **state) {
     (void)state;
-    const char *driver = getenv("MASU_TEST_DRIVER");
-    if (driver && !strcmp(driver, "swiftshader")) return;
     poison_each("test_reflections", &(masu_rung){.scale = 1.0f}, 24, 8);
 }
 

@@ -297,7 +297,7 @@ static void assert_written(const double anchor[3]) {
     uint32_t header[4];
     memcpy(header, frame, sizeof header);
     assert_int_equal(header[1], top.nodes);
-    assert_int_equal(header[2], top.live);
+    assert_int_equal(header[2], top.count);
     for (uint32_t i = 0; i < top.live; i++) {
         masu_trace_record r;
         memcpy(&r, frame + 16 * (uint64_t)header[0] + i * sizeof r, sizeof r);
