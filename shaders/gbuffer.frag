@@ -84,14 +84,14 @@ void main()
     float alpha = masu_sample_maps(in_texcoord, s);
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
 #endif
-    bool away = masu_seen_from_below(in_normal, in_rel);
+    /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */
+    vec3 n = masu_normalize(in_normal, vec3(0.0, 1.0, 0.0));
+    bool away = masu_seen_from_below(n, in_rel);
 #ifdef MASU_TEXTURES
     if (masked && !(alpha >= masu_cutoff())) {
         discard;
     }
 #endif
-    /* Two-sided: the normal is turned to the viewer, whichever way the triangle was wound. */
-    vec3 n = masu_normalize(in_normal, vec3(0.0, 1.0, 0.0));
 #ifdef MASU_TEXTURES
     /* A face seen from behind is the same relief from below: all of its normal turns. */
     bent = away ? -bent : bent;

@@ -78,7 +78,7 @@ void main()
     float cover = 1.0;
     vec3 direction = masu_normalize(in_rel, frame.forward.xyz);
     vec3 n = masu_normalize(in_normal, -direction);
-    bool away = masu_seen_from_below(in_normal, in_rel);
+    bool away = masu_seen_from_below(n, in_rel);
     bool twice = (in_thing.y & MASU_MAP_FAR_SIDE_FIRST) != 0u;
     bool elsewhere = twice && away != (in_thing.w == 0u);
 #ifdef MASU_TEXTURES

@@ -11,11 +11,12 @@
 
 #include "shared/guard.glsl"
 
-/* Whether the eye sees the face that n, of any length, does not stand on. rel: relative to the eye. */
+/* Whether the eye sees the face that n, unit, does not stand on. rel: relative to the eye. Only where n leans away, too: of a
+ * triangle that is all but edge-on the derivatives say little, and its normal need not be turned. */
 bool masu_seen_from_below(vec3 n, vec3 rel)
 {
     vec3 across = cross(dFdx(rel), dFdy(rel));
-    return (dot(n, across) > 0.0) != (dot(across, rel) < 0.0);
+    return dot(n, rel) > 0.0 && (dot(n, across) > 0.0) != (dot(across, rel) < 0.0);
 }
 
 /* n, unit, leaned towards the eye until its cosine is `least`, whatever rel; not renormalised. */

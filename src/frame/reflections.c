@@ -120,7 +120,7 @@ void masu_reflections_write_instances(masu_reflections *s, const masu_instances 
     s->slot_version[f->slot] = s->versions;
     unsigned char *to = masu_frame_slot(f, MASU_BUFFER_TRACE_FRAME);
     uint64_t at = masu_trace_rows_at(&plan->scene, plan->needs.query);
-    uint32_t header[4] = {0, 0, 0, (uint32_t)(at / 16)};
+    uint32_t header[4] = {0, 0, plan->scene.trace_instances, (uint32_t)(at / 16)};
     if (plan->needs.query)
         memcpy(to, header, sizeof header);
     else

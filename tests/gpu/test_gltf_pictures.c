@@ -413,22 +413,19 @@ static void single_sided_materials_are_not_seen_from_behind(void **state) {
 }
 
 /* Normals of a coarse mesh near its silhouette: half of what is seen leans away from the eye. The triangle says on which
- * side that is, so none of it is turned around, and whoever winds triangles the other way gets the same picture. */
+ * side that is, so none of it is turned around. */
 static void normals_may_lean_away(void **state) {
     (void)state;
-    static const float right[12] = {12, 0, 5, 12, 0, 5, 12, 0, 5, 12, 0, 5};
     float normal[12];
+    char attributes[64];
     face f = flat(0, 0, 0, 2, 1, 0.5, 0.4, 0.3, 0.75);
     f.leans = true;
     f.over[0] = 12 / 13.0, f.over[2] = 5 / 13.0;
-    for (int turned = 0; turned < 2; turned++) {
-        char attributes[64];
-        for (int i = 0; i < 12; i++) normal[i] = (turned ? -right[i] : right[i]) / 13;
-        begin_quad();
-        snprintf(attributes, sizeof attributes, ",\"NORMAL\":%d", floats(normal, "VEC3", 4, 3));
-        compare(finish_quad(attributes, ",\"material\":0", ",\"materials\":[{" CLAY ",\"doubleSided\":true}]"),
-                (shot){{0.6, 0.5, 1.2}, {1, 0.5, 0}}, &f, 1, 0);
-    }
+    for (int i = 0; i < 12; i++) normal[i] = (float)f.over[i % 3];
+    begin_quad();
+    snprintf(attributes, sizeof attributes, ",\"NORMAL\":%d", floats(normal, "VEC3", 4, 3));
+    compare(finish_quad(attributes, ",\"material\":0", ",\"materials\":[{" CLAY ",\"doubleSided\":true}]"),
+            (shot){{0.6, 0.5, 1.2}, {1, 0.5, 0}}, &f, 1, 0);
 }
 
 #define THIN "\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.4,0.3,0.5],\"metallicFactor\":0}"

@@ -4,6 +4,10 @@
 #include "support/floats.h"
 #include "support/support.h"
 
+#include "device/bind.h"
+#include "renderer.h"
+#include "scene/trace_scene.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -157,6 +161,32 @@ static void what_is_shown_has_not_moved(void **state) {
     close_session(&s);
 }
 
+/* Rays read where things were in the previous frame, too. What has come to rest is there where it is, in every slot, although
+ * nothing is written once nothing moves. */
+static void what_has_come_to_rest_is_where_it_was(void **state) {
+    (void)state;
+    masu_session s;
+    masu_session_desc d = desc_of("test_live");
+    open_session(&s, &d);
+    masu_commands commands;
+    masu_model truck = model_of(&s, "truck");
+    uint32_t slots = s.m->plan.desc.frames_in_flight, differ = 0;
+    const uint64_t rows = masu_trace_rows_at(&s.m->plan.scene, s.m->plan.needs.query);
+    assert_true(s.m->plan.needs.traced && s.m->plan.scene.trace_instances > 0);
+    for (uint32_t frame = 0; frame < 10 + slots; frame++) {
+        if (frame < 4) put(&s, truck, 0.3f * (float)frame, 0, 0);
+        draw(&s, &(masu_frame_desc){.time = frame / 60.0}, &commands, NULL);
+        const float *at = (const float *)(const void *)(masu_buffer_pointer(&s.m->device, MASU_BUFFER_TRACE_FRAME, frame % slots) + rows);
+        for (uint32_t i = 0; i < s.m->plan.scene.trace_instances; i++, at += 24) {
+            int same = memcmp(at, at + 12, 12 * sizeof *at) == 0;
+            if (frame < 4) differ += !same;
+            else if (frame > 4 && !same) fail_msg("frame %u: instance %u is where it was not", frame, i);
+        }
+    }
+    assert_true(differ > 0);
+    close_session(&s);
+}
+
 /* ---- Its limits ------------------------------------------------------------------------------ */
 
 static void the_last_spare_one_is_the_last(void **state) {
@@ -183,6 +213,7 @@ int main(void) {
         cmocka_unit_test(what_comes_back_is_as_it_was),
         cmocka_unit_test(what_is_moved_is_as_if_baked_so),
         cmocka_unit_test(what_is_shown_has_not_moved),
+        cmocka_unit_test(what_has_come_to_rest_is_where_it_was),
         cmocka_unit_test(the_last_spare_one_is_the_last),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

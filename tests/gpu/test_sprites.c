@@ -380,6 +380,30 @@ static void what_is_painted_is_lit(void **state) {
     close_session(&s);
 }
 
+/* And it covers what shines: of a black wall its share of the light is taken away. */
+static void what_is_painted_shines_no_more(void **state) {
+    (void)state;
+    const masu_light dark = {.sun_direction = {0, 0, 1}};
+    bake_scene("shining", "{\"models\": [{\"mesh\": {\"plane\": {\"size_x\": 20, \"size_z\": 20}}, \"rotate\": [90, 0, 0], "
+                          "\"material\": {\"base_color\": [0, 0, 0], \"roughness\": 0.5, \"specular\": 0, \"emissive\": [2, 1, 0.5]}}]}");
+    masu_session_desc d = room_desc(NULL);
+    d.scene_path = baked_scene("shining");
+    open_session(&s, &d);
+    for (int half = 0; half < 3; half++) {
+        const masu_decal black = {.rows = {1, 0, 0, 0, 0, 9, 0, 0, 0, 0, 9, 0}, .opacity = half ? 0.5f * (float)half : 0.0f, .roughness = 1,
+                                  .outer = 3.2f, .inner = 3.1f};
+        masu_frame_desc frame = {.camera = &camera, .light = &dark, .decals = &black, .decal_count = 1};
+        render(frame, picture);
+        for (uint32_t k = 0; k < 3; k++) {
+            double middle = (double)picture[4 * (SIDE / 2 * SIDE + SIDE / 2) + k], edge = (double)picture[4 * (SIDE / 2 * SIDE + 2) + k];
+            double shines = 2.0 / (1u << k);
+            assert_true(fabs(edge - shines) < 0.08 * shines); /* beside it, as far as that is kept */
+            if (fabs(middle - (1 - 0.5 * half) * shines) > 0.1 * shines) fail_msg("half %d, channel %u: %g of %g", half, k, middle, shines);
+        }
+    }
+    close_session(&s);
+}
+
 /* ---- Lines ----------------------------------------------------------------------------------- */
 
 /* The point at the middle of an output pixel, at a view depth. */
@@ -869,6 +893,7 @@ int main(void) {
         cmocka_unit_test(a_decal_paints_polygons_and_the_sdf_alike),
         cmocka_unit_test(later_decals_lie_over_earlier_ones),
         cmocka_unit_test(what_is_painted_is_lit),
+        cmocka_unit_test(what_is_painted_shines_no_more),
         cmocka_unit_test(a_line_has_its_pixels_and_no_others),
         cmocka_unit_test(lines_are_hidden_cut_and_coloured),
         cmocka_unit_test(lines_have_their_colour_in_every_encoding),
@@ -880,5 +905,5 @@ int main(void) {
         cmocka_unit_test(no_trail_stays),
         cmocka_unit_test(viewports_and_sizes_are_right),
     };
-    return cmocka_run_group_tests_name("sprites", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("sprites", tests, make_scratch, remove_scratch);
 }
