@@ -162,13 +162,14 @@ static void what_is_shown_has_not_moved(void **state) {
 }
 
 /* Rays read where things were in the previous frame, too. What has come to rest is there where it is, in every slot, although
- * nothing is written once nothing moves. */
-static void what_has_come_to_rest_is_where_it_was(void **state) {
-    (void)state;
+ * nothing is written once nothing moves. True: the device has ray queries. */
+static bool comes_to_rest(masu_switch queries) {
     masu_session s;
     masu_session_desc d = desc_of("test_live");
-    open_session(&s, &d);
     masu_commands commands;
+    d.host.ray_query = true;
+    d.desc.ray_query = queries;
+    open_session(&s, &d);
     masu_model truck = model_of(&s, "truck");
     uint32_t slots = s.m->plan.desc.frames_in_flight, differ = 0;
     const uint64_t rows = masu_trace_rows_at(&s.m->plan.scene, s.m->plan.needs.query);
@@ -184,7 +185,14 @@ static void what_has_come_to_rest_is_where_it_was(void **state) {
         }
     }
     assert_true(differ > 0);
+    bool offered = s.host.ray_query;
     close_session(&s);
+    return offered;
+}
+
+static void what_has_come_to_rest_is_where_it_was(void **state) {
+    (void)state;
+    if (comes_to_rest(MASU_OFF)) comes_to_rest(MASU_ON);
 }
 
 /* ---- Its limits ------------------------------------------------------------------------------ */
