@@ -91,8 +91,6 @@ void main()
     if (masked && !(alpha >= masu_cutoff())) {
         discard;
     }
-#endif
-#ifdef MASU_TEXTURES
     /* A face seen from behind is the same relief from below: all of its normal turns. */
     bent = away ? -bent : bent;
 #ifdef MASU_SURFACE
