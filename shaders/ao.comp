@@ -30,7 +30,7 @@
  * push.steps: samples on either side of each; push.size: pixels per texel, 2, or 1 for comparison.
  * Out: bits 0-9 seen part, bits 10-31 depth of the pixel (ao_texel.glsl).
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_ao
 #include "shared/masu_shared.h"

@@ -22,7 +22,7 @@
  * push.radius: radius, metres. push.multiplies: not 0: the occlusion image holds something already; push.nearest: not 0:
  * each pixel takes its own texel, for comparison; push.size: pixels per texel, 2, or 1 for comparison.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_ao_upsample
 #include "shared/masu_shared.h"

@@ -6,7 +6,7 @@
  * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input
  * size * (1 / output size).
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_bilinear
 #include "shared/masu_shared.h"

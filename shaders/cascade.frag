@@ -2,7 +2,7 @@
  * cascade.frag: of masked polygons that the sun sees, what their alpha leaves; depth is the only
  * output. push.flags: the material's flags, push.layers: the layers of its maps.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_cascade
 #include "shared/masu_shared.h"

@@ -9,7 +9,7 @@
  * which invocations run. push.unpruned not 0: every tile gets all parts (for the report).
  * Compiled by masu-bake together with the scene's field.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_classify

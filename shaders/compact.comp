@@ -7,7 +7,7 @@
  * instances at a time. Views in y. push.header: the header of src/frame/occlusion.c; push.few: groups of the
  * first kind; push.view: the first view.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_DRAWN_ACCESS
 #define MASU_PUSH masu_push_compact

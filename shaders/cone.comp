@@ -12,7 +12,7 @@
  *
  * Outside the box of the listed parts nothing is listed: there the distance to it is a step as well.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_cone

@@ -13,7 +13,7 @@
  *
  * push.header: the header of src/frame/occlusion.c; push.view: the first view.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_cull
 #include "shared/masu_shared.h"

@@ -6,7 +6,7 @@
  *
  * Paint covers what shines through it. What only shines (masu_is_unlit) stays as it is.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_decals
 #include "shared/masu_shared.h"

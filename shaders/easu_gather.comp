@@ -3,7 +3,7 @@
  * channel: what `masu study upscale` compares easu.comp with. No pass of a frame. It takes an input
  * that fills its image: at the border of a part of one, a gather would return what lies beyond.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_easu
 #include "shared/masu_shared.h"

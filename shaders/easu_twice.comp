@@ -14,7 +14,7 @@
  *
  * Push constants: render_* = valid corner of the input, output_* = size to write.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shared/masu_shared.h"

@@ -11,7 +11,7 @@
  * Push constants: push: speed to brighten, to darken, min, max; low and high = shares left out, of
  * 2^16, below and above.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_expose
 #include "shared/masu_shared.h"

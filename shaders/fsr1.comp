@@ -6,7 +6,7 @@
  *
  * Push constants: as easu.comp, push.lobe and push.stops as rcas.comp.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_fsr1
 #include "shared/masu_shared.h"

@@ -9,7 +9,7 @@
  *
  * Push constants: render_* = valid corner of the picture.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"

@@ -4,7 +4,7 @@
  * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's; push.mip_bias the bias of mip levels, push.detail_* the
  * scale of texture coordinates of all maps but base colour and emissive.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_gbuffer
 #include "shared/masu_shared.h"

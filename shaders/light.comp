@@ -11,7 +11,7 @@
  * push.light_tiles: not 0: there are lists of lights; push.cutoff: roughness from which nothing is traced; push.accumulate: not
  * 0: debug.reference.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_light
 #include "shared/masu_shared.h"

@@ -15,7 +15,7 @@
  * Lists rise, whatever the order in which invocations run. One that would be longer than
  * MASU_TILE_LIGHTS_MAX says MASU_TILE_ALL: slower and just as right.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"

@@ -2,7 +2,7 @@
  * lines.frag: a debug line's colour, unless something at least half a percent nearer hides it: what lies on a surface is seen.
  * The depth is of render pixels, and may be shifted by the frame's jitter.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_lines
 #include "shared/masu_shared.h"

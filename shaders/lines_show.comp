@@ -2,7 +2,7 @@
  * lines_show.comp: debug lines over the picture that is shown, encoded as it is; where there is none, nothing is
  * written. push.white: nits.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_lines_show

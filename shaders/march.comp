@@ -6,7 +6,7 @@
  * pixels. A pixel starts where the cone of its 4x4 block stopped (cone.comp). Compiled by masu-bake
  * together with the scene's field.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_march

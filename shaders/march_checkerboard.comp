@@ -10,7 +10,7 @@
  * is approximated, no cap, no fallback colours. d is the pixel spacing at the middle of the picture,
  * the largest there is.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_march_checkerboard

@@ -3,7 +3,7 @@
  * is the better baseline. Scenes without polygons only; counts nothing. Compiled by masu-bake with
  * --variants.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_march_fragment

@@ -8,7 +8,7 @@
  *
  * 32 invocations per 8x8 tile; each owns two pixels of a row.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_march_seed

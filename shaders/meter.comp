@@ -5,7 +5,7 @@
  *
  * Push constants: render_* = the picture, output_* = invocations.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"

@@ -2,7 +2,7 @@
  * occluders.frag: depth of an occluder over a whole texel, its farthest, where the occluder covers
  * all of it. The front of a convex body is, at each point, the farthest of its planes.
  */
-#version 450
+#version 440
 
 layout(location = 0) flat in vec4 in_lines[6];
 layout(location = 6) flat in vec4 in_planes[3];

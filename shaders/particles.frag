@@ -3,7 +3,7 @@
  * transparents.frag. A round spot: full from the middle to `edge` of the radius, then smoothly less; less, too, where a
  * surface is close behind, or the near plane. The depth is the latest image's, of polygons and the SDF alike.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_particles
 #include "shared/masu_shared.h"

@@ -2,7 +2,7 @@
  * pick.frag: whose polygon it is. push.blended: not 0 where it is blended. With MASU_TEXTURES only where the map's alpha
  * leaves it: push.layers are the layers of its maps. push.flags: the material's.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_pick
 #include "shared/masu_shared.h"

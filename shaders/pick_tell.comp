@@ -7,7 +7,7 @@
  * classify.comp has copied it from there. (Depths that pick has drawn differ from the raster's by what
  * interpolation rounds; comparing them with the picture's would make ground that the SDF touches either.)
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/guard.glsl"

@@ -3,7 +3,7 @@
  * sky and for some suns, times the sky and the sun of now. One invocation per probe; lookups then
  * read one set, however many there are.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"

@@ -10,7 +10,7 @@
  * Push constants: output_* = size of input and output, push.last_* = its last pixel, push.lobe =
  * exp2(-stops), in 0..1, 1 the sharpest, 0 a copy, push.stops = exp2(stops).
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_rcas
 #include "shared/masu_shared.h"

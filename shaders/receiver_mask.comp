@@ -5,7 +5,7 @@
  *
  * push.header: the header of src/frame/occlusion.c.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_receiver_mask
 #include "shared/masu_shared.h"

@@ -12,7 +12,7 @@
  * segment. Half-spaces are in neither list: they count everywhere. push.unpruned not 0: all parts, for comparison. Leaving a part out makes steps longer, never
  * wrong.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_sdf_occlusion

@@ -18,7 +18,7 @@
  *
  * push.listed not 0: the tiles' lists of parts are there.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_MOTION 1

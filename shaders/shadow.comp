@@ -3,7 +3,7 @@
  * multiplied with what the SDF leaves of it where there are SDF shadows (sdf_occlusion.comp, before
  * this). light/sun_map.glsl has the lookup.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"

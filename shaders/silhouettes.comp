@@ -14,7 +14,7 @@
  *
  * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_silhouettes

@@ -2,7 +2,7 @@
  * skin.comp: meshes that joints bend, where their vertices are drawn from: position and normal, as
  * shaders/shared/skinning.glsl has them.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/pack.glsl"

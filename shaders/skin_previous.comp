@@ -2,7 +2,7 @@
  * skin_previous.comp: where the vertices of skin.comp were in the previous frame, whose matrices lie behind those
  * of this one. Computed again from them, and not what skin.comp has left: no state crosses frames.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_skin_previous
 #include "shared/masu_shared.h"

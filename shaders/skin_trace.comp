@@ -7,7 +7,7 @@
  * Quantised boxes hold what they stand for, as those of src/scene/trace_tree.c do: positions are rounded outwards
  * by more than the differences here may be off, and what bvh.glsl's own arithmetic may be is its margin.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 

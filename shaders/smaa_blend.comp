@@ -10,7 +10,7 @@
  * Push constants: render_* = size of the picture, push.steps = steps of a search, two pixels each,
  * push.diagonal_steps = of a diagonal one, 0: diagonals are not looked for, push.corners not 0: corners are kept.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_smaa_blend
 #include "shared/masu_shared.h"

@@ -10,7 +10,7 @@
  * Push constants: render_* = valid corner of the picture, output_* = tiles, push.threshold = threshold in
  * the steps of masu_smaa_luma.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_smaa_edges
 #include "shared/masu_shared.h"

@@ -2,7 +2,7 @@
  * specular_accumulate.comp: for comparison: what all rays of each pixel have brought since the last cut,
  * added up, and how many they were. In floats: after 2^20 frames a sum still takes up one more.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"

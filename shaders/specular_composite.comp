@@ -12,7 +12,7 @@
  * push.cutoff: roughness from which nothing is traced. push.accumulate: 1: the mean of the reference instead, which
  * is weighted already. push.fine: not 0: there are full-resolution history.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_composite
 #include "shared/masu_shared.h"

@@ -10,7 +10,7 @@
  *
  * push.taps: neighbours; push.temporal: not 0: there is a temporal accumulation.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_specular_filter

@@ -6,7 +6,7 @@
  * A pixel that is not glossy is replaced by another one of its 2x2 that is: a rod one pixel wide would
  * else be traced in every fourth frame only.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_guide
 #include "shared/masu_shared.h"

@@ -3,7 +3,7 @@
  * turns: a copy is what keeps them. All texels, and not those of the listed tiles alone: a tile that has
  * nothing to trace must not show the next frame what it had some frames ago.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_keep
 #include "shared/masu_shared.h"

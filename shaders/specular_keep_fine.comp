@@ -2,7 +2,7 @@
  * specular_keep_fine.comp: the full-resolution history, for the next frame. Of the listed tiles alone: which texels
  * have traced anything the kept guide says (specular_keep.comp).
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/globals.glsl"

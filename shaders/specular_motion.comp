@@ -5,7 +5,7 @@
  *
  * A pass of its own: in specular_shade it would take 40 registers that are wanted there.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_motion
 #include "shared/masu_shared.h"

@@ -9,7 +9,7 @@
  * in one and the same half of its directions.) A mirror's rays all go one way, which has no density: there
  * each ray stands for its own lobe alone.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_rays
 #include "shared/masu_shared.h"

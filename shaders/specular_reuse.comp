@@ -14,7 +14,7 @@
  *
  * push.taps: neighbours.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_reuse
 #include "shared/masu_shared.h"

@@ -8,7 +8,7 @@
  *
  * push.accumulate: 1: the reference: light is multiplied by what the ray is worth.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of what is met may have a coat */
 #define MASU_PUSH masu_push_specular_shade

@@ -5,7 +5,7 @@
  * Supersampling", SIGGRAPH 2014; their spread instead of their corners: Salvi, "An Excursion in Temporal
  * Supersampling", GDC 2016), which by then have little noise.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_taa
 #include "shared/masu_shared.h"

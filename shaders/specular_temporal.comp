@@ -13,7 +13,7 @@
  *
  * push.frames: how far back the mean reaches, 1/60 s.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_specular_temporal

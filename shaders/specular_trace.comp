@@ -1,7 +1,7 @@
 /*
  * specular_trace.comp: the polygon that the ray of each traced texel meets first (trace/bvh.glsl).
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_specular_trace
 #include "shared/masu_shared.h"

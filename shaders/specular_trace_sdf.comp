@@ -6,7 +6,7 @@
  *
  * push.steps: most steps of a ray; push.unpruned not 0: all parts for each, for comparison.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_PUSH masu_push_specular_trace_sdf

@@ -2,7 +2,7 @@
  * split_depth.frag: depth of what is nearest, polygons and SDF alike, into a depth attachment: the march leaves it in
  * an image that is none, and the host's own commands (masu_desc.split) test against it.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 

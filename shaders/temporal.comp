@@ -12,7 +12,7 @@
  * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input size * (1 /
  * output size); push.steps_* = 1 / that; push.texel_*, push.old_*: 1 / size of the images of colour and history.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_temporal

@@ -20,7 +20,7 @@
  * Push constants: output_* = the render size; push.history_* = size of the part of `history` that is shown / that of the
  * image; push.shift: 1 where the sizes of input and output are one, and a pixel of the output looks at its own.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_PUSH masu_push_temporal_find
 #include "shared/masu_shared.h"

@@ -2,7 +2,7 @@
  * temporal_keep.comp: of each pixel the nearest depth of 3x3, for the next frame's temporal_find.comp: a pixel that a
  * silhouette is near belongs to what is in front.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/push.glsl"

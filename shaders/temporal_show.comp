@@ -8,7 +8,7 @@
  * pixel; half of that per axis is 1/24, and a little more has the least error.) What is kept is not sharpened: it
  * would be again in every frame.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_temporal_show

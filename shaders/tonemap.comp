@@ -6,7 +6,7 @@
  * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites;
  * push.roots not 0: what follows is rung.temporal.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #define MASU_OUTPUT

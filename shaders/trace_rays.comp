@@ -3,7 +3,7 @@
  * frame. A ray is origin and t_min, direction and t_max; an answer is t, triangle, instance and what was
  * looked at, then weights. push.x rays; push.y 1: any hit will do, and the answer has nothing but t.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 
 layout(local_size_x = 64) in;

@@ -19,7 +19,7 @@
  * The depth is the latest image's, of polygons and the SDF alike; there is no depth attachment. With
  * MASU_TEXTURES the material's maps, with MASU_SUN_MAP the sun's shadow map.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SURFACE /* any of them may have a coat */
 #define MASU_PUSH masu_push_transparents

@@ -8,7 +8,7 @@
  * Slots that depend on the anchor alone (of all that stands still in a scene far from the origin)
  * are data and not code: 64 invocations share them.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shared/masu_shared.h"

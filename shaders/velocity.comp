@@ -2,7 +2,7 @@
  * velocity.comp: the velocity of the sky where no polygon is, in scenes without an SDF: how the
  * direction of the pixel has turned. Polygons have written theirs (gbuffer.frag).
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "shared/counters.glsl"

@@ -35,6 +35,7 @@
  */
 #ifndef MASU_TRACE_BVH_GLSL
 #define MASU_TRACE_BVH_GLSL
+#extension GL_EXT_shader_integer_mix : require /* a part of GLSL from version 450 on only */
 
 #include "shared/guard.glsl"
 #include "shared/masu_shared.h"

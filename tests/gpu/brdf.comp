@@ -7,7 +7,7 @@
  *   pc.y    how many cases
  *   pc.z    steps of each angle of the furnace
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #define MASU_OWN_COATS
 #define MASU_SURFACE

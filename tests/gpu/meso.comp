@@ -1,5 +1,5 @@
 /* meso.comp: shaders/brdf/meso.glsl by itself, for tests/gpu/test_meso.c. pc.y: how many cases. */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "brdf/meso.glsl"
 

@@ -1,5 +1,5 @@
 /* probes_lookup.comp: shaders/light/probes.glsl at given points, for test_probes.c. */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/masu_shared.h"
 #include "light/probes.glsl"

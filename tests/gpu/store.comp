@@ -1,6 +1,6 @@
 /* store.comp: the macros of shaders/shared/store.glsl on an image of words, for test_store.c: what would be stored
  * where, and how often something was replaced. */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 
 layout(local_size_x = 64) in;

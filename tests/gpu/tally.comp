@@ -1,5 +1,5 @@
 /* tally.comp: a loop of as many rounds as the invocation's number says, for test_model. */
-#version 450
+#version 440
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 1) buffer Values {

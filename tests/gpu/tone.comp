@@ -2,7 +2,7 @@
  * tone.comp: shaders/shared/tone.glsl by itself, for tests/gpu/test_tone.c. pc.x: how many cases; pc.y:
  * bits of the float that the neutral curve ends at.
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "shared/tone.glsl"
 

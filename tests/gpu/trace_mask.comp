@@ -1,7 +1,7 @@
 /* trace_mask.comp: rays through shaders/trace/bvh.glsl with a hook: triangles below push.y are
  * passed through where the weight of the second corner is below a half. Bindings and answers of
  * shaders/trace_rays.comp. */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 
 layout(local_size_x = 64) in;

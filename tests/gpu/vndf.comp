@@ -4,7 +4,7 @@
  *
  *   pc.y  how many cases
  */
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : require
 #include "brdf/vndf.glsl"
 #include "noise/sequence.glsl"

@@ -124,6 +124,16 @@ expect 3 variables "$folder/bad.a"
 
 # ---- The rules -----------------------------------------------------------------------------------
 
+# What declares 16-bit floats needs 450, and ray queries need 460.
+newer_versions() {
+    find "$1" -name '*.comp' -o -name '*.frag' | xargs grep -LE "arithmetic_types|GL_EXT_ray_query" | xargs grep -Hn '^#version' | grep -v ' 440$'
+}
+mkdir "$folder/version"
+printf '#version 450\n' > "$folder/version/a.comp"
+printf '#version 440\n' > "$folder/version/b.frag"
+expect 1 newer_versions "$folder/version"
+expect_none 'compute and fragment shaders are of version 440 (shaders/shaders.mk)' newer_versions shaders
+
 expect_none 'images are stored through the macros of shaders/shared/store.glsl alone' stores shaders
 expect_none 'these are called through shaders/shared/guard.glsl alone' raw_functions shaders
 

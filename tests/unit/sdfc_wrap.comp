@@ -1,4 +1,4 @@
-#version 450
+#version 440
 /* sdfc_wrap.comp: what a shader must provide for the GLSL of masu-sdfc, at its plainest. For tests. */
 #extension GL_GOOGLE_include_directive : require
 #define MASU_SDF_SETUP 1

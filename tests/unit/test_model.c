@@ -37,7 +37,7 @@ static masu_spirv_cost cost_of_source(const char *body) {
     char text[1024];
     spirv_module m;
     snprintf(text, sizeof text,
-             "#version 450\nlayout(set = 0, binding = 0) buffer B { vec4 a, b, c; mat3 m; uvec4 u; "
+             "#version 440\nlayout(set = 0, binding = 0) buffer B { vec4 a, b, c; mat3 m; uvec4 u; "
              "ivec4 i; };\nvoid main() { %s }\n",
              body);
     int good = spirv_compile(write_text("cost.comp", text), "", &m);
@@ -97,7 +97,7 @@ static masu_spirv_cost straight(const uint32_t *words, size_t bytes) {
 static void what_constants_leave_out_is_not_counted(void **state) {
     (void)state;
     static const char source[] =
-        "#version 450\n"
+        "#version 440\n"
         "layout(constant_id = 3) const bool on = true;\n"
         "layout(constant_id = 5) const uint kind = 2;\n"
         "layout(set = 0, binding = 0) buffer B { vec4 a, b; uint n; };\n"

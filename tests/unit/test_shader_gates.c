@@ -61,7 +61,7 @@ static uint32_t assert_passes(const spirv_module *m, const char *name) {
 /* ---- Self-tests ------------------------------------------------------------------------------ */
 
 #define SHADER(declarations, body)                                                                 \
-    "#version 450\n"                                                                               \
+    "#version 440\n"                                                                               \
     "layout(local_size_x = 1) in;\n"                                                               \
     "layout(set = 0, binding = 0) buffer B { int n; uint u; float x; };\n" declarations            \
     "void main() {\n" body "}\n"

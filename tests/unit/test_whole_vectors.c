@@ -39,7 +39,7 @@ static void check(const char *body, uint32_t floats, uint32_t vectors) {
     uint32_t counts[LOADS_MOST];
     size_t words;
     snprintf(text, sizeof text,
-             "#version 450\nlayout(local_size_x = 1) in;\nstruct row { vec4 a; vec3 b; float c; mat2x4 m; };\n"
+             "#version 440\nlayout(local_size_x = 1) in;\nstruct row { vec4 a; vec3 b; float c; mat2x4 m; };\n"
              "layout(std140, set = 0, binding = 0) uniform U { vec4 u; vec4 list[8]; row one; } u;\n"
              "layout(std430, set = 0, binding = 1) buffer S { float x; row rows[]; } s;\n"
              "layout(std430, set = 0, binding = 2) buffer V { vec4 v[]; };\n"

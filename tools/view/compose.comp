@@ -2,7 +2,7 @@
  * compose.comp: what masu-view shows: the picture of A; beside a line, that of B; or a map of their
  * difference; and over all of it the overlay. One invocation per pixel.
  */
-#version 450
+#version 440
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

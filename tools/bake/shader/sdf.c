@@ -51,6 +51,8 @@ static bool write_text(const char *directory, const char *name, const void *text
 
 static void append_scene_header(masu_bake_buffer *text, const masu_bake_content *content,
                                 const char *glsl_path) {
+    /* docs/scene.md promises version 450, of which 440 lacks this for fields (shaders/shaders.mk says why 440). */
+    masu_bake_append_text(text, "#extension GL_EXT_shader_integer_mix : require\n");
     for (uint64_t i = 0; i < masu_bake_count(content, MASU_BLOB_SDF_PARAMS); i++) {
         const masu_blob_sdf_param *p =
             &MASU_BAKE_ARRAY(content, MASU_BLOB_SDF_PARAMS, const masu_blob_sdf_param)[i];

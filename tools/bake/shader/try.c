@@ -25,7 +25,7 @@ enum {
 
 /* MASU_SDFC_SLOTS_MAX, MASU_SDFC_PARAMS_MAX. */
 const char masu_bake_try_source[] =
-    "#version 450\n"
+    "#version 440\n"
     "#extension GL_GOOGLE_include_directive : require\n"
     "#define MASU_SDF_SETUP 1\n"
     "#include \"shared/guard.glsl\"\n"
