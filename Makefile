@@ -37,7 +37,7 @@ LONG   ?=
 
 CONFIG_release  := -O2 -g -DNDEBUG
 CONFIG_debug    := -O0 -g3
-CONFIG_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined
+CONFIG_sanitize := -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined
 CONFIG_sanitize += -fno-sanitize-recover=all
 CONFIG_coverage := -O0 -g --coverage
 CONFIG_fuzz     := $(CONFIG_sanitize) -fsanitize=fuzzer-no-link

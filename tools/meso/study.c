@@ -10,10 +10,11 @@ const double masu_meso_judged[MASU_MESO_JUDGED] = {0, 30, 60, 80, 88};
 const uint32_t masu_meso_level_size[MASU_MESO_LEVELS] = {32, 8, 2};
 const uint32_t masu_meso_mip_size[MASU_MESO_MIPS] = {16, 4, 1};
 
-/* Texels that the fit looks at one by one. */
+/* Texels that the fit looks at one by one, and those of the map itself, of which it looks at the mean: with
+ * FIT_SIDE rays and more to a side. With fewer as many fewer, but at least a sixth: a draft is one in both. */
 #define FIT_TEXELS 144u
-/* And those of the map itself, of which it looks at the mean. */
 #define FINE_TEXELS 256u
+#define FIT_SIDE 96u
 #define BIN_LOW (-0.5)
 #define BIN_HIGH 1.5
 
@@ -258,6 +259,11 @@ static void count_shadows(masu_meso_study *study, const masu_meso_tracer *tracer
 
 /* ---- all of it ---- */
 
+static uint32_t fit_share(uint32_t texels, uint32_t side) {
+    if (side >= FIT_SIDE) return texels;
+    return side * 6 > FIT_SIDE ? texels * side / FIT_SIDE : texels / 6;
+}
+
 /* Texels spread over the map, and their radiance from above. */
 static void pick_texels(const masu_meso_study *study, const masu_meso_tracer *tracer,
                         const masu_meso_patch *patch, const masu_meso_options *options,
@@ -266,30 +272,31 @@ static void pick_texels(const masu_meso_study *study, const masu_meso_tracer *tr
     static const double elevation[] = {10, 25, 45, 70}, azimuth[] = {0, 90, 180};
     masu_meso_setup lights = {.side = 3, .sky_rays = options->sky_rays, .seed = options->seed + 5};
     set_lights(&lights, elevation, COUNT(elevation), azimuth, COUNT(azimuth));
-    uint32_t numbers = lights.light_count * 3;
+    uint32_t numbers = lights.light_count * 3, texel_count = fit_share(FIT_TEXELS, options->side);
+    uint32_t fine_count = fit_share(FINE_TEXELS, options->side);
     double *all = allocated((size_t)SIDE * SIDE * numbers, sizeof *all);
     masu_meso_look_along(tracer, patch, &lights, 0, 0, study->height, MASU_MESO_SKY, SIDE, all);
-    masu_meso_texel *texels = allocated(FIT_TEXELS, sizeof *texels), *mip = mip_of(study, SIDE);
-    double *near = allocated((size_t)FIT_TEXELS * numbers, sizeof *near);
-    for (uint32_t t = 0; t < FIT_TEXELS; t++) {
-        uint32_t from = t * 1021 / FIT_TEXELS;
+    masu_meso_texel *texels = allocated(texel_count, sizeof *texels), *mip = mip_of(study, SIDE);
+    double *near = allocated((size_t)texel_count * numbers, sizeof *near);
+    for (uint32_t t = 0; t < texel_count; t++) {
+        uint32_t from = t * 1021 / texel_count;
         texels[t] = mip[from];
         memcpy(near + (size_t)t * numbers, all + (size_t)from * numbers, numbers * sizeof *near);
     }
     free(mip);
     free(all);
-    masu_meso_texel *fine = allocated(FINE_TEXELS, sizeof *fine);
-    for (uint32_t t = 0; t < FINE_TEXELS; t++) {
+    masu_meso_texel *fine = allocated(fine_count, sizeof *fine);
+    for (uint32_t t = 0; t < fine_count; t++) {
         double u, v;
         masu_meso_point(t, options->seed + 11, &u, &v);
         fine[t] =
             study->texels[(size_t)(v * study->size) * study->size + (size_t)(u * study->size)];
     }
     samples->fine = fine;
-    samples->fine_count = FINE_TEXELS;
+    samples->fine_count = fine_count;
     samples->texels = texels;
     samples->near = near;
-    samples->texel_count = FIT_TEXELS;
+    samples->texel_count = texel_count;
     samples->near_count = lights.light_count;
     memcpy(samples->near_light, lights.light, lights.light_count * sizeof *lights.light);
 }
