@@ -153,7 +153,10 @@ FUZZ_SEEDS_sdfc := tests/unit/features.sdf scenes/rods.sdf
 # Every feature that is read, in a small file.
 FUZZ_SEEDS_gltf := tests/fuzz/all.gltf
 # Modules, and what `masu conform`, `masu bench` and `masu simulate` read.
-$(foreach n,spirv suite ladder sweep trace png,$(eval FUZZ_SEEDS_$(n) := $(wildcard tests/fuzz/corpus/$(n)/*)))
+$(foreach n,spirv suite ladder sweep trace png panorama acc description,$(eval FUZZ_SEEDS_$(n) := $(wildcard tests/fuzz/corpus/$(n)/*)))
+
+FUZZ_SEEDS_description += $(wildcard scenes/*.json)
+FUZZ_SEEDS_machine := docs/report/engine/machine.json
 
 FUZZ      ?= scene
 FUZZ_TIME ?= 60

@@ -1,0 +1,51 @@
+/* in_file.h: for fuzzers of readers that want a file's name and say what is wrong on standard error: a folder of
+ * this process with the bytes in it, and what has been said about them.
+ *
+ * Standard error of stdio alone is caught: what the sanitizers and libFuzzer write goes where it went. */
+#ifndef FUZZ_IN_FILE_H
+#define FUZZ_IN_FILE_H
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define EXPECT(condition)                                                                          \
+    do {                                                                                           \
+        if (!(condition)) in_file_die(#condition);                                                 \
+    } while (0)
+
+static FILE *in_file_terminal; /* where standard error went */
+static char in_file_said[4096], in_file_folder[] = "/tmp/masu-fuzz-XXXXXX";
+
+static inline void in_file_die(const char *what) {
+    fprintf(in_file_terminal ? in_file_terminal : stderr, "%s does not hold; said: %s\n", what, in_file_said);
+    abort();
+}
+
+static inline void in_file_remove(void) {
+    char command[64];
+    snprintf(command, sizeof command, "rm -rf %s", in_file_folder);
+    if (system(command)) fprintf(in_file_terminal, "%s is left\n", in_file_folder);
+}
+
+/* FOLDER/NAME with these bytes; out: room for 64. From then on nothing has been said. */
+static inline const char *in_file(const char *name, const uint8_t *data, size_t size, char out[64]) {
+    if (!in_file_terminal) {
+        in_file_terminal = stderr;
+        EXPECT(mkdtemp(in_file_folder));
+        EXPECT(!atexit(in_file_remove));
+    }
+    snprintf(out, 64, "%s/%s", in_file_folder, name);
+    FILE *file = fopen(out, "wb");
+    EXPECT(file && fwrite(data, 1, size, file) == size && !fclose(file));
+    if (stderr != in_file_terminal) fclose(stderr);
+    memset(in_file_said, 0, sizeof in_file_said);
+    stderr = fmemopen(in_file_said, sizeof in_file_said - 1, "w");
+    EXPECT(stderr);
+    setvbuf(stderr, NULL, _IONBF, 0);
+    return out;
+}
+
+#endif
