@@ -123,9 +123,10 @@ vec3 prepare(uvec2 place)
     float z_scale;
     ray r = ray_of(place, z_scale);
     vec3 inverse = 1.0 / mix(r.direction, vec3(1e-12), lessThan(abs(r.direction), vec3(1e-12)));
-    vec2 bounds = within(frame.sdf_min.xyz - eye_hi - eye_lo, frame.sdf_max.xyz - eye_hi - eye_lo, inverse);
+    vec2 bounds = within(frame.sdf_low.xyz, frame.sdf_high.xyz, inverse);
     float nearest = frame.forward.w * z_scale;
-    float first_t = max(nearest, bounds.x);
+    /* Half-spaces begin in the SDF's bounds; the listed parts' box is within those. */
+    float first_t = MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? max(nearest, bounds.x) : nearest;
     float last_t = min(frame.sdf_max.w, bounds.y);
 #if MASU_HAS_RASTER
     float depth = imageLoad(depth_image, ivec2(at)).r;

@@ -169,6 +169,7 @@ vec3 to_surface(ray r, inout float t)
                 final = i + 1;
             }
             t = clamp(masu_finite(next) ? next : t, r.start, r.limit);
+            MASU_WENT_BACK(t)
         }
     }
     masu_count(MASU_COUNTER_SDF_EVALS, evals);

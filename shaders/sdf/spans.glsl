@@ -62,9 +62,10 @@ uint span_word(uvec2 at)
 
 #ifdef MASU_SPAN_TILE
 #if MASU_SDF_BLOCK_WORDS > 0
+#define MASU_WENT_BACK(t) span_to = (t) >= span_from ? span_to : -1.0;
 uint span_first; /* of its block's pieces */
 float span_pixel;
-float span_start, span_from, span_to; /* of the block; of the piece that the ray is in */
+float span_start, span_from, span_to; /* of the block; of the piece that the ray is in: -1 if it has gone back before that */
 
 float span_end(vec4 ends, uint i)
 {
@@ -116,13 +117,15 @@ void span_prepare(uvec2 size)
     span_pixel = 2.0 * max(frame.up.w / float(size.y), frame.right.w / float(size.x));
 }
 
+/* Samples come one behind the other, or MASU_WENT_BACK has said where they do not: one comparison each. */
 void span_follow(float t, uvec2 size)
 {
-    if (!(t >= span_from && t <= span_to)) {
+    if (!(t <= span_to)) {
         span_look_up(t, size);
     }
 }
 #else
+#define MASU_WENT_BACK(t)
 void span_prepare(uvec2 size)
 {
 }

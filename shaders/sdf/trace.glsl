@@ -16,6 +16,11 @@
 
 #include "sdf/field.glsl"
 
+/* What an includer does where the next sample, at t, may not be behind this one. */
+#ifndef MASU_WENT_BACK
+#define MASU_WENT_BACK(t)
+#endif
+
 #ifndef MASU_MARCH_STEPS
 #define MASU_MARCH_STEPS push.steps
 #endif
@@ -288,6 +293,7 @@ void march_between(inout march_state m, ray r, float f)
     m.before_t = meet && !through ? m.t : m.before_t;
     m.before_f = meet ? (through ? 0.5 * m.before_f : f) : m.before_f;
     m.t = missed ? -1.0 : hit ? end : spent ? m.best_t : meet ? next : free;
+    MASU_WENT_BACK(m.t)
 }
 
 /* The same of a ray that has met nothing below 0. Branches that end it early, since most samples need one or two of its
@@ -306,6 +312,7 @@ void march_near(inout march_state m, ray r, float f)
     bool spent = m.steps >= MASU_MARCH_STEPS;
     if (!meet && !spent) {
         m.t = free;
+        MASU_WENT_BACK(free)
         return;
     }
     if (meet) {
@@ -344,6 +351,7 @@ void march_far(inout march_state m, float f)
     float free = m.before_t + m.before_f;
     if (m.t - f > free) {
         m.t = free;
+        MASU_WENT_BACK(free)
         return;
     }
     masu_note_hint(m.t, f);

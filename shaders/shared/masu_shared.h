@@ -352,6 +352,8 @@ struct masu_frame_uniforms {
     masu_vec4 sdf_min;       /* xyz lower corner of the SDF's bounds, in its space; w 1 / Lipschitz
                                 constant */
     masu_vec4 sdf_max;       /* xyz upper corner; w longest ray, world units */
+    masu_vec4 sdf_low;       /* xyz both corners minus the eye, for rays that begin there; w unused */
+    masu_vec4 sdf_high;
     /* x number of the frame, modulo 2^32; y and z render size of the previous frame, 0: nothing of it counts;
      * w bits of MASU_HISTORY_* */
     masu_uvec4 history;

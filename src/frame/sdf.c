@@ -40,6 +40,8 @@ static void set_origin(const masu_sdf *sdf, masu_frame_data *f) {
         u->sdf_eye_lo[i] = (float)(eye - (double)u->sdf_eye_hi[i]);
         u->sdf_min[i] = (float)((double)sdf->bounds[0][i] - anchor);
         u->sdf_max[i] = (float)((double)sdf->bounds[1][i] - anchor);
+        u->sdf_low[i] = (float)((double)sdf->bounds[0][i] - f->eye[i]);
+        u->sdf_high[i] = (float)((double)sdf->bounds[1][i] - f->eye[i]);
     }
     u->sdf_min[3] = sdf->bounds[0][3];
     u->sdf_max[3] = sdf->bounds[1][3];
