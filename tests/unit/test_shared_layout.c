@@ -20,7 +20,7 @@
 #include "support/files.h"
 #include "support/spirv.h"
 
-#define MEMBERS_MOST 25u
+#define MEMBERS_MOST 27u
 
 typedef struct member {
     const char *name;

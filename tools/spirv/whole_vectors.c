@@ -233,9 +233,11 @@ static void write_out(state *s, pointer_type *list) {
         const spirv_instruction *i = &s->m.list[k];
         if (i->op == SPIRV_FUNCTION && !inside) put_pointers(s, list, &pointers);
         inside |= i->op == SPIRV_FUNCTION;
-        if ((i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN) && s->chains[i->word[2]].change)
+        /* Of a broken module something outside of functions may have a chain's id: the types are not there yet. */
+        bool chained = i->op == SPIRV_ACCESS_CHAIN || i->op == SPIRV_IN_BOUNDS_ACCESS_CHAIN;
+        if (inside && chained && s->chains[i->word[2]].change)
             put_chain(s, i, list);
-        else if (i->op == SPIRV_LOAD && chain_of(s, i->word[3])->change)
+        else if (inside && i->op == SPIRV_LOAD && chain_of(s, i->word[3])->change)
             put_load(s, i, chain_of(s, i->word[3]));
         else
             put(s, i->word, i->count);
