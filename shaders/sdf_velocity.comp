@@ -2,8 +2,9 @@
  * sdf_velocity.comp: the velocity of what the SDF shows, and of the sky. Compiled by masu-bake with
  * the scene's field.
  *
- * Where no part of a tile changes, the point under a pixel has moved with the eye alone. Elsewhere it belongs to
- * the nearest part, which may be at rest, too. Where the point of one that is not was in the previous frame:
+ * Where no part of a tile changes, or none that matters where the ray of a block of 4x4 pixels ends, the point under a
+ * pixel has moved with the eye alone. Elsewhere it belongs to the nearest part, which may be at rest, too. Where the
+ * point of one that is not was in the previous frame:
  *
  *   1. The part's root transform (the movements, turns and scalings that stand around all else in
  *      it) takes the point into the part's own space with the present slots and out of it with the
@@ -16,7 +17,7 @@
  * f is compared with f', not with 0: the march stops a little before the surface, and this distance
  * is no motion. A field that did not change is evaluated twice, by the same code, and gives 0.
  *
- * push.listed not 0: the tiles' lists of parts are there.
+ * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -41,7 +42,11 @@ layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1, rgba16f)
     uniform writeonly image2D velocity_image;
 
-#include "sdf/field.glsl"
+#define MASU_SDF_ASK
+#define MASU_SPAN_BEFORE true
+#define MASU_SPAN_TILE own_tile
+uint own_tile;
+#include "sdf/spans.glsl"
 #include "shared/motion.glsl"
 
 /* Where the root transform of the part says that p was. */
@@ -94,8 +99,8 @@ vec3 followed(uint part, vec3 p, vec3 q, float h, float enough)
     return q;
 }
 
-/* Whether a part that is seen in the tile changes. */
-bool tile_moves()
+/* Whether a part that is listed changes. */
+bool any_moves()
 {
 #if !MASU_SDF_MOVING
     return false;
@@ -121,33 +126,48 @@ bool tile_moves()
 #endif
 }
 
+/* What the part under a pixel has moved by, back to the previous frame: in a tile of which some part changes. z: t along
+ * the view. */
+vec3 part_step(uvec2 at, uvec2 size, vec3 direction, float t, float z)
+{
+    if (push.listed == 2u) {
+        span_prepare(size);
+        span_begin(at, size, t);
+        if (!any_moves()) {
+            return vec3(0.0);
+        }
+    }
+    vec3 p = world_at(direction, t);
+    uint part = masu_sdf_nearest(p);
+    if (!masu_sdf_part_moves(part)) {
+        return vec3(0.0);
+    }
+    masu_list_bits = uint[](0xFFFFFFFFu, 0xFFFFFFFFu); /* before, other terms of it may have mattered */
+    vec3 a = abs(p);
+    float pixel = 2.0 * frame.up.w / float(size.y) * z;
+    float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
+    return followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent), max(1e-3 * pixel, 8.0 * extent)) - p;
+}
+
 /* now: in, the ray through the pixel, whose view z is 1; out, the point that is seen, seen from the eye; before: where
  * that was, seen from the previous one. */
 void surface_points(uvec2 at, uvec2 size, float depth, inout vec4 now, out vec4 before)
 {
     vec3 through = now.xyz;
-    float z_scale = length(through);
-    vec3 direction = through / z_scale;
-    float t = frame.forward.w * z_scale / depth;
-    vec3 p = world_at(direction, t);
+    float z = frame.forward.w / depth;
+    own_tile = masu_tile_of(at, size);
     if (push.listed != 0u) {
-        masu_use_tile(masu_tile_of(at, size), size);
+        masu_use_tile(own_tile, size);
     }
-    vec3 q = p;
-    if (tile_moves()) {
-        uint part = masu_sdf_nearest(p);
-        if (masu_sdf_part_moves(part)) {
-            vec3 a = abs(p);
-            float pixel = 2.0 * frame.up.w / float(size.y) * t / z_scale;
-            float extent = ulp * max(max(a.x, max(a.y, a.z)), t);
-            q = followed(part, p, carried(part, p), max(0.25 * pixel, 64.0 * extent),
-                         max(1e-3 * pixel, 8.0 * extent));
-        }
+    vec3 moved = vec3(0.0);
+    if (any_moves()) {
+        float z_scale = length(through);
+        moved = part_step(at, size, through / z_scale, z * z_scale, z);
     }
     precise vec3 eye_step = (frame.eye_hi.xyz - previous.eye_hi.xyz) +
                             (frame.eye_lo.xyz - previous.eye_lo.xyz);
-    precise vec3 rel = direction * t;
-    precise vec3 was = rel + (eye_step + (q - p));
+    precise vec3 rel = through * z;
+    precise vec3 was = rel + (eye_step + moved);
     now = vec4(rel, 1.0);
     before = vec4(was, 1.0);
 }
