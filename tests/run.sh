@@ -37,10 +37,12 @@ jobs=${MASU_TEST_JOBS:-$(nproc)}
 # Tests of programs, of what a layer says of shaders, and of the host's part alone: the answers hardly depend on the driver, so of several drivers
 # the first that is there runs them.
 once=" test_baseline test_bench test_cli test_gpu_av test_model test_soak test_study_march "
-# Of all three drivers these are run by two. What the host decides, and what is the same picture with and without it, by both
-# lavapipes: the third takes four times as long. What memory, queues and rays' sums do to a driver, by one lavapipe and the third.
-not_swiftshader=" test_culling test_frame test_governor test_governor_host test_host_pass test_ladder test_live test_load "
-not_swiftshader+="test_lods test_occluders test_pick test_pool test_reinit test_reserve test_resize test_shadow_frames test_sprites test_viewports test_window "
+# Of all three drivers these are run by two. What the host decides, what is the same picture with and without it, and the means
+# of filters, shadow maps and lamps by both lavapipes: the third takes four times as long. What memory, queues and rays' sums do
+# to a driver, by one lavapipe and the third.
+not_swiftshader=" test_culling test_frame test_governor test_governor_host test_host_pass test_ladder test_lights test_live "
+not_swiftshader+="test_load test_lods test_occluders test_pick test_pool test_reinit test_reserve test_resize test_shadow "
+not_swiftshader+="test_shadow_frames test_specular_filters test_sprites test_viewports test_window "
 not_second_lavapipe=" test_failures test_faults test_occlusion test_poison test_skin "
 
 # A rasteriser's own threads are in the way of the programs beside it: a tenth of the time.
