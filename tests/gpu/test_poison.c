@@ -157,11 +157,11 @@ static bool is_read(uint8_t usage) {
 
 static uint8_t kept[BYTES], now[BYTES];
 
-/* The picture at rest is kept within so many steps: what flickers by itself. */
-static uint32_t settle(void) {
-    uint32_t steps = 0;
-    for (int i = 0; i < WARM; i++) take(kept, "at rest", 0);
-    for (int i = 0; i < REST; i++) {
+/* The picture at rest is kept within so many steps: what flickers by itself. Without history it does not: a look will do. */
+static uint32_t settle(bool gathers) {
+    uint32_t steps = 0, rest = gathers ? REST : REST / 8;
+    for (int i = 0; i < WARM + (gathers ? 40 : 0); i++) take(kept, "at rest", 0);
+    for (uint32_t i = 0; i < rest; i++) {
         take(now, "at rest", 0);
         uint32_t d = max_difference(kept, now, BYTES);
         steps = d > steps ? d : steps;
@@ -174,8 +174,7 @@ static uint32_t settle(void) {
 static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack, uint32_t heals) {
     uint32_t cases = 0, longest = 0, pairs = 0;
     open_case(scene, rung);
-    for (int i = 0; i < 40; i++) take(kept, "warming up", 0);
-    uint32_t most = settle() + slack;
+    uint32_t most = settle(heals > 1) + slack;
     const masu_rung_plan *rp = &s.m->plan.rungs[0];
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
         if (!masu_has_pass(&rp->active, p) || p == MASU_PASS_READBACK) continue;
