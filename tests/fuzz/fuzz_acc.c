@@ -1,23 +1,8 @@
 /* fuzz_acc.c: any bytes as TORCS's dialect of AC3D. What comes out is no longer than what went in but for a line's end,
  * and the same when it is stripped again. */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "expect.h"
 
 #include "bake/import/acc.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_acc: %s\n", what);
-    abort();
-}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     masu_bake_buffer once = {0}, twice = {0};

@@ -4,8 +4,6 @@
 
 #include "bake/description/description.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char path[64];
     masu_bake_options options = {.models_directory = "/nowhere"};

@@ -1,23 +1,8 @@
 /* fuzz_gltf.c: any bytes as a glTF file, by our own reader, to the aiScene that it makes. What is refused must have
  * one line of error; of what is accepted all indices are followed. Files beside the model are not read. */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "expect.h"
 
 #include "bake/import/gltf.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_gltf: %s\n", what);
-    abort();
-}
 
 static float sum; /* what is read is used */
 

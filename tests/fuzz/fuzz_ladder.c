@@ -1,23 +1,8 @@
 /* fuzz_ladder.c: any bytes as ladder.json. A refusal is one line that names the file; what is accepted are rungs in
  * order that the library's own checks take, and texts that can stand in a comment of C. */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "expect.h"
 
 #include "bench/sweep/ladder_file.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_ladder: %s\n", what);
-    abort();
-}
 
 static void check_text(const char *text, size_t room) {
     EXPECT(memchr(text, '\0', room));

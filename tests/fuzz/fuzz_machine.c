@@ -4,8 +4,6 @@
 
 #include "bench/sweep/machine.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char path[64], error[1024] = "";
     masu_machine machine = {.cpu = "cpu", .driver = "driver", .masu = "1.0.0", .date = "2026-05-01 12:00 UTC", .threads = 2}, out;

@@ -1,26 +1,11 @@
 /* fuzz_scene.c: any bytes as a scene blob. Bound as they are, and again with length and hash made
  * to fit, since a fuzzer will not guess those. What is refused must be refused properly; what is
  * accepted is read to the last byte by a second reader, and compiled to a frame. */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "expect.h"
 
 #include "scene/blob.h"
 #include "plan/compile.h"
 #include "reference/scene_walk.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_scene: %s\n", what);
-    abort();
-}
 
 static void check_refusal(masu_result result, const masu_detail *detail, const masu_scene *scene) {
     masu_scene untouched;
@@ -57,7 +42,7 @@ static void bind(const uint8_t *blob, size_t size) {
         return;
     }
     const char *fault = masu_ref_walk_scene(&scene);
-    if (fault) die(fault);
+    if (fault) expected(__FILE__, __LINE__, fault);
     check_frame(&scene);
 }
 

@@ -1,23 +1,8 @@
 /* fuzz_sdfc.c: any bytes as an SDF scene. A refusal has a message that names the place; what is
  * accepted comes with everything that the result promises, and the same again the second time. */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "expect.h"
 
 #include "sdfc/sdfc.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_sdfc: %s\n", what);
-    abort();
-}
 
 static void check_result(const masu_sdfc_result *r) {
     EXPECT(r->glsl && r->c && r->table && r->warnings);

@@ -1,27 +1,12 @@
 /* fuzz_spirv.c: any bytes as a SPIR-V module, for all that reads one: masu_scene_bind, the counters of the model sheet,
  * what an instruction costs, what constants leave of it, loads of whole vectors. A module with counters, or with whole
  * vectors, is one that can be read again. */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "expect.h"
 
 #include "model/spirv_reach.h"
 #include "model/spirv_tally.h"
 #include "scene/code.h"
 #include "spirv/whole_vectors.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_spirv: %s\n", what);
-    abort();
-}
 
 static void read_again(uint32_t *words, size_t count) {
     spirv_module m;

@@ -1,23 +1,8 @@
 /* fuzz_suite.c: any bytes as a suite of `masu conform`. A refusal is one line that names the file; each case of
  * what is accepted can be named, found again by that name, and chosen. */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "expect.h"
 
 #include "conform/suite.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_suite: %s\n", what);
-    abort();
-}
 
 static void check(const masu_suite *suite) {
     char token[256], error[1024] = "";

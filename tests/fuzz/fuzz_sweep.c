@@ -1,11 +1,8 @@
 /* fuzz_sweep.c: any bytes as a folder of `masu bench`: sweep.json, results.csv, steady.csv, machine.json, ladder.json,
  * one after the other, a line of four dashes between them. Read as a report, compared, merged into another folder:
  * whatever names are in it, nothing is written outside of that folder. */
+#include "expect.h"
 #include <dirent.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,22 +10,10 @@
 #include "bench/sweep/machine.h"
 #include "bench/sweep/report.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) die(#condition);                                                         \
-    } while (0)
-
 static const char *const files[] = {"sweep.json", "results.csv", "steady.csv", "machine.json", "ladder.json"};
 enum { FILES = sizeof files / sizeof *files };
 
 static char root[64], part[80], merged[80];
-
-static void die(const char *what) {
-    fprintf(stderr, "fuzz_sweep: %s\n", what);
-    abort();
-}
 
 static void remove_all(const char *path) {
     DIR *d = opendir(path);

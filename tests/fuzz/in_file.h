@@ -5,24 +5,10 @@
 #ifndef FUZZ_IN_FILE_H
 #define FUZZ_IN_FILE_H
 
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#define EXPECT(condition)                                                                          \
-    do {                                                                                           \
-        if (!(condition)) in_file_die(#condition);                                                 \
-    } while (0)
+#include "expect.h"
 
 static FILE *in_file_terminal; /* where standard error went */
 static char in_file_said[4096], in_file_folder[] = "/tmp/masu-fuzz-XXXXXX";
-
-static inline void in_file_die(const char *what) {
-    fprintf(in_file_terminal ? in_file_terminal : stderr, "%s does not hold; said: %s\n", what, in_file_said);
-    abort();
-}
 
 static inline void in_file_remove(void) {
     char command[64];
