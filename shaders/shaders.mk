@@ -9,8 +9,9 @@
 # is not complete without the GLSL of a scene: masu-bake compiles it, so it and all that it may
 # include are embedded as text instead.
 #
-# Compute and fragment shaders are of version 440 but for those with 16-bit floats or ray queries. The SPIR-V is the same to the byte,
-# and glslang takes 0.08 s instead of 0.17 to start: for 450 it declares twice as many functions before the first line.
+# Compute and fragment shaders are of version 440 but for those with 16-bit floats or ray queries. The optimised SPIR-V is
+# the same to the byte, and glslang takes 0.08 s instead of 0.17 to start: for 450 it declares twice as many functions before
+# the first line.
 # Vertex shaders are of 450: for 440 they declare a block for the position that has no cull distance.
 
 SCENE_SHADERS := update.comp classify.comp cone.comp march.comp march_plain.comp march_seed.comp \

@@ -14,6 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     bool good = masu_machine_append(in_file_folder, &machine, error, sizeof error);
     EXPECT(good ? !*error : strstr(error, "machine.json") && !strchr(error, '\n'));
+    EXPECT(good || in_file_is(path, data, size));
     uint32_t runs = 0;
     while (good && masu_machine_read(in_file_folder, runs, &out)) runs++;
     EXPECT(!good || (runs && masu_machine_merge(in_file_folder, in_file_folder, error, sizeof error)));

@@ -34,4 +34,15 @@ static inline const char *in_file(const char *name, const uint8_t *data, size_t 
     return out;
 }
 
+/* Whether the file has these bytes and no others. */
+static inline int in_file_is(const char *path, const uint8_t *data, size_t size) {
+    FILE *file = fopen(path, "rb");
+    EXPECT(file);
+    int same = 1;
+    for (size_t i = 0; i < size && same; i++) same = fgetc(file) == data[i];
+    same = same && fgetc(file) == EOF;
+    fclose(file);
+    return same;
+}
+
 #endif
