@@ -9,8 +9,10 @@
  * Everything is display light, as an eye takes the mean of it (docs/design/31-truth.md); a: samples. Halves are rounded up
  * or down by chance: the nearest one would hold a history still that is a little wrong.
  *
- * Push constants: render_* = valid corner of the input, output_* = size to write, push.scale_* = input size * (1 /
- * output size); push.steps_* = 1 / that; push.texel_*, push.old_*: 1 / size of the images of colour and history.
+ * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size), push.steps_* = 1 / that;
+ * push.first_*: where the first pixel's middle lies, push.last_*: how far a place may, texels of the render size whose
+ * middles are whole numbers; push.end_*: the middle of the last pixel; push.texel_*, push.moved_*, push.old_*: 1 / size of
+ * the images of colour, velocity, history.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -18,7 +20,6 @@
 #define MASU_PUSH masu_push_temporal
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
-#include "shared/motion.glsl"
 #include "upscale/found.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
@@ -31,13 +32,14 @@ layout(set = MASU_SET_PASS, binding = 4, rgba16f) uniform writeonly image2D accu
 
 /* The cubic of Catmull and Rom less its mixed term: the linear mean, less so much of the second difference of
  * linear means a texel apart. */
-vec4 history_at(vec2 place, vec2 size)
+vec4 history_at(vec2 place)
 {
-    vec2 inside = clamp(place, vec2(0.5), size - 0.5);
+    vec2 end = vec2(push.end_x, push.end_y);
+    vec2 inside = clamp(place, vec2(0.5), end);
     vec2 t = fract(inside - 0.5);
     vec2 bent = t * (0.5 - 0.5 * t);
     /* The image may be larger than the picture: masu_resize. */
-    bent = mix(bent, vec2(0.0), greaterThan(inside, size - 1.5));
+    bent = mix(bent, vec2(0.0), greaterThan(inside, end - 1.0));
     vec2 uv = inside * vec2(push.old_x, push.old_y);
     vec4 here = textureLod(history_image, uv, 0.0);
     if (bent.x + bent.y > 0.0) {
@@ -54,8 +56,7 @@ vec4 history_at(vec2 place, vec2 size)
 vec3 by_chance(vec3 v, uvec2 at)
 {
     uint noise = at.x * 0xC13FAAu + at.y * 0x91E10Eu + frame.history.x * 0x9E3779u;
-    uvec3 all = (noise + uvec3(0u, 0x555555u, 0xAAAAAAu)) >> 11 & 0x1FFFu;
-    return uintBitsToFloat((floatBitsToUint(v) + all) & 0xFFFFE000u);
+    return uintBitsToFloat((floatBitsToUint(v) + (noise >> 11 & 0x1FFFu)) & 0xFFFFE000u);
 }
 
 void main()
@@ -64,28 +65,28 @@ void main()
     if (masu_is_outside(at)) {
         return;
     }
-    vec2 render = vec2(pc.render_width, pc.render_height), size = vec2(pc.output_width, pc.output_height);
     vec2 steps = vec2(push.steps_x, push.steps_y);
-    vec2 place = (vec2(at) + 0.5) * vec2(push.scale_x, push.scale_y) - 0.5 * frame.jitter.zw * render;
-    /* Of four texels of the picture, the upper left one; at its sides the place lies beside them. Of a size of 1 they
-     * are the same texel. */
-    vec2 corner = min(max(floor(place - 0.5), 0.0), render - 2.0);
-    vec2 f = place - 0.5 - corner;
+    /* In texels of the render size, whose middles are whole numbers: where the pixel lies; that within the picture, and a
+     * little before the middle of the last one; the texel that it is in; and of the four around it the upper left one. Of a
+     * size of 1 they are the same texel. */
+    vec2 place = vec2(at) * vec2(push.scale_x, push.scale_y) + (vec2(push.first_x, push.first_y) - frame.shifts.xy);
+    vec2 last = vec2(push.last_x, push.last_y), inside = min(max(place, vec2(0.0)), last);
+    vec2 texel = floor(inside + 0.5), corner = floor(inside);
+    vec2 f = place - corner;
 
     vec4 old = vec4(0.0);
-    uvec4 found = texelFetch(found_image, ivec2(clamp(place, vec2(0.0), render - 0.5)), 0);
+    uvec2 found = texelFetch(found_image, ivec2(texel), 0).xy;
     if (masu_is_found(found)) {
-        vec2 moved = masu_found_motion(found);
-        if (!masu_found_front(found)) {
-            vec2 inside = min(max(place, vec2(0.5)), render - 0.51);
-            moved = masu_unjittered(textureLod(velocity_image, inside / vec2(textureSize(velocity_image, 0)), 0.0).xy, render);
+        vec2 before = vec2(at) + 0.5;
+        if (!masu_has_stayed(found)) {
+            vec2 uv = (masu_found_place(found, texel, inside, last) + 0.5) * vec2(push.moved_x, push.moved_y);
+            before += (textureLod(velocity_image, uv, 0.0).xy + frame.shifts.zw) * steps;
         }
-        old = history_at(vec2(at) + 0.5 + moved * steps, size);
+        old = history_at(before);
         /* Of what a frame stores, 0 to 1, the cubic is within these. What none stores, as NaN, would count as many
          * samples as there can be, and be seen as long: begin anew. */
-        bool stored = all(greaterThanEqual(old.rgb, vec3(-1.0))) && all(lessThanEqual(old.rgb, vec3(2.0))) &&
-                      old.a >= 0.0 && old.a <= 64.0;
-        old = stored ? vec4(masu_found_held(found, old.rgb), min(old.a, masu_found_count(found))) : vec4(0.0);
+        bool stored = abs(old.r) + abs(old.g) + abs(old.b) + abs(old.a) <= 70.0;
+        old = stored ? masu_found_held(found, old) : vec4(0.0);
     }
 
     vec2 first = max(1.0 - abs(f) * steps, 0.0), second = max(1.0 - abs(1.0 - f) * steps, 0.0);

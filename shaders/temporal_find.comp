@@ -15,10 +15,11 @@
  *      changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
  *      that what moves counts at most 2, and less the faster it moves and the more it grows: it was smaller then.
  *
- * What is found is four words, of upscale/found.glsl.
+ * What is found is two words, of upscale/found.glsl.
  *
  * Push constants: output_* = the render size; push.history_* = size of the part of `history` that is shown / that of the
- * image; push.shift: 1 where the sizes of input and output are one, and a pixel of the output looks at its own.
+ * image; push.moved_*, push.then_*: 1 / size of the images of velocities and of the depths before; push.shift: 1 where the
+ * sizes of input and output are one, and a pixel of the output looks at its own.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -37,7 +38,7 @@ layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D depth_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D old_depth_image;
 layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D history_image; /* linear */
-layout(set = MASU_SET_PASS, binding = 5, rgba32ui) uniform writeonly uimage2D found_image;
+layout(set = MASU_SET_PASS, binding = 5, rg32ui) uniform writeonly uimage2D found_image;
 
 const float most_at_rest = masu_found_most;
 const float most_changing = 8.0; /* the same in a world that changes */
@@ -55,10 +56,10 @@ const float unseen = 0.01; /* display light that a mean over the surroundings ma
 struct around {
     float nearest, farthest;
     float slope; /* by which depth differs from pixel to pixel of one surface */
-    ivec2 front; /* where the nearest is */
+    uint way;    /* to the nearest, of upscale/found.glsl */
 };
 
-/* Of the nine samples around: display light. */
+/* Of the nine samples around: roots of display light, as they stand in the picture. */
 struct colors {
     vec3 mean, deviation, least, most;
 };
@@ -70,30 +71,30 @@ around depths_around(ivec2 at, ivec2 size)
     found.nearest = masu_most_of(c);
     found.farthest = masu_least_of(c);
     found.slope = min(abs(c.left - c.own), abs(c.right - c.own)) + min(abs(c.above - c.own), abs(c.below - c.own));
-    /* Of several the one that the pixel has a side in common with. */
-    ivec2 way = ivec2(1, 1);
-    way = c.diagonal.z == found.nearest ? ivec2(-1, 1) : way;
-    way = c.diagonal.y == found.nearest ? ivec2(1, -1) : way;
-    way = c.diagonal.x == found.nearest ? ivec2(-1, -1) : way;
-    way = c.below == found.nearest ? ivec2(0, 1) : way;
-    way = c.above == found.nearest ? ivec2(0, -1) : way;
-    way = c.right == found.nearest ? ivec2(1, 0) : way;
-    way = c.left == found.nearest ? ivec2(-1, 0) : way;
-    way = c.own == found.nearest ? ivec2(0) : way;
-    found.front = clamp(at + way, ivec2(0), size - 1);
+    /* Of several the one that the pixel has a side in common with. None lies beyond the picture: what is repeated there is
+     * the pixel, or has a side in common with it. */
+    uint way = masu_found_way(1, 1);
+    way = c.diagonal.z == found.nearest ? masu_found_way(-1, 1) : way;
+    way = c.diagonal.y == found.nearest ? masu_found_way(1, -1) : way;
+    way = c.diagonal.x == found.nearest ? masu_found_way(-1, -1) : way;
+    way = c.below == found.nearest ? masu_found_way(0, 1) : way;
+    way = c.above == found.nearest ? masu_found_way(0, -1) : way;
+    way = c.right == found.nearest ? masu_found_way(1, 0) : way;
+    way = c.left == found.nearest ? masu_found_way(-1, 0) : way;
+    found.way = c.own == found.nearest ? masu_found_way(0, 0) : way;
     return found;
 }
 
 /* Pixels that the pixel has moved, how its depth has grown; w as in the image. */
-vec4 motion_at(vec2 place, around a, vec2 size, out bool of_front)
+vec4 motion_at(ivec2 at, vec2 place, around a, vec2 size, out bool of_front)
 {
     vec2 inside = min(max(place, vec2(0.5)), size - 0.51); /* not even with a weight of 0 what lies beyond */
-    vec4 moved = textureLod(velocity_image, inside / vec2(textureSize(velocity_image, 0)), 0.0);
+    vec4 moved = textureLod(velocity_image, inside * vec2(push.moved_x, push.moved_y), 0.0);
     of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99);
     if (of_front) {
-        moved = texelFetch(velocity_image, a.front, 0);
+        moved = texelFetch(velocity_image, at + masu_found_beside(a.way), 0);
     }
-    return vec4(masu_unjittered(moved.xy, size), moved.zw);
+    return vec4(moved.xy + frame.shifts.zw, moved.zw);
 }
 
 /* before: the share of the picture at which the previous frame has shown it. */
@@ -102,7 +103,7 @@ bool is_known(vec2 before, around a, float growth)
     vec2 size = vec2(frame.temporal.xy);
     vec2 place = (before - 0.5 * previous.jitter.zw) * size;
     vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* of a size of 1 it is the same texel four times */
-    vec4 depths = textureGather(old_depth_image, inside / vec2(textureSize(old_depth_image, 0)));
+    vec4 depths = textureGather(old_depth_image, inside * vec2(push.then_x, push.then_y));
     float then = previous.forward.w * masu_rcp(frame.forward.w * (1.0 + growth));
     float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
     return masu_least_of(depths) <= a.nearest * then + off && masu_most_of(depths) >= a.farthest * then - off;
@@ -113,18 +114,19 @@ colors colors_around(ivec2 at, ivec2 last)
     colors c = colors(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0));
     for (int i = 0; i < 9; i++) {
         ivec2 beside = clamp(at + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last);
-        vec3 root = texelFetch(color_image, beside, 0).rgb, light = root * root;
-        c.mean += light;
-        c.deviation += light * light;
-        c.least = min(c.least, light);
-        c.most = max(c.most, light);
+        vec3 root = texelFetch(color_image, beside, 0).rgb;
+        c.mean += root;
+        c.deviation += root * root;
+        c.least = min(c.least, root);
+        c.most = max(c.most, root);
     }
     c.mean *= 1.0 / 9.0;
     c.deviation = sqrt(max(c.deviation * (1.0 / 9.0) - c.mean * c.mean, 0.0));
     return c;
 }
 
-/* Whether the history around is no longer what the nine samples show. */
+/* Whether the history around is no longer what the nine samples show. Of light: the mean of squares is that of the roots,
+ * squared, and their variance; light deviates by as much as a root that is a deviation off the mean. */
 bool is_other(vec2 before, colors c, vec2 size)
 {
     vec2 texel = vec2(push.history_x, push.history_y) / size;
@@ -135,17 +137,17 @@ bool is_other(vec2 before, colors c, vec2 size)
         vec2 inside = min(middle + way * texel, vec2(push.history_x, push.history_y) - 0.5 * texel);
         sum += textureLod(history_image, inside, 0.0).rgb;
     }
-    return any(greaterThan(abs(0.2 * sum - c.mean), c.deviation + unseen));
+    vec3 mean = c.mean * c.mean + c.deviation * c.deviation;
+    return any(greaterThan(abs(0.2 * sum - mean), c.deviation * (2.0 * c.mean + c.deviation) + unseen));
 }
 
-uvec4 found_at(ivec2 at, vec2 size)
+uvec2 found_at(ivec2 at, vec2 size)
 {
     around a = depths_around(at, ivec2(size));
-    vec2 jitter = 0.5 * frame.jitter.zw * size;
-    vec2 place = vec2(at) + 0.5 - push.shift * jitter;
+    vec2 place = vec2(at) + 0.5 - push.shift * frame.shifts.xy;
     bool of_front;
-    vec4 moved = motion_at(place, a, size, of_front);
-    vec2 before = (place + jitter + moved.xy) / size;
+    vec4 moved = motion_at(at, place, a, size, of_front);
+    vec2 before = (place + frame.shifts.xy + moved.xy) / size;
     float speed = length(moved.xy);
     bool rests = !(speed > at_rest);
     bool changes = frame.temporal.z != 0u;
@@ -153,10 +155,10 @@ uvec4 found_at(ivec2 at, vec2 size)
                  all(lessThanEqual(before, vec2(1.0)));
     /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */
     if (!there || !((rests && !changes) || is_known(before, a, moved.z))) {
-        return uvec4(0u);
+        return uvec2(0u);
     }
     if (rests && !changes) {
-        return masu_found(vec2(0.0), true, most_at_rest, vec3(0.0), vec3(1.0));
+        return masu_found(masu_found_stays, most_at_rest, vec3(0.0), vec3(1.0));
     }
     colors c = colors_around(at, ivec2(size) - 1);
     bool other = changes && is_other(before, c, size);
@@ -165,7 +167,8 @@ uvec4 found_at(ivec2 at, vec2 size)
     float resting = changes ? most_changing : most_at_rest;
     float count = rests && other ? most_other : mix(resting, moving, min(4.0 * speed, 1.0));
     bool held = other || !rests;
-    return masu_found(moved.xy, of_front, count, held ? least : vec3(0.0), held ? most : vec3(1.0));
+    return masu_found(of_front ? a.way : masu_found_linear, count, held ? least * least : vec3(0.0),
+                      held ? most * most : vec3(1.0));
 }
 
 void main()
@@ -173,6 +176,6 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = ivec2(pc.output_width, pc.output_height);
     if (all(lessThan(at, size))) {
-        MASU_STORE_UINT(found_image, at, found_at(at, vec2(size)));
+        MASU_STORE_SAFE(found_image, at, uvec4(found_at(at, vec2(size)), 0u, 0u));
     }
 }

@@ -68,35 +68,42 @@ $(DRIVER_INFO): $(BUILD)/obj/tests/driver_info.o $(KEEP_LOADED)
 # The folder of masu bench.
 $(BUILD)/tests/gpu/test_bench: | $(MADE)/stiff/blend.masu $(MADE)/stiff/blend.truth.so
 
-# ---- Stiff and extreme scenes --------------------------------------------------------------------
+# ---- Stiff and extreme scenes, and their truths ---------------------------------------------------
 
-STIFF := $(patsubst tests/scenes/stiff/%.json,$(MADE)/stiff/%.masu,$(wildcard tests/scenes/stiff/*.json))
+# Those of `masu conform --suite extreme` are baked with all ways to march. What the march takes by itself is the same
+# code, so that the tests take those, too.
+EXTREME := figures figures_far figures_far7 lipschitz_2 lipschitz_10 displace_sine lipschitz_100 lipschitz_1000
+EXTREME += rods ground grazing many
+STIFF := $(patsubst tests/scenes/stiff/%.json,%,$(wildcard tests/scenes/stiff/*.json))
+STIFF_OWN := $(filter-out $(EXTREME),$(STIFF))
+STIFF := $(STIFF:%=$(MADE)/stiff/%.masu)
+STIFF_OWN := $(STIFF_OWN:%=$(MADE)/stiff/%.masu)
+STIFF_SHARED := $(EXTREME:%=$(MADE)/stiff/%.masu)
+EXTREME := $(EXTREME:%=$(MADE)/scenes/extreme/%.masu)
 
-$(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
+$(STIFF_OWN): $(MADE)/stiff/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
 	@mkdir -p $(@D)
 	@echo "  BAKE    $<"
 	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --quiet
 
-$(MADE)/stiff/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
-	@mkdir -p $(@D)
-	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
-
-$(BUILD)/tests/gpu/test_stiff $(BUILD)/tests/gpu/test_specular_sdf: | $(STIFF) $(STIFF:.masu=.truth.so)
-
-# ---- Those of `masu conform --suite extreme`, with all ways to march, and their truths ------------
-
-EXTREME := figures figures_far figures_far7 lipschitz_2 lipschitz_10 displace_sine lipschitz_100 lipschitz_1000
-EXTREME += rods ground grazing many
-EXTREME := $(EXTREME:%=$(MADE)/scenes/extreme/%.masu)
-
-$(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
+$(EXTREME): $(MADE)/scenes/extreme/%.masu: tests/scenes/stiff/%.json tests/scenes/stiff/%.sdf $(MADE)/bin/masu-bake
 	@mkdir -p $(@D)
 	@echo "  BAKE    $< --variants"
 	$(V)$(SANITIZER_ENV) $(MADE)/bin/masu-bake $< -o $@ --variants --quiet
-$(MADE)/scenes/extreme/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
-	@mkdir -p $(@D)
-	$(V)$(MADE)/bin/masu-sdfc $< --c $@ --quiet
 
+define stiff_truth
+$(1)/%.truth.c: tests/scenes/stiff/%.sdf $(MADE)/bin/masu-sdfc
+	@mkdir -p $$(@D)
+	$$(V)$(MADE)/bin/masu-sdfc $$< --c $$@ --quiet
+endef
+$(eval $(call stiff_truth,$(MADE)/stiff))
+$(eval $(call stiff_truth,$(MADE)/scenes/extreme))
+
+$(STIFF_SHARED) $(STIFF_SHARED:.masu=.truth.so): $(MADE)/stiff/%: $(MADE)/scenes/extreme/%
+	@mkdir -p $(@D)
+	$(V)ln -f $< $@
+
+$(BUILD)/tests/gpu/test_stiff $(BUILD)/tests/gpu/test_specular_sdf: | $(STIFF) $(STIFF:.masu=.truth.so)
 $(BUILD)/tests/gpu/test_conform: | $(EXTREME) $(EXTREME:.masu=.truth.so)
 
 # docs/stability.md: what the suite and the tests measure on each of the drivers.

@@ -367,6 +367,10 @@ struct masu_frame_uniforms {
      * camera alone has changed of late. w the pixel to be picked: its x, and its y from bit 16 on */
     masu_uvec4 temporal;
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
+    /* Of rung.temporal, in pixels of the render size: xy by how much this frame's samples lie off the middle of pixels; zw
+     * what is added to a velocity to take out of it what the jitter of the two frames differs by. Behind what the shaders of
+     * scenes read: they are baked. */
+    masu_vec4 shifts;
 };
 
 /* One placed mesh: rows of the 3x4 matrix from object to world space. */

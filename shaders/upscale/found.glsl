@@ -1,56 +1,73 @@
 /*
- * found.glsl: what temporal_find.comp tells temporal.comp of a pixel's history, in four words:
+ * found.glsl: what temporal_find.comp tells temporal.comp of a pixel's history, in two words:
  *
- *   x       bits 0 to 5: how many samples it counts at most, 0: there is none; else three bits of an exponent from
- *           2^-3 on, three of a mantissa; 6 to 18, 19 to 31: where it was, 64ths of a pixel of the render size
- *           (bit 15 of y: that and not what `velocity` has at the place itself, linearly)
- *   y z w   of red, green and blue: two halves, the least and the most that it may be; display light
- *
- * What has moved farther than 63 pixels has none.
+ *   x   bits 0 to 26   of red, green and blue, 9 bits each, the least that it may be: display light, bits 18 to 26 of the
+ *                      float, of 2^-15 to 1; the rest of it cut off
+ *       bits 27 to 31  how many samples it counts at most: bits 21 to 25 of that float, of 1/8 to 28; 0: there is none
+ *   y   bits 0 to 26   the same of the most; the rest of it rounded up
+ *       bits 27 to 31  where it was. 0: by the velocity at the place; 1: in the same place; else by that of a texel beside,
+ *                      1 + bits 27 and 28 of which are 0 to 2 to the right, bits 29 and 30 below, all less 1
  */
 #ifndef MASU_FOUND_GLSL
 #define MASU_FOUND_GLSL
 
-const float masu_found_most = 30.0;
+const float masu_found_most = 28.0;
+const uint masu_found_linear = 0u, masu_found_stays = 31u;
 
-/* count: to the nearest that there is, from 9/64 to the most. */
-uvec4 masu_found(vec2 moved, bool of_front, float count, vec3 least, vec3 most)
+/* The texel whose velocity is that of the pixel: -1, 0 or 1 to the right and below. */
+uint masu_found_way(int right, int below)
 {
-    uint level = (floatBitsToUint(clamp(count, 0.140625, masu_found_most)) - 0x3E000000u + 0x80000u) >> 20;
-    ivec2 steps = ivec2(round(clamp(moved, -64.0, 64.0) * 64.0));
-    bool far = any(greaterThanEqual(abs(moved), vec2(63.0)));
-    uint word = level | uint(steps.x & 8191) << 6 | uint(steps.y) << 19;
-    return uvec4(far ? 0u : word, packHalf2x16(vec2(least.r, most.r)) | uint(of_front) << 15, packHalf2x16(vec2(least.g, most.g)),
-                 packHalf2x16(vec2(least.b, most.b)));
+    return uint(right + 2) | uint(below + 1) << 2;
 }
 
-/* Pixels of the render size. */
-vec2 masu_found_motion(uvec4 found)
+ivec2 masu_found_beside(uint way)
 {
-    ivec2 steps = ivec2(bitfieldExtract(int(found.x), 6, 13), int(found.x) >> 19);
-    return vec2(steps) * (1.0 / 64.0);
+    return ivec2(way & 3u, way >> 2) - ivec2(2, 1);
 }
 
-bool masu_found_front(uvec4 found)
+/* Bits 18 to 26 of floats of 0 to 1: exponents of less than 112 are that; rounded up by `up` of 2^18 - 1. */
+uint masu_found_color(vec3 light, uint up)
 {
-    return (found.y & 0x8000u) != 0u;
+    uvec3 bits = (floatBitsToUint(max(light, vec3(1.0 / 32768.0))) + up - 0x38000000u) >> 18;
+    return bits.r | bits.g << 9 | bits.b << 18;
 }
 
-bool masu_is_found(uvec4 found)
+/* count: to the nearest that there is, 1/8 to the most. least, most: display light, 0 to 1. */
+uvec2 masu_found(uint way, float count, vec3 least, vec3 most)
 {
-    return (found.x & 63u) != 0u;
+    uint level = (floatBitsToUint(clamp(count, 0.15625, masu_found_most)) - 0x3E000000u + 0x100000u) >> 21;
+    return uvec2(masu_found_color(least, 0u) | level << 27, masu_found_color(most, 0x3FFFFu) | way << 27);
 }
 
-float masu_found_count(uvec4 found)
+bool masu_is_found(uvec2 found)
 {
-    return uintBitsToFloat((found.x & 63u) * 0x100000u + 0x3E000000u);
+    return found.x >= 1u << 27;
 }
 
-/* As light that is found may be. */
-vec3 masu_found_held(uvec4 found, vec3 light)
+bool masu_has_stayed(uvec2 found)
 {
-    vec2 red = unpackHalf2x16(found.y), green = unpackHalf2x16(found.z), blue = unpackHalf2x16(found.w);
-    return clamp(light, vec3(abs(red.x), green.x, blue.x), vec3(red.y, green.y, blue.y));
+    return found.y >= masu_found_stays << 27;
+}
+
+/* texel: that of `found`; place: of the picture, at most last, a little less than the middle of the last texel, for what lies
+ * beyond is read even for a weight of 0. All in texels of the render size, whose middles are whole numbers. The place at
+ * which its velocity is. */
+vec2 masu_found_place(uvec2 found, vec2 texel, vec2 place, vec2 last)
+{
+    uint way = found.y >> 27;
+    return way != masu_found_linear ? min(texel + vec2(masu_found_beside(way)), last) : place;
+}
+
+vec3 masu_found_light(uint word)
+{
+    return uintBitsToFloat((uvec3(word << 18, word << 9, word) & 0x7FC0000u) | 0x38000000u);
+}
+
+/* light: as it may be; a: samples, as many as count. */
+vec4 masu_found_held(uvec2 found, vec4 light)
+{
+    float count = uintBitsToFloat((found.x >> 27 << 21) + 0x3E000000u);
+    return vec4(clamp(light.rgb, masu_found_light(found.x), masu_found_light(found.y)), min(abs(light.a), count));
 }
 
 #endif

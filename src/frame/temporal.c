@@ -100,6 +100,11 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     t->kept = has_resolve(f);
     if (!t->kept) return;
     uint64_t sprites = sprites_of(&f->desc);
+    const float size[2] = {(float)rp->render_width, (float)rp->render_height};
+    for (int k = 0; k < 2; k++) {
+        f->u.shifts[k] = 0.5f * f->u.jitter[2 + k] * size[k];
+        f->u.shifts[2 + k] = kept ? 0.5f * (history->previous->jitter[2 + k] - f->u.jitter[2 + k]) * size[k] : 0.0f;
+    }
     if (kept) {
         int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes ||
                       t->lights != lights->changes || t->sprites != sprites ||

@@ -7,7 +7,7 @@
 #include "plan/plan.h"
 
 /* As shaders/shared/push.glsl declares the block: the structs masu_push_NAME of tables.h begin at `own`. */
-#define MASU_PUSH_OWN 10u
+#define MASU_PUSH_OWN 16u
 typedef struct masu_push_block {
     struct masu_push sizes;
     union {

@@ -53,6 +53,11 @@ blue() { convert "$folder/own.png" -format "%[fx:int(255*(u.p{$1}.b-u.p{$1}.r))]
 
 # ---- loop ------------------------------------------------------------------------------------------
 
+# Its time goes by in a driver, drawing.
+if [ "${NESTED:-}" ]; then
+    [ $failures = 0 ]
+    exit
+fi
 if [ ! -x "$examples/loop" ] || ! command -v Xvfb > /dev/null; then
     echo "skipped: no SDL2 or no Xvfb here (make deps-test)"
     [ $failures = 0 ] && exit 77

@@ -661,7 +661,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     assert_non_null(strstr(frame_text(&plan, 1), " rcas(r:upscaled w:target)"));
     assert_null(strstr(frame_text(&plan, 0), "smaa"));
     assert_null(strstr(frame_text(&plan, 0), "fsr1"));
-    /* At full size 8 + 4 bytes for each pixel outlive the frame, 16 + 8 do not. */
+    /* At full size 8 + 4 bytes for each pixel outlive the frame, 8 + 8 do not. */
     static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_HISTORY_DEPTH, MASU_IMAGE_FOUND,
                                         MASU_IMAGE_ACCUMULATED};
     uint64_t bytes = 0;
@@ -670,7 +670,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
         assert_int_equal(image->persistent, i < 2);
         bytes += (uint64_t)image->width * image->height * masu_format_bytes(masu_plan_format(&plan, own[i]));
     }
-    assert_int_equal(bytes, 36 * 64 * 64);
+    assert_int_equal(bytes, 28 * 64 * 64);
     masu_desc source = source_desc(64, 64); /* has neither depth nor motion */
     source.rungs[0] = (masu_rung){.temporal = MASU_ON};
     assert_frame(&source, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
@@ -1289,8 +1289,8 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].last_pass, image->last);
     }
     /* scene_depth, split_depth, surface, occlusion, silhouettes, smooth, overlay and final, history_depth, cone8, cone4, ao: 4 bytes each per
-     * texel; velocity, history and accumulated 8; found 16; the atlas; SPECULAR_BYTES at half size */
-    assert_int_equal(info.left_out_bytes, 4 * (19 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384 + 2 * 4) +
+     * texel; velocity, history, accumulated and found 8; the atlas; SPECULAR_BYTES at half size */
+    assert_int_equal(info.left_out_bytes, 4 * (17 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384 + 2 * 4) +
                                               SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.passes[MASU_PASS_LIGHT].pipeline_ns, 0);
@@ -1305,7 +1305,7 @@ static void bytes_left_out_are_counted_at_the_size_of_the_plan(void **state) {
     compile(&d, &plan);
     masu_plan_export(&plan, NULL, &info);
     assert_int_equal(info.left_out_bytes,
-                     76 * 1000 * 500 + 28 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384 + 2 * 4) +
+                     68 * 1000 * 500 + 28 * 1920 * 1080 + 4 * (125 * 63 + 250 * 125 + 500 * 250 + 256 * 384 + 2 * 4) +
                          SPECULAR_BYTES * 500 * 250);
     d = scene_desc(RASTER | SDF, 100, 100); /* all but occlusion, split_depth, silhouettes, ldr, smooth, upscaled, overlay, final, velocity, temporal's */
     d.rung_count = 1;

@@ -20,7 +20,7 @@
 #include "support/files.h"
 #include "support/spirv.h"
 
-#define MEMBERS_MOST 27u
+#define MEMBERS_MOST 28u
 
 typedef struct member {
     const char *name;
@@ -56,7 +56,8 @@ static const layout layouts[] = {
       MEMBER(masu_frame_uniforms, trace_anchor), MEMBER(masu_frame_uniforms, trace_eye),
       MEMBER(masu_frame_uniforms, jitter),
       MEMBER(masu_frame_uniforms, temporal),
-      MEMBER(masu_frame_uniforms, sdf_params)}},
+      MEMBER(masu_frame_uniforms, sdf_params),
+      MEMBER(masu_frame_uniforms, shifts)}},
     {STRUCT(masu_instance_data),
      1,
      {MEMBER(masu_instance_data, row0), MEMBER(masu_instance_data, row1),
