@@ -42,14 +42,14 @@ layout(set = MASU_SET_PASS, binding = 5, rg32ui) uniform writeonly uimage2D foun
 
 const float most_at_rest = masu_found_most;
 const float most_changing = 8.0; /* the same in a world that changes */
-const float most_moving = 2.0;
+const float most_moving = 1.5;
 const float most_other = 1.0; /* of what rests and is no longer what it was */
 const float per_growth = 20.0; /* of view depth; */
 const float per_pixel = 0.1;   /* of motion: by how much that is divided */
 const float at_rest = 0.02;    /* pixels of the input */
 const float apart = 0.1;       /* of the nearest depth: a silhouette */
 const float same_depth = 0.01;
-const float deviations = 1.0;
+const float deviations = 1.25;
 const float unseen = 0.01; /* display light that a mean over the surroundings may differ by */
 
 /* Depths around a pixel: large is near. */
