@@ -129,16 +129,14 @@ colors colors_around(ivec2 at, ivec2 last)
  * squared, and their variance; light deviates by as much as a root that is a deviation off the mean. */
 bool is_other(vec2 before, colors c, vec2 size)
 {
-    vec2 texel = vec2(push.history_x, push.history_y) / size;
-    vec2 middle = before * vec2(push.history_x, push.history_y);
-    vec3 sum = textureLod(history_image, middle, 0.0).rgb;
+    vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown / size;
+    vec2 inside = clamp(before * shown, half_texel, shown - 2.0 * half_texel);
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
-        vec2 way = i < 2 ? vec2(2 * i - 1, 0.0) : vec2(0.0, 2 * i - 5);
-        vec2 inside = min(middle + way * texel, vec2(push.history_x, push.history_y) - 0.5 * texel);
-        sum += textureLod(history_image, inside, 0.0).rgb;
+        sum += textureLod(history_image, inside + vec2(2 * (i & 1) - 1, 2 * (i >> 1) - 1) * half_texel, 0.0).rgb;
     }
     vec3 mean = c.mean * c.mean + c.deviation * c.deviation;
-    return any(greaterThan(abs(0.2 * sum - mean), c.deviation * (2.0 * c.mean + c.deviation) + unseen));
+    return any(greaterThan(abs(0.25 * sum - mean), c.deviation * (2.0 * c.mean + c.deviation) + unseen));
 }
 
 uvec2 found_at(ivec2 at, vec2 size)
