@@ -111,7 +111,7 @@ static void mips_are_the_picture_averaged_by_the_lobe(void **state) {
     static const struct {
         double window, between, at[2], rest;
     } cases[] = {{0, 0, {0.006, 0.026}, 0.055}, {30, 0, {0.02, 0.06}, 0.22}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = whole_run() ? 0 : 1; i < sizeof cases / sizeof *cases; i++) { /* the harder one */
         masu_bake_content content;
         paint(cases[i].window);
         masu_bake_panorama p = picture(0.4);
