@@ -1,6 +1,6 @@
 /* test_baseline.c: `masu study baseline`: the baseline traces a ray a pixel where Masu traces one in
  * four, its mean over many samples is the truth, the samples of equal error are what they are
- * called, and what is no setting is refused. */
+ * called, frames before count for more at rest than in motion, and what is no setting is refused. */
 #include "support/support.h"
 #include "support/cli.h"
 
@@ -112,6 +112,23 @@ static void many_plain_samples_are_the_truth(void **state) {
     }
 }
 
+/* The camera goes along: so far from frame to frame that little is found again, or not at all. */
+static void steps_are_those_between_frames(void **state) {
+    (void)state;
+    static const char *const settings[] = {"base", "temporal=on", NULL};
+    static const double steps[] = {0.0, 0.5};
+    double with[2];
+    for (int i = 0; i < 2; i++) {
+        run((masu_baseline_desc){.time = 1.0, .positions = 16, .rays = 4, .frames = 24, .most = 1, .step = steps[i]},
+            "engine", settings);
+        const masu_baseline_entry *e = &baseline.entries[baseline.plain_count];
+        with[i] = e[1].errors.of[MASU_BASELINE_RMSE] / e[0].errors.of[MASU_BASELINE_RMSE];
+        print_message("  %g s: RMSE %.4f, with a past %.4f\n", steps[i], e[0].errors.of[MASU_BASELINE_RMSE],
+                      e[1].errors.of[MASU_BASELINE_RMSE]);
+    }
+    assert_true(with[0] < 0.7 && with[1] > 1.2 * with[0]);
+}
+
 static void bad_input_is_one_line(void **state) {
     (void)state;
     char good[1024];
@@ -124,6 +141,7 @@ static void bad_input_is_one_line(void **state) {
                  {"a.masu b.masu", 2, "one at a time"},
                  {"%s --rung speed=3", 2, "'speed=3'"},
                  {"%s --most 0", 2, "--most"},
+                 {"%s --step -1", 2, "--step"},
                  {"%s --ladder /dev/null", 1, "/dev/null"},
                  {"%s --rung base --rung base --rung base --rung base --rung base --rung base "
                   "--rung base --rung base --rung base",
@@ -168,6 +186,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ray_a_pixel_is_measured_beside_one_in_four),
         cmocka_unit_test(many_plain_samples_are_the_truth),
+        cmocka_unit_test(steps_are_those_between_frames),
         cmocka_unit_test(bad_input_is_one_line),
         cmocka_unit_test(rows_are_written),
     };

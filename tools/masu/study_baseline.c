@@ -3,6 +3,7 @@
 #include "masu/study.h"
 
 #include "bench/sweep/ladder_file.h"
+#include "bench/measure/motion.h"
 #include "bench/measure/picture.h"
 #include "bench/study/baseline.h"
 #include "image.h"
@@ -15,6 +16,7 @@ typedef struct options {
     masu_study_options study;
     masu_rung rungs[MASU_BASELINE_SETTINGS];
     uint32_t rung_count, most;
+    double step;
     bool curve, own_march;
     const char *ladder;
 } options;
@@ -24,6 +26,7 @@ static options given = {.study = {.size = {640, 360},
                                   .frames = 32,
                                   .runs = 9,
                                   .truth = {NULL, MASU_PICTURE_POSITIONS, MASU_PICTURE_RAYS}},
+                        .step = MASU_MOTION_STEP,
                         .most = 64};
 static const masu_study_options *const o = &given.study;
 
@@ -43,6 +46,7 @@ static const masu_column columns[] = {
     {"positions", "%.0f", NULL, NULL},
     {"rays", "%.0f", NULL, NULL},
     {"frames", "%.0f", NULL, NULL},
+    {"step", "%.6g", NULL, NULL},
     {"runs", "%.0f", NULL, NULL},
     {"most", "%.0f", NULL, NULL},
     {"plain_march", NULL, NULL, NULL},
@@ -99,7 +103,8 @@ static void add_row(masu_table *t, const masu_baseline *w, uint32_t entry) {
     snprintf(size, sizeof size, "%ux%u", e->render.width, e->render.height);
     const double sizes[] = {o->size.width, o->size.height, e->render.width, e->render.height};
     const double asked[] = {o->time,   o->truth.positions, o->truth.rays,
-                            o->frames, o->runs,            given.most};
+                            o->frames, given.step,         o->runs,
+                            given.most};
     masu_table_text(t, w->scene);
     masu_table_text(t, e->name);
     masu_table_numbers(t, sizes, sizeof sizes / sizeof *sizes);
@@ -276,6 +281,7 @@ static int run(void) {
                                .positions = o->truth.positions,
                                .rays = o->truth.rays,
                                .frames = o->frames,
+                               .step = given.step,
                                .runs = o->runs,
                                .most = given.most,
                                .own_march = given.own_march,
@@ -299,6 +305,7 @@ static const masu_option rows[] = {
     MASU_STUDY_TIME,
     MASU_STUDY_TRUTH,
     MASU_STUDY_FRAMES(10000, "in motion before a picture is taken"),
+    MASU_REAL(options, step, "step", "SECONDS", 0, 10, "between those frames; 0: at rest"),
     MASU_STUDY_RUNS(0, MASU_SAMPLES_MAX),
     MASU_UINT(options, most, "most", 1, MASU_BASELINE_SAMPLES,
               "samples a pixel that the baseline may have"),
@@ -327,7 +334,7 @@ const masu_study masu_study_baseline = {
     .details =
         "Plain: the output's size, each pixel marched by itself, nothing culled, no LODs, ambient\n"
         "occlusion and one unfiltered specular ray at each pixel, no anti-aliasing, no past. The\n"
-        "pictures are of a camera in motion; the truth is that of masu render --truth. a is the\n"
+        "pictures are of a camera in motion, or at rest (--step 0); the truth is that of masu render --truth. a is the\n"
         "median over rounds of plain time / own. b is the same with k plain frames, k the least\n"
         "count found whose mean is as near to the truth; the work of taking the mean is left out,\n"
         "shadow maps are drawn once.\n"

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-bool masu_motion_frame(masu_session *s, uint32_t rung, double time, bool cut,
+bool masu_motion_frame(masu_session *s, uint32_t rung, double time, double step, bool cut,
                        masu_commands *commands, char *error, size_t error_size) {
     masu_camera camera;
     if (masu_camera_at(s->m, time, &camera)) {
@@ -13,7 +13,7 @@ bool masu_motion_frame(masu_session *s, uint32_t rung, double time, bool cut,
         return false;
     }
     masu_frame_desc frame = {
-        .camera = &camera, .time = time, .time_step = 1.0f / 60.0f, .rung = rung, .cut = cut};
+        .camera = &camera, .time = time, .time_step = (float)step, .rung = rung, .cut = cut};
     return masu_session_frame(s, &frame, true, commands, error, error_size);
 }
 
@@ -27,8 +27,8 @@ bool masu_motion_draw(masu_session *s, const masu_motion *motion, uint32_t rung,
     if (period > 1 && frames < period) frames = period;
     while (period > 1 && (*next + frames) % period) frames++;
     for (uint32_t k = 0; k < frames; k++) {
-        double time = motion->time - (double)(frames - 1 - k) / 60.0;
-        if (!masu_motion_frame(s, rung, time, k == 0, &commands, error, error_size)) return false;
+        double time = motion->time - (double)(frames - 1 - k) * motion->step;
+        if (!masu_motion_frame(s, rung, time, motion->step, k == 0, &commands, error, error_size)) return false;
     }
     *next = commands.frame + 1;
     return true;

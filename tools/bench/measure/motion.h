@@ -6,14 +6,17 @@
 
 #include "session.h"
 
+#define MASU_MOTION_STEP (1.0 / 60.0)
+
 typedef struct masu_motion {
     double time;     /* of the last frame */
-    uint32_t frames; /* up to there, 60 a second; at least 1 */
+    double step;     /* seconds from frame to frame; 0: at rest */
+    uint32_t frames; /* up to there; at least 1 */
     bool remembers;  /* frames depend on those before whatever the setting; else one is enough */
 } masu_motion;
 
-/* One frame of that time, finished on return. */
-bool masu_motion_frame(masu_session *s, uint32_t rung, double time, bool cut,
+/* One frame of that time, `step` seconds after the one before, finished on return. */
+bool masu_motion_frame(masu_session *s, uint32_t rung, double time, double step, bool cut,
                        masu_commands *commands, char *error, size_t error_size);
 
 /* All of them; the first is a cut. next: number of the session's next frame, kept up to date. Of

@@ -147,7 +147,7 @@ static bool find_entries(bench *w) {
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
 static bool draw(bench *w, masu_session *s, double time, bool cut, masu_commands *commands) {
-    return masu_motion_frame(s, 0, time, cut, commands, w->error, w->error_size);
+    return masu_motion_frame(s, 0, time, MASU_MOTION_STEP, cut, commands, w->error, w->error_size);
 }
 
 static bool save(bench *w, const char *name, const uint8_t *rgba) {
@@ -171,7 +171,7 @@ static bool compare(bench *w, const uint8_t *shown, masu_baseline_errors *out) {
 
 static bool draw_setting(bench *w, uint32_t e) {
     masu_session *s = &w->sessions[e];
-    const masu_motion motion = {w->d->time, w->d->frames, w->remembers};
+    const masu_motion motion = {w->d->time, w->d->step, w->d->frames, w->remembers};
     uint64_t next = 0;
     say(w, "in motion", w->out->entries[e].name);
     if (!masu_motion_draw(s, &motion, 0, &w->rungs[e], &next, w->error, w->error_size) ||

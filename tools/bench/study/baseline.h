@@ -9,7 +9,7 @@
  * told by `spare`.
  *
  * PICTURES. A setting's is the last of some frames in which the camera follows its path up to the
- * time of the truth. The plain one's with k samples is the mean of k frames, each with another
+ * time of the truth, in steps of `step`. The plain one's with k samples is the mean of k frames, each with another
  * place in the pixel and other rays, as the truth's is (bench/measure/picture.h); textures then have the
  * mips that k times the pixels would take. Equal error is looked for with Masu's own march in those
  * pictures, which finds surfaces to 0.002 of a pixel: the plain one stops at 0.1, which no number of
@@ -42,7 +42,8 @@ typedef struct masu_baseline_desc {
     VkExtent2D size;
     double time;
     uint32_t positions, rays; /* of the truth */
-    uint32_t frames;          /* in motion before a picture is taken */
+    uint32_t frames;          /* before a picture is taken, */
+    double step;              /* that many seconds apart along the camera's path; 0: at rest */
     uint32_t runs;            /* timed ones of each phase; 0: none */
     uint32_t most;            /* samples of the baseline, at most MASU_BASELINE_SAMPLES */
     bool own_march;           /* equal error with its own march all the same */

@@ -100,7 +100,7 @@ static bool plan_settings(sweep *w) {
     memcpy(&header, w->s.blob, sizeof header);
     w->hash = header.hash;
     w->motion =
-        (masu_motion){w->d->time, w->d->frames, w->s.scene.reflections || w->s.scene.metered};
+        (masu_motion){w->d->time, MASU_MOTION_STEP, w->d->frames, w->s.scene.reflections || w->s.scene.metered};
     w->surfaces = w->s.scene.sdf || w->s.scene.instances;
     w->depth_truth = masu_depth_has_truth(w->d->scene_path, &w->s.scene);
     snprintf(w->driver, sizeof w->driver, "%s", w->s.host.driver);
@@ -184,7 +184,7 @@ static bool find_truth(sweep *w) {
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
 static bool draw(sweep *w, uint32_t rung, bool cut, masu_commands *commands) {
-    return masu_motion_frame(&w->s, rung, w->d->time, cut, commands, w->error, w->error_size);
+    return masu_motion_frame(&w->s, rung, w->d->time, MASU_MOTION_STEP, cut, commands, w->error, w->error_size);
 }
 
 static bool read_back(sweep *w) {
