@@ -8,12 +8,12 @@
  *      kept there has to lie between the nearest and the farthest of the nine of now, as far as they were then; else the
  *      pixel begins anew. A surface that leans may differ by its slope.
  *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
- *      show: a standard deviation around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
+ *      show: 1.25 standard deviations around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
  *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
  *      changed, and the mean of the history around is not that of the nine, it is, too, and counts as one sample.
- *   4. How much does it count? At rest as many samples as it has, up to 30, and up to 8 while anything in the world
+ *   4. How much does it count? At rest as many samples as it has, up to 28, and up to 8 while anything in the world
  *      changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
- *      that what moves counts at most 2, and less the faster it moves and the more it grows: it was smaller then.
+ *      that what moves counts at most 1.5, and less the faster it moves and the more it grows: it was smaller then.
  *
  * What is found is two words, of upscale/found.glsl.
  *
