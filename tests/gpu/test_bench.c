@@ -136,6 +136,13 @@ static void check_rows(const char *folder, uint32_t least) {
         assert_true(r->ratio > 0 && r->plausible >= 0 && r->plausible <= 1);
         assert_true(r->flip > 0 && r->flip <= r->flip_p99 && r->rmse > 0 && r->ssim < 1);
         assert_true(fabs(r->psnr_db - 20 * log10(255 / r->rmse)) < 1e-4);
+        assert_true(r->rest_flip > 0 && r->rest_flip <= 1 && r->fast_flip > 0 && r->fast_flip <= 1);
+        if (strstr(r->setting, "temporal=on")) { /* at rest it has all of the samples */
+            const masu_row *without = masu_rows_find(rows, count, r->parent);
+            print_message("  %s: at rest %.4f, slow %.4f, fast %.4f; %s: %.4f\n", r->setting, r->rest_flip, r->flip,
+                          r->fast_flip, r->parent, without ? without->flip : (double)NAN);
+            assert_true(without && r->rest_flip < 0.8 * without->rest_flip);
+        }
         assert_true(r->device_bytes > 0 && r->render_width <= 64 && r->render_height <= 36);
         assert_non_null(masu_rows_find(rows, count, r->parent));
         for (uint32_t k = 0; k < i; k++) assert_string_not_equal(rows[k].setting, r->setting);
@@ -162,7 +169,7 @@ static void check_ladder(const char *folder) {
     bool stamps = !strcmp(json_string_value(json_object_get(root, "clock")), "timestamps");
     assert_true(count <= MASU_SETTINGS_MOST);
     for (uint32_t i = 0; i < count; i++)
-        points[i] = (masu_ladder_point){stamps ? rows[i].gpu_ratio : rows[i].ratio, rows[i].flip};
+        points[i] = (masu_ladder_point){stamps ? rows[i].gpu_ratio : rows[i].ratio, masu_row_error(&rows[i])};
     for (uint32_t i = 0; i < count; i++) {
         if (rows[i].flicker > rows[0].flicker + MASU_LADDER_FLICKER) points[i].time = 0.0;
     }
@@ -176,7 +183,7 @@ static void check_ladder(const char *folder) {
         const masu_row *row = &rows[rungs[i]];
         double ratio = json_number_value(json_object_get(rung, "ratio"));
         assert_string_equal(json_string_value(json_object_get(rung, "setting")), row->setting);
-        assert_true(fabs(json_number_value(json_object_get(rung, "flip")) - row->flip) < 1e-9);
+        assert_true(fabs(json_number_value(json_object_get(rung, "flip")) - masu_row_error(row)) < 1e-9);
         assert_true(before >= MASU_LADDER_APART * ratio && ratio > 0);
         before = ratio;
         for (const masu_knob *k = masu_knob_table(); k->name; k++)
@@ -258,7 +265,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
     uint32_t count, again;
     /* The base, no reflections, and the same at half size are those with numbers 0, 10 and 11. */
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard %d/16 --validate"
+        assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard %d/24 --validate"
                                " --truth %s/mirror.png --out %s/mirror%d",
                                scene, i ? 9 + i : 0, scratch, scratch, i),
                          0);
@@ -275,7 +282,7 @@ static void reflections_have_an_error_of_their_own(void **state) {
     assert_true(rows[0].specular_relmse < 1e-4 && none->specular_relmse > 0.01);
     assert_true(none->hdr_flip > rows[0].hdr_flip);
     /* What was drawn first, read again from the files beside the truth. */
-    assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard 0/16"
+    assert_int_equal(bench("%s " SMALL " --reference 4 --runs 1 --shard 0/24"
                            " --truth %s/mirror.png --out %s/again",
                            scene, scratch, scratch),
                      0);

@@ -113,7 +113,7 @@ static bool find_ladder(report *r) {
     for (uint32_t i = 0; i < r->count; i++) stamps = stamps && r->rows[i].plausible >= 0.9;
     for (uint32_t i = 0; i < r->count; i++) {
         r->ratios[i] = stamps ? r->rows[i].gpu_ratio : r->rows[i].ratio;
-        r->points[i] = (masu_ladder_point){r->ratios[i], r->rows[i].flip};
+        r->points[i] = (masu_ladder_point){r->ratios[i], masu_row_error(&r->rows[i])};
         /* Culling switched off is quicker by chance alone. */
         const json_t *same = json_object_get(setting_of(r, r->rows[i].setting), "same_picture");
         if (json_is_true(same) || flickers(r, &r->rows[i])) r->points[i].time = 0.0;
@@ -137,7 +137,7 @@ static bool write_ladder(report *r) {
         json_array_append_new(
             rungs, json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:O}", "setting", row->setting,
                              "ratio", r->ratios[r->rungs[i]], "wall_ms", row->wall_min, "gpu_ms",
-                             row->gpu_min, "flip", row->flip, "rmse", row->rmse, "knobs", knobs));
+                             row->gpu_min, "flip", masu_row_error(row), "rmse", row->rmse, "knobs", knobs));
     }
     char date[32] = "unknown"; /* of the last run that added rows */
     masu_machine machine;
@@ -257,7 +257,9 @@ static void put_note(report *r) {
             "%.0f frames in motion.</li>\n",
             number_of(r, "positions"), number_of(r, "frames"));
     fputs("<li><b>FLIP</b> is what a viewer notices who flips between picture and truth at 67 "
-          "pixels per degree: 0 nothing, 1 all; mean and 99th percentile. HDR-FLIP is the worst of "
+          "pixels per degree: 0 nothing, 1 all; mean and 99th percentile in motion along the path, the mean when all has "
+          "come to rest, and in frames an eighth of a second apart. The ladder goes by the mean of the first and the "
+          "one at rest. HDR-FLIP is the worst of "
           "it over all exposures, before the tone curve.</li>\n"
           "<li><b>RMSE</b> and flicker are of 255; flicker is the mean difference of successive "
           "frames at rest.</li>\n<li><b>hit/miss</b> and <b>depth</b> are of surfaces, beside ",
@@ -310,6 +312,8 @@ static const struct {
 } columns[] = {{"ratio", "%.3f", true},
                {"FLIP", "%.4f", true},
                {"p99", "%.4f", true},
+               {"at rest", "%.4f", true},
+               {"fast", "%.4f", true},
                {"HDR-FLIP", "%.4f", false},
                {"RMSE", "%.2f", true},
                {"PSNR", "%.2f", true},
@@ -357,6 +361,8 @@ static void put_row(report *r, uint32_t i, const char *label, bool brief, bool m
     const double values[COLUMNS] = {r->ratios[i],
                                     row->flip,
                                     row->flip_p99,
+                                    row->rest_flip,
+                                    row->fast_flip,
                                     row->hdr_flip,
                                     row->rmse,
                                     row->psnr_db,

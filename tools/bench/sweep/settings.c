@@ -147,12 +147,13 @@ static const technique techniques[] = {
     {"occlusion", WHOLE | STRUCTURAL | SAME, {.occlusion = MASU_OFF}},
     {"light_tiles", WHOLE | STRUCTURAL | SAME, {.light_tiles = MASU_OFF}},
     {"upscale", 0, {.upscale = MASU_ON}}, /* at full size it makes nothing better, below it is on */
-    {"temporal", WHOLE | HALF | STRUCTURAL, {.temporal = MASU_ON}},
+    {"temporal", WHOLE | HALF | QUICK | STRUCTURAL, {.temporal = MASU_ON}},
 };
 
 /* What a port might choose together. The plain one, nothing but the base, is at every size. */
 static const technique bundles[] = {
     {"full", 0, {.aa = MASU_AA_SMAA_HIGH}},
+    {"temporal", 0, {.temporal = MASU_ON}},
     /* What a mean over each pixel is, RCAS leads away from: most rungs are of this kind. */
     {"soft", SIXTEENTHS, {.sharpen = MASU_OFF}},
     {"soft aa", 0, {.sharpen = MASU_OFF, .aa = MASU_AA_SMAA_HIGH}},

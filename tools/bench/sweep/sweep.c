@@ -20,7 +20,7 @@
 #include <string.h>
 
 /* At rest before flicker is measured, over how many differences; not timed before each turn. */
-enum { SETTLE_FRAMES = 8, FLICKER_FRAMES = 8, WARM_FRAMES = 2, BATCH = MASU_MAX_RUNGS - 1 };
+enum { SETTLE_FRAMES = 24, FLICKER_FRAMES = 8, FAST_FRAMES = 8, WARM_FRAMES = 2, BATCH = MASU_MAX_RUNGS - 1 };
 
 typedef struct sweep {
     const masu_sweep_desc *d;
@@ -192,6 +192,8 @@ static bool read_back(sweep *w) {
 }
 
 /* Whether a picture of that setting depends on the frames before. */
+static const double FAST_STEP = 0.125;
+
 static bool remembers(const sweep *w, const masu_rung *rung) {
     return w->motion.remembers || masu_setting_remembers(rung);
 }
@@ -238,10 +240,21 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
     row->ssim = masu_metric_ssim(w->truth, shown, size.width, size.height);
     row->flip = flip.mean;
     row->flip_p99 = flip.p99;
+    row->rest_flip = row->fast_flip = flip.mean;
     if (!masu_sweep_picture(w->d->folder, s->id, "", path))
         return failed(w, "the path is too long");
-    return masu_image_save_png(path, shown, size.width, size.height, 0, w->error, w->error_size) &&
-           flicker(w, rung, s, next, &row->flicker);
+    if (!masu_image_save_png(path, shown, size.width, size.height, 0, w->error, w->error_size) ||
+        !flicker(w, rung, s, next, &row->flicker))
+        return false;
+    if (!remembers(w, &s->rung)) return true;
+    if (!masu_metric_flip(w->truth, w->before, size.width, size.height, 0, w->map, &flip))
+        return failed(w, "out of memory");
+    row->rest_flip = flip.mean;
+    const masu_motion fast = {w->d->time, FAST_STEP, FAST_FRAMES, w->motion.remembers};
+    if (!masu_motion_draw(&w->s, &fast, rung, &s->rung, next, w->error, w->error_size) || !read_back(w)) return false;
+    if (!masu_metric_flip(w->truth, shown, size.width, size.height, 0, w->map, &flip)) return failed(w, "out of memory");
+    row->fast_flip = flip.mean;
+    return true;
 }
 
 /* ---- Times ----------------------------------------------------------------------------------- */

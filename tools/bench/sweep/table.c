@@ -1,6 +1,7 @@
 /* table.c: see table.h. */
 #include "bench/sweep/table.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,7 +20,8 @@ static const column columns[] = {
 #undef NUMBER
 };
 
-enum { COLUMNS = sizeof columns / sizeof *columns };
+/* The last two came later. */
+enum { COLUMNS = sizeof columns / sizeof *columns, COLUMNS_BEFORE = COLUMNS - 2 };
 
 int masu_rows_header(FILE *f) {
     for (uint32_t c = 0; c < COLUMNS; c++) {
@@ -49,12 +51,14 @@ static bool is_name(const char *text, size_t n) {
 
 bool masu_setting_is_name(const char *text) { return *text && is_name(text, strlen(text)); }
 
-bool masu_row_parse(const char *line, masu_row *out) {
+/* Of so many columns, the first. */
+static bool parse(const char *line, uint32_t count, masu_row *out) {
     memset(out, 0, sizeof *out);
-    for (uint32_t c = 0; c < COLUMNS; c++) {
+    out->rest_flip = out->fast_flip = (double)NAN;
+    for (uint32_t c = 0; c < count; c++) {
         size_t n = strcspn(line, ",");
         char *to = (char *)out + columns[c].offset, *end;
-        if (!n || (line[n] == ',') != (c + 1 < COLUMNS)) return false;
+        if (!n || (line[n] == ',') != (c + 1 < count)) return false;
         if (columns[c].text) {
             if (!is_name(line, n)) return false;
             memcpy(to, line, n);
@@ -68,25 +72,34 @@ bool masu_row_parse(const char *line, masu_row *out) {
     return true;
 }
 
-static bool is_header(const char *text, size_t n) {
-    for (uint32_t c = 0; c < COLUMNS; c++) {
+bool masu_row_parse(const char *line, masu_row *out) { return parse(line, COLUMNS, out); }
+
+double masu_row_error(const masu_row *row) {
+    return isfinite(row->rest_flip) ? 0.5 * (row->flip + row->rest_flip) : row->flip;
+}
+
+/* How many columns it names: all, or all that there were before. 0: neither. */
+static uint32_t columns_of(const char *text, size_t n) {
+    uint32_t c = 0;
+    for (; c < COLUMNS && (n || c != COLUMNS_BEFORE); c++) {
         size_t length = strlen(columns[c].name) + (c != 0);
         if (n < length || (c && *text != ',') ||
             strncmp(text + (c != 0), columns[c].name, length - (c != 0)) != 0) {
-            return false;
+            return 0;
         }
         text += length;
         n -= length;
     }
-    return !n;
+    return n ? 0 : c;
 }
 
 masu_row *masu_rows_read(const char *text, uint32_t *count, char *error, size_t error_size) {
-    uint32_t lines = 0, number = 1;
+    uint32_t lines = 0, number = 1, names = 0;
     const char *end = strchr(text, '\n');
     *count = 0;
     for (const char *c = text; *c; c++) lines += *c == '\n';
-    if (!end || !is_header(text, (size_t)(end - text))) {
+    if (end) names = columns_of(text, (size_t)(end - text));
+    if (!names) {
         snprintf(error, error_size, "the first line does not name the columns of this version");
         return NULL;
     }
@@ -101,7 +114,7 @@ masu_row *masu_rows_read(const char *text, uint32_t *count, char *error, size_t 
         number++;
         if (n < sizeof line) memcpy(line, text, n);
         line[n < sizeof line ? n : 0] = 0;
-        if (!masu_row_parse(line, &rows[*count])) {
+        if (!parse(line, names, &rows[*count])) {
             snprintf(error, error_size, "line %u is no row", number);
             free(rows);
             return NULL;

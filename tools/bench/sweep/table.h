@@ -37,7 +37,9 @@
         X(hdr_flip)    /* nan: upscaled, or something is done to the image after the tone curve */ \
         X(hitmiss_pct) /* bench/measure/depth.h; nan: the scene has no surfaces */                         \
         X(depth_mean_px) X(depth_p99_px)                                                           \
-            X(specular_relmse) /* of pixels that trace; nan: upscaled, or the scene traces none */
+            X(specular_relmse) /* of pixels that trace; nan: upscaled, or the scene traces none */ \
+        X(rest_flip)       /* FLIP when all has come to rest */                                    \
+        X(fast_flip)       /* in frames an eighth of a second apart; both nan: by a version without them */
 
 typedef struct masu_row {
 #define MASU_ROW_TEXT(name) char name[MASU_SETTING_ID];
@@ -55,10 +57,14 @@ int masu_rows_write(FILE *f, const masu_row *row);
  * fewer than MASU_SETTING_ID. */
 bool masu_setting_is_name(const char *text);
 
+/* What a ladder goes by: the mean of FLIP in motion along the path and at rest, where both are known. */
+double masu_row_error(const masu_row *row);
+
 /* One line without its end. False: not as many fields, a text that is no name, or no number. */
 bool masu_row_parse(const char *line, masu_row *out);
 
-/* All rows of `text`, of which the last line may be torn. NULL and an `error` of one line: another
+/* All rows of `text`, of which the last line may be torn; a header and rows may lack the last two columns. NULL and
+ * an `error` of one line: another
  * header, a bad row before the last, or no memory. Freed by free(). No row is no error. */
 masu_row *masu_rows_read(const char *text, uint32_t *count, char *error, size_t error_size);
 
