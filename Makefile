@@ -38,7 +38,8 @@ LONG   ?=
 CONFIG_release  := -O2 -g -DNDEBUG
 CONFIG_debug    := -O0 -g3
 # Undefined behaviour traps, and the address sanitizer says where: texts for each place take a tenth of the time to compile.
-CONFIG_sanitize := -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fsanitize-trap=undefined
+CONFIG_sanitize := -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined
+CONFIG_sanitize += $(if $(findstring clang,$(CC)),-fsanitize-trap=undefined,-fsanitize-undefined-trap-on-error)
 CONFIG_coverage := -O0 -g --coverage
 CONFIG_fuzz     := $(CONFIG_sanitize) -fsanitize=fuzzer-no-link
 ifndef CONFIG_$(config)

@@ -515,7 +515,7 @@ typedef struct masu_desc {
      * OFF, and without a scene: three, scale 1.0 (no upscaling), 0.8 and 0.4 (EASU, RCAS). AUTO: ON
      * with a governor, else OFF. */
     masu_switch ladder;
-    float flips[MASU_MAX_RUNGS]; /* error of each rung, mean FLIP, 0..1; 0: unknown. Decides nothing: the
+    float flips[MASU_MAX_RUNGS]; /* error of each rung, FLIP, in motion and at rest, 0..1; 0: unknown. Decides nothing: the
                                     plan says it again */
     masu_limits limits;
     masu_reserve reserve;

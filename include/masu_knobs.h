@@ -103,7 +103,8 @@ typedef enum masu_knob_use {
            " sharpen is on): each frame looks at another place in its pixels. Scenes alone."       \
            " AUTO: off.",                                                                          \
            "Two passes of the output size and a small one. Device bytes per pixel of the output: 16," \
-           " of which 8 outlive the frame; of the render size: 4 that do, and velocities, 8.")     \
+           " of which 8 outlive the frame; of the render size: 4 that do, 8 that do not, and"      \
+           " velocities, 8.")                                                                      \
     /* Geometry. */                                                                                \
     WORD(  masu_switch,      silhouettes,                            SDF,                          \
            "Smooth silhouettes of the SDF: pixels beside them are blended by what the nearer thing" \

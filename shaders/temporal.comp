@@ -67,10 +67,10 @@ void main()
     }
     vec2 steps = vec2(push.steps_x, push.steps_y);
     /* In texels of the render size, whose middles are whole numbers: where the pixel lies; that within the picture, and a
-     * little before the middle of the last one; the texel that it is in; and of the four around it the upper left one. Of a
+     * little before the middle of the last one, for what lies beyond is read even for a weight of 0; the texel that it is in; and of the four around it the upper left one. Of a
      * size of 1 they are the same texel. */
     vec2 place = vec2(at) * vec2(push.scale_x, push.scale_y) + (vec2(push.first_x, push.first_y) - frame.shifts.xy);
-    vec2 last = vec2(push.last_x, push.last_y), inside = min(max(place, vec2(0.0)), last);
+    vec2 inside = min(max(place, vec2(0.0)), vec2(push.last_x, push.last_y));
     vec2 texel = floor(inside + 0.5), corner = floor(inside);
     vec2 f = place - corner;
 
@@ -79,8 +79,11 @@ void main()
     if (masu_is_found(found)) {
         vec2 before = vec2(at) + 0.5;
         if (!masu_has_stayed(found)) {
-            vec2 uv = (masu_found_place(found, texel, inside, last) + 0.5) * vec2(push.moved_x, push.moved_y);
-            before += (textureLod(velocity_image, uv, 0.0).xy + frame.shifts.zw) * steps;
+            vec2 uv = (inside + 0.5) * vec2(push.moved_x, push.moved_y);
+            vec2 moved = masu_found_is_beside(found)
+                             ? texelFetch(velocity_image, ivec2(texel) + masu_found_beside(found), 0).xy
+                             : textureLod(velocity_image, uv, 0.0).xy;
+            before += (moved + frame.shifts.zw) * steps;
         }
         old = history_at(before);
         /* Of what a frame stores, 0 to 1, the cubic is within these. What none stores, as NaN, would count as many

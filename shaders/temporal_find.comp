@@ -130,7 +130,7 @@ colors colors_around(ivec2 at, ivec2 last)
 bool is_other(vec2 before, colors c, vec2 size)
 {
     vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown / size;
-    vec2 inside = clamp(before * shown, half_texel, shown - 2.0 * half_texel);
+    vec2 inside = min(max(before * shown, half_texel), max(shown - 2.0 * half_texel, half_texel));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
         sum += textureLod(history_image, inside + vec2(2 * (i & 1) - 1, 2 * (i >> 1) - 1) * half_texel, 0.0).rgb;

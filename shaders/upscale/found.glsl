@@ -2,11 +2,12 @@
  * found.glsl: what temporal_find.comp tells temporal.comp of a pixel's history, in two words:
  *
  *   x   bits 0 to 26   of red, green and blue, 9 bits each, the least that it may be: display light, bits 18 to 26 of the
- *                      float, of 2^-15 to 1; the rest of it cut off
- *       bits 27 to 31  how many samples it counts at most: bits 21 to 25 of that float, of 1/8 to 28; 0: there is none
+ *                      float, of 2^-15 to 1; the rest of it cut off. Black is 2^-15, a tenth of a step of 8 bits
+ *       bits 27 to 31  how many samples it counts at most: bits 21 to 25 of that float, of 5/32 to 28; 0: there is none
  *   y   bits 0 to 26   the same of the most; the rest of it rounded up
- *       bits 27 to 31  where it was. 0: by the velocity at the place; 1: in the same place; else by that of a texel beside,
- *                      1 + bits 27 and 28 of which are 0 to 2 to the right, bits 29 and 30 below, all less 1
+ *       bits 27 to 31  where it was. 0: by the velocity at the place; 31: in the same place; else by that of a texel beside,
+ *                      bits 27 and 28 of which say how far to the right, 1 to 3 less 2, and bits 29 and 30 how far below, 0 to
+ *                      2 less 1
  */
 #ifndef MASU_FOUND_GLSL
 #define MASU_FOUND_GLSL
@@ -32,7 +33,7 @@ uint masu_found_color(vec3 light, uint up)
     return bits.r | bits.g << 9 | bits.b << 18;
 }
 
-/* count: to the nearest that there is, 1/8 to the most. least, most: display light, 0 to 1. */
+/* count: to the nearest that there is, 5/32 to the most. least, most: display light, 0 to 1. */
 uvec2 masu_found(uint way, float count, vec3 least, vec3 most)
 {
     uint level = (floatBitsToUint(clamp(count, 0.15625, masu_found_most)) - 0x3E000000u + 0x100000u) >> 21;
@@ -49,13 +50,15 @@ bool masu_has_stayed(uvec2 found)
     return found.y >= masu_found_stays << 27;
 }
 
-/* texel: that of `found`; place: of the picture, at most last, a little less than the middle of the last texel, for what lies
- * beyond is read even for a weight of 0. All in texels of the render size, whose middles are whole numbers. The place at
- * which its velocity is. */
-vec2 masu_found_place(uvec2 found, vec2 texel, vec2 place, vec2 last)
+/* Of what has not stayed: whether its velocity is that of a texel beside, and where that lies. */
+bool masu_found_is_beside(uvec2 found)
 {
-    uint way = found.y >> 27;
-    return way != masu_found_linear ? min(texel + vec2(masu_found_beside(way)), last) : place;
+    return found.y >= 1u << 27;
+}
+
+ivec2 masu_found_beside(uvec2 found)
+{
+    return masu_found_beside(found.y >> 27);
 }
 
 vec3 masu_found_light(uint word)

@@ -5,7 +5,7 @@ set -e
 command -v clang > /dev/null || exit 77
 made=$MADE
 unset BUILD MADE CC CXX
-export ASAN_OPTIONS=${ASAN_OPTIONS:-handle_sigill=1} # undefined behaviour ends in a trap: with its line
+export ASAN_OPTIONS=${ASAN_OPTIONS:-handle_sigill=2} # undefined behaviour ends in a trap: with its line
 export MASU_TEST_JOBS=$((($(nproc) + 1) / 2)) # of the others the tests beside it have use
 make --no-print-directory -j"$MASU_TEST_JOBS" CC=clang config=sanitize BUILD=build/clang MADE="$made" WERROR=1 FULL= \
     NESTED=1 unit

@@ -4,6 +4,7 @@
 #include "support/support.h"
 #include "support/cli.h"
 
+#include "bench/measure/motion.h"
 #include "bench/study/baseline.h"
 
 #include <math.h>
@@ -42,7 +43,8 @@ static const masu_baseline_point *point(uint32_t k) {
 static void a_ray_a_pixel_is_measured_beside_one_in_four(void **state) {
     (void)state;
     static const char *const settings[] = {"base", "scale=0.5+sharpen=off", NULL};
-    run((masu_baseline_desc){.positions = 4, .rays = 4, .frames = 2, .runs = 2, .most = 1},
+    run((masu_baseline_desc){
+            .positions = 4, .rays = 4, .frames = 2, .step = MASU_MOTION_STEP, .runs = 2, .most = 1},
         "test_mirror_plain", settings);
     assert_int_equal(baseline.plain_count, 1);
     assert_int_equal(baseline.entry_count, 3);
@@ -86,7 +88,7 @@ static void many_plain_samples_are_the_truth(void **state) {
     static const char *const settings[] = {"base", "scale=0.4", NULL};
     run(
         (masu_baseline_desc){
-            .time = 1.0, .positions = 16, .rays = 16, .frames = 4, .most = MOST, .curve = true},
+            .time = 1.0, .positions = 16, .rays = 16, .frames = 4, .step = MASU_MOTION_STEP, .most = MOST, .curve = true},
         "mirrors", settings);
     const masu_baseline_entry *plain = &baseline.entries[0];
     for (uint32_t k = 1; k <= MOST; k *= 2)

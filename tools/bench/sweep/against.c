@@ -64,7 +64,7 @@ static void compare(masu_against *a, const masu_row *here, const masu_row *there
     if (!here || !there) return;
     const masu_row *rows[2] = {here, there};
     for (int k = 0; k < 2; k++) {
-        r->flip[k] = rows[k]->flip;
+        r->flip[k] = masu_row_error(rows[k]);
         r->ratio[k] = a->by_timestamps ? rows[k]->gpu_ratio : rows[k]->ratio;
     }
     r->flip_off = masu_against_off(r->flip[0], r->flip[1]);

@@ -14,7 +14,7 @@
 /* What has no error at all has a place on a logarithmic axis, too. */
 #define LEAST_ERROR 1e-5
 
-static double shown_error(const masu_row *row) { return fmax(row->flip, LEAST_ERROR); }
+static double shown_error(const masu_row *row) { return fmax(masu_row_error(row), LEAST_ERROR); }
 
 static bool drawable(const masu_plot *p, uint32_t i) {
     return isfinite(p->ratios[i]) && p->ratios[i] > 0.0 && isfinite(p->rows[i].flip);
@@ -23,7 +23,7 @@ static bool drawable(const masu_plot *p, uint32_t i) {
 /* Series of points: those that are bundles or sizes by name, single knobs together. */
 static const char *const series[] = {"base", "scale", "cheap",   "middle",
                                      "full", "soft",  "soft aa", "soft steps",
-                                     "soft cascades"};
+                                     "soft cascades", "temporal"};
 enum { SERIES = sizeof series / sizeof *series };
 
 static uint32_t series_of(const masu_row *row) {
@@ -86,7 +86,7 @@ static const char style[] =
     "set border 3 lc rgb '#444444'\n"
     "set xtics nomirror (0.05,0.1,0.15,0.2,0.3,0.4,0.5,0.6,0.8,1,1.2,1.5,2,3,4,6,8)\n"
     "set ytics nomirror format '%g' add (0.002,0.005,0.02,0.05,0.2,0.5)\n"
-    "set ylabel 'mean FLIP against the truth'\n";
+    "set ylabel 'mean FLIP against the truth, in motion and at rest'\n";
 
 /* Left to itself gnuplot goes on to whole powers of ten. To the right there is room for names. */
 static void write_ranges(FILE *f, const masu_plot *p) {
@@ -124,11 +124,11 @@ static void write_commands(FILE *f, const masu_plot *p) {
     write_title(f, p, "error against time, and the ladder");
     fprintf(f, "plot $front using 1:2 with lines lw 2 lc rgb '#222222' title 'Pareto front', \\\n");
     static const char *const colors[] = {"#000000", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
-                                         "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#999999"};
+                                         "#56b4e9", "#56b4e9", "#56b4e9", "#8c510a", "#d4a017", "#999999"};
     static const char *const names[] = {
         "base", "render size alone", "cheap",           "middle",  "full",
-        "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "one knob"};
-    static const int marks[] = {7, 7, 9, 5, 13, 11, 10, 12, 8, 6};
+        "soft", "soft, SMAA",        "soft, 128 steps", "soft, 2 cascades", "temporal", "one knob"};
+    static const int marks[] = {7, 7, 9, 5, 13, 11, 10, 12, 8, 15, 6};
     for (uint32_t k = 0; k <= SERIES; k++)
         fprintf(f, "  $series%u using 1:2 with points pt %d ps 0.8 lc rgb '%s' title '%s', \\\n", k,
                 marks[k], colors[k], names[k]);

@@ -258,8 +258,8 @@ static void put_note(report *r) {
             number_of(r, "positions"), number_of(r, "frames"));
     fputs("<li><b>FLIP</b> is what a viewer notices who flips between picture and truth at 67 "
           "pixels per degree: 0 nothing, 1 all; mean and 99th percentile in motion along the path, the mean when all has "
-          "come to rest, and in frames an eighth of a second apart. The ladder goes by the mean of the first and the "
-          "one at rest. HDR-FLIP is the worst of "
+          "come to rest, and in frames an eighth of a second apart. The <b>error</b>, by which the ladder goes, is the mean "
+          "of that in motion and that at rest, where both are known. HDR-FLIP is the worst of "
           "it over all exposures, before the tone curve.</li>\n"
           "<li><b>RMSE</b> and flicker are of 255; flicker is the mean difference of successive "
           "frames at rest.</li>\n<li><b>hit/miss</b> and <b>depth</b> are of surfaces, beside ",
@@ -310,6 +310,7 @@ static const struct {
     const char *name, *format;
     bool brief;
 } columns[] = {{"ratio", "%.3f", true},
+               {"error", "%.4f", true},
                {"FLIP", "%.4f", true},
                {"p99", "%.4f", true},
                {"at rest", "%.4f", true},
@@ -359,6 +360,7 @@ static void put_row(report *r, uint32_t i, const char *label, bool brief, bool m
     masu_markup(f, "<td>%s%s</td><td>%.0fx%.0f</td>", label, row->setting, row->render_width,
                 row->render_height);
     const double values[COLUMNS] = {r->ratios[i],
+                                    masu_row_error(row),
                                     row->flip,
                                     row->flip_p99,
                                     row->rest_flip,
@@ -431,7 +433,7 @@ static void put_techniques(report *r) {
         if (!parent || parent == row) continue;
         masu_markup(f, "<tr><td>%s</td><td>%s</td>", row->setting, row->parent);
         masu_markup(f, "<td>%.3f</td><td>%+.4f</td><td>%+.2f</td><td>%+.0f</td></tr>\n",
-                r->ratios[i] / r->ratios[parent - r->rows], row->flip - parent->flip,
+                r->ratios[i] / r->ratios[parent - r->rows], masu_row_error(row) - masu_row_error(parent),
                 row->rmse - parent->rmse, (row->device_bytes - parent->device_bytes) / 1024.0);
     }
     fputs("</table></div>\n", f);

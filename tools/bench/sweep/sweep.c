@@ -192,16 +192,19 @@ static bool read_back(sweep *w) {
 }
 
 /* Whether a picture of that setting depends on the frames before. */
-static const double FAST_STEP = 0.125;
-
 static bool remembers(const sweep *w, const masu_rung *rung) {
     return w->motion.remembers || masu_setting_remembers(rung);
 }
 
+/* Nor are its pictures in motion and at rest the same where cascades are not drawn in every frame. */
+static bool depends_on_motion(const sweep *w, const masu_rung *rung) {
+    return remembers(w, rung) || masu_setting_period(rung) > 1;
+}
+
 /* Mean absolute difference of successive frames at rest, of 255. */
 static bool flicker(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *next, double *out) {
-    uint32_t settle = remembers(w, &s->rung) ? SETTLE_FRAMES : 1,
-             frames = remembers(w, &s->rung) ? FLICKER_FRAMES : 1;
+    const bool depends = depends_on_motion(w, &s->rung);
+    uint32_t settle = depends ? SETTLE_FRAMES : 1, frames = depends ? FLICKER_FRAMES : 1;
     size_t bytes = 4 * (size_t)w->pixels;
     masu_commands commands;
     double sum = 0.0;
@@ -246,11 +249,11 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
     if (!masu_image_save_png(path, shown, size.width, size.height, 0, w->error, w->error_size) ||
         !flicker(w, rung, s, next, &row->flicker))
         return false;
-    if (!remembers(w, &s->rung)) return true;
+    if (!depends_on_motion(w, &s->rung)) return true;
     if (!masu_metric_flip(w->truth, w->before, size.width, size.height, 0, w->map, &flip))
         return failed(w, "out of memory");
     row->rest_flip = flip.mean;
-    const masu_motion fast = {w->d->time, FAST_STEP, FAST_FRAMES, w->motion.remembers};
+    const masu_motion fast = {w->d->time, 1.0 / 8.0, FAST_FRAMES, w->motion.remembers};
     if (!masu_motion_draw(&w->s, &fast, rung, &s->rung, next, w->error, w->error_size) || !read_back(w)) return false;
     if (!masu_metric_flip(w->truth, shown, size.width, size.height, 0, w->map, &flip)) return failed(w, "out of memory");
     row->fast_flip = flip.mean;
