@@ -35,7 +35,7 @@ static void write_rows(const char *folder, const line *lines, uint32_t count) {
         snprintf(row.setting, sizeof row.setting, "%s", lines[i].setting);
         snprintf(row.parent, sizeof row.parent, "base");
         snprintf(row.technique, sizeof row.technique, "base");
-        row.flip = lines[i].flip;
+        row.flip = row.rest_flip = lines[i].flip;
         row.ratio = lines[i].ratio;
         row.gpu_ratio = lines[i].gpu_ratio;
         assert_true(masu_rows_write(f, &row) > 0);

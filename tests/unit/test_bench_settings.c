@@ -116,13 +116,15 @@ static void a_scene_of_everything_keeps_everything(void **state) {
     masu_settings_fit(settings, count, &everything, &plan);
     check_names(count);
     for (uint32_t i = 0; i < count; i++) dropped += settings[i].dropped[0] != 0;
-    /* SMAA HIGH at 1 and 0.5 is a technique and a bundle; so is no sharpening, nothing at 1:
+    /* SMAA HIGH and temporal at 1 and 0.5 are techniques and bundles; so is no sharpening, nothing at 1:
      * there the soft bundles are their other knob alone. */
-    assert_int_equal(dropped, 7);
+    assert_int_equal(dropped, 9);
     check_dropped("sharpen=off", count, "nothing is sharpened");
     check_dropped("scale=0.5+sharpen=off", count, "there already");
     check_dropped("aa=smaa-high", count, "there already");
     check_dropped("scale=0.5+aa=smaa-high", count, "there already");
+    check_dropped("temporal=on", count, "there already");
+    check_dropped("scale=0.5+temporal=on", count, "there already");
     check_dropped("sharpen=off+aa=smaa-high", count, "nothing is sharpened");
     check_dropped("sharpen=off+march_steps=128", count, "nothing is sharpened");
     check_dropped("sharpen=off+shadow_cascades=2", count, "nothing is sharpened");
