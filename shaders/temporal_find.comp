@@ -10,7 +10,8 @@
  *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
  *      show: 1.25 standard deviations around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
  *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
- *      changed, and the mean of the history around is not that of the nine, it is, too, and counts as one sample.
+ *      changed, and the mean of the history around is not that of the nine, it is, too, within 0.75, and counts as one
+ *      sample.
  *   4. How much does it count? At rest as many samples as it has, up to 28, and up to 8 while anything in the world
  *      changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
  *      that what moves counts at most 1.5, and less the faster it moves and the more it grows: it was smaller then.
@@ -50,6 +51,7 @@ const float at_rest = 0.02;    /* pixels of the input */
 const float apart = 0.1;       /* of the nearest depth: a silhouette */
 const float same_depth = 0.01;
 const float deviations = 1.25;
+const float deviations_at_rest = 0.75; /* of what is no longer what it was */
 const float unseen = 0.01; /* display light that a mean over the surroundings may differ by */
 
 /* Depths around a pixel: large is near. */
@@ -160,7 +162,8 @@ uvec2 found_at(ivec2 at, vec2 size)
     }
     colors c = colors_around(at, ivec2(size) - 1);
     bool other = changes && is_other(before, c, size);
-    vec3 least = max(c.least, c.mean - deviations * c.deviation), most = min(c.most, c.mean + deviations * c.deviation);
+    vec3 within = (rests ? deviations_at_rest : deviations) * c.deviation;
+    vec3 least = max(c.least, c.mean - within), most = min(c.most, c.mean + within);
     float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
     float resting = changes ? most_changing : most_at_rest;
     float count = rests && other ? most_other : mix(resting, moving, min(4.0 * speed, 1.0));
