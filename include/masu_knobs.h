@@ -102,7 +102,7 @@ typedef enum masu_knob_use {
            "Anti-aliasing and upscaling over frames, in place of aa, EASU and RCAS (RCAS where"    \
            " sharpen is on): each frame looks at another place in its pixels. Scenes alone."       \
            " AUTO: off.",                                                                          \
-           "Two passes of the output size and a small one. Device bytes per pixel of the output: 16," \
+           "Two passes of the output size, two of the render size. Device bytes per pixel of the output: 16," \
            " of which 8 outlive the frame; of the render size: 4 that do, 8 that do not, and"      \
            " velocities, 8.")                                                                      \
     /* Geometry. */                                                                                \

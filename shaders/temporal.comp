@@ -67,8 +67,8 @@ void main()
     }
     vec2 steps = vec2(push.steps_x, push.steps_y);
     /* In texels of the render size, whose middles are whole numbers: where the pixel lies; that within the picture, and a
-     * little before the middle of the last one, for what lies beyond is read even for a weight of 0; the texel that it is in; and of the four around it the upper left one. Of a
-     * size of 1 they are the same texel. */
+     * little before the middle of the last one, for what lies beyond is read even for a weight of 0; the texel that it is
+     * in; and of the four around it the upper left one. Of a size of 1 they are the same texel. */
     vec2 place = vec2(at) * vec2(push.scale_x, push.scale_y) + (vec2(push.first_x, push.first_y) - frame.shifts.xy);
     vec2 inside = min(max(place, vec2(0.0)), vec2(push.last_x, push.last_y));
     vec2 texel = floor(inside + 0.5), corner = floor(inside);

@@ -424,8 +424,8 @@ static void put_techniques(report *r) {
     FILE *f = r->page;
     fputs(
         "<h2>Techniques</h2>\n<p>Each beside the setting that differs by it alone: its time as a "
-        "part of that one's, and how much FLIP, RMSE and device memory it adds.</p>\n"
-        "<div class=\"wide\"><table>\n<tr><th>technique</th><th>from</th><th>time</th><th>FLIP</th>"
+        "part of that one's, and how much error (FLIP), RMSE and device memory it adds.</p>\n"
+        "<div class=\"wide\"><table>\n<tr><th>technique</th><th>from</th><th>time</th><th>error</th>"
         "<th>RMSE</th><th>KiB</th></tr>\n",
         f);
     for (uint32_t i = 0; i < r->count; i++) {

@@ -226,6 +226,11 @@ static bool flicker(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
     return true;
 }
 
+static bool find_flip(sweep *w, const uint8_t *shown, masu_flip *flip) {
+    return masu_metric_flip(w->truth, shown, w->d->size.width, w->d->size.height, 0, w->map, flip) ||
+           failed(w, "out of memory");
+}
+
 static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *next, masu_row *row) {
     VkExtent2D size = w->d->size;
     masu_flip flip;
@@ -235,8 +240,7 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
         return false;
     }
     const uint8_t *shown = w->s.targets[0].mapped;
-    if (!masu_metric_flip(w->truth, shown, size.width, size.height, 0, w->map, &flip))
-        return failed(w, "out of memory");
+    if (!find_flip(w, shown, &flip)) return false;
     double rmse = masu_metric_rmse(w->truth, shown, size.width, size.height);
     row->rmse = 255.0 * rmse;
     row->psnr_db = masu_metric_psnr(rmse);
@@ -250,12 +254,12 @@ static bool compare(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
         !flicker(w, rung, s, next, &row->flicker))
         return false;
     if (!depends_on_motion(w, &s->rung)) return true;
-    if (!masu_metric_flip(w->truth, w->before, size.width, size.height, 0, w->map, &flip))
-        return failed(w, "out of memory");
+    if (!find_flip(w, w->before, &flip)) return false;
     row->rest_flip = flip.mean;
     const masu_motion fast = {w->d->time, 1.0 / 8.0, FAST_FRAMES, w->motion.remembers};
-    if (!masu_motion_draw(&w->s, &fast, rung, &s->rung, next, w->error, w->error_size) || !read_back(w)) return false;
-    if (!masu_metric_flip(w->truth, shown, size.width, size.height, 0, w->map, &flip)) return failed(w, "out of memory");
+    if (!masu_motion_draw(&w->s, &fast, rung, &s->rung, next, w->error, w->error_size) || !read_back(w) ||
+        !find_flip(w, shown, &flip))
+        return false;
     row->fast_flip = flip.mean;
     return true;
 }

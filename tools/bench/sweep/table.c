@@ -51,7 +51,7 @@ static bool is_name(const char *text, size_t n) {
 
 bool masu_setting_is_name(const char *text) { return *text && is_name(text, strlen(text)); }
 
-/* Of so many columns, the first. */
+/* One line without its end, of so many columns, the first. False: not as many fields, a text that is no name, or no number. */
 static bool parse(const char *line, uint32_t count, masu_row *out) {
     memset(out, 0, sizeof *out);
     out->rest_flip = out->fast_flip = (double)NAN;
@@ -71,8 +71,6 @@ static bool parse(const char *line, uint32_t count, masu_row *out) {
     }
     return true;
 }
-
-bool masu_row_parse(const char *line, masu_row *out) { return parse(line, COLUMNS, out); }
 
 double masu_row_error(const masu_row *row) {
     return isfinite(row->rest_flip) ? 0.5 * (row->flip + row->rest_flip) : row->flip;

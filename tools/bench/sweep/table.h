@@ -60,12 +60,8 @@ bool masu_setting_is_name(const char *text);
 /* What a ladder goes by: the mean of FLIP in motion along the path and at rest, where both are known. */
 double masu_row_error(const masu_row *row);
 
-/* One line without its end. False: not as many fields, a text that is no name, or no number. */
-bool masu_row_parse(const char *line, masu_row *out);
-
 /* All rows of `text`, of which the last line may be torn; a header and rows may lack the last two columns. NULL and
- * an `error` of one line: another
- * header, a bad row before the last, or no memory. Freed by free(). No row is no error. */
+ * an `error` of one line: another header, a bad row before the last, or no memory. Freed by free(). No row is no error. */
 masu_row *masu_rows_read(const char *text, uint32_t *count, char *error, size_t error_size);
 
 /* The row of that setting, or NULL. */
