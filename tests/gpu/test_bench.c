@@ -142,6 +142,7 @@ static void check_rows(const char *folder, uint32_t least) {
             print_message("  %s: at rest %.4f, slow %.4f, fast %.4f; %s: %.4f\n", r->setting, r->rest_flip, r->flip,
                           r->fast_flip, r->parent, without ? without->flip : (double)NAN);
             assert_true(without && r->rest_flip < 0.8 * without->rest_flip);
+            if (r->render_width < 64) assert_true(r->rest_flip < 0.9 * r->flip && fabs(r->fast_flip - r->flip) > 0);
         }
         assert_true(r->device_bytes > 0 && r->render_width <= 64 && r->render_height <= 36);
         assert_non_null(masu_rows_find(rows, count, r->parent));
