@@ -21,7 +21,7 @@ static void help_and_version_are_there_for_every_command(void **state) {
         "",         "render",        "upscale",     "compare",           "plan",       "bench",
         "study",    "conform",       "simulate",    "study march",       "study cull", "study draw",
         "study ao", "study lights",  "study image", "study reflections", "study rays",
-        "study upscale", "study baseline"};
+        "study upscale", "study temporal", "study baseline"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         assert_int_equal(cli_run("%s --help", commands[i]), 0);
         assert_true(strlen(cli_out) > 200);

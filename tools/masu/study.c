@@ -10,7 +10,7 @@
 static const masu_study *const studies[] = {
     &masu_study_march, &masu_study_cull,        &masu_study_draw, &masu_study_lights,
     &masu_study_ao,    &masu_study_reflections, &masu_study_rays, &masu_study_upscale,
-    &masu_study_image, &masu_study_baseline};
+    &masu_study_image, &masu_study_temporal,    &masu_study_baseline};
 enum { STUDIES = sizeof studies / sizeof *studies };
 
 static const masu_study *study_of(const masu_cli_command *command) {
@@ -54,6 +54,22 @@ static int run(masu_cli *cli) {
         list[i] = &commands[i];
     }
     return masu_cli_commands(cli, masu_cmd_study.summary, list);
+}
+
+bool masu_study_read_scales(masu_cli *cli, uint32_t most, double *scales, uint32_t *count) {
+    const char *at = cli->value;
+    for (*count = 0; *count < most; at++) {
+        char *end;
+        double scale = strtod(at, &end);
+        if (end == at || !(scale > 0.0 && scale <= 1.0)) break;
+        scales[(*count)++] = scale;
+        if (!*end) return true;
+        if (*end != ',') break;
+        at = end;
+    }
+    masu_cli_usage_error("%s %s: needed are 1 to %u numbers above 0 and at most 1, as in 1,0.8,0.4",
+                         cli->option, cli->value, most);
+    return false;
 }
 
 void masu_study_scene_name(const char *path, char *name, size_t size) {

@@ -61,10 +61,13 @@ typedef struct masu_study {
 
 extern const masu_study masu_study_march, masu_study_cull, masu_study_draw, masu_study_lights,
     masu_study_ao, masu_study_reflections, masu_study_rays, masu_study_upscale, masu_study_image,
-    masu_study_baseline;
+    masu_study_temporal, masu_study_baseline;
 
 /* The name of the scene's file without its folder and from its first dot on. */
 void masu_study_scene_name(const char *path, char *name, size_t size);
+
+/* "1,0.8,0.4" of an option into at most so many scales; false: a mistake has been reported. */
+bool masu_study_read_scales(masu_cli *cli, uint32_t most, double *scales, uint32_t *count);
 
 /* As grey PNG: a value of each pixel, cut to 0..1. */
 bool masu_study_save_grey(const char *path, const float *values, VkExtent2D size, char *error,

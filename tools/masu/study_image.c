@@ -334,22 +334,9 @@ static int run(void) {
 
 /* ---- Command line ---------------------------------------------------------------------------- */
 
-/* "1,0.8,0.4" */
 static bool read_scales(masu_cli *cli, void *options_) {
     options *to = options_;
-    const char *at = cli->value;
-    for (to->scale_count = 0; to->scale_count < SCALES_MOST; at++) {
-        char *end;
-        double scale = strtod(at, &end);
-        if (end == at || !(scale > 0.0 && scale <= 1.0)) break;
-        to->scales[to->scale_count++] = scale;
-        if (!*end) return true;
-        if (*end != ',') break;
-        at = end;
-    }
-    masu_cli_usage_error("%s %s: needed are 1 to %u numbers above 0 and at most 1, as in 1,0.8,0.4",
-                         cli->option, cli->value, SCALES_MOST);
-    return false;
+    return masu_study_read_scales(cli, SCALES_MOST, to->scales, &to->scale_count);
 }
 
 static const masu_option rows[] = {

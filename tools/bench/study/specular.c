@@ -10,14 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static float half(uint16_t bits) {
-    uint32_t exponent = bits >> 10 & 31u, fraction = bits & 0x3FFu;
-    float value = exponent == 31 ? (fraction ? NAN : INFINITY)
-                  : exponent     ? ldexpf((float)(fraction | 0x400u), (int)exponent - 25)
-                                 : ldexpf((float)fraction, -24);
-    return bits & 0x8000u ? -value : value;
-}
-
 uint32_t masu_specular_slot(const masu_session *s) {
     uint32_t flights = masu_desc_resolved(&s->desc).frames_in_flight;
     return (s->next_slot + flights - 1) % flights;
@@ -35,7 +27,7 @@ bool masu_specular_read(masu_session *s, float *rgb) {
         for (uint32_t x = 0; x < size.width; x++) {
             uint16_t texel[4];
             memcpy(texel, row_of(&image, y) + 8 * (size_t)x, sizeof texel);
-            for (int k = 0; k < 3; k++) *rgb++ = half(texel[k]);
+            for (int k = 0; k < 3; k++) *rgb++ = masu_texel_half(texel[k]);
         }
     }
     return true;

@@ -84,3 +84,11 @@ void masu_texel_pack(const double m[8], uint8_t texel[4], uint32_t *normal) {
     memcpy(texel, &word, sizeof word);
     *normal |= (1 + level_of(m[3], 13)) << 26;
 }
+
+float masu_texel_half(uint16_t bits) {
+    uint32_t exponent = bits >> 10 & 31u, fraction = bits & 0x3FFu;
+    float value = exponent == 31 ? (fraction ? NAN : INFINITY)
+                  : exponent     ? ldexpf((float)(fraction | 0x400u), (int)exponent - 25)
+                                 : ldexpf((float)fraction, -24);
+    return bits & 0x8000u ? -value : value;
+}

@@ -13,5 +13,7 @@ bool masu_texel_is_unlit(uint32_t normal);
 void masu_texel_unpack(const uint8_t albedo[4], uint32_t normal, double material[8]);
 /* To texels; of the normal the six bits that are not its direction. */
 void masu_texel_pack(const double material[8], uint8_t albedo[4], uint32_t *normal);
+/* Of 16 bits: IEEE 754 binary16. */
+float masu_texel_half(uint16_t bits);
 
 #endif

@@ -1,0 +1,288 @@
+/* temporal.c: see temporal.h. */
+#include "bench/study/temporal.h"
+
+#include "bench/measure/motion.h"
+#include "bench/measure/picture.h"
+#include "bench/study/gsr2.h"
+#include "bench/study/specular.h"
+#include "bench/study/texel.h"
+#include "image.h"
+#include "metric/flip.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const masu_past_ways[MASU_PAST_WAYS] = {"without", "temporal", "gsr2"};
+const char *const masu_past_motions[MASU_PAST_MOTIONS] = {"rest", "slow", "fast"};
+
+static const double steps[MASU_PAST_MOTIONS] = {0.0, MASU_MOTION_STEP, 1.0 / 8.0};
+
+typedef struct study {
+    const masu_past_desc *d;
+    masu_past *out;
+    char *error;
+    size_t error_size;
+    uint8_t *memory;
+    uint8_t *truth, *truth_before;  /* of the last frame and of the one before in slow motion */
+    uint8_t *shown, *shown_before;
+    masu_session s;
+} study;
+
+static bool failed(study *w, const char *text) {
+    snprintf(w->error, w->error_size, "%s", text);
+    return false;
+}
+
+static size_t bytes_of(VkExtent2D size) { return 4 * (size_t)size.width * size.height; }
+
+static bool save(study *w, const char *name, const uint8_t *rgba) {
+    const char *path = w->d->scene_path, *last = strrchr(path, '/');
+    char file[4096];
+    last = last ? last + 1 : path;
+    if (!w->d->image_dir) return true;
+    if (snprintf(file, sizeof file, "%s/%.*s.%s.png", w->d->image_dir, (int)strcspn(last, "."), last, name) >=
+        (int)sizeof file)
+        return failed(w, "the path is too long");
+    return masu_image_save_png(file, rgba, w->d->size.width, w->d->size.height, 0, w->error, w->error_size);
+}
+
+static double difference(const uint8_t *a, const uint8_t *b, size_t bytes) {
+    uint64_t sum = 0;
+    for (size_t i = 0; i < bytes; i++) sum += (uint64_t)abs(a[i] - b[i]); /* alpha is 255 in all */
+    return (double)sum / (0.75 * (double)bytes);
+}
+
+/* ---- The truth --------------------------------------------------------------------------------- */
+
+static masu_session_desc session_of(const study *w, VkExtent2D size) {
+    return masu_picture_session(w->d->scene_path, size, &w->d->host);
+}
+
+static bool find_truth(study *w, double time, const char *path, uint8_t *rgba) {
+    const masu_session_desc d = session_of(w, w->d->size);
+    masu_picture_want want = {path, time, w->d->positions, w->d->rays, w->d->progress, 0};
+    bool good = masu_picture_find(&d, &want, rgba, w->error, w->error_size);
+    w->out->messages += want.messages;
+    return good;
+}
+
+static bool find_truths(study *w) {
+    char before[4096];
+    const char *path = w->d->truth_path;
+    if (path && snprintf(before, sizeof before, "%s.before.png", path) >= (int)sizeof before)
+        return failed(w, "the path is too long");
+    return find_truth(w, w->d->time, path, w->truth) &&
+           find_truth(w, w->d->time - MASU_MOTION_STEP, path ? before : NULL, w->truth_before) &&
+           save(w, "truth", w->truth);
+}
+
+/* ---- The library's own pictures ---------------------------------------------------------------- */
+
+static uint32_t frames_of(const study *w, masu_past_motion motion) {
+    return motion == MASU_PAST_FAST ? w->d->fast_frames : w->d->frames;
+}
+
+static double time_of(const study *w, masu_past_motion motion, uint32_t frame) {
+    return w->d->time - (double)(frames_of(w, motion) - 1 - frame) * steps[motion];
+}
+
+static bool draw_own(study *w, masu_past_motion motion) {
+    const uint32_t frames = frames_of(w, motion);
+    for (uint32_t k = 0; k < frames; k++) {
+        masu_commands commands;
+        memcpy(w->shown_before, w->shown, bytes_of(w->d->size));
+        if (!masu_motion_frame(&w->s, 0, time_of(w, motion, k), steps[motion], k == 0, &commands, w->error,
+                               w->error_size))
+            return false;
+        if (k + 2 < frames) continue;
+        if (!masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size)) return false;
+        memcpy(w->shown, w->s.targets[0].mapped, bytes_of(w->d->size));
+    }
+    return true;
+}
+
+/* ---- Another's ---------------------------------------------------------------------------------- */
+
+typedef struct other {
+    masu_gsr2 g;
+    float *depth, *motion;
+    masu_camera camera; /* of the frame before */
+} other;
+
+/* Halton's sequence, as rung.temporal has it: its point from 1 on. */
+static float mirrored(uint32_t i, uint32_t base) {
+    double value = 0.0, digit = 1.0;
+    for (; i; i /= base) value += (digit /= base) * (double)(i % base);
+    return (float)value;
+}
+
+static bool read_surfaces(study *w, other *o, const float before[2], const float now[2]) {
+    masu_readback_image depth, velocity;
+    const uint32_t slot = masu_specular_slot(&w->s);
+    if (masu_readback(w->s.m, slot, MASU_READBACK_DEPTH, &depth) ||
+        masu_readback(w->s.m, slot, MASU_READBACK_VELOCITY, &velocity))
+        return failed(w, "no depth or velocity is read back");
+    for (uint32_t y = 0; y < depth.height; y++) {
+        const uint8_t *row = (const uint8_t *)velocity.pixels + (size_t)y * velocity.row_bytes;
+        memcpy(o->depth + (size_t)y * depth.width, (const uint8_t *)depth.pixels + (size_t)y * depth.row_bytes,
+               sizeof(float) * depth.width);
+        for (uint32_t x = 0; x < depth.width; x++, row += 8) {
+            uint16_t texel[4];
+            memcpy(texel, row, sizeof texel);
+            const bool known = masu_texel_half(texel[3]) > 0.5f;
+            for (int k = 0; k < 2; k++) {
+                /* A pixel looks beside its middle by the jitter: the picture moves the other way. */
+                float moved = masu_texel_half(texel[k]) + before[k] - now[k];
+                o->motion[2 * ((size_t)y * depth.width + x) + (size_t)k] = known ? moved : 0.0f;
+            }
+        }
+    }
+    return true;
+}
+
+static bool draw_other_frame(study *w, other *o, masu_past_motion motion, uint32_t k) {
+    const masu_gsr2 *g = &o->g;
+    masu_camera camera, plain;
+    masu_commands commands;
+    const double time = time_of(w, motion, k), area = (double)g->to[0] * g->to[1] / ((double)g->from[0] * g->from[1]);
+    const uint32_t phases = (uint32_t)ceil(8.0 * area);
+    if (masu_camera_at(w->s.m, time, &camera)) return failed(w, "the scene has no camera");
+    plain = camera;
+    camera.jitter[0] = mirrored(k % phases + 1, 2) - 0.5f;
+    camera.jitter[1] = mirrored(k % phases + 1, 3) - 0.5f;
+    const masu_frame_desc frame = {.camera = &camera, .time = time, .time_step = (float)steps[motion], .cut = k == 0};
+    if (!masu_session_frame(&w->s, &frame, true, &commands, w->error, w->error_size) ||
+        !read_surfaces(w, o, k ? o->camera.jitter : camera.jitter, camera.jitter) ||
+        !masu_headless_target_read(&w->s.host, &w->s.targets[0], w->error, w->error_size))
+        return false;
+    masu_camera was = o->camera;
+    memcpy(was.jitter, plain.jitter, sizeof was.jitter);
+    masu_gsr2_frame given = {.rgba = w->s.targets[0].mapped,
+                             .depth = o->depth,
+                             .motion = o->motion,
+                             .tan_x = tanf(0.5f * camera.fov_y) * (float)g->to[0] / (float)g->to[1],
+                             .cut = k == 0,
+                             .still = k && !memcmp(&was, &plain, sizeof plain),
+                             .rest = 1.0f};
+    memcpy(given.jitter, camera.jitter, sizeof given.jitter);
+    memcpy(w->shown_before, w->shown, bytes_of(w->d->size));
+    masu_gsr2_add(&o->g, &given, w->shown);
+    o->camera = camera;
+    return true;
+}
+
+static bool draw_other(study *w, masu_past_motion motion) {
+    const uint32_t to[2] = {w->d->size.width, w->d->size.height};
+    const uint32_t from[2] = {w->s.desc.output.width, w->s.desc.output.height};
+    const size_t pixels = (size_t)from[0] * from[1];
+    other o = {.depth = malloc(3 * pixels * sizeof(float))};
+    bool good = o.depth && masu_gsr2_open(&o.g, from, to);
+    if (!good) failed(w, "out of memory");
+    o.motion = o.depth + pixels;
+    for (uint32_t k = 0; k < frames_of(w, motion) && good; k++) good = draw_other_frame(w, &o, motion, k);
+    masu_gsr2_close(&o.g);
+    free(o.depth);
+    return good;
+}
+
+/* ---- Rows --------------------------------------------------------------------------------------- */
+
+static bool compare(study *w, masu_past_row *row, masu_past_motion motion) {
+    const size_t bytes = bytes_of(w->d->size);
+    char name[96];
+    masu_flip flip;
+    snprintf(name, sizeof name, "%g.%s.%s", row->scale, masu_past_ways[row->way], masu_past_motions[motion]);
+    if (!masu_metric_flip(w->truth, w->shown, w->d->size.width, w->d->size.height, 0, NULL, &flip))
+        return failed(w, "out of memory");
+    row->flip[motion] = flip.mean;
+    if (motion < MASU_PAST_FAST) {
+        row->flicker[motion] = difference(w->shown, w->shown_before, bytes);
+        if (motion == MASU_PAST_SLOW) row->flicker[motion] -= difference(w->truth, w->truth_before, bytes);
+    }
+    return save(w, name, w->shown);
+}
+
+/* The render size of a scale, as the library rounds it: of a plan that is thrown away. */
+static bool find_size(study *w, masu_past_row *row) {
+    masu_session_desc d = session_of(w, w->d->size);
+    masu_plan_info plan;
+    d.desc.rung_count = 1;
+    d.desc.rungs[0] = (masu_rung){.scale = (float)row->scale};
+    if (!masu_session_open(&d, &w->s, w->error, w->error_size)) return false;
+    masu_plan_of(w->s.m, &plan);
+    row->render_width = plan.rungs[0].render_width;
+    row->render_height = plan.rungs[0].render_height;
+    snprintf(w->out->driver, sizeof w->out->driver, "%s", w->s.host.driver);
+    masu_session_close(&w->s);
+    w->out->messages += w->s.host.messages;
+    return true;
+}
+
+/* The other way gets mips as fine as rung.temporal has them (src/plan/push.c). */
+static masu_session_desc session_of_way(const study *w, const masu_past_row *row) {
+    const bool other = row->way == MASU_PAST_GSR2;
+    masu_session_desc d = session_of(w, other ? (VkExtent2D){row->render_width, row->render_height} : w->d->size);
+    d.desc.rung_count = 1;
+    d.desc.rungs[0].scale = other ? 1.0f : (float)row->scale;
+    d.desc.rungs[0].temporal = row->way == MASU_PAST_OWN ? MASU_ON : MASU_OFF;
+    if (!other) return d;
+    d.desc.rungs[0].sharpen = MASU_OFF;
+    d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
+    d.desc.debug.mip_bias = log2f((float)row->scale) - 2.0f;
+    return d;
+}
+
+static bool measure(study *w, masu_past_row *row) {
+    char text[96];
+    for (int m = 0; m < MASU_PAST_MOTIONS; m++) {
+        const masu_past_motion motion = (masu_past_motion)m;
+        const masu_session_desc d = session_of_way(w, row);
+        snprintf(text, sizeof text, "size %g, %s, %s", row->scale, masu_past_ways[row->way], masu_past_motions[m]);
+        if (w->d->progress) w->d->progress(text);
+        if (!masu_session_open(&d, &w->s, w->error, w->error_size)) return false;
+        bool good = row->way == MASU_PAST_GSR2 ? draw_other(w, motion) : draw_own(w, motion);
+        masu_session_close(&w->s);
+        w->out->messages += w->s.host.messages;
+        if (!good || !compare(w, row, motion)) return false;
+    }
+    return true;
+}
+
+static bool run(study *w) {
+    if (!find_truths(w)) return false;
+    for (uint32_t i = 0; i < w->d->scale_count; i++) {
+        masu_past_row size = {.scale = w->d->scales[i]};
+        if (!find_size(w, &size)) return false;
+        for (int way = 0; way < MASU_PAST_WAYS; way++) {
+            if (w->d->only && !(w->d->only >> way & 1u)) continue;
+            masu_past_row *row = &w->out->rows[w->out->row_count];
+            *row = size;
+            row->way = (masu_past_way)way;
+            if (!measure(w, row)) return false;
+            w->out->row_count++;
+        }
+    }
+    return true;
+}
+
+bool masu_past_run(const masu_past_desc *desc, masu_past *out, char *error, size_t error_size) {
+    static study w; /* a session may not move, and is large */
+    const size_t bytes = bytes_of(desc->size);
+    memset(&w, 0, sizeof w);
+    memset(out, 0, sizeof *out);
+    w.d = desc;
+    w.out = out;
+    w.error = error;
+    w.error_size = error_size;
+    w.memory = calloc(4, bytes);
+    if (!w.memory) return failed(&w, "out of memory");
+    w.truth = w.memory;
+    w.truth_before = w.memory + bytes;
+    w.shown = w.memory + 2 * bytes;
+    w.shown_before = w.memory + 3 * bytes;
+    bool good = run(&w);
+    free(w.memory);
+    return good;
+}

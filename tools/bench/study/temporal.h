@@ -1,0 +1,54 @@
+/* temporal.h: pictures with a past and without, at rest and in motion, against the truth: what `rung.temporal` gives
+ * beside one frame alone, and beside another's way to take the mean of many (bench/study/gsr2.h).
+ *
+ * All ways see the same scene and end at the same moment. Flicker is the mean absolute difference, of 255, of the last
+ * two frames: at rest as it is, in slow motion less that of their two truths. Nothing here judges. */
+#ifndef MASU_BENCH_TEMPORAL_H
+#define MASU_BENCH_TEMPORAL_H
+
+#include "session.h"
+
+typedef enum masu_past_way { MASU_PAST_NONE, MASU_PAST_OWN, MASU_PAST_GSR2, MASU_PAST_WAYS } masu_past_way;
+typedef enum masu_past_motion { MASU_PAST_REST, MASU_PAST_SLOW, MASU_PAST_FAST, MASU_PAST_MOTIONS } masu_past_motion;
+
+/* "without", "temporal", "gsr2"; "rest", "slow", "fast" */
+extern const char *const masu_past_ways[MASU_PAST_WAYS];
+extern const char *const masu_past_motions[MASU_PAST_MOTIONS];
+
+enum { MASU_PAST_SCALES = 8 };
+
+typedef struct masu_past_desc {
+    const char *scene_path;
+    const char *truth_path; /* PNG, read or written, and FILE.before.png beside it; NULL: neither */
+    const char *image_dir;  /* NULL: none; else SCENE.SCALE.WAY.MOTION.png and SCENE.truth.png */
+    VkExtent2D size;
+    double time;               /* of the last frame */
+    uint32_t positions, rays;  /* of the truth */
+    uint32_t frames;           /* at rest and in slow motion, 1/60 s apart */
+    uint32_t fast_frames;      /* 1/8 s apart */
+    uint32_t only;             /* bits 1 << MASU_PAST_...: the ways to draw; 0: all */
+    double scales[MASU_PAST_SCALES];
+    uint32_t scale_count;
+    masu_headless_desc host;
+    void (*progress)(const char *text); /* or NULL */
+} masu_past_desc;
+
+typedef struct masu_past_row {
+    masu_past_way way;
+    double scale;
+    uint32_t render_width, render_height;
+    double flip[MASU_PAST_MOTIONS];
+    double flicker[MASU_PAST_FAST]; /* of rest and of slow motion */
+} masu_past_row;
+
+typedef struct masu_past {
+    char driver[1024];
+    masu_past_row rows[MASU_PAST_SCALES * MASU_PAST_WAYS];
+    uint32_t row_count;
+    uint32_t messages; /* of the validation layer */
+} masu_past;
+
+/* False: `error` holds one line. */
+bool masu_past_run(const masu_past_desc *desc, masu_past *out, char *error, size_t error_size);
+
+#endif
