@@ -48,7 +48,8 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
            "All others took longer where they were measured (docs/design/11-march-measured.md).")  \
     /* Single stages of traced reflections, and how far they look. */                              \
     WORD(  masu_switch,      specular_reuse,                         SPECULAR,                     \
-           "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on.",    \
+           "Each texel weighs its neighbours' hits too, while its history is short. AUTO: on,"     \
+           " off with temporal.",                                                                  \
            "A pass of specular_reuse_taps.")                                                       \
     WORD(  masu_switch,      specular_temporal,                      SPECULAR,                     \
            "Temporal accumulation. AUTO: on.",                                                     \
@@ -61,7 +62,8 @@ typedef enum masu_march { MASU_MARCH_WORDS(MASU_WORD_ENUM) } masu_march;
            "The spatial filter, as wide as noise is left. AUTO: on.",                              \
            "A pass of specular_filter_taps.")                                                      \
     WORD(  masu_switch,      specular_taa,                           SPECULAR,                     \
-           "Evens out what still flickers; only with specular_temporal. AUTO: on.",                \
+           "Evens out what still flickers; only with specular_temporal. AUTO: on, off with"        \
+           " temporal.",                                                                           \
            "A pass, and an image that outlives the frame.")                                        \
     NUMBER(uint32_t,         specular_reuse_taps,  1,    16,   8,    SPECULAR,  "",                \
            "Neighbours that specular_reuse looks at.",                                             \

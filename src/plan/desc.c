@@ -51,11 +51,14 @@ static void resolve_words(masu_rung *rung) {
     fill(&rung->frustum, MASU_ON);
     fill(&rung->ao, MASU_ON);
     fill(&rung->light_tiles, MASU_ON);
-    fill(&rung->specular_reuse, MASU_ON);
     fill(&rung->specular_temporal, MASU_ON);
     fill(&rung->specular_fine, MASU_ON);
     fill(&rung->specular_filter, MASU_ON);
-    fill(&rung->specular_taa, MASU_ON);
+    /* Many samples from one are a better mean than the neighbours' hits are, and a second mean over frames blurs what the
+     * first has sharp: docs/design/41-temporal.md. */
+    masu_switch alone = rung->temporal == MASU_ON ? MASU_OFF : MASU_ON;
+    fill(&rung->specular_reuse, alone);
+    fill(&rung->specular_taa, alone);
 }
 
 /* What follows from the sizes, and from the words. What is blurred by a bilinear mean RCAS would not bring

@@ -125,6 +125,28 @@ static void what_is_glossy_is_traced_in_polygons_in_the_sdf_or_in_both(void **st
     }
 }
 
+/* The mean over frames takes the place of that over neighbours and of the last one over frames, unless they are asked
+ * for. */
+static void many_samples_from_one_go_without_two_means(void **state) {
+    (void)state;
+    for (int asked = 0; asked < 2; asked++) {
+        masu_desc d = mirrors(RASTER);
+        d.rung_count = 2;
+        d.rungs[1] = d.rungs[0];
+        d.rungs[1].temporal = MASU_ON;
+        if (asked) d.rungs[1].specular_reuse = d.rungs[1].specular_taa = MASU_ON;
+        compile(&d, &with);
+        for (uint32_t r = 0; r < 2; r++) {
+            const masu_pass_set *active = &with.rungs[r].active;
+            assert_int_equal(masu_has_pass(active, MASU_PASS_SPECULAR_REUSE), !r || asked);
+            assert_int_equal(masu_has_pass(active, MASU_PASS_SPECULAR_TAA), !r || asked);
+            assert_true(masu_has_pass(active, MASU_PASS_SPECULAR_TEMPORAL));
+            assert_true(masu_has_pass(active, MASU_PASS_SPECULAR_FINE));
+            assert_true(masu_has_pass(active, MASU_PASS_SPECULAR_FILTER));
+        }
+    }
+}
+
 static void the_reference_is_of_full_size_and_keeps_its_sum(void **state) {
     (void)state;
     masu_desc d = mirrors(RASTER);
@@ -148,6 +170,7 @@ int main(void) {
         cmocka_unit_test(what_is_not_glossy_or_switched_off_costs_nothing),
         cmocka_unit_test(a_rung_without_them_runs_none_of_their_passes),
         cmocka_unit_test(what_is_glossy_is_traced_in_polygons_in_the_sdf_or_in_both),
+        cmocka_unit_test(many_samples_from_one_go_without_two_means),
         cmocka_unit_test(the_reference_is_of_full_size_and_keeps_its_sum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
