@@ -45,6 +45,12 @@ bool masu_is_found(uvec2 found)
     return found.x >= 1u << 27;
 }
 
+/* Whether 7 samples or more may count: what rests, in a world that changes or not. */
+bool masu_found_is_long(uvec2 found)
+{
+    return found.x >= 23u << 27;
+}
+
 bool masu_has_stayed(uvec2 found)
 {
     return found.y >= masu_found_stays << 27;
