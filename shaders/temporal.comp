@@ -92,8 +92,8 @@ void main()
         old = stored ? masu_found_held(found, old) : vec4(0.0);
     }
 
-    /* A tent as wide as two pixels of the output; of what moves, at half size a quarter wider, or rows that this frame's
-     * samples miss would differ from those beside them: dotted edges. */
+    /* A tent as wide as two pixels of the output. Of what moves or is new, at half size a quarter wider (0.6 of that and 0.4
+     * of a tent of the input), or rows that this frame's samples miss would differ from those beside them: dotted edges. */
     steps = masu_found_is_long(found) ? steps : 0.6 * steps + 0.4;
     vec2 first = max(1.0 - abs(f) * steps, 0.0), second = max(1.0 - abs(1.0 - f) * steps, 0.0);
     vec2 both = first + second;

@@ -45,25 +45,25 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               0.0704565f, 0.074186f, 0.0875745f, 0.0951214f},
         },
     [MASU_SCENE_BOTH] =
-        {.from = "engine.masu, 320x180, "
+        {.from = "engine.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-22",
+         "by timestamps, 2026-11-26",
          .count = 8,
          .rungs = {
-              {.scale = 1.0f, .sharpness = 0.2f},
-              {.scale = 1.0f, .sharpness = 0.2f, .march_steps = 128},
-              {.scale = 1.0f, .sharpness = 0.2f, .march_steps = 64},
-              {.scale = 0.875f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
+              {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.875f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.75f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.4f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .march_steps = 128},
-              {.scale = 0.75f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.5f, .easu = MASU_EASU_BILINEAR, .sharpness = 0.2f},
          },
-         .ratios = {1.0f, 0.92049f, 0.868721f, 0.827835f,
-              0.772761f, 0.705288f, 0.651197f, 0.569325f},
-         .flips = {0.0341412f, 0.034565f, 0.0417077f, 0.0505464f,
-              0.0550697f, 0.066287f, 0.0772771f, 0.0912392f},
+         .ratios = {1.18022f, 1.08284f, 0.768263f, 0.722285f,
+              0.532873f, 0.401722f, 0.318513f, 0.280738f},
+         .flips = {0.017201f, 0.0183728f, 0.0208237f, 0.0240288f,
+              0.0278374f, 0.0332718f, 0.0664416f, 0.0671139f},
         },
     [MASU_SCENE_POLYGONS_TRACED] =
         {.from = "mirrors.masu, 320x180, "

@@ -6,6 +6,7 @@
 
 #include "bench/study/temporal.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,7 +56,7 @@ static void a_past_brings_a_picture_nearer_to_the_truth(void **state) {
             assert_true(other->flip[m] < 0.9 * none->flip[m]);
         }
         assert_true(none->flicker[MASU_PAST_REST] < 1e-9);
-        assert_true(none->flip[MASU_PAST_REST] - none->flip[MASU_PAST_SLOW] < 1e-9);
+        assert_true(fabs(none->flip[MASU_PAST_REST] - none->flip[MASU_PAST_SLOW]) < 1e-9);
     }
     /* The same but for what moves. */
     const masu_past_row *own = row(0.5, MASU_PAST_OWN);
@@ -68,7 +69,7 @@ static void the_table_is_told_as_it_is_asked_for(void **state) {
     static const struct {
         const char *arguments, *says;
     } mistakes[] = {{"%s --only ours", "ours"}, {"%s --scales 0.5,2", "0.5,2"}, {"", "no scene"},
-                    {"%s --fast-frames 0", "--fast-frames"}};
+                    {"%s --fast-frames 0", "--fast-frames"}, {"%s --frames 1", "--frames"}};
     const char *good = scene_path("test_town");
     int code = cli_run("study temporal %s --size 32x24 --positions 2 --reference 2 --frames 2 --fast-frames 2 "
                        "--scales 0.5 --only temporal,gsr2 --quiet --csv %s/rows.csv",

@@ -43,8 +43,9 @@ static const masu_column columns[] = {
     MOTION("rest"),
     MOTION("slow"),
     MOTION("fast"),
+#undef MOTION
     {"rest_flicker", "%.4f", "flicker", "%.2f"},
-    {"slow_flicker", "%.4f", "slow", "%.2f"},
+    {"slow_flicker", "%.4f", "in motion", "%.2f"},
     {"driver", "\"", NULL, NULL},
     {NULL, NULL, NULL, NULL}};
 
@@ -114,7 +115,8 @@ static const masu_option rows[] = {
     MASU_STUDY_SIZE,
     MASU_STUDY_TIME,
     MASU_STUDY_TRUTH,
-    MASU_STUDY_FRAMES(10000, "at rest and in slow motion, 1/60 s apart, before a picture is taken"),
+    MASU_UINT(options, study.frames, "frames", 2, 10000,
+              "at rest and in slow motion, 1/60 s apart, before a picture is taken"),
     MASU_UINT(options, fast_frames, "fast-frames", 1, 10000, "the same in fast motion, 1/8 s apart"),
     MASU_OWN("scales", "S,...", read_scales, "of the render size (default 1,0.5)"),
     MASU_STUDY_ONLY,
@@ -133,7 +135,8 @@ const masu_study masu_study_temporal = {
     .given = &given.study,
     .run = run,
     .details = "Ways: without, a rung with nothing but its scale; temporal, the same with temporal=on; gsr2,\n"
-               "frames of the render size resolved on the CPU by Snapdragon GSR 2 (two passes), written anew.\n"
+               "frames of the render size resolved on the CPU by Snapdragon GSR 2 (two passes), written anew,\n"
+               "without sharpening; temporal sharpens a little, and RCAS what is upscaled without.\n"
                "Shown is FLIP of the last frame against the truth of masu render --truth. Motion follows the\n"
                "scene's path and ends where the rest is. Flicker: mean difference of the last two frames, of\n"
                "255; in slow motion less that of the two truths.\n"};

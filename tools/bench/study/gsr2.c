@@ -111,11 +111,12 @@ typedef struct samples {
 } samples;
 
 /* Nine samples where the camera is still, else the cross of five. at: of the output's pixel, in pixels of the render
- * size. */
-static samples gather(const masu_gsr2 *g, const masu_gsr2_frame *f, const float at[2], float kernel, float fall) {
+ * size; sampled: the same without the jitter, within the picture. */
+static samples gather(const masu_gsr2 *g, const masu_gsr2_frame *f, const float at[2], const float sampled[2], float kernel,
+                      float fall) {
     samples s = {{0}, 0.0f, {1, 1, 1}, {-1, -1, -1}, {0}, {0}};
     float box = 0.0f, squares[3] = {0};
-    int base[2] = {(int)floorf(at[0] - f->jitter[0]), (int)floorf(at[1] - f->jitter[1])};
+    int base[2] = {(int)sampled[0], (int)sampled[1]};
     for (int i = 0; i < 9; i++) {
         int x = i % 3 - 1, y = i / 3 - 1;
         if (!f->still && x && y) continue;
@@ -185,7 +186,7 @@ static void upscale_pixel(masu_gsr2 *g, const masu_gsr2_frame *f, uint32_t x, ui
     float length = 2.0f * hypotf(moved[0] * ratio[0], moved[1] * ratio[1]);
     float wide = cut ? 0.0f : fminf(ratio[0], 1.99f), narrow = fmaxf(1.0f, 0.3f + 0.3f * wide);
     float kernel = 0.5f * mixed(wide, narrow, cut ? 1.0f : 0.25f * moved[2]);
-    samples s = gather(g, f, at, kernel, mixed(-2.0f, -3.0f, unit(0.02f * length)));
+    samples s = gather(g, f, at, sampled, kernel, mixed(-2.0f, -3.0f, unit(0.02f * length)));
     float area = ratio[0] * ratio[1], box = fminf(20.0f, area * area * area);
     bool moves = length > 1e-6f * (float)g->to[0];
     float share = believe(&s, moved[2], length, box, moves ? 0.0f : f->rest, past);

@@ -133,9 +133,11 @@ static bool read_surfaces(study *w, other *o, const float before[2], const float
             memcpy(texel, row, sizeof texel);
             const bool known = masu_texel_half(texel[3]) > 0.5f;
             for (int k = 0; k < 2; k++) {
-                /* A pixel looks beside its middle by the jitter: the picture moves the other way. */
+                /* A pixel looks beside its middle by the jitter: the picture moves the other way. What the half has been
+                 * rounded by is no motion: what rests is told to rest, as matrices without jitter would. */
                 float moved = masu_texel_half(texel[k]) + before[k] - now[k];
-                o->motion[2 * ((size_t)y * depth.width + x) + (size_t)k] = known ? moved : 0.0f;
+                bool moves = known && fabsf(moved) > ldexpf(fabsf(before[k] - now[k]), -11) + 1e-4f;
+                o->motion[2 * ((size_t)y * depth.width + x) + (size_t)k] = moves ? moved : 0.0f;
             }
         }
     }
@@ -179,8 +181,8 @@ static bool draw_other(study *w, masu_past_motion motion) {
     const size_t pixels = (size_t)from[0] * from[1];
     other o = {.depth = malloc(3 * pixels * sizeof(float))};
     bool good = o.depth && masu_gsr2_open(&o.g, from, to);
+    if (good) o.motion = o.depth + pixels;
     if (!good) failed(w, "out of memory");
-    o.motion = o.depth + pixels;
     for (uint32_t k = 0; k < frames_of(w, motion) && good; k++) good = draw_other_frame(w, &o, motion, k);
     masu_gsr2_close(&o.g);
     free(o.depth);
@@ -220,7 +222,8 @@ static bool find_size(study *w, masu_past_row *row) {
     return true;
 }
 
-/* The other way gets mips as fine as rung.temporal has them (src/plan/push.c). */
+/* The other way gets mips as fine as rung.temporal has them (src/plan/push.c), and reflections without the means that AUTO leaves
+ * out there. */
 static masu_session_desc session_of_way(const study *w, const masu_past_row *row) {
     const bool other = row->way == MASU_PAST_GSR2;
     masu_session_desc d = session_of(w, other ? (VkExtent2D){row->render_width, row->render_height} : w->d->size);
@@ -229,6 +232,7 @@ static masu_session_desc session_of_way(const study *w, const masu_past_row *row
     d.desc.rungs[0].temporal = row->way == MASU_PAST_OWN ? MASU_ON : MASU_OFF;
     if (!other) return d;
     d.desc.rungs[0].sharpen = MASU_OFF;
+    d.desc.rungs[0].specular_reuse = d.desc.rungs[0].specular_taa = MASU_OFF;
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
     d.desc.debug.mip_bias = log2f((float)row->scale) - 2.0f;
     return d;
