@@ -19,6 +19,15 @@ double masu_metric_rmse(const uint8_t *a, const uint8_t *b, uint32_t width, uint
     return n ? sqrt((double)sum / (3.0 * (double)n)) / 255.0 : 0.0;
 }
 
+double masu_metric_difference(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height) {
+    const size_t pixels = (size_t)width * height;
+    uint64_t sum = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        for (size_t k = 0; k < 3; k++) sum += (uint64_t)abs(a[4 * i + k] - b[4 * i + k]);
+    }
+    return (double)sum / (3.0 * (double)pixels);
+}
+
 double masu_metric_psnr(double rmse) { return rmse > 0.0 ? -20.0 * log10(rmse) : HUGE_VAL; }
 
 /* ---- SSIM ------------------------------------------------------------------------------------ */

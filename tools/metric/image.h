@@ -1,4 +1,4 @@
-/* image.h: how far two 8-bit pictures are apart: RMSE, PSNR, SSIM.
+/* image.h: how far two 8-bit pictures are apart: difference, RMSE, PSNR, SSIM.
  *
  * Pictures are RGBA8, tightly packed, top row first, display-encoded; alpha is ignored. Nothing
  * here keeps anything; only masu_metric_ssim allocates, and frees again before it returns. */
@@ -10,6 +10,9 @@
 /* Root of the mean squared difference over all pixels and the channels R, G, B, as a fraction of
  * 255. */
 double masu_metric_rmse(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height);
+
+/* Mean of the absolute difference over all pixels and the channels R, G, B, of 255: of two frames, their flicker. */
+double masu_metric_difference(const uint8_t *a, const uint8_t *b, uint32_t width, uint32_t height);
 
 /* 20 log10(1 / rmse), dB; INFINITY for equal pictures. */
 double masu_metric_psnr(double rmse);

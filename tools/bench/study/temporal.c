@@ -8,6 +8,7 @@
 #include "bench/study/texel.h"
 #include "image.h"
 #include "metric/flip.h"
+#include "metric/image.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -46,12 +47,6 @@ static bool save(study *w, const char *name, const uint8_t *rgba) {
         (int)sizeof file)
         return failed(w, "the path is too long");
     return masu_image_save_png(file, rgba, w->d->size.width, w->d->size.height, 0, w->error, w->error_size);
-}
-
-static double difference(const uint8_t *a, const uint8_t *b, size_t bytes) {
-    uint64_t sum = 0;
-    for (size_t i = 0; i < bytes; i++) sum += (uint64_t)abs(a[i] - b[i]); /* alpha is 255 in all */
-    return (double)sum / (0.75 * (double)bytes);
 }
 
 /* ---- The truth --------------------------------------------------------------------------------- */
@@ -192,16 +187,17 @@ static bool draw_other(study *w, masu_past_motion motion) {
 /* ---- Rows --------------------------------------------------------------------------------------- */
 
 static bool compare(study *w, masu_past_row *row, masu_past_motion motion) {
-    const size_t bytes = bytes_of(w->d->size);
+    const uint32_t width = w->d->size.width, height = w->d->size.height;
     char name[96];
     masu_flip flip;
     snprintf(name, sizeof name, "%g.%s.%s", row->scale, masu_past_ways[row->way], masu_past_motions[motion]);
-    if (!masu_metric_flip(w->truth, w->shown, w->d->size.width, w->d->size.height, 0, NULL, &flip))
+    if (!masu_metric_flip(w->truth, w->shown, width, height, 0, NULL, &flip))
         return failed(w, "out of memory");
     row->flip[motion] = flip.mean;
     if (motion < MASU_PAST_FAST) {
-        row->flicker[motion] = difference(w->shown, w->shown_before, bytes);
-        if (motion == MASU_PAST_SLOW) row->flicker[motion] -= difference(w->truth, w->truth_before, bytes);
+        row->flicker[motion] = masu_metric_difference(w->shown, w->shown_before, width, height);
+        if (motion == MASU_PAST_SLOW)
+            row->flicker[motion] -= masu_metric_difference(w->truth, w->truth_before, width, height);
     }
     return save(w, name, w->shown);
 }

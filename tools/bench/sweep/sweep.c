@@ -216,9 +216,7 @@ static bool flicker(sweep *w, uint32_t rung, const masu_setting *s, uint64_t *ne
     for (uint32_t k = 0; k < frames; k++) {
         if (!draw(w, rung, false, &commands) || !read_back(w)) return false;
         const uint8_t *shown = w->s.targets[0].mapped;
-        uint64_t apart = 0;
-        for (size_t i = 0; i < bytes; i++) apart += (uint64_t)abs(shown[i] - w->before[i]);
-        sum += (double)apart / (3.0 * w->pixels); /* alpha is 255 in all */
+        sum += masu_metric_difference(shown, w->before, w->d->size.width, w->d->size.height);
         memcpy(w->before, shown, bytes);
     }
     *next = commands.frame + 1;
