@@ -43,6 +43,9 @@ static void rmse_and_psnr_are_those_worked_out_by_hand(void **state) {
     uint8_t a[8] = {10, 20, 30, 1, 40, 50, 60, 2}, b[8] = {13, 20, 30, 9, 40, 46, 60, 7};
     near(masu_metric_rmse(a, b, 2, 1), sqrt(25.0 / 6) / 255, 1e-15);
     near(masu_metric_rmse(a, a, 2, 1), 0, 0);
+    near(masu_metric_difference(a, b, 2, 1), 7.0 / 6, 1e-15); /* 3 and 4; alpha is not looked at */
+    near(masu_metric_difference(b, a, 1, 2), 7.0 / 6, 1e-15);
+    near(masu_metric_difference(a, a, 2, 1), 0, 0);
     assert_true(isinf(masu_metric_psnr(0)));
     for (int i = 0; i < 8; i++) b[i] = (uint8_t)(a[i] + 1);
     near(masu_metric_psnr(masu_metric_rmse(a, b, 2, 1)), 48.1308036087, 1e-9);
