@@ -19,16 +19,26 @@ for scene in engine wet_city mirrors city textures glass night; do
     rows "$scene" "$scene" ''
 done
 rows skins test_skin 'skin|gbuffer'
-# What no rung has by itself.
+# What no rung has by itself: a ladder of two sizes, with a knob.
 ladder=$(mktemp)
 trap 'rm -f "$ladder"' EXIT
-sed 's/"aa": "auto"/"aa": "auto", "silhouettes": "on"/' docs/report/engine/ladder.json > "$ladder"
+# sized SCALE KNOB: 1 and that scale
+sized() {
+    rung='"wall_ms": 1, "gpu_ms": 1, "flip": 0, "rmse": 0'
+    cat > "$ladder" << END
+{"date": "2026-11-26", "scene": "engine.masu", "hash": "0", "driver": "none", "width": 64, "height": 64, "time": 1,
+ "clock": "wall", "error": "flip", "rungs": [
+  {"setting": "full", "ratio": 1, $rung, "knobs": {"scale": 1, "$2": "on"}},
+  {"setting": "less", "ratio": 0.5, $rung, "knobs": {"scale": $1, "$2": "on"}}]}
+END
+}
+sized 0.75 silhouettes
 for scene in engine city; do
     rows "$scene with silhouettes" "$scene" 'silhouettes|tonemap' --ladder "$ladder"
 done
-sed 's/"aa": "auto"/"aa": "auto", "temporal": "on"/' docs/report/engine/ladder.json > "$ladder"
+sized 0.75 temporal
 rows "engine with temporal" engine 'temporal|tonemap' --ladder "$ladder"
-sed '0,/"scale": 1,/s//"scale": 0.5,/' docs/report/engine/ladder.json > "$ladder"
+sized 0.5 ao
 rows 'engine at half size' engine easu_twice --ladder "$ladder"
 rows 'engine with particles' engine 'particles|decals|lines' --particles 1 --decals 1 --lines 1
 rows 'shadows with particles' test_shadows particles --particles 1
