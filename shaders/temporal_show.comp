@@ -2,12 +2,11 @@
  * temporal_show.comp: what rung.temporal shows of the mean over frames, encoded; and the mean itself for the next
  * frame, which finds it where this one has left it.
  *
- * A sample counts for the pixels around it by a tent, twice as wide as the pixel (what moves, below full
- * size, a little wider): steadier than what falls into the
- * pixel alone, but blurred. Of what that and the history's resampling take, push.sharpen gives some back: times the
- * second difference, and within what the five pixels hold. (The variance of a tent is 1/12 of a pixel above that of a
- * pixel; half of that per axis is 1/24, and a little more has the least error.) What is kept is not sharpened: it
- * would be again in every frame.
+ * A sample counts for the pixels around it by a tent, twice as wide as the pixel (of what moves, below full size, a
+ * little wider): steadier than what falls into the pixel alone, but blurred. Of what that and the history's resampling
+ * take, push.sharpen gives some back: times the second difference, and within what the five pixels hold. (The variance
+ * of a tent is 1/12 of a pixel above that of a pixel; half of that per axis is 1/24, and a little more has the least
+ * error.) What is kept is not sharpened: it would be again in every frame.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
