@@ -45,16 +45,19 @@ static int has_resolve(const masu_frame_data *f) {
 }
 
 /* From 1 on: the first place of Halton's sequence is the corner. */
+void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
+    double pixels = (double)render.width * render.height;
+    double phases = fmin(ceil(8.0 * shown.width * shown.height / pixels), 1024.0);
+    uint32_t phase = (uint32_t)(frame % (uint64_t)phases);
+    place[0] = mirrored(phase + 1, 2) - 0.5f;
+    place[1] = mirrored(phase + 1, 3) - 0.5f;
+}
+
 float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]) {
+    const masu_rung_plan *rp = masu_frame_rung_plan(f);
     jitter[0] = jitter[1] = 0.0f;
     if (!has_resolve(f)) return 0.0f;
-    const masu_rung_plan *rp = masu_frame_rung_plan(f);
-    const VkExtent2D shown = f->plan->desc.output;
-    double pixels = (double)rp->render_width * rp->render_height;
-    double phases = fmin(ceil(8.0 * shown.width * shown.height / pixels), 1024.0);
-    uint32_t phase = (uint32_t)(f->number % (uint64_t)phases);
-    jitter[0] = mirrored(phase + 1, 2) - 0.5f;
-    jitter[1] = mirrored(phase + 1, 3) - 0.5f;
+    masu_temporal_place((VkExtent2D){rp->render_width, rp->render_height}, f->plan->desc.output, f->number, jitter);
     return 0.5f;
 }
 

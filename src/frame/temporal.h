@@ -18,9 +18,11 @@ typedef struct masu_temporal {
     uint64_t sprites; /* hash of its particles and decals */
 } masu_temporal;
 
-/* By how much beside the middle of its pixels the frame looks, in pixels of the render size: Halton's sequence of bases 2
- * and 3, of as many places as put 8 samples into each pixel of the output. Returns the most that it is in any frame; of
- * a rung without, all is 0. */
+/* By how much beside the middle of its pixels a frame looks, in pixels of the render size, -0.5 to 0.5: Halton's sequence of
+ * bases 2 and 3, of as many places as put 8 samples into each pixel of the output. */
+void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]);
+
+/* The same of this frame. Returns the most that it is in any; of a rung without, all is 0. */
 float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]);
 
 /* The history of a frame into its uniforms, which are whole but for that. */

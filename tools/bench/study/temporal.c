@@ -6,9 +6,11 @@
 #include "bench/study/gsr2.h"
 #include "bench/study/specular.h"
 #include "bench/study/texel.h"
+#include "frame/temporal.h"
 #include "image.h"
 #include "metric/flip.h"
 #include "metric/image.h"
+#include "plan/desc.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -106,13 +108,6 @@ typedef struct other {
     masu_camera camera; /* of the frame before */
 } other;
 
-/* Halton's sequence, as rung.temporal has it: its point from 1 on. */
-static float mirrored(uint32_t i, uint32_t base) {
-    double value = 0.0, digit = 1.0;
-    for (; i; i /= base) value += (digit /= base) * (double)(i % base);
-    return (float)value;
-}
-
 static bool read_surfaces(study *w, other *o, const float before[2], const float now[2]) {
     masu_readback_image depth, velocity;
     const uint32_t slot = masu_specular_slot(&w->s);
@@ -143,12 +138,10 @@ static bool draw_other_frame(study *w, other *o, masu_past_motion motion, uint32
     const masu_gsr2 *g = &o->g;
     masu_camera camera, plain;
     masu_commands commands;
-    const double time = time_of(w, motion, k), area = (double)g->to[0] * g->to[1] / ((double)g->from[0] * g->from[1]);
-    const uint32_t phases = (uint32_t)ceil(8.0 * area);
+    const double time = time_of(w, motion, k);
     if (masu_camera_at(w->s.m, time, &camera)) return failed(w, "the scene has no camera");
     plain = camera;
-    camera.jitter[0] = mirrored(k % phases + 1, 2) - 0.5f;
-    camera.jitter[1] = mirrored(k % phases + 1, 3) - 0.5f;
+    masu_temporal_place(w->s.desc.output, w->d->size, k, camera.jitter);
     const masu_frame_desc frame = {.camera = &camera, .time = time, .time_step = (float)steps[motion], .cut = k == 0};
     if (!masu_session_frame(&w->s, &frame, true, &commands, w->error, w->error_size) ||
         !read_surfaces(w, o, k ? o->camera.jitter : camera.jitter, camera.jitter) ||
@@ -202,20 +195,12 @@ static bool compare(study *w, masu_past_row *row, masu_past_motion motion) {
     return save(w, name, w->shown);
 }
 
-/* The render size of a scale, as the library rounds it: of a plan that is thrown away. */
-static bool find_size(study *w, masu_past_row *row) {
-    masu_session_desc d = session_of(w, w->d->size);
-    masu_plan_info plan;
-    d.desc.rung_count = 1;
-    d.desc.rungs[0] = (masu_rung){.scale = (float)row->scale};
-    if (!masu_session_open(&d, &w->s, w->error, w->error_size)) return false;
-    masu_plan_of(w->s.m, &plan);
-    row->render_width = plan.rungs[0].render_width;
-    row->render_height = plan.rungs[0].render_height;
-    snprintf(w->out->driver, sizeof w->out->driver, "%s", w->s.host.driver);
-    masu_session_close(&w->s);
-    w->out->messages += w->s.host.messages;
-    return true;
+static void find_size(const study *w, masu_past_row *row) {
+    static const masu_scene any; /* without a scene a rung has no size of its own */
+    const masu_desc d = {.scene = &any, .output = w->d->size, .rung_count = 1, .rungs = {{.scale = (float)row->scale}}};
+    const VkExtent2D size = masu_render_size(&d, 0);
+    row->render_width = size.width;
+    row->render_height = size.height;
 }
 
 /* The other way gets mips as fine as rung.temporal has them (src/plan/push.c), and reflections without the means that AUTO leaves
@@ -242,6 +227,7 @@ static bool measure(study *w, masu_past_row *row) {
         snprintf(text, sizeof text, "size %g, %s, %s", row->scale, masu_past_ways[row->way], masu_past_motions[m]);
         if (w->d->progress) w->d->progress(text);
         if (!masu_session_open(&d, &w->s, w->error, w->error_size)) return false;
+        snprintf(w->out->driver, sizeof w->out->driver, "%s", w->s.host.driver);
         bool good = row->way == MASU_PAST_GSR2 ? draw_other(w, motion) : draw_own(w, motion);
         masu_session_close(&w->s);
         w->out->messages += w->s.host.messages;
@@ -254,7 +240,7 @@ static bool run(study *w) {
     if (!find_truths(w)) return false;
     for (uint32_t i = 0; i < w->d->scale_count; i++) {
         masu_past_row size = {.scale = w->d->scales[i]};
-        if (!find_size(w, &size)) return false;
+        find_size(w, &size);
         for (int way = 0; way < MASU_PAST_WAYS; way++) {
             if (w->d->only && !(w->d->only >> way & 1u)) continue;
             masu_past_row *row = &w->out->rows[w->out->row_count];
