@@ -140,12 +140,29 @@ static void a_break_of_depth_or_a_cut_ends_the_past(void **state) {
     assert_in_range(followed(false, 0, 0), 199, 201);
 }
 
+/* What is held within bright and brighter pixels counts a tenth: the picture shows which is which at once. */
+static void what_had_to_be_held_counts_less(void **state) {
+    (void)state;
+    static stage s;
+    open_stage(&s);
+    for (uint32_t frame = 0; frame < 4; frame++) {
+        for (int i = 0; i < FROM * FROM; i++) memset(s.in + 4 * i, frame < 3 ? 40 : (i + i / FROM) % 2 ? 230 : 170, 4);
+        const masu_gsr2_frame f = {s.in, s.depth, s.motion, {0, 0}, 1.0f, false, true, 0.0f};
+        masu_gsr2_add(&s.g, &f, s.out);
+    }
+    masu_gsr2_close(&s.g);
+    const int dark = s.out[4 * (TO / 2 * TO + TO / 2)], bright = s.out[4 * (TO / 2 * TO + TO / 2 + 2)];
+    print_message("  of 170 and 230: %d and %d\n", dark, bright);
+    assert_true(bright - dark > 6); /* 1, if it counted as all of the past */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(colours_come_out_as_they_went_in),
         cmocka_unit_test(an_edge_that_rests_becomes_what_its_samples_say),
         cmocka_unit_test(what_moves_is_found_where_it_was),
         cmocka_unit_test(a_break_of_depth_or_a_cut_ends_the_past),
+        cmocka_unit_test(what_had_to_be_held_counts_less),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
