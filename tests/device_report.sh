@@ -37,18 +37,15 @@ step() {
     echo "| $step | $rc: $(tail -n 1 "$out/$step.txt" | tr '|' '/' | cut -c 1-120) | $((SECONDS - begun)) |" >> "$out/rows"
 }
 
-# All of them, one after the other: a GPU is measured by one program at a time.
+# As `make gpu` runs them: as many at a time as there are processors, for they measure nothing. What failed leaves its log.
 tests() {
-    local t passed=0 failed=0 n
-    for t in $TESTS; do
-        n=$(basename "$t")
-        timeout -k 5 120 "$t" > "$out/tests/$n.txt" 2>&1 < /dev/null && passed=$((passed + 1)) || {
-            failed=$((failed + 1))
-            echo "$n failed"
-        }
-        [ -s "$out/tests/$n.txt" ] && grep -qE 'FAILED|ERROR' "$out/tests/$n.txt" || rm -f "$out/tests/$n.txt"
-        echo "$passed programs passed, $failed failed"
+    local log
+    # shellcheck disable=SC2086
+    DRIVERS=$driver MASU_TEST_TIMEOUT=120 tests/run.sh --gpu $TESTS
+    for log in "$build/test-results/$driver"/*.log; do
+        ! grep -qE '\[ +(FAILED|ERROR) +\]' "$log" || cp "$log" "$out/tests/$(basename "$log" .log).txt"
     done
+    tail -n 1 "$out/tests.txt"
 }
 
 machine() {
@@ -62,7 +59,7 @@ machine() {
 }
 
 export -f tests machine
-export TESTS info out
+export TESTS info out build driver
 export BUILD=$build MADE=${MADE:-$build} MASU_EXPECT_DIR=tests/expect CC=${CC:-gcc} LONG=
 export MASU_BAKED=$build/device-report
 mkdir -p "$MASU_BAKED"

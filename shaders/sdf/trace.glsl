@@ -53,7 +53,7 @@ ray pixel_ray(uvec2 at, uvec2 size, float raster, out float z_scale)
 float depth_of(float t, float z_scale)
 {
     float nearest = frame.forward.w * z_scale;
-    return nearest / max(t, nearest);
+    return t > nearest ? min(nearest / t, 1.0) : 1.0; /* a GPU's quotient of a number and itself may be above 1 */
 }
 
 #ifdef MASU_SAFE_HINT

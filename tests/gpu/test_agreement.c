@@ -287,7 +287,7 @@ static void at_the_same_depth_the_polygon_wins(void **state) {
                          MASU_OK);
         take_picture(&s, &frame, &p);
         for (uint32_t k = 0; k < W * H; k++) {
-            assert_true(p.depth[k] == 0.5f); /* view depth: near / 1 */
+            assert_true(p.depth[k] >= 0.5f && p.depth[k] < 0.500001f); /* view depth: near / 1; GPUs divide a little off */
             plate[i] += p.albedo[4 * k + 2] > p.albedo[4 * k];
         }
     }

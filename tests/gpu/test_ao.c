@@ -229,13 +229,14 @@ static void more_samples_are_nearer_to_the_truth(void **state) {
 static void a_plane_hides_nothing_of_itself(void **state) {
     (void)state;
     static const double radii[] = {0.05, 1, 1000};
-    /* SwiftShader's depths of a floor that is cut by the near plane are off by up to millimetres. */
+    /* SwiftShader's and GPUs' depths of a floor that is cut by the near plane are off by up to millimetres. */
     const char *driver = getenv("MASU_TEST_DRIVER");
-    int coarse = driver && strstr(driver, "swiftshader");
+    int third = driver && strstr(driver, "swiftshader");
     for (int i = 0; i < 3; i++) {
         bake_ao("floor", radii[i], floor_alone);
         open_ao("floor", 256, 192, NULL);
         draw_from(NULL);
+        bool coarse = third || on_gpu(&s);
         const uint32_t *seen = read_image(&s, slot, MASU_READBACK_OCCLUSION);
         const float *depths = read_image(&s, slot, MASU_READBACK_DEPTH);
         uint32_t sky = 0, surface = 0, low = 0;

@@ -315,6 +315,7 @@ static void a_frame_shows_what_the_formulas_say(void **unused) {
     for (size_t i = 0; i < 3; i++) {
         memcpy(images[i].to, read_image(&s, commands.slot, images[i].bit), images[i].bytes);
     }
+    double most = on_gpu(&s) ? 0.01 : 0.005; /* a table is filtered by eight bits */
     close_session(&s);
     double sun[3] = {0.3, 0.6, 0.742}, size = sqrt(0.3 * 0.3 + 0.6 * 0.6 + 0.742 * 0.742);
     double worst[2] = {0, 0}, sum[2] = {0, 0};
@@ -361,7 +362,7 @@ static void a_frame_shows_what_the_formulas_say(void **unused) {
         print_message("  %s: %u values, off by %.4f of (0.05 + itself) at most, %.5f in the mean\n",
                       c ? "coated" : "plain", counts[c], worst[c], sum[c] / counts[c]);
         assert_true(counts[c] > 1000);
-        assert_true(worst[c] < 0.005 && sum[c] / counts[c] < 0.001);
+        assert_true(worst[c] < most && sum[c] / counts[c] < 0.001);
     }
 }
 

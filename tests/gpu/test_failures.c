@@ -190,7 +190,7 @@ static void nonsense_in_a_frame_is_refused_by_name(void **state) {
     masu_commands commands;
     wrap_reset();
     assert_int_equal(try_init(&m, &detail), MASU_OK);
-    assert_int_equal(masu_load(m, &commands), MASU_OK);
+    load_all(&s, m);
     const masu_camera good = {.position = {0, 0, 5}, .forward = {0, 0, -1}, .fov_y = 1.0f};
     masu_camera c;
     masu_frame_desc f = {.camera = &c};
@@ -259,7 +259,7 @@ static void extreme_transforms_stay_finite(void **state) {
     char error[ERROR_SIZE];
     wrap_reset();
     assert_int_equal(try_init(&m, &detail), MASU_OK);
-    assert_int_equal(masu_load(m, &commands), MASU_OK);
+    load_all(&s, m);
     for (size_t i = 0; i < sizeof diagonals / sizeof *diagonals; i++) {
         const float *d = diagonals[i];
         float rows[12] = {d[0], 0, 0, 0, 0, d[1], 0, 0, 0, 0, d[2], 0};

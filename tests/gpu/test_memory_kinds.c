@@ -29,10 +29,7 @@ static void draw_reference(void) {
 
 /* Draws with the memory that `wrap` pretends; returns how often the scene had to be copied. */
 static uint32_t draw_with(masu_session *s, const masu_session_desc *d, masu_memory *need) {
-    char error[ERROR_SIZE];
     masu_session_desc without = *d;
-    masu_commands commands;
-    uint32_t copies = 0;
     without.no_renderer = true;
     open_session(s, &without);
     assert_int_equal(masu_memory_query(&s->desc, need, NULL), MASU_OK);
@@ -40,16 +37,14 @@ static uint32_t draw_with(masu_session *s, const masu_session_desc *d, masu_memo
     masu_detail detail;
     if (masu_init(&s->desc, s->block, need->host_bytes, &s->m, &detail))
         fail_msg("%s", detail.text);
-    while (masu_load(s->m, &commands) == MASU_INCOMPLETE) {
-        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
-        copies++;
-    }
+    uint32_t copies = load_all(s, s->m);
     draw_rung(s, 0, pixels);
     return copies;
 }
 
 static void one_type_for_everything_is_one_allocation_without_copies(void **state) {
     (void)state;
+    skip_unless_host_sees_all_memory();
     if (masu_session_denied()) skip(); /* no unified memory */
     masu_session_desc d = sphere_desc();
     masu_session s;
@@ -70,6 +65,7 @@ static void one_type_for_everything_is_one_allocation_without_copies(void **stat
 
 static void a_discrete_device_gets_the_scene_through_a_staging_buffer_in_chunks(void **state) {
     (void)state;
+    skip_unless_host_sees_all_memory();
     masu_session_desc d = sphere_desc();
     masu_session s;
     masu_memory need;
@@ -89,6 +85,7 @@ static void a_discrete_device_gets_the_scene_through_a_staging_buffer_in_chunks(
 /* The first device-local type of such a device cannot be seen by the host: it must not mislead. */
 static void an_apu_gets_one_block_of_the_type_that_is_both(void **state) {
     (void)state;
+    skip_unless_host_sees_all_memory();
     if (masu_session_denied()) skip(); /* no unified memory */
     masu_session_desc d = sphere_desc();
     masu_session s;
@@ -106,6 +103,7 @@ static void an_apu_gets_one_block_of_the_type_that_is_both(void **state) {
 
 static void a_block_of_the_host_that_cannot_serve_is_refused(void **state) {
     (void)state;
+    skip_unless_host_sees_all_memory();
     masu_session_desc d = sphere_desc();
     masu_session s;
     masu_memory need;

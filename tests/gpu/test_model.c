@@ -235,7 +235,10 @@ static void the_command_writes_its_sheet_and_refuses_what_is_wrong(void **state)
     /* RADV compiles for raven without one. Other GPUs stand for no class. */
     snprintf(arguments, sizeof arguments, "%s --size 64x48 --drawn 64x48 --isa raven --csv %s/i.csv",
              scene_path("test_sphere_mesh"), scratch);
-    assert_int_equal(cli_run("plan --model %s", arguments), 0);
+    int code = cli_run("plan --model %s", arguments);
+    take_text("err", text, sizeof text);
+    if (code && strstr(text, "RADV is not installed")) skip();
+    assert_int_equal(code, 0);
     take_text("out", text, sizeof text);
     assert_non_null(strstr(text, "Vega8: instructions by the compiler of raven"));
     take_text("i.csv", text, sizeof text);

@@ -233,7 +233,7 @@ static void inputs_of_shadows_and_occlusion(void **state) {
 
 static void inputs_of_reflections(void **state) {
     (void)state;
-    poison_each("test_reflections", &(masu_rung){.scale = 1.0f}, 24, 8);
+    poison_each("test_reflections", &(masu_rung){.scale = 1.0f}, 24, 24);
 }
 
 static void inputs_of_the_meter(void **state) {

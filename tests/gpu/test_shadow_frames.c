@@ -451,7 +451,11 @@ static void what_exceeds_a_limit_is_named(void **state) {
     char error[ERROR_SIZE];
     masu_session_desc d = test_desc(NULL, W, H);
     d.scene_path = baked_scene("large");
-    assert_false(masu_session_open(&d, &t.s, error, sizeof error)); /* an image of 24,576 texels */
+    if (masu_session_open(&d, &t.s, error, sizeof error)) { /* an image of 24,576 texels */
+        assert_true(t.s.host.properties.limits.maxImageDimension2D >= 3 * 8192);
+        close_session(&t.s);
+        return;
+    }
     assert_int_equal(t.s.detail.result, MASU_ERROR_DEVICE);
     assert_string_equal(t.s.detail.what, "maxImageDimension2D");
     assert_int_equal(t.s.detail.needed, 3 * 8192);

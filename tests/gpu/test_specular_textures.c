@@ -160,6 +160,7 @@ static void a_mirror_shows_textures_as_they_are(void **state) {
     (void)state;
     double mean;
     open_scene(NULL);
+    double most = on_gpu(&s) ? 0.1 : 0.08; /* blocks are decoded within the errors that a format allows */
     assert_int_equal(s.scene.trace_colors, 4);
     assert_int_equal(s.scene.trace_textures, 5); /* and a mean of roughness */
     /* The picture has all texels of the texture, 8 bits each. What is drawn directly has gone through
@@ -167,7 +168,7 @@ static void a_mirror_shows_textures_as_they_are(void **state) {
     static const uint32_t repeat[2] = {0, 0};
     look_both(-12);
     assert_true(compare_source("64 texels", 1, 0, repeat, &mean) < 0.01);
-    assert_true(compare("64 texels", &mean) < 0.08);
+    assert_true(compare("64 texels", &mean) < most);
     assert_true(mean < 0.02);
     look_both(-6); /* 2.7 texels a pixel: the mip of two; what is drawn mixes it with the next */
     /* At the seam from 1 to 0 the least error of a direction shows. */
@@ -180,11 +181,11 @@ static void a_mirror_shows_textures_as_they_are(void **state) {
         for (uint32_t k = 0; k < 3; k++) mirrored[i][k] /= 2, direct[i][k] /= 2;
     }
     assert_true(compare_source("what glows", 1, 0, repeat, &mean) < 0.01);
-    assert_true(compare("what glows", &mean) < 0.08);
+    assert_true(compare("what glows", &mean) < most);
     assert_true(mean < 0.02);
     /* A quarter of the texels each way: as much as a pixel asks for, and a quarter of it close up. */
     look_both(12);
-    assert_true(compare("256 texels by 64", &mean) < 0.08);
+    assert_true(compare("256 texels by 64", &mean) < most);
     assert_true(mean < 0.012);
     look((masu_camera){.position = {12, 0, 1}, .forward = {0, 0, -1}, .fov_y = 2 * atanf(0.075f)},
          mirrored);

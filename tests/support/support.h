@@ -63,6 +63,15 @@ const masu_plan_pass *pass_of(const masu_plan_info *plan, const char *name);
 /* A device without a renderer, for a test that makes its own. */
 void open_device(masu_session *s);
 
+/* What tests expect of the device, so that they run on GPUs as well as on the drivers of CI, which are processors. A GPU divides, takes
+ * roots and filters within the errors that Vulkan allows (2.5 ulp, 3 ulp, 1/256 between texels), and keeps its scene in memory
+ * that the host cannot see. */
+bool on_gpu(const masu_session *s);
+void skip_unless_host_sees_all_memory(void); /* opens a device and closes it */
+
+/* masu_load to its end, each of its parts run. Returns how many there were. */
+uint32_t load_all(masu_session *s, masu_renderer *m);
+
 /* Host memory as masu_init wants it; free(). */
 void *host_block(uint64_t bytes);
 

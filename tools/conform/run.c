@@ -645,16 +645,15 @@ void masu_conform_run(masu_conform *c, const masu_case *of, masu_conform_result 
 
 bool masu_conform_open(masu_conform *c, char *error, size_t error_size) {
     masu_headless_desc d = c->host;
-    masu_headless host;
+    masu_headless *host = &c->kept;
     d.ray_query = c->ray_query != MASU_OFF;
     d.validate = d.gpu_av = false;
-    if (!masu_headless_open(&d, &host, error, error_size)) return false;
-    snprintf(c->driver, sizeof c->driver, "%s", host.driver);
-    c->most_pixels = host.properties.limits.maxImageDimension2D;
-    c->offers = (host.ray_query ? MASU_NEEDS_RAY_QUERY : 0) |
-                (host.compressed ? MASU_NEEDS_BC : 0) | (host.float16 ? MASU_NEEDS_FLOAT16 : 0) |
-                (host.most_anisotropy > 1.0f ? MASU_NEEDS_ANISO : 0);
-    masu_headless_close(&host);
+    if (!masu_headless_open(&d, host, error, error_size)) return false;
+    snprintf(c->driver, sizeof c->driver, "%s", host->driver);
+    c->most_pixels = host->properties.limits.maxImageDimension2D;
+    c->offers = (host->ray_query ? MASU_NEEDS_RAY_QUERY : 0) |
+                (host->compressed ? MASU_NEEDS_BC : 0) | (host->float16 ? MASU_NEEDS_FLOAT16 : 0) |
+                (host->most_anisotropy > 1.0f ? MASU_NEEDS_ANISO : 0);
     return true;
 }
 
@@ -667,6 +666,7 @@ void masu_conform_close(masu_conform *c) {
         masu_session_close(&c->calibration);
     }
     c->calibrated = false;
+    masu_headless_close(&c->kept);
     for (uint32_t i = 0; i < c->truth_count; i++) free(c->truths[i].rgba);
     free(c->truths);
     c->truths = NULL;

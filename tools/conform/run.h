@@ -33,6 +33,8 @@ typedef struct masu_conform {
     uint32_t runs; /* of each round of times */
     char driver[1024];
     uint32_t most_pixels; /* along an edge of an image */
+    masu_headless kept;   /* open all the time, or the loader would load the driver anew for each case: NVIDIA's 580.159 can be
+                             loaded some 30 times by one process, and is not found after that */
     uint32_t offers;      /* as masu_case.needs */
     bool calibrated;
     masu_session calibration;
