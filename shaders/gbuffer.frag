@@ -1,8 +1,8 @@
 /*
  * gbuffer.frag: the material of a polygon into the G-buffer. push.material is the draw's material. With
  * MASU_MOTION (gbuffer_velocity) its velocity too, with MASU_SURFACE what the surface image holds. With MASU_TEXTURES the material's maps: push.flags
- * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's; push.mip_bias the bias of mip levels, push.detail_* the
- * scale of texture coordinates of all maps but base colour and emissive.
+ * its flags, push.layers the layers of its maps, 8 bits each, push.coat_layer that of its coat's; push.mip_bias the bias of mip levels, push.mip_moving (not
+ * below 0) what is added to it of what moves, push.detail_* the scale of texture coordinates of all maps but base colour and emissive.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -35,6 +35,12 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
 #ifdef MASU_TEXTURES
 #ifdef MASU_SURFACE
 #define MASU_MAPS_COAT_LAYER push.coat_layer
+#endif
+#ifdef MASU_MOTION
+float mip_bias;
+#define MASU_MAPS_BIAS mip_bias
+const float levels_per_pixel = 0.12; /* times push.mip_moving; */
+const float most_levels = 2.3;
 #endif
 #include "shared/maps.glsl"
 layout(location = 3) in vec2 in_texcoord;
@@ -79,7 +85,15 @@ void main()
     s.specular = m.more.x;
     s.coat = m.more.y;
     s.coat_roughness = m.more.z;
+#ifdef MASU_MOTION
+    out_velocity = masu_velocity(vec4(in_rel, 1.0), vec4(in_before, 1.0),
+                                 vec2(pc.output_width, pc.output_height));
+#endif
 #ifdef MASU_TEXTURES
+#ifdef MASU_MOTION
+    float speed = length(out_velocity.xy + frame.shifts.zw);
+    mip_bias = push.mip_bias + push.mip_moving * min(levels_per_pixel * speed, most_levels);
+#endif
     /* Everything that takes derivatives comes before the discard. */
     float alpha = masu_sample_maps(in_texcoord, s);
     vec3 bent = masu_bend_normal(in_normal, in_rel, in_texcoord);
@@ -130,9 +144,5 @@ void main()
 #ifdef MASU_SURFACE
     out_normal |= MASU_SURFACE_MORE << 30;
     out_surface = masu_pack_surface(s);
-#endif
-#ifdef MASU_MOTION
-    out_velocity = masu_velocity(vec4(in_rel, 1.0), vec4(in_before, 1.0),
-                                 vec2(pc.output_width, pc.output_height));
 #endif
 }

@@ -48,6 +48,8 @@ layout(location = 2) in vec2 texcoord;
 layout(location = 3) out vec2 out_texcoord;
 #endif
 
+/* Meshes with textures and without have edges in common. */
+invariant gl_Position;
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
 

@@ -1,6 +1,7 @@
 /*
  * pick.frag: whose polygon it is. push.blended: not 0 where it is blended. With MASU_TEXTURES only where the map's alpha
  * leaves it: push.layers are the layers of its maps. push.flags: the material's.
+ * Mips are those of what rests: with rung.temporal a hole of something that moves may be a pixel off here.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

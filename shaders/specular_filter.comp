@@ -103,7 +103,7 @@ void main()
                     }
                     float share = (float(k) + 0.5) / float(push.taps);
                     float r = max(radius * sqrt(share), 1.0);
-                    float angle = 2.3999632 * float(k) + 6.2831853 * turn;
+                    float angle = 6.2831853 * fract(0.38196601 * float(k) + turn) - 3.1415927; /* sines are promised up to pi */
                     ivec2 at = ivec2(texel) + ivec2(round(r * vec2(cos(angle), sin(angle))));
                     if (any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {
                         continue;

@@ -126,7 +126,7 @@ void main()
                     break;
                 }
                 float number = float(4u * k + quad) + turn.y;
-                float angle = 2.3999632 * float(4u * k + quad) + 6.2831853 * turn.x;
+                float angle = 6.2831853 * fract(0.38196601 * float(4u * k + quad) + turn.x) - 3.1415927;
                 float r = radius * sqrt(number / float(4u * push.taps));
                 ivec2 at = ivec2(texel) + ivec2(round(r * vec2(cos(angle), sin(angle))));
                 if (at == ivec2(texel) || any(lessThan(at, ivec2(0))) || any(greaterThan(at, last))) {

@@ -24,6 +24,8 @@ layout(location = 4) flat out vec2 out_detail;
 
 layout(constant_id = 0) const bool tints = false;
 
+/* Meshes with textures and without have edges in common. */
+invariant gl_Position;
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec3 out_rel;
 layout(location = 2) flat out uvec4 out_thing; /* material, flags, layers; which instance */

@@ -16,11 +16,15 @@
 #include "shared/facing.glsl"
 
 /* Flags of the material, layers of its maps, how much more often than its colour the others repeat: the
- * push constants', or whoever includes this says. */
+ * push constants', or whoever includes this says; and so the bias of mip levels. */
 #ifndef MASU_MAPS_FLAGS
 #define MASU_MAPS_FLAGS push.flags
 #define MASU_MAPS_LAYERS push.layers
 #define MASU_MAPS_DETAIL vec2(push.detail_u, push.detail_v)
+#endif
+
+#ifndef MASU_MAPS_BIAS
+#define MASU_MAPS_BIAS push.mip_bias
 #endif
 
 #ifndef MASU_MAPS_TINTS
@@ -41,9 +45,10 @@ float masu_layer(uint slot)
     return float(MASU_MAPS_LAYERS >> 8 * slot & 0xFFu);
 }
 
+/* A little less: what is exactly as much as it is there, however a GPU divides by 255. */
 float masu_cutoff()
 {
-    return float(MASU_MAPS_FLAGS >> MASU_MAP_CUTOFF_SHIFT & 0xFFu) / 255.0;
+    return float(MASU_MAPS_FLAGS >> MASU_MAP_CUTOFF_SHIFT & 0xFFu) * (0.999999 / 255.0);
 }
 
 /* Base colour and alpha; white where there is no map. */
@@ -52,13 +57,13 @@ vec4 masu_base(vec2 at)
     if ((MASU_MAPS_FLAGS & MASU_MAP_BASE) == 0u) {
         return vec4(1.0);
     }
-    return texture(base_map, vec3(at, masu_layer(0u)), push.mip_bias);
+    return texture(base_map, vec3(at, masu_layer(0u)), MASU_MAPS_BIAS);
 }
 
 /* Multiplies the factors of `s`; returns alpha. */
 float masu_sample_maps(vec2 at, inout masu_surface s)
 {
-    float bias = push.mip_bias;
+    float bias = MASU_MAPS_BIAS;
     vec4 base = masu_base(at);
     s.albedo *= base.rgb;
     if ((MASU_MAPS_FLAGS & MASU_MAP_SURFACE) != 0u) {
@@ -100,7 +105,7 @@ vec3 masu_bend_normal(vec3 normal, vec3 rel, vec2 at)
     if ((MASU_MAPS_FLAGS & MASU_MAP_NORMAL) == 0u) {
         return normal;
     }
-    vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), push.mip_bias).rg;
+    vec2 xy = texture(normal_map, vec3(at * MASU_MAPS_DETAIL, masu_layer(1u)), MASU_MAPS_BIAS).rg;
     /* 128 / 255 is zero: an even number of steps has no middle. */
     xy = clamp((xy * 255.0 - 128.0) / 127.0, -1.0, 1.0);
     float z = sqrt(max(1.0 - dot(xy, xy), 0.0));

@@ -24,7 +24,9 @@ int masu_trace_wrap(int i, int size, uint wrap)
     }
     int period = wrap == 2u ? 2 * size : size;
     int k = i - period * int(floor(float(i) / float(period)));
-    k = clamp(k, 0, period - 1); /* what the division rounded */
+    /* The quotient of a whole number of periods may be a little below that. */
+    k = k >= period ? k - period : k < 0 ? k + period : k;
+    k = clamp(k, 0, period - 1); /* of places that floats do not hold */
     return k < size ? k : period - 1 - k;
 }
 
@@ -87,7 +89,7 @@ bool masu_trace_there(uvec4 about, vec2 b)
     uint at = masu_trace_static[masu_trace_static[0].w].x + 4u * (about.w & MASU_TRACE_MATERIAL);
     uvec4 maps = masu_trace_static[at + 3u];
     float alpha = masu_trace_picture(maps.x, masu_trace_uv(about.xyz, b), 0.0, maps.w).a;
-    return alpha >= float(maps.z >> MASU_MAP_CUTOFF_SHIFT & 255u) / 255.0;
+    return alpha >= float(maps.z >> MASU_MAP_CUTOFF_SHIFT & 255u) * (0.999999 / 255.0); /* shared/maps.glsl */
 }
 #endif
 

@@ -132,6 +132,15 @@ static masu_result check_ranges(const masu_frame_plan *plan, const VkPhysicalDev
                          "%s need a storage buffer of %llu bytes, the device has %u", b->name,
                          (unsigned long long)bytes, limits->maxStorageBufferRange);
     }
+    /* Tiles of a list are all dispatched along x; over a picture's two axes vk.c has looked. */
+    uint64_t tiles = masu_most_tiles(plan);
+    if (tiles > limits->maxComputeWorkGroupCount[0]) {
+        return masu_fail(detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", tiles,
+                         limits->maxComputeWorkGroupCount[0],
+                         "output %ux%u has up to %llu tiles, a workgroup each, the device has %u workgroups",
+                         plan->desc.output.width, plan->desc.output.height, (unsigned long long)tiles,
+                         limits->maxComputeWorkGroupCount[0]);
+    }
     uint32_t groups = (plan->scene.instances + 63) / 64;
     if (plan->occlusion && groups > limits->maxComputeWorkGroupCount[0]) {
         return masu_fail(detail, MASU_ERROR_DEVICE, "maxComputeWorkGroupCount", groups,

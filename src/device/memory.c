@@ -270,8 +270,9 @@ void masu_objects_destroy(const masu_vk *vk, masu_frame_plan *plan, masu_objects
 /* ---- Layout ---------------------------------------------------------------------------------- */
 
 static void add_to_block(masu_block_plan *block, uint64_t alignment, uint32_t type_bits) {
+    /* Of two that have no type in common none is left, which choose_type says. */
+    block->type_bits = block->alignment ? block->type_bits & type_bits : type_bits;
     if (block->alignment < alignment) block->alignment = alignment;
-    block->type_bits = block->type_bits ? block->type_bits & type_bits : type_bits;
 }
 
 /* Lays the buffers of one role at the end of a block. Staging and poison are created later and laid

@@ -114,6 +114,17 @@ static uint64_t masu_smaa_tile_words(const masu_frame_plan *plan) {
     return plan->needs.smoothing ? most_words(plan, MASU_EXTENT_TILE, smaa_words) : 0;
 }
 
+static uint64_t tiles_of(const masu_frame_plan *plan, uint32_t rung, VkExtent2D grid) {
+    int smooths = masu_is_smaa(plan->desc.rungs[rung].aa);
+    return plan->needs.sdf || smooths ? (uint64_t)grid.width * grid.height : 0;
+}
+
+uint64_t masu_most_tiles(const masu_frame_plan *plan) {
+    uint64_t tiles = most_words(plan, MASU_EXTENT_TILE, tiles_of), glossy = masu_specular_tile_words(plan);
+    glossy -= glossy ? MASU_TILES_HEADER : 0;
+    return tiles > glossy ? tiles : glossy;
+}
+
 static void lay_drawn(masu_frame_plan *plan) {
     const masu_scene *s = &plan->scene;
     masu_drawn_plan *d = &plan->drawn;

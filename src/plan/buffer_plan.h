@@ -38,6 +38,9 @@ uint32_t masu_group_buffers(const masu_frame_plan *plan, masu_binding_group grou
 /* Those of the vertex stage. */
 uint32_t masu_vertex_buffers(const masu_frame_plan *plan);
 
+/* Over all rungs, the most tiles that a list may have of what is dispatched by lists: SDF, reflections, SMAA. */
+uint64_t masu_most_tiles(const masu_frame_plan *plan);
+
 typedef struct masu_buffer_row {
     const char *name;
     masu_role role;

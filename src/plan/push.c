@@ -18,6 +18,14 @@ static float masu_mip_bias(const masu_push_input *in) {
     return (d->debug.no_bias ? 0.0f : own) + d->debug.mip_bias;
 }
 
+/* Of what moves by five pixels of the render size a frame, levels on top of that; twice as many from ten on. Of it few samples of
+ * before count: finer mips than two levels are noise there. */
+static float masu_mip_moving(const masu_push_input *in) {
+    const masu_desc *d = &in->plan->desc;
+    int temporal = masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL);
+    return temporal && !d->debug.no_bias ? -log2f(d->rungs[in->rung].scale) : 0.0f;
+}
+
 /* The most that is shown, in whites. */
 static float masu_peak(const masu_targets *t) {
     return t->encoding == MASU_ENCODING_SRGB ? 1.0f : t->peak / t->white;

@@ -166,6 +166,13 @@ static void what_the_device_lacks_is_named(void **state) {
     assert_int_equal(detail.given, 16);
     assert_non_null(strstr(detail.text, "may be (16)"));
     wrap_reset();
+    s.desc.output = (VkExtent2D){48, 48}; /* enough for each axis, not for all tiles of a list */
+    wrap.max_groups = 7;
+    expect_device_error("maxComputeWorkGroupCount");
+    assert_int_equal(masu_memory_query(&s.desc, &need, &detail), MASU_ERROR_DEVICE);
+    assert_int_equal(detail.needed, 9);
+    s.desc.output = (VkExtent2D){W, H};
+    wrap_reset();
     wrap.unknown_function = "vkCmdDispatch";
     expect_device_error("vkCmdDispatch");
     wrap.unknown_function = "vkGetPhysicalDeviceMemoryProperties";
