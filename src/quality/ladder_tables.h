@@ -6,43 +6,43 @@
 
 static const masu_ladder measured[MASU_SCENE_CLASSES] = {
     [MASU_SCENE_POLYGONS] =
-        {.from = "textures.masu, 320x180, "
+        {.from = "textures.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-22",
-         .count = 6,
+         "by timestamps, 2026-11-26",
+         .count = 7,
          .rungs = {
-              {.scale = 1.0f, .sharpness = 0.2f},
-              {.scale = 0.8125f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.6875f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.875f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.75f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.4f, .sharpen = MASU_OFF, .sharpness = 0.2f},
          },
-         .ratios = {1.0f, 0.84396f, 0.763154f, 0.711397f,
-              0.630119f, 0.524386f},
-         .flips = {0.12547f, 0.129831f, 0.131936f, 0.133885f,
-              0.139956f, 0.163525f},
+         .ratios = {1.24644f, 1.00933f, 0.846639f, 0.675509f,
+              0.545193f, 0.401772f, 0.309966f},
+         .flips = {0.0306609f, 0.0357831f, 0.0471836f, 0.0661899f,
+              0.0829395f, 0.0993268f, 0.139972f},
         },
     [MASU_SCENE_SDF] =
-        {.from = "city_shadows.masu, 320x180, "
+        {.from = "city_shadows.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-22",
-         .count = 8,
+         "by timestamps, 2026-11-26",
+         .count = 7,
          .rungs = {
-              {.scale = 1.0f, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
-              {.scale = 0.875f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
-              {.scale = 0.75f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
-              {.scale = 0.625f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
-              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.5f, .sharpen = MASU_OFF, .sharpness = 0.2f, .aa = MASU_AA_SMAA_HIGH},
-              {.scale = 0.4375f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.875f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.75f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .march_steps = 128},
          },
-         .ratios = {1.03845f, 0.799013f, 0.612179f, 0.432534f,
-              0.349536f, 0.29268f, 0.242539f, 0.198342f},
-         .flips = {0.029578f, 0.040855f, 0.0493774f, 0.0578781f,
-              0.0704565f, 0.074186f, 0.0875745f, 0.0951214f},
+         .ratios = {1.06715f, 0.819459f, 0.593735f, 0.448073f,
+              0.303522f, 0.199781f, 0.186123f},
+         .flips = {0.0133598f, 0.0149222f, 0.0168316f, 0.0204754f,
+              0.0261631f, 0.034719f, 0.0577082f},
         },
     [MASU_SCENE_BOTH] =
         {.from = "engine.masu, 640x360, "

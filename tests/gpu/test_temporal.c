@@ -365,6 +365,38 @@ static void all_targets_are_served(void **state) {
     }
 }
 
+/* How much the colours of surfaces differ from pixel to pixel, in the frame that ends at the scene's camera, which has moved
+ * by so many metres in each. */
+static double roughness_of(float scale, double metres, uint8_t *albedo) {
+    masu_session s;
+    masu_session_desc d = temporal_desc("test_texture_floor", scale);
+    masu_commands commands;
+    d.desc.readback = MASU_READBACK_ALBEDO;
+    open_session(&s, &d);
+    for (int k = 3; k >= 0; k--) {
+        masu_camera camera = aside(&s, k * metres);
+        draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, NULL);
+    }
+    uint32_t size = (uint32_t)(SIZE * scale);
+    const uint8_t *image = read_image(&s, commands.slot, MASU_READBACK_ALBEDO);
+    double sum = 0.0;
+    for (uint32_t i = 0; i + 4 < 4 * size * size; i++) sum += i % 4 < 3 ? abs((int)image[i + 4] - image[i]) : 0;
+    memcpy(albedo, image, 4 * (size_t)size * size);
+    close_session(&s);
+    return sum;
+}
+
+/* Below full size what moves is drawn with coarser mips than what rests: its samples are few. */
+static void what_moves_has_coarser_mips(void **state) {
+    (void)state;
+    double rests = roughness_of(0.5f, 0.0, a.rgba), moves = roughness_of(0.5f, 3.0, b.rgba);
+    print_message("  differences of neighbours: moving %.3f of resting\n", moves / rests);
+    assert_true(moves < 0.9 * rests && moves > 0.1 * rests);
+    (void)roughness_of(1.0f, 0.0, a.rgba);
+    (void)roughness_of(1.0f, 3.0, b.rgba);
+    assert_memory_equal(a.rgba, b.rgba, BYTES);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(at_rest_it_comes_near_the_truth),
@@ -378,6 +410,7 @@ int main(void) {
         cmocka_unit_test(a_change_of_scale_keeps_the_past),
         cmocka_unit_test(nothing_breaks_it),
         cmocka_unit_test(all_targets_are_served),
+        cmocka_unit_test(what_moves_has_coarser_mips),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -671,6 +671,17 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
         bytes += (uint64_t)image->width * image->height * masu_format_bytes(masu_plan_format(&plan, own[i]));
     }
     assert_int_equal(bytes, 28 * 64 * 64);
+    /* Mips: at rest two levels finer than the output's pixels ask for, in motion as at full size. */
+    const float half = -3.0f, full = -2.0f;
+    const uint32_t bias = offsetof(struct masu_push_gbuffer, mip_bias) / 4, moving = offsetof(struct masu_push_gbuffer, mip_moving) / 4;
+    const masu_push_block first = masu_push_of(&plan, 0, MASU_PASS_GBUFFER, 0);
+    const masu_push_block second = masu_push_of(&plan, 1, MASU_PASS_GBUFFER, 0);
+    assert_true(first.own.real[bias] == half && first.own.real[moving] == full - half);
+    assert_true(second.own.real[bias] == full && second.own.real[moving] == 0.0f);
+    d.rungs[0].temporal = MASU_OFF;
+    compile(&d, &plan);
+    const masu_push_block without = masu_push_of(&plan, 0, MASU_PASS_GBUFFER, 0);
+    assert_true(without.own.real[bias] == -1.0f && without.own.real[moving] == 0.0f);
     masu_desc source = source_desc(64, 64); /* has neither depth nor motion */
     source.rungs[0] = (masu_rung){.temporal = MASU_ON};
     assert_frame(&source, 0, "easu(r:source w:upscaled) rcas(r:upscaled w:target)");
