@@ -39,8 +39,8 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_MATERIALS, std430) readonly bu
 #ifdef MASU_MOTION
 float mip_bias;
 #define MASU_MAPS_BIAS mip_bias
-const float levels_per_pixel = 0.12; /* times push.mip_moving; */
-const float most_levels = 2.3;
+const float share_per_pixel = 0.12; /* of push.mip_moving; */
+const float most_shares = 2.3;
 #endif
 #include "shared/maps.glsl"
 layout(location = 3) in vec2 in_texcoord;
@@ -92,7 +92,7 @@ void main()
 #ifdef MASU_TEXTURES
 #ifdef MASU_MOTION
     float speed = length(out_velocity.xy + frame.shifts.zw);
-    mip_bias = push.mip_bias + push.mip_moving * min(levels_per_pixel * speed, most_levels);
+    mip_bias = min(push.mip_bias + push.mip_moving * min(share_per_pixel * speed, most_shares), max(push.mip_bias, 0.0));
 #endif
     /* Everything that takes derivatives comes before the discard. */
     float alpha = masu_sample_maps(in_texcoord, s);

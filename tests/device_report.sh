@@ -14,7 +14,7 @@ export NODEVICE_SELECT=1 MASU_TEST_DRIVER=$driver
 [ ! -e "build/drivers/$driver/env" ] || . "build/drivers/$driver/env"
 info=$("$build/tests/driver_info") || { echo "masu: device-report: $info" >&2; exit 1; }
 name=${NAME:-$(tr -cs 'A-Za-z0-9.\n' '-' <<< "${info%%, Vulkan*}" | sed 's/^-*//; s/-*$//' | cut -c 1-60)}
-case $name in */* | .*) echo "masu: device-report: NAME is a folder's name, given is '$name'" >&2; exit 1 ;; esac
+case $name in '' | */* | .*) echo "masu: device-report: NAME is a folder's name, given is '$name'" >&2; exit 1 ;; esac
 out=docs/devices/$name
 start=$SECONDS budget=$((60 * ${MINUTES:-20}))
 rm -rf "$out"
@@ -37,15 +37,21 @@ step() {
     echo "| $step | $rc: $(tail -n 1 "$out/$step.txt" | tr '|' '/' | cut -c 1-120) | $((SECONDS - begun)) |" >> "$out/rows"
 }
 
-# As `make gpu` runs them: as many at a time as there are processors, for they measure nothing. What failed leaves its log.
+# As `make gpu` runs them: as many at a time as there are processors, for they measure nothing.
 tests() {
-    local log
     # shellcheck disable=SC2086
     DRIVERS=$driver MASU_TEST_TIMEOUT=120 tests/run.sh --gpu $TESTS
+}
+
+# The log of each program that has not ended well, or not at all.
+keep_logs() {
+    local log failed
     for log in "$build/test-results/$driver"/*.log; do
-        ! grep -qE '\[ +(FAILED|ERROR) +\]' "$log" || cp "$log" "$out/tests/$(basename "$log" .log).txt"
+        [ -e "$log" ] || continue
+        failed=1
+        [ ! -s "${log%.log}.counts" ] || read -r _ failed _ < "${log%.log}.counts"
+        [ "$failed" = 0 ] || cp "$log" "$out/tests/$(basename "$log" .log).txt"
     done
-    tail -n 1 "$out/tests.txt"
 }
 
 machine() {
@@ -73,7 +79,9 @@ step stats 5 "$build/bin/masu" render "$scenes/engine.masu" -o "$out/engine.png"
 # What is measured until the time is up stays, and is gone on with.
 step bench 15 "$build/bin/masu" bench "$scenes/engine.masu" --size 320x180 --positions 16 --reference 64 --frames 16 --runs 5 \
     --steady 0 --out "$out/bench"
+rm -rf "${build:?}/test-results/$driver"
 step tests 60 bash -c tests
+keep_logs
 {
     echo "# $name"
     echo

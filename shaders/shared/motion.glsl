@@ -39,7 +39,7 @@ vec4 masu_velocity(vec4 rel, vec4 before, vec2 size)
     vec2 ahead = told ? now.xy / now.z : vec2(0.0);
     vec2 behind = told ? was.xy / was.z : vec2(0.0);
     precise vec2 moved = (behind - ahead) * (0.5 * size);
-    float depth = told && rel.w > 0.0 ? (was.z - now.z) / now.z : 0.0; /* a GPU's x / x is not 1 */
+    float depth = told && rel.w > 0.0 ? (was.z - now.z) / now.z : 0.0; /* a GPU's x / x may not be 1 */
     vec4 velocity = vec4(moved, depth, 1.0);
     told = told && masu_finite(velocity) && all(lessThan(abs(velocity.xyz), vec3(65504.0)));
     return told ? velocity : vec4(0.0);

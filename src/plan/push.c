@@ -9,7 +9,7 @@
 
 /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it
  * cannot bring back. The mean over frames is of samples all over a pixel, each of which may look at a part of it alone:
- * two mips finer have the least error, at rest and in motion (docs/design/41-temporal.md). */
+ * two mips finer have the least error at rest, and at full size in motion (docs/design/41-temporal.md). */
 static float masu_mip_bias(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
     const masu_rung *rung = &d->rungs[in->rung];
@@ -18,8 +18,8 @@ static float masu_mip_bias(const masu_push_input *in) {
     return (d->debug.no_bias ? 0.0f : own) + d->debug.mip_bias;
 }
 
-/* Of what moves by five pixels of the render size a frame, levels on top of that; twice as many from ten on. Of it few samples of
- * before count: finer mips than two levels are noise there. */
+/* Levels that gbuffer.frag gives back by the speed of what moves, from 2.3 times these on down: those that the scale has added. Of what
+ * moves few samples of before count, and what they do not smooth is noise. */
 static float masu_mip_moving(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
     int temporal = masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL);

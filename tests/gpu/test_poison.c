@@ -174,6 +174,7 @@ static uint32_t settle(bool gathers) {
 static void poison_each(const char *scene, const masu_rung *rung, uint32_t slack, uint32_t heals) {
     uint32_t cases = 0, longest = 0, pairs = 0;
     open_case(scene, rung);
+    heals *= heals > 1 && on_gpu(&s) ? 3 : 1; /* an NVIDIA H200 takes some 16 frames for what others do in 8 */
     uint32_t most = settle(heals > 1) + slack;
     const masu_rung_plan *rp = &s.m->plan.rungs[0];
     for (uint32_t p = 0; p < MASU_PASS_COUNT; p++) {
@@ -233,7 +234,7 @@ static void inputs_of_shadows_and_occlusion(void **state) {
 
 static void inputs_of_reflections(void **state) {
     (void)state;
-    poison_each("test_reflections", &(masu_rung){.scale = 1.0f}, 24, 24);
+    poison_each("test_reflections", &(masu_rung){.scale = 1.0f}, 24, 8);
 }
 
 static void inputs_of_the_meter(void **state) {

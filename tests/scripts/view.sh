@@ -275,7 +275,7 @@ grep -q '^80 45: the SDF, depth ' sdf/stdout || fail "a click on the SDF: $(cat 
 
 # A baked scene that is exchanged, and one that is cut off.
 cp "$both" scene.masu
-play blob ../scene.masu --size 160x90 --rung 0 << END
+play blob ../scene.masu --size 160x90 --ladder off --rung 0 << END
 frame 0 key F1
 frame 0 key F1
 frame 2 screenshot before.png

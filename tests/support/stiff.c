@@ -213,10 +213,10 @@ const stiff_picture *stiff_run(const stiff_case *c) {
         fail_msg("%s: the truth hits in %.2f %% of the pixels only", c->name, p->true_hits);
     claim(c, "hit/miss %", f->hitmiss, most->hitmiss);
     claim(c, "lost %", f->lost, most->lost);
-    double slack = p->gpu ? 3 : 1; /* where rounding is all that is left: quotients and roots of a GPU are 2 to 3 ulp off */
-    claim(c, "depth p50", f->depth_p50, slack * most->depth_p50);
-    claim(c, "depth p99", f->depth_p99, slack * most->depth_p99);
-    claim(c, "depth max", f->depth_max, slack * most->depth_max);
+    double slack = p->gpu ? 1e-5 : 0; /* quotients and roots are 2 to 3 ulp off, which a plain's horizon makes more of */
+    claim(c, "depth p50", f->depth_p50, most->depth_p50 + slack);
+    claim(c, "depth p99", f->depth_p99, most->depth_p99 + slack);
+    claim(c, "depth max", f->depth_max, most->depth_max + slack);
     claim(c, "normal p50", f->normal_p50, most->normal_p50);
     claim(c, "normal p99", f->normal_p99, most->normal_p99);
     claim(c, "evaluations/px", f->evals, most->evals);

@@ -1,9 +1,9 @@
 /* run.h: runs one case of a suite on a device and judges it.
  *
  * Each case has a renderer and a device of its own, closed again before the next, so that no
- * verdict depends on the order. What is shared: the calibration, which is a renderer that stays open, and
- * truths, which several cases are compared with. A masu_conform owns both; it is large and must not
- * be moved. */
+ * verdict depends on the order. What is shared: a device that stays open and does nothing, the calibration,
+ * which is a renderer that stays open, and truths, which several cases are compared with. A masu_conform owns all; it is
+ * large and must not be moved. */
 #ifndef MASU_CONFORM_RUN_H
 #define MASU_CONFORM_RUN_H
 
@@ -45,7 +45,7 @@ typedef struct masu_conform {
     uint32_t truth_count;
 } masu_conform;
 
-/* suite, scenes, images, host, ray_query and runs are given; asks the device what it is. */
+/* suite, scenes, images, host, ray_query and runs are given; asks the device what it is, and keeps it open until masu_conform_close. */
 bool masu_conform_open(masu_conform *c, char *error, size_t error_size);
 void masu_conform_close(masu_conform *c);
 
