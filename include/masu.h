@@ -1575,9 +1575,9 @@ typedef struct masu_pick_info {
 } masu_pick_info;
 
 /* What the pixel shows that the slot's last frame has asked for. Instances are told apart where the G-buffer tells
- * them apart: through the holes of an alpha-tested material (with rung.temporal, of what moves within a pixel), in the LOD that is drawn, as joints have bent it. What
- * is blended is picked before what is behind it, be it ever so clear; where it has textures, where the alpha of its base
- * colour is 0.5 or more. At rungs of another scale it is the render pixel in which the middle of the output's lies,
+ * them apart: through the holes of an alpha-tested material (with rung.temporal, of what moves within a pixel), in the
+ * LOD that is drawn, as joints have bent it. What is blended is picked before what is behind it, be it ever so clear;
+ * where it has textures, where the alpha of its base colour is 0.5 or more. At rungs of another scale it is the render pixel in which the middle of the output's lies,
  * and with temporal or camera.jitter where that looked. Call as masu_stats. MASU_ERROR_ARGUMENT: without desc.picking, no such slot, or a NULL pointer.
  * MASU_INCOMPLETE: as masu_stats. */
 MASU_API masu_result masu_pick(const masu_renderer *renderer, uint32_t slot, masu_pick_info *out);

@@ -7,14 +7,17 @@
 #include <math.h>
 #include <string.h>
 
+static int is_temporal(const masu_push_input *in) {
+    return masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL);
+}
+
 /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it
  * cannot bring back. The mean over frames is of samples all over a pixel, each of which may look at a part of it alone:
  * two mips finer have the least error at rest, and at full size in motion (docs/design/41-temporal.md). */
 static float masu_mip_bias(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
     const masu_rung *rung = &d->rungs[in->rung];
-    int temporal = masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL);
-    float own = log2f(rung->scale) - (temporal ? 2.0f : 0.0f);
+    float own = log2f(rung->scale) - (is_temporal(in) ? 2.0f : 0.0f);
     return (d->debug.no_bias ? 0.0f : own) + d->debug.mip_bias;
 }
 
@@ -22,8 +25,7 @@ static float masu_mip_bias(const masu_push_input *in) {
  * moves few samples of before count, and what they do not smooth is noise. */
 static float masu_mip_moving(const masu_push_input *in) {
     const masu_desc *d = &in->plan->desc;
-    int temporal = masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL);
-    return temporal && !d->debug.no_bias ? -log2f(d->rungs[in->rung].scale) : 0.0f;
+    return is_temporal(in) && !d->debug.no_bias ? -log2f(d->rungs[in->rung].scale) : 0.0f;
 }
 
 /* The most that is shown, in whites. */

@@ -137,12 +137,8 @@ static void change_scenes(masu_session *device, const char *const names[3], cons
         if (bytes < own) bytes = own;
     }
     void *blocks[2] = {host_block(bytes), host_block(bytes)};
-    masu_commands step;
     begin(device, &x[0], &all[0], blocks[0], bytes);
-    while (masu_load(x[0].m, &step) == MASU_INCOMPLETE) {
-        char error[ERROR_SIZE];
-        if (step.part_count) assert_ok(masu_headless_run(&device->host, step.buffer, error, sizeof error));
-    }
+    load_all(device, x[0].m);
     for (uint32_t i = 0; i < 3; i++) {
         masu_desc at_once = all[i];
         at_once.load_step = 0;

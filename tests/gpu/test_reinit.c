@@ -44,8 +44,7 @@ static round_figures library_round(masu_session *s, const masu_desc *d, void *bl
     masu_detail detail;
     round_figures none = {0}, start = figures(&none);
     if (masu_init(d, block, bytes, &m, &detail)) fail_msg("%s", detail.text);
-    while (masu_load(m, &commands) == MASU_INCOMPLETE)
-        assert_ok(masu_headless_run(&s->host, commands.buffer, error, sizeof error));
+    load_all(s, m);
     for (int i = 0; i < frames; i++) {
         masu_frame_desc frame = {.rung = 0};
         assert_int_equal(masu_frame(m, &frame, &commands), MASU_OK);
