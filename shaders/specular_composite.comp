@@ -7,7 +7,8 @@
  * pixel's plane and how alike the normals are. Where all four are something else the nearest to the
  * plane is taken, and where none of them is traced, what light.comp would have taken.
  *
- * Of smooth surfaces each pixel has its own mean (MASU_FINE, specular_fine.comp), where there is one.
+ * Of smooth surfaces each pixel has its own mean (MASU_FINE, specular_fine.comp), where there is one. Those that mirror more
+ * than they scatter get the velocity of what they mirror, for rung.temporal (MASU_RESOLVED).
  *
  * push.cutoff: roughness from which nothing is traced. push.accumulate: 1: the mean of the reference instead, which
  * is weighted already. push.fine: not 0: there are full-resolution history.
@@ -24,6 +25,10 @@
 #include "light/sky.glsl"
 #include "light/ambient.glsl"
 #include "light/air.glsl"
+#ifdef MASU_RESOLVED
+#include "shared/motion.glsl"
+#include "specular/filter.glsl"
+#endif
 #include "brdf/bsdf.glsl"
 #include "specular/fine.glsl"
 #include "specular/guide.glsl"
@@ -38,9 +43,16 @@ layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE) uniform usampler2D gui
 layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE + 1) uniform sampler2D specular_image;
 #ifdef MASU_FINE
 layout(set = MASU_SET_PASS, binding = MASU_AFTER_SURFACE + 2) uniform usampler2D fine_image;
-#define MASU_AT_HDR (MASU_AFTER_SURFACE + 3)
+#define MASU_AFTER_FINE (MASU_AFTER_SURFACE + 3)
 #else
-#define MASU_AT_HDR (MASU_AFTER_SURFACE + 2)
+#define MASU_AFTER_FINE (MASU_AFTER_SURFACE + 2)
+#endif
+#ifdef MASU_RESOLVED
+layout(set = MASU_SET_PASS, binding = MASU_AFTER_FINE) uniform usampler2D age_image;
+#define MASU_AT_HDR (MASU_AFTER_FINE + 1)
+layout(set = MASU_SET_PASS, binding = MASU_AT_HDR + 1, rgba16f) uniform image2D velocity_image;
+#else
+#define MASU_AT_HDR MASU_AFTER_FINE
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_AT_HDR, rgba16f) uniform image2D hdr_image;
 
@@ -85,6 +97,20 @@ vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
     }
     return sum.a > 1e-3 ? vec4(sum.rgb / sum.a, 1.0) : nearest;
 }
+
+#ifdef MASU_RESOLVED
+/* temporal.comp finds the pixel again where what it mirrors was. By what the surface mirrors and not by what is seen in it:
+ * the dark parts of a mirrored column move as the bright ones do. */
+void follow(uvec2 at, uvec2 texel)
+{
+    uint age = texelFetch(age_image, ivec2(texel), 0).g;
+    vec4 moved = imageLoad(velocity_image, ivec2(at));
+    if (age != masu_unmoved && moved.w > 0.0) {
+        moved.xy = unpackHalf2x16(age) - masu_unjittered(vec2(0.0), vec2(pc.render_width, pc.render_height));
+        MASU_STORE_HALF(velocity_image, at, moved);
+    }
+}
+#endif
 
 void pixel(uvec2 at, uvec2 texel, uint number)
 {
@@ -131,6 +157,12 @@ void pixel(uvec2 at, uvec2 texel, uint number)
             light = mix(around.rgb, own * min(1.0, limit / max(bright, 1e-9)), fine);
         }
         mirrored = masu_traced_share(roughness, push.cutoff) * mirrors * light;
+#ifdef MASU_RESOLVED
+        float matte = masu_luma(p.surface.albedo) * (1.0 - p.surface.metallic);
+        if (push.resolved != 0u && fine > 0.5 && masu_luma(mirrors) > matte) {
+            follow(at, texel);
+        }
+#endif
     }
     if (foggy) { /* what it adds itself, light.comp has added */
         vec3 direction = masu_normalize(point, frame.forward.xyz);

@@ -73,6 +73,11 @@ static int is_given(const masu_frame_plan *plan, uint32_t pass, uint8_t resource
     return 1;
 }
 
+/* Of reflections' velocities nothing is read or written unless a rung follows them. */
+static int is_composed(const masu_needs *n, uint8_t resource) {
+    return n->any_resolved || (resource != MASU_IMAGE_SPECULAR_LENGTH && resource != MASU_IMAGE_VELOCITY);
+}
+
 /* Whether a rung has what an access names: an image, or a buffer that a pass and not the host has written. */
 static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t resource, masu_usage usage) {
     const masu_needs *n = &plan->needs;
@@ -90,6 +95,7 @@ static int keeps_access(const masu_frame_plan *plan, uint32_t pass, uint8_t reso
     if (masu_is_buffer(resource)) return 1;
     if (usage == MASU_READ_BACK && !(masu_images[resource].readback & plan->desc.readback)) return 0;
     if (!is_given(plan, pass, resource, usage)) return 0;
+    if (pass == MASU_PASS_SPECULAR_COMPOSITE && !is_composed(n, resource)) return 0;
     return masu_has_image(n, resource);
 }
 
@@ -219,6 +225,11 @@ static int rung_has_fine(const masu_desc *d, uint32_t r) {
            d->rungs[r].specular_temporal != MASU_OFF && d->rungs[r].specular_fine != MASU_OFF;
 }
 
+/* Mirrors whose pixels rung.temporal finds again where what they mirror was. */
+static int rung_has_resolved(const masu_desc *d, uint32_t r) {
+    return rung_has_fine(d, r) && masu_rung_resolves(d, r);
+}
+
 static int wants(const masu_desc *d, int (*has)(const masu_desc *d, uint32_t r)) {
     for (uint32_t r = 0; r < d->rung_count; r++) {
         if (has(d, r)) return 1;
@@ -281,6 +292,7 @@ masu_result masu_compile(const masu_desc *desc, uint64_t uniform_alignment,
                                .any_taa = wants(d, rung_has_taa),
                                .any_fine = wants(d, rung_has_fine),
                                .any_silhouettes = wants(d, rung_has_silhouettes),
+                               .any_resolved = wants(d, rung_has_resolved),
                                .picking = d->scene && d->picking,
                                .metered = d->scene && d->exposure.metered == MASU_ON,
                                .velocity = (d->readback & MASU_READBACK_VELOCITY) != 0 || (d->split & MASU_SPLIT_VELOCITY) != 0 ||

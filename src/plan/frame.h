@@ -149,6 +149,7 @@ typedef struct masu_needs {
     int any_taa;        /* a rung has taa, */
     int any_fine;        /* fine */
     int any_silhouettes; /* silhouettes */
+    int any_resolved;    /* fine, and resolves over frames */
     int smoothing;     /* smaa */
     int picking;       /* the host may ask what is under a pixel */
     int metered;       /* the exposure follows the picture */

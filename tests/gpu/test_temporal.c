@@ -1,8 +1,9 @@
 /* test_temporal.c: rung.temporal against the truth of many samples: at rest it comes near it, at full size and at half;
  * what leaves, lights and shadows leave nothing behind; a cut, NaN and the order of frames before it change nothing;
- * a change of scale keeps the past; equal frames give equal bytes; and nothing breaks it. The scene is of polygons with
- * a shadow map, or the edge of test_truth.c. */
+ * a change of scale keeps the past; equal frames give equal bytes; what a mirror shows moves as that does; and nothing
+ * breaks it. The scene is of polygons with a shadow map, or the edge of test_truth.c. */
 #include "support/files.h"
+#include "support/floats.h"
 #include "support/support.h"
 
 #include "bench/measure/picture.h"
@@ -397,6 +398,36 @@ static void what_moves_has_coarser_mips(void **state) {
     assert_memory_equal(a.rgba, b.rgba, BYTES);
 }
 
+/* x of the velocity of the middle pixel, which shows a wall two metres before a mirror that is a metre away; the camera goes
+ * along both. */
+static double velocity_in_mirror(masu_switch fine, double metres) {
+    masu_session s;
+    masu_session_desc d = temporal_desc("test_mirror_plain", 1.0f);
+    masu_commands commands;
+    float value;
+    d.desc.rungs[0].specular_fine = fine;
+    d.desc.readback = MASU_READBACK_VELOCITY;
+    open_session(&s, &d);
+    for (int k = 5; k >= 0; k--) {
+        masu_camera camera = aside(&s, k * metres);
+        draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, NULL);
+    }
+    const uint16_t *image = read_image(&s, commands.slot, MASU_READBACK_VELOCITY);
+    value = half_float(image[4 * (SIZE / 2 * SIZE + SIZE / 2)]);
+    close_session(&s);
+    return value;
+}
+
+/* What a mirror shows lies behind it: three metres from the eye, and moves by a third of what the mirror's surface does. */
+static void what_a_mirror_shows_is_found_where_it_was(void **state) {
+    (void)state;
+    const double metres = 0.05, surface = metres * 0.5 * SIZE / tan(20.0 * acos(-1.0) / 180.0);
+    double of_surface = velocity_in_mirror(MASU_OFF, metres), of_image = velocity_in_mirror(MASU_ON, metres);
+    print_message("  surface %.3f of %.3f pixels, what it mirrors %.3f\n", of_surface, surface, of_image);
+    assert_true(fabs(fabs(of_surface) - surface) < 1.0); /* the change of the jitter is in both */
+    assert_true(fabs(fabs(of_surface - of_image) - surface * 2.0 / 3.0) < 0.05);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(at_rest_it_comes_near_the_truth),
@@ -411,6 +442,7 @@ int main(void) {
         cmocka_unit_test(nothing_breaks_it),
         cmocka_unit_test(all_targets_are_served),
         cmocka_unit_test(what_moves_has_coarser_mips),
+        cmocka_unit_test(what_a_mirror_shows_is_found_where_it_was),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
