@@ -11,7 +11,7 @@
  * than they scatter get the velocity of what they mirror, for rung.temporal (MASU_RESOLVED).
  *
  * push.cutoff: roughness from which nothing is traced. push.accumulate: 1: the mean of the reference instead, which
- * is weighted already. push.fine: not 0: there are full-resolution history.
+ * is weighted already. push.fine: not 0: there are full-resolution history. push.resolved: not 0: the rung has a past.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -99,15 +99,41 @@ vec4 gathered(uvec2 at, vec3 point, vec3 n, float depth, out float most)
 }
 
 #ifdef MASU_RESOLVED
-/* temporal.comp finds the pixel again where what it mirrors was. By what the surface mirrors and not by what is seen in it:
- * the dark parts of a mirrored column move as the bright ones do. */
-void follow(uvec2 at, uvec2 texel)
+const float apart = 0.1;  /* of the nearer depth: a silhouette, as of temporal_find.comp */
+const float least = 0.03; /* pixels: more than what rests there */
+
+/* Whether a pixel's surface ends beside it. The outline moves with what it is the outline of. */
+bool ends(ivec2 at, float depth)
+{
+    ivec2 last = ivec2(pc.render_width, pc.render_height) - 1;
+    vec4 beside = vec4(texelFetch(depth_image, ivec2(min(at.x + 1, last.x), at.y), 0).r,
+                       texelFetch(depth_image, ivec2(max(at.x - 1, 0), at.y), 0).r,
+                       texelFetch(depth_image, ivec2(at.x, min(at.y + 1, last.y)), 0).r,
+                       texelFetch(depth_image, ivec2(at.x, max(at.y - 1, 0)), 0).r);
+    return any(greaterThan(abs(beside - depth), apart * max(beside, vec4(depth))));
+}
+
+/* Gives a pixel the velocity of what it mirrors: temporal.comp finds it again where that was seen in the surface, whose depth there
+ * is that of the surface's plane. Where what is mirrored rests in the picture and the surface does not, as with the sky, it moves
+ * by a little: it would not be held to what is there now. */
+void follow(uvec2 at, uvec2 texel, float depth, vec3 n)
 {
     uint age = texelFetch(age_image, ivec2(texel), 0).g;
     vec4 moved = imageLoad(velocity_image, ivec2(at));
-    if (age != masu_unmoved && moved.w > 0.0) {
-        moved.xy = unpackHalf2x16(age) - masu_unjittered(vec2(0.0), vec2(pc.render_width, pc.render_height));
-        MASU_STORE_HALF(velocity_image, at, moved);
+    if (age == masu_unmoved || !(moved.w > 0.0) || ends(ivec2(at), depth)) {
+        return;
+    }
+    vec2 size = vec2(pc.render_width, pc.render_height);
+    vec2 jitter = masu_unjittered(vec2(0.0), size);
+    vec2 image = unpackHalf2x16(age);
+    vec2 surface = moved.xy + jitter;
+    image.x = length(image) < least && length(surface) > least ? least : image.x;
+    vec2 was = (vec2(at) + 0.5 + moved.xy) / size * 2.0 - 1.0 + previous.jitter.xy;
+    vec2 seen = was + (image - surface) / size * 2.0;
+    vec3 lean = vec3(dot(n, previous.right.xyz), -dot(n, previous.up.xyz), dot(n, previous.forward.xyz));
+    float farther = dot(lean, vec3(was, 1.0)) * masu_rcp(dot(lean, vec3(seen, 1.0)));
+    if (farther > 0.25 && farther < 4.0) { /* not beyond the horizon */
+        MASU_STORE_HALF(velocity_image, at, vec4(image - jitter, (1.0 + moved.z) * farther - 1.0, 1.0));
     }
 }
 #endif
@@ -134,6 +160,7 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         vec3 own = vec3(0.0);
         float fine = 0.0;
         bool limited = false;
+        bool whole = false; /* the four pixels are one surface */
 #ifdef MASU_FINE
         uint word = push.fine != 0u ? texelFetch(fine_image, ivec2(texel), 0)[number] : masu_fine_none;
         if (word != masu_fine_none) {
@@ -141,6 +168,7 @@ void pixel(uvec2 at, uvec2 texel, uint number)
             own = masu_unpack_fine(word);
             fine = masu_fine_share(g, roughness);
             limited = roughness > masu_fine_narrow && !g.mixed;
+            whole = !g.mixed;
         }
 #endif
         vec3 light = own;
@@ -158,9 +186,11 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         }
         mirrored = masu_traced_share(roughness, push.cutoff) * mirrors * light;
 #ifdef MASU_RESOLVED
-        float matte = masu_luma(p.surface.albedo) * (1.0 - p.surface.metallic);
-        if (push.resolved != 0u && fine > 0.5 && masu_luma(mirrors) > matte) {
-            follow(at, texel);
+        /* By what the surface is, not by what is seen in it: the dark parts of a mirrored column move as the bright ones do. */
+        vec3 scattered = masu_bsdf_diffuse(b) + p.surface.emissive;
+        scattered += p.surface.coat > 0.0 ? masu_bsdf_specular(b) : vec3(0.0);
+        if (push.resolved != 0u && whole && fine > 0.5 && masu_luma(mirrors) > masu_luma(scattered)) {
+            follow(at, texel, p.depth, n);
         }
 #endif
     }

@@ -4,7 +4,7 @@
  *
  *   1. Where was it? By the velocity at the pixel; where a silhouette passes through the 3x3 samples around, by the
  *      nearest one's, so that a smooth edge moves with what it is the edge of. Without what the frames' jitter differs by.
- *   2. Is it the same thing? What rests in a world that does is. Else one of the four depths that the previous frame has
+ *   2. Is it the same thing? What rests in a world that does, before an eye that does, is. Else one of the four depths that the previous frame has
  *      kept there has to lie between the nearest and the farthest of the nine of now, as far as they were then; else the
  *      pixel begins anew. A surface that leans may differ by its slope.
  *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
@@ -150,7 +150,8 @@ uvec2 found_at(ivec2 at, vec2 size)
     vec2 before = (place + frame.shifts.xy + moved.xy) / size;
     float speed = length(moved.xy);
     bool rests = !(speed > at_rest);
-    bool changes = frame.temporal.z != 0u;
+    /* While the eye moves the sky rests, too, and what has hidden it does not. */
+    bool changes = frame.temporal.z != 0u || frame.eye_hi.xyz != previous.eye_hi.xyz || frame.eye_lo.xyz != previous.eye_lo.xyz;
     bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
                  all(lessThanEqual(before, vec2(1.0)));
     /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */

@@ -203,6 +203,30 @@ static void smoke_leaves_no_trail(void **state) {
     }
 }
 
+/* The eye goes past a pole: the sky behind it rests in the picture, and is not what was seen there. */
+static void sky_that_is_uncovered_shows_no_pole(void **state) {
+    (void)state;
+    const double metres = 0.08;
+    for (uint32_t half = 0; half < 2; half++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_shadows", half ? 0.5f : 1.0f);
+        open_session(&s, &d);
+        masu_camera camera = {.position = {0, 1, 0}, .forward = {0, 0.2f, -1}, .fov_y = 0.8f};
+        move_instance(&s, "ball", 0.0f, 1.0f, -3.0f, 0.3f);
+        for (int k = 0; k <= 12; k++) {
+            camera.position[0] = k * metres;
+            frames(&s, k ? 1 : 60, (masu_frame_desc){.camera = &camera}, k ? a.rgba : b.rgba);
+        }
+        frames(&s, 1, (masu_frame_desc){.camera = &camera, .cut = 1}, NULL);
+        frames(&s, 150, (masu_frame_desc){.camera = &camera}, truth.rgba);
+        last.scene = NULL;
+        uint32_t all, off = ghosts(b.rgba, a.rgba, 2, &all);
+        print_message("  scale %.1f: %u of %u pixels are more than 2 of 255 off\n", half ? 0.5 : 1.0, off, all);
+        assert_true(all > 1000 && off <= (half ? all / 50 : 2));
+        close_session(&s);
+    }
+}
+
 static void light_that_changes_is_seen(void **state) {
     (void)state;
     masu_session s;
@@ -426,42 +450,51 @@ static void what_moves_has_coarser_mips(void **state) {
     assert_memory_equal(a.rgba, b.rgba, BYTES);
 }
 
-/* x of the velocity of the middle pixel, which shows a wall two metres before a mirror that is a metre away; the camera goes
- * along both. */
-static double velocity_in_mirror(masu_switch fine, double metres) {
+/* Velocity of the middle pixel, which shows a wall two metres before a mirror that is a metre away; the camera goes along both,
+ * to the right and up. Rung 1 has no past. */
+static void velocity_in_mirror(masu_switch fine, uint32_t rung, double metres, double v[2]) {
     masu_session s;
     masu_session_desc d = temporal_desc("test_mirror_plain", 1.0f);
     masu_commands commands;
-    float value;
     d.desc.rungs[0].specular_fine = fine;
+    d.desc.rung_count = 2;
+    d.desc.rungs[1] = (masu_rung){.scale = 1};
     d.desc.readback = MASU_READBACK_VELOCITY;
     open_session(&s, &d);
     for (int k = 5; k >= 0; k--) {
         masu_camera camera = aside(&s, k * metres);
-        draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, NULL);
+        camera.position[1] -= 0.5 * k * metres;
+        draw(&s, &(masu_frame_desc){.camera = &camera, .rung = rung}, &commands, NULL);
     }
     const uint16_t *image = read_image(&s, commands.slot, MASU_READBACK_VELOCITY);
-    value = half_float(image[4 * (SIZE / 2 * SIZE + SIZE / 2)]);
+    for (int k = 0; k < 2; k++) v[k] = half_float(image[4 * (SIZE / 2 * SIZE + SIZE / 2) + k]);
     close_session(&s);
-    return value;
 }
 
 /* What a mirror shows lies behind it: three metres from the eye, and moves by a third of what the mirror's surface does. */
 static void what_a_mirror_shows_is_found_where_it_was(void **state) {
     (void)state;
-    const double metres = 0.05, surface = metres * 0.5 * SIZE / tan(20.0 * acos(-1.0) / 180.0);
-    double of_surface = velocity_in_mirror(MASU_OFF, metres), of_image = velocity_in_mirror(MASU_ON, metres);
-    print_message("  surface %.3f of %.3f pixels, what it mirrors %.3f\n", of_surface, surface, of_image);
-    assert_true(fabs(fabs(of_surface) - surface) < 1.0); /* the change of the jitter is in both */
-    assert_true(fabs(fabs(of_surface - of_image) - surface * 2.0 / 3.0) < 0.05);
+    const double metres = 0.05, pixels = metres * 0.5 * SIZE / tan(20.0 * acos(-1.0) / 180.0);
+    double surface[2], image[2], plain[2];
+    velocity_in_mirror(MASU_OFF, 0, metres, surface);
+    velocity_in_mirror(MASU_ON, 0, metres, image);
+    velocity_in_mirror(MASU_ON, 1, metres, plain);
+    for (int k = 0; k < 2; k++) {
+        const double moved = k ? -0.5 * pixels : -pixels; /* where the pixel was, less where it is */
+        print_message("  %c: without a past %.3f of %.3f pixels, surface %.3f, what it mirrors %.3f\n", "xy"[k], plain[k], moved,
+                      surface[k], image[k]);
+        assert_true(fabs(plain[k] - moved) < 0.02);
+        assert_true(fabs(surface[k] - moved) < 1.0); /* the change of the jitter is in both */
+        assert_true(fabs(surface[k] - image[k] - moved * 2.0 / 3.0) < 0.05);
+    }
 }
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(at_rest_it_comes_near_the_truth),
         cmocka_unit_test(in_motion_it_is_no_worse),
         cmocka_unit_test(what_leaves_leaves_no_ghost),
         cmocka_unit_test(smoke_leaves_no_trail),
+        cmocka_unit_test(sky_that_is_uncovered_shows_no_pole),
         cmocka_unit_test(light_that_changes_is_seen),
         cmocka_unit_test(a_lamp_that_goes_out_is_seen),
         cmocka_unit_test(light_that_changes_in_motion_is_seen),
