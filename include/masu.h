@@ -320,10 +320,11 @@ typedef enum masu_readback_bits {
      * minus the present one, in pixels of this frame's render size, y down; z: previous view depth
      * / present one, minus 1 (0 for the sky); w: 1, or 0 where the point was behind the camera or
      * cannot be told, x y z are then 0. What jitter has changed by, with temporal the rung's own too,
-     * is in it. In a rung with temporal and specular_fine, x, y of a pixel that mirrors more than it
-     * scatters, at a roughness of at most 0.17, are those of what it mirrors. Halves: off by up to 2^-12 of
-     * the motion. Asking for it makes the plan keep the previous frame: one more image and one more pass or
-     * two. */
+     * is in it. Halves: off by up to 2^-12 of the motion. In a rung with temporal and specular_fine
+     * a pixel that mirrors more than it scatters, at a roughness of at most 0.17, has the motion of
+     * what it mirrors, as far as the reflections' own history tells it; z is then the depth of the
+     * mirror's plane where that was seen. Asking for it makes the plan keep the previous frame: one
+     * more image and one more pass or two. */
     MASU_READBACK_VELOCITY = 16,
     /* 2 x 16 bit unorm: how much of the sun, and of the ambient light, is seen. Only of scenes with
      * a shadow map, SDF shadows, or ambient occlusion of either kind; asking it of others is ignored,

@@ -1,5 +1,6 @@
 /*
- * motion.glsl: the velocity of a surface point, as the image `velocity` holds it:
+ * motion.glsl: the velocity of a surface point, as the image `velocity` holds it (for rung.temporal specular_composite.comp
+ * puts that of what a mirror shows in its place):
  *
  *   x, y  previous position minus present one, pixels of this frame's render size, y down
  *   z     previous view depth / present one, minus 1; 0 for the sky

@@ -237,6 +237,12 @@ static void inputs_of_reflections(void **state) {
     poison_each("test_reflections", &(masu_rung){.scale = 1.0f}, 24, 8);
 }
 
+/* And what they tell a rung with a past of their motion. */
+static void inputs_of_reflections_with_a_past(void **state) {
+    (void)state;
+    poison_each("test_reflections", &(masu_rung){.scale = 0.7f, .temporal = MASU_ON}, 24, 256);
+}
+
 static void inputs_of_the_meter(void **state) {
     (void)state;
     step_s = 0.1f; /* it adapts over time, from wherever in its range it may be */
@@ -251,7 +257,8 @@ static void inputs_of_lights(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inputs_of_lists_of_parts),  cmocka_unit_test(inputs_of_temporal_passes), cmocka_unit_test(inputs_of_upscaling_and_smaa),
+        cmocka_unit_test(inputs_of_lists_of_parts),  cmocka_unit_test(inputs_of_temporal_passes),
+        cmocka_unit_test(inputs_of_reflections_with_a_past), cmocka_unit_test(inputs_of_upscaling_and_smaa),
         cmocka_unit_test(inputs_of_shadows_and_occlusion), cmocka_unit_test(inputs_of_reflections),
         cmocka_unit_test(inputs_of_the_meter), cmocka_unit_test(inputs_of_lights),
     };

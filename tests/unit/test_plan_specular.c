@@ -147,6 +147,32 @@ static void many_samples_from_one_go_without_two_means(void **state) {
     }
 }
 
+static int composes(uint32_t rung, uint32_t image, uint32_t usage) {
+    const masu_rung_plan *rp = &with.rungs[rung];
+    for (uint32_t a = 0; a < rp->access_count[MASU_PASS_SPECULAR_COMPOSITE]; a++) {
+        masu_access access = rp->access[MASU_PASS_SPECULAR_COMPOSITE][a];
+        if (access.image == image && access.usage == usage) return 1;
+    }
+    return 0;
+}
+
+/* The velocities of mirrors are for rungs with a past; where one has it, all share its descriptors. */
+static void velocities_of_mirrors_are_for_rungs_with_a_past(void **state) {
+    (void)state;
+    for (int k = 0; k < 4; k++) { /* bit 0: a rung has a past, bit 1: it has each pixel's own means */
+        masu_desc d = mirrors(RASTER);
+        d.rung_count = 2;
+        d.rungs[1] = d.rungs[0];
+        d.rungs[1].temporal = k & 1 ? MASU_ON : MASU_OFF;
+        d.rungs[1].specular_fine = k & 2 ? MASU_ON : MASU_OFF;
+        compile(&d, &with);
+        for (uint32_t r = 0; r < 2; r++) {
+            assert_int_equal(composes(r, MASU_IMAGE_VELOCITY, MASU_UPDATE), k == 3);
+            assert_int_equal(composes(r, MASU_IMAGE_SPECULAR_LENGTH, MASU_READ), k == 3);
+        }
+    }
+}
+
 static void the_reference_is_of_full_size_and_keeps_its_sum(void **state) {
     (void)state;
     masu_desc d = mirrors(RASTER);
@@ -171,6 +197,7 @@ int main(void) {
         cmocka_unit_test(a_rung_without_them_runs_none_of_their_passes),
         cmocka_unit_test(what_is_glossy_is_traced_in_polygons_in_the_sdf_or_in_both),
         cmocka_unit_test(many_samples_from_one_go_without_two_means),
+        cmocka_unit_test(velocities_of_mirrors_are_for_rungs_with_a_past),
         cmocka_unit_test(the_reference_is_of_full_size_and_keeps_its_sum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
