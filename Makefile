@@ -189,14 +189,15 @@ fuzz: ## fuzz with clang's libFuzzer: FUZZ=name FUZZ_TIME=60
 fuzz-all: ## fuzz every target of tests/fuzz for so long each: FUZZ_TIME=600
 	+$(V)for f in $(FUZZ_ALL); do $(more) config=fuzz CC=clang fuzz-$$f FUZZ=$$f || exit 1; done
 
-# An hour on a CPU driver. Of docs/report are kept: ladders.txt, and of each scene the page, the rows, the ladder,
+# Two hours on a CPU driver. Of docs/report are kept: ladders.txt, and of each scene the page, the rows, the ladder,
 # what was measured.
-# Those of a scene alone: BENCH_ARGS_NAME; there the time of forza's path at which a car is near, and
-# fewer rays for the truth where a frame takes long.
+# Those of a scene alone: BENCH_ARGS_NAME; there a time at which forza's car is on its lap, and fewer rays for the
+# truth and frames where one takes long.
 .PHONY: bench
 BENCH ?= engine mirrors wet_city worlds/city forza textures city_shadows
-BENCH_ARGS ?= --size 320x180
-BENCH_ARGS_forza ?= --time 146.5 --reference 256
+BENCH_ARGS ?= --size 640x360
+BENCH_ARGS_forza ?= --time 60 --reference 64 --frames 16
+BENCH_ARGS_worlds-city ?= --size 320x180
 BENCH_ARGS_wet_city ?= --reference 256
 # A name is that of a scene or of a world; where both have it, the scene's: worlds/city is the other. The
 # folder march has the scenes with all ways to march, and beside them what depth is compared with.

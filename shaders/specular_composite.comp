@@ -187,8 +187,8 @@ void pixel(uvec2 at, uvec2 texel, uint number)
         mirrored = masu_traced_share(roughness, push.cutoff) * mirrors * light;
 #ifdef MASU_RESOLVED
         /* By what the surface is, not by what is seen in it: the dark parts of a mirrored column move as the bright ones do. */
-        vec3 scattered = masu_bsdf_diffuse(b) + p.surface.emissive;
-        scattered += p.surface.coat > 0.0 ? masu_bsdf_specular(b) : vec3(0.0);
+        vec3 scattered = p.surface.albedo * (1.0 - p.surface.metallic) + p.surface.emissive;
+        scattered += p.surface.coat > 0.0 ? b.f0 : vec3(0.0);
         if (push.resolved != 0u && whole && fine > 0.5 && masu_luma(mirrors) > masu_luma(scattered)) {
             follow(at, texel, p.depth, n);
         }

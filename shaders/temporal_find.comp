@@ -150,8 +150,7 @@ uvec2 found_at(ivec2 at, vec2 size)
     vec2 before = (place + frame.shifts.xy + moved.xy) / size;
     float speed = length(moved.xy);
     bool rests = !(speed > at_rest);
-    /* While the eye moves the sky rests, too, and what has hidden it does not. */
-    bool changes = frame.temporal.z != 0u || frame.eye_hi.xyz != previous.eye_hi.xyz || frame.eye_lo.xyz != previous.eye_lo.xyz;
+    bool changes = frame.temporal.z != 0u;
     bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
                  all(lessThanEqual(before, vec2(1.0)));
     /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */

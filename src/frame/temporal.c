@@ -76,6 +76,12 @@ static int has_changed(const struct masu_frame_uniforms *now, const struct masu_
     return memcmp(now->sdf_params, before->sdf_params, sizeof now->sdf_params) != 0;
 }
 
+/* Whether the eye is elsewhere than in the frame before: the sky rests then, too, and what has hidden it does not. */
+static int eye_moves(const struct masu_frame_uniforms *now, const struct masu_frame_uniforms *before) {
+    return memcmp(now->eye_hi, before->eye_hi, 3 * sizeof *now->eye_hi) != 0 ||
+           memcmp(now->eye_lo, before->eye_lo, 3 * sizeof *now->eye_lo) != 0;
+}
+
 static uint64_t hash_words(uint64_t hash, const void *data, size_t bytes) {
     for (size_t at = 0; at + 8 <= bytes; at += 8) {
         uint64_t word;
@@ -116,7 +122,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
         t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
         f->u.temporal[1] = t->size[1];
-        f->u.temporal[2] = t->changed;
+        f->u.temporal[2] = t->changed || eye_moves(&f->u, history->previous);
     }
     t->size[0] = rp->render_width;
     t->size[1] = rp->render_height;

@@ -7,11 +7,11 @@
 
 static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RUNGS] = {
     [MASU_SCENE_POLYGONS] = { /* textures.masu, ladder.json 3662553962 */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.8020f, 0.6500f, 0.5137f, 0.4019f, 0.3302f, 0.2699f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.8050f, 0.6353f, 0.4924f, 0.3752f, 0.3001f, 0.2960f},
-        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8139f, 0.6522f, 0.5158f, 0.4040f, 0.3324f, 0.2146f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.7979f, 0.6407f, 0.5003f, 0.3853f, 0.3115f, 0.2784f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8035f, 0.6325f, 0.4885f, 0.3704f, 0.2947f, 0.2557f},
+        [MASU_DEVICE_XE80] = {1.0000f, 0.8020f, 0.6500f, 0.5136f, 0.4019f, 0.3302f, 0.2699f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.8049f, 0.6352f, 0.4922f, 0.3750f, 0.2999f, 0.2957f},
+        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8138f, 0.6521f, 0.5156f, 0.4038f, 0.3322f, 0.2145f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.7979f, 0.6406f, 0.5001f, 0.3851f, 0.3112f, 0.2782f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8034f, 0.6324f, 0.4883f, 0.3702f, 0.2944f, 0.2555f},
     },
     [MASU_SCENE_SDF] = { /* city_shadows.masu, ladder.json 1508924224 */
         [MASU_DEVICE_XE80] = {1.0000f, 0.7700f, 0.5754f, 0.4072f, 0.2723f, 0.1856f, 0.1734f},
@@ -27,19 +27,19 @@ static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RU
         [MASU_DEVICE_DECK] = {1.0000f, 0.7915f, 0.6018f, 0.4421f, 0.3129f, 0.2257f, 0.1922f, 0.1644f},
         [MASU_DEVICE_MOBILE] = {1.0000f, 0.7916f, 0.5943f, 0.4311f, 0.2991f, 0.2098f, 0.1759f, 0.1618f},
     },
-    [MASU_SCENE_POLYGONS_TRACED] = { /* mirrors.masu, ladder.json 3870411933 */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.8920f, 0.9249f, 0.3806f, 0.2791f, 0.2348f, 0.1722f, 0.0806f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.8930f, 0.9288f, 0.3819f, 0.2760f, 0.2347f, 0.1767f, 0.0828f},
-        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8870f, 0.9213f, 0.3794f, 0.2860f, 0.2329f, 0.1483f, 0.0614f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.8738f, 0.9135f, 0.3659f, 0.2703f, 0.2216f, 0.1487f, 0.0615f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.8719f, 0.9211f, 0.3471f, 0.2622f, 0.2009f, 0.1285f, 0.0525f},
+    [MASU_SCENE_POLYGONS_TRACED] = { /* mirrors.masu, ladder.json 336695153 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.9111f, 0.5988f, 0.4460f, 0.3194f, 0.2375f, 0.1867f, 0.0873f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.9302f, 0.5930f, 0.4344f, 0.3033f, 0.2436f, 0.1962f, 0.0920f},
+        [MASU_DEVICE_VEGA8] = {1.0000f, 0.8658f, 0.6080f, 0.4548f, 0.3273f, 0.2206f, 0.1542f, 0.0638f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.9461f, 0.5952f, 0.4377f, 0.3089f, 0.2433f, 0.1728f, 0.0714f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.9830f, 0.5873f, 0.4266f, 0.2937f, 0.2265f, 0.1536f, 0.0628f},
     },
-    [MASU_SCENE_WORLD_TRACED] = { /* forza.masu, ladder.json 268414473 */
-        [MASU_DEVICE_XE80] = {1.0000f, 0.6470f, 0.5831f, 0.4533f, 0.2546f, 0.1977f},
-        [MASU_DEVICE_UHD620] = {1.0000f, 0.6597f, 0.6020f, 0.4691f, 0.2659f, 0.2078f},
-        [MASU_DEVICE_VEGA8] = {1.0000f, 0.6166f, 0.5255f, 0.4026f, 0.2140f, 0.1601f},
-        [MASU_DEVICE_DECK] = {1.0000f, 0.6425f, 0.5476f, 0.4186f, 0.2210f, 0.1643f},
-        [MASU_DEVICE_MOBILE] = {1.0000f, 0.6278f, 0.5314f, 0.4043f, 0.2096f, 0.1537f},
+    [MASU_SCENE_WORLD_TRACED] = { /* forza.masu, ladder.json 193697804 */
+        [MASU_DEVICE_XE80] = {1.0000f, 0.7854f, 0.6038f, 0.4477f, 0.3181f, 0.3680f, 0.2792f, 0.1604f},
+        [MASU_DEVICE_UHD620] = {1.0000f, 0.7851f, 0.5959f, 0.4365f, 0.3043f, 0.3871f, 0.2948f, 0.1713f},
+        [MASU_DEVICE_VEGA8] = {1.0000f, 0.7934f, 0.6120f, 0.4586f, 0.3335f, 0.3077f, 0.2285f, 0.1223f},
+        [MASU_DEVICE_DECK] = {1.0000f, 0.7840f, 0.6002f, 0.4424f, 0.3115f, 0.3463f, 0.2563f, 0.1359f},
+        [MASU_DEVICE_MOBILE] = {1.0000f, 0.7824f, 0.5907f, 0.4293f, 0.2951f, 0.3450f, 0.2536f, 0.1311f},
     },
     [MASU_SCENE_BOTH_TRACED] = { /* wet_city.masu, ladder.json 434990834 */
         [MASU_DEVICE_XE80] = {1.0000f, 0.8622f, 0.6557f, 0.5690f, 0.4013f, 0.3046f, 0.1930f, 0.1484f},

@@ -38,6 +38,7 @@ for scene in engine city; do
 done
 sized 0.75 temporal
 rows "engine with temporal" engine 'temporal|tonemap' --ladder "$ladder"
+rows "mirrors with temporal" mirrors specular_composite --ladder "$ladder"
 sized 0.5 ao # which is on anyway
 rows 'engine at half size' engine easu_twice --ladder "$ladder"
 rows 'engine with particles' engine 'particles|decals|lines' --particles 1 --decals 1 --lines 1
