@@ -4,9 +4,9 @@
  *
  *   1. Where was it? By the velocity at the pixel; where a silhouette passes through the 3x3 samples around, by the
  *      nearest one's, so that a smooth edge moves with what it is the edge of. Without what the frames' jitter differs by.
- *   2. Is it the same thing? What rests in a world that does, before an eye that does, is. Else one of the four depths that the previous frame has
- *      kept there has to lie between the nearest and the farthest of the nine of now, as far as they were then; else the
- *      pixel begins anew. A surface that leans may differ by its slope.
+ *   2. Is it the same thing? What rests in a world that does, before an eye that does, is. Else one of the four depths
+ *      that the previous frame has kept there has to lie between the nearest and the farthest of the nine of now, as far
+ *      as they were then; else the pixel begins anew. A surface that leans may differ by its slope.
  *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
  *      show: 1.25 standard deviations around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
  *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
@@ -161,12 +161,12 @@ uvec2 found_at(ivec2 at, vec2 size)
         return masu_found(masu_found_stays, most_at_rest, vec3(0.0), vec3(1.0));
     }
     colors c = colors_around(at, ivec2(size) - 1);
-    bool other = changes && is_other(before, c, size);
+    bool other = rests && changes && is_other(before, c, size);
     vec3 within = (rests ? deviations_at_rest : deviations) * c.deviation;
     vec3 least = max(c.least, c.mean - within), most = min(c.most, c.mean + within);
     float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
     float resting = changes ? most_changing : most_at_rest;
-    float count = rests && other ? most_other : mix(resting, moving, min(4.0 * speed, 1.0));
+    float count = other ? most_other : mix(resting, moving, min(4.0 * speed, 1.0));
     bool held = other || !rests;
     return masu_found(of_front ? a.way : masu_found_linear, count, held ? least * least : vec3(0.0),
                       held ? most * most : vec3(1.0));

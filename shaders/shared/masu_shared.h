@@ -363,8 +363,8 @@ struct masu_frame_uniforms {
     /* What is added to a place in the picture, whose sides are -1 and 1: xy by jitter and by a window whose middle
      * is not straight ahead, zw by jitter alone */
     masu_vec4 jitter;
-    /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; z not 0: not the
-     * camera alone has changed of late. w the pixel to be picked: its x, and its y from bit 16 on */
+    /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; z not 0:
+     * something has changed of late, or the eye is elsewhere. w the pixel to be picked: its x, and its y from bit 16 on */
     masu_uvec4 temporal;
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
     /* Of rung.temporal, in pixels of the render size: xy by how much this frame's samples lie off the middle of pixels; zw

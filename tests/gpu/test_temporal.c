@@ -488,6 +488,7 @@ static void what_a_mirror_shows_is_found_where_it_was(void **state) {
         assert_true(fabs(surface[k] - image[k] - moved * 2.0 / 3.0) < 0.05);
     }
 }
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(at_rest_it_comes_near_the_truth),
