@@ -12,9 +12,10 @@
  *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
  *      changed, and the mean of the history around is not that of the nine, it is, too, within 0.75, and counts as one
  *      sample.
- *   4. How much does it count? At rest as many samples as it has, up to 28, and up to 8 while anything in the world
- *      changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
- *      that what moves counts at most 1.5, and less the faster it moves and the more it grows: it was smaller then.
+ *   4. How much does it count? At rest as many samples as it has, up to 28, and up to 8 while the eye moves or anything
+ *      in the world changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
+ *      that what moves, by a sixteenth of a pixel or more, counts at most 1.5, and less the faster it moves and the more
+ *      it grows: it was smaller then.
  *
  * What is found is two words, of upscale/found.glsl.
  *
@@ -166,7 +167,7 @@ uvec2 found_at(ivec2 at, vec2 size)
     vec3 least = max(c.least, c.mean - within), most = min(c.most, c.mean + within);
     float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
     float resting = changes ? most_changing : most_at_rest;
-    float count = other ? most_other : mix(resting, moving, min(4.0 * speed, 1.0));
+    float count = other ? most_other : mix(resting, moving, min(16.0 * speed, 1.0));
     bool held = other || !rests;
     return masu_found(of_front ? a.way : masu_found_linear, count, held ? least * least : vec3(0.0),
                       held ? most * most : vec3(1.0));
