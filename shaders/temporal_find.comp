@@ -20,7 +20,8 @@
  * What is found is two words, of upscale/found.glsl.
  *
  * Push constants: output_* = the render size; push.history_* = size of the part of `history` that is shown / that of the
- * image; push.moved_*, push.then_*: 1 / size of the images of velocities and of the depths before; push.shift: 1 where the
+ * image; push.moved_*, push.then_*: 1 / size of the images of velocities, which depth has, and of the depths before;
+ * push.pixel_*: 1 / the render size; push.shift: 1 where the
  * sizes of input and output are one, and a pixel of the output looks at its own.
  */
 #version 440
@@ -69,7 +70,7 @@ struct colors {
 
 around depths_around(ivec2 at, ivec2 size)
 {
-    masu_corners c = masu_corners_of(depth_image, vec2(at), vec2(size));
+    masu_corners c = masu_corners_of(depth_image, vec2(at), vec2(size), vec2(push.moved_x, push.moved_y));
     around found;
     found.nearest = masu_most_of(c);
     found.farthest = masu_least_of(c);
@@ -107,16 +108,19 @@ bool is_known(vec2 before, around a, float growth)
     vec2 place = (before - 0.5 * previous.jitter.zw) * size;
     vec2 inside = min(max(place, vec2(1.0)), size - 1.0); /* of a size of 1 it is the same texel four times */
     vec4 depths = textureGather(old_depth_image, inside * vec2(push.then_x, push.then_y));
-    float then = previous.forward.w * masu_rcp(frame.forward.w * (1.0 + growth));
+    /* Distances are those of `depths`, times `now`, and those of now, times `then`; NaN is not known. */
+    float then = previous.forward.w, now = frame.forward.w * (1.0 + growth);
     float off = (same_depth * a.nearest + 2.0 * a.slope) * then;
-    return masu_least_of(depths) <= a.nearest * then + off && masu_most_of(depths) >= a.farthest * then - off;
+    return masu_least_of(depths) * now <= a.nearest * then + off && masu_most_of(depths) * now >= a.farthest * then - off;
 }
 
 colors colors_around(ivec2 at, ivec2 last)
 {
     colors c = colors(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0));
+    ivec2 low = max(at - 1, 0), high = min(at + 1, last);
     for (int i = 0; i < 9; i++) {
-        ivec2 beside = clamp(at + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last);
+        int x = i % 3, y = i / 3;
+        ivec2 beside = ivec2(x == 0 ? low.x : x == 1 ? at.x : high.x, y == 0 ? low.y : y == 1 ? at.y : high.y);
         vec3 root = texelFetch(color_image, beside, 0).rgb;
         c.mean += root;
         c.deviation += root * root;
@@ -130,9 +134,9 @@ colors colors_around(ivec2 at, ivec2 last)
 
 /* Whether the history around is no longer what the nine samples show. Of light: the mean of squares is that of the roots,
  * squared, and their variance; light deviates by as much as a root that is a deviation off the mean. */
-bool is_other(vec2 before, colors c, vec2 size)
+bool is_other(vec2 before, colors c)
 {
-    vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown / size;
+    vec2 shown = vec2(push.history_x, push.history_y), half_texel = 0.5 * shown * vec2(push.pixel_x, push.pixel_y);
     vec2 inside = min(max(before * shown, half_texel), max(shown - 2.0 * half_texel, half_texel));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
@@ -148,7 +152,7 @@ uvec2 found_at(ivec2 at, vec2 size)
     vec2 place = vec2(at) + 0.5 - push.shift * frame.shifts.xy;
     bool of_front;
     vec4 moved = motion_at(at, place, a, size, of_front);
-    vec2 before = (place + frame.shifts.xy + moved.xy) / size;
+    vec2 before = (place + frame.shifts.xy + moved.xy) * vec2(push.pixel_x, push.pixel_y);
     float speed = length(moved.xy);
     bool rests = !(speed > at_rest);
     bool changes = frame.temporal.z != 0u;
@@ -162,7 +166,7 @@ uvec2 found_at(ivec2 at, vec2 size)
         return masu_found(masu_found_stays, most_at_rest, vec3(0.0), vec3(1.0));
     }
     colors c = colors_around(at, ivec2(size) - 1);
-    bool other = rests && changes && is_other(before, c, size);
+    bool other = rests && changes && is_other(before, c);
     vec3 within = (rests ? deviations_at_rest : deviations) * c.deviation;
     vec3 least = max(c.least, c.mean - within), most = min(c.most, c.mean + within);
     float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);

@@ -37,9 +37,10 @@ void main()
     vec4 mean = texelFetch(accumulated_image, at, 0);
     vec3 left = light_at(ivec2(before.x, at.y)), right = light_at(ivec2(after.x, at.y)),
          above = light_at(ivec2(at.x, before.y)), below = light_at(ivec2(at.x, after.y));
-    vec3 least = min(mean.rgb, min(min(left, right), min(above, below)));
-    vec3 most = max(mean.rgb, max(max(left, right), max(above, below)));
     vec3 sharp = mean.rgb + push.sharpen * (4.0 * mean.rgb - left - right - above - below);
+#if defined(MASU_TEN) || defined(MASU_DEEP) /* no store clamps it */
+    sharp = clamp(sharp, 0.0, 1.0);
+#endif
     MASU_STORE_SAFE(history_image, at, mean); /* as it was stored: finite, and light of 0 to 1 */
-    MASU_STORE_FILTERED(target, at, masu_encoded_unit(clamp(sharp, least, most), push.peak, push.white));
+    MASU_STORE_FILTERED(target, at, masu_encoded_open(sharp, push.peak, push.white));
 }

@@ -24,4 +24,13 @@ vec3 masu_encoded_unit(vec3 y, float peak, float white)
     return masu_encoded(y * peak, white);
 }
 
+/* The same of any number, for a store that clamps: sRGB of what is below 0 or above 1 is. */
+vec3 masu_encoded_open(vec3 y, float peak, float white)
+{
+    if (masu_encoding == MASU_OUTPUT_SRGB) {
+        return vec3(masu_srgb_encode_open(y.r), masu_srgb_encode_open(y.g), masu_srgb_encode_open(y.b));
+    }
+    return masu_encoded(y * peak, white);
+}
+
 #endif

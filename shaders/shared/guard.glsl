@@ -131,6 +131,12 @@ float masu_pow_unit(float x, float y)
     return exp2(log2(max(x, masu_tiny)) * y);
 }
 
+/* x^y of x above 0. Of another x anything, NaN too: for where that is not taken. */
+float masu_pow_above(float x, float y)
+{
+    return exp2(log2(x) * y);
+}
+
 /* acos of x clamped to [-1,1]; pi/2 (that of 0) for NaN and Inf. */
 float masu_acos(float x)
 {

@@ -371,6 +371,14 @@ struct masu_frame_uniforms {
      * what is added to a velocity to take out of it what the jitter of the two frames differs by. Behind what the shaders of
      * scenes read: they are baked. */
     masu_vec4 shifts;
+    /* The same to twice the size, where each four texels have four pixels of the output between them, 2x2. Of the first four
+     * texels, the picture's corner among them, xy coordinates of the first pixel between them, and 2: 1 or 2; zw those of the
+     * texel before, as int. */
+    masu_uvec4 between;
+    /* Of the first and second pixel between texels: x how far behind the texel before it lies; y what the nearer texel counts for it,
+     * by a tent as wide as two pixels; z and w what the one before and the one behind count, by a wider one. */
+    masu_vec4 columns[2];
+    masu_vec4 rows[2];
 };
 
 /* One placed mesh: rows of the 3x4 matrix from object to world space. */

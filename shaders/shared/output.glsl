@@ -117,6 +117,7 @@ vec3 masu_nearest_half(vec3 v)
 /* For passes of the size of the output. Whether it is made of whole workgroups, as 720, 1080 and 2160 rows
  * are: then no invocation lies outside. */
 layout(constant_id = 8) const bool masu_whole_groups = false;
+layout(constant_id = 13) const bool masu_fixed_output = false; /* images of that size are never larger than the picture */
 
 bool masu_is_outside(uvec2 at)
 {

@@ -54,6 +54,12 @@ float masu_srgb_encode_unit(float x)
     return x <= 0.0031308 ? 12.92 * x : 1.055 * masu_pow_unit(x, 1.0 / 2.4) - 0.055;
 }
 
+/* The same of any number, of which what is below 0 stays that and what is above 1 that. */
+float masu_srgb_encode_open(float x)
+{
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * masu_pow_above(x, 1.0 / 2.4) - 0.055;
+}
+
 /* SMPTE ST 2084: 10000 nits are 1. */
 const float masu_pq_m1 = 2610.0 / 16384.0;
 const float masu_pq_m2 = 2523.0 / 32.0;

@@ -11,16 +11,16 @@ struct masu_corners {
     vec4 diagonal;
 };
 
-vec4 masu_corner(sampler2D image, vec2 corner, vec2 size)
+vec4 masu_corner(sampler2D image, vec2 corner, vec2 size, vec2 texel)
 {
-    return textureGather(image, min(corner, size - 1.0) / vec2(textureSize(image, 0)));
+    return textureGather(image, min(corner, size - 1.0) * texel);
 }
 
-/* A corner that would lie beyond the last column or row moves in by one: what of it lies outward is the same then. */
-masu_corners masu_corners_of(sampler2D image, vec2 at, vec2 size)
+/* texel: 1 / size of the image, which may be larger than what it holds, size. A corner that would lie beyond the last column or row moves in by one: what of it lies outward is the same then. */
+masu_corners masu_corners_of(sampler2D image, vec2 at, vec2 size, vec2 texel)
 {
-    vec4 a = masu_corner(image, at, size), b = masu_corner(image, at + vec2(1.0, 0.0), size);
-    vec4 c = masu_corner(image, at + vec2(0.0, 1.0), size), d = masu_corner(image, at + 1.0, size);
+    vec4 a = masu_corner(image, at, size, texel), b = masu_corner(image, at + vec2(1.0, 0.0), size, texel);
+    vec4 c = masu_corner(image, at + vec2(0.0, 1.0), size, texel), d = masu_corner(image, at + 1.0, size, texel);
     return masu_corners(a.y, a.x, b.y, a.z, c.y, vec4(a.w, b.z, c.x, d.y));
 }
 

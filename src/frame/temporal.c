@@ -41,7 +41,7 @@ static float mirrored(uint32_t n, uint32_t base) {
 }
 
 static int has_resolve(const masu_frame_data *f) {
-    return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL);
+    return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_SHOW);
 }
 
 /* From 1 on: the first place of Halton's sequence is the corner. */
@@ -100,6 +100,25 @@ static uint64_t sprites_of(const masu_frame_desc *d) {
     return hash_words(hash ^ d->decal_count, d->decals, d->decal_count * sizeof *d->decals);
 }
 
+/* Of an output of twice the size, along axis k: where its pixels lie between texels, and what those count for them, by the
+ * tents of shaders/temporal.comp. */
+static void find_between(struct masu_frame_uniforms *u, int k) {
+    /* An odd pixel lies a quarter of a texel behind a texel's middle, without jitter. Of two pixels the first is the one that has
+     * the other before the next texel. */
+    float odd = 0.25f - u->shifts[k], lies = odd - floorf(odd) < 0.5f ? odd : odd + 0.5f;
+    float before = floorf(lies), off = lies - before;
+    u->between[k] = lies == odd ? 1 : 2;
+    u->between[2 + k] = (uint32_t)((int32_t)before - 1);
+    masu_vec4 *pixels = k == 0 ? u->columns : u->rows;
+    for (int i = 0; i < 2; i++) {
+        float f = off + 0.5f * (float)i;
+        pixels[i][0] = f;
+        pixels[i][1] = fmaxf(1.0f - 2.0f * (i == 0 ? f : 1.0f - f), 0.0f);
+        pixels[i][2] = fmaxf(1.0f - 1.6f * f, 0.0f);
+        pixels[i][3] = fmaxf(1.0f - 1.6f * (1.0f - f), 0.0f);
+    }
+}
+
 void masu_temporal_read(masu_temporal *t, const masu_history *history, const masu_instances *in,
                         const masu_lights *lights, const masu_materials *materials,
                         masu_frame_data *f) {
@@ -113,6 +132,7 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
     for (int k = 0; k < 2; k++) {
         f->u.shifts[k] = 0.5f * f->u.jitter[2 + k] * size[k];
         f->u.shifts[2 + k] = kept ? 0.5f * (history->previous->jitter[2 + k] - f->u.jitter[2 + k]) * size[k] : 0.0f;
+        find_between(&f->u, k);
     }
     if (kept) {
         int changed = has_changed(&f->u, history->previous, f->plan) || t->instances != in->changes ||

@@ -159,6 +159,7 @@ typedef struct masu_needs {
     int upscale, sharpen, occlusion;
     int fxaa, smaa; /* at most one of them */
     int resolve;   /* over frames */
+    int resolve_twice; /* the same to twice the size */
     int fused;     /* upscale and sharpen in one pass */
     int twice;     /* upscale in full to twice the size, not fused */
     int ao;        /* ambient occlusion in screen space */

@@ -304,22 +304,61 @@ static void light_that_changes_in_motion_is_seen(void **state) {
 
 /* ---- What must not matter -------------------------------------------------------------------- */
 
+/* Twice the width and height is a pass of its own, and an output that keeps its size has no care for what lies beyond it: what
+ * temporal.comp shows of a scale that gives the same render size, in motion, at rest, and of a host with a jitter. */
+static void twice_the_size_is_the_same(void **state) {
+    (void)state;
+    static const struct {
+        float scale;
+        uint32_t resizable;
+    } ways[] = {{0.501f, 0}, {0.501f, 1}, {0.5f, 0}, {0.5f, 1}};
+    static uint8_t pixels[4][3][BYTES];
+    for (uint32_t k = 0; k < 4; k++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_shadows", ways[k].scale);
+        d.desc.resizable = ways[k].resizable;
+        open_session(&s, &d);
+        masu_commands commands;
+        for (uint32_t i = 0; i < 36; i++) {
+            masu_camera camera = aside(&s, 0.02 * (i < 12 ? i : 12));
+            camera.jitter[0] = i < 24 ? 0.0f : 0.05f * (float)(i - 16); /* up to a whole pixel */
+            camera.jitter[1] = -0.7f * camera.jitter[0];
+            draw(&s, &(masu_frame_desc){.camera = &camera}, &commands, pixels[k][i / 12]);
+        }
+        close_session(&s);
+    }
+    for (uint32_t k = 1; k < 4; k++) {
+        for (uint32_t i = 0; i < 3; i++) {
+            uint32_t most = 0, others = 0;
+            for (uint32_t p = 0; p < BYTES; p++) {
+                uint32_t off = (uint32_t)abs(pixels[k][i][p] - pixels[0][i][p]);
+                most = off > most ? off : most;
+                others += off != 0;
+            }
+            print_message("  scale %.3f, resizable %u: %u of %d bytes differ, by %u at most\n", (double)ways[k].scale,
+                          ways[k].resizable, others, BYTES, most);
+            assert_true(most <= 1 && others < BYTES / 50);
+        }
+    }
+}
+
 static void equal_frames_give_equal_bytes(void **state) {
     (void)state;
     for (int k = 0; k < 2; k++) {
         masu_session s;
         masu_session_desc d = temporal_desc("test_fog", 1.0f);
         d.desc.debug.poison = (uint32_t)k; /* nor does what images hold before they are written, */
-        d.desc.rung_count = 4;             /* or beyond the part of them that a rung has */
+        d.desc.rung_count = 5;             /* or beyond the part of them that a rung has */
         d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f, .sharpen = MASU_ON};
         d.desc.rungs[2] = (masu_rung){.scale = 0.6f, .aa = MASU_AA_SMAA_LOW};
         d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.02f};
+        d.desc.rungs[4] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f};
         open_session(&s, &d);
         masu_commands commands;
         for (int i = 0; i < 16; i++) {
             masu_camera camera = aside(&s, 0.1 * i);
             camera.position[1] += 0.1 * (i / 4);
-            draw(&s, &(masu_frame_desc){.camera = &camera, .rung = (uint32_t)("0011230323130101"[i] - '0')}, &commands,
+            draw(&s, &(masu_frame_desc){.camera = &camera, .rung = (uint32_t)("0011230443130141"[i] - '0')}, &commands,
                  k ? b.rgba : a.rgba);
         }
         close_session(&s);
@@ -375,17 +414,18 @@ static void nothing_breaks_it(void **state) {
     for (size_t k = 0; k < trials(4, 4, 3); k++) { /* wet_city takes ten seconds to compile */
         masu_session s;
         masu_session_desc d = temporal_desc(scenes[k], 1.0f);
-        d.desc.rung_count = 4;
+        d.desc.rung_count = 5;
         d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f, .sharpen = MASU_ON};
         d.desc.rungs[2] = (masu_rung){.scale = 0.6f};
         d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.01f};
+        d.desc.rungs[4] = (masu_rung){.temporal = MASU_ON, .scale = 0.5f};
         open_session(&s, &d);
         for (uint32_t i = 0; i < trials(24, 24, 12); i++) { /* of 8 everything has been once */
-            masu_camera camera = aside(&s, i % 5 == 4 ? 1e6 : 0.3 * (i % 7));
+            masu_camera camera = aside(&s, i % 6 == 4 ? 1e6 : 0.3 * (i % 7));
             if (i % 3 == 2) camera.position[1] = -0.5;
             if (i % 8 == 7) camera.forward[0] = 5.0f;
             camera.jitter[0] = i % 2 ? 1.0f : -1.0f;
-            masu_frame_desc f = {.camera = &camera, .rung = i % 4, .time = i % 6 == 5 ? 1e9 : 10.0 * i,
+            masu_frame_desc f = {.camera = &camera, .rung = i % 5, .time = i % 6 == 5 ? 1e9 : 10.0 * i,
                                  .time_step = i % 2 ? 10.0f : 0.0f};
             masu_commands commands;
             draw(&s, &f, &commands, a.rgba);
@@ -499,6 +539,7 @@ int main(void) {
         cmocka_unit_test(light_that_changes_is_seen),
         cmocka_unit_test(a_lamp_that_goes_out_is_seen),
         cmocka_unit_test(light_that_changes_in_motion_is_seen),
+        cmocka_unit_test(twice_the_size_is_the_same),
         cmocka_unit_test(equal_frames_give_equal_bytes),
         cmocka_unit_test(a_cut_forgets_all),
         cmocka_unit_test(a_change_of_scale_keeps_the_past),

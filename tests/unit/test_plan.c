@@ -652,15 +652,31 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     d.rungs[1] = (masu_rung){.temporal = MASU_ON, .sharpen = MASU_ON};
     assert_string_equal(why_of(&d, MASU_PASS_EASU), "temporal does it");
     compile(&d, &plan);
-    static const char frame[] = "tonemap(r:hdr w:ldr) temporal_find(r:ldr r:depth rl:velocity r:history_depth "
-                                "rl:history w:found) temporal(r:ldr r:found rl:velocity rl:history w:accumulated) "
-                                "temporal_show(r:accumulated w:history w:";
-    assert_non_null(strstr(frame_text(&plan, 0), frame));
+#define FOUND_BY(pass)                                                                               \
+    "tonemap(r:hdr w:ldr) temporal_find(r:ldr r:depth rl:velocity r:history_depth rl:history w:found) " pass                \
+    "(r:ldr r:found rl:velocity rl:history w:accumulated) temporal_show(r:accumulated w:history w:"
+    assert_non_null(strstr(frame_text(&plan, 0), FOUND_BY("temporal_twice")));
     assert_non_null(strstr(frame_text(&plan, 0), "w:target) temporal_keep(r:depth w:history_depth)"));
-    assert_non_null(strstr(frame_text(&plan, 1), frame));
+    assert_non_null(strstr(frame_text(&plan, 1), FOUND_BY("temporal")));
     assert_non_null(strstr(frame_text(&plan, 1), " rcas(r:upscaled w:target)"));
     assert_null(strstr(frame_text(&plan, 0), "smaa"));
     assert_null(strstr(frame_text(&plan, 0), "fsr1"));
+    /* Twice the size is for all pixels, or for an output that may become one of which it is. */
+    d.rung_count = 1;
+    assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL), "temporal_twice does it");
+    d.output.width = 65;
+    assert_string_equal(why_of(&d, MASU_PASS_TEMPORAL_TWICE), "the output is not twice as wide and high");
+    d.resizable = 1;
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), FOUND_BY("temporal_twice")));
+    d.resizable = 0, d.output.width = 64;
+    d.debug.exact = 1;
+    compile(&d, &plan);
+    assert_non_null(strstr(frame_text(&plan, 0), FOUND_BY("temporal")));
+#undef FOUND_BY
+    d.debug.exact = 0;
+    d.rung_count = 2;
+    compile(&d, &plan);
     /* At full size 8 + 4 bytes for each pixel outlive the frame, 8 + 8 do not. */
     static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_HISTORY_DEPTH, MASU_IMAGE_FOUND,
                                         MASU_IMAGE_ACCUMULATED};

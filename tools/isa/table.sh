@@ -41,5 +41,7 @@ rows "engine with temporal" engine 'temporal|tonemap' --ladder "$ladder"
 rows "mirrors with temporal" mirrors specular_composite --ladder "$ladder"
 sized 0.5 ao # which is on anyway
 rows 'engine at half size' engine easu_twice --ladder "$ladder"
+sized 0.5 temporal
+rows 'engine at half size' engine temporal_twice --ladder "$ladder"
 rows 'engine with particles' engine 'particles|decals|lines' --particles 1 --decals 1 --lines 1
 rows 'shadows with particles' test_shadows particles --particles 1
