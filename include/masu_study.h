@@ -107,6 +107,8 @@ typedef struct masu_deny {
         unified_memory; /* not 0: separate blocks per role even where one type could serve all */
     uint32_t compressed_textures; /* not 0: textures are decoded even where the device takes them
                                      compressed */
+    uint32_t unorm16; /* not 0: rung.temporal keeps its mean in 16-bit floats even where the device filters
+                         R16G16B16A16_UNORM: a tenth of a step of 8 bits off where it is bright */
 } masu_deny;
 
 #endif

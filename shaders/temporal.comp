@@ -6,8 +6,8 @@
  *
  * A pixel that has not yet a whole sample takes the rest from the four texels around, as bilinear filtering would.
  *
- * Everything is display light, as an eye takes the mean of it (docs/design/31-truth.md); a: samples. Halves are rounded up
- * or down by chance: the nearest one would hold a history still that is a little wrong.
+ * Everything is display light, as an eye takes the mean of it (docs/design/31-truth.md); a: samples. upscale/mean.glsl says how it
+ * is stored, upscale/history.glsl where it was.
  *
  * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size), push.steps_* = 1 / that;
  * push.first_*: where the first pixel's middle lies, push.last_*: how far a place may, texels of the render size whose
@@ -48,10 +48,14 @@ void main()
     uvec2 found = texelFetch(found_image, ivec2(texel), 0).xy;
     vec4 old = masu_history(found, vec2(at) + 0.5, ivec2(texel), inside, steps);
 
-    /* A tent as wide as two pixels of the output. Of what moves or is new, at half size a quarter wider (0.6 of that and 0.4
-     * of a tent of the input), or rows that this frame's samples miss would differ from those beside them: dotted edges. */
-    steps = masu_found_is_long(found) ? steps : 0.6 * steps + 0.4;
-    vec2 first = max(1.0 - abs(f) * steps, 0.0), second = max(1.0 - abs(1.0 - f) * steps, 0.0);
+    /* Of what rests in a world that does a sample counts for the pixel that it lies in, and a little across its border. Of all else
+     * there are few, and it counts by a tent as wide as two pixels of the output; at half size a quarter wider (0.6 of that and
+     * 0.4 of a tent of the input), or rows that this frame's samples miss would differ from those beside them: dotted
+     * edges. */
+    bool stays = masu_has_stayed(found);
+    vec2 slope = stays ? 2.0 * steps : 0.6 * steps + 0.4;
+    float top = stays ? 1.5 : 1.0;
+    vec2 first = clamp(top - abs(f) * slope, 0.0, 1.0), second = clamp(top - abs(1.0 - f) * slope, 0.0, 1.0);
     vec2 both = first + second;
     float count = old.a + both.x * both.y;
     float rest = max(1.0 - count, 0.0);
@@ -61,5 +65,5 @@ void main()
     weights += rest * around;
     vec3 sum = old.a * old.rgb + vec3(dot(weights, red * red), dot(weights, green * green), dot(weights, blue * blue));
     vec3 light = sum * (1.0 / max(count, 1.0));
-    MASU_STORE_SAFE(accumulated_image, at, vec4(masu_kept(light, masu_chance(at)), count));
+    MASU_STORE_SAFE(accumulated_image, at, masu_mean_bits(light, count, masu_chance(at)));
 }

@@ -2,11 +2,11 @@
  * temporal_show.comp: what rung.temporal shows of the mean over frames, encoded; and the mean itself for the next
  * frame, which finds it where this one has left it.
  *
- * A sample counts for the pixels around it by a tent, twice as wide as the pixel (of what moves, below full size, a
- * little wider): steadier than what falls into the pixel alone, but blurred. Of what that and the history's resampling
- * take, push.sharpen gives some back: times the second difference, and within what the five pixels hold. (The variance
- * of a tent is 1/12 of a pixel above that of a pixel; half of that per axis is 1/24, and a little more has the least
- * error.) What is kept is not sharpened: it would be again in every frame.
+ * Of what moves a sample counts for the pixels around it by a tent, twice as wide as the pixel (below full size a little
+ * wider): steadier than what falls into the pixel alone, but blurred. Of what that and the history's resampling take,
+ * push.sharpen gives some back: times the second difference. (The variance of a tent is 1/12 of a pixel above that of a pixel;
+ * half of that per axis is 1/24, and a little more has the least error.) Of what rests, push.calm, a fifth of it. What is
+ * kept is not sharpened: it would be again in every frame.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -15,11 +15,12 @@
 #include "shared/masu_shared.h"
 #include "shared/output.glsl"
 #include "shared/encode.glsl"
+#include "upscale/mean.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
 layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D accumulated_image;
-layout(set = MASU_SET_PASS, binding = 1, rgba16f) uniform writeonly image2D history_image;
+layout(set = MASU_SET_PASS, binding = 1, rg32ui) uniform writeonly uimage2D history_image;
 layout(set = MASU_SET_PASS, binding = 2, MASU_COLOR_FORMAT) uniform writeonly MASU_COLOR_IMAGE target;
 
 vec3 light_at(ivec2 at)
@@ -37,10 +38,11 @@ void main()
     vec4 mean = texelFetch(accumulated_image, at, 0);
     vec3 left = light_at(ivec2(before.x, at.y)), right = light_at(ivec2(after.x, at.y)),
          above = light_at(ivec2(at.x, before.y)), below = light_at(ivec2(at.x, after.y));
-    vec3 sharp = mean.rgb + push.sharpen * (4.0 * mean.rgb - left - right - above - below);
+    float sharpen = masu_mean_rests(mean) ? push.calm : push.sharpen;
+    vec3 sharp = mean.rgb + sharpen * (4.0 * mean.rgb - left - right - above - below);
 #if defined(MASU_TEN) || defined(MASU_DEEP) /* no store clamps it */
     sharp = clamp(sharp, 0.0, 1.0);
 #endif
-    MASU_STORE_SAFE(history_image, at, mean); /* as it was stored: finite, and light of 0 to 1 */
+    MASU_STORE_SAFE(history_image, at, masu_mean_again(mean));
     MASU_STORE_FILTERED(target, at, masu_encoded_open(sharp, push.peak, push.white));
 }

@@ -54,14 +54,15 @@ void main()
         uvec2 found = texelFetch(found_image, texel, 0).xy;
         vec4 column = frame.columns[way.x], row = frame.rows[way.y];
         vec2 f = vec2(column.x, row.x);
-        vec2 inside = clamp(vec2(before) + f, vec2(0.0), vec2(last) - 0.01);
+        vec2 inside = min(vec2(before) + f, vec2(last) - 0.01); /* samplers care for what is less than 0 */
         vec4 old = masu_history(found, vec2(at) + 0.5, texel, inside, vec2(2.0));
-        bool is_long = masu_found_is_long(found);
-        vec2 x = (is_long ? column.y * vec2(1 - way.x, way.x) : column.zw) * inside_x;
-        vec2 y = (is_long ? row.y * vec2(1 - way.y, way.y) : row.zw) * inside_y;
+        bool stays = masu_has_stayed(found);
+        vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * inside_x;
+        vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * inside_y;
         float count = old.a + (x.x + x.y) * (y.x + y.y);
-        vec2 rest = max(1.0 - count, 0.0) * vec2(1.0 - f.y, f.y);
-        vec4 weights = x.xyxy * y.xxyy + vec4(1.0 - f.x, f.x, 1.0 - f.x, f.x) * rest.xxyy;
+        float rest = max(1.0 - count, 0.0), below = f.y * rest, above = rest - below;
+        vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
+        vec4 weights = x.xyxy * y.xxyy + vec4(left.x, right.x, left.y, right.y);
         vec3 sum = old.a * old.rgb;
         for (int k = 0; k < 4; k++) {
             sum += weights[k] * light[k];
@@ -69,7 +70,7 @@ void main()
         if (all(lessThan(uvec2(at), uvec2(size)))) { /* -1, before the first, is not */
             vec3 mean = sum * (1.0 / max(count, 1.0));
             uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
-            MASU_STORE_SAFE(accumulated_image, at, vec4(masu_kept(mean, chance + other), count));
+            MASU_STORE_SAFE(accumulated_image, at, masu_mean_bits(mean, count, chance + other));
         }
     }
 }

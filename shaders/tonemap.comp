@@ -101,10 +101,20 @@ vec3 blended(ivec2 at, ivec2 size)
 }
 #endif
 
-/* For rungs that take the mean over frames, the root of display light: what rung.temporal adds up is light. */
-vec3 stored(vec3 y)
+/* For rungs that take the mean over frames, the root of display light: what rung.temporal adds up is light. To the step of 10 bits
+ * below or above by chance, another one in each frame: to the nearest one the mean of a wall would lie as far off as
+ * each of its samples, up to a tenth of a step of 8 bits. */
+vec3 stored(vec3 y, uvec2 at)
 {
-    return push.roots != 0u ? sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0)) : masu_encoded(y, push.white);
+    if (push.roots == 0u) {
+        return masu_encoded(y, push.white);
+    }
+    vec3 root = sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0));
+#ifdef MASU_TEN
+    vec3 chance = vec3(masu_dither(at) >> 8) * (1.0 / 16777216.0);
+    root = max(root + (chance - 0.5) * (1.0 / 1023.0), 0.0);
+#endif
+    return root;
 }
 
 void main()
@@ -122,10 +132,10 @@ void main()
             vec3 white = min(y * push.white, 1e4) * (1.0 / 80.0);
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(white), 1.0));
         } else {
-            MASU_STORE_COLOR(ldr_image, at, stored(y));
+            MASU_STORE_COLOR(ldr_image, at, stored(y, at));
         }
 #else
-        MASU_STORE_COLOR(ldr_image, at, stored(y));
+        MASU_STORE_COLOR(ldr_image, at, stored(y, at));
 #endif
     }
     masu_count_end();

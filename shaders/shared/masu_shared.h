@@ -375,8 +375,8 @@ struct masu_frame_uniforms {
      * texels, the picture's corner among them, xy coordinates of the first pixel between them, and 2: 1 or 2; zw those of the
      * texel before, as int. */
     masu_uvec4 between;
-    /* Of the first and second pixel between texels: x how far behind the texel before it lies; y what the nearer texel counts for it,
-     * by a tent as wide as two pixels; z and w what the one before and the one behind count, by a wider one. */
+    /* Of the first and second pixel between texels: x how far behind the texel before it lies; y what the nearer texel counts for it
+     * at rest; z and w what the one before and the one behind count in motion. */
     masu_vec4 columns[2];
     masu_vec4 rows[2];
 };

@@ -45,12 +45,6 @@ bool masu_is_found(uvec2 found)
     return found.x >= 1u << 27;
 }
 
-/* Whether 7 samples or more may count: of what rests, or moves by less than a twentieth of a pixel, and is what it was. */
-bool masu_found_is_long(uvec2 found)
-{
-    return found.x >= 23u << 27;
-}
-
 bool masu_has_stayed(uvec2 found)
 {
     return found.y >= masu_found_stays << 27;

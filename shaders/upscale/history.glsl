@@ -1,7 +1,6 @@
 /*
  * history.glsl: of a pixel of the output what frames before have left, found again by what temporal_find.comp says of the texel
- * that it lies in; and a mean, rounded by chance. After output.glsl and found.glsl; for temporal.comp and temporal_twice.comp,
- * whose images 1 to 4 these are.
+ * that it lies in. After output.glsl and found.glsl; for temporal.comp and temporal_twice.comp, whose images 1 to 4 these are.
  *
  * Push constants: push.moved_*, push.old_*: 1 / size of the images of velocity and history; push.end_*: the middle of the
  * last pixel.
@@ -9,10 +8,12 @@
 #ifndef MASU_HISTORY_GLSL
 #define MASU_HISTORY_GLSL
 
+#include "upscale/mean.glsl"
+
 layout(set = MASU_SET_PASS, binding = 1) uniform usampler2D found_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D history_image; /* linear */
-layout(set = MASU_SET_PASS, binding = 4, rgba16f) uniform writeonly image2D accumulated_image;
+layout(set = MASU_SET_PASS, binding = 4, rg32ui) uniform writeonly uimage2D accumulated_image;
 
 /* The cubic of Catmull and Rom less its mixed term: the linear mean, less so much of the second difference of
  * linear means a texel apart. */
@@ -59,25 +60,9 @@ vec4 masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 steps
         before += (moved + frame.shifts.zw) * steps;
     }
     vec4 old = masu_history_at(before);
-    /* A frame stores up to 28 samples and 4 of its own. What none stores, as NaN, would count as many as there can be, and be
-     * seen as long: begin anew. */
-    return old.a <= 64.0 ? masu_found_held(found, old) : vec4(0.0);
-}
-
-/* What halves are rounded by: R2 over the pixels as in dither.glsl, in 24 bits, which multiply faster. */
-const uvec2 masu_chance_step = uvec2(0xC13FAAu, 0x91E10Eu);
-
-uint masu_chance(uvec2 at)
-{
-    return at.x * masu_chance_step.x + at.y * masu_chance_step.y + frame.history.x * 0x9E3779u;
-}
-
-/* A mean of light to a half, up or down by chance. As integers, NaN, Inf and all that is more than 1 are more than it: nothing
- * else is ever kept. */
-vec3 masu_kept(vec3 light, uint chance)
-{
-    uvec3 bits = min(floatBitsToUint(light), uvec3(0x3F800000u));
-    return uintBitsToFloat((bits + (chance >> 11 & 0x1FFFu)) & 0xFFFFE000u);
+    old.a = masu_mean_count(old);
+    /* More samples than a frame stores, or NaN, is what none has stored, and would be seen as long as all: begin anew. */
+    return old.a <= 40.0 ? masu_found_held(found, old) : vec4(0.0);
 }
 
 #endif

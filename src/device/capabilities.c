@@ -87,6 +87,15 @@ static masu_result choose_half_floats(masu_desc *desc, const masu_vk *vk, masu_d
     return MASU_OK;
 }
 
+/* What is not mandatory in Vulkan 1.1, though few devices are without. */
+static int filters_unorm16(const masu_vk *vk) {
+    VkFormatFeatureFlags wanted = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    VkFormatProperties p;
+    memset(&p, 0, sizeof p);
+    vk->GetPhysicalDeviceFormatProperties(vk->physical, VK_FORMAT_R16G16B16A16_UNORM, &p);
+    return (p.optimalTilingFeatures & wanted) == wanted;
+}
+
 /* Vulkan promises four storage buffers in a stage: rungs that leave culling by occluders to us go
  * without it where there are no more. */
 static masu_result drop_occlusion(masu_desc *desc, const masu_frame_plan *plan,
@@ -218,6 +227,7 @@ masu_result masu_capabilities_fit(masu_desc *desc, const masu_frame_plan *plan, 
     if (!result) result = drop_occlusion(desc, plan, limits, detail);
     if (!result) result = choose_ray_query(desc, plan, vk, detail);
     if (!result) result = choose_half_floats(desc, vk, detail);
+    if (!filters_unorm16(vk)) desc->deny.unorm16 = 1;
     if (desc->debug.share_rays == MASU_AUTO) desc->debug.share_rays = is_gpu(vk) ? MASU_ON : MASU_OFF;
     return result;
 }

@@ -47,7 +47,7 @@ static int has_resolve(const masu_frame_data *f) {
 /* From 1 on: the first place of Halton's sequence is the corner. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
     double pixels = (double)render.width * render.height;
-    double phases = fmin(ceil(8.0 * shown.width * shown.height / pixels), 1024.0);
+    double phases = fmin(fmax(ceil(8.0 * shown.width * shown.height / pixels), 16.0), 1024.0);
     uint32_t phase = (uint32_t)(frame % (uint64_t)phases);
     place[0] = mirrored(phase + 1, 2) - 0.5f;
     place[1] = mirrored(phase + 1, 3) - 0.5f;
@@ -113,7 +113,7 @@ static void find_between(struct masu_frame_uniforms *u, int k) {
     for (int i = 0; i < 2; i++) {
         float f = off + 0.5f * (float)i;
         pixels[i][0] = f;
-        pixels[i][1] = fmaxf(1.0f - 2.0f * (i == 0 ? f : 1.0f - f), 0.0f);
+        pixels[i][1] = fminf(fmaxf(1.5f - 4.0f * (i == 0 ? f : 1.0f - f), 0.0f), 1.0f);
         pixels[i][2] = fmaxf(1.0f - 1.6f * f, 0.0f);
         pixels[i][3] = fmaxf(1.0f - 1.6f * (1.0f - f), 0.0f);
     }

@@ -4,6 +4,7 @@
 uint32_t masu_format_bytes(VkFormat format) {
     switch (format) {
     case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_UNORM:
     case VK_FORMAT_R32G32_UINT: return 8;
     case VK_FORMAT_R32G32B32A32_UINT:
     case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
@@ -66,11 +67,13 @@ int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t ca
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image) {
     const masu_image_row *row = &masu_images[image];
     int color = row->class_of == MASU_CLASS_COLOR && row->format != VK_FORMAT_UNDEFINED;
+    if (row->format == VK_FORMAT_R16G16B16A16_UNORM && plan->desc.deny.unorm16) return VK_FORMAT_R16G16B16A16_SFLOAT;
     return color && plan->deep ? VK_FORMAT_R16G16B16A16_SFLOAT : row->format;
 }
 
 VkFormat masu_plan_store_format(const masu_frame_plan *plan, uint32_t image) {
     VkFormat format = masu_plan_format(plan, image);
+    if (masu_images[image].format == VK_FORMAT_R16G16B16A16_UNORM) return VK_FORMAT_R32G32_UINT;
     return format == VK_FORMAT_A2B10G10R10_UNORM_PACK32 ? VK_FORMAT_R32_UINT : format;
 }
 

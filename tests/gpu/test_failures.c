@@ -180,6 +180,32 @@ static void what_the_device_lacks_is_named(void **state) {
     wrap_reset();
 }
 
+static VkFormat format_of(const char *image) {
+    static masu_plan_info plan;
+    masu_detail detail;
+    assert_int_equal(masu_plan(&s.desc, &plan, &detail), MASU_OK);
+    for (uint32_t i = 0; i < plan.image_count; i++)
+        if (!strcmp(plan.images[i].name, image)) return plan.images[i].used ? plan.images[i].format : VK_FORMAT_UNDEFINED;
+    return VK_FORMAT_UNDEFINED;
+}
+
+/* No device needs to filter 16-bit unorm: what does not keeps means over frames in halves. */
+static void a_device_that_does_not_filter_unorm_has_halves(void **state) {
+    (void)state;
+    masu_desc was = s.desc;
+    wrap_reset();
+    s.desc.rung_count = 1;
+    s.desc.rungs[0] = (masu_rung){.temporal = MASU_ON};
+    assert_int_equal(format_of("history"), VK_FORMAT_R16G16B16A16_UNORM);
+    wrap.lacking_format = VK_FORMAT_R16G16B16A16_UNORM;
+    assert_int_equal(format_of("history"), VK_FORMAT_R16G16B16A16_SFLOAT);
+    assert_int_equal(format_of("accumulated"), VK_FORMAT_R16G16B16A16_SFLOAT);
+    wrap_reset();
+    s.desc.deny.unorm16 = 1;
+    assert_int_equal(format_of("history"), VK_FORMAT_R16G16B16A16_SFLOAT);
+    s.desc = was;
+}
+
 static void expect_frame_error(masu_renderer *m, const masu_frame_desc *frame, const char *what) {
     masu_commands commands;
     memset(&commands, 0, sizeof commands);
@@ -301,6 +327,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(any_call_of_init_with_textures_may_fail,
                                         open_textures_instead, open_the_first_again),
         cmocka_unit_test(what_the_device_lacks_is_named),
+        cmocka_unit_test(a_device_that_does_not_filter_unorm_has_halves),
         cmocka_unit_test(nonsense_in_a_frame_is_refused_by_name),
         cmocka_unit_test(extreme_transforms_stay_finite),
     };
