@@ -157,10 +157,11 @@ static bool is_read(uint8_t usage) {
 
 static uint8_t kept[BYTES], now[BYTES];
 
-/* The picture at rest is kept within so many steps: what flickers by itself. Without history it does not: a look will do. */
+/* The picture at rest is kept within so many steps: what flickers by itself. Without history it does not: a look will do. With one a ray
+ * that has met a lamp is seen for a hundred frames. */
 static uint32_t settle(bool gathers) {
     uint32_t steps = 0, rest = gathers ? REST : REST / 8;
-    for (int i = 0; i < WARM + (gathers ? 40 : 0); i++) take(kept, "at rest", 0);
+    for (int i = 0; i < WARM + (gathers ? 200 : 0); i++) take(kept, "at rest", 0);
     for (uint32_t i = 0; i < rest; i++) {
         take(now, "at rest", 0);
         uint32_t d = max_difference(kept, now, BYTES);
