@@ -9,7 +9,7 @@
  * bilinear mean: it is taken, and the other eight are not read.
  *
  * One invocation for each four texels, those at the picture's edge with what lies beyond: one more each way than there
- * are texels. An output of odd size is twice the input less a row, or more: half a pixel at most by which the last
+ * are texels. An output of odd size is twice the input less a row, or more: a pixel at most by which the last
  * lies elsewhere than easu.comp would put it.
  *
  * Push constants: render_* = valid corner of the input, output_* = size to write.

@@ -65,5 +65,5 @@ void main()
     weights += rest * around;
     vec3 sum = old.a * old.rgb + vec3(dot(weights, red * red), dot(weights, green * green), dot(weights, blue * blue));
     vec3 light = sum * (1.0 / max(count, 1.0));
-    MASU_STORE_SAFE(accumulated_image, at, masu_mean_bits(light, count, masu_chance(at)));
+    MASU_STORE_SAFE(accumulated_image, at, masu_mean_rounded(light, count, masu_chance(at)));
 }

@@ -20,7 +20,7 @@
  * What is found is two words, of upscale/found.glsl.
  *
  * Push constants: output_* = the render size; push.history_* = size of the part of `history` that is shown / that of the
- * image; push.moved_*, push.then_*: 1 / size of the images of velocities, which depth has, and of the depths before;
+ * image; push.moved_*, push.depth_*, push.then_*: 1 / size of the images of velocities, of depths and of those before;
  * push.pixel_*: 1 / the render size; push.shift: 1 where the
  * sizes of input and output are one, and a pixel of the output looks at its own.
  */
@@ -70,7 +70,7 @@ struct colors {
 
 around depths_around(ivec2 at, ivec2 size)
 {
-    masu_corners c = masu_corners_of(depth_image, vec2(at), vec2(size), vec2(push.moved_x, push.moved_y));
+    masu_corners c = masu_corners_of(depth_image, vec2(at), vec2(size), vec2(push.depth_x, push.depth_y));
     around found;
     found.nearest = masu_most_of(c);
     found.farthest = masu_least_of(c);

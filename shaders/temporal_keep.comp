@@ -2,7 +2,7 @@
  * temporal_keep.comp: of each pixel the nearest depth of 3x3, for the next frame's temporal_find.comp: a pixel that a
  * silhouette is near belongs to what is in front.
  *
- * Push constants: output_* = the render size; push.texel_*: 1 / size of the image of depth.
+ * Push constants: output_* = the render size; push.depth_*: 1 / size of the image of depths.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -22,6 +22,8 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = ivec2(pc.output_width, pc.output_height);
     if (all(lessThan(at, size))) {
-        MASU_STORE_SAFE(kept_image, at, vec4(masu_most_of(masu_corners_of(depth_image, vec2(at), vec2(size), vec2(push.texel_x, push.texel_y)))));
+        vec2 texel = vec2(push.depth_x, push.depth_y);
+        float nearest = masu_most_of(masu_corners_of(depth_image, vec2(at), vec2(size), texel));
+        MASU_STORE_SAFE(kept_image, at, vec4(nearest));
     }
 }

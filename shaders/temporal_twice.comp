@@ -7,14 +7,12 @@
  * is a constant, or none.
  *
  * One invocation for each four texels, those at the picture's edge with what lies beyond: one more each way than there are
- * texels. An output of odd size is twice the input less a row: half a pixel at most by which the last lies elsewhere
- * than temporal.comp would put it.
+ * texels.
  *
  * Push constants: output_* = size to write, render_* = the input's; the rest is history.glsl's.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_temporal_twice
 #include "shared/masu_shared.h"
@@ -32,45 +30,66 @@ vec3 light_at(ivec2 texel)
     return root * root;
 }
 
+/* Four texels and the pixels between them. */
+struct cell {
+    ivec2 before, low, high; /* upper left texel, and what is read for it and for the lower right one */
+    ivec2 last;              /* texel of the picture */
+    ivec2 first;             /* pixel */
+    vec2 inside_x, inside_y; /* 1 for a texel of the picture; one beyond it is no sample */
+    vec3 light[4];
+    uint chance; /* of the first pixel */
+};
+
+/* One of the four pixels. A function, called four times, and no loop: what compilers make of a loop that they unroll is
+ * counted as if each turn ran all of it (docs/design/33-model.md). */
+void resolve(cell c, ivec2 way)
+{
+    ivec2 at = c.first + way;
+    ivec2 texel = ivec2(way.x == 0 ? c.low.x : c.high.x, way.y == 0 ? c.low.y : c.high.y);
+    uvec2 found = texelFetch(found_image, texel, 0).xy;
+    vec4 column = frame.columns[way.x], row = frame.rows[way.y];
+    vec2 f = vec2(column.x, row.x);
+    vec2 place = min(vec2(c.before) + f, vec2(c.last) - 0.01); /* samplers care for what is less than 0 */
+    vec4 old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
+    bool stays = masu_has_stayed(found);
+    vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
+    vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * c.inside_y;
+    float count = old.a + (x.x + x.y) * (y.x + y.y);
+    float rest = max(1.0 - count, 0.0), below = f.y * rest, above = rest - below;
+    vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
+    vec4 weights = x.xyxy * y.xxyy + vec4(left.x, right.x, left.y, right.y);
+    vec3 sum = old.a * old.rgb;
+    sum += weights.x * c.light[0];
+    sum += weights.y * c.light[1];
+    sum += weights.z * c.light[2];
+    sum += weights.w * c.light[3];
+    if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* -1, before the first, is not */
+        vec3 mean = sum * (1.0 / max(count, 1.0));
+        uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
+        MASU_STORE_SAFE(accumulated_image, at, masu_mean_rounded(mean, count, c.chance + other));
+    }
+}
+
 void main()
 {
-    ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-    ivec2 first = 2 * cell + ivec2(frame.between.xy) - 2;
-    ivec2 before = cell + ivec2(frame.between.zw), after = before + 1;
-    ivec2 size = ivec2(pc.output_width, pc.output_height), last = ivec2(pc.render_width, pc.render_height) - 1;
-    if (any(greaterThanEqual(first, size))) {
+    cell c;
+    ivec2 number = ivec2(gl_GlobalInvocationID.xy);
+    c.first = 2 * number + ivec2(frame.between.xy) - 2;
+    c.before = number + ivec2(frame.between.zw);
+    c.last = ivec2(pc.render_width, pc.render_height) - 1;
+    if (any(greaterThanEqual(c.first, ivec2(pc.output_width, pc.output_height)))) {
         return;
     }
     /* Beyond the picture its last texel is repeated. */
-    ivec2 low = clamp(before, ivec2(0), last), high = clamp(after, ivec2(0), last);
-    vec3 light[4] = vec3[4](light_at(low), light_at(ivec2(high.x, low.y)), light_at(ivec2(low.x, high.y)), light_at(high));
-    vec2 inside_x = vec2(equal(ivec2(low.x, high.x), ivec2(before.x, after.x)));
-    vec2 inside_y = vec2(equal(ivec2(low.y, high.y), ivec2(before.y, after.y)));
-    uint chance = masu_chance(uvec2(first));
-    [[unroll]] for (int i = 0; i < 4; i++) {
-        ivec2 way = ivec2(i & 1, i >> 1);
-        ivec2 at = first + way;
-        ivec2 texel = ivec2(way.x == 0 ? low.x : high.x, way.y == 0 ? low.y : high.y);
-        uvec2 found = texelFetch(found_image, texel, 0).xy;
-        vec4 column = frame.columns[way.x], row = frame.rows[way.y];
-        vec2 f = vec2(column.x, row.x);
-        vec2 inside = min(vec2(before) + f, vec2(last) - 0.01); /* samplers care for what is less than 0 */
-        vec4 old = masu_history(found, vec2(at) + 0.5, texel, inside, vec2(2.0));
-        bool stays = masu_has_stayed(found);
-        vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * inside_x;
-        vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * inside_y;
-        float count = old.a + (x.x + x.y) * (y.x + y.y);
-        float rest = max(1.0 - count, 0.0), below = f.y * rest, above = rest - below;
-        vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
-        vec4 weights = x.xyxy * y.xxyy + vec4(left.x, right.x, left.y, right.y);
-        vec3 sum = old.a * old.rgb;
-        for (int k = 0; k < 4; k++) {
-            sum += weights[k] * light[k];
-        }
-        if (all(lessThan(uvec2(at), uvec2(size)))) { /* -1, before the first, is not */
-            vec3 mean = sum * (1.0 / max(count, 1.0));
-            uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
-            MASU_STORE_SAFE(accumulated_image, at, masu_mean_bits(mean, count, chance + other));
-        }
-    }
+    ivec2 after = c.before + 1;
+    c.low = clamp(c.before, ivec2(0), c.last);
+    c.high = clamp(after, ivec2(0), c.last);
+    c.light = vec3[4](light_at(c.low), light_at(ivec2(c.high.x, c.low.y)), light_at(ivec2(c.low.x, c.high.y)), light_at(c.high));
+    c.inside_x = vec2(equal(ivec2(c.low.x, c.high.x), ivec2(c.before.x, after.x)));
+    c.inside_y = vec2(equal(ivec2(c.low.y, c.high.y), ivec2(c.before.y, after.y)));
+    c.chance = masu_chance(uvec2(c.first));
+    resolve(c, ivec2(0, 0));
+    resolve(c, ivec2(1, 0));
+    resolve(c, ivec2(0, 1));
+    resolve(c, ivec2(1, 1));
 }

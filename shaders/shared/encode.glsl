@@ -15,16 +15,7 @@ vec3 masu_encoded(vec3 y, float white)
     return vec3(masu_pq_encode(nits.r), masu_pq_encode(nits.g), masu_pq_encode(nits.b));
 }
 
-/* The same of light of 0 to 1 times peak, all of them numbers. */
-vec3 masu_encoded_unit(vec3 y, float peak, float white)
-{
-    if (masu_encoding == MASU_OUTPUT_SRGB) { /* whose peak is 1 */
-        return vec3(masu_srgb_encode_unit(y.r), masu_srgb_encode_unit(y.g), masu_srgb_encode_unit(y.b));
-    }
-    return masu_encoded(y * peak, white);
-}
-
-/* The same of any number, for a store that clamps: sRGB of what is below 0 or above 1 is. */
+/* The same of light times peak, for a store that clamps: what is below 0 or above 1 stays that. */
 vec3 masu_encoded_open(vec3 y, float peak, float white)
 {
     if (masu_encoding == MASU_OUTPUT_SRGB) {

@@ -5,7 +5,7 @@
  * max(1, NaN) is 1 or NaN, a denormal is kept or flushed, and isnan() itself may be optimised away.
  * So finiteness is tested on the bits, operands are repaired before the operation (a select after
  * it would still evaluate the bad arm), and each function states what it returns outside its
- * natural domain. For any bit pattern in, all return a finite value.
+ * natural domain. For any bit pattern in, all but masu_pow_above return a finite value.
  *
  * Shaders call these, never the raw normalize, inversesqrt, sqrt, pow, log2, exp2, acos, atan.
  */
@@ -123,12 +123,6 @@ float masu_pow(float x, float y)
     float power = log2(positive ? x : 1.0) * clamp(exponent, -masu_huge, masu_huge);
     float r = masu_exp2(power);
     return positive ? r : (exponent == 0.0 ? 1.0 : 0.0);
-}
-
-/* x^y of numbers alone: x of 0 to 1, where less than 1e-30 is that, y of 0 to 1. */
-float masu_pow_unit(float x, float y)
-{
-    return exp2(log2(max(x, masu_tiny)) * y);
 }
 
 /* x^y of x above 0. Of another x anything, NaN too: for where that is not taken. */

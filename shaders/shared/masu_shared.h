@@ -372,11 +372,10 @@ struct masu_frame_uniforms {
      * scenes read: they are baked. */
     masu_vec4 shifts;
     /* The same to twice the size, where each four texels have four pixels of the output between them, 2x2. Of the first four
-     * texels, the picture's corner among them, xy coordinates of the first pixel between them, and 2: 1 or 2; zw those of the
-     * texel before, as int. */
+     * texels: xy coordinates of their first pixel, and 2: 1 or 2; zw those of the upper left texel, as int: -3 to 0. */
     masu_uvec4 between;
-    /* Of the first and second pixel between texels: x how far behind the texel before it lies; y what the nearer texel counts for it
-     * at rest; z and w what the one before and the one behind count in motion. */
+    /* Of the left and right pixel between texels, and of the upper and lower one: x how far after the texel before it lies; y what
+     * the nearer texel counts for it at rest; z and w what the one before and the one after count in motion. */
     masu_vec4 columns[2];
     masu_vec4 rows[2];
 };

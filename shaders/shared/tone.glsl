@@ -48,12 +48,6 @@ float masu_srgb_encode(float x)
     return x <= 0.0031308 ? 12.92 * max(x, 0.0) : 1.055 * masu_pow(min(x, 1.0), 1.0 / 2.4) - 0.055;
 }
 
-/* The same of a number of 0 to 1. */
-float masu_srgb_encode_unit(float x)
-{
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * masu_pow_unit(x, 1.0 / 2.4) - 0.055;
-}
-
 /* The same of any number, of which what is below 0 stays that and what is above 1 that. */
 float masu_srgb_encode_open(float x)
 {

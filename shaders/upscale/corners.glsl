@@ -16,7 +16,8 @@ vec4 masu_corner(sampler2D image, vec2 corner, vec2 size, vec2 texel)
     return textureGather(image, min(corner, size - 1.0) * texel);
 }
 
-/* texel: 1 / size of the image, which may be larger than what it holds, size. A corner that would lie beyond the last column or row moves in by one: what of it lies outward is the same then. */
+/* size: of the part of the image that holds a picture; texel: 1 / size of the image. A corner that would lie beyond the last
+ * column or row moves in by one: what of it lies outward is the same then. */
 masu_corners masu_corners_of(sampler2D image, vec2 at, vec2 size, vec2 texel)
 {
     vec4 a = masu_corner(image, at, size, texel), b = masu_corner(image, at + vec2(1.0, 0.0), size, texel);

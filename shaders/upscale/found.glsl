@@ -1,5 +1,5 @@
 /*
- * found.glsl: what temporal_find.comp tells temporal.comp of a pixel's history, in two words:
+ * found.glsl: what temporal_find.comp tells temporal.comp and temporal_twice.comp of a pixel's history, in two words:
  *
  *   x   bits 0 to 26   of red, green and blue, 9 bits each, the least that it may be: display light, bits 18 to 26 of the
  *                      float, of 2^-15 to 1; the rest of it cut off. Black is 2^-15, a tenth of a step of 8 bits

@@ -61,8 +61,10 @@ vec4 masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 steps
     }
     vec4 old = masu_history_at(before);
     old.a = masu_mean_count(old);
-    /* More samples than a frame stores, or NaN, is what none has stored, and would be seen as long as all: begin anew. */
-    return old.a <= 40.0 ? masu_found_held(found, old) : vec4(0.0);
+    /* More samples than a frame stores, NaN or more light than the cubic makes of what is 0 to 1, is what none has stored, and
+     * would be seen as long as all: begin anew. Unorm has neither of the last. */
+    bool stored = old.a <= masu_mean_most && (!masu_half_means || abs(old.r) + abs(old.g) + abs(old.b) <= 6.0);
+    return stored ? masu_found_held(found, old) : vec4(0.0);
 }
 
 #endif

@@ -1,10 +1,10 @@
 /*
  * mean.glsl: a mean over frames as `accumulated` and `history` hold it, 16 bits a channel: display light, and how many samples
- * stand in it, of which there are 28 of before and 4 at most. After globals.glsl.
+ * stand in it, of which there are 28 of before and this frame's one at most. After globals.glsl.
  *
  * It is rounded up or down by chance: the nearest step would hold a history still that is a little wrong. In steps of 1/65535,
- * a hundredth of those of the picture (in its darkest a twentieth); of halves, a tenth where it is bright, which every second
- * pixel of a sky shows. Where the device does not filter these, halves it is.
+ * a hundredth of one of 8 bits of sRGB (in the dark a twentieth); of halves, a tenth where it is bright, which every second
+ * pixel of a sky shows. Halves it is where the device does not filter unorm, and beyond white.
  */
 #ifndef MASU_MEAN_GLSL
 #define MASU_MEAN_GLSL
@@ -12,6 +12,7 @@
 layout(constant_id = 14) const bool masu_half_means = false;
 
 const float masu_mean_counts = 64.0; /* of which a channel holds the share */
+const float masu_mean_most = 29.5;   /* samples, with room for rounding */
 
 /* What a mean is rounded by: R2 over the pixels as in dither.glsl, in 24 bits, which multiply faster. */
 const uvec2 masu_chance_step = uvec2(0xC13FAAu, 0x91E10Eu);
@@ -21,8 +22,8 @@ uint masu_chance(uvec2 at)
     return at.x * masu_chance_step.x + at.y * masu_chance_step.y + frame.history.x * 0x9E3779u;
 }
 
-/* The bits of what a pixel has been stored as. */
-uvec4 masu_mean_again(vec4 mean)
+/* Of light and of what stands in its channel for samples. */
+uvec4 masu_mean_packed(vec4 mean)
 {
     if (masu_half_means) {
         return uvec4(packHalf2x16(mean.rg), packHalf2x16(mean.ba), 0u, 0u);
@@ -30,19 +31,20 @@ uvec4 masu_mean_again(vec4 mean)
     return uvec4(packUnorm2x16(mean.rg), packUnorm2x16(mean.ba), 0u, 0u);
 }
 
-/* light: 0 to 1; chance: of its pixel, the last 24 bits count. As integers, NaN, Inf and all that is more than 1 are more than
- * it: no half is ever kept that is none of these; unorm has no others. */
-uvec4 masu_mean_bits(vec3 light, float count, uint chance)
+/* light: 0 to 1; NaN, infinities and more than 1 become 1 in halves, whatever they are in unorm. chance: of its pixel; its last 24
+ * bits count. */
+uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
 {
     if (masu_half_means) {
         uvec3 bits = min(floatBitsToUint(light), uvec3(0x3F800000u));
-        return masu_mean_again(vec4(uintBitsToFloat((bits + (chance >> 11 & 0x1FFFu)) & 0xFFFFE000u), count));
+        return masu_mean_packed(vec4(uintBitsToFloat((bits + (chance >> 11 & 0x1FFFu)) & 0xFFFFE000u), count));
     }
     float off = float(chance >> 16 & 0xFFu) * (1.0 / (256.0 * 65535.0)) - 127.5 / (256.0 * 65535.0);
-    return masu_mean_again(vec4(light + off, count * (1.0 / masu_mean_counts)));
+    return masu_mean_packed(vec4(light + off, count * (1.0 / masu_mean_counts)));
 }
 
-/* Whether more of them do than can in what moves, which are 1.5, and one of this frame. */
+/* Whether a pixel has more samples than what moves has, which is 1.5 and one of this frame. What moves by less than a
+ * sixteenth of a pixel has, too. */
 bool masu_mean_rests(vec4 mean)
 {
     return mean.a > (masu_half_means ? 3.0 : 3.0 / masu_mean_counts);

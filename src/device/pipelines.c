@@ -84,7 +84,7 @@ static VkSpecializationInfo specialise(const masu_device *m, VkBool32 first,
     constants[11] = scene->own_coats != 0;
     constants[12] = scene->tints != 0;
     constants[13] = sized;
-    constants[14] = m->plan->desc.deny.unorm16 != 0;
+    constants[14] = (VkBool32)masu_has_half_means(m->plan);
     return (VkSpecializationInfo){SPECIAL_COUNT, entries, SPECIAL_COUNT * sizeof *constants,
                                   constants};
 }

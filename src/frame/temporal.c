@@ -103,7 +103,7 @@ static uint64_t sprites_of(const masu_frame_desc *d) {
 /* Of an output of twice the size, along axis k: where its pixels lie between texels, and what those count for them, by the
  * tents of shaders/temporal.comp. */
 static void find_between(struct masu_frame_uniforms *u, int k) {
-    /* An odd pixel lies a quarter of a texel behind a texel's middle, without jitter. Of two pixels the first is the one that has
+    /* An odd pixel lies a quarter of a texel after a texel's middle, without jitter. Of two pixels the first is the one that has
      * the other before the next texel. */
     float odd = 0.25f - u->shifts[k], lies = odd - floorf(odd) < 0.5f ? odd : odd + 0.5f;
     float before = floorf(lies), off = lies - before;

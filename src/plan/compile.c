@@ -12,13 +12,6 @@
 
 /* ---- One rung -------------------------------------------------------------------------------- */
 
-/* Whether each pixel of a rung of half the size is two of the output each way. Of an output that may change they are taken
- * to be: where it is odd, its last pixels lie half a pixel elsewhere. */
-static int doubles(const masu_desc *d, const masu_rung_plan *rp) {
-    return d->resizable || d->viewport_count ||
-           (2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height);
-}
-
 static void resolve_switches(const masu_desc *d, uint32_t r, const masu_rung_plan *rp, masu_needs *needs) {
     const masu_rung *rung = &d->rungs[r];
     int same = rp->render_width == d->output.width && rp->render_height == d->output.height;
@@ -35,7 +28,11 @@ static void resolve_switches(const masu_desc *d, uint32_t r, const masu_rung_pla
                         : 2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height;
     needs->twice = half && needs->upscale && !needs->fused && needs->easu == MASU_EASU_FULL && !d->debug.exact &&
                    d->half_floats != MASU_ON;
-    needs->resolve_twice = needs->resolve && rung->scale == 0.5f && !d->debug.exact && doubles(d, rp);
+    /* An output that may become odd would have its last pixels a pixel elsewhere than in rungs of other sizes, whose past it goes on
+     * from. */
+    int doubles = 2 * rp->render_width == d->output.width && 2 * rp->render_height == d->output.height;
+    int sized = !d->resizable && !d->viewport_count;
+    needs->resolve_twice = needs->resolve && doubles && sized && !d->debug.exact;
     /* Upscaling only, at ratio 1, with everything off: something has to write the target. */
     int writes = needs->scene || needs->upscale || needs->sharpen || needs->fxaa || needs->smaa;
     if (!writes) needs->upscale = 1;

@@ -48,7 +48,7 @@ typedef enum masu_image_extent {
     MASU_EXTENT_OUTPUT,
     MASU_EXTENT_OUTPUT32, /* the same, a workgroup for 32x32 pixels */
     MASU_EXTENT_OUTPUT_PAIRS, /* the same, an invocation for two pixels side by side */
-    MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for 2x2 pixels, the first one's coordinates odd or -1 */
+    MASU_EXTENT_OUTPUT_ODD, /* the same, an invocation for the 2x2 pixels between four texels: one more each way than texels */
     MASU_EXTENT_HALF, /* a texel per 2x2 render pixels */
     MASU_EXTENT_TRACED, /* the same, for reflections; per pixel with debug.reference */
     MASU_EXTENT_BLOCK8,

@@ -64,10 +64,14 @@ int masu_variant_draws(const masu_rung_plan *rung, uint32_t variant, uint32_t ca
     return !(rung->slow & only) || (masu_recording_variant(rung, only) & variant) != 0;
 }
 
+int masu_has_half_means(const masu_frame_plan *plan) {
+    return plan->desc.deny.unorm16 || plan->desc.targets.encoding != MASU_ENCODING_SRGB;
+}
+
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image) {
     const masu_image_row *row = &masu_images[image];
     int color = row->class_of == MASU_CLASS_COLOR && row->format != VK_FORMAT_UNDEFINED;
-    if (row->format == VK_FORMAT_R16G16B16A16_UNORM && plan->desc.deny.unorm16) return VK_FORMAT_R16G16B16A16_SFLOAT;
+    if (row->format == VK_FORMAT_R16G16B16A16_UNORM && masu_has_half_means(plan)) return VK_FORMAT_R16G16B16A16_SFLOAT;
     return color && plan->deep ? VK_FORMAT_R16G16B16A16_SFLOAT : row->format;
 }
 

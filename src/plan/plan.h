@@ -188,10 +188,13 @@ const masu_rung_plan *masu_first_rung(const masu_frame_plan *plan, uint32_t pass
 /* Size of an image or of a pass of a rung. */
 VkExtent2D masu_plan_extent(const masu_frame_plan *plan, masu_image_extent extent,
                             VkExtent2D render);
-/* The format of an image in this plan, and of the view that shaders store through: another where the
- * first is none that every device stores to. */
+/* The format of an image in this plan, and of the view that shaders store through: another where not
+ * every device stores to the first. */
 VkFormat masu_plan_format(const masu_frame_plan *plan, uint32_t image);
 VkFormat masu_plan_store_format(const masu_frame_plan *plan, uint32_t image);
+/* Whether means over frames are kept in halves instead of 16-bit unorm: the device does not filter that, or the target goes
+ * beyond white, where a step of 1/65535 of its peak is seen in the dark. */
+int masu_has_half_means(const masu_frame_plan *plan);
 /* Whether a compute pass writes what a rung shows: the target, or the image that a blit takes to it. */
 int masu_comes_last(const masu_rung_plan *rung, uint32_t pass);
 

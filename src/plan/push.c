@@ -39,6 +39,18 @@ static int shows_each_pixel(const masu_push_input *in) {
     return rp->render_width == in->plan->desc.output.width && rp->render_height == in->plan->desc.output.height;
 }
 
+/* The image of depth that a pass reads: as large as the largest rung that has it, which other images need not be. */
+static const masu_image_plan *depth_of(const masu_push_input *in) {
+    const masu_rung_plan *rp = &in->plan->rungs[in->rung];
+    for (uint32_t a = 0; a < rp->access_count[in->pass]; a++) {
+        uint32_t image = rp->access[in->pass][a].image;
+        if (rp->access[in->pass][a].usage == MASU_READ && image < MASU_IMAGE_COUNT &&
+            masu_images[image].class_of == MASU_CLASS_DEPTH)
+            return &in->plan->images[image];
+    }
+    return &in->plan->images[MASU_IMAGE_SCENE_DEPTH];
+}
+
 /* Of the four settings of SMAA: the threshold of luma in the steps of smaa/color.glsl, steps of a search, and
  * of one along a diagonal. */
 static float masu_smaa_threshold(masu_aa aa) {

@@ -114,26 +114,26 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               0.0583431f, 0.0711042f, 0.0735669f, 0.0822436f},
         },
     [MASU_SCENE_BOTH_TRACED] =
-        {.from = "wet_city.masu, 320x180, "
+        {.from = "wet_city.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-22",
+         "by timestamps, 2026-11-26",
          .count = 8,
          .rungs = {
-              {.scale = 1.0f, .sharpness = 0.2f, .specular_taa = MASU_OFF},
-              {.scale = 0.875f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.75f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.6875f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.5625f, .sharpen = MASU_OFF, .sharpness = 0.2f},
-              {.scale = 0.5f, .sharpen = MASU_OFF, .sharpness = 0.2f, .march_steps = 128},
+              {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.875f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.75f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
+              {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.5f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .march_steps = 128, .specular = MASU_OFF},
               {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .march_steps = 128, .specular = MASU_OFF},
          },
-         .ratios = {0.989929f, 0.832177f, 0.655597f, 0.616826f,
-              0.456145f, 0.370864f, 0.29001f, 0.231776f},
-         .flips = {0.0603801f, 0.0700673f, 0.0798337f, 0.0866085f,
-              0.0882799f, 0.109213f, 0.191891f, 0.202486f},
+         .ratios = {1.09699f, 0.878247f, 0.688163f, 0.525322f,
+              0.383441f, 0.296163f, 0.234773f, 0.186405f},
+         .flips = {0.0334933f, 0.0351852f, 0.0380783f, 0.0397872f,
+              0.0464491f, 0.0553451f, 0.158416f, 0.161897f},
         },
 };
 

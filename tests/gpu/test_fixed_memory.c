@@ -155,6 +155,7 @@ static void query_and_use(const char *scene) {
         q.debug.timestamps = (random >> 25) & 1;
         q.deny.unified_memory = (random >> 26) & 1;
         q.deny.compressed_textures = (random >> 27) & 1;
+        q.deny.unorm16 = (random >> 28) & 1;
         masu_memory need;
         masu_renderer *m = NULL;
         assert_int_equal(masu_memory_query(&q, &need, NULL), MASU_OK);

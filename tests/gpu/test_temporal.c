@@ -345,6 +345,34 @@ static void twice_the_size_is_the_same(void **state) {
     }
 }
 
+/* Images are as large as the largest rung that has them: of an SDF alone that of velocity is smaller than that of depth where
+ * only a smaller rung has a past. */
+static void depth_is_found_in_a_larger_image(void **state) {
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        masu_session s;
+        masu_session_desc d = temporal_desc("test_sphere_sdf", 0.5f);
+        d.desc.debug.poison = 1;
+        d.desc.rungs[0].specular = MASU_OFF;
+        if (k) {
+            d.desc.rung_count = 2;
+            d.desc.rungs[1] = d.desc.rungs[0];
+            d.desc.rungs[0] = (masu_rung){.scale = 1.0f, .specular = MASU_OFF};
+        }
+        open_session(&s, &d);
+        masu_commands commands;
+        for (int i = 0; i < 16; i++) {
+            masu_camera camera = aside(&s, 0.03 * i);
+            draw(&s, &(masu_frame_desc){.camera = &camera, .rung = (uint32_t)k}, &commands, k ? b.rgba : a.rgba);
+        }
+        close_session(&s);
+    }
+    uint32_t most = 0;
+    for (uint32_t p = 0; p < BYTES; p++) most = (uint32_t)abs(a.rgba[p] - b.rgba[p]) > most ? (uint32_t)abs(a.rgba[p] - b.rgba[p]) : most;
+    print_message("  beside a larger rung a byte is off by %u at most\n", most);
+    assert_true(most <= 1);
+}
+
 static void equal_frames_give_equal_bytes(void **state) {
     (void)state;
     for (int k = 0; k < 2; k++) {
@@ -543,6 +571,7 @@ int main(void) {
         cmocka_unit_test(a_lamp_that_goes_out_is_seen),
         cmocka_unit_test(light_that_changes_in_motion_is_seen),
         cmocka_unit_test(twice_the_size_is_the_same),
+        cmocka_unit_test(depth_is_found_in_a_larger_image),
         cmocka_unit_test(equal_frames_give_equal_bytes),
         cmocka_unit_test(a_cut_forgets_all),
         cmocka_unit_test(a_change_of_scale_keeps_the_past),

@@ -313,6 +313,9 @@ static void output_follows_from_target_and_scene(void **state) {
             assert_int_equal(masu_plan_format(&plan, between[k]), wanted);
             assert_int_equal(masu_plan_store_format(&plan, between[k]), stored);
         }
+        VkFormat mean = rows[i].encoding == MASU_ENCODING_SRGB ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R16G16B16A16_SFLOAT;
+        assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_HISTORY), mean);
+        assert_int_equal(masu_plan_store_format(&plan, MASU_IMAGE_HISTORY), VK_FORMAT_R32G32_UINT);
         assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_FINAL), last);
         assert_int_equal(masu_plan_store_format(&plan, MASU_IMAGE_FINAL), last);
         assert_int_equal(masu_plan_format(&plan, MASU_IMAGE_ALBEDO), VK_FORMAT_R8G8B8A8_UNORM);
