@@ -10,7 +10,7 @@
  *   3. Has what it shows changed? History of what has moved across the screen is held within what the nine samples
  *      show: 1.25 standard deviations around their mean, and none of their extremes exceeded. (Salvi, "An excursion in
  *      temporal supersampling", GDC 2016.) What rests is not held, which is what makes it exact; but where the world has
- *      changed, and the mean of the history around is not that of the nine, it is, too, within 0.75, and counts as one
+ *      changed, and the mean of the history around is not that of the nine, it is, too, within 0.6, and counts as one
  *      sample.
  *   4. How much does it count? At rest as many samples as it has, up to 28, and up to 8 while the eye moves or anything
  *      in the world changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
@@ -53,7 +53,7 @@ const float at_rest = 0.02;    /* pixels of the input */
 const float apart = 0.1;       /* of the nearest depth: a silhouette */
 const float same_depth = 0.01;
 const float deviations = 1.25;
-const float deviations_at_rest = 0.75; /* of what is no longer what it was */
+const float deviations_at_rest = 0.6; /* of what is no longer what it was */
 const float unseen = 0.01; /* display light that a mean over the surroundings may differ by */
 
 /* Depths around a pixel: large is near. */

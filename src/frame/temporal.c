@@ -47,7 +47,7 @@ static int has_resolve(const masu_frame_data *f) {
 /* From 1 on: the first place of Halton's sequence is the corner. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
     double pixels = (double)render.width * render.height;
-    double phases = fmin(fmax(ceil(8.0 * shown.width * shown.height / pixels), 16.0), 1024.0);
+    double phases = fmin(ceil(16.0 * shown.width * shown.height / pixels), 1024.0);
     uint32_t phase = (uint32_t)(frame % (uint64_t)phases);
     place[0] = mirrored(phase + 1, 2) - 0.5f;
     place[1] = mirrored(phase + 1, 3) - 0.5f;
