@@ -42,6 +42,7 @@ void main()
     vec2 texel = floor(inside + 0.5), corner = floor(inside);
     vec2 f = place - corner;
 
+    /* Before `found`, which what follows waits for: these need not. */
     vec2 gather = (corner + 1.0) * vec2(push.texel_x, push.texel_y);
     vec4 red = textureGather(color_image, gather, 0), green = textureGather(color_image, gather, 1),
          blue = textureGather(color_image, gather, 2);

@@ -21,8 +21,8 @@
  *
  * Push constants: output_* = the render size; push.history_* = size of the part of `history` that is shown / that of the
  * image; push.moved_*, push.depth_*, push.then_*: 1 / size of the images of velocities, of depths and of those before;
- * push.pixel_*: 1 / the render size; push.shift: 1 where the
- * sizes of input and output are one, and a pixel of the output looks at its own.
+ * push.pixel_*: 1 / the render size; push.shift: 1 where the sizes of input and output are one, and a pixel of the output looks
+ * at its own.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

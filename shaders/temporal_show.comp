@@ -4,9 +4,9 @@
  *
  * Of what moves a sample counts for the pixels around it by a tent, twice as wide as the pixel (below full size a little
  * wider): steadier than what falls into the pixel alone, but blurred. Of what that and the history's resampling take,
- * push.sharpen gives some back: times the second difference. (The variance of a tent
- * is 1/12 of a pixel above that of a pixel, half of it per axis is 1/24.) Of what rests in a world that does, which is no tent's,
- * push.calm, less than half of it. What is kept is not sharpened: it would be again in every frame.
+ * push.sharpen gives some back: times the second difference. (The variance of a tent is 1/12 of a pixel above that of a pixel;
+ * half of it per axis is 1/24.) Of what rests in a world that does, which is no tent's, push.calm, less than half of it. What
+ * is kept is not sharpened: it would be again in every frame.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

@@ -16,6 +16,10 @@ static const char *format_name(VkFormat format) {
     case VK_FORMAT_R32_SFLOAT: return "R32_SFLOAT";
     case VK_FORMAT_D32_SFLOAT: return "D32_SFLOAT";
     case VK_FORMAT_R16G16B16A16_SFLOAT: return "R16G16B16A16_SFLOAT";
+    case VK_FORMAT_R16G16B16A16_UNORM: return "R16G16B16A16_UNORM";
+    case VK_FORMAT_R32G32_UINT: return "R32G32_UINT";
+    case VK_FORMAT_R32G32B32A32_UINT: return "R32G32B32A32_UINT";
+    case VK_FORMAT_R32G32B32A32_SFLOAT: return "R32G32B32A32_SFLOAT";
     default: return "?";
     }
 }
