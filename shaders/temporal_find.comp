@@ -14,8 +14,8 @@
  *      sample.
  *   4. How much does it count? At rest as many samples as it has, up to 28, and up to 8 while the eye moves or anything
  *      in the world changes: a soft shadow that moves is not seen by rule 3. Each resampling between pixels blurs, so
- *      that what moves, by a sixteenth of a pixel or more, counts at most 1.5, and less the faster it moves and the more
- *      it grows: it was smaller then.
+ *      that what moves, by a sixteenth of a pixel or more, counts at most 2, below full size 1.5, and less the faster it moves
+ *      and the more it grows: it was smaller then.
  *
  * What is found is two words, of upscale/found.glsl.
  *
@@ -45,7 +45,8 @@ layout(set = MASU_SET_PASS, binding = 5, rg32ui) uniform writeonly uimage2D foun
 
 const float most_at_rest = masu_found_most;
 const float most_changing = 8.0; /* the same in a world that changes */
-const float most_moving = 1.5;
+const float most_moving = 1.5; /* and at full size: */
+const float most_moving_whole = 2.0;
 const float most_other = 1.0; /* of what rests and is no longer what it was */
 const float per_growth = 40.0; /* of view depth; */
 const float per_pixel = 0.1;   /* of motion: by how much that is divided */
@@ -169,7 +170,7 @@ uvec2 found_at(ivec2 at, vec2 size)
     bool other = rests && changes && is_other(before, c);
     vec3 within = (rests ? deviations_at_rest : deviations) * c.deviation;
     vec3 least = max(c.least, c.mean - within), most = min(c.most, c.mean + within);
-    float moving = most_moving / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
+    float moving = (push.shift > 0.0 ? most_moving_whole : most_moving) / (1.0 + per_growth * abs(moved.z) + per_pixel * speed);
     float resting = changes ? most_changing : most_at_rest;
     float count = other ? most_other : mix(resting, moving, min(16.0 * speed, 1.0));
     bool held = other || !rests;

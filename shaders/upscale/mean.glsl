@@ -43,11 +43,11 @@ uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
     return masu_mean_packed(vec4(light + off, count * (1.0 / masu_mean_counts)));
 }
 
-/* Whether a pixel has more samples than what moves has, which is 1.5 and one of this frame. What moves by less than a
+/* Whether a pixel has more samples than what moves has, which is 2 and one of this frame. What moves by less than a
  * sixteenth of a pixel has, too. */
 bool masu_mean_rests(vec4 mean)
 {
-    return mean.a > (masu_half_means ? 3.0 : 3.0 / masu_mean_counts);
+    return mean.a > (masu_half_means ? 3.25 : 3.25 / masu_mean_counts);
 }
 
 /* How many samples stand in what was sampled. */
