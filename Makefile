@@ -197,7 +197,6 @@ fuzz-all: ## fuzz every target of tests/fuzz for so long each: FUZZ_TIME=600
 BENCH ?= engine mirrors wet_city worlds/city forza textures city_shadows
 BENCH_ARGS ?= --size 640x360
 BENCH_ARGS_forza ?= --time 60 --reference 64 --frames 16
-BENCH_ARGS_worlds-city ?= --size 320x180
 BENCH_ARGS_wet_city ?= --reference 256
 # A name is that of a scene or of a world; where both have it, the scene's: worlds/city is the other. The
 # folder march has the scenes with all ways to march, and beside them what depth is compared with.

@@ -8,7 +8,7 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
     [MASU_SCENE_POLYGONS] =
         {.from = "textures.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-26",
+         "by timestamps, 2026-11-27",
          .count = 7,
          .rungs = {
               {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
@@ -19,15 +19,15 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.4f, .sharpen = MASU_OFF, .sharpness = 0.2f},
          },
-         .ratios = {1.24644f, 1.00933f, 0.846639f, 0.675509f,
-              0.545193f, 0.401772f, 0.309966f},
-         .flips = {0.0306609f, 0.0357831f, 0.0471836f, 0.0661899f,
-              0.0829395f, 0.0993268f, 0.139972f},
+         .ratios = {1.18344f, 0.988008f, 0.82403f, 0.659697f,
+              0.523161f, 0.452096f, 0.408783f},
+         .flips = {0.0247719f, 0.0282309f, 0.0327993f, 0.042704f,
+              0.0558855f, 0.0712148f, 0.139972f},
         },
     [MASU_SCENE_SDF] =
         {.from = "city_shadows.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-26",
+         "by timestamps, 2026-11-27",
          .count = 7,
          .rungs = {
               {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
@@ -36,18 +36,17 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
-              {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
-               .march_steps = 128},
+              {.scale = 0.4f, .sharpen = MASU_OFF, .sharpness = 0.2f, .march_steps = 128},
          },
-         .ratios = {1.06715f, 0.819459f, 0.593735f, 0.448073f,
-              0.303522f, 0.199781f, 0.186123f},
-         .flips = {0.0133598f, 0.0149222f, 0.0168316f, 0.0204754f,
-              0.0261631f, 0.034719f, 0.0577082f},
+         .ratios = {1.06007f, 0.813443f, 0.61558f, 0.44378f,
+              0.297741f, 0.20637f, 0.195711f},
+         .flips = {0.0116924f, 0.0134014f, 0.0153756f, 0.0180455f,
+              0.0226924f, 0.0295162f, 0.059466f},
         },
     [MASU_SCENE_BOTH] =
         {.from = "engine.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-26",
+         "by timestamps, 2026-11-27",
          .count = 8,
          .rungs = {
               {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
@@ -56,23 +55,23 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.4f, .sharpness = 0.2f, .temporal = MASU_ON},
-              {.scale = 0.4f, .sharpen = MASU_OFF, .sharpness = 0.2f},
+              {.scale = 0.5f, .sharpen = MASU_OFF, .sharpness = 0.2f, .march_steps = 128},
               {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .march_steps = 128},
          },
-         .ratios = {1.18022f, 1.08284f, 0.768263f, 0.722285f,
-              0.532873f, 0.401722f, 0.318513f, 0.280738f},
-         .flips = {0.017201f, 0.0183728f, 0.0208237f, 0.0240288f,
-              0.0278374f, 0.0332718f, 0.0664416f, 0.0671139f},
+         .ratios = {1.23493f, 1.01088f, 0.790373f, 0.618873f,
+              0.449948f, 0.359169f, 0.340615f, 0.277194f},
+         .flips = {0.0130535f, 0.0142824f, 0.0153608f, 0.0175657f,
+              0.0211816f, 0.0261933f, 0.0553822f, 0.0671139f},
         },
     [MASU_SCENE_POLYGONS_TRACED] =
         {.from = "mirrors.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-26",
+         "by timestamps, 2026-11-27",
          .count = 8,
          .rungs = {
               {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
-              {.scale = 1.0f, .sharpness = 0.2f, .specular_reuse = MASU_OFF},
+              {.scale = 0.875f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.75f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.625f, .sharpness = 0.2f, .temporal = MASU_ON},
               {.scale = 0.5f, .sharpness = 0.2f, .temporal = MASU_ON},
@@ -82,15 +81,15 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .shadow_refresh = {2, 4, 8, 8}, .specular = MASU_OFF},
          },
-         .ratios = {1.11643f, 0.957092f, 0.798656f, 0.686047f,
-              0.580691f, 0.441098f, 0.367805f, 0.300276f},
-         .flips = {0.0255625f, 0.0269655f, 0.0291794f, 0.0316105f,
-              0.0355723f, 0.0473875f, 0.0969826f, 0.103064f},
+         .ratios = {1.12174f, 0.951152f, 0.797732f, 0.684756f,
+              0.57864f, 0.441098f, 0.367805f, 0.300276f},
+         .flips = {0.02404f, 0.0258925f, 0.0280079f, 0.0304219f,
+              0.0332564f, 0.0473875f, 0.0969826f, 0.103064f},
         },
     [MASU_SCENE_WORLD_TRACED] =
         {.from = "forza.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-26",
+         "by timestamps, 2026-11-27",
          .count = 8,
          .rungs = {
               {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
@@ -108,15 +107,15 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
                .lod_error = 2.0f, .ao = MASU_OFF, .shadow_refresh = {2, 4, 8, 8},
                .specular = MASU_OFF},
          },
-         .ratios = {1.07503f, 0.926448f, 0.802054f, 0.694563f,
-              0.613536f, 0.500115f, 0.432067f, 0.342818f},
-         .flips = {0.0479375f, 0.0517871f, 0.0541106f, 0.0559339f,
-              0.0583431f, 0.0711042f, 0.0735669f, 0.0822436f},
+         .ratios = {1.08633f, 0.962637f, 0.83644f, 0.73101f,
+              0.615315f, 0.500115f, 0.432067f, 0.342818f},
+         .flips = {0.047759f, 0.051294f, 0.0526002f, 0.0548005f,
+              0.0575079f, 0.0711042f, 0.0735669f, 0.0822436f},
         },
     [MASU_SCENE_BOTH_TRACED] =
         {.from = "wet_city.masu, 640x360, "
          "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe, Mesa 22.3.6 (LLVM 15.0.6), Vulkan 1.3.230, "
-         "by timestamps, 2026-11-26",
+         "by timestamps, 2026-11-27",
          .count = 8,
          .rungs = {
               {.scale = 1.0f, .sharpness = 0.2f, .temporal = MASU_ON},
@@ -130,10 +129,10 @@ static const masu_ladder measured[MASU_SCENE_CLASSES] = {
               {.scale = 0.4f, .easu = MASU_EASU_FAST, .sharpen = MASU_OFF, .sharpness = 0.2f,
                .march_steps = 128, .specular = MASU_OFF},
          },
-         .ratios = {1.09699f, 0.878247f, 0.688163f, 0.525322f,
-              0.383441f, 0.296163f, 0.234773f, 0.186405f},
-         .flips = {0.0334933f, 0.0351852f, 0.0380783f, 0.0397872f,
-              0.0464491f, 0.0553451f, 0.158416f, 0.161897f},
+         .ratios = {1.10351f, 0.877278f, 0.691705f, 0.521784f,
+              0.37615f, 0.293189f, 0.234773f, 0.186405f},
+         .flips = {0.0332825f, 0.034589f, 0.036498f, 0.0402773f,
+              0.0463559f, 0.0553028f, 0.158416f, 0.161897f},
         },
 };
 
