@@ -367,8 +367,7 @@ static void depth_is_found_in_a_larger_image(void **state) {
         }
         close_session(&s);
     }
-    uint32_t most = 0;
-    for (uint32_t p = 0; p < BYTES; p++) most = (uint32_t)abs(a.rgba[p] - b.rgba[p]) > most ? (uint32_t)abs(a.rgba[p] - b.rgba[p]) : most;
+    uint32_t most = max_difference(a.rgba, b.rgba, BYTES);
     print_message("  beside a larger rung a byte is off by %u at most\n", most);
     assert_true(most <= 1);
 }

@@ -357,11 +357,7 @@ static void silhouettes_go_towards_the_truth(void **state) {
         close_session(&s);
         uint32_t nearer = 0, farther = 0;
         for (uint32_t p = 0; p < 4 * PIXELS; p += 4) {
-            int with = 0, without = 0;
-            for (uint32_t c = p; c < p + 3; c++) {
-                with = with > abs(picture[c] - truth[c]) ? with : abs(picture[c] - truth[c]);
-                without = without > abs(plain[c] - truth[c]) ? without : abs(plain[c] - truth[c]);
-            }
+            uint32_t with = max_difference(picture + p, truth + p, 3), without = max_difference(plain + p, truth + p, 3);
             nearer += with + 16 < without, farther += with > without + 16;
         }
         print_message("  %s: %u pixels nearer to the truth, %u farther off\n", scenes[i], nearer, farther);
