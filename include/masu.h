@@ -208,7 +208,8 @@ typedef struct masu_scene {
     uint64_t texture_bytes_decoded; /* and where the device takes no blocks */
     uint32_t own_coats; /* 1: some coat has a map, or a normal that is not its base's */
     uint32_t tints;     /* 1: what shines through some blended material has its colour */
-    uint32_t smooth_edges; /* 1: rungs that nobody gave are anti-aliased (MASU_AA_SMAA_HIGH) */
+    uint32_t smooth_edges; /* 1: rungs that nobody gave are anti-aliased: MASU_AA_SMAA_HIGH, with a governor
+                              temporal */
 } masu_scene;
 
 /* Checks every offset, count, index, float and the hash of `blob` and fills `*out`; in time that grows with
@@ -964,8 +965,9 @@ typedef struct masu_frame_desc {
     uint32_t cut;    /* not 0: what is seen has nothing to do with the previous frame (a camera cut):
                         nothing has moved. The first frame is one anyway. "Before" is the frame that
                         masu_frame handed out last, submitted or not. With rungs[].shadow_refresh
-                        above 1, or rungs[].temporal, the frame after one that was not submitted must be
-                        a cut: the cascades or the history that it should have left are not there */
+                        above 1, or rungs[].temporal (AUTO with a governor), the frame after one that was not
+                        submitted must be a cut: the cascades or the history that it should have left are
+                        not there */
     const float *sdf_params;  /* `sdf_param_count` values, NULL: the scene's defaults */
     uint32_t sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are
                             clamped to their declared range; one that is not finite is an error */

@@ -41,12 +41,24 @@ static void fill(masu_switch *word, masu_switch with) {
     if (*word == MASU_AUTO) *word = with;
 }
 
+/* Whether frames follow each other, as many samples from one need: that is what a governor is for, and of several
+ * viewports each would cut the other's history off. */
+static int frames_follow(const masu_desc *d) {
+    return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && d->viewport_count <= 1;
+}
+
+/* What `temporal` is at AUTO. A rung that says by what else it is resolved is resolved by that. */
+static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
+    int silent = rung->upscale == MASU_AUTO && rung->easu == MASU_EASU_AUTO && rung->sharpen == MASU_AUTO &&
+                 rung->aa == MASU_AA_AUTO && rung->fuse == MASU_AUTO;
+    return frames_follow(d) && silent ? MASU_ON : MASU_OFF;
+}
+
 /* Words that mean the same whatever is drawn. */
 static void resolve_words(masu_rung *rung) {
     if (rung->easu == MASU_EASU_AUTO) rung->easu = MASU_EASU_FULL;
     if (rung->aa == MASU_AA_AUTO) rung->aa = MASU_AA_OFF;
     fill(&rung->fuse, MASU_OFF);
-    fill(&rung->temporal, MASU_OFF);
     fill(&rung->silhouettes, MASU_OFF);
     fill(&rung->frustum, MASU_ON);
     fill(&rung->ao, MASU_ON);
@@ -90,13 +102,14 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         d.rungs[0] = (masu_rung){.scale = 1.0f};
         d.rungs[1] = (masu_rung){.scale = 0.8f};
         d.rungs[2] = (masu_rung){.scale = 0.4f};
-        for (uint32_t r = 0; d.scene && d.scene->smooth_edges && r < d.rung_count; r++)
-            d.rungs[r].aa = MASU_AA_SMAA_HIGH;
+        int smooth = d.scene && d.scene->smooth_edges && !frames_follow(&d);
+        for (uint32_t r = 0; smooth && r < d.rung_count; r++) d.rungs[r].aa = MASU_AA_SMAA_HIGH;
     }
     for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
         masu_rung_defaults(&d.rungs[r]);
         if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
             d.rungs[r].specular_cutoff = d.scene->specular_cutoff;
+        fill(&d.rungs[r].temporal, temporal_of(&d, &d.rungs[r]));
         resolve_words(&d.rungs[r]);
         if (d.scene) resolve_scene(&d, &d.rungs[r]);
         if ((d.scene || d.source.view) && d.output.width && d.output.height) resolve_sizes(&d, r);

@@ -61,9 +61,13 @@ const float *masu_ladder_costs_on(const masu_scene *scene, masu_device_class dev
     return costs[0] > 0.0f ? costs : NULL;
 }
 
+/* Measured without a governor, with which AUTO of temporal would be another thing. */
 static void give(const masu_ladder *l, masu_desc *desc) {
     desc->rung_count = l->count;
     memcpy(desc->rungs, l->rungs, sizeof desc->rungs);
+    for (uint32_t r = 0; r < l->count; r++) {
+        if (desc->rungs[r].temporal == MASU_AUTO) desc->rungs[r].temporal = MASU_OFF;
+    }
     memcpy(desc->flips, l->flips, sizeof desc->flips);
 }
 

@@ -94,12 +94,14 @@ static void the_picture_is_that_of_the_rung(void **state) {
     masu_session s;
     masu_stats_info stats;
     masu_commands c;
+    d.desc.rungs[2].temporal = MASU_ON; /* which AUTO is with a governor */
     open_session(&s, &d);
     draw_rung(&s, 2, plain);
     masu_frame_desc automatic = {.rung = MASU_RUNG_AUTO};
     assert_int_equal(masu_frame(s.m, &automatic, &c), MASU_ERROR_ARGUMENT);
     assert_string_equal(masu_last_error(s.m)->what, "rung");
     close_session(&s);
+    d.desc.rungs[2].temporal = MASU_AUTO;
     d.desc.governor = (masu_governor_desc){.mode = MASU_GOVERNOR_FIXED, .rung = 2};
     open_session(&s, &d);
     draw_rung(&s, MASU_RUNG_AUTO, governed);

@@ -129,8 +129,15 @@ END
 sed 's/0.8, 0.2, 0.1/0.1, 0.7, 0.2/' ball.sdf > green.sdf
 sed 's/sphere(1)/sphere(/' ball.sdf > broken.sdf
 cp ball.sdf red.sdf
+# Three sizes without a past, which would show each frame something else: as measured ones, which have no AUTO.
+cat > sizes.json << 'END'
+{"scene": "ball", "driver": "any", "clock": "wall", "width": 320, "height": 180, "error": "flip", "rungs": [
+  {"setting": "none", "ratio": 1, "flip": 0.1, "knobs": {"scale": 1}},
+  {"setting": "scale=0.8", "ratio": 0.64, "flip": 0.1, "knobs": {"scale": 0.8}},
+  {"setting": "scale=0.4", "ratio": 0.16, "flip": 0.1, "knobs": {"scale": 0.4}}]}
+END
 
-play ball --json ../ball.json --size 320x180 --ladder off --rung 0 << 'END'
+play ball --json ../ball.json --size 320x180 --ladder ../sizes.json --rung 0 << 'END'
 frame 0 key F1          # full
 frame 0 key F1          # off
 frame 0 key Space
@@ -219,7 +226,7 @@ cd ..
 
 # Every frame depends on the script alone. (A rung without a past: what was flown is not to be seen in what follows.)
 for run in 1 2; do
-    play fly$run "$both" --size 160x90 --ladder off --rung 0 << 'END'
+    play fly$run "$both" --size 160x90 --ladder ../sizes.json --rung 0 << 'END'
 frame 0 key F1
 frame 0 key F1
 frame 2 screenshot start.png
@@ -275,7 +282,7 @@ grep -q '^80 45: the SDF, depth ' sdf/stdout || fail "a click on the SDF: $(cat 
 
 # A baked scene that is exchanged, and one that is cut off.
 cp "$both" scene.masu
-play blob ../scene.masu --size 160x90 --ladder off --rung 0 << END
+play blob ../scene.masu --size 160x90 --ladder ../sizes.json --rung 0 << END
 frame 0 key F1
 frame 0 key F1
 frame 2 screenshot before.png

@@ -401,6 +401,53 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
     support_scene.smooth_edges = 0;
 }
 
+/* A governor says that frames follow each other; several viewports, or a rung's own words about how it is resolved, that
+ * no past is wanted. */
+static void with_a_governor_many_samples_come_from_one(void **state) {
+    (void)state;
+    masu_desc d = scene_desc(RASTER | SDF, 640, 360);
+    d.rung_count = 8;
+    for (uint32_t r = 0; r < 8; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
+    d.rungs[2].upscale = MASU_ON;
+    d.rungs[3].easu = MASU_EASU_FAST;
+    d.rungs[4].sharpen = MASU_OFF;
+    d.rungs[5].aa = MASU_AA_OFF;
+    d.rungs[6].fuse = MASU_OFF;
+    d.rungs[7].temporal = MASU_OFF;
+    masu_desc is = masu_desc_resolved(&d);
+    for (uint32_t r = 0; r < 8; r++) assert_int_equal(is.rungs[r].temporal, MASU_OFF);
+    static const masu_governor_mode modes[] = {MASU_GOVERNOR_ON, MASU_GOVERNOR_FIXED};
+    for (uint32_t k = 0; k < 2; k++) {
+        d.governor.mode = modes[k];
+        is = masu_desc_resolved(&d);
+        masu_desc twice = masu_desc_resolved(&is);
+        for (uint32_t r = 0; r < 8; r++) {
+            assert_int_equal(is.rungs[r].temporal, r < 2 ? MASU_ON : MASU_OFF);
+            assert_int_equal(twice.rungs[r].temporal, is.rungs[r].temporal);
+        }
+        assert_int_equal(is.rungs[1].sharpen, MASU_OFF); /* nothing is upscaled by EASU there */
+        assert_int_equal(is.rungs[2].sharpen, MASU_ON);
+        d.viewport_count = 1;
+        assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_ON);
+        d.viewport_count = 2;
+        assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_OFF);
+        d.viewport_count = 0;
+    }
+    /* Rungs that nobody gave, and edges that are to be smooth. */
+    d.rung_count = 0;
+    d.ladder = MASU_OFF;
+    support_scene.smooth_edges = 1;
+    is = masu_desc_resolved(&d);
+    for (uint32_t r = 0; r < 3; r++)
+        assert_true(is.rungs[r].temporal == MASU_ON && is.rungs[r].aa == MASU_AA_OFF);
+    d.governor.mode = MASU_GOVERNOR_OFF;
+    assert_int_equal(masu_desc_resolved(&d).rungs[0].temporal, MASU_OFF);
+    support_scene.smooth_edges = 0;
+    masu_desc source = source_desc(640, 360);
+    source.governor.mode = MASU_GOVERNOR_ON;
+    assert_int_equal(masu_desc_resolved(&source).rungs[0].temporal, MASU_OFF);
+}
+
 /* More rungs than there are is an error for later, not a reason to write behind the array. */
 static void an_absurd_number_of_rungs_is_resolved_without_harm(void **state) {
     (void)state;
@@ -936,6 +983,7 @@ int main(void) {
         cmocka_unit_test(output_follows_from_target_and_scene),
         cmocka_unit_test(what_is_given_stays_as_it_is),
         cmocka_unit_test(words_are_resolved_by_the_rule_of_the_plan),
+        cmocka_unit_test(with_a_governor_many_samples_come_from_one),
         cmocka_unit_test(an_absurd_number_of_rungs_is_resolved_without_harm),
         cmocka_unit_test(a_bad_size_is_named),
         cmocka_unit_test(a_bad_count_is_named),

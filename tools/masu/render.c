@@ -206,7 +206,12 @@ static void turn(masu_desc *d, const masu_turned *t) {
         if (t->cull_given) rung->frustum = t->cull < 2 ? MASU_ON : MASU_OFF;
         if (t->cull_given) rung->occlusion = t->cull % 2 ? MASU_OFF : MASU_ON;
         if (t->lod_given) rung->lod_error = t->to.lod_error;
-        if (t->aa_given) rung->aa = t->to.aa;
+        if (t->aa_given) {
+            rung->aa = t->to.aa;
+            /* In whose place a rung's past would be, and what follows from that. */
+            rung->temporal = MASU_OFF;
+            rung->sharpen = rung->specular_reuse = rung->specular_taa = MASU_AUTO;
+        }
     }
 }
 

@@ -173,6 +173,8 @@ void masu_ladder_give(const masu_ladder_file *ladder, masu_desc *desc) {
     memset(desc->governor.costs, 0, sizeof desc->governor.costs);
     for (uint32_t r = 0; r < ladder->count; r++) {
         desc->rungs[r] = ladder->rungs[r];
+        /* Measured without a governor, with which AUTO would be another thing. */
+        if (desc->rungs[r].temporal == MASU_AUTO) desc->rungs[r].temporal = MASU_OFF;
         desc->flips[r] = (float)ladder->flips[r];
         desc->governor.costs[r] = (float)ladder->ratios[r];
     }
