@@ -22,6 +22,7 @@
 #include "shared/output.glsl"
 #include "upscale/found.glsl"
 #include "upscale/history.glsl"
+#include "upscale/roots.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -46,6 +47,7 @@ void main()
     vec2 gather = (corner + 1.0) * vec2(push.texel_x, push.texel_y);
     vec4 red = textureGather(color_image, gather, 0), green = textureGather(color_image, gather, 1),
          blue = textureGather(color_image, gather, 2);
+    green += masu_root_rest * textureGather(color_image, gather, 3);
     uvec2 found = texelFetch(found_image, ivec2(texel), 0).xy;
     vec4 old = masu_history(found, vec2(at) + 0.5, ivec2(texel), inside, steps);
 

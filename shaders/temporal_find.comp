@@ -64,7 +64,7 @@ struct around {
     uint way;    /* to the nearest, of upscale/found.glsl */
 };
 
-/* Of the nine samples around: roots of display light, as they stand in the picture. */
+/* Of the nine samples around: roots of display light, as they stand in the picture, of 10 bits (upscale/roots.glsl). */
 struct colors {
     vec3 mean, deviation, least, most;
 };

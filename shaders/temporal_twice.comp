@@ -19,6 +19,7 @@
 #include "shared/output.glsl"
 #include "upscale/found.glsl"
 #include "upscale/history.glsl"
+#include "upscale/roots.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -26,8 +27,9 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots
 
 vec3 light_at(ivec2 texel)
 {
-    vec3 root = texelFetch(color_image, texel, 0).rgb;
-    return root * root;
+    vec4 root = texelFetch(color_image, texel, 0);
+    root.g += masu_root_rest * root.a;
+    return root.rgb * root.rgb;
 }
 
 /* Four texels and the pixels between them. */

@@ -4,7 +4,7 @@
  *
  * shaders/shared/tone.glsl has the curves and encodings; output.glsl says why targets beyond white have
  * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites;
- * push.roots not 0: what follows is rung.temporal.
+ * push.roots not 0: what follows is rung.temporal, whose samples are roots of display light (upscale/roots.glsl).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -15,6 +15,7 @@
 #include "shared/counters.glsl"
 #include "shared/output.glsl"
 #include "shared/encode.glsl"
+#include "upscale/roots.glsl"
 #ifdef MASU_SILHOUETTES
 #include "shared/silhouettes.glsl"
 #endif
@@ -101,21 +102,18 @@ vec3 blended(ivec2 at, ivec2 size)
 }
 #endif
 
-/* For rungs that take the mean over frames, the root of display light: what rung.temporal adds up is light. To the step of 10 bits
- * below or above by chance, another one in each frame: to the nearest one the mean of a wall would lie as far off as
- * each of its samples, up to a tenth of a step of 8 bits. */
-vec3 stored(vec3 y, uvec2 at)
+/* Roots, or what a display takes: of display light. */
+vec3 stored(vec3 y)
 {
-    if (push.roots == 0u) {
-        return masu_encoded(y, push.white);
-    }
-    vec3 root = sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0));
-#ifdef MASU_TEN
-    vec3 chance = vec3(masu_dither(at) >> 8) * (1.0 / 16777216.0);
-    root = max(root + (chance - 0.5) * (1.0 / 1023.0), 0.0);
-#endif
-    return root;
+    return push.roots != 0u ? sqrt(clamp(y * masu_rcp(push.peak), 0.0, 1.0)) : masu_encoded(y, push.white);
 }
+
+#ifdef MASU_TEN
+uint stored_bits(vec3 v, uvec2 at)
+{
+    return push.roots != 0u ? masu_root_bits(v, masu_dither(at)) : masu_ten_bits(v);
+}
+#endif
 
 void main()
 {
@@ -127,15 +125,19 @@ void main()
 #else
         vec3 y = shown(ivec2(at));
 #endif
-#ifdef MASU_DEEP
-        if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* not through PQ and back */
+#if defined(MASU_TEN)
+        MASU_STORE_CHECKED(ldr_image, at, vec3, stored(y), uvec4(stored_bits(masu_sane_unit(masu_store_value), at)));
+#elif defined(MASU_DEEP)
+        if (push.roots != 0u) {
+            MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(stored(y)), 0.0));
+        } else if (masu_encoding == MASU_OUTPUT_LINEAR && masu_is_last()) { /* not through PQ and back */
             vec3 white = min(y * push.white, 1e4) * (1.0 / 80.0);
             MASU_STORE_HALF(ldr_image, at, vec4(masu_nearest_half(white), 1.0));
         } else {
-            MASU_STORE_COLOR(ldr_image, at, stored(y, at));
+            MASU_STORE_COLOR(ldr_image, at, stored(y));
         }
 #else
-        MASU_STORE_COLOR(ldr_image, at, stored(y, at));
+        MASU_STORE_COLOR(ldr_image, at, masu_encoded(y, push.white));
 #endif
     }
     masu_count_end();
