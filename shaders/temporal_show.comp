@@ -4,7 +4,7 @@
  *
  * Of what moves a sample counts for the pixels around it by a tent, twice as wide as the pixel (below full size a little
  * wider): steadier than what falls into the pixel alone, but blurred. Of what that and the history's resampling take,
- * push.sharpen gives some back: times the second difference. (The variance of a tent is 1/12 of a pixel above that of a pixel;
+ * push.sharpen gives some back, and while the view moves, which resamples all of it, push.moving: times the second difference. (The variance of a tent is 1/12 of a pixel above that of a pixel;
  * half of it per axis is 1/24.) Of what rests in a world that does, which is no tent's, push.calm, less than half of it. What
  * is kept is not sharpened: it would be again in every frame.
  */
@@ -38,8 +38,9 @@ void main()
     vec4 mean = texelFetch(accumulated_image, at, 0);
     vec3 left = light_at(ivec2(before.x, at.y)), right = light_at(ivec2(after.x, at.y)),
          above = light_at(ivec2(at.x, before.y)), below = light_at(ivec2(at.x, after.y));
-    bool rests = frame.temporal.z == 0u && masu_mean_rests(mean);
-    float sharpen = rests ? push.calm : push.sharpen;
+    bool rests = (frame.temporal.z & MASU_TEMPORAL_CHANGES) == 0u && masu_mean_rests(mean);
+    float moving = (frame.temporal.z & MASU_TEMPORAL_MOVES) != 0u ? push.moving : push.sharpen;
+    float sharpen = rests ? push.calm : moving;
     vec3 sharp = mean.rgb + sharpen * (4.0 * mean.rgb - left - right - above - below);
 #if defined(MASU_TEN) || defined(MASU_DEEP) /* no store clamps it */
     sharp = clamp(sharp, 0.0, 1.0);

@@ -203,6 +203,10 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_SHADOW_BIAS 1.25
 #define MASU_SHADOW_STEEPEST 4.0
 
+/* Of a frame and the one before, for rung.temporal. */
+#define MASU_TEMPORAL_CHANGES 1u /* something has changed of late, or the eye is elsewhere */
+#define MASU_TEMPORAL_MOVES 2u   /* the eye is elsewhere or looks elsewhere: what rests in the world moves in the picture */
+
 /* Of a frame and the one before. */
 #define MASU_HISTORY_CUT 1u     /* a cut: the exposure adapts at once */
 #define MASU_HISTORY_NO_FINE 2u /* the previous frame has kept no full-resolution history: what is there is older */
@@ -363,8 +367,8 @@ struct masu_frame_uniforms {
     /* What is added to a place in the picture, whose sides are -1 and 1: xy by jitter and by a window whose middle
      * is not straight ahead, zw by jitter alone */
     masu_vec4 jitter;
-    /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; z not 0:
-     * something has changed of late, or the eye is elsewhere. w the pixel to be picked: its x, and its y from bit 16 on */
+    /* Of rung.temporal: x and y render size of the previous frame, 0: it has left nothing; z bits of
+     * MASU_TEMPORAL_*; w the pixel to be picked: its x, and its y from bit 16 on */
     masu_uvec4 temporal;
     masu_vec4 sdf_params[MASU_SDF_PARAM_VEC4S];
     /* Of rung.temporal, in pixels of the render size: xy by how much this frame's samples lie off the middle of pixels; zw

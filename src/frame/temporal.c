@@ -82,6 +82,13 @@ static int eye_moves(const struct masu_frame_uniforms *now, const struct masu_fr
            memcmp(now->eye_lo, before->eye_lo, 3 * sizeof *now->eye_lo) != 0;
 }
 
+/* Or looks elsewhere, or sees more or less. */
+static int view_moves(const struct masu_frame_uniforms *now, const struct masu_frame_uniforms *before) {
+    return eye_moves(now, before) || memcmp(now->right, before->right, sizeof now->right) != 0 ||
+           memcmp(now->up, before->up, sizeof now->up) != 0 ||
+           memcmp(now->forward, before->forward, sizeof now->forward) != 0;
+}
+
 static uint64_t hash_words(uint64_t hash, const void *data, size_t bytes) {
     for (size_t at = 0; at + 8 <= bytes; at += 8) {
         uint64_t word;
@@ -142,7 +149,8 @@ void masu_temporal_read(masu_temporal *t, const masu_history *history, const mas
         t->changed = changed ? settling(f) : t->changed ? t->changed - 1 : 0;
         f->u.temporal[0] = t->size[0];
         f->u.temporal[1] = t->size[1];
-        f->u.temporal[2] = t->changed || eye_moves(&f->u, history->previous);
+        f->u.temporal[2] = (t->changed || eye_moves(&f->u, history->previous) ? MASU_TEMPORAL_CHANGES : 0) |
+                           (view_moves(&f->u, history->previous) ? MASU_TEMPORAL_MOVES : 0);
     }
     t->size[0] = rp->render_width;
     t->size[1] = rp->render_height;
