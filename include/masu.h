@@ -965,8 +965,8 @@ typedef struct masu_frame_desc {
     uint32_t cut;    /* not 0: what is seen has nothing to do with the previous frame (a camera cut):
                         nothing has moved. The first frame is one anyway. "Before" is the frame that
                         masu_frame handed out last, submitted or not. With rungs[].shadow_refresh
-                        above 1, or rungs[].temporal (AUTO with a governor), the frame after one that was not
-                        submitted must be a cut: the cascades or the history that it should have left are
+                        above 1, or rungs[].temporal (which AUTO is with a governor), the frame after one that was
+                        not submitted must be a cut: the cascades or the history that it should have left are
                         not there */
     const float *sdf_params;  /* `sdf_param_count` values, NULL: the scene's defaults */
     uint32_t sdf_param_count; /* at most the scene's count; the rest keep their defaults. Values are

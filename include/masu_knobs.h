@@ -101,8 +101,8 @@ typedef enum masu_knob_use {
     WORD(  masu_switch,      temporal,                               ALWAYS,                       \
            "Anti-aliasing and upscaling over frames, in place of aa, EASU and RCAS (RCAS where"    \
            " sharpen is on): each frame looks at another place in its pixels. Scenes alone. AUTO:" \
-           " on with a governor, whose frames follow each other, of one viewport, where nothing is" \
-           " said of upscale, easu, sharpen, aa and fuse; else off.",                              \
+           " on with a governor, at most one viewport and no split but AFTER_UPSCALE, in rungs that" \
+           " leave upscale, easu, sharpen, aa and fuse at AUTO; else off.",                        \
            "Two passes of the output size, two of the render size. Device bytes per pixel of the output: 16," \
            " of which 8 outlive the frame; of the render size: 4 that do, 8 that do not, and"      \
            " velocities, 8.")                                                                      \

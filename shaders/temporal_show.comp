@@ -4,8 +4,9 @@
  *
  * Of what moves a sample counts for the pixels around it by a tent, twice as wide as the pixel (below full size a little
  * wider): steadier than what falls into the pixel alone, but blurred. Of what that and the history's resampling take,
- * push.sharpen gives some back, and while the view moves, which resamples all of it, push.moving: times the second difference. (The variance of a tent is 1/12 of a pixel above that of a pixel;
- * half of it per axis is 1/24.) Of what rests in a world that does, which is no tent's, push.calm, less than half of it. What
+ * push.sharpen gives some back; push.moving does while the view moves, for all of the history is resampled then. Both
+ * times the second difference. (The variance of a tent is 1/12 of a pixel above that of a pixel; half of it per axis is
+ * 1/24.) Of what rests in a world that does, which is no tent's, push.calm, less than half of it. What
  * is kept is not sharpened: it would be again in every frame.
  */
 #version 440

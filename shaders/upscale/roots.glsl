@@ -14,7 +14,7 @@ const float masu_root_rest = 3.0 / 4092.0; /* of alpha, as a sampler reads it: w
 /* root: 0 to 1; chance: 32 bits for each channel. */
 uint masu_root_bits(vec3 root, uvec3 chance)
 {
-    vec3 up = vec3(chance >> 8) * (1.0 / 16777216.0);
+    vec3 up = vec3(chance >> 20) * (1.0 / 4096.0); /* of more bits 1023 and almost 1 would be 1024: red's would be green's */
 #ifdef MASU_EXACT
     precise vec3 scaled = root * vec3(1023.0, 4092.0, 1023.0);
 #else

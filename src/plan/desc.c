@@ -42,9 +42,11 @@ static void fill(masu_switch *word, masu_switch with) {
 }
 
 /* Whether frames follow each other, as many samples from one need: that is what a governor is for, and of several
- * viewports each would cut the other's history off. */
+ * viewports each would cut the other's history off. What a host draws before the tone curve has no velocity and would
+ * leave trails; what asks for velocities may have a history of its own. */
 static int frames_follow(const masu_desc *d) {
-    return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && d->viewport_count <= 1;
+    return d->scene && d->governor.mode != MASU_GOVERNOR_OFF && d->viewport_count <= 1 && !d->debug.reference &&
+           !(d->split & ~(uint32_t)MASU_SPLIT_AFTER_UPSCALE);
 }
 
 /* What `temporal` is at AUTO. A rung that says by what else it is resolved is resolved by that. */

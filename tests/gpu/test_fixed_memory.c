@@ -26,6 +26,7 @@ static void three_hundred_frames(const char *scene, const char *instance, bool v
     for (uint32_t r = 0; r < 3; r++) { /* the last two draw their cascades by turns, if any */
         d.desc.rungs[r].scale = r == 0 ? 1.0f : r == 1 ? 0.8f : 0.4f;
         d.desc.rungs[r].shadow_resolution = 128 >> r;
+        d.desc.rungs[r].temporal = r == 2 ? MASU_OFF : MASU_AUTO; /* AUTO is on */
         d.desc.rungs[r].shadow_refresh[1] = d.desc.rungs[r].shadow_refresh[2] = 1 + 2 * r;
     }
     open_session(&s, &d);

@@ -48,7 +48,7 @@ static void make(own_renderer *x, uint32_t scene) {
     d.rungs[1] = (masu_rung){.scale = 0.6f, .temporal = MASU_ON};
     d.rungs[2] = (masu_rung){.scale = 0.7f, .easu = MASU_EASU_FAST, .aa = MASU_AA_FXAA};
     d.rungs[3] = (masu_rung){.scale = 1.0f, .temporal = MASU_ON};
-    d.rungs[4] = (masu_rung){.scale = 0.3f};
+    d.rungs[4] = (masu_rung){.scale = 0.3f, .temporal = MASU_OFF};
     make_own(s, x, &d);
 }
 

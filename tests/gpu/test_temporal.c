@@ -302,6 +302,28 @@ static void light_that_changes_in_motion_is_seen(void **state) {
     }
 }
 
+/* What is rounded up by chance is never rounded beyond white: red's step above it would be one of green's. */
+static void white_is_white_in_every_frame(void **state) {
+    (void)state;
+    for (int half = 0; half < 2; half++) {
+        masu_session s;
+        masu_light light;
+        masu_session_desc d = temporal_desc("test_shadows", half ? 0.5f : 1.0f);
+        open_session(&s, &d);
+        assert_int_equal(masu_light_of(s.m, &light), MASU_OK);
+        light.exposure = 1e6f;
+        for (uint32_t i = 0; i < 24; i++) {
+            masu_commands commands;
+            masu_camera camera = aside(&s, i < 12 ? 0.0 : 0.01 * i);
+            draw(&s, &(masu_frame_desc){.light = &light, .camera = &camera}, &commands, a.rgba);
+            for (uint32_t p = 0; p < BYTES; p++) {
+                if (a.rgba[p] != 255) fail_msg("frame %u, scale %g: byte %u is %u", i, half ? 0.5 : 1.0, p, a.rgba[p]);
+            }
+        }
+        close_session(&s);
+    }
+}
+
 /* ---- What must not matter -------------------------------------------------------------------- */
 
 /* Twice the width and height is a pass of its own, and an output that keeps its size has no care for what lies beyond it: what
@@ -339,8 +361,8 @@ static void twice_the_size_is_the_same(void **state) {
             }
             print_message("  scale %.3f, resizable %u, halves %u: %u of %d bytes differ, by %u at most\n",
                           (double)ways[k].scale, ways[k].resizable, ways[k].halves, others, BYTES, most);
-            /* Halves are coarser: up to a tenth of a step of what is shown. */
-            assert_true(most <= 1 && others < (ways[k].halves ? BYTES / 5 : BYTES / 50));
+            /* Halves are coarser: up to a tenth of a step of what is shown. What moves is sharpened: a step may become two. */
+            assert_true(most <= 2 && others < (ways[k].halves ? BYTES / 5 : BYTES / 50));
         }
     }
 }
@@ -569,6 +591,7 @@ int main(void) {
         cmocka_unit_test(light_that_changes_is_seen),
         cmocka_unit_test(a_lamp_that_goes_out_is_seen),
         cmocka_unit_test(light_that_changes_in_motion_is_seen),
+        cmocka_unit_test(white_is_white_in_every_frame),
         cmocka_unit_test(twice_the_size_is_the_same),
         cmocka_unit_test(depth_is_found_in_a_larger_image),
         cmocka_unit_test(equal_frames_give_equal_bytes),

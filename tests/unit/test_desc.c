@@ -401,8 +401,8 @@ static void words_are_resolved_by_the_rule_of_the_plan(void **state) {
     support_scene.smooth_edges = 0;
 }
 
-/* A governor says that frames follow each other; several viewports, or a rung's own words about how it is resolved, that
- * no past is wanted. */
+/* A governor says that frames follow each other; several viewports, what a host draws or follows itself, or a rung's own
+ * words about how it is resolved, that no past is wanted. */
 static void with_a_governor_many_samples_come_from_one(void **state) {
     (void)state;
     masu_desc d = scene_desc(RASTER | SDF, 640, 360);
@@ -432,6 +432,14 @@ static void with_a_governor_many_samples_come_from_one(void **state) {
         d.viewport_count = 2;
         assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_OFF);
         d.viewport_count = 0;
+        d.split = MASU_SPLIT_AFTER_UPSCALE;
+        assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_ON);
+        d.split = MASU_SPLIT_BEFORE_TONE;
+        assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_OFF);
+        d.split = 0;
+        d.debug.reference = 1;
+        assert_int_equal(masu_desc_resolved(&d).rungs[1].temporal, MASU_OFF);
+        d.debug.reference = 0;
     }
     /* Rungs that nobody gave, and edges that are to be smooth. */
     d.rung_count = 0;

@@ -208,9 +208,9 @@ static void turn(masu_desc *d, const masu_turned *t) {
         if (t->lod_given) rung->lod_error = t->to.lod_error;
         if (t->aa_given) {
             rung->aa = t->to.aa;
-            /* In whose place a rung's past would be, and what follows from that. */
+            /* In whose place a rung's past would be, and what has followed from that. */
+            if (rung->temporal == MASU_ON) rung->sharpen = rung->specular_reuse = rung->specular_taa = MASU_AUTO;
             rung->temporal = MASU_OFF;
-            rung->sharpen = rung->specular_reuse = rung->specular_taa = MASU_AUTO;
         }
     }
 }

@@ -89,6 +89,9 @@ static void complete(masu_viewer *v, masu_desc *d) {
     d->frames_in_flight = MASU_WINDOW_FLIGHT;
     d->debug.labels = h->labels;
     d->clock_ns = masu_clock_ns;
+    for (uint32_t r = 0; r < d->rung_count; r++) { /* what a name does not say is off, with the governor too */
+        if (d->rungs[r].temporal == MASU_AUTO) d->rungs[r].temporal = MASU_OFF;
+    }
 }
 
 static bool stage_failed(masu_viewer *v, const masu_stage *s) {
@@ -199,6 +202,7 @@ static void want_given(masu_viewer *v) {
         masu_desc plain = v->want; /* what a rung of that scale would be if nothing were said of it */
         plain.rung_count = 1;
         plain.rungs[0] = (masu_rung){.scale = v->want.rungs[r].scale};
+        plain.governor.mode = MASU_GOVERNOR_OFF; /* as masu bench measures, whose names these are */
         plain = masu_desc_resolved(&plain);
         for (const masu_knob *k = masu_knob_table(); k->name; k++) {
             if (!strcmp(k->name, "scale")) continue;
