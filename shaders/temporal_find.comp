@@ -156,7 +156,7 @@ uvec2 found_at(ivec2 at, vec2 size)
     vec2 before = (place + frame.shifts.xy + moved.xy) * vec2(push.pixel_x, push.pixel_y);
     float speed = length(moved.xy);
     bool rests = !(speed > at_rest);
-    bool changes = (frame.temporal.z & MASU_TEMPORAL_CHANGES) != 0u;
+    bool changes = frame.temporal.z >= MASU_TEMPORAL_CHANGES;
     bool there = frame.temporal.x != 0u && moved.w > 0.0 && all(greaterThanEqual(before, vec2(0.0))) &&
                  all(lessThanEqual(before, vec2(1.0)));
     /* Where nothing has moved it is what it was, though this frame's samples may miss it: a wire. */

@@ -39,7 +39,7 @@ void main()
     vec4 mean = texelFetch(accumulated_image, at, 0);
     vec3 left = light_at(ivec2(before.x, at.y)), right = light_at(ivec2(after.x, at.y)),
          above = light_at(ivec2(at.x, before.y)), below = light_at(ivec2(at.x, after.y));
-    bool rests = (frame.temporal.z & MASU_TEMPORAL_CHANGES) == 0u && masu_mean_rests(mean);
+    bool rests = frame.temporal.z < MASU_TEMPORAL_CHANGES && masu_mean_rests(mean);
     float moving = (frame.temporal.z & MASU_TEMPORAL_MOVES) != 0u ? push.moving : push.sharpen;
     float sharpen = rests ? push.calm : moving;
     vec3 sharp = mean.rgb + sharpen * (4.0 * mean.rgb - left - right - above - below);

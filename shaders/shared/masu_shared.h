@@ -204,8 +204,8 @@ typedef float masu_mat4[16]; /* column-major, as GLSL stores it */
 #define MASU_SHADOW_STEEPEST 4.0
 
 /* Of a frame and the one before, for rung.temporal. */
-#define MASU_TEMPORAL_CHANGES 1u /* something has changed of late, or the eye is elsewhere */
-#define MASU_TEMPORAL_MOVES 2u   /* the eye is elsewhere or looks elsewhere: what rests in the world moves in the picture */
+#define MASU_TEMPORAL_MOVES 1u   /* the eye is elsewhere or looks elsewhere: what rests in the world moves in the picture */
+#define MASU_TEMPORAL_CHANGES 2u /* something has changed of late, or the eye is elsewhere; the highest: it is asked for by >= */
 
 /* Of a frame and the one before. */
 #define MASU_HISTORY_CUT 1u     /* a cut: the exposure adapts at once */
