@@ -331,10 +331,12 @@ static void ladders_are_read_shown_and_built_in(void **state) {
 static void a_setting_is_drawn_by_its_name(void **state) {
     (void)state;
     const char *scene = scene_path("test_both");
-    char ladder[300], name[256], error[ERROR_SIZE];
+    char ladder[300], other[320], name[256], error[ERROR_SIZE];
     write_ladder("l.json", "0.5", "");
     snprintf(ladder, sizeof ladder, "--ladder %s/l.json --rung 0", scratch);
+    snprintf(other, sizeof other, "%s --aa fxaa", ladder);
     const char *const pairs[][2] = {{ladder, "--setting aa=smaa-low+sharpness=0"},
+                                    {other, "--setting aa=fxaa+sharpness=0"},
                                     {"--aa smaa-high", "--setting sharpness=0+aa=smaa-high"},
                                     {"--rung 2", "--setting scale=0.4"},
                                     {"--rung 0", "--setting base"}};

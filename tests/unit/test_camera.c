@@ -241,6 +241,32 @@ static void the_eye_keeps_its_precision_in_two_floats(void **state) {
     }
 }
 
+/* What a rung with a past is told of the frame before: whether the view is another, and whether the world may be. */
+static void a_past_is_told_what_has_moved(void **state) {
+    (void)state;
+    enum { NOTHING = 0, MOVES = MASU_TEMPORAL_MOVES, BOTH = MASU_TEMPORAL_MOVES | MASU_TEMPORAL_CHANGES };
+    static const struct {
+        double to;
+        float right, fov_y, jitter;
+        uint32_t told;
+    } frames[] = {{0, 0, 1, 0, NOTHING}, {0, 0, 1, 0, NOTHING},     {0, 0.1f, 1, 0, MOVES},    {0, 0.1f, 1, 0, NOTHING},
+                  {0, 0.1f, 1.1f, 0, MOVES}, {0, 0.1f, 1.1f, 0.3f, NOTHING}, {0.5, 0.1f, 1.1f, 0.3f, BOTH}, {0.5, 0.1f, 1.1f, 0, NOTHING}};
+    masu_rung rung = {.scale = 1.0f, .temporal = MASU_ON};
+    make_renderer_with(SUPPORT_RASTER, 0, &rung, 1);
+    masu_light light = good_light();
+    for (uint32_t i = 0; i < COUNT(frames); i++) {
+        masu_camera camera = good_camera();
+        camera.position[0] += frames[i].to;
+        camera.forward[0] = frames[i].right;
+        camera.fov_y = frames[i].fov_y;
+        camera.jitter[0] = frames[i].jitter;
+        m.timeline.frame = i; /* the first is a cut */
+        write_good(&(masu_frame_desc){.camera = &camera, .light = &light}, i & 1);
+        if (uniforms(i & 1).temporal[2] != frames[i].told)
+            fail_msg("frame %u: told is %u, not %u", i, uniforms(i & 1).temporal[2], frames[i].told);
+    }
+}
+
 static void looking_straight_up_or_down_needs_no_up(void **state) {
     (void)state;
     make_renderer(SUPPORT_ALL, 0);
@@ -593,6 +619,7 @@ int main(void) {
         cmocka_unit_test(the_header_has_the_matrix),
         cmocka_unit_test(a_window_straight_ahead_is_a_field_of_view),
         cmocka_unit_test(the_eye_keeps_its_precision_in_two_floats),
+        cmocka_unit_test(a_past_is_told_what_has_moved),
         cmocka_unit_test(looking_straight_up_or_down_needs_no_up),
         cmocka_unit_test(the_near_distance_of_the_scene_is_the_default),
         cmocka_unit_test(a_bad_camera_is_named),
