@@ -353,16 +353,17 @@ static void twice_the_size_is_the_same(void **state) {
     }
     for (uint32_t k = 1; k < WAYS; k++) {
         for (uint32_t i = 0; i < 3; i++) {
-            uint32_t most = 0, others = 0;
+            uint32_t most = max_difference(pixels[k][i], pixels[0][i], BYTES), others = 0, twos = 0;
             for (uint32_t p = 0; p < BYTES; p++) {
-                uint32_t off = (uint32_t)abs(pixels[k][i][p] - pixels[0][i][p]);
-                most = off > most ? off : most;
-                others += off != 0;
+                others += pixels[k][i][p] != pixels[0][i][p];
+                twos += abs(pixels[k][i][p] - pixels[0][i][p]) > 1;
             }
             print_message("  scale %.3f, resizable %u, halves %u: %u of %d bytes differ, by %u at most\n",
                           (double)ways[k].scale, ways[k].resizable, ways[k].halves, others, BYTES, most);
-            /* Halves are coarser: up to a tenth of a step of what is shown. What moves is sharpened: a step may become two. */
-            assert_true(most <= 2 && others < (ways[k].halves ? BYTES / 5 : BYTES / 50));
+            /* Halves are coarser: up to a tenth of a step of what is shown. While the view moves it is sharpened more: on
+             * SwiftShader one byte of one step becomes two. */
+            assert_true(most <= (i ? 1 : 2) && twos <= (i ? 0 : 1));
+            assert_true(others < (ways[k].halves ? BYTES / 5 : BYTES / 50));
         }
     }
 }
