@@ -165,6 +165,9 @@ static void what_cannot_be_leaves_all_as_it_was(void **state) {
 /* On drivers after the first 20: what the library holds does not depend on them. */
 static uint32_t times(void) { return trials(100, 100, 20); }
 
+/* Of 90 times: less than the smallest thing that could be left behind each time. */
+#define LEAK_MOST 4096
+
 /* What the process holds more after 100 times than after 10: of a target made anew, resized to or not, drawn to
  * or not. What frames take is the driver's. */
 static int64_t grown(masu_session *s, own_renderer *x, int resizes, int frames) {
@@ -199,12 +202,16 @@ static void a_hundred_resizes_take_nothing(void **state) {
     own.governor.mode = MASU_GOVERNOR_ON;
     make_own(&s, &x, &own);
     memset(s.blob, 0xEE, (size_t)s.scene.blob_bytes); /* it is not looked at again */
-    int64_t frames = grown(&s, &x, 0, 1), targets = grown(&s, &x, 0, 0), own_too = grown(&s, &x, 1, 0);
+    /* A leak is there each time; what the driver's heap has kept by chance (some kilobytes) is not: the least of
+     * four. */
+    int64_t frames = grown(&s, &x, 0, 1), targets = 0, own_too = INT64_MAX / 2;
+    for (int i = 0; i < 4 && own_too > targets + LEAK_MOST; i++)
+        targets = grown(&s, &x, 0, 0), own_too = grown(&s, &x, 1, 0);
     int64_t all = grown(&s, &x, 1, 1);
     printf("  heap bytes more after %u times: targets made anew %lld, resized to them too %lld;\n"
            "  2 frames of one size %lld, of each size %lld\n",
            times() - 10, (long long)targets, (long long)own_too, (long long)frames, (long long)all);
-    assert_true(own_too <= targets + 4096);
+    assert_true(own_too <= targets + LEAK_MOST);
     masu_stats_info stats;
     assert_int_equal(masu_stats(x.m, 0, &stats), MASU_OK);
     assert_true(stats.governor.samples > times() * 3 / 2 || masu_session_denied()); /* its knowledge has gone on */
