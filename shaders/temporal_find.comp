@@ -95,7 +95,9 @@ vec4 motion_at(ivec2 at, vec2 place, around a, vec2 size, out bool of_front)
 {
     vec2 inside = min(max(place, vec2(0.5)), size - 0.51); /* not even with a weight of 0 what lies beyond */
     vec4 moved = textureLod(velocity_image, inside * vec2(push.moved_x, push.moved_y), 0.0);
-    of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99);
+    /* Of a size of 1 what lies beyond may be read all the same, and NaN comes through a weight of 0. */
+    bool is_number = moved.x + moved.y + moved.z < 1e9;
+    of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99 && is_number);
     if (of_front) {
         moved = texelFetch(velocity_image, at + masu_found_beside(a.way), 0);
     }

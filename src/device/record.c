@@ -458,8 +458,9 @@ static void timestamp(masu_recorder *rec, uint32_t index) {
                                  rec->flight * (MASU_PASS_COUNT + 1) + index);
 }
 
-/* NaN or infinity, read as fp32, fp16 or unorm alike. */
-static uint32_t poison_word(uint32_t kind) { return kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
+/* NaN or infinity, read as fp32, fp16 or unorm alike; or NaN, 1, NaN, 1 as fp16 and 0.0078 as fp32, which passes for
+ * content where only one component is looked at. */
+static uint32_t poison_word(uint32_t kind) { return kind == 3 ? 0x3C007FC0u : kind == 2 ? 0x7C007C00u : 0x7FC07FC0u; }
 
 /* Of the slot, to where shaders and rays read them. */
 static void copy_materials(masu_recorder *rec) {

@@ -341,7 +341,7 @@ static void nothing_outside_of_the_rectangle_is_looked_at(void **state) {
     (void)state;
     static uint32_t kept[2][W * H];
     bake_ao("corner", 1, corner);
-    for (uint32_t poison = 0; poison < 3; poison++) {
+    for (uint32_t poison = 0; poison < 4; poison++) {
         masu_session_desc d = test_desc(NULL, W, H);
         d.scene_path = baked_scene("corner");
         d.desc.readback = MASU_READBACK_OCCLUSION;

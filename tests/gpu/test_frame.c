@@ -112,6 +112,13 @@ static void infinity_poison_changes_nothing(void **state) {
     compare_all_rungs(&d);
 }
 
+static void poison_that_is_half_numbers_changes_nothing(void **state) {
+    (void)state;
+    masu_session_desc d = test_desc("test_both", W, H);
+    d.desc.debug.poison = 3;
+    compare_all_rungs(&d);
+}
+
 static void separate_memory_per_role_changes_nothing(void **state) {
     (void)state;
     masu_session_desc d = test_desc("test_both", W, H);
@@ -316,6 +323,7 @@ int main(void) {
         cmocka_unit_test(sessions_share_what_is_compiled_and_nothing_else),
         cmocka_unit_test(nan_poison_in_all_transient_memory_changes_nothing),
         cmocka_unit_test(infinity_poison_changes_nothing),
+        cmocka_unit_test(poison_that_is_half_numbers_changes_nothing),
         cmocka_unit_test(separate_memory_per_role_changes_nothing),
         cmocka_unit_test(one_and_three_frames_in_flight_change_nothing),
         cmocka_unit_test(timestamps_change_nothing_and_name_the_passes_that_ran),

@@ -78,6 +78,7 @@ static void compare_sizes(const char *scene, size_t count) {
         live = next;
         own_renderer fresh;
         masu_desc fit = desc_of(&s, w, h);
+        fit.debug.poison = i % 2 ? 1 : 3; /* what it draws is of no memory that it has not written */
         make_own(&s, &fresh, &fit);
         if (drawn) draw_frames(&s, &fresh, 1, drawn, pixels[1]); /* to the same frame number */
         /* Before and after another size the one that has a past, which masu_resize ends by itself. */
