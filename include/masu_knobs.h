@@ -154,7 +154,8 @@ typedef enum masu_knob_use {
            " are blended from 3/4 of it on. 0: the scene's.",                                      \
            "Pixels that trace: the higher, the more.")                                             \
     NUMBER(uint32_t,         specular_frames,      1,    240,  32,   SPECULAR,  "frames",          \
-           "How far back the temporal accumulation reaches, in frames of 1/60 s.",                 \
+           "How far back the reflections' own mean reaches, in frames of 1/60 s. 0: 32, or 8"       \
+           " with temporal, which takes a mean over frames itself.",                               \
            "None.")
 /* clang-format on */
 

@@ -8,7 +8,8 @@
  * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
  * and not by the frame: what it leaves does not flicker.
  *
- * push.taps: neighbours; push.temporal: not 0: there is a temporal accumulation.
+ * push.taps: neighbours; push.luma_width: how far off a neighbour's luma may be, in deviations: less before rung.temporal, which
+ * takes a mean itself; push.temporal: not 0: there is a temporal accumulation.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -32,7 +33,6 @@ layout(set = MASU_SET_PASS, binding = 2) uniform usampler2D age_image;
 layout(set = MASU_SET_PASS, binding = 3, rgba16f) uniform writeonly image2D smooth_image;
 
 const float widest = 12.0; /* texels */
-const float luma_width = 2.0; /* deviations */
 
 /* Deviation of the luma of a texel, from its 3x3: where no temporal accumulation tells, or too few frames. */
 float spread_around(ivec2 texel, masu_guide g, vec3 point, float width)
@@ -114,7 +114,7 @@ void main()
                     }
                     float off = masu_specular_off(flat_here, uvec2(at), o) * narrow;
                     vec3 other = masu_tamed(texelFetch(light_image, at, 0).rgb);
-                    float luma = abs(masu_luma(other) - y) / (luma_width * sigma + 1e-4);
+                    float luma = abs(masu_luma(other) - y) / (push.luma_width * sigma + 1e-4);
                     float alike = masu_pow(max(dot(o.normal, g.normal), 0.0), 64.0);
                     float weight = alike * masu_exp2(-2.0 * off * off - luma - 2.0 * share);
                     sum += weight * vec4(other, 1.0);

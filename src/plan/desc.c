@@ -56,6 +56,10 @@ static masu_switch temporal_of(const masu_desc *d, const masu_rung *rung) {
     return frames_follow(d) && silent ? MASU_ON : MASU_OFF;
 }
 
+/* Beside many samples from one a longer mean of the reflections alone blurs what that has sharp, and tells late:
+ * docs/design/41-temporal.md. */
+#define SPECULAR_FRAMES_RESOLVED 8u
+
 /* Words that mean the same whatever is drawn. */
 static void resolve_words(masu_rung *rung) {
     if (rung->easu == MASU_EASU_AUTO) rung->easu = MASU_EASU_FULL;
@@ -108,10 +112,12 @@ masu_desc masu_desc_resolved(const masu_desc *desc) {
         for (uint32_t r = 0; smooth && r < d.rung_count; r++) d.rungs[r].aa = MASU_AA_SMAA_HIGH;
     }
     for (uint32_t r = 0; r < d.rung_count && r < MASU_MAX_RUNGS; r++) {
+        fill(&d.rungs[r].temporal, temporal_of(&d, &d.rungs[r]));
+        if (d.rungs[r].temporal == MASU_ON && d.rungs[r].specular_frames == 0)
+            d.rungs[r].specular_frames = SPECULAR_FRAMES_RESOLVED;
         masu_rung_defaults(&d.rungs[r]);
         if (d.rungs[r].specular_cutoff == 0.0f && d.scene)
             d.rungs[r].specular_cutoff = d.scene->specular_cutoff;
-        fill(&d.rungs[r].temporal, temporal_of(&d, &d.rungs[r]));
         resolve_words(&d.rungs[r]);
         if (d.scene) resolve_scene(&d, &d.rungs[r]);
         if ((d.scene || d.source.view) && d.output.width && d.output.height) resolve_sizes(&d, r);

@@ -408,6 +408,7 @@ static void with_a_governor_many_samples_come_from_one(void **state) {
     masu_desc d = scene_desc(RASTER | SDF, 640, 360);
     d.rung_count = 8;
     for (uint32_t r = 0; r < 8; r++) d.rungs[r] = (masu_rung){.scale = r ? 0.5f : 1.0f, .sharpness = 0.5f};
+    d.rungs[0].specular_frames = 24;
     d.rungs[2].upscale = MASU_ON;
     d.rungs[3].easu = MASU_EASU_FAST;
     d.rungs[4].sharpen = MASU_OFF;
@@ -424,6 +425,8 @@ static void with_a_governor_many_samples_come_from_one(void **state) {
         for (uint32_t r = 0; r < 8; r++) {
             assert_int_equal(is.rungs[r].temporal, r < 2 ? MASU_ON : MASU_OFF);
             assert_int_equal(twice.rungs[r].temporal, is.rungs[r].temporal);
+            assert_int_equal(is.rungs[r].specular_frames, r == 0 ? 24 : r == 1 ? 8 : 32); /* a host's own stays */
+            assert_int_equal(twice.rungs[r].specular_frames, is.rungs[r].specular_frames);
         }
         assert_int_equal(is.rungs[1].sharpen, MASU_OFF); /* nothing is upscaled by EASU there */
         assert_int_equal(is.rungs[2].sharpen, MASU_ON);
