@@ -204,7 +204,7 @@ static void find_size(const study *w, masu_past_row *row) {
 }
 
 /* The other way gets mips as fine as rung.temporal has them (src/plan/push.c), and reflections without the means that AUTO leaves
- * out there. */
+ * out there, and the one that it makes short as short. */
 static masu_session_desc session_of_way(const study *w, const masu_past_row *row) {
     const bool other = row->way == MASU_PAST_GSR2;
     masu_session_desc d = session_of(w, other ? (VkExtent2D){row->render_width, row->render_height} : w->d->size);
@@ -213,6 +213,7 @@ static masu_session_desc session_of_way(const study *w, const masu_past_row *row
     d.desc.rungs[0].temporal = row->way == MASU_PAST_OWN ? MASU_ON : MASU_OFF;
     if (!other) return d;
     d.desc.rungs[0].sharpen = MASU_OFF;
+    d.desc.rungs[0].specular_frames = 8;
     d.desc.rungs[0].specular_reuse = d.desc.rungs[0].specular_taa = MASU_OFF;
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
     d.desc.debug.mip_bias = log2f((float)row->scale) - 2.0f;
