@@ -69,8 +69,8 @@ typedef enum masu_knob_use {
  * tables. A row is all that a new knob takes; `make docs-tables` then writes docs/knobs.md anew.
  * Below its columns stand what the knob does and what it costs.
  *
- * 0 is always taken: it becomes the number of its column or, where that is 0 too, means what the
- * text says. All other numbers lie within min and max. WORD takes the words of its enum, of which 0
+ * 0 is always taken: it becomes the number of its column, where the text says no other, or, where
+ * that is 0 too, means what the text says. All other numbers lie within min and max. WORD takes the words of its enum, of which 0
  * is AUTO: the text says what that is. */
 /* clang-format off */
 #define MASU_PRODUCT_KNOBS(NUMBER, WORD)                                                           \

@@ -80,8 +80,7 @@ typedef struct masu_debug {
     uint32_t labels; /* not 0: object names and pass labels, where VK_EXT_debug_utils is enabled on
                         the instance */
     uint32_t poison; /* not 0: fills all transient image memory with NaN patterns before each frame;
-                        the picture must not change. A value of 2 uses infinities, 3 what is NaN in every other
-                        half float and else a number */
+                        the picture must not change. 1: NaN; 2: infinities; 3: as half floats NaN and 1 in turn */
     uint32_t casters; /* not 0: culls for the sun as well, with all of the scene in its view, for the
                          numbers in masu_stats */
     uint32_t ao_full;    /* not 0: ambient occlusion at each pixel instead of each fourth, */

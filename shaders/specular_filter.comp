@@ -8,8 +8,8 @@
  * Its radius is that of the lobe's picture on the surface (filter.glsl). The pattern is turned by the place
  * and not by the frame: what it leaves does not flicker.
  *
- * push.taps: neighbours; push.luma_width: how far off a neighbour's luma may be, in deviations: less before rung.temporal, which
- * takes a mean itself; push.temporal: not 0: there is a temporal accumulation.
+ * push.taps: neighbours; push.luma_width: deviations by which a neighbour's luma is off, and its weight halved: fewer before
+ * rung.temporal, which takes a mean itself; push.frames: how far back the mean reaches, 1/60 s; push.temporal: not 0: there is a temporal accumulation.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -85,7 +85,7 @@ void main()
                 float sigma;
                 if (push.temporal != 0u && frames > 4.0) {
                     sigma = masu_sqrt(masu_sane(own.a, 0.0, 65504.0) - y * y) *
-                            masu_rsqrt(min(frames, 2.0 / masu_time_share(32.0)));
+                            masu_rsqrt(min(frames, 2.0 / masu_time_share(float(push.frames))));
                 } else {
                     sigma = spread_around(ivec2(texel), g, point, width);
                 }

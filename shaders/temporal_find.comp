@@ -93,11 +93,10 @@ around depths_around(ivec2 at, ivec2 size)
 /* Pixels that the pixel has moved, how its depth has grown; w as in the image. */
 vec4 motion_at(ivec2 at, vec2 place, around a, vec2 size, out bool of_front)
 {
-    vec2 inside = min(max(place, vec2(0.5)), size - 0.51); /* not even with a weight of 0 what lies beyond */
+    /* Not even with a weight of 0 what lies beyond: NaN comes through it. Of a size of 1 no place is far enough from it. */
+    vec2 inside = min(max(place, vec2(0.5)), size - 0.51);
     vec4 moved = textureLod(velocity_image, inside * vec2(push.moved_x, push.moved_y), 0.0);
-    /* Of a size of 1 what lies beyond may be read all the same, and NaN comes through a weight of 0. */
-    bool is_number = moved.x + moved.y + moved.z < 1e9;
-    of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99 && is_number);
+    of_front = a.nearest - a.farthest > apart * a.nearest || !(moved.w > 0.99) || any(lessThan(size, vec2(2.0)));
     if (of_front) {
         moved = texelFetch(velocity_image, at + masu_found_beside(a.way), 0);
     }
@@ -143,7 +142,8 @@ bool is_other(vec2 before, colors c)
     vec2 inside = min(max(before * shown, half_texel), max(shown - 2.0 * half_texel, half_texel));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
-        sum += textureLod(history_image, inside + vec2(2 * (i & 1) - 1, 2 * (i >> 1) - 1) * half_texel, 0.0).rgb;
+        vec2 corner = inside + vec2(2 * (i & 1) - 1, 2 * (i >> 1) - 1) * half_texel;
+        sum += textureLod(history_image, min(corner, shown - half_texel), 0.0).rgb; /* of a size of 1, the corner is beyond */
     }
     vec3 mean = c.mean * c.mean + c.deviation * c.deviation;
     return any(greaterThan(abs(0.25 * sum - mean), c.deviation * (2.0 * c.mean + c.deviation) + unseen));

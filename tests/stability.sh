@@ -73,6 +73,7 @@ What else is extreme, and which test has it:
 | fields of NaN and infinity | a miss, and nothing beside it | `test_extremes` |
 | roughness, all of it, against double precision | a bound on the lobe's error | `test_brdf`, `test_vndf` |
 | each input image and buffer of each pass full of NaN, infinities, denormals, huge, negative | finite pictures; none keeps it. SwiftShader, which looks at no bounds, runs all but the reflections' inputs: of those one still ends the process | `test_poison` |
+| images of more columns or rows than a frame draws, what lies beyond NaN in one component alone; down to 1x1 | the picture of a renderer of that size | `test_resize` |
 | a mirror of textures at rest, 64 frames | the same to the bit; rougher surfaces take new rays in each frame | `test_specular_textures` |
 | the n-th Vulkan call fails, in init, load, resize; a device that is lost; a block one byte short | a named error, nothing left behind | `test_failures`, `test_faults` |
 | each limit of the description, and one over | refused by name, with the limit | `test_desc` |

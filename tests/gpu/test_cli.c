@@ -354,6 +354,24 @@ static void a_setting_is_drawn_by_its_name(void **state) {
     }
 }
 
+/* All that has followed from it, too: reflections have the means of pictures without a past. */
+static void other_anti_aliasing_takes_a_past_out_of_a_rung(void **state) {
+    (void)state;
+    char name[256], with[512], error[ERROR_SIZE];
+    write_ladder("past.json", "0.5", ", \"temporal\": \"on\"");
+    snprintf(with, sizeof with, "--ladder %s/past.json --rung 1 --aa fxaa", scratch);
+    const char *const ways[] = {with, "--setting scale=0.5+march_steps=64+shadow_refresh=1-2-4-8+aa=fxaa+sharpness=0"};
+    struct masu_image images[2];
+    for (int k = 0; k < 2; k++) {
+        snprintf(name, sizeof name, "%s/aa%d.png", scratch, k);
+        assert_int_equal(
+            cli_run("render %s -o %s --size 64x48 --frames 24 --time-step 0.05 %s", scene_path("test_live"), name, ways[k]), 0);
+        assert_ok(masu_image_load_png(name, &images[k], error, sizeof error));
+    }
+    assert_memory_equal(images[0].rgba, images[1].rgba, 4 * 64 * 48);
+    for (int k = 0; k < 2; k++) masu_image_free(&images[k]);
+}
+
 static void plan_says_what_is_in_and_what_was_left_out(void **state) {
     (void)state;
     assert_int_equal(cli_run("plan %s --size 64x64", scene_path("test_sphere_mesh")), 0);
@@ -548,6 +566,7 @@ int main(void) {
         cmocka_unit_test(the_lights_study_compares_pictures_and_counts_lights),
         cmocka_unit_test(ladders_are_read_shown_and_built_in),
         cmocka_unit_test(a_setting_is_drawn_by_its_name),
+        cmocka_unit_test(other_anti_aliasing_takes_a_past_out_of_a_rung),
         cmocka_unit_test(plan_says_what_is_in_and_what_was_left_out),
         cmocka_unit_test(the_governor_reports_what_it_has_done),
         cmocka_unit_test(rays_choose_what_finds_polygons),

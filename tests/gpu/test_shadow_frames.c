@@ -176,7 +176,7 @@ static void a_pace_changes_nothing_that_stands_still(void **state) {
         assert_memory_equal(seen_a, seen_b, sizeof seen_a);
     }
     shadow_close(&t);
-    for (uint32_t poison = 1; poison <= 2; poison++) {
+    for (uint32_t poison = 1; poison <= 3; poison++) {
         masu_session_desc d = test_desc(NULL, W, H);
         d.scene_path = baked_scene("still");
         d.desc.readback = MASU_READBACK_OCCLUSION | MASU_READBACK_SHADOW_MAP;

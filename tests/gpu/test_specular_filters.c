@@ -229,7 +229,7 @@ static void a_white_world_stays_white(void **state) {
 static void what_other_images_left_behind_is_not_seen(void **state) {
     (void)state;
     masu_specular_run run;
-    for (uint32_t poison = 0; poison < 3; poison++) {
+    for (uint32_t poison = 0; poison < 4; poison++) {
         masu_session_desc d = desc_of("filters");
         d.desc.debug.poison = poison;
         open_session(&s, &d);

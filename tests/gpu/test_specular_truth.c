@@ -380,10 +380,10 @@ static const char bright[] =
 /* Under light that leaves the range of halves, and from memory full of NaN and Inf. */
 static void pixels_are_finite(void **state) {
     (void)state;
-    static uint16_t pictures[3][4 * 100 * 60];
+    static uint16_t pictures[4][4 * 100 * 60];
     bake_scene("bright", bright);
     for (uint32_t reference = 0; reference < 2; reference++) {
-        for (uint32_t poison = 0; poison < (whole_run() ? 3 : 2); poison++) {
+        for (uint32_t poison = 0; poison < (whole_run() ? 4 : 2); poison++) {
             masu_session_desc d = test_desc(NULL, 100, 60);
             d.scene_path = baked_scene("bright");
             d.desc.readback = MASU_READBACK_HDR;

@@ -397,11 +397,12 @@ static void depth_is_found_in_a_larger_image(void **state) {
 
 static void equal_frames_give_equal_bytes(void **state) {
     (void)state;
-    for (int k = 0; k < 2; k++) {
+    static const uint32_t poison[] = {0, 1, 3};
+    for (int k = 0; k < 3; k++) {
         masu_session s;
         masu_session_desc d = temporal_desc("test_fog", 1.0f);
-        d.desc.debug.poison = (uint32_t)k; /* nor does what images hold before they are written, */
-        d.desc.rung_count = 5;             /* or beyond the part of them that a rung has */
+        d.desc.debug.poison = poison[k]; /* nor does what images hold before they are written, */
+        d.desc.rung_count = 5;           /* or beyond the part of them that a rung has */
         d.desc.rungs[1] = (masu_rung){.temporal = MASU_ON, .scale = 0.33f, .sharpen = MASU_ON};
         d.desc.rungs[2] = (masu_rung){.scale = 0.6f, .aa = MASU_AA_SMAA_LOW};
         d.desc.rungs[3] = (masu_rung){.temporal = MASU_ON, .scale = 0.02f};
@@ -415,8 +416,8 @@ static void equal_frames_give_equal_bytes(void **state) {
                  k ? b.rgba : a.rgba);
         }
         close_session(&s);
+        if (k) assert_memory_equal(a.rgba, b.rgba, BYTES);
     }
-    assert_memory_equal(a.rgba, b.rgba, BYTES);
 }
 
 static void a_cut_forgets_all(void **state) {

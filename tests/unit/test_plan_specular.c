@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "plan/compile.h"
+#include "plan/push.h"
 #include "support/desc.h"
 
 static masu_frame_plan with, without;
@@ -138,6 +139,11 @@ static void many_samples_from_one_go_without_two_means(void **state) {
         compile(&d, &with);
         for (uint32_t r = 0; r < 2; r++) {
             const masu_pass_set *active = &with.rungs[r].active;
+            const masu_push_block push = masu_push_of(&with, r, MASU_PASS_SPECULAR_FILTER, 0);
+            float width; /* after `taps`; then how far back the mean reaches that it deviates from */
+            memcpy(&width, &push.own.word[1], sizeof width);
+            assert_true(width == (r ? 0.5f : 2.0f));
+            assert_int_equal(push.own.word[2], r ? 8 : 32);
             assert_int_equal(masu_has_pass(active, MASU_PASS_SPECULAR_REUSE), !r || asked);
             assert_int_equal(masu_has_pass(active, MASU_PASS_SPECULAR_TAA), !r || asked);
             assert_true(masu_has_pass(active, MASU_PASS_SPECULAR_TEMPORAL));

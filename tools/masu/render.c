@@ -209,7 +209,10 @@ static void turn(masu_desc *d, const masu_turned *t) {
         if (t->aa_given) {
             rung->aa = t->to.aa;
             /* In whose place a rung's past would be, and what has followed from that. */
-            if (rung->temporal == MASU_ON) rung->sharpen = rung->specular_reuse = rung->specular_taa = MASU_AUTO;
+            if (rung->temporal == MASU_ON) {
+                rung->sharpen = rung->specular_reuse = rung->specular_taa = MASU_AUTO;
+                rung->specular_frames = 0;
+            }
             rung->temporal = MASU_OFF;
         }
     }

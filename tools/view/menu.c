@@ -33,6 +33,7 @@ static double of_scene(const masu_viewer *v, const masu_knob *k) {
     if (!strcmp(k->name, "shadow_resolution")) return v->scene.shadow_resolution;
     if (!strcmp(k->name, "shadow_cascades")) return v->scene.shadow_cascades;
     if (!strcmp(k->name, "specular_cutoff")) return (double)v->scene.specular_cutoff;
+    if (!strcmp(k->name, "specular_frames") && v->want.rungs[v->rung].temporal == MASU_ON) return 8;
     return k->zero;
 }
 

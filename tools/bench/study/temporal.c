@@ -204,7 +204,7 @@ static void find_size(const study *w, masu_past_row *row) {
 }
 
 /* The other way gets mips as fine as rung.temporal has them (src/plan/push.c), and reflections without the means that AUTO leaves
- * out there, and the one that it makes short as short. */
+ * out there, and the mean over 8 frames that it has instead of 32; their filter over neighbours is that of pictures without a past. */
 static masu_session_desc session_of_way(const study *w, const masu_past_row *row) {
     const bool other = row->way == MASU_PAST_GSR2;
     masu_session_desc d = session_of(w, other ? (VkExtent2D){row->render_width, row->render_height} : w->d->size);
