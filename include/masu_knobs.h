@@ -70,8 +70,8 @@ typedef enum masu_knob_use {
  * Below its columns stand what the knob does and what it costs.
  *
  * 0 is always taken: it becomes the number of its column, where the text says no other, or, where
- * that is 0 too, means what the text says. All other numbers lie within min and max. WORD takes the words of its enum, of which 0
- * is AUTO: the text says what that is. */
+ * that is 0 too, means what the text says. All other numbers lie within min and max. WORD takes the
+ * words of its enum, of which 0 is AUTO: the text says what that is. */
 /* clang-format off */
 #define MASU_PRODUCT_KNOBS(NUMBER, WORD)                                                           \
     /*     type              name                  min   max   0 is  of use in  unit          */   \

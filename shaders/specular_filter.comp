@@ -9,7 +9,8 @@
  * and not by the frame: what it leaves does not flicker.
  *
  * push.taps: neighbours; push.luma_width: deviations by which a neighbour's luma is off, and its weight halved: fewer before
- * rung.temporal, which takes a mean itself; push.frames: how far back the mean reaches, 1/60 s; push.temporal: not 0: there is a temporal accumulation.
+ * rung.temporal, which takes a mean itself; push.temporal: not 0: there is a temporal accumulation; push.frames: how far
+ * back it reaches, 1/60 s.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

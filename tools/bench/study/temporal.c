@@ -203,8 +203,8 @@ static void find_size(const study *w, masu_past_row *row) {
     row->render_height = size.height;
 }
 
-/* The other way gets mips as fine as rung.temporal has them (src/plan/push.c), and reflections without the means that AUTO leaves
- * out there, and the mean over 8 frames that it has instead of 32; their filter over neighbours is that of pictures without a past. */
+/* The other way gets mips as fine as rung.temporal has them (src/plan/push.c), and the means of reflections that AUTO has
+ * there; their filter over neighbours is that of pictures without a past. */
 static masu_session_desc session_of_way(const study *w, const masu_past_row *row) {
     const bool other = row->way == MASU_PAST_GSR2;
     masu_session_desc d = session_of(w, other ? (VkExtent2D){row->render_width, row->render_height} : w->d->size);
@@ -213,8 +213,11 @@ static masu_session_desc session_of_way(const study *w, const masu_past_row *row
     d.desc.rungs[0].temporal = row->way == MASU_PAST_OWN ? MASU_ON : MASU_OFF;
     if (!other) return d;
     d.desc.rungs[0].sharpen = MASU_OFF;
-    d.desc.rungs[0].specular_frames = 8;
-    d.desc.rungs[0].specular_reuse = d.desc.rungs[0].specular_taa = MASU_OFF;
+    masu_desc own = {.rung_count = 1, .rungs = {{.temporal = MASU_ON}}};
+    own = masu_desc_resolved(&own);
+    d.desc.rungs[0].specular_frames = own.rungs[0].specular_frames;
+    d.desc.rungs[0].specular_reuse = own.rungs[0].specular_reuse;
+    d.desc.rungs[0].specular_taa = own.rungs[0].specular_taa;
     d.desc.readback = MASU_READBACK_DEPTH | MASU_READBACK_VELOCITY;
     d.desc.debug.mip_bias = log2f((float)row->scale) - 2.0f;
     return d;
