@@ -9,10 +9,9 @@
  * Everything is display light, as an eye takes the mean of it (docs/design/31-truth.md); a: samples. upscale/mean.glsl says how it
  * is stored, upscale/history.glsl where it was.
  *
- * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size), push.steps_* = 1 / that;
- * push.first_*: where the first pixel's middle lies, push.last_*: how far a place may, texels of the render size whose
- * middles are whole numbers; push.end_*: the middle of the last pixel; push.texel_*, push.moved_*, push.old_*: 1 / size of
- * the images of colour, velocity, history.
+ * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size); push.last_*: how far a place may
+ * lie, texels of the render size whose middles are whole numbers; push.texel_*: 1 / size of the image of colour; the rest is
+ * history.glsl's.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -34,11 +33,11 @@ void main()
     if (masu_is_outside(at)) {
         return;
     }
-    vec2 steps = vec2(push.steps_x, push.steps_y);
+    vec2 scale = vec2(push.scale_x, push.scale_y), steps = 1.0 / scale;
     /* In texels of the render size, whose middles are whole numbers: where the pixel lies; that within the picture, and a
      * little before the middle of the last one, for what lies beyond is read even for a weight of 0; the texel that it is
      * in; and of the four around it the upper left one. Of a size of 1 they are the same texel. */
-    vec2 place = vec2(at) * vec2(push.scale_x, push.scale_y) + (vec2(push.first_x, push.first_y) - frame.shifts.xy);
+    vec2 place = (vec2(at) + 0.5) * scale - (frame.shifts.xy + 0.5);
     vec2 inside = min(max(place, vec2(0.0)), vec2(push.last_x, push.last_y));
     vec2 texel = floor(inside + 0.5), corner = floor(inside);
     vec2 f = place - corner;
@@ -49,7 +48,7 @@ void main()
          blue = textureGather(color_image, gather, 2);
     green += masu_root_rest * textureGather(color_image, gather, 3);
     uvec2 found = texelFetch(found_image, ivec2(texel), 0).xy;
-    vec4 old = masu_history(found, vec2(at) + 0.5, ivec2(texel), inside, steps);
+    masu_past old = masu_history(found, vec2(at) + 0.5, ivec2(texel), inside, steps);
 
     /* Of what rests in a world that does a sample counts for the pixel that it lies in, and a little across its border. Of all else
      * there are few, and it counts by a tent as wide as two pixels of the output; at half size a quarter wider (0.6 of that and
@@ -60,13 +59,13 @@ void main()
     float top = stays ? 1.5 : 1.0;
     vec2 first = clamp(top - abs(f) * slope, 0.0, 1.0), second = clamp(top - abs(1.0 - f) * slope, 0.0, 1.0);
     vec2 both = first + second;
-    float count = old.a + both.x * both.y;
+    float count = old.mean.a + both.x * both.y;
     float rest = max(1.0 - count, 0.0);
     f = clamp(f, 0.0, 1.0);
     vec4 around = vec4(1.0 - f.x, f.x, f.x, 1.0 - f.x) * vec4(f.y, f.y, 1.0 - f.y, 1.0 - f.y);
     vec4 weights = vec4(first.x, second.x, second.x, first.x) * vec4(second.y, second.y, first.y, first.y);
     weights += rest * around;
-    vec3 sum = old.a * old.rgb + vec3(dot(weights, red * red), dot(weights, green * green), dot(weights, blue * blue));
+    vec3 sum = old.mean.a * old.mean.rgb + vec3(dot(weights, red * red), dot(weights, green * green), dot(weights, blue * blue));
     vec3 light = sum * (1.0 / max(count, 1.0));
-    MASU_STORE_SAFE(accumulated_image, at, masu_mean_rounded(light, count, masu_chance(at)));
+    masu_show(ivec2(at), light, count, old, stays, masu_chance(at));
 }

@@ -33,6 +33,7 @@
 #include "shared/motion.glsl"
 #include "upscale/corners.glsl"
 #include "upscale/found.glsl"
+#include "upscale/mean.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -40,7 +41,7 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D color_image; /* roots
 layout(set = MASU_SET_PASS, binding = 1) uniform sampler2D depth_image;
 layout(set = MASU_SET_PASS, binding = 2) uniform sampler2D velocity_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 3) uniform sampler2D old_depth_image;
-layout(set = MASU_SET_PASS, binding = 4) uniform sampler2D history_image; /* linear */
+layout(set = MASU_SET_PASS, binding = 4) uniform sampler2DArray history_image; /* linear */
 layout(set = MASU_SET_PASS, binding = 5, rg32ui) uniform writeonly uimage2D found_image;
 
 const float most_at_rest = masu_found_most;
@@ -143,7 +144,7 @@ bool is_other(vec2 before, colors c)
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
         vec2 corner = inside + vec2(2 * (i & 1) - 1, 2 * (i >> 1) - 1) * half_texel;
-        sum += textureLod(history_image, min(corner, shown - half_texel), 0.0).rgb; /* of a size of 1, the corner is beyond */
+        sum += textureLod(history_image, vec3(min(corner, shown - half_texel), masu_layer_before()), 0.0).rgb; /* of a size of 1, the corner is beyond */
     }
     vec3 mean = c.mean * c.mean + c.deviation * c.deviation;
     return any(greaterThan(abs(0.25 * sum - mean), c.deviation * (2.0 * c.mean + c.deviation) + unseen));

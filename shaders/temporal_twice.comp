@@ -52,15 +52,15 @@ void resolve(cell c, ivec2 way)
     vec4 column = frame.columns[way.x], row = frame.rows[way.y];
     vec2 f = vec2(column.x, row.x);
     vec2 place = min(vec2(c.before) + f, vec2(c.last) - 0.01); /* samplers care for what is less than 0 */
-    vec4 old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
+    masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
     vec2 y = (stays ? row.y * vec2(1 - way.y, way.y) : row.zw) * c.inside_y;
-    float count = old.a + (x.x + x.y) * (y.x + y.y);
+    float count = old.mean.a + (x.x + x.y) * (y.x + y.y);
     float rest = max(1.0 - count, 0.0), below = f.y * rest, above = rest - below;
     vec2 right = f.x * vec2(above, below), left = vec2(above, below) - right;
     vec4 weights = x.xyxy * y.xxyy + vec4(left.x, right.x, left.y, right.y);
-    vec3 sum = old.a * old.rgb;
+    vec3 sum = old.mean.a * old.mean.rgb;
     sum += weights.x * c.light[0];
     sum += weights.y * c.light[1];
     sum += weights.z * c.light[2];
@@ -68,7 +68,7 @@ void resolve(cell c, ivec2 way)
     if (all(lessThan(uvec2(at), uvec2(pc.output_width, pc.output_height)))) { /* -1, before the first, is not */
         vec3 mean = sum * (1.0 / max(count, 1.0));
         uint other = uint(way.x) * masu_chance_step.x + uint(way.y) * masu_chance_step.y;
-        MASU_STORE_SAFE(accumulated_image, at, masu_mean_rounded(mean, count, c.chance + other));
+        masu_show(at, mean, count, old, stays, c.chance + other);
     }
 }
 

@@ -14,6 +14,7 @@
  *   MASU_STORE_SAFE(img, p, v)    vec4 v, as it is            what is known to be finite, at a p that is known to
  *                                                             lie within the image: format clamps the rest, but
  *                                                             for masu_ten_bits, which takes 0..1 alone
+ *   MASU_STORE_LAYER(img, p, layer, v)                        the same to a layer of an array
  *
  * p is an ivec2 or a uvec2. Each argument is evaluated once. Write a semicolon after the macro and
  * braces around it under if/else: it expands to a block.
@@ -52,6 +53,7 @@
     MASU_STORE_FLOATS(img, p, vec4((x), 0.0, 0.0, 0.0), -3.4e38, 3.4e38)
 
 #define MASU_STORE_SAFE(img, p, v) imageStore(img, ivec2(p), (v))
+#define MASU_STORE_LAYER(img, p, layer, v) imageStore(img, ivec3(ivec2(p), (layer)), (v))
 
 /* v of 0..1 in the bits of A2B10G10R10_UNORM, to the nearest step, alpha 1. Added to 2^23, a number has its
  * integer in its last bits, rounded; what stands before them, 0x4B000000, is shifted out of two of three. */

@@ -1,5 +1,5 @@
 /*
- * mean.glsl: a mean over frames as `accumulated` and `history` hold it, 16 bits a channel: display light, and how many samples
+ * mean.glsl: a mean over frames as `history` holds it, 16 bits a channel: display light, and how many samples
  * stand in it, of which there are 28 of before and this frame's one at most. After globals.glsl.
  *
  * It is rounded up or down by chance: the nearest step would hold a history still that is a little wrong. In steps of 1/65535,
@@ -13,6 +13,17 @@ layout(constant_id = 14) const bool masu_half_means = false;
 
 const float masu_mean_counts = 64.0; /* of which a channel holds the share */
 const float masu_mean_most = 29.5;   /* samples, with room for rounding */
+
+/* Of `history`: the layer that this frame writes, and that of the frame before. What was not submitted is followed by a cut. */
+int masu_layer()
+{
+    return int(frame.history.x & 1u);
+}
+
+float masu_layer_before()
+{
+    return float(1u - (frame.history.x & 1u));
+}
 
 /* What a mean is rounded by: R2 over the pixels as in dither.glsl, in 24 bits, which multiply faster. */
 const uvec2 masu_chance_step = uvec2(0xC13FAAu, 0x91E10Eu);
@@ -41,13 +52,6 @@ uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
     }
     float off = float(chance >> 16 & 0xFFu) * (1.0 / (256.0 * 65535.0)) - 127.5 / (256.0 * 65535.0);
     return masu_mean_packed(vec4(light + off, count * (1.0 / masu_mean_counts)));
-}
-
-/* Whether a pixel has more samples than what moves has, which is 2 and one of this frame. What moves by less than a
- * sixteenth of a pixel has, too. */
-bool masu_mean_rests(vec4 mean)
-{
-    return mean.a > (masu_half_means ? 3.25 : 3.25 / masu_mean_counts);
 }
 
 /* How many samples stand in what was sampled. */

@@ -31,6 +31,7 @@ masu_use masu_use_of(masu_usage usage, masu_pass_kind kind) {
                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0};
     case MASU_WRITE:
     case MASU_UPDATE:
+    case MASU_PING_PONG:
         return (masu_use){1, shader, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
                           VK_IMAGE_LAYOUT_GENERAL, 1};
     case MASU_READ_BUFFER:
@@ -124,7 +125,7 @@ VkImageMemoryBarrier masu_image_barrier(const masu_recorder *rec, masu_image_id 
         .subresourceRange = {.aspectMask =
                                  depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                              .levelCount = 1,
-                             .layerCount = 1}};
+                             .layerCount = id < MASU_IMAGE_SOURCE ? masu_images[id].layers : 1}};
 }
 
 void masu_barrier_before(masu_recorder *rec, uint32_t pass) {

@@ -5,6 +5,7 @@
 #include "plan/buffer_plan.h"
 
 #include "base/error.h"
+#include "device/barriers.h"
 #include "device/ray_query.h"
 #include "scene/scene.h"
 
@@ -131,8 +132,7 @@ static void write_pass_set(masu_device *m, const masu_rung_plan *rp, uint32_t pa
                 .imageView = id == MASU_IMAGE_TARGET     ? m->plan->desc.targets.views[target]
                              : writes && m->stores[id] ? m->stores[id]
                                                        : m->views[id],
-                .imageLayout =
-                    writes ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+                .imageLayout = masu_use_of((masu_usage)rp->access[pass][a].usage, masu_passes[pass].kind).layout};
             VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                           .dstSet = set,
                                           .dstBinding = binding++,

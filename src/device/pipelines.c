@@ -165,8 +165,8 @@ static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *
                        : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                 1, stages,
                 writes ? NULL
-                : rp->access[pass][a].usage == MASU_READ_LINEAR ? &m->linear
-                                                                : &m->sampler};
+                : rp->access[pass][a].usage == MASU_READ ? &m->sampler
+                                                         : &m->linear};
             n++;
         }
     }

@@ -41,7 +41,7 @@ static float mirrored(uint32_t n, uint32_t base) {
 }
 
 static int has_resolve(const masu_frame_data *f) {
-    return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_SHOW);
+    return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_FIND);
 }
 
 /* From 1 on: the first place of Halton's sequence is the corner. */

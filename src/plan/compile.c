@@ -157,6 +157,7 @@ static VkImageUsageFlags usage_flag(masu_usage usage) {
     case MASU_HOST_DEPTH: return HOST_READS | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     case MASU_WRITE:
     case MASU_UPDATE: return VK_IMAGE_USAGE_STORAGE_BIT;
+    case MASU_PING_PONG: return VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     case MASU_WRITE_COLOR:
     case MASU_BLEND_COLOR: return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     case MASU_WRITE_DEPTH:
@@ -447,7 +448,7 @@ static uint64_t left_out_bytes(const masu_frame_plan *plan) {
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (plan->images[i].used) continue;
         VkExtent2D size = masu_plan_extent(plan, masu_images[i].extent, render);
-        bytes += (uint64_t)size.width * size.height * masu_format_bytes(masu_plan_format(plan, i));
+        bytes += (uint64_t)masu_images[i].layers * size.width * size.height * masu_format_bytes(masu_plan_format(plan, i));
     }
     return bytes;
 }

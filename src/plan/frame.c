@@ -6,12 +6,13 @@
 /* ---- Images ---------------------------------------------------------------------------------- */
 
 #define MASU_READBACK_NONE 0
-enum { LIFETIME_FRAME = 0, LIFETIME_KEPT = 1 };
+enum { LIFETIME_FRAME = 0, LIFETIME_KEPT = 1, LIFETIME_PING_PONG = 2 };
 
 const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
 #define IMAGE(ID, name, format, extent, class_of, readback, lifetime, when, content)               \
     [MASU_IMAGE_##ID] = {#name, VK_FORMAT_##format, MASU_EXTENT_##extent, MASU_CLASS_##class_of,   \
-                         MASU_READBACK_##readback, LIFETIME_##lifetime, content},
+                         MASU_READBACK_##readback, LIFETIME_##lifetime != LIFETIME_FRAME,                 \
+                         LIFETIME_##lifetime == LIFETIME_PING_PONG ? 2 : 1, content},
 #include "plan/images.inc"
 #undef IMAGE
 };
@@ -106,6 +107,7 @@ static const char *no_upscale(const masu_needs *n) {
 #define READ_LINEAR(id) IMAGE_ACCESS(id, READ_LINEAR)
 #define WRITE(id) IMAGE_ACCESS(id, WRITE)
 #define UPDATE(id) IMAGE_ACCESS(id, UPDATE)
+#define PING_PONG(id) IMAGE_ACCESS(id, PING_PONG)
 #define COLOR(id) IMAGE_ACCESS(id, WRITE_COLOR)
 #define BLEND(id) IMAGE_ACCESS(id, BLEND_COLOR)
 #define DEPTH(id) IMAGE_ACCESS(id, WRITE_DEPTH)
@@ -153,6 +155,7 @@ int masu_has_set(uint32_t pass) {
 }
 
 int masu_access_binds(masu_access access, int writes) {
+    if (access.usage == MASU_PING_PONG) return 1;
     if (!writes) return access.usage == MASU_READ || access.usage == MASU_READ_LINEAR;
     return access.usage == MASU_WRITE || access.usage == MASU_UPDATE;
 }

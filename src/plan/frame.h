@@ -76,6 +76,7 @@ typedef struct masu_image_row {
     masu_image_class class_of;
     uint32_t readback; /* masu_readback_bits that asks for it */
     int kept;          /* the next frame reads what this one has left in it */
+    uint32_t layers;   /* 2: of which this frame writes one, and reads what the frame before has left in the other */
     const char *content;
 } masu_image_row;
 
@@ -91,6 +92,8 @@ typedef enum masu_usage {
     MASU_READ_HOST,      /* by the host's own commands, sampled or copied */
     MASU_WRITE,       /* storage, whole sub-rectangle, earlier content is lost */
     MASU_UPDATE,      /* storage, some texels, the rest is kept */
+    MASU_PING_PONG,   /* of an image of two layers: one sampled, with the mean of the texels around a place, the other storage,
+                       * whole sub-rectangle; two bindings */
     MASU_WRITE_COLOR, /* colour attachment, cleared first */
     MASU_BLEND_COLOR, /* the same of which earlier content is kept, and blended with */
     MASU_WRITE_DEPTH, /* depth attachment, cleared to 0 (far) first */

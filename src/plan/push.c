@@ -8,7 +8,7 @@
 #include <string.h>
 
 static int is_temporal(const masu_push_input *in) {
-    return masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL_SHOW);
+    return masu_has_pass(&in->plan->rungs[in->rung].active, MASU_PASS_TEMPORAL_FIND);
 }
 
 /* Fewer pixels than are shown: mips as fine as the output's pixels ask for, since what EASU gets blurred it

@@ -42,7 +42,7 @@ static void compile(const masu_desc *d, masu_frame_plan *plan) {
 static const char *usage_text(uint8_t usage) {
     static const char *const texts[] = {
         [MASU_USE_NONE] = "?",      [MASU_READ] = "r",        [MASU_READ_LINEAR] = "rl",    [MASU_READ_COPY] = "from", [MASU_READ_BACK] = "from",
-        [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_WRITE_COLOR] = "c",
+        [MASU_WRITE] = "w",         [MASU_UPDATE] = "u",      [MASU_PING_PONG] = "rw",    [MASU_WRITE_COLOR] = "c",
         [MASU_WRITE_DEPTH] = "d",   [MASU_WRITE_COPY] = "to", [MASU_READ_BUFFER] = "rb",
         [MASU_WRITE_BUFFER] = "wb", [MASU_UPDATE_DEPTH] = "ud",
         [MASU_BLEND_COLOR] = "b",   [MASU_READ_STRUCTURE] = "rs", [MASU_WRITE_STRUCTURE] = "ws",
@@ -654,7 +654,7 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     compile(&d, &plan);
 #define FOUND_BY(pass)                                                                               \
     "tonemap(r:hdr w:ldr) temporal_find(r:ldr r:depth rl:velocity r:history_depth rl:history w:found) " pass                \
-    "(r:ldr r:found rl:velocity rl:history w:accumulated) temporal_show(r:accumulated w:history w:"
+    "(r:ldr r:found rl:velocity rw:history w:"
     assert_non_null(strstr(frame_text(&plan, 0), FOUND_BY("temporal_twice")));
     assert_non_null(strstr(frame_text(&plan, 0), "w:target) temporal_keep(r:depth w:history_depth)"));
     assert_non_null(strstr(frame_text(&plan, 1), FOUND_BY("temporal")));
@@ -677,14 +677,14 @@ static void temporal_stands_in_for_anti_aliasing_and_upscaling(void **state) {
     d.debug.exact = 0;
     d.rung_count = 2;
     compile(&d, &plan);
-    /* At full size 8 + 4 bytes for each pixel outlive the frame, 8 + 8 do not. */
-    static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_HISTORY_DEPTH, MASU_IMAGE_FOUND,
-                                        MASU_IMAGE_ACCUMULATED};
+    /* At full size 2 * 8 + 4 bytes for each pixel outlive the frame, 8 do not. */
+    static const masu_image_id own[] = {MASU_IMAGE_HISTORY, MASU_IMAGE_HISTORY_DEPTH, MASU_IMAGE_FOUND};
     uint64_t bytes = 0;
     for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
         const masu_image_plan *image = &plan.images[own[i]];
         assert_int_equal(image->persistent, i < 2);
-        bytes += (uint64_t)image->width * image->height * masu_format_bytes(masu_plan_format(&plan, own[i]));
+        bytes += (uint64_t)masu_images[own[i]].layers * image->width * image->height *
+                 masu_format_bytes(masu_plan_format(&plan, own[i]));
     }
     assert_int_equal(bytes, 28 * 64 * 64);
     /* Mips: at rest two levels finer than the output's pixels ask for, in motion as at full size. */
@@ -1316,7 +1316,7 @@ static void the_public_plan_tells_what_was_compiled(void **state) {
         assert_int_equal(info.images[i].last_pass, image->last);
     }
     /* scene_depth, split_depth, surface, occlusion, silhouettes, smooth, overlay and final, history_depth, cone8, cone4, ao: 4 bytes each per
-     * texel; velocity, history, accumulated and found 8; the atlas; SPECULAR_BYTES at half size */
+     * texel; velocity and found 8, history twice 8; the atlas; SPECULAR_BYTES at half size */
     assert_int_equal(info.left_out_bytes, 4 * (17 * 1920 * 1080 + 240 * 135 + 480 * 270 + 960 * 540 + 256 * 384 + 2 * 4) +
                                               SPECULAR_BYTES * 960 * 540);
     masu_plan_export(&plan, NULL, &info);

@@ -113,15 +113,20 @@ static void add_images(const masu_count *c, uint32_t rung, uint32_t pass, masu_m
         masu_access access = rp->access[pass][a];
         if (access.image >= MASU_IMAGE_COUNT) continue; /* buffers */
         double texels = area(&c->sheet, rung, masu_images[access.image].extent), moved = 0.0;
-        if (masu_has_set(pass) && masu_access_binds(access, 0)) {
+        int read = masu_has_set(pass) && masu_access_binds(access, 0);
+        int write = masu_has_set(pass) && masu_access_binds(access, 1);
+        if (read) {
             double asked = grown * number(counted, MASU_TALLY_FETCHED, MASU_SET_PASS, at_read++);
             moved = once(texels, covered, asked, row);
-        } else if (masu_has_set(pass) && masu_access_binds(access, 1)) {
+        }
+        if (write) {
             uint32_t binding = reads + at_write++;
             double in = grown * number(counted, MASU_TALLY_FETCHED, MASU_SET_PASS, binding);
             double out = grown * number(counted, MASU_TALLY_WRITTEN, MASU_SET_PASS, binding);
             if (in > 0.0) moved += once(texels, covered, in, row);
             moved += once(texels, 1.0, out, row);
+        } else if (read) {
+            ; /* and no more */
         } else if (access.usage == MASU_BLEND_COLOR) {
             moved = 2.0 * fmin(texels, grown * counted->invocations); /* read and written */
             worsen(&row->bytes_sure, MASU_MODEL_MEASURED);
