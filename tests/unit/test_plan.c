@@ -731,7 +731,7 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     d.readback = MASU_READBACK_VELOCITY;
     assert_frame(&d, 0,
                  "update(wb:slots) update_previous(wb:slots) " MARCH_ALONE
-                 "sdf_velocity(r:scene_depth rb:tiles rb:slots u:velocity) " LIGHT_SDF
+                 LIGHT_SDF "sdf_velocity_alone(r:scene_depth rb:tiles rb:slots u:velocity) "
                  "readback(from:velocity) " TONEMAP);
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].count, 14);
@@ -742,6 +742,7 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     assert_int_equal(plan.buffers[MASU_BUFFER_FRAME].bytes * 2, with);
     assert_int_equal(plan.images[MASU_IMAGE_VELOCITY].used, 0);
     assert_string_equal(plan.why[MASU_PASS_SDF_VELOCITY], "nothing reads velocities");
+    assert_string_equal(plan.why[MASU_PASS_SDF_VELOCITY_ALONE], "nothing reads velocities");
     assert_string_equal(plan.why[MASU_PASS_VELOCITY], "nothing reads velocities");
     assert_string_equal(plan.why[MASU_PASS_UPDATE_PREVIOUS], "nothing reads velocities");
 }
