@@ -419,7 +419,7 @@ static void an_srgb_view_is_filtered_as_the_linear_numbers_it_gives(void **state
         reference_of_floats(&j, rgb, cpu);
         uint32_t off = masu_ref_max_difference_rgba8(gpu, cpu, (size_t)j.out_w * j.out_h);
         print_message("  easu %d: off by %u\n", easu, off);
-        assert_true(off <= (on_gpu(&s) ? 2u : 1u)); /* decoded and filtered by a sampler */
+        assert_true(off <= (on_gpu(&s) ? 3u : 1u)); /* decoded and filtered by a sampler: an NVIDIA H200's is off by 3 */
         reference_upscale(&j, in, cpu); /* and not as the bytes */
         assert_true(masu_ref_max_difference_rgba8(gpu, cpu, (size_t)j.out_w * j.out_h) > 20);
     }

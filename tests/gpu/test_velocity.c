@@ -337,8 +337,11 @@ static void what_moves_and_what_changes_is_followed(void **state) {
         was.rests = 1;
         for (uint32_t i = 0; i < flights + 1; i++) {
             take(&s, &was, 0, &p);
-            for (int k = 0; k < W * H; k++) {
-                for (int c = 0; c < 3; c++) assert_true(p.velocity[k][c] == 0);
+            /* A GPU may round a place of now and the same one of before apart. */
+            for (int k = 0; k < 3 * W * H; k++) {
+                double v = p.velocity[k / 3][k % 3];
+                if (!(fabs(v) <= (on_gpu(&s) ? 1e-3 : 0.0)))
+                    fail_msg("%u slots, at rest: %g of pixel %d, component %d", flights, v, k / 3, k % 3);
             }
         }
         close_session(&s);
@@ -487,7 +490,7 @@ static void who_does_not_ask_has_no_velocities(void **state) {
         assert_int_equal(plan.passes[i].active, 0);
         assert_string_equal(plan.passes[i].why, "nothing reads velocities");
     }
-    assert_int_equal(found, 4);
+    assert_int_equal(found, 5);
     for (uint32_t i = 0; i < plan.image_count; i++) {
         if (strcmp(plan.images[i].name, "velocity") != 0) continue;
         assert_int_equal(plan.images[i].used, 0);
