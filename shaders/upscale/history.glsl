@@ -32,6 +32,8 @@ masu_past masu_history_at(vec2 place)
 {
     vec2 inside = place, end = vec2(push.end_x, push.end_y);
     if (!masu_fixed_output) { /* the image may be larger than the picture: masu_resize; else samplers care */
+        /* Of halves not even with a weight of 0 what lies beyond: NaN comes through it. Weights are of 1/256. */
+        end -= masu_half_means ? 1.0 / 128.0 : 0.0;
         inside = clamp(place, vec2(0.5), end);
     }
     vec2 t = fract(inside - 0.5);

@@ -59,7 +59,8 @@ static void draw_frames(masu_session *s, own_renderer *x, uint32_t rung, uint32_
 
 static const uint32_t sizes[][2] = {{97, 61}, {160, 90}, {2, 90}, {1, 1}, {160, 1}, {33, 20}, {128, 88}};
 
-static void compare_sizes(const char *scene, size_t count) {
+/* halves: means over frames are kept so, as where the device does not filter unorm. */
+static void compare_sizes(const char *scene, size_t count, int halves) {
     masu_session s;
     masu_session_desc d = test_desc(scene, W, H);
     d.no_renderer = true;
@@ -67,6 +68,7 @@ static void compare_sizes(const char *scene, size_t count) {
     own_renderer live;
     masu_desc own = desc_of(&s, W, H);
     own.debug.poison = 3; /* beyond the picture, too */
+    own.deny.unorm16 = halves;
     make_own(&s, &live, &own);
     uint32_t drawn = 0;
     for (size_t i = 0; i < count; i++) {
@@ -80,6 +82,7 @@ static void compare_sizes(const char *scene, size_t count) {
         own_renderer fresh;
         masu_desc fit = desc_of(&s, w, h);
         fit.debug.poison = 3; /* what it draws is of no memory that it has not written */
+        fit.deny.unorm16 = halves;
         make_own(&s, &fresh, &fit);
         if (drawn) draw_frames(&s, &fresh, 1, drawn, pixels[1]); /* to the same frame number */
         /* Before and after another size the one that has a past, which masu_resize ends by itself. */
@@ -105,12 +108,13 @@ static void compare_sizes(const char *scene, size_t count) {
 static void a_smaller_picture_is_that_of_its_size(void **state) {
     (void)state;
     const uint32_t all = sizeof sizes / sizeof *sizes;
-    compare_sizes("test_both", trials(all, all, 4)); /* at least one pixel, too */
+    compare_sizes("test_both", trials(all, all, 4), 0); /* at least one pixel, too */
+    compare_sizes("test_both", 1, 1);
 }
 
 static void the_same_with_reflections_shadows_textures(void **state) {
     (void)state;
-    compare_sizes("test_live", trials(3, 3, 2));
+    compare_sizes("test_live", trials(3, 3, 2), 0);
 }
 
 /* ---- What is refused ------------------------------------------------------------------------- */
