@@ -108,17 +108,27 @@ static void record_textures(masu_device *m, VkCommandBuffer cmd, masu_texture_cu
     }
 }
 
+/* All of an image is 0, and it is where a transfer may write. */
+static void clear_image(const masu_recorder *rec, masu_image_id image, const masu_use *to) {
+    VkImageMemoryBarrier b = masu_image_barrier(rec, image, 0, to, VK_IMAGE_LAYOUT_UNDEFINED);
+    VkClearColorValue zero = {.float32 = {0.0f}};
+    rec->m->vk.CmdPipelineBarrier(rec->cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, to->stages, 0, 0, NULL, 0, NULL, 1, &b);
+    rec->m->vk.CmdClearColorImage(rec->cmd, b.image, to->layout, &zero, 1, &b.subresourceRange);
+}
+
 /* The images that the first frame finds as if another had left them; what is in them is not looked
- * at. */
+ * at. But of two layers one is, after a frame that was not submitted, if the host forgets the cut: 0 is no sample. */
 static void record_kept(masu_device *m, VkCommandBuffer cmd) {
-    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE);
+    masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE), copy = masu_use_of(MASU_WRITE_COPY, MASU_PASS_TRANSFER);
     masu_recorder rec = {.m = m, .cmd = cmd};
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (!m->plan->images[i].used || !masu_images[i].kept) continue;
-        VkImageMemoryBarrier b =
-            masu_image_barrier(&rec, (masu_image_id)i, 0, &rest, VK_IMAGE_LAYOUT_UNDEFINED);
-        m->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0, NULL, 0,
-                                 NULL, 1, &b);
+        int cleared = masu_images[i].layers > 1;
+        if (cleared) clear_image(&rec, (masu_image_id)i, &copy);
+        VkImageMemoryBarrier b = masu_image_barrier(&rec, (masu_image_id)i, cleared ? copy.access : 0, &rest,
+                                                    cleared ? copy.layout : VK_IMAGE_LAYOUT_UNDEFINED);
+        m->vk.CmdPipelineBarrier(cmd, cleared ? copy.stages : VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0,
+                                 NULL, 0, NULL, 1, &b);
     }
 }
 

@@ -29,6 +29,7 @@
     X(CmdBindPipeline)                                                                             \
     X(CmdBindVertexBuffers)                                                                        \
     X(CmdBlitImage)                                                                                \
+    X(CmdClearColorImage)                                                                          \
     X(CmdCopyBuffer)                                                                               \
     X(CmdCopyBufferToImage)                                                                        \
     X(CmdCopyImage)                                                                                \

@@ -193,6 +193,7 @@ static void gather_images(masu_frame_plan *plan) {
                 if (image->width < size.width) image->width = size.width;
                 if (image->height < size.height) image->height = size.height;
                 image->usage |= usage_flag((masu_usage)rp->access[p][a].usage);
+                if (masu_images[id].layers > 1) image->usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT; /* cleared by masu_load */
             }
             if (!masu_has_pass(&rp->active, p) || !masu_has_set(p)) continue;
             plan->pass_sets += writes_target ? plan->desc.targets.count : 1;

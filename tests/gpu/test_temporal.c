@@ -72,6 +72,51 @@ static void find_truth(const char *scene, const float *ball, const masu_light *l
     close_session(&s);
 }
 
+/* ---- What the host forgets -------------------------------------------------------------------- */
+
+/* A frame that is not submitted is to be followed by a cut. Without, the next looks where none has drawn: not at what the
+ * memory held before, which would be a picture of many samples. */
+static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
+    (void)state;
+    masu_session s;
+    masu_commands commands;
+    char error[ERROR_SIZE];
+    masu_session_desc d = temporal_desc("test_shadows", 1.0f);
+    open_session(&s, &d);
+    masu_frame_desc f = {.cut = 1};
+    for (int i = 0; i < 2; i++) assert_int_equal(masu_frame(s.m, &f, &commands), MASU_OK);
+    draw(&s, &f, &commands, truth.rgba); /* as it is without a past */
+    close_session(&s);
+    d.no_renderer = true;
+    open_session(&s, &d);
+    if (on_gpu(&s)) {
+        close_session(&s);
+        skip(); /* the host does not see its memory */
+    }
+    assert_int_equal(masu_memory_query(&s.desc, &s.need, NULL), MASU_OK);
+    const masu_role_need *need = &s.need.roles[MASU_ROLE_DEVICE];
+    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = need->bytes,
+                                 .memoryTypeIndex = need->type};
+    VkDeviceMemory memory;
+    void *mapped;
+    assert_int_equal(vkAllocateMemory(s.host.device, &info, NULL, &memory), VK_SUCCESS);
+    assert_int_equal(vkMapMemory(s.host.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
+    memset(mapped, 0x60, need->bytes); /* 24 samples of a middle grey */
+    s.desc.device_blocks[MASU_ROLE_DEVICE] = (masu_device_block){memory, 0, need->bytes, mapped, need->type};
+    assert_ok(masu_session_start(&s, error, sizeof error));
+    f.cut = 0;
+    draw(&s, &f, &commands, NULL);
+    assert_int_equal(masu_frame(s.m, &f, &commands), MASU_OK);
+    draw(&s, &f, &commands, a.rgba);
+    double off = rms(a.rgba, truth.rgba);
+    print_message("  off by %.2f of 255 (root mean square) from a picture without a past\n", off);
+    assert_true(off < 8.0);
+    masu_destroy(s.m);
+    s.m = NULL;
+    vkFreeMemory(s.host.device, memory, NULL);
+    close_session(&s);
+}
+
 /* ---- Error ----------------------------------------------------------------------------------- */
 
 static void at_rest_it_comes_near_the_truth(void **state) {
@@ -585,6 +630,7 @@ static void what_a_mirror_shows_is_found_where_it_was(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_frame_left_out_without_a_cut_shows_no_old_memory),
         cmocka_unit_test(at_rest_it_comes_near_the_truth),
         cmocka_unit_test(in_motion_it_is_no_worse),
         cmocka_unit_test(what_leaves_leaves_no_ghost),
