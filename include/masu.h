@@ -1454,6 +1454,7 @@ typedef struct masu_plan_image {
     uint32_t used;          /* 0: this plan does not need it */
     uint64_t bytes, offset; /* in the device role */
     uint32_t first_pass, last_pass;
+    uint32_t layers; /* 2: a frame writes one, and reads what the frame before has left in the other */
 } masu_plan_image;
 
 typedef struct masu_plan_rung {

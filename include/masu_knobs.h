@@ -103,8 +103,8 @@ typedef enum masu_knob_use {
            " sharpen is on): each frame looks at another place in its pixels. Scenes alone. AUTO:" \
            " on with a governor, at most one viewport and no split but AFTER_UPSCALE, in rungs that" \
            " leave upscale, easu, sharpen, aa and fuse at AUTO; else off.",                        \
-           "Two passes of the output size, two of the render size. Device bytes per pixel of the output: 16," \
-           " of which 8 outlive the frame; of the render size: 4 that do, 8 that do not, and"      \
+           "A pass of the output size, two of the render size. Device bytes that outlive the frame: 16 per" \
+           " pixel of the output, 4 of the render size; that do not: 8 of the render size, and"    \
            " velocities, 8.")                                                                      \
     /* Geometry. */                                                                                \
     WORD(  masu_switch,      silhouettes,                            SDF,                          \

@@ -9,9 +9,8 @@
  * Everything is display light, as an eye takes the mean of it (docs/design/31-truth.md); a: samples. upscale/mean.glsl says how it
  * is stored, upscale/history.glsl where it was.
  *
- * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size); push.last_*: how far a place may
- * lie, texels of the render size whose middles are whole numbers; push.texel_*: 1 / size of the image of colour; the rest is
- * history.glsl's.
+ * Push constants: output_* = size to write; push.scale_* = input size * (1 / output size); push.texel_*: 1 / size of
+ * the image of colour; the rest is history.glsl's.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

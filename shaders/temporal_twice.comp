@@ -35,7 +35,6 @@ vec3 light_at(ivec2 texel)
 /* Four texels and the pixels between them. */
 struct cell {
     ivec2 before, low, high; /* upper left texel, and what is read for it and for the lower right one */
-    ivec2 last;              /* texel of the picture */
     ivec2 first;             /* pixel */
     vec2 inside_x, inside_y; /* 1 for a texel of the picture; one beyond it is no sample */
     vec3 light[4];
@@ -51,7 +50,7 @@ void resolve(cell c, ivec2 way)
     uvec2 found = texelFetch(found_image, texel, 0).xy;
     vec4 column = frame.columns[way.x], row = frame.rows[way.y];
     vec2 f = vec2(column.x, row.x);
-    vec2 place = min(vec2(c.before) + f, vec2(c.last) - 0.01); /* samplers care for what is less than 0 */
+    vec2 place = min(vec2(c.before) + f, vec2(push.last_x, push.last_y)); /* samplers care for what is less than 0 */
     masu_past old = masu_history(found, vec2(at) + 0.5, texel, place, vec2(2.0));
     bool stays = masu_has_stayed(found);
     vec2 x = (stays ? column.y * vec2(1 - way.x, way.x) : column.zw) * c.inside_x;
@@ -78,14 +77,14 @@ void main()
     ivec2 number = ivec2(gl_GlobalInvocationID.xy);
     c.first = 2 * number + ivec2(frame.between.xy) - 2;
     c.before = number + ivec2(frame.between.zw);
-    c.last = ivec2(pc.render_width, pc.render_height) - 1;
+    ivec2 last = ivec2(pc.render_width, pc.render_height) - 1;
     if (any(greaterThanEqual(c.first, ivec2(pc.output_width, pc.output_height)))) {
         return;
     }
     /* Beyond the picture its last texel is repeated. */
     ivec2 after = c.before + 1;
-    c.low = clamp(c.before, ivec2(0), c.last);
-    c.high = clamp(after, ivec2(0), c.last);
+    c.low = clamp(c.before, ivec2(0), last);
+    c.high = clamp(after, ivec2(0), last);
     c.light = vec3[4](light_at(c.low), light_at(ivec2(c.high.x, c.low.y)), light_at(ivec2(c.low.x, c.high.y)), light_at(c.high));
     c.inside_x = vec2(equal(ivec2(c.low.x, c.high.x), ivec2(c.before.x, after.x)));
     c.inside_y = vec2(equal(ivec2(c.low.y, c.high.y), ivec2(c.before.y, after.y)));

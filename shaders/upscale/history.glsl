@@ -3,8 +3,8 @@
  * that it lies in; and what becomes of it. After output.glsl and found.glsl; for temporal.comp and temporal_twice.comp, whose
  * images 1 to 5 these are.
  *
- * Push constants: push.moved_*, push.old_*: 1 / size of the images of velocity and history; push.end_*: the middle of the
- * last pixel; push.calm, push.moving: of masu_show; push.white, push.peak: encode.glsl's.
+ * Push constants: push.moved_*, push.old_*: 1 / size of the images of velocity and history; push.last_*: how far a place may
+ * lie, texels of the render size whose middles are whole numbers; push.calm, push.moving: of masu_show; push.white, push.peak: encode.glsl's.
  */
 #ifndef MASU_HISTORY_GLSL
 #define MASU_HISTORY_GLSL
@@ -30,10 +30,8 @@ struct masu_past {
  * linear means a texel apart. */
 masu_past masu_history_at(vec2 place)
 {
-    vec2 inside = place, end = vec2(push.end_x, push.end_y);
+    vec2 inside = place, end = vec2(pc.output_width, pc.output_height) - 0.5;
     if (!masu_fixed_output) { /* the image may be larger than the picture: masu_resize; else samplers care */
-        /* Of halves not even with a weight of 0 what lies beyond: NaN comes through it. Weights are of 1/256. */
-        end -= masu_half_means ? 1.0 / 128.0 : 0.0;
         inside = clamp(place, vec2(0.5), end);
     }
     vec2 t = fract(inside - 0.5);
@@ -44,7 +42,7 @@ masu_past masu_history_at(vec2 place)
                   textureLodOffset(history_image, uv, 0.0, ivec2(1, 0)).rgb;
     vec3 above = textureLodOffset(history_image, uv, 0.0, ivec2(0, -1)).rgb +
                  textureLodOffset(history_image, uv, 0.0, ivec2(0, 1)).rgb;
-    if (!masu_fixed_output) { /* what lies beyond may be NaN: no weight takes that out */
+    if (!masu_fixed_output) { /* what lies beyond is of another picture */
         beside = inside.x > end.x - 1.0 ? 2.0 * here.rgb : beside;
         above = inside.y > end.y - 1.0 ? 2.0 * here.rgb : above;
     }
@@ -66,11 +64,11 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
      * fetch instead, which takes a seventh more of this pass by the estimate of Intel's compiler. */
     vec2 before = middle;
     if (!masu_has_stayed(found)) {
-        /* One fetch for both, of a texel in its middle: two are one wait more by Intel's estimate, a sixth of this pass. Not
-         * even with a weight of 0 what lies beyond the picture: NaN comes through it. */
-        vec2 last = vec2(pc.render_width, pc.render_height) - 0.51;
-        vec2 at = masu_found_is_beside(found) ? min(vec2(texel + masu_found_beside(found)) + 0.5, last) : inside + 0.5;
-        vec2 moved = textureLod(velocity_image, at * vec2(push.moved_x, push.moved_y), 0.0).xy;
+        /* One fetch serves both cases: a texel is read at its middle. Two fetches cost one more wait by Intel's estimate, a
+         * sixth of this pass. What lies beyond the picture is not touched, even with a weight of 0, since it may be NaN. */
+        vec2 beside = min(vec2(texel + masu_found_beside(found)), vec2(push.last_x, push.last_y));
+        vec2 uv = ((masu_found_is_beside(found) ? beside : inside) + 0.5) * vec2(push.moved_x, push.moved_y);
+        vec2 moved = textureLod(velocity_image, uv, 0.0).xy;
         before += (moved + frame.shifts.zw) * steps;
     }
     masu_past old = masu_history_at(before);
@@ -80,6 +78,7 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
     bool stored = old.mean.a <= masu_mean_most &&
                   (!masu_half_means || abs(old.mean.r) + abs(old.mean.g) + abs(old.mean.b) <= 6.0);
     old.mean = stored ? masu_found_held(found, old.mean) : vec4(0.0);
+    old.curve = stored || !masu_half_means ? old.curve : vec3(0.0);
     return old;
 }
 
@@ -88,9 +87,9 @@ masu_past masu_history(uvec2 found, vec2 middle, ivec2 texel, vec2 inside, vec2 
  * Of what moves a sample counts for the pixels around it by a tent, twice as wide as the pixel (below full size a little
  * wider): steadier than what falls into the pixel alone, but blurred. Of what that and the history's resampling take,
  * masu_sharpen gives some back; push.moving does while the view moves, for all of the history is resampled then; of what rests
- * in a world that does, which is no tent's, push.calm, less than half of it. Each times the second difference of the
- * history, as far as the mean is that: of the mean itself none is known before all are written. What is kept is not sharpened: it would be
- * again in every frame. */
+ * in a world that does, which is no tent's, push.calm, less than half of it. What is added is that factor times the second
+ * difference of the history, times the history's share of the mean. The mean's own is not known yet: its neighbours are
+ * written by other invocations. What is kept is not sharpened: it would be again in every frame. */
 void masu_show(ivec2 at, vec3 light, float count, masu_past old, bool stays, uint chance)
 {
     float moving = (frame.temporal.z & MASU_TEMPORAL_MOVES) != 0u ? push.moving : masu_sharpen;

@@ -125,7 +125,7 @@ VkImageMemoryBarrier masu_image_barrier(const masu_recorder *rec, masu_image_id 
         .subresourceRange = {.aspectMask =
                                  depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT,
                              .levelCount = 1,
-                             .layerCount = id < MASU_IMAGE_SOURCE ? masu_images[id].layers : 1}};
+                             .layerCount = masu_images[id].layers}};
 }
 
 void masu_barrier_before(masu_recorder *rec, uint32_t pass) {

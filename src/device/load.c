@@ -117,18 +117,20 @@ static void clear_image(const masu_recorder *rec, masu_image_id image, const mas
 }
 
 /* The images that the first frame finds as if another had left them; what is in them is not looked
- * at. But of two layers one is, after a frame that was not submitted, if the host forgets the cut: 0 is no sample. */
+ * at. One of two layers is cleared: if a host leaves a frame out and forgets the cut, the next reads a layer that none has
+ * written, and 0 means no samples. */
 static void record_kept(masu_device *m, VkCommandBuffer cmd) {
     masu_use rest = masu_use_of(MASU_READ, MASU_PASS_COMPUTE), copy = masu_use_of(MASU_WRITE_COPY, MASU_PASS_TRANSFER);
     masu_recorder rec = {.m = m, .cmd = cmd};
     for (uint32_t i = 1; i < MASU_IMAGE_SOURCE; i++) {
         if (!m->plan->images[i].used || !masu_images[i].kept) continue;
-        int cleared = masu_images[i].layers > 1;
-        if (cleared) clear_image(&rec, (masu_image_id)i, &copy);
-        VkImageMemoryBarrier b = masu_image_barrier(&rec, (masu_image_id)i, cleared ? copy.access : 0, &rest,
-                                                    cleared ? copy.layout : VK_IMAGE_LAYOUT_UNDEFINED);
-        m->vk.CmdPipelineBarrier(cmd, cleared ? copy.stages : VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, rest.stages, 0, 0,
-                                 NULL, 0, NULL, 1, &b);
+        masu_use from = {.stages = VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, .layout = VK_IMAGE_LAYOUT_UNDEFINED};
+        if (masu_images[i].layers > 1) {
+            clear_image(&rec, (masu_image_id)i, &copy);
+            from = copy;
+        }
+        VkImageMemoryBarrier b = masu_image_barrier(&rec, (masu_image_id)i, from.access, &rest, from.layout);
+        m->vk.CmdPipelineBarrier(cmd, from.stages, rest.stages, 0, 0, NULL, 0, NULL, 1, &b);
     }
 }
 

@@ -13,7 +13,7 @@
  * several orders come close, and the lower bound (largest set alive at once) is printed beside the
  * result.
  *
- * An image whose content outlives the frame (the shadow map, where not every cascade is drawn in
+ * An image whose content outlives the frame (histories; the shadow map, where not every cascade is drawn in
  * every frame) stands in front of them and shares nothing.
  *
  * Memory types are a preference list, never an exclusion: an integrated GPU has one type that is

@@ -151,7 +151,7 @@ static masu_result make_texture_layout(masu_device *m, masu_detail *detail) {
 static masu_result make_pass_layout(masu_device *m, uint32_t pass, masu_detail *detail) {
     const masu_rung_plan *rp = masu_first_rung(m->plan, pass);
     if (!rp) return MASU_OK;
-    VkDescriptorSetLayoutBinding bindings[MASU_PASS_ACCESSES];
+    VkDescriptorSetLayoutBinding bindings[2 * MASU_PASS_ACCESSES]; /* what is read and written has two */
     uint32_t n = 0;
     int compute = masu_passes[pass].kind == MASU_PASS_COMPUTE;
     VkShaderStageFlags stages = compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;

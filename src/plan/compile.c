@@ -476,11 +476,9 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
             uint32_t reads = 0, writes = 0;
             for (uint32_t a = 0; a < rp->access_count[p]; a++) {
                 const char *name = resource_name(rp->access[p][a].image);
-                if (masu_usage_writes((masu_usage)rp->access[p][a].usage)) {
-                    if (writes < 6) pass->writes[writes++] = name;
-                } else if (reads < 12) {
-                    pass->reads[reads++] = name;
-                }
+                masu_usage usage = (masu_usage)rp->access[p][a].usage;
+                if (masu_usage_writes(usage) && writes < 6) pass->writes[writes++] = name;
+                if ((!masu_usage_writes(usage) || usage == MASU_PING_PONG) && reads < 12) pass->reads[reads++] = name;
             }
         }
     }
@@ -496,7 +494,8 @@ void masu_plan_export(const masu_frame_plan *plan, const uint64_t *pipeline_ns,
         out->images[out->image_count++] =
             (masu_plan_image){masu_images[i].name, masu_plan_format(plan, i), image->width,
                               image->height,       (uint32_t)image->used,     image->bytes,
-                              image->offset,       image->first,              image->last};
+                              image->offset,       image->first,              image->last,
+                              masu_images[i].layers};
     }
     out->left_out_bytes = left_out_bytes(plan);
 }

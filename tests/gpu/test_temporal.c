@@ -83,6 +83,7 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     char error[ERROR_SIZE];
     masu_session_desc d = temporal_desc("test_shadows", 1.0f);
     open_session(&s, &d);
+    last.scene = NULL; /* `truth` is another now */
     masu_frame_desc f = {.cut = 1};
     for (int i = 0; i < 2; i++) assert_int_equal(masu_frame(s.m, &f, &commands), MASU_OK);
     draw(&s, &f, &commands, truth.rgba); /* as it is without a past */
@@ -110,7 +111,7 @@ static void a_frame_left_out_without_a_cut_shows_no_old_memory(void **state) {
     draw(&s, &f, &commands, a.rgba);
     double off = rms(a.rgba, truth.rgba);
     print_message("  off by %.2f of 255 (root mean square) from a picture without a past\n", off);
-    assert_true(off < 8.0);
+    assert_true(off < 4.0); /* 2.7; 39 if the memory counts */
     masu_destroy(s.m);
     s.m = NULL;
     vkFreeMemory(s.host.device, memory, NULL);

@@ -337,7 +337,7 @@ static void what_moves_and_what_changes_is_followed(void **state) {
         was.rests = 1;
         for (uint32_t i = 0; i < flights + 1; i++) {
             take(&s, &was, 0, &p);
-            /* A GPU may round a place of now and the same one of before apart. */
+            /* A GPU may round the same place differently now and before. */
             for (int k = 0; k < 3 * W * H; k++) {
                 double v = p.velocity[k / 3][k % 3];
                 if (!(fabs(v) <= (on_gpu(&s) ? 1e-3 : 0.0)))

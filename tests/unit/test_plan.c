@@ -731,7 +731,7 @@ static void velocities_keep_the_frame_before_and_nothing_else_does(void **state)
     d.readback = MASU_READBACK_VELOCITY;
     assert_frame(&d, 0,
                  "update(wb:slots) update_previous(wb:slots) " MARCH_ALONE
-                 LIGHT_SDF "sdf_velocity_alone(r:scene_depth rb:tiles rb:slots u:velocity) "
+                 LIGHT_SDF "sdf_velocity_alone(r:scene_depth rb:tiles rb:slots w:velocity) "
                  "readback(from:velocity) " TONEMAP);
     compile(&d, &plan);
     assert_int_equal(plan.buffers[MASU_BUFFER_SLOTS].count, 14);

@@ -101,6 +101,17 @@ static double cascade_texels(const masu_frame_plan *plan, uint32_t rung, uint32_
     return (double)rp->cascade_size * rp->cascade_size / (every > 1 ? every : 1);
 }
 
+/* Texels of an attachment, or of what is copied. */
+static double attached(const masu_count *c, uint32_t rung, uint32_t pass, masu_usage usage, double texels,
+                       masu_model_row *row) {
+    if (usage == MASU_BLEND_COLOR) { /* read and written */
+        worsen(&row->bytes_sure, MASU_MODEL_MEASURED);
+        return 2.0 * fmin(texels, growth(c, rung, pass) * c->passes[rung][pass].invocations);
+    }
+    if (usage == MASU_UPDATE_DEPTH) return cascade_texels(&c->sheet, rung, pass - MASU_PASS_CASCADE_0);
+    return texels; /* attachments are cleared and stored whole, copies are whole */
+}
+
 /* Images of the row, by their bindings in set 1, or as attachments, or copied. */
 static void add_images(const masu_count *c, uint32_t rung, uint32_t pass, masu_model_row *row) {
     const masu_rung_plan *rp = &c->sheet.rungs[rung];
@@ -125,16 +136,8 @@ static void add_images(const masu_count *c, uint32_t rung, uint32_t pass, masu_m
             double out = grown * number(counted, MASU_TALLY_WRITTEN, MASU_SET_PASS, binding);
             if (in > 0.0) moved += once(texels, covered, in, row);
             moved += once(texels, 1.0, out, row);
-        } else if (read) {
-            ; /* and no more */
-        } else if (access.usage == MASU_BLEND_COLOR) {
-            moved = 2.0 * fmin(texels, grown * counted->invocations); /* read and written */
-            worsen(&row->bytes_sure, MASU_MODEL_MEASURED);
-        } else if (access.usage == MASU_UPDATE_DEPTH) {
-            moved = cascade_texels(&c->sheet, rung, pass - MASU_PASS_CASCADE_0);
-        } else {
-            moved = texels; /* attachments are cleared and stored whole, copies are whole */
         }
+        if (!read && !write) moved = attached(c, rung, pass, (masu_usage)access.usage, texels, row);
         row->bytes += moved * masu_format_bytes(masu_plan_format(&c->sheet, access.image));
     }
 }
