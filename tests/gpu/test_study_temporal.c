@@ -59,9 +59,20 @@ static void a_past_brings_a_picture_nearer_to_the_truth(void **state) {
         assert_true(fabs(none->flip[MASU_PAST_REST] - none->flip[MASU_PAST_SLOW]) < 1e-9);
     }
     /* The same but for what moves. */
-    const masu_past_row *own = row(0.5, MASU_PAST_OWN);
+    const masu_past_row first = *row(0.5, MASU_PAST_OWN), *own = &first;
     assert_true(own->flip[MASU_PAST_REST] < 0.8 * own->flip[MASU_PAST_SLOW]);
     assert_true(own->flip[MASU_PAST_SLOW] < own->flip[MASU_PAST_FAST]);
+    /* Of two starts the mean: of this one, and of the one that five frames more give. */
+    masu_past_desc one = d, two = d;
+    one.only = two.only = 1u << MASU_PAST_OWN;
+    one.scales[0] = two.scales[0] = 0.5, one.scale_count = two.scale_count = 1;
+    two.starts = 2;
+    assert_ok(masu_past_run(&two, &past, error, sizeof error));
+    double mean = past.rows[0].flip[MASU_PAST_SLOW];
+    assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) < 0.1 * mean);
+    assert_true(fabs(mean - first.flip[MASU_PAST_SLOW]) > 1e-6); /* another picture is in it */
+    assert_ok(masu_past_run(&one, &past, error, sizeof error));
+    assert_true(fabs(past.rows[0].flip[MASU_PAST_SLOW] - first.flip[MASU_PAST_SLOW]) < 1e-9);
 }
 
 static void the_table_is_told_as_it_is_asked_for(void **state) {
@@ -69,7 +80,7 @@ static void the_table_is_told_as_it_is_asked_for(void **state) {
     static const struct {
         const char *arguments, *says;
     } mistakes[] = {{"%s --only ours", "ours"}, {"%s --scales 0.5,2", "0.5,2"}, {"", "no scene"},
-                    {"%s --fast-frames 0", "--fast-frames"}, {"%s --frames 1", "--frames"}};
+                    {"%s --fast-frames 0", "--fast-frames"}, {"%s --frames 1", "--frames"}, {"%s --starts 0", "--starts"}};
     const char *good = scene_path("test_town");
     int code = cli_run("study temporal %s --size 32x24 --positions 2 --reference 2 --frames 2 --fast-frames 2 "
                        "--scales 0.5 --only temporal,gsr2 --quiet --csv %s/rows.csv",
