@@ -144,7 +144,8 @@ bool is_other(vec2 before, colors c)
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; i++) {
         vec2 corner = inside + vec2(2 * (i & 1) - 1, 2 * (i >> 1) - 1) * half_texel;
-        sum += textureLod(history_image, vec3(min(corner, shown - half_texel), masu_layer_before()), 0.0).rgb; /* of a size of 1, the corner is beyond */
+        corner = min(corner, shown - half_texel); /* of a size of 1 it lies beyond */
+        sum += textureLod(history_image, vec3(corner, masu_layer_before()), 0.0).rgb;
     }
     vec3 mean = c.mean * c.mean + c.deviation * c.deviation;
     return any(greaterThan(abs(0.25 * sum - mean), c.deviation * (2.0 * c.mean + c.deviation) + unseen));

@@ -4,7 +4,8 @@
  * images 1 to 5 these are.
  *
  * Push constants: push.moved_*, push.old_*: 1 / size of the images of velocity and history; push.last_*: how far a place may
- * lie, texels of the render size whose middles are whole numbers; push.calm, push.moving: of masu_show; push.white, push.peak: encode.glsl's.
+ * lie, texels of the render size whose middles are whole numbers; push.calm, push.moving: of masu_show; push.white, push.peak:
+ * encode.glsl's.
  */
 #ifndef MASU_HISTORY_GLSL
 #define MASU_HISTORY_GLSL

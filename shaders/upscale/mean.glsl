@@ -33,25 +33,18 @@ uint masu_chance(uvec2 at)
     return at.x * masu_chance_step.x + at.y * masu_chance_step.y + frame.history.x * 0x9E3779u;
 }
 
-/* Of light and of what stands in its channel for samples. */
-uvec4 masu_mean_packed(vec4 mean)
-{
-    if (masu_half_means) {
-        return uvec4(packHalf2x16(mean.rg), packHalf2x16(mean.ba), 0u, 0u);
-    }
-    return uvec4(packUnorm2x16(mean.rg), packUnorm2x16(mean.ba), 0u, 0u);
-}
-
 /* light: 0 to 1; NaN, infinities and more than 1 become 1 in halves, whatever they are in unorm. chance: of its pixel; its last 24
  * bits count. */
 uvec4 masu_mean_rounded(vec3 light, float count, uint chance)
 {
     if (masu_half_means) {
         uvec3 bits = min(floatBitsToUint(light), uvec3(0x3F800000u));
-        return masu_mean_packed(vec4(uintBitsToFloat((bits + (chance >> 11 & 0x1FFFu)) & 0xFFFFE000u), count));
+        vec3 rounded = uintBitsToFloat((bits + (chance >> 11 & 0x1FFFu)) & 0xFFFFE000u);
+        return uvec4(packHalf2x16(rounded.rg), packHalf2x16(vec2(rounded.b, count)), 0u, 0u);
     }
     float off = float(chance >> 16 & 0xFFu) * (1.0 / (256.0 * 65535.0)) - 127.5 / (256.0 * 65535.0);
-    return masu_mean_packed(vec4(light + off, count * (1.0 / masu_mean_counts)));
+    vec3 rounded = light + off;
+    return uvec4(packUnorm2x16(rounded.rg), packUnorm2x16(vec2(rounded.b, count * (1.0 / masu_mean_counts))), 0u, 0u);
 }
 
 /* How many samples stand in what was sampled. */

@@ -11,7 +11,7 @@ enum { LIFETIME_FRAME = 0, LIFETIME_KEPT = 1, LIFETIME_PING_PONG = 2 };
 const masu_image_row masu_images[MASU_IMAGE_COUNT] = {
 #define IMAGE(ID, name, format, extent, class_of, readback, lifetime, when, content)               \
     [MASU_IMAGE_##ID] = {#name, VK_FORMAT_##format, MASU_EXTENT_##extent, MASU_CLASS_##class_of,   \
-                         MASU_READBACK_##readback, LIFETIME_##lifetime != LIFETIME_FRAME,                 \
+                         MASU_READBACK_##readback, LIFETIME_##lifetime != LIFETIME_FRAME,          \
                          LIFETIME_##lifetime == LIFETIME_PING_PONG ? 2 : 1, content},
 #include "plan/images.inc"
 #undef IMAGE

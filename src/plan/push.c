@@ -39,6 +39,14 @@ static int shows_each_pixel(const masu_push_input *in) {
     return rp->render_width == in->plan->desc.output.width && rp->render_height == in->plan->desc.output.height;
 }
 
+/* By how much rung.temporal sharpens what it shows (shaders/upscale/history.glsl), at rest and while the view moves. */
+static float calm_sharpening(const masu_rung *r) { return 0.03f - 0.02f * r->scale; }
+static float moving_sharpening(const masu_rung *r) { return 0.22f - 0.15f * r->scale; }
+
+/* The farthest that a linear fetch may lie in an image of that size whose texels' middles are whole numbers: samplers round to 1/256,
+ * and the last middle would be read with what lies beyond it. */
+static float last_place(uint32_t size) { return (float)size - 1.005f; }
+
 /* The image of depth that a pass reads: as large as the largest rung that has it, which other images need not be. */
 static const masu_image_plan *depth_of(const masu_push_input *in) {
     const masu_rung_plan *rp = &in->plan->rungs[in->rung];

@@ -218,6 +218,9 @@ static void inputs_of_temporal_passes(void **state) {
     /* Of `found` a light may come that a frame could have stored: it goes by one in 31 a frame, and a dark pixel shows
      * a thousandth of it. */
     poison_each("test_velocity", &(masu_rung){.scale = 0.7f, .temporal = MASU_ON}, 2, 256);
+    halves = 1; /* which can hold NaN, as unorm cannot */
+    poison_each("test_velocity", &(masu_rung){.scale = 0.7f, .temporal = MASU_ON}, 2, 256);
+    halves = 0;
 }
 
 /* More parts than bits: tiles have lists of numbers. */
@@ -244,9 +247,7 @@ static void inputs_of_reflections(void **state) {
 /* And what they tell a rung with a past of their motion. */
 static void inputs_of_reflections_with_a_past(void **state) {
     (void)state;
-    halves = 1; /* which can hold NaN, as unorm cannot */
     poison_each("test_reflections", &(masu_rung){.scale = 0.7f, .temporal = MASU_ON}, 24, 256);
-    halves = 0;
 }
 
 static void inputs_of_the_meter(void **state) {
