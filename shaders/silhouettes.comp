@@ -1,18 +1,20 @@
 /*
- * silhouettes.comp: where between two pixels what the SDF shows ends. Compiled by masu-bake with the scene's field.
+ * silhouettes.comp: what pixels show in which something of the SDF ends. Compiled by masu-bake with the scene's field.
  *
- * A pixel beside which the SDF is nearer than its own surface goes on would take no edge for what it is: its ray has
- * passed the nearer thing, by less than a pixel. The field knows by how much. Along the pixel's ray, from the
- * neighbour's depth on, the place is looked for where the field's gradient is across the ray; from there the surface
- * lies at f / |gradient| along the gradient. That point in the picture, relative to the pixel's centre, is the nearest of
- * the silhouette, and the silhouette a straight line through it. tonemap.comp blends the pixels on both sides by
- * what the line covers of them (shared/silhouettes.glsl).
+ * A pixel is one sample. Where it or one of its four neighbours is nearer than the other's surface goes on, or where two faces
+ * meet, a second ray is marched, on the side on which that is; where this one shows something else than the pixel's middle, two more.
+ * Of an edge of any direction middle and three rays tell the share to 0.09 of a pixel (root mean square; 0.24 the middle alone).
  *
- * It takes up to PAIRS pairs of samples and four more at the pixels behind a silhouette, which are some 2 to 8 of 100, and nothing but depths
- * and a normal of all others. Wrong turn: to note near misses while marching. It is state of every ray in flight, for
- * few of them; and cones, lists and boxes would all have to be wider by a pixel.
+ * What a ray meets has to be lit, and light.comp is over. Where it meets the plane of its pixel, or of a neighbour on its side, it
+ * shows what that one does. Else it shows what the nearest of these does, times what light.comp would make of its own surface and
+ * normal by what it would make of those: of the sun, as far as that pixel is in it, and of what comes from everywhere. So
+ * shadows, lamps, reflections and the air are the neighbour's.
  *
- * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels.
+ * Rays are the workgroup's: pixels are listed, and any invocation marches any ray. In which order they are listed is chance, what
+ * is found is not.
+ *
+ * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels. push.metered: not 0: the
+ * exposure follows the picture. push.peak: the most that is shown, in whites.
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
@@ -24,6 +26,8 @@
 #include "shared/pack.glsl"
 #include "shared/silhouettes.glsl"
 #include "shared/store.glsl"
+#include "shared/tone.glsl"
+#include "light/shade.glsl"
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -34,241 +38,397 @@ layout(set = MASU_SET_PASS, binding = 0) uniform sampler2D raster_depth;
 #define MASU_FIRST_IMAGE 0
 #endif
 layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE) uniform sampler2D depth_image;
-layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1) uniform usampler2D normal_image;
-layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2, r32ui) uniform writeonly uimage2D silhouettes_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 1) uniform sampler2D albedo_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 2) uniform usampler2D normal_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 3) uniform sampler2D hdr_image;
+layout(set = MASU_SET_PASS, binding = MASU_FIRST_IMAGE + 4, r32ui) uniform writeonly uimage2D silhouettes_image;
 
+layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buffer Exposure
+{
+    float metered_exposure;
+};
+
+#define MASU_RELAXED
 #define MASU_SDF_ASK
 #define MASU_SDF_NO_FLAT
-#define MASU_SPAN_BEFORE true
+#define MASU_SPAN_BEFORE false
 #define MASU_SPAN_TILE own_tile
 uint own_tile;
 #include "sdf/spans.glsl"
+#include "sdf/trace.glsl"
 
-#define PAIRS 6
+#define INVOCATIONS (MASU_GROUP * MASU_GROUP)
+#define RAYS 3
+
+shared uint listed_count, differ_count;
+shared uint listed[INVOCATIONS];          /* pixels that may have an edge: their number in the group, and from bit 6 on their first place */
+shared uint differ[INVOCATIONS];          /* places in that list: those where the first ray shows something else */
+shared vec3 light[RAYS * INVOCATIONS];    /* what the rays of each show */
 
 uvec2 size;
 
-/* Whether it is not a polygon that is there. */
-bool sdf_shows(ivec2 at, float depth)
+/* Places within a pixel, and the share of its middle: the best three for edges of all directions, of which every second lies along
+ * an axis, as most in pictures do. */
+const float middle_share = 0.206;
+
+vec2 place_of(uint k)
+{
+    return k == 0u ? vec2(-0.101, 0.372) : k == 1u ? vec2(0.375, -0.105) : vec2(-0.345, -0.325);
+}
+
+uint place_towards(vec2 side)
+{
+    vec3 along = vec3(dot(place_of(0u), side), dot(place_of(1u), side), dot(place_of(2u), side));
+    return along.x >= max(along.y, along.z) ? 0u : along.y >= along.z ? 1u : 2u;
+}
+
+/* Display light, 0 to 1 of the most that is shown: what is brighter, as without a curve, is no brighter there. */
+vec3 shown(vec3 hdr)
+{
+    float most = max(push.peak, 1.0);
+    float exposure = push.metered != 0u ? metered_exposure : frame.sun_direction.w;
+    return min(masu_shown(hdr, exposure, most) / most, 1.0);
+}
+
+/* ---- What the pixels show ------------------------------------------------------------------------ */
+
+/* Right, left, below, above. */
+ivec2 beside(int k)
+{
+    int way = 1 - 2 * (k & 1);
+    return k < 2 ? ivec2(way, 0) : ivec2(0, way);
+}
+
+bool is_inside(ivec2 at)
+{
+    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(size)));
+}
+
+float depth_at(ivec2 at)
+{
+    return texelFetch(depth_image, at, 0).r;
+}
+
+float raster_at(ivec2 at)
 {
 #if MASU_HAS_RASTER
-    return depth != texelFetch(raster_depth, at, 0).r;
+    return texelFetch(raster_depth, at, 0).r;
 #else
-    return true;
+    return 0.0;
 #endif
 }
 
-/* A pixel's surface as a plane: of it 1/z, as depth is, is affine in the picture. */
-struct plane {
-    float depth;
+/* A pixel of the picture and its surface as a plane: of it 1/z, as depth is, is affine in the picture. */
+struct pixel {
+    float depth; /* 0: the sky */
+    bool sdf;
     vec2 slope; /* a pixel to the right, a pixel down */
     vec3 normal;
 };
 
-plane plane_at(ivec2 at, float depth, vec3 through)
+pixel pixel_at(ivec2 at)
 {
-    vec3 n = masu_unpack_normal(texelFetch(normal_image, at, 0).r);
-    float facing = dot(n, through);
-    vec2 slope = 2.0 / vec2(size) * vec2(dot(n, frame.right.xyz), -dot(n, frame.up.xyz));
-    return plane(depth, facing < -1e-6 ? depth / facing * slope : vec2(0.0), n);
+    pixel p = pixel(depth_at(at), false, vec2(0.0), vec3(0.0));
+    if (p.depth > 0.0) {
+        p.sdf = p.depth != raster_at(at);
+        p.normal = masu_unpack_normal(texelFetch(normal_image, at, 0).r);
+        float facing = dot(p.normal, masu_pixel_ray(uvec2(at), size));
+        vec2 slope = 2.0 / vec2(size) * vec2(dot(p.normal, frame.right.xyz), -dot(p.normal, frame.up.xyz));
+        p.slope = facing < -1e-6 ? p.depth / facing * slope : vec2(0.0);
+    }
+    return p;
 }
 
-float scene_depth(ivec2 at)
+/* Whether the depths of a pixel and its neighbours are those of a plane, as most are: half of what would be an edge. */
+bool is_flat(ivec2 at)
 {
-    bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)));
-    return outside ? 0.0 : texelFetch(depth_image, at, 0).r;
+    ivec2 low = max(at - 1, ivec2(0));
+    ivec2 high = min(at + 1, ivec2(size) - 1);
+    float own = depth_at(at);
+    vec2 before = vec2(depth_at(ivec2(low.x, at.y)), depth_at(ivec2(at.x, low.y)));
+    vec2 after = vec2(depth_at(ivec2(high.x, at.y)), depth_at(ivec2(at.x, high.y)));
+    vec2 bend = abs(before + after - 2.0 * own);
+    return max(bend.x, bend.y) <= 0.25 * frame.up.w / float(size.y) * own;
 }
 
-/* Where two faces meet that both can be seen: the line through the pixel on which their planes do. */
-uint crease_at(ivec2 at, bool own_sdf, plane own, vec4 depths, vec4 going_on)
+/* Whether two faces that both can be seen meet within the pixel, or right beside it. */
+bool is_crease(pixel own, pixel other, vec2 way)
 {
-    float enough = 0.5 * frame.up.w / float(size.y);
-    vec4 off = abs(depths - going_on);
-    bvec4 bends = bvec4(off.x > enough * depths.x && depths.x > 0.0, off.y > enough * depths.y && depths.y > 0.0,
-                        off.z > enough * depths.z && depths.z > 0.0, off.w > enough * depths.w && depths.w > 0.0);
-    if (!any(bends)) {
-        return 0u;
-    }
-    vec2 line = vec2(0.0);
-    uint beside = 0u;
-    float least = 0.75;
-    MASU_LOOP for (int k = 0; k < 4; k++) {
-        ivec2 way = masu_beside(k);
-        if (bends[k] && (own_sdf || sdf_shows(at + way, depths[k]))) {
-            plane other = plane_at(at + way, depths[k], masu_pixel_ray(uvec2(at + way), size));
-            vec2 across = other.slope - own.slope;
-            float difference = depths[k] - dot(other.slope, vec2(way)) - own.depth;
-            vec2 to = -difference * across * masu_rcp(dot(across, across));
-            float far = length(to);
-            float along = dot(to, vec2(way));
-            bool here = along > 0.0 && dot(to, to) < along && far < least && dot(other.normal, own.normal) < 0.8;
-            line = here ? to : line;
-            least = here ? far : least;
-            beside |= here ? 1u << k : 0u;
-        }
-    }
-    return masu_pack_silhouette(line, beside);
+    vec2 across = other.slope - own.slope;
+    float difference = other.depth - dot(other.slope, way) - own.depth;
+    vec2 to = -difference * across * masu_rcp(dot(across, across));
+    float along = dot(to, way);
+    return (own.sdf || other.sdf) && dot(other.normal, own.normal) < 0.8 && along > 0.0 && dot(to, to) < min(along, 0.5);
 }
 
-/* The vector from a ray to the surface where they are nearest, seen from t on; 0: they meet, or the ray leaves first.
- * Pairs of samples tell whether the field falls or rises along the ray: ever longer steps until it rises, then secants
- * between the last two, of which an end that stays counts half (Illinois). The last four samples are the gradient. */
-vec3 to_surface(ray r, inout float t)
+/* Whether something ends within the pixel or right beside it; `side`: towards which of its sides; between: on both of two that are
+ * opposite. */
+bool has_edge(ivec2 at, out vec2 side, out bool between)
 {
-    float low_t = t;
-    float low_slope = 0.0;
-    float high_t = r.limit;
-    float high_slope = -1.0;
-    float step = 4.0 * r.pixel * t;
-    int side = 0;
-    int final = -1; /* the first sample of the last four */
-    float before = 0.0;
-    float h = 0.0;
-    vec3 sum = vec3(0.0);
-    float mean = 0.0;
-    uint evals = 0u;
-    MASU_LOOP for (int i = 0; i < 2 * PAIRS + 4; i++) {
-        int k = final < 0 ? i & 1 : i - final;
-        vec3 p = world_at(r.direction, t);
-        vec3 a = abs(p);
-        h = max(0.1 * r.pixel * t, 64.0 * ulp * max(max(a.x, max(a.y, a.z)), t));
-        vec3 corner = mix(vec3(-1.0), vec3(1.0), bvec3(k == 1 || k == 3, k >= 2, k == 0 || k == 3));
-        vec3 offset = final < 0 ? (k == 0 ? -r.direction : r.direction) : corner;
-        if (push.listed == 2u) {
-            span_follow(t, size);
-        }
-        float f = masu_sdf(p + offset * h);
-        evals++;
-        sum = k == 0 ? corner * f : sum + corner * f;
-        mean = k == 0 ? f : mean + f;
-        if (final >= 0) {
-            if (k == 3) {
-                break;
-            }
-        } else if (k == 0) {
-            before = f;
-        } else {
-            float slope = 0.5 * (f - before) / h; /* up to the field's L */
-            bool rises = slope > 0.0;
-            if (rises) {
-                high_slope = slope;
-                low_slope *= side == 1 ? 0.5 : 1.0;
-                high_t = t;
-            } else {
-                low_slope = slope;
-                high_slope *= side == -1 && high_slope > 0.0 ? 0.5 : 1.0;
-                low_t = t;
-            }
-            side = rises ? 1 : -1;
-            bool between = high_slope > 0.0;
-            float next = between && low_slope < 0.0 ? low_t + (high_t - low_t) * low_slope / (low_slope - high_slope)
-                       : rises ? t - step : t + step;
-            step *= 4.0;
-            bool close = abs(next - t) * abs(slope) < 0.04 * r.pixel * t;
-            if (((rises || between) && close) || !masu_finite(next) || i >= 2 * PAIRS - 1 || next >= r.limit) {
-                final = i + 1;
-            }
-            t = clamp(masu_finite(next) ? next : t, r.start, r.limit);
-            MASU_WENT_BACK(t)
-        }
+    side = vec2(0.0);
+    between = false;
+    if (is_flat(at)) {
+        return false;
     }
-    masu_count(MASU_COUNTER_SDF_EVALS, evals);
-    float slope = masu_rcp(length(sum));
-    float distance = mean * h * slope;
-    vec3 n = sum * slope;
-    float slant = dot(n, r.direction);
-    bool found = abs(slant) < 0.3 && distance > 0.0 && distance < 2.0 * r.pixel * t && t < r.limit;
-    return found ? -distance * (n - slant * r.direction) : vec3(0.0);
-}
-
-/* Where something in front ends, seen from a pixel beside it. `front`: a bit for each neighbour that is in front; the depth of
- * the nearest of them. */
-uint silhouette_at(uvec2 at, vec3 through, float depth, uint front, float nearest)
-{
-    float z_scale = length(through);
-    float near = frame.forward.w * z_scale;
-    ray r = ray(through / z_scale, 2.0 * frame.up.w / float(size.y) / z_scale, near, frame.sdf_max.w);
-    /* What ends at the very side of the bounds is missed outside of them. */
-    float wide = 4.0 * r.pixel * near / nearest;
-    clip_to_box(r, frame.sdf_min.xyz - wide, frame.sdf_max.xyz + wide);
-    r.limit = depth > 0.0 ? min(r.limit, near / depth) : r.limit;
-    float t = near / nearest;
-    if (!(r.start <= t && t < r.limit)) {
-        return 0u;
-    }
-    /* What the pixel's own ray can meet or pass, not its neighbour's: that is what was looked for. */
-    own_tile = masu_tile_of(at, size);
-    if (push.listed != 0u) {
-        masu_use_tile(own_tile, size);
-    }
-    if (push.listed == 2u) {
-        span_prepare(size);
-        span_begin(at, size, t);
-    }
-    vec3 across = to_surface(r, t);
-    if (across == vec3(0.0)) {
-        return 0u; /* wrong turn: to go on, with a line through the centre whose direction is rounding */
-    }
-    /* In the picture, in pixels from the pixel's centre. */
-    vec3 rel = r.direction * t + across;
-    vec2 ndc = vec2(dot(rel, frame.right.xyz) / dot(frame.right.xyz, frame.right.xyz),
-                    -dot(rel, frame.up.xyz) / dot(frame.up.xyz, frame.up.xyz));
-    ndc /= dot(rel, frame.forward.xyz);
-    vec2 line = 0.5 * vec2(size) * (ndc - masu_ndc(vec2(at) + 0.5, vec2(size)));
-    return masu_pack_silhouette(line, front);
-}
-
-/* A neighbour is in front, and where it ends was not found: it bends into what the pixel shows, as a ball's lower rim on the
- * ground, or the search ended elsewhere. Somewhere between the two it ends; of such pixels it covers a tenth in the
- * median, a fifth where it is in front on two sides (docs/design/40-silhouettes.md). */
-uint somewhere(uint front)
-{
-    vec4 is = vec4(uvec4(front) >> uvec4(0u, 1u, 2u, 3u) & 1u);
-    vec2 way = vec2(is.x - is.y, is.z - is.w);
-    float far = way.x != 0.0 && way.y != 0.0 ? 0.2 : 0.4;
-    return masu_pack_silhouette(far * way * masu_rcp(length(way)), front);
-}
-
-uint line_at(uvec2 at)
-{
-    float depth = texelFetch(depth_image, ivec2(at), 0).r;
-    vec3 through = masu_pixel_ray(at, size);
-    vec4 depths;
-    plane own = plane(0.0, vec2(0.0), vec3(0.0));
-    if (depth > 0.0) {
-        own = plane_at(ivec2(at), depth, through);
-    }
-    /* Nearer than the pixel, and than its surface would be, if it went on there, by two pixels' widths. */
-    vec4 going_on = vec4(depth) + vec4(own.slope.x, -own.slope.x, own.slope.y, -own.slope.y);
+    pixel own = pixel_at(at);
+    /* Nearer than the other, and than its surface would be, if it went on there, by two pixels' widths. */
     float gap = 1.0 + 4.0 * frame.up.w / float(size.y);
-    uint front = 0u;
-    float nearest = 0.0;
-    for (int k = 0; k < 4; k++) {
-        ivec2 to = ivec2(at) + masu_beside(k);
-        depths[k] = scene_depth(to);
-        if (depths[k] > max(going_on[k], depth) * gap && sdf_shows(to, depths[k])) {
-            front |= 1u << k;
-            nearest = max(nearest, depths[k]);
+    bool edge = false;
+    MASU_LOOP for (int k = 0; k < 4; k++) {
+        ivec2 to = at + beside(k);
+        vec2 way = vec2(beside(k));
+        if (!is_inside(to)) {
+            continue;
+        }
+        float other = depth_at(to);
+        float going_on = own.depth + dot(own.slope, way);
+        bool before = own.sdf && min(own.depth, going_on) > other * gap;
+        bool behind = other > max(own.depth, going_on) * gap && other != raster_at(to);
+        bool bends = own.depth > 0.0 && other > 0.0 && abs(other - going_on) > 0.125 * (gap - 1.0) * other;
+        if (before || behind || (bends && is_crease(own, pixel_at(to), way))) {
+            between = between || dot(side, way) < 0.0;
+            side = mix(side, way, notEqual(way, vec2(0.0)));
+            edge = true;
         }
     }
-    uint line = 0u;
+    return edge;
+}
+
+/* ---- What a ray meets ---------------------------------------------------------------------------- */
+
+/* Depth of the polygons at a place within a pixel. For their slope is taken what differs least from a neighbour: across their own
+ * edge it is another one's. */
+float raster_within(ivec2 at, vec2 place)
+{
+    float depth = raster_at(at);
     if (depth > 0.0) {
-        line = crease_at(ivec2(at), sdf_shows(ivec2(at), depth), own, depths, going_on);
+        ivec2 low = max(at - 1, ivec2(0));
+        ivec2 high = min(at + 1, ivec2(size) - 1);
+        vec2 before = depth - vec2(raster_at(ivec2(low.x, at.y)), raster_at(ivec2(at.x, low.y)));
+        vec2 after = vec2(raster_at(ivec2(high.x, at.y)), raster_at(ivec2(at.x, high.y))) - depth;
+        depth = max(depth + dot(place, mix(after, before, lessThan(abs(before), abs(after)))), 0.5 * depth);
     }
-    if (front != 0u) {
-        uint before = silhouette_at(at, through, depth, front, nearest);
-        line = before != 0u ? before : line != 0u ? line : somewhere(front);
+    return depth;
+}
+
+/* The distance of what a ray meets of the SDF, -1 if nothing. `half_space`: which one that is, -1 if it is none. Half-spaces end
+ * before the cone of the pixel's block does, which is free of the listed parts alone. */
+float meet(ivec2 at, ray r, bool any_listed, out int half_space)
+{
+    uint part;
+    clip_to_box(r, frame.sdf_min.xyz, frame.sdf_max.xyz);
+    float end = masu_sdf_flat(eye_hi + eye_lo, r.direction, r.start, part);
+    half_space = end <= r.limit && end < 1e30 ? int(part) : -1;
+    float farthest = min(r.limit, end);
+    vec3 low, high;
+    masu_listed_box(low, high);
+    clip_to_box(r, low, high);
+    r.limit = any_listed ? min(r.limit * (1.0 + newton_reach * r.pixel), farthest) : r.start;
+#if MASU_SDF_BLOCK_WORDS > 0
+    if (push.listed == 2u) {
+        r.start = max(r.start, uintBitsToFloat(masu_tiles[span_word(uvec2(at))]));
+        span_begin(uvec2(at), size, r.start);
     }
-    return line;
+#endif
+    march_state m = march_begin(r);
+    MASU_LOOP for (int i = 0; i < MASU_MARCH_STEPS_MAX; i++) {
+        if (m.done) {
+            break;
+        }
+        if (push.listed == 2u) {
+            span_follow(m.t, size);
+        }
+        march_step(m, r, field_at(r, m.t));
+    }
+    masu_count(MASU_COUNTER_SDF_EVALS, m.steps);
+    half_space = m.t >= 0.0 ? -1 : half_space;
+    return m.t >= 0.0 ? m.t : half_space >= 0 ? end : -1.0;
+}
+
+/* Its texels as write_hit has them: albedo, packed, and normal. */
+uvec2 texels_met(ivec2 at, ray r, float t, int half_space)
+{
+    vec3 n;
+    uint part = uint(max(half_space, 0));
+    if (half_space >= 0) {
+        n = unit_or(masu_sdf_flat_normal(part), -r.direction);
+    } else {
+        if (push.listed == 2u) {
+            span_begin(uvec2(at), size, t);
+        }
+        n = normal_at(r, t, part);
+        masu_count(MASU_COUNTER_SDF_EVALS, 4u);
+    }
+    masu_normal = n;
+    masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
+    masu_sdf_part_surface(part, world_at(r.direction, t), s);
+    vec4 albedo;
+    uint normal;
+    masu_pack_texels(n, s, albedo, normal);
+    return uvec2(packUnorm4x8(albedo), normal);
+}
+
+/* ---- Its light ----------------------------------------------------------------------------------- */
+
+/* Which of a pixel and its neighbours on the place's sides shows what is met there at `depth` (0: the sky; sdf: of the SDF): the
+ * first whose plane is there, else the one whose plane is nearest. off: how far, pixels' widths; 1e30 if none shows its kind. */
+ivec2 like_at(ivec2 at, vec2 place, float depth, bool sdf, float width, out float off)
+{
+    ivec2 like = at;
+    off = 1e30;
+    MASU_LOOP for (int k = 0; k < 3; k++) {
+        ivec2 way = k == 0 ? ivec2(0) : k == 1 ? ivec2(place.x > 0.0 ? 1 : -1, 0) : ivec2(0, place.y > 0.0 ? 1 : -1);
+        if (!is_inside(at + way)) {
+            continue;
+        }
+        pixel other = pixel_at(at + way);
+        float there = other.depth + dot(other.slope, place - vec2(way));
+        float widths = abs(there - depth) * masu_rcp(max(there, depth)) / width;
+        if (other.sdf == sdf && (depth > 0.0) == (other.depth > 0.0) && widths < off) {
+            off = widths;
+            like = at + way;
+        }
+        if (off < 0.05) {
+            break;
+        }
+    }
+    return like;
+}
+
+float luminance(vec3 c)
+{
+    return dot(c, vec3(0.2126, 0.7152, 0.0722));
+}
+
+/* What light.comp makes of a surface without lamps and probes: `around` of what comes from everywhere, `sun` of the sun. */
+void light_up(masu_surface s, vec3 n, vec3 v, out vec3 around, out vec3 sun)
+{
+    masu_mirrored sky = masu_mirrored_sky(s, n, v, vec2(1.0));
+    masu_bsdf b = masu_bsdf_make(s, n, v);
+    masu_lit lit = masu_shade(s, b, vec3(0.0), vec2(0.0, 1.0), sky);
+    around = lit.diffuse + lit.specular + s.emissive;
+    lit = masu_lit(vec3(0.0), vec3(0.0), vec3(0.0));
+    masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb);
+    sun = lit.diffuse + lit.specular;
+}
+
+/* What is met, by the light of a pixel. In a loop, so that light is compiled once: first what that pixel shows. */
+vec3 lit_like(ivec2 like, vec3 v, uvec2 met)
+{
+    vec3 hdr = texelFetch(hdr_image, like, 0).rgb;
+    vec3 around, sun, there = vec3(0.0);
+    float seen = 1.0;
+    MASU_LOOP for (int k = 0; k < 2; k++) {
+        vec4 albedo = k == 0 ? texelFetch(albedo_image, like, 0) : unpackUnorm4x8(met.x);
+        uint normal = k == 0 ? texelFetch(normal_image, like, 0).r : met.y;
+        light_up(masu_unpack_look(albedo, normal), masu_unpack_normal(normal), v, around, sun);
+        if (k == 0) {
+            /* How much of the sun is seen there: between the pixel's light without and with. */
+            float more = luminance(sun);
+            float without = luminance(around);
+            seen = more > 0.05 * without ? clamp((luminance(hdr) - without) / more, 0.0, 1.0) : 1.0;
+            there = around + seen * sun;
+        }
+    }
+    return hdr * clamp((around + seen * sun) / max(there, vec3(1e-6)), 0.125, 8.0);
+}
+
+/* What a ray through a place in a pixel shows. */
+vec3 radiance_at(ivec2 at, vec2 place)
+{
+    /* Anew for each ray: what rays share would be kept while they are lit, in registers that are not there. */
+    own_tile = masu_tile_of(gl_WorkGroupID.xy * uint(MASU_GROUP), size);
+    bool any_listed = push.listed == 0u || masu_use_tile(own_tile, size);
+    span_prepare(size);
+    vec2 ndc = masu_ndc(vec2(at) + 0.5 + place, vec2(size));
+    vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
+    float z_scale = length(through);
+    float inverse = 1.0 / z_scale;
+    float nearest = frame.forward.w * z_scale;
+    ray r = ray(through * inverse, 2.0 * frame.up.w / float(size.y) * inverse, nearest, frame.sdf_max.w);
+    float raster = raster_within(at, place);
+    r.limit = raster > 0.0 ? min(r.limit, nearest / raster) : r.limit;
+    int half_space;
+    float t = meet(at, r, any_listed, half_space);
+    bool met = t >= 0.0;
+    float off;
+    ivec2 like = like_at(at, place, met ? depth_of(t, z_scale) : raster, met, r.pixel, off);
+    if (!met || off < 0.05) {
+        return texelFetch(hdr_image, like, 0).rgb;
+    }
+    return lit_like(like, -r.direction, texels_met(at, r, t, half_space));
+}
+
+/* ---- The workgroup ------------------------------------------------------------------------------- */
+
+/* Marches ray `next` of 3 of an entry of the list. */
+void march_one(uint entry, uint next)
+{
+    uint own = listed[entry] & uint(INVOCATIONS - 1);
+    ivec2 at = ivec2(gl_WorkGroupID.xy * uint(MASU_GROUP)) + ivec2(own & uint(MASU_GROUP - 1), own / uint(MASU_GROUP));
+    vec2 place = place_of(((listed[entry] >> 6) + next) % uint(RAYS));
+    light[entry * uint(RAYS) + next] = shown(radiance_at(at, place));
+}
+
+#if MASU_GROUP != 8
+#error "numbers in a group have 6 bits"
+#endif
+
+/* The word of the invocation's pixel, which is `entry` of the list; INVOCATIONS: it is not in it. */
+uint march_edges(ivec2 at, uint entry, bool between)
+{
+    vec3 middle = vec3(0.0);
+    /* The first ray of each; then two more of those that it shows to have an edge. In a loop, so that a ray is compiled once. */
+    MASU_LOOP for (uint k = 0u; k < 3u; k++) {
+        uint i = gl_LocalInvocationIndex + (max(k, 1u) - 1u) * uint(INVOCATIONS);
+        if (i < (k == 0u ? listed_count : 2u * differ_count)) {
+            march_one(k == 0u ? i : differ[i >> 1], k == 0u ? 0u : 1u + (i & 1u));
+        }
+        if (k == 0u) {
+            barrier();
+            if (entry < uint(INVOCATIONS)) {
+                middle = shown(texelFetch(hdr_image, at, 0).rgb);
+                if (between || masu_edge_differs(light[entry * uint(RAYS)], middle)) {
+                    differ[atomicAdd(differ_count, 1u)] = entry;
+                } else {
+                    entry = uint(INVOCATIONS);
+                }
+            }
+            barrier();
+        }
+    }
+    barrier();
+    if (entry == uint(INVOCATIONS)) {
+        return 0u;
+    }
+    vec3 rays = light[entry * uint(RAYS)] + light[entry * uint(RAYS) + 1u] + light[entry * uint(RAYS) + 2u];
+    return masu_pack_edge(mix(rays * (1.0 / float(RAYS)), middle, middle_share));
 }
 
 void main()
 {
     masu_count_begin();
-    uvec2 at = gl_GlobalInvocationID.xy;
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     size = uvec2(pc.output_width, pc.output_height);
-    if (all(lessThan(at, size))) {
-        MASU_STORE_SAFE(silhouettes_image, at, uvec4(line_at(at)));
+    if (gl_LocalInvocationIndex == 0u) {
+        listed_count = 0u;
+        differ_count = 0u;
+    }
+    barrier();
+    uint entry = uint(INVOCATIONS);
+    vec2 side;
+    bool between = false;
+    if (is_inside(at) && has_edge(at, side, between)) {
+        entry = atomicAdd(listed_count, 1u);
+        listed[entry] = gl_LocalInvocationIndex | place_towards(side) << 6;
+    }
+    barrier();
+    uint word = 0u;
+    if (listed_count > 0u) {
+        word = march_edges(at, entry, between);
+    }
+    if (is_inside(at)) {
+        MASU_STORE_SAFE(silhouettes_image, at, uvec4(word));
     }
     masu_count_end();
 }

@@ -8,7 +8,6 @@
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
 #define MASU_OUTPUT
 #define MASU_PUSH masu_push_tonemap
 #include "shared/masu_shared.h"
@@ -19,8 +18,6 @@
 #ifdef MASU_SILHOUETTES
 #include "shared/silhouettes.glsl"
 #endif
-
-layout(constant_id = 5) const uint tone = 2;
 
 layout(local_size_x = MASU_GROUP, local_size_y = MASU_GROUP) in;
 
@@ -39,68 +36,20 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buf
 {
     float metered_exposure;
 };
-#endif
-
-float exposure()
-{
-#ifdef MASU_METERED
-    return metered_exposure;
 #else
-    return frame.sun_direction.w;
+#define metered_exposure frame.sun_direction.w
 #endif
-}
 
-vec3 curve(vec3 x, float most)
+vec3 display_light(ivec2 at)
 {
-    return tone == 1u ? x : tone == 2u ? masu_tone_filmic(x) : masu_tone_neutral(x, most);
-}
-
-/* What is shown of a pixel alone. */
-vec3 shown(ivec2 at)
-{
-    vec3 hdr = texelFetch(hdr_image, at, 0).rgb;
-    return curve(masu_exposed(hdr, exposure()), max(push.peak, 1.0));
-}
-
 #ifdef MASU_SILHOUETTES
-/* Display light, as an eye takes the mean of it: of radiance a lamp that covers a tenth of the pixel would turn it
- * white (docs/design/31-truth.md). What is covered shows the neighbour's colour, carried on to the rim by what it differs from
- * the next one: surfaces darken or brighten most where they turn away. One loop, so that the curve is compiled once. */
-vec3 blended(ivec2 at, ivec2 size)
-{
-    ivec2 low = max(at - 1, ivec2(0));
-    ivec2 high = min(at + 1, size - 1);
-    uint own = texelFetch(silhouettes_image, at, 0).r;
-    uvec4 others = uvec4(texelFetch(silhouettes_image, ivec2(high.x, at.y), 0).r,
-                         texelFetch(silhouettes_image, ivec2(low.x, at.y), 0).r,
-                         texelFetch(silhouettes_image, ivec2(at.x, high.y), 0).r,
-                         texelFetch(silhouettes_image, ivec2(at.x, low.y), 0).r);
-    /* None outside of the picture. */
-    others *= uvec4(high.x > at.x, low.x < at.x, high.y > at.y, low.y < at.y);
-    if ((own | others.x | others.y | others.z | others.w) == 0u) {
-        return shown(at);
+    uint seen = push.silhouettes != 0u ? texelFetch(silhouettes_image, at, 0).r : 0u;
+    if (seen != 0u) {
+        return masu_unpack_edge(seen) * max(push.peak, 1.0);
     }
-    vec4 weights = masu_silhouette_weights(own, others);
-    float most = max(push.peak, 1.0); /* what is brighter, as without a curve, is no brighter there */
-    vec3 near = vec3(0.0);
-    vec3 sum = vec3(0.0);
-    [[dont_unroll]] for (int i = 0; i < 9; i++) {
-        int k = i >> 1; /* 4: the pixel itself */
-        bool next = (i & 1) != 0;
-        float weight = k == 4 ? 1.0 - weights.x - weights.y - weights.z - weights.w : weights[k];
-        if (!(weight > 0.0) || (next && (own >> (16 + k) & 1u) == 0u)) {
-            continue;
-        }
-        ivec2 way = k == 4 ? ivec2(0) : masu_beside(k) * (next ? 2 : 1);
-        vec3 y = min(shown(clamp(at + way, ivec2(0), size - 1)), most);
-        vec3 on = near - y;
-        bool same = all(lessThan(abs(on), 0.3 * near)); /* else it is another thing */
-        sum += weight * (!next ? y : same ? 0.75 * on : vec3(0.0));
-        near = y;
-    }
-    return clamp(sum, 0.0, most);
-}
 #endif
+    return masu_shown(texelFetch(hdr_image, at, 0).rgb, metered_exposure, max(push.peak, 1.0));
+}
 
 /* Roots, or what a display takes: of display light. */
 vec3 stored(vec3 y)
@@ -120,11 +69,7 @@ void main()
     masu_count_begin();
     uvec2 at = gl_GlobalInvocationID.xy;
     if (all(lessThan(at, uvec2(pc.output_width, pc.output_height)))) {
-#ifdef MASU_SILHOUETTES
-        vec3 y = push.silhouettes != 0u ? blended(ivec2(at), ivec2(pc.output_width, pc.output_height)) : shown(ivec2(at));
-#else
-        vec3 y = shown(ivec2(at));
-#endif
+        vec3 y = display_light(ivec2(at));
 #if defined(MASU_TEN)
         MASU_STORE_CHECKED(ldr_image, at, vec3, stored(y), uvec4(stored_bits(masu_sane_unit(masu_store_value), at)));
 #elif defined(MASU_DEEP)

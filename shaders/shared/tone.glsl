@@ -42,6 +42,15 @@ vec3 masu_tone_neutral(vec3 x, float most)
     return mix(x * (bent / peak), vec3(bent), grey);
 }
 
+layout(constant_id = 5) const uint masu_tone = 2;
+
+/* Display light of radiance, by the curve; most: what is shown at most, in whites. */
+vec3 masu_shown(vec3 hdr, float exposure, float most)
+{
+    vec3 x = masu_exposed(hdr, exposure);
+    return masu_tone == 1u ? x : masu_tone == 2u ? masu_tone_filmic(x) : masu_tone_neutral(x, most);
+}
+
 /* IEC 61966-2-1, linear to encoded. */
 float masu_srgb_encode(float x)
 {

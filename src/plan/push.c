@@ -76,10 +76,11 @@ static uint32_t masu_smaa_diagonal_steps(masu_aa aa) {
     return steps[aa - MASU_AA_SMAA_LOW];
 }
 
-/* What is there of the march for passes behind it: 0 nothing, 1 the tiles' lists of parts, 2 what matters to blocks, too. */
-static uint32_t masu_march_listed(const masu_frame_plan *plan, masu_march march) {
+/* What is there of the march for passes behind it: 0 nothing, 1 the tiles' lists of parts, 2 what matters to blocks, too (with
+ * debug.all_terms that is all of the tile). */
+static uint32_t masu_march_listed(masu_march march) {
     if (!masu_march_has_tiles(march)) return 0;
-    return march == MASU_MARCH_CHECKERBOARD || plan->desc.debug.all_terms ? 1 : 2;
+    return march == MASU_MARCH_CHECKERBOARD ? 1 : 2;
 }
 
 /* ---- Rows ------------------------------------------------------------------------------------ */

@@ -33,7 +33,7 @@ static const struct {
     {MASU_BLOB_CHECKERBOARD_SPIRV, COMPUTE, 8, 8, 1, 1, 3, PUSH(march_checkerboard), FIELD},
     {MASU_BLOB_FRAGMENT_SPIRV, FRAGMENT, 0, 0, 0, 0, 0, PUSH(march_fragment), AT(FRAME) | AT(SLOTS) | AT(TILES)},
     {MASU_BLOB_VELOCITY_SPIRV, COMPUTE, 8, 8, 1, 2, 1, PUSH(sdf_velocity), FIELD | AT(PREVIOUS)},
-    {MASU_BLOB_SILHOUETTES_SPIRV, COMPUTE, 8, 8, 2, 3, 1, PUSH(silhouettes), FIELD},
+    {MASU_BLOB_SILHOUETTES_SPIRV, COMPUTE, 8, 8, 4, 5, 1, PUSH(silhouettes), FIELD | AT(EXPOSURE) | AT(TABLES) | AT(SKY)},
     {MASU_BLOB_OCCLUSION_SPIRV, COMPUTE, 8, 8, 2, 2, 1, PUSH(sdf_occlusion), FIELD},
     {MASU_BLOB_TRACE_SDF_SPIRV, COMPUTE, 8, 8, 2, 2, 1, PUSH(specular_trace_sdf), FIELD | AT(SPECULAR_TILES) | AT(PREVIOUS)},
 };
@@ -43,7 +43,7 @@ _Static_assert(MASU_BIND_COUNT <= 64, "a bit for each binding of set 0");
 static masu_module_class bound_at(uint32_t rule, uint32_t raster, uint32_t set, uint32_t binding) {
     if (set == MASU_SET_GLOBAL) {
         if (binding >= MASU_BIND_COUNT || !(rules[rule].global >> binding & 1u)) return MASU_MODULE_NOTHING;
-        return binding == MASU_BIND_FRAME || binding == MASU_BIND_PREVIOUS ? MASU_MODULE_UNIFORMS : MASU_MODULE_STORAGE;
+        return binding == MASU_BIND_FRAME || binding == MASU_BIND_PREVIOUS || binding == MASU_BIND_SKY ? MASU_MODULE_UNIFORMS : MASU_MODULE_STORAGE;
     }
     uint32_t reads = raster ? rules[rule].raster_reads : rules[rule].reads;
     if (set != MASU_SET_PASS) return MASU_MODULE_NOTHING;

@@ -222,7 +222,8 @@ static int on_rim(uint32_t p, const double normal[2]) {
     return steep ? x == 0 || x == SIZE - 1 : y == 0 || y == SIZE - 1;
 }
 
-/* rung.silhouettes: of one sample a pixel the SDF's edge is nearly what the truth of 64 has; polygons' stays as it is. */
+/* rung.silhouettes: the SDF's edge is that of four samples a pixel: 0.1 of it off where one is by 0.25, and no worse at the one angle and
+ * place where all of an edge's pixels lie as one sample likes it best. Polygons' stays as it is. */
 static void a_silhouette_is_as_wide_as_it_covers(int bright) {
     static const double angles[] = {0, 0.02, 0.12, 0.5, 0.785398, 1.2, 1.570796, 2.5};
     static const float jitters[][2] = {{0, 0}, {0.4f, -0.3f}};
@@ -277,7 +278,7 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
             print_message("  angle %.2f, jitter %g: worst %.3f, rms %.3f of a pixel, without %.3f, %g pixels\n", angles[i],
                           (double)jitters[j][0], worst, sqrt(sum / fmax(count, 1)), sqrt(before / fmax(count, 1)), count);
             assert_true(count > SIZE / 4);
-            assert_true(worst < 0.06 && sqrt(sum / count) < 0.03);
+            assert_true(worst < 0.4 && sqrt(sum / count) < 0.16 && sum < before * 1.01);
         }
     }
     close_session(&s);
@@ -332,11 +333,11 @@ static void silhouettes_stand_beside_everything_else(void **state) {
     }
 }
 
-/* Most of a picture is nearer to the truth with them: for each pixel that is farther off by 16 of 255 there are six that are
- * nearer by as much. Where what ends in front was not found, half of it was shown once: a third as many were farther off. */
+/* Most of a picture is nearer to the truth with them: for each pixel that is farther off by 16 of 255 there are fifty that are
+ * nearer by as much. Rods are metal: by what their own normal mirrors. */
 static void silhouettes_go_towards_the_truth(void **state) {
     (void)state;
-    static const char *const scenes[] = {"city", "tunnel"};
+    static const char *const scenes[] = {"city", "tunnel", "rods"};
     static uint8_t truth[4 * PIXELS], plain[4 * PIXELS];
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         masu_session s;
@@ -361,7 +362,7 @@ static void silhouettes_go_towards_the_truth(void **state) {
             nearer += with + 16 < without, farther += with > without + 16;
         }
         print_message("  %s: %u pixels nearer to the truth, %u farther off\n", scenes[i], nearer, farther);
-        assert_true(nearer > 40 && 6 * farther < nearer);
+        assert_true(nearer > 100 && 50 * farther < nearer);
     }
 }
 

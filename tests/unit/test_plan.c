@@ -625,7 +625,7 @@ static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     d.rungs[1] = (masu_rung){.silhouettes = MASU_OFF};
     assert_frame(&d, 0,
-                 MARCH_ALONE LIGHT_SDF "silhouettes(r:scene_depth r:normal rb:tiles rb:slots w:silhouettes) "
+                 MARCH_ALONE LIGHT_SDF "silhouettes(r:scene_depth r:albedo r:normal r:hdr rb:tiles rb:slots w:silhouettes) "
                                        "tonemap(r:hdr r:silhouettes w:target)");
     compile(&d, &plan);
     assert_int_equal(plan.images[MASU_IMAGE_SILHOUETTES].persistent, 0);
@@ -634,7 +634,7 @@ static void silhouettes_are_a_pass_where_a_rung_asks_for_them(void **state) {
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
     compile(&d, &plan);
-    assert_non_null(strstr(frame_text(&plan, 0), "silhouettes(r:depth r:scene_depth r:normal rb:tiles "));
+    assert_non_null(strstr(frame_text(&plan, 0), "silhouettes(r:depth r:scene_depth r:albedo r:normal r:hdr rb:tiles "));
     d = scene_desc(RASTER, 64, 64); /* there is nothing to smooth */
     d.rung_count = 1;
     d.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
