@@ -61,8 +61,7 @@ ray ray_of(uvec2 place, out float z_scale)
 {
     vec2 ndc = ndc_corner + ndc_step * vec2(place);
     vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
-    /* Wrong turn: one reciprocal root for both. At the horizon of a plain half of the depths were off by 1.11e-7 instead of 0.84e-7,
-     * and a pixel in fifty of a silhouette by half a pixel: silhouettes.comp looks along the same ray. */
+    /* Wrong turn: one reciprocal root for both. At the horizon of a plain half of the depths were off by 1.11e-7 instead of 0.84e-7. */
     z_scale = length(through);
     float inverse = 1.0 / z_scale;
     return ray(through * inverse, frame.up.w * ndc_step.y * inverse, 0.0, 0.0);

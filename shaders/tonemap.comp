@@ -36,8 +36,6 @@ layout(set = MASU_SET_GLOBAL, binding = MASU_BIND_EXPOSURE, std430) readonly buf
 {
     float metered_exposure;
 };
-#else
-#define metered_exposure frame.sun_direction.w
 #endif
 
 vec3 display_light(ivec2 at)
@@ -48,7 +46,12 @@ vec3 display_light(ivec2 at)
         return masu_unpack_edge(seen) * max(push.peak, 1.0);
     }
 #endif
-    return masu_shown(texelFetch(hdr_image, at, 0).rgb, metered_exposure, max(push.peak, 1.0));
+#ifdef MASU_METERED
+    float exposure = metered_exposure;
+#else
+    float exposure = frame.sun_direction.w;
+#endif
+    return masu_shown(texelFetch(hdr_image, at, 0).rgb, exposure, max(push.peak, 1.0));
 }
 
 /* Roots, or what a display takes: of display light. */

@@ -102,13 +102,13 @@ masu_mirrored masu_mirrored_sky(masu_surface s, vec3 n, vec3 v, vec2 kept)
     return m;
 }
 
-/* b: of s; rel: the point, relative to the eye; seen: how much arrives of the sun and of the ambient
- * light; sky: of masu_mirrored_sky. */
-masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, masu_mirrored sky)
+/* What comes from everywhere alone. b: of s; rel: the point, relative to the eye; seen: how much of it arrives; sky: of
+ * masu_mirrored_sky. */
+masu_lit masu_shade_around(masu_surface s, masu_bsdf b, vec3 rel, float seen, masu_mirrored sky)
 {
     masu_around around = masu_ambient_at(rel, b.n);
-    vec3 ambient = around.mirrored * (seen.y * s.occlusion);
-    masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen.y * s.occlusion),
+    vec3 ambient = around.mirrored * (seen * s.occlusion);
+    masu_lit lit = masu_lit(masu_bsdf_diffuse(b) * around.irradiance * (seen * s.occlusion),
                             vec3(0.0), masu_bsdf_specular(b));
     lit.specular = lit.mirror * sky.base * ambient;
 #ifdef MASU_SURFACE
@@ -118,6 +118,13 @@ masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, masu_mirro
         lit.specular += coat * sky.coat * ambient;
     }
 #endif
+    return lit;
+}
+
+/* The same and the sun; seen: how much arrives of the sun and of the light from everywhere. */
+masu_lit masu_shade(masu_surface s, masu_bsdf b, vec3 rel, vec2 seen, masu_mirrored sky)
+{
+    masu_lit lit = masu_shade_around(s, b, rel, seen.y, sky);
     masu_add_light(lit, s, b, frame.sun_direction.xyz, frame.sun_color.rgb * seen.x);
     return lit;
 }

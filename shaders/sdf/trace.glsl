@@ -433,4 +433,21 @@ vec3 normal_at(ray r, float t, out uint part)
     return unit_or(sum, -r.direction);
 }
 
+/* The texels of the G-buffer of a hit; `known`: of half-space `part`. Both are finite. */
+void texels_at(ray r, float t, bool known, uint part, out vec4 albedo, out uint normal)
+{
+    vec3 p = world_at(r.direction, t);
+    masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
+    vec3 n;
+    if (known) {
+        n = unit_or(masu_sdf_flat_normal(part), -r.direction);
+    } else {
+        n = normal_at(r, t, part);
+        masu_count(MASU_COUNTER_SDF_EVALS, 4u);
+    }
+    masu_normal = n;
+    masu_sdf_part_surface(part, p, s);
+    masu_pack_texels(n, s, albedo, normal);
+}
+
 #endif

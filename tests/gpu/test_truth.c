@@ -215,7 +215,7 @@ static void an_edge_is_as_wide_as_it_covers(void **state) {
     close_session(&s);
 }
 
-/* Whether what a line with that normal asks for may lie outside of the picture: the neighbours across it. */
+/* Whether a neighbour across an edge with that normal lies outside of the picture. */
 static int on_rim(uint32_t p, const double normal[2]) {
     uint32_t x = p % SIZE, y = p / SIZE;
     int steep = fabs(normal[0]) > fabs(normal[1]);
@@ -268,7 +268,7 @@ static void a_silhouette_is_as_wide_as_it_covers(int bright) {
                 double alone = ((double)masu_picture_decoded(plain[4 * p + 1]) - dark) / (white - dark);
                 double off = (bright ? 1 - shown : shown) - covered;
                 double was = (bright ? 1 - alone : alone) - covered;
-                if (on_rim(p, x)) { /* some lines lie outside of the picture: then it is as it was */
+                if (on_rim(p, x)) { /* the side of the edge that it would be known by may lie outside of the picture */
                     assert_true(fabs(off) < fabs(was) + 0.04);
                     continue;
                 }
@@ -331,6 +331,25 @@ static void silhouettes_stand_beside_everything_else(void **state) {
         assert_true(ratio > 0.99 && ratio < 1.01);
         close_session(&s);
     }
+}
+
+/* What a ray meets may be what no pixel beside it shows: it must not be lit by texels that nobody has written. */
+static void silhouettes_read_what_was_written(void **state) {
+    (void)state;
+    static uint8_t poisoned[4 * PIXELS];
+    for (uint32_t poison = 0; poison < 2; poison++) {
+        masu_session s;
+        masu_session_desc d = test_desc("rods", SIZE, SIZE);
+        d.desc.rung_count = 1;
+        d.desc.rungs[0] = (masu_rung){.silhouettes = MASU_ON};
+        d.desc.debug.poison = poison;
+        open_session(&s, &d);
+        masu_frame_desc f = {.time = 0.8, .cut = 1};
+        masu_commands commands;
+        draw(&s, &f, &commands, poison ? poisoned : picture);
+        close_session(&s);
+    }
+    assert_memory_equal(picture, poisoned, sizeof poisoned);
 }
 
 /* Most of a picture is nearer to the truth with them: for each pixel that is farther off by 16 of 255 there are fifty that are
@@ -401,6 +420,7 @@ int main(void) {
         cmocka_unit_test(silhouettes_before_the_dark),
         cmocka_unit_test(silhouettes_before_what_is_too_bright),
         cmocka_unit_test(silhouettes_stand_beside_everything_else),
+        cmocka_unit_test(silhouettes_read_what_was_written),
         cmocka_unit_test(silhouettes_go_towards_the_truth),
         cmocka_unit_test(the_table_is_made),
     };
