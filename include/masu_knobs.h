@@ -110,8 +110,8 @@ typedef enum masu_knob_use {
     WORD(  masu_switch,      silhouettes,                            SDF,                          \
            "Smooth silhouettes of the SDF: pixels in which something of it ends are the mean of four" \
            " samples. AUTO: off.",                                                                 \
-           "Three rays more at such pixels, a fifth to one and a half of the march together; 4"    \
-           " device bytes per pixel of the render size, which other images may share.")                                                 \
+           "Up to three rays more at such pixels, at 1920x1080 a tenth to all of the march together;" \
+           " 4 to 8 device bytes per pixel of the render size.")                                  \
     NUMBER(uint32_t,         march_steps,          1,    2048, 2048, SDF,       "steps",           \
            "Most SDF steps per ray. A ray that uses them up ends where it is.",                    \
            "Time of rays that graze surfaces: the more, the longer.")                              \

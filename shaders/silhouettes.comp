@@ -317,21 +317,19 @@ void light_up(vec4 albedo, uint normal, vec3 v, out vec3 around, out vec3 sun)
 
 /* What is met at t, by the light of a pixel (by none if !known: its own). In a loop, so that light is compiled once: first what
  * that pixel shows. */
-vec3 lit_like(ivec2 like, bool known, vec3 v, float t, vec4 met_albedo, uint met_normal)
+vec3 lit_like(ivec2 like, bool known, vec3 v, float t, uint met_albedo, uint met_normal)
 {
     float depth = foggy ? masu_air_depth(-v, t) : 0.0;
-    vec3 air = masu_seen_along(vec3(0.0), false, -v, foggy, depth);
+    vec3 air = foggy ? masu_seen_along(vec3(0.0), false, -v, true, depth) : vec3(0.0);
     vec3 hdr = max(texelFetch(hdr_image, like, 0).rgb - air, 0.0);
     vec3 around, sun, there = vec3(0.0);
     float seen = 1.0;
     MASU_LOOP for (int k = 0; k < 2; k++) {
-        if (k == 0 && !known) {
-            continue;
-        }
-        vec4 albedo = k == 0 ? texelFetch(albedo_image, like, 0) : met_albedo;
-        uint normal = k == 0 ? texelFetch(normal_image, like, 0).r : met_normal;
+        bool first = k == 0 && known;
+        vec4 albedo = first ? texelFetch(albedo_image, like, 0) : unpackUnorm4x8(met_albedo);
+        uint normal = first ? texelFetch(normal_image, like, 0).r : met_normal;
         light_up(albedo, normal, v, around, sun);
-        if (k == 0) {
+        if (first) {
             /* How much of the sun is seen there: between the pixel's light without and with. All, if it faces away from the sun. */
             float more = luminance(sun);
             float without = luminance(around);
@@ -374,7 +372,7 @@ vec3 radiance_at(ivec2 at, vec2 place)
     vec4 albedo;
     uint normal;
     texels_at(r, m.t, m.half_space >= 0, uint(max(m.half_space, 0)), albedo, normal);
-    return lit_like(like, off < 1e30, -r.direction, m.t, albedo, normal);
+    return lit_like(like, off < 1e30, -r.direction, m.t, packUnorm4x8(albedo), normal);
 }
 
 /* ---- The workgroup ------------------------------------------------------------------------------- */
