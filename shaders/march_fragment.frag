@@ -31,11 +31,6 @@ void main()
     if (!(t >= 0.0)) {
         discard;
     }
-    masu_surface s = masu_plain_surface(vec3(0.5), 0.5);
-    uint part;
-    vec3 n = normal_at(r, t, part);
-    masu_normal = n;
-    masu_sdf_part_surface(part, world_at(r.direction, t), s);
-    masu_pack_texels(n, s, out_albedo, out_normal);
+    texels_at(r, t, false, 0u, out_albedo, out_normal);
     out_depth = masu_sane(depth_of(t, z_scale), 0.0, 1.0);
 }

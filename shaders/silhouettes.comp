@@ -1,13 +1,14 @@
 /*
  * silhouettes.comp: what pixels show in which something of the SDF ends. Compiled by masu-bake with the scene's field.
  *
- * A pixel is one sample. Where it or one of its four neighbours is nearer than the other's surface goes on, or where two faces
- * meet, a second ray is marched, on the side on which that is; where this one shows something else than the pixel's middle, two more.
+ * A pixel is one sample. Where it or one of its four neighbours is nearer than the other's surface would be if it went on there, or
+ * where two faces meet, a second ray is marched, on the side on which that is; where this one shows something else than the pixel's
+ * middle, or something ends on two opposite sides, two more.
  * Of an edge of any direction middle and three rays tell the share to 0.10 of a pixel (root mean square; 0.25 the middle alone).
  *
  * What a ray meets has to be lit, and light.comp is over. Where it meets the plane of its pixel, or of a neighbour on its side, it
  * shows what that one does. Else it shows what the nearest of these does, but for the air, times what light.comp would make of its own
- * surface and normal by what it would make of those: of the sun, as far as that pixel is in it, and of what comes from
+ * surface and normal, divided by what it would make of that one's: of the sun, as far as that pixel is in it, and of what comes from
  * everywhere. So shadows, lamps and reflections are the neighbour's. What no pixel beside shows at all is in the sun.
  *
  * What a host has drawn at a split is colour here, not a surface: depths are the scene's.
@@ -15,6 +16,7 @@
  * Rays are the workgroup's: pixels are listed, and any invocation marches any ray. In which order they are listed is chance, what
  * is found is not.
  *
+ * What of the sky or of polygons no pixel beside shows is the middle. push.steps: most samples of a ray, of STEPS at most.
  * push.listed: 0: all parts; 1: the tiles' lists are there; 2: and what matters to blocks of 4x4 pixels. push.metered: not 0: the
  * exposure follows the picture. push.peak: the most that is shown, in whites.
  */
@@ -206,7 +208,7 @@ bool has_edge(ivec2 at, out vec2 side, out bool between)
 /* ---- What a ray meets ---------------------------------------------------------------------------- */
 
 /* Depth of the polygons at a place within a pixel. For their slope is taken what differs least from a neighbour: across their own
- * edge it is another one's. */
+ * edge it is another one's. None where it differs much on both sides. */
 float raster_within(ivec2 at, vec2 place)
 {
     float depth = raster_at(at);
@@ -217,7 +219,9 @@ float raster_within(ivec2 at, vec2 place)
         vec2 after = vec2(raster_at(ivec2(high.x, at.y)), raster_at(ivec2(at.x, high.y))) - depth;
         bvec2 earlier = lessThan(abs(before), abs(after));
         earlier = bvec2(low.x < at.x && (earlier.x || high.x == at.x), low.y < at.y && (earlier.y || high.y == at.y));
-        depth = clamp(depth + dot(place, mix(after, before, earlier)), 0.5 * depth, 2.0 * depth);
+        vec2 slope = mix(after, before, earlier);
+        slope = mix(slope, vec2(0.0), greaterThan(abs(slope), vec2(0.1 * depth)));
+        depth += dot(place, slope);
     }
     return depth;
 }
@@ -226,7 +230,7 @@ float raster_within(ivec2 at, vec2 place)
 struct met {
     float t;        /* -1: nothing */
     int half_space; /* which one that is; -1: none */
-    bool known;     /* false: STEPS were not enough */
+    bool done;      /* false: there were not samples enough */
 };
 
 /* Half-spaces end before the cone of the pixel's block does, which is free of the listed parts alone. Where there are no pieces of
@@ -315,20 +319,27 @@ void light_up(vec4 albedo, uint normal, vec3 v, out vec3 around, out vec3 sun)
     sun = lit.diffuse + lit.specular;
 }
 
-/* What is met at t, by the light of a pixel (by none if !known: its own). In a loop, so that light is compiled once: first what
- * that pixel shows. */
-vec3 lit_like(ivec2 like, bool known, vec3 v, float t, uint met_albedo, uint met_normal)
+/* What is met at t, by the light of a pixel; by its own if none shows its kind (!found). In a loop, so that light is compiled
+ * once: first what that pixel shows. */
+vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, uint met_normal)
 {
-    float depth = foggy ? masu_air_depth(-v, t) : 0.0;
-    vec3 air = foggy ? masu_seen_along(vec3(0.0), false, -v, true, depth) : vec3(0.0);
-    vec3 hdr = max(texelFetch(hdr_image, like, 0).rgb - air, 0.0);
+    vec3 hdr = texelFetch(hdr_image, like, 0).rgb;
+    vec3 air = vec3(0.0);
+    float left = 1.0; /* of light that comes through the air */
+    if (foggy) {
+        float far = frame.forward.w * masu_rcp(depth_at(like) * dot(direction, frame.forward.xyz));
+        float left_there = masu_fog_left(masu_air_depth(direction, far));
+        air = masu_air_color(direction);
+        hdr = max(hdr - air * (1.0 - left_there), 0.0) / max(left_there, 1e-3);
+        left = masu_fog_left(masu_air_depth(direction, t));
+    }
     vec3 around, sun, there = vec3(0.0);
     float seen = 1.0;
     MASU_LOOP for (int k = 0; k < 2; k++) {
-        bool first = k == 0 && known;
+        bool first = k == 0 && found;
         vec4 albedo = first ? texelFetch(albedo_image, like, 0) : unpackUnorm4x8(met_albedo);
         uint normal = first ? texelFetch(normal_image, like, 0).r : met_normal;
-        light_up(albedo, normal, v, around, sun);
+        light_up(albedo, normal, -direction, around, sun);
         if (first) {
             /* How much of the sun is seen there: between the pixel's light without and with. All, if it faces away from the sun. */
             float more = luminance(sun);
@@ -338,7 +349,9 @@ vec3 lit_like(ivec2 like, bool known, vec3 v, float t, uint met_albedo, uint met
         }
     }
     vec3 here = around + seen * sun;
-    return known ? hdr * clamp(here / max(there, vec3(1e-6)), 0.125, 8.0) + air : masu_seen_along(here, false, -v, foggy, depth);
+    /* Where no light is known of, as at night by lamps alone, there is nothing to tell one from the other by. */
+    here = found ? hdr * clamp((here + 1e-6) / (there + 1e-6), 0.125, 8.0) : here;
+    return here * left + air * (1.0 - left);
 }
 
 /* What a ray through a place in a pixel shows. */
@@ -360,10 +373,10 @@ vec3 radiance_at(ivec2 at, vec2 place)
     bool sdf = m.t >= 0.0;
     float off;
     ivec2 like = like_at(at, place, sdf ? depth_of(m.t, z_scale) : raster, sdf, r.pixel, off);
-    if (!m.known) {
+    if (!m.done) {
         like = at;
     }
-    if (!sdf || !m.known || off < 0.05) {
+    if (!sdf || !m.done || off < 0.05) {
         return texelFetch(hdr_image, like, 0).rgb;
     }
     if (push.listed == 2u && m.half_space < 0) {
@@ -372,7 +385,7 @@ vec3 radiance_at(ivec2 at, vec2 place)
     vec4 albedo;
     uint normal;
     texels_at(r, m.t, m.half_space >= 0, uint(max(m.half_space, 0)), albedo, normal);
-    return lit_like(like, off < 1e30, -r.direction, m.t, packUnorm4x8(albedo), normal);
+    return lit_like(like, off < 1e30, r.direction, m.t, packUnorm4x8(albedo), normal);
 }
 
 /* ---- The workgroup ------------------------------------------------------------------------------- */

@@ -4,7 +4,8 @@
  *
  * shaders/shared/tone.glsl has the curves and encodings; output.glsl says why targets beyond white have
  * another one. Push constants: push.white = white, nits; push.peak = the most that is shown, in whites;
- * push.roots not 0: what follows is rung.temporal, whose samples are roots of display light (upscale/roots.glsl).
+ * push.silhouettes not 0: silhouettes.comp says what some pixels show; push.roots not 0: what follows is rung.temporal, whose
+ * samples are roots of display light (upscale/roots.glsl).
  */
 #version 440
 #extension GL_GOOGLE_include_directive : require

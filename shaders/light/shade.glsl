@@ -1,5 +1,5 @@
 /*
- * shade.glsl: the light that leaves a surface towards the eye; for light.comp and transparents.frag.
+ * shade.glsl: the light that leaves a surface towards the eye; for light.comp, transparents.frag and silhouettes.comp.
  *
  *   radiance = sum of lights * f * N.L + ambient
  *   f:        brdf/bsdf.glsl

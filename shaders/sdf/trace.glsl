@@ -1,5 +1,5 @@
 /*
- * trace.glsl: one ray of a pixel: the march, the normal, and the pixel's ray itself.
+ * trace.glsl: one ray of a pixel: the march, the normal, the texels of what is hit, and the pixel's ray itself.
  *
  * Two marches. The plain one (Hart 1996) is the baseline of the report: it stops at 0.1 pixel cones and
  * refines twice by the secant. Ours (MASU_RELAXED) takes longer steps that it checks, and finds the

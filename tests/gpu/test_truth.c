@@ -353,7 +353,7 @@ static void silhouettes_read_what_was_written(void **state) {
 }
 
 /* Most of a picture is nearer to the truth with them: for each pixel that is farther off by 16 of 255 there are fifty that are
- * nearer by as much. Rods are metal: by what their own normal mirrors. */
+ * nearer by as much. Rods are metal, and mirror what their own normal says. */
 static void silhouettes_go_towards_the_truth(void **state) {
     (void)state;
     static const char *const scenes[] = {"city", "tunnel", "rods"};

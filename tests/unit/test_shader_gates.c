@@ -193,7 +193,7 @@ static const struct {
     {"update.comp", "-DMASU_PASS=1", 1, 1, 0},
     {"update.comp", "-DMASU_MOTION=1", 1, 1, 0},
     {"sdf_velocity.comp", "-DMASU_PASS=1", 2, 0, 2},
-    {"silhouettes.comp", "-DMASU_PASS=1", 2, 0, 6}, /* sides, rays and their march, the normal, likes, light */
+    {"silhouettes.comp", "-DMASU_PASS=1", 2, 0, 6}, /* sides, rays and their march, the normal, reference pixels, light */
     {"classify.comp", "-DMASU_PASS=1", 2, 0, 1},
     {"cone.comp", "-DMASU_CONE_BLOCK=8", 1, 0, 1},
     {"cone.comp", "-DMASU_CONE_BLOCK=2", 1, 0, 1},
