@@ -13,14 +13,14 @@ static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RU
         [MASU_DEVICE_DECK] = {1.0000f, 0.8057f, 0.6283f, 0.4788f, 0.3366f, 0.2778f, 0.2552f, 0.2947f},
         [MASU_DEVICE_MOBILE] = {1.0000f, 0.7988f, 0.6238f, 0.4763f, 0.3426f, 0.2779f, 0.2438f, 0.2576f},
     },
-    [MASU_SCENE_SDF] = { /* city_shadows.masu, ladder.json 3194754772 */
+    [MASU_SCENE_SDF] = { /* city_shadows.masu, ladder.json 2122705926 */
         [MASU_DEVICE_XE80] = {1.0000f, 0.7703f, 0.5733f, 0.4042f, 0.2640f, 0.1813f, 0.1765f},
         [MASU_DEVICE_UHD620] = {1.0000f, 0.7701f, 0.5730f, 0.4038f, 0.2636f, 0.1808f, 0.1790f},
         [MASU_DEVICE_VEGA8] = {1.0000f, 0.7697f, 0.5723f, 0.4028f, 0.2668f, 0.1794f, 0.1732f},
         [MASU_DEVICE_DECK] = {1.0000f, 0.7704f, 0.5723f, 0.4023f, 0.2632f, 0.1782f, 0.1786f},
         [MASU_DEVICE_MOBILE] = {1.0000f, 0.7681f, 0.5693f, 0.3986f, 0.2605f, 0.1739f, 0.1707f},
     },
-    [MASU_SCENE_BOTH] = { /* engine.masu, ladder.json 2568251987 */
+    [MASU_SCENE_BOTH] = { /* engine.masu, ladder.json 14503325 */
         [MASU_DEVICE_XE80] = {1.0000f, 0.7935f, 0.5988f, 0.4384f, 0.2969f, 0.2195f, 0.2171f, 0.1830f},
         [MASU_DEVICE_UHD620] = {1.0000f, 0.7930f, 0.5983f, 0.4371f, 0.2961f, 0.2187f, 0.2217f, 0.1887f},
         [MASU_DEVICE_VEGA8] = {1.0000f, 0.7904f, 0.5948f, 0.4324f, 0.3011f, 0.2129f, 0.2070f, 0.1578f},
@@ -41,7 +41,7 @@ static const float computed[MASU_SCENE_CLASSES][MASU_DEVICE_CLASSES][MASU_MAX_RU
         [MASU_DEVICE_DECK] = {1.0000f, 0.7863f, 0.5953f, 0.4343f, 0.2942f, 0.3529f, 0.2612f, 0.1385f},
         [MASU_DEVICE_MOBILE] = {1.0000f, 0.7809f, 0.5880f, 0.4255f, 0.2866f, 0.3462f, 0.2545f, 0.1315f},
     },
-    [MASU_SCENE_BOTH_TRACED] = { /* wet_city.masu, ladder.json 136116041 */
+    [MASU_SCENE_BOTH_TRACED] = { /* wet_city.masu, ladder.json 3287154286 */
         [MASU_DEVICE_XE80] = {1.0000f, 0.7953f, 0.6045f, 0.4447f, 0.2990f, 0.2246f, 0.1822f, 0.1401f},
         [MASU_DEVICE_UHD620] = {1.0000f, 0.7946f, 0.6031f, 0.4430f, 0.2973f, 0.2227f, 0.1844f, 0.1438f},
         [MASU_DEVICE_VEGA8] = {1.0000f, 0.7909f, 0.5979f, 0.4352f, 0.2988f, 0.2118f, 0.1451f, 0.1076f},
