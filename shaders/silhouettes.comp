@@ -233,12 +233,11 @@ struct met {
     bool done;      /* false: there were not samples enough */
 };
 
-/* Half-spaces end before the cone of the pixel's block does, which is free of the listed parts alone. Where there are no pieces of
+/* r: within the SDF's bounds. Half-spaces end before the cone of the pixel's block does, which is free of the listed parts alone. Where there are no pieces of
  * rays (one part, another march) rays begin at the listed parts' box. */
 met meet(ivec2 at, ray r, bool any_listed)
 {
     uint part;
-    clip_to_box(r, frame.sdf_min.xyz, frame.sdf_max.xyz);
     float end = masu_sdf_flat(eye_hi + eye_lo, r.direction, r.start, part);
     masu_count(MASU_COUNTER_SDF_EVALS, MASU_SDF_PART_COUNT > MASU_SDF_LISTED_COUNT ? 1u : 0u);
     bool ends = end <= r.limit && end < 1e30;
@@ -295,11 +294,6 @@ ivec2 like_at(ivec2 at, vec2 place, float depth, bool sdf, float width, out floa
     return like;
 }
 
-float luminance(vec3 c)
-{
-    return dot(c, vec3(0.2126, 0.7152, 0.0722));
-}
-
 /* What light.comp makes of texels without lamps and probes: `around` of what comes from everywhere, `sun` of the sun. */
 void light_up(vec4 albedo, uint normal, vec3 v, out vec3 around, out vec3 sun)
 {
@@ -342,9 +336,9 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
         light_up(albedo, normal, -direction, around, sun);
         if (first) {
             /* How much of the sun is seen there: between the pixel's light without and with. All, if it faces away from the sun. */
-            float more = luminance(sun);
-            float without = luminance(around);
-            seen = more > 0.05 * without ? clamp((luminance(hdr) - without) / more, 0.0, 1.0) : 1.0;
+            float more = masu_luminance(sun);
+            float without = masu_luminance(around);
+            seen = more > 0.05 * without ? clamp((masu_luminance(hdr) - without) / more, 0.0, 1.0) : 1.0;
             there = around + seen * sun;
         }
     }
@@ -357,18 +351,13 @@ vec3 lit_like(ivec2 like, bool found, vec3 direction, float t, uint met_albedo, 
 /* What a ray through a place in a pixel shows. */
 vec3 radiance_at(ivec2 at, vec2 place)
 {
+    float raster = raster_within(at, place);
+    float z_scale;
+    ray r = place_ray(vec2(at) + 0.5 + place, size, raster, z_scale);
     /* Anew for each ray: what rays share would be kept while they are lit, in registers that are not there. */
     own_tile = masu_tile_of(gl_WorkGroupID.xy * uint(MASU_GROUP), size);
     bool any_listed = push.listed == 0u || masu_use_tile(own_tile, size);
     span_prepare(size);
-    vec2 ndc = masu_ndc(vec2(at) + 0.5 + place, vec2(size));
-    vec3 through = frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
-    float z_scale = length(through);
-    float inverse = 1.0 / z_scale;
-    float nearest = frame.forward.w * z_scale;
-    ray r = ray(through * inverse, 2.0 * frame.up.w / float(size.y) * inverse, nearest, frame.sdf_max.w);
-    float raster = raster_within(at, place);
-    r.limit = raster > 0.0 ? min(r.limit, nearest / raster) : r.limit;
     met m = meet(at, r, any_listed);
     bool sdf = m.t >= 0.0;
     float off;

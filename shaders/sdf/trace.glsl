@@ -25,28 +25,25 @@
 #define MASU_MARCH_STEPS push.steps
 #endif
 
-/* Direction and width of a pixel's ray. */
-ray ray_through(uvec2 at, uvec2 size, out float z_scale)
-{
-    vec3 through = masu_pixel_ray(at, size);
-    z_scale = length(through);
-    float inverse = 1.0 / z_scale;
-    return ray(through * inverse, 2.0 * frame.up.w / float(size.y) * inverse, 0.0, 0.0);
-}
-
-/* The ray of a pixel, up to a raster depth (0: none) and inside the SDF's bounds. z_scale: distance
+/* The ray through a place in the picture, pixels, up to a raster depth (0: none) and inside the SDF's bounds. z_scale: distance
  * along the ray per unit of view z; at least 1. */
-ray pixel_ray(uvec2 at, uvec2 size, float raster, out float z_scale)
+ray place_ray(vec2 place, uvec2 size, float raster, out float z_scale)
 {
     float near = frame.forward.w;
-    ray r = ray_through(at, size, z_scale);
-    r.start = near * z_scale;
-    r.limit = frame.sdf_max.w;
+    vec3 through = masu_place_ray(place, size);
+    z_scale = length(through);
+    float inverse = 1.0 / z_scale;
+    ray r = ray(through * inverse, 2.0 * frame.up.w / float(size.y) * inverse, near * z_scale, frame.sdf_max.w);
     if (raster > 0.0) {
         r.limit = min(r.limit, near / raster * z_scale); /* a tie goes to the raster */
     }
     clip_to_box(r, frame.sdf_min.xyz, frame.sdf_max.xyz);
     return r;
+}
+
+ray pixel_ray(uvec2 at, uvec2 size, float raster, out float z_scale)
+{
+    return place_ray(vec2(at) + 0.5, size, raster, z_scale);
 }
 
 /* Reverse-Z depth of a distance along a ray. */

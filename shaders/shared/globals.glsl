@@ -21,13 +21,18 @@ vec2 masu_ndc(vec2 pixels, vec2 size)
     return pixels / size * 2.0 - 1.0 + frame.jitter.xy;
 }
 
-/* Vector from the eye through the centre of a pixel, as long as makes its view z 1: eye + ray * z
- * is the point at view depth z. The half texel matters: without it the march and the raster look at
- * different places. */
+/* Vector from the eye through a place in the picture, pixels, as long as makes its view z 1: eye + ray * z is the point at view
+ * depth z. */
+vec3 masu_place_ray(vec2 place, uvec2 size)
+{
+    vec2 ndc = masu_ndc(place, vec2(size));
+    return frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
+}
+
+/* The same through the centre of a pixel. The half texel matters: without it the march and the raster look at different places. */
 vec3 masu_pixel_ray(uvec2 at, uvec2 size)
 {
-    vec2 ndc = masu_ndc(vec2(at) + 0.5, vec2(size));
-    return frame.forward.xyz + frame.right.xyz * ndc.x - frame.up.xyz * ndc.y;
+    return masu_place_ray(vec2(at) + 0.5, size);
 }
 
 #endif

@@ -90,13 +90,20 @@ vec3 masu_bt2020(vec3 c)
                 dot(vec3(0.0164, 0.0880, 0.8956), c));
 }
 
+/* Of BT.709. */
+float masu_luminance(vec3 c)
+{
+    precise float luminance = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+    return luminance;
+}
+
 /* Bins are along the bits of the float, eight to an octave: evenly spaced in log2 from octave to octave
  * and evenly in luminance within one, the same on every driver, which log2() is not. Pixels that are
  * black or not finite are in none: EXPOSURE_BINS. */
 uint masu_luminance_bin(vec3 c)
 {
     const uint first = uint(127 + MASU_EXPOSURE_LOG2) << 3;
-    precise float luminance = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; /* BT.709 */
+    float luminance = masu_luminance(c);
     bool counts = masu_finite(c) && masu_finite(luminance) && luminance > masu_tiny;
     uint place = floatBitsToUint(counts ? luminance : 0.0) >> 20;
     return place < first ? uint(MASU_EXPOSURE_BINS)
