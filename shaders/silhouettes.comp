@@ -233,8 +233,8 @@ struct met {
     bool done;      /* false: there were not samples enough */
 };
 
-/* r: within the SDF's bounds. Half-spaces end before the cone of the pixel's block does, which is free of the listed parts alone. Where there are no pieces of
- * rays (one part, another march) rays begin at the listed parts' box. */
+/* r: within the SDF's bounds. Half-spaces end before the cone of the pixel's block does, which is free of the listed parts alone.
+ * Where there are no pieces of rays (one part, another march) rays begin at the listed parts' box. */
 met meet(ivec2 at, ray r, bool any_listed)
 {
     uint part;
