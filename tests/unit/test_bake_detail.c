@@ -129,16 +129,21 @@ static void torus(soup *s, double radius, double thickness, int n, int m, bool i
     }
 }
 
-static void add_mesh(masu_bake_content *c, const soup *s, const char *name) {
+static void add_primitive(masu_bake_content *c, const soup *s, float red) {
     masu_blob_material material = masu_bake_default_material();
+    material.base_color[0] = red;
     masu_bake_losses losses = {0};
     masu_bake_triangles t = {.positions = s->positions,
                              .vertex_count = s->count,
                              .indices = s->indices,
                              .index_count = s->count,
                              .material = masu_bake_material(c, &material, "")};
-    uint32_t first = (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES);
     assert_true(masu_bake_add_triangles(c, &t, &losses));
+}
+
+static void add_mesh(masu_bake_content *c, const soup *s, const char *name) {
+    uint32_t first = (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES);
+    add_primitive(c, s, 1);
     uint32_t text = masu_bake_name(c, name, strlen(name));
     uint32_t mesh =
         masu_bake_mesh(c, first, (uint32_t)masu_bake_count(c, MASU_BLOB_PRIMITIVES) - first, text);
@@ -303,6 +308,56 @@ static void errors_of_lods_are_bounds(void **state) {
     masu_bake_content_release(&ring);
     masu_bake_content_release(&fence);
     masu_bake_content_release(&small);
+}
+
+/* Lamps on a wall: all of them is where the wall is, whatever becomes of their outlines. Each level shows a lamp whose color
+ * is nowhere farther from the lamp's than it says, or leaves one out that is no larger than that. */
+static void a_level_is_judged_by_each_of_its_materials(void **state) {
+    (void)state;
+    enum { LAMPS = 3, CORNERS = 48 };
+    const double radius[LAMPS] = {1, 0.4, 0.02};
+    static soup wall, lamps;
+    masu_bake_content c = {0};
+    wall.count = lamps.count = 0;
+    cuboid(&wall, masu_bake_v3(-4, -4, -1), masu_bake_v3(4, 4, 0), -1);
+    for (int l = 0; l < LAMPS; l++) {
+        vec3 at[CORNERS];
+        for (int i = 0; i < CORNERS; i++) {
+            double a = 2 * MASU_BAKE_PI * i / CORNERS;
+            at[i] = masu_bake_v3(2.5 * (l - 1) + radius[l] * cos(a), radius[l] * sin(a), 0);
+        }
+        for (int i = 1; i + 1 < CORNERS; i++) face(&lamps, at[0], at[i], at[i + 1]);
+    }
+    add_primitive(&c, &wall, 0);
+    add_primitive(&c, &lamps, 1);
+    uint32_t text = masu_bake_name(&c, "wall", 4);
+    masu_bake_affine identity = masu_bake_identity();
+    masu_bake_instance(&c, &identity, masu_bake_mesh(&c, 0, 2, text), MASU_BLOB_NONE, text);
+    masu_bake_lod_report report = {0};
+    masu_bake_make_lods(&c, 3, &report);
+    assert_true(report.levels >= 1);
+    uint64_t random = 13;
+    for (uint64_t i = 0; i < masu_bake_count(&c, MASU_BLOB_LODS); i++) {
+        masu_blob_lod l = MASU_BAKE_LODS(&c)[i];
+        double error = (double)l.error * (1 + 1e-6) + 1e-9;
+        masu_bake_buffer fine = triangles_of(&c, 1, 1), coarse = triangles_of(&c, l.first_primitive + 1, 1);
+        for (size_t k = 0; k < COUNT_OF(fine); k++) {
+            double middle = TRIANGLES(fine)[k][0].x / 2.5 + 1;
+            if (2 * radius[(int)(middle + 0.5)] * sqrt(2) <= error) continue;
+            assert_true(COUNT_OF(coarse) > 0);
+            for (int n = 0; n < 40; n++) {
+                vec3 p = point_on(&random, TRIANGLES(fine)[k]);
+                assert_true(own_distance_all(TRIANGLES(coarse), COUNT_OF(coarse), p) <= error);
+            }
+        }
+        for (size_t k = 0; k < 40 * COUNT_OF(coarse); k++) {
+            vec3 p = point_on(&random, TRIANGLES(coarse)[k / 40]);
+            assert_true(own_distance_all(TRIANGLES(fine), COUNT_OF(fine), p) <= error);
+        }
+        masu_bake_release(&fine);
+        masu_bake_release(&coarse);
+    }
+    masu_bake_content_release(&c);
 }
 
 /* ---- occluders ---- */
@@ -633,6 +688,7 @@ int main(void) {
         cmocka_unit_test(a_deviation_is_a_bound_and_not_much_more),
         cmocka_unit_test(parts_are_counted_and_the_open_ones_found),
         cmocka_unit_test(errors_of_lods_are_bounds),
+        cmocka_unit_test(a_level_is_judged_by_each_of_its_materials),
         cmocka_unit_test(occluders_lie_inside),
         cmocka_unit_test(a_box_in_a_sphere_is_not_needlessly_small),
         cmocka_unit_test(what_is_open_thin_or_small_has_no_occluder),

@@ -7,8 +7,9 @@
  *   clustered    meshoptimizer's "sloppy" form, where the others get stuck; not of what has textures
  *
  * The error is ours, not the simplifier's estimate: a bound of the two-sided distance between the
- * surfaces (surface.c), in the units of the mesh. Places alone: texture coordinates and normals
- * are not judged. A level has the mesh's primitives in the
+ * surfaces (surface.c), in the units of the mesh, of the whole mesh and of each of its materials: a
+ * lamp on a wall may lose its outline and still be where the wall is. What a level leaves out is no
+ * larger a spot than it was. Texture coordinates and normals are not judged. A level has the mesh's primitives in the
  * mesh's order, with its materials and vertices; only indices are added. */
 #include "bake/mesh/detail.h"
 #include "bake/mesh/surface.h"
@@ -31,6 +32,15 @@ typedef struct form { /* indices of one level, primitive after primitive */
     double error;
 } form;
 
+/* What has one material, in parts that hang together. */
+typedef struct look {
+    uint32_t material;
+    masu_bake_surface all;
+    masu_bake_surface *parts;
+    double *sizes; /* diagonals of the parts' boxes */
+    uint32_t part_count;
+} look;
+
 typedef struct source {
     const masu_bake_content *content;
     masu_blob_mesh mesh;
@@ -41,6 +51,8 @@ typedef struct source {
     double *part_size;
     uint32_t parts;
     masu_bake_surface surface;
+    look *looks; /* none where all of the mesh is one */
+    uint32_t look_count;
 } source;
 
 static const masu_blob_primitive *primitive_of(const source *s, uint32_t i) {
@@ -59,14 +71,16 @@ static void form_release(form *f) {
     *f = (form){.error = DBL_MAX};
 }
 
-static masu_bake_surface surface_of(const source *s, const form *f) {
+/* Of one material, MASU_BLOB_NONE: of all. */
+static masu_bake_surface surface_of(const source *s, const form *f, uint32_t material) {
     masu_bake_buffer corners = {0};
     const uint32_t *at = f->indices;
-    for (uint32_t i = 0; i < s->mesh.primitive_count; i++) {
-        uint32_t first = primitive_of(s, i)->first_vertex;
+    for (uint32_t i = 0; i < s->mesh.primitive_count; at += f->counts[i++]) {
+        const masu_blob_primitive *p = primitive_of(s, i);
+        if (material != MASU_BLOB_NONE && p->material != material) continue;
         for (uint32_t k = 0; k < f->counts[i]; k++) {
             masu_bake_vec3 v =
-                masu_bake_v3f(MASU_BAKE_VERTICES(s->content)[first + *at++].position);
+                masu_bake_v3f(MASU_BAKE_VERTICES(s->content)[p->first_vertex + at[k]].position);
             masu_bake_append(&corners, &v, sizeof v);
         }
     }
@@ -77,14 +91,30 @@ static masu_bake_surface surface_of(const source *s, const form *f) {
     return made;
 }
 
-/* DBL_MAX: more than `limit`. */
+/* A part that is no longer there, or is far from what is left of its material, is a spot as large as
+ * the part that has another color. */
+static double measure_look(const source *s, const look *l, const form *f, double limit) {
+    masu_bake_surface coarse = surface_of(s, f, l->material);
+    double error = masu_bake_surface_deviation(&coarse, &l->all, limit);
+    for (uint32_t i = 0; i < l->part_count && error < limit; i++) {
+        double most = fmin(l->sizes[i], limit);
+        double moved = masu_bake_surface_deviation(&l->parts[i], &coarse, most);
+        error = fmax(error, fmin(moved, l->sizes[i]));
+    }
+    masu_bake_surface_release(&coarse);
+    return error;
+}
+
+/* `limit` or more where it is not less. */
 static double measure(const source *s, const form *f, double limit) {
-    masu_bake_surface coarse = surface_of(s, f);
+    masu_bake_surface coarse = surface_of(s, f, MASU_BLOB_NONE);
     double error = masu_bake_surface_deviation(&s->surface, &coarse, limit);
     if (error < limit) {
         error = fmax(error, masu_bake_surface_deviation(&coarse, &s->surface, limit));
     }
     masu_bake_surface_release(&coarse);
+    for (uint32_t i = 0; i < s->look_count && error < limit; i++)
+        error = fmax(error, measure_look(s, &s->looks[i], f, limit));
     return error;
 }
 
@@ -204,23 +234,101 @@ static form level(const source *s, double target, double most) {
 
 /* ---- a mesh ---- */
 
+/* The diagonals of the parts' boxes. */
+static double *sizes_of_parts(const masu_bake_vec3 (*triangles)[3], uint32_t count,
+                              const uint32_t *part, uint32_t parts) {
+    double *sizes = masu_bake_allocate(parts * sizeof *sizes);
+    masu_bake_box *boxes = masu_bake_allocate(parts * sizeof *boxes);
+    for (uint32_t i = 0; i < parts; i++) boxes[i] = masu_bake_box_empty();
+    for (uint32_t i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++) masu_bake_box_grow(&boxes[part[i]], triangles[i][k]);
+    }
+    for (uint32_t i = 0; i < parts; i++)
+        sizes[i] = masu_bake_length(masu_bake_sub(boxes[i].high, boxes[i].low));
+    free(boxes);
+    return sizes;
+}
+
 static void look_at_parts(source *s) {
     uint32_t count = s->total / 3;
+    const masu_bake_vec3(*triangles)[3] = (const masu_bake_vec3(*)[3])s->triangles;
     bool *closed = masu_bake_allocate(count * sizeof *closed);
     s->part = masu_bake_allocate(count * sizeof *s->part);
-    s->parts =
-        masu_bake_surface_parts((const masu_bake_vec3(*)[3])s->triangles, count, s->part, closed);
-    s->part_size = masu_bake_allocate(s->parts * sizeof *s->part_size);
-    masu_bake_box *boxes = masu_bake_allocate(s->parts * sizeof *boxes);
-    for (uint32_t i = 0; i < s->parts; i++) boxes[i] = masu_bake_box_empty();
-    for (uint32_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) masu_bake_box_grow(&boxes[s->part[i]], s->triangles[i][k]);
-    }
-    for (uint32_t i = 0; i < s->parts; i++) {
-        s->part_size[i] = masu_bake_length(masu_bake_sub(boxes[i].high, boxes[i].low));
-    }
-    free(boxes);
+    s->parts = masu_bake_surface_parts(triangles, count, s->part, closed);
+    s->part_size = sizes_of_parts(triangles, count, s->part, s->parts);
     free(closed);
+}
+
+/* ---- materials ---- */
+
+typedef struct numbered {
+    uint32_t part, triangle;
+} numbered;
+
+static int by_part(const void *a, const void *b) {
+    const numbered *p = a, *q = b;
+    if (p->part != q->part) return p->part < q->part ? -1 : 1;
+    return p->triangle < q->triangle ? -1 : p->triangle > q->triangle;
+}
+
+static look look_make(uint32_t material, const masu_bake_vec3 (*triangles)[3], uint32_t count) {
+    look l = {.material = material, .all = masu_bake_surface_make(triangles, count)};
+    bool *closed = masu_bake_allocate(count * sizeof *closed);
+    uint32_t *part = masu_bake_allocate(count * sizeof *part);
+    l.part_count = masu_bake_surface_parts(triangles, count, part, closed);
+    l.sizes = sizes_of_parts(triangles, count, part, l.part_count);
+    l.parts = masu_bake_allocate(l.part_count * sizeof *l.parts);
+    numbered *order = masu_bake_allocate(count * sizeof *order);
+    masu_bake_vec3(*sorted)[3] = masu_bake_allocate(count * sizeof *sorted);
+    for (uint32_t i = 0; i < count; i++) order[i] = (numbered){part[i], i};
+    qsort(order, count, sizeof *order, by_part);
+    for (uint32_t i = 0; i < count; i++)
+        memcpy(sorted[i], triangles[order[i].triangle], sizeof sorted[i]);
+    for (uint32_t i = 0, next; i < count; i = next) {
+        for (next = i; next < count && order[next].part == order[i].part;) next++;
+        l.parts[order[i].part] = masu_bake_surface_make(
+            (const masu_bake_vec3(*)[3])(void *)(sorted + i), next - i);
+    }
+    free(sorted);
+    free(order);
+    free(part);
+    free(closed);
+    return l;
+}
+
+static void look_release(look *l) {
+    for (uint32_t i = 0; i < l->part_count; i++) masu_bake_surface_release(&l->parts[i]);
+    free(l->parts);
+    free(l->sizes);
+    masu_bake_surface_release(&l->all);
+}
+
+static bool is_first_of_material(const source *s, uint32_t primitive) {
+    for (uint32_t i = 0; i < primitive; i++) {
+        if (primitive_of(s, i)->material == primitive_of(s, primitive)->material) return false;
+    }
+    return true;
+}
+
+static void look_at_materials(source *s) {
+    uint32_t count = s->mesh.primitive_count, materials = 0;
+    for (uint32_t i = 0; i < count; i++) materials += is_first_of_material(s, i);
+    if (materials < 2) return;
+    s->looks = masu_bake_allocate(materials * sizeof *s->looks);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!is_first_of_material(s, i)) continue;
+        uint32_t material = primitive_of(s, i)->material;
+        masu_bake_buffer corners = {0};
+        for (uint32_t k = i; k < count; k++) {
+            if (primitive_of(s, k)->material == material)
+                masu_bake_surface_collect(s->content, s->mesh.first_primitive + k, 1, &corners);
+        }
+        uint32_t triangles = (uint32_t)(corners.bytes / (3 * sizeof(masu_bake_vec3)));
+        if (triangles)
+            s->looks[s->look_count++] = look_make(
+                material, (const masu_bake_vec3(*)[3])(void *)corners.data, triangles);
+        masu_bake_release(&corners);
+    }
 }
 
 static void store(masu_bake_content *content, const source *s, uint32_t mesh, const form *f) {
@@ -281,7 +389,10 @@ void masu_bake_make_lods(masu_bake_content *content, uint32_t levels,
         s.diagonal = masu_bake_length(
             masu_bake_sub(masu_bake_v3f(s.mesh.aabb_max), masu_bake_v3f(s.mesh.aabb_min)));
         look_at_parts(&s);
+        look_at_materials(&s);
         make_levels(content, &s, m, levels, report);
+        for (uint32_t i = 0; i < s.look_count; i++) look_release(&s.looks[i]);
+        free(s.looks);
         masu_bake_surface_release(&s.surface);
         free(s.part_size);
         free(s.part);
