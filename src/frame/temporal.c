@@ -44,13 +44,16 @@ static int has_resolve(const masu_frame_data *f) {
     return masu_has_pass(&masu_frame_rung_plan(f)->active, MASU_PASS_TEMPORAL_FIND);
 }
 
-/* From 1 on: the first place of Halton's sequence is the corner. */
+/* From 1 on: the first place of Halton's sequence is the corner. Each four of places begin with another of the four: of its
+ * number the last two bits say in which quarter of the pixel a place lies, across, and reflections look at each pixel of 2x2 in
+ * every fourth frame, which would be the same quarter each time: edges in mirrors were dotted. */
 void masu_temporal_place(VkExtent2D render, VkExtent2D shown, uint64_t frame, float place[2]) {
     double pixels = (double)render.width * render.height;
-    double phases = fmin(ceil(16.0 * shown.width * shown.height / pixels), 1024.0);
-    uint32_t phase = (uint32_t)(frame % (uint64_t)phases);
-    place[0] = mirrored(phase + 1, 2) - 0.5f;
-    place[1] = mirrored(phase + 1, 3) - 0.5f;
+    double phases = 4.0 * fmin(ceil(4.0 * shown.width * shown.height / pixels), 256.0);
+    uint32_t phase = (uint32_t)(frame % (uint64_t)phases), four = phase / 4;
+    uint32_t number = 4 * four + (phase + four) % 4 + 1;
+    place[0] = mirrored(number, 2) - 0.5f;
+    place[1] = mirrored(number, 3) - 0.5f;
 }
 
 float masu_temporal_jitter(const masu_frame_data *f, float jitter[2]) {
