@@ -11,6 +11,9 @@
  * alone would cut off what few rays meet and much light comes from; it is for what is left, and as wide as
  * the history's own noise.
  *
+ * Few rays that meet much light are sparks in so short a mean, while the eye moves: of a ray no more counts than what
+ * is usual around. Of what rests all counts, and its mean is seen for long enough to be one.
+ *
  * push.frames: how far back the mean reaches, 1/60 s.
  */
 #version 440
@@ -48,6 +51,10 @@ const float forget = 0.5;
 const float reuse_until = 8.0;
 /* Half the width of the clamp, in deviations. */
 const float clamp_width = 2.0;
+/* Deviations of one ray around the mean over 3x3 texels, as both were, beyond which what moves is a spark; and pixels that
+ * it has moved. */
+const float usual = 5.0;
+const float moving = 0.05;
 
 /* The texel in the present frame, and its surface as the previous frame saw it. */
 struct here {
@@ -63,6 +70,8 @@ struct past {
     float age;
     float weight; /* 0..1: how much of it is of this surface */
     vec2 place;   /* texels of the previous frame */
+    vec2 luma;    /* past_luma's */
+    float off;    /* distance_of's */
 };
 
 struct present {
@@ -198,9 +207,8 @@ vec2 past_luma(vec2 place)
 }
 
 /* How far a history is from what is seen, in deviations of the noise in that. */
-float distance_of(past p, present now)
+float distance_of(vec2 then, present now)
 {
-    vec2 then = past_luma(p.place);
     if (!(then.x >= 0.0)) {
         return 0.0;
     }
@@ -256,22 +264,20 @@ void main()
                 /* Where the surface was, and where what it mirrors was; in a loop: the code would stand here twice. */
                 past a;
                 past b;
-                float off_a;
-                float off_b;
                 [[dont_unroll]] for (int i = 0; i < 2; i++) {
                     if (i == 0 || apart) {
                         b = look(h, masu_unjittered(i == 0 ? velocity.xy : now.motion, size));
-                        off_b = b.weight > 0.0 ? distance_of(b, now) : 0.0;
+                        b.luma = b.weight > 0.0 ? past_luma(b.place) : vec2(-1.0);
+                        b.off = distance_of(b.luma, now);
                     }
                     if (i == 0) {
                         a = b;
-                        off_a = off_b;
                     }
                 }
                 if (apart) {
                     float rough = smoothstep(0.2, 0.8, h.g.roughness);
-                    surface = a.weight * rough * masu_exp2(-min(off_a, 60.0));
-                    float mirrored = b.weight * (1.0 - rough) * masu_exp2(-min(off_b, 60.0));
+                    surface = a.weight * rough * masu_exp2(-min(a.off, 60.0));
+                    float mirrored = b.weight * (1.0 - rough) * masu_exp2(-min(b.off, 60.0));
                     float both = surface + mirrored;
                     surface = both > 1e-20 ? surface / both : (b.weight > 0.0 ? 0.0 : 1.0);
                 }
@@ -284,7 +290,7 @@ void main()
                     vec4 history = mix(b.mean, a.mean, surface);
                     float old_y = masu_luma(history.rgb);
                     float old_sigma = masu_sqrt(history.a - old_y * old_y);
-                    float off = mix(off_b, off_a, surface);
+                    float off = mix(b.off, a.off, surface);
                     float trust = masu_exp2(-forget * max(off - surprise, 0.0));
                     frames = mix(b.age, a.age, surface) * trust;
                     /* The clamp, along the line to the present mean. */
@@ -303,9 +309,14 @@ void main()
                     float alone = smoothstep(0.0, reuse_until, frames);
                     color = mix(color, masu_tamed(texelFetch(ray_image, h.texel, 0).rgb), alone);
                     y = masu_luma(color);
+                    vec2 motion = masu_unjittered(mix(now.motion, velocity.xy, surface), size);
+                    vec2 luma = mix(b.luma, a.luma, surface);
+                    float most_y = max(1.1 * luma.x + usual * masu_sqrt(luma.y), 0.0);
+                    if (y > most_y && any(greaterThan(abs(motion), vec2(moving))) && h.g.roughness > masu_mirror_roughness) {
+                        color *= most_y / max(y, 1e-9); /* not y, whose square says what is usual next time */
+                    }
                     mean = mix(history, vec4(color, y * y), share);
                     frames += 1.0;
-                    vec2 motion = masu_unjittered(mix(now.motion, velocity.xy, surface), size);
                     age.y = packHalf2x16(clamp(motion, vec2(-60000.0), vec2(60000.0)));
                 }
             }
